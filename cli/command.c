@@ -1,0 +1,71 @@
+#include "cli/command.h"
+
+#include "spectral/nearest.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+int abbe_command_fail(const char *program, const abbe_error *error) {
+  const char *text = error->text[0] ? error->text : abbe_result_text(error->code);
+  fprintf(stderr, "%s: %s\n", program, text);
+  return error->code == ABBE_TOLERANCE ? ABBE_EXIT_TOLERANCE : ABBE_EXIT_FAILED;
+}
+
+static _Noreturn void wrong_use(const char *program) {
+  fprintf(stderr, "Try '%s --help'.\n", program);
+  exit(ABBE_EXIT_USAGE);
+}
+
+double abbe_command_number(const char *program, const char *option, const char *text, double min,
+                           double max) {
+  char *end = NULL;
+  double value = strtod(text, &end);
+  if (end == text || *end != '\0' || !isfinite(value) || value < min || value > max) {
+    fprintf(stderr, "%s: %s '%s' is not a number from %g to %g\n", program, option, text, min,
+            max);
+    wrong_use(program);
+  }
+  return value;
+}
+
+unsigned long abbe_command_count(const char *program, const char *option, const char *text,
+                                 unsigned long min, unsigned long max) {
+  char *end = NULL;
+  errno = 0;
+  unsigned long value = strtoul(text, &end, 10);
+  if (end == text || *end != '\0' || text[0] == '-' || errno != 0 || value < min || value > max) {
+    fprintf(stderr, "%s: %s '%s' is not a whole number from %lu to %lu\n", program, option, text,
+            min, max);
+    wrong_use(program);
+  }
+  return value;
+}
+
+void abbe_command_range(const char *program, const char *option, const char *text, double *from,
+                        double *to) {
+  char *middle = NULL, *end = NULL;
+  *from = strtod(text, &middle);
+  *to = *middle == ':' ? strtod(middle + 1, &end) : 0;
+  if (middle == text || end == NULL || end == middle + 1 || *end != '\0' || !isfinite(*from) ||
+      !isfinite(*to) || *from >= *to) {
+    fprintf(stderr, "%s: %s '%s' is not a range such as 380:780\n", program, option, text);
+    wrong_use(program);
+  }
+}
+
+int abbe_command_choice(const char *program, const char *option, const char *text,
+                        const char *const *names, int count) {
+  for (int i = 0; i < count; i++)
+    if (strcasecmp(text, names[i]) == 0) return i;
+  fprintf(stderr, "%s: %s '%s' is not known", program, option, text);
+  const char *near = abbe_nearest_word(text, names, (size_t)count);
+  if (near != NULL) fprintf(stderr, "; did you mean '%s'?", near);
+  fprintf(stderr, " Known:");
+  for (int i = 0; i < count; i++) fprintf(stderr, " %s", names[i]);
+  fprintf(stderr, "\n");
+  wrong_use(program);
+}

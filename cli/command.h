@@ -1,0 +1,42 @@
+/* command.h: the program's subcommands, a file each: arguments in, library calls, text out.
+ *
+ * Arguments are parsed by argp, which answers --help and ends with 2 for wrong use. Results go to
+ * stdout, messages to stderr. Exit codes: 0 done, 1 failed at run time, 2 used wrongly, 3 a
+ * comparison was out of tolerance.
+ */
+#ifndef ABBE_CLI_COMMAND_H
+#define ABBE_CLI_COMMAND_H
+
+#include "spectral/error.h"
+
+#include <stdbool.h>
+
+enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_TOLERANCE = 3 };
+
+/* X(name, summary): every subcommand NAME is `int abbe_command_NAME(int argc, char **argv)`;
+ * argv[0] is "abbe NAME". */
+#define ABBE_COMMANDS(X)
+
+#define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);
+ABBE_COMMANDS(ABBE_COMMAND_DECLARE)
+#undef ABBE_COMMAND_DECLARE
+
+/* Prints "PROGRAM: sentence" to stderr (its general text where the sentence is empty); returns
+ * the exit code that goes with the result. */
+int abbe_command_fail(const char *program, const abbe_error *error);
+
+/* Parses the whole text as a finite number in [min, max]. On failure prints a sentence that names
+ * the option, and ends the program with ABBE_EXIT_USAGE. */
+double abbe_command_number(const char *program, const char *option, const char *text, double min,
+                           double max);
+/* The same for whole numbers. */
+unsigned long abbe_command_count(const char *program, const char *option, const char *text,
+                                 unsigned long min, unsigned long max);
+/* "380:780" as a range, from < to. */
+void abbe_command_range(const char *program, const char *option, const char *text, double *from,
+                        double *to);
+/* One word of names[count]; its index. An unknown word names the nearest and the list. */
+int abbe_command_choice(const char *program, const char *option, const char *text,
+                        const char *const *names, int count);
+
+#endif

@@ -1,0 +1,77 @@
+#include "cli/command.h"
+
+#include "spectral/nearest.h"
+
+#include <argp.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#ifndef ABBE_VERSION
+#error "the build defines ABBE_VERSION"
+#endif
+
+const char *argp_program_version = "abbe " ABBE_VERSION;
+
+static const struct {
+  const char *name, *summary;
+  int (*run)(int argc, char **argv);
+} commands[] = {
+#define ABBE_COMMAND_ROW(name, summary) {#name, summary, abbe_command_##name},
+    ABBE_COMMANDS(ABBE_COMMAND_ROW)
+#undef ABBE_COMMAND_ROW
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static void help(FILE *out) {
+  fprintf(out, "abbe %s: spectral dispersion caustics\n\n"
+               "usage: abbe COMMAND [OPTION…] [FILE…]\n\n",
+          ABBE_VERSION);
+  for (int i = 0; i < COMMAND_COUNT; i++)
+    fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].summary);
+  fprintf(out, "  %-10s %s\n\n", "help", "this page, or a command's own: abbe help render");
+  fprintf(out, "First steps:\n"
+               "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"
+               "  abbe plan scenes/gem.yaml\n"
+               "  abbe materials show diamond --at 587.5618\n\n"
+               "Exit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
+}
+
+int main(int argc, char **argv) {
+  argp_err_exit_status = ABBE_EXIT_USAGE;
+  /* A closed pipe or a file-size limit is a write error with a sentence, not a sudden end. */
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
+
+  if (argc < 2) {
+    help(stderr);
+    return ABBE_EXIT_USAGE;
+  }
+  const char *word = argv[1];
+  if (strcmp(word, "--version") == 0) return printf("%s\n", argp_program_version) < 0;
+  bool wants_help = strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 ||
+                    strcmp(word, "-h") == 0 || strcmp(word, "-?") == 0;
+  if (wants_help && argc == 2) {
+    help(stdout);
+    return ABBE_EXIT_DONE;
+  }
+  if (wants_help) word = argv[2];
+
+  const char *names[COMMAND_COUNT];
+  for (int i = 0; i < COMMAND_COUNT; i++) {
+    names[i] = commands[i].name;
+    if (strcmp(word, names[i]) != 0) continue;
+    char program[64];
+    snprintf(program, sizeof program, "abbe %s", names[i]);
+    char *help_argv[] = {program, (char[]){"--help"}, NULL};
+    if (wants_help) return commands[i].run(2, help_argv);
+    argv[1] = program;
+    return commands[i].run(argc - 1, argv + 1);
+  }
+  const char *near = abbe_nearest_word(word, names, COMMAND_COUNT);
+  fprintf(stderr, "abbe: there is no command '%s'", word);
+  if (near != NULL) fprintf(stderr, "; did you mean '%s'?", near);
+  fprintf(stderr, "\nTry 'abbe help'.\n");
+  return ABBE_EXIT_USAGE;
+}

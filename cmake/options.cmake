@@ -1,0 +1,41 @@
+option(ABBE_WERROR "Treat warnings as errors" OFF)
+option(ABBE_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
+option(ABBE_TESTS "Build the tests" ON)
+
+set(CMAKE_C_STANDARD 17)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+# What every room compiles with.
+add_library(abbe_build INTERFACE)
+target_include_directories(abbe_build INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+target_compile_definitions(abbe_build INTERFACE _POSIX_C_SOURCE=200809L)
+target_compile_options(abbe_build INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wvla
+  $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes;-Wmissing-prototypes>
+  # a product of floats must round the same in every build: fused multiply-add is never implied
+  -ffp-contract=off
+  $<$<BOOL:${ABBE_WERROR}>:-Werror>)
+if(ABBE_SANITIZE)
+  target_compile_options(abbe_build INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(abbe_build INTERFACE -fsanitize=address,undefined)
+endif()
+
+include(${CMAKE_CURRENT_LIST_DIR}/embed.cmake)
+
+# abbe_room(NAME SOURCES… LIBRARIES…): one room of the library, as objects.
+function(abbe_room name)
+  cmake_parse_arguments(room "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_library(abbe_${name} OBJECT ${room_SOURCES})
+  target_link_libraries(abbe_${name} PUBLIC abbe_build ${room_LIBRARIES})
+  set_property(GLOBAL APPEND PROPERTY ABBE_ROOMS abbe_${name})
+endfunction()

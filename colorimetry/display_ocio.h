@@ -1,0 +1,44 @@
+/* display_ocio.h: from scene-linear pictures to a display, by an OpenColorIO configuration.
+ *
+ * The configuration is the file given, else $OCIO, else the one that ships with Abbe (compiled
+ * in). A broken configuration is an error, never a silent pass-through. The implementation is
+ * the C++ bridge display_ocio.cpp; no exception leaves it.
+ */
+#ifndef ABBE_COLORIMETRY_DISPLAY_OCIO_H
+#define ABBE_COLORIMETRY_DISPLAY_OCIO_H
+
+#include "colorimetry/image.h"
+#include "spectral/error.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_display abbe_display;
+
+/* Zeroed: the configuration as found, its default display and view, exposure 0. */
+typedef struct abbe_display_desc {
+  const char *config;       /* path of a configuration; NULL: $OCIO, else the shipped one */
+  const char *source_space; /* colour space of the pictures; NULL: role scene_linear */
+  const char *display;      /* NULL: the default */
+  const char *view;         /* NULL: the display's default view */
+  double exposure;          /* stops */
+} abbe_display_desc;
+
+/* ABBE_COLOUR with OCIO's reason and, for an unknown display, view or space, the known ones. */
+abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
+                              abbe_error *error);
+void abbe_display_free(abbe_display *display);
+
+/* Replaces the first three channels of the image by display-encoded values. */
+abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, abbe_error *error);
+
+/* One line a display and view, malloc'd, newline separated ("sRGB / Plain"); caller frees. */
+abbe_result abbe_display_list(const char *config, char **out, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

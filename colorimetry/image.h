@@ -1,0 +1,52 @@
+/* image.h: linear float images with named channels.
+ *
+ * Pixels are interleaved float32, row 0 at the top. It holds samples, names and text attributes;
+ * files are exr.h's and png.h's business.
+ */
+#ifndef ABBE_COLORIMETRY_IMAGE_H
+#define ABBE_COLORIMETRY_IMAGE_H
+
+#include "spectral/error.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_IMAGE_MAX_SIDE 32768
+#define ABBE_IMAGE_MAX_CHANNELS 1024
+
+typedef struct abbe_image_attribute {
+  char *name;
+  char *text;
+} abbe_image_attribute;
+
+typedef struct abbe_image {
+  size_t width, height, channels;
+  char **channel;   /* [channels] names: "R", "G", "B", "A", "caustic.R", … */
+  float *data;      /* [height][width][channels] */
+  double xy[8];     /* chromaticities of R, G, B, white; all 0: not stated */
+  size_t attribute_count;
+  abbe_image_attribute *attribute; /* text for the file's header */
+} abbe_image;
+
+/* A black image. names[channels] are copied. Sizes are checked before anything is allocated:
+ * ABBE_INVALID_ARGUMENT for a zero or too large side or channel count, ABBE_NO_MEMORY. */
+abbe_result abbe_image_make(size_t width, size_t height, size_t channels,
+                            const char *const *names, abbe_image *out, abbe_error *error);
+void abbe_image_free(abbe_image *image);
+
+/* Adds or replaces a text attribute. */
+abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const char *text,
+                                     abbe_error *error);
+/* The text of an attribute, or NULL. */
+const char *abbe_image_attribute_text(const abbe_image *image, const char *name);
+
+/* Index of the named channel, or (size_t)-1. */
+size_t abbe_image_find_channel(const abbe_image *image, const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,42 @@
+/* rgb_space.h: the linear colour spaces that pictures are kept in, and the way to them from XYZ.
+ *
+ * XYZ here is relative to D65: an object lit by D65 has the chromaticity of D65, and the RGB
+ * spaces' whites are D65 (Rec.709) and the ACES white (ACEScg, reached from D65 by the Bradford
+ * transform, as OpenColorIO's own built-in transforms do). Negative components are kept.
+ */
+#ifndef ABBE_COLORIMETRY_RGB_SPACE_H
+#define ABBE_COLORIMETRY_RGB_SPACE_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(code, name on the command line, name in the OCIO config) */
+#define ABBE_RGB_SPACES(X)                         \
+  X(ACESCG, "acescg", "ACEScg")                    \
+  X(REC709, "rec709", "Linear Rec.709 (sRGB)")     \
+  X(XYZ, "xyz", "CIE XYZ-D65")
+
+typedef enum abbe_rgb_space {
+#define ABBE_RGB_SPACE_ENUM(code, name, ocio) ABBE_RGB_SPACE_##code,
+  ABBE_RGB_SPACES(ABBE_RGB_SPACE_ENUM)
+#undef ABBE_RGB_SPACE_ENUM
+  ABBE_RGB_SPACE_COUNT
+} abbe_rgb_space;
+
+const char *abbe_rgb_space_name(abbe_rgb_space space);
+const char *abbe_rgb_space_ocio_name(abbe_rgb_space space);
+
+/* Row-major 3x3 matrix from XYZ (D65) to the space; identity for XYZ. */
+void abbe_rgb_space_from_xyz(abbe_rgb_space space, double matrix[9]);
+void abbe_rgb_space_to_xyz(abbe_rgb_space space, double matrix[9]);
+/* xy of red, green, blue, white, as OpenEXR's chromaticities attribute wants them (for XYZ: the
+ * primaries (1,0), (0,1), (0,0) and white E as the convention is). */
+void abbe_rgb_space_chromaticities(abbe_rgb_space space, double xy[8]);
+/* out = matrix * in; in and out may be the same. */
+void abbe_rgb_space_apply(const double matrix[9], const double in[3], double out[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

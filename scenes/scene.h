@@ -1,0 +1,111 @@
+/* scene.h: what is there: camera, lights, refractors and receivers, in world coordinates.
+ *
+ * A scene is plain data, ready for the renderer, the tracer and the plan. Lengths in metres,
+ * angles in radians, right-handed, z up by convention. Objects are either refractors (a dielectric
+ * from the material table, surrounded by air with n = 1) or receivers (opaque, Lambertian, seen
+ * from both sides).
+ */
+#ifndef ABBE_SCENES_SCENE_H
+#define ABBE_SCENES_SCENE_H
+
+#include "colorimetry/illuminant.h"
+#include "colorimetry/image.h"
+#include "scenes/mesh.h"
+#include "spectral/error.h"
+#include "spectral/material_table.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_SCENE_MAX_LIGHTS 16
+#define ABBE_SCENE_MAX_OBJECTS 1024
+#define ABBE_SCENE_MAX_PLANES 256 /* of one convex refractor */
+
+typedef struct abbe_camera {
+  double eye[3], target[3], up[3];
+  double fov_y_rad;     /* full vertical angle */
+  size_t width, height; /* pixels of the scene's own picture, default 512 x 512 */
+} abbe_camera;
+
+typedef enum abbe_light_kind {
+  ABBE_LIGHT_POINT,      /* intensity, W/sr, all directions */
+  ABBE_LIGHT_SPOT,       /* intensity, W/sr, inside a cone */
+  ABBE_LIGHT_DIRECTIONAL /* irradiance, W/m2, across the beam */
+} abbe_light_kind;
+
+typedef struct abbe_light {
+  char *name;
+  abbe_light_kind kind;
+  double position[3];  /* point, spot */
+  double direction[3]; /* spot, directional: unit, the way the light travels */
+  double cone_rad;     /* spot: half angle beyond which there is no light */
+  double soft_rad;     /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
+  double power;        /* W/sr or W/m2 over the rendered wavelength range, shared out over
+                          wavelength by the illuminant */
+  abbe_illuminant illuminant;
+} abbe_light;
+
+typedef enum abbe_exact_kind {
+  ABBE_EXACT_NONE,       /* triangles only */
+  ABBE_EXACT_SPHERE,
+  ABBE_EXACT_CONVEX,     /* intersection of half spaces */
+  ABBE_EXACT_PARALLELOGRAMS
+} abbe_exact_kind;
+
+/* The exact surface behind the triangles, world space. */
+typedef struct abbe_exact {
+  abbe_exact_kind kind;
+  double centre[3], radius;          /* SPHERE */
+  size_t count;                      /* planes or parallelograms */
+  double (*plane)[4];                /* CONVEX: n . x <= d, unit n */
+  double (*parallelogram)[9];        /* corner, edge u, edge v; normal = u x v */
+} abbe_exact;
+
+typedef struct abbe_object {
+  char *name;
+  size_t line;                     /* in the scene file */
+  abbe_mesh mesh;                  /* world space */
+  abbe_exact exact;
+  double min[3], max[3];           /* bounds */
+  const abbe_material *material;   /* refractor: owned by the scene's table; else NULL */
+  double reflectance[3];           /* receiver: linear Rec.709, 0 to 1 */
+  char *texture_path;              /* receiver: NULL or the PNG that multiplies reflectance */
+  abbe_image texture;              /* linear Rec.709, "R","G","B"; zeroed without a texture */
+  double texture_repeat[2];
+  char *mended;                    /* what the mesh check mended, or NULL */
+} abbe_object;
+
+typedef struct abbe_scene {
+  char *path;
+  char *description;
+  abbe_camera camera;
+  size_t light_count;
+  abbe_light *light;
+  size_t object_count;
+  abbe_object *object;
+  abbe_material_table table;
+  double ambient;    /* W/m2: uniform irradiance on every receiver, unshadowed by definition */
+  double background; /* W/(m2 sr): radiance seen where nothing is hit */
+} abbe_scene;
+
+void abbe_scene_free(abbe_scene *scene);
+
+/* Refuses what cannot be rendered, by name: no light, no receiver, a light or the camera inside a
+ * refractor, no receiver in the camera's view. Called by the loader. */
+abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
+
+/* Bounds of the objects chosen: refractors, receivers or both. False where there are none. */
+bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
+                       double max[3]);
+
+/* Relative intensity of the light along the unit direction away from it, in [0, 1]. */
+double abbe_light_profile(const abbe_light *light, const double direction[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,41 @@
+/* material_table.h: a table of materials in YAML, a record a material.
+ *
+ * docs/materials.md documents the format. Errors name file, line, key and value. The shipped
+ * tables are compiled in: "default" (published formulas) and "thesis" (the thesis's Table 1,
+ * verbatim, historical: its indices are high, see the rows' warnings).
+ */
+#ifndef ABBE_SPECTRAL_MATERIAL_TABLE_H
+#define ABBE_SPECTRAL_MATERIAL_TABLE_H
+
+#include "spectral/error.h"
+#include "spectral/material.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_material_table {
+  char *path;              /* file, or "default" or "thesis" */
+  size_t count;
+  abbe_material *material; /* [count], in file order */
+} abbe_material_table;
+
+/* Loads a table: NULL or "default", "thesis", or the path of a YAML file (at most 16 MiB). */
+abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
+                                     abbe_error *error);
+/* The same from text; name stands for the path in messages. */
+abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,
+                                      abbe_material_table *out, abbe_error *error);
+void abbe_material_table_free(abbe_material_table *table);
+
+/* The material of that name (case-insensitive), owned by the table. ABBE_NOT_FOUND names the
+ * nearest known names. */
+abbe_result abbe_material_table_find(const abbe_material_table *table, const char *name,
+                                     const abbe_material **out, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
