@@ -1,0 +1,229 @@
+#define _XOPEN_SOURCE 700 /* realpath */
+
+#include "spectral/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static abbe_result fail_io(abbe_error *error, const char *path, const char *what, int number) {
+  return abbe_error_set(error, ABBE_IO, "%s: %s: %s", path, what, strerror(number));
+}
+
+/* ---- reading ---- */
+
+/* Grows the buffer as bytes arrive, so that pipes and files whose size lies are read too. */
+static abbe_result read_all(int fd, const char *path, size_t max_size, size_t hint, char **data,
+                            size_t *size, abbe_error *error) {
+  size_t capacity = hint + 1, used = 0;
+  char *bytes = malloc(capacity + 1);
+  if (bytes == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to read it", path);
+  for (;;) {
+    ssize_t got = read(fd, bytes + used, capacity - used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      int number = errno;
+      free(bytes);
+      return fail_io(error, path, "cannot be read", number);
+    }
+    if (got == 0) break;
+    used += (size_t)got;
+    if (used > max_size) {
+      free(bytes);
+      return abbe_error_set(error, ABBE_IO, "%s: is longer than the %zu bytes allowed here", path,
+                            max_size);
+    }
+    if (used < capacity) continue;
+    capacity = capacity > max_size / 2 ? max_size + 1 : 2 * capacity;
+    char *grown = realloc(bytes, capacity + 1);
+    if (grown == NULL) {
+      free(bytes);
+      return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to read it", path);
+    }
+    bytes = grown;
+  }
+  bytes[used] = '\0';
+  *data = bytes;
+  *size = used;
+  return ABBE_OK;
+}
+
+abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_t *size,
+                           abbe_error *error) {
+  if (max_size > SIZE_MAX - 2) max_size = SIZE_MAX - 2;
+  int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return fail_io(error, path, "cannot be opened", errno);
+  struct stat status;
+  abbe_result result = ABBE_OK;
+  if (fstat(fd, &status) != 0)
+    result = fail_io(error, path, "cannot be read", errno);
+  else if (S_ISDIR(status.st_mode))
+    result = abbe_error_set(error, ABBE_IO, "%s: is a directory; name a file", path);
+  else if (S_ISREG(status.st_mode) && (uintmax_t)status.st_size > max_size)
+    result = abbe_error_set(error, ABBE_IO, "%s: is %ju bytes long; at most %zu are allowed here",
+                            path, (uintmax_t)status.st_size, max_size);
+  if (result == ABBE_OK) {
+    size_t hint = S_ISREG(status.st_mode) ? (size_t)status.st_size : 4096;
+    if (hint > max_size) hint = max_size;
+    result = read_all(fd, path, max_size, hint, data, size, error);
+  }
+  close(fd);
+  return result;
+}
+
+/* ---- writing ---- */
+
+static char *copy_text(const char *text, size_t length) {
+  char *copy = malloc(length + 1);
+  if (copy == NULL) return NULL;
+  memcpy(copy, text, length);
+  copy[length] = '\0';
+  return copy;
+}
+
+/* The file that is to be replaced: what a link points to, not the link. */
+static abbe_result resolve(const char *path, char **target, struct stat *status, bool *exists,
+                           abbe_error *error) {
+  *exists = lstat(path, status) == 0;
+  if (*exists && S_ISLNK(status->st_mode)) {
+    *target = realpath(path, NULL);
+    if (*target == NULL) return fail_io(error, path, "is a link that leads nowhere", errno);
+    if (stat(*target, status) != 0) return fail_io(error, path, "cannot be written", errno);
+  } else {
+    *target = copy_text(path, strlen(path));
+  }
+  if (*target == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to write it", path);
+  if (*exists && S_ISDIR(status->st_mode))
+    return abbe_error_set(error, ABBE_IO, "%s: is a directory; name a file", path);
+  if (*exists && !S_ISREG(status->st_mode))
+    return abbe_error_set(error, ABBE_IO, "%s: is not a regular file, so it is not replaced", path);
+  if (*exists && access(*target, W_OK) != 0)
+    return fail_io(error, path, "cannot be written", errno);
+  return ABBE_OK;
+}
+
+/* A new file in the target's folder. Its name does not grow with the target's, which may be as
+ * long as names can be. mkstemp would make it private to its owner, whatever the umask says. */
+static int open_beside(const char *target, char **temporary) {
+  static atomic_uint counter;
+  const char *slash = strrchr(target, '/');
+  size_t folder = slash == NULL ? 0 : (size_t)(slash - target) + 1;
+  size_t size = folder + 64;
+  *temporary = malloc(size);
+  if (*temporary == NULL) return -1;
+  memcpy(*temporary, target, folder);
+  for (int tries = 0; tries < 1000; tries++) {
+    snprintf(*temporary + folder, size - folder, ".abbe-%ld-%u.part", (long)getpid(),
+             atomic_fetch_add(&counter, 1));
+    int fd = open(*temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST) return fd;
+  }
+  return -1;
+}
+
+static void writer_clear(abbe_file_writer *writer) {
+  free(writer->path);
+  free(writer->temporary);
+  *writer = (abbe_file_writer){0};
+}
+
+abbe_result abbe_file_writer_open(abbe_file_writer *writer, const char *path, abbe_error *error) {
+  *writer = (abbe_file_writer){0};
+  struct stat status;
+  bool exists = false;
+  abbe_result result = resolve(path, &writer->path, &status, &exists, error);
+  if (result != ABBE_OK) {
+    writer_clear(writer);
+    return result;
+  }
+  int fd = open_beside(writer->path, &writer->temporary);
+  if (fd < 0) {
+    int number = errno;
+    writer_clear(writer);
+    return fail_io(error, path, "cannot be written", number);
+  }
+  if (exists) (void)!fchmod(fd, status.st_mode & 0777); /* refused by some file systems: no harm */
+  writer->stream = fdopen(fd, "w+b");
+  if (writer->stream == NULL) {
+    int number = errno;
+    close(fd);
+    unlink(writer->temporary);
+    writer_clear(writer);
+    return fail_io(error, path, "cannot be written", number);
+  }
+  return ABBE_OK;
+}
+
+/* The rename itself reaches the disk with its folder. A folder that cannot be synced (some
+ * network file systems) still holds a whole file. */
+static void sync_folder(const char *path) {
+  const char *slash = strrchr(path, '/');
+  size_t length = slash == NULL ? 0 : (size_t)(slash - path) + 1;
+  char *folder = length == 0 ? copy_text(".", 1) : copy_text(path, length);
+  if (folder == NULL) return;
+  int fd = open(folder, O_RDONLY | O_CLOEXEC);
+  if (fd >= 0) {
+    fsync(fd);
+    close(fd);
+  }
+  free(folder);
+}
+
+/* Why an earlier write failed: the stream knows only that one did, but the next one fails alike. */
+static int write_trouble(FILE *stream) {
+  int fd = fileno(stream);
+  if (lseek(fd, 0, SEEK_END) >= 0 && write(fd, "", 1) < 0) return errno;
+  return EIO;
+}
+
+/* 0, or the number of the error that kept the bytes from the disk. */
+static int finish_stream(FILE *stream) {
+  int number = 0;
+  if (fflush(stream) != 0)
+    number = errno;
+  else if (ferror(stream))
+    number = write_trouble(stream);
+  else if (fsync(fileno(stream)) != 0 && errno != EINVAL && errno != EROFS)
+    number = errno;
+  if (fclose(stream) != 0 && number == 0) number = errno;
+  return number;
+}
+
+abbe_result abbe_file_writer_commit(abbe_file_writer *writer, abbe_error *error) {
+  if (writer->stream == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no open file to commit");
+  int number = finish_stream(writer->stream);
+  if (number == 0 && rename(writer->temporary, writer->path) != 0) number = errno;
+  abbe_result result = ABBE_OK;
+  if (number == 0) {
+    sync_folder(writer->path);
+  } else {
+    unlink(writer->temporary);
+    result = fail_io(error, writer->path, "could not be written and is as it was", number);
+  }
+  writer_clear(writer);
+  return result;
+}
+
+void abbe_file_writer_discard(abbe_file_writer *writer) {
+  if (writer->stream != NULL) {
+    fclose(writer->stream);
+    unlink(writer->temporary);
+  }
+  writer_clear(writer);
+}
+
+abbe_result abbe_file_write(const char *path, const void *data, size_t size, abbe_error *error) {
+  abbe_file_writer writer;
+  abbe_result result = abbe_file_writer_open(&writer, path, error);
+  if (result != ABBE_OK) return result;
+  if (size > 0) fwrite(data, 1, size, writer.stream); /* a short write shows in ferror */
+  return abbe_file_writer_commit(&writer, error);
+}

@@ -1,0 +1,33 @@
+/* check.h: what the cmocka tests share: its includes in order, and comparisons that say the values.
+ */
+#ifndef ABBE_TESTS_CHECK_H
+#define ABBE_TESTS_CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* |a - b| <= tolerance; a NaN on either side fails. */
+#define assert_near(a, b, tolerance) check_near(a, b, tolerance, #a, __FILE__, __LINE__)
+static inline void check_near(double a, double b, double tolerance, const char *what,
+                              const char *file, int line) {
+  if (fabs(a - b) <= tolerance) return;
+  print_error("%s is %.17g, not %.17g within %g\n", what, a, b, tolerance);
+  _fail(file, line);
+}
+
+#define assert_contains(text, part) check_contains(text, part, __FILE__, __LINE__)
+static inline void check_contains(const char *text, const char *part, const char *file, int line) {
+  if (strstr(text, part) != NULL) return;
+  print_error("'%s' does not contain '%s'\n", text, part);
+  _fail(file, line);
+}
+
+#endif

@@ -1,0 +1,183 @@
+#include "tests/check.h"
+
+#include "spectral/spectrum.h"
+
+#include <gsl/gsl_errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+
+static const abbe_interpolation methods[] = {ABBE_INTERPOLATION_LINEAR, ABBE_INTERPOLATION_MONOTONE,
+                                             ABBE_INTERPOLATION_SPLINE};
+
+static abbe_spectrum *make(const double *l, const double *v, size_t count,
+                           abbe_interpolation interpolation) {
+  abbe_spectrum *spectrum = NULL;
+  abbe_error error = {0};
+  if (abbe_spectrum_make(l, v, count, interpolation, &spectrum, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return spectrum;
+}
+
+static void every_method_passes_through_its_points(void **state) {
+  (void)state;
+  const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
+  for (int m = 0; m < 3; m++) {
+    abbe_spectrum *s = make(l, v, 5, methods[m]);
+    for (int i = 0; i < 5; i++) assert_near(abbe_spectrum_at(s, l[i]), v[i], 1e-12);
+    assert_near(abbe_spectrum_at(s, 100), 1, 0);
+    assert_near(abbe_spectrum_at(s, 1e300), 3, 0);
+    assert_true(isnan(abbe_spectrum_at(s, NAN)));
+    assert_int_equal(abbe_spectrum_count(s), 5);
+    assert_near(abbe_spectrum_lambda_nm(s)[2], 470, 0);
+    assert_near(abbe_spectrum_value(s)[2], -2, 0);
+    abbe_spectrum_free(s);
+  }
+}
+
+static void methods_differ_as_they_should(void **state) {
+  (void)state;
+  const double l[] = {400, 500, 600, 700}, v[] = {0, 0, 1, 1};
+  abbe_spectrum *linear = make(l, v, 4, ABBE_INTERPOLATION_LINEAR);
+  abbe_spectrum *monotone = make(l, v, 4, ABBE_INTERPOLATION_MONOTONE);
+  abbe_spectrum *spline = make(l, v, 4, ABBE_INTERPOLATION_SPLINE);
+  assert_near(abbe_spectrum_at(linear, 525), 0.25, 1e-14);
+  /* between flat neighbours Steffen's piece is the smoothstep 3t^2 - 2t^3 */
+  assert_near(abbe_spectrum_at(monotone, 525), 3 * 0.0625 - 2 * 0.015625, 1e-14);
+  /* natural spline through 0 0 1 1: M1 = 2, M2 = -2 on unit spacing, so s(1/4) by hand */
+  double m1 = 2, t = 0.25, u = 0.75;
+  double by_hand = (m1 * u * u * u - m1 * t * t * t) / 6 - m1 / 6 * u + (1 + m1 / 6) * t;
+  assert_near(abbe_spectrum_at(spline, 525), by_hand, 1e-12);
+  double least = 0;
+  for (double x = 400; x < 700; x++) {
+    double y = abbe_spectrum_at(monotone, x);
+    assert_true(y >= 0 && y <= 1);
+    least = fmin(least, abbe_spectrum_at(spline, x));
+  }
+  assert_true(least < -0.01); /* the spline does overshoot */
+  abbe_spectrum_free(linear);
+  abbe_spectrum_free(monotone);
+  abbe_spectrum_free(spline);
+}
+
+static void one_and_two_points_work_with_every_method(void **state) {
+  (void)state;
+  const double l[] = {500, 600}, v[] = {2, 4};
+  for (int m = 0; m < 3; m++) {
+    abbe_spectrum *one = make(l, v, 1, methods[m]), *two = make(l, v, 2, methods[m]);
+    assert_near(abbe_spectrum_at(one, 1), 2, 0);
+    assert_near(abbe_spectrum_integral(one, 400, 700), 600, 1e-12);
+    assert_near(abbe_spectrum_integral(one, 510, 520), 20, 1e-12);
+    assert_near(abbe_spectrum_at(two, 525), 2.5, 1e-14);
+    abbe_spectrum_free(one);
+    abbe_spectrum_free(two);
+  }
+}
+
+static void integrals_are_exact(void **state) {
+  (void)state;
+  const double l[] = {400, 500, 700}, v[] = {1, 3, 1};
+  abbe_spectrum *s = make(l, v, 3, ABBE_INTERPOLATION_LINEAR);
+  assert_near(abbe_spectrum_integral(s, 400, 700), 200 + 400, 1e-11);
+  assert_near(abbe_spectrum_integral(s, 450, 600), 125 + 250, 1e-11);
+  assert_near(abbe_spectrum_integral(s, 300, 800), 100 + 600 + 100, 1e-11);
+  assert_near(abbe_spectrum_integral(s, 100, 200), 100, 1e-11);
+  assert_near(abbe_spectrum_integral(s, 900, 1000), 100, 1e-11);
+  assert_near(abbe_spectrum_integral(s, 480, 480), 0, 0);
+  abbe_spectrum_free(s);
+}
+
+static void integrals_agree_with_sums_and_add_up(void **state) {
+  (void)state;
+  const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
+  for (int m = 0; m < 3; m++) {
+    abbe_spectrum *s = make(l, v, 5, methods[m]);
+    double sum = 0, parts = 0;
+    enum { STEPS = 200000 };
+    for (int i = 0; i < STEPS; i++)
+      sum += abbe_spectrum_at(s, 390 + 320 * (i + 0.5) / STEPS) * 320 / STEPS;
+    for (int i = 0; i < 64; i++) parts += abbe_spectrum_integral(s, 390 + 5 * i, 395 + 5 * i);
+    assert_near(abbe_spectrum_integral(s, 390, 710), sum, 1e-5);
+    assert_near(abbe_spectrum_integral(s, 390, 710), parts, 1e-9);
+    abbe_spectrum_free(s);
+  }
+}
+
+static void refuses(const double *l, const double *v, size_t count, const char *part) {
+  for (int m = 0; m < 3; m++) {
+    abbe_spectrum *s = NULL;
+    abbe_error error;
+    assert_int_equal(abbe_spectrum_make(l, v, count, methods[m], &s, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_null(s);
+    assert_contains(error.text, part);
+  }
+}
+
+static void what_is_no_spectrum_is_refused(void **state) {
+  (void)state;
+  const double v[] = {1, 2, 3};
+  refuses(v, v, 0, "0 points");
+  refuses(v, v, ABBE_SPECTRUM_MAX_COUNT + 1, "65537");
+  refuses((double[]){400, 400, 500}, v, 3, "ascend");
+  refuses((double[]){400, 390, 500}, v, 3, "390");
+  refuses((double[]){0, 390, 500}, v, 3, "above 0");
+  refuses((double[]){400, NAN, 500}, v, 3, "point 2");
+  refuses((double[]){400, 450, INFINITY}, v, 3, "point 3");
+  refuses((double[]){400, 450, 500}, (double[]){1, NAN, 1}, 3, "not finite");
+}
+
+static int handled;
+static void hosts_handler(const char *reason, const char *file, int line, int number) {
+  (void)reason, (void)file, (void)line, (void)number;
+  handled++;
+}
+
+static void overflow_is_refused_and_the_hosts_handler_kept(void **state) {
+  (void)state;
+  gsl_error_handler_t *before = gsl_set_error_handler(hosts_handler);
+  const double l[] = {400, 400.0000001, 500, 600}, v[] = {1e308, -1e308, 1e308, -1e308};
+  abbe_spectrum *s = NULL;
+  assert_int_equal(abbe_spectrum_make(l, v, 4, ABBE_INTERPOLATION_SPLINE, &s, NULL),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(handled, 0);
+  assert_ptr_equal(gsl_set_error_handler(before), hosts_handler);
+}
+
+static void *read_many(void *data) {
+  double sum = 0;
+  for (int i = 0; i < 100000; i++) sum += abbe_spectrum_at(data, 380 + i % 400);
+  double *out = malloc(sizeof *out);
+  if (out != NULL) *out = sum;
+  return out;
+}
+
+static void threads_read_the_same(void **state) {
+  (void)state;
+  const double l[] = {400, 450, 470, 600, 700}, v[] = {1, 5, -2, 0, 3};
+  abbe_spectrum *s = make(l, v, 5, ABBE_INTERPOLATION_SPLINE);
+  pthread_t threads[4];
+  double *alone = read_many(s);
+  for (int i = 0; i < 4; i++) assert_int_equal(pthread_create(&threads[i], NULL, read_many, s), 0);
+  for (int i = 0; i < 4; i++) {
+    void *sum = NULL;
+    pthread_join(threads[i], &sum);
+    assert_near(*(double *)sum, *alone, 0);
+    free(sum);
+  }
+  free(alone);
+  abbe_spectrum_free(s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_method_passes_through_its_points),
+      cmocka_unit_test(methods_differ_as_they_should),
+      cmocka_unit_test(one_and_two_points_work_with_every_method),
+      cmocka_unit_test(integrals_are_exact),
+      cmocka_unit_test(integrals_agree_with_sums_and_add_up),
+      cmocka_unit_test(what_is_no_spectrum_is_refused),
+      cmocka_unit_test(overflow_is_refused_and_the_hosts_handler_kept),
+      cmocka_unit_test(threads_read_the_same),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
