@@ -53,11 +53,15 @@ abbe_result abbe_mesh_check(const abbe_mesh *mesh, abbe_mesh_report *report, abb
 
 /* Mends what is safe: drops degenerate faces, makes orientation consistent, turns an inside-out
  * mesh, closes flat or small holes by a fan. *what (may be NULL) gets a malloc'd sentence that
- * says what was done, or NULL where nothing was. Leaves the mesh closed and outwards or fails
- * with ABBE_GEOMETRY, the mesh unchanged, and a sentence that counts what is wrong. */
+ * says what was done, or NULL where nothing was. A mended mesh has new normals and no uv. Leaves
+ * the mesh closed and outwards or fails with ABBE_GEOMETRY, the mesh unchanged, and a sentence
+ * that counts what is wrong. */
 abbe_result abbe_mesh_mend(abbe_mesh *mesh, bool smooth, char **what, abbe_error *error);
 
-/* Loop subdivision, `levels` times (x4 faces each); smooth normals. */
+/* Whether a point lies inside the closed mesh (the parity of crossings along three rays). */
+bool abbe_mesh_contains(const abbe_mesh *mesh, const double point[3]);
+
+/* Loop subdivision [Loop1987], `levels` times (x4 faces each); smooth normals, no uv. */
 abbe_result abbe_mesh_subdivide(abbe_mesh *mesh, size_t levels, abbe_error *error);
 
 /* Recomputes normals: smooth (area-weighted over shared positions) or one a face (splits). */

@@ -15,6 +15,8 @@
 extern "C" {
 #endif
 
+#define ABBE_SHAPE_MAX_PROFILE 4096u /* points of a lathe profile */
+
 /* An icosahedron subdivided `levels` times onto the sphere: 20 * 4^levels faces. */
 abbe_result abbe_shape_sphere(double radius, size_t levels, abbe_mesh *out, abbe_error *error);
 /* Torus around z: major (centre line) and minor (tube) radius; 2 * around * across faces. */
@@ -26,7 +28,7 @@ abbe_result abbe_shape_gem(size_t sides, double girdle_radius, double table_radi
                            double crown_height, double pavilion_depth, abbe_mesh *out,
                            abbe_error *error);
 /* Isosceles triangular prism: apex angle (radians) at the top (+z), side length of the two faces
- * that meet there, length along y. */
+ * that meet there, length along y; the triangle's centroid lies on the y axis. */
 abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_mesh *out,
                              abbe_error *error);
 /* Axis-aligned box of the given edge lengths. */
@@ -38,6 +40,11 @@ abbe_result abbe_shape_rectangle(double width, double height, abbe_mesh *out, ab
  * profile corners sharper than 30 degrees. */
 abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t around,
                              abbe_mesh *out, abbe_error *error);
+
+/* Rounds a profile by cutting every corner at a quarter of its sides, `times` times (Chaikin's
+ * curve); the ends stay. *out is malloc'd; count points become 2 count - 2 each time. */
+abbe_result abbe_shape_round_profile(const double (*profile)[2], size_t count, size_t times,
+                                     double (**out)[2], size_t *out_count, abbe_error *error);
 
 #ifdef __cplusplus
 }
