@@ -1,7 +1,8 @@
 /* illuminant.h: relative spectral power distributions of light sources.
  *
  * A (the CIE's formula), D50 and D65 (the CIE's tables), E, or a tabulated spectrum of the user's
- * own. Only the shape matters: weights are normalised.
+ * own. Only the shape matters: weights are normalised. The CIE's tables are interpolated linearly
+ * between their 5 nm knots, as is a file of the user's own; outside its table a light is dark.
  */
 #ifndef ABBE_COLORIMETRY_ILLUMINANT_H
 #define ABBE_COLORIMETRY_ILLUMINANT_H

@@ -1,0 +1,226 @@
+#include "colorimetry/illuminant.h"
+
+#include "spectral/file.h"
+#include "spectral/nearest.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { TABLE_COUNT = 107, MAX_FILE_SIZE = 16 << 20 };
+static const double table_min_nm = 300, table_step_nm = 5;
+
+/* Relative power from 300 to 830 nm in steps of 5 nm, linear between [CIE15, table T.1]. */
+static const double d65[TABLE_COUNT] = {
+    0.0341,  1.6643,  3.2945,  11.7652, 20.236,  28.6447, 37.0535, 38.5011, 39.9488, 42.4302,
+    44.9117, 45.775,  46.6383, 49.3637, 52.0891, 51.0323, 49.9755, 52.3118, 54.6482, 68.7015,
+    82.7549, 87.1204, 91.486,  92.4589, 93.4318, 90.057,  86.6823, 95.7736, 104.865, 110.936,
+    117.008, 117.41,  117.812, 116.336, 114.861, 115.392, 115.923, 112.367, 108.811, 109.082,
+    109.354, 108.578, 107.802, 106.296, 104.79,  106.239, 107.689, 106.047, 104.405, 104.225,
+    104.046, 102.023, 100,     98.1671, 96.3342, 96.0611, 95.788,  92.2368, 88.6856, 89.3459,
+    90.0062, 89.8026, 89.5991, 88.6489, 87.6987, 85.4936, 83.2886, 83.4939, 83.6992, 81.863,
+    80.0268, 80.1207, 80.2146, 81.2462, 82.2778, 80.281,  78.2842, 74.0027, 69.7213, 70.6652,
+    71.6091, 72.979,  74.349,  67.9765, 61.604,  65.7448, 69.8856, 72.4863, 75.087,  69.3398,
+    63.5927, 55.0054, 46.4182, 56.6118, 66.8054, 65.0941, 63.3828, 63.8434, 64.304,  61.8779,
+    59.4519, 55.7054, 51.959,  54.6998, 57.4406, 58.8765, 60.3125};
+
+static const double d50[TABLE_COUNT] = {
+    0.02,   1.03,   2.05,   4.91,   7.78,   11.26, 14.75, 16.35, 17.95, 19.48, 21.01,  22.48,
+    23.94,  25.45,  26.96,  25.72,  24.49,  27.18, 29.87, 39.59, 49.31, 52.91, 56.51,  58.27,
+    60.03,  58.93,  57.82,  66.32,  74.82,  81.04, 87.25, 88.93, 90.61, 90.99, 91.37,  93.24,
+    95.11,  93.54,  91.96,  93.84,  95.72,  96.17, 96.61, 96.87, 97.13, 99.61, 102.10, 101.43,
+    100.75, 101.54, 102.32, 101.16, 100.00, 98.87, 97.74, 98.33, 98.92, 96.21, 93.50,  95.59,
+    97.69,  98.48,  99.27,  99.16,  99.04,  97.38, 95.72, 97.29, 98.86, 97.26, 95.67,  96.93,
+    98.19,  100.60, 103.00, 101.07, 99.13,  93.26, 87.38, 89.49, 91.60, 92.25, 92.89,  84.87,
+    76.85,  81.68,  86.51,  89.55,  92.58,  85.40, 78.23, 67.96, 57.69, 70.31, 82.92,  80.60,
+    78.27,  78.91,  79.55,  76.48,  73.40,  68.66, 63.92, 67.35, 70.78, 72.61, 74.44};
+
+static const char *const names[] = {
+#define NAME(name) #name,
+    ABBE_ILLUMINANT_KINDS(NAME)
+#undef NAME
+};
+
+static double table_at(const double table[TABLE_COUNT], double lambda_nm) {
+  double position = (lambda_nm - table_min_nm) / table_step_nm;
+  if (!(position >= 0 && position <= TABLE_COUNT - 1)) return 0;
+  int i = (int)position;
+  if (i > TABLE_COUNT - 2) i = TABLE_COUNT - 2;
+  double t = position - i;
+  return (1 - t) * table[i] + t * table[i + 1];
+}
+
+/* The CIE's formula: a Planckian radiator at 2848 K with the c2 of 1931, 1.435e7 nm K [CIE15]. */
+static double power_a(double lambda_nm) {
+  const double c2_over_t = 1.435e7 / 2848;
+  double ratio = 560 / lambda_nm;
+  return 100 * pow(ratio, 5) * expm1(c2_over_t / 560) / expm1(c2_over_t / lambda_nm);
+}
+
+static double tabulated_at(const abbe_spectrum *spectrum, double lambda_nm) {
+  const double *nm = abbe_spectrum_lambda_nm(spectrum);
+  bool inside = lambda_nm >= nm[0] && lambda_nm <= nm[abbe_spectrum_count(spectrum) - 1];
+  return inside ? abbe_spectrum_at(spectrum, lambda_nm) : 0;
+}
+
+double abbe_illuminant_power(const abbe_illuminant *illuminant, double lambda_nm) {
+  if (!(lambda_nm > 0)) return 0;
+  switch (illuminant->kind) {
+  case ABBE_ILLUMINANT_D65:
+    return table_at(d65, lambda_nm);
+  case ABBE_ILLUMINANT_D50:
+    return table_at(d50, lambda_nm);
+  case ABBE_ILLUMINANT_A:
+    return power_a(lambda_nm);
+  case ABBE_ILLUMINANT_E:
+    return 100;
+  case ABBE_ILLUMINANT_TABULATED:
+    return tabulated_at(illuminant->spectrum, lambda_nm);
+  case ABBE_ILLUMINANT_KIND_COUNT:
+    break;
+  }
+  return 0;
+}
+
+const char *abbe_illuminant_name(const abbe_illuminant *illuminant) {
+  if (illuminant->kind == ABBE_ILLUMINANT_TABULATED) return "tabulated";
+  return (unsigned)illuminant->kind < ABBE_ILLUMINANT_KIND_COUNT ? names[illuminant->kind]
+                                                                 : "unknown";
+}
+
+void abbe_illuminant_free(abbe_illuminant *illuminant) {
+  if (illuminant == NULL) return;
+  abbe_spectrum_free(illuminant->spectrum);
+  *illuminant = (abbe_illuminant){0};
+}
+
+typedef struct rows {
+  const char *path;
+  double *nm, *power;
+  size_t count, capacity;
+  bool light;
+} rows;
+
+static bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r';
+}
+
+static const char *skip_blanks(const char *s) {
+  while (is_blank(*s)) s++;
+  return s;
+}
+
+static abbe_result append_row(rows *r, double nm, double power, abbe_error *error) {
+  if (r->count == r->capacity) {
+    size_t capacity = r->capacity == 0 ? 128 : 2 * r->capacity;
+    double *grown_nm = realloc(r->nm, capacity * sizeof *grown_nm);
+    if (grown_nm != NULL) r->nm = grown_nm;
+    double *grown_power = realloc(r->power, capacity * sizeof *grown_power);
+    if (grown_power != NULL) r->power = grown_power;
+    if (grown_nm == NULL || grown_power == NULL)
+      return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its rows", r->path);
+    r->capacity = capacity;
+  }
+  r->nm[r->count] = nm;
+  r->power[r->count++] = power;
+  r->light = r->light || power > 0;
+  return ABBE_OK;
+}
+
+static abbe_result check_row(const rows *r, size_t line, double nm, double power,
+                             abbe_error *error) {
+  if (!isfinite(nm) || nm <= 0)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s:%zu: the wavelength %g is not a positive number of nanometres",
+                          r->path, line, nm);
+  if (!isfinite(power) || power < 0)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s:%zu: the power %g is not a finite number of 0 or more", r->path, line,
+                          power);
+  if (r->count > 0 && nm <= r->nm[r->count - 1])
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s:%zu: the wavelength %g nm does not lie above %g nm of the row "
+                          "before; wavelengths ascend",
+                          r->path, line, nm, r->nm[r->count - 1]);
+  if (r->count == ABBE_SPECTRUM_MAX_COUNT)
+    return abbe_error_set(error, ABBE_SCHEMA, "%s:%zu: there are more than %d rows", r->path, line,
+                          ABBE_SPECTRUM_MAX_COUNT);
+  return ABBE_OK;
+}
+
+/* One line of text without its end; blank and comment lines add nothing. */
+static abbe_result parse_line(rows *r, size_t line, char *text, abbe_error *error) {
+  text[strcspn(text, "#")] = '\0';
+  const char *at = skip_blanks(text);
+  if (*at == '\0') return ABBE_OK;
+  char *end = NULL;
+  double nm = strtod(at, &end);
+  const char *middle = skip_blanks(end);
+  bool separated = middle != end || *middle == ',' || *middle == ';';
+  if (*middle == ',' || *middle == ';') middle = skip_blanks(middle + 1);
+  char *last = NULL;
+  double power = strtod(middle, &last);
+  if (end == at || !separated || last == middle || *skip_blanks(last) != '\0')
+    return abbe_error_set(error, ABBE_PARSE,
+                          "%s:%zu: '%.60s' is not a row of two numbers, wavelength in nm and "
+                          "relative power, such as '380, 49.98'",
+                          r->path, line, text);
+  abbe_result result = check_row(r, line, nm, power, error);
+  return result == ABBE_OK ? append_row(r, nm, power, error) : result;
+}
+
+static abbe_result parse_text(rows *r, char *text, size_t size, abbe_error *error) {
+  if (memchr(text, '\0', size) != NULL)
+    return abbe_error_set(error, ABBE_PARSE, "%s: it is not a text file", r->path);
+  size_t line = 0;
+  for (char *at = text; at != NULL && *at != '\0';) {
+    char *next = strchr(at, '\n');
+    if (next != NULL) *next++ = '\0';
+    abbe_result result = parse_line(r, ++line, at, error);
+    if (result != ABBE_OK) return result;
+    at = next;
+  }
+  if (r->count < 2 || !r->light)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s: a spectrum of a light needs at least two rows and a power above 0; "
+                          "there are %zu rows%s",
+                          r->path, r->count, r->light || r->count == 0 ? "" : ", all 0");
+  return ABBE_OK;
+}
+
+static abbe_result load(const char *path, abbe_illuminant *out, abbe_error *error) {
+  char *text = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_file_read(path, MAX_FILE_SIZE, &text, &size, error);
+  if (result != ABBE_OK) return result;
+  rows r = {.path = path};
+  result = parse_text(&r, text, size, error);
+  if (result == ABBE_OK)
+    result = abbe_spectrum_make(r.nm, r.power, r.count, ABBE_INTERPOLATION_LINEAR, &out->spectrum,
+                                error);
+  if (result == ABBE_OK) out->kind = ABBE_ILLUMINANT_TABULATED;
+  free(r.nm);
+  free(r.power);
+  free(text);
+  return result;
+}
+
+abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
+                                 abbe_error *error) {
+  *out = (abbe_illuminant){0};
+  for (int i = 0; i < ABBE_ILLUMINANT_TABULATED; i++)
+    if (strcasecmp(name_or_path, names[i]) == 0) {
+      out->kind = (abbe_illuminant_kind)i;
+      return ABBE_OK;
+    }
+  abbe_result result = load(name_or_path, out, error);
+  if (result != ABBE_IO || strpbrk(name_or_path, "/.") != NULL) return result;
+  const char *near = abbe_nearest_word(name_or_path, names, ABBE_ILLUMINANT_TABULATED);
+  return abbe_error_set(error, ABBE_NOT_FOUND,
+                        "the illuminant '%s' is neither D65, D50, A or E nor the path of a "
+                        "readable file of two columns%s%s%s",
+                        name_or_path, near ? "; did you mean '" : "", near ? near : "",
+                        near ? "'?" : "");
+}

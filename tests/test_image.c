@@ -1,0 +1,75 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "colorimetry/image.h"
+
+#include <string.h>
+
+static const char *const rgb[] = {"R", "G", "B"};
+
+static void test_make_is_black_and_named(void **state) {
+  (void)state;
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(3, 2, 3, rgb, &image, &error), ABBE_OK);
+  for (int i = 0; i < 18; i++) assert_true(image.data[i] == 0);
+  assert_int_equal(abbe_image_find_channel(&image, "B"), 2);
+  assert_true(abbe_image_find_channel(&image, "A") == (size_t)-1);
+  abbe_image_free(&image);
+  assert_null(image.data);
+  abbe_image_free(&image);
+  abbe_image_free(NULL);
+}
+
+static void test_sizes_are_checked_first(void **state) {
+  (void)state;
+  static const size_t bad[][3] = {{0, 1, 1},        {1, 0, 1},
+                                  {1, 1, 0},        {ABBE_IMAGE_MAX_SIDE + 1, 1, 1},
+                                  {1, SIZE_MAX, 1}, {1, 1, ABBE_IMAGE_MAX_CHANNELS + 1}};
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    abbe_image image = {0};
+    abbe_error error = {0};
+    assert_int_equal(abbe_image_make(bad[i][0], bad[i][1], bad[i][2], rgb, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_null(image.data);
+    assert_true(strlen(error.text) > 20);
+  }
+}
+
+static void test_names_are_needed(void **state) {
+  (void)state;
+  static const char *const bad[] = {"R", "", "B"};
+  static const char *const none[] = {"R", NULL, "B"};
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(1, 1, 3, bad, &image, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_make(1, 1, 3, none, &image, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_make(1, 1, 3, NULL, &image, NULL), ABBE_INVALID_ARGUMENT);
+}
+
+static void test_attributes(void **state) {
+  (void)state;
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(1, 1, 3, rgb, &image, NULL), ABBE_OK);
+  assert_null(abbe_image_attribute_text(&image, "abbe:space"));
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", "xyz", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "comment", "", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", "acescg", NULL), ABBE_OK);
+  assert_int_equal(image.attribute_count, 2);
+  assert_string_equal(abbe_image_attribute_text(&image, "abbe:space"), "acescg");
+  assert_string_equal(abbe_image_attribute_text(&image, "comment"), "");
+  assert_int_equal(abbe_image_set_attribute(&image, "", "x", NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_set_attribute(&image, "x", NULL, NULL), ABBE_INVALID_ARGUMENT);
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_make_is_black_and_named),
+                                     cmocka_unit_test(test_sizes_are_checked_first),
+                                     cmocka_unit_test(test_names_are_needed),
+                                     cmocka_unit_test(test_attributes)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

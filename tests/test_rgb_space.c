@@ -1,0 +1,104 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "colorimetry/rgb_space.h"
+
+#include <math.h>
+
+/* As published, rounded to the places printed. */
+static const double xyz_to_rec709[9] = {3.2409699, -1.5373832, -0.4986108, -0.9692436, 1.8759675,
+                                        0.0415551, 0.0556301,  -0.2039770, 1.0569715};
+/* With the Bradford transform between the whites [ACEScg]. */
+static const double acescg_to_rec709[9] = {1.70505,  -0.62179, -0.08326, -0.13026, 1.14080,
+                                           -0.01055, -0.02400, -0.12897, 1.15297};
+
+static void multiply(const double a[9], const double b[9], double out[9]) {
+  for (int i = 0; i < 9; i++)
+    out[i] =
+        a[i / 3 * 3] * b[i % 3] + a[i / 3 * 3 + 1] * b[3 + i % 3] + a[i / 3 * 3 + 2] * b[6 + i % 3];
+}
+
+static void test_rec709_is_the_published_matrix(void **state) {
+  (void)state;
+  double m[9];
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, m);
+  for (int i = 0; i < 9; i++)
+    if (fabs(m[i] - xyz_to_rec709[i]) > 6e-8) fail_msg("element %d: %.9f", i, m[i]);
+}
+
+static void test_acescg_to_rec709_is_the_published_matrix(void **state) {
+  (void)state;
+  double to_xyz[9], to_709[9], m[9];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, to_xyz);
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, to_709);
+  multiply(to_709, to_xyz, m);
+  for (int i = 0; i < 9; i++)
+    if (fabs(m[i] - acescg_to_rec709[i]) > 1e-5)
+      fail_msg("element %d: %.9f, published %.5f", i, m[i], acescg_to_rec709[i]);
+}
+
+static void test_there_and_back(void **state) {
+  (void)state;
+  for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
+    double to[9], from[9], product[9];
+    abbe_rgb_space_to_xyz((abbe_rgb_space)s, to);
+    abbe_rgb_space_from_xyz((abbe_rgb_space)s, from);
+    multiply(to, from, product);
+    for (int i = 0; i < 9; i++) assert_true(fabs(product[i] - (i % 4 == 0)) < 1e-14);
+  }
+}
+
+static void test_nominal_d65_is_white(void **state) {
+  (void)state;
+  const double d65[3] = {0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
+  static const abbe_rgb_space spaces[] = {ABBE_RGB_SPACE_ACESCG, ABBE_RGB_SPACE_REC709};
+  for (int s = 0; s < 2; s++) {
+    double m[9], rgb[3];
+    abbe_rgb_space_from_xyz(spaces[s], m);
+    abbe_rgb_space_apply(m, d65, rgb);
+    for (int k = 0; k < 3; k++) assert_true(fabs(rgb[k] - 1) < 1e-14);
+  }
+}
+
+static void test_primaries_have_their_chromaticities(void **state) {
+  (void)state;
+  double m[9], xy[8];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, m);
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
+  for (int p = 0; p < 3; p++) {
+    double sum = m[p] + m[3 + p] + m[6 + p];
+    assert_true(fabs(m[p] / sum - xy[2 * p]) < 1e-14);
+    assert_true(fabs(m[3 + p] / sum - xy[2 * p + 1]) < 1e-14);
+  }
+}
+
+static void test_apply_in_place(void **state) {
+  (void)state;
+  const double swap[9] = {0, 0, 1, 0, 1, 0, 1, 0, 0};
+  double v[3] = {1, 2, 3};
+  abbe_rgb_space_apply(swap, v, v);
+  assert_true(v[0] == 3 && v[1] == 2 && v[2] == 1);
+}
+
+static void test_names(void **state) {
+  (void)state;
+  assert_string_equal(abbe_rgb_space_name(ABBE_RGB_SPACE_ACESCG), "acescg");
+  assert_string_equal(abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_REC709), "Linear Rec.709 (sRGB)");
+  assert_string_equal(abbe_rgb_space_name(ABBE_RGB_SPACE_COUNT), "unknown");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_rec709_is_the_published_matrix),
+      cmocka_unit_test(test_acescg_to_rec709_is_the_published_matrix),
+      cmocka_unit_test(test_there_and_back),
+      cmocka_unit_test(test_nominal_d65_is_white),
+      cmocka_unit_test(test_primaries_have_their_chromaticities),
+      cmocka_unit_test(test_apply_in_place),
+      cmocka_unit_test(test_names)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,222 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "colorimetry/difference.h"
+#include "colorimetry/observer.h"
+#include "colorimetry/weights.h"
+
+#include <math.h>
+#include <string.h>
+
+static abbe_weights make(size_t count, double min, double max, abbe_illuminant_kind kind,
+                         abbe_rgb_space space) {
+  abbe_wavelengths samples = {0};
+  abbe_weights weights = {0};
+  abbe_error error = {0};
+  const abbe_illuminant light = {.kind = kind};
+  if (abbe_wavelengths_make(count, min, max, &samples, &error) != ABBE_OK ||
+      abbe_weights_make(&samples, &light, space, &weights, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  abbe_wavelengths_free(&samples);
+  return weights;
+}
+
+/* Chromaticities of the CIE's illuminants, 5 nm [CIE15]. */
+static void test_whites(void **state) {
+  (void)state;
+  static const struct {
+    abbe_illuminant_kind kind;
+    double x, y;
+  } whites[] = {{ABBE_ILLUMINANT_D65, 0.31272, 0.32903},
+                {ABBE_ILLUMINANT_A, 0.44758, 0.40745},
+                {ABBE_ILLUMINANT_D50, 0.34567, 0.35850},
+                {ABBE_ILLUMINANT_E, 1.0 / 3, 1.0 / 3}};
+  for (int i = 0; i < 4; i++) {
+    abbe_weights w = make(1, 360, 830, whites[i].kind, ABBE_RGB_SPACE_XYZ);
+    double total = w.sum[0] + w.sum[1] + w.sum[2];
+    double x = w.sum[0] / total, y = w.sum[1] / total;
+    if (fabs(x - whites[i].x) > 5e-5 || fabs(y - whites[i].y) > 5e-5)
+      fail_msg("white %d: %.6f %.6f", i, x, y);
+    abbe_weights_free(&w);
+  }
+}
+
+static void test_any_count_adds_up_to_the_same_white(void **state) {
+  (void)state;
+  static const size_t counts[] = {1, 2, 3, 7, 21, 81, 100, 401, 999, ABBE_WAVELENGTHS_MAX_COUNT};
+  for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
+    abbe_weights one = make(1, 380, 780, (abbe_illuminant_kind)kind, ABBE_RGB_SPACE_XYZ);
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+      abbe_weights w = make(counts[i], 380, 780, (abbe_illuminant_kind)kind, ABBE_RGB_SPACE_XYZ);
+      assert_int_equal(w.count, counts[i]);
+      assert_true(fabs(w.sum[1] - 1) <= 4.5e-16);
+      for (int k = 0; k < 3; k++) {
+        /* the Planckian A alone is no polynomial between knots */
+        if (fabs(w.sum[k] - one.sum[k]) > 1e-14 * one.sum[k])
+          fail_msg("%d, %zu samples: %.17g, not %.17g", kind, counts[i], w.sum[k], one.sum[k]);
+      }
+      for (size_t j = 0; j < w.count; j++)
+        for (int k = 0; k < 3; k++) assert_true(w.weight[j][k] >= 0);
+      abbe_weights_free(&w);
+    }
+    abbe_weights_free(&one);
+  }
+}
+
+static double trapezoid_y(double from, double to) {
+  const abbe_illuminant light = {0};
+  const int steps = 400000;
+  double sum = 0, h = (to - from) / steps;
+  for (int i = 0; i <= steps; i++) {
+    double xyz[3], nm = from + h * i;
+    abbe_observer_xyz(nm, xyz);
+    sum += (i == 0 || i == steps ? 0.5 : 1) * xyz[1] * abbe_illuminant_power(&light, nm);
+  }
+  return sum * h;
+}
+
+static void test_a_band_is_an_integral(void **state) {
+  (void)state;
+  const abbe_illuminant light = {0};
+  double xyz[3];
+  abbe_weights_band_xyz(&light, 380, 780, 501.3, 533.9, xyz);
+  assert_true(fabs(xyz[1] - trapezoid_y(501.3, 533.9) / trapezoid_y(380, 780)) < 1e-10);
+}
+
+static void test_odd_tilings_add_up(void **state) {
+  (void)state;
+  const abbe_illuminant light = {.kind = ABBE_ILLUMINANT_A};
+  double edges[] = {380, 380.0001, 384.999999, 385, 417.3, 560, 777, 780}, whole[3], sum[3] = {0};
+  for (int i = 0; i < 7; i++) {
+    double xyz[3];
+    abbe_weights_band_xyz(&light, 380, 780, edges[i], edges[i + 1], xyz);
+    for (int k = 0; k < 3; k++) sum[k] += xyz[k];
+  }
+  abbe_weights_band_xyz(&light, 380, 780, 0, 1e6, whole);
+  for (int k = 0; k < 3; k++) assert_true(fabs(sum[k] - whole[k]) < 1e-14);
+  assert_true(fabs(whole[1] - 1) < 1e-15);
+  abbe_weights_band_xyz(&light, 900, 1000, 900, 1000, whole);
+  assert_true(whole[1] == 0);
+}
+
+/* Seven nodes taken pointwise tint the white; the bands do not. */
+static void test_pointwise_nodes_tint_the_white(void **state) {
+  (void)state;
+  abbe_weights exact = make(1, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
+  abbe_weights bands = make(7, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
+  const abbe_illuminant light = {0};
+  double nodes[3] = {0};
+  for (int i = 0; i < 7; i++) {
+    double xyz[3], nm = 380 + 400.0 * i / 6;
+    abbe_observer_xyz(nm, xyz);
+    for (int k = 0; k < 3; k++) nodes[k] += xyz[k] * abbe_illuminant_power(&light, nm);
+  }
+  for (int k = 2; k >= 0; k--) nodes[k] /= nodes[1];
+  double white[3], tinted[3], banded[3];
+  abbe_difference_lab(exact.sum, exact.sum, white);
+  abbe_difference_lab(nodes, exact.sum, tinted);
+  abbe_difference_lab(bands.sum, exact.sum, banded);
+  double tint = abbe_difference_ciede2000(tinted, white);
+  if (!(tint > 10)) fail_msg("seven pointwise nodes: %g", tint);
+  assert_true(abbe_difference_ciede2000(banded, white) < 1e-10);
+  abbe_weights_free(&exact);
+  abbe_weights_free(&bands);
+}
+
+/* The table's white (0.31272, 0.32903) is not the (0.3127, 0.3290) that the RGB spaces are defined
+ * by, so D65 is white there to 5e-4 of a component: 0.03 of a CIEDE2000 unit. */
+static void test_d65_is_white_in_rgb(void **state) {
+  (void)state;
+  static const abbe_rgb_space spaces[] = {ABBE_RGB_SPACE_REC709, ABBE_RGB_SPACE_ACESCG};
+  for (int s = 0; s < 2; s++) {
+    abbe_weights w = make(7, 380, 780, ABBE_ILLUMINANT_D65, spaces[s]);
+    for (int k = 0; k < 3; k++)
+      if (fabs(w.sum[k] - 1) > 6e-4) fail_msg("space %d: component %d is %.6f", s, k, w.sum[k]);
+    abbe_weights_free(&w);
+  }
+}
+
+static void test_rgb_keeps_negatives_and_is_the_matrix_times_xyz(void **state) {
+  (void)state;
+  abbe_weights xyz = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_XYZ);
+  abbe_weights rgb = make(21, 380, 780, ABBE_ILLUMINANT_D65, ABBE_RGB_SPACE_REC709);
+  double matrix[9], least = 0;
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, matrix);
+  for (int i = 0; i < 21; i++) {
+    double expected[3];
+    abbe_rgb_space_apply(matrix, xyz.weight[i], expected);
+    for (int k = 0; k < 3; k++) {
+      assert_true(fabs(rgb.weight[i][k] - expected[k]) < 1e-16);
+      least = fmin(least, rgb.weight[i][k]);
+    }
+  }
+  assert_true(least < -0.01);
+  abbe_weights_free(&xyz);
+  abbe_weights_free(&rgb);
+}
+
+static void test_a_table_with_knots_of_its_own(void **state) {
+  (void)state;
+  /* a box from 501 to 502 nm with a ramp: knots off the observer's grid, zero outside */
+  const double nm[] = {501, 501.3, 502}, power[] = {0, 3, 1};
+  abbe_illuminant light = {.kind = ABBE_ILLUMINANT_TABULATED};
+  assert_int_equal(
+      abbe_spectrum_make(nm, power, 3, ABBE_INTERPOLATION_LINEAR, &light.spectrum, NULL), ABBE_OK);
+  double low[3], high[3];
+  abbe_weights_band_xyz(&light, 380, 780, 380, 501.3, low);
+  abbe_weights_band_xyz(&light, 380, 780, 501.3, 780, high);
+  assert_true(fabs(low[1] + high[1] - 1) < 1e-15);
+  /* areas 0.45 and 1.4, the observer rising by a few per cent a nanometre */
+  assert_true(fabs(low[1] - 0.45 / 1.85) < 5e-3);
+  abbe_illuminant_free(&light);
+}
+
+static void test_no_light_in_range(void **state) {
+  (void)state;
+  abbe_wavelengths samples = {0};
+  abbe_weights weights = {0};
+  abbe_error error = {0};
+  const abbe_illuminant light = {0};
+  assert_int_equal(abbe_wavelengths_make(3, 900, 1000, &samples, NULL), ABBE_OK);
+  assert_int_equal(abbe_weights_make(&samples, &light, ABBE_RGB_SPACE_XYZ, &weights, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "900"));
+  assert_null(weights.weight);
+  abbe_wavelengths_free(&samples);
+  abbe_weights_free(&weights);
+}
+
+static void test_thesis(void **state) {
+  (void)state;
+  double rgb[3] = {0}, printed[3] = {0};
+  for (int i = 0; i < ABBE_WEIGHTS_THESIS_COUNT; i++) {
+    assert_true(abbe_weights_thesis_lambda_nm[i] == 380 + 50 * i);
+    for (int k = 0; k < 3; k++) {
+      rgb[k] += abbe_weights_thesis_rgb[i][k];
+      printed[k] += abbe_weights_thesis_table2[i][k];
+    }
+  }
+  for (int k = 0; k < 3; k++) {
+    assert_true(fabs(rgb[k] - 3.5) < 1e-12);
+    assert_true(fabs(printed[k] - 893) < 1);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_whites),
+      cmocka_unit_test(test_any_count_adds_up_to_the_same_white),
+      cmocka_unit_test(test_a_band_is_an_integral),
+      cmocka_unit_test(test_odd_tilings_add_up),
+      cmocka_unit_test(test_pointwise_nodes_tint_the_white),
+      cmocka_unit_test(test_d65_is_white_in_rgb),
+      cmocka_unit_test(test_rgb_keeps_negatives_and_is_the_matrix_times_xyz),
+      cmocka_unit_test(test_a_table_with_knots_of_its_own),
+      cmocka_unit_test(test_no_light_in_range),
+      cmocka_unit_test(test_thesis)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
