@@ -18,6 +18,8 @@ extern "C" {
 
 typedef struct abbe_display abbe_display;
 
+#define ABBE_DISPLAY_MAX_EXPOSURE 60.0 /* stops, either way */
+
 /* Zeroed: the configuration as found, its default display and view, exposure 0. */
 typedef struct abbe_display_desc {
   const char *config;       /* path of a configuration; NULL: $OCIO, else the shipped one */

@@ -1,0 +1,192 @@
+#include "colorimetry/display_ocio.h"
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <sstream>
+#include <string>
+
+namespace OCIO = OCIO_NAMESPACE;
+
+extern "C" {
+extern const unsigned char abbe_embedded_config_ocio[];
+extern const size_t abbe_embedded_config_ocio_size;
+}
+
+struct abbe_display {
+  OCIO::ConstCPUProcessorRcPtr processor;
+};
+
+namespace {
+
+/* Runs work and turns whatever it throws into a result: nothing leaves this file. */
+template <typename Work> abbe_result guarded(const char *what, abbe_error *error, Work work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc &) {
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for it", what);
+  } catch (const std::exception &e) {
+    return abbe_error_set(error, ABBE_COLOUR, "%s: %s", what, e.what());
+  } catch (...) {
+    return abbe_error_set(error, ABBE_COLOUR, "%s: it failed for an unknown reason", what);
+  }
+}
+
+const char *config_path(const char *path) {
+  if (path != nullptr) return path;
+  const char *environment = std::getenv("OCIO");
+  return environment != nullptr && environment[0] != '\0' ? environment : nullptr;
+}
+
+const char *config_name(const char *path) {
+  return config_path(path) != nullptr ? config_path(path) : "the shipped colour configuration";
+}
+
+OCIO::ConstConfigRcPtr load(const char *path) {
+  OCIO::ConstConfigRcPtr config;
+  if (config_path(path) != nullptr) {
+    config = OCIO::Config::CreateFromFile(config_path(path));
+  } else {
+    std::istringstream text(std::string(reinterpret_cast<const char *>(abbe_embedded_config_ocio),
+                                        abbe_embedded_config_ocio_size));
+    config = OCIO::Config::CreateFromStream(text);
+  }
+  config->validate();
+  return config;
+}
+
+std::string known_displays(const OCIO::ConstConfigRcPtr &config) {
+  std::string list;
+  for (int i = 0; i < config->getNumDisplays(); i++)
+    list += std::string(i == 0 ? "" : ", ") + config->getDisplay(i);
+  return list;
+}
+
+std::string known_views(const OCIO::ConstConfigRcPtr &config, const char *display) {
+  std::string list;
+  for (int i = 0; i < config->getNumViews(display); i++)
+    list += std::string(i == 0 ? "" : ", ") + config->getView(display, i);
+  return list;
+}
+
+std::string known_spaces(const OCIO::ConstConfigRcPtr &config) {
+  std::string list;
+  for (int i = 0; i < config->getNumColorSpaces(); i++)
+    list += std::string(i == 0 ? "" : ", ") + config->getColorSpaceNameByIndex(i);
+  return list;
+}
+
+bool has_display(const OCIO::ConstConfigRcPtr &config, const char *display) {
+  for (int i = 0; i < config->getNumDisplays(); i++)
+    if (std::strcmp(config->getDisplay(i), display) == 0) return true;
+  return false;
+}
+
+bool has_view(const OCIO::ConstConfigRcPtr &config, const char *display, const char *view) {
+  for (int i = 0; i < config->getNumViews(display); i++)
+    if (std::strcmp(config->getView(display, i), view) == 0) return true;
+  return false;
+}
+
+abbe_result unknown(const char *config, const char *kind, const char *name,
+                    const std::string &known, abbe_error *error) {
+  return abbe_error_set(error, ABBE_COLOUR, "%s: it has no %s '%s'; it has: %s", config, kind, name,
+                        known.c_str());
+}
+
+/* Exposure scales scene-linear light; without it the picture goes to the display in one step. */
+OCIO::GroupTransformRcPtr display_transform(const char *source, const char *display,
+                                            const char *view, double exposure) {
+  OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+  if (exposure != 0) {
+    OCIO::ColorSpaceTransformRcPtr linear = OCIO::ColorSpaceTransform::Create();
+    linear->setSrc(source);
+    linear->setDst(OCIO::ROLE_SCENE_LINEAR);
+    group->appendTransform(linear);
+    const double scale = std::exp2(exposure);
+    const double diagonal[4] = {scale, scale, scale, 1};
+    double matrix[16], offset[4];
+    OCIO::MatrixTransform::Scale(matrix, offset, diagonal);
+    OCIO::MatrixTransformRcPtr expose = OCIO::MatrixTransform::Create();
+    expose->setMatrix(matrix);
+    group->appendTransform(expose);
+    source = OCIO::ROLE_SCENE_LINEAR;
+  }
+  OCIO::DisplayViewTransformRcPtr show = OCIO::DisplayViewTransform::Create();
+  show->setSrc(source);
+  show->setDisplay(display);
+  show->setView(view);
+  group->appendTransform(show);
+  return group;
+}
+
+abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
+  const char *name = config_name(desc->config);
+  OCIO::ConstConfigRcPtr config = load(desc->config);
+  const std::string display =
+      desc->display != nullptr ? desc->display : config->getDefaultDisplay();
+  if (!has_display(config, display.c_str()))
+    return unknown(name, "display", display.c_str(), known_displays(config), error);
+  const std::string view =
+      desc->view != nullptr ? desc->view : config->getDefaultView(display.c_str());
+  if (!has_view(config, display.c_str(), view.c_str()))
+    return unknown(name, "view", view.c_str(), known_views(config, display.c_str()), error);
+  const char *source = desc->source_space != nullptr ? desc->source_space : OCIO::ROLE_SCENE_LINEAR;
+  if (config->getColorSpace(source) == nullptr)
+    return unknown(name, "colour space", source, known_spaces(config), error);
+  OCIO::ConstProcessorRcPtr processor = config->getProcessor(
+      display_transform(source, display.c_str(), view.c_str(), desc->exposure));
+  *out = new abbe_display{processor->getDefaultCPUProcessor()};
+  return ABBE_OK;
+}
+
+} // namespace
+
+abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
+                              abbe_error *error) {
+  *out = nullptr;
+  if (!std::isfinite(desc->exposure) || std::fabs(desc->exposure) > ABBE_DISPLAY_MAX_EXPOSURE)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "an exposure of %g stops is outside -%g to %g", desc->exposure,
+                          ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
+  return guarded(config_name(desc->config), error, [=] { return make(desc, out, error); });
+}
+
+void abbe_display_free(abbe_display *display) {
+  delete display;
+}
+
+abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, abbe_error *error) {
+  if (image->data == nullptr || image->channels < 3)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "an image of %zu channels cannot be displayed; three are needed",
+                          image->channels);
+  return guarded("the display transform", error, [=] {
+    const ptrdiff_t pixel = static_cast<ptrdiff_t>(image->channels * sizeof(float));
+    OCIO::PackedImageDesc pixels(image->data, static_cast<long>(image->width),
+                                 static_cast<long>(image->height), 3, OCIO::BIT_DEPTH_F32,
+                                 sizeof(float), pixel, pixel * static_cast<long>(image->width));
+    display->processor->apply(pixels);
+    return ABBE_OK;
+  });
+}
+
+abbe_result abbe_display_list(const char *config_file, char **out, abbe_error *error) {
+  *out = nullptr;
+  return guarded(config_name(config_file), error, [=] {
+    OCIO::ConstConfigRcPtr config = load(config_file);
+    std::string text;
+    for (int d = 0; d < config->getNumDisplays(); d++) {
+      const char *display = config->getDisplay(d);
+      for (int v = 0; v < config->getNumViews(display); v++)
+        text += std::string(display) + " / " + config->getView(display, v) + "\n";
+    }
+    *out = strdup(text.c_str());
+    if (*out == nullptr) throw std::bad_alloc();
+    return ABBE_OK;
+  });
+}
