@@ -46,11 +46,15 @@ typedef struct abbe_dispersion {
 
 void abbe_dispersion_free(abbe_dispersion *dispersion);
 
+/* ABBE_INVALID_ARGUMENT, with what would be right, where the coefficients are not finite or their
+ * count does not fit the model, or a tabulated model has no table. */
+abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error *error);
+
 /* n at lambda_nm (> 0). No range is checked here: that is the material's. Returns NaN where the
  * formula has no real, positive, finite value (a pole, n^2 <= 0). */
 double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm);
 
-/* Fraunhofer lines, nm in air (../shared/facts, [Schott2014]); B and G are the gem trade's. */
+/* Fraunhofer lines, nm in air [Schott2014]; B and G are the gem trade's. */
 #define ABBE_LINE_C_NM 656.2725
 #define ABBE_LINE_D_NM 587.5618
 #define ABBE_LINE_F_NM 486.1327

@@ -18,6 +18,7 @@ extern "C" {
 
 typedef struct abbe_material_table {
   char *path;              /* file, or "default" or "thesis" */
+  char *description;       /* what the table is, for people; may be NULL */
   size_t count;
   abbe_material *material; /* [count], in file order */
 } abbe_material_table;

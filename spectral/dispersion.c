@@ -1,0 +1,266 @@
+#include "spectral/dispersion.h"
+
+#include "spectral/gsl_guard.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_multifit.h>
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+void abbe_dispersion_free(abbe_dispersion *dispersion) {
+  abbe_spectrum_free(dispersion->table);
+  *dispersion = (abbe_dispersion){0};
+}
+
+/* ---- n(lambda) ---- */
+
+static double cauchy(const double *c, size_t count, double L) {
+  double x = 1 / (L * L), sum = 0;
+  for (size_t k = count; k-- > 0;) sum = sum * x + c[k];
+  return sum;
+}
+
+/* The pole of each term is the square of its coefficient, or the coefficient itself. */
+static double sellmeier(const double *c, size_t count, double L, bool pole_squared) {
+  double sum = 1 + (count > 0 ? c[0] : 0);
+  for (size_t k = 1; k + 1 < count; k += 2) {
+    double pole = pole_squared ? c[k + 1] * c[k + 1] : c[k + 1];
+    if (c[k] != 0) sum += c[k] * L * L / (L * L - pole);
+  }
+  return sum;
+}
+
+static double powers(const double *c, size_t first, size_t count, double L) {
+  double sum = 0;
+  for (size_t k = first; k + 1 < count; k += 2)
+    if (c[k] != 0) sum += c[k] * pow(L, c[k + 1]);
+  return sum;
+}
+
+static double rii4(const double *c, size_t count, double L) {
+  double sum = count > 0 ? c[0] : 0;
+  for (size_t k = 1; k + 3 < count && k <= 5; k += 4)
+    if (c[k] != 0) sum += c[k] * pow(L, c[k + 1]) / (L * L - pow(c[k + 2], c[k + 3]));
+  return sum + powers(c, 9, count, L);
+}
+
+/* n, or NaN where it is not a positive, finite number. */
+static double physical(double n) {
+  return isfinite(n) && n > 0 ? n : NAN;
+}
+
+double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm) {
+  if (!(lambda_nm > 0) || !isfinite(lambda_nm)) return NAN;
+  const double *c = dispersion->c;
+  size_t count = dispersion->count;
+  double L = lambda_nm / 1000;
+  switch (dispersion->model) {
+  case ABBE_DISPERSION_CONSTANT:
+    return physical(count > 0 ? c[0] : NAN);
+  case ABBE_DISPERSION_CAUCHY:
+    return physical(cauchy(c, count, L));
+  case ABBE_DISPERSION_SELLMEIER:
+    return physical(sqrt(sellmeier(c, count, L, true)));
+  case ABBE_DISPERSION_SELLMEIER2:
+    return physical(sqrt(sellmeier(c, count, L, false)));
+  case ABBE_DISPERSION_POLYNOMIAL:
+    return physical(sqrt((count > 0 ? c[0] : 0) + powers(c, 1, count, L)));
+  case ABBE_DISPERSION_RII4:
+    return physical(sqrt(rii4(c, count, L)));
+  case ABBE_DISPERSION_TABULATED:
+    return dispersion->table != NULL ? physical(abbe_spectrum_at(dispersion->table, lambda_nm))
+                                     : NAN;
+  case ABBE_DISPERSION_MODEL_COUNT:
+    break;
+  }
+  return NAN;
+}
+
+abbe_dispersion_numbers abbe_dispersion_describe(const abbe_dispersion *dispersion) {
+  abbe_dispersion_numbers numbers = {
+      .n_d = abbe_dispersion_n(dispersion, ABBE_LINE_D_NM),
+      .n_F = abbe_dispersion_n(dispersion, ABBE_LINE_F_NM),
+      .n_C = abbe_dispersion_n(dispersion, ABBE_LINE_C_NM),
+      .b_g = abbe_dispersion_n(dispersion, ABBE_LINE_G_NM) -
+             abbe_dispersion_n(dispersion, ABBE_LINE_B_NM),
+  };
+  double spread = numbers.n_F - numbers.n_C;
+  numbers.v_d = spread == 0 ? INFINITY : (numbers.n_d - 1) / spread;
+  return numbers;
+}
+
+/* ---- names, and what a model's coefficients must be ---- */
+
+static const struct {
+  const char *name, *formula;
+} models[] = {
+#define ABBE_DISPERSION_ROW(code, name, formula) {name, formula},
+    ABBE_DISPERSION_MODELS(ABBE_DISPERSION_ROW)
+#undef ABBE_DISPERSION_ROW
+};
+
+static bool known(abbe_dispersion_model model) {
+  return (int)model >= 0 && model < ABBE_DISPERSION_MODEL_COUNT;
+}
+
+const char *abbe_dispersion_model_name(abbe_dispersion_model model) {
+  return known(model) ? models[model].name : "unknown";
+}
+
+const char *abbe_dispersion_model_formula(abbe_dispersion_model model) {
+  return known(model) ? models[model].formula : "unknown";
+}
+
+/* NULL where the count fits the model, else the counts that would. */
+static const char *wanted_count(abbe_dispersion_model model, size_t count) {
+  switch (model) {
+  case ABBE_DISPERSION_CONSTANT:
+    return count == 1 ? NULL : "1";
+  case ABBE_DISPERSION_CAUCHY:
+    return count >= 1 ? NULL : "1 or more";
+  case ABBE_DISPERSION_SELLMEIER:
+  case ABBE_DISPERSION_SELLMEIER2:
+  case ABBE_DISPERSION_POLYNOMIAL:
+    return count % 2 == 1 ? NULL : "an odd number (c0, then pairs)";
+  case ABBE_DISPERSION_RII4:
+    return count == 1 || count == 5 || (count >= 9 && count % 2 == 1)
+               ? NULL
+               : "1, 5, 9, or 9 and further pairs";
+  default:
+    return count == 0 ? NULL : "none";
+  }
+}
+
+abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error *error) {
+  if (!known(dispersion->model))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no dispersion model %d",
+                          (int)dispersion->model);
+  const char *name = models[dispersion->model].name;
+  if (dispersion->count > ABBE_DISPERSION_MAX_COEFFICIENTS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the model %s has %zu coefficients; at most %d are possible", name,
+                          dispersion->count, ABBE_DISPERSION_MAX_COEFFICIENTS);
+  const char *wanted = wanted_count(dispersion->model, dispersion->count);
+  if (wanted != NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the model %s wants %s of coefficients, not %zu", name, wanted,
+                          dispersion->count);
+  for (size_t i = 0; i < dispersion->count; i++)
+    if (!isfinite(dispersion->c[i]))
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "coefficient %zu of the model %s is %g",
+                            i, name, dispersion->c[i]);
+  if (dispersion->model == ABBE_DISPERSION_TABULATED && dispersion->table == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the model tabulated has no points");
+  return ABBE_OK;
+}
+
+/* ---- the Cauchy fit ---- */
+
+enum { MAX_FIT_POINTS = 100001 }; /* 1 nm steps up to 100 um; wider ranges take wider steps */
+
+typedef struct fit {
+  const abbe_dispersion *source;
+  size_t terms, points;
+  double min_nm, max_nm;
+  double middle, half; /* of x = L^-2: the fit runs in t = (x - middle) / half, from -1 to 1 */
+} fit;
+
+static double fit_lambda_nm(const fit *f, size_t i) {
+  if (i + 1 == f->points) return f->max_nm;
+  double span = f->max_nm - f->min_nm;
+  bool by_nm = f->points <= MAX_FIT_POINTS && span > (double)(f->points - 2);
+  return by_nm ? f->min_nm + (double)i : f->min_nm + span * (double)i / (double)(f->points - 1);
+}
+
+static abbe_result plan_fit(const abbe_dispersion *source, size_t terms, double min_nm,
+                            double max_nm, fit *f, abbe_error *error) {
+  if (terms < 1 || terms > 8)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a Cauchy fit of %zu terms is asked for; 1 to 8 are possible", terms);
+  if (!isfinite(min_nm) || !isfinite(max_nm) || min_nm <= 0 || min_nm >= max_nm)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the range %g:%g nm of a Cauchy fit is not one, such as 380:780", min_nm,
+                          max_nm);
+  double steps = fmin(ceil(max_nm - min_nm), MAX_FIT_POINTS - 1);
+  size_t points = (size_t)steps + 1;
+  if (points < 8 * terms) points = 8 * terms;
+  double x_low = 1e6 / (max_nm * max_nm), x_high = 1e6 / (min_nm * min_nm);
+  *f = (fit){source, terms, points, min_nm, max_nm, (x_high + x_low) / 2, (x_high - x_low) / 2};
+  if (isfinite(f->middle) && f->half > 1e-9 * f->middle) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the range %.17g:%.17g nm is too narrow or too wide for a Cauchy fit",
+                        min_nm, max_nm);
+}
+
+static abbe_result fill(const fit *f, gsl_matrix *basis, gsl_vector *n, abbe_error *error) {
+  for (size_t i = 0; i < f->points; i++) {
+    double lambda_nm = fit_lambda_nm(f, i);
+    double value = abbe_dispersion_n(f->source, lambda_nm);
+    if (isnan(value))
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "the %s formula has no real index at %g nm, so it cannot be fitted",
+                            abbe_dispersion_model_name(f->source->model), lambda_nm);
+    double t = (1e6 / (lambda_nm * lambda_nm) - f->middle) / f->half, power = 1;
+    gsl_vector_set(n, i, value);
+    for (size_t k = 0; k < f->terms; k++, power *= t) gsl_matrix_set(basis, i, k, power);
+  }
+  return ABBE_OK;
+}
+
+/* sum a_k t^k as powers of x, by Horner's rule on polynomials. */
+static void expand(const fit *f, const gsl_vector *a, double *c) {
+  memset(c, 0, ABBE_DISPERSION_MAX_COEFFICIENTS * sizeof *c);
+  for (size_t k = f->terms; k-- > 0;) {
+    for (size_t j = f->terms; j-- > 0;)
+      c[j] = ((j > 0 ? c[j - 1] : 0) - f->middle * c[j]) / f->half;
+    c[0] += gsl_vector_get(a, k);
+  }
+}
+
+static abbe_result solve(const fit *f, double *c, abbe_error *error) {
+  gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(f->points, f->terms);
+  gsl_matrix *basis = gsl_matrix_alloc(f->points, f->terms);
+  gsl_matrix *covariance = gsl_matrix_alloc(f->terms, f->terms);
+  gsl_vector *n = gsl_vector_alloc(f->points), *a = gsl_vector_alloc(f->terms);
+  abbe_result result = ABBE_OK;
+  double chi_squared = 0;
+  if (work == NULL || basis == NULL || covariance == NULL || n == NULL || a == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a Cauchy fit");
+  if (result == ABBE_OK) result = fill(f, basis, n, error);
+  int status = GSL_SUCCESS;
+  if (result == ABBE_OK) status = gsl_multifit_linear(basis, n, a, covariance, &chi_squared, work);
+  if (status != GSL_SUCCESS)
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the Cauchy fit failed: %s",
+                            gsl_strerror(status));
+  if (result == ABBE_OK) expand(f, a, c);
+  if (work != NULL) gsl_multifit_linear_free(work);
+  gsl_matrix_free(basis);
+  gsl_matrix_free(covariance);
+  gsl_vector_free(n);
+  gsl_vector_free(a);
+  return result;
+}
+
+abbe_result abbe_dispersion_fit_cauchy(const abbe_dispersion *source, size_t terms, double min_nm,
+                                       double max_nm, abbe_dispersion *out, double *max_error,
+                                       abbe_error *error) {
+  *out = (abbe_dispersion){0};
+  fit f = {0};
+  abbe_result result = plan_fit(source, terms, min_nm, max_nm, &f, error);
+  if (result != ABBE_OK) return result;
+  abbe_dispersion made = {.model = ABBE_DISPERSION_CAUCHY, .count = terms};
+  abbe_gsl_guard_enter();
+  result = solve(&f, made.c, error);
+  abbe_gsl_guard_leave();
+  if (result != ABBE_OK) return result;
+  double largest = 0;
+  for (size_t i = 0; i < f.points; i++) {
+    double lambda_nm = fit_lambda_nm(&f, i);
+    double fitted = cauchy(made.c, terms, lambda_nm / 1000);
+    largest = fmax(largest, fabs(fitted - abbe_dispersion_n(source, lambda_nm)));
+  }
+  if (max_error != NULL) *max_error = largest;
+  *out = made;
+  return ABBE_OK;
+}

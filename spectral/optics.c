@@ -1,0 +1,94 @@
+#include "spectral/optics.h"
+
+#include <math.h>
+#include <stddef.h>
+
+static double clamp_unit(double x) {
+  return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void normalise(double v[3]) {
+  double length = sqrt(dot(v, v));
+  if (length > 0)
+    for (int i = 0; i < 3; i++) v[i] /= length;
+}
+
+/* cos_t^2 = (1 - eta^2) + (eta cos_i)^2 = 1 - (eta sin_i)^2. The first keeps its digits near
+ * grazing and near eta = 1, the second near normal incidence: the one with the smaller terms. */
+double abbe_optics_cos_refracted(double cos_i, double eta, bool *total) {
+  double c = clamp_unit(cos_i), along = eta * c;
+  if (total != NULL) *total = false;
+  if (eta == 1 || c == 1) return c;
+  double squared = eta <= 1 || along < 1 ? (1 - eta) * (1 + eta) + along * along
+                                         : 1 - eta * eta * ((1 - c) * (1 + c));
+  if (isnan(squared)) return squared;
+  if (squared > 0) return sqrt(fmin(squared, 1));
+  if (total != NULL) *total = true;
+  return 0;
+}
+
+/* The two amplitudes are r_s = (eta c - t) / (eta c + t) and r_p = (eta t - c) / (eta t + c). For
+ * eta near 1 their differences are multiplied out by Snell's law, so that nothing cancels. */
+double abbe_optics_fresnel(double cos_i, double eta) {
+  double c = clamp_unit(cos_i);
+  if (eta == 1) return 0;
+  if (c == 0) return 1;
+  bool total = false;
+  double t = abbe_optics_cos_refracted(c, eta, &total);
+  if (total) return 1;
+  double s = eta * c + t, p = eta * t + c;
+  double r_s = (eta * c - t) / s, r_p = (eta * t - c) / p;
+  if (eta > 0.5 && eta < 2) {
+    double contrast = (eta - 1) * (eta + 1);
+    r_s = contrast / (s * s);
+    r_p = contrast / (p * p) * (c * c * (1 + eta * eta) - eta * eta);
+  }
+  return clamp_unit((r_s * r_s + r_p * r_p) / 2);
+}
+
+bool abbe_optics_refract(const double wi[3], const double n[3], double eta, double wt[3]) {
+  bool total = false;
+  double c = clamp_unit(dot(wi, n));
+  double t = abbe_optics_cos_refracted(c, eta, &total);
+  if (total) return false;
+  /* eta c - t, without its cancellation */
+  double sum = eta * c + t;
+  double bend = sum > 0 ? (eta - 1) * ((eta + 1) / sum) : 0;
+  double out[3]; /* wt may be wi */
+  for (int i = 0; i < 3; i++) out[i] = bend * n[i] - eta * wi[i];
+  normalise(out);
+  for (int i = 0; i < 3; i++) wt[i] = out[i];
+  return true;
+}
+
+void abbe_optics_reflect(const double wi[3], const double n[3], double wo[3]) {
+  double twice = 2 * dot(wi, n), out[3];
+  for (int i = 0; i < 3; i++) out[i] = twice * n[i] - wi[i];
+  normalise(out);
+  for (int i = 0; i < 3; i++) wo[i] = out[i];
+}
+
+double abbe_optics_transmittance(double attenuation_per_m, double distance_m) {
+  if (attenuation_per_m == 0 || distance_m == 0) return 1; /* also against infinity */
+  return exp(-attenuation_per_m * distance_m);
+}
+
+/* asin(n_t / n_i), whose slope is infinite where the indices are equal. */
+double abbe_optics_critical_angle(double n_i, double n_t) {
+  if (n_i <= n_t) return acos(0);
+  return atan2(n_t, sqrt((n_i - n_t) * (n_i + n_t)));
+}
+
+/* 2 asin(n sin h) - 2 h for h = apex / 2, by the sine of that difference: exact as n nears 1. */
+bool abbe_optics_minimum_deviation(double apex_rad, double n, double *deviation_rad) {
+  double h = apex_rad / 2, sine = n * sin(h);
+  if (!(h >= 0) || h > acos(0) || !(n > 0) || sine > 1) return false;
+  double sum = n * cos(h) + sqrt((1 - sine) * (1 + sine));
+  double difference = sum > 0 ? sin(h) * (n - 1) * ((n + 1) / sum) : 0;
+  *deviation_rad = 2 * asin(fmax(-1, fmin(difference, 1)));
+  return true;
+}

@@ -1,0 +1,82 @@
+#include "tests/check.h"
+
+#include "spectral/material.h"
+
+#include <stdlib.h>
+
+static abbe_material glass(char *name) {
+  return (abbe_material){
+      .name = name,
+      .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {1.5, 0.004}},
+      .min_nm = 400,
+      .max_nm = 700};
+}
+
+static void the_range_is_kept(void **state) {
+  (void)state;
+  abbe_material m = glass("glass");
+  abbe_error error;
+  double n = 7;
+  assert_int_equal(abbe_material_n(&m, 500, &n, &error), ABBE_OK);
+  assert_near(n, 1.516, 1e-15);
+  assert_int_equal(abbe_material_n(&m, 400, &n, &error), ABBE_OK);
+  assert_int_equal(abbe_material_n(&m, 700, &n, &error), ABBE_OK);
+  n = 7;
+  assert_int_equal(abbe_material_n(&m, 399.9, &n, &error), ABBE_OUT_OF_RANGE);
+  assert_contains(error.text, "glass has no index at 399.9 nm");
+  assert_contains(error.text, "from 400 to 700 nm");
+  assert_int_equal(abbe_material_n(&m, 700.1, &n, NULL), ABBE_OUT_OF_RANGE);
+  assert_near(n, 7, 0);
+}
+
+static void extrapolation_is_allowed_and_told(void **state) {
+  (void)state;
+  abbe_material m = glass("glass");
+  double n = 0;
+  m.extrapolate = true;
+  assert_int_equal(abbe_material_n(&m, 250, &n, NULL), ABBE_OK);
+  assert_near(n, 1.564, 1e-15);
+  assert_true(abbe_material_extrapolates(&m, 250));
+  assert_false(abbe_material_extrapolates(&m, 400));
+  assert_false(abbe_material_extrapolates(&m, 700));
+  assert_true(abbe_material_extrapolates(&m, 700.0001));
+}
+
+static void no_real_index_is_an_error(void **state) {
+  (void)state;
+  abbe_material m = glass("glass");
+  abbe_error error;
+  double n = 7;
+  m.extrapolate = true;
+  m.dispersion.c[1] = -1;
+  assert_int_equal(abbe_material_n(&m, 500, &n, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no real index at 500 nm");
+  assert_int_equal(abbe_material_n(&m, NAN, &n, &error), ABBE_INVALID_ARGUMENT);
+  assert_near(n, 7, 0);
+}
+
+static void attenuation_is_zero_or_more(void **state) {
+  (void)state;
+  abbe_material m = glass(NULL);
+  assert_near(abbe_material_attenuation(&m, 500), 0, 0);
+  assert_int_equal(abbe_spectrum_make((double[]){400, 500, 600, 700}, (double[]){9, 0, 0, 9}, 4,
+                                      ABBE_INTERPOLATION_SPLINE, &m.attenuation, NULL),
+                   ABBE_OK);
+  assert_near(abbe_material_attenuation(&m, 400), 9, 0);
+  assert_near(abbe_material_attenuation(&m, 300), 9, 0);
+  assert_true(abbe_spectrum_at(m.attenuation, 550) < 0);
+  assert_near(abbe_material_attenuation(&m, 550), 0, 0);
+  abbe_material_free(&m);
+  assert_null(m.attenuation);
+  abbe_material_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_range_is_kept),
+      cmocka_unit_test(extrapolation_is_allowed_and_told),
+      cmocka_unit_test(no_real_index_is_an_error),
+      cmocka_unit_test(attenuation_is_zero_or_more),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

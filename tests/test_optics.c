@@ -1,0 +1,254 @@
+#include "tests/check.h"
+
+#include "spectral/optics.h"
+
+#define PI 3.14159265358979323846
+
+static double degrees(double radians) {
+  return radians * 180 / PI;
+}
+static double radians(double degree) {
+  return degree * PI / 180;
+}
+
+/* ---- published numbers ---- */
+
+static void glass_reflects_four_percent_head_on(void **state) {
+  (void)state;
+  assert_near(abbe_optics_fresnel(1, 1 / 1.5), 0.04, 1e-15);
+  assert_near(abbe_optics_fresnel(1, 1.5), 0.04, 1e-15);
+  assert_near(abbe_optics_fresnel(1, 1 / 2.417), 0.17197, 2e-6); /* diamond: 17 % */
+  assert_near(abbe_optics_fresnel(1, 1 / 1.333), 0.02037, 1e-5); /* water: 2 % */
+}
+
+/* Fresnel's own form: r_s = sin(i - t) / sin(i + t), r_p = tan(i - t) / tan(i + t). */
+static void fresnel_agrees_with_the_sine_and_tangent_laws(void **state) {
+  (void)state;
+  for (double n = 1.05; n < 4; n *= 1.2)
+    for (double i = 1; i < 90; i += 1) {
+      double a = radians(i), b = asin(sin(a) / n);
+      double s = sin(a - b) / sin(a + b), p = tan(a - b) / tan(a + b);
+      assert_near(abbe_optics_fresnel(cos(a), 1 / n), (s * s + p * p) / 2, 1e-12);
+    }
+  assert_near(abbe_optics_fresnel(cos(radians(60)), 1 / 1.5), 0.08919, 5e-6);
+  assert_near(abbe_optics_fresnel(cos(radians(80)), 1 / 1.5), 0.38770, 1e-5);
+}
+
+/* At Brewster's angle, tan i = n, only the s part is reflected: ((n^2 - 1) / (n^2 + 1))^2 / 2. */
+static void brewsters_angle_leaves_one_polarisation(void **state) {
+  (void)state;
+  const double n[] = {1.0001, 1.333, 1.5, 2.417, 10};
+  for (int i = 0; i < 5; i++) {
+    double s = (n[i] * n[i] - 1) / (n[i] * n[i] + 1);
+    assert_near(abbe_optics_fresnel(cos(atan(n[i])), 1 / n[i]) / (s * s / 2), 1, 1e-11);
+  }
+}
+
+static void critical_angles_of_glass_water_and_diamond(void **state) {
+  (void)state;
+  assert_near(degrees(abbe_optics_critical_angle(1.5, 1)), 41.81, 0.005);
+  assert_near(degrees(abbe_optics_critical_angle(1.333, 1)), 48.61, 0.005);
+  assert_near(degrees(abbe_optics_critical_angle(2.417, 1)), 24.44, 0.005);
+  assert_near(abbe_optics_critical_angle(1, 1), PI / 2, 0);
+  assert_near(abbe_optics_critical_angle(1, 1.5), PI / 2, 0);
+  /* pi/2 - sqrt(2 e) for n_i / n_t = 1 + e, where asin has lost its digits */
+  assert_near(PI / 2 - abbe_optics_critical_angle(1 + 0x1p-40, 1), sqrt(2 * 0x1p-40), 1e-15);
+}
+
+static void minimum_deviation_of_a_sixty_degree_prism(void **state) {
+  (void)state;
+  double d = 0;
+  assert_true(abbe_optics_minimum_deviation(radians(60), 1.5, &d));
+  assert_near(degrees(d), 37.1808, 5e-5);
+  assert_true(abbe_optics_minimum_deviation(radians(60), 1.5168, &d));
+  assert_near(degrees(d), 2 * degrees(asin(1.5168 / 2)) - 60, 1e-10);
+  assert_true(abbe_optics_minimum_deviation(radians(60), 2, &d)); /* grazing in, grazing out */
+  assert_near(degrees(d), 120, 1e-5);
+  assert_false(abbe_optics_minimum_deviation(radians(60), 2.0001, &d));
+  assert_false(abbe_optics_minimum_deviation(radians(60), NAN, &d));
+  assert_false(abbe_optics_minimum_deviation(-0.1, 1.5, &d));
+  assert_true(abbe_optics_minimum_deviation(radians(60), 1, &d));
+  assert_near(d, 0, 0);
+  assert_true(abbe_optics_minimum_deviation(0, 1.5, &d));
+  assert_near(d, 0, 0);
+  /* a thin prism deviates by (n - 1) times its angle; a weak one by 2 (n - 1) tan(apex / 2) */
+  assert_true(abbe_optics_minimum_deviation(1e-6, 1.5, &d));
+  assert_near(d / 0.5e-6, 1, 1e-10);
+  assert_true(abbe_optics_minimum_deviation(radians(60), 1 + 0x1p-44, &d));
+  assert_near(d / (2 * 0x1p-44 * tan(radians(30))), 1, 1e-12);
+}
+
+static void beer_and_lambert(void **state) {
+  (void)state;
+  assert_near(abbe_optics_transmittance(2, 0.5), exp(-1), 1e-16);
+  assert_near(abbe_optics_transmittance(log(2) / 0.01, 0.02), 0.25, 1e-15);
+  assert_near(abbe_optics_transmittance(0, 5), 1, 0);
+  assert_near(abbe_optics_transmittance(5, 0), 1, 0);
+  assert_near(abbe_optics_transmittance(0, INFINITY), 1, 0);
+  assert_near(abbe_optics_transmittance(INFINITY, 0), 1, 0);
+  assert_near(abbe_optics_transmittance(INFINITY, 1e-300), 0, 0);
+  assert_near(abbe_optics_transmittance(1e300, 1e300), 0, 0);
+}
+
+/* ---- laws ---- */
+
+static void snell_holds_and_reverses(void **state) {
+  (void)state;
+  for (double eta = 0.2; eta < 5; eta *= 1.07)
+    for (double i = 0; i < 90; i += 0.37) {
+      bool total = true;
+      double c = cos(radians(i)), t = abbe_optics_cos_refracted(c, eta, &total);
+      if (eta * sin(radians(i)) >= 1 + 1e-12) {
+        assert_true(total);
+        assert_near(t, 0, 0);
+        assert_near(abbe_optics_fresnel(c, eta), 1, 0);
+      } else if (eta * sin(radians(i)) < 1 - 1e-12) {
+        assert_false(total);
+        assert_near(sqrt((1 - t) * (1 + t)), eta * sin(radians(i)), 1e-8);
+        /* the way back loses digits as the square root does where its slope is steep */
+        assert_near(abbe_optics_cos_refracted(t, 1 / eta, NULL), c, 1e-14 / fmax(c, 1e-3));
+        double there = abbe_optics_fresnel(c, eta), back = abbe_optics_fresnel(t, 1 / eta);
+        assert_near(there, back, 1e-10);
+      }
+    }
+}
+
+/* The transmitted part, from the amplitude transmittances, makes up the whole: T by its own
+ * formula, not as 1 - R. */
+static void energy_is_conserved(void **state) {
+  (void)state;
+  for (double eta = 0.25; eta < 4; eta *= 1.13)
+    for (double c = 0.01; c <= 1; c += 0.01) {
+      bool total = false;
+      double t = abbe_optics_cos_refracted(c, eta, &total);
+      if (total) continue;
+      double t_s = 2 * eta * c / (eta * c + t), t_p = 2 * eta * c / (eta * t + c);
+      double through = (t_s * t_s + t_p * t_p) / 2 * t / (eta * c);
+      assert_near(abbe_optics_fresnel(c, eta) + through, 1, 1e-12);
+    }
+}
+
+static void directions_lie_in_one_plane_and_are_unit(void **state) {
+  (void)state;
+  const double n[3] = {0.6, 0, 0.8};
+  for (double eta = 0.3; eta < 3; eta *= 1.1)
+    for (double a = 0; a < 2 * PI; a += 0.3)
+      for (double i = 0.5; i < 90; i += 3) {
+        double s = sin(radians(i)), c = cos(radians(i));
+        double u = s * cos(a), v = s * sin(a);
+        double wi[3] = {0.8 * u + 0.6 * c, v, -0.6 * u + 0.8 * c}, wt[3], wo[3];
+        abbe_optics_reflect(wi, n, wo);
+        assert_near(wo[0] * n[0] + wo[2] * n[2], c, 1e-14);
+        assert_near(wo[1], -v, 1e-14);
+        bool through = abbe_optics_refract(wi, n, eta, wt);
+        assert_int_equal(through, eta * s < 1);
+        if (!through) continue;
+        assert_near(wt[0] * wt[0] + wt[1] * wt[1] + wt[2] * wt[2], 1, 1e-14);
+        assert_near(wt[1], -eta * v, 1e-14); /* tangential part: Snell */
+        assert_near(0.8 * wt[0] - 0.6 * wt[2], -eta * u, 1e-13);
+        assert_true(n[0] * wt[0] + n[2] * wt[2] <= 0); /* on the other side */
+      }
+}
+
+/* ---- awkward inputs ---- */
+
+static void equal_indices_change_nothing(void **state) {
+  (void)state;
+  const double n[3] = {0, 0, 1}, cosines[] = {0, 1e-300, 1e-8, 0.5, 1};
+  for (int i = 0; i < 5; i++) {
+    double c = cosines[i], wi[3] = {sqrt((1 - c) * (1 + c)), 0, c}, wt[3];
+    bool total = true;
+    assert_near(abbe_optics_fresnel(c, 1), 0, 0);
+    assert_near(abbe_optics_cos_refracted(c, 1, &total), c, 0);
+    assert_false(total);
+    assert_true(abbe_optics_refract(wi, n, 1, wt));
+    for (int k = 0; k < 3; k++) assert_near(wt[k], -wi[k], 1e-15);
+  }
+}
+
+/* To first order in e = n - 1, r_s = e/2 (1 + tan^2 i) and r_p = e/2 (1 - tan^2 i). */
+static void nearly_equal_indices_keep_their_digits(void **state) {
+  (void)state;
+  const double e = 0x1p-42; /* 2.3e-13 */
+  for (double i = 0; i < 80; i += 7) {
+    double c = cos(radians(i)), tan2 = pow(tan(radians(i)), 2);
+    double expected = e * e / 4 * (1 + tan2 * tan2);
+    assert_near(abbe_optics_fresnel(c, 1 + e) / expected, 1, 1e-9);
+    assert_near(abbe_optics_fresnel(c, 1 / (1 + e)) / expected, 1, 1e-9);
+    /* cos_t - c = -e tan^2 c to first order */
+    double t = abbe_optics_cos_refracted(c, 1 + e, NULL);
+    assert_near(t, c - e * tan2 * c, 2e-16);
+  }
+}
+
+static void grazing_light(void **state) {
+  (void)state;
+  bool total = true;
+  const double n[3] = {0, 0, 1}, wi[3] = {1, 0, 0};
+  double wt[3] = {7, 7, 7};
+  assert_near(abbe_optics_fresnel(0, 1 / 1.5), 1, 0);
+  assert_near(abbe_optics_fresnel(0, 1.5), 1, 0);
+  assert_near(abbe_optics_cos_refracted(0, 1 / 1.5, &total), sqrt(1 - 1 / 2.25), 1e-15);
+  assert_false(total);
+  assert_near(abbe_optics_cos_refracted(0, 1.5, &total), 0, 0);
+  assert_true(total);
+  assert_true(abbe_optics_refract(wi, n, 1 / 1.5, wt));
+  assert_near(wt[0], -1 / 1.5, 1e-15);
+  assert_near(wt[2], -sqrt(1 - 1 / 2.25), 1e-15);
+  double kept[3] = {7, 7, 7};
+  assert_false(abbe_optics_refract(wi, n, 1.5, kept));
+  assert_near(kept[0], 7, 0);
+  /* close to grazing 1 - R is linear in the cosine, with slope 2 (1 + m^2) / sqrt(m^2 - 1) */
+  double m = 1.5, slope = 2 * (1 / sqrt(m * m - 1) + m * m / sqrt(m * m - 1));
+  assert_near((1 - abbe_optics_fresnel(1e-6, 1 / m)) / 1e-6, slope, 1e-3);
+}
+
+static void the_critical_angle(void **state) {
+  (void)state;
+  const double eta = 1.5, sine = 1 / eta, c = sqrt((1 - sine) * (1 + sine));
+  bool total = false;
+  assert_near(abbe_optics_cos_refracted(c * (1 - 1e-12), eta, &total), 0, 0);
+  assert_true(total);
+  double t = abbe_optics_cos_refracted(c * (1 + 1e-8), eta, &total);
+  assert_false(total);
+  assert_near(t, eta * c * sqrt(2e-8), 1e-9); /* the square root opens at once */
+  assert_near(abbe_optics_fresnel(c * (1 - 1e-15), eta), 1, 1e-6);
+  assert_near(abbe_optics_fresnel(c * (1 + 1e-15), eta), 1, 1e-6);
+}
+
+static void cosines_outside_and_extreme_ratios(void **state) {
+  (void)state;
+  const double etas[] = {1e-200, 1e-9, 0.3, 1 - 1e-12, 1, 1 + 1e-12, 3, 1e9, 1e200};
+  const double cosines[] = {-1e-12, -0.0, 0, 5e-324, 1e-160, 1e-9, 0.5, 1 - 1e-16, 1, 1 + 1e-12};
+  for (size_t e = 0; e < sizeof etas / sizeof etas[0]; e++)
+    for (size_t k = 0; k < sizeof cosines / sizeof cosines[0]; k++) {
+      double t = abbe_optics_cos_refracted(cosines[k], etas[e], NULL);
+      double r = abbe_optics_fresnel(cosines[k], etas[e]);
+      assert_true(t >= 0 && t <= 1);
+      assert_true(r >= 0 && r <= 1);
+    }
+  assert_near(abbe_optics_cos_refracted(1 + 1e-12, 1.5, NULL), 1, 0);
+  assert_near(abbe_optics_fresnel(1 + 1e-12, 1.5), 0.04, 1e-15);
+  assert_near(abbe_optics_fresnel(-1e-12, 1.5), 1, 0);
+  assert_true(isnan(abbe_optics_cos_refracted(NAN, 1.5, NULL)));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(glass_reflects_four_percent_head_on),
+      cmocka_unit_test(fresnel_agrees_with_the_sine_and_tangent_laws),
+      cmocka_unit_test(brewsters_angle_leaves_one_polarisation),
+      cmocka_unit_test(critical_angles_of_glass_water_and_diamond),
+      cmocka_unit_test(minimum_deviation_of_a_sixty_degree_prism),
+      cmocka_unit_test(beer_and_lambert),
+      cmocka_unit_test(snell_holds_and_reverses),
+      cmocka_unit_test(energy_is_conserved),
+      cmocka_unit_test(directions_lie_in_one_plane_and_are_unit),
+      cmocka_unit_test(equal_indices_change_nothing),
+      cmocka_unit_test(nearly_equal_indices_keep_their_digits),
+      cmocka_unit_test(grazing_light),
+      cmocka_unit_test(the_critical_angle),
+      cmocka_unit_test(cosines_outside_and_extreme_ratios),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
