@@ -3,7 +3,6 @@
 #include "spectral/file.h"
 #include "spectral/material_table.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 
 static abbe_material_table load(const char *path) {
@@ -401,6 +400,26 @@ static void missing_files_are_named(void **state) {
   assert_int_equal(abbe_material_table_load(ABBE_SOURCE_DIR, &t, &error), ABBE_IO);
 }
 
+/* What the documentation shows is read as it stands. */
+static void the_documented_table_is_one(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  assert_int_equal(
+      abbe_file_read(ABBE_SOURCE_DIR "/docs/materials.md", 1 << 20, &text, &size, NULL), ABBE_OK);
+  char *begin = strstr(text, "```yaml\n");
+  assert_non_null(begin);
+  begin += strlen("```yaml\n");
+  char *end = strstr(begin, "```");
+  assert_non_null(end);
+  *end = '\0';
+  abbe_material_table t = parse(begin);
+  assert_int_equal(t.count, 3);
+  assert_near(exp(-0.01 * abbe_material_attenuation(find(&t, "liqueur"), 464.2)), 0.08, 1e-12);
+  abbe_material_table_free(&t);
+  free(text);
+}
+
 /* Any cut of a good file is either a smaller good file or a complaint; nothing leaks or crashes. */
 static void cut_tables_are_harmless(void **state) {
   (void)state;
@@ -437,6 +456,7 @@ int main(void) {
       cmocka_unit_test(bad_dispersion_is_refused),
       cmocka_unit_test(bad_absorption_and_fits_are_refused),
       cmocka_unit_test(missing_files_are_named),
+      cmocka_unit_test(the_documented_table_is_one),
       cmocka_unit_test(cut_tables_are_harmless),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
