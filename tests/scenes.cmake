@@ -1,3 +1,3 @@
-foreach(name transform topology vector mesh shape)
-  abbe_test(${name} cpu abbe_scenes abbe_spectral)
+foreach(name transform topology vector mesh shape scene object_file scene_file)
+  abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral)
 endforeach()

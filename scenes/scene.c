@@ -1,0 +1,162 @@
+#include "scenes/scene.h"
+
+#include "scenes/transform.h"
+#include "scenes/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void object_free(abbe_object *object) {
+  free(object->name);
+  abbe_mesh_free(&object->mesh);
+  free(object->exact.plane);
+  free(object->exact.parallelogram);
+  free(object->texture_path);
+  abbe_image_free(&object->texture);
+  free(object->mended);
+}
+
+void abbe_scene_free(abbe_scene *scene) {
+  if (!scene) return;
+  for (size_t i = 0; i < scene->light_count; i++) {
+    free(scene->light[i].name);
+    abbe_illuminant_free(&scene->light[i].illuminant);
+  }
+  for (size_t i = 0; i < scene->object_count; i++) object_free(&scene->object[i]);
+  free(scene->light);
+  free(scene->object);
+  abbe_material_table_free(&scene->table);
+  free(scene->path);
+  free(scene->description);
+  memset(scene, 0, sizeof *scene);
+}
+
+bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
+                       double max[3]) {
+  bool any = false;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    if (object->material ? !refractors : !receivers) continue;
+    for (int k = 0; k < 3; k++) {
+      min[k] = any ? fmin(min[k], object->min[k]) : object->min[k];
+      max[k] = any ? fmax(max[k], object->max[k]) : object->max[k];
+    }
+    any = true;
+  }
+  return any;
+}
+
+double abbe_light_profile(const abbe_light *light, const double direction[3]) {
+  if (light->kind != ABBE_LIGHT_SPOT) return 1.0;
+  const double cosine = abbe_vector_dot(light->direction, direction);
+  const double outer = cos(light->cone_rad);
+  const double inner = cos(fmax(light->cone_rad - light->soft_rad, 0.0));
+  if (!(cosine >= outer)) return 0.0;
+  if (cosine >= inner) return 1.0;
+  const double x = (cosine - outer) / (inner - outer);
+  return x * x * (3.0 - 2.0 * x);
+}
+
+static bool inside(const abbe_object *object, const double p[3]) {
+  for (int k = 0; k < 3; k++)
+    if (!(p[k] >= object->min[k] && p[k] <= object->max[k])) return false;
+  if (object->exact.kind == ABBE_EXACT_SPHERE) {
+    double from[3];
+    abbe_vector_subtract(p, object->exact.centre, from);
+    return abbe_vector_length(from) < object->exact.radius;
+  }
+  if (object->exact.kind == ABBE_EXACT_CONVEX) {
+    for (size_t i = 0; i < object->exact.count; i++)
+      if (!(abbe_vector_dot(object->exact.plane[i], p) < object->exact.plane[i][3])) return false;
+    return true;
+  }
+  return abbe_mesh_contains(&object->mesh, p);
+}
+
+static const abbe_object *refractor_around(const abbe_scene *scene, const double p[3]) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].material && inside(&scene->object[i], p)) return &scene->object[i];
+  return NULL;
+}
+
+/* Whether three points in camera space (looking along -z) lie all beyond one side of the view. */
+static bool outside_view(const double p[3][3], double tangent_x, double tangent_y) {
+  int beyond[5] = {0};
+  for (int i = 0; i < 3; i++) {
+    const double depth = -p[i][2];
+    beyond[0] += p[i][0] > tangent_x * depth;
+    beyond[1] += p[i][0] < -tangent_x * depth;
+    beyond[2] += p[i][1] > tangent_y * depth;
+    beyond[3] += p[i][1] < -tangent_y * depth;
+    beyond[4] += !(depth > 0.0);
+  }
+  for (int k = 0; k < 5; k++)
+    if (beyond[k] == 3) return true;
+  return false;
+}
+
+static bool object_in_view(const abbe_object *object, const abbe_camera *camera) {
+  double view[16];
+  abbe_transform_look_at(camera->eye, camera->target, camera->up, view);
+  const double tangent_y = tan(0.5 * camera->fov_y_rad);
+  const double tangent_x = tangent_y * (double)camera->width / (double)camera->height;
+  for (size_t f = 0; f < object->mesh.face_count; f++) {
+    double corner[3][3];
+    for (int k = 0; k < 3; k++)
+      abbe_transform_point(view, object->mesh.position[object->mesh.face[f][k]], corner[k]);
+    if (!outside_view((const double(*)[3])corner, tangent_x, tangent_y)) return true;
+  }
+  return false;
+}
+
+static const char *path_of(const abbe_scene *scene) {
+  return scene->path ? scene->path : "scene";
+}
+
+static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;
+    const abbe_object *around = refractor_around(scene, light->position);
+    if (around)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s: the light '%s' is inside the refractor '%s' (line %zu); lights "
+                            "are modelled in air only, so move it outside",
+                            path_of(scene), light->name, around->name, around->line);
+  }
+  const abbe_object *around = refractor_around(scene, scene->camera.eye);
+  if (around)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: the camera's eye is inside the refractor '%s' (line %zu); it is "
+                          "modelled in air only, so move it outside",
+                          path_of(scene), around->name, around->line);
+  return ABBE_OK;
+}
+
+abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
+  if (scene->light_count == 0)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s: the scene has no light; give it at least one under 'lights'",
+                          path_of(scene));
+  size_t receivers = 0;
+  bool seen = false;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    if (scene->object[i].material) continue;
+    receivers++;
+    seen = seen || object_in_view(&scene->object[i], &scene->camera);
+  }
+  if (receivers == 0)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s: the scene has no receiver, so light has nowhere to fall; give at "
+                          "least one object a 'reflectance' in place of a 'material'",
+                          path_of(scene));
+  const abbe_result result = check_places(scene, error);
+  if (result != ABBE_OK) return result;
+  if (!seen)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: no receiver is in the camera's view, so no caustic could be seen; "
+                          "turn the camera towards one of the %zu receivers",
+                          path_of(scene), receivers);
+  return ABBE_OK;
+}

@@ -1,0 +1,106 @@
+#include "scenes/scene.h"
+
+#include "scenes/shape.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void profile_of_a_spot_falls_smoothly(void **state) {
+  (void)state;
+  const abbe_light spot = {
+      .kind = ABBE_LIGHT_SPOT, .direction = {0, 0, -1}, .cone_rad = 0.6, .soft_rad = 0.2};
+  double last = 1.0;
+  for (int i = 0; i <= 100; i++) {
+    const double angle = 0.01 * i, d[3] = {sin(angle), 0, -cos(angle)};
+    const double value = abbe_light_profile(&spot, d);
+    assert_true(value <= last && value >= 0.0);
+    if (angle < 0.399) assert_true(value == 1.0);
+    if (angle > 0.601) assert_true(value == 0.0);
+    last = value;
+  }
+  const double middle = acos(0.5 * (cos(0.4) + cos(0.6)));
+  const double d[3] = {sin(middle), 0, -cos(middle)};
+  assert_true(fabs(abbe_light_profile(&spot, d) - 0.5) < 1e-12);
+}
+
+static void profile_of_a_hard_spot_is_a_step(void **state) {
+  (void)state;
+  const abbe_light spot = {.kind = ABBE_LIGHT_SPOT, .direction = {1, 0, 0}, .cone_rad = 0.5};
+  const double in[3] = {cos(0.49), sin(0.49), 0}, out[3] = {cos(0.51), sin(0.51), 0};
+  assert_true(abbe_light_profile(&spot, in) == 1.0);
+  assert_true(abbe_light_profile(&spot, out) == 0.0);
+}
+
+static void other_lights_have_no_profile(void **state) {
+  (void)state;
+  const double back[3] = {0, 0, 1};
+  const abbe_light point = {.kind = ABBE_LIGHT_POINT};
+  const abbe_light sun = {.kind = ABBE_LIGHT_DIRECTIONAL, .direction = {0, 0, -1}};
+  assert_true(abbe_light_profile(&point, back) == 1.0);
+  assert_true(abbe_light_profile(&sun, back) == 1.0);
+}
+
+static void bounds_choose_what_is_asked(void **state) {
+  (void)state;
+  const abbe_material glass = {0};
+  abbe_object objects[2] = {{.material = &glass, .min = {-1, 0, 0}, .max = {1, 1, 1}},
+                            {.min = {0, -5, 0}, .max = {0, 5, 9}}};
+  const abbe_scene scene = {.object_count = 2, .object = objects};
+  double min[3], max[3];
+  assert_true(abbe_scene_bounds(&scene, true, false, min, max));
+  assert_true(min[0] == -1 && max[2] == 1);
+  assert_true(abbe_scene_bounds(&scene, false, true, min, max));
+  assert_true(min[1] == -5 && max[0] == 0);
+  assert_true(abbe_scene_bounds(&scene, true, true, min, max));
+  assert_true(min[0] == -1 && max[2] == 9);
+  assert_false(abbe_scene_bounds(&scene, false, false, min, max));
+}
+
+/* A triangle that covers the whole view though all its corners are outside. */
+static void a_receiver_larger_than_the_view_is_in_view(void **state) {
+  (void)state;
+  abbe_light light = {.kind = ABBE_LIGHT_POINT, .position = {0, 0, 50}};
+  abbe_object floor = {0};
+  assert_int_equal(abbe_shape_rectangle(1000, 1000, &floor.mesh, NULL), ABBE_OK);
+  abbe_scene scene = {.light_count = 1, .light = &light, .object_count = 1, .object = &floor};
+  scene.camera = (abbe_camera){.eye = {0, 0, 1},
+                               .target = {0, 0, 0},
+                               .up = {0, 1, 0},
+                               .fov_y_rad = 0.1,
+                               .width = 64,
+                               .height = 64};
+  abbe_error error;
+  assert_int_equal(abbe_scene_check(&scene, &error), ABBE_OK);
+  scene.camera.target[2] = 2;
+  assert_int_equal(abbe_scene_check(&scene, &error), ABBE_UNSUPPORTED);
+  assert_non_null(strstr(error.text, "view"));
+  scene.light_count = 0;
+  assert_int_equal(abbe_scene_check(&scene, &error), ABBE_SCHEMA);
+  abbe_mesh_free(&floor.mesh);
+}
+
+static void freeing_nothing_is_safe(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_scene_free(&scene);
+  abbe_scene_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(profile_of_a_spot_falls_smoothly),
+      cmocka_unit_test(profile_of_a_hard_spot_is_a_step),
+      cmocka_unit_test(other_lights_have_no_profile),
+      cmocka_unit_test(bounds_choose_what_is_asked),
+      cmocka_unit_test(a_receiver_larger_than_the_view_is_in_view),
+      cmocka_unit_test(freeing_nothing_is_safe),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
