@@ -383,10 +383,13 @@ static abbe_result answer(const request *r, bool list, const abbe_material_table
 int abbe_command_materials(int argc, char **argv) {
   static request r;
   r = (request){.program = argv[0]};
-  argp_parse(&parser, argc, argv, 0, NULL, &r);
+  abbe_error error = {0};
+  if (argp_parse(&parser, argc, argv, 0, NULL, &r) != 0) {
+    abbe_error_set(&error, ABBE_NO_MEMORY, "no memory to read the arguments");
+    return abbe_command_fail(r.program, &error);
+  }
   bool list = is_list(&r);
   abbe_material_table table;
-  abbe_error error = {0};
   abbe_result result = abbe_material_table_load(r.table, &table, &error);
   if (result == ABBE_OK) result = answer(&r, list, &table, &error);
   abbe_material_table_free(&table);
