@@ -37,6 +37,9 @@ static const char *reason(const stream *s, exr_result_t code) {
   return s->message[0] ? s->message : exr_get_default_error_message(code);
 }
 
+/* The one text that is the file's own: whether it is in scan lines or tiles. */
+static const char storage_name[] = "type";
+
 /* Writing */
 
 static int64_t write_at(exr_const_context_t context, void *user, const void *buffer, uint64_t size,
@@ -131,7 +134,7 @@ static exr_result_t write_image(stream *s, const abbe_image *image) {
   return rv == 0 ? finished : rv;
 }
 
-static abbe_result check_channels(const char *path, const abbe_image *image, abbe_error *error) {
+static abbe_result check_image(const char *path, const abbe_image *image, abbe_error *error) {
   if (image->data == NULL || image->channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the image to write is empty", path);
   for (size_t i = 0; i < image->channels; i++)
@@ -139,11 +142,16 @@ static abbe_result check_channels(const char *path, const abbe_image *image, abb
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: two channels are named '%s'; names differ in a file", path,
                             image->channel[i]);
+  if (abbe_image_attribute_text(image, storage_name) != NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: the attribute '%s' belongs to the file itself; another name can be "
+                          "written",
+                          path, storage_name);
   return ABBE_OK;
 }
 
 abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error) {
-  abbe_result result = check_channels(path, image, error);
+  abbe_result result = check_image(path, image, error);
   if (result != ABBE_OK) return result;
   abbe_file_writer writer = {0};
   result = abbe_file_writer_open(&writer, path, error);
@@ -218,6 +226,14 @@ static bool is_bomb(const stream *s, const layout *l) {
   return bytes > ratio * (double)s->size;
 }
 
+/* OpenEXR 3.1's C core decodes B44 wrongly where a channel is not half, without a complaint. */
+static bool decodes_wrongly(const layout *l) {
+  if (l->compression != EXR_COMPRESSION_B44 && l->compression != EXR_COMPRESSION_B44A) return false;
+  for (int i = 0; i < l->channels->num_channels; i++)
+    if (l->channels->entries[i].pixel_type != EXR_PIXEL_HALF) return true;
+  return false;
+}
+
 static abbe_result check_layout(const stream *s, const layout *l, abbe_error *error) {
   if (l->storage != EXR_STORAGE_SCANLINE && l->storage != EXR_STORAGE_TILED)
     return unsupported(s, "deep data cannot be read", error);
@@ -227,6 +243,8 @@ static abbe_result check_layout(const stream *s, const layout *l, abbe_error *er
   for (int i = 0; i < l->channels->num_channels; i++)
     if (l->channels->entries[i].x_sampling != 1 || l->channels->entries[i].y_sampling != 1)
       return unsupported(s, "subsampled channels cannot be read", error);
+  if (decodes_wrongly(l))
+    return unsupported(s, "B44 compression of other than half channels cannot be read", error);
   if (l->width < 1 || l->height < 1 || l->width > ABBE_IMAGE_MAX_SIDE ||
       l->height > ABBE_IMAGE_MAX_SIDE || is_bomb(s, l))
     return abbe_error_set(error, ABBE_PARSE,
@@ -265,6 +283,7 @@ static abbe_result read_attributes(exr_context_t context, abbe_image *image, abb
       memcpy(image->xy, xy, sizeof xy);
     }
     if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
+    if (strcmp(a->name, storage_name) == 0) continue;
     abbe_result result = abbe_image_set_attribute(image, a->name, a->string->str, error);
     if (result != ABBE_OK) return result;
   }

@@ -19,7 +19,8 @@ extern "C" {
  * for itself ("channels", "compression", …). */
 abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error);
 /* Reads path. ABBE_PARSE for a broken or truncated file; ABBE_UNSUPPORTED for deep data, several
- * parts and subsampled channels. */
+ * parts, subsampled channels, and what OpenEXR 3.1's C core cannot decode: DWA, and B44 of other
+ * than half channels. */
 abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error);
 
 #ifdef __cplusplus

@@ -60,6 +60,7 @@ static void test_round_trip_is_exact(void **state) {
     }
     for (int i = 0; i < 8; i++) assert_true(fabs(back.xy[i] - image.xy[i]) < 1e-7);
     assert_string_equal(abbe_image_attribute_text(&back, "abbe:space"), "acescg");
+    assert_int_equal(back.attribute_count, 2);
     assert_string_equal(abbe_image_attribute_text(&back, "a name of more than thirty-one letters"),
                         "several\nlines");
     abbe_image_free(&image);
@@ -82,6 +83,11 @@ static void test_what_cannot_be_written(void **state) {
   assert_non_null(strstr(error.text, "/no/such/folder/a.exr"));
   assert_int_equal(abbe_image_set_attribute(&image, "channels", "mine", NULL), ABBE_OK);
   assert_int_equal(abbe_exr_write(path, &image, &error), ABBE_INVALID_ARGUMENT);
+  abbe_image_free(&image);
+  image = gradient(2, 2);
+  assert_int_equal(abbe_image_set_attribute(&image, "type", "tiledimage", NULL), ABBE_OK);
+  assert_int_equal(abbe_exr_write(path, &image, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "'type'"));
   abbe_image_free(&image);
 }
 
@@ -189,6 +195,15 @@ static void test_foreign_files(void **state) {
     }
     abbe_image_free(&image);
   }
+}
+
+static void test_what_the_library_decodes_wrongly(void **state) {
+  (void)state;
+  write_foreign(EXR_STORAGE_SCANLINE, EXR_COMPRESSION_B44, 16, 16);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_non_null(strstr(error.text, "B44"));
 }
 
 static void read_must_fail(const char *data, size_t size, const char *what) {
@@ -329,6 +344,7 @@ int main(void) {
                                      cmocka_unit_test(test_what_cannot_be_written),
                                      cmocka_unit_test(test_a_full_disk_leaves_the_old_file),
                                      cmocka_unit_test(test_foreign_files),
+                                     cmocka_unit_test(test_what_the_library_decodes_wrongly),
                                      cmocka_unit_test(test_truncated_anywhere),
                                      cmocka_unit_test(test_flipped_bits_anywhere),
                                      cmocka_unit_test(test_a_huge_data_window),
