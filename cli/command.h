@@ -16,6 +16,8 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
 /* X(name, summary): every subcommand NAME is `int abbe_command_NAME(int argc, char **argv)`;
  * argv[0] is "abbe NAME". */
 #define ABBE_COMMANDS(X) \
+  X(render, "render a scene to OpenEXR and PNG") \
+  X(plan, "say which passes and models a scene asks for, and why") \
   X(materials, "list materials, or show one: indices, Abbe number, source, fits")
 
 #define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);

@@ -1,0 +1,101 @@
+#include "cli/command.h"
+#include "cli/render_options.h"
+
+#include "scenes/scene_file.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct plan_options {
+  abbe_render_options render;
+  bool json;
+} plan_options;
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  plan_options *o = state->input;
+  (void)text;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &o->render;
+    return 0;
+  case 'j':
+    o->json = true;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static void print_text(const abbe_plan *plan) {
+  for (int runs = 1; runs >= 0; runs--) {
+    printf("%s\n", runs ? "What runs, and the fact that asks for it:" : "\nWhat does not run:");
+    for (size_t i = 0; i < plan->entry_count; i++)
+      if (plan->entry[i].runs == (bool)runs)
+        printf("  %-26s %s\n", plan->entry[i].name, plan->entry[i].reason);
+  }
+  if (plan->note_count > 0) printf("\nWhat to know:\n");
+  for (size_t i = 0; i < plan->note_count; i++) printf("  %s\n", plan->note[i]);
+}
+
+static int print_json(const abbe_plan *plan) {
+  cJSON *root = cJSON_CreateObject(), *entries = cJSON_AddArrayToObject(root, "plan");
+  for (size_t i = 0; i < plan->entry_count; i++) {
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddStringToObject(entry, "name", plan->entry[i].name);
+    cJSON_AddBoolToObject(entry, "runs", plan->entry[i].runs);
+    cJSON_AddStringToObject(entry, "reason", plan->entry[i].reason);
+    cJSON_AddItemToArray(entries, entry);
+  }
+  cJSON *notes = cJSON_AddArrayToObject(root, "notes");
+  for (size_t i = 0; i < plan->note_count; i++)
+    cJSON_AddItemToArray(notes, cJSON_CreateString(plan->note[i]));
+  cJSON_AddNumberToObject(root, "wavelengths", (double)plan->desc.wavelengths);
+  cJSON_AddNumberToObject(root, "exits", (double)plan->desc.orders);
+  char *text = cJSON_Print(root);
+  cJSON_Delete(root);
+  if (text == NULL) {
+    fprintf(stderr, "abbe plan: no memory for the JSON text\n");
+    return ABBE_EXIT_FAILED;
+  }
+  printf("%s\n", text);
+  free(text);
+  return ABBE_EXIT_DONE;
+}
+
+int abbe_command_plan(int argc, char **argv) {
+  static const struct argp_option options[] = {{"json", 'j', NULL, 0, "as JSON", 0}, {0}};
+  static const struct argp_child children[] = {{&abbe_render_options_argp, 0, "The request:", 1},
+                                               {0}};
+  static const struct argp argp = {
+      options,
+      parse,
+      NULL,
+      "Says which passes and models a scene asks for, and which fact asks for each. Needs no "
+      "graphics.\v"
+      "Examples:\n"
+      "  abbe plan scenes/gem.yaml\n"
+      "  abbe plan scenes/gem.yaml --profile thesis --json\n",
+      children,
+      NULL,
+      NULL};
+  plan_options o = {.render.program = argv[0]};
+  argp_parse(&argp, argc, argv, 0, NULL, &o);
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  abbe_plan plan = {0};
+  abbe_scene_options scene_options = {.materials = o.render.materials};
+  abbe_result result = abbe_scene_load(o.render.scene, &scene_options, &scene, &error);
+  if (result == ABBE_OK) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
+  int code = ABBE_EXIT_DONE;
+  if (result != ABBE_OK)
+    code = abbe_command_fail(argv[0], &error);
+  else if (o.json)
+    code = print_json(&plan);
+  else
+    print_text(&plan);
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  return code;
+}

@@ -1,0 +1,59 @@
+#include "cli/progress.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { BAR_WIDTH = 30 };
+
+static volatile sig_atomic_t interrupted;
+
+static void interrupt(int signal_number) {
+  (void)signal_number;
+  interrupted = 1;
+}
+
+static double now_s(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void on_interrupt(void (*handler)(int)) {
+  struct sigaction action;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = handler;
+  sigaction(SIGINT, &action, NULL);
+}
+
+void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet) {
+  memset(progress, 0, sizeof *progress);
+  progress->what = what;
+  progress->silent = quiet || !isatty(STDERR_FILENO);
+  progress->start_s = now_s();
+  on_interrupt(interrupt);
+}
+
+bool abbe_progress_update(void *user, double done) {
+  abbe_progress *progress = user;
+  double now = now_s(), spent = now - progress->start_s;
+  double left = done > 0 ? spent * (1 - done) / done : 0;
+  /* Work that will be over within a second needs no bar. */
+  if (!progress->silent && (spent > 0.3 && spent + left > 1.0) && now - progress->last_s > 0.1) {
+    int filled = (int)(done * BAR_WIDTH);
+    fprintf(stderr, "\r%s [", progress->what);
+    for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', stderr);
+    fprintf(stderr, "] %3.0f %%, %.0f s left ", 100 * done, left);
+    fflush(stderr);
+    progress->shown = true;
+    progress->last_s = now;
+  }
+  return !interrupted;
+}
+
+void abbe_progress_end(abbe_progress *progress) {
+  if (progress->shown) fprintf(stderr, "\r%*s\r", BAR_WIDTH + 60, "");
+  on_interrupt(SIG_DFL);
+}

@@ -1,0 +1,337 @@
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "cli/render_options.h"
+
+#include "colorimetry/display_ocio.h"
+#include "colorimetry/exr.h"
+#include "colorimetry/png_file.h"
+#include "gl/context.h"
+#include "gl/renderer.h"
+#include "scenes/scene_file.h"
+#include "spectral/file.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+enum {
+  OPTION_PNG = 0x200,
+  OPTION_BITS,
+  OPTION_LAYERS,
+  OPTION_SAVE_MAP,
+  OPTION_UNFILLED,
+  OPTION_STATS,
+  OPTION_GL,
+  OPTION_FRAMES,
+  OPTION_OCIO,
+  OPTION_DISPLAY,
+  OPTION_VIEW,
+  OPTION_EXPOSURE,
+  OPTION_JSON
+};
+
+typedef struct request {
+  abbe_render_options render;
+  const char *exr, *png, *map, *stats;
+  bool layers, unfilled, quiet, json;
+  int bits;
+  size_t frames;
+  abbe_context_backend backend;
+  abbe_display_desc display;
+} request;
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE.exr", 0, "the scene-linear picture", 0},
+    {"png", OPTION_PNG, "FILE.png", 0, "the picture for a display, through OpenColorIO", 0},
+    {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8)", 0},
+    {"layers", OPTION_LAYERS, NULL, 0, "direct, caustic and distance layers in the EXR", 0},
+    {"save-map", OPTION_SAVE_MAP, "FILE.exr", 0, "the first light's spectral map", 0},
+    {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
+    {"stats", OPTION_STATS, "FILE", 0, "times, photons and the energy ledger as JSON", 0},
+    {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
+    {"frames", OPTION_FRAMES, "N", 0, "warm up, then report the median of N frames (1)", 0},
+    {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 0},
+    {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
+    {"ocio", OPTION_OCIO, "FILE", 0, "OpenColorIO configuration ($OCIO, else the shipped one)", 2},
+    {"display", OPTION_DISPLAY, "NAME", 0, "of the configuration", 2},
+    {"view", OPTION_VIEW, "NAME", 0, "of the display", 2},
+    {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
+    {0}};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  static const char *const backends[] = {"osmesa", "egl"};
+  request *q = state->input;
+  const char *p = q->render.program;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &q->render;
+    return 0;
+  case 'o':
+    q->exr = text;
+    return 0;
+  case OPTION_PNG:
+    q->png = text;
+    return 0;
+  case OPTION_BITS:
+    q->bits = abbe_command_count(p, "--bits", text, 8, 16) > 8 ? 16 : 8;
+    return 0;
+  case OPTION_LAYERS:
+    q->layers = true;
+    return 0;
+  case OPTION_SAVE_MAP:
+    q->map = text;
+    return 0;
+  case OPTION_UNFILLED:
+    q->unfilled = true;
+    return 0;
+  case OPTION_STATS:
+    q->stats = text;
+    return 0;
+  case OPTION_JSON:
+    q->json = true;
+    return 0;
+  case OPTION_FRAMES:
+    q->frames = abbe_command_count(p, "--frames", text, 1, 1000);
+    return 0;
+  case OPTION_GL:
+    q->backend = (abbe_context_backend)abbe_command_choice(p, "--gl", text, backends, 2);
+    return 0;
+  case 'q':
+    q->quiet = true;
+    return 0;
+  case OPTION_OCIO:
+    q->display.config = text;
+    return 0;
+  case OPTION_DISPLAY:
+    q->display.display = text;
+    return 0;
+  case OPTION_VIEW:
+    q->display.view = text;
+    return 0;
+  case OPTION_EXPOSURE:
+    q->display.exposure = abbe_command_number(p, "--exposure", text, -30, 30);
+    return 0;
+  case ARGP_KEY_END:
+    if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map == NULL && !q->json)
+      argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* A target that cannot be written is found out before the work, not after it. */
+static abbe_result check_targets(const request *q, abbe_error *error) {
+  const char *targets[] = {q->exr, q->png, q->map, q->stats};
+  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+    if (targets[i] == NULL) continue;
+    abbe_file_writer writer = {0};
+    abbe_result result = abbe_file_writer_open(&writer, targets[i], error);
+    abbe_file_writer_discard(&writer);
+    if (result != ABBE_OK) return result;
+  }
+  return ABBE_OK;
+}
+
+static cJSON *describe(const abbe_statistics *s, const abbe_context *context) {
+  cJSON *root = cJSON_CreateObject();
+  cJSON_AddNumberToObject(root, "frame_ms", s->frame_ms);
+  cJSON *passes = cJSON_AddArrayToObject(root, "passes");
+  for (size_t i = 0; i < s->pass_count; i++) {
+    cJSON *pass = cJSON_CreateObject();
+    cJSON_AddStringToObject(pass, "name", s->pass[i].name);
+    cJSON_AddNumberToObject(pass, "ms", s->pass[i].ms);
+    cJSON_AddItemToArray(passes, pass);
+  }
+  cJSON_AddNumberToObject(root, "photons", (double)s->photons);
+  cJSON_AddNumberToObject(root, "wavelengths", (double)s->wavelengths);
+  cJSON_AddNumberToObject(root, "refractor_share", s->refractor_share);
+  cJSON *energy = cJSON_AddObjectToObject(root, "energy");
+  cJSON_AddNumberToObject(energy, "reached", s->energy.reached);
+  cJSON_AddNumberToObject(energy, "reflected", s->energy.reflected);
+  cJSON_AddNumberToObject(energy, "absorbed", s->energy.absorbed);
+  cJSON_AddNumberToObject(energy, "trapped", s->energy.trapped);
+  cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
+  cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
+  cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
+  cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);
+  struct rusage usage;
+  if (getrusage(RUSAGE_SELF, &usage) == 0)
+    cJSON_AddNumberToObject(root, "peak_bytes", 1024.0 * (double)usage.ru_maxrss);
+  cJSON_AddStringToObject(root, "device", abbe_context_description(context));
+  return root;
+}
+
+static abbe_result write_stats(const request *q, const abbe_statistics *s,
+                               const abbe_context *context, abbe_error *error) {
+  if (q->stats == NULL && !q->json) return ABBE_OK;
+  cJSON *root = describe(s, context);
+  char *text = cJSON_Print(root);
+  cJSON_Delete(root);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
+  if (q->json) printf("%s\n", text);
+  abbe_result result = ABBE_OK;
+  if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
+  free(text);
+  return result;
+}
+
+static int by_time(const void *a, const void *b) {
+  double x = ((const abbe_statistics *)a)->frame_ms, y = ((const abbe_statistics *)b)->frame_ms;
+  return (x > y) - (x < y);
+}
+
+/* One frame, or the median of several after a warm-up. */
+static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_statistics *out,
+                              abbe_error *error) {
+  abbe_progress progress;
+  size_t count = q->frames > 0 ? q->frames : 1;
+  bool once = q->frames == 0;
+  abbe_statistics *all = calloc(count, sizeof *all);
+  if (all == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
+  abbe_progress_begin(&progress, "render", q->quiet);
+  abbe_result result = ABBE_OK;
+  if (!once) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    result = abbe_renderer_frame(renderer, once ? abbe_progress_update : NULL, &progress, &all[i],
+                                 error);
+    if (result == ABBE_OK && !once &&
+        !abbe_progress_update(&progress, (double)(i + 1) / (double)count))
+      result = abbe_error_set(error, ABBE_CANCELLED, "stopped; nothing was written");
+  }
+  abbe_progress_end(&progress);
+  qsort(all, count, sizeof *all, by_time);
+  *out = all[count / 2];
+  free(all);
+  return result;
+}
+
+static abbe_result annotate(const request *q, const abbe_renderer *renderer,
+                            const abbe_context *context, abbe_image *image, abbe_error *error) {
+  const abbe_render_desc *d = &abbe_renderer_plan(renderer)->desc;
+  char text[512];
+  snprintf(text, sizeof text,
+           "profile %s, %zu wavelengths %g:%g nm, photons %zu, map %zu, samples %zu, fill %s, "
+           "share %g, exits %zu",
+           abbe_profile_name(d->profile), d->wavelengths, d->min_nm, d->max_nm, d->photons,
+           d->map_size, d->supersample, abbe_fill_name(d->fill), d->energy_share, d->orders);
+  abbe_result result = abbe_image_set_attribute(image, "abbe:settings", text, error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_image_set_attribute(image, "abbe:device", abbe_context_description(context), error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(
+        image, "abbe:unit",
+        d->profile == ABBE_PROFILE_THESIS ? "display brightness" : "radiance, W/(m2 sr)", error);
+  return result;
+}
+
+static abbe_result write_png(const request *q, abbe_image *image, abbe_error *error) {
+  abbe_display_desc desc = q->display;
+  abbe_display *display = NULL;
+  const char *space = abbe_image_attribute_text(image, "abbe:space");
+  for (int i = 0; space != NULL && i < ABBE_RGB_SPACE_COUNT; i++)
+    if (strcmp(space, abbe_rgb_space_name((abbe_rgb_space)i)) == 0)
+      desc.source_space = abbe_rgb_space_ocio_name((abbe_rgb_space)i);
+  abbe_result result = abbe_display_make(&desc, &display, error);
+  if (result == ABBE_OK) result = abbe_display_apply(display, image, error);
+  if (result == ABBE_OK) result = abbe_png_write(q->png, image, q->bits, error);
+  abbe_display_free(display);
+  return result;
+}
+
+static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
+  abbe_image map = {0};
+  abbe_view view;
+  char text[512];
+  abbe_result result = abbe_renderer_read_map(renderer, 0, !q->unfilled, &map, &view, error);
+  if (result != ABBE_OK) return result;
+  const double *o = view.origin, *f = view.forward, *u = view.up, *w = view.window;
+  snprintf(text, sizeof text,
+           "%s origin %.9g %.9g %.9g forward %.9g %.9g %.9g up %.9g %.9g %.9g window %.9g %.9g "
+           "%.9g %.9g",
+           view.orthographic ? "orthographic" : "perspective", o[0], o[1], o[2], f[0], f[1], f[2],
+           u[0], u[1], u[2], w[0], w[1], w[2], w[3]);
+  result = abbe_image_set_attribute(&map, "abbe:map_view", text, error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(&map, "abbe:unit", "flux a texel, W", error);
+  if (result == ABBE_OK) result = abbe_exr_write(q->map, &map, error);
+  abbe_image_free(&map);
+  return result;
+}
+
+static void summarise(const request *q, const abbe_statistics *s) {
+  if (q->quiet || q->json) return;
+  fprintf(stderr, "%.0f ms, %zu photons x %zu wavelengths", s->frame_ms, s->photons,
+          s->wavelengths);
+  const abbe_ledger *e = &s->energy;
+  if (e->reached > 0)
+    fprintf(stderr,
+            "; of the light that met refractors %.1f %% is in the map, %.1f %% reflected, %.1f %% "
+            "absorbed, %.1f %% trapped, %.1f %% missed (balance %.1e)",
+            100 * e->deposited / e->reached, 100 * e->reflected / e->reached,
+            100 * e->absorbed / e->reached, 100 * e->trapped / e->reached,
+            100 * e->missed / e->reached, abbe_ledger_imbalance(e));
+  fprintf(stderr, "\n");
+}
+
+static abbe_result render(const request *q, const abbe_scene *scene, abbe_context *context,
+                          abbe_error *error) {
+  abbe_renderer *renderer = NULL;
+  abbe_statistics statistics;
+  abbe_image image = {0};
+  abbe_result result = abbe_renderer_make(context, scene, &q->render.desc, &renderer, error);
+  if (result == ABBE_OK) {
+    const abbe_plan *plan = abbe_renderer_plan(renderer);
+    for (size_t i = 0; i < plan->note_count && !q->quiet; i++)
+      fprintf(stderr, "note: %s\n", plan->note[i]);
+    result = run_frames(q, renderer, &statistics, error);
+  }
+  if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->layers, &image, error);
+  if (result == ABBE_OK) result = annotate(q, renderer, context, &image, error);
+  if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
+  if (result == ABBE_OK && q->map != NULL) result = save_map(q, renderer, error);
+  if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
+  if (result == ABBE_OK) result = write_stats(q, &statistics, context, error);
+  if (result == ABBE_OK) summarise(q, &statistics);
+  abbe_image_free(&image);
+  abbe_renderer_free(renderer);
+  return result;
+}
+
+int abbe_command_render(int argc, char **argv) {
+  static const struct argp_child children[] = {
+      {&abbe_render_options_argp, 0, "Speed and accuracy:", 1}, {0}};
+  static const struct argp argp = {
+      options,
+      parse,
+      NULL,
+      "Renders a scene with its caustics to a scene-linear OpenEXR picture and to a PNG.\v"
+      "Examples:\n"
+      "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"
+      "  abbe render scenes/prism.yaml --png prism.png --wavelengths 21 --photons 1024\n"
+      "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"
+      "  abbe render scenes/gem.yaml --stats gem.json --frames 9\n",
+      children,
+      NULL,
+      NULL};
+  request q = {.render.program = argv[0], .bits = 8};
+  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  abbe_context *context = NULL;
+  abbe_scene_options scene_options = {.materials = q.render.materials};
+  abbe_result result = check_targets(&q, &error);
+  if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);
+  if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
+  if (result == ABBE_OK) result = render(&q, &scene, context, &error);
+  abbe_context_free(context);
+  abbe_scene_free(&scene);
+  return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(argv[0], &error);
+}

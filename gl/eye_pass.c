@@ -1,0 +1,219 @@
+#include "gl/program.h"
+#include "gl/renderer_state.h"
+
+#include <math.h>
+#include <string.h>
+
+void abbe_renderer_fit_eye(abbe_renderer *r) {
+  const abbe_camera *camera = &r->scene->camera;
+  double forward[3];
+  for (int k = 0; k < 3; k++) forward[k] = camera->target[k] - camera->eye[k];
+  abbe_view_look(camera->eye, forward, camera->up, false, &r->eye);
+  for (size_t i = 0; i < r->scene->object_count; i++) {
+    const abbe_object *o = &r->scene->object[i];
+    double corner[8][3];
+    for (int k = 0; k < 24; k++)
+      corner[k / 3][k % 3] = (k / 3 >> k % 3) & 1 ? o->max[k % 3] : o->min[k % 3];
+    abbe_view_fit(&r->eye, (const double(*)[3])corner, 8);
+  }
+  abbe_view_pad(&r->eye, 0.01);
+  double y = tan(0.5 * camera->fov_y_rad);
+  double x = y * (double)r->plan.desc.width / (double)r->plan.desc.height;
+  double window[4] = {-x, x, -y, y};
+  memcpy(r->eye.window, window, sizeof window);
+}
+
+static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
+  size_t w = r->plan.desc.width * r->plan.desc.supersample;
+  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  bool layers = r->plan.layers && r->plan.refractor_count > 0;
+  const struct {
+    GLuint *texture;
+    GLenum format;
+    size_t layers;
+    bool wanted;
+  } targets[] = {
+      {&r->eye_receivers, GL_RGBA32F, 1, true},
+      {&r->eye_direct, GL_RGBA32F, 0, true},
+      {&r->eye_caustic, GL_RGBA32F, 0, true},
+      {&r->eye_refraction, GL_RGBA32F, 0, true},
+      {&r->eye_depth, GL_DEPTH_COMPONENT32F, 0, true},
+      {&r->eye_layers, GL_RGBA32F, 2, layers},
+      {&r->eye_layers_depth, GL_DEPTH_COMPONENT32F, 0, layers},
+  };
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof targets / sizeof *targets && result == ABBE_OK; i++)
+    if (targets[i].wanted)
+      result = abbe_renderer_make_texture(r, targets[i].format, w, h, targets[i].layers, false,
+                                          targets[i].texture, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_texture(r, GL_RGBA32F, r->plan.desc.width, r->plan.desc.height, 0,
+                                        false, &r->eye_picture, error);
+  return result;
+}
+
+abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
+  static const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                           {GL_FRAGMENT_SHADER, "receivers.frag"}};
+  static const abbe_program_stage refracted[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                                 {GL_FRAGMENT_SHADER, "refraction.frag"}};
+  abbe_renderer_fit_eye(r);
+  abbe_result result = make_targets(r, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make(r->gl, lit, 2, r->defines, &r->receivers, error);
+  if (result == ABBE_OK && r->plan.refractor_count > 0)
+    result = abbe_program_make(r->gl, refracted, 2, r->defines, &r->refraction, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "eye_resolve.comp", NULL, &r->eye_resolve, error);
+  return result;
+}
+
+/* What receiver.glsl wants to know, in whichever program includes it. */
+void abbe_renderer_set_lighting(abbe_renderer *r, GLuint program) {
+  const abbe_gl *gl = r->gl;
+  abbe_renderer_bind_texture(r, program, "spectral_map", 0, r->map);
+  abbe_renderer_bind_texture(r, program, "surface_texture", 1, r->texture_surface);
+  abbe_renderer_bind_texture(r, program, "light_layers", 2, r->light_layers);
+  abbe_renderer_bind_texture(r, program, "light_receivers", 3, r->light_receivers);
+  GLint matrix = gl->GetUniformLocation(program, "rgb_from_xyz");
+  if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, r->rgb_from_xyz);
+  /* Ambient light and background are white by definition, in every working space. */
+  float ambient = (float)r->scene->ambient, background = (float)r->scene->background;
+  gl->Uniform3f(gl->GetUniformLocation(program, "ambient"), ambient, ambient, ambient);
+  gl->Uniform3f(gl->GetUniformLocation(program, "background"), background, background, background);
+  gl->Uniform4f(gl->GetUniformLocation(program, "refractor_bounds"), (float)r->refractor_centre[0],
+                (float)r->refractor_centre[1], (float)r->refractor_centre[2],
+                (float)r->refractor_radius);
+  abbe_renderer_set_float(r, program, "scene_size", r->scene_size);
+}
+
+static void set_eye(abbe_renderer *r, GLuint program) {
+  double matrix[16];
+  float clip[16], packed[24];
+  abbe_view_matrix(&r->eye, matrix);
+  for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
+  abbe_view_pack(&r->eye, packed);
+  const abbe_gl *gl = r->gl;
+  gl->UniformMatrix4fv(gl->GetUniformLocation(program, "view_projection"), 1, GL_FALSE, clip);
+  gl->Uniform3f(gl->GetUniformLocation(program, "eye"), packed[0], packed[1], packed[2]);
+  GLint view = gl->GetUniformLocation(program, "eye_view");
+  if (view >= 0) gl->Uniform4fv(view, 6, packed);
+  GLint origin = gl->GetUniformLocation(program, "view_origin");
+  if (origin >= 0) gl->Uniform4f(origin, packed[0], packed[1], packed[2], packed[3]);
+}
+
+static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  size_t w = r->plan.desc.width * r->plan.desc.supersample;
+  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  GLuint target[3] = {r->eye_receivers, r->eye_direct, r->eye_caustic};
+  static const int flat[3] = {0, -1, -1};
+  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  abbe_renderer_begin_pass(r);
+  abbe_result result = abbe_renderer_set_target(r, target, flat, 3, r->eye_depth, w, h, error);
+  if (result != ABBE_OK) return result;
+  GLfloat b = (GLfloat)r->scene->background, background[4] = {b, b, b, 0};
+  gl->ClearBufferfv(GL_COLOR, 0, background);
+  gl->ClearBufferfv(GL_COLOR, 1, nothing);
+  gl->ClearBufferfv(GL_COLOR, 2, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  gl->Enable(GL_DEPTH_TEST);
+  gl->UseProgram(r->receivers);
+  abbe_renderer_set_lighting(r, r->receivers);
+  set_eye(r, r->receivers);
+  for (size_t i = 0; i < r->plan.receiver_count; i++) {
+    abbe_renderer_set_int(r, r->receivers, "surface", (int)i);
+    abbe_renderer_draw(r, r->plan.receiver_object[i]);
+  }
+  abbe_renderer_end_pass(r, "eye: receivers");
+  return ABBE_OK;
+}
+
+static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  size_t w = r->plan.desc.width * r->plan.desc.supersample;
+  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  static const int back = 1;
+  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  abbe_renderer_begin_pass(r);
+  abbe_result result =
+      abbe_renderer_set_target(r, &r->eye_layers, &back, 1, r->eye_layers_depth, w, h, error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  gl->UseProgram(r->layer);
+  set_eye(r, r->layer);
+  gl->Enable(GL_CULL_FACE);
+  gl->CullFace(GL_FRONT);
+  for (size_t i = 0; i < r->plan.refractor_count; i++)
+    abbe_renderer_draw(r, r->plan.refractor_object[i]);
+  gl->Disable(GL_CULL_FACE);
+  abbe_renderer_end_pass(r, "eye: refractor layers");
+  return ABBE_OK;
+}
+
+static abbe_result draw_refraction(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+                                   abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  size_t w = r->plan.desc.width * r->plan.desc.supersample;
+  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  static const int flat = -1;
+  static const GLfloat nothing[4] = {0, 0, 0, 0};
+  abbe_renderer_begin_pass(r);
+  abbe_result result =
+      abbe_renderer_set_target(r, &r->eye_refraction, &flat, 1, r->eye_depth, w, h, error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  if (r->plan.refractor_count == 0) return ABBE_OK;
+  gl->UseProgram(r->refraction);
+  abbe_renderer_set_lighting(r, r->refraction);
+  abbe_renderer_bind_texture(r, r->refraction, "eye_layers", 4, r->eye_layers);
+  set_eye(r, r->refraction);
+  abbe_renderer_bind_texture(r, r->refraction, "eye_receivers", 5, r->eye_receivers);
+  abbe_renderer_set_float(r, r->refraction, "share_limit", r->plan.desc.energy_share);
+  gl->Enable(GL_CULL_FACE);
+  gl->CullFace(GL_BACK);
+  /* In strips, so that a long frame can show its progress and be stopped. */
+  int strips = progress != NULL ? 16 : 1, step = (int)(h + (size_t)strips - 1) / strips;
+  gl->Enable(GL_SCISSOR_TEST);
+  for (int strip = 0; strip < strips && result == ABBE_OK; strip++) {
+    gl->Scissor(0, strip * step, (GLsizei)w, step);
+    for (size_t i = 0; i < r->plan.refractor_count; i++) {
+      abbe_renderer_set_int(r, r->refraction, "refractor", (int)i);
+      abbe_renderer_draw(r, r->plan.refractor_object[i]);
+    }
+    if (progress == NULL) continue;
+    gl->Finish();
+    if (!progress(user, 0.5 + 0.5 * (strip + 1) / strips))
+      result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+  }
+  gl->Disable(GL_SCISSOR_TEST);
+  gl->Disable(GL_CULL_FACE);
+  abbe_renderer_end_pass(r, "eye: refraction");
+  return result;
+}
+
+static void resolve_picture(abbe_renderer *r) {
+  const abbe_gl *gl = r->gl;
+  abbe_renderer_begin_pass(r);
+  gl->UseProgram(r->eye_resolve);
+  abbe_renderer_bind_texture(r, r->eye_resolve, "receivers", 0, r->eye_receivers);
+  gl->ActiveTexture(GL_TEXTURE1);
+  gl->BindTexture(GL_TEXTURE_2D, r->eye_refraction);
+  gl->BindImageTexture(0, r->eye_picture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  abbe_renderer_set_int(r, r->eye_resolve, "samples", (int)r->plan.desc.supersample);
+  gl->Uniform2i(gl->GetUniformLocation(r->eye_resolve, "size"), (GLint)r->plan.desc.width,
+                (GLint)r->plan.desc.height);
+  gl->DispatchCompute((GLuint)((r->plan.desc.width + 63) / 64), (GLuint)r->plan.desc.height, 1);
+  gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  abbe_renderer_end_pass(r, "eye: picture");
+}
+
+abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+                              abbe_error *error) {
+  abbe_result result = draw_receivers(r, error);
+  if (result == ABBE_OK && r->eye_layers != 0) result = draw_layers(r, error);
+  if (result == ABBE_OK) result = draw_refraction(r, progress, user, error);
+  if (result == ABBE_OK) resolve_picture(r);
+  return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the eye's passes", error);
+}

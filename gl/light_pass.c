@@ -1,0 +1,252 @@
+#include "gl/program.h"
+#include "gl/renderer_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MIN_LAYER_SIDE = 256, MAX_LAYER_SIDE = 2048 };
+
+static void look_from_light(const abbe_renderer *r, const abbe_light *light, abbe_view *view) {
+  static const double up[3] = {0, 1, 0};
+  double origin[3], forward[3];
+  for (int k = 0; k < 3; k++) {
+    double centre = r->plan.refractor_count > 0 ? r->refractor_centre[k]
+                                                : 0.5 * (r->scene_min[k] + r->scene_max[k]);
+    bool directional = light->kind == ABBE_LIGHT_DIRECTIONAL;
+    origin[k] = directional ? centre - light->direction[k] * r->scene_size : light->position[k];
+    forward[k] = directional ? light->direction[k] : centre - light->position[k];
+  }
+  double length2 = 0;
+  for (int k = 0; k < 3; k++) length2 += forward[k] * forward[k];
+  if (length2 == 0) forward[2] = -1; /* the light stands in the middle of it all */
+  abbe_view_look(origin, forward, up, light->kind == ABBE_LIGHT_DIRECTIONAL, view);
+}
+
+static void fit_objects(const abbe_renderer *r, const size_t *object, size_t count,
+                        abbe_view *view) {
+  for (size_t i = 0; i < count; i++) {
+    const abbe_mesh *mesh = &r->scene->object[object[i]].mesh;
+    abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count);
+  }
+}
+
+/* The thesis's light sees through one frustum: its cone, or all there is. */
+static void fit_thesis(abbe_renderer *r, const abbe_light *light, light_state *state) {
+  abbe_view *view = &state->near_view;
+  fit_objects(r, r->plan.refractor_object, r->plan.refractor_count, view);
+  fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, view);
+  if (light->kind == ABBE_LIGHT_SPOT) {
+    double look[3];
+    memcpy(look, light->direction, sizeof look);
+    double near = view->near, far = view->far;
+    abbe_view_look(light->position, look, view->up, false, view);
+    double tangent = fmin(tan(light->cone_rad), ABBE_VIEW_MAX_TANGENT);
+    double window[4] = {-tangent, tangent, -tangent, tangent};
+    memcpy(view->window, window, sizeof window);
+    view->near = fmax(0.25 * near, 1e-3 * far);
+    view->far = 1.5 * far;
+  } else {
+    abbe_view_pad(view, 0.01);
+  }
+  double half = 0.5 * fmax(view->window[1] - view->window[0], view->window[3] - view->window[2]);
+  for (int axis = 0; axis < 2; axis++) {
+    double middle = 0.5 * (view->window[2 * axis] + view->window[2 * axis + 1]);
+    view->window[2 * axis] = middle - half;
+    view->window[2 * axis + 1] = middle + half;
+  }
+  state->map_view = *view;
+}
+
+/* Tight around the refractors for the photons; around all receivers for the map, which is fitted
+ * to the photons' landings later. */
+static void fit_views(abbe_renderer *r) {
+  for (size_t i = 0; i < r->plan.light_count; i++) {
+    const abbe_light *light = &r->scene->light[i];
+    light_state *state = &r->light[i];
+    look_from_light(r, light, &state->near_view);
+    state->map_view = state->near_view;
+    if (r->plan.desc.profile == ABBE_PROFILE_THESIS) {
+      fit_thesis(r, light, state);
+      continue;
+    }
+    if (r->plan.refractor_count > 0)
+      fit_objects(r, r->plan.refractor_object, r->plan.refractor_count, &state->near_view);
+    else
+      fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->near_view);
+    fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->map_view);
+    abbe_view_pad(&state->near_view, 0.01);
+    abbe_view_pad(&state->map_view, 0.01);
+  }
+}
+
+static abbe_result make_layers(abbe_renderer *r, abbe_error *error) {
+  size_t side = r->plan.desc.photons, lights = r->plan.light_count;
+  side = side < MIN_LAYER_SIDE ? MIN_LAYER_SIDE : side > MAX_LAYER_SIDE ? MAX_LAYER_SIDE : side;
+  r->layer_side = side;
+  abbe_result result = abbe_renderer_make_texture(r, GL_RGBA32F, side, side, 2 * lights, false,
+                                                  &r->light_layers, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_renderer_make_texture(r, GL_R16UI, side, side, lights, false, &r->light_owner, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_texture(r, GL_DEPTH_COMPONENT32F, side, side, 0, false,
+                                        &r->light_depth, error);
+  if (result != ABBE_OK || r->plan.receivers != ABBE_RECEIVER_DEPTH) return result;
+  size_t map = r->plan.desc.map_size;
+  result = abbe_renderer_make_texture(r, GL_RGBA32F, map, map, lights, false, &r->light_receivers,
+                                      error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_texture(r, GL_DEPTH_COMPONENT32F, map, map, 0, false,
+                                        &r->light_receivers_depth, error);
+  return result;
+}
+
+static abbe_result make_lists(abbe_renderer *r, abbe_error *error) {
+  size_t cells = r->plan.desc.photons * r->plan.desc.photons;
+  abbe_result result = ABBE_OK;
+  for (int level = 0; level < LEVELS && result == ABBE_OK; level++) {
+    /* The finer level's cells: four for each of this one's, rounded up at the rim. */
+    size_t side = (r->plan.desc.photons >> (LEVELS - 1 - level)) + 2;
+    size_t room = level == LEVELS - 1 ? cells : 4 * side * side;
+    result = abbe_renderer_make_buffer(r, PHOTON_HEADER + room * 4, NULL, &r->list[level], error);
+  }
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, cells * 4, NULL, &r->buffer[BINDING_SLOTS], error);
+  return result;
+}
+
+abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
+  static const abbe_program_stage layer_stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                                    {GL_FRAGMENT_SHADER, "layer.frag"}};
+  fit_views(r);
+  abbe_renderer_upload_lights(r);
+  abbe_result result = abbe_program_make(r->gl, layer_stages, 2, NULL, &r->layer, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "photon_place.comp", NULL, &r->place, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "photon_groups.comp", NULL, &r->groups, error);
+  if (result == ABBE_OK && r->plan.desc.profile != ABBE_PROFILE_THESIS)
+    result = make_layers(r, error);
+  if (result == ABBE_OK) result = make_lists(r, error);
+  return result;
+}
+
+static void set_layer_view(abbe_renderer *r, const abbe_view *view) {
+  double matrix[16];
+  float clip[16];
+  abbe_view_matrix(view, matrix);
+  for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
+  const abbe_gl *gl = r->gl;
+  gl->UseProgram(r->layer);
+  gl->UniformMatrix4fv(gl->GetUniformLocation(r->layer, "view_projection"), 1, GL_FALSE, clip);
+  gl->Uniform4f(gl->GetUniformLocation(r->layer, "view_origin"), (float)view->origin[0],
+                (float)view->origin[1], (float)view->origin[2], view->orthographic ? 0.0f : 1.0f);
+  gl->Uniform3f(gl->GetUniformLocation(r->layer, "view_forward"), (float)view->forward[0],
+                (float)view->forward[1], (float)view->forward[2]);
+}
+
+static void clear_target(const abbe_gl *gl, bool owner) {
+  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  static const GLuint nobody[4] = {0, 0, 0, 0};
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  if (owner) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+}
+
+static void draw_refractors(abbe_renderer *r) {
+  for (size_t i = 0; i < r->plan.refractor_count; i++) {
+    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
+    abbe_renderer_draw(r, r->plan.refractor_object[i]);
+  }
+}
+
+static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  set_layer_view(r, &r->light[light].near_view);
+  gl->Enable(GL_CULL_FACE);
+  for (int back = 0; back <= (r->plan.layers ? 1 : 0); back++) {
+    abbe_renderer_begin_pass(r);
+    GLuint target[2] = {r->light_layers, r->light_owner};
+    int layer[2] = {2 * (int)light + back, (int)light};
+    abbe_result result = abbe_renderer_set_target(r, target, layer, back ? 1 : 2, r->light_depth,
+                                                  r->layer_side, r->layer_side, error);
+    if (result != ABBE_OK) return result;
+    clear_target(gl, !back);
+    gl->CullFace(back ? GL_FRONT : GL_BACK);
+    draw_refractors(r);
+    abbe_renderer_end_pass(r, back ? "light: refractor back" : "light: refractor front");
+  }
+  gl->Disable(GL_CULL_FACE);
+  return ABBE_OK;
+}
+
+static abbe_result receiver_depth(abbe_renderer *r, size_t light, abbe_error *error) {
+  int layer = (int)light;
+  size_t map = r->plan.desc.map_size;
+  abbe_renderer_begin_pass(r);
+  set_layer_view(r, &r->light[light].map_view);
+  abbe_result result = abbe_renderer_set_target(r, &r->light_receivers, &layer, 1,
+                                                r->light_receivers_depth, map, map, error);
+  if (result != ABBE_OK) return result;
+  clear_target(r->gl, false);
+  for (size_t i = 0; i < r->plan.receiver_count; i++)
+    abbe_renderer_draw(r, r->plan.receiver_object[i]);
+  abbe_renderer_end_pass(r, "light: receiver depth");
+  return ABBE_OK;
+}
+
+abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  r->gl->Enable(GL_DEPTH_TEST);
+  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++) {
+    if (r->plan.receivers == ABBE_RECEIVER_DEPTH) result = receiver_depth(r, i, error);
+    if (result == ABBE_OK && r->plan.caustics) result = front_and_back(r, i, error);
+  }
+  return result;
+}
+
+static void count_groups(abbe_renderer *r, GLuint list, GLuint rows) {
+  const abbe_gl *gl = r->gl;
+  gl->UseProgram(r->groups);
+  gl->Uniform1ui(gl->GetUniformLocation(r->groups, "group_size"), PHOTON_GROUP);
+  gl->Uniform1ui(gl->GetUniformLocation(r->groups, "rows"), rows);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, list);
+  gl->DispatchCompute(1, 1, 1);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
+abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int coverage_layer,
+                                        abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  static const GLuint zero[PHOTON_HEADER / 4] = {0};
+  int grid = (int)r->plan.desc.photons;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SLOTS]);
+  gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, zero);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SLOTS, r->buffer[BINDING_SLOTS]);
+  for (int level = 0; level < LEVELS; level++) {
+    int cell = 1 << (LEVELS - 1 - level), side = (grid + cell - 1) / cell;
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[level]);
+    gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+    if (level > 0) count_groups(r, r->list[level - 1], 1);
+    gl->UseProgram(r->place);
+    abbe_renderer_bind_texture(r, r->place, "coverage", 0, coverage);
+    abbe_renderer_set_int(r, r->place, "coverage_layer", coverage_layer);
+    abbe_renderer_set_int(r, r->place, "grid", grid);
+    abbe_renderer_set_int(r, r->place, "cell", cell);
+    abbe_renderer_set_int(r, r->place, "first", level == 0);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, r->list[level]);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN,
+                       r->list[level > 0 ? level - 1 : 1]);
+    if (level == 0) {
+      gl->DispatchCompute((GLuint)((side * side + PHOTON_GROUP - 1) / PHOTON_GROUP), 1, 1);
+    } else {
+      gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->list[level - 1]);
+      gl->DispatchComputeIndirect(4);
+    }
+    gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  }
+  r->buffer[BINDING_PHOTONS] = r->list[LEVELS - 1];
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, r->list[LEVELS - 1]);
+  return abbe_gl_check(gl, "the placement of photons", error);
+}

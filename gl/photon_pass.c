@@ -1,0 +1,290 @@
+#include "gl/program.h"
+#include "gl/renderer_state.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
+
+/* Share of the light that may fall outside the fitted map, on each of its four sides. */
+static const double map_tail = 2e-4;
+
+static void bind_all(abbe_renderer *r) {
+  for (GLuint i = 0; i < BINDING_COUNT; i++)
+    if (r->buffer[i] != 0) r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, r->buffer[i]);
+}
+
+static double ledger_unit(const abbe_renderer *r, size_t light) {
+  return ldexp(r->light[light].cell_flux, -24);
+}
+
+static void dispatch_photons(abbe_renderer *r, size_t light, size_t rows) {
+  size_t groups = (r->light[light].photon_count + PHOTON_GROUP - 1) / PHOTON_GROUP;
+  if (groups == 0) return;
+  r->gl->DispatchCompute((GLuint)groups, (GLuint)rows, 1);
+  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+/* Wavelengths first .. first + count - 1; those below ledger_first are in the ledger already. */
+void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
+                               size_t ledger_first) {
+  r->gl->UseProgram(r->trace);
+  abbe_renderer_set_lighting(r, r->trace);
+  abbe_renderer_bind_texture(r, r->trace, "layer_owner", 4, r->light_owner);
+  abbe_renderer_set_int(r, r->trace, "light", (int)light);
+  abbe_renderer_set_int(r, r->trace, "grid", (int)r->plan.desc.photons);
+  abbe_renderer_set_int(r, r->trace, "lane_first", (int)first);
+  abbe_renderer_set_int(r, r->trace, "lane_count", (int)count);
+  abbe_renderer_set_int(r, r->trace, "ledger_first", (int)ledger_first);
+  abbe_renderer_set_float(r, r->trace, "share_limit", r->plan.desc.energy_share);
+  abbe_renderer_set_float(r, r->trace, "ledger_unit", ledger_unit(r, light));
+  dispatch_photons(r, light, count);
+}
+
+static void deposit_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
+                          size_t interval_first, size_t intervals) {
+  r->gl->UseProgram(r->deposit);
+  abbe_renderer_set_int(r, r->deposit, "light", (int)light);
+  abbe_renderer_set_int(r, r->deposit, "grid", (int)r->plan.desc.photons);
+  abbe_renderer_set_int(r, r->deposit, "map_size", (int)r->plan.desc.map_size);
+  abbe_renderer_set_int(r, r->deposit, "lane_first", (int)first);
+  abbe_renderer_set_int(r, r->deposit, "lane_count", (int)count);
+  abbe_renderer_set_int(r, r->deposit, "interval_first", (int)interval_first);
+  dispatch_photons(r, light, intervals * r->plan.desc.orders);
+}
+
+static void clear_buffer(abbe_renderer *r, GLuint buffer) {
+  static const GLuint zero = 0;
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  r->gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                         &zero);
+}
+
+static void resolve_map(abbe_renderer *r, size_t light) {
+  GLuint side = (GLuint)r->plan.desc.map_size;
+  r->gl->UseProgram(r->resolve);
+  abbe_renderer_set_int(r, r->resolve, "light", (int)light);
+  abbe_renderer_set_int(r, r->resolve, "map_size", (int)side);
+  r->gl->BindImageTexture(0, r->map, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  r->gl->DispatchCompute((side + 63) / 64, side, 1);
+  r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+/* All wavelengths of one light, in batches that overlap by one node so that every interval
+ * between nodes lies in exactly one of them. */
+static abbe_result trace_and_deposit(abbe_renderer *r, size_t light,
+                                     abbe_renderer_progress progress, void *user,
+                                     abbe_error *error) {
+  size_t n = r->plan.desc.wavelengths, done = 0;
+  for (size_t first = 0;; first += r->lanes - 1) {
+    size_t count = n - first < r->lanes ? n - first : r->lanes;
+    bool last = first + count == n;
+    size_t interval_first = first == 0 ? 0 : first + 1;
+    size_t interval_end = last ? n + 1 : first + count;
+    abbe_renderer_begin_pass(r);
+    abbe_renderer_trace_batch(r, light, first, count, done);
+    abbe_renderer_end_pass(r, "light: photons");
+    deposit_batch(r, light, first, count, interval_first, interval_end - interval_first);
+    abbe_renderer_end_pass(r, "light: spectral map");
+    done = first + count;
+    double share = ((double)light + (double)done / (double)n) / (double)r->plan.light_count;
+    if (progress != NULL && !progress(user, 0.5 * share))
+      return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+    if (last) return ABBE_OK;
+  }
+}
+
+abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+                                  abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+    abbe_renderer_begin_pass(r);
+    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+    abbe_renderer_end_pass(r, "light: photon placement");
+    bind_all(r);
+    clear_buffer(r, r->buffer[BINDING_MAP_SUMS]);
+    clear_buffer(r, r->buffer[BINDING_LEDGER]);
+    abbe_renderer_end_pass(r, "light: spectral map");
+    if (result == ABBE_OK) result = trace_and_deposit(r, light, progress, user, error);
+    if (result != ABBE_OK) return result;
+    abbe_renderer_begin_pass(r);
+    resolve_map(r, light);
+    abbe_renderer_end_pass(r, "light: spectral map");
+    if (r->statistics != NULL)
+      result = abbe_renderer_read_ledger(r, light, &r->statistics->energy, error);
+  }
+  return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the photon passes", error);
+}
+
+static double wide(const GLuint *lo_hi) {
+  return ldexp((double)lo_hi[1], 32) + lo_hi[0];
+}
+
+/* Adds the light's entries; what was deposited is summed from the map's own Y. */
+abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledger *ledger,
+                                      abbe_error *error) {
+  GLuint word[LEDGER_WORDS];
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LEDGER]);
+  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
+  double unit = ledger_unit(r, light);
+  ledger->reached += wide(word) * unit;
+  ledger->reflected += wide(word + 2) * unit;
+  ledger->absorbed += wide(word + 4) * unit;
+  ledger->trapped += wide(word + 6) * unit;
+  ledger->missed += wide(word + 8) * unit;
+  size_t texels = r->plan.desc.map_size * r->plan.desc.map_size;
+  GLuint *sum = malloc(texels * 6 * sizeof *sum);
+  if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_MAP_SUMS]);
+  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(texels * 6 * sizeof *sum), sum);
+  double deposited = 0;
+  for (size_t i = 0; i < texels; i++) deposited += wide(sum + 6 * i + 2);
+  free(sum);
+  ledger->deposited += deposited * (double)(float)ldexp(r->light[light].cell_flux, -28);
+  return abbe_gl_check(r->gl, "the reading of the ledger", error);
+}
+
+static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = abbe_renderer_light_layers(r, error);
+  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+    GLuint count = 0;
+    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
+    r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
+    r->light[light].photon_count = count;
+  }
+  return result;
+}
+
+static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
+  size_t most = 1;
+  for (size_t i = 0; i < r->plan.light_count; i++)
+    if (r->light[i].photon_count > most) most = r->light[i].photon_count;
+  size_t a_lane = most * r->plan.desc.orders, n = r->plan.desc.wavelengths;
+  size_t lanes = MAX_LANDING_BYTES / LANDING_BYTES / a_lane;
+  r->lanes = lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
+  if (r->lanes > n) r->lanes = n;
+  abbe_result result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 16, NULL,
+                                                 &r->buffer[BINDING_LANDINGS], error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 4, NULL,
+                                       &r->buffer[BINDING_SIGNATURES], error);
+  return result;
+}
+
+static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
+  char defines[768];
+  snprintf(defines, sizeof defines,
+           "%s#define LANES %zu\n#define STEPS %zu\n%s#define MAX_BRIDGE %s\n", r->defines,
+           r->lanes, r->steps, r->plan.desc.fill == ABBE_FILL_BRIDGE ? "#define BRIDGE\n" : "",
+           r->plan.layers ? "float(map_size) / 16.0" : "float(map_size)");
+  abbe_result result =
+      abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "photon_deposit.comp", defines, &r->deposit, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "map_resolve.comp", NULL, &r->resolve, error);
+  return result;
+}
+
+/* The shares of flux by window coordinate, and the range that leaves map_tail on each side. */
+enum { FIT_BINS = 4096 };
+
+static void tighten(const double *histogram, double total, double *low, double *high) {
+  double from = *low, width = (*high - *low) / FIT_BINS, sum = 0;
+  int first = 0, last = FIT_BINS - 1;
+  while (first < last && (sum += histogram[first]) <= map_tail * total) first++;
+  sum = 0;
+  while (last > first && (sum += histogram[last]) <= map_tail * total) last--;
+  *low = from + width * first;
+  *high = from + width * (last + 1);
+}
+
+static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
+  float *landing = NULL;
+  size_t count, orders, lanes;
+  abbe_result result =
+      abbe_renderer_read_landings(r, light, &landing, NULL, &count, &orders, &lanes, error);
+  double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0;
+  if (result == ABBE_OK && histogram == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
+  abbe_view *view = &r->light[light].map_view;
+  for (size_t i = 0; result == ABBE_OK && i < count * orders * lanes; i++) {
+    const float *at = landing + 4 * i;
+    double p[3] = {at[0], at[1], at[2]}, uvz[3];
+    if (!(at[3] > 0) || !abbe_view_project(view, p, uvz)) continue;
+    total += at[3];
+    for (int axis = 0; axis < 2; axis++) {
+      double bin = floor(uvz[axis] * FIT_BINS);
+      bin = fmin(fmax(bin, 0), FIT_BINS - 1);
+      histogram[axis * FIT_BINS + (int)bin] += at[3];
+    }
+  }
+  if (total > 0) {
+    for (int axis = 0; axis < 2; axis++)
+      tighten(histogram + axis * FIT_BINS, total, &view->window[2 * axis],
+              &view->window[2 * axis + 1]);
+    double near = view->near, far = view->far;
+    abbe_view_pad(view, 0.02);
+    view->near = near;
+    view->far = far;
+  }
+  free(histogram);
+  free(landing);
+  return result;
+}
+
+abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
+  size_t map = r->plan.desc.map_size;
+  abbe_result result = count_photons(r, error);
+  if (result == ABBE_OK) result = make_landings(r, error);
+  if (result == ABBE_OK) result = make_programs(r, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_renderer_make_buffer(r, map * map * 6 * 4, NULL, &r->buffer[BINDING_MAP_SUMS], error);
+  if (result == ABBE_OK)
+    result =
+        abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
+  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
+    result = fit_map(r, light, error);
+  if (result == ABBE_OK) abbe_renderer_upload_lights(r);
+  return result;
+}
+
+abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **data,
+                                        unsigned **cells, size_t *count, size_t *orders,
+                                        size_t *lanes, abbe_error *error) {
+  *data = NULL;
+  if (light >= r->plan.light_count || r->trace == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
+  abbe_result result = abbe_renderer_light_layers(r, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+  if (result != ABBE_OK) return result;
+  *count = r->light[light].photon_count;
+  *orders = r->plan.desc.orders;
+  *lanes = r->lanes;
+  size_t size = *count * *orders * *lanes * 16;
+  bind_all(r);
+  abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);
+  *data = malloc(size > 0 ? size : 1);
+  unsigned *cell = malloc(*count * 4 + 4);
+  if (*data == NULL || cell == NULL) {
+    free(*data);
+    free(cell);
+    *data = NULL;
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings", *count);
+  }
+  const abbe_gl *gl = r->gl;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LANDINGS]);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, *data);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER, (GLsizeiptr)(*count * 4), cell);
+  if (cells != NULL)
+    *cells = cell;
+  else
+    free(cell);
+  return abbe_gl_check(gl, "the reading of landings", error);
+}

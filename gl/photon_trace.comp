@@ -1,0 +1,166 @@
+// A photon a wavelength: from the light through a refractor to a receiver. Every exit that still
+// carries energy is followed, one landing each; what leaves the path is entered in the ledger.
+layout(local_size_x = 64) in;
+#include "refractor.glsl"
+#include "photon_list.glsl"
+#include "wide_sum.glsl"
+#include "receiver.glsl"
+
+// [(photon * ORDERS + order) * LANES + lane]: where it lands; w: flux for unit weight, W.
+layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
+// Receiver and facets along the way, equal for paths that vary continuously; refractor in the low
+// eight bits.
+layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
+// Y weight of the samples at [light * WAVELENGTHS + i].
+layout(std430, binding = 11) readonly buffer SampleWeights { vec4 sample_weight[]; };
+// lo and hi of reached, reflected, absorbed, trapped, missed.
+layout(std430, binding = 12) buffer Ledger { uint ledger[]; };
+
+uniform int light;
+uniform int grid;
+uniform int lane_first;  // wavelengths lane_first .. lane_first + LANES - 1 in this batch
+uniform int lane_count;
+uniform int ledger_first;  // wavelengths before this one are in the ledger already
+uniform float share_limit;   // paths below this share of their light end
+uniform float ledger_unit;   // W
+
+shared uint book[5];
+
+const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
+
+// Lands the ray on a receiver that the light's map can hold.
+bool land(vec3 p, vec3 d, out vec3 at, out uint receiver) {
+  Light l = lights[light];
+  vec3 uvz;
+#ifdef EXACT_RECEIVERS
+  float t;
+  int r = receiver_hit(p, d, scene_size * 1e-6, 1e30, t);
+  if (r < 0) return false;
+  at = p + t * d;
+  receiver = uint(r) + 1u;
+  if (!project(l.map_view, at, uvz) || !inside(uvz.xy)) return false;
+  vec3 from;
+  float distance_m;
+  light_to(l, at, from, distance_m);
+  return receiver_lit(light, at, from, distance_m);
+#else
+  float t;
+  receiver = 1u;
+  float start = max(distance(refractor_bounds.xyz, p), 0.1 * scene_size);
+  if (!march(l.map_view, light_receivers, float(light), p, d, start, 2.0 * scene_size, t))
+    return false;
+  at = p + t * d;
+  return project(l.map_view, at, uvz) && inside(uvz.xy);
+#endif
+}
+
+#ifdef LAYERS
+uniform usampler2DArray layer_owner;  // refractor + 1 of the front layer, one layer a light
+
+// What the light's view holds at uv, where that belongs to a refractor without an exact surface.
+bool layers_front(vec2 uv, vec3 o, vec3 d, inout Hit h) {
+  ivec2 at = ivec2(uv * vec2(textureSize(layer_owner, 0).xy));
+  int owner = int(texelFetch(layer_owner, ivec3(at, light), 0).x) - 1;
+  vec4 front = texelFetch(light_layers, ivec3(at, 2 * light), 0);
+  if (owner < 0 || refractors[owner].info.x != MODEL_LAYERS || front.w <= 0.0 || front.w >= h.t)
+    return false;
+  h.t = front.w;
+  h.p = o + h.t * d;
+  h.n = normalize(front.xyz);
+  // An interpolated normal at the rim may face away; the surface that the light sees does not.
+  float c = dot(h.n, d);
+  if (c > -1e-3) h.n = normalize(h.n - (c + 1e-3) * d);
+  h.refractor = owner;
+  h.facet = -1;
+  return true;
+}
+#endif
+
+void trace(uint photon, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,
+           out float entry[5]) {
+  int lane = i - lane_first;
+  for (int k = 0; k < 5; k++) entry[k] = 0.0;
+  for (int order = 0; order < ORDERS; order++)
+    landing[(photon * ORDERS + order) * LANES + lane] = vec4(0);
+  if (!reached) return;
+  int r = front.refractor;
+  vec2 spectrum = spectra[r * WAVELENGTHS + i];
+  float n = spectrum.x, cos_i = -dot(d, front.n);
+  float reflected = fresnel(cos_i, 1.0 / n);
+  entry[REACHED] = 1.0;
+  entry[REFLECTED] = reflected;
+  float share = 1.0 - reflected;
+  vec3 p = front.p, inner, wall_n;
+  if (!refract_direction(d, front.n, 1.0 / n, inner)) return;
+  int facet = front.facet;
+  uint path = uint(r) * 131u + uint(facet);
+  for (int order = 0; order < ORDERS; order++) {
+    vec3 wall;
+    int next;
+    inner_hit(r, facet, p, inner,
+#ifdef LAYERS
+              lights[light].near_view, light_layers, 2.0 * float(light) + 1.0,
+#endif
+              wall, wall_n, next);
+#ifdef ABSORBING
+    float left = exp(-spectrum.y * distance(wall, p));
+    entry[ABSORBED] += share * (1.0 - left);
+    share *= left;
+#endif
+    path = path * 31u + uint(next) + 1u;
+    float kept = fresnel(dot(inner, wall_n), n);
+    float out_share = share * (1.0 - kept);
+    vec3 outer;
+    if (out_share > 0.0 && refract_direction(inner, -wall_n, n, outer)) {
+      vec3 at;
+      uint receiver;
+      if (land(wall, outer, at, receiver)) {
+        uint index = (photon * ORDERS + order) * LANES + lane;
+        landing[index] = vec4(at, out_share * flux);
+        signature[index] = (path * 31u + receiver) << 8 | uint(r);
+      } else {
+        entry[MISSED] += out_share;
+      }
+    } else {
+      kept = 1.0;
+    }
+    share *= kept;
+    if (share < share_limit) break;
+    p = wall;
+    facet = next;
+    inner = reflect(inner, wall_n);
+  }
+  entry[TRAPPED] += share;
+}
+
+void main() {
+  if (gl_LocalInvocationID.x < 5u) book[gl_LocalInvocationID.x] = 0u;
+  barrier();
+  uint photon = gl_GlobalInvocationID.x;
+  int i = lane_first + int(gl_GlobalInvocationID.y);
+  if (photon < photon_count && int(gl_GlobalInvocationID.y) < lane_count) {
+    Light l = lights[light];
+    vec2 cell = vec2(photon_cell[photon] & 0xffffu, photon_cell[photon] >> 16);
+    vec3 o, d;
+    vec2 uv = (cell + 0.5) / float(grid);
+    view_ray(l.near_view, uv, o, d);
+    float flux = l.white.w * light_profile(l, d) * window_measure(l.near_view, d) / l.misc.z;
+    Hit front;
+    front.t = 1e30;
+    bool reached = exact_front(o, d, front);
+#ifdef LAYERS
+    if (layers_front(uv, o, d, front)) reached = true;
+#endif
+    reached = reached && flux > 0.0 && receiver_lit(light, front.p, d, front.t);
+    float entry[5];
+    trace(photon, i, flux, o, d, front, reached, entry);
+    float scale = flux * sample_weight[light * WAVELENGTHS + i].y / ledger_unit;
+    for (int k = 0; k < 5; k++)
+      if (entry[k] > 0.0 && i >= ledger_first) atomicAdd(book[k], uint(entry[k] * scale + 0.5));
+  }
+  barrier();
+  if (gl_LocalInvocationID.x < 5u) {
+    uint k = gl_LocalInvocationID.x;
+    WIDE_ADD(ledger, 2u * k, 2u * k + 1u, book[k])
+  }
+}

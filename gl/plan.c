@@ -1,0 +1,271 @@
+#include "gl/plan.h"
+
+#include "spectral/wavelengths.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_PARALLELOGRAMS = 96, RANGE_STEPS = 81 };
+
+#define ABBE_NAME_OF(code, name) name,
+const char *abbe_profile_name(abbe_profile profile) {
+  static const char *const names[] = {ABBE_PROFILES(ABBE_NAME_OF)};
+  return (int)profile >= 0 && profile < ABBE_PROFILE_COUNT ? names[profile] : "unknown";
+}
+
+const char *abbe_fill_name(abbe_fill fill) {
+  static const char *const names[] = {ABBE_FILLS(ABBE_NAME_OF)};
+  return (int)fill >= 0 && fill < ABBE_FILL_COUNT ? names[fill] : "unknown";
+}
+#undef ABBE_NAME_OF
+
+const char *abbe_refractor_model_name(abbe_refractor_model model) {
+  return model == ABBE_REFRACTOR_SPHERE   ? "exact sphere"
+         : model == ABBE_REFRACTOR_CONVEX ? "convex planes"
+                                          : "front and back layers";
+}
+
+const char *abbe_receiver_model_name(abbe_receiver_model model) {
+  return model == ABBE_RECEIVER_EXACT ? "exact parallelograms" : "iterated image space";
+}
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+static void
+add(abbe_plan *plan, bool runs, const char *name, const char *format, ...) {
+  if (plan->entry_count == ABBE_PLAN_MAX_ENTRIES) return;
+  abbe_plan_entry *entry = &plan->entry[plan->entry_count++];
+  snprintf(entry->name, sizeof entry->name, "%s", name);
+  entry->runs = runs;
+  va_list args;
+  va_start(args, format);
+  vsnprintf(entry->reason, sizeof entry->reason, format, args);
+  va_end(args);
+}
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static void
+note(abbe_plan *plan, const char *format, ...) {
+  if (plan->note_count == sizeof plan->note / sizeof *plan->note) return;
+  va_list args;
+  va_start(args, format);
+  vsnprintf(plan->note[plan->note_count++], sizeof plan->note[0], format, args);
+  va_end(args);
+}
+
+static abbe_result check_limit(const char *what, size_t value, size_t most, abbe_error *error) {
+  if (value >= 1 && value <= most) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s is %zu; it may be 1 to %zu", what, value,
+                        most);
+}
+
+static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc *desc,
+                                abbe_plan *plan, abbe_error *error) {
+  abbe_render_desc d = desc != NULL ? *desc : (abbe_render_desc){0};
+  bool thesis = d.profile == ABBE_PROFILE_THESIS;
+  if (d.width == 0) d.width = scene->camera.width;
+  if (d.height == 0) d.height = scene->camera.height;
+  if (d.min_nm == 0) d.min_nm = ABBE_WAVELENGTH_MIN_NM;
+  if (d.max_nm == 0) d.max_nm = thesis ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
+  if (d.photons == 0) d.photons = 512;
+  if (d.map_size == 0) d.map_size = 1024;
+  if (d.supersample == 0) d.supersample = thesis ? 1 : 2;
+  if (d.fill == ABBE_FILL_AUTO) d.fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
+  if (d.energy_share == 0) d.energy_share = 0.01;
+  plan->desc = d;
+  abbe_result result = check_limit("the width", d.width, ABBE_RENDER_MAX_SIDE, error);
+  if (result == ABBE_OK) result = check_limit("the height", d.height, ABBE_RENDER_MAX_SIDE, error);
+  if (result == ABBE_OK)
+    result = check_limit("the photon grid", d.photons, ABBE_RENDER_MAX_PHOTONS, error);
+  if (result == ABBE_OK)
+    result = check_limit("the spectral map", d.map_size, ABBE_RENDER_MAX_MAP, error);
+  if (result == ABBE_OK) result = check_limit("the supersampling", d.supersample, 4, error);
+  if (result == ABBE_OK && d.wavelengths != 0)
+    result = check_limit("the number of wavelengths", d.wavelengths,
+                         thesis ? 64 : ABBE_RENDER_MAX_WAVELENGTHS, error);
+  if (result == ABBE_OK && d.orders != 0)
+    result = check_limit("the number of exits", d.orders, ABBE_RENDER_MAX_ORDERS, error);
+  if (result != ABBE_OK) return result;
+  if (!(d.min_nm > 0) || !(d.min_nm < d.max_nm) || !isfinite(d.max_nm))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the range %g to %g nm is empty; 380 to 780 is the usual one", d.min_nm,
+                          d.max_nm);
+  if (!(d.energy_share > 0) || d.energy_share > 1)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the share of energy at which paths end is %g; it may be above 0, to 1",
+                          d.energy_share);
+  if (thesis != (d.fill == ABBE_FILL_SMEAR) && d.fill != ABBE_FILL_NONE)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the fill '%s' does not go with the profile '%s'", abbe_fill_name(d.fill),
+                          abbe_profile_name(d.profile));
+  return ABBE_OK;
+}
+
+/* Whether n and the attenuation over the range ask for more than constants. */
+static abbe_result examine_material(const abbe_material *material, abbe_plan *plan,
+                                    abbe_error *error) {
+  double min = plan->desc.min_nm, max = plan->desc.max_nm, first = 0;
+  bool outside =
+      abbe_material_extrapolates(material, min) || abbe_material_extrapolates(material, max);
+  for (int i = 0; i < RANGE_STEPS; i++) {
+    double lambda_nm = min + (max - min) * i / (RANGE_STEPS - 1), n = 0;
+    abbe_result result = abbe_material_n(material, lambda_nm, &n, error);
+    if (result != ABBE_OK) return result;
+    if (i == 0) first = n;
+    if (n != first) plan->dispersive = true;
+    if (abbe_material_attenuation(material, lambda_nm) > 0) plan->absorbing = true;
+  }
+  if (outside)
+    note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm", material->name,
+         material->min_nm, material->max_nm);
+  return ABBE_OK;
+}
+
+static abbe_refractor_model choose_model(const abbe_object *object, bool thesis) {
+  if (thesis) return ABBE_REFRACTOR_LAYERS;
+  if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
+  if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
+  return ABBE_REFRACTOR_LAYERS;
+}
+
+static const char *model_reason(const abbe_object *object, bool thesis) {
+  if (thesis) return "the thesis profile knows no other model";
+  if (object->exact.kind == ABBE_EXACT_SPHERE) return "the object is a sphere";
+  if (object->exact.kind == ABBE_EXACT_CONVEX) return "the object is a convex faceted solid";
+  return "the object is a general closed mesh; two interfaces, no inner reflections";
+}
+
+static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
+  bool thesis = plan->desc.profile == ABBE_PROFILE_THESIS;
+  plan->refractor_object = calloc(scene->object_count + 1, sizeof *plan->refractor_object);
+  plan->receiver_object = calloc(scene->object_count + 1, sizeof *plan->receiver_object);
+  plan->model = calloc(scene->object_count + 1, sizeof *plan->model);
+  if (plan->refractor_object == NULL || plan->receiver_object == NULL || plan->model == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
+  bool exact = !thesis;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    if (object->material == NULL) {
+      plan->receiver_object[plan->receiver_count++] = i;
+      exact = exact && object->exact.kind == ABBE_EXACT_PARALLELOGRAMS;
+      plan->parallelogram_count += object->exact.count;
+      plan->textured = plan->textured || object->texture.data != NULL;
+      continue;
+    }
+    if (plan->refractor_count == 255)
+      return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than 255 refractors");
+    abbe_refractor_model model = choose_model(object, thesis);
+    plan->refractor_object[plan->refractor_count] = i;
+    plan->model[plan->refractor_count++] = model;
+    plan->spheres = plan->spheres || model == ABBE_REFRACTOR_SPHERE;
+    plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
+    plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
+    char name[64];
+    snprintf(name, sizeof name, "model: %.50s", object->name);
+    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), model_reason(object, thesis));
+    abbe_result result = examine_material(object->material, plan, error);
+    if (result != ABBE_OK) return result;
+  }
+  exact = exact && plan->parallelogram_count <= MAX_PARALLELOGRAMS;
+  plan->receivers = exact ? ABBE_RECEIVER_EXACT : ABBE_RECEIVER_DEPTH;
+  if (!exact) plan->parallelogram_count = 0;
+  add(plan, true, "model: receivers", "%s: %s", abbe_receiver_model_name(plan->receivers),
+      exact    ? "every receiver is a rectangle or a box"
+      : thesis ? "the thesis profile knows no other model"
+               : "some receiver is a general mesh");
+  return ABBE_OK;
+}
+
+static void resolve_wavelengths(abbe_plan *plan) {
+  bool asked = plan->desc.wavelengths != 0;
+  if (!asked) plan->desc.wavelengths = plan->dispersive ? 7 : 1;
+  if (plan->refractor_count == 0) plan->desc.wavelengths = 1;
+  add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
+      plan->desc.min_nm, plan->desc.max_nm,
+      plan->refractor_count == 0 ? "nothing refracts"
+      : asked                    ? "as asked"
+      : plan->dispersive         ? "the index varies with wavelength"
+                                 : "all indices are constant, one geometry serves all");
+  if (plan->desc.orders == 0) plan->desc.orders = 8;
+  if (!plan->spheres && !plan->convex) plan->desc.orders = 1;
+  add(plan, plan->desc.orders > 1, "inner reflections",
+      plan->desc.orders > 1
+          ? "exact refractors: followed until less than %g of the light is left, %zu exits at most"
+          : "%g, %zu: two interfaces only",
+      plan->desc.energy_share, plan->desc.orders);
+}
+
+static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
+  bool thesis = plan->desc.profile == ABBE_PROFILE_THESIS, caustics = plan->caustics;
+  bool depth = plan->receivers == ABBE_RECEIVER_DEPTH;
+  add(plan, depth, "light: receiver depth",
+      depth ? "receivers are found by their depth from the light" : "receivers are hit exactly");
+  add(plan, caustics, "light: refractor front",
+      caustics ? "photons start where the light sees a refractor" : "no light meets a refractor");
+  add(plan, caustics && plan->layers, "light: refractor back",
+      plan->layers ? "a mesh without an exact surface ends at its back layer"
+                   : "every refractor has an exact surface");
+  add(plan, caustics, "light: photon placement",
+      caustics ? "%zu photons a side, refined only where a refractor is"
+               : "no light meets a refractor (%zu)",
+      plan->desc.photons);
+  add(plan, caustics, "light: photons", caustics ? "%zu wavelengths through the refractors" : "%zu",
+      plan->desc.wavelengths);
+  add(plan, caustics, "light: spectral map", "%zu x %zu texels", plan->desc.map_size,
+      plan->desc.map_size);
+  bool fill = caustics && plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
+  add(plan, fill, "light: gap fill",
+      fill ? "%s: wavelengths land apart" : "%s: nothing lands apart",
+      abbe_fill_name(plan->desc.fill));
+  add(plan, plan->absorbing, "absorption",
+      plan->absorbing ? "a material attenuates; path lengths are kept" : "every material is clear");
+  add(plan, true, "eye: receivers", "light, shadow and spectral map");
+  bool refractors = plan->refractor_count > 0;
+  add(plan, refractors && plan->layers, "eye: refractor layers",
+      plan->layers ? "a mesh without an exact surface ends at its back layer"
+                   : "every refractor has an exact surface");
+  add(plan, refractors, "eye: refraction",
+      refractors ? "one direction a wavelength" : "nothing refracts");
+  add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
+  if (!thesis && refractors)
+    note(plan, "light that a refractor reflects on its outside reaches no receiver");
+  if (plan->refractor_count > 1)
+    note(plan, "light that leaves one refractor and meets another goes on unrefracted");
+  if (scene->light_count > 1 && refractors)
+    note(plan, "through refractors, colours are split by the first light's illuminant");
+}
+
+abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
+                           abbe_error *error) {
+  memset(out, 0, sizeof *out);
+  abbe_result result = resolve_desc(scene, desc, out, error);
+  if (result == ABBE_OK) result = examine_objects(scene, out, error);
+  if (result != ABBE_OK) {
+    abbe_plan_free(out);
+    return result;
+  }
+  out->light_count = scene->light_count;
+  out->caustics = out->refractor_count > 0 && out->light_count > 0;
+  resolve_wavelengths(out);
+  list_passes(scene, out);
+  return ABBE_OK;
+}
+
+void abbe_plan_free(abbe_plan *plan) {
+  free(plan->refractor_object);
+  free(plan->receiver_object);
+  free(plan->model);
+  memset(plan, 0, sizeof *plan);
+}
+
+const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name) {
+  for (size_t i = 0; i < plan->entry_count; i++)
+    if (strcmp(plan->entry[i].name, name) == 0) return &plan->entry[i];
+  return NULL;
+}

@@ -1,0 +1,110 @@
+/* plan.h: what a scene requires of the renderer: models, passes, wavelengths, and why.
+ *
+ * The plan is computed from the scene and the request alone; it needs no GL context. A pass runs
+ * only because a fact of the scene asks for it, and every entry says which fact. What the renderer
+ * does not model is listed in the plan, or refused with ABBE_UNSUPPORTED.
+ */
+#ifndef ABBE_GL_PLAN_H
+#define ABBE_GL_PLAN_H
+
+#include "colorimetry/rgb_space.h"
+#include "scenes/scene.h"
+#include "spectral/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define ABBE_PROFILES(X) X(DEFAULT, "default") X(THESIS, "thesis")
+typedef enum abbe_profile {
+#define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
+  ABBE_PROFILES(ABBE_PROFILE_ENUM)
+#undef ABBE_PROFILE_ENUM
+      ABBE_PROFILE_COUNT
+} abbe_profile;
+
+/* bridge: light is laid between neighbouring wavelengths' landings; none: each wavelength lands
+ * on its own; smear: the thesis's 20-step fill. AUTO is bridge, and smear in the thesis profile. */
+#define ABBE_FILLS(X) X(AUTO, "auto") X(NONE, "none") X(BRIDGE, "bridge") X(SMEAR, "smear")
+typedef enum abbe_fill {
+#define ABBE_FILL_ENUM(code, name) ABBE_FILL_##code,
+  ABBE_FILLS(ABBE_FILL_ENUM)
+#undef ABBE_FILL_ENUM
+      ABBE_FILL_COUNT
+} abbe_fill;
+
+#define ABBE_RENDER_MAX_SIDE 8192
+#define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
+#define ABBE_RENDER_MAX_MAP 4096     /* a side */
+#define ABBE_RENDER_MAX_WAVELENGTHS 1000
+#define ABBE_RENDER_MAX_ORDERS 16
+
+/* A request; zero means the default in every field. */
+typedef struct abbe_render_desc {
+  abbe_profile profile;
+  size_t width, height;  /* pixels; 0: the scene's */
+  size_t wavelengths;    /* samples; 0: 7, or 1 where no index varies */
+  double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
+  size_t photons;        /* side of the photon grid; 0: 512 */
+  size_t map_size;       /* side of the spectral map; 0: 1024 */
+  size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis: 1) */
+  abbe_fill fill;
+  double energy_share;  /* paths below this share of their light end; 0: 0.01 */
+  size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8 */
+  abbe_rgb_space space; /* of the picture */
+} abbe_render_desc;
+
+typedef enum abbe_refractor_model {
+  ABBE_REFRACTOR_SPHERE, /* exact quadric */
+  ABBE_REFRACTOR_CONVEX, /* plane tests */
+  ABBE_REFRACTOR_LAYERS  /* front and back as a view sees them: two interfaces */
+} abbe_refractor_model;
+
+typedef enum abbe_receiver_model {
+  ABBE_RECEIVER_EXACT, /* parallelograms, hit exactly */
+  ABBE_RECEIVER_DEPTH  /* iterated image-space intersection */
+} abbe_receiver_model;
+
+typedef struct abbe_plan_entry {
+  char name[64];
+  char reason[192];
+  bool runs;
+} abbe_plan_entry;
+
+#define ABBE_PLAN_MAX_ENTRIES 96
+
+typedef struct abbe_plan {
+  abbe_render_desc desc; /* every field resolved, none zero */
+  size_t refractor_count;
+  size_t *refractor_object;    /* [refractor_count] index into the scene's objects */
+  abbe_refractor_model *model; /* [refractor_count] */
+  size_t receiver_count;
+  size_t *receiver_object;    /* [receiver_count] */
+  size_t parallelogram_count; /* of all receivers; 0 with the depth model */
+  abbe_receiver_model receivers;
+  bool spheres, convex, layers; /* models in use */
+  bool dispersive;              /* some index varies over the range */
+  bool absorbing;               /* some attenuation is above zero in the range */
+  bool textured;
+  bool caustics; /* a light can reach a refractor */
+  size_t light_count;
+  size_t entry_count; /* passes and models, in the order in which they run */
+  abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];
+  size_t note_count; /* what is not modelled, or extrapolated */
+  char note[16][256];
+} abbe_plan;
+
+/* ABBE_INVALID_ARGUMENT for a request outside the limits above, ABBE_OUT_OF_RANGE for an index
+ * that is not known over the range, ABBE_UNSUPPORTED for what is not modelled. desc may be NULL. */
+abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
+                           abbe_error *error);
+void abbe_plan_free(abbe_plan *plan);
+
+const char *abbe_profile_name(abbe_profile profile);
+const char *abbe_fill_name(abbe_fill fill);
+const char *abbe_refractor_model_name(abbe_refractor_model model);
+const char *abbe_receiver_model_name(abbe_receiver_model model);
+
+/* The entry of that name, or NULL. */
+const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name);
+
+#endif

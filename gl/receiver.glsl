@@ -1,0 +1,139 @@
+// Receivers and the light on them. EXACT_RECEIVERS: parallelograms, hit exactly, from anywhere;
+// otherwise what the light's and the eye's views see of them.
+
+uniform sampler2DArray spectral_map;   // XYZ flux over window area, one layer a light
+uniform sampler2DArray surface_texture;
+#ifdef LAYERS
+uniform sampler2DArray light_layers;   // refractor front (2 * light) and back (+ 1): n, distance
+#endif
+#ifndef EXACT_RECEIVERS
+uniform sampler2DArray light_receivers;  // receiver distance in w, one layer a light
+#endif
+
+uniform mat3 rgb_from_xyz;
+uniform vec3 ambient;     // rgb irradiance
+uniform vec3 background;  // rgb radiance
+uniform vec4 refractor_bounds;  // centre, radius of all refractors
+uniform float scene_size;
+
+#ifdef EXACT_RECEIVERS
+int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
+  int found = -1;
+  t = t_max;
+  for (int i = 0; i < RECEIVERS; i++) {
+    Receiver r = receivers[i];
+    float slope = dot(r.normal.xyz, d);
+    float s = dot(r.normal.xyz, r.corner.xyz - o) / slope;
+    if (slope == 0.0 || !(s > t_min) || s >= t) continue;
+    vec3 x = o + s * d - r.corner.xyz;
+    vec2 uv = vec2(dot(x, r.du.xyz), dot(x, r.dv.xyz));
+    if (any(lessThan(uv, vec2(0))) || any(greaterThan(uv, vec2(1)))) continue;
+    t = s;
+    found = i;
+  }
+  return found;
+}
+#endif
+
+// Light's direction of travel to p and its distance (directional: far beyond the scene).
+void light_to(Light l, vec3 p, out vec3 d, out float distance_m) {
+  if (int(l.position.w) == 2) {
+    d = l.direction.xyz;
+    distance_m = 4.0 * scene_size;
+  } else {
+    d = p - l.position.xyz;
+    distance_m = length(d);
+    d /= distance_m;
+  }
+}
+
+// No other receiver stands between the light and p.
+bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
+#ifdef EXACT_RECEIVERS
+  float t;
+  return receiver_hit(p - distance_m * d, d, 0.0, distance_m * (1.0 - 2e-5), t) < 0;
+#else
+  vec3 uvz;
+  View v = lights[light].map_view;
+  if (!project(v, p, uvz) || !inside(uvz.xy)) return true;
+  float seen = texture(light_receivers, vec3(uvz.xy, light)).w;
+  float bias = scene_size * 2e-3;
+  return seen <= 0.0 || uvz.z <= seen + bias;
+#endif
+}
+
+// Share of direct light that no refractor takes away on its way to p.
+float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
+  Hit h;
+  h.t = distance_m;
+  if (exact_front(p - distance_m * d, d, h)) return 0.0;
+#ifdef LAYERS
+  vec3 uvz;
+  View v = lights[light].near_view;
+  if (!project(v, p, uvz)) return 1.0;
+  ivec2 size = textureSize(light_layers, 0).xy;
+  vec2 at = uvz.xy * vec2(size) - 0.5;
+  ivec2 base = ivec2(floor(at));
+  vec2 f = at - vec2(base);
+  float lit = 0.0;
+  for (int k = 0; k < 4; k++) {
+    ivec2 o = ivec2(k & 1, k >> 1), texel = base + o;
+    bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size));
+    float front = outside ? 0.0 : texelFetch(light_layers, ivec3(texel, 2 * light), 0).w;
+    float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
+    lit += front <= 0.0 || front > uvz.z ? w : 0.0;
+  }
+  return lit;
+#else
+  return 1.0;
+#endif
+}
+
+// rgb irradiance from one light on p (n faces the viewer): straight, and through refractors.
+void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caustic) {
+  Light l = lights[light];
+  vec3 d;
+  float distance_m;
+  direct = vec3(0);
+  caustic = vec3(0);
+  light_to(l, p, d, distance_m);
+  float facing = -dot(n, d);
+  if (!receiver_lit(light, p, d, distance_m)) return;
+  bool directional = int(l.position.w) == 2;
+  float falloff = directional ? 1.0 : 1.0 / (distance_m * distance_m);
+  if (facing > 0.0) {
+    float e = l.white.w * light_profile(l, d) * facing * falloff;
+    if (e > 0.0) direct = l.white.rgb * (e * refractor_shadow(light, p, d, distance_m));
+  }
+  // The map holds the light of the side that faces the refractors.
+  if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
+  vec3 uvz;
+  if (!project(l.map_view, p, uvz) || !inside(uvz.xy)) return;
+  vec3 flux = texture(spectral_map, vec3(uvz.xy, light)).xyz;
+  caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
+}
+
+vec3 surface_reflectance(int surface, vec2 uv) {
+  Surface s = surfaces[surface];
+  if (s.texture_info.x < 0.0) return s.reflectance.rgb;
+  return s.reflectance.rgb *
+         textureLod(surface_texture, vec3(uv * s.texture_info.yz, s.texture_info.x), 0.0).rgb;
+}
+
+struct Shading {
+  vec3 direct, caustic, fill;  // radiance towards the viewer, by origin
+};
+
+Shading shade(vec3 p, vec3 n, int surface, vec2 uv) {
+  Shading s;
+  s.direct = s.caustic = vec3(0);
+  vec3 brdf = surface_reflectance(surface, uv) / PI;
+  for (int i = 0; i < LIGHTS; i++) {
+    vec3 direct, caustic;
+    light_irradiance(i, p, n, direct, caustic);
+    s.direct += brdf * direct;
+    s.caustic += brdf * caustic;
+  }
+  s.fill = brdf * ambient;
+  return s;
+}

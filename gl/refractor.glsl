@@ -1,0 +1,152 @@
+// Rays meeting refractors: the exact quadric of a sphere, the planes of a convex solid, or the
+// front and back layers that a view sees of any other closed mesh.
+
+#include "common.glsl"
+#include "optics.glsl"
+#if defined(LAYERS) || !defined(EXACT_RECEIVERS)
+#include "march.glsl"
+#endif
+
+struct Hit {
+  vec3 p, n;  // n points outwards
+  float t;
+  int refractor, facet;
+};
+
+#ifdef SPHERES
+// First hit of a ray from outside. The nearer root without cancellation.
+bool sphere_front(vec4 s, vec3 o, vec3 d, inout Hit h) {
+  vec3 oc = o - s.xyz;
+  float b = dot(oc, d);
+  vec3 across = oc - b * d;
+  float disc = s.w * s.w - dot(across, across);
+  if (disc <= 0.0 || b >= 0.0) return false;
+  float t = -b - sqrt(disc);
+  if (t <= 0.0 || t >= h.t) return false;
+  h.t = t;
+  h.n = normalize(across - sqrt(disc) * d);
+  h.p = s.xyz + s.w * h.n;
+  h.facet = 0;
+  return true;
+}
+#endif
+
+#ifdef CONVEX
+bool convex_front(ivec4 info, vec3 o, vec3 d, inout Hit h) {
+  float enter = 0.0, leave = h.t;
+  int facet = -1;
+  for (int i = info.y; i < info.y + info.z; i++) {
+    float slope = dot(planes[i].xyz, d), gap = planes[i].w - dot(planes[i].xyz, o);
+    if (slope == 0.0) {
+      if (gap < 0.0) return false;
+      continue;
+    }
+    float t = gap / slope;
+    if (slope < 0.0) {
+      if (t > enter) { enter = t; facet = i; }
+    } else {
+      leave = min(leave, t);
+    }
+  }
+  if (facet < 0 || enter >= leave) return false;
+  h.t = enter;
+  h.p = o + enter * d;
+  h.n = planes[facet].xyz;
+  h.facet = facet - info.y;
+  return true;
+}
+#endif
+
+// Nearest refractor with an exact surface; h.t is the farthest that counts.
+bool exact_front(vec3 o, vec3 d, inout Hit h) {
+  bool found = false;
+  for (int r = 0; r < REFRACTORS; r++) {
+    bool hit = false;
+#ifdef SPHERES
+    if (refractors[r].info.x == MODEL_SPHERE) hit = sphere_front(refractors[r].sphere, o, d, h);
+#endif
+#ifdef CONVEX
+    if (refractors[r].info.x == MODEL_CONVEX) hit = convex_front(refractors[r].info, o, d, h);
+#endif
+    if (hit) {
+      h.refractor = r;
+      found = true;
+    }
+  }
+  return found;
+}
+
+#ifdef LAYERS
+// Normal of a layer at the point's projection, bilinear over texels on the same surface.
+vec3 layer_normal(View v, sampler2DArray layers, float layer, vec3 p, vec3 fallback) {
+  vec3 uvz;
+  project(v, p, uvz);
+  ivec2 size = textureSize(layers, 0).xy;
+  vec2 at = uvz.xy * vec2(size) - 0.5;
+  ivec2 base = ivec2(floor(at));
+  vec2 f = at - vec2(base);
+  vec3 sum = vec3(0);
+  for (int k = 0; k < 4; k++) {
+    ivec2 o = ivec2(k & 1, k >> 1);
+    vec4 texel = texelFetch(layers, ivec3(clamp(base + o, ivec2(0), size - 1), int(layer)), 0);
+    if (texel.w <= 0.0 || abs(texel.w - uvz.z) > 0.02 * uvz.z) continue;
+    sum += texel.xyz * ((o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y));
+  }
+  return dot(sum, sum) > 1e-8 ? normalize(sum) : fallback;
+}
+
+// Where the ray leaves through the back layer; the size of the solid bounds the search.
+bool layers_inner(View v, sampler2DArray layers, float back_layer, float size, vec3 p, vec3 d,
+                  out vec3 q, out vec3 n) {
+  vec3 uvz;
+  project(v, p, uvz);
+  float back = layer_distance(layers, vec3(uvz.xy, back_layer));
+  float t_start = back > uvz.z ? back - uvz.z : 0.25 * size, t;
+  // Past the rim of what the view sees, the ray leaves through the side.
+  bool found = march(v, layers, back_layer, p, d, t_start, size, t);
+  q = p + (found ? t : t_start) * d;
+  vec3 side = d - dot(d, v.forward.xyz) * v.forward.xyz;
+  n = layer_normal(v, layers, back_layer, q, dot(side, side) > 1e-8 ? normalize(side) : d);
+  if (dot(n, d) < 0.0) n = normalize(n - 1.001 * dot(n, d) * d);
+  return found;
+}
+#endif
+
+// From p on refractor r (facet: the one that p lies on) along d inside it to the next wall.
+void inner_hit(int r, int facet, vec3 p, vec3 d,
+#ifdef LAYERS
+               View v, sampler2DArray layers, float back_layer,
+#endif
+               out vec3 q, out vec3 n, out int next) {
+  q = p;
+  n = d;
+  next = 0;
+#ifdef SPHERES
+  if (refractors[r].info.x == MODEL_SPHERE) {
+    vec4 s = refractors[r].sphere;
+    vec3 from = (p - s.xyz) / s.w;
+    n = normalize(from - 2.0 * dot(from, d) * d);
+    q = s.xyz + s.w * n;
+    return;
+  }
+#endif
+#ifdef CONVEX
+  if (refractors[r].info.x == MODEL_CONVEX) {
+    ivec4 info = refractors[r].info;
+    float nearest = 1e30;
+    for (int i = 0; i < info.z; i++) {
+      vec4 plane = planes[info.y + i];
+      float slope = dot(plane.xyz, d);
+      if (slope <= 0.0 || i == facet) continue;
+      float t = max((plane.w - dot(plane.xyz, p)) / slope, 0.0);
+      if (t < nearest) { nearest = t; next = i; }
+    }
+    q = p + (nearest < 1e30 ? nearest : 0.0) * d;
+    n = planes[info.y + next].xyz;
+    return;
+  }
+#endif
+#ifdef LAYERS
+  layers_inner(v, layers, back_layer, 2.0 * refractors[r].sphere.w, p, d, q, n);
+#endif
+}

@@ -1,0 +1,237 @@
+#include "gl/renderer.h"
+
+#include "gl/renderer_state.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+double abbe_ledger_imbalance(const abbe_ledger *l) {
+  if (!(l->reached > 0)) return 0;
+  double parts = l->reflected + l->absorbed + l->trapped + l->missed + l->deposited;
+  return fabs(l->reached - parts) / l->reached;
+}
+
+static void write_defines(abbe_renderer *r) {
+  const abbe_plan *p = &r->plan;
+  snprintf(r->defines, sizeof r->defines,
+           "#define LIGHTS %zu\n#define REFRACTORS %zu\n#define RECEIVERS %zu\n"
+           "#define WAVELENGTHS %zu\n#define ORDERS %zu\n%s%s%s%s%s",
+           p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
+           p->desc.orders, p->spheres ? "#define SPHERES\n" : "",
+           p->convex ? "#define CONVEX\n" : "", p->layers ? "#define LAYERS\n" : "",
+           p->receivers == ABBE_RECEIVER_EXACT ? "#define EXACT_RECEIVERS\n" : "",
+           p->absorbing ? "#define ABSORBING\n" : "");
+}
+
+static abbe_result make_map(abbe_renderer *r, abbe_error *error) {
+  size_t side = r->plan.caustics ? r->plan.desc.map_size : 1;
+  abbe_result result = abbe_renderer_make_texture(r, GL_RGBA32F, side, side, r->plan.light_count,
+                                                  true, &r->map, error);
+  if (result != ABBE_OK) return result;
+  float *black = calloc(side * side * 4, sizeof *black);
+  if (black == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a map");
+  for (size_t i = 0; i < r->plan.light_count; i++)
+    r->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, (GLsizei)side, (GLsizei)side, 1,
+                         GL_RGBA, GL_FLOAT, black);
+  free(black);
+  return abbe_gl_check(r->gl, "the clearing of the map", error);
+}
+
+static abbe_result make_passes(abbe_renderer *r, abbe_error *error) {
+  r->gl->GenFramebuffers(1, &r->framebuffer);
+  r->gl->GenVertexArrays(1, &r->empty_array);
+  abbe_result result = abbe_renderer_upload_scene(r, error);
+  if (result == ABBE_OK) result = make_map(r, error);
+  if (result == ABBE_OK) result = abbe_renderer_make_light(r, error);
+  if (result == ABBE_OK && r->plan.desc.profile == ABBE_PROFILE_THESIS)
+    return abbe_renderer_make_thesis(r, error);
+  if (result == ABBE_OK && r->plan.caustics) result = abbe_renderer_make_photons(r, error);
+  if (result == ABBE_OK) result = abbe_renderer_make_eye(r, error);
+  return result;
+}
+
+abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
+                               const abbe_render_desc *desc, abbe_renderer **out,
+                               abbe_error *error) {
+  *out = NULL;
+  abbe_renderer *r = calloc(1, sizeof *r);
+  if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
+  r->context = context;
+  r->gl = abbe_context_gl(context);
+  r->scene = scene;
+  abbe_result result = abbe_plan_make(scene, desc, &r->plan, error);
+  if (result == ABBE_OK) {
+    write_defines(r);
+    result = make_passes(r, error);
+  }
+  if (result != ABBE_OK) {
+    abbe_renderer_free(r);
+    return result;
+  }
+  *out = r;
+  return ABBE_OK;
+}
+
+void abbe_renderer_free(abbe_renderer *r) {
+  if (r == NULL) return;
+  const abbe_gl *gl = r->gl;
+  abbe_renderer_free_thesis(r);
+  abbe_renderer_free_scene(r);
+  r->buffer[BINDING_PHOTONS] = 0; /* one of the lists */
+  gl->DeleteBuffers(BINDING_COUNT, r->buffer);
+  gl->DeleteBuffers(LEVELS, r->list);
+  const GLuint textures[] = {
+      r->texture_surface, r->light_layers,          r->light_owner, r->light_depth,
+      r->light_receivers, r->light_receivers_depth, r->map,         r->eye_receivers,
+      r->eye_direct,      r->eye_caustic,           r->eye_depth,   r->eye_refraction,
+      r->eye_layers,      r->eye_layers_depth,      r->eye_picture};
+  gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
+  const GLuint programs[] = {r->place, r->groups,    r->trace,      r->deposit,    r->resolve,
+                             r->layer, r->receivers, r->refraction, r->eye_resolve};
+  for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
+  gl->DeleteFramebuffers(1, &r->framebuffer);
+  gl->DeleteVertexArrays(1, &r->empty_array);
+  abbe_plan_free(&r->plan);
+  free(r);
+}
+
+const abbe_plan *abbe_renderer_plan(const abbe_renderer *r) {
+  return &r->plan;
+}
+
+void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *out) {
+  *out = r->light[light].near_view;
+}
+
+static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
+  s->frame_ms = abbe_renderer_now_ms() - start_ms;
+  s->wavelengths = r->plan.desc.wavelengths;
+  s->device_bytes = r->device_bytes;
+  for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
+  double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
+  s->refractor_share = (double)r->light[0].photon_count / cells;
+  const double *w = r->light[0].map_view.window;
+  s->map_metres = (w[1] - w[0]) / (double)r->plan.desc.map_size;
+}
+
+abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+                                abbe_statistics *statistics, abbe_error *error) {
+  if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
+  r->statistics = statistics;
+  double start_ms = abbe_renderer_now_ms();
+  abbe_result result;
+  if (r->plan.desc.profile == ABBE_PROFILE_THESIS) {
+    result = abbe_renderer_thesis_frame(r, error);
+  } else {
+    result = abbe_renderer_light_layers(r, error);
+    if (result == ABBE_OK && r->plan.caustics)
+      result = abbe_renderer_photons(r, progress, user, error);
+    if (result == ABBE_OK) result = abbe_renderer_eye(r, progress, user, error);
+  }
+  r->gl->Finish();
+  if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
+  r->statistics = NULL;
+  return result;
+}
+
+/* GL's rows run upwards. */
+static void copy_flipped(const float *from, size_t from_channels, size_t first, abbe_image *image,
+                         size_t to, size_t count, size_t samples) {
+  double scale = 1.0 / (double)(samples * samples);
+  for (size_t y = 0; y < image->height; y++)
+    for (size_t x = 0; x < image->width; x++) {
+      float *pixel = image->data + (y * image->width + x) * image->channels + to;
+      for (size_t c = 0; c < count; c++) {
+        double sum = 0;
+        for (size_t k = 0; k < samples * samples; k++) {
+          size_t row = (image->height - 1 - y) * samples + k / samples;
+          size_t column = x * samples + k % samples;
+          sum += from[(row * image->width * samples + column) * from_channels + first + c];
+        }
+        pixel[c] = (float)(sum * scale);
+      }
+    }
+}
+
+static void to_output_space(const abbe_renderer *r, abbe_image *image, size_t first) {
+  if (r->plan.desc.space != ABBE_RGB_SPACE_XYZ || r->plan.desc.profile == ABBE_PROFILE_THESIS)
+    return;
+  double matrix[9];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  for (size_t i = 0; i < image->width * image->height; i++) {
+    float *pixel = image->data + i * image->channels + first;
+    double v[3] = {pixel[0], pixel[1], pixel[2]};
+    abbe_rgb_space_apply(matrix, v, v);
+    for (int c = 0; c < 3; c++) pixel[c] = (float)v[c];
+  }
+}
+
+abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {
+  static const char *const rgb[] = {"R",        "G",        "B",         "Z",         "direct.R",
+                                    "direct.G", "direct.B", "caustic.R", "caustic.G", "caustic.B"};
+  static const char *const xyz[] = {"X",        "Y",        "Z",         "depth.Z",   "direct.X",
+                                    "direct.Y", "direct.Z", "caustic.X", "caustic.Y", "caustic.Z"};
+  bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
+  bool as_xyz = r->plan.desc.space == ABBE_RGB_SPACE_XYZ && !thesis;
+  layers = layers && !thesis;
+  abbe_result result = abbe_image_make(r->plan.desc.width, r->plan.desc.height, layers ? 10 : 3,
+                                       as_xyz ? xyz : rgb, out, error);
+  if (result != ABBE_OK) return result;
+  size_t s = r->plan.desc.supersample;
+  float *data = malloc(out->width * out->height * s * s * 4 * sizeof *data);
+  if (data == NULL) {
+    abbe_image_free(out);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");
+  }
+  const abbe_gl *gl = r->gl;
+  gl->BindTexture(GL_TEXTURE_2D, r->eye_picture);
+  gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
+  copy_flipped(data, 4, 0, out, 0, layers ? 4 : 3, 1);
+  to_output_space(r, out, 0);
+  const GLuint texture[2] = {r->eye_direct, r->eye_caustic};
+  for (size_t k = 0; k < 2 && layers; k++) {
+    gl->BindTexture(GL_TEXTURE_2D, texture[k]);
+    gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
+    copy_flipped(data, 4, 0, out, 4 + 3 * k, 3, s);
+    to_output_space(r, out, 4 + 3 * k);
+  }
+  free(data);
+  abbe_rgb_space space = thesis ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
+  abbe_rgb_space_chromaticities(space, out->xy);
+  result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
+  if (result == ABBE_OK) result = abbe_gl_check(gl, "the reading of the picture", error);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
+}
+
+abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
+                                   abbe_view *view, abbe_error *error) {
+  static const char *const xyz[] = {"X", "Y", "Z"}, *const rgb[] = {"R", "G", "B"};
+  bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
+  if (light >= r->plan.light_count || !r->plan.caustics)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the scene has no spectral map of light %zu", light);
+  size_t side = r->plan.desc.map_size;
+  abbe_result result = abbe_image_make(side, side, 3, thesis ? rgb : xyz, out, error);
+  if (result != ABBE_OK) return result;
+  float *data = malloc(r->plan.light_count * side * side * 4 * sizeof *data);
+  if (data == NULL) {
+    abbe_image_free(out);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
+  }
+  GLenum target = thesis ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
+  r->gl->BindTexture(target, thesis ? abbe_renderer_thesis_map(r, filled) : r->map);
+  r->gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
+  copy_flipped(data + light * side * side * 4, 4, 0, out, 0, 3, 1);
+  free(data);
+  double cell = abbe_view_area(&r->light[light].map_view) / (double)(side * side);
+  for (size_t i = 0; i < side * side * 3 && !thesis; i++)
+    out->data[i] = (float)(out->data[i] * cell);
+  abbe_rgb_space_chromaticities(thesis ? ABBE_RGB_SPACE_REC709 : ABBE_RGB_SPACE_XYZ, out->xy);
+  if (view != NULL) *view = r->light[light].map_view;
+  result = abbe_gl_check(r->gl, "the reading of the map", error);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
+}

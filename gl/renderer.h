@@ -1,0 +1,58 @@
+/* renderer.h: pictures of a scene by adaptive spectral mapping, pass by pass as the plan says.
+ *
+ * A renderer belongs to one context and one scene, both of which outlive it; a frame runs every
+ * pass anew. Pictures are scene-linear radiance, W/(m2 sr) with each light's power shared out by
+ * its illuminant, in the plan's colour space. Single-threaded, as the context is.
+ */
+#ifndef ABBE_GL_RENDERER_H
+#define ABBE_GL_RENDERER_H
+
+#include "colorimetry/image.h"
+#include "gl/context.h"
+#include "gl/plan.h"
+#include "gl/statistics.h"
+#include "gl/view.h"
+#include "scenes/scene.h"
+#include "spectral/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct abbe_renderer abbe_renderer;
+
+/* Called now and then with the share done, 0 to 1; false stops the frame with ABBE_CANCELLED. */
+typedef bool (*abbe_renderer_progress)(void *user, double done);
+
+/* Plans, uploads the scene, compiles what the plan asks for and fits the light's views. desc may
+ * be NULL. Errors as abbe_plan_make, and ABBE_GL, ABBE_NO_MEMORY. */
+abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
+                               const abbe_render_desc *desc, abbe_renderer **out,
+                               abbe_error *error);
+void abbe_renderer_free(abbe_renderer *renderer);
+
+const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
+
+/* One frame. With statistics every pass is finished and timed by itself; without, none is waited
+ * for but the last. progress and statistics may be NULL. */
+abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_renderer_progress progress,
+                                void *user, abbe_statistics *statistics, abbe_error *error);
+
+/* The picture: R, G, B (X, Y, Z in that space); with layers also direct.*, caustic.* (radiance of
+ * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing). */
+abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image *out,
+                               abbe_error *error);
+
+/* A light's spectral map: channels X, Y, Z, flux a texel in W, and the view it was taken through
+ * (view may be NULL). filled: after the gap fill, where the fill is a pass of its own (smear). */
+abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool filled,
+                                   abbe_image *out, abbe_view *view, abbe_error *error);
+
+/* Landings of the first batch of wavelengths, for tests: [count][orders][lanes] x 4 floats, world
+ * position and flux for unit weight; *data is malloc'd. */
+abbe_result abbe_renderer_read_landings(abbe_renderer *renderer, size_t light, float **data,
+                                        unsigned **cells, size_t *count, size_t *orders,
+                                        size_t *lanes, abbe_error *error);
+/* The view through which a light's photons start: cell (x, y) of the grid is its uv. */
+void abbe_renderer_photon_view(const abbe_renderer *renderer, size_t light, abbe_view *out);
+
+#endif

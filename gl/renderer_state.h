@@ -1,0 +1,133 @@
+/* renderer_state.h: what the passes of one renderer share. Internal to gl/. */
+#ifndef ABBE_GL_RENDERER_STATE_H
+#define ABBE_GL_RENDERER_STATE_H
+
+#include "gl/api.h"
+#include "gl/plan.h"
+#include "gl/renderer.h"
+#include "gl/view.h"
+
+/* Shader storage bindings, as the shaders name them. */
+enum {
+  BINDING_LIGHTS,
+  BINDING_REFRACTORS,
+  BINDING_PLANES,
+  BINDING_RECEIVERS,
+  BINDING_SURFACES,
+  BINDING_SPECTRA,
+  BINDING_PHOTONS,
+  BINDING_PHOTONS_IN,
+  BINDING_SLOTS,
+  BINDING_LANDINGS,
+  BINDING_SIGNATURES,
+  BINDING_SAMPLE_WEIGHTS,
+  BINDING_LEDGER,
+  BINDING_MAP_SUMS,
+  BINDING_INTERVALS,
+  BINDING_EYE_WEIGHTS,
+  BINDING_COUNT
+};
+
+enum { PHOTON_GROUP = 64, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };
+
+typedef struct mesh_buffers {
+  GLuint array, vertices, indices;
+  GLsizei index_count;
+} mesh_buffers;
+
+typedef struct light_state {
+  abbe_view near_view, map_view;
+  size_t photon_count;
+  double cell_flux; /* most that one photon cell can carry, W */
+} light_state;
+
+typedef struct thesis_state thesis_state;
+
+struct abbe_renderer {
+  abbe_context *context;
+  const abbe_gl *gl;
+  const abbe_scene *scene;
+  abbe_plan plan;
+
+  mesh_buffers *mesh; /* [scene->object_count] */
+  double scene_min[3], scene_max[3], scene_size;
+  double refractor_centre[3], refractor_radius;
+  float rgb_from_xyz[9]; /* column-major, for uniforms */
+  double *lambda_nm;     /* [wavelengths] */
+
+  light_state light[ABBE_SCENE_MAX_LIGHTS];
+  abbe_view eye;
+
+  GLuint buffer[BINDING_COUNT];
+  GLuint list[LEVELS]; /* photon lists, last level last */
+  GLuint texture_surface;
+  GLuint light_layers, light_owner, light_depth, light_receivers, light_receivers_depth;
+  GLuint map;
+  GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
+      eye_layers_depth, eye_picture;
+  GLuint framebuffer, empty_array;
+  size_t layer_side; /* of the light's layers */
+  size_t lanes;      /* wavelengths traced in one batch */
+  size_t steps;      /* of an interval */
+  size_t device_bytes;
+  char defines[512];
+
+  GLuint place, groups, trace, deposit, resolve, layer, receivers, refraction, eye_resolve;
+  thesis_state *thesis;
+
+  abbe_statistics *statistics; /* of the frame that runs, or NULL */
+  double pass_start_ms;
+};
+
+double abbe_renderer_now_ms(void);
+
+/* scene_buffers.c: geometry and tables on the device. */
+abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error);
+void abbe_renderer_upload_lights(abbe_renderer *r);
+void abbe_renderer_free_scene(abbe_renderer *r);
+
+/* resources.c: buffers and textures, counted. */
+abbe_result abbe_renderer_make_buffer(abbe_renderer *r, size_t size, const void *data, GLuint *out,
+                                      abbe_error *error);
+abbe_result abbe_renderer_make_texture(abbe_renderer *r, GLenum format, size_t width, size_t height,
+                                       size_t layers, bool linear, GLuint *out, abbe_error *error);
+abbe_result abbe_renderer_set_target(abbe_renderer *r, const GLuint *colour, const int *layer,
+                                     size_t count, GLuint depth, size_t width, size_t height,
+                                     abbe_error *error);
+void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *name, int unit,
+                                GLuint texture);
+void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value);
+void abbe_renderer_set_float(abbe_renderer *r, GLuint program, const char *name, double value);
+void abbe_renderer_draw(abbe_renderer *r, size_t object);
+void abbe_renderer_begin_pass(abbe_renderer *r);
+void abbe_renderer_end_pass(abbe_renderer *r, const char *name);
+
+/* light_pass.c: the light's views, their layers, and the photons. */
+abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error);
+abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error);
+abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int coverage_layer,
+                                        abbe_error *error);
+
+/* photon_pass.c: photons to the spectral map. */
+abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error);
+abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+                                  abbe_error *error);
+abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledger *ledger,
+                                      abbe_error *error);
+void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
+                               size_t ledger_first);
+
+/* eye_pass.c: the picture. */
+void abbe_renderer_fit_eye(abbe_renderer *r);
+abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error);
+abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+                              abbe_error *error);
+void abbe_renderer_set_lighting(abbe_renderer *r, GLuint program);
+
+/* thesis.c: the thesis profile's own passes. */
+abbe_result abbe_renderer_make_thesis(abbe_renderer *r, abbe_error *error);
+abbe_result abbe_renderer_thesis_frame(abbe_renderer *r, abbe_error *error);
+GLuint abbe_renderer_thesis_map(const abbe_renderer *r, bool filled);
+void abbe_renderer_free_thesis(abbe_renderer *r);
+
+#endif

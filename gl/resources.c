@@ -1,0 +1,120 @@
+#include "gl/renderer_state.h"
+
+#include <math.h>
+#include <time.h>
+
+double abbe_renderer_now_ms(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+abbe_result abbe_renderer_make_buffer(abbe_renderer *r, size_t size, const void *data, GLuint *out,
+                                      abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  if (size == 0) size = 16; /* a bound buffer may not be empty */
+  gl->GenBuffers(1, out);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
+  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
+  r->device_bytes += size;
+  return abbe_gl_check(gl, "the allocation of a buffer", error);
+}
+
+static size_t texel_bytes(GLenum format) {
+  switch (format) {
+  case GL_RGBA32F:
+    return 16;
+  case GL_RGBA16F:
+    return 8;
+  case GL_R16UI:
+    return 2;
+  default:
+    return 4;
+  }
+}
+
+abbe_result abbe_renderer_make_texture(abbe_renderer *r, GLenum format, size_t width, size_t height,
+                                       size_t layers, bool linear, GLuint *out, abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  gl->GenTextures(1, out);
+  gl->BindTexture(target, *out);
+  if (layers > 0)
+    gl->TexStorage3D(target, 1, format, (GLsizei)width, (GLsizei)height, (GLsizei)layers);
+  else
+    gl->TexStorage2D(target, 1, format, (GLsizei)width, (GLsizei)height);
+  gl->TexParameteri(target, GL_TEXTURE_MIN_FILTER, linear ? GL_LINEAR : GL_NEAREST);
+  gl->TexParameteri(target, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
+  gl->TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl->TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  r->device_bytes += width * height * (layers > 0 ? layers : 1) * texel_bytes(format);
+  return abbe_gl_check(gl, "the allocation of a texture", error);
+}
+
+/* A layer of -1 attaches the whole texture: a 2D one, or every layer of an array. */
+abbe_result abbe_renderer_set_target(abbe_renderer *r, const GLuint *colour, const int *layer,
+                                     size_t count, GLuint depth, size_t width, size_t height,
+                                     abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  GLenum attachments[4];
+  gl->BindFramebuffer(GL_FRAMEBUFFER, r->framebuffer);
+  for (size_t i = 0; i < 4; i++) {
+    GLenum attachment = GL_COLOR_ATTACHMENT0 + (GLenum)i;
+    GLuint texture = i < count ? colour[i] : 0;
+    if (i < count && layer[i] >= 0)
+      gl->FramebufferTextureLayer(GL_FRAMEBUFFER, attachment, texture, 0, layer[i]);
+    else
+      gl->FramebufferTexture(GL_FRAMEBUFFER, attachment, texture, 0);
+    attachments[i] = attachment;
+  }
+  gl->FramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth, 0);
+  gl->DrawBuffers((GLsizei)count, attachments);
+  gl->Viewport(0, 0, (GLsizei)width, (GLsizei)height);
+  if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return ABBE_OK;
+  return abbe_error_set(error, ABBE_GL, "this OpenGL cannot render to a %zu x %zu float texture",
+                        width, height);
+}
+
+void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *name, int unit,
+                                GLuint texture) {
+  GLint location = r->gl->GetUniformLocation(program, name);
+  if (location < 0) return;
+  r->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, texture);
+  r->gl->Uniform1i(location, unit);
+}
+
+void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value) {
+  r->gl->Uniform1i(r->gl->GetUniformLocation(program, name), value);
+}
+
+void abbe_renderer_set_float(abbe_renderer *r, GLuint program, const char *name, double value) {
+  r->gl->Uniform1f(r->gl->GetUniformLocation(program, name), (float)value);
+}
+
+void abbe_renderer_draw(abbe_renderer *r, size_t object) {
+  const mesh_buffers *mesh = &r->mesh[object];
+  r->gl->BindVertexArray(mesh->array);
+  r->gl->DrawElements(GL_TRIANGLES, mesh->index_count, GL_UNSIGNED_INT, NULL);
+}
+
+void abbe_renderer_begin_pass(abbe_renderer *r) {
+  if (r->statistics == NULL) return;
+  r->gl->Finish();
+  r->pass_start_ms = abbe_renderer_now_ms();
+}
+
+void abbe_renderer_end_pass(abbe_renderer *r, const char *name) {
+  abbe_statistics *s = r->statistics;
+  if (s == NULL) return;
+  r->gl->Finish();
+  double ms = abbe_renderer_now_ms() - r->pass_start_ms;
+  r->pass_start_ms += ms;
+  for (size_t i = 0; i < s->pass_count; i++)
+    if (s->pass[i].name == name) {
+      s->pass[i].ms += ms;
+      return;
+    }
+  if (s->pass_count < ABBE_STATISTICS_MAX_PASSES)
+    s->pass[s->pass_count++] = (abbe_pass_time){name, ms};
+}

@@ -1,0 +1,422 @@
+#include "gl/renderer_state.h"
+
+#include "colorimetry/weights.h"
+#include "spectral/wavelengths.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Float copies of the shaders' structs (common.glsl). */
+typedef struct gpu_light {
+  float near_view[24], map_view[24], position[4], direction[4], white[4], misc[4];
+} gpu_light;
+
+typedef struct gpu_refractor {
+  float sphere[4];
+  int info[4];
+} gpu_refractor;
+
+typedef struct gpu_receiver {
+  float corner[4], u[4], v[4], normal[4], du[4], dv[4];
+} gpu_receiver;
+
+typedef struct gpu_surface {
+  float reflectance[4], texture_info[4];
+} gpu_surface;
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void store(const double v[3], double w, float out[4]) {
+  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
+  out[3] = (float)w;
+}
+
+static abbe_result upload_mesh(abbe_renderer *r, const abbe_mesh *mesh, mesh_buffers *out,
+                               abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  size_t size = mesh->vertex_count * 8 * sizeof(float);
+  float *vertices = malloc(size > 0 ? size : 1);
+  if (vertices == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a mesh");
+  for (size_t i = 0; i < mesh->vertex_count; i++) {
+    float *v = vertices + 8 * i;
+    for (int k = 0; k < 3; k++) {
+      v[k] = (float)mesh->position[i][k];
+      v[3 + k] = (float)mesh->normal[i][k];
+    }
+    v[6] = mesh->uv != NULL ? (float)mesh->uv[i][0] : 0.0f;
+    v[7] = mesh->uv != NULL ? (float)mesh->uv[i][1] : 0.0f;
+  }
+  gl->GenVertexArrays(1, &out->array);
+  gl->BindVertexArray(out->array);
+  gl->GenBuffers(1, &out->vertices);
+  gl->BindBuffer(GL_ARRAY_BUFFER, out->vertices);
+  gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)size, vertices, GL_STATIC_DRAW);
+  free(vertices);
+  size_t index_size = mesh->face_count * sizeof *mesh->face;
+  gl->GenBuffers(1, &out->indices);
+  gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, out->indices);
+  gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_size, mesh->face, GL_STATIC_DRAW);
+  static const struct {
+    GLint size;
+    size_t offset;
+  } attribute[3] = {{3, 0}, {3, 12}, {2, 24}};
+  for (GLuint k = 0; k < 3; k++) {
+    gl->EnableVertexAttribArray(k);
+    gl->VertexAttribPointer(k, attribute[k].size, GL_FLOAT, GL_FALSE, 32,
+                            (const char *)NULL + attribute[k].offset);
+  }
+  out->index_count = (GLsizei)(3 * mesh->face_count);
+  r->device_bytes += size + index_size;
+  return abbe_gl_check(gl, "the upload of a mesh", error);
+}
+
+static abbe_result upload_meshes(abbe_renderer *r, abbe_error *error) {
+  r->mesh = calloc(r->scene->object_count + 1, sizeof *r->mesh);
+  if (r->mesh == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for meshes");
+  for (size_t i = 0; i < r->scene->object_count; i++) {
+    abbe_result result = upload_mesh(r, &r->scene->object[i].mesh, &r->mesh[i], error);
+    if (result != ABBE_OK) return result;
+  }
+  return ABBE_OK;
+}
+
+/* Refractors and the planes of the convex ones. */
+static abbe_result upload_refractors(abbe_renderer *r, abbe_error *error) {
+  const abbe_plan *plan = &r->plan;
+  size_t planes = 0;
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    if (plan->model[i] == ABBE_REFRACTOR_CONVEX)
+      planes += r->scene->object[plan->refractor_object[i]].exact.count;
+  gpu_refractor *refractor = calloc(plan->refractor_count + 1, sizeof *refractor);
+  float(*plane)[4] = calloc(planes + 1, sizeof *plane);
+  abbe_result result = ABBE_OK;
+  if (refractor == NULL || plane == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for refractors");
+  size_t next = 0;
+  for (size_t i = 0; result == ABBE_OK && i < plan->refractor_count; i++) {
+    const abbe_object *object = &r->scene->object[plan->refractor_object[i]];
+    double centre[3], half = 0;
+    for (int k = 0; k < 3; k++) {
+      centre[k] = 0.5 * (object->min[k] + object->max[k]);
+      half += pow(0.5 * (object->max[k] - object->min[k]), 2);
+    }
+    bool sphere = plan->model[i] == ABBE_REFRACTOR_SPHERE;
+    store(sphere ? object->exact.centre : centre, sphere ? object->exact.radius : sqrt(half),
+          refractor[i].sphere);
+    refractor[i].info[0] = (int)plan->model[i];
+    refractor[i].info[1] = (int)next;
+    if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;
+    refractor[i].info[2] = (int)object->exact.count;
+    for (size_t k = 0; k < object->exact.count; k++)
+      store(object->exact.plane[k], object->exact.plane[k][3], plane[next++]);
+  }
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, plan->refractor_count * sizeof *refractor, refractor,
+                                       &r->buffer[BINDING_REFRACTORS], error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, planes * sizeof *plane, plane, &r->buffer[BINDING_PLANES],
+                                       error);
+  free(refractor);
+  free(plane);
+  return result;
+}
+
+static void store_parallelogram(const double p[9], size_t surface, gpu_receiver *out) {
+  const double *u = p + 3, *v = p + 6;
+  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  double area2 = dot(n, n), du[3], dv[3];
+  /* Dual edges within the plane: du = (v x n) / |n|^2, dv = (n x u) / |n|^2. */
+  for (int k = 0; k < 3; k++) {
+    int a = (k + 1) % 3, b = (k + 2) % 3;
+    du[k] = (v[a] * n[b] - v[b] * n[a]) / area2;
+    dv[k] = (n[a] * u[b] - n[b] * u[a]) / area2;
+  }
+  for (int k = 0; k < 3; k++) n[k] /= sqrt(area2);
+  store(p, (double)surface, out->corner);
+  store(u, 0, out->u);
+  store(v, 0, out->v);
+  store(n, 0, out->normal);
+  store(du, 0, out->du);
+  store(dv, 0, out->dv);
+}
+
+static abbe_result upload_receivers(abbe_renderer *r, abbe_error *error) {
+  size_t count = r->plan.parallelogram_count, next = 0;
+  gpu_receiver *receiver = calloc(count + 1, sizeof *receiver);
+  if (receiver == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
+  for (size_t i = 0; i < r->plan.receiver_count && next < count; i++) {
+    const abbe_exact *exact = &r->scene->object[r->plan.receiver_object[i]].exact;
+    for (size_t k = 0; k < exact->count && next < count; k++)
+      store_parallelogram(exact->parallelogram[k], i, &receiver[next++]);
+  }
+  abbe_result result = abbe_renderer_make_buffer(r, count * sizeof *receiver, receiver,
+                                                 &r->buffer[BINDING_RECEIVERS], error);
+  free(receiver);
+  return result;
+}
+
+/* Working space: the picture's, or ACEScg where the picture is XYZ, so that a colour times a
+ * reflectance means something. */
+static abbe_rgb_space working_space(const abbe_renderer *r) {
+  return r->plan.desc.space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : r->plan.desc.space;
+}
+
+static void rec709_to_working(const abbe_renderer *r, const double rgb[3], double out[3]) {
+  double to_xyz[9], from_xyz[9];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
+  abbe_rgb_space_from_xyz(working_space(r), from_xyz);
+  abbe_rgb_space_apply(to_xyz, rgb, out);
+  abbe_rgb_space_apply(from_xyz, out, out);
+}
+
+/* All textures in one array as large as the largest; smaller ones are resampled to it. */
+static abbe_result upload_textures(abbe_renderer *r, gpu_surface *surface, abbe_error *error) {
+  size_t width = 1, height = 1, layers = 0;
+  for (size_t i = 0; i < r->plan.receiver_count; i++) {
+    const abbe_image *t = &r->scene->object[r->plan.receiver_object[i]].texture;
+    if (t->data == NULL) continue;
+    layers++;
+    if (t->width > width) width = t->width;
+    if (t->height > height) height = t->height;
+  }
+  abbe_result result = abbe_renderer_make_texture(
+      r, GL_RGBA16F, width, height, layers > 0 ? layers : 1, true, &r->texture_surface, error);
+  if (result != ABBE_OK || layers == 0) return result;
+  r->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
+  r->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
+  float *texel = malloc(width * height * 4 * sizeof *texel);
+  if (texel == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a texture");
+  int layer = 0;
+  for (size_t i = 0; i < r->plan.receiver_count; i++) {
+    const abbe_image *t = &r->scene->object[r->plan.receiver_object[i]].texture;
+    if (t->data == NULL) continue;
+    for (size_t y = 0; y < height; y++)
+      for (size_t x = 0; x < width; x++) {
+        const float *from =
+            t->data +
+            ((height - 1 - y) * t->height / height * t->width + x * t->width / width) * t->channels;
+        double rgb[3] = {from[0], from[1], from[2]};
+        rec709_to_working(r, rgb, rgb);
+        store(rgb, 1, texel + 4 * (y * width + x));
+      }
+    r->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width, (GLsizei)height, 1,
+                         GL_RGBA, GL_FLOAT, texel);
+    surface[i].texture_info[0] = (float)layer++;
+  }
+  free(texel);
+  return abbe_gl_check(r->gl, "the upload of textures", error);
+}
+
+static abbe_result upload_surfaces(abbe_renderer *r, abbe_error *error) {
+  gpu_surface *surface = calloc(r->plan.receiver_count + 1, sizeof *surface);
+  if (surface == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for surfaces");
+  for (size_t i = 0; i < r->plan.receiver_count; i++) {
+    const abbe_object *object = &r->scene->object[r->plan.receiver_object[i]];
+    double rgb[3];
+    rec709_to_working(r, object->reflectance, rgb);
+    store(rgb, 1, surface[i].reflectance);
+    surface[i].texture_info[0] = -1.0f;
+    surface[i].texture_info[1] = (float)object->texture_repeat[0];
+    surface[i].texture_info[2] = (float)object->texture_repeat[1];
+  }
+  abbe_result result = upload_textures(r, surface, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, r->plan.receiver_count * sizeof *surface, surface,
+                                       &r->buffer[BINDING_SURFACES], error);
+  free(surface);
+  return result;
+}
+
+static abbe_result upload_spectra(abbe_renderer *r, abbe_error *error) {
+  size_t n = r->plan.desc.wavelengths;
+  float(*spectrum)[2] = calloc(r->plan.refractor_count * n + 1, sizeof *spectrum);
+  if (spectrum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < r->plan.refractor_count; i++) {
+    const abbe_material *material = r->scene->object[r->plan.refractor_object[i]].material;
+    for (size_t k = 0; k < n && result == ABBE_OK; k++) {
+      double index = 1;
+      result = abbe_material_n(material, r->lambda_nm[k], &index, error);
+      spectrum[i * n + k][0] = (float)index;
+      spectrum[i * n + k][1] = (float)abbe_material_attenuation(material, r->lambda_nm[k]);
+    }
+  }
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, r->plan.refractor_count * n * sizeof *spectrum, spectrum,
+                                       &r->buffer[BINDING_SPECTRA], error);
+  free(spectrum);
+  return result;
+}
+
+/* One interval between nodes a = i - 1 and b = i: XYZ up to each step, and how far the index has
+ * moved from one node's to the other's: landings follow it nearly linearly. */
+static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, size_t light,
+                          const abbe_material *material, size_t i, float (*out)[4]) {
+  const abbe_illuminant *illuminant = &r->scene->light[light].illuminant;
+  double min = w->edge_nm[0], max = w->edge_nm[w->count];
+  double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];
+  double b = i < w->count ? w->lambda_nm[i] : w->edge_nm[w->count];
+  double edge = i == 0 ? a : i == w->count ? b : w->edge_nm[i];
+  if (w->count == 1) { /* the one node keeps its whole band in the interval before it */
+    a = edge = i == 0 ? min : max;
+    b = max;
+  }
+  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, before = a;
+  abbe_material_n(material, a, &n_a, NULL);
+  abbe_material_n(material, b, &n_b, NULL);
+  for (size_t k = 0; k <= r->steps; k++) {
+    size_t half = r->steps / 2;
+    double lambda_nm = k <= half ? a + (edge - a) * (double)k / (double)half
+                                 : edge + (b - edge) * (double)(k - half) / (double)half;
+    double n = n_a, xyz[3];
+    abbe_material_n(material, lambda_nm, &n, NULL);
+    double t = n_a != n_b ? (n - n_a) / (n_b - n_a) : b > a ? (lambda_nm - a) / (b - a) : 0;
+    abbe_weights_band_xyz(illuminant, min, max, before, lambda_nm, xyz);
+    for (int c = 0; c < 3; c++) sum[c] += xyz[c];
+    store(sum, t, out[k]);
+    before = lambda_nm;
+  }
+}
+
+static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
+                                    abbe_error *error) {
+  size_t rows = r->plan.light_count * r->plan.refractor_count * (w->count + 1);
+  float(*table)[4] = calloc(rows * (r->steps + 1) + 1, sizeof *table);
+  if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  size_t row = 0;
+  for (size_t light = 0; light < r->plan.light_count; light++)
+    for (size_t k = 0; k < r->plan.refractor_count; k++)
+      for (size_t i = 0; i <= w->count; i++, row++)
+        fill_interval(r, w, light, r->scene->object[r->plan.refractor_object[k]].material, i,
+                      table + row * (r->steps + 1));
+  abbe_result result = abbe_renderer_make_buffer(r, rows * (r->steps + 1) * sizeof *table, table,
+                                                 &r->buffer[BINDING_INTERVALS], error);
+  free(table);
+  return result;
+}
+
+/* XYZ weights for the ledger, and the eye's: the first light's, divided by its white. */
+static abbe_result upload_weights(abbe_renderer *r, const abbe_wavelengths *w, abbe_error *error) {
+  size_t n = w->count;
+  float(*sample)[4] = calloc(r->plan.light_count * n + 1, sizeof *sample);
+  float(*eye)[4] = calloc(n + 1, sizeof *eye);
+  abbe_result result = ABBE_OK;
+  if (sample == NULL || eye == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
+  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+    abbe_weights xyz = {0}, rgb = {0};
+    result =
+        abbe_weights_make(w, &r->scene->light[light].illuminant, ABBE_RGB_SPACE_XYZ, &xyz, error);
+    if (result == ABBE_OK && light == 0)
+      result =
+          abbe_weights_make(w, &r->scene->light[light].illuminant, working_space(r), &rgb, error);
+    for (size_t i = 0; i < n && result == ABBE_OK; i++) {
+      store(xyz.weight[i], 0, sample[light * n + i]);
+      for (int c = 0; c < 3 && light == 0; c++) eye[i][c] = (float)(rgb.weight[i][c] / rgb.sum[c]);
+    }
+    abbe_weights_free(&xyz);
+    abbe_weights_free(&rgb);
+  }
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, r->plan.light_count * n * sizeof *sample, sample,
+                                       &r->buffer[BINDING_SAMPLE_WEIGHTS], error);
+  if (result == ABBE_OK)
+    result =
+        abbe_renderer_make_buffer(r, n * sizeof *eye, eye, &r->buffer[BINDING_EYE_WEIGHTS], error);
+  free(sample);
+  free(eye);
+  return result;
+}
+
+static abbe_result upload_wavelengths(abbe_renderer *r, abbe_error *error) {
+  abbe_wavelengths w = {0};
+  size_t n = r->plan.desc.wavelengths;
+  abbe_result result =
+      abbe_wavelengths_make(n, r->plan.desc.min_nm, r->plan.desc.max_nm, &w, error);
+  if (result != ABBE_OK) return result;
+  r->lambda_nm = malloc(n * sizeof *r->lambda_nm);
+  if (r->lambda_nm == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  else
+    memcpy(r->lambda_nm, w.lambda_nm, n * sizeof *r->lambda_nm);
+  r->steps = 64;
+  while (r->steps > 2 && r->steps * n > 1024) r->steps /= 2;
+  if (result == ABBE_OK) result = upload_spectra(r, error);
+  if (result == ABBE_OK) result = upload_intervals(r, &w, error);
+  if (result == ABBE_OK) result = upload_weights(r, &w, error);
+  abbe_wavelengths_free(&w);
+  return result;
+}
+
+static void measure_scene(abbe_renderer *r) {
+  double size = 0, radius = 0, min[3], max[3];
+  abbe_scene_bounds(r->scene, true, true, r->scene_min, r->scene_max);
+  bool any = abbe_scene_bounds(r->scene, true, false, min, max);
+  for (int k = 0; k < 3; k++) {
+    size += pow(r->scene_max[k] - r->scene_min[k], 2);
+    r->refractor_centre[k] = any ? 0.5 * (min[k] + max[k]) : 0;
+    radius += any ? pow(0.5 * (max[k] - min[k]), 2) : 0;
+  }
+  r->scene_size = sqrt(size);
+  r->refractor_radius = sqrt(radius);
+}
+
+abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
+  measure_scene(r);
+  double matrix[9];
+  abbe_rgb_space_from_xyz(working_space(r), matrix);
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 3; column++)
+      r->rgb_from_xyz[3 * column + row] = (float)matrix[3 * row + column];
+  abbe_result result = upload_meshes(r, error);
+  if (result == ABBE_OK) result = upload_refractors(r, error);
+  if (result == ABBE_OK) result = upload_receivers(r, error);
+  if (result == ABBE_OK) result = upload_surfaces(r, error);
+  if (result == ABBE_OK) result = upload_wavelengths(r, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, r->plan.light_count * sizeof(gpu_light), NULL,
+                                       &r->buffer[BINDING_LIGHTS], error);
+  return result;
+}
+
+/* Called again whenever a light's view changes. */
+void abbe_renderer_upload_lights(abbe_renderer *r) {
+  double grid = (double)r->plan.desc.photons, map = (double)r->plan.desc.map_size;
+  for (size_t i = 0; i < r->plan.light_count; i++) {
+    const abbe_light *light = &r->scene->light[i];
+    light_state *state = &r->light[i];
+    gpu_light g = {0};
+    double white[3], rgb[3], matrix[9];
+    abbe_weights_band_xyz(&light->illuminant, r->plan.desc.min_nm, r->plan.desc.max_nm,
+                          r->plan.desc.min_nm, r->plan.desc.max_nm, white);
+    abbe_rgb_space_from_xyz(working_space(r), matrix);
+    abbe_rgb_space_apply(matrix, white, rgb);
+    double cell_area = abbe_view_area(&state->near_view) / (grid * grid);
+    double map_area = abbe_view_area(&state->map_view) / (map * map);
+    state->cell_flux = light->power * cell_area;
+    abbe_view_pack(&state->near_view, g.near_view);
+    abbe_view_pack(&state->map_view, g.map_view);
+    store(light->position, (double)light->kind, g.position);
+    store(light->direction, cos(light->cone_rad), g.direction);
+    store(rgb, light->power, g.white);
+    g.misc[0] = (float)cos(fmax(light->cone_rad - light->soft_rad, 0));
+    g.misc[1] = (float)ldexp(state->cell_flux, -28);
+    g.misc[2] = (float)(1 / cell_area);
+    g.misc[3] = (float)(1 / map_area);
+    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);
+    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g), sizeof g, &g);
+  }
+}
+
+void abbe_renderer_free_scene(abbe_renderer *r) {
+  for (size_t i = 0; r->mesh != NULL && i < r->scene->object_count; i++) {
+    r->gl->DeleteVertexArrays(1, &r->mesh[i].array);
+    r->gl->DeleteBuffers(1, &r->mesh[i].vertices);
+    r->gl->DeleteBuffers(1, &r->mesh[i].indices);
+  }
+  free(r->mesh);
+  free(r->lambda_nm);
+}

@@ -1,0 +1,41 @@
+/* statistics.h: what a frame took and where its light went. */
+#ifndef ABBE_GL_STATISTICS_H
+#define ABBE_GL_STATISTICS_H
+
+#include <stddef.h>
+
+#define ABBE_STATISTICS_MAX_PASSES 32
+
+/* Light that reached refractors, and its parts, each sample weighted by its ybar (W of the lights'
+ * power); deposited is summed from the map itself, so that the balance is a check and no identity.
+ */
+typedef struct abbe_ledger {
+  double reached;
+  double reflected; /* on the outside, at the first interface */
+  double absorbed;  /* along inner paths */
+  double trapped;   /* still inside when the path ended: total or repeated internal reflection */
+  double missed;    /* met no receiver, or one that the map does not hold */
+  double deposited; /* in the spectral map */
+} abbe_ledger;
+
+/* |reached - the parts| / reached; 0 where nothing was reached. */
+double abbe_ledger_imbalance(const abbe_ledger *ledger);
+
+typedef struct abbe_pass_time {
+  const char *name;
+  double ms;
+} abbe_pass_time;
+
+typedef struct abbe_statistics {
+  double frame_ms; /* all passes, finished */
+  size_t pass_count;
+  abbe_pass_time pass[ABBE_STATISTICS_MAX_PASSES];
+  size_t photons; /* cells that hold a refractor, all lights */
+  size_t wavelengths;
+  double refractor_share; /* of the first light's photon grid */
+  double map_metres;   /* side of a map texel at the middle of the map's view, 1 m away or flat */
+  size_t device_bytes; /* buffers and textures */
+  abbe_ledger energy;
+} abbe_statistics;
+
+#endif

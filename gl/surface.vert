@@ -1,0 +1,15 @@
+// Triangles of the scene, seen from the eye or from a light.
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+uniform mat4 view_projection;
+out vec3 world;
+out vec3 world_normal;
+out vec2 surface_uv;
+
+void main() {
+  world = position;
+  world_normal = normal;
+  surface_uv = uv;
+  gl_Position = view_projection * vec4(position, 1);
+}

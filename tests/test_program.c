@@ -1,0 +1,132 @@
+/* Every shader compiles, in every combination of models that a plan can ask for. */
+#include "gl/context.h"
+#include "gl/program.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static abbe_context *context;
+
+static int make_context(void **state) {
+  abbe_error error = {0};
+  (void)state;
+  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error) == ABBE_OK) return 0;
+  fprintf(stderr, "%s\n", error.text);
+  return 1;
+}
+
+static int free_context(void **state) {
+  (void)state;
+  abbe_context_free(context);
+  return 0;
+}
+
+/* Bits: spheres, convex, layers, exact receivers, absorbing. */
+static void write_defines(unsigned bits, char *out, size_t size) {
+  static const char *const names[] = {"SPHERES", "CONVEX", "LAYERS", "EXACT_RECEIVERS",
+                                      "ABSORBING"};
+  int used = snprintf(out, size,
+                      "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
+                      "#define WAVELENGTHS 7\n#define ORDERS 3\n#define LANES 7\n"
+                      "#define STEPS 64\n#define BRIDGE\n#define MAX_BRIDGE 64.0\n");
+  for (int i = 0; i < 5; i++)
+    if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
+}
+
+static void compiles(const abbe_program_stage *stages, size_t count, const char *defines) {
+  abbe_error error = {0};
+  GLuint program = 0;
+  abbe_result result =
+      abbe_program_make(abbe_context_gl(context), stages, count, defines, &program, &error);
+  if (result != ABBE_OK) print_error("%s\n", error.text);
+  assert_int_equal(result, ABBE_OK);
+  abbe_context_gl(context)->DeleteProgram(program);
+}
+
+static void test_all_combinations(void **state) {
+  (void)state;
+  char defines[512];
+  for (unsigned bits = 0; bits < 32; bits++) {
+    write_defines(bits, defines, sizeof defines);
+    const abbe_program_stage trace = {GL_COMPUTE_SHADER, "photon_trace.comp"};
+    const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                      {GL_FRAGMENT_SHADER, "receivers.frag"}};
+    const abbe_program_stage refracted[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                            {GL_FRAGMENT_SHADER, "refraction.frag"}};
+    compiles(&trace, 1, defines);
+    compiles(lit, 2, defines);
+    compiles(refracted, 2, defines);
+  }
+}
+
+static void test_every_compute_shader(void **state) {
+  (void)state;
+  char defines[512];
+  size_t seen = 0;
+  write_defines(31, defines, sizeof defines);
+  for (const char *const *file = abbe_program_files(); *file != NULL; file++) {
+    const char *dot = strrchr(*file, '.');
+    if (dot == NULL || strcmp(dot, ".comp") != 0) continue;
+    const abbe_program_stage stage = {GL_COMPUTE_SHADER, *file};
+    compiles(&stage, 1, defines);
+    seen++;
+  }
+  assert_true(seen >= 5);
+}
+
+static void test_thesis_programs(void **state) {
+  (void)state;
+  static const char *const fragments[] = {"thesis_fill.frag", "thesis_refraction.frag"};
+  char defines[512];
+  write_defines(0, defines, sizeof defines);
+  for (size_t i = 0; i < 2; i++) {
+    const abbe_program_stage screen[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                         {GL_FRAGMENT_SHADER, fragments[i]}};
+    compiles(screen, 2, defines);
+  }
+  const abbe_program_stage layers[] = {{GL_VERTEX_SHADER, "thesis_layers.vert"},
+                                       {GL_GEOMETRY_SHADER, "thesis_layers.geom"},
+                                       {GL_FRAGMENT_SHADER, "thesis_layers.frag"}};
+  const abbe_program_stage splat[] = {{GL_VERTEX_SHADER, "thesis_splat.vert"},
+                                      {GL_GEOMETRY_SHADER, "thesis_splat.geom"},
+                                      {GL_FRAGMENT_SHADER, "thesis_splat.frag"}};
+  const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                    {GL_FRAGMENT_SHADER, "thesis_receivers.frag"}};
+  const abbe_program_stage layer[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                      {GL_FRAGMENT_SHADER, "layer.frag"}};
+  const abbe_program_stage depth[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                      {GL_FRAGMENT_SHADER, "depth.frag"}};
+  compiles(layers, 3, defines);
+  compiles(splat, 3, defines);
+  compiles(lit, 2, defines);
+  compiles(layer, 2, defines);
+  compiles(depth, 2, defines);
+}
+
+static void test_complaints_name_the_file(void **state) {
+  (void)state;
+  const abbe_gl *gl = abbe_context_gl(context);
+  abbe_error error = {0};
+  GLuint program = 1;
+  assert_int_equal(abbe_program_make_compute(gl, "no_such.comp", NULL, &program, &error),
+                   ABBE_NOT_FOUND);
+  assert_non_null(strstr(error.text, "no_such.comp"));
+  assert_int_equal(program, 0);
+  assert_int_equal(
+      abbe_program_make_compute_text(gl, "void main() { nonsense; }\n", NULL, &program, &error),
+      ABBE_GL);
+  assert_non_null(strstr(error.text, "nonsense"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_all_combinations), cmocka_unit_test(test_every_compute_shader),
+      cmocka_unit_test(test_thesis_programs), cmocka_unit_test(test_complaints_name_the_file)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
