@@ -2,6 +2,7 @@
 
 #include "spectral/nearest.h"
 
+#include <cjson/cJSON.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -25,8 +26,7 @@ double abbe_command_number(const char *program, const char *option, const char *
   char *end = NULL;
   double value = strtod(text, &end);
   if (end == text || *end != '\0' || !isfinite(value) || value < min || value > max) {
-    fprintf(stderr, "%s: %s '%s' is not a number from %g to %g\n", program, option, text, min,
-            max);
+    fprintf(stderr, "%s: %s '%s' is not a number from %g to %g\n", program, option, text, min, max);
     wrong_use(program);
   }
   return value;
@@ -68,4 +68,19 @@ int abbe_command_choice(const char *program, const char *option, const char *tex
   for (int i = 0; i < count; i++) fprintf(stderr, " %s", names[i]);
   fprintf(stderr, "\n");
   wrong_use(program);
+}
+
+abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error) {
+  char *text = json == NULL ? NULL : cJSON_Print(json);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for the JSON");
+  puts(text);
+  cJSON_free(text);
+  return ABBE_OK;
+}
+
+int abbe_command_end(const char *program, abbe_result result, abbe_error *error) {
+  if (result == ABBE_OK && (fflush(stdout) != 0 || ferror(stdout)))
+    result = abbe_error_set(error, ABBE_IO, "the results could not be written to the output: %s",
+                            strerror(errno));
+  return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(program, error);
 }

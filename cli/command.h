@@ -11,6 +11,8 @@
 
 #include <stdbool.h>
 
+struct cJSON;
+
 enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_TOLERANCE = 3 };
 
 /* X(name, summary): every subcommand NAME is `int abbe_command_NAME(int argc, char **argv)`;
@@ -18,7 +20,10 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
 #define ABBE_COMMANDS(X) \
   X(render, "render a scene to OpenEXR and PNG") \
   X(plan, "say which passes and models a scene asks for, and why") \
-  X(materials, "list materials, or show one: indices, Abbe number, source, fits")
+  X(materials, "list materials, or show one: indices, Abbe number, source, fits") \
+  X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB") \
+  X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO") \
+  X(info, "say what an EXR holds: size, channels, space, settings, statistics")
 
 #define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);
 ABBE_COMMANDS(ABBE_COMMAND_DECLARE)
@@ -41,5 +46,10 @@ void abbe_command_range(const char *program, const char *option, const char *tex
 /* One word of names[count]; its index. An unknown word names the nearest and the list. */
 int abbe_command_choice(const char *program, const char *option, const char *text,
                         const char *const *names, int count);
+
+/* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
+abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);
+/* Ends a command: 0 where all results reached stdout; else the failure, said on stderr. */
+int abbe_command_end(const char *program, abbe_result result, abbe_error *error);
 
 #endif

@@ -1,0 +1,145 @@
+#include "cli/command.h"
+
+#include "colorimetry/exr.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+
+typedef struct request {
+  const char *program, *path;
+  bool json;
+} request;
+
+/* Of one channel; min, max and mean over its finite samples, NaN where there is none. */
+typedef struct statistics {
+  double min, max, mean;
+  size_t nan, inf;
+} statistics;
+
+static statistics measure(const abbe_image *image, size_t channel) {
+  statistics s = {.min = NAN, .max = NAN, .mean = 0};
+  size_t pixels = image->width * image->height, finite = 0;
+  for (size_t i = 0; i < pixels; i++) {
+    double v = (double)image->data[i * image->channels + channel];
+    if (isnan(v)) s.nan++;
+    if (isinf(v)) s.inf++;
+    if (!isfinite(v)) continue;
+    s.min = fmin(s.min, v);
+    s.max = fmax(s.max, v);
+    s.mean += v;
+    finite++;
+  }
+  s.mean = finite > 0 ? s.mean / (double)finite : NAN;
+  return s;
+}
+
+static bool has_chromaticities(const abbe_image *image) {
+  for (int i = 0; i < 8; i++)
+    if (image->xy[i] != 0) return true;
+  return false;
+}
+
+static void print_text(const request *r, const abbe_image *image) {
+  printf("%s: %zu x %zu pixels, %zu channels\n", r->path, image->width, image->height,
+         image->channels);
+  const double *xy = image->xy;
+  if (has_chromaticities(image))
+    printf("chromaticities  R (%.5g, %.5g)  G (%.5g, %.5g)  B (%.5g, %.5g)  white (%.5g, %.5g)\n",
+           xy[0], xy[1], xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
+  for (size_t i = 0; i < image->attribute_count; i++)
+    printf("%s: %s\n", image->attribute[i].name, image->attribute[i].text);
+  printf("\n%-20s %12s %12s %12s %8s %8s\n", "channel", "min", "max", "mean", "NaN", "inf");
+  for (size_t c = 0; c < image->channels; c++) {
+    statistics s = measure(image, c);
+    printf("%-20s %12.6g %12.6g %12.6g %8zu %8zu\n", image->channel[c], s.min, s.max, s.mean, s.nan,
+           s.inf);
+  }
+}
+
+static bool add_channel(cJSON *list, const abbe_image *image, size_t c) {
+  cJSON *item = cJSON_CreateObject();
+  if (!cJSON_AddItemToArray(list, item)) return false;
+  statistics s = measure(image, c);
+  /* cJSON writes NaN as null */
+  return cJSON_AddStringToObject(item, "name", image->channel[c]) != NULL &&
+         cJSON_AddNumberToObject(item, "min", s.min) != NULL &&
+         cJSON_AddNumberToObject(item, "max", s.max) != NULL &&
+         cJSON_AddNumberToObject(item, "mean", s.mean) != NULL &&
+         cJSON_AddNumberToObject(item, "nan", (double)s.nan) != NULL &&
+         cJSON_AddNumberToObject(item, "inf", (double)s.inf) != NULL;
+}
+
+static bool add_header(cJSON *root, const request *r, const abbe_image *image) {
+  cJSON *xy =
+      has_chromaticities(image) ? cJSON_CreateDoubleArray(image->xy, 8) : cJSON_CreateNull();
+  bool made = cJSON_AddStringToObject(root, "file", r->path) != NULL &&
+              cJSON_AddNumberToObject(root, "width", (double)image->width) != NULL &&
+              cJSON_AddNumberToObject(root, "height", (double)image->height) != NULL &&
+              cJSON_AddItemToObject(root, "chromaticities", xy);
+  cJSON *attributes = cJSON_AddObjectToObject(root, "attributes");
+  for (size_t i = 0; made && i < image->attribute_count; i++)
+    made = cJSON_AddStringToObject(attributes, image->attribute[i].name,
+                                   image->attribute[i].text) != NULL;
+  return made;
+}
+
+static abbe_result print_json(const request *r, const abbe_image *image, abbe_error *error) {
+  cJSON *root = cJSON_CreateObject();
+  bool made = add_header(root, r, image);
+  cJSON *list = cJSON_AddArrayToObject(root, "channels");
+  for (size_t c = 0; made && c < image->channels; c++) made = add_channel(list, image, c);
+  abbe_result result = abbe_command_print_json(made ? root : NULL, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+enum { KEY_JSON = 256 };
+
+static const struct argp_option options[] = {
+    {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0}, {0}};
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+  request *r = state->input;
+  switch (key) {
+  case KEY_JSON:
+    r->json = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (r->path != NULL) argp_error(state, "'%s' is one argument too many", arg);
+    r->path = arg;
+    return 0;
+  case ARGP_KEY_END:
+    if (r->path == NULL) argp_error(state, "which file?");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "FILE.exr",
+    .doc =
+        "Says what an OpenEXR picture holds: size, chromaticities, text attributes, and for every "
+        "channel the least, greatest and mean of its finite samples and how many are none.\v"
+        "Examples:\n"
+        "  abbe info gem.exr\n"
+        "  abbe info gem.exr --json\n",
+};
+
+int abbe_command_info(int argc, char **argv) {
+  request r = {.program = argv[0]};
+  argp_parse(&parser, argc, argv, 0, NULL, &r);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  abbe_result result = abbe_exr_read(r.path, &image, &error);
+  if (result == ABBE_OK && r.json)
+    result = print_json(&r, &image, &error);
+  else if (result == ABBE_OK)
+    print_text(&r, &image);
+  abbe_image_free(&image);
+  return abbe_command_end(r.program, result, &error);
+}
