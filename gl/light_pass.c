@@ -246,6 +246,7 @@ abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int c
     }
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   }
+  count_groups(r, r->list[LEVELS - 1], 1);
   r->buffer[BINDING_PHOTONS] = r->list[LEVELS - 1];
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, r->list[LEVELS - 1]);
   return abbe_gl_check(gl, "the placement of photons", error);

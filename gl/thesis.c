@@ -337,6 +337,7 @@ static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
   bind_2d(r, t->receivers, "spectral_map", 0, fills ? t->filled : t->map);
   bind_2d(r, t->receivers, "shadow_map", 1, t->light_receiver_depth);
   abbe_renderer_bind_texture(r, t->receivers, "surface_texture", 2, r->texture_surface);
+  abbe_renderer_bind_texture(r, t->receivers, "refractor_depths", 3, t->light_depths);
   int layer = 0;
   for (size_t i = 0; i < r->plan.receiver_count; i++) {
     set_surface(r, i, &layer);

@@ -4,6 +4,7 @@ in vec3 world_normal;
 in vec2 surface_uv;
 uniform sampler2D spectral_map;
 uniform sampler2D shadow_map;
+uniform sampler2DArray refractor_depths;  // front in layer 0: refractors cast shadows too
 uniform sampler2DArray surface_texture;
 uniform mat4 light_matrix;
 uniform vec3 light_position;
@@ -27,7 +28,8 @@ void main() {
   bool seen = clip.w > 0.0 && all(equal(at, clamp(at, vec3(0), vec3(1))));
   float c = dot(-to_light, spot.xyz);
   float beam = spot_inner > spot.w ? smoothstep(spot.w, spot_inner, c) : step(spot.w, c);
-  float shade = texture(shadow_map, at.xy).x < at.z - 0.005 ? 0.0 : 1.0;
+  float nearest = min(texture(shadow_map, at.xy).x, texture(refractor_depths, vec3(at.xy, 0)).x);
+  float shade = nearest < at.z - 0.005 ? 0.0 : 1.0;
   vec3 light = seen ? (shade * 0.25 + 0.75) * colour * beam * spot_colour * 0.7 : vec3(0);
   light += colour * SCENE_AMBIENT;
   vec3 caustic = seen ? texture(spectral_map, at.xy).rgb * diffuse : vec3(0);
