@@ -1,6 +1,7 @@
 #include "scenes/scene_file.h"
 
 #include "scenes/vector.h"
+#include "spectral/file.h"
 #include "spectral/optics.h"
 
 #include <math.h>
@@ -9,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -259,6 +261,30 @@ static void bad_scenes_are_explained(void **state) {
   }
 }
 
+/* The example of docs/scene-files.md, between its first pair of fences. */
+static void the_documented_scene_loads(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size;
+  assert_int_equal(
+      abbe_file_read(ABBE_SOURCE_DIR "/docs/scene-files.md", 1 << 20, &text, &size, NULL), ABBE_OK);
+  char *begin = strstr(text, "```yaml\n");
+  assert_non_null(begin);
+  begin += strlen("```yaml\n");
+  char *end = strstr(begin, "```");
+  assert_non_null(end);
+  assert_int_equal(abbe_file_write("t_documented.yaml", begin, (size_t)(end - begin), NULL),
+                   ABBE_OK);
+  free(text);
+  abbe_scene scene;
+  abbe_error error = {0};
+  if (abbe_scene_load("t_documented.yaml", NULL, &scene, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_string_equal(scene.object[0].material->name, "sapphire");
+  abbe_scene_free(&scene);
+  remove("t_documented.yaml");
+}
+
 static void a_missing_file_is_named(void **state) {
   (void)state;
   abbe_scene scene;
@@ -276,6 +302,7 @@ int main(void) {
       cmocka_unit_test(the_glass_stands_on_textured_wood),
       cmocka_unit_test(options_choose_another_table),
       cmocka_unit_test(bad_scenes_are_explained),
+      cmocka_unit_test(the_documented_scene_loads),
       cmocka_unit_test(a_missing_file_is_named),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
