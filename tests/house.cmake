@@ -1,0 +1,44 @@
+# The house as a whole: who may include whom, and each header by itself.
+abbe_test(directions cpu abbe_build)
+
+# Each header is included twice, first and alone, in a C17 and a C++17 file of its own.
+file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/spectral/*.h ${PROJECT_SOURCE_DIR}/colorimetry/*.h
+  ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/gl/*.h
+  ${PROJECT_SOURCE_DIR}/validation/*.h)
+set(sources "")
+set(declarations "")
+set(sum "0")
+foreach(header ${headers})
+  string(MAKE_C_IDENTIFIER ${header} symbol)
+  foreach(language c cpp)
+    set(name header_${symbol}_${language})
+    file(CONFIGURE OUTPUT headers/${name}.${language} @ONLY CONTENT
+"#include \"@header@\"
+#include \"@header@\"
+#ifdef __cplusplus
+extern \"C\"
+#endif
+int @name@(void);
+int @name@(void) { return 1; }
+")
+    list(APPEND sources ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.${language})
+    string(APPEND declarations "int ${name}(void);\n")
+    string(APPEND sum " + ${name}()")
+  endforeach()
+endforeach()
+list(LENGTH sources count)
+file(CONFIGURE OUTPUT headers/main.c @ONLY CONTENT
+"#include <stdio.h>
+@declarations@
+int main(void) {
+  printf(\"%d of @count@ compiled\\n\", @sum@);
+  return @sum@ == @count@ ? 0 : 1;
+}
+")
+add_executable(test_headers ${sources} ${CMAKE_CURRENT_BINARY_DIR}/headers/main.c)
+target_link_libraries(test_headers PRIVATE abbe_build)
+target_include_directories(test_headers PRIVATE
+  $<TARGET_PROPERTY:abbe_gl,INTERFACE_INCLUDE_DIRECTORIES>)
+add_test(NAME headers COMMAND test_headers)
+set_tests_properties(headers PROPERTIES LABELS cpu TIMEOUT 60)
