@@ -1,1 +1,88 @@
-# the install step
+# The install step: the program, one library, its headers, what ships, and the ways to find them.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# One archive from the objects of every room, with what the rooms rest on.
+get_property(rooms GLOBAL PROPERTY ABBE_ROOMS)
+set(objects "")
+set(libraries "")
+foreach(room ${rooms})
+  list(APPEND objects $<TARGET_OBJECTS:${room}>)
+  get_target_property(linked ${room} LINK_LIBRARIES)
+  list(APPEND libraries ${linked})
+endforeach()
+list(FILTER libraries EXCLUDE REGEX "^abbe_")
+list(REMOVE_ITEM libraries glm::glm) # headers, of which the installed ones include none
+list(REMOVE_DUPLICATES libraries)
+
+add_library(abbe_library STATIC ${objects})
+set_target_properties(abbe_library PROPERTIES OUTPUT_NAME abbe EXPORT_NAME abbe LINKER_LANGUAGE C)
+# The C++ of the two bridges is named, so that a project in C alone can link it.
+target_link_libraries(abbe_library PUBLIC ${libraries} stdc++)
+target_include_directories(abbe_library INTERFACE $<INSTALL_INTERFACE:include/abbe>)
+
+# What each library is called to CMake and to pkg-config.
+set(config_finds "")
+set(pc_requires "")
+set(pc_libs "-lstdc++")
+foreach(library ${libraries})
+  if(library MATCHES "^PkgConfig::(.*)$")
+    set(module ${${CMAKE_MATCH_1}_MODULE_NAME})
+    string(APPEND config_finds
+      "find_dependency(PkgConfig)\npkg_check_modules(${CMAKE_MATCH_1} REQUIRED QUIET IMPORTED_TARGET ${module})\n")
+    list(APPEND pc_requires ${module})
+  elseif(library STREQUAL "OpenEXR::OpenEXRCore")
+    string(APPEND config_finds "find_dependency(OpenEXR 3.1 CONFIG)\n")
+    list(APPEND pc_requires OpenEXR)
+  elseif(library STREQUAL "PNG::PNG")
+    string(APPEND config_finds "find_dependency(PNG)\n")
+    list(APPEND pc_requires libpng)
+  elseif(library STREQUAL "Threads::Threads")
+    string(APPEND config_finds "find_dependency(Threads)\n")
+    string(APPEND pc_libs " -pthread")
+  elseif(library STREQUAL "embree")
+    string(APPEND config_finds "find_dependency(embree 3.13 CONFIG)\n")
+    string(APPEND pc_libs " -lembree3")
+  elseif(library MATCHES "^[a-z]+$")
+    string(APPEND pc_libs " -l${library}")
+  else()
+    message(FATAL_ERROR "cmake/install.cmake does not know how to find '${library}'")
+  endif()
+endforeach()
+string(REPLACE ";" ", " pc_requires "${pc_requires}")
+set(share ${CMAKE_INSTALL_DATADIR}/abbe)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/abbe)
+
+install(TARGETS abbe RUNTIME)
+install(TARGETS abbe_library EXPORT abbeTargets ARCHIVE)
+install(EXPORT abbeTargets NAMESPACE abbe:: DESTINATION ${package})
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/abbeConfig.cmake.in
+  ${CMAKE_CURRENT_BINARY_DIR}/abbeConfig.cmake INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/abbeConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/abbeConfig.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/abbeConfigVersion.cmake DESTINATION ${package})
+
+# Relative to the file itself, so that the prefix may be chosen or moved afterwards.
+file(RELATIVE_PATH pc_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" pc_prefix ${pc_prefix})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/abbe.pc.in ${CMAKE_CURRENT_BINARY_DIR}/abbe.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/abbe.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# The headers, but not those that say that they are a room's own.
+foreach(room ${rooms})
+  string(REPLACE "abbe_" "" name ${room})
+  file(GLOB headers CONFIGURE_DEPENDS ${name}/*.h)
+  foreach(header ${headers})
+    file(READ ${header} text)
+    if(NOT text MATCHES "Internal to ${name}/")
+      install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/abbe/${name})
+    endif()
+  endforeach()
+endforeach()
+
+# What ships: scenes with their meshes and textures, material tables, the OCIO configuration.
+file(GLOB scene_files CONFIGURE_DEPENDS scenes/*.yaml scenes/*.ply scenes/*.obj scenes/*.png)
+install(FILES ${scene_files} DESTINATION ${share}/scenes)
+install(FILES spectral/materials.yaml spectral/thesis.yaml DESTINATION ${share}/materials)
+install(FILES colorimetry/config.ocio DESTINATION ${share}/ocio)
