@@ -1,2 +1,6 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral)
+foreach(name plan view)
+  abbe_test(${name} cpu ${gl_rooms})
+endforeach()
+abbe_test(context gl ${gl_rooms})
 abbe_test(program gl ${gl_rooms})

@@ -1,0 +1,315 @@
+/* The plan: each pass and model follows from a fact of the scene, and goes when the fact goes. */
+#include "tests/scene_text.h"
+
+#include "gl/plan.h"
+
+static void make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *plan) {
+  abbe_error error = {0};
+  abbe_result result = abbe_plan_make(scene, desc, plan, &error);
+  if (result != ABBE_OK) print_error("%s\n", error.text);
+  assert_int_equal(result, ABBE_OK);
+}
+
+static void make_text(const char *text, const abbe_render_desc *desc, abbe_plan *plan) {
+  abbe_scene scene = {0};
+  load_text(text, &scene);
+  make(&scene, desc, plan);
+  abbe_scene_free(&scene);
+}
+
+#define assert_runs(plan, name, expected) check_runs(plan, name, expected, __FILE__, __LINE__)
+static void check_runs(const abbe_plan *plan, const char *name, bool expected, const char *file,
+                       int line) {
+  const abbe_plan_entry *entry = abbe_plan_find(plan, name);
+  if (entry != NULL && entry->runs == expected) return;
+  print_error("'%s' %s\n", name, entry == NULL ? "is not in the plan" : entry->reason);
+  _fail(file, line);
+}
+
+static bool noted(const abbe_plan *plan, const char *part) {
+  for (size_t i = 0; i < plan->note_count; i++)
+    if (strstr(plan->note[i], part) != NULL) return true;
+  return false;
+}
+
+static void test_a_ball_over_a_floor(void **state) {
+  (void)state;
+  abbe_plan plan;
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), NULL, &plan);
+  assert_int_equal(plan.refractor_count, 1);
+  assert_int_equal(plan.refractor_object[0], 1);
+  assert_int_equal(plan.receiver_object[0], 0);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_SPHERE);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
+  assert_int_equal(plan.desc.wavelengths, 7);
+  assert_true(plan.spheres && !plan.convex && !plan.layers && !plan.absorbing && !plan.textured);
+  assert_runs(&plan, "light: receiver depth", false);
+  assert_runs(&plan, "light: refractor front", true);
+  assert_runs(&plan, "light: refractor back", false);
+  assert_runs(&plan, "light: photons", true);
+  assert_runs(&plan, "light: gap fill", true);
+  assert_runs(&plan, "absorption", false);
+  assert_runs(&plan, "eye: refractor layers", false);
+  assert_runs(&plan, "eye: refraction", true);
+  assert_runs(&plan, "textures", false);
+  assert_runs(&plan, "inner reflections", true);
+  assert_contains(abbe_plan_find(&plan, "model: ball")->reason, "the object is a sphere");
+  assert_null(abbe_plan_find(&plan, "no such pass"));
+  abbe_plan_free(&plan);
+}
+
+static void test_without_refractors_no_light_is_split(void **state) {
+  (void)state;
+  abbe_plan plan;
+  const abbe_render_desc many = {.wavelengths = 21};
+  make_text(CAMERA POINT_LIGHT FLOOR, &many, &plan);
+  assert_false(plan.caustics);
+  assert_int_equal(plan.desc.wavelengths, 1);
+  assert_runs(&plan, "light: refractor front", false);
+  assert_runs(&plan, "light: refractor back", false);
+  assert_runs(&plan, "light: photon placement", false);
+  assert_runs(&plan, "light: photons", false);
+  assert_runs(&plan, "light: spectral map", false);
+  assert_runs(&plan, "light: gap fill", false);
+  assert_runs(&plan, "eye: refraction", false);
+  assert_runs(&plan, "eye: receivers", true);
+  assert_contains(abbe_plan_find(&plan, "wavelengths")->reason, "nothing refracts");
+  abbe_plan_free(&plan);
+}
+
+static void test_a_constant_index_needs_one_wavelength(void **state) {
+  (void)state;
+  abbe_plan plan;
+  const abbe_render_desc asked = {.wavelengths = 21};
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), NULL, &plan);
+  assert_false(plan.dispersive);
+  assert_int_equal(plan.desc.wavelengths, 1);
+  assert_runs(&plan, "light: gap fill", false);
+  assert_runs(&plan, "light: photons", true);
+  abbe_plan_free(&plan);
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &asked, &plan);
+  assert_int_equal(plan.desc.wavelengths, 21);
+  assert_contains(abbe_plan_find(&plan, "wavelengths")->reason, "as asked");
+  abbe_plan_free(&plan);
+}
+
+static void test_absorption_runs_where_something_absorbs(void **state) {
+  (void)state;
+  abbe_plan plan;
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("smoke"), NULL, &plan);
+  assert_true(plan.absorbing);
+  assert_runs(&plan, "absorption", true);
+  abbe_plan_free(&plan);
+}
+
+static void test_a_mesh_asks_for_its_back_layer(void **state) {
+  (void)state;
+  abbe_plan plan;
+  make_text(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &plan);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_LAYERS);
+  assert_runs(&plan, "light: refractor back", true);
+  assert_runs(&plan, "eye: refractor layers", true);
+  assert_runs(&plan, "inner reflections", false);
+  assert_int_equal(plan.desc.orders, 1);
+  abbe_plan_free(&plan);
+  make_text(CAMERA POINT_LIGHT FLOOR BRICK("crown"), NULL, &plan);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_CONVEX);
+  assert_runs(&plan, "light: refractor back", false);
+  assert_runs(&plan, "inner reflections", true);
+  abbe_plan_free(&plan);
+  make_text(CAMERA POINT_LIGHT FLOOR RING("crown") BALL("flat") BRICK("flat"), NULL, &plan);
+  assert_true(plan.spheres && plan.convex && plan.layers);
+  assert_true(noted(&plan, "meets another"));
+  abbe_plan_free(&plan);
+}
+
+static void test_a_curved_receiver_asks_for_its_depth(void **state) {
+  (void)state;
+  abbe_plan plan;
+  make_text(CAMERA POINT_LIGHT FLOOR HILL BALL("crown"), NULL, &plan);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_DEPTH);
+  assert_int_equal(plan.parallelogram_count, 0);
+  assert_runs(&plan, "light: receiver depth", true);
+  assert_contains(abbe_plan_find(&plan, "model: receivers")->reason, "general mesh");
+  abbe_plan_free(&plan);
+}
+
+static void test_too_many_rectangles_are_found_by_depth(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  scene.object[0].exact.count = 96;
+  make(&scene, NULL, &plan);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
+  assert_int_equal(plan.parallelogram_count, 96);
+  abbe_plan_free(&plan);
+  scene.object[0].exact.count = 97;
+  make(&scene, NULL, &plan);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_DEPTH);
+  abbe_plan_free(&plan);
+  scene.object[0].exact.count = 1;
+  abbe_scene_free(&scene);
+}
+
+static void test_the_thesis_profile_knows_one_way(void **state) {
+  (void)state;
+  abbe_plan plan;
+  const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &thesis, &plan);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_LAYERS);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_DEPTH);
+  assert_int_equal(plan.desc.fill, ABBE_FILL_SMEAR);
+  assert_int_equal(plan.desc.wavelengths, 7);
+  assert_int_equal(plan.desc.orders, 1);
+  assert_near(plan.desc.min_nm, 380, 0);
+  assert_near(plan.desc.max_nm, 680, 0);
+  abbe_plan_free(&plan);
+}
+
+static void test_the_fill_goes_when_it_is_not_wanted(void **state) {
+  (void)state;
+  abbe_plan plan;
+  const abbe_render_desc none = {.fill = ABBE_FILL_NONE};
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &none, &plan);
+  assert_runs(&plan, "light: gap fill", false);
+  assert_runs(&plan, "light: spectral map", true);
+  abbe_plan_free(&plan);
+}
+
+static void refuse(const abbe_render_desc *desc, abbe_result expected, const char *part,
+                   const char *text) {
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  abbe_error error = {0};
+  load_text(text, &scene);
+  abbe_result result = abbe_plan_make(&scene, desc, &plan, &error);
+  if (result != expected) print_error("%s: '%s'\n", part, error.text);
+  assert_int_equal(result, expected);
+  assert_int_equal(error.code, expected);
+  assert_contains(error.text, part);
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+}
+
+static void test_limits_are_kept(void **state) {
+  (void)state;
+  const struct {
+    abbe_render_desc desc;
+    const char *part;
+  } rows[] = {
+      {{.width = ABBE_RENDER_MAX_SIDE + 1}, "8193"},
+      {{.height = ABBE_RENDER_MAX_SIDE + 1}, "height"},
+      {{.photons = ABBE_RENDER_MAX_PHOTONS + 1}, "photon grid is 4097"},
+      {{.map_size = ABBE_RENDER_MAX_MAP + 1}, "spectral map is 4097"},
+      {{.supersample = 5}, "supersampling is 5"},
+      {{.wavelengths = ABBE_RENDER_MAX_WAVELENGTHS + 1}, "wavelengths is 1001"},
+      {{.profile = ABBE_PROFILE_THESIS, .wavelengths = 65}, "wavelengths is 65"},
+      {{.orders = ABBE_RENDER_MAX_ORDERS + 1}, "exits is 17"},
+      {{.width = (size_t)-1}, "width"},
+      {{.min_nm = 700, .max_nm = 400}, "700 to 400"},
+      {{.min_nm = -1}, "-1 to 780"},
+      {{.min_nm = NAN}, "nan"},
+      {{.max_nm = INFINITY}, "inf"},
+      {{.energy_share = -0.1}, "-0.1"},
+      {{.energy_share = 1.5}, "1.5"},
+      {{.energy_share = NAN}, "nan"},
+      {{.fill = ABBE_FILL_SMEAR}, "'smear'"},
+      {{.profile = ABBE_PROFILE_THESIS, .fill = ABBE_FILL_BRIDGE}, "'thesis'"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    refuse(&rows[i].desc, ABBE_INVALID_ARGUMENT, rows[i].part,
+           CAMERA POINT_LIGHT FLOOR BALL("crown"));
+}
+
+static void test_an_index_that_is_not_known_is_refused_or_noted(void **state) {
+  (void)state;
+  abbe_plan plan;
+  refuse(NULL, ABBE_OUT_OF_RANGE, "narrow", CAMERA POINT_LIGHT FLOOR BALL("narrow"));
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("loose"), NULL, &plan);
+  assert_true(noted(&plan, "loose: the index is extrapolated"));
+  abbe_plan_free(&plan);
+  const abbe_render_desc inside = {.min_nm = 420, .max_nm = 680};
+  make_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &inside, &plan);
+  assert_false(noted(&plan, "extrapolated"));
+  abbe_plan_free(&plan);
+}
+
+static void test_too_many_refractors_are_unsupported(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  abbe_error error = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_object *object = scene.object, *many = calloc(256, sizeof *many);
+  assert_non_null(many);
+  for (size_t i = 0; i < 256; i++) many[i] = object[1];
+  scene.object = many;
+  scene.object_count = 255;
+  make(&scene, NULL, &plan);
+  assert_int_equal(plan.refractor_count, 255);
+  abbe_plan_free(&plan);
+  scene.object_count = 256;
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "255 refractors");
+  scene.object = object;
+  scene.object_count = 2;
+  free(many);
+  abbe_scene_free(&scene);
+}
+
+/* What a shipped scene is made of decides how it is drawn. */
+static const struct {
+  const char *name;
+  abbe_refractor_model model;
+  bool textured;
+} shipped[] = {
+    {"sphere", ABBE_REFRACTOR_SPHERE, false}, {"rainbow", ABBE_REFRACTOR_SPHERE, false},
+    {"gem", ABBE_REFRACTOR_CONVEX, false},    {"prism", ABBE_REFRACTOR_CONVEX, false},
+    {"ring", ABBE_REFRACTOR_LAYERS, false},   {"bunny", ABBE_REFRACTOR_LAYERS, false},
+    {"glass", ABBE_REFRACTOR_LAYERS, true},
+};
+
+static void test_shipped_scenes(void **state) {
+  (void)state;
+  for (size_t i = 0; i < sizeof shipped / sizeof *shipped; i++) {
+    abbe_scene scene = {0};
+    abbe_plan plan;
+    load_shipped(shipped[i].name, &scene);
+    make(&scene, NULL, &plan);
+    bool layers = shipped[i].model == ABBE_REFRACTOR_LAYERS;
+    assert_int_equal(plan.refractor_count, 1);
+    assert_int_equal(plan.model[0], shipped[i].model);
+    assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
+    assert_true(plan.caustics && plan.dispersive);
+    assert_int_equal(plan.desc.wavelengths, 7);
+    assert_runs(&plan, "light: refractor back", layers);
+    assert_runs(&plan, "inner reflections", !layers);
+    assert_runs(&plan, "textures", shipped[i].textured);
+    for (size_t k = 0; k < plan.entry_count; k++) {
+      assert_true(plan.entry[k].name[0] != '\0');
+      assert_true(plan.entry[k].reason[0] != '\0');
+    }
+    abbe_plan_free(&plan);
+    abbe_scene_free(&scene);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_ball_over_a_floor),
+      cmocka_unit_test(test_without_refractors_no_light_is_split),
+      cmocka_unit_test(test_a_constant_index_needs_one_wavelength),
+      cmocka_unit_test(test_absorption_runs_where_something_absorbs),
+      cmocka_unit_test(test_a_mesh_asks_for_its_back_layer),
+      cmocka_unit_test(test_a_curved_receiver_asks_for_its_depth),
+      cmocka_unit_test(test_too_many_rectangles_are_found_by_depth),
+      cmocka_unit_test(test_the_thesis_profile_knows_one_way),
+      cmocka_unit_test(test_the_fill_goes_when_it_is_not_wanted),
+      cmocka_unit_test(test_limits_are_kept),
+      cmocka_unit_test(test_an_index_that_is_not_known_is_refused_or_noted),
+      cmocka_unit_test(test_too_many_refractors_are_unsupported),
+      cmocka_unit_test(test_shipped_scenes),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
