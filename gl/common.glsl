@@ -37,13 +37,27 @@ const int MODEL_SPHERE = 0;
 const int MODEL_CONVEX = 1;
 const int MODEL_LAYERS = 2;
 
-layout(std430, binding = 0) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = 1) readonly buffer Refractors { Refractor refractors[]; };
-layout(std430, binding = 2) readonly buffer Planes { vec4 planes[]; };  // n . x <= w
-layout(std430, binding = 3) readonly buffer Receivers { Receiver receivers[]; };
+// Tables of the scene. They are uniform blocks wherever they fit: a software rasteriser reads
+// those far faster than storage. ROOM: at least one element, whatever the count.
+layout(std140, binding = 0) uniform Lights { Light lights[LIGHT_ROOM]; };
+layout(std140, binding = 1) uniform Refractors { Refractor refractors[REFRACTOR_ROOM]; };
+#ifdef PLANES_IN_STORAGE
+layout(std430, binding = 2) readonly buffer Planes { vec4 planes[]; };
+#else
+layout(std140, binding = 2) uniform Planes { vec4 planes[PLANE_ROOM]; };  // n . x <= w
+#endif
+layout(std140, binding = 3) uniform Receivers { Receiver receivers[RECEIVER_ROOM]; };
+#ifdef SURFACES_IN_STORAGE
 layout(std430, binding = 4) readonly buffer Surfaces { Surface surfaces[]; };
+#else
+layout(std140, binding = 4) uniform Surfaces { Surface surfaces[SURFACE_ROOM]; };
+#endif
 // n and attenuation (1/m) at [refractor * WAVELENGTHS + i].
-layout(std430, binding = 5) readonly buffer Spectra { vec2 spectra[]; };
+#ifdef SPECTRA_IN_STORAGE
+layout(std430, binding = 5) readonly buffer Spectra { vec4 spectra[]; };
+#else
+layout(std140, binding = 5) uniform Spectra { vec4 spectra[SPECTRUM_ROOM]; };
+#endif
 
 // Where a point falls on the view's window, [0, 1]^2 inside; z: distance along the ray
 // (perspective) or along forward. False behind the origin.

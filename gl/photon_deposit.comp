@@ -1,17 +1,21 @@
-// From landings to flux in the spectral map. Between two neighbouring wavelengths that take the
-// same way the light is laid along the line that joins their landings, each piece with the colour
-// of its own part of the band; where the ways differ each keeps its half of the band to itself.
-// A piece is spread by a tent as wide as the distance to the neighbouring photons' landings, with
-// weights that add up to one: nothing is invented, nothing lost.
+// From landings to pieces of light for the spectral map. Between two neighbouring wavelengths that
+// take the same way the light is laid along the line that joins their landings, each piece with
+// the colour of its own part of the band; where the ways differ each keeps its half of the band to
+// itself. Pieces that fall closer together than the photons do are added first. A piece is spread
+// over the parallelogram that the neighbouring photons' landings span: where that is wide, in a
+// coarser level of the map. No branch saves time on a software rasteriser, so there are few.
 layout(local_size_x = 64) in;
 #include "common.glsl"
 #include "photon_list.glsl"
-#include "wide_sum.glsl"
+#include "splat_list.glsl"
 
 layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
 layout(std430, binding = 9) readonly buffer Landings { vec4 landing[]; };
-layout(std430, binding = 10) readonly buffer Signatures { uint signature[]; };
-layout(std430, binding = 13) buffer MapSums { uint map_sum[]; };  // X lo, hi, Y lo, hi, Z lo, hi
+layout(std430, binding = 10) readonly buffer Signatures { uint signature[]; };  // 0: none
+layout(std430, binding = 13) readonly buffer PathList {
+  uint path_count, path_groups[3];
+  uint path_list[];
+};
 // Interval i lies between nodes i - 1 and i. [(light * REFRACTORS + refractor) * (WAVELENGTHS + 1)
 // + i] * (STEPS + 1) + k: XYZ of the interval up to step k, and how far along (0 to 1) that is.
 layout(std430, binding = 14) readonly buffer Intervals { vec4 interval_sum[]; };
@@ -22,8 +26,11 @@ uniform int map_size;
 uniform int lane_first;
 uniform int lane_count;
 uniform int interval_first;
+uniform int interval_end;
+uniform uint chunks, chunk;  // only paths of this chunk
+uniform uint most;           // pieces that the list has room for
 
-const float MAX_SPREAD = 12.0;  // texels
+const int MAX_PIECES = 8;  // of one footprint
 
 vec2 map_position(vec3 p) {
   vec3 uvz;
@@ -31,111 +38,124 @@ vec2 map_position(vec3 p) {
   return uvz.xy * float(map_size);
 }
 
-void add(ivec2 texel, vec3 flux) {
-  uvec3 v = uvec3(flux / lights[light].misc.y + 0.5);
-  uint at = uint(texel.y * map_size + texel.x) * 6u;
-  WIDE_ADD(map_sum, at, at + 1u, v.x)
-  WIDE_ADD(map_sum, at + 2u, at + 3u, v.y)
-  WIDE_ADD(map_sum, at + 4u, at + 5u, v.z)
-}
-
-float tent_sum(float c, float h) {
-  float sum = 0.0;
-  for (float x = ceil(c - 0.5 - h); x <= c - 0.5 + h; x += 1.0)
-    sum += max(1.0 - abs(x + 0.5 - c) / h, 0.0);
-  return sum;
-}
-
-void splat(vec2 c, vec2 h, vec3 flux) {
-  vec2 norm = 1.0 / vec2(tent_sum(c.x, h.x), tent_sum(c.y, h.y));
-  for (float y = ceil(c.y - 0.5 - h.y); y <= c.y - 0.5 + h.y; y += 1.0) {
-    float wy = max(1.0 - abs(y + 0.5 - c.y) / h.y, 0.0) * norm.y;
-    for (float x = ceil(c.x - 0.5 - h.x); x <= c.x - 0.5 + h.x; x += 1.0) {
-      float w = max(1.0 - abs(x + 0.5 - c.x) / h.x, 0.0) * norm.x * wy;
-      if (w > 0.0) add(clamp(ivec2(x, y), ivec2(0), ivec2(map_size - 1)), w * flux);
-    }
-  }
-}
-
-uint index_of(uint photon, int order, int i) {
-  return (photon * ORDERS + order) * LANES + (i - lane_first);
-}
-
-// Landing of the neighbouring photon on the same path, as a step in texels; zero if none.
-vec2 neighbour_step(ivec2 cell, ivec2 offset, int order, int i, uint path, vec2 here) {
-  ivec2 c = cell + offset;
-  if (any(lessThan(c, ivec2(0))) || any(greaterThanEqual(c, ivec2(grid)))) return vec2(0);
-  uint at = slot[c.y * grid + c.x];
-  if (at == 0u) return vec2(0);
-  uint index = index_of(at - 1u, order, i);
-  if (landing[index].w <= 0.0 || signature[index] != path) return vec2(0);
-  return abs(map_position(landing[index].xyz) - here);
-}
-
-vec2 spread(ivec2 cell, int order, int i, uint path, vec2 here) {
-  vec2 a = neighbour_step(cell, ivec2(1, 0), order, i, path, here);
-  if (a == vec2(0)) a = neighbour_step(cell, ivec2(-1, 0), order, i, path, here);
-  vec2 b = neighbour_step(cell, ivec2(0, 1), order, i, path, here);
-  if (b == vec2(0)) b = neighbour_step(cell, ivec2(0, -1), order, i, path, here);
-  return clamp(max(a, b), vec2(1), vec2(MAX_SPREAD));
-}
-
-// The refractor's own table: how far along the line a wavelength falls depends on its dispersion.
-vec4 step_sum(uint path, int interval, int k) {
-  int refractor = int(path & 255u);
-  int row = (light * REFRACTORS + refractor) * (WAVELENGTHS + 1) + interval;
-  return interval_sum[row * (STEPS + 1) + k];
+// To the landing of the neighbouring photon on the same path, in texels; zero if there is none.
+vec2 neighbour_step(ivec2 c, int order, int lane, uint path, vec2 here) {
+  bool there = all(greaterThanEqual(c, ivec2(0))) && all(lessThan(c, ivec2(grid)));
+  uint at = slot[there ? c.y * grid + c.x : 0];
+  there = there && at != 0u;
+  uint index = ((there ? at - 1u : 0u) * ORDERS + order) * LANES + lane;
+  there = there && signature[index] == path;
+  return there ? map_position(landing[index].xyz) - here : vec2(0);
 }
 
 void main() {
-  uint photon = gl_GlobalInvocationID.x;
-  int row = int(gl_GlobalInvocationID.y);
-  if (photon >= photon_count) return;
-  int order = row % ORDERS, interval = interval_first + row / ORDERS;
-  int a = interval - 1, b = interval;
-  vec4 from = vec4(0), to = vec4(0);
-  uint path_a = 0u, path_b = 1u;
-  if (a >= 0) {
-    from = landing[index_of(photon, order, a)];
-    path_a = signature[index_of(photon, order, a)];
+  uint listed = gl_GlobalInvocationID.x;
+  if (listed >= path_count) return;
+  uint photon_path = path_list[listed];
+  uint photon = photon_path / ORDERS;
+  int order = int(photon_path % ORDERS);
+  uint first = photon_path * LANES;
+  uint packed_cell = photon_cell[photon];
+  if (packed_cell * 2654435761u % chunks != chunk) return;
+  ivec2 cell = ivec2(packed_cell & 0xffffu, packed_cell >> 16);
+
+  // The footprint, at the wavelength nearest the middle of those that land. (A loop that ended
+  // early would do less, but Mesa 22's llvmpipe clobbers a load that is repeated after one.)
+  int reference = 0;
+  uint path = 0u;
+  for (int i = 0; i < lane_count; i++) {
+    uint found = signature[first + i];
+    bool nearer = path == 0u || abs(2 * i - lane_count) < abs(2 * reference - lane_count);
+    if (found != 0u && nearer) {
+      path = found;
+      reference = i;
+    }
   }
-  if (b < WAVELENGTHS) {
-    to = landing[index_of(photon, order, b)];
-    path_b = signature[index_of(photon, order, b)];
+  vec2 here = map_position(landing[first + reference].xyz);
+  vec2 a = neighbour_step(cell + ivec2(1, 0), order, reference, path, here);
+  vec2 b = neighbour_step(cell + ivec2(0, 1), order, reference, path, here);
+  vec2 a_back = neighbour_step(cell - ivec2(1, 0), order, reference, path, here);
+  vec2 b_back = neighbour_step(cell - ivec2(0, 1), order, reference, path, here);
+  if (a == vec2(0)) a = -a_back;
+  if (b == vec2(0)) b = -b_back;
+  float la = max(abs(a.x), abs(a.y)), lb = max(abs(b.x), abs(b.y));
+  vec2 across = la > lb ? a : b;
+  float narrow = min(la, lb), wide = max(la, lb);
+  float least = max(max(narrow, wide / float(MAX_PIECES)), 1.0);
+  int level = clamp(int(ceil(log2(least) - 0.25)), 0, MAP_LEVELS - 1);
+  float size = exp2(float(level));
+  int across_pieces = clamp(int(ceil(wide / size - 0.25)), 1, MAX_PIECES);
+  // A tear between neighbours is not a footprint: no farther than the pieces can cover.
+  across *= min(1.0, 2.0 * size * float(MAX_PIECES) / max(wide, 1e-20));
+
+  vec3 gathered = vec3(0);
+  vec2 gathered_at = vec2(0), gathered_from = vec2(0);
+  float gathered_weight = 0.0;
+  float to_units = 1.0 / (lights[light].misc.y * float(across_pieces));
+  int row = (light * REFRACTORS + int(path & 255u)) * (WAVELENGTHS + 1);
+
+  uint path_a = 0u;
+  vec4 from = vec4(0);
+  if (interval_first > 0) {
+    path_a = signature[first + uint(interval_first - 1 - lane_first)];
+    from = landing[first + uint(interval_first - 1 - lane_first)];
   }
-  if (from.w <= 0.0 && to.w <= 0.0) return;
-  ivec2 cell = ivec2(photon_cell[photon] & 0xffffu, photon_cell[photon] >> 16);
-  vec2 pa = map_position(from.xyz), pb = map_position(to.xyz);
-  uint path = from.w > 0.0 ? path_a : path_b;
-  vec3 middle = step_sum(path, interval, STEPS / 2).xyz, all = step_sum(path, interval, STEPS).xyz;
-  bool bridge = false;
+  vec2 pa = map_position(from.xyz);
+  for (int interval = interval_first; interval <= interval_end; interval++) {
+    bool last = interval == interval_end;  // one more turn, to write what is gathered
+    bool has_b = interval < WAVELENGTHS && !last;
+    uint index_b = first + uint(has_b ? interval - lane_first : 0);
+    uint path_b = has_b ? signature[index_b] : 0u;
+    vec4 to = landing[index_b];
+    vec2 pb = map_position(to.xyz);
+    float share_a = path_a != 0u ? from.w : 0.0, share_b = path_b != 0u ? to.w : 0.0;
+    bool bridge = false;
+    int pieces = 2;
 #ifdef BRIDGE
-  float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
-  bridge = from.w > 0.0 && to.w > 0.0 && path_a == path_b && way < MAX_BRIDGE;
+    float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
+    bridge = path_a != 0u && path_a == path_b && way < MAX_BRIDGE;
+    while (bridge && pieces < STEPS && float(pieces) * size < way) pieces *= 2;
 #endif
-  if (!bridge) {
-    if (from.w > 0.0 && middle != vec3(0))
-      splat(pa, spread(cell, order, a, path_a, pa), from.w * middle);
-    if (to.w > 0.0 && all != middle)
-      splat(pb, spread(cell, order, b, path_b, pb), to.w * (all - middle));
-    return;
+    pieces = last ? 1 : pieces;
+    vec4 before = vec4(0);
+    for (int k = 1; k <= pieces; k++) {
+      vec4 upto = interval_sum[(row + min(interval, WAVELENGTHS)) * (STEPS + 1) + k * STEPS / pieces];
+      bool lower = 2 * k <= pieces;
+      float along = bridge ? 0.5 * (before.w + upto.w) : lower ? 0.0 : 1.0;
+      vec2 at = mix(pa, pb, along);
+      vec3 flux = (lower ? share_a : share_b) * (upto.xyz - before.xyz);
+      before = upto;
+      float weight = last ? 0.0 : flux.x + flux.y + flux.z;
+      vec2 off = abs(at - gathered_from);
+      bool write = gathered_weight > 0.0 && (last || (weight > 0.0 && max(off.x, off.y) > 0.75 * size));
+      vec2 centre = gathered_at / max(gathered_weight, 1e-30);
+      for (int n = 0; write && n < across_pieces; n++) {
+        vec2 p = centre + across * ((float(n) + 0.5) / float(across_pieces) - 0.5);
+        uvec2 fixed_point =
+            uvec2(clamp(p, vec2(0), vec2(float(map_size) - 0.01)) * vec2(1048576.0, 131072.0));
+        uvec3 units = uvec3(gathered * to_units + 0.5);
+        uint at_splat = atomicAdd(splat_count, 1u);
+        uint word = min(at_splat, most) * SPLAT_WORDS;
+        splat[word] = fixed_point.x;
+        splat[word + 1u] = fixed_point.y << 3 | uint(level);
+        splat[word + 2u] = units.x;
+        splat[word + 3u] = units.y;
+        splat[word + 4u] = units.z;
+      }
+      if (write) {
+        gathered = vec3(0);
+        gathered_at = vec2(0);
+        gathered_weight = 0.0;
+      }
+      if (weight > 0.0) {
+        if (gathered_weight == 0.0) gathered_from = at;
+        gathered += flux;
+        gathered_at += weight * at;
+        gathered_weight += weight;
+      }
+    }
+    path_a = path_b;
+    from = to;
+    pa = pb;
   }
-#ifdef BRIDGE
-  vec2 h = spread(cell, order, a, path_a, pa);
-  if (way < 1.0) {
-    splat(mix(pa, pb, step_sum(path, interval, STEPS / 2).w), h,
-          from.w * middle + to.w * (all - middle));
-    return;
-  }
-  int pieces = 2;
-  while (pieces < STEPS && float(pieces) < way) pieces *= 2;
-  h = max(h, abs(pb - pa) / float(pieces));
-  vec4 before = vec4(0);
-  for (int k = 1; k <= pieces; k++) {
-    vec4 upto = step_sum(path, interval, k * STEPS / pieces);
-    float share = 2 * k <= pieces ? from.w : to.w;
-    splat(mix(pa, pb, 0.5 * (before.w + upto.w)), h, share * (upto.xyz - before.xyz));
-    before = upto;
-  }
-#endif
 }

@@ -6,25 +6,50 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
+enum { LIST_HEADER = 16, SPLAT_BYTES = 20, MAX_SPLATS = 6 << 20, LIST_BINDING = 15 };
+enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20, MAX_MAP_LEVELS = 6 };
 
 /* Share of the light that may fall outside the fitted map, on each of its four sides. */
 static const double map_tail = 2e-4;
-
-static void bind_all(abbe_renderer *r) {
-  for (GLuint i = 0; i < BINDING_COUNT; i++)
-    if (r->buffer[i] != 0) r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, r->buffer[i]);
-}
 
 static double ledger_unit(const abbe_renderer *r, size_t light) {
   return ldexp(r->light[light].cell_flux, -24);
 }
 
-static void dispatch_photons(abbe_renderer *r, size_t light, size_t rows) {
-  size_t groups = (r->light[light].photon_count + PHOTON_GROUP - 1) / PHOTON_GROUP;
-  if (groups == 0) return;
-  r->gl->DispatchCompute((GLuint)groups, (GLuint)rows, 1);
-  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+static void clear_buffer(abbe_renderer *r, GLuint buffer) {
+  static const GLuint zero = 0;
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  r->gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                         &zero);
+}
+
+static void clear_count(abbe_renderer *r, GLuint list) {
+  static const GLuint zero = 0;
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
+  r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, &zero);
+}
+
+static size_t read_count(abbe_renderer *r, GLuint list) {
+  GLuint count = 0;
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
+  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
+  return count;
+}
+
+/* One thread an element of the list; `most` is its room. The program is set up by then. */
+static void dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t most) {
+  const abbe_gl *gl = r->gl;
+  gl->UseProgram(r->list_groups);
+  gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "group_size"), PHOTON_GROUP);
+  gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "most"), (GLuint)most);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, LIST_BINDING, list);
+  gl->DispatchCompute(1, 1, 1);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  gl->UseProgram(program);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, LIST_BINDING, r->splat_list);
+  gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+  gl->DispatchComputeIndirect(4);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /* Wavelengths first .. first + count - 1; those below ledger_first are in the ledger already. */
@@ -40,60 +65,134 @@ void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, siz
   abbe_renderer_set_int(r, r->trace, "ledger_first", (int)ledger_first);
   abbe_renderer_set_float(r, r->trace, "share_limit", r->plan.desc.energy_share);
   abbe_renderer_set_float(r, r->trace, "ledger_unit", ledger_unit(r, light));
-  dispatch_photons(r, light, count);
+  clear_buffer(r, r->buffer[BINDING_SIGNATURES]);
+  clear_buffer(r, r->path_marks);
+  clear_count(r, r->path_list);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, r->path_marks);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->path_list);
+  size_t groups = (r->light[light].photon_count + PHOTON_GROUP - 1) / PHOTON_GROUP;
+  if (groups > 0) r->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
+  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-static void deposit_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
-                          size_t interval_first, size_t intervals) {
-  r->gl->UseProgram(r->deposit);
+/* Lists the batch's pieces of light, those of one chunk of the photons. */
+static void list_pieces(abbe_renderer *r, size_t light, size_t first, size_t count,
+                        size_t interval_first, size_t interval_end, size_t chunk) {
+  const abbe_gl *gl = r->gl;
+  gl->UseProgram(r->deposit);
   abbe_renderer_set_int(r, r->deposit, "light", (int)light);
   abbe_renderer_set_int(r, r->deposit, "grid", (int)r->plan.desc.photons);
   abbe_renderer_set_int(r, r->deposit, "map_size", (int)r->plan.desc.map_size);
   abbe_renderer_set_int(r, r->deposit, "lane_first", (int)first);
   abbe_renderer_set_int(r, r->deposit, "lane_count", (int)count);
   abbe_renderer_set_int(r, r->deposit, "interval_first", (int)interval_first);
-  dispatch_photons(r, light, intervals * r->plan.desc.orders);
+  abbe_renderer_set_int(r, r->deposit, "interval_end", (int)interval_end);
+  gl->Uniform1ui(gl->GetUniformLocation(r->deposit, "chunks"), (GLuint)r->chunks);
+  gl->Uniform1ui(gl->GetUniformLocation(r->deposit, "chunk"), (GLuint)chunk);
+  gl->Uniform1ui(gl->GetUniformLocation(r->deposit, "most"), (GLuint)r->splat_room);
+  clear_count(r, r->splat_list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->path_list);
+  dispatch_list(r, r->deposit, r->path_list, r->light[light].photon_count * r->plan.desc.orders);
 }
 
-static void clear_buffer(abbe_renderer *r, GLuint buffer) {
-  static const GLuint zero = 0;
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  r->gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                         &zero);
+static abbe_result deposit_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
+                                 size_t interval_first, size_t interval_end, abbe_error *error) {
+  for (size_t chunk = 0; chunk < r->chunks; chunk++) {
+    list_pieces(r, light, first, count, interval_first, interval_end, chunk);
+    abbe_renderer_end_pass(r, "light: gap fill");
+    if (r->chunks > 1 && read_count(r, r->splat_list) > r->splat_room)
+      return abbe_error_set(error, ABBE_GL,
+                            "the photons' light falls into more than %zu pieces; "
+                            "use fewer photons or wavelengths",
+                            r->splat_room * r->chunks);
+    r->gl->UseProgram(r->splat);
+    abbe_renderer_set_int(r, r->splat, "map_size", (int)r->plan.desc.map_size);
+    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->splat, "most"), (GLuint)r->splat_room);
+    r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
+    dispatch_list(r, r->splat, r->splat_list, r->splat_room);
+    abbe_renderer_end_pass(r, "light: spectral map");
+  }
+  return ABBE_OK;
 }
 
+/* Coarse to fine: each level takes over what the coarser ones hold. */
 static void resolve_map(abbe_renderer *r, size_t light) {
-  GLuint side = (GLuint)r->plan.desc.map_size;
   r->gl->UseProgram(r->resolve);
   abbe_renderer_set_int(r, r->resolve, "light", (int)light);
-  abbe_renderer_set_int(r, r->resolve, "map_size", (int)side);
+  abbe_renderer_set_int(r, r->resolve, "map_size", (int)r->plan.desc.map_size);
+  abbe_renderer_set_int(r, r->resolve, "levels", (int)r->map_levels);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, r->map_coarse);
   r->gl->BindImageTexture(0, r->map, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  r->gl->DispatchCompute((side + 63) / 64, side, 1);
+  for (int level = (int)r->map_levels - 1; level >= 0; level--) {
+    GLuint side = (GLuint)(r->plan.desc.map_size >> level);
+    abbe_renderer_set_int(r, r->resolve, "level", level);
+    r->gl->DispatchCompute((side + 63) / 64, side, 1);
+    r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  }
   r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-/* All wavelengths of one light, in batches that overlap by one node so that every interval
- * between nodes lies in exactly one of them. */
+typedef struct batch {
+  size_t first, count; /* wavelengths */
+  size_t interval_first, interval_end;
+} batch;
+
+/* All wavelengths in batches that overlap by one node, so that every interval between nodes lies
+ * in exactly one of them. False after the last. */
+static bool next_batch(const abbe_renderer *r, batch *b) {
+  size_t n = r->plan.desc.wavelengths;
+  if (b->count > 0 && b->first + b->count == n) return false;
+  b->first = b->count == 0 ? 0 : b->first + b->count - 1;
+  b->count = n - b->first < r->lanes ? n - b->first : r->lanes;
+  b->interval_first = b->first == 0 ? 0 : b->first + 1;
+  b->interval_end = b->first + b->count + (b->first + b->count == n ? 1 : 0);
+  return true;
+}
+
 static abbe_result trace_and_deposit(abbe_renderer *r, size_t light,
                                      abbe_renderer_progress progress, void *user,
                                      abbe_error *error) {
   size_t n = r->plan.desc.wavelengths, done = 0;
-  for (size_t first = 0;; first += r->lanes - 1) {
-    size_t count = n - first < r->lanes ? n - first : r->lanes;
-    bool last = first + count == n;
-    size_t interval_first = first == 0 ? 0 : first + 1;
-    size_t interval_end = last ? n + 1 : first + count;
+  batch b = {0};
+  abbe_result result = ABBE_OK;
+  while (result == ABBE_OK && next_batch(r, &b)) {
     abbe_renderer_begin_pass(r);
-    abbe_renderer_trace_batch(r, light, first, count, done);
+    abbe_renderer_trace_batch(r, light, b.first, b.count, done);
     abbe_renderer_end_pass(r, "light: photons");
-    deposit_batch(r, light, first, count, interval_first, interval_end - interval_first);
-    abbe_renderer_end_pass(r, "light: spectral map");
-    done = first + count;
+    result = deposit_batch(r, light, b.first, b.count, b.interval_first, b.interval_end, error);
+    done = b.first + b.count;
     double share = ((double)light + (double)done / (double)n) / (double)r->plan.light_count;
-    if (progress != NULL && !progress(user, 0.5 * share))
-      return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-    if (last) return ABBE_OK;
+    if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
+      result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
   }
+  return result;
+}
+
+/* Counts the pieces of light, the same in every frame, and makes room for them. */
+static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
+  size_t most = 1;
+  r->chunks = 1;
+  abbe_result result =
+      abbe_renderer_make_buffer(r, LIST_HEADER + SPLAT_BYTES, NULL, &r->splat_list, error);
+  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+    batch b = {0};
+    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+    abbe_renderer_bind_tables(r);
+    while (result == ABBE_OK && next_batch(r, &b)) {
+      abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
+      list_pieces(r, light, b.first, b.count, b.interval_first, b.interval_end, 0);
+      size_t count = read_count(r, r->splat_list);
+      if (count > most) most = count;
+    }
+  }
+  if (result != ABBE_OK) return result;
+  /* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
+  r->chunks = most > MAX_SPLATS ? most / (MAX_SPLATS * 4 / 5) + 1 : 1;
+  r->splat_room = most > MAX_SPLATS ? MAX_SPLATS : most;
+  r->gl->DeleteBuffers(1, &r->splat_list);
+  return abbe_renderer_make_buffer(r, LIST_HEADER + (r->splat_room + 1) * SPLAT_BYTES, NULL,
+                                   &r->splat_list, error);
 }
 
 abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_renderer_progress progress, void *user,
@@ -103,8 +202,8 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_renderer_progress progr
     abbe_renderer_begin_pass(r);
     result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
     abbe_renderer_end_pass(r, "light: photon placement");
-    bind_all(r);
-    clear_buffer(r, r->buffer[BINDING_MAP_SUMS]);
+    abbe_renderer_bind_tables(r);
+    clear_buffer(r, r->map_sums);
     clear_buffer(r, r->buffer[BINDING_LEDGER]);
     abbe_renderer_end_pass(r, "light: spectral map");
     if (result == ABBE_OK) result = trace_and_deposit(r, light, progress, user, error);
@@ -134,10 +233,10 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
   ledger->absorbed += wide(word + 4) * unit;
   ledger->trapped += wide(word + 6) * unit;
   ledger->missed += wide(word + 8) * unit;
-  size_t texels = r->plan.desc.map_size * r->plan.desc.map_size;
+  size_t texels = r->map_texels;
   GLuint *sum = malloc(texels * 6 * sizeof *sum);
   if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_MAP_SUMS]);
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->map_sums);
   r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(texels * 6 * sizeof *sum), sum);
   double deposited = 0;
   for (size_t i = 0; i < texels; i++) deposited += wide(sum + 6 * i + 2);
@@ -171,21 +270,31 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 4, NULL,
                                        &r->buffer[BINDING_SIGNATURES], error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, a_lane * 4, NULL, &r->path_marks, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, LIST_HEADER + a_lane * 4, NULL, &r->path_list, error);
   return result;
 }
 
 static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
-  char defines[768];
-  snprintf(defines, sizeof defines,
-           "%s#define LANES %zu\n#define STEPS %zu\n%s#define MAX_BRIDGE %s\n", r->defines,
-           r->lanes, r->steps, r->plan.desc.fill == ABBE_FILL_BRIDGE ? "#define BRIDGE\n" : "",
-           r->plan.layers ? "float(map_size) / 16.0" : "float(map_size)");
+  char defines[1280];
+  snprintf(
+      defines, sizeof defines,
+      "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n%s#define MAX_BRIDGE %s\n",
+      r->defines, r->lanes, r->steps, r->map_levels,
+      r->plan.desc.fill == ABBE_FILL_BRIDGE ? "#define BRIDGE\n" : "",
+      r->plan.layers ? "float(map_size) / 16.0" : "float(map_size)");
   abbe_result result =
       abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_deposit.comp", defines, &r->deposit, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "map_resolve.comp", NULL, &r->resolve, error);
+    result = abbe_program_make_compute(r->gl, "list_groups.comp", NULL, &r->list_groups, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "photon_splat.comp", NULL, &r->splat, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "map_resolve.comp", r->defines, &r->resolve, error);
   return result;
 }
 
@@ -236,20 +345,36 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
   return result;
 }
 
+/* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
+static void size_map(abbe_renderer *r) {
+  size_t side = r->plan.desc.map_size;
+  r->map_levels = 1;
+  r->map_texels = side * side;
+  while (r->map_levels < MAX_MAP_LEVELS && side % 2 == 0 && side > 2) {
+    side /= 2;
+    r->map_levels++;
+    r->map_texels += side * side;
+  }
+}
+
 abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
-  size_t map = r->plan.desc.map_size;
   abbe_result result = count_photons(r, error);
+  size_map(r);
   if (result == ABBE_OK) result = make_landings(r, error);
   if (result == ABBE_OK) result = make_programs(r, error);
   if (result == ABBE_OK)
-    result =
-        abbe_renderer_make_buffer(r, map * map * 6 * 4, NULL, &r->buffer[BINDING_MAP_SUMS], error);
+    result = abbe_renderer_make_buffer(r, r->map_texels * 6 * 4, NULL, &r->map_sums, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(
+        r, (r->map_texels - r->plan.desc.map_size * r->plan.desc.map_size) * 16, NULL,
+        &r->map_coarse, error);
   if (result == ABBE_OK)
     result =
         abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
     result = fit_map(r, light, error);
   if (result == ABBE_OK) abbe_renderer_upload_lights(r);
+  if (result == ABBE_OK) result = make_splats(r, error);
   return result;
 }
 
@@ -267,19 +392,26 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
   *orders = r->plan.desc.orders;
   *lanes = r->lanes;
   size_t size = *count * *orders * *lanes * 16;
-  bind_all(r);
+  abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);
   *data = malloc(size > 0 ? size : 1);
   unsigned *cell = malloc(*count * 4 + 4);
-  if (*data == NULL || cell == NULL) {
+  GLuint *path = malloc(size / 4 + 4);
+  if (*data == NULL || cell == NULL || path == NULL) {
     free(*data);
     free(cell);
+    free(path);
     *data = NULL;
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings", *count);
   }
   const abbe_gl *gl = r->gl;
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LANDINGS]);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, *data);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SIGNATURES]);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(size / 4), path);
+  for (size_t i = 0; i < size / 16; i++)
+    for (size_t k = 0; k < 4 && path[i] == 0; k++) (*data)[4 * i + k] = 0;
+  free(path);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER, (GLsizeiptr)(*count * 4), cell);
   if (cells != NULL)

@@ -9,10 +9,16 @@ layout(local_size_x = 64) in;
 // [(photon * ORDERS + order) * LANES + lane]: where it lands; w: flux for unit weight, W.
 layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
 // Receiver and facets along the way, equal for paths that vary continuously; refractor in the low
-// eight bits.
+// eight bits; 0: no landing.
 layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
 // Y weight of the samples at [light * WAVELENGTHS + i].
 layout(std430, binding = 11) readonly buffer SampleWeights { vec4 sample_weight[]; };
+// Paths (photon * ORDERS + order) that land at some wavelength, each listed once.
+layout(std430, binding = 7) buffer PathMarks { uint path_mark[]; };
+layout(std430, binding = 13) buffer PathList {
+  uint path_count, path_groups[3];
+  uint path_list[];
+};
 // lo and hi of reached, reflected, absorbed, trapped, missed.
 layout(std430, binding = 12) buffer Ledger { uint ledger[]; };
 
@@ -80,11 +86,9 @@ void trace(uint photon, int i, float flux, vec3 o, vec3 d, Hit front, bool reach
            out float entry[5]) {
   int lane = i - lane_first;
   for (int k = 0; k < 5; k++) entry[k] = 0.0;
-  for (int order = 0; order < ORDERS; order++)
-    landing[(photon * ORDERS + order) * LANES + lane] = vec4(0);
   if (!reached) return;
   int r = front.refractor;
-  vec2 spectrum = spectra[r * WAVELENGTHS + i];
+  vec2 spectrum = spectra[r * WAVELENGTHS + i].xy;
   float n = spectrum.x, cos_i = -dot(d, front.n);
   float reflected = fresnel(cos_i, 1.0 / n);
   entry[REACHED] = 1.0;
@@ -117,7 +121,9 @@ void trace(uint photon, int i, float flux, vec3 o, vec3 d, Hit front, bool reach
       if (land(wall, outer, at, receiver)) {
         uint index = (photon * ORDERS + order) * LANES + lane;
         landing[index] = vec4(at, out_share * flux);
-        signature[index] = (path * 31u + receiver) << 8 | uint(r);
+        if (atomicExchange(path_mark[photon * ORDERS + order], 1u) == 0u)
+          path_list[atomicAdd(path_count, 1u)] = photon * ORDERS + order;
+        signature[index] = (path * 31u + receiver) << 8 | 0x80000000u | uint(r);
       } else {
         entry[MISSED] += out_share;
       }

@@ -7,7 +7,7 @@ in vec3 world;
 in vec3 world_normal;
 in vec2 surface_uv;
 
-layout(std430, binding = 15) readonly buffer EyeWeights { vec4 eye_weight[]; };  // rgb, sum 1
+layout(std140, binding = 6) uniform EyeWeights { vec4 eye_weight[WAVELENGTHS]; };  // rgb, sum 1
 uniform vec3 eye;
 uniform int refractor;
 uniform float share_limit;
@@ -67,7 +67,7 @@ void main() {
 
   vec3 sum = vec3(0), mirror = vec3(0);
   for (int i = 0; i < WAVELENGTHS; i++) {
-    vec2 spectrum = spectra[refractor * WAVELENGTHS + i];
+    vec2 spectrum = spectra[refractor * WAVELENGTHS + i].xy;
     float n = spectrum.x;
     float reflected = fresnel(-dot(d, front.n), 1.0 / n);
     mirror += reflected * eye_weight[i].rgb;

@@ -13,14 +13,34 @@ double abbe_ledger_imbalance(const abbe_ledger *l) {
   return fabs(l->reached - parts) / l->reached;
 }
 
+static size_t room(size_t count) {
+  return count > 0 ? count : 1;
+}
+
+/* OpenGL promises uniform blocks of 16 KiB; every desktop driver, llvmpipe too, has 64. */
+static const char *storage(size_t count, size_t element, const char *define) {
+  return count * element > 65536 ? define : "";
+}
+
 static void write_defines(abbe_renderer *r) {
   const abbe_plan *p = &r->plan;
+  size_t planes = 0, spectra = p->refractor_count * p->desc.wavelengths;
+  for (size_t i = 0; i < p->refractor_count; i++)
+    if (p->model[i] == ABBE_REFRACTOR_CONVEX)
+      planes += r->scene->object[p->refractor_object[i]].exact.count;
   snprintf(r->defines, sizeof r->defines,
            "#define LIGHTS %zu\n#define REFRACTORS %zu\n#define RECEIVERS %zu\n"
-           "#define WAVELENGTHS %zu\n#define ORDERS %zu\n%s%s%s%s%s",
+           "#define WAVELENGTHS %zu\n#define ORDERS %zu\n#define LIGHT_ROOM %zu\n"
+           "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
+           "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n%s%s%s%s%s%s%s%s",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
-           p->desc.orders, p->spheres ? "#define SPHERES\n" : "",
-           p->convex ? "#define CONVEX\n" : "", p->layers ? "#define LAYERS\n" : "",
+           p->desc.orders, room(p->light_count), room(p->refractor_count), room(planes),
+           room(p->parallelogram_count), room(p->receiver_count), room(spectra),
+           storage(planes, 16, "#define PLANES_IN_STORAGE\n"),
+           storage(p->receiver_count, 32, "#define SURFACES_IN_STORAGE\n"),
+           storage(spectra, 16, "#define SPECTRA_IN_STORAGE\n"),
+           p->spheres ? "#define SPHERES\n" : "", p->convex ? "#define CONVEX\n" : "",
+           p->layers ? "#define LAYERS\n" : "",
            p->receivers == ABBE_RECEIVER_EXACT ? "#define EXACT_RECEIVERS\n" : "",
            p->absorbing ? "#define ABSORBING\n" : "");
 }
@@ -82,6 +102,10 @@ void abbe_renderer_free(abbe_renderer *r) {
   r->buffer[BINDING_PHOTONS] = 0; /* one of the lists */
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
+  gl->DeleteBuffers(1, &r->map_coarse);
+  gl->DeleteBuffers(1, &r->table_eye_weights);
+  const GLuint lists[] = {r->path_marks, r->path_list, r->splat_list, r->map_sums};
+  gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,          r->light_owner, r->light_depth,
       r->light_receivers, r->light_receivers_depth, r->map,         r->eye_receivers,
@@ -121,6 +145,7 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_renderer_progress progres
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
   r->statistics = statistics;
   double start_ms = abbe_renderer_now_ms();
+  abbe_renderer_bind_tables(r);
   abbe_result result;
   if (r->plan.desc.profile == ABBE_PROFILE_THESIS) {
     result = abbe_renderer_thesis_frame(r, error);

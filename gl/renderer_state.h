@@ -22,9 +22,8 @@ enum {
   BINDING_SIGNATURES,
   BINDING_SAMPLE_WEIGHTS,
   BINDING_LEDGER,
-  BINDING_MAP_SUMS,
+  BINDING_SHARED, /* paths, then map sums */
   BINDING_INTERVALS,
-  BINDING_EYE_WEIGHTS,
   BINDING_COUNT
 };
 
@@ -59,10 +58,14 @@ struct abbe_renderer {
   abbe_view eye;
 
   GLuint buffer[BINDING_COUNT];
+  GLuint table_eye_weights;
+  GLuint path_marks, path_list, splat_list, map_sums;
+  size_t splat_room, chunks;   /* pieces of light that are listed at a time */
   GLuint list[LEVELS]; /* photon lists, last level last */
   GLuint texture_surface;
   GLuint light_layers, light_owner, light_depth, light_receivers, light_receivers_depth;
-  GLuint map;
+  GLuint map, map_coarse;      /* levels above the finest */
+  size_t map_levels, map_texels;
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
       eye_layers_depth, eye_picture;
   GLuint framebuffer, empty_array;
@@ -70,9 +73,9 @@ struct abbe_renderer {
   size_t lanes;      /* wavelengths traced in one batch */
   size_t steps;      /* of an interval */
   size_t device_bytes;
-  char defines[512];
+  char defines[1024];
 
-  GLuint place, groups, trace, deposit, resolve, layer, receivers, refraction, eye_resolve;
+  GLuint place, groups, list_groups, trace, deposit, splat, resolve, layer, receivers, refraction, eye_resolve;
   thesis_state *thesis;
 
   abbe_statistics *statistics; /* of the frame that runs, or NULL */
@@ -98,6 +101,7 @@ void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *na
                                 GLuint texture);
 void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value);
 void abbe_renderer_set_float(abbe_renderer *r, GLuint program, const char *name, double value);
+void abbe_renderer_bind_tables(abbe_renderer *r);
 void abbe_renderer_draw(abbe_renderer *r, size_t object);
 void abbe_renderer_begin_pass(abbe_renderer *r);
 void abbe_renderer_end_pass(abbe_renderer *r, const char *name);

@@ -92,6 +92,16 @@ void abbe_renderer_set_float(abbe_renderer *r, GLuint program, const char *name,
   r->gl->Uniform1f(r->gl->GetUniformLocation(program, name), (float)value);
 }
 
+/* The scene's tables, as uniform blocks and as storage: the shaders choose by size. */
+void abbe_renderer_bind_tables(abbe_renderer *r) {
+  for (GLuint i = 0; i < BINDING_COUNT; i++) {
+    if (r->buffer[i] == 0) continue;
+    if (i <= BINDING_SPECTRA) r->gl->BindBufferBase(GL_UNIFORM_BUFFER, i, r->buffer[i]);
+    r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, r->buffer[i]);
+  }
+  r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 1, r->table_eye_weights);
+}
+
 void abbe_renderer_draw(abbe_renderer *r, size_t object) {
   const mesh_buffers *mesh = &r->mesh[object];
   r->gl->BindVertexArray(mesh->array);

@@ -232,7 +232,7 @@ static abbe_result upload_surfaces(abbe_renderer *r, abbe_error *error) {
 
 static abbe_result upload_spectra(abbe_renderer *r, abbe_error *error) {
   size_t n = r->plan.desc.wavelengths;
-  float(*spectrum)[2] = calloc(r->plan.refractor_count * n + 1, sizeof *spectrum);
+  float(*spectrum)[4] = calloc(r->plan.refractor_count * n + 1, sizeof *spectrum);
   if (spectrum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < r->plan.refractor_count; i++) {
@@ -324,8 +324,7 @@ static abbe_result upload_weights(abbe_renderer *r, const abbe_wavelengths *w, a
     result = abbe_renderer_make_buffer(r, r->plan.light_count * n * sizeof *sample, sample,
                                        &r->buffer[BINDING_SAMPLE_WEIGHTS], error);
   if (result == ABBE_OK)
-    result =
-        abbe_renderer_make_buffer(r, n * sizeof *eye, eye, &r->buffer[BINDING_EYE_WEIGHTS], error);
+    result = abbe_renderer_make_buffer(r, n * sizeof *eye, eye, &r->table_eye_weights, error);
   free(sample);
   free(eye);
   return result;

@@ -34,7 +34,9 @@ static void write_defines(unsigned bits, char *out, size_t size) {
   int used = snprintf(out, size,
                       "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
                       "#define WAVELENGTHS 7\n#define ORDERS 3\n#define LANES 7\n"
-                      "#define STEPS 64\n#define BRIDGE\n#define MAX_BRIDGE 64.0\n");
+                      "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
+                      "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
+                      "#define STEPS 64\n#define MAP_LEVELS 6\n#define BRIDGE\n#define MAX_BRIDGE 64.0\n");
   for (int i = 0; i < 5; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }
@@ -51,7 +53,7 @@ static void compiles(const abbe_program_stage *stages, size_t count, const char 
 
 static void test_all_combinations(void **state) {
   (void)state;
-  char defines[512];
+  char defines[1024];
   for (unsigned bits = 0; bits < 32; bits++) {
     write_defines(bits, defines, sizeof defines);
     const abbe_program_stage trace = {GL_COMPUTE_SHADER, "photon_trace.comp"};
@@ -67,7 +69,7 @@ static void test_all_combinations(void **state) {
 
 static void test_every_compute_shader(void **state) {
   (void)state;
-  char defines[512];
+  char defines[1024];
   size_t seen = 0;
   write_defines(31, defines, sizeof defines);
   for (const char *const *file = abbe_program_files(); *file != NULL; file++) {
@@ -83,7 +85,7 @@ static void test_every_compute_shader(void **state) {
 static void test_thesis_programs(void **state) {
   (void)state;
   static const char *const fragments[] = {"thesis_fill.frag", "thesis_refraction.frag"};
-  char defines[512];
+  char defines[1024];
   write_defines(0, defines, sizeof defines);
   for (size_t i = 0; i < 2; i++) {
     const abbe_program_stage screen[] = {{GL_VERTEX_SHADER, "screen.vert"},

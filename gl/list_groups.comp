@@ -1,0 +1,11 @@
+// Turns the count at the head of a list into the dispatch that consumes it.
+layout(local_size_x = 1) in;
+layout(std430, binding = 15) buffer List { uint count, groups_x, groups_y, groups_z; };
+uniform uint group_size;
+uniform uint most;  // elements that the list has room for
+
+void main() {
+  groups_x = (min(count, most) + group_size - 1u) / group_size;
+  groups_y = 1u;
+  groups_z = 1u;
+}

@@ -1,0 +1,45 @@
+// Adds listed pieces to their level of the map, bilinearly over four texels; the four parts of a
+// piece add up to it, to the last unit.
+layout(local_size_x = 64) in;
+#include "splat_list.glsl"
+#include "wide_sum.glsl"
+// Levels one after another, each texel X lo, hi, Y lo, hi, Z lo, hi.
+layout(std430, binding = 13) buffer MapSums { uint map_sum[]; };
+uniform int map_size;
+uniform uint most;
+
+uint level_offset(int level) {
+  // side^2 (1 + 1/4 + ...), level terms.
+  uint texels = uint(map_size) * uint(map_size);
+  return (texels - (texels >> (2 * level))) / 3u * 4u;
+}
+
+void add(uint texel, uvec3 v) {
+  uint at = texel * 6u;
+  WIDE_ADD(map_sum, at, at + 1u, v.x)
+  WIDE_ADD(map_sum, at + 2u, at + 3u, v.y)
+  WIDE_ADD(map_sum, at + 4u, at + 5u, v.z)
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= min(splat_count, most)) return;
+  uint word = i * SPLAT_WORDS;
+  uint y_level = splat[word + 1u];
+  int level = int(y_level & 7u), side = map_size >> level;
+  vec2 p = vec2(splat[word], y_level >> 3) * vec2(1.0 / 1048576.0, 1.0 / 131072.0);
+  uvec3 units = uvec3(splat[word + 2u], splat[word + 3u], splat[word + 4u]);
+  vec2 at = p * exp2(-float(level)) - 0.5;
+  ivec2 base = ivec2(floor(at));
+  vec2 f = at - vec2(base);
+  ivec2 lo = clamp(base, ivec2(0), ivec2(side - 1)), hi = clamp(base + 1, ivec2(0), ivec2(side - 1));
+  uint row_lo = level_offset(level) + uint(lo.y * side), row_hi = level_offset(level) + uint(hi.y * side);
+  vec3 whole = vec3(units);
+  uvec3 part_0 = min(uvec3(whole * ((1.0 - f.x) * (1.0 - f.y))), units);
+  uvec3 part_1 = min(uvec3(whole * (f.x * (1.0 - f.y))), units - part_0);
+  uvec3 part_2 = min(uvec3(whole * ((1.0 - f.x) * f.y)), units - part_0 - part_1);
+  add(row_lo + uint(lo.x), part_0);
+  add(row_lo + uint(hi.x), part_1);
+  add(row_hi + uint(lo.x), part_2);
+  add(row_hi + uint(hi.x), units - part_0 - part_1 - part_2);
+}
