@@ -25,7 +25,7 @@ static const struct argp_option options[] = {
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0, "samples of the spectrum, 1 to 1000 (7)", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
-    {"photons", OPTION_PHOTONS, "N", 0, "side of the photon grid, 1 to 4096 (512)", 1},
+    {"photons", OPTION_PHOTONS, "N", 0, "side of the photon grid, 1 to 4096 (256)", 1},
     {"map", OPTION_MAP, "N", 0, "side of the spectral map, 1 to 4096 (1024)", 1},
     {"samples", OPTION_SAMPLES, "N", 0, "samples a pixel side, 1 to 4 (2; thesis 1)", 1},
     {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { PIXEL_LIST_BINDING = 15 };
+
 void abbe_renderer_fit_eye(abbe_renderer *r) {
   const abbe_camera *camera = &r->scene->camera;
   double forward[3];
@@ -26,7 +28,7 @@ void abbe_renderer_fit_eye(abbe_renderer *r) {
 static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   size_t w = r->plan.desc.width * r->plan.desc.supersample;
   size_t h = r->plan.desc.height * r->plan.desc.supersample;
-  bool layers = r->plan.layers && r->plan.refractor_count > 0;
+  bool layers = r->plan.refractor_count > 0;
   const struct {
     GLuint *texture;
     GLenum format;
@@ -38,7 +40,8 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
       {&r->eye_caustic, GL_RGBA32F, 0, true},
       {&r->eye_refraction, GL_RGBA32F, 0, true},
       {&r->eye_depth, GL_DEPTH_COMPONENT32F, 0, true},
-      {&r->eye_layers, GL_RGBA32F, 2, layers},
+      {&r->eye_layers, GL_RGBA32F, r->plan.layers ? 2 : 1, layers},
+      {&r->eye_owner, GL_R16UI, 0, layers},
       {&r->eye_layers_depth, GL_DEPTH_COMPONENT32F, 0, layers},
   };
   abbe_result result = ABBE_OK;
@@ -46,6 +49,8 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
     if (targets[i].wanted)
       result = abbe_renderer_make_texture(r, targets[i].format, w, h, targets[i].layers, false,
                                           targets[i].texture, error);
+  if (result == ABBE_OK && layers)
+    result = abbe_renderer_make_buffer(r, 16 + 4 * w * h, NULL, &r->pixel_list, error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_texture(r, GL_RGBA32F, r->plan.desc.width, r->plan.desc.height, 0,
                                         false, &r->eye_picture, error);
@@ -55,14 +60,15 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
 abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   static const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
                                            {GL_FRAGMENT_SHADER, "receivers.frag"}};
-  static const abbe_program_stage refracted[] = {{GL_VERTEX_SHADER, "surface.vert"},
-                                                 {GL_FRAGMENT_SHADER, "refraction.frag"}};
   abbe_renderer_fit_eye(r);
   abbe_result result = make_targets(r, error);
   if (result == ABBE_OK)
     result = abbe_program_make(r->gl, lit, 2, r->defines, &r->receivers, error);
   if (result == ABBE_OK && r->plan.refractor_count > 0)
-    result = abbe_program_make(r->gl, refracted, 2, r->defines, &r->refraction, error);
+    result = abbe_program_make_compute(r->gl, "refraction.comp", r->defines, &r->refraction, error);
+  if (result == ABBE_OK && r->plan.refractor_count > 0)
+    result =
+        abbe_program_make_compute(r->gl, "refraction_list.comp", NULL, &r->refraction_list, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "eye_resolve.comp", NULL, &r->eye_resolve, error);
   return result;
@@ -129,26 +135,72 @@ static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
   return ABBE_OK;
 }
 
+/* Front with its owner, and, where a mesh ends at its back layer, the back. */
 static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
   const abbe_gl *gl = r->gl;
   size_t w = r->plan.desc.width * r->plan.desc.supersample;
   size_t h = r->plan.desc.height * r->plan.desc.supersample;
-  static const int back = 1;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  static const GLuint nobody[4] = {0, 0, 0, 0};
   abbe_renderer_begin_pass(r);
-  abbe_result result =
-      abbe_renderer_set_target(r, &r->eye_layers, &back, 1, r->eye_layers_depth, w, h, error);
-  if (result != ABBE_OK) return result;
-  gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->UseProgram(r->layer);
   set_eye(r, r->layer);
+  gl->Enable(GL_DEPTH_TEST);
   gl->Enable(GL_CULL_FACE);
-  gl->CullFace(GL_FRONT);
-  for (size_t i = 0; i < r->plan.refractor_count; i++)
-    abbe_renderer_draw(r, r->plan.refractor_object[i]);
+  for (int back = 0; back <= (r->plan.layers ? 1 : 0); back++) {
+    GLuint target[2] = {r->eye_layers, r->eye_owner};
+    int layer[2] = {back, -1};
+    abbe_result result =
+        abbe_renderer_set_target(r, target, layer, back ? 1 : 2, r->eye_layers_depth, w, h, error);
+    if (result != ABBE_OK) return result;
+    gl->ClearBufferfv(GL_COLOR, 0, nothing);
+    if (!back) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
+    gl->ClearBufferfv(GL_DEPTH, 0, &far);
+    gl->CullFace(back ? GL_FRONT : GL_BACK);
+    for (size_t i = 0; i < r->plan.refractor_count; i++) {
+      gl->Uniform1ui(gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
+      abbe_renderer_draw(r, r->plan.refractor_object[i]);
+    }
+  }
   gl->Disable(GL_CULL_FACE);
   abbe_renderer_end_pass(r, "eye: refractor layers");
+  return ABBE_OK;
+}
+
+static void list_pixels(abbe_renderer *r, size_t w, size_t h) {
+  static const GLuint zero[4] = {0, 0, 0, 0};
+  const abbe_gl *gl = r->gl;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->pixel_list);
+  gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, PIXEL_LIST_BINDING, r->pixel_list);
+  gl->UseProgram(r->refraction_list);
+  abbe_renderer_bind_texture(r, r->refraction_list, "eye_layers", 4, r->eye_layers);
+  abbe_renderer_bind_texture(r, r->refraction_list, "eye_receivers", 5, r->eye_receivers);
+  abbe_renderer_bind_texture_2d(r, r->refraction_list, "eye_owner", 6, r->eye_owner);
+  abbe_renderer_dispatch_2d(r, w, h);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+/* In strips where somebody watches, so that a long frame shows its progress and can be stopped. */
+static abbe_result refract_pixels(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+                                  abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  GLuint count = 0;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->pixel_list);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
+  GLuint strips = progress != NULL ? 16 : 1;
+  GLuint step = (count / strips / PHOTON_GROUP + 1) * PHOTON_GROUP;
+  for (GLuint first = 0; first < count; first += step) {
+    GLuint size = count - first < step ? count - first : step;
+    gl->Uniform1ui(gl->GetUniformLocation(r->refraction, "pixel_first"), first);
+    gl->DispatchCompute((size + PHOTON_GROUP - 1) / PHOTON_GROUP, 1, 1);
+    if (progress == NULL) continue;
+    gl->Finish();
+    if (!progress(user, 0.5 + 0.5 * (double)(first + size) / (double)count))
+      return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+  }
+  gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   return ABBE_OK;
 }
 
@@ -160,35 +212,23 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_renderer_progress prog
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   abbe_renderer_begin_pass(r);
-  abbe_result result =
-      abbe_renderer_set_target(r, &r->eye_refraction, &flat, 1, r->eye_depth, w, h, error);
+  abbe_result result = abbe_renderer_set_target(r, &r->eye_refraction, &flat, 1, 0, w, h, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   if (r->plan.refractor_count == 0) return ABBE_OK;
+  list_pixels(r, w, h);
   gl->UseProgram(r->refraction);
   abbe_renderer_set_lighting(r, r->refraction);
   abbe_renderer_bind_texture(r, r->refraction, "eye_layers", 4, r->eye_layers);
-  set_eye(r, r->refraction);
   abbe_renderer_bind_texture(r, r->refraction, "eye_receivers", 5, r->eye_receivers);
+  abbe_renderer_bind_texture_2d(r, r->refraction, "eye_owner", 6, r->eye_owner);
+  set_eye(r, r->refraction);
   abbe_renderer_set_float(r, r->refraction, "share_limit", r->plan.desc.energy_share);
-  gl->Enable(GL_CULL_FACE);
-  gl->CullFace(GL_BACK);
-  /* In strips, so that a long frame can show its progress and be stopped. */
-  int strips = progress != NULL ? 16 : 1, step = (int)(h + (size_t)strips - 1) / strips;
-  gl->Enable(GL_SCISSOR_TEST);
-  for (int strip = 0; strip < strips && result == ABBE_OK; strip++) {
-    gl->Scissor(0, strip * step, (GLsizei)w, step);
-    for (size_t i = 0; i < r->plan.refractor_count; i++) {
-      abbe_renderer_set_int(r, r->refraction, "refractor", (int)i);
-      abbe_renderer_draw(r, r->plan.refractor_object[i]);
-    }
-    if (progress == NULL) continue;
-    gl->Finish();
-    if (!progress(user, 0.5 + 0.5 * (strip + 1) / strips))
-      result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-  }
-  gl->Disable(GL_SCISSOR_TEST);
-  gl->Disable(GL_CULL_FACE);
+  double angle = (r->eye.window[3] - r->eye.window[2]) / (double)h;
+  abbe_renderer_set_float(r, r->refraction, "pixel_angle", angle);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_INTERVALS, r->table_bands);
+  gl->BindImageTexture(0, r->eye_refraction, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  result = refract_pixels(r, progress, user, error);
   abbe_renderer_end_pass(r, "eye: refraction");
   return result;
 }
@@ -198,13 +238,12 @@ static void resolve_picture(abbe_renderer *r) {
   abbe_renderer_begin_pass(r);
   gl->UseProgram(r->eye_resolve);
   abbe_renderer_bind_texture(r, r->eye_resolve, "receivers", 0, r->eye_receivers);
-  gl->ActiveTexture(GL_TEXTURE1);
-  gl->BindTexture(GL_TEXTURE_2D, r->eye_refraction);
+  abbe_renderer_bind_texture_2d(r, r->eye_resolve, "refraction", 1, r->eye_refraction);
   gl->BindImageTexture(0, r->eye_picture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   abbe_renderer_set_int(r, r->eye_resolve, "samples", (int)r->plan.desc.supersample);
   gl->Uniform2i(gl->GetUniformLocation(r->eye_resolve, "size"), (GLint)r->plan.desc.width,
                 (GLint)r->plan.desc.height);
-  gl->DispatchCompute((GLuint)((r->plan.desc.width + 63) / 64), (GLuint)r->plan.desc.height, 1);
+  abbe_renderer_dispatch_2d(r, r->plan.desc.width, r->plan.desc.height);
   gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   abbe_renderer_end_pass(r, "eye: picture");
 }

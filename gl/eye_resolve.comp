@@ -1,5 +1,5 @@
 // The picture: refractors over receivers, samples averaged to pixels.
-layout(local_size_x = 64) in;
+layout(local_size_x = 32, local_size_y = 16) in;
 layout(binding = 0) uniform sampler2DArray receivers;
 layout(binding = 1) uniform sampler2D refraction;
 layout(rgba32f, binding = 0) writeonly uniform image2D picture;

@@ -3,14 +3,16 @@
 // to [ShahKonttinenPattanaik2007]; where its estimates start to alternate it stops, and the root
 // is bracketed by steps and closed by bisection.
 
+#include "view.glsl"
+
 #ifndef MARCH_ITERATIONS
-#define MARCH_ITERATIONS 8
+#define MARCH_ITERATIONS 5
 #endif
 #ifndef MARCH_STEPS
-#define MARCH_STEPS 24
+#define MARCH_STEPS 10
 #endif
 #ifndef MARCH_BISECTIONS
-#define MARCH_BISECTIONS 14
+#define MARCH_BISECTIONS 8
 #endif
 
 // Distance layer value at uv, bilinear over the texels that hold something; 0: nothing there.
@@ -50,30 +52,31 @@ bool behind_surface(View v, sampler2DArray layers, float layer, vec3 x, out floa
   return true;
 }
 
+// The first crossing from before to behind along the ray, closed by bisection.
 bool march_bisect(View v, sampler2DArray layers, float layer, vec3 p, vec3 d, float t_max,
                   out float t) {
-  float last = 0.0, f;
+  float low = 0.0, high = -1.0, last = 0.0, f;
   vec3 q;
   bool was_before = true;
-  for (int i = 1; i <= MARCH_STEPS; i++) {
+  for (int i = 1; i <= MARCH_STEPS && high < 0.0; i++) {
     float next = t_max * float(i) / float(MARCH_STEPS);
     bool seen = behind_surface(v, layers, layer, p + next * d, f, q);
     if (seen && f >= 0.0 && was_before) {
-      float a = last, b = next;
-      for (int k = 0; k < MARCH_BISECTIONS; k++) {
-        float m = 0.5 * (a + b);
-        bool there = behind_surface(v, layers, layer, p + m * d, f, q);
-        if (there && f >= 0.0) b = m; else a = m;
-      }
-      t = 0.5 * (a + b);
-      // A jump over the rim of something nearer is not a hit: go on behind it.
-      if (behind_surface(v, layers, layer, p + b * d, f, q) && f < t_max * 2e-2) return true;
-      was_before = false;
+      low = last;
+      high = next;
     }
-    if (!seen || f < 0.0) was_before = true;
+    was_before = !seen || f < 0.0;
     last = next;
   }
-  return false;
+  for (int k = 0; k < MARCH_BISECTIONS; k++) {
+    float m = 0.5 * (low + high);
+    bool there = behind_surface(v, layers, layer, p + m * d, f, q);
+    if (there && f >= 0.0) high = m; else low = m;
+  }
+  t = 0.5 * (low + high);
+  // A jump over the rim of something nearer is not a hit.
+  bool there = behind_surface(v, layers, layer, p + high * d, f, q);
+  return high > 0.0 && there && f < t_max * 2e-2;
 }
 
 bool march(View v, sampler2DArray layers, float layer, vec3 p, vec3 d, float t_start, float t_max,

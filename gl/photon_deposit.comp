@@ -4,7 +4,7 @@
 // itself. Pieces that fall closer together than the photons do are added first. A piece is spread
 // over the parallelogram that the neighbouring photons' landings span: where that is wide, in a
 // coarser level of the map. No branch saves time on a software rasteriser, so there are few.
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 #include "common.glsl"
 #include "photon_list.glsl"
 #include "splat_list.glsl"
@@ -30,7 +30,7 @@ uniform int interval_end;
 uniform uint chunks, chunk;  // only paths of this chunk
 uniform uint most;           // pieces that the list has room for
 
-const int MAX_PIECES = 8;  // of one footprint
+const int MAX_PIECES = 12;  // of one footprint
 
 vec2 map_position(vec3 p) {
   vec3 uvz;
@@ -78,13 +78,16 @@ void main() {
   vec2 b_back = neighbour_step(cell - ivec2(0, 1), order, reference, path, here);
   if (a == vec2(0)) a = -a_back;
   if (b == vec2(0)) b = -b_back;
-  float la = max(abs(a.x), abs(a.y)), lb = max(abs(b.x), abs(b.y));
-  vec2 across = la > lb ? a : b;
-  float narrow = min(la, lb), wide = max(la, lb);
+  // Principal axes of the cell's image: a fold makes it thin, whatever way the cell's sides point.
+  float xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
+  float half_trace = 0.5 * (xx + yy), root = length(vec2(0.5 * (xx - yy), xy));
+  float wide = sqrt(half_trace + root), narrow = sqrt(max(half_trace - root, 0.0));
+  vec2 axis = xx > yy ? vec2(0.5 * (xx - yy) + root, xy) : vec2(xy, 0.5 * (yy - xx) + root);
+  vec2 across = wide * axis / max(length(axis), 1e-20);
   float least = max(max(narrow, wide / float(MAX_PIECES)), 1.0);
-  int level = clamp(int(ceil(log2(least) - 0.25)), 0, MAP_LEVELS - 1);
+  int level = clamp(int(ceil(log2(least) + 0.25)), 0, MAP_LEVELS - 1);
   float size = exp2(float(level));
-  int across_pieces = clamp(int(ceil(wide / size - 0.25)), 1, MAX_PIECES);
+  int across_pieces = clamp(int(ceil(wide / size)), 1, MAX_PIECES);
   // A tear between neighbours is not a footprint: no farther than the pieces can cover.
   across *= min(1.0, 2.0 * size * float(MAX_PIECES) / max(wide, 1e-20));
 
@@ -110,20 +113,24 @@ void main() {
     vec2 pb = map_position(to.xyz);
     float share_a = path_a != 0u ? from.w : 0.0, share_b = path_b != 0u ? to.w : 0.0;
     bool bridge = false;
-    int pieces = 2;
+    // Halves whose landings fall together are one piece.
+    int pieces = share_a > 0.0 && share_b > 0.0 ? 2 : 1;
 #ifdef BRIDGE
     float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
     bridge = path_a != 0u && path_a == path_b && way < MAX_BRIDGE;
+    if (bridge) pieces = 1;
     while (bridge && pieces < STEPS && float(pieces) * size < way) pieces *= 2;
 #endif
     pieces = last ? 1 : pieces;
+    int intervals_row = (row + min(interval, WAVELENGTHS)) * (STEPS + 1);
+    vec3 middle = interval_sum[intervals_row + STEPS / 2].xyz;
     vec4 before = vec4(0);
     for (int k = 1; k <= pieces; k++) {
-      vec4 upto = interval_sum[(row + min(interval, WAVELENGTHS)) * (STEPS + 1) + k * STEPS / pieces];
-      bool lower = 2 * k <= pieces;
-      float along = bridge ? 0.5 * (before.w + upto.w) : lower ? 0.0 : 1.0;
-      vec2 at = mix(pa, pb, along);
-      vec3 flux = (lower ? share_a : share_b) * (upto.xyz - before.xyz);
+      vec4 upto = interval_sum[intervals_row + k * STEPS / pieces];
+      vec3 lower = min(upto.xyz, middle) - min(before.xyz, middle);
+      vec3 flux = share_a * lower + share_b * (upto.xyz - before.xyz - lower);
+      float half_way = share_b > 0.0 ? share_a > 0.0 ? (2 * k <= pieces ? 0.0 : 1.0) : 1.0 : 0.0;
+      vec2 at = mix(pa, pb, bridge ? 0.5 * (before.w + upto.w) : half_way);
       before = upto;
       float weight = last ? 0.0 : flux.x + flux.y + flux.z;
       vec2 off = abs(at - gathered_from);

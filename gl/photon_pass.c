@@ -7,10 +7,12 @@
 #include <string.h>
 
 enum { LIST_HEADER = 16, SPLAT_BYTES = 20, MAX_SPLATS = 6 << 20, LIST_BINDING = 15 };
-enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20, MAX_MAP_LEVELS = 6 };
+enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
 
 /* Share of the light that may fall outside the fitted map, on each of its four sides. */
 static const double map_tail = 2e-4;
+
+static double wide(const GLuint *lo_hi) { return ldexp((double)lo_hi[1], 32) + lo_hi[0]; }
 
 static double ledger_unit(const abbe_renderer *r, size_t light) {
   return ldexp(r->light[light].cell_flux, -24);
@@ -122,15 +124,14 @@ static void resolve_map(abbe_renderer *r, size_t light) {
   abbe_renderer_set_int(r, r->resolve, "map_size", (int)r->plan.desc.map_size);
   abbe_renderer_set_int(r, r->resolve, "levels", (int)r->map_levels);
   r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, r->map_coarse);
-  r->gl->BindImageTexture(0, r->map, 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  abbe_renderer_bind_texture(r, r->resolve, "coarser_map", 0, r->map);
   for (int level = (int)r->map_levels - 1; level >= 0; level--) {
     GLuint side = (GLuint)(r->plan.desc.map_size >> level);
     abbe_renderer_set_int(r, r->resolve, "level", level);
-    r->gl->DispatchCompute((side + 63) / 64, side, 1);
-    r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    r->gl->BindImageTexture(0, r->map, level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    abbe_renderer_dispatch_2d(r, side, side);
+    r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   }
-  r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 typedef struct batch {
@@ -177,15 +178,23 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
       abbe_renderer_make_buffer(r, LIST_HEADER + SPLAT_BYTES, NULL, &r->splat_list, error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     batch b = {0};
+    size_t done = 0;
     result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
     abbe_renderer_bind_tables(r);
+    clear_buffer(r, r->buffer[BINDING_LEDGER]);
     while (result == ABBE_OK && next_batch(r, &b)) {
-      abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
+      abbe_renderer_trace_batch(r, light, b.first, b.count, done);
+      done = b.first + b.count;
       list_pieces(r, light, b.first, b.count, b.interval_first, b.interval_end, 0);
       size_t count = read_count(r, r->splat_list);
       if (count > most) most = count;
     }
+    GLuint reached[2] = {0, 0};
+    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LEDGER]);
+    r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof reached, reached);
+    r->light[light].reached_flux = wide(reached) * ledger_unit(r, light);
   }
+  abbe_renderer_upload_lights(r);
   if (result != ABBE_OK) return result;
   /* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
   r->chunks = most > MAX_SPLATS ? most / (MAX_SPLATS * 4 / 5) + 1 : 1;
@@ -211,14 +220,12 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_renderer_progress progr
     abbe_renderer_begin_pass(r);
     resolve_map(r, light);
     abbe_renderer_end_pass(r, "light: spectral map");
-    if (r->statistics != NULL)
-      result = abbe_renderer_read_ledger(r, light, &r->statistics->energy, error);
+    if (r->statistics == NULL) continue;
+    double start_ms = abbe_renderer_now_ms();
+    result = abbe_renderer_read_ledger(r, light, &r->statistics->energy, error);
+    r->untimed_ms += abbe_renderer_now_ms() - start_ms;
   }
   return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the photon passes", error);
-}
-
-static double wide(const GLuint *lo_hi) {
-  return ldexp((double)lo_hi[1], 32) + lo_hi[0];
 }
 
 /* Adds the light's entries; what was deposited is summed from the map's own Y. */
@@ -233,15 +240,16 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
   ledger->absorbed += wide(word + 4) * unit;
   ledger->trapped += wide(word + 6) * unit;
   ledger->missed += wide(word + 8) * unit;
-  size_t texels = r->map_texels;
-  GLuint *sum = malloc(texels * 6 * sizeof *sum);
+  size_t words = abbe_renderer_map_words(r), size = r->map_texels * words * sizeof(GLuint);
+  GLuint *sum = malloc(size);
   if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->map_sums);
-  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(texels * 6 * sizeof *sum), sum);
+  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, sum);
   double deposited = 0;
-  for (size_t i = 0; i < texels; i++) deposited += wide(sum + 6 * i + 2);
+  for (size_t i = 0; i < r->map_texels; i++)
+    deposited += r->wide ? wide(sum + 6 * i + 2) : sum[3 * i + 1];
   free(sum);
-  ledger->deposited += deposited * (double)(float)ldexp(r->light[light].cell_flux, -28);
+  ledger->deposited += deposited * abbe_renderer_map_unit(r, light);
   return abbe_gl_check(r->gl, "the reading of the ledger", error);
 }
 
@@ -292,7 +300,7 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "list_groups.comp", NULL, &r->list_groups, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "photon_splat.comp", NULL, &r->splat, error);
+    result = abbe_program_make_compute(r->gl, "photon_splat.comp", r->defines, &r->splat, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "map_resolve.comp", r->defines, &r->resolve, error);
   return result;
@@ -345,29 +353,13 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
   return result;
 }
 
-/* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
-static void size_map(abbe_renderer *r) {
-  size_t side = r->plan.desc.map_size;
-  r->map_levels = 1;
-  r->map_texels = side * side;
-  while (r->map_levels < MAX_MAP_LEVELS && side % 2 == 0 && side > 2) {
-    side /= 2;
-    r->map_levels++;
-    r->map_texels += side * side;
-  }
-}
-
 abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
   abbe_result result = count_photons(r, error);
-  size_map(r);
   if (result == ABBE_OK) result = make_landings(r, error);
   if (result == ABBE_OK) result = make_programs(r, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->map_texels * 6 * 4, NULL, &r->map_sums, error);
-  if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(
-        r, (r->map_texels - r->plan.desc.map_size * r->plan.desc.map_size) * 16, NULL,
-        &r->map_coarse, error);
+    result = abbe_renderer_make_buffer(r, r->map_texels * abbe_renderer_map_words(r) * 4, NULL,
+                                       &r->map_sums, error);
   if (result == ABBE_OK)
     result =
         abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);

@@ -2,7 +2,7 @@
 // on the last level, becomes a photon [WymanNichols2009]. The coverage is what the light's view
 // of the refractors' front shows, grown by a texel: exact surfaces reach a little beyond their
 // triangles.
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 #include "photon_list.glsl"
 layout(std430, binding = 7) readonly buffer InputList {
   uint in_count, in_x, in_y, in_z;

@@ -1,9 +1,9 @@
 // Adds listed pieces to their level of the map, bilinearly over four texels; the four parts of a
 // piece add up to it, to the last unit.
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 #include "splat_list.glsl"
 #include "wide_sum.glsl"
-// Levels one after another, each texel X lo, hi, Y lo, hi, Z lo, hi.
+// Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each.
 layout(std430, binding = 13) buffer MapSums { uint map_sum[]; };
 uniform int map_size;
 uniform uint most;
@@ -15,10 +15,17 @@ uint level_offset(int level) {
 }
 
 void add(uint texel, uvec3 v) {
+#ifdef WIDE
   uint at = texel * 6u;
   WIDE_ADD(map_sum, at, at + 1u, v.x)
   WIDE_ADD(map_sum, at + 2u, at + 3u, v.y)
   WIDE_ADD(map_sum, at + 4u, at + 5u, v.z)
+#else
+  uint at = texel * 3u;
+  atomicAdd(map_sum[at], v.x);
+  atomicAdd(map_sum[at + 1u], v.y);
+  atomicAdd(map_sum[at + 2u], v.z);
+#endif
 }
 
 void main() {

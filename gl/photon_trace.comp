@@ -1,6 +1,6 @@
 // A photon a wavelength: from the light through a refractor to a receiver. Every exit that still
 // carries energy is followed, one landing each; what leaves the path is entered in the ledger.
-layout(local_size_x = 64) in;
+layout(local_size_x = 256) in;
 #include "refractor.glsl"
 #include "photon_list.glsl"
 #include "wide_sum.glsl"

@@ -73,7 +73,7 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
   if (d.height == 0) d.height = scene->camera.height;
   if (d.min_nm == 0) d.min_nm = ABBE_WAVELENGTH_MIN_NM;
   if (d.max_nm == 0) d.max_nm = thesis ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
-  if (d.photons == 0) d.photons = 512;
+  if (d.photons == 0) d.photons = thesis ? 512 : 256;
   if (d.map_size == 0) d.map_size = 1024;
   if (d.supersample == 0) d.supersample = thesis ? 1 : 2;
   if (d.fill == ABBE_FILL_AUTO) d.fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
@@ -182,6 +182,64 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
   return ABBE_OK;
 }
 
+static double side_of(const double p[9], const double at[3]) {
+  const double *u = p + 3, *v = p + 6;
+  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  double sum = 0, length = 0;
+  for (int k = 0; k < 3; k++) {
+    sum += n[k] * (at[k] - p[k]);
+    length += n[k] * n[k];
+  }
+  return sum / sqrt(length);
+}
+
+/* Whether the parallelogram's plane has everything on one side of it: all other corners, and the
+ * place that light k comes from. */
+static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const double p[9],
+                       double tolerance) {
+  double low = 0, high = 0;
+  for (size_t i = 0; i < plan->receiver_count; i++) {
+    const abbe_exact *exact = &scene->object[plan->receiver_object[i]].exact;
+    for (size_t k = 0; k < exact->count; k++)
+      for (int c = 0; c < 4; c++) {
+        const double *q = exact->parallelogram[k];
+        double corner[3];
+        for (int x = 0; x < 3; x++)
+          corner[x] = q[x] + (c & 1 ? q[3 + x] : 0) + (c & 2 ? q[6 + x] : 0);
+        double side = side_of(p, corner);
+        low = fmin(low, side);
+        high = fmax(high, side);
+      }
+  }
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    double from[3];
+    for (int x = 0; x < 3; x++)
+      from[x] = light->kind == ABBE_LIGHT_DIRECTIONAL ? p[x] - light->direction[x] * 1e6
+                                                      : light->position[x];
+    double side = side_of(p, from);
+    low = fmin(low, side);
+    high = fmax(high, side);
+  }
+  return low > -tolerance || high < tolerance;
+}
+
+/* Receivers that bound a convex room with the lights inside cannot shadow one another. */
+static void examine_shadows(const abbe_scene *scene, abbe_plan *plan) {
+  double min[3], max[3], size = 0;
+  abbe_scene_bounds(scene, true, true, min, max);
+  for (int k = 0; k < 3; k++) size = fmax(size, max[k] - min[k]);
+  plan->receiver_shadows = plan->receivers == ABBE_RECEIVER_DEPTH;
+  for (size_t i = 0; i < plan->receiver_count && !plan->receiver_shadows; i++) {
+    const abbe_exact *exact = &scene->object[plan->receiver_object[i]].exact;
+    for (size_t k = 0; k < exact->count && !plan->receiver_shadows; k++)
+      plan->receiver_shadows = !bounds_all(scene, plan, exact->parallelogram[k], 1e-6 * size);
+  }
+  add(plan, plan->receiver_shadows, "shadows of receivers",
+      plan->receiver_shadows ? "a receiver may stand between a light and another"
+                             : "the receivers bound a convex room around the lights");
+}
+
 static void resolve_wavelengths(abbe_plan *plan) {
   bool asked = plan->desc.wavelengths != 0;
   if (!asked) plan->desc.wavelengths = plan->dispersive ? 7 : 1;
@@ -227,7 +285,9 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
       plan->absorbing ? "a material attenuates; path lengths are kept" : "every material is clear");
   add(plan, true, "eye: receivers", "light, shadow and spectral map");
   bool refractors = plan->refractor_count > 0;
-  add(plan, refractors && plan->layers, "eye: refractor layers",
+  add(plan, refractors, "eye: refractor front",
+      refractors ? "the pixels that show a refractor" : "nothing refracts");
+  add(plan, refractors && plan->layers, "eye: refractor back",
       plan->layers ? "a mesh without an exact surface ends at its back layer"
                    : "every refractor has an exact surface");
   add(plan, refractors, "eye: refraction",
@@ -252,6 +312,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   }
   out->light_count = scene->light_count;
   out->caustics = out->refractor_count > 0 && out->light_count > 0;
+  examine_shadows(scene, out);
   resolve_wavelengths(out);
   list_passes(scene, out);
   return ABBE_OK;

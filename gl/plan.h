@@ -44,7 +44,7 @@ typedef struct abbe_render_desc {
   size_t width, height;  /* pixels; 0: the scene's */
   size_t wavelengths;    /* samples; 0: 7, or 1 where no index varies */
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
-  size_t photons;        /* side of the photon grid; 0: 512 */
+  size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
   size_t map_size;       /* side of the spectral map; 0: 1024 */
   size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis: 1) */
   abbe_fill fill;
@@ -81,6 +81,7 @@ typedef struct abbe_plan {
   size_t *receiver_object;    /* [receiver_count] */
   size_t parallelogram_count; /* of all receivers; 0 with the depth model */
   abbe_receiver_model receivers;
+  bool receiver_shadows;        /* some receiver may hide another from a light */
   bool spheres, convex, layers; /* models in use */
   bool dispersive;              /* some index varies over the range */
   bool absorbing;               /* some attenuation is above zero in the range */

@@ -49,7 +49,9 @@ void light_to(Light l, vec3 p, out vec3 d, out float distance_m) {
 
 // No other receiver stands between the light and p.
 bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
-#ifdef EXACT_RECEIVERS
+#ifndef RECEIVER_SHADOWS
+  return true;
+#elif defined(EXACT_RECEIVERS)
   float t;
   return receiver_hit(p - distance_m * d, d, 0.0, distance_m * (1.0 - 2e-5), t) < 0;
 #else
@@ -109,7 +111,7 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
   vec3 uvz;
   if (!project(l.map_view, p, uvz) || !inside(uvz.xy)) return;
-  vec3 flux = texture(spectral_map, vec3(uvz.xy, light)).xyz;
+  vec3 flux = textureLod(spectral_map, vec3(uvz.xy, light), 0.0).xyz;
   caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
 }
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MAX_MAP_LEVELS = 6 };
+
 double abbe_ledger_imbalance(const abbe_ledger *l) {
   if (!(l->reached > 0)) return 0;
   double parts = l->reflected + l->absorbed + l->trapped + l->missed + l->deposited;
@@ -23,6 +25,11 @@ static const char *storage(size_t count, size_t element, const char *define) {
 }
 
 static void write_defines(abbe_renderer *r) {
+  r->wide = r->plan.desc.photons > MAX_NARROW_PHOTONS;
+  r->band_levels = 1;
+  r->band_count = r->plan.desc.wavelengths;
+  for (size_t n = r->plan.desc.wavelengths; n > 1; r->band_levels++)
+    r->band_count += n = (n + 1) / 2;
   const abbe_plan *p = &r->plan;
   size_t planes = 0, spectra = p->refractor_count * p->desc.wavelengths;
   for (size_t i = 0; i < p->refractor_count; i++)
@@ -32,10 +39,14 @@ static void write_defines(abbe_renderer *r) {
            "#define LIGHTS %zu\n#define REFRACTORS %zu\n#define RECEIVERS %zu\n"
            "#define WAVELENGTHS %zu\n#define ORDERS %zu\n#define LIGHT_ROOM %zu\n"
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
-           "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n%s%s%s%s%s%s%s%s",
+           "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
+           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, room(p->light_count), room(p->refractor_count), room(planes),
-           room(p->parallelogram_count), room(p->receiver_count), room(spectra),
+           room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
+           r->band_levels, room(p->refractor_count * r->band_count),
+           storage(p->refractor_count * r->band_count, 32, "#define BANDS_IN_STORAGE\n"),
+           p->receiver_shadows ? "#define RECEIVER_SHADOWS\n" : "", r->wide ? "#define WIDE\n" : "",
            storage(planes, 16, "#define PLANES_IN_STORAGE\n"),
            storage(p->receiver_count, 32, "#define SURFACES_IN_STORAGE\n"),
            storage(spectra, 16, "#define SPECTRA_IN_STORAGE\n"),
@@ -45,18 +56,35 @@ static void write_defines(abbe_renderer *r) {
            p->absorbing ? "#define ABSORBING\n" : "");
 }
 
+/* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
+static void size_map(abbe_renderer *r, size_t side) {
+  r->map_levels = 1;
+  r->map_texels = side * side;
+  while (r->map_levels < MAX_MAP_LEVELS && side % 2 == 0 && side > 2) {
+    side /= 2;
+    r->map_levels++;
+    r->map_texels += side * side;
+  }
+}
+
 static abbe_result make_map(abbe_renderer *r, abbe_error *error) {
-  size_t side = r->plan.caustics ? r->plan.desc.map_size : 1;
-  abbe_result result = abbe_renderer_make_texture(r, GL_RGBA32F, side, side, r->plan.light_count,
-                                                  true, &r->map, error);
-  if (result != ABBE_OK) return result;
-  float *black = calloc(side * side * 4, sizeof *black);
-  if (black == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a map");
-  for (size_t i = 0; i < r->plan.light_count; i++)
-    r->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, (GLsizei)side, (GLsizei)side, 1,
-                         GL_RGBA, GL_FLOAT, black);
-  free(black);
-  return abbe_gl_check(r->gl, "the clearing of the map", error);
+  const abbe_gl *gl = r->gl;
+  size_t side = r->plan.caustics ? r->plan.desc.map_size : 1, lights = r->plan.light_count;
+  size_map(r, side);
+  gl->GenTextures(1, &r->map);
+  gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map);
+  gl->TexStorage3D(GL_TEXTURE_2D_ARRAY, (GLsizei)r->map_levels, GL_RGBA32F, (GLsizei)side,
+                   (GLsizei)side, (GLsizei)lights);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  r->device_bytes += r->map_texels * lights * 16;
+  if (r->plan.caustics) return abbe_gl_check(gl, "the allocation of the map", error);
+  static const float black[4] = {0, 0, 0, 0};
+  for (size_t i = 0; i < lights; i++)
+    gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, 1, 1, 1, GL_RGBA, GL_FLOAT, black);
+  return abbe_gl_check(gl, "the clearing of the map", error);
 }
 
 static abbe_result make_passes(abbe_renderer *r, abbe_error *error) {
@@ -102,18 +130,18 @@ void abbe_renderer_free(abbe_renderer *r) {
   r->buffer[BINDING_PHOTONS] = 0; /* one of the lists */
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
-  gl->DeleteBuffers(1, &r->map_coarse);
-  gl->DeleteBuffers(1, &r->table_eye_weights);
-  const GLuint lists[] = {r->path_marks, r->path_list, r->splat_list, r->map_sums};
+  gl->DeleteBuffers(1, &r->table_bands);
+  const GLuint lists[] = {r->pixel_list, r->path_marks, r->path_list, r->splat_list, r->map_sums};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,          r->light_owner, r->light_depth,
       r->light_receivers, r->light_receivers_depth, r->map,         r->eye_receivers,
       r->eye_direct,      r->eye_caustic,           r->eye_depth,   r->eye_refraction,
-      r->eye_layers,      r->eye_layers_depth,      r->eye_picture};
+      r->eye_layers,      r->eye_layers_depth,      r->eye_owner,   r->eye_picture};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  const GLuint programs[] = {r->place, r->groups,    r->trace,      r->deposit,    r->resolve,
-                             r->layer, r->receivers, r->refraction, r->eye_resolve};
+  const GLuint programs[] = {r->place,           r->groups,     r->trace,     r->deposit,
+                             r->resolve,         r->layer,      r->receivers, r->refraction,
+                             r->refraction_list, r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
   gl->DeleteFramebuffers(1, &r->framebuffer);
   gl->DeleteVertexArrays(1, &r->empty_array);
@@ -130,7 +158,7 @@ void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *
 }
 
 static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
-  s->frame_ms = abbe_renderer_now_ms() - start_ms;
+  s->frame_ms = abbe_renderer_now_ms() - start_ms - r->untimed_ms;
   s->wavelengths = r->plan.desc.wavelengths;
   s->device_bytes = r->device_bytes;
   for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
@@ -144,6 +172,7 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_renderer_progress progres
                                 abbe_statistics *statistics, abbe_error *error) {
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
   r->statistics = statistics;
+  r->untimed_ms = 0;
   double start_ms = abbe_renderer_now_ms();
   abbe_renderer_bind_tables(r);
   abbe_result result;

@@ -27,7 +27,10 @@ enum {
   BINDING_COUNT
 };
 
-enum { PHOTON_GROUP = 64, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };
+enum { PHOTON_GROUP = 256, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };
+
+/* Up to this grid 32-bit sums leave every photon more than 2^12 units without ever overflowing. */
+enum { MAX_NARROW_PHOTONS = 512 };
 
 typedef struct mesh_buffers {
   GLuint array, vertices, indices;
@@ -37,7 +40,8 @@ typedef struct mesh_buffers {
 typedef struct light_state {
   abbe_view near_view, map_view;
   size_t photon_count;
-  double cell_flux; /* most that one photon cell can carry, W */
+  double cell_flux;    /* most that one photon cell can carry, W */
+  double reached_flux; /* that all cells together bring to refractors, weighted by ybar, W */
 } light_state;
 
 typedef struct thesis_state thesis_state;
@@ -58,16 +62,18 @@ struct abbe_renderer {
   abbe_view eye;
 
   GLuint buffer[BINDING_COUNT];
-  GLuint table_eye_weights;
+  GLuint table_bands;
+  size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
   GLuint path_marks, path_list, splat_list, map_sums;
-  size_t splat_room, chunks;   /* pieces of light that are listed at a time */
-  GLuint list[LEVELS]; /* photon lists, last level last */
+  size_t splat_room, chunks; /* pieces of light that are listed at a time */
+  GLuint list[LEVELS];       /* photon lists, last level last */
   GLuint texture_surface;
   GLuint light_layers, light_owner, light_depth, light_receivers, light_receivers_depth;
-  GLuint map, map_coarse;      /* levels above the finest */
+  GLuint map;                  /* XYZ flux over window area, one layer a light, in levels */
   size_t map_levels, map_texels;
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
       eye_layers_depth, eye_picture;
+  GLuint eye_owner, pixel_list;
   GLuint framebuffer, empty_array;
   size_t layer_side; /* of the light's layers */
   size_t lanes;      /* wavelengths traced in one batch */
@@ -75,14 +81,21 @@ struct abbe_renderer {
   size_t device_bytes;
   char defines[1024];
 
-  GLuint place, groups, list_groups, trace, deposit, splat, resolve, layer, receivers, refraction, eye_resolve;
+  GLuint place, groups, list_groups, trace, deposit, splat, resolve, layer, receivers, refraction,
+      refraction_list, eye_resolve;
   thesis_state *thesis;
 
+  bool wide;                   /* the map's sums have 64 bits, else 32 */
+  double untimed_ms;           /* of this frame, spent on its ledger */
   abbe_statistics *statistics; /* of the frame that runs, or NULL */
   double pass_start_ms;
 };
 
 double abbe_renderer_now_ms(void);
+/* Flux of one unit of a light's map sums, W. */
+double abbe_renderer_map_unit(const abbe_renderer *r, size_t light);
+/* 32-bit words of a map texel's sums. */
+size_t abbe_renderer_map_words(const abbe_renderer *r);
 
 /* scene_buffers.c: geometry and tables on the device. */
 abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error);
@@ -99,9 +112,12 @@ abbe_result abbe_renderer_set_target(abbe_renderer *r, const GLuint *colour, con
                                      abbe_error *error);
 void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *name, int unit,
                                 GLuint texture);
+void abbe_renderer_bind_texture_2d(abbe_renderer *r, GLuint program, const char *name, int unit,
+                                   GLuint texture);
 void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value);
 void abbe_renderer_set_float(abbe_renderer *r, GLuint program, const char *name, double value);
 void abbe_renderer_bind_tables(abbe_renderer *r);
+void abbe_renderer_dispatch_2d(abbe_renderer *r, size_t width, size_t height);
 void abbe_renderer_draw(abbe_renderer *r, size_t object);
 void abbe_renderer_begin_pass(abbe_renderer *r);
 void abbe_renderer_end_pass(abbe_renderer *r, const char *name);

@@ -84,6 +84,13 @@ void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *na
   r->gl->Uniform1i(location, unit);
 }
 
+void abbe_renderer_bind_texture_2d(abbe_renderer *r, GLuint program, const char *name, int unit,
+                                   GLuint texture) {
+  r->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  r->gl->BindTexture(GL_TEXTURE_2D, texture);
+  r->gl->Uniform1i(r->gl->GetUniformLocation(program, name), unit);
+}
+
 void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value) {
   r->gl->Uniform1i(r->gl->GetUniformLocation(program, name), value);
 }
@@ -99,7 +106,14 @@ void abbe_renderer_bind_tables(abbe_renderer *r) {
     if (i <= BINDING_SPECTRA) r->gl->BindBufferBase(GL_UNIFORM_BUFFER, i, r->buffer[i]);
     r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, r->buffer[i]);
   }
-  r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 1, r->table_eye_weights);
+  if (r->table_bands != 0)
+    r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 1, r->table_bands);
+}
+
+/* One thread a texel; the shaders' groups are 32 x 16, large because a software rasteriser pays
+ * for each. */
+void abbe_renderer_dispatch_2d(abbe_renderer *r, size_t width, size_t height) {
+  r->gl->DispatchCompute((GLuint)((width + 31) / 32), (GLuint)((height + 15) / 16), 1);
 }
 
 void abbe_renderer_draw(abbe_renderer *r, size_t object) {

@@ -3,6 +3,7 @@
 #include "colorimetry/weights.h"
 #include "spectral/wavelengths.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,10 @@ typedef struct gpu_receiver {
 typedef struct gpu_surface {
   float reflectance[4], texture_info[4];
 } gpu_surface;
+
+typedef struct gpu_band {
+  float weight_n[4], attenuation[4];
+} gpu_band;
 
 static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -298,35 +303,74 @@ static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
   return result;
 }
 
-/* XYZ weights for the ledger, and the eye's: the first light's, divided by its white. */
-static abbe_result upload_weights(abbe_renderer *r, const abbe_wavelengths *w, abbe_error *error) {
+static abbe_result upload_sample_weights(abbe_renderer *r, const abbe_wavelengths *w,
+                                         abbe_error *error) {
   size_t n = w->count;
   float(*sample)[4] = calloc(r->plan.light_count * n + 1, sizeof *sample);
-  float(*eye)[4] = calloc(n + 1, sizeof *eye);
+  if (sample == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
   abbe_result result = ABBE_OK;
-  if (sample == NULL || eye == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
-    abbe_weights xyz = {0}, rgb = {0};
+    abbe_weights xyz = {0};
     result =
         abbe_weights_make(w, &r->scene->light[light].illuminant, ABBE_RGB_SPACE_XYZ, &xyz, error);
-    if (result == ABBE_OK && light == 0)
-      result =
-          abbe_weights_make(w, &r->scene->light[light].illuminant, working_space(r), &rgb, error);
-    for (size_t i = 0; i < n && result == ABBE_OK; i++) {
+    for (size_t i = 0; i < n && result == ABBE_OK; i++)
       store(xyz.weight[i], 0, sample[light * n + i]);
-      for (int c = 0; c < 3 && light == 0; c++) eye[i][c] = (float)(rgb.weight[i][c] / rgb.sum[c]);
-    }
     abbe_weights_free(&xyz);
-    abbe_weights_free(&rgb);
   }
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, r->plan.light_count * n * sizeof *sample, sample,
                                        &r->buffer[BINDING_SAMPLE_WEIGHTS], error);
-  if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, n * sizeof *eye, eye, &r->table_eye_weights, error);
   free(sample);
-  free(eye);
+  return result;
+}
+
+/* A pair of bands as one: weights add, index and attenuation are means by brightness. */
+static void join_bands(const gpu_band *a, const gpu_band *b, gpu_band *out) {
+  double wa = 1e-9, wb = 1e-9;
+  for (int c = 0; c < 3; c++) {
+    wa += fabs(a->weight_n[c]);
+    wb += fabs(b->weight_n[c]);
+    out->weight_n[c] = a->weight_n[c] + b->weight_n[c];
+  }
+  out->weight_n[3] = (float)((wa * a->weight_n[3] + wb * b->weight_n[3]) / (wa + wb));
+  out->attenuation[0] = (float)((wa * a->attenuation[0] + wb * b->attenuation[0]) / (wa + wb));
+}
+
+static abbe_result fill_bands(const abbe_renderer *r, const abbe_weights *rgb, size_t refractor,
+                              gpu_band *band, abbe_error *error) {
+  const abbe_material *material = r->scene->object[r->plan.refractor_object[refractor]].material;
+  size_t count = rgb->count;
+  for (size_t i = 0; i < count; i++) {
+    double n = 1, weight[3];
+    abbe_result result = abbe_material_n(material, r->lambda_nm[i], &n, error);
+    if (result != ABBE_OK) return result;
+    for (int c = 0; c < 3; c++) weight[c] = rgb->weight[i][c] / rgb->sum[c];
+    store(weight, n, band[i].weight_n);
+    band[i].attenuation[0] = (float)abbe_material_attenuation(material, r->lambda_nm[i]);
+  }
+  for (; count > 1; band += count, count = (count + 1) / 2)
+    for (size_t i = 0; i < (count + 1) / 2; i++) {
+      band[count + i] = band[2 * i];
+      if (2 * i + 1 < count) join_bands(&band[2 * i], &band[2 * i + 1], &band[count + i]);
+    }
+  return ABBE_OK;
+}
+
+/* The eye's weights are the first light's, divided by its white. */
+static abbe_result upload_bands(abbe_renderer *r, const abbe_wavelengths *w, abbe_error *error) {
+  size_t refractors = r->plan.refractor_count;
+  gpu_band *band = calloc(refractors * r->band_count + 1, sizeof *band);
+  abbe_weights rgb = {0};
+  if (band == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  abbe_result result =
+      abbe_weights_make(w, &r->scene->light[0].illuminant, working_space(r), &rgb, error);
+  for (size_t i = 0; i < refractors && result == ABBE_OK; i++)
+    result = fill_bands(r, &rgb, i, band + i * r->band_count, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, refractors * r->band_count * sizeof *band, band,
+                                       &r->table_bands, error);
+  abbe_weights_free(&rgb);
+  free(band);
   return result;
 }
 
@@ -345,7 +389,8 @@ static abbe_result upload_wavelengths(abbe_renderer *r, abbe_error *error) {
   while (r->steps > 2 && r->steps * n > 1024) r->steps /= 2;
   if (result == ABBE_OK) result = upload_spectra(r, error);
   if (result == ABBE_OK) result = upload_intervals(r, &w, error);
-  if (result == ABBE_OK) result = upload_weights(r, &w, error);
+  if (result == ABBE_OK) result = upload_sample_weights(r, &w, error);
+  if (result == ABBE_OK) result = upload_bands(r, &w, error);
   abbe_wavelengths_free(&w);
   return result;
 }
@@ -381,6 +426,18 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
+/* Wide sums have room for 2^36 full photons of 2^28 units. Narrow ones share 2^30 units among all
+ * the light that reaches refractors: X and Z of a white stay below four times its Y. */
+double abbe_renderer_map_unit(const abbe_renderer *r, size_t light) {
+  const light_state *state = &r->light[light];
+  bool known = !r->wide && state->reached_flux > 0;
+  return (double)(float)(known ? ldexp(state->reached_flux, -30) : ldexp(state->cell_flux, -28));
+}
+
+size_t abbe_renderer_map_words(const abbe_renderer *r) {
+  return r->wide ? 6 : 3;
+}
+
 /* Called again whenever a light's view changes. */
 void abbe_renderer_upload_lights(abbe_renderer *r) {
   double grid = (double)r->plan.desc.photons, map = (double)r->plan.desc.map_size;
@@ -395,14 +452,14 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     abbe_rgb_space_apply(matrix, white, rgb);
     double cell_area = abbe_view_area(&state->near_view) / (grid * grid);
     double map_area = abbe_view_area(&state->map_view) / (map * map);
-    state->cell_flux = light->power * cell_area;
+    state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);
     abbe_view_pack(&state->map_view, g.map_view);
     store(light->position, (double)light->kind, g.position);
     store(light->direction, cos(light->cone_rad), g.direction);
     store(rgb, light->power, g.white);
     g.misc[0] = (float)cos(fmax(light->cone_rad - light->soft_rad, 0));
-    g.misc[1] = (float)ldexp(state->cell_flux, -28);
+    g.misc[1] = (float)abbe_renderer_map_unit(r, i);
     g.misc[2] = (float)(1 / cell_area);
     g.misc[3] = (float)(1 / map_area);
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);

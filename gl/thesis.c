@@ -157,12 +157,6 @@ static void set_matrix(abbe_renderer *r, GLuint program, const char *name, const
   r->gl->UniformMatrix4fv(r->gl->GetUniformLocation(program, name), 1, GL_FALSE, f);
 }
 
-static void bind_2d(abbe_renderer *r, GLuint program, const char *name, int unit, GLuint texture) {
-  r->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
-  r->gl->BindTexture(GL_TEXTURE_2D, texture);
-  r->gl->Uniform1i(r->gl->GetUniformLocation(program, name), unit);
-}
-
 static void set_common(abbe_renderer *r, GLuint program, const abbe_view *view,
                        const double clip[16]) {
   const abbe_gl *gl = r->gl;
@@ -260,7 +254,7 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   set_spot(r, t->splat, direction);
   abbe_renderer_bind_texture(r, t->splat, "normals", 0, t->light_normals);
   abbe_renderer_bind_texture(r, t->splat, "depths", 1, t->light_depths);
-  bind_2d(r, t->splat, "receiver_depth", 2, t->light_receiver_depth);
+  abbe_renderer_bind_texture_2d(r, t->splat, "receiver_depth", 2, t->light_receiver_depth);
   double across = (double)map / (double)r->plan.desc.photons;
   abbe_renderer_set_int(r, t->splat, "grid", (int)r->plan.desc.photons);
   abbe_renderer_set_float(r, t->splat, "resolution", (double)map);
@@ -291,7 +285,7 @@ static abbe_result fill_gaps(abbe_renderer *r, abbe_error *error) {
   size_t map = r->plan.desc.map_size;
   abbe_renderer_begin_pass(r);
   r->gl->UseProgram(t->fill);
-  bind_2d(r, t->fill, "spectral_map", 0, t->map);
+  abbe_renderer_bind_texture_2d(r, t->fill, "spectral_map", 0, t->map);
   abbe_result result = draw_screen(r, t->filled, map, map, error);
   abbe_renderer_end_pass(r, "light: gap fill");
   return result;
@@ -334,8 +328,8 @@ static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
   gl->Uniform3f(gl->GetUniformLocation(t->receivers, "eye"), (float)eye[0], (float)eye[1],
                 (float)eye[2]);
   bool fills = r->plan.desc.fill == ABBE_FILL_SMEAR;
-  bind_2d(r, t->receivers, "spectral_map", 0, fills ? t->filled : t->map);
-  bind_2d(r, t->receivers, "shadow_map", 1, t->light_receiver_depth);
+  abbe_renderer_bind_texture_2d(r, t->receivers, "spectral_map", 0, fills ? t->filled : t->map);
+  abbe_renderer_bind_texture_2d(r, t->receivers, "shadow_map", 1, t->light_receiver_depth);
   abbe_renderer_bind_texture(r, t->receivers, "surface_texture", 2, r->texture_surface);
   abbe_renderer_bind_texture(r, t->receivers, "refractor_depths", 3, t->light_depths);
   int layer = 0;
@@ -375,8 +369,8 @@ static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
   free(colour);
   abbe_renderer_bind_texture(r, t->refraction, "normals", 0, t->eye_normals);
   abbe_renderer_bind_texture(r, t->refraction, "depths", 1, t->eye_depths);
-  bind_2d(r, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
-  bind_2d(r, t->refraction, "receivers", 3, t->eye_receivers);
+  abbe_renderer_bind_texture_2d(r, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
+  abbe_renderer_bind_texture_2d(r, t->refraction, "receivers", 3, t->eye_receivers);
   result = draw_screen(r, r->eye_picture, width, height, error);
   abbe_renderer_end_pass(r, "eye: refraction");
   return result;

@@ -1,5 +1,6 @@
-// 64-bit sums from two 32-bit atomics: the carry goes up once, whoever causes it, so the total
-// does not depend on the order. Value = hi * 2^32 + lo, in fixed units.
+// Sums whose result does not depend on the order. WIDE: 64 bits from two 32-bit atomics; the carry
+// goes up once, whoever causes it. Otherwise 32 bits, in units that all light together cannot
+// overflow. Value = (hi * 2^32 +) lo, in fixed units.
 #define WIDE_ADD(words, lo_index, hi_index, value)                          \
   {                                                                         \
     uint wide_value = (value);                                              \

@@ -107,7 +107,7 @@ static void march_all(surface s) {
   GLuint program = glsl_make(
       gl, "#define LIGHT_ROOM 1\n#define REFRACTOR_ROOM 1\n#define PLANE_ROOM 1\n"
           "#define RECEIVER_ROOM 1\n#define SURFACE_ROOM 1\n#define SPECTRUM_ROOM 1\n"
-          "#include \"common.glsl\"\n"
+          "#include \"view.glsl\"\n"
           "#include \"march.glsl\"\n"
           "uniform sampler2DArray harness_layer;\n"
           "uniform vec4 harness_view[6];\n"

@@ -49,7 +49,7 @@ static void test_a_ball_over_a_floor(void **state) {
   assert_runs(&plan, "light: photons", true);
   assert_runs(&plan, "light: gap fill", true);
   assert_runs(&plan, "absorption", false);
-  assert_runs(&plan, "eye: refractor layers", false);
+  assert_runs(&plan, "eye: refractor back", false);
   assert_runs(&plan, "eye: refraction", true);
   assert_runs(&plan, "textures", false);
   assert_runs(&plan, "inner reflections", true);
@@ -108,7 +108,7 @@ static void test_a_mesh_asks_for_its_back_layer(void **state) {
   make_text(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &plan);
   assert_int_equal(plan.model[0], ABBE_REFRACTOR_LAYERS);
   assert_runs(&plan, "light: refractor back", true);
-  assert_runs(&plan, "eye: refractor layers", true);
+  assert_runs(&plan, "eye: refractor back", true);
   assert_runs(&plan, "inner reflections", false);
   assert_int_equal(plan.desc.orders, 1);
   abbe_plan_free(&plan);

@@ -29,15 +29,17 @@ static int free_context(void **state) {
 
 /* Bits: spheres, convex, layers, exact receivers, absorbing. */
 static void write_defines(unsigned bits, char *out, size_t size) {
-  static const char *const names[] = {"SPHERES", "CONVEX", "LAYERS", "EXACT_RECEIVERS",
-                                      "ABSORBING"};
-  int used = snprintf(out, size,
-                      "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
-                      "#define WAVELENGTHS 7\n#define ORDERS 3\n#define LANES 7\n"
-                      "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
-                      "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
-                      "#define STEPS 64\n#define MAP_LEVELS 6\n#define BRIDGE\n#define MAX_BRIDGE 64.0\n");
-  for (int i = 0; i < 5; i++)
+  static const char *const names[] = {"SPHERES",         "CONVEX",    "LAYERS",
+                                      "EXACT_RECEIVERS", "ABSORBING", "RECEIVER_SHADOWS"};
+  int used =
+      snprintf(out, size,
+               "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
+               "#define WAVELENGTHS 7\n#define ORDERS 3\n#define LANES 7\n"
+               "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
+               "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
+               "#define BAND_COUNT 14\n#define BAND_LEVELS 4\n#define BAND_ROOM 28\n"
+               "#define STEPS 64\n#define MAP_LEVELS 6\n#define BRIDGE\n#define MAX_BRIDGE 64.0\n");
+  for (int i = 0; i < 6; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }
 
@@ -54,16 +56,15 @@ static void compiles(const abbe_program_stage *stages, size_t count, const char 
 static void test_all_combinations(void **state) {
   (void)state;
   char defines[1024];
-  for (unsigned bits = 0; bits < 32; bits++) {
+  for (unsigned bits = 0; bits < 64; bits++) {
     write_defines(bits, defines, sizeof defines);
     const abbe_program_stage trace = {GL_COMPUTE_SHADER, "photon_trace.comp"};
     const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
                                       {GL_FRAGMENT_SHADER, "receivers.frag"}};
-    const abbe_program_stage refracted[] = {{GL_VERTEX_SHADER, "surface.vert"},
-                                            {GL_FRAGMENT_SHADER, "refraction.frag"}};
+    const abbe_program_stage refracted = {GL_COMPUTE_SHADER, "refraction.comp"};
     compiles(&trace, 1, defines);
     compiles(lit, 2, defines);
-    compiles(refracted, 2, defines);
+    compiles(&refracted, 1, defines);
   }
 }
 
@@ -71,7 +72,7 @@ static void test_every_compute_shader(void **state) {
   (void)state;
   char defines[1024];
   size_t seen = 0;
-  write_defines(31, defines, sizeof defines);
+  write_defines(63, defines, sizeof defines);
   for (const char *const *file = abbe_program_files(); *file != NULL; file++) {
     const char *dot = strrchr(*file, '.');
     if (dot == NULL || strcmp(dot, ".comp") != 0) continue;

@@ -1,0 +1,35 @@
+// What a light or the eye looks through; the float twin of gl/view.h.
+
+// A frustum from one point (perspective: origin.w = 1) or along one direction (0). window is
+// left, right, bottom, top: tangents on the plane at distance 1, or metres. range is near, far.
+struct View {
+  vec4 origin, right, up, forward, window, range;
+};
+
+// Where a point falls on the view's window, [0, 1]^2 inside; z: distance along the ray
+// (perspective) or along forward. False behind the origin.
+bool project(View v, vec3 p, out vec3 uvz) {
+  vec3 d = p - v.origin.xyz;
+  float z = dot(d, v.forward.xyz);
+  vec2 xy = vec2(dot(d, v.right.xyz), dot(d, v.up.xyz));
+  bool perspective = v.origin.w > 0.5;
+  if (perspective) xy /= z;
+  uvz = vec3((xy - v.window.xz) / (v.window.yw - v.window.xz), perspective ? length(d) : z);
+  return !perspective || z > 0.0;
+}
+
+bool inside(vec2 uv) { return all(greaterThanEqual(uv, vec2(0))) && all(lessThan(uv, vec2(1))); }
+
+void view_ray(View v, vec2 uv, out vec3 origin, out vec3 direction) {
+  vec2 xy = mix(v.window.xz, v.window.yw, uv);
+  vec3 side = v.right.xyz * xy.x + v.up.xyz * xy.y;
+  bool perspective = v.origin.w > 0.5;
+  origin = perspective ? v.origin.xyz : v.origin.xyz + side;
+  direction = perspective ? normalize(v.forward.xyz + side) : v.forward.xyz;
+}
+
+// Window area (tangent plane, or m2) to solid angle (or m2 across the beam) along direction.
+float window_measure(View v, vec3 direction) {
+  float c = dot(direction, v.forward.xyz);
+  return v.origin.w > 0.5 ? c * c * c : 1.0;
+}
