@@ -103,7 +103,7 @@ void trace(uint photon, int i, float flux, vec3 o, vec3 d, Hit front, bool reach
     int next;
     inner_hit(r, facet, p, inner,
 #ifdef LAYERS
-              lights[light].near_view, light_layers, 2.0 * float(light) + 1.0,
+              lights[light].near_view, light_layers, 2.0 * float(light),
 #endif
               wall, wall_n, next);
 #ifdef ABSORBING

@@ -138,7 +138,7 @@ static const char *model_reason(const abbe_object *object, bool thesis) {
   if (thesis) return "the thesis profile knows no other model";
   if (object->exact.kind == ABBE_EXACT_SPHERE) return "the object is a sphere";
   if (object->exact.kind == ABBE_EXACT_CONVEX) return "the object is a convex faceted solid";
-  return "the object is a general closed mesh; two interfaces, no inner reflections";
+  return "the object is a general closed mesh: what a view sees of it, front and back";
 }
 
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
@@ -251,11 +251,10 @@ static void resolve_wavelengths(abbe_plan *plan) {
       : plan->dispersive         ? "the index varies with wavelength"
                                  : "all indices are constant, one geometry serves all");
   if (plan->desc.orders == 0) plan->desc.orders = 8;
-  if (!plan->spheres && !plan->convex) plan->desc.orders = 1;
   add(plan, plan->desc.orders > 1, "inner reflections",
       plan->desc.orders > 1
-          ? "exact refractors: followed until less than %g of the light is left, %zu exits at most"
-          : "%g, %zu: two interfaces only",
+          ? "followed until less than %g of the light is left, %zu exits at most"
+          : "two interfaces only, as asked (%g, %zu)",
       plan->desc.energy_share, plan->desc.orders);
 }
 

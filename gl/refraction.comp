@@ -145,7 +145,7 @@ void main() {
       int next;
       inner_hit(refractor, facet, p, inner,
 #ifdef LAYERS
-                eye_as_view(), eye_layers, 1.0,
+                eye_as_view(), eye_layers, 0.0,
 #endif
                 wall, wall_n, next);
 #ifdef ABSORBING

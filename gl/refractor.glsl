@@ -3,7 +3,7 @@
 
 #include "common.glsl"
 #include "optics.glsl"
-#if defined(LAYERS) || !defined(EXACT_RECEIVERS)
+#ifndef EXACT_RECEIVERS
 #include "march.glsl"
 #endif
 
@@ -95,27 +95,62 @@ vec3 layer_normal(View v, sampler2DArray layers, float layer, vec3 p, vec3 fallb
   return dot(sum, sum) > 1e-8 ? normalize(sum) : fallback;
 }
 
-// Where the ray leaves through the back layer; the size of the solid bounds the search.
-bool layers_inner(View v, sampler2DArray layers, float back_layer, float size, vec3 p, vec3 d,
-                  out vec3 q, out vec3 n) {
+#ifndef LAYER_STEPS
+#define LAYER_STEPS 14
+#endif
+#ifndef LAYER_BISECTIONS
+#define LAYER_BISECTIONS 9
+#endif
+
+// How deep x lies between front and back (layers front, front + 1), along the view's ray; negative
+// outside, and behind the rim of what the view sees.
+float layer_depth(View v, sampler2DArray layers, float front, vec3 x, out bool at_front) {
   vec3 uvz;
-  project(v, p, uvz);
-  float back = layer_distance(layers, vec3(uvz.xy, back_layer));
-  float t_start = back > uvz.z ? back - uvz.z : 0.25 * size, t;
-  // Past the rim of what the view sees, the ray leaves through the side.
-  bool found = march(v, layers, back_layer, p, d, t_start, size, t);
-  q = p + (found ? t : t_start) * d;
+  at_front = false;
+  if (!project(v, x, uvz) || !inside(uvz.xy)) return -1e9;
+  ivec2 at = ivec2(uvz.xy * vec2(textureSize(layers, 0).xy));
+  float near = texelFetch(layers, ivec3(at, int(front)), 0).w;
+  float far = texelFetch(layers, ivec3(at, int(front) + 1), 0).w;
+  if (near <= 0.0 || far <= 0.0) return -1e9;
+  at_front = uvz.z - near < far - uvz.z;
+  return min(uvz.z - near, far - uvz.z);
+}
+
+// The next wall of a solid known by its front and back layers; `size` bounds the search. The ray
+// starts on a wall, so a little outside counts as inside.
+void layers_inner(View v, sampler2DArray layers, float front, float size, vec3 p, vec3 d,
+                  out vec3 q, out vec3 n) {
+  float slack = 2e-3 * size, low = 0.0, high = -1.0;
+  bool at_front;
+  for (int i = 1; i <= LAYER_STEPS && high < 0.0; i++) {
+    // Short steps first: thin parts are crossed near the start.
+    float t = size * float(i * i) / float(LAYER_STEPS * LAYER_STEPS);
+    bool out_now = layer_depth(v, layers, front, p + t * d, at_front) < -slack;
+    high = out_now ? t : high;
+    low = out_now ? low : t;
+  }
+  if (high < 0.0) high = size;
+  for (int k = 0; k < LAYER_BISECTIONS; k++) {
+    float m = 0.5 * (low + high);
+    bool out_now = layer_depth(v, layers, front, p + m * d, at_front) < -slack;
+    high = out_now ? m : high;
+    low = out_now ? low : m;
+  }
+  q = p + low * d;
+  layer_depth(v, layers, front, q, at_front);
+  // Past the rim the ray leaves through the side.
   vec3 side = d - dot(d, v.forward.xyz) * v.forward.xyz;
-  n = layer_normal(v, layers, back_layer, q, dot(side, side) > 1e-8 ? normalize(side) : d);
-  if (dot(n, d) < 0.0) n = normalize(n - 1.001 * dot(n, d) * d);
-  return found;
+  n = layer_normal(v, layers, at_front ? front : front + 1.0, q,
+                   dot(side, side) > 1e-8 ? normalize(side) : d);
+  float c = dot(n, d);
+  if (c < 1e-3) n = normalize(n + (1e-3 - c) * d);
 }
 #endif
 
 // From p on refractor r (facet: the one that p lies on) along d inside it to the next wall.
 void inner_hit(int r, int facet, vec3 p, vec3 d,
 #ifdef LAYERS
-               View v, sampler2DArray layers, float back_layer,
+               View v, sampler2DArray layers, float front_layer,
 #endif
                out vec3 q, out vec3 n, out int next) {
   q = p;
@@ -147,6 +182,6 @@ void inner_hit(int r, int facet, vec3 p, vec3 d,
   }
 #endif
 #ifdef LAYERS
-  layers_inner(v, layers, back_layer, 2.0 * refractors[r].sphere.w, p, d, q, n);
+  layers_inner(v, layers, front_layer, 2.0 * refractors[r].sphere.w, p, d, q, n);
 #endif
 }
