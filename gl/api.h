@@ -17,38 +17,36 @@
   X(BINDBUFFER, BindBuffer)                                                                        \
   X(BINDBUFFERBASE, BindBufferBase)                                                                \
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \
-  X(BINDIMAGETEXTURE, BindImageTexture) X(BINDTEXTURE, BindTexture) X(                             \
-      BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc) X(BUFFERDATA, BufferData)          \
-      X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(         \
-          CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV,                                          \
-                                          ClearBufferuiv) X(CLEARBUFFERDATA,                       \
-                                                            ClearBufferData) X(COMPILESHADER,      \
-                                                                               CompileShader)      \
-          X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader) X(CULLFACE, CullFace) X(   \
-              DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS,                                  \
-                                              DeleteFramebuffers) X(DELETEPROGRAM,                 \
-                                                                    DeleteProgram) X(DELETESHADER, \
-                                                                                     DeleteShader) \
+  X(BINDIMAGETEXTURE, BindImageTexture)                                                            \
+  X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc) X(       \
+      BUFFERDATA, BufferData) X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS,            \
+                                                                CheckFramebufferStatus)            \
+      X(CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV, ClearBufferuiv) X(                         \
+          CLEARBUFFERDATA, ClearBufferData) X(COMPILESHADER, CompileShader) X(CREATEPROGRAM,       \
+                                                                              CreateProgram)       \
+          X(CREATESHADER, CreateShader) X(CULLFACE, CullFace) X(DELETEBUFFERS, DeleteBuffers) X(   \
+              DELETEFRAMEBUFFERS,                                                                  \
+              DeleteFramebuffers) X(DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader)    \
               X(DELETETEXTURES, DeleteTextures) X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(       \
                   DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(DISABLE,                         \
                                                                   Disable) X(DISPATCHCOMPUTE,      \
                                                                              DispatchCompute)      \
                   X(DISPATCHCOMPUTEINDIRECT, DispatchComputeIndirect) X(DRAWARRAYS, DrawArrays) X( \
-                      DRAWARRAYSINDIRECT,                                                          \
-                      DrawArraysIndirect) X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS,              \
-                                                                        DrawElements) X(ENABLE,    \
-                                                                                        Enable)    \
-                      X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(FINISH, Finish) X(     \
-                          FRAMEBUFFERTEXTURE,                                                      \
-                          FramebufferTexture) X(FRAMEBUFFERTEXTURELAYER,                           \
-                                                FramebufferTextureLayer) X(GENBUFFERS, GenBuffers) \
-                          X(GENFRAMEBUFFERS, GenFramebuffers) X(GENTEXTURES, GenTextures) X(       \
-                              GENVERTEXARRAYS, GenVertexArrays) X(GETBUFFERSUBDATA,                \
-                                                                  GetBufferSubData) X(GETERROR,    \
-                                                                                      GetError)    \
-                              X(GETINTEGERV, GetIntegerv) X(GETPROGRAMIV, GetProgramiv) X(         \
-                                  GETPROGRAMINFOLOG,                                               \
-                                  GetProgramInfoLog) X(GETSHADERIV, GetShaderiv)                   \
+                      DRAWARRAYSINDIRECT, DrawArraysIndirect) X(DRAWBUFFERS,                       \
+                                                                DrawBuffers) X(DRAWELEMENTS,       \
+                                                                               DrawElements)       \
+                      X(ENABLE, Enable) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(     \
+                          FINISH, Finish) X(FRAMEBUFFERTEXTURE,                                    \
+                                            FramebufferTexture) X(FRAMEBUFFERTEXTURELAYER,         \
+                                                                  FramebufferTextureLayer)         \
+                          X(GENBUFFERS, GenBuffers) X(GENFRAMEBUFFERS, GenFramebuffers) X(         \
+                              GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays)        \
+                              X(GETBUFFERSUBDATA, GetBufferSubData) X(GETERROR, GetError) X(       \
+                                  GETINTEGERV,                                                     \
+                                  GetIntegerv) X(GETPROGRAMIV,                                     \
+                                                 GetProgramiv) X(GETPROGRAMINFOLOG,                \
+                                                                 GetProgramInfoLog) X(GETSHADERIV, \
+                                                                                      GetShaderiv) \
                                   X(GETSHADERINFOLOG, GetShaderInfoLog) X(GETSTRING, GetString) X( \
                                       GETTEXIMAGE,                                                 \
                                       GetTexImage) X(GETUNIFORMLOCATION, GetUniformLocation)       \

@@ -10,8 +10,7 @@ struct Light {
   vec4 position;   // w: 0 point, 1 spot, 2 directional
   vec4 direction;  // w: cosine of the cone's half angle
   vec4 white;      // rgb of unit power; w: power, W/sr or W/m2
-  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, W; photons and map
-                   // texels by window area
+  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, W; photons by window area
 };
 
 struct Refractor {
@@ -54,6 +53,20 @@ layout(std430, binding = 5) readonly buffer Spectra { vec4 spectra[]; };
 #else
 layout(std140, binding = 5) uniform Spectra { vec4 spectra[SPECTRUM_ROOM]; };
 #endif
+
+// The map's texels are finer where more light lands: each axis of its window is warped by a
+// monotone polygon. x and y at [light * (WARP_STEPS + 1) + k], from 0 to 1.
+const int WARP_STEPS = 128;
+layout(std140, binding = 7) uniform Warps { vec4 warps[LIGHT_ROOM * (WARP_STEPS + 1)]; };
+
+vec2 warp(int light, vec2 uv) {
+  vec2 s = clamp(uv, vec2(0), vec2(1)) * float(WARP_STEPS);
+  ivec2 k = min(ivec2(s), ivec2(WARP_STEPS - 1));
+  vec2 f = s - vec2(k);
+  int row = light * (WARP_STEPS + 1);
+  return vec2(mix(warps[row + k.x].x, warps[row + k.x + 1].x, f.x),
+              mix(warps[row + k.y].y, warps[row + k.y + 1].y, f.y));
+}
 
 float light_profile(Light l, vec3 direction) {
   if (int(l.position.w) != 1) return 1.0;

@@ -1,8 +1,10 @@
-// Fixed-point sums to flux over window area, XYZ: one level of the map, with what the coarser
-// levels hold laid over it bilinearly, which keeps their sum.
+// Fixed-point sums to XYZ flux, and on the finest level to flux over window area: one level of the
+// map, with what the coarser levels hold laid over it bilinearly, which keeps their sum.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "common.glsl"
 layout(std430, binding = 13) readonly buffer MapSums { uint map_sum[]; };
+// Window width of the map's columns, then height of its rows, a light after another.
+layout(std430, binding = 9) readonly buffer TexelSizes { float texel_size[]; };
 uniform sampler2DArray coarser_map;  // the same texture: its next level is done
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 uniform int light;
@@ -34,10 +36,13 @@ void main() {
   if (texel.x >= side || texel.y >= side) return;
   uint at = level_offset(level) + uint(texel.y * side + texel.x);
   vec3 flux = units_at(at) * lights[light].misc.y;
-  // A coarser texel covers four times the area.
-  vec3 sum = flux * (lights[light].misc.w * exp2(-2.0 * float(level)));
-  // The filter's weights at a fine texel's centre are the 3/4 and 1/4 of bilinear subdivision.
+  // The filter's weights at a fine texel's centre are the 3/4 and 1/4 of bilinear subdivision; a
+  // coarse texel's flux goes to four.
   vec2 uv = (vec2(texel) + 0.5) / float(side);
-  if (level + 1 < levels) sum += textureLod(coarser_map, vec3(uv, light), float(level + 1)).xyz;
-  imageStore(map, ivec3(texel, light), vec4(sum, 1));
+  if (level + 1 < levels) flux += 0.25 * textureLod(coarser_map, vec3(uv, light), float(level + 1)).xyz;
+  if (level == 0) {
+    int row = light * 2 * map_size;
+    flux /= texel_size[row + texel.x] * texel_size[row + map_size + texel.y];
+  }
+  imageStore(map, ivec3(texel, light), vec4(flux, 1));
 }

@@ -35,7 +35,7 @@ const int MAX_PIECES = 12;  // of one footprint
 vec2 map_position(vec3 p) {
   vec3 uvz;
   project(lights[light].map_view, p, uvz);
-  return uvz.xy * float(map_size);
+  return warp(light, uvz.xy) * float(map_size);
 }
 
 // To the landing of the neighbouring photon on the same path, in texels; zero if there is none.
@@ -85,7 +85,7 @@ void main() {
   vec2 axis = xx > yy ? vec2(0.5 * (xx - yy) + root, xy) : vec2(xy, 0.5 * (yy - xx) + root);
   vec2 across = wide * axis / max(length(axis), 1e-20);
   float least = max(max(narrow, wide / float(MAX_PIECES)), 1.0);
-  int level = clamp(int(ceil(log2(least) + 0.25)), 0, MAP_LEVELS - 1);
+  int level = clamp(int(ceil(log2(least) + 0.4)), 0, MAP_LEVELS - 1);
   float size = exp2(float(level));
   int across_pieces = clamp(int(ceil(wide / size)), 1, MAX_PIECES);
   // A tear between neighbours is not a footprint: no farther than the pieces can cover.

@@ -12,7 +12,9 @@ enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
 /* Share of the light that may fall outside the fitted map, on each of its four sides. */
 static const double map_tail = 2e-4;
 
-static double wide(const GLuint *lo_hi) { return ldexp((double)lo_hi[1], 32) + lo_hi[0]; }
+static double wide(const GLuint *lo_hi) {
+  return ldexp((double)lo_hi[1], 32) + lo_hi[0];
+}
 
 static double ledger_unit(const abbe_renderer *r, size_t light) {
   return ldexp(r->light[light].cell_flux, -24);
@@ -124,6 +126,7 @@ static void resolve_map(abbe_renderer *r, size_t light) {
   abbe_renderer_set_int(r, r->resolve, "map_size", (int)r->plan.desc.map_size);
   abbe_renderer_set_int(r, r->resolve, "levels", (int)r->map_levels);
   r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, r->texel_sizes);
   abbe_renderer_bind_texture(r, r->resolve, "coarser_map", 0, r->map);
   for (int level = (int)r->map_levels - 1; level >= 0; level--) {
     GLuint side = (GLuint)(r->plan.desc.map_size >> level);
@@ -319,34 +322,67 @@ static void tighten(const double *histogram, double total, double *low, double *
   *high = from + width * (last + 1);
 }
 
-static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
-  float *landing = NULL;
-  size_t count, orders, lanes;
-  abbe_result result =
-      abbe_renderer_read_landings(r, light, &landing, NULL, &count, &orders, &lanes, error);
-  double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0;
-  if (result == ABBE_OK && histogram == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
-  abbe_view *view = &r->light[light].map_view;
-  for (size_t i = 0; result == ABBE_OK && i < count * orders * lanes; i++) {
+/* Flux by window coordinate of the landings, `bins` a side: x, then y. Returns the whole. */
+static double sort_landings(const abbe_view *view, const float *landing, size_t count, int bins,
+                            double *histogram) {
+  double total = 0;
+  for (size_t i = 0; i < count; i++) {
     const float *at = landing + 4 * i;
     double p[3] = {at[0], at[1], at[2]}, uvz[3];
     if (!(at[3] > 0) || !abbe_view_project(view, p, uvz)) continue;
     total += at[3];
     for (int axis = 0; axis < 2; axis++) {
-      double bin = floor(uvz[axis] * FIT_BINS);
-      bin = fmin(fmax(bin, 0), FIT_BINS - 1);
-      histogram[axis * FIT_BINS + (int)bin] += at[3];
+      double bin = fmin(fmax(floor(uvz[axis] * bins), 0), bins - 1);
+      histogram[axis * bins + (int)bin] += at[3];
     }
   }
+  return total;
+}
+
+/* A share of the texels goes evenly, the rest to where light lands; smooth, so that neighbouring
+ * texels are alike. */
+enum { WARP_BLUR = 8 };
+
+static void make_warp(const double *histogram, double total, double knot[WARP_STEPS + 1]) {
+  static const double even = 0.4;
+  double sum = 0;
+  knot[0] = 0;
+  for (int k = 0; k < WARP_STEPS; k++) {
+    double near = 0, weight = 0;
+    for (int j = k - WARP_BLUR; j <= k + WARP_BLUR; j++) {
+      double w = WARP_BLUR + 1 - abs(j - k);
+      weight += w;
+      if (j >= 0 && j < WARP_STEPS) near += w * histogram[j];
+    }
+    sum += even / WARP_STEPS + (1 - even) * near / (weight * total);
+    knot[k + 1] = sum;
+  }
+  for (int k = 1; k <= WARP_STEPS; k++) knot[k] /= sum;
+}
+
+static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
+  float *landing = NULL;
+  size_t count = 0, orders = 0, lanes = 0;
+  abbe_result result =
+      abbe_renderer_read_landings(r, light, &landing, NULL, &count, &orders, &lanes, error);
+  double *histogram = calloc(2 * FIT_BINS, sizeof *histogram);
+  if (result == ABBE_OK && histogram == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
+  count *= orders * lanes;
+  light_state *state = &r->light[light];
+  abbe_view *view = &state->map_view;
+  double total = result == ABBE_OK ? sort_landings(view, landing, count, FIT_BINS, histogram) : 0;
   if (total > 0) {
+    double near = view->near, far = view->far, shares[2 * WARP_STEPS] = {0};
     for (int axis = 0; axis < 2; axis++)
       tighten(histogram + axis * FIT_BINS, total, &view->window[2 * axis],
               &view->window[2 * axis + 1]);
-    double near = view->near, far = view->far;
     abbe_view_pad(view, 0.02);
     view->near = near;
     view->far = far;
+    total = sort_landings(view, landing, count, WARP_STEPS, shares);
+    for (int axis = 0; axis < 2; axis++)
+      make_warp(shares + axis * WARP_STEPS, total, state->warp[axis]);
   }
   free(histogram);
   free(landing);

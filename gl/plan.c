@@ -251,10 +251,10 @@ static void resolve_wavelengths(abbe_plan *plan) {
       : plan->dispersive         ? "the index varies with wavelength"
                                  : "all indices are constant, one geometry serves all");
   if (plan->desc.orders == 0) plan->desc.orders = 8;
+  if (plan->desc.profile == ABBE_PROFILE_THESIS) plan->desc.orders = 1;
   add(plan, plan->desc.orders > 1, "inner reflections",
-      plan->desc.orders > 1
-          ? "followed until less than %g of the light is left, %zu exits at most"
-          : "two interfaces only, as asked (%g, %zu)",
+      plan->desc.orders > 1 ? "followed until less than %g of the light is left, %zu exits at most"
+                            : "two interfaces only (%g, %zu exit)",
       plan->desc.energy_share, plan->desc.orders);
 }
 

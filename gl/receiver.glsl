@@ -111,7 +111,7 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
   vec3 uvz;
   if (!project(l.map_view, p, uvz) || !inside(uvz.xy)) return;
-  vec3 flux = textureLod(spectral_map, vec3(uvz.xy, light), 0.0).xyz;
+  vec3 flux = textureLod(spectral_map, vec3(warp(light, uvz.xy), light), 0.0).xyz;
   caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
 }
 

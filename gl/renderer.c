@@ -131,7 +131,8 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
   gl->DeleteBuffers(1, &r->table_bands);
-  const GLuint lists[] = {r->pixel_list, r->path_marks, r->path_list, r->splat_list, r->map_sums};
+  const GLuint lists[] = {r->table_warps, r->texel_sizes, r->pixel_list, r->path_marks,
+                          r->path_list,   r->splat_list,  r->map_sums};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,          r->light_owner, r->light_depth,
@@ -280,9 +281,13 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   r->gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
   copy_flipped(data + light * side * side * 4, 4, 0, out, 0, 3, 1);
   free(data);
-  double cell = abbe_view_area(&r->light[light].map_view) / (double)(side * side);
-  for (size_t i = 0; i < side * side * 3 && !thesis; i++)
-    out->data[i] = (float)(out->data[i] * cell);
+  for (size_t y = 0; y < side && !thesis; y++) {
+    double height = abbe_renderer_texel_size(r, light, 1, side - 1 - y);
+    for (size_t x = 0; x < side; x++)
+      for (size_t c = 0; c < 3; c++)
+        out->data[(y * side + x) * 3 + c] *=
+            (float)(height * abbe_renderer_texel_size(r, light, 0, x));
+  }
   abbe_rgb_space_chromaticities(thesis ? ABBE_RGB_SPACE_REC709 : ABBE_RGB_SPACE_XYZ, out->xy);
   if (view != NULL) *view = r->light[light].map_view;
   result = abbe_gl_check(r->gl, "the reading of the map", error);

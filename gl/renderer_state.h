@@ -30,7 +30,7 @@ enum {
 enum { PHOTON_GROUP = 256, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };
 
 /* Up to this grid 32-bit sums leave every photon more than 2^12 units without ever overflowing. */
-enum { MAX_NARROW_PHOTONS = 512 };
+enum { MAX_NARROW_PHOTONS = 512, WARP_STEPS = 128 };
 
 typedef struct mesh_buffers {
   GLuint array, vertices, indices;
@@ -39,6 +39,7 @@ typedef struct mesh_buffers {
 
 typedef struct light_state {
   abbe_view near_view, map_view;
+  double warp[2][WARP_STEPS + 1]; /* of the map's axes: window coordinate k / WARP_STEPS to texture */
   size_t photon_count;
   double cell_flux;    /* most that one photon cell can carry, W */
   double reached_flux; /* that all cells together bring to refractors, weighted by ybar, W */
@@ -62,14 +63,14 @@ struct abbe_renderer {
   abbe_view eye;
 
   GLuint buffer[BINDING_COUNT];
-  GLuint table_bands;
+  GLuint table_bands, table_warps, texel_sizes;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
   GLuint path_marks, path_list, splat_list, map_sums;
   size_t splat_room, chunks; /* pieces of light that are listed at a time */
   GLuint list[LEVELS];       /* photon lists, last level last */
   GLuint texture_surface;
   GLuint light_layers, light_owner, light_depth, light_receivers, light_receivers_depth;
-  GLuint map;                  /* XYZ flux over window area, one layer a light, in levels */
+  GLuint map; /* XYZ flux over window area, one layer a light, in levels */
   size_t map_levels, map_texels;
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
       eye_layers_depth, eye_picture;
@@ -94,6 +95,8 @@ struct abbe_renderer {
 double abbe_renderer_now_ms(void);
 /* Flux of one unit of a light's map sums, W. */
 double abbe_renderer_map_unit(const abbe_renderer *r, size_t light);
+/* Window width (axis 0) or height (1) of the map's column or row `texel`. */
+double abbe_renderer_texel_size(const abbe_renderer *r, size_t light, int axis, size_t texel);
 /* 32-bit words of a map texel's sums. */
 size_t abbe_renderer_map_words(const abbe_renderer *r);
 

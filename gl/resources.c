@@ -106,6 +106,8 @@ void abbe_renderer_bind_tables(abbe_renderer *r) {
     if (i <= BINDING_SPECTRA) r->gl->BindBufferBase(GL_UNIFORM_BUFFER, i, r->buffer[i]);
     r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, r->buffer[i]);
   }
+  if (r->table_warps != 0)
+    r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 2, r->table_warps);
   if (r->table_bands != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 1, r->table_bands);
 }

@@ -420,6 +420,15 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = upload_receivers(r, error);
   if (result == ABBE_OK) result = upload_surfaces(r, error);
   if (result == ABBE_OK) result = upload_wavelengths(r, error);
+  for (size_t light = 0; light < r->plan.light_count; light++)
+    for (int k = 0; k <= WARP_STEPS; k++)
+      r->light[light].warp[0][k] = r->light[light].warp[1][k] = (double)k / WARP_STEPS;
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, r->plan.light_count * (WARP_STEPS + 1) * 16, NULL,
+                                       &r->table_warps, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, r->plan.light_count * r->plan.desc.map_size * 2 * 4, NULL,
+                                       &r->texel_sizes, error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, r->plan.light_count * sizeof(gpu_light), NULL,
                                        &r->buffer[BINDING_LIGHTS], error);
@@ -438,9 +447,43 @@ size_t abbe_renderer_map_words(const abbe_renderer *r) {
   return r->wide ? 6 : 3;
 }
 
+/* Texture coordinate back to window coordinate. */
+static double unwarp(const double *knot, double at) {
+  int k = 0;
+  while (k < WARP_STEPS - 1 && knot[k + 1] < at) k++;
+  double f = (at - knot[k]) / (knot[k + 1] - knot[k]);
+  return (k + fmin(fmax(f, 0), 1)) / WARP_STEPS;
+}
+
+double abbe_renderer_texel_size(const abbe_renderer *r, size_t light, int axis, size_t texel) {
+  const light_state *state = &r->light[light];
+  const double *knot = state->warp[axis], *window = state->map_view.window + 2 * axis;
+  double side = (double)r->plan.desc.map_size;
+  double share = unwarp(knot, (double)(texel + 1) / side) - unwarp(knot, (double)texel / side);
+  return share * (window[1] - window[0]);
+}
+
+static void upload_warps(abbe_renderer *r, size_t light) {
+  float row[WARP_STEPS + 1][4] = {{0}};
+  for (int k = 0; k <= WARP_STEPS; k++)
+    for (int axis = 0; axis < 2; axis++) row[k][axis] = (float)r->light[light].warp[axis][k];
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->table_warps);
+  r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row), sizeof row, row);
+  float size[256];
+  size_t side = r->plan.desc.map_size;
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->texel_sizes);
+  for (size_t i = 0; i < 2 * side; i += 256) {
+    size_t count = 2 * side - i < 256 ? 2 * side - i : 256;
+    for (size_t k = 0; k < count; k++)
+      size[k] = (float)abbe_renderer_texel_size(r, light, (i + k) / side > 0, (i + k) % side);
+    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)((light * 2 * side + i) * 4),
+                         (GLsizeiptr)(count * 4), size);
+  }
+}
+
 /* Called again whenever a light's view changes. */
 void abbe_renderer_upload_lights(abbe_renderer *r) {
-  double grid = (double)r->plan.desc.photons, map = (double)r->plan.desc.map_size;
+  double grid = (double)r->plan.desc.photons;
   for (size_t i = 0; i < r->plan.light_count; i++) {
     const abbe_light *light = &r->scene->light[i];
     light_state *state = &r->light[i];
@@ -451,7 +494,6 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     abbe_rgb_space_from_xyz(working_space(r), matrix);
     abbe_rgb_space_apply(matrix, white, rgb);
     double cell_area = abbe_view_area(&state->near_view) / (grid * grid);
-    double map_area = abbe_view_area(&state->map_view) / (map * map);
     state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);
     abbe_view_pack(&state->map_view, g.map_view);
@@ -461,7 +503,7 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     g.misc[0] = (float)cos(fmax(light->cone_rad - light->soft_rad, 0));
     g.misc[1] = (float)abbe_renderer_map_unit(r, i);
     g.misc[2] = (float)(1 / cell_area);
-    g.misc[3] = (float)(1 / map_area);
+    upload_warps(r, i);
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);
     r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g), sizeof g, &g);
   }
