@@ -140,6 +140,7 @@ static abbe_result check_targets(const request *q, abbe_error *error) {
 static cJSON *describe(const abbe_statistics *s, const abbe_context *context) {
   cJSON *root = cJSON_CreateObject();
   cJSON_AddNumberToObject(root, "frame_ms", s->frame_ms);
+  if (s->floor_ms > 0) cJSON_AddNumberToObject(root, "floor_ms", s->floor_ms);
   cJSON *passes = cJSON_AddArrayToObject(root, "passes");
   for (size_t i = 0; i < s->pass_count; i++) {
     cJSON *pass = cJSON_CreateObject();
@@ -185,7 +186,25 @@ static int by_time(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* One frame, or the median of several after a warm-up. */
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static abbe_result measure_floor(abbe_renderer *renderer, size_t count, double *ms,
+                                 abbe_error *error) {
+  double all[16];
+  if (count > 16) count = 16;
+  for (size_t i = 0; i < count; i++) {
+    abbe_result result = abbe_renderer_floor(renderer, &all[i], error);
+    if (result != ABBE_OK) return result;
+  }
+  qsort(all, count, sizeof *all, by_value);
+  *ms = all[count / 2];
+  return ABBE_OK;
+}
+
+/* One frame, or the median of several after a warm-up, and the floor under them. */
 static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_statistics *out,
                               abbe_error *error) {
   abbe_progress progress;
@@ -206,6 +225,8 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   abbe_progress_end(&progress);
   qsort(all, count, sizeof *all, by_time);
   *out = all[count / 2];
+  if (result == ABBE_OK && !once && q->render.desc.profile != ABBE_PROFILE_THESIS)
+    result = measure_floor(renderer, count, &out->floor_ms, error);
   free(all);
   return result;
 }

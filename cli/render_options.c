@@ -30,7 +30,7 @@ static const struct argp_option options[] = {
     {"samples", OPTION_SAMPLES, "N", 0, "samples a pixel side, 1 to 4 (2; thesis 1)", 1},
     {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
     {"share", OPTION_SHARE, "X", 0, "paths end below this share of their light (0.01)", 1},
-    {"exits", OPTION_EXITS, "N", 0, "exits followed at the most, 1 to 16 (8)", 1},
+    {"exits", OPTION_EXITS, "N", 0, "exits followed at the most, 1 to 16 (8; 4 for meshes)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
     {"materials", OPTION_MATERIALS, "TABLE", 0,
      "a table instead of the scene's: default, thesis or a file", 1},

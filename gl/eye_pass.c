@@ -256,3 +256,27 @@ abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_renderer_progress progress,
   if (result == ABBE_OK) resolve_picture(r);
   return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the eye's passes", error);
 }
+
+abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  static const int first = 0;
+  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  size_t w = r->plan.desc.width * r->plan.desc.supersample;
+  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  if (r->eye_receivers == 0)
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no floor of its own");
+  gl->Finish();
+  double start_ms = abbe_renderer_now_ms();
+  gl->UseProgram(r->layer);
+  set_eye(r, r->layer);
+  gl->Enable(GL_DEPTH_TEST);
+  abbe_result result =
+      abbe_renderer_set_target(r, &r->eye_receivers, &first, 1, r->eye_depth, w, h, error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  for (size_t i = 0; i < r->scene->object_count; i++) abbe_renderer_draw(r, i);
+  gl->Finish();
+  *ms = abbe_renderer_now_ms() - start_ms;
+  return abbe_gl_check(gl, "the drawing of surfaces", error);
+}

@@ -250,7 +250,8 @@ static void resolve_wavelengths(abbe_plan *plan) {
       : asked                    ? "as asked"
       : plan->dispersive         ? "the index varies with wavelength"
                                  : "all indices are constant, one geometry serves all");
-  if (plan->desc.orders == 0) plan->desc.orders = 8;
+  /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
+  if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : 8;
   if (plan->desc.profile == ABBE_PROFILE_THESIS) plan->desc.orders = 1;
   add(plan, plan->desc.orders > 1, "inner reflections",
       plan->desc.orders > 1 ? "followed until less than %g of the light is left, %zu exits at most"

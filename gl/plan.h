@@ -49,7 +49,8 @@ typedef struct abbe_render_desc {
   size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis: 1) */
   abbe_fill fill;
   double energy_share;  /* paths below this share of their light end; 0: 0.01 */
-  size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8 */
+  size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8
+                             (4 where a mesh is known by its layers) */
   abbe_rgb_space space; /* of the picture */
 } abbe_render_desc;
 

@@ -37,6 +37,10 @@ const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
 abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_renderer_progress progress,
                                 void *user, abbe_statistics *statistics, abbe_error *error);
 
+/* The time of drawing all surfaces once into the eye's picture, normals and distances alone, ms:
+ * the floor under any frame. Default profile only. */
+abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error *error);
+
 /* The picture: R, G, B (X, Y, Z in that space); with layers also direct.*, caustic.* (radiance of
  * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing). */
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image *out,

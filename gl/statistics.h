@@ -28,6 +28,7 @@ typedef struct abbe_pass_time {
 
 typedef struct abbe_statistics {
   double frame_ms; /* all passes, finished */
+  double floor_ms; /* drawing the surfaces alone, where it was measured; else 0 */
   size_t pass_count;
   abbe_pass_time pass[ABBE_STATISTICS_MAX_PASSES];
   size_t photons; /* cells that hold a refractor, all lights */
