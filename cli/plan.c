@@ -39,7 +39,7 @@ static void print_text(const abbe_plan *plan) {
   for (size_t i = 0; i < plan->note_count; i++) printf("  %s\n", plan->note[i]);
 }
 
-static int print_json(const abbe_plan *plan) {
+static abbe_result print_json(const abbe_plan *plan, abbe_error *error) {
   cJSON *root = cJSON_CreateObject(), *entries = cJSON_AddArrayToObject(root, "plan");
   for (size_t i = 0; i < plan->entry_count; i++) {
     cJSON *entry = cJSON_CreateObject();
@@ -53,15 +53,9 @@ static int print_json(const abbe_plan *plan) {
     cJSON_AddItemToArray(notes, cJSON_CreateString(plan->note[i]));
   cJSON_AddNumberToObject(root, "wavelengths", (double)plan->desc.wavelengths);
   cJSON_AddNumberToObject(root, "exits", (double)plan->desc.orders);
-  char *text = cJSON_Print(root);
+  abbe_result result = abbe_command_print_json(root, error);
   cJSON_Delete(root);
-  if (text == NULL) {
-    fprintf(stderr, "abbe plan: no memory for the JSON text\n");
-    return ABBE_EXIT_FAILED;
-  }
-  printf("%s\n", text);
-  free(text);
-  return ABBE_EXIT_DONE;
+  return result;
 }
 
 int abbe_command_plan(int argc, char **argv) {
@@ -88,14 +82,12 @@ int abbe_command_plan(int argc, char **argv) {
   abbe_scene_options scene_options = {.materials = o.render.materials};
   abbe_result result = abbe_scene_load(o.render.scene, &scene_options, &scene, &error);
   if (result == ABBE_OK) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
-  int code = ABBE_EXIT_DONE;
-  if (result != ABBE_OK)
-    code = abbe_command_fail(argv[0], &error);
-  else if (o.json)
-    code = print_json(&plan);
-  else
-    print_text(&plan);
+  for (size_t i = 0; i < scene.object_count && result == ABBE_OK; i++)
+    if (scene.object[i].mended != NULL)
+      fprintf(stderr, "note: object '%s': %s\n", scene.object[i].name, scene.object[i].mended);
+  if (result == ABBE_OK && o.json) result = print_json(&plan, &error);
+  if (result == ABBE_OK && !o.json) print_text(&plan);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-  return code;
+  return abbe_command_end(argv[0], result, &error);
 }

@@ -63,7 +63,7 @@ static const struct argp_option options[] = {
     {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
-  static const char *const backends[] = {"osmesa", "egl"};
+  static const char *const backends[] = {"osmesa", "egl"}, *const bits[] = {"8", "16"};
   request *q = state->input;
   const char *p = q->render.program;
   switch (key) {
@@ -77,7 +77,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->png = text;
     return 0;
   case OPTION_BITS:
-    q->bits = abbe_command_count(p, "--bits", text, 8, 16) > 8 ? 16 : 8;
+    q->bits = abbe_command_choice(p, "--bits", text, bits, 2) == 0 ? 8 : 16;
     return 0;
   case OPTION_LAYERS:
     q->layers = true;
@@ -135,6 +135,19 @@ static abbe_result check_targets(const request *q, abbe_error *error) {
     if (result != ABBE_OK) return result;
   }
   return ABBE_OK;
+}
+
+/* So is a view that the configuration does not have. */
+static abbe_result check_display(const request *q, abbe_error *error) {
+  if (q->png == NULL) return ABBE_OK;
+  abbe_display *display = NULL;
+  abbe_display_desc desc = q->display;
+  bool thesis = q->render.desc.profile == ABBE_PROFILE_THESIS;
+  desc.source_space =
+      abbe_rgb_space_ocio_name(thesis ? ABBE_RGB_SPACE_REC709 : q->render.desc.space);
+  abbe_result result = abbe_display_make(&desc, &display, error);
+  abbe_display_free(display);
+  return result;
 }
 
 static cJSON *describe(const abbe_statistics *s, const abbe_context *context) {
@@ -302,6 +315,13 @@ static void summarise(const request *q, const abbe_statistics *s) {
   fprintf(stderr, "\n");
 }
 
+static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].mended != NULL)
+      fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].mended);
+  for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
+}
+
 static abbe_result render(const request *q, const abbe_scene *scene, abbe_context *context,
                           abbe_error *error) {
   abbe_renderer *renderer = NULL;
@@ -309,9 +329,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_image image = {0};
   abbe_result result = abbe_renderer_make(context, scene, &q->render.desc, &renderer, error);
   if (result == ABBE_OK) {
-    const abbe_plan *plan = abbe_renderer_plan(renderer);
-    for (size_t i = 0; i < plan->note_count && !q->quiet; i++)
-      fprintf(stderr, "note: %s\n", plan->note[i]);
+    if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
     result = run_frames(q, renderer, &statistics, error);
   }
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->layers, &image, error);
@@ -349,10 +367,11 @@ int abbe_command_render(int argc, char **argv) {
   abbe_context *context = NULL;
   abbe_scene_options scene_options = {.materials = q.render.materials};
   abbe_result result = check_targets(&q, &error);
+  if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);
   if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
   if (result == ABBE_OK) result = render(&q, &scene, context, &error);
   abbe_context_free(context);
   abbe_scene_free(&scene);
-  return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(argv[0], &error);
+  return abbe_command_end(argv[0], result, &error);
 }

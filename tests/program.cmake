@@ -3,3 +3,9 @@ add_test(NAME install
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/check ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR}
           ${CMAKE_C_COMPILER})
 set_tests_properties(install PROPERTIES LABELS program TIMEOUT 300)
+
+foreach(name bad_input render_command)
+  abbe_test(${name} program abbe_colorimetry abbe_spectral PkgConfig::CJSON)
+  target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
+  add_dependencies(test_${name} abbe)
+endforeach()
