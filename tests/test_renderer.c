@@ -1,0 +1,318 @@
+/* The renderer's laws: energy is kept, white stays white without dispersion. */
+#include "tests/frame.h"
+
+#include "colorimetry/weights.h"
+
+static const char *const shipped[] = {"sphere", "ring",  "gem",    "bunny",
+                                      "glass",  "prism", "rainbow"};
+enum { SHIPPED = sizeof shipped / sizeof *shipped };
+
+/* The ledger's parts and the map are whole multiples of 2^-24 and 2^-28 of a cell's flux: what is
+ * left of the balance is rounding, far below the 1e-4 that is promised. */
+static void assert_balance(const abbe_statistics *s, const char *name) {
+  double imbalance = abbe_ledger_imbalance(&s->energy);
+  if (!(imbalance < 1e-4)) print_error("%s: imbalance %g\n", name, imbalance);
+  assert_true(imbalance < 1e-4);
+  assert_true(s->energy.reached > 0);
+  assert_true(s->energy.deposited > 0);
+  assert_true(s->energy.deposited < s->energy.reached);
+  assert_true(s->energy.reflected > 0);
+}
+
+/* The map read as a picture holds what the ledger says was deposited. */
+static void assert_map_holds(abbe_renderer *renderer, double deposited) {
+  abbe_image map = {0};
+  read_map(renderer, 0, &map);
+  assert_finite(&map);
+  /* A texel is a float: 6e-8 of it, and all of them together no more. */
+  assert_near(image_sum(&map, 1) / deposited, 1, 1e-6);
+  abbe_image_free(&map);
+}
+
+/* What ran is what the plan says. */
+static void assert_as_planned(const abbe_renderer *renderer, const abbe_statistics *s) {
+  for (size_t i = 0; i < s->pass_count; i++) {
+    const abbe_plan_entry *entry = abbe_plan_find(abbe_renderer_plan(renderer), s->pass[i].name);
+    if (strcmp(s->pass[i].name, "eye: picture") == 0) continue; /* every frame ends with it */
+    if (strcmp(s->pass[i].name, "eye: refractor layers") == 0) continue; /* two entries in one */
+    if (entry == NULL || !entry->runs) print_error("'%s' ran unplanned\n", s->pass[i].name);
+    assert_true(entry != NULL && entry->runs);
+  }
+}
+
+static void test_shipped_scenes_balance(void **state) {
+  (void)state;
+  for (int i = 0; i < SHIPPED; i++) {
+    abbe_scene scene = {0};
+    load_shipped(shipped[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+    abbe_statistics s = draw_frame(renderer);
+    assert_balance(&s, shipped[i]);
+    assert_true(s.photons > 0 && s.photons <= 64 * 64);
+    assert_int_equal(s.wavelengths, 7);
+    assert_as_planned(renderer, &s);
+    assert_map_holds(renderer, s.energy.deposited);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* The thesis's map is the light's own frustum, so that it holds nothing of the prism's light. */
+static void test_the_thesis_profile_renders(void **state) {
+  (void)state;
+  for (int i = 0; i < SHIPPED; i++) {
+    abbe_scene scene = {0};
+    abbe_image image = {0}, map = {0};
+    abbe_render_desc desc = small_frame;
+    desc.profile = ABBE_PROFILE_THESIS;
+    load_shipped(shipped[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    abbe_statistics s = draw_frame(renderer);
+    assert_int_equal(s.wavelengths, 7);
+    assert_true(s.photons > 0);
+    read_picture(renderer, false, &image);
+    read_map(renderer, 0, &map);
+    assert_finite(&image);
+    assert_finite(&map);
+    assert_true(image_max(&image, 0) > 0);
+    if (strcmp(shipped[i], "prism") != 0) assert_true(image_max(&map, 0) > 0);
+    abbe_image_free(&image);
+    abbe_image_free(&map);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* Every model, light and material at once, at sizes that divide nothing. */
+static void test_mixed_scenes_balance(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      CAMERA POINT_LIGHT FLOOR BALL("smoke"),
+      CAMERA POINT_LIGHT FLOOR BRICK("crown"),
+      CAMERA POINT_LIGHT FLOOR RING("smoke"),
+      CAMERA SUN FLOOR BALL("crown"),
+      CAMERA SUN FLOOR RING("crown"),
+      CAMERA POINT_LIGHT
+      "- {name: sun, kind: directional, direction: [1, 0, -2], irradiance: 2}\n" FLOOR BALL("smoke")
+          BRICK("crown"),
+  };
+  static const size_t photons[] = {1, 3, 30, 100}, maps[] = {1, 7, 100};
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    abbe_scene scene = {0};
+    abbe_render_desc desc = small_frame;
+    desc.photons = photons[2 + i % 2];
+    desc.map_size = maps[2];
+    load_text(texts[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    abbe_statistics s = draw_frame(renderer);
+    assert_balance(&s, texts[i]);
+    assert_int_equal(s.energy.absorbed > 0, abbe_renderer_plan(renderer)->absorbing);
+    abbe_renderer_free(renderer);
+    for (size_t k = 0; k < 4; k++) {
+      desc.photons = photons[k % 2];
+      desc.map_size = maps[k / 2];
+      renderer = make_renderer(&scene, &desc);
+      s = draw_frame(renderer);
+      assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
+      abbe_renderer_free(renderer);
+    }
+    abbe_scene_free(&scene);
+  }
+}
+
+/* Samples go to the device in batches; their number changes neither balance nor total. */
+static void test_many_wavelengths_add_up(void **state) {
+  (void)state;
+  static const size_t counts[] = {1, 2, 64, 65, 200};
+  abbe_scene scene = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  double first = 0;
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+    abbe_render_desc desc = small_frame;
+    desc.wavelengths = counts[i];
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    abbe_statistics s = draw_frame(renderer);
+    assert_balance(&s, "flat ball");
+    if (i == 0) first = s.energy.deposited;
+    /* One constant index: the same light, whole multiples of 2^-28 apart for each sample. */
+    assert_near(s.energy.deposited / first, 1, 1e-4);
+    abbe_renderer_free(renderer);
+  }
+  abbe_scene_free(&scene);
+}
+
+/* D65's white over the range, in the space asked for. */
+static void white_of(abbe_rgb_space space, double white[3]) {
+  abbe_wavelengths w = {0};
+  abbe_weights weights = {0};
+  const abbe_illuminant d65 = {0};
+  assert_int_equal(abbe_wavelengths_make(7, 380, 780, &w, NULL), ABBE_OK);
+  assert_int_equal(abbe_weights_make(&w, &d65, space, &weights, NULL), ABBE_OK);
+  memcpy(white, weights.sum, sizeof weights.sum);
+  abbe_weights_free(&weights);
+  abbe_wavelengths_free(&w);
+}
+
+static void test_white_in_white_out(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map = {0};
+  abbe_render_desc desc = small_frame;
+  desc.wavelengths = 7;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  make_map(&scene, &desc, &map);
+  double white[3], sum[3], total = 0, white_total = 0;
+  white_of(ABBE_RGB_SPACE_XYZ, white);
+  for (int c = 0; c < 3; c++) {
+    total += sum[c] = image_sum(&map, (size_t)c);
+    white_total += white[c];
+  }
+  assert_near(sum[0] / total, white[0] / white_total, 1e-4);
+  assert_near(sum[1] / total, white[1] / white_total, 1e-4);
+  abbe_image_free(&map);
+  abbe_scene_free(&scene);
+}
+
+/* Grey things, a constant index and 7 wavelengths: every pixel has the light's own chromaticity,
+ * whether it is seen straight or through glass. */
+static void test_no_dispersion_no_colour(void **state) {
+  (void)state;
+  static const char *const texts[] = {CAMERA POINT_LIGHT FLOOR BALL("flat"),
+                                      CAMERA POINT_LIGHT FLOOR BRICK("flat"),
+                                      CAMERA POINT_LIGHT FLOOR RING("flat")};
+  double white[3];
+  white_of(ABBE_RGB_SPACE_ACESCG, white);
+  for (size_t i = 0; i < 3; i++) {
+    abbe_scene scene = {0};
+    abbe_image image = {0};
+    abbe_render_desc desc = small_frame;
+    desc.wavelengths = 7;
+    load_text(texts[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, false, &image);
+    double tolerance = 1e-4 * image_max(&image, 1);
+    assert_true(tolerance > 0);
+    for (size_t k = 0; k < image.width * image.height; k++) {
+      const float *rgb = image.data + 3 * k;
+      assert_near(rgb[0] / white[0], rgb[1] / white[1], tolerance);
+      assert_near(rgb[2] / white[2], rgb[1] / white[1], tolerance);
+    }
+    abbe_image_free(&image);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* The largest difference of two maps' Y as a share of their largest. */
+static double difference(const abbe_image *a, const abbe_image *b) {
+  double most = 0;
+  for (size_t i = 0; i < a->width * a->height; i++)
+    most = fmax(most, fabs((double)a->data[3 * i + 1] - (double)b->data[3 * i + 1]));
+  return most / image_max(a, 1);
+}
+
+static void map_of_dispersion(const char *text, double factor, size_t wavelengths,
+                              abbe_image *map) {
+  abbe_scene scene = {0};
+  abbe_render_desc desc = small_frame;
+  desc.wavelengths = wavelengths;
+  load_text(text, &scene);
+  for (size_t i = 0; i < scene.table.count; i++) scene.table.material[i].dispersion.c[1] *= factor;
+  make_map(&scene, &desc, map);
+  abbe_scene_free(&scene);
+}
+
+static void test_dispersion_goes_to_the_map_without(void **state) {
+  (void)state;
+  static const char *const texts[] = {CAMERA POINT_LIGHT FLOOR BALL("crown"),
+                                      CAMERA POINT_LIGHT FLOOR BRICK("crown")};
+  for (size_t i = 0; i < 2; i++) {
+    abbe_image none = {0}, tiny = {0}, one = {0}, full = {0};
+    map_of_dispersion(texts[i], 0, 7, &none);
+    map_of_dispersion(texts[i], 1e-6, 7, &tiny);
+    map_of_dispersion(texts[i], 0, 1, &one);
+    map_of_dispersion(texts[i], 1, 7, &full);
+    /* n differs by 4e-8, less than a float resolves: what is left is rounding. */
+    assert_true(difference(&none, &tiny) < 1e-3);
+    assert_true(difference(&none, &one) < 1e-3);
+    assert_true(difference(&none, &full) > 1e-2);
+    abbe_image_free(&none);
+    abbe_image_free(&tiny);
+    abbe_image_free(&one);
+    abbe_image_free(&full);
+  }
+}
+
+static bool stop(void *user, double done) {
+  assert_true(done >= 0 && done <= 1);
+  ++*(int *)user;
+  return false;
+}
+
+static bool count_calls(void *user, double done) {
+  double *last = user;
+  assert_true(done >= *last && done <= 1);
+  *last = done;
+  return true;
+}
+
+static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  abbe_image before = {0}, after = {0};
+  int calls = 0;
+  double last = 0;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  read_picture(renderer, false, &before);
+  assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+  assert_int_equal(calls, 1);
+  assert_ok(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error), &error);
+  assert_near(last, 1, 0);
+  read_picture(renderer, false, &after);
+  assert_same_pixels(&before, &after);
+  abbe_image_free(&before);
+  abbe_image_free(&after);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+static void test_what_is_not_there_is_refused(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map = {0};
+  abbe_error error = {0};
+  abbe_renderer *renderer = NULL;
+  const abbe_render_desc huge = {.photons = ABBE_RENDER_MAX_PHOTONS + 1};
+  load_text(CAMERA POINT_LIGHT FLOOR, &scene);
+  assert_int_equal(abbe_renderer_make(frame_context, &scene, &huge, &renderer, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_null(renderer);
+  renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &map, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no spectral map");
+  assert_null(map.data);
+  abbe_renderer_free(renderer);
+  abbe_renderer_free(NULL);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_shipped_scenes_balance),
+      cmocka_unit_test(test_the_thesis_profile_renders),
+      cmocka_unit_test(test_mixed_scenes_balance),
+      cmocka_unit_test(test_many_wavelengths_add_up),
+      cmocka_unit_test(test_white_in_white_out),
+      cmocka_unit_test(test_no_dispersion_no_colour),
+      cmocka_unit_test(test_dispersion_goes_to_the_map_without),
+      cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
+      cmocka_unit_test(test_what_is_not_there_is_refused),
+  };
+  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+}
