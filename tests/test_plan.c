@@ -137,17 +137,21 @@ static void test_too_many_rectangles_are_found_by_depth(void **state) {
   (void)state;
   abbe_scene scene = {0};
   abbe_plan plan;
+  double many[97][9];
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  scene.object[0].exact.count = 96;
+  abbe_exact *exact = &scene.object[0].exact, floor = *exact;
+  for (size_t i = 0; i < 97; i++) memcpy(many[i], floor.parallelogram[0], sizeof many[i]);
+  exact->parallelogram = many;
+  exact->count = 96;
   make(&scene, NULL, &plan);
   assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
   assert_int_equal(plan.parallelogram_count, 96);
   abbe_plan_free(&plan);
-  scene.object[0].exact.count = 97;
+  exact->count = 97;
   make(&scene, NULL, &plan);
   assert_int_equal(plan.receivers, ABBE_RECEIVER_DEPTH);
   abbe_plan_free(&plan);
-  scene.object[0].exact.count = 1;
+  *exact = floor;
   abbe_scene_free(&scene);
 }
 
