@@ -2,7 +2,8 @@
 add_test(NAME install
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/check ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR}
           ${CMAKE_C_COMPILER})
-set_tests_properties(install PROPERTIES LABELS program TIMEOUT 300)
+add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
+set_tests_properties(install scripts PROPERTIES LABELS program TIMEOUT 300)
 
 foreach(name bad_input render_command)
   abbe_test(${name} program abbe_colorimetry abbe_spectral PkgConfig::CJSON)
