@@ -280,6 +280,24 @@ static abbe_result write_png(const request *q, abbe_image *image, abbe_error *er
   return result;
 }
 
+/* The texel columns' and rows' places in the window, as text: what a reader needs to undo them. */
+static abbe_result annotate_warp(const abbe_renderer *renderer, abbe_image *map,
+                                 abbe_error *error) {
+  static const char *const names[2] = {"abbe:map_warp_x", "abbe:map_warp_y"};
+  double knots[2][ABBE_RENDERER_WARP_STEPS + 1];
+  abbe_result result = ABBE_OK;
+  abbe_renderer_map_warp(renderer, 0, knots);
+  for (int axis = 0; axis < 2 && result == ABBE_OK; axis++) {
+    char text[(ABBE_RENDERER_WARP_STEPS + 1) * 12] = "";
+    size_t used = 0;
+    for (int k = 0; k <= ABBE_RENDERER_WARP_STEPS; k++)
+      used += (size_t)snprintf(text + used, sizeof text - used, "%s%.7f", k > 0 ? " " : "",
+                               knots[axis][k]);
+    result = abbe_image_set_attribute(map, names[axis], text, error);
+  }
+  return result;
+}
+
 static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
   abbe_image map = {0};
   abbe_view view;
@@ -293,6 +311,7 @@ static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_erro
            view.orthographic ? "orthographic" : "perspective", o[0], o[1], o[2], f[0], f[1], f[2],
            u[0], u[1], u[2], w[0], w[1], w[2], w[3]);
   result = abbe_image_set_attribute(&map, "abbe:map_view", text, error);
+  if (result == ABBE_OK) result = annotate_warp(renderer, &map, error);
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(&map, "abbe:unit", "flux a texel, W", error);
   if (result == ABBE_OK) result = abbe_exr_write(q->map, &map, error);

@@ -158,6 +158,11 @@ void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *
   *out = r->light[light].near_view;
 }
 
+void abbe_renderer_map_warp(const abbe_renderer *r, size_t light,
+                            double knots[2][ABBE_RENDERER_WARP_STEPS + 1]) {
+  memcpy(knots, r->light[light].warp, sizeof r->light[light].warp);
+}
+
 static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
   s->frame_ms = abbe_renderer_now_ms() - start_ms - r->untimed_ms;
   s->wavelengths = r->plan.desc.wavelengths;

@@ -47,9 +47,16 @@ abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image 
                                abbe_error *error);
 
 /* A light's spectral map: channels X, Y, Z, flux a texel in W, and the view it was taken through
- * (view may be NULL). filled: after the gap fill, where the fill is a pass of its own (smear). */
+ * (view may be NULL); its axes are warped as abbe_renderer_map_warp says. filled: after the gap
+ * fill, where the fill is a pass of its own (smear). */
 abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool filled,
                                    abbe_image *out, abbe_view *view, abbe_error *error);
+
+/* Where the map's texels are finer: window coordinate k / steps falls on texture coordinate
+ * knots[axis][k] (0 to 1, ascending, in between linearly). */
+#define ABBE_RENDERER_WARP_STEPS 128
+void abbe_renderer_map_warp(const abbe_renderer *renderer, size_t light,
+                            double knots[2][ABBE_RENDERER_WARP_STEPS + 1]);
 
 /* Landings of the first batch of wavelengths, for tests: [count][orders][lanes] x 4 floats, world
  * position and flux for unit weight; *data is malloc'd. */

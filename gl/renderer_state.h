@@ -30,7 +30,7 @@ enum {
 enum { PHOTON_GROUP = 256, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };
 
 /* Up to this grid 32-bit sums leave every photon more than 2^12 units without ever overflowing. */
-enum { MAX_NARROW_PHOTONS = 512, WARP_STEPS = 128 };
+enum { MAX_NARROW_PHOTONS = 512, WARP_STEPS = ABBE_RENDERER_WARP_STEPS };
 
 typedef struct mesh_buffers {
   GLuint array, vertices, indices;
