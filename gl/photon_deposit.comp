@@ -103,14 +103,14 @@ void main() {
     path_a = signature[first + uint(interval_first - 1 - lane_first)];
     from = landing[first + uint(interval_first - 1 - lane_first)];
   }
-  vec2 pa = map_position(from.xyz);
+  vec2 pa = path_a != 0u ? map_position(from.xyz) : here;
   for (int interval = interval_first; interval <= interval_end; interval++) {
     bool last = interval == interval_end;  // one more turn, to write what is gathered
     bool has_b = interval < WAVELENGTHS && !last;
     uint index_b = first + uint(has_b ? interval - lane_first : 0);
     uint path_b = has_b ? signature[index_b] : 0u;
     vec4 to = landing[index_b];
-    vec2 pb = map_position(to.xyz);
+    vec2 pb = path_b != 0u ? map_position(to.xyz) : pa;
     float share_a = path_a != 0u ? from.w : 0.0, share_b = path_b != 0u ? to.w : 0.0;
     bool bridge = false;
     // Halves whose landings fall together are one piece.
@@ -130,7 +130,8 @@ void main() {
       vec3 lower = min(upto.xyz, middle) - min(before.xyz, middle);
       vec3 flux = share_a * lower + share_b * (upto.xyz - before.xyz - lower);
       float half_way = share_b > 0.0 ? share_a > 0.0 ? (2 * k <= pieces ? 0.0 : 1.0) : 1.0 : 0.0;
-      vec2 at = mix(pa, pb, bridge ? 0.5 * (before.w + upto.w) : half_way);
+      // What does not land has no place: no share of it may come into the sum.
+      vec2 at = bridge ? mix(pa, pb, 0.5 * (before.w + upto.w)) : half_way > 0.0 ? pb : pa;
       before = upto;
       float weight = last ? 0.0 : flux.x + flux.y + flux.z;
       vec2 off = abs(at - gathered_from);
