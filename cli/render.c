@@ -385,6 +385,7 @@ int abbe_command_render(int argc, char **argv) {
   abbe_scene scene = {0};
   abbe_context *context = NULL;
   abbe_scene_options scene_options = {.materials = q.render.materials};
+  q.render.desc.layers = q.layers;
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);

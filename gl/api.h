@@ -10,6 +10,10 @@
 
 #include <GL/glcorearb.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* X(pointer type's middle, name without gl) */
 #define ABBE_GL_FUNCTIONS(X)                                                                       \
   X(ACTIVETEXTURE, ActiveTexture)                                                                  \
@@ -18,9 +22,9 @@
   X(BINDBUFFERBASE, BindBufferBase)                                                                \
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \
   X(BINDIMAGETEXTURE, BindImageTexture)                                                            \
-  X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc) X(       \
-      BUFFERDATA, BufferData) X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS,            \
-                                                                CheckFramebufferStatus)            \
+  X(BINDTEXTURE, BindTexture)                                                                      \
+  X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc) X(BUFFERDATA, BufferData) X(         \
+      BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus)              \
       X(CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV, ClearBufferuiv) X(                         \
           CLEARBUFFERDATA, ClearBufferData) X(COMPILESHADER, CompileShader) X(CREATEPROGRAM,       \
                                                                               CreateProgram)       \
@@ -48,19 +52,19 @@
                                                                  GetProgramInfoLog) X(GETSHADERIV, \
                                                                                       GetShaderiv) \
                                   X(GETSHADERINFOLOG, GetShaderInfoLog) X(GETSTRING, GetString) X( \
-                                      GETTEXIMAGE,                                                 \
-                                      GetTexImage) X(GETUNIFORMLOCATION, GetUniformLocation)       \
-                                      X(LINKPROGRAM,                                               \
-                                        LinkProgram) X(MEMORYBARRIER,                              \
-                                                       MemoryBarrier) X(PIXELSTOREI, PixelStorei)  \
-                                          X(SHADERSOURCE, ShaderSource) X(                         \
-                                              TEXPARAMETERI,                                       \
-                                              TexParameteri) X(TEXSTORAGE2D, TexStorage2D)         \
-                                              X(TEXSTORAGE3D, TexStorage3D) X(                     \
-                                                  TEXSUBIMAGE3D,                                   \
-                                                  TexSubImage3D) X(UNIFORM1F, Uniform1f)           \
-                                                  X(UNIFORM1FV,                                    \
-                                                    Uniform1fv) X(UNIFORM1I, Uniform1i)            \
+                                      GETTEXIMAGE, GetTexImage) X(GETUNIFORMLOCATION,              \
+                                                                  GetUniformLocation)              \
+                                      X(LINKPROGRAM, LinkProgram) X(MEMORYBARRIER, MemoryBarrier)  \
+                                          X(PIXELSTOREI, PixelStorei) X(                           \
+                                              SHADERSOURCE,                                        \
+                                              ShaderSource) X(TEXPARAMETERI, TexParameteri)        \
+                                              X(TEXSTORAGE2D, TexStorage2D) X(                     \
+                                                  TEXSTORAGE3D,                                    \
+                                                  TexStorage3D) X(TEXSUBIMAGE3D, TexSubImage3D)    \
+                                                  X(UNIFORM1F,                                     \
+                                                    Uniform1f) X(UNIFORM1FV,                       \
+                                                                 Uniform1fv) X(UNIFORM1I,          \
+                                                                               Uniform1i)          \
                                                       X(UNIFORM1UI, Uniform1ui) X(                 \
                                                           UNIFORM2I,                               \
                                                           Uniform2i) X(UNIFORM2F, Uniform2f)       \
@@ -93,4 +97,7 @@ abbe_result abbe_gl_load(abbe_gl_lookup lookup, abbe_gl *out, abbe_error *error)
 /* ABBE_GL with `where` and the error's name if the context holds an error; clears it. */
 abbe_result abbe_gl_check(const abbe_gl *gl, const char *where, abbe_error *error);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -10,6 +10,10 @@
 #include "gl/api.h"
 #include "spectral/error.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* X(code, name on the command line) */
 #define ABBE_CONTEXT_BACKENDS(X) X(OSMESA, "osmesa") X(EGL, "egl")
 
@@ -29,8 +33,11 @@ abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, 
 void abbe_context_free(abbe_context *context);
 
 const abbe_gl *abbe_context_gl(const abbe_context *context);
-/* "OSMesa: llvmpipe (LLVM 15…), OpenGL 4.5 …"; owned by the context. */
+/* "osmesa: llvmpipe (LLVM 15…), OpenGL 4.5 …"; owned by the context. */
 const char *abbe_context_description(const abbe_context *context);
 const char *abbe_context_backend_name(abbe_context_backend backend);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

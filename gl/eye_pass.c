@@ -36,8 +36,8 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
     bool wanted;
   } targets[] = {
       {&r->eye_receivers, GL_RGBA32F, 1, true},
-      {&r->eye_direct, GL_RGBA32F, 0, true},
-      {&r->eye_caustic, GL_RGBA32F, 0, true},
+      {&r->eye_direct, GL_RGBA32F, 0, r->plan.desc.layers},
+      {&r->eye_caustic, GL_RGBA32F, 0, r->plan.desc.layers},
       {&r->eye_refraction, GL_RGBA32F, 0, true},
       {&r->eye_depth, GL_DEPTH_COMPONENT32F, 0, true},
       {&r->eye_layers, GL_RGBA32F, r->plan.layers ? 2 : 1, layers},
@@ -116,12 +116,12 @@ static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
   static const int flat[3] = {0, -1, -1};
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
   abbe_renderer_begin_pass(r);
-  abbe_result result = abbe_renderer_set_target(r, target, flat, 3, r->eye_depth, w, h, error);
+  abbe_result result = abbe_renderer_set_target(r, target, flat, r->plan.desc.layers ? 3 : 1,
+                                                r->eye_depth, w, h, error);
   if (result != ABBE_OK) return result;
   GLfloat b = (GLfloat)r->scene->background, background[4] = {b, b, b, 0};
   gl->ClearBufferfv(GL_COLOR, 0, background);
-  gl->ClearBufferfv(GL_COLOR, 1, nothing);
-  gl->ClearBufferfv(GL_COLOR, 2, nothing);
+  for (GLint k = 1; k < 3 && r->plan.desc.layers; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(r->receivers);
@@ -161,9 +161,9 @@ static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
       gl->Uniform1ui(gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
       abbe_renderer_draw(r, r->plan.refractor_object[i]);
     }
+    abbe_renderer_end_pass(r, back ? "eye: refractor back" : "eye: refractor front");
   }
   gl->Disable(GL_CULL_FACE);
-  abbe_renderer_end_pass(r, "eye: refractor layers");
   return ABBE_OK;
 }
 

@@ -104,7 +104,8 @@ static abbe_result deposit_batch(abbe_renderer *r, size_t light, size_t first, s
   for (size_t chunk = 0; chunk < r->chunks; chunk++) {
     list_pieces(r, light, first, count, interval_first, interval_end, chunk);
     abbe_renderer_end_pass(r, "light: gap fill");
-    if (r->chunks > 1 && read_count(r, r->splat_list) > r->splat_room)
+    bool look = r->chunks > 1 || r->statistics != NULL;
+    if (look && read_count(r, r->splat_list) > r->splat_room)
       return abbe_error_set(error, ABBE_GL,
                             "the photons' light falls into more than %zu pieces; "
                             "use fewer photons or wavelengths",

@@ -14,6 +14,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define ABBE_PROFILES(X) X(DEFAULT, "default") X(THESIS, "thesis")
 typedef enum abbe_profile {
 #define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
@@ -52,6 +56,7 @@ typedef struct abbe_render_desc {
   size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8
                              (4 where a mesh is known by its layers) */
   abbe_rgb_space space; /* of the picture */
+  bool layers;          /* keep direct and caustic light of the receivers apart as well */
 } abbe_render_desc;
 
 typedef enum abbe_refractor_model {
@@ -109,4 +114,7 @@ const char *abbe_receiver_model_name(abbe_receiver_model model);
 /* The entry of that name, or NULL. */
 const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

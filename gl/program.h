@@ -12,6 +12,10 @@
 
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct abbe_program_stage {
   GLenum type;      /* GL_VERTEX_SHADER, … */
   const char *file; /* "photon_trace.comp" */
@@ -35,4 +39,7 @@ abbe_result abbe_program_make_compute_text(const abbe_gl *gl, const char *text, 
 /* Names of all shader files, NULL-terminated: a test compiles each. */
 const char *const *abbe_program_files(void);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -40,13 +40,14 @@ static void write_defines(abbe_renderer *r) {
            "#define WAVELENGTHS %zu\n#define ORDERS %zu\n#define LIGHT_ROOM %zu\n"
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
-           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s",
+           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, room(p->light_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
            r->band_levels, room(p->refractor_count * r->band_count),
            storage(p->refractor_count * r->band_count, 32, "#define BANDS_IN_STORAGE\n"),
            p->receiver_shadows ? "#define RECEIVER_SHADOWS\n" : "", r->wide ? "#define WIDE\n" : "",
+           p->desc.layers ? "#define LIGHT_LAYERS_OUT\n" : "",
            storage(planes, 16, "#define PLANES_IN_STORAGE\n"),
            storage(p->receiver_count, 32, "#define SURFACES_IN_STORAGE\n"),
            storage(spectra, 16, "#define SPECTRA_IN_STORAGE\n"),
@@ -235,7 +236,7 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
                                     "direct.Y", "direct.Z", "caustic.X", "caustic.Y", "caustic.Z"};
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   bool as_xyz = r->plan.desc.space == ABBE_RGB_SPACE_XYZ && !thesis;
-  layers = layers && !thesis;
+  layers = layers && r->plan.desc.layers && !thesis;
   abbe_result result = abbe_image_make(r->plan.desc.width, r->plan.desc.height, layers ? 10 : 3,
                                        as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;

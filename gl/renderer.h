@@ -18,6 +18,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct abbe_renderer abbe_renderer;
 
 /* Called now and then with the share done, 0 to 1; false stops the frame with ABBE_CANCELLED. */
@@ -41,7 +45,8 @@ abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_renderer_progress 
  * the floor under any frame. Default profile only. */
 abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error *error);
 
-/* The picture: R, G, B (X, Y, Z in that space); with layers also direct.*, caustic.* (radiance of
+/* The picture: R, G, B (X, Y, Z in that space); with layers (which the request must have
+ * asked for) also direct.*, caustic.* (radiance of
  * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing). */
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image *out,
                                abbe_error *error);
@@ -66,4 +71,7 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *renderer, size_t light, f
 /* The view through which a light's photons start: cell (x, y) of the grid is its uv. */
 void abbe_renderer_photon_view(const abbe_renderer *renderer, size_t light, abbe_view *out);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -39,7 +39,8 @@ typedef struct mesh_buffers {
 
 typedef struct light_state {
   abbe_view near_view, map_view;
-  double warp[2][WARP_STEPS + 1]; /* of the map's axes: window coordinate k / WARP_STEPS to texture */
+  double warp[2]
+             [WARP_STEPS + 1]; /* of the map's axes: window coordinate k / WARP_STEPS to texture */
   size_t photon_count;
   double cell_flux;    /* most that one photon cell can carry, W */
   double reached_flux; /* that all cells together bring to refractors, weighted by ybar, W */

@@ -4,6 +4,10 @@
 
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define ABBE_STATISTICS_MAX_PASSES 32
 
 /* Light that reached refractors, and its parts, each sample weighted by its ybar (W of the lights'
@@ -39,4 +43,7 @@ typedef struct abbe_statistics {
   abbe_ledger energy;
 } abbe_statistics;
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -268,7 +268,7 @@ static const struct {
   bool textured;
 } shipped[] = {
     {"sphere", ABBE_REFRACTOR_SPHERE, false}, {"rainbow", ABBE_REFRACTOR_SPHERE, false},
-    {"gem", ABBE_REFRACTOR_CONVEX, false},    {"prism", ABBE_REFRACTOR_CONVEX, false},
+    {"gem", ABBE_REFRACTOR_CONVEX, false},    {"prism", ABBE_REFRACTOR_CONVEX, true},
     {"ring", ABBE_REFRACTOR_LAYERS, false},   {"bunny", ABBE_REFRACTOR_LAYERS, false},
     {"glass", ABBE_REFRACTOR_LAYERS, true},
 };
