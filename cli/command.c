@@ -51,7 +51,7 @@ void abbe_command_range(const char *program, const char *option, const char *tex
   *from = strtod(text, &middle);
   *to = *middle == ':' ? strtod(middle + 1, &end) : 0;
   if (middle == text || end == NULL || end == middle + 1 || *end != '\0' || !isfinite(*from) ||
-      !isfinite(*to) || *from >= *to) {
+      !isfinite(*to) || *from >= *to || *from <= 0) {
     fprintf(stderr, "%s: %s '%s' is not a range such as 380:780\n", program, option, text);
     wrong_use(program);
   }

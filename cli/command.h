@@ -40,7 +40,7 @@ double abbe_command_number(const char *program, const char *option, const char *
 /* The same for whole numbers. */
 unsigned long abbe_command_count(const char *program, const char *option, const char *text,
                                  unsigned long min, unsigned long max);
-/* "380:780" as a range, from < to. */
+/* "380:780" as a range, 0 < from < to. */
 void abbe_command_range(const char *program, const char *option, const char *text, double *from,
                         double *to);
 /* One word of names[count]; its index. An unknown word names the nearest and the list. */

@@ -25,8 +25,9 @@ static const struct {
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void help(FILE *out) {
-  fprintf(out, "abbe %s: spectral dispersion caustics\n\n"
-               "usage: abbe COMMAND [OPTION…] [FILE…]\n\n",
+  fprintf(out,
+          "abbe %s: spectral dispersion caustics\n\n"
+          "usage: abbe COMMAND [OPTION…] [FILE…]\n\n",
           ABBE_VERSION);
   for (int i = 0; i < COMMAND_COUNT; i++)
     fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].summary);

@@ -313,7 +313,11 @@ static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_erro
   result = abbe_image_set_attribute(&map, "abbe:map_view", text, error);
   if (result == ABBE_OK) result = annotate_warp(renderer, &map, error);
   if (result == ABBE_OK)
-    result = abbe_image_set_attribute(&map, "abbe:unit", "flux a texel, W", error);
+    result = abbe_image_set_attribute(
+        &map, "abbe:unit",
+        abbe_renderer_plan(renderer)->desc.profile == ABBE_PROFILE_THESIS ? "display brightness"
+                                                                          : "flux a texel, W",
+        error);
   if (result == ABBE_OK) result = abbe_exr_write(q->map, &map, error);
   abbe_image_free(&map);
   return result;
@@ -349,7 +353,12 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_result result = abbe_renderer_make(context, scene, &q->render.desc, &renderer, error);
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
-    result = run_frames(q, renderer, &statistics, error);
+    if (q->map != NULL && !abbe_renderer_plan(renderer)->caustics)
+      result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                              "%s has no refractor, so there is no spectral map to save",
+                              q->render.scene);
+    else
+      result = run_frames(q, renderer, &statistics, error);
   }
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->layers, &image, error);
   if (result == ABBE_OK) result = annotate(q, renderer, context, &image, error);

@@ -23,18 +23,17 @@ extern "C" {
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \
   X(BINDIMAGETEXTURE, BindImageTexture)                                                            \
   X(BINDTEXTURE, BindTexture)                                                                      \
-  X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc) X(BUFFERDATA, BufferData) X(         \
-      BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus)              \
-      X(CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV, ClearBufferuiv) X(                         \
-          CLEARBUFFERDATA, ClearBufferData) X(COMPILESHADER, CompileShader) X(CREATEPROGRAM,       \
-                                                                              CreateProgram)       \
-          X(CREATESHADER, CreateShader) X(CULLFACE, CullFace) X(DELETEBUFFERS, DeleteBuffers) X(   \
-              DELETEFRAMEBUFFERS,                                                                  \
-              DeleteFramebuffers) X(DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader)    \
-              X(DELETETEXTURES, DeleteTextures) X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(       \
-                  DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(DISABLE,                         \
-                                                                  Disable) X(DISPATCHCOMPUTE,      \
-                                                                             DispatchCompute)      \
+  X(BINDVERTEXARRAY, BindVertexArray)                                                              \
+  X(BLENDFUNC, BlendFunc) X(BUFFERDATA, BufferData) X(BUFFERSUBDATA, BufferSubData) X(             \
+      CHECKFRAMEBUFFERSTATUS,                                                                      \
+      CheckFramebufferStatus) X(CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV, ClearBufferuiv)    \
+      X(CLEARBUFFERDATA, ClearBufferData) X(COMPILESHADER, CompileShader) X(                       \
+          CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader) X(CULLFACE, CullFace)        \
+          X(DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS, DeleteFramebuffers) X(             \
+              DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader) X(DELETETEXTURES,        \
+                                                                            DeleteTextures)        \
+              X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DEPTHFUNC, DepthFunc) X(                 \
+                  DEPTHMASK, DepthMask) X(DISABLE, Disable) X(DISPATCHCOMPUTE, DispatchCompute)    \
                   X(DISPATCHCOMPUTEINDIRECT, DispatchComputeIndirect) X(DRAWARRAYS, DrawArrays) X( \
                       DRAWARRAYSINDIRECT, DrawArraysIndirect) X(DRAWBUFFERS,                       \
                                                                 DrawBuffers) X(DRAWELEMENTS,       \

@@ -29,6 +29,14 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   size_t w = r->plan.desc.width * r->plan.desc.supersample;
   size_t h = r->plan.desc.height * r->plan.desc.supersample;
   bool layers = r->plan.refractor_count > 0;
+  GLint most = 0;
+  r->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+  if (w > (size_t)most || h > (size_t)most)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%zu x %zu pixels with %zu samples a side are %zu x %zu; this OpenGL "
+                          "draws at most %d a side: use fewer samples or a smaller picture",
+                          r->plan.desc.width, r->plan.desc.height, r->plan.desc.supersample, w, h,
+                          most);
   const struct {
     GLuint *texture;
     GLenum format;
@@ -83,6 +91,8 @@ void abbe_renderer_set_lighting(abbe_renderer *r, GLuint program) {
   abbe_renderer_bind_texture(r, program, "light_receivers", 3, r->light_receivers);
   GLint matrix = gl->GetUniformLocation(program, "rgb_from_xyz");
   if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, r->rgb_from_xyz);
+  matrix = gl->GetUniformLocation(program, "xyz_from_rgb");
+  if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, r->xyz_from_rgb);
   /* Ambient light and background are white by definition, in every working space. */
   float ambient = (float)r->scene->ambient, background = (float)r->scene->background;
   gl->Uniform3f(gl->GetUniformLocation(program, "ambient"), ambient, ambient, ambient);
@@ -191,6 +201,8 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_renderer_progress progr
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
   GLuint strips = progress != NULL ? 16 : 1;
   GLuint step = (count / strips / PHOTON_GROUP + 1) * PHOTON_GROUP;
+  if (step > 65535u * PHOTON_GROUP)
+    step = 65535u * PHOTON_GROUP; /* the most groups of a dispatch */
   for (GLuint first = 0; first < count; first += step) {
     GLuint size = count - first < step ? count - first : step;
     gl->Uniform1ui(gl->GetUniformLocation(r->refraction, "pixel_first"), first);

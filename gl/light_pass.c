@@ -213,7 +213,8 @@ static void count_groups(abbe_renderer *r, GLuint list, GLuint rows) {
   gl->Uniform1ui(gl->GetUniformLocation(r->groups, "rows"), rows);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, list);
   gl->DispatchCompute(1, 1, 1);
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int coverage_layer,
@@ -244,7 +245,8 @@ abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int c
       gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->list[level - 1]);
       gl->DispatchComputeIndirect(4);
     }
-    gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+                      GL_BUFFER_UPDATE_BARRIER_BIT);
   }
   count_groups(r, r->list[LEVELS - 1], 1);
   r->buffer[BINDING_PHOTONS] = r->list[LEVELS - 1];

@@ -5,7 +5,9 @@ uniform uint group_size;
 uniform uint most;  // elements that the list has room for
 
 void main() {
-  groups_x = (min(count, most) + group_size - 1u) / group_size;
-  groups_y = 1u;
+  // No dimension may have more than 65535 groups.
+  uint groups = (min(count, most) + group_size - 1u) / group_size;
+  groups_y = (groups + 65534u) / 65535u;
+  groups_x = groups_y > 0u ? (groups + groups_y - 1u) / groups_y : 0u;
   groups_z = 1u;
 }

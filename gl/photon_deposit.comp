@@ -49,7 +49,8 @@ vec2 neighbour_step(ivec2 c, int order, int lane, uint path, vec2 here) {
 }
 
 void main() {
-  uint listed = gl_GlobalInvocationID.x;
+  uint listed = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
+         gl_LocalInvocationID.x;
   if (listed >= path_count) return;
   uint photon_path = path_list[listed];
   uint photon = photon_path / ORDERS;

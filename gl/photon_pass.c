@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum { LIST_HEADER = 16, SPLAT_BYTES = 20, MAX_SPLATS = 6 << 20, LIST_BINDING = 15 };
+enum { MOST_LANDING_BYTES = 1 << 30 };
 enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
 
 /* Share of the light that may fall outside the fitted map, on each of its four sides. */
@@ -17,7 +18,8 @@ static double wide(const GLuint *lo_hi) {
 }
 
 static double ledger_unit(const abbe_renderer *r, size_t light) {
-  return ldexp(r->light[light].cell_flux, -24);
+  /* A group of 256 photons sums in 32 bits. */
+  return ldexp(r->light[light].cell_flux, -22);
 }
 
 static void clear_buffer(abbe_renderer *r, GLuint buffer) {
@@ -101,9 +103,10 @@ static void list_pieces(abbe_renderer *r, size_t light, size_t first, size_t cou
 
 static abbe_result deposit_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
                                  size_t interval_first, size_t interval_end, abbe_error *error) {
+  bool fills = r->plan.desc.fill != ABBE_FILL_NONE && r->plan.desc.wavelengths > 1;
   for (size_t chunk = 0; chunk < r->chunks; chunk++) {
     list_pieces(r, light, first, count, interval_first, interval_end, chunk);
-    abbe_renderer_end_pass(r, "light: gap fill");
+    abbe_renderer_end_pass(r, fills ? "light: gap fill" : "light: spectral map");
     bool look = r->chunks > 1 || r->statistics != NULL;
     if (look && read_count(r, r->splat_list) > r->splat_room)
       return abbe_error_set(error, ABBE_GL,
@@ -277,6 +280,11 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
     if (r->light[i].photon_count > most) most = r->light[i].photon_count;
   size_t a_lane = most * r->plan.desc.orders, n = r->plan.desc.wavelengths;
   size_t lanes = MAX_LANDING_BYTES / LANDING_BYTES / a_lane;
+  if (a_lane * 2 * LANDING_BYTES > MOST_LANDING_BYTES)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%zu photons with %zu exits each are more than the device takes at a "
+                          "time; use a grid below %zu or fewer exits",
+                          most, r->plan.desc.orders, r->plan.desc.photons);
   r->lanes = lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
   if (r->lanes > n) r->lanes = n;
   abbe_result result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 16, NULL,
@@ -312,8 +320,30 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
-/* The shares of flux by window coordinate, and the range that leaves map_tail on each side. */
-enum { FIT_BINS = 4096 };
+/* The batch's landings, zero where there is none; malloc'd. */
+static abbe_result read_batch(abbe_renderer *r, size_t light, float **data, abbe_error *error) {
+  size_t count = r->light[light].photon_count * r->plan.desc.orders * r->lanes;
+  float *landing = malloc(count * 16 + 1);
+  GLuint *path = malloc(count * 4 + 1);
+  if (landing == NULL || path == NULL) {
+    free(landing);
+    free(path);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings", count);
+  }
+  const abbe_gl *gl = r->gl;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LANDINGS]);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * 16), landing);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SIGNATURES]);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * 4), path);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < 4 && path[i] == 0; k++) landing[4 * i + k] = 0;
+  free(path);
+  *data = landing;
+  return abbe_gl_check(gl, "the reading of landings", error);
+}
+
+/* Flux by window coordinate, and the range that leaves map_tail on each side. */
+enum { FIT_BINS = 1 << 15 };
 
 static void tighten(const double *histogram, double total, double *low, double *high) {
   double from = *low, width = (*high - *low) / FIT_BINS, sum = 0;
@@ -325,8 +355,8 @@ static void tighten(const double *histogram, double total, double *low, double *
   *high = from + width * (last + 1);
 }
 
-/* Flux by window coordinate of the landings, `bins` a side: x, then y. Returns the whole. */
-static double sort_landings(const abbe_view *view, const float *landing, size_t count, int bins,
+/* Adds landings to the histograms of x and y; returns their flux. */
+static double sort_landings(const abbe_view *view, const float *landing, size_t count,
                             double *histogram) {
   double total = 0;
   for (size_t i = 0; i < count; i++) {
@@ -335,18 +365,29 @@ static double sort_landings(const abbe_view *view, const float *landing, size_t 
     if (!(at[3] > 0) || !abbe_view_project(view, p, uvz)) continue;
     total += at[3];
     for (int axis = 0; axis < 2; axis++) {
-      double bin = fmin(fmax(floor(uvz[axis] * bins), 0), bins - 1);
-      histogram[axis * bins + (int)bin] += at[3];
+      double bin = fmin(fmax(floor(uvz[axis] * FIT_BINS), 0), FIT_BINS - 1);
+      histogram[axis * FIT_BINS + (int)bin] += at[3];
     }
   }
   return total;
+}
+
+/* The histogram of a window's range [low, high], sorted again into the steps of [from, to]. */
+static void resort(const double *histogram, double low, double high, double from, double to,
+                   double share[WARP_STEPS]) {
+  memset(share, 0, WARP_STEPS * sizeof *share);
+  for (int i = 0; i < FIT_BINS; i++) {
+    double at = low + (high - low) * (i + 0.5) / FIT_BINS;
+    double step = floor((at - from) / (to - from) * WARP_STEPS);
+    share[(int)fmin(fmax(step, 0), WARP_STEPS - 1)] += histogram[i];
+  }
 }
 
 /* A share of the texels goes evenly, the rest to where light lands; smooth, so that neighbouring
  * texels are alike. */
 enum { WARP_BLUR = 8 };
 
-static void make_warp(const double *histogram, double total, double knot[WARP_STEPS + 1]) {
+static void make_warp(const double share[WARP_STEPS], double total, double knot[WARP_STEPS + 1]) {
   static const double even = 0.4;
   double sum = 0;
   knot[0] = 0;
@@ -355,7 +396,7 @@ static void make_warp(const double *histogram, double total, double knot[WARP_ST
     for (int j = k - WARP_BLUR; j <= k + WARP_BLUR; j++) {
       double w = WARP_BLUR + 1 - abs(j - k);
       weight += w;
-      if (j >= 0 && j < WARP_STEPS) near += w * histogram[j];
+      if (j >= 0 && j < WARP_STEPS) near += w * share[j];
     }
     sum += even / WARP_STEPS + (1 - even) * near / (weight * total);
     knot[k + 1] = sum;
@@ -363,32 +404,41 @@ static void make_warp(const double *histogram, double total, double knot[WARP_ST
   for (int k = 1; k <= WARP_STEPS; k++) knot[k] /= sum;
 }
 
-static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
-  float *landing = NULL;
-  size_t count = 0, orders = 0, lanes = 0;
-  abbe_result result =
-      abbe_renderer_read_landings(r, light, &landing, NULL, &count, &orders, &lanes, error);
-  double *histogram = calloc(2 * FIT_BINS, sizeof *histogram);
-  if (result == ABBE_OK && histogram == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
-  count *= orders * lanes;
-  light_state *state = &r->light[light];
+static void fit_axes(light_state *state, const double *histogram, double total) {
   abbe_view *view = &state->map_view;
-  double total = result == ABBE_OK ? sort_landings(view, landing, count, FIT_BINS, histogram) : 0;
-  if (total > 0) {
-    double near = view->near, far = view->far, shares[2 * WARP_STEPS] = {0};
-    for (int axis = 0; axis < 2; axis++)
-      tighten(histogram + axis * FIT_BINS, total, &view->window[2 * axis],
-              &view->window[2 * axis + 1]);
-    abbe_view_pad(view, 0.02);
-    view->near = near;
-    view->far = far;
-    total = sort_landings(view, landing, count, WARP_STEPS, shares);
-    for (int axis = 0; axis < 2; axis++)
-      make_warp(shares + axis * WARP_STEPS, total, state->warp[axis]);
+  double old[4], near = view->near, far = view->far, share[WARP_STEPS];
+  memcpy(old, view->window, sizeof old);
+  for (int axis = 0; axis < 2; axis++)
+    tighten(histogram + axis * FIT_BINS, total, &view->window[2 * axis],
+            &view->window[2 * axis + 1]);
+  abbe_view_pad(view, 0.02);
+  view->near = near;
+  view->far = far;
+  for (int axis = 0; axis < 2; axis++) {
+    resort(histogram + axis * FIT_BINS, old[2 * axis], old[2 * axis + 1], view->window[2 * axis],
+           view->window[2 * axis + 1], share);
+    make_warp(share, total, state->warp[axis]);
   }
+}
+
+static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
+  double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0;
+  if (histogram == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
+  abbe_result result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+  abbe_renderer_bind_tables(r);
+  batch b = {0};
+  while (result == ABBE_OK && next_batch(r, &b)) {
+    float *landing = NULL;
+    abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
+    result = read_batch(r, light, &landing, error);
+    if (result == ABBE_OK)
+      total +=
+          sort_landings(&r->light[light].map_view, landing,
+                        r->light[light].photon_count * r->plan.desc.orders * r->lanes, histogram);
+    free(landing);
+  }
+  if (result == ABBE_OK && total > 0) fit_axes(&r->light[light], histogram, total);
   free(histogram);
-  free(landing);
   return result;
 }
 
@@ -422,32 +472,18 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
   *count = r->light[light].photon_count;
   *orders = r->plan.desc.orders;
   *lanes = r->lanes;
-  size_t size = *count * *orders * *lanes * 16;
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);
-  *data = malloc(size > 0 ? size : 1);
-  unsigned *cell = malloc(*count * 4 + 4);
-  GLuint *path = malloc(size / 4 + 4);
-  if (*data == NULL || cell == NULL || path == NULL) {
+  result = read_batch(r, light, data, error);
+  if (result != ABBE_OK || cells == NULL) return result;
+  *cells = malloc(*count * 4 + 4);
+  if (*cells == NULL) {
     free(*data);
-    free(cell);
-    free(path);
     *data = NULL;
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings", *count);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", *count);
   }
-  const abbe_gl *gl = r->gl;
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LANDINGS]);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, *data);
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SIGNATURES]);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(size / 4), path);
-  for (size_t i = 0; i < size / 16; i++)
-    for (size_t k = 0; k < 4 && path[i] == 0; k++) (*data)[4 * i + k] = 0;
-  free(path);
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER, (GLsizeiptr)(*count * 4), cell);
-  if (cells != NULL)
-    *cells = cell;
-  else
-    free(cell);
-  return abbe_gl_check(gl, "the reading of landings", error);
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
+  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER, (GLsizeiptr)(*count * 4),
+                          *cells);
+  return abbe_gl_check(r->gl, "the reading of photons", error);
 }

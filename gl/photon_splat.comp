@@ -29,7 +29,8 @@ void add(uint texel, uvec3 v) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
+         gl_LocalInvocationID.x;
   if (i >= min(splat_count, most)) return;
   uint word = i * SPLAT_WORDS;
   uint y_level = splat[word + 1u];

@@ -1,5 +1,7 @@
 #include "gl/plan.h"
 
+#include "gl/view.h"
+
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -8,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_PARALLELOGRAMS = 96, RANGE_STEPS = 81 };
+enum { MAX_PARALLELOGRAMS = 96, RANGE_STEPS = 81, MAX_MODEL_ENTRIES = 48 };
 
 #define ABBE_NAME_OF(code, name) name,
 const char *abbe_profile_name(abbe_profile profile) {
@@ -108,8 +110,8 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
 }
 
 /* Whether n and the attenuation over the range ask for more than constants. */
-static abbe_result examine_material(const abbe_material *material, abbe_plan *plan,
-                                    abbe_error *error) {
+static abbe_result examine_material(const abbe_scene *scene, const abbe_material *material,
+                                    abbe_plan *plan, abbe_error *error) {
   double min = plan->desc.min_nm, max = plan->desc.max_nm, first = 0;
   bool outside =
       abbe_material_extrapolates(material, min) || abbe_material_extrapolates(material, max);
@@ -121,6 +123,8 @@ static abbe_result examine_material(const abbe_material *material, abbe_plan *pl
     if (n != first) plan->dispersive = true;
     if (abbe_material_attenuation(material, lambda_nm) > 0) plan->absorbing = true;
   }
+  for (size_t i = 0; i < plan->refractor_count && outside; i++)
+    if (scene->object[plan->refractor_object[i]].material == material) outside = false;
   if (outside)
     note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm", material->name,
          material->min_nm, material->max_nm);
@@ -160,6 +164,8 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     }
     if (plan->refractor_count == 255)
       return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than 255 refractors");
+    abbe_result result = examine_material(scene, object->material, plan, error);
+    if (result != ABBE_OK) return result;
     abbe_refractor_model model = choose_model(object, thesis);
     plan->refractor_object[plan->refractor_count] = i;
     plan->model[plan->refractor_count++] = model;
@@ -169,9 +175,9 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     char name[64];
     snprintf(name, sizeof name, "model: %.50s", object->name);
     add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), model_reason(object, thesis));
-    abbe_result result = examine_material(object->material, plan, error);
-    if (result != ABBE_OK) return result;
   }
+  if (plan->refractor_count > MAX_MODEL_ENTRIES)
+    add(plan, true, "models", "and %zu refractors more", plan->refractor_count - MAX_MODEL_ENTRIES);
   exact = exact && plan->parallelogram_count <= MAX_PARALLELOGRAMS;
   plan->receivers = exact ? ABBE_RECEIVER_EXACT : ABBE_RECEIVER_DEPTH;
   if (!exact) plan->parallelogram_count = 0;
@@ -253,10 +259,16 @@ static void resolve_wavelengths(abbe_plan *plan) {
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : 8;
   if (plan->desc.profile == ABBE_PROFILE_THESIS) plan->desc.orders = 1;
-  add(plan, plan->desc.orders > 1, "inner reflections",
-      plan->desc.orders > 1 ? "followed until less than %g of the light is left, %zu exits at most"
-                            : "two interfaces only (%g, %zu exit)",
-      plan->desc.energy_share, plan->desc.orders);
+  bool thesis = plan->desc.profile == ABBE_PROFILE_THESIS;
+  if (plan->refractor_count == 0)
+    add(plan, false, "inner reflections", "nothing refracts");
+  else if (plan->desc.orders == 1)
+    add(plan, false, "inner reflections", "two interfaces only, %s",
+        thesis ? "as in the thesis" : "as asked");
+  else
+    add(plan, true, "inner reflections",
+        "followed until less than %g of the light is left, %zu exits at most",
+        plan->desc.energy_share, plan->desc.orders);
 }
 
 static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
@@ -269,18 +281,25 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   add(plan, caustics && plan->layers, "light: refractor back",
       plan->layers ? "a mesh without an exact surface ends at its back layer"
                    : "every refractor has an exact surface");
-  add(plan, caustics, "light: photon placement",
-      caustics ? "%zu photons a side, refined only where a refractor is"
-               : "no light meets a refractor (%zu)",
-      plan->desc.photons);
-  add(plan, caustics, "light: photons", caustics ? "%zu wavelengths through the refractors" : "%zu",
-      plan->desc.wavelengths);
-  add(plan, caustics, "light: spectral map", "%zu x %zu texels", plan->desc.map_size,
-      plan->desc.map_size);
+  if (caustics) {
+    add(plan, true, "light: photon placement",
+        "%zu photons a side, refined only where a refractor is", plan->desc.photons);
+    add(plan, true, "light: photons", "%zu wavelengths through the refractors",
+        plan->desc.wavelengths);
+    add(plan, true, "light: spectral map", "%zu x %zu texels", plan->desc.map_size,
+        plan->desc.map_size);
+  } else {
+    static const char *const passes[] = {"light: photon placement", "light: photons",
+                                         "light: spectral map"};
+    for (int k = 0; k < 3; k++) add(plan, false, passes[k], "no light meets a refractor");
+  }
   bool fill = caustics && plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
-  add(plan, fill, "light: gap fill",
-      fill ? "%s: wavelengths land apart" : "%s: nothing lands apart",
-      abbe_fill_name(plan->desc.fill));
+  if (fill)
+    add(plan, true, "light: gap fill", "%s: wavelengths land apart",
+        abbe_fill_name(plan->desc.fill));
+  else
+    add(plan, false, "light: gap fill",
+        plan->desc.wavelengths > 1 && caustics ? "none, as asked" : "nothing lands apart");
   add(plan, plan->absorbing, "absorption",
       plan->absorbing ? "a material attenuates; path lengths are kept" : "every material is clear");
   add(plan, true, "eye: receivers", "light, shadow and spectral map");
@@ -292,13 +311,77 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
                    : "every refractor has an exact surface");
   add(plan, refractors, "eye: refraction",
       refractors ? "one direction a wavelength" : "nothing refracts");
+  add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
+      plan->desc.supersample);
   add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
   if (!thesis && refractors)
     note(plan, "light that a refractor reflects on its outside reaches no receiver");
+  if (!thesis && refractors && depth)
+    note(plan, "through refractors, receivers show as far as the eye also sees them straight");
   if (plan->refractor_count > 1)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   if (scene->light_count > 1 && refractors)
     note(plan, "through refractors, colours are split by the first light's illuminant");
+}
+
+static abbe_result check_thesis(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  if (plan->desc.profile != ABBE_PROFILE_THESIS) return ABBE_OK;
+  if (scene->light_count != 1)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile knows one light; this scene has %zu",
+                          scene->light_count);
+  if (scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile knows point and spot lights; '%s' is directional",
+                          scene->light[0].name);
+  if (plan->refractor_count == 0)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile needs a refractor; this scene has none");
+  for (size_t i = 1; i < plan->refractor_count; i++)
+    if (scene->object[plan->refractor_object[i]].material !=
+        scene->object[plan->refractor_object[0]].material)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the thesis profile knows one material; this scene has several");
+  return ABBE_OK;
+}
+
+/* Every light needs one view that holds all refractors; receivers outside it get no light through
+ * them, which is noted. */
+static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
+  static const double up[3] = {0, 1, 0};
+  double min[3], max[3], forward[3];
+  bool any = abbe_scene_bounds(scene, true, false, min, max);
+  if (!any || plan->desc.profile == ABBE_PROFILE_THESIS) return ABBE_OK;
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;
+    for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - light->position[k];
+    if (forward[0] == 0 && forward[1] == 0 && forward[2] == 0) forward[2] = -1;
+    abbe_view view;
+    abbe_view_look(light->position, forward, up, false, &view);
+    for (size_t k = 0; k < plan->refractor_count; k++) {
+      const abbe_object *object = &scene->object[plan->refractor_object[k]];
+      if (!abbe_view_fit(&view, (const double(*)[3])object->mesh.position,
+                         object->mesh.vertex_count))
+        return abbe_error_set(error, ABBE_UNSUPPORTED,
+                              "the light '%s' sees the refractor '%s' more than 76 degrees off the "
+                              "middle of all refractors; move it away from them",
+                              light->name, object->name);
+    }
+    bool all = true;
+    for (size_t k = 0; k < plan->receiver_count; k++) {
+      const abbe_object *object = &scene->object[plan->receiver_object[k]];
+      all = abbe_view_fit(&view, (const double(*)[3])object->mesh.position,
+                          object->mesh.vertex_count) &&
+            all;
+    }
+    if (!all)
+      note(plan,
+           "receivers more than 76 degrees off the way from the light '%.60s' to the "
+           "refractors get no light through them",
+           light->name);
+  }
+  return ABBE_OK;
 }
 
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
@@ -306,6 +389,8 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   memset(out, 0, sizeof *out);
   abbe_result result = resolve_desc(scene, desc, out, error);
   if (result == ABBE_OK) result = examine_objects(scene, out, error);
+  if (result == ABBE_OK) result = check_thesis(scene, out, error);
+  if (result == ABBE_OK) result = examine_views(scene, out, error);
   if (result != ABBE_OK) {
     abbe_plan_free(out);
     return result;

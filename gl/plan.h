@@ -62,7 +62,7 @@ typedef struct abbe_render_desc {
 typedef enum abbe_refractor_model {
   ABBE_REFRACTOR_SPHERE, /* exact quadric */
   ABBE_REFRACTOR_CONVEX, /* plane tests */
-  ABBE_REFRACTOR_LAYERS  /* front and back as a view sees them: two interfaces */
+  ABBE_REFRACTOR_LAYERS  /* front and back as a view sees them */
 } abbe_refractor_model;
 
 typedef enum abbe_receiver_model {

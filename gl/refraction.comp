@@ -16,10 +16,10 @@ uniform vec4 eye_view[6];
 uniform uint pixel_first;
 
 // The samples grouped, and grouped again by twos: level 0 holds every sample, level k every 2^k as
-// one. rgb weight (sum 1) and mean index; attenuation at [i].y of the row after. Levels one after
+// one. XYZ weight (sum 1) and mean index; attenuation at [i].y of the row after. Levels one after
 // another.
 struct Band {
-  vec4 weight_n;     // rgb, n
+  vec4 weight_n;     // XYZ, n
   vec4 attenuation;  // 1/m in x
 };
 #ifdef BANDS_IN_STORAGE
@@ -29,6 +29,7 @@ layout(std140, binding = 6) uniform Bands { Band bands[BAND_ROOM]; };
 #endif
 uniform vec3 eye;
 uniform float share_limit;
+uniform mat3 xyz_from_rgb;
 uniform float pixel_angle;  // rad
 #ifndef EXACT_RECEIVERS
 uniform sampler2DArray eye_receivers;  // lit receivers; distance in w
@@ -134,7 +135,7 @@ void main() {
     vec4 band = bands[base + i].weight_n;
     float n = band.w;
     float reflected = fresnel(-dot(d, front.n), 1.0 / n);
-    mirror += reflected * band.rgb;
+    mirror += reflected * band.xyz;
     vec3 inner, p = front.p;
     if (!refract_direction(d, front.n, 1.0 / n, inner)) continue;
     float share = 1.0 - reflected;
@@ -161,9 +162,10 @@ void main() {
       facet = next;
       inner = reflect(inner, wall_n);
     }
-    sum += light * band.rgb;
+    sum += (xyz_from_rgb * light) * band.xyz;
   }
-  sum += mirror * seen(front.p, reflect(d, front.n));
+  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(d, front.n)));
+  sum = rgb_from_xyz * sum;
   // At the rim an exact surface may miss the pixel that its triangles cover: what lies behind shows.
   imageStore(picture, at, found ? vec4(sum, front.t) : vec4(0));
 }

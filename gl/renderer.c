@@ -141,9 +141,9 @@ void abbe_renderer_free(abbe_renderer *r) {
       r->eye_direct,      r->eye_caustic,           r->eye_depth,   r->eye_refraction,
       r->eye_layers,      r->eye_layers_depth,      r->eye_owner,   r->eye_picture};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  const GLuint programs[] = {r->place,           r->groups,     r->trace,     r->deposit,
-                             r->resolve,         r->layer,      r->receivers, r->refraction,
-                             r->refraction_list, r->eye_resolve};
+  const GLuint programs[] = {r->place,     r->groups,      r->trace,           r->deposit,
+                             r->splat,     r->list_groups, r->resolve,         r->layer,
+                             r->receivers, r->refraction,  r->refraction_list, r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
   gl->DeleteFramebuffers(1, &r->framebuffer);
   gl->DeleteVertexArrays(1, &r->empty_array);
@@ -240,7 +240,7 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
   abbe_result result = abbe_image_make(r->plan.desc.width, r->plan.desc.height, layers ? 10 : 3,
                                        as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;
-  size_t s = r->plan.desc.supersample;
+  size_t s = layers ? r->plan.desc.supersample : 1;
   float *data = malloc(out->width * out->height * s * s * 4 * sizeof *data);
   if (data == NULL) {
     abbe_image_free(out);

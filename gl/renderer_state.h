@@ -43,6 +43,7 @@ typedef struct light_state {
              [WARP_STEPS + 1]; /* of the map's axes: window coordinate k / WARP_STEPS to texture */
   size_t photon_count;
   double cell_flux;    /* most that one photon cell can carry, W */
+  double white_peak;   /* largest of X, Y, Z of the light's white, by its Y */
   double reached_flux; /* that all cells together bring to refractors, weighted by ybar, W */
 } light_state;
 
@@ -57,8 +58,8 @@ struct abbe_renderer {
   mesh_buffers *mesh; /* [scene->object_count] */
   double scene_min[3], scene_max[3], scene_size;
   double refractor_centre[3], refractor_radius;
-  float rgb_from_xyz[9]; /* column-major, for uniforms */
-  double *lambda_nm;     /* [wavelengths] */
+  float rgb_from_xyz[9], xyz_from_rgb[9]; /* column-major, for uniforms */
+  double *lambda_nm;                      /* [wavelengths] */
 
   light_state light[ABBE_SCENE_MAX_LIGHTS];
   abbe_view eye;

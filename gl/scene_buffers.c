@@ -336,15 +336,16 @@ static void join_bands(const gpu_band *a, const gpu_band *b, gpu_band *out) {
   out->attenuation[0] = (float)((wa * a->attenuation[0] + wb * b->attenuation[0]) / (wa + wb));
 }
 
-static abbe_result fill_bands(const abbe_renderer *r, const abbe_weights *rgb, size_t refractor,
+static abbe_result fill_bands(const abbe_renderer *r, const abbe_weights *xyz, size_t refractor,
                               gpu_band *band, abbe_error *error) {
   const abbe_material *material = r->scene->object[r->plan.refractor_object[refractor]].material;
-  size_t count = rgb->count;
+  size_t count = xyz->count;
   for (size_t i = 0; i < count; i++) {
     double n = 1, weight[3];
     abbe_result result = abbe_material_n(material, r->lambda_nm[i], &n, error);
     if (result != ABBE_OK) return result;
-    for (int c = 0; c < 3; c++) weight[c] = rgb->weight[i][c] / rgb->sum[c];
+    for (int c = 0; c < 3; c++)
+      weight[c] = xyz->sum[c] > 0 ? xyz->weight[i][c] / xyz->sum[c] : 1.0 / (double)count;
     store(weight, n, band[i].weight_n);
     band[i].attenuation[0] = (float)abbe_material_attenuation(material, r->lambda_nm[i]);
   }
@@ -356,20 +357,20 @@ static abbe_result fill_bands(const abbe_renderer *r, const abbe_weights *rgb, s
   return ABBE_OK;
 }
 
-/* The eye's weights are the first light's, divided by its white. */
+/* The eye's weights are the first light's in XYZ, where none is negative, by its white. */
 static abbe_result upload_bands(abbe_renderer *r, const abbe_wavelengths *w, abbe_error *error) {
   size_t refractors = r->plan.refractor_count;
   gpu_band *band = calloc(refractors * r->band_count + 1, sizeof *band);
-  abbe_weights rgb = {0};
+  abbe_weights xyz = {0};
   if (band == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
   abbe_result result =
-      abbe_weights_make(w, &r->scene->light[0].illuminant, working_space(r), &rgb, error);
+      abbe_weights_make(w, &r->scene->light[0].illuminant, ABBE_RGB_SPACE_XYZ, &xyz, error);
   for (size_t i = 0; i < refractors && result == ABBE_OK; i++)
-    result = fill_bands(r, &rgb, i, band + i * r->band_count, error);
+    result = fill_bands(r, &xyz, i, band + i * r->band_count, error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, refractors * r->band_count * sizeof *band, band,
                                        &r->table_bands, error);
-  abbe_weights_free(&rgb);
+  abbe_weights_free(&xyz);
   free(band);
   return result;
 }
@@ -415,6 +416,10 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
   for (int row = 0; row < 3; row++)
     for (int column = 0; column < 3; column++)
       r->rgb_from_xyz[3 * column + row] = (float)matrix[3 * row + column];
+  abbe_rgb_space_to_xyz(working_space(r), matrix);
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 3; column++)
+      r->xyz_from_rgb[3 * column + row] = (float)matrix[3 * row + column];
   abbe_result result = upload_meshes(r, error);
   if (result == ABBE_OK) result = upload_refractors(r, error);
   if (result == ABBE_OK) result = upload_receivers(r, error);
@@ -435,12 +440,13 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
-/* Wide sums have room for 2^36 full photons of 2^28 units. Narrow ones share 2^30 units among all
- * the light that reaches refractors: X and Z of a white stay below four times its Y. */
+/* Wide sums have room for 2^36 full photons of 2^28 units; narrow ones share 2^31 units among all
+ * the light that reaches refractors. Both count the largest of the white's X, Y and Z. */
 double abbe_renderer_map_unit(const abbe_renderer *r, size_t light) {
   const light_state *state = &r->light[light];
   bool known = !r->wide && state->reached_flux > 0;
-  return (double)(float)(known ? ldexp(state->reached_flux, -30) : ldexp(state->cell_flux, -28));
+  double unit = known ? ldexp(state->reached_flux, -31) : ldexp(state->cell_flux, -28);
+  return (double)(float)(unit * state->white_peak);
 }
 
 size_t abbe_renderer_map_words(const abbe_renderer *r) {
@@ -493,6 +499,7 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
                           r->plan.desc.min_nm, r->plan.desc.max_nm, white);
     abbe_rgb_space_from_xyz(working_space(r), matrix);
     abbe_rgb_space_apply(matrix, white, rgb);
+    state->white_peak = fmax(white[0], fmax(white[1], white[2])) / white[1];
     double cell_area = abbe_view_area(&state->near_view) / (grid * grid);
     state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);

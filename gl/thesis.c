@@ -26,24 +26,6 @@ struct thesis_state {
 
 static const double colour_sum = 3.5;
 
-static abbe_result check_supported(const abbe_renderer *r, abbe_error *error) {
-  if (r->plan.light_count != 1 || r->scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the thesis profile knows one point or spot light; this scene has %zu%s",
-                          r->plan.light_count,
-                          r->plan.light_count == 1 ? ", a directional one" : "");
-  if (r->plan.refractor_count == 0)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the thesis profile needs a refractor; this scene has none");
-  const abbe_object *object = r->scene->object;
-  for (size_t i = 1; i < r->plan.refractor_count; i++)
-    if (object[r->plan.refractor_object[i]].material !=
-        object[r->plan.refractor_object[0]].material)
-      return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "the thesis profile knows one material; this scene has several");
-  return ABBE_OK;
-}
-
 /* The seven colours, or as many as asked for along the same curve, with the same sum. */
 static abbe_result make_tables(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
@@ -137,15 +119,13 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
 }
 
 abbe_result abbe_renderer_make_thesis(abbe_renderer *r, abbe_error *error) {
-  abbe_result result = check_supported(r, error);
-  if (result != ABBE_OK) return result;
   r->thesis = calloc(1, sizeof *r->thesis);
   if (r->thesis == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the thesis profile");
   abbe_renderer_fit_eye(r);
   look_and_clip(&r->light[0].map_view, r->thesis->light_look, r->thesis->light_clip);
   look_and_clip(&r->eye, r->thesis->eye_look, r->thesis->eye_clip);
-  result = make_tables(r, error);
+  abbe_result result = make_tables(r, error);
   if (result == ABBE_OK) result = make_targets(r, error);
   if (result == ABBE_OK) result = make_programs(r, error);
   return result;
