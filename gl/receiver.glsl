@@ -21,15 +21,14 @@ int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
   int found = -1;
   t = t_max;
   for (int i = 0; i < RECEIVERS; i++) {
-    Receiver r = receivers[i];
-    float slope = dot(r.normal.xyz, d);
-    float s = dot(r.normal.xyz, r.corner.xyz - o) / slope;
-    if (slope == 0.0 || !(s > t_min) || s >= t) continue;
-    vec3 x = o + s * d - r.corner.xyz;
-    vec2 uv = vec2(dot(x, r.du.xyz), dot(x, r.dv.xyz));
-    if (any(lessThan(uv, vec2(0))) || any(greaterThan(uv, vec2(1)))) continue;
-    t = s;
-    found = i;
+    vec3 corner = receivers[i].corner.xyz, normal = receivers[i].normal.xyz;
+    float s = dot(normal, corner - o) / dot(normal, d);
+    vec3 x = o + s * d - corner;
+    vec2 uv = vec2(dot(x, receivers[i].du.xyz), dot(x, receivers[i].dv.xyz));
+    // A ray within the plane gives no number, and every comparison with it is false.
+    bool hit = s > t_min && s < t && min(uv.x, uv.y) >= 0.0 && max(uv.x, uv.y) <= 1.0;
+    t = hit ? s : t;
+    found = hit ? i : found;
   }
   return found;
 }

@@ -32,27 +32,34 @@ bool sphere_front(vec4 s, vec3 o, vec3 d, inout Hit h) {
 #endif
 
 #ifdef CONVEX
+// Loops over tables have constant bounds where they can and no early way out: only then does the
+// compiler unroll them and read the tables once for all lanes.
+#ifdef ONE_CONVEX
+#define PLANE_FIRST 0
+#define PLANE_COUNT PLANE_ROOM
+#else
+#define PLANE_FIRST info.y
+#define PLANE_COUNT info.z
+#endif
+
 bool convex_front(ivec4 info, vec3 o, vec3 d, inout Hit h) {
   float enter = 0.0, leave = h.t;
   int facet = -1;
-  for (int i = info.y; i < info.y + info.z; i++) {
-    float slope = dot(planes[i].xyz, d), gap = planes[i].w - dot(planes[i].xyz, o);
-    if (slope == 0.0) {
-      if (gap < 0.0) return false;
-      continue;
-    }
+  for (int i = 0; i < PLANE_COUNT; i++) {
+    vec4 plane = planes[PLANE_FIRST + i];
+    float slope = dot(plane.xyz, d), gap = plane.w - dot(plane.xyz, o);
     float t = gap / slope;
-    if (slope < 0.0) {
-      if (t > enter) { enter = t; facet = i; }
-    } else {
-      leave = min(leave, t);
-    }
+    bool in_ = slope < 0.0, out_ = slope > 0.0, beside = slope == 0.0 && gap < 0.0;
+    bool nearer = in_ && t > enter;
+    enter = nearer ? t : enter;
+    facet = nearer ? i : facet;
+    leave = beside ? -1.0 : out_ ? min(leave, t) : leave;
   }
   if (facet < 0 || enter >= leave) return false;
   h.t = enter;
   h.p = o + enter * d;
-  h.n = planes[facet].xyz;
-  h.facet = facet - info.y;
+  h.n = planes[PLANE_FIRST + facet].xyz;
+  h.facet = facet;
   return true;
 }
 #endif
@@ -169,15 +176,17 @@ void inner_hit(int r, int facet, vec3 p, vec3 d,
   if (refractors[r].info.x == MODEL_CONVEX) {
     ivec4 info = refractors[r].info;
     float nearest = 1e30;
-    for (int i = 0; i < info.z; i++) {
-      vec4 plane = planes[info.y + i];
+    n = d;
+    for (int i = 0; i < PLANE_COUNT; i++) {
+      vec4 plane = planes[PLANE_FIRST + i];
       float slope = dot(plane.xyz, d);
-      if (slope <= 0.0 || i == facet) continue;
       float t = max((plane.w - dot(plane.xyz, p)) / slope, 0.0);
-      if (t < nearest) { nearest = t; next = i; }
+      bool nearer = slope > 0.0 && i != facet && t < nearest;
+      nearest = nearer ? t : nearest;
+      next = nearer ? i : next;
+      n = nearer ? plane.xyz : n;
     }
     q = p + (nearest < 1e30 ? nearest : 0.0) * d;
-    n = planes[info.y + next].xyz;
     return;
   }
 #endif

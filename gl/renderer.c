@@ -40,7 +40,7 @@ static void write_defines(abbe_renderer *r) {
            "#define WAVELENGTHS %zu\n#define ORDERS %zu\n#define LIGHT_ROOM %zu\n"
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
-           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s",
+           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, room(p->light_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
@@ -48,6 +48,7 @@ static void write_defines(abbe_renderer *r) {
            storage(p->refractor_count * r->band_count, 32, "#define BANDS_IN_STORAGE\n"),
            p->receiver_shadows ? "#define RECEIVER_SHADOWS\n" : "", r->wide ? "#define WIDE\n" : "",
            p->desc.layers ? "#define LIGHT_LAYERS_OUT\n" : "",
+           p->convex && p->refractor_count == 1 ? "#define ONE_CONVEX\n" : "",
            storage(planes, 16, "#define PLANES_IN_STORAGE\n"),
            storage(p->receiver_count, 32, "#define SURFACES_IN_STORAGE\n"),
            storage(spectra, 16, "#define SPECTRA_IN_STORAGE\n"),
