@@ -25,7 +25,8 @@ static const char *storage(size_t count, size_t element, const char *define) {
 }
 
 static void write_defines(abbe_renderer *r) {
-  r->wide = r->plan.desc.photons > MAX_NARROW_PHOTONS;
+  size_t grid = r->plan.desc.photons;
+  r->wide = grid * grid * r->plan.desc.wavelengths > MAX_NARROW_PHOTONS;
   r->band_levels = 1;
   r->band_count = r->plan.desc.wavelengths;
   for (size_t n = r->plan.desc.wavelengths; n > 1; r->band_levels++)

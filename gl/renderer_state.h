@@ -29,8 +29,9 @@ enum {
 
 enum { PHOTON_GROUP = 256, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };
 
-/* Up to this grid 32-bit sums leave every photon more than 2^12 units without ever overflowing. */
-enum { MAX_NARROW_PHOTONS = 512, WARP_STEPS = ABBE_RENDERER_WARP_STEPS };
+/* Up to so many photons (cells times wavelengths) 32-bit sums round to well below 1e-4 of the light
+ * without ever overflowing. */
+enum { MAX_NARROW_PHOTONS = 1 << 20, WARP_STEPS = ABBE_RENDERER_WARP_STEPS };
 
 typedef struct mesh_buffers {
   GLuint array, vertices, indices;

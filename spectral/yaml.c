@@ -455,6 +455,15 @@ abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const cha
     return abbe_yaml_fail(yaml, mapping, error, "a mapping with the key '%s' is wanted here", key);
   *out = abbe_yaml_get(yaml, mapping, key);
   if (out->id != 0) return ABBE_OK;
+  /* Most often the key is there, mistyped. */
+  const node *n = at(yaml, mapping);
+  for (size_t i = 0; i + 1 < n->count; i += 2) {
+    abbe_yaml_node other = {n->child[i]};
+    const char *text = at(yaml, other)->text;
+    if (!at(yaml, other)->asked && abbe_nearest_word(text, &key, 1) != NULL)
+      return abbe_yaml_fail(yaml, other, error, "the key '%s' is missing here; is '%.60s' meant?",
+                            key, text);
+  }
   return abbe_yaml_fail(yaml, mapping, error, "the key '%s' is missing here", key);
 }
 

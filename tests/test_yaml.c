@@ -12,6 +12,18 @@ static abbe_yaml *parse(const char *text) {
   return yaml;
 }
 
+static void test_a_mistyped_key_is_named_where_one_is_missing(void **state) {
+  (void)state;
+  abbe_yaml *y = parse("a: 1\nintensitty: 3\n");
+  abbe_yaml_node node;
+  abbe_error e = {0};
+  assert_int_equal(abbe_yaml_require(y, abbe_yaml_root(y), "intensity", &node, &e), ABBE_SCHEMA);
+  assert_contains(e.text, "t.yaml:2: the key 'intensity' is missing here; is 'intensitty' meant?");
+  assert_int_equal(abbe_yaml_require(y, abbe_yaml_root(y), "colour", &node, &e), ABBE_SCHEMA);
+  assert_contains(e.text, "the key 'colour' is missing here");
+  abbe_yaml_free(y);
+}
+
 static void refuses_bytes(const char *text, size_t size, abbe_result code, const char *part) {
   abbe_yaml *yaml = NULL;
   abbe_error error = {0};
@@ -277,6 +289,7 @@ static void files_are_loaded_or_named(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_mistyped_key_is_named_where_one_is_missing),
       cmocka_unit_test(a_document_is_walked),
       cmocka_unit_test(typed_values_are_read_and_defaults_kept),
       cmocka_unit_test(numbers_are_finite_plain_and_in_range),
