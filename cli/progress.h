@@ -14,7 +14,7 @@ typedef struct abbe_progress {
 
 /* Starts the clock and catches Ctrl-C. A bar is shown only where stderr is a terminal. */
 void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet);
-/* `done` from 0 to 1; false where the user has asked to stop. Matches abbe_renderer_progress. */
+/* `done` from 0 to 1; false where the user has asked to stop. Matches abbe_render_progress. */
 bool abbe_progress_update(void *progress, double done);
 /* Clears the bar and gives Ctrl-C back. */
 void abbe_progress_end(abbe_progress *progress);

@@ -350,7 +350,13 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_renderer *renderer = NULL;
   abbe_statistics statistics;
   abbe_image image = {0};
-  abbe_result result = abbe_renderer_make(context, scene, &q->render.desc, &renderer, error);
+  abbe_progress progress;
+  abbe_render_desc desc = q->render.desc;
+  desc.progress = abbe_progress_update;
+  desc.progress_user = &progress;
+  abbe_progress_begin(&progress, "prepare", q->quiet);
+  abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);
+  abbe_progress_end(&progress);
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
     if (q->map != NULL && !abbe_renderer_plan(renderer)->caustics)

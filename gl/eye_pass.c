@@ -193,7 +193,7 @@ static void list_pixels(abbe_renderer *r, size_t w, size_t h) {
 }
 
 /* In strips where somebody watches, so that a long frame shows its progress and can be stopped. */
-static abbe_result refract_pixels(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progress, void *user,
                                   abbe_error *error) {
   const abbe_gl *gl = r->gl;
   GLuint count = 0;
@@ -216,7 +216,7 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_renderer_progress progr
   return ABBE_OK;
 }
 
-static abbe_result draw_refraction(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progress, void *user,
                                    abbe_error *error) {
   const abbe_gl *gl = r->gl;
   size_t w = r->plan.desc.width * r->plan.desc.supersample;
@@ -260,7 +260,7 @@ static void resolve_picture(abbe_renderer *r) {
   abbe_renderer_end_pass(r, "eye: picture");
 }
 
-abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, void *user,
                               abbe_error *error) {
   abbe_result result = draw_receivers(r, error);
   if (result == ABBE_OK && r->eye_layers != 0) result = draw_layers(r, error);

@@ -158,9 +158,8 @@ static bool next_batch(const abbe_renderer *r, batch *b) {
   return true;
 }
 
-static abbe_result trace_and_deposit(abbe_renderer *r, size_t light,
-                                     abbe_renderer_progress progress, void *user,
-                                     abbe_error *error) {
+static abbe_result trace_and_deposit(abbe_renderer *r, size_t light, abbe_render_progress progress,
+                                     void *user, abbe_error *error) {
   size_t n = r->plan.desc.wavelengths, done = 0;
   batch b = {0};
   abbe_result result = ABBE_OK;
@@ -175,6 +174,17 @@ static abbe_result trace_and_deposit(abbe_renderer *r, size_t light,
       result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
   }
   return result;
+}
+
+/* Making the renderer traces every light's wavelengths twice: `pass` 0 fits the maps, 1 counts. */
+static abbe_result show_making(abbe_renderer *r, int pass, size_t light, const batch *b,
+                               abbe_error *error) {
+  const abbe_render_desc *d = &r->plan.desc;
+  if (d->progress == NULL) return ABBE_OK;
+  double of_light = (double)(b->first + b->count) / (double)d->wavelengths;
+  double share = 0.5 * pass + 0.5 * ((double)light + of_light) / (double)r->plan.light_count;
+  if (d->progress(d->progress_user, share)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
 }
 
 /* Counts the pieces of light, the same in every frame, and makes room for them. */
@@ -197,6 +207,7 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
       list_pieces(r, light, b.first, b.count, b.interval_first, b.interval_end, 0);
       size_t count = read_count(r, r->splat_list);
       if (count > most) most = count;
+      result = show_making(r, 1, light, &b, error);
     }
     GLuint reached[2] = {0, 0};
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LEDGER]);
@@ -213,7 +224,7 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
                                    &r->splat_list, error);
 }
 
-abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progress, void *user,
                                   abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {

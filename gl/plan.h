@@ -42,6 +42,9 @@ typedef enum abbe_fill {
 #define ABBE_RENDER_MAX_WAVELENGTHS 1000
 #define ABBE_RENDER_MAX_ORDERS 16
 
+/* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
+typedef bool (*abbe_render_progress)(void *user, double done);
+
 /* A request; zero means the default in every field. */
 typedef struct abbe_render_desc {
   abbe_profile profile;
@@ -57,6 +60,8 @@ typedef struct abbe_render_desc {
                              (4 where a mesh is known by its layers) */
   abbe_rgb_space space; /* of the picture */
   bool layers;          /* keep direct and caustic light of the receivers apart as well */
+  abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
+  void *progress_user;
 } abbe_render_desc;
 
 typedef enum abbe_refractor_model {

@@ -177,7 +177,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   s->map_metres = (w[1] - w[0]) / (double)r->plan.desc.map_size;
 }
 
-abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error) {
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
   r->statistics = statistics;

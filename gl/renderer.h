@@ -24,9 +24,6 @@ extern "C" {
 
 typedef struct abbe_renderer abbe_renderer;
 
-/* Called now and then with the share done, 0 to 1; false stops the frame with ABBE_CANCELLED. */
-typedef bool (*abbe_renderer_progress)(void *user, double done);
-
 /* Plans, uploads the scene, compiles what the plan asks for and fits the light's views. desc may
  * be NULL. Errors as abbe_plan_make, and ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
@@ -38,8 +35,8 @@ const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
 
 /* One frame. With statistics every pass is finished and timed by itself; without, none is waited
  * for but the last. progress and statistics may be NULL. */
-abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_renderer_progress progress,
-                                void *user, abbe_statistics *statistics, abbe_error *error);
+abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress progress, void *user,
+                                abbe_statistics *statistics, abbe_error *error);
 
 /* The time of drawing all surfaces once into the eye's picture, normals and distances alone, ms:
  * the floor under any frame. Default profile only. */

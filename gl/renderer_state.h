@@ -136,7 +136,7 @@ abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int c
 
 /* photon_pass.c: photons to the spectral map. */
 abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error);
-abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progress, void *user,
                                   abbe_error *error);
 abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledger *ledger,
                                       abbe_error *error);
@@ -146,7 +146,7 @@ void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, siz
 /* eye_pass.c: the picture. */
 void abbe_renderer_fit_eye(abbe_renderer *r);
 abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error);
-abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_renderer_progress progress, void *user,
+abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, void *user,
                               abbe_error *error);
 void abbe_renderer_set_lighting(abbe_renderer *r, GLuint program);
 
