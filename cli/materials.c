@@ -231,15 +231,6 @@ static void add_record(cJSON *to, const abbe_material *m) {
   }
 }
 
-static abbe_result print_json(const cJSON *json, abbe_error *error) {
-  char *text = json != NULL ? cJSON_Print(json) : NULL;
-  if (text != NULL && !json_lost) puts(text);
-  cJSON_free(text);
-  return text == NULL || json_lost
-             ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the answer")
-             : ABBE_OK;
-}
-
 static abbe_result list_json(const abbe_material_table *table, abbe_error *error) {
   cJSON *root = json_root();
   cJSON_AddStringToObject(root, "table", table->path);
@@ -257,7 +248,7 @@ static abbe_result list_json(const abbe_material_table *table, abbe_error *error
     add_text(item, "source", m->source);
     add_text(item, "warning", m->warning);
   }
-  abbe_result result = print_json(root, error);
+  abbe_result result = abbe_command_print_json(json_lost ? NULL : root, error);
   cJSON_Delete(root);
   return result;
 }
@@ -281,7 +272,7 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
   }
   add_numbers(root, m);
   add_record(root, m);
-  if (result == ABBE_OK) result = print_json(root, error);
+  if (result == ABBE_OK) result = abbe_command_print_json(json_lost ? NULL : root, error);
   cJSON_Delete(root);
   return result;
 }
@@ -393,7 +384,5 @@ int abbe_command_materials(int argc, char **argv) {
   abbe_result result = abbe_material_table_load(r.table, &table, &error);
   if (result == ABBE_OK) result = answer(&r, list, &table, &error);
   abbe_material_table_free(&table);
-  if (result == ABBE_OK && (fflush(stdout) != 0 || ferror(stdout)))
-    result = abbe_error_set(&error, ABBE_IO, "the answer could not be written");
-  return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(r.program, &error);
+  return abbe_command_end(r.program, result, &error);
 }

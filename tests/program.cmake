@@ -10,3 +10,7 @@ foreach(name bad_input render_command)
   target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
   add_dependencies(test_${name} abbe)
 endforeach()
+
+add_test(NAME readme_commands
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/readme_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
+set_tests_properties(readme_commands PROPERTIES LABELS program TIMEOUT 300)
