@@ -81,7 +81,8 @@ int abbe_command_plan(int argc, char **argv) {
   abbe_plan plan = {0};
   abbe_scene_options scene_options = {.materials = o.render.materials};
   abbe_result result = abbe_scene_load(o.render.scene, &scene_options, &scene, &error);
-  if (result == ABBE_OK) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
+  bool loaded = result == ABBE_OK;
+  if (loaded) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
   for (size_t i = 0; i < scene.object_count && result == ABBE_OK; i++)
     if (scene.object[i].mended != NULL)
       fprintf(stderr, "note: object '%s': %s\n", scene.object[i].name, scene.object[i].mended);
@@ -89,5 +90,5 @@ int abbe_command_plan(int argc, char **argv) {
   if (result == ABBE_OK && !o.json) print_text(&plan);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
-  return abbe_command_end(argv[0], result, &error);
+  return abbe_render_options_end(&o.render, loaded, result, &error);
 }

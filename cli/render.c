@@ -404,9 +404,10 @@ int abbe_command_render(int argc, char **argv) {
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);
-  if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
+  bool loaded = result == ABBE_OK;
+  if (loaded) result = abbe_context_make(q.backend, &context, &error);
   if (result == ABBE_OK) result = render(&q, &scene, context, &error);
   abbe_context_free(context);
   abbe_scene_free(&scene);
-  return abbe_command_end(argv[0], result, &error);
+  return abbe_render_options_end(&q.render, loaded, result, &error);
 }

@@ -111,3 +111,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 const struct argp abbe_render_options_argp = {options, parse, "SCENE.yaml", NULL, NULL, NULL, NULL};
+
+int abbe_render_options_end(const abbe_render_options *request, bool scene_loaded,
+                            abbe_result result, abbe_error *error) {
+  int code = abbe_command_end(request->program, result, error);
+  return scene_loaded && result == ABBE_INVALID_ARGUMENT ? ABBE_EXIT_USAGE : code;
+}

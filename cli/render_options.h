@@ -5,6 +5,7 @@
 #include "gl/plan.h"
 
 #include <argp.h>
+#include <stdbool.h>
 
 typedef struct abbe_render_options {
   const char *program;   /* "abbe render" */
@@ -16,5 +17,10 @@ typedef struct abbe_render_options {
 /* An argp child: profile, size, wavelengths, photons …, and the scene as the one argument. Its
  * input is an abbe_render_options with program set. */
 extern const struct argp abbe_render_options_argp;
+
+/* abbe_command_end for a request: once the scene is loaded, an invalid argument is the request's
+ * own and ends with ABBE_EXIT_USAGE. */
+int abbe_render_options_end(const abbe_render_options *request, bool scene_loaded,
+                            abbe_result result, abbe_error *error);
 
 #endif

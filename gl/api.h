@@ -25,62 +25,59 @@ extern "C" {
   X(BINDTEXTURE, BindTexture)                                                                      \
   X(BINDVERTEXARRAY, BindVertexArray)                                                              \
   X(BLENDFUNC, BlendFunc)                                                                          \
-  X(BUFFERDATA, BufferData) X(BUFFERSUBDATA, BufferSubData) X(                                     \
-      CHECKFRAMEBUFFERSTATUS,                                                                      \
-      CheckFramebufferStatus) X(CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV, ClearBufferuiv)    \
-      X(CLEARBUFFERDATA, ClearBufferData) X(COMPILESHADER, CompileShader) X(                       \
-          CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader) X(CULLFACE, CullFace)        \
-          X(DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS, DeleteFramebuffers) X(             \
-              DELETEPROGRAM, DeleteProgram) X(DELETESHADER, DeleteShader) X(DELETETEXTURES,        \
-                                                                            DeleteTextures)        \
-              X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(DEPTHFUNC, DepthFunc) X(                 \
-                  DEPTHMASK, DepthMask) X(DISABLE, Disable) X(DISPATCHCOMPUTE, DispatchCompute)    \
-                  X(DISPATCHCOMPUTEINDIRECT, DispatchComputeIndirect) X(DRAWARRAYS, DrawArrays) X( \
-                      DRAWARRAYSINDIRECT,                                                          \
-                      DrawArraysIndirect) X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS,              \
-                                                                        DrawElements) X(ENABLE,    \
-                                                                                        Enable)    \
-                      X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(FINISH, Finish) X(     \
-                          FRAMEBUFFERTEXTURE,                                                      \
-                          FramebufferTexture) X(FRAMEBUFFERTEXTURELAYER,                           \
-                                                FramebufferTextureLayer) X(GENBUFFERS, GenBuffers) \
-                          X(GENFRAMEBUFFERS, GenFramebuffers) X(GENTEXTURES, GenTextures) X(       \
-                              GENVERTEXARRAYS, GenVertexArrays) X(GETBUFFERSUBDATA,                \
-                                                                  GetBufferSubData) X(GETERROR,    \
-                                                                                      GetError)    \
-                              X(GETINTEGERV, GetIntegerv) X(GETPROGRAMIV, GetProgramiv) X(         \
-                                  GETPROGRAMINFOLOG,                                               \
-                                  GetProgramInfoLog) X(GETSHADERIV,                                \
-                                                       GetShaderiv) X(GETSHADERINFOLOG,            \
-                                                                      GetShaderInfoLog)            \
-                                  X(GETSTRING, GetString) X(GETTEXIMAGE, GetTexImage) X(           \
-                                      GETUNIFORMLOCATION,                                          \
-                                      GetUniformLocation) X(LINKPROGRAM,                           \
-                                                            LinkProgram) X(MEMORYBARRIER,          \
-                                                                           MemoryBarrier)          \
-                                      X(PIXELSTOREI, PixelStorei) X(SHADERSOURCE, ShaderSource) X( \
-                                          TEXPARAMETERI,                                           \
-                                          TexParameteri) X(TEXSTORAGE2D, TexStorage2D)             \
-                                          X(TEXSTORAGE3D, TexStorage3D) X(                         \
-                                              TEXSUBIMAGE3D,                                       \
-                                              TexSubImage3D) X(UNIFORM1F, Uniform1f)               \
-                                              X(UNIFORM1FV, Uniform1fv) X(UNIFORM1I, Uniform1i) X( \
-                                                  UNIFORM1UI,                                      \
-                                                  Uniform1ui) X(UNIFORM2I, Uniform2i)              \
-                                                  X(UNIFORM2F,                                     \
-                                                    Uniform2f) X(UNIFORM3FV,                       \
-                                                                 Uniform3fv) X(UNIFORM3F,          \
-                                                                               Uniform3f)          \
-                                                      X(UNIFORM4F,                                 \
-                                                        Uniform4f) X(UNIFORM4FV, Uniform4fv)       \
-                                                          X(UNIFORMMATRIX3FV,                      \
-                                                            UniformMatrix3fv) X(SCISSOR, Scissor)  \
-                                                              X(UNIFORMMATRIX4FV,                  \
-                                                                UniformMatrix4fv)                  \
-                                                                  X(USEPROGRAM, UseProgram)        \
-                                                                      X(VERTEXATTRIBPOINTER,       \
-                                                                        VertexAttribPointer)       \
-                                                                          X(VIEWPORT, Viewport)
+  X(BUFFERDATA, BufferData)                                                                        \
+  X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(             \
+      CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV,                                              \
+                                      ClearBufferuiv) X(CLEARBUFFERDATA,                           \
+                                                        ClearBufferData) X(COMPILESHADER,          \
+                                                                           CompileShader)          \
+      X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader) X(CULLFACE, CullFace) X(       \
+          DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS,                                      \
+                                          DeleteFramebuffers) X(DELETEPROGRAM,                     \
+                                                                DeleteProgram) X(DELETESHADER,     \
+                                                                                 DeleteShader)     \
+          X(DELETETEXTURES, DeleteTextures) X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(           \
+              DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(DISABLE, Disable) X(DISPATCHCOMPUTE, \
+                                                                                  DispatchCompute) \
+              X(DISPATCHCOMPUTEINDIRECT, DispatchComputeIndirect) X(DRAWARRAYS, DrawArrays) X(     \
+                  DRAWARRAYSINDIRECT,                                                              \
+                  DrawArraysIndirect) X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS, DrawElements)    \
+                  X(ENABLE, Enable) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(         \
+                      FINISH, Finish) X(FRAMEBUFFERTEXTURE,                                        \
+                                        FramebufferTexture) X(FRAMEBUFFERTEXTURELAYER,             \
+                                                              FramebufferTextureLayer)             \
+                      X(GENBUFFERS, GenBuffers) X(GENFRAMEBUFFERS, GenFramebuffers) X(             \
+                          GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays)            \
+                          X(GETBUFFERSUBDATA, GetBufferSubData) X(GETERROR, GetError) X(           \
+                              GETINTEGERV, GetIntegerv) X(GETPROGRAMIV,                            \
+                                                          GetProgramiv) X(GETPROGRAMINFOLOG,       \
+                                                                          GetProgramInfoLog)       \
+                              X(GETSHADERIV, GetShaderiv) X(GETSHADERINFOLOG, GetShaderInfoLog) X( \
+                                  GETSTRING, GetString) X(GETTEXIMAGE,                             \
+                                                          GetTexImage) X(GETUNIFORMLOCATION,       \
+                                                                         GetUniformLocation)       \
+                                  X(LINKPROGRAM, LinkProgram) X(MEMORYBARRIER, MemoryBarrier) X(   \
+                                      PIXELSTOREI,                                                 \
+                                      PixelStorei) X(SHADERSOURCE,                                 \
+                                                     ShaderSource) X(TEXPARAMETERI, TexParameteri) \
+                                      X(TEXSTORAGE2D, TexStorage2D) X(                             \
+                                          TEXSTORAGE3D,                                            \
+                                          TexStorage3D) X(TEXSUBIMAGE3D, TexSubImage3D)            \
+                                          X(UNIFORM1F,                                             \
+                                            Uniform1f) X(UNIFORM1FV,                               \
+                                                         Uniform1fv) X(UNIFORM1I, Uniform1i)       \
+                                              X(UNIFORM1UI, Uniform1ui) X(UNIFORM2I, Uniform2i) X( \
+                                                  UNIFORM2F, Uniform2f) X(UNIFORM3FV, Uniform3fv)  \
+                                                  X(UNIFORM3F,                                     \
+                                                    Uniform3f) X(UNIFORM4F, Uniform4f)             \
+                                                      X(UNIFORM4FV, Uniform4fv) X(                 \
+                                                          UNIFORMMATRIX3FV,                        \
+                                                          UniformMatrix3fv) X(SCISSOR, Scissor)    \
+                                                          X(UNIFORMMATRIX4FV, UniformMatrix4fv)    \
+                                                              X(USEPROGRAM, UseProgram)            \
+                                                                  X(VERTEXATTRIBPOINTER,           \
+                                                                    VertexAttribPointer)           \
+                                                                      X(VIEWPORT, Viewport)
 
 typedef struct abbe_gl {
 #define ABBE_GL_FIELD(type, name) PFNGL##type##PROC name;

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { PIXEL_LIST_BINDING = 15 };
-
 void abbe_renderer_fit_eye(abbe_renderer *r) {
   const abbe_camera *camera = &r->scene->camera;
   double forward[3];
@@ -182,7 +180,7 @@ static void list_pixels(abbe_renderer *r, size_t w, size_t h) {
   const abbe_gl *gl = r->gl;
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->pixel_list);
   gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, PIXEL_LIST_BINDING, r->pixel_list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, r->pixel_list);
   gl->UseProgram(r->refraction_list);
   abbe_renderer_bind_texture(r, r->refraction_list, "eye_layers", 4, r->eye_layers);
   abbe_renderer_bind_texture(r, r->refraction_list, "eye_receivers", 5, r->eye_receivers);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LIST_HEADER = 16, SPLAT_BYTES = 20, MAX_SPLATS = 6 << 20, LIST_BINDING = 15 };
+enum { LIST_HEADER = 16, SPLAT_BYTES = 20, MAX_SPLATS = 6 << 20 };
 enum { MOST_LANDING_BYTES = 1 << 30 };
 enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
 
@@ -48,11 +48,11 @@ static void dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t 
   gl->UseProgram(r->list_groups);
   gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "group_size"), PHOTON_GROUP);
   gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "most"), (GLuint)most);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, LIST_BINDING, list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, list);
   gl->DispatchCompute(1, 1, 1);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   gl->UseProgram(program);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, LIST_BINDING, r->splat_list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, r->splat_list);
   gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
   gl->DispatchComputeIndirect(4);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -173,8 +173,6 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
   double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
   s->refractor_share = (double)r->light[0].photon_count / cells;
-  const double *w = r->light[0].map_view.window;
-  s->map_metres = (w[1] - w[0]) / (double)r->plan.desc.map_size;
 }
 
 abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,

@@ -61,11 +61,14 @@ void abbe_renderer_map_warp(const abbe_renderer *renderer, size_t light,
                             double knots[2][ABBE_RENDERER_WARP_STEPS + 1]);
 
 /* Landings of the first batch of wavelengths, for tests: [count][orders][lanes] x 4 floats, world
- * position and flux for unit weight; *data is malloc'd. */
+ * position in m and flux for unit weight in W, all 0 where nothing lands. *data and *cells (x | y
+ * << 16 of each photon; cells may be NULL) are malloc'd, the caller frees them.
+ * ABBE_INVALID_ARGUMENT where no photons start from that light. */
 abbe_result abbe_renderer_read_landings(abbe_renderer *renderer, size_t light, float **data,
                                         unsigned **cells, size_t *count, size_t *orders,
                                         size_t *lanes, abbe_error *error);
-/* The view through which a light's photons start: cell (x, y) of the grid is its uv. */
+/* The view through which a light's photons start: the middle of cell (x, y) of a grid of N is at
+ * uv = ((x + 0.5) / N, (y + 0.5) / N). */
 void abbe_renderer_photon_view(const abbe_renderer *renderer, size_t light, abbe_view *out);
 
 #ifdef __cplusplus

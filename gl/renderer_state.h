@@ -24,7 +24,8 @@ enum {
   BINDING_LEDGER,
   BINDING_SHARED, /* paths, then map sums */
   BINDING_INTERVALS,
-  BINDING_COUNT
+  BINDING_COUNT,
+  BINDING_LIST = BINDING_COUNT /* pieces of light, pixels */
 };
 
 enum { PHOTON_GROUP = 256, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };

@@ -38,8 +38,7 @@ typedef struct abbe_statistics {
   size_t photons; /* cells that hold a refractor, all lights */
   size_t wavelengths;
   double refractor_share; /* of the first light's photon grid */
-  double map_metres;   /* side of a map texel at the middle of the map's view, 1 m away or flat */
-  size_t device_bytes; /* buffers and textures */
+  size_t device_bytes;    /* buffers and textures */
   abbe_ledger energy;
 } abbe_statistics;
 
