@@ -20,7 +20,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
 #define ABBE_COMMANDS(X) \
   X(render, "render a scene to OpenEXR and PNG") \
   X(plan, "say which passes and models a scene asks for, and why") \
-  X(materials, "list materials, or show one: indices, Abbe number, source, fits") \
+  X(materials, "look into, edit, convert and check tables of materials") \
   X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB") \
   X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO") \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics")

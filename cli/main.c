@@ -65,8 +65,9 @@ int main(int argc, char **argv) {
     if (strcmp(word, names[i]) != 0) continue;
     char program[64];
     snprintf(program, sizeof program, "abbe %s", names[i]);
-    char *help_argv[] = {program, (char[]){"--help"}, NULL};
-    if (wants_help) return commands[i].run(2, help_argv);
+    /* a command with verbs answers for one of them too: abbe help materials show */
+    char *help_argv[] = {program, (char[]){"--help"}, argc > 3 ? argv[3] : NULL, NULL};
+    if (wants_help) return commands[i].run(argc > 3 ? 3 : 2, help_argv);
     argv[1] = program;
     return commands[i].run(argc - 1, argv + 1);
   }

@@ -72,7 +72,7 @@ static void extrapolation_is_reported_or_refused(void **state) {
   assert_true(cJSON_IsTrue(cJSON_GetObjectItem(first, "extrapolated")));
   cJSON_Delete(json);
   assert_int_equal(run("materials show n-bk7 --at 500 --at 2600 --json"), 1);
-  assert_string_equal(output, "abbe materials: n-bk7 has no index at 2600 nm: its data reach from "
+  assert_string_equal(output, "abbe materials show: n-bk7 has no index at 2600 nm: its data reach from "
                               "300 to 2500 nm, and its record does not say 'extrapolate: true'\n");
 }
 
@@ -125,12 +125,12 @@ static void wrong_use_is_2_and_says_what_is_right(void **state) {
     const char *arguments, *part;
     int code;
   } cases[] = {
-      {"materials", "list or show?", 2},
+      {"materials", "a verb is wanted", 2},
       {"materials lst", "did you mean 'list'?", 2},
       {"materials show", "Name a material", 2},
       {"materials list diamond", "did you mean show?", 2},
-      {"materials list --at 500", "go with show", 2},
-      {"materials list --fit", "go with show", 2},
+      {"materials list --at 500", "--at", 2},
+      {"materials list --fit", "--fit", 2},
       {"materials show diamond --fit --json", "--fit goes without", 2},
       {"materials show diamond more", "one argument too many", 2},
       {"materials show diamond --at red", "--at 'red'", 2},
@@ -144,6 +144,10 @@ static void wrong_use_is_2_and_says_what_is_right(void **state) {
       {"material list", "did you mean 'materials'?", 2},
       {"materials --help", "abbe materials show diamond --at 430.8", 0},
       {"help materials", "Examples:", 0},
+      {"materials show --help", "abbe materials show diamond --at 430.8", 0},
+      {"materials list --help", "abbe materials list --table thesis", 0},
+      {"materials help show", "Usage: abbe materials show", 0},
+      {"help materials show", "Usage: abbe materials show", 0},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     int code = run(cases[i].arguments);

@@ -1,0 +1,56 @@
+/* materials.h: the verbs of `abbe materials`, a file each, and what they share.
+ *
+ * A verb is one line of ABBE_MATERIALS_VERBS and one function in cli/materials_NAME.c. The program
+ * finds it by its name, lists it with its summary in `abbe materials --help`, and hands it its
+ * arguments with argv[0] "abbe materials NAME". No verb holds logic that a library could use.
+ */
+#ifndef ABBE_CLI_MATERIALS_H
+#define ABBE_CLI_MATERIALS_H
+
+#include "cli/command.h"
+#include "spectral/material_table.h"
+
+#include <cjson/cJSON.h>
+
+/* X(name, summary): every verb NAME is `int abbe_materials_NAME(int argc, char **argv)`. */
+#define ABBE_MATERIALS_VERBS(X)                                                                    \
+  X(list, "the materials of a table")                                                              \
+  X(show, "one material: model, indices, Abbe number, absorption, source, fits")
+
+#define ABBE_MATERIALS_DECLARE(name, summary) int abbe_materials_##name(int argc, char **argv);
+ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)
+#undef ABBE_MATERIALS_DECLARE
+
+/* Rows of an argp_option list that several verbs have, and their keys; a verb's own keys begin at
+ * ABBE_MATERIALS_KEY_OWN. */
+enum { ABBE_MATERIALS_KEY_TABLE = 256, ABBE_MATERIALS_KEY_JSON, ABBE_MATERIALS_KEY_OWN };
+#define ABBE_MATERIALS_TABLE_OPTION                                                                \
+  {                                                                                                \
+    "table", ABBE_MATERIALS_KEY_TABLE, "FILE", 0,                                                  \
+        "a table file, or default or thesis; without it, default", 0                               \
+  }
+#define ABBE_MATERIALS_JSON_OPTION                                                                 \
+  { "json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "as JSON, numbers in full", 0 }
+
+struct argp;
+/* argp_parse; on want of memory says so and ends the program. */
+void abbe_materials_parse(const struct argp *parser, int argc, char **argv, void *request);
+/* Prints "PROGRAM: sentence" and where help is, and ends the program with ABBE_EXIT_USAGE. */
+_Noreturn void abbe_materials_wrong_use(const char *program, const char *sentence);
+
+/* The numbers of a material; NaN where its record does not vouch for the wavelengths. */
+abbe_dispersion_numbers abbe_materials_numbers(const abbe_material *material);
+/* value by format into text[size], or "-" for NaN, or "infinite"; returns what to print. */
+const char *abbe_materials_number(char *text, size_t size, const char *format, double value);
+
+/* An object for abbe_materials_print_json; want of memory at any step after this is remembered,
+ * and then nothing is printed: half an answer is none. */
+cJSON *abbe_materials_json(void);
+abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
+/* Adds text, or null where there is none. */
+void abbe_materials_add_text(cJSON *to, const char *key, const char *text);
+/* n_d, v_d, n_F, n_C and b_g; null where the record does not vouch for them. */
+void abbe_materials_add_numbers(cJSON *to, const abbe_material *material);
+void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b);
+
+#endif
