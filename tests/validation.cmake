@@ -1,0 +1,5 @@
+set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
+foreach(name
+    mask)
+  abbe_test(${name} cpu ${validation_rooms})
+endforeach()
