@@ -1,4 +1,5 @@
 #include "cli/command.h"
+#include "cli/map_options.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
 
@@ -22,7 +23,6 @@ enum {
   OPTION_PNG = 0x200,
   OPTION_BITS,
   OPTION_LAYERS,
-  OPTION_SAVE_MAP,
   OPTION_UNFILLED,
   OPTION_STATS,
   OPTION_GL,
@@ -36,7 +36,8 @@ enum {
 
 typedef struct request {
   abbe_render_options render;
-  const char *exr, *png, *map, *stats;
+  abbe_map_options map;
+  const char *exr, *png, *stats;
   bool layers, unfilled, quiet, json;
   int bits;
   size_t frames;
@@ -49,7 +50,6 @@ static const struct argp_option options[] = {
     {"png", OPTION_PNG, "FILE.png", 0, "the picture for a display, through OpenColorIO", 0},
     {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8)", 0},
     {"layers", OPTION_LAYERS, NULL, 0, "direct, caustic and distance layers in the EXR", 0},
-    {"save-map", OPTION_SAVE_MAP, "FILE.exr", 0, "the first light's spectral map", 0},
     {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
     {"stats", OPTION_STATS, "FILE", 0, "times, photons and the energy ledger as JSON", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
@@ -69,6 +69,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &q->render;
+    state->child_inputs[1] = &q->map;
     return 0;
   case 'o':
     q->exr = text;
@@ -81,9 +82,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_LAYERS:
     q->layers = true;
-    return 0;
-  case OPTION_SAVE_MAP:
-    q->map = text;
     return 0;
   case OPTION_UNFILLED:
     q->unfilled = true;
@@ -116,7 +114,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->display.exposure = abbe_command_number(p, "--exposure", text, -30, 30);
     return 0;
   case ARGP_KEY_END:
-    if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map == NULL && !q->json)
+    if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
     return 0;
   default:
@@ -126,7 +124,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 /* A target that cannot be written is found out before the work, not after it. */
 static abbe_result check_targets(const request *q, abbe_error *error) {
-  const char *targets[] = {q->exr, q->png, q->map, q->stats};
+  const char *targets[] = {q->exr, q->png, q->map.save, q->stats};
   for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
     if (targets[i] == NULL) continue;
     abbe_file_writer writer = {0};
@@ -280,45 +278,17 @@ static abbe_result write_png(const request *q, abbe_image *image, abbe_error *er
   return result;
 }
 
-/* The texel columns' and rows' places in the window, as text: what a reader needs to undo them. */
-static abbe_result annotate_warp(const abbe_renderer *renderer, abbe_image *map,
-                                 abbe_error *error) {
-  static const char *const names[2] = {"abbe:map_warp_x", "abbe:map_warp_y"};
-  double knots[2][ABBE_RENDERER_WARP_STEPS + 1];
-  abbe_result result = ABBE_OK;
-  abbe_renderer_map_warp(renderer, 0, knots);
-  for (int axis = 0; axis < 2 && result == ABBE_OK; axis++) {
-    char text[(ABBE_RENDERER_WARP_STEPS + 1) * 12] = "";
-    size_t used = 0;
-    for (int k = 0; k <= ABBE_RENDERER_WARP_STEPS; k++)
-      used += (size_t)snprintf(text + used, sizeof text - used, "%s%.7f", k > 0 ? " " : "",
-                               knots[axis][k]);
-    result = abbe_image_set_attribute(map, names[axis], text, error);
-  }
-  return result;
-}
-
 static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
   abbe_image map = {0};
-  abbe_view view;
-  char text[512];
-  abbe_result result = abbe_renderer_read_map(renderer, 0, !q->unfilled, &map, &view, error);
+  bool thesis = abbe_renderer_plan(renderer)->desc.profile == ABBE_PROFILE_THESIS;
+  abbe_result result =
+      abbe_renderer_read_map(renderer, q->map.light_index, !q->unfilled, &map, error);
   if (result != ABBE_OK) return result;
-  const double *o = view.origin, *f = view.forward, *u = view.up, *w = view.window;
-  snprintf(text, sizeof text,
-           "%s origin %.9g %.9g %.9g forward %.9g %.9g %.9g up %.9g %.9g %.9g window %.9g %.9g "
-           "%.9g %.9g",
-           view.orthographic ? "orthographic" : "perspective", o[0], o[1], o[2], f[0], f[1], f[2],
-           u[0], u[1], u[2], w[0], w[1], w[2], w[3]);
-  result = abbe_image_set_attribute(&map, "abbe:map_view", text, error);
-  if (result == ABBE_OK) result = annotate_warp(renderer, &map, error);
+  result = abbe_image_set_attribute(&map, "abbe:unit",
+                                    thesis ? "display brightness" : "flux a texel, W", error);
   if (result == ABBE_OK)
-    result = abbe_image_set_attribute(
-        &map, "abbe:unit",
-        abbe_renderer_plan(renderer)->desc.profile == ABBE_PROFILE_THESIS ? "display brightness"
-                                                                          : "flux a texel, W",
-        error);
-  if (result == ABBE_OK) result = abbe_exr_write(q->map, &map, error);
+    result = abbe_image_set_attribute(&map, "abbe:scene", q->render.scene, error);
+  if (result == ABBE_OK) result = abbe_exr_write(q->map.save, &map, error);
   abbe_image_free(&map);
   return result;
 }
@@ -352,6 +322,11 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_image image = {0};
   abbe_progress progress;
   abbe_render_desc desc = q->render.desc;
+  if (q->map.like != NULL) {
+    desc.map_layout = &q->map.layout;
+    desc.map_layout_light = q->map.light_index;
+    if (desc.map_size == 0) desc.map_size = q->map.side;
+  }
   desc.progress = abbe_progress_update;
   desc.progress_user = &progress;
   abbe_progress_begin(&progress, "prepare", q->quiet);
@@ -359,7 +334,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_progress_end(&progress);
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
-    if (q->map != NULL && !abbe_renderer_plan(renderer)->caustics)
+    if (q->map.save != NULL && !abbe_renderer_plan(renderer)->caustics)
       result = abbe_error_set(error, ABBE_UNSUPPORTED,
                               "%s has no refractor, so there is no spectral map to save",
                               q->render.scene);
@@ -369,7 +344,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->layers, &image, error);
   if (result == ABBE_OK) result = annotate(q, renderer, context, &image, error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
-  if (result == ABBE_OK && q->map != NULL) result = save_map(q, renderer, error);
+  if (result == ABBE_OK && q->map.save != NULL) result = save_map(q, renderer, error);
   if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
   if (result == ABBE_OK) result = write_stats(q, &statistics, context, error);
   if (result == ABBE_OK) summarise(q, &statistics);
@@ -380,7 +355,9 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
 
 int abbe_command_render(int argc, char **argv) {
   static const struct argp_child children[] = {
-      {&abbe_render_options_argp, 0, "Speed and accuracy:", 1}, {0}};
+      {&abbe_render_options_argp, 0, "Speed and accuracy:", 1},
+      {&abbe_map_options_argp, 0, "Spectral map:", 3},
+      {0}};
   static const struct argp argp = {
       options,
       parse,
@@ -390,7 +367,8 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"
       "  abbe render scenes/prism.yaml --png prism.png --wavelengths 21 --photons 1024\n"
       "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"
-      "  abbe render scenes/gem.yaml --stats gem.json --frames 9\n",
+      "  abbe render scenes/gem.yaml --stats gem.json --frames 9\n"
+      "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
       children,
       NULL,
       NULL};
@@ -405,7 +383,9 @@ int abbe_command_render(int argc, char **argv) {
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);
   bool loaded = result == ABBE_OK;
-  if (loaded) result = abbe_context_make(q.backend, &context, &error);
+  if (loaded)
+    result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
+  if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
   if (result == ABBE_OK) result = render(&q, &scene, context, &error);
   abbe_context_free(context);
   abbe_scene_free(&scene);

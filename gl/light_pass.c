@@ -55,17 +55,32 @@ static void fit_thesis(abbe_renderer *r, const abbe_light *light, light_state *s
     view->window[2 * axis] = middle - half;
     view->window[2 * axis + 1] = middle + half;
   }
-  state->map_view = *view;
+  abbe_map_layout_make(view, &state->map);
+}
+
+bool abbe_renderer_map_is_given(const abbe_renderer *r, size_t light) {
+  return r->plan.desc.map_layout != NULL && r->plan.desc.map_layout_light == light;
+}
+
+/* All of it but the range, which must hold this scene's receivers. */
+static void take_layout(const abbe_renderer *r, const abbe_map_layout *given,
+                        abbe_map_layout *out) {
+  *out = *given;
+  out->view.near = INFINITY;
+  out->view.far = -INFINITY;
+  fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &out->view);
+  abbe_view_pad(&out->view, 0.01);
+  memcpy(out->view.window, given->view.window, sizeof out->view.window);
 }
 
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
- * to the photons' landings later. */
+ * to the photons' landings later where the request does not give it. */
 static void fit_views(abbe_renderer *r) {
   for (size_t i = 0; i < r->plan.light_count; i++) {
     const abbe_light *light = &r->scene->light[i];
     light_state *state = &r->light[i];
     look_from_light(r, light, &state->near_view);
-    state->map_view = state->near_view;
+    abbe_view map_view = state->near_view;
     if (r->plan.desc.profile == ABBE_PROFILE_THESIS) {
       fit_thesis(r, light, state);
       continue;
@@ -74,9 +89,11 @@ static void fit_views(abbe_renderer *r) {
       fit_objects(r, r->plan.refractor_object, r->plan.refractor_count, &state->near_view);
     else
       fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->near_view);
-    fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->map_view);
     abbe_view_pad(&state->near_view, 0.01);
-    abbe_view_pad(&state->map_view, 0.01);
+    fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &map_view);
+    abbe_view_pad(&map_view, 0.01);
+    abbe_map_layout_make(&map_view, &state->map);
+    if (abbe_renderer_map_is_given(r, i)) take_layout(r, r->plan.desc.map_layout, &state->map);
   }
 }
 
@@ -185,7 +202,7 @@ static abbe_result receiver_depth(abbe_renderer *r, size_t light, abbe_error *er
   int layer = (int)light;
   size_t map = r->plan.desc.map_size;
   abbe_renderer_begin_pass(r);
-  set_layer_view(r, &r->light[light].map_view);
+  set_layer_view(r, &r->light[light].map.view);
   abbe_result result = abbe_renderer_set_target(r, &r->light_receivers, &layer, 1,
                                                 r->light_receivers_depth, map, map, error);
   if (result != ABBE_OK) return result;

@@ -416,7 +416,7 @@ static void make_warp(const double share[WARP_STEPS], double total, double knot[
 }
 
 static void fit_axes(light_state *state, const double *histogram, double total) {
-  abbe_view *view = &state->map_view;
+  abbe_view *view = &state->map.view;
   double old[4], near = view->near, far = view->far, share[WARP_STEPS];
   memcpy(old, view->window, sizeof old);
   for (int axis = 0; axis < 2; axis++)
@@ -428,7 +428,7 @@ static void fit_axes(light_state *state, const double *histogram, double total) 
   for (int axis = 0; axis < 2; axis++) {
     resort(histogram + axis * FIT_BINS, old[2 * axis], old[2 * axis + 1], view->window[2 * axis],
            view->window[2 * axis + 1], share);
-    make_warp(share, total, state->warp[axis]);
+    make_warp(share, total, state->map.knot[axis]);
   }
 }
 
@@ -444,7 +444,7 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     result = read_batch(r, light, &landing, error);
     if (result == ABBE_OK)
       total +=
-          sort_landings(&r->light[light].map_view, landing,
+          sort_landings(&r->light[light].map.view, landing,
                         r->light[light].photon_count * r->plan.desc.orders * r->lanes, histogram);
     free(landing);
   }
@@ -464,7 +464,7 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
     result =
         abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
-    result = fit_map(r, light, error);
+    if (!abbe_renderer_map_is_given(r, light)) result = fit_map(r, light, error);
   if (result == ABBE_OK) abbe_renderer_upload_lights(r);
   if (result == ABBE_OK) result = make_splats(r, error);
   return result;

@@ -1,7 +1,7 @@
 #include "gl/plan.h"
 
-#include "gl/view.h"
-
+#include "scenes/vector.h"
+#include "scenes/view.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -286,8 +286,9 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
         "%zu photons a side, refined only where a refractor is", plan->desc.photons);
     add(plan, true, "light: photons", "%zu wavelengths through the refractors",
         plan->desc.wavelengths);
-    add(plan, true, "light: spectral map", "%zu x %zu texels", plan->desc.map_size,
-        plan->desc.map_size);
+    add(plan, true, "light: spectral map", "%zu x %zu texels%s", plan->desc.map_size,
+        plan->desc.map_size,
+        plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "");
   } else {
     static const char *const passes[] = {"light: photon placement", "light: photons",
                                          "light: spectral map"};
@@ -345,6 +346,39 @@ static abbe_result check_thesis(const abbe_scene *scene, const abbe_plan *plan, 
   return ABBE_OK;
 }
 
+/* A layout belongs to where its light is. */
+static bool looks_from(const abbe_view *view, const abbe_light *light) {
+  const bool directional = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  double apart[3];
+  if (view->orthographic != directional) return false;
+  abbe_vector_subtract(directional ? view->forward : view->origin,
+                       directional ? light->direction : light->position, apart);
+  return abbe_vector_length(apart) <= 1e-6 * (directional ? 1 : view->near);
+}
+
+static abbe_result check_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  const abbe_map_layout *layout = plan->desc.map_layout;
+  const size_t index = plan->desc.map_layout_light;
+  if (layout == NULL) return ABBE_OK;
+  if (index >= scene->light_count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the map layout is for light %zu; the scene has %zu", index + 1,
+                          scene->light_count);
+  if (plan->desc.profile == ABBE_PROFILE_THESIS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the thesis profile lays its map out by the light's cone; a given layout "
+                          "goes with the default profile");
+  if (plan->refractor_count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the scene has no refractor, so there is no map to lay out");
+  if (!looks_from(&layout->view, &scene->light[index]))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the map layout was made for a light in another place than '%s'; take "
+                          "the map of that very light",
+                          scene->light[index].name);
+  return abbe_map_layout_check(layout, error);
+}
+
 /* Every light needs one view that holds all refractors; receivers outside it get no light through
  * them, which is noted. */
 static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
@@ -390,6 +424,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   abbe_result result = resolve_desc(scene, desc, out, error);
   if (result == ABBE_OK) result = examine_objects(scene, out, error);
   if (result == ABBE_OK) result = check_thesis(scene, out, error);
+  if (result == ABBE_OK) result = check_layout(scene, out, error);
   if (result == ABBE_OK) result = examine_views(scene, out, error);
   if (result != ABBE_OK) {
     abbe_plan_free(out);

@@ -8,6 +8,7 @@
 #define ABBE_GL_PLAN_H
 
 #include "colorimetry/rgb_space.h"
+#include "scenes/map_layout.h"
 #include "scenes/scene.h"
 #include "spectral/error.h"
 
@@ -59,7 +60,11 @@ typedef struct abbe_render_desc {
   size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8
                              (4 where a mesh is known by its layers) */
   abbe_rgb_space space; /* of the picture */
-  bool layers;          /* keep direct and caustic light of the receivers apart as well */
+  /* Layout of one light's map, and which light's; it lives as long as the plan. NULL: each map is
+   * fitted to where its light lands. */
+  const abbe_map_layout *map_layout;
+  size_t map_layout_light;
+  bool layers;                   /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
   void *progress_user;
 } abbe_render_desc;

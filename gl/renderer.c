@@ -161,9 +161,8 @@ void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *
   *out = r->light[light].near_view;
 }
 
-void abbe_renderer_map_warp(const abbe_renderer *r, size_t light,
-                            double knots[2][ABBE_RENDERER_WARP_STEPS + 1]) {
-  memcpy(knots, r->light[light].warp, sizeof r->light[light].warp);
+void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_layout *out) {
+  *out = r->light[light].map;
 }
 
 static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
@@ -268,7 +267,7 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
 }
 
 abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
-                                   abbe_view *view, abbe_error *error) {
+                                   abbe_error *error) {
   static const char *const xyz[] = {"X", "Y", "Z"}, *const rgb[] = {"R", "G", "B"};
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   if (light >= r->plan.light_count || !r->plan.caustics)
@@ -295,8 +294,9 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
             (float)(height * abbe_renderer_texel_size(r, light, 0, x));
   }
   abbe_rgb_space_chromaticities(thesis ? ABBE_RGB_SPACE_REC709 : ABBE_RGB_SPACE_XYZ, out->xy);
-  if (view != NULL) *view = r->light[light].map_view;
   result = abbe_gl_check(r->gl, "the reading of the map", error);
+  if (result == ABBE_OK)
+    result = abbe_map_layout_write(&r->light[light].map, r->scene->light[light].name, out, error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
 }

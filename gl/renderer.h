@@ -11,7 +11,7 @@
 #include "gl/context.h"
 #include "gl/plan.h"
 #include "gl/statistics.h"
-#include "gl/view.h"
+#include "scenes/map_layout.h"
 #include "scenes/scene.h"
 #include "spectral/error.h"
 
@@ -48,17 +48,14 @@ abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error 
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image *out,
                                abbe_error *error);
 
-/* A light's spectral map: channels X, Y, Z, flux a texel in W, and the view it was taken through
- * (view may be NULL); its axes are warped as abbe_renderer_map_warp says. filled: after the gap
- * fill, where the fill is a pass of its own (smear). */
+/* A light's spectral map: channels X, Y, Z, flux a texel in W, with its layout and the light's name
+ * in its attributes (abbe_map_layout_read). filled: after the gap fill, where the fill is a pass of
+ * its own (smear). */
 abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool filled,
-                                   abbe_image *out, abbe_view *view, abbe_error *error);
+                                   abbe_image *out, abbe_error *error);
 
-/* Where the map's texels are finer: window coordinate k / steps falls on texture coordinate
- * knots[axis][k] (0 to 1, ascending, in between linearly). */
-#define ABBE_RENDERER_WARP_STEPS 128
-void abbe_renderer_map_warp(const abbe_renderer *renderer, size_t light,
-                            double knots[2][ABBE_RENDERER_WARP_STEPS + 1]);
+/* The layout of a light's map: fitted to its landings, or the request's. */
+void abbe_renderer_map_layout(const abbe_renderer *renderer, size_t light, abbe_map_layout *out);
 
 /* Landings of the first batch of wavelengths, for tests: [count][orders][lanes] x 4 floats, world
  * position in m and flux for unit weight in W, all 0 where nothing lands. *data and *cells (x | y

@@ -5,7 +5,6 @@
 #include "gl/api.h"
 #include "gl/plan.h"
 #include "gl/renderer.h"
-#include "gl/view.h"
 
 /* Shader storage bindings, as the shaders name them. */
 enum {
@@ -32,7 +31,7 @@ enum { PHOTON_GROUP = 256, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 
 
 /* Up to so many photons (cells times wavelengths) 32-bit sums round to well below 1e-4 of the light
  * without ever overflowing. */
-enum { MAX_NARROW_PHOTONS = 1 << 20, WARP_STEPS = ABBE_RENDERER_WARP_STEPS };
+enum { MAX_NARROW_PHOTONS = 1 << 20, WARP_STEPS = ABBE_MAP_LAYOUT_STEPS };
 
 typedef struct mesh_buffers {
   GLuint array, vertices, indices;
@@ -40,9 +39,8 @@ typedef struct mesh_buffers {
 } mesh_buffers;
 
 typedef struct light_state {
-  abbe_view near_view, map_view;
-  double warp[2]
-             [WARP_STEPS + 1]; /* of the map's axes: window coordinate k / WARP_STEPS to texture */
+  abbe_view near_view;
+  abbe_map_layout map;
   size_t photon_count;
   double cell_flux;    /* most that one photon cell can carry, W */
   double white_peak;   /* largest of X, Y, Z of the light's white, by its Y */
@@ -101,6 +99,8 @@ double abbe_renderer_now_ms(void);
 double abbe_renderer_map_unit(const abbe_renderer *r, size_t light);
 /* Window width (axis 0) or height (1) of the map's column or row `texel`. */
 double abbe_renderer_texel_size(const abbe_renderer *r, size_t light, int axis, size_t texel);
+/* Whether the request gives the layout of this light's map. */
+bool abbe_renderer_map_is_given(const abbe_renderer *r, size_t light);
 /* 32-bit words of a map texel's sums. */
 size_t abbe_renderer_map_words(const abbe_renderer *r);
 

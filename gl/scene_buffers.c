@@ -425,9 +425,6 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = upload_receivers(r, error);
   if (result == ABBE_OK) result = upload_surfaces(r, error);
   if (result == ABBE_OK) result = upload_wavelengths(r, error);
-  for (size_t light = 0; light < r->plan.light_count; light++)
-    for (int k = 0; k <= WARP_STEPS; k++)
-      r->light[light].warp[0][k] = r->light[light].warp[1][k] = (double)k / WARP_STEPS;
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, r->plan.light_count * (WARP_STEPS + 1) * 16, NULL,
                                        &r->table_warps, error);
@@ -453,26 +450,14 @@ size_t abbe_renderer_map_words(const abbe_renderer *r) {
   return r->wide ? 6 : 3;
 }
 
-/* Texture coordinate back to window coordinate. */
-static double unwarp(const double *knot, double at) {
-  int k = 0;
-  while (k < WARP_STEPS - 1 && knot[k + 1] < at) k++;
-  double f = (at - knot[k]) / (knot[k + 1] - knot[k]);
-  return (k + fmin(fmax(f, 0), 1)) / WARP_STEPS;
-}
-
 double abbe_renderer_texel_size(const abbe_renderer *r, size_t light, int axis, size_t texel) {
-  const light_state *state = &r->light[light];
-  const double *knot = state->warp[axis], *window = state->map_view.window + 2 * axis;
-  double side = (double)r->plan.desc.map_size;
-  double share = unwarp(knot, (double)(texel + 1) / side) - unwarp(knot, (double)texel / side);
-  return share * (window[1] - window[0]);
+  return abbe_map_layout_texel_size(&r->light[light].map, axis, r->plan.desc.map_size, texel);
 }
 
 static void upload_warps(abbe_renderer *r, size_t light) {
   float row[WARP_STEPS + 1][4] = {{0}};
   for (int k = 0; k <= WARP_STEPS; k++)
-    for (int axis = 0; axis < 2; axis++) row[k][axis] = (float)r->light[light].warp[axis][k];
+    for (int axis = 0; axis < 2; axis++) row[k][axis] = (float)r->light[light].map.knot[axis][k];
   r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->table_warps);
   r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row), sizeof row, row);
   float size[256];
@@ -503,7 +488,7 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     double cell_area = abbe_view_area(&state->near_view) / (grid * grid);
     state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);
-    abbe_view_pack(&state->map_view, g.map_view);
+    abbe_view_pack(&state->map.view, g.map_view);
     store(light->position, (double)light->kind, g.position);
     store(light->direction, cos(light->cone_rad), g.direction);
     store(rgb, light->power, g.white);

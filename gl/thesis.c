@@ -123,7 +123,7 @@ abbe_result abbe_renderer_make_thesis(abbe_renderer *r, abbe_error *error) {
   if (r->thesis == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the thesis profile");
   abbe_renderer_fit_eye(r);
-  look_and_clip(&r->light[0].map_view, r->thesis->light_look, r->thesis->light_clip);
+  look_and_clip(&r->light[0].map.view, r->thesis->light_look, r->thesis->light_clip);
   look_and_clip(&r->eye, r->thesis->eye_look, r->thesis->eye_clip);
   abbe_result result = make_tables(r, error);
   if (result == ABBE_OK) result = make_targets(r, error);
@@ -228,7 +228,7 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   gl->Enable(GL_PROGRAM_POINT_SIZE);
   gl->BlendFunc(GL_ONE, GL_ONE);
   gl->UseProgram(t->splat);
-  set_common(r, t->splat, &r->light[0].map_view, t->light_clip);
+  set_common(r, t->splat, &r->light[0].map.view, t->light_clip);
   double direction[3] = {0, 0, -1};
   abbe_transform_direction(t->light_look, r->scene->light[0].direction, direction);
   set_spot(r, t->splat, direction);

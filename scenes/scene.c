@@ -4,6 +4,7 @@
 #include "scenes/vector.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,6 +46,34 @@ bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers,
     any = true;
   }
   return any;
+}
+
+static void list_lights(const abbe_scene *scene, char *out, size_t size) {
+  size_t used = 0;
+  out[0] = '\0';
+  for (size_t i = 0; i < scene->light_count && used < size; i++)
+    used += (size_t)snprintf(out + used, size - used, "%s%zu '%.40s'", i > 0 ? ", " : "", i + 1,
+                             scene->light[i].name);
+}
+
+abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, size_t *index,
+                                  abbe_error *error) {
+  size_t found = 0;
+  char names[512], *end;
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (scene->light[i].name != NULL && strcmp(scene->light[i].name, text) == 0 && ++found == 1)
+      *index = i;
+  if (found == 1) return ABBE_OK;
+  const unsigned long number = strtoul(text, &end, 10);
+  if (found == 0 && text[0] >= '0' && text[0] <= '9' && *end == '\0' && number >= 1 &&
+      number <= scene->light_count) {
+    *index = number - 1;
+    return ABBE_OK;
+  }
+  list_lights(scene, names, sizeof names);
+  return abbe_error_set(
+      error, ABBE_INVALID_ARGUMENT, "%s: %s light is called '%.60s'; its lights are %s",
+      scene->path ? scene->path : "scene", found > 1 ? "more than one" : "no", text, names);
 }
 
 double abbe_light_profile(const abbe_light *light, const double direction[3]) {

@@ -102,6 +102,11 @@ abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
                        double max[3]);
 
+/* Index of the light of that name or, where none has it, of that number counted from 1.
+ * ABBE_INVALID_ARGUMENT lists the names; also where several lights have it. */
+abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, size_t *index,
+                                  abbe_error *error);
+
 /* Relative intensity of the light along the unit direction away from it, in [0, 1]. */
 double abbe_light_profile(const abbe_light *light, const double direction[3]);
 

@@ -52,7 +52,7 @@ static inline void read_picture(abbe_renderer *renderer, bool layers, abbe_image
 
 static inline void read_map(abbe_renderer *renderer, size_t light, abbe_image *out) {
   abbe_error error = {0};
-  assert_ok(abbe_renderer_read_map(renderer, light, true, out, NULL, &error), &error);
+  assert_ok(abbe_renderer_read_map(renderer, light, true, out, &error), &error);
 }
 
 /* The map of one frame of a scene. */

@@ -157,11 +157,11 @@ static void test_the_rule_refuses_wrong_directions(void **state) {
   assert_true(may_include("validation/sweep.c", "gl/renderer.h"));
   assert_true(may_include("validation/sweep.h", "gl/renderer.h"));
   assert_false(may_include("validation/sweep.c", "cli/command.h"));
-  assert_false(may_include("validation/tracer.c", "gl/view.h"));
+  assert_false(may_include("validation/tracer.c", "gl/plan.h"));
   assert_false(may_include("gl/plan.c", "validation/tracer.h"));
   assert_false(may_include("spectral/file.c", "colorimetry/image.h"));
   assert_false(may_include("colorimetry/exr.c", "scenes/scene.h"));
-  assert_false(may_include("scenes/scene.c", "gl/view.h"));
+  assert_false(may_include("scenes/scene.c", "gl/plan.h"));
   assert_false(may_include("gl/plan.c", "cli/command.h"));
   assert_false(may_include("gl/plan.c", "plan.h"));
   assert_false(may_include("main.c", "gl/plan.h"));
@@ -170,14 +170,14 @@ static void test_the_rule_refuses_wrong_directions(void **state) {
 static void test_include_lines_are_understood(void **state) {
   (void)state;
   char name[MAX_PATH];
-  assert_true(included_name("#include \"gl/view.h\"\n", name, sizeof name));
-  assert_string_equal(name, "gl/view.h");
+  assert_true(included_name("#include \"gl/plan.h\"\n", name, sizeof name));
+  assert_string_equal(name, "gl/plan.h");
   assert_true(included_name("  #  include  \"view.h\" /* near */\n", name, sizeof name));
   assert_string_equal(name, "view.h");
-  assert_true(included_name("#include <gl/view.h>\n", name, sizeof name));
+  assert_true(included_name("#include <gl/plan.h>\n", name, sizeof name));
   assert_false(included_name("#include <math.h>\n", name, sizeof name));
   assert_false(included_name("#include <sys/stat.h>\n", name, sizeof name));
-  assert_false(included_name("// include \"gl/view.h\"\n", name, sizeof name));
+  assert_false(included_name("// include \"gl/plan.h\"\n", name, sizeof name));
 }
 
 int main(void) {

@@ -1,7 +1,7 @@
 /* march.glsl: rays against layers of distances whose surfaces are known in closed form. */
 #include "tests/glsl.h"
 
-#include "gl/view.h"
+#include "scenes/view.h"
 
 enum { SIDE = 512, RAYS = 256 };
 

@@ -298,6 +298,49 @@ static void test_shipped_scenes(void **state) {
   }
 }
 
+static void refuse_layout(const char *text, const abbe_render_desc *desc, const char *part) {
+  abbe_scene scene;
+  abbe_plan plan;
+  abbe_error error = {0};
+  load_text(text, &scene);
+  assert_int_equal(abbe_plan_make(&scene, desc, &plan, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, part);
+  abbe_scene_free(&scene);
+}
+
+static void test_a_map_layout_belongs_to_its_light(void **state) {
+  (void)state;
+  static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
+  static const double at[3] = {0.05, 0.03, 0.6}, down[3] = {0, 0, -1}, up[3] = {0, 1, 0};
+  static const double point[1][3] = {{0, 0, 0}};
+  abbe_view view;
+  abbe_map_layout layout;
+  abbe_view_look(at, down, up, false, &view);
+  abbe_view_fit(&view, point, 1);
+  abbe_view_pad(&view, 0.1);
+  abbe_map_layout_make(&view, &layout);
+  abbe_render_desc desc = {.map_layout = &layout};
+  abbe_scene scene;
+  abbe_plan plan;
+  load_text(ball, &scene);
+  assert_int_equal(abbe_plan_make(&scene, &desc, &plan, NULL), ABBE_OK);
+  assert_contains(abbe_plan_find(&plan, "light: spectral map")->reason, "laid out as asked");
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  refuse_layout(CAMERA POINT_LIGHT FLOOR, &desc, "no refractor");
+  refuse_layout(CAMERA SUN FLOOR BALL("flat"), &desc, "another place than 'sun'");
+  desc.map_layout_light = 1;
+  refuse_layout(ball, &desc, "for light 2; the scene has 1");
+  desc.map_layout_light = 0;
+  desc.profile = ABBE_PROFILE_THESIS;
+  refuse_layout(ball, &desc, "thesis");
+  desc.profile = ABBE_PROFILE_DEFAULT;
+  layout.knot[0][3] = NAN;
+  refuse_layout(ball, &desc, "along x");
+  layout.view.origin[0] += 1e-3;
+  refuse_layout(ball, &desc, "another place than 'lamp'");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_ball_over_a_floor),
@@ -312,6 +355,7 @@ int main(void) {
       cmocka_unit_test(test_limits_are_kept),
       cmocka_unit_test(test_an_index_that_is_not_known_is_refused_or_noted),
       cmocka_unit_test(test_too_many_refractors_are_unsupported),
+      cmocka_unit_test(test_a_map_layout_belongs_to_its_light),
       cmocka_unit_test(test_shipped_scenes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

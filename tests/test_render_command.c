@@ -98,6 +98,37 @@ static void test_pictures_are_written(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+static void test_a_map_like_another(void **state) {
+  (void)state;
+  assert_int_equal(run_line(GEM
+                            " -q --save-map a.exr && \"$abbe\" render \"$house\"/scenes/gem.yaml "
+                            "--size 32x24 --photons 32 -q --map-like a.exr --save-map b.exr && "
+                            "cmp a.exr b.exr"),
+                   0);
+  /* Finer, in the same window; and the light by its name or number. */
+  assert_int_equal(run_line(GEM "0 -q --map-like a.exr --map-light 1 --save-map b.exr && "
+                                "\"$abbe\" info b.exr && rm b.exr"),
+                   0);
+  assert_contains(run_output, "640 x 640 pixels");
+  assert_contains(run_output, "abbe:map_light: lamp");
+  assert_int_equal(run_line(GEM " --map-like a.exr --map-light moon --save-map b.exr"), 2);
+  assert_contains(run_errors, "no light is called 'moon'; its lights are 1 'lamp'");
+  assert_int_equal(run_line("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
+                            " --map-like a.exr --save-map b.exr"),
+                   2);
+  assert_contains(run_errors, "for a light in another place than 'lamp'");
+  assert_int_equal(run_line("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
+                            " --profile thesis --map-like a.exr --save-map b.exr"),
+                   2);
+  assert_contains(run_errors, "thesis");
+  assert_int_equal(
+      run_line("rm a.exr; " GEM " -q -o a.exr && " GEM " --map-like a.exr --save-map b.exr"), 1);
+  assert_contains(run_errors, "a.exr: there is no attribute abbe:map_view");
+  assert_int_equal(run_line("rm a.exr; " GEM " --map-like a.exr --save-map b.exr"), 1);
+  assert_contains(run_errors, "a.exr");
+  assert_int_equal(run_left(), 0);
+}
+
 static void test_every_command_has_help(void **state) {
   (void)state;
   static const char *const commands[] = {"render",    "plan",    "weights",
@@ -161,9 +192,9 @@ static void test_ctrl_c_stops_cleanly(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_statistics_as_json),   cmocka_unit_test(test_the_plan_as_json),
-      cmocka_unit_test(test_pictures_are_written), cmocka_unit_test(test_every_command_has_help),
-      cmocka_unit_test(test_ctrl_c_stops_cleanly),
+      cmocka_unit_test(test_statistics_as_json),     cmocka_unit_test(test_the_plan_as_json),
+      cmocka_unit_test(test_pictures_are_written),   cmocka_unit_test(test_a_map_like_another),
+      cmocka_unit_test(test_every_command_has_help), cmocka_unit_test(test_ctrl_c_stops_cleanly),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

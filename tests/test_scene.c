@@ -93,12 +93,36 @@ static void freeing_nothing_is_safe(void **state) {
   abbe_scene_free(NULL);
 }
 
+static void lights_are_found_by_name_or_number(void **state) {
+  (void)state;
+  abbe_light light[4] = {{.name = "lamp"}, {.name = "1"}, {.name = "sun"}, {.name = "sun"}};
+  const abbe_scene scene = {.path = "s.yaml", .light_count = 4, .light = light};
+  abbe_error error = {0};
+  size_t index = 9;
+  assert_int_equal(abbe_scene_find_light(&scene, "lamp", &index, &error), ABBE_OK);
+  assert_int_equal(index, 0);
+  assert_int_equal(abbe_scene_find_light(&scene, "1", &index, &error), ABBE_OK);
+  assert_int_equal(index, 1); /* a name goes before a number */
+  assert_int_equal(abbe_scene_find_light(&scene, "4", &index, &error), ABBE_OK);
+  assert_int_equal(index, 3);
+  static const char *const none[] = {"",   "0",  "5",    "-1",   "1x",
+                                     "+1", " 1", "moon", "LAMP", "99999999999999999999999"};
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+    assert_int_equal(abbe_scene_find_light(&scene, none[i], &index, &error), ABBE_INVALID_ARGUMENT);
+    assert_non_null(strstr(error.text, "no light is called"));
+    assert_non_null(strstr(error.text, "1 'lamp', 2 '1', 3 'sun', 4 'sun'"));
+  }
+  assert_int_equal(abbe_scene_find_light(&scene, "sun", &index, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "more than one light is called 'sun'"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(profile_of_a_spot_falls_smoothly),
       cmocka_unit_test(profile_of_a_hard_spot_is_a_step),
       cmocka_unit_test(other_lights_have_no_profile),
       cmocka_unit_test(bounds_choose_what_is_asked),
+      cmocka_unit_test(lights_are_found_by_name_or_number),
       cmocka_unit_test(a_receiver_larger_than_the_view_is_in_view),
       cmocka_unit_test(freeing_nothing_is_safe),
   };

@@ -1,8 +1,8 @@
 /* Views: known windows, the way there and back, and their matrices. */
 #include "tests/check.h"
 
-#include "gl/view.h"
 #include "scenes/transform.h"
+#include "scenes/view.h"
 
 /* Doubles of order one, a dozen operations: 1e-12 leaves four digits for rounding. */
 static const double tolerance = 1e-12;

@@ -1,4 +1,4 @@
-#include "gl/view.h"
+#include "scenes/view.h"
 
 #include "scenes/transform.h"
 

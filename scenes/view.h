@@ -4,8 +4,8 @@
  * metres (orthographic), off-centre where that fits tighter. Doubles; the shaders' View is its
  * float copy. Lengths in metres, world coordinates.
  */
-#ifndef ABBE_GL_VIEW_H
-#define ABBE_GL_VIEW_H
+#ifndef ABBE_SCENES_VIEW_H
+#define ABBE_SCENES_VIEW_H
 
 #include <stdbool.h>
 #include <stddef.h>
