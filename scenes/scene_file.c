@@ -293,19 +293,34 @@ static char *folder_of(const char *path) {
   return folder;
 }
 
+/* Reads and frees the document; path stands in messages and says where relative paths start. */
+static abbe_result read_document(abbe_yaml *yaml, const char *path,
+                                 const abbe_scene_options *options, abbe_scene *out,
+                                 abbe_error *error) {
+  char *folder = folder_of(path);
+  out->path = strdup(path);
+  abbe_result result =
+      folder && out->path ? read_scene(yaml, folder, options, out, error)
+                          : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its path", path);
+  free(folder);
+  abbe_yaml_free(yaml);
+  if (result != ABBE_OK) abbe_scene_free(out);
+  return result;
+}
+
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error) {
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
   abbe_result result = abbe_yaml_load(path, &yaml, error);
-  if (result != ABBE_OK) return result;
-  char *folder = folder_of(path);
-  out->path = strdup(path);
-  result = folder && out->path
-               ? read_scene(yaml, folder, options, out, error)
-               : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its path", path);
-  free(folder);
-  abbe_yaml_free(yaml);
-  if (result != ABBE_OK) abbe_scene_free(out);
-  return result;
+  return result == ABBE_OK ? read_document(yaml, path, options, out, error) : result;
+}
+
+abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
+                             const abbe_scene_options *options, abbe_scene *out,
+                             abbe_error *error) {
+  memset(out, 0, sizeof *out);
+  abbe_yaml *yaml = NULL;
+  abbe_result result = abbe_yaml_parse(text, size, name, &yaml, error);
+  return result == ABBE_OK ? read_document(yaml, name, options, out, error) : result;
 }

@@ -17,6 +17,10 @@ typedef struct abbe_scene_options {
  * line, key and value. On failure *out is zeroed. options may be NULL. */
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error);
+/* The same from text; name stands for the path, in messages and for relative paths. */
+abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
+                             const abbe_scene_options *options, abbe_scene *out,
+                             abbe_error *error);
 
 #ifdef __cplusplus
 }

@@ -293,6 +293,28 @@ static void a_missing_file_is_named(void **state) {
   assert_non_null(strstr(error.text, "no_such_scene.yaml"));
 }
 
+/* Text says what its file says; without a file the name stands in the messages. */
+static void text_is_read_like_a_file(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  abbe_error error = {0};
+  abbe_scene parsed, loaded = load("prism");
+  const char *path = ABBE_SOURCE_DIR "/scenes/prism.yaml";
+  assert_int_equal(abbe_file_read(path, 1 << 20, &text, &size, NULL), ABBE_OK);
+  assert_int_equal(abbe_scene_parse(text, size, path, NULL, &parsed, &error), ABBE_OK);
+  assert_int_equal(parsed.object_count, loaded.object_count);
+  assert_string_equal(parsed.path, loaded.path);
+  assert_memory_equal(parsed.object[0].max, loaded.object[0].max, sizeof loaded.object[0].max);
+  abbe_scene_free(&parsed);
+  abbe_scene_free(&loaded);
+  free(text);
+  assert_int_equal(abbe_scene_parse("camera: 7\n", 10, "words", NULL, &parsed, &error),
+                   ABBE_SCHEMA);
+  assert_non_null(strstr(error.text, "words:1:"));
+  assert_null(parsed.object);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_shipped_scene_loads),
@@ -304,6 +326,7 @@ int main(void) {
       cmocka_unit_test(bad_scenes_are_explained),
       cmocka_unit_test(the_documented_scene_loads),
       cmocka_unit_test(a_missing_file_is_named),
+      cmocka_unit_test(text_is_read_like_a_file),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
