@@ -1,5 +1,7 @@
 #include "colorimetry/rgb_space.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 enum { PRIMARIES = 6, XY_COUNT = 8 };
@@ -97,12 +99,8 @@ static void adapt(const double from_xy[2], const double to_xy[2], double matrix[
   multiply(inverse, scaled, matrix);
 }
 
-void abbe_rgb_space_to_xyz(abbe_rgb_space space, double matrix[9]) {
-  if (space == ABBE_RGB_SPACE_XYZ) {
-    memcpy(matrix, identity, sizeof identity);
-    return;
-  }
-  const double *xy = chromaticities[space];
+/* To XYZ relative to D65, of any primaries. */
+static void rgb_to_xyz(const double xy[8], double matrix[9]) {
   double own[9];
   primaries_to_xyz(xy, own);
   if (memcmp(xy + PRIMARIES, white_d65, sizeof white_d65) == 0) {
@@ -112,6 +110,44 @@ void abbe_rgb_space_to_xyz(abbe_rgb_space space, double matrix[9]) {
   double adaptation[9];
   adapt(xy + PRIMARIES, white_d65, adaptation);
   multiply(adaptation, own, matrix);
+}
+
+void abbe_rgb_space_to_xyz(abbe_rgb_space space, double matrix[9]) {
+  if (space == ABBE_RGB_SPACE_XYZ)
+    memcpy(matrix, identity, sizeof identity);
+  else
+    rgb_to_xyz(chromaticities[space], matrix);
+}
+
+abbe_rgb_space abbe_rgb_space_of_chromaticities(const double xy[8]) {
+  for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
+    bool same = true;
+    for (int i = 0; i < XY_COUNT; i++) same = same && fabs(xy[i] - chromaticities[s][i]) <= 1e-5;
+    if (same) return (abbe_rgb_space)s;
+  }
+  return ABBE_RGB_SPACE_COUNT;
+}
+
+/* Twice the area of the triangle of the primaries. */
+static double gamut(const double xy[8]) {
+  return (xy[2] - xy[0]) * (xy[5] - xy[1]) - (xy[4] - xy[0]) * (xy[3] - xy[1]);
+}
+
+abbe_result abbe_rgb_space_chromaticities_to_xyz(const double xy[8], double matrix[9],
+                                                 abbe_error *error) {
+  abbe_rgb_space known = abbe_rgb_space_of_chromaticities(xy);
+  if (known != ABBE_RGB_SPACE_COUNT) {
+    abbe_rgb_space_to_xyz(known, matrix);
+    return ABBE_OK;
+  }
+  bool spans = fabs(gamut(xy)) > 1e-6 && fabs(xy[PRIMARIES + 1]) > 1e-6;
+  if (spans) rgb_to_xyz(xy, matrix);
+  for (int i = 0; spans && i < 9; i++) spans = isfinite(matrix[i]);
+  if (spans) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the chromaticities R (%g, %g), G (%g, %g), B (%g, %g), white (%g, %g) "
+                        "span no colour space",
+                        xy[0], xy[1], xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
 }
 
 void abbe_rgb_space_from_xyz(abbe_rgb_space space, double matrix[9]) {

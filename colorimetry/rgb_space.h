@@ -11,6 +11,8 @@
 #ifndef ABBE_COLORIMETRY_RGB_SPACE_H
 #define ABBE_COLORIMETRY_RGB_SPACE_H
 
+#include "spectral/error.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -25,7 +27,7 @@ typedef enum abbe_rgb_space {
 #define ABBE_RGB_SPACE_ENUM(code, name, ocio) ABBE_RGB_SPACE_##code,
   ABBE_RGB_SPACES(ABBE_RGB_SPACE_ENUM)
 #undef ABBE_RGB_SPACE_ENUM
-  ABBE_RGB_SPACE_COUNT
+      ABBE_RGB_SPACE_COUNT
 } abbe_rgb_space;
 
 const char *abbe_rgb_space_name(abbe_rgb_space space);
@@ -37,6 +39,14 @@ void abbe_rgb_space_to_xyz(abbe_rgb_space space, double matrix[9]);
 /* xy of red, green, blue, white, as OpenEXR's chromaticities attribute wants them (for XYZ: the
  * primaries (1,0), (0,1), (0,0) and white E as the convention is). */
 void abbe_rgb_space_chromaticities(abbe_rgb_space space, double xy[8]);
+/* The space of these chromaticities (to 1e-5, as files keep them in single precision), or
+ * ABBE_RGB_SPACE_COUNT where they are of none of these. */
+abbe_rgb_space abbe_rgb_space_of_chromaticities(const double xy[8]);
+/* Row-major 3x3 matrix to XYZ (D65) from the linear RGB of any chromaticities; a white other than
+ * D65 is adapted by Bradford. ABBE_INVALID_ARGUMENT where they span no space: primaries on a line,
+ * a y of 0, something not finite. */
+abbe_result abbe_rgb_space_chromaticities_to_xyz(const double xy[8], double matrix[9],
+                                                 abbe_error *error);
 /* out = matrix * in; in and out may be the same. */
 void abbe_rgb_space_apply(const double matrix[9], const double in[3], double out[3]);
 

@@ -91,6 +91,52 @@ static void test_names(void **state) {
   assert_string_equal(abbe_rgb_space_name(ABBE_RGB_SPACE_COUNT), "unknown");
 }
 
+static void test_spaces_are_known_by_single_precision_chromaticities(void **state) {
+  (void)state;
+  for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
+    double xy[8], expected[9], m[9];
+    abbe_rgb_space_chromaticities((abbe_rgb_space)s, xy);
+    for (int i = 0; i < 8; i++) xy[i] = (double)(float)xy[i];
+    assert_int_equal(abbe_rgb_space_of_chromaticities(xy), s);
+    abbe_rgb_space_to_xyz((abbe_rgb_space)s, expected);
+    assert_int_equal(abbe_rgb_space_chromaticities_to_xyz(xy, m, NULL), ABBE_OK);
+    assert_memory_equal(m, expected, sizeof m);
+  }
+}
+
+/* Display P3's matrix as SMPTE and Apple publish it, to the places printed; and of any space the
+ * white is D65's. */
+static void test_other_chromaticities(void **state) {
+  (void)state;
+  static const double p3[8] = {0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290};
+  static const double p3_to_xyz[9] = {0.4865709, 0.2656677, 0.1982173, 0.2289746, 0.6917385,
+                                      0.0792869, 0.0,       0.0451134, 1.0439444};
+  static const double d50[8] = {0.7347, 0.2653, 0.1596, 0.8404, 0.0366, 0.0001, 0.3457, 0.3585};
+  double m[9], white[3] = {1, 1, 1};
+  assert_int_equal(abbe_rgb_space_of_chromaticities(p3), ABBE_RGB_SPACE_COUNT);
+  assert_int_equal(abbe_rgb_space_chromaticities_to_xyz(p3, m, NULL), ABBE_OK);
+  for (int i = 0; i < 9; i++) assert_true(fabs(m[i] - p3_to_xyz[i]) < 1e-6);
+  assert_int_equal(abbe_rgb_space_chromaticities_to_xyz(d50, m, NULL), ABBE_OK);
+  abbe_rgb_space_apply(m, white, white);
+  assert_true(fabs(white[0] - 0.3127 / 0.3290) < 1e-12 && fabs(white[1] - 1) < 1e-12);
+}
+
+static void test_chromaticities_that_span_nothing(void **state) {
+  (void)state;
+  static const double bad[][8] = {{0},
+                                  {0.1, 0.1, 0.2, 0.2, 0.3, 0.3, 0.3, 0.3},
+                                  {0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3, 0},
+                                  {NAN, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3, 0.3},
+                                  {0.64, 0.33, 0.3, 0.6, 0.15, 0.06, INFINITY, 0.3}};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    double m[9];
+    abbe_error error = {0};
+    assert_int_equal(abbe_rgb_space_chromaticities_to_xyz(bad[i], m, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_true(error.text[0] != '\0');
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_rec709_is_the_published_matrix),
@@ -99,6 +145,9 @@ int main(void) {
       cmocka_unit_test(test_nominal_d65_is_white),
       cmocka_unit_test(test_primaries_have_their_chromaticities),
       cmocka_unit_test(test_apply_in_place),
-      cmocka_unit_test(test_names)};
+      cmocka_unit_test(test_names),
+      cmocka_unit_test(test_spaces_are_known_by_single_precision_chromaticities),
+      cmocka_unit_test(test_other_chromaticities),
+      cmocka_unit_test(test_chromaticities_that_span_nothing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,14 @@
 set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
 foreach(name
     closed_form
+    field
     geometry
     interface
     mask
     media
     route
     sphere_quadrature
+    ztest
     )
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
