@@ -379,6 +379,20 @@ static abbe_result check_layout(const abbe_scene *scene, const abbe_plan *plan, 
   return abbe_map_layout_check(layout, error);
 }
 
+static abbe_result check_lights(const abbe_scene *scene, abbe_error *error) {
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    if (light->kind != ABBE_LIGHT_DISK) continue;
+    double area = 3.14159265358979323846 * light->radius * light->radius;
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the light '%s' is a disk, and the renderer's lights have no size; trace "
+                          "the scene, or make it a point or spot light of %.6g W/sr, which is what "
+                          "it sends along its normal",
+                          light->name, light->power * area);
+  }
+  return ABBE_OK;
+}
+
 /* Every light needs one view that holds all refractors; receivers outside it get no light through
  * them, which is noted. */
 static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
@@ -422,6 +436,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
                            abbe_error *error) {
   memset(out, 0, sizeof *out);
   abbe_result result = resolve_desc(scene, desc, out, error);
+  if (result == ABBE_OK) result = check_lights(scene, error);
   if (result == ABBE_OK) result = examine_objects(scene, out, error);
   if (result == ABBE_OK) result = check_thesis(scene, out, error);
   if (result == ABBE_OK) result = check_layout(scene, out, error);

@@ -77,6 +77,8 @@ abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, siz
 }
 
 double abbe_light_profile(const abbe_light *light, const double direction[3]) {
+  if (light->kind == ABBE_LIGHT_DISK)
+    return fmax(abbe_vector_dot(light->direction, direction), 0.0);
   if (light->kind != ABBE_LIGHT_SPOT) return 1.0;
   const double cosine = abbe_vector_dot(light->direction, direction);
   const double outer = cos(light->cone_rad);
@@ -101,6 +103,71 @@ static bool inside(const abbe_object *object, const double p[3]) {
     return true;
   }
   return abbe_mesh_contains(&object->mesh, p);
+}
+
+/* Distance from p to the segment from a to b. */
+static double to_segment(const double p[3], const double a[3], const double b[3]) {
+  double along[3], from[3];
+  abbe_vector_subtract(b, a, along);
+  abbe_vector_subtract(p, a, from);
+  const double length2 = abbe_vector_dot(along, along);
+  double t = length2 > 0.0 ? abbe_vector_dot(from, along) / length2 : 0.0;
+  t = fmin(fmax(t, 0.0), 1.0);
+  for (int k = 0; k < 3; k++) from[k] -= t * along[k];
+  return abbe_vector_length(from);
+}
+
+/* Whether the triangle passes through the disk: the segment that it shares with the disk's plane
+ * comes nearer to the centre than the radius. */
+static bool triangle_cuts(const abbe_light *disk, const double *corner[3]) {
+  double height[3], end[2][3];
+  int ends = 0;
+  for (int i = 0; i < 3; i++) {
+    double from[3];
+    abbe_vector_subtract(corner[i], disk->position, from);
+    height[i] = abbe_vector_dot(from, disk->direction);
+  }
+  for (int i = 0; i < 3 && ends < 2; i++) {
+    const int j = (i + 1) % 3;
+    if (height[i] == 0.0) {
+      memcpy(end[ends++], corner[i], sizeof *end);
+    } else if (height[j] != 0.0 && (height[i] < 0.0) != (height[j] < 0.0)) {
+      const double t = height[i] / (height[i] - height[j]);
+      for (int k = 0; k < 3; k++) end[ends][k] = corner[i][k] + t * (corner[j][k] - corner[i][k]);
+      ends++;
+    }
+  }
+  if (ends == 0) return false;
+  return to_segment(disk->position, end[0], end[ends - 1]) < disk->radius;
+}
+
+/* Whether some part of the disk lies in the solid, given that its centre does not. */
+static bool cuts(const abbe_object *object, const abbe_light *disk) {
+  if (object->exact.kind == ABBE_EXACT_SPHERE) {
+    double from[3];
+    abbe_vector_subtract(object->exact.centre, disk->position, from);
+    const double height = abbe_vector_dot(from, disk->direction), r = object->exact.radius;
+    if (!(fabs(height) < r)) return false;
+    const double aside2 = abbe_vector_dot(from, from) - height * height;
+    return sqrt(fmax(aside2, 0.0)) < disk->radius + sqrt(r * r - height * height);
+  }
+  for (int k = 0; k < 3; k++)
+    if (disk->position[k] + disk->radius < object->min[k] ||
+        disk->position[k] - disk->radius > object->max[k])
+      return false;
+  for (size_t f = 0; f < object->mesh.face_count; f++) {
+    const uint32_t *face = object->mesh.face[f];
+    const double *corner[3] = {object->mesh.position[face[0]], object->mesh.position[face[1]],
+                               object->mesh.position[face[2]]};
+    if (triangle_cuts(disk, corner)) return true;
+  }
+  return false;
+}
+
+static const abbe_object *refractor_in(const abbe_scene *scene, const abbe_light *disk) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].material && cuts(&scene->object[i], disk)) return &scene->object[i];
+  return NULL;
 }
 
 static const abbe_object *refractor_around(const abbe_scene *scene, const double p[3]) {
@@ -152,6 +219,13 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s: the light '%s' is inside the refractor '%s' (line %zu); lights "
                             "are modelled in air only, so move it outside",
+                            path_of(scene), light->name, around->name, around->line);
+    around = light->kind == ABBE_LIGHT_DISK ? refractor_in(scene, light) : NULL;
+    if (around)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s: the disk of the light '%s' is partly inside the refractor '%s' "
+                            "(line %zu); lights are modelled in air only, so move it or make it "
+                            "smaller",
                             path_of(scene), light->name, around->name, around->line);
   }
   const abbe_object *around = refractor_around(scene, scene->camera.eye);

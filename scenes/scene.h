@@ -32,20 +32,23 @@ typedef struct abbe_camera {
 } abbe_camera;
 
 typedef enum abbe_light_kind {
-  ABBE_LIGHT_POINT,      /* intensity, W/sr, all directions */
-  ABBE_LIGHT_SPOT,       /* intensity, W/sr, inside a cone */
-  ABBE_LIGHT_DIRECTIONAL /* irradiance, W/m2, across the beam */
+  ABBE_LIGHT_POINT,       /* intensity, W/sr, all directions */
+  ABBE_LIGHT_SPOT,        /* intensity, W/sr, inside a cone */
+  ABBE_LIGHT_DIRECTIONAL, /* irradiance, W/m2, across the beam */
+  ABBE_LIGHT_DISK         /* radiance, W/(m2 sr), the same in all directions of its front side */
 } abbe_light_kind;
 
 typedef struct abbe_light {
   char *name;
   abbe_light_kind kind;
-  double position[3];  /* point, spot */
-  double direction[3]; /* spot, directional: unit, the way the light travels */
+  double position[3];  /* point, spot; the centre of a disk */
+  double direction[3]; /* spot, directional: unit, the way the light travels; disk: unit, the normal
+                          of the side that shines */
+  double radius;       /* disk, m */
   double cone_rad;     /* spot: half angle beyond which there is no light */
   double soft_rad;     /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
-  double power;        /* W/sr or W/m2 over the rendered wavelength range, shared out over
-                          wavelength by the illuminant */
+  double power; /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
+                   wavelength by the illuminant */
   abbe_illuminant illuminant;
 } abbe_light;
 
@@ -94,8 +97,8 @@ typedef struct abbe_scene {
 
 void abbe_scene_free(abbe_scene *scene);
 
-/* Refuses what cannot be rendered, by name: no light, no receiver, a light or the camera inside a
- * refractor, no receiver in the camera's view. Called by the loader. */
+/* Refuses what cannot be rendered, by name: no light, no receiver, a light (a disk: any part of it)
+ * or the camera inside a refractor, no receiver in the camera's view. Called by the loader. */
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 
 /* Bounds of the objects chosen: refractors, receivers or both. False where there are none. */
@@ -107,7 +110,8 @@ bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers,
 abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, size_t *index,
                                   abbe_error *error);
 
-/* Relative intensity of the light along the unit direction away from it, in [0, 1]. */
+/* Relative intensity of the light along the unit direction away from it, in [0, 1]; of a disk, seen
+ * from afar: the cosine to its normal, 0 behind. A disk's flux is pi^2 radius^2 radiance. */
 double abbe_light_profile(const abbe_light *light, const double direction[3]);
 
 #ifdef __cplusplus

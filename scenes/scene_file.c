@@ -10,7 +10,7 @@
 
 #define RADIANS (3.14159265358979323846 / 180.0)
 #define FAR 1e6       /* m */
-#define BRIGHTEST 1e9 /* W/sr, W/m2 */
+#define BRIGHTEST 1e9 /* W/sr, W/m2, W/(m2 sr) */
 
 /* --- camera --- */
 
@@ -47,7 +47,7 @@ static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera
 
 /* --- lights --- */
 
-static const char *const light_kinds[] = {"point", "spot", "directional", NULL};
+static const char *const light_kinds[] = {"point", "spot", "directional", "disk", NULL};
 
 /* The key belongs to other kinds of light. */
 static abbe_result refuse_key(abbe_yaml *yaml, abbe_yaml_node node, const char *key, int kind,
@@ -95,6 +95,19 @@ static abbe_result read_cone(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *o
   return result;
 }
 
+static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                               abbe_error *error) {
+  abbe_yaml_node value;
+  abbe_result result = abbe_yaml_require(yaml, node, "radius", &value, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, "radius", 0, FAR, &out->radius, error);
+  if (result == ABBE_OK && !(out->radius > 0.0))
+    result =
+        abbe_yaml_fail(yaml, value, error,
+                       "'radius' is zero; a disk has an area (a light without one is a point)");
+  return result;
+}
+
 static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                                        abbe_error *error) {
   abbe_result result = ABBE_OK;
@@ -107,6 +120,10 @@ static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abb
   } else if (result == ABBE_OK) {
     result = read_direction(yaml, node, out, error);
   }
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_DISK)
+    result = read_radius(yaml, node, out, error);
+  else if (result == ABBE_OK)
+    result = refuse_key(yaml, node, "radius", (int)out->kind, "a disk light has", error);
   if (result == ABBE_OK && out->kind == ABBE_LIGHT_SPOT) return read_cone(yaml, node, out, error);
   if (result == ABBE_OK)
     result = refuse_key(yaml, node, "cone", (int)out->kind, "a spot light has", error);
@@ -115,14 +132,22 @@ static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abb
   return result;
 }
 
+/* What each kind of light is bright in. */
+static const struct {
+  const char *key, *said;
+} powers[] = {[ABBE_LIGHT_POINT] = {"intensity", "it has an 'intensity' (W/sr)"},
+              [ABBE_LIGHT_SPOT] = {"intensity", "it has an 'intensity' (W/sr)"},
+              [ABBE_LIGHT_DIRECTIONAL] = {"irradiance", "it has an 'irradiance' (W/m2)"},
+              [ABBE_LIGHT_DISK] = {"radiance", "it has a 'radiance' (W/(m2 sr))"}};
+
 static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                               abbe_error *error) {
-  const bool far = out->kind == ABBE_LIGHT_DIRECTIONAL;
-  const char *key = far ? "irradiance" : "intensity";
+  const char *key = powers[out->kind].key;
   abbe_yaml_node value;
-  abbe_result result =
-      refuse_key(yaml, node, far ? "intensity" : "irradiance", (int)out->kind,
-                 far ? "it has an 'irradiance' (W/m2)" : "it has an 'intensity' (W/sr)", error);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof powers / sizeof *powers && result == ABBE_OK; i++)
+    if (strcmp(powers[i].key, key) != 0)
+      result = refuse_key(yaml, node, powers[i].key, (int)out->kind, powers[out->kind].said, error);
   if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, key, &value, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(yaml, node, key, 0, BRIGHTEST, &out->power, error);

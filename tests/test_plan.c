@@ -298,6 +298,25 @@ static void test_shipped_scenes(void **state) {
   }
 }
 
+static void test_a_disk_is_refused_by_name(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_plan plan;
+  abbe_error error = {0};
+  load_text(CAMERA "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.6], target: [0, 0, 0], "
+                   "radius: 0.1, radiance: 100}\n" FLOOR BALL("flat"),
+            &scene);
+  assert_int_equal(scene.light[0].kind, ABBE_LIGHT_DISK);
+  assert_near(scene.light[0].radius, 0.1, 0);
+  assert_near(scene.light[0].power, 100, 0);
+  assert_near(scene.light[0].direction[2], -1, 0);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'panel' is a disk");
+  assert_contains(error.text, "trace the scene");
+  assert_contains(error.text, "of 3.14159 W/sr"); /* 100 pi 0.1^2 */
+  abbe_scene_free(&scene);
+}
+
 static void refuse_layout(const char *text, const abbe_render_desc *desc, const char *part) {
   abbe_scene scene;
   abbe_plan plan;
@@ -355,6 +374,7 @@ int main(void) {
       cmocka_unit_test(test_limits_are_kept),
       cmocka_unit_test(test_an_index_that_is_not_known_is_refused_or_noted),
       cmocka_unit_test(test_too_many_refractors_are_unsupported),
+      cmocka_unit_test(test_a_disk_is_refused_by_name),
       cmocka_unit_test(test_a_map_layout_belongs_to_its_light),
       cmocka_unit_test(test_shipped_scenes),
   };

@@ -47,6 +47,17 @@ static void other_lights_have_no_profile(void **state) {
   assert_true(abbe_light_profile(&sun, back) == 1.0);
 }
 
+static void a_disk_shines_by_the_cosine(void **state) {
+  (void)state;
+  const abbe_light disk = {.kind = ABBE_LIGHT_DISK, .direction = {0, 0.6, -0.8}, .radius = 2};
+  const double along[3] = {0, 0.6, -0.8}, aside[3] = {1, 0, 0}, slant[3] = {0.8, 0.36, -0.48},
+               behind[3] = {0, -0.6, 0.8};
+  assert_true(fabs(abbe_light_profile(&disk, along) - 1.0) < 1e-12);
+  assert_true(abbe_light_profile(&disk, aside) == 0.0);
+  assert_true(fabs(abbe_light_profile(&disk, slant) - 0.6) < 1e-12);
+  assert_true(abbe_light_profile(&disk, behind) == 0.0);
+}
+
 static void bounds_choose_what_is_asked(void **state) {
   (void)state;
   const abbe_material glass = {0};
@@ -93,6 +104,52 @@ static void freeing_nothing_is_safe(void **state) {
   abbe_scene_free(NULL);
 }
 
+/* Disks beside, above, across, around and inside a ball and a box of half side 1; the rim's
+ * distance is known. */
+static void no_part_of_a_disk_is_in_glass(void **state) {
+  (void)state;
+  static const struct {
+    double position[3], direction[3], radius;
+    bool ball, box; /* meets it */
+  } disks[] = {
+      {{3, 0, 0}, {0, 0, 1}, 1.99, false, false},  {{3, 0, 0}, {0, 0, 1}, 2.01, true, true},
+      {{0, 0, 1.01}, {0, 0, 1}, 50, false, false}, {{0, 0, 0.99}, {0, 0, 1}, 50, true, true},
+      {{3, 0, 0}, {1, 0, 0}, 50, false, false},    {{3, 0, 0.9}, {0, 0, -1}, 2.1, false, true},
+      {{3, 0, 0.9}, {0, 0, -1}, 2.6, true, true},  {{1.01, 0, 0}, {1, 0, 0}, 9, false, false},
+      {{2, 2, 0}, {0, 0, 1}, 1.4, false, false},   {{2, 2, 0}, {0, 0, 1}, 1.42, false, true},
+      {{2, 2, 0}, {0, 0, 1}, 1.83, true, true},    {{0.5, 0.2, 0.1}, {0, 1, 0}, 0.01, true, true},
+      {{9, 0.1, 0.1}, {0, 0, 1}, 1e5, true, true}, {{9, 0.1, 1.5}, {0, 0, 1}, 1e5, false, false},
+  };
+  abbe_object object[2] = {{.name = "floor", .min = {-9, -9, -9}, .max = {9, 9, -9}},
+                           {.name = "solid", .min = {-1, -1, -1}, .max = {1, 1, 1}}};
+  static const double side[3] = {2, 2, 2};
+  const abbe_material glass = {0};
+  assert_int_equal(abbe_shape_rectangle(18, 18, &object[0].mesh, NULL), ABBE_OK);
+  assert_int_equal(abbe_shape_box(side, &object[1].mesh, NULL), ABBE_OK);
+  object[1].material = &glass;
+  object[1].exact.radius = 1;
+  for (size_t i = 0; i < sizeof disks / sizeof *disks; i++) {
+    abbe_light light = {.name = "lamp", .kind = ABBE_LIGHT_DISK, .radius = disks[i].radius};
+    memcpy(light.position, disks[i].position, sizeof light.position);
+    memcpy(light.direction, disks[i].direction, sizeof light.direction);
+    const abbe_scene scene = {
+        .camera = {.eye = {0, 0, 20}, .up = {0, 1, 0}, .fov_y_rad = 1, .width = 64, .height = 64},
+        .light_count = 1,
+        .light = &light,
+        .object_count = 2,
+        .object = object};
+    for (int ball = 0; ball < 2; ball++) {
+      abbe_error error = {0};
+      object[1].exact.kind = ball ? ABBE_EXACT_SPHERE : ABBE_EXACT_NONE;
+      const abbe_result wanted = (ball ? disks[i].ball : disks[i].box) ? ABBE_UNSUPPORTED : ABBE_OK;
+      if (abbe_scene_check(&scene, &error) != wanted)
+        fail_msg("disk %zu and the %s: '%s'", i, ball ? "ball" : "box", error.text);
+    }
+  }
+  abbe_mesh_free(&object[0].mesh);
+  abbe_mesh_free(&object[1].mesh);
+}
+
 static void lights_are_found_by_name_or_number(void **state) {
   (void)state;
   abbe_light light[4] = {{.name = "lamp"}, {.name = "1"}, {.name = "sun"}, {.name = "sun"}};
@@ -121,6 +178,8 @@ int main(void) {
       cmocka_unit_test(profile_of_a_spot_falls_smoothly),
       cmocka_unit_test(profile_of_a_hard_spot_is_a_step),
       cmocka_unit_test(other_lights_have_no_profile),
+      cmocka_unit_test(a_disk_shines_by_the_cosine),
+      cmocka_unit_test(no_part_of_a_disk_is_in_glass),
       cmocka_unit_test(bounds_choose_what_is_asked),
       cmocka_unit_test(lights_are_found_by_name_or_number),
       cmocka_unit_test(a_receiver_larger_than_the_view_is_in_view),
