@@ -271,6 +271,39 @@ static void resolve_wavelengths(abbe_plan *plan) {
         plan->desc.energy_share, plan->desc.orders);
 }
 
+static bool overlap(const abbe_object *a, const abbe_object *b) {
+  for (int k = 0; k < 3; k++)
+    if (!(a->min[k] < b->max[k] && b->min[k] < a->max[k])) return false;
+  if (a->exact.kind != ABBE_EXACT_SPHERE || b->exact.kind != ABBE_EXACT_SPHERE) return true;
+  double apart[3];
+  abbe_vector_subtract(a->exact.centre, b->exact.centre, apart);
+  return abbe_vector_length(apart) < a->exact.radius + b->exact.radius;
+}
+
+/* The scene's rule, that the later object wins, is not the renderer's. */
+static void note_overlaps(const abbe_scene *scene, abbe_plan *plan) {
+  const abbe_object *first[2] = {NULL, NULL};
+  size_t pairs = 0;
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    for (size_t k = i + 1; k < plan->refractor_count; k++) {
+      const abbe_object *a = &scene->object[plan->refractor_object[i]];
+      const abbe_object *b = &scene->object[plan->refractor_object[k]];
+      if (!overlap(a, b)) continue;
+      if (pairs++ > 0) continue;
+      first[0] = a;
+      first[1] = b;
+    }
+  if (pairs == 0) return;
+  char more[48] = "";
+  if (pairs > 1)
+    snprintf(more, sizeof more, " (and %zu pair%s more)", pairs - 1, pairs > 2 ? "s" : "");
+  note(
+      plan,
+      "the refractors '%.50s' and '%.50s'%s overlap, to judge by their bounds; each is taken as if "
+      "it stood in air alone",
+      first[0]->name, first[1]->name, more);
+}
+
 static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   bool thesis = plan->desc.profile == ABBE_PROFILE_THESIS, caustics = plan->caustics;
   bool depth = plan->receivers == ABBE_RECEIVER_DEPTH;
@@ -321,6 +354,7 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
     note(plan, "through refractors, receivers show as far as the eye also sees them straight");
   if (plan->refractor_count > 1)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
+  note_overlaps(scene, plan);
   if (scene->light_count > 1 && refractors)
     note(plan, "through refractors, colours are split by the first light's illuminant");
 }

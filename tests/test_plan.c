@@ -298,6 +298,47 @@ static void test_shipped_scenes(void **state) {
   }
 }
 
+static bool notes(const abbe_plan *plan, const char *part) {
+  for (size_t i = 0; i < plan->note_count; i++)
+    if (strstr(plan->note[i], part) != NULL) return true;
+  return false;
+}
+
+#define DROP(name, radius, z)                                                                      \
+  "- {name: " name ", shape: sphere, radius: " radius ", levels: 2, "                              \
+  "transform: [{translate: [0.09, 0.09, " z "]}], material: flat}\n"
+
+static void test_refractors_that_overlap_are_noted(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *part; /* NULL: none overlap */
+  } rows[] = {
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") BRICK("flat"), NULL},
+      /* the boxes around these two overlap at a corner, the balls do not */
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.04", "0.26"), NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.08", "0.26"),
+       "'ball' and 'drop' over"},
+      {CAMERA POINT_LIGHT FLOOR DROP("shell", "0.05", "0.2") DROP("bubble", "0.04", "0.2"),
+       "'shell' and 'bubble' overlap"},
+      {CAMERA POINT_LIGHT FLOOR DROP("a", "0.05", "0.2") DROP("b", "0.04", "0.2")
+           DROP("c", "0.03", "0.2"),
+       "'a' and 'b' (and 2 pairs more) overlap"},
+      {CAMERA POINT_LIGHT FLOOR RING("flat") BALL("flat"), "'ring' and 'ball' overlap"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene;
+    abbe_plan plan;
+    load_text(rows[i].text, &scene);
+    assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+    if (notes(&plan, "overlap") != (rows[i].part != NULL) ||
+        (rows[i].part != NULL && !notes(&plan, rows[i].part)))
+      fail_msg("scene %zu: %s", i,
+               plan.note_count > 0 ? plan.note[plan.note_count - 1] : "no note");
+    abbe_plan_free(&plan);
+    abbe_scene_free(&scene);
+  }
+}
+
 static void test_a_disk_is_refused_by_name(void **state) {
   (void)state;
   abbe_scene scene;
@@ -374,6 +415,7 @@ int main(void) {
       cmocka_unit_test(test_limits_are_kept),
       cmocka_unit_test(test_an_index_that_is_not_known_is_refused_or_noted),
       cmocka_unit_test(test_too_many_refractors_are_unsupported),
+      cmocka_unit_test(test_refractors_that_overlap_are_noted),
       cmocka_unit_test(test_a_disk_is_refused_by_name),
       cmocka_unit_test(test_a_map_layout_belongs_to_its_light),
       cmocka_unit_test(test_shipped_scenes),
