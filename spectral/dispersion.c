@@ -45,6 +45,35 @@ static double rii4(const double *c, size_t count, double L) {
   return sum + powers(c, 9, count, L);
 }
 
+static double herzberger(const double *c, size_t count, double L) {
+  if (count < 6) return NAN;
+  double x = L * L, K = 1 / (x - 0.028);
+  return c[0] + K * (c[1] + K * c[2]) + x * (c[3] + x * (c[4] + x * c[5]));
+}
+
+static double gas(const double *c, size_t count, double L) {
+  double sum = 1 + (count > 0 ? c[0] : 0), x = 1 / (L * L);
+  for (size_t k = 1; k + 1 < count; k += 2)
+    if (c[k] != 0) sum += c[k] / (c[k + 1] - x);
+  return sum;
+}
+
+/* n^2 from the share (n^2 - 1) / (n^2 + 2). */
+static double retro(const double *c, size_t count, double L) {
+  if (count < 4) return NAN;
+  double x = L * L, share = c[0] + c[3] * x;
+  if (c[1] != 0) share += c[1] * x / (x - c[2]);
+  return (1 + 2 * share) / (1 - share);
+}
+
+static double exotic(const double *c, size_t count, double L) {
+  if (count < 6) return NAN;
+  double sum = c[0], u = L - c[4];
+  if (c[1] != 0) sum += c[1] / (L * L - c[2]);
+  if (c[3] != 0) sum += c[3] * u / (u * u + c[5]);
+  return sum;
+}
+
 /* n, or NaN where it is not a positive, finite number. */
 static double physical(double n) {
   return isfinite(n) && n > 0 ? n : NAN;
@@ -68,6 +97,16 @@ double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm) {
     return physical(sqrt((count > 0 ? c[0] : 0) + powers(c, 1, count, L)));
   case ABBE_DISPERSION_RII4:
     return physical(sqrt(rii4(c, count, L)));
+  case ABBE_DISPERSION_POWERS:
+    return physical((count > 0 ? c[0] : 0) + powers(c, 1, count, L));
+  case ABBE_DISPERSION_HERZBERGER:
+    return physical(herzberger(c, count, L));
+  case ABBE_DISPERSION_RII6:
+    return physical(gas(c, count, L));
+  case ABBE_DISPERSION_RII8:
+    return physical(sqrt(retro(c, count, L)));
+  case ABBE_DISPERSION_RII9:
+    return physical(sqrt(exotic(c, count, L)));
   case ABBE_DISPERSION_TABULATED:
     return dispersion->table != NULL ? physical(abbe_spectrum_at(dispersion->table, lambda_nm))
                                      : NAN;
@@ -122,11 +161,18 @@ static const char *wanted_count(abbe_dispersion_model model, size_t count) {
   case ABBE_DISPERSION_SELLMEIER:
   case ABBE_DISPERSION_SELLMEIER2:
   case ABBE_DISPERSION_POLYNOMIAL:
+  case ABBE_DISPERSION_POWERS:
+  case ABBE_DISPERSION_RII6:
     return count % 2 == 1 ? NULL : "an odd number (c0, then pairs)";
   case ABBE_DISPERSION_RII4:
     return count == 1 || count == 5 || (count >= 9 && count % 2 == 1)
                ? NULL
                : "1, 5, 9, or 9 and further pairs";
+  case ABBE_DISPERSION_HERZBERGER:
+  case ABBE_DISPERSION_RII9:
+    return count == 6 ? NULL : "6";
+  case ABBE_DISPERSION_RII8:
+    return count == 4 ? NULL : "4";
   default:
     return count == 0 ? NULL : "none";
   }

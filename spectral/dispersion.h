@@ -26,6 +26,12 @@ extern "C" {
   X(POLYNOMIAL, "polynomial", "n^2 = c0 + sum_k c(2k-1) L^c(2k)")                             \
   X(RII4, "rii4",                                                                             \
     "n^2 = c0 + c1 L^c2/(L^2 - c3^c4) + c5 L^c6/(L^2 - c7^c8) + c9 L^c10 + c11 L^c12 + ...")  \
+  X(POWERS, "powers", "n = c0 + sum_k c(2k-1) L^c(2k)")                                       \
+  X(HERZBERGER, "herzberger",                                                                 \
+    "n = c0 + c1 K + c2 K^2 + c3 L^2 + c4 L^4 + c5 L^6, K = 1 / (L^2 - 0.028)")               \
+  X(RII6, "rii6", "n - 1 = c0 + sum_k c(2k-1) / (c(2k) - L^-2)")                              \
+  X(RII8, "rii8", "(n^2 - 1) / (n^2 + 2) = c0 + c1 L^2 / (L^2 - c2) + c3 L^2")                \
+  X(RII9, "rii9", "n^2 = c0 + c1 / (L^2 - c2) + c3 (L - c4) / ((L - c4)^2 + c5)")             \
   X(TABULATED, "tabulated", "n through tabulated points")
 
 typedef enum abbe_dispersion_model {

@@ -2,16 +2,86 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 void abbe_material_free(abbe_material *material) {
   free(material->name);
   free(material->description);
   free(material->source);
   free(material->warning);
+  free(material->comment);
+  free(material->catalogue.code);
+  free(material->catalogue.status);
   abbe_dispersion_free(&material->dispersion);
   abbe_spectrum_free(material->attenuation);
   *material = (abbe_material){0};
 }
+
+/* ---- whether a table may hold it ---- */
+
+abbe_result abbe_material_check_name(const char *name, abbe_error *error) {
+  size_t length = name == NULL ? 0 : strlen(name);
+  bool good =
+      length > 0 && length <= ABBE_MATERIAL_MAX_NAME && name[0] != ' ' && name[length - 1] != ' ';
+  for (size_t i = 0; i < length; i++)
+    good = good && (unsigned char)name[i] >= 0x20 && name[i] != 0x7f;
+  if (good) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "'%.100s' is not a name; up to %d printable characters, no space at the "
+                        "ends",
+                        name == NULL ? "" : name, ABBE_MATERIAL_MAX_NAME);
+}
+
+static abbe_result check_range(const abbe_material *m, abbe_error *error) {
+  bool ascends = m->min_nm >= ABBE_MATERIAL_LOW_NM && m->max_nm <= ABBE_MATERIAL_HIGH_NM &&
+                 m->min_nm < m->max_nm;
+  const abbe_spectrum *table = m->dispersion.table;
+  bool single = table != NULL && abbe_spectrum_count(table) == 1 && m->min_nm == m->max_nm &&
+                m->min_nm >= ABBE_MATERIAL_LOW_NM && m->max_nm <= ABBE_MATERIAL_HIGH_NM;
+  if (!ascends && !single)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
+                          m->min_nm, m->max_nm, ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
+  if (table == NULL) return ABBE_OK;
+  const double *lambda_nm = abbe_spectrum_lambda_nm(table);
+  double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(table) - 1];
+  if (m->min_nm >= low && m->max_nm <= high) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s: its range of %g to %g nm is wider than its points, which reach from "
+                        "%g to %g nm",
+                        m->name, m->min_nm, m->max_nm, low, high);
+}
+
+/* A formula that has a pole or no root inside its own range was copied wrongly, most often with
+ * coefficients in another unit. */
+static abbe_result check_index(const abbe_material *m, abbe_error *error) {
+  enum { STEPS = 1000 };
+  for (int i = 0; i <= STEPS; i++) {
+    double lambda_nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS;
+    if (!isnan(abbe_dispersion_n(&m->dispersion, lambda_nm))) continue;
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its %s formula has no real index at %g nm, inside its range; check "
+                          "the coefficients (wavelengths in micrometres)",
+                          m->name, abbe_dispersion_model_name(m->dispersion.model), lambda_nm);
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
+  abbe_result result = abbe_material_check_name(material->name, error);
+  if (result != ABBE_OK) return result;
+  if (material->source == NULL || material->source[0] == '\0')
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: it names no source; say where the numbers come from",
+                          material->name);
+  abbe_error why;
+  if (abbe_dispersion_check(&material->dispersion, &why) != ABBE_OK)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
+  result = check_range(material, error);
+  return result == ABBE_OK ? check_index(material, error) : result;
+}
+
+/* ---- what it does to light ---- */
 
 bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm) {
   return lambda_nm < material->min_nm || lambda_nm > material->max_nm;

@@ -1,4 +1,7 @@
 /* material.h: a transparent material: dispersion, absorption, and where its numbers come from.
+ *
+ * A zeroed record with a name, a source and a dispersion is a valid one, but for temperature_c: 0
+ * means 0 Celsius, NaN that the source is silent.
  */
 #ifndef ABBE_SPECTRAL_MATERIAL_H
 #define ABBE_SPECTRAL_MATERIAL_H
@@ -22,6 +25,28 @@ typedef struct abbe_material_fit {
   double min_nm, max_nm;
 } abbe_material_fit;
 
+enum { ABBE_MATERIAL_MAX_NAME = 80 };
+
+/* The wavelengths, nm, that a record may speak of: wide enough for any optical data, and narrow
+ * enough that no formula overflows. */
+#define ABBE_MATERIAL_LOW_NM 1.0
+#define ABBE_MATERIAL_HIGH_NM 1e6
+
+/* What a maker's catalogue says about a glass besides its index. It is carried, not used. 0 (NULL)
+ * means that the catalogue is silent, as it does in the catalogues themselves. */
+typedef struct abbe_material_catalogue {
+  char *code;              /* the six-digit code of n_d and V_d, as printed: 517642.251 */
+  char *status;            /* standard, preferred, obsolete, special or melt */
+  double melt_frequency;   /* 1 (most often molten) to 5 */
+  double density_g_cm3;
+  double expansion_per_k[2]; /* linear, -30 to 70 C and 100 to 300 C, 1/K */
+  double dpgf;             /* deviation of the partial dispersion P_gF from the normal line */
+  double thermal[6];       /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
+  size_t rating_count;     /* 0 or 6 */
+  double ratings[6];       /* relative cost, then resistance: climate, stain, acid, alkali,
+                              phosphate; -1 where it is not known */
+} abbe_material_catalogue;
+
 typedef struct abbe_material {
   char *name;                /* unique in its table, as on the command line */
   char *description;         /* one line for people; may be NULL */
@@ -33,10 +58,23 @@ typedef struct abbe_material {
   char *source;              /* key into BIBLIOGRAPHY.md, then details */
   char *warning;             /* what a user of this row must know (thesis rows); may be NULL */
   abbe_material_fit fit[2];  /* two and three terms */
+  double published_n_d;      /* n_d and V_d as the source prints them, for the doctor; */
+  double published_v_d;      /* 0 where it prints none */
+  char *comment;             /* the source's own remark; may be NULL */
+  abbe_material_catalogue catalogue;
   size_t line;               /* of the record in its file, for messages */
 } abbe_material;
 
 void abbe_material_free(abbe_material *material);
+
+/* Whether a table may hold the record, that is: what is written of it can be read again. The name
+ * has 1 to 80 printable characters and no space at its ends, there is a source, the coefficients go
+ * with the model, the range ascends inside [ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM] and inside
+ * the points of a tabulated model, and the formula has a real index at 1001 wavelengths over it.
+ * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
+abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
+/* The part of it that is about the name alone. */
+abbe_result abbe_material_check_name(const char *name, abbe_error *error);
 
 /* n at lambda_nm into *n. ABBE_OUT_OF_RANGE outside [min_nm, max_nm] unless extrapolate;
  * ABBE_INVALID_ARGUMENT where the formula has no real value there. */

@@ -16,6 +16,8 @@
 extern "C" {
 #endif
 
+enum { ABBE_MATERIAL_TABLE_MAX_COUNT = 10000 };
+
 typedef struct abbe_material_table {
   char *path;              /* file, or "default" or "thesis" */
   char *description;       /* what the table is, for people; may be NULL */
@@ -30,6 +32,11 @@ abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
 abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,
                                       abbe_material_table *out, abbe_error *error);
 void abbe_material_table_free(abbe_material_table *table);
+
+/* Moves the material to the end of the table; *material is zeroed. Neither the record nor its name
+ * is checked. ABBE_INVALID_ARGUMENT where the table is full; the material is then as it was. */
+abbe_result abbe_material_table_append(abbe_material_table *table, abbe_material *material,
+                                       abbe_error *error);
 
 /* The material of that name (case-insensitive), owned by the table. ABBE_NOT_FOUND names the
  * nearest known names. */

@@ -12,6 +12,7 @@
 struct abbe_spectrum {
   size_t count;
   double *lambda_nm, *value;
+  abbe_interpolation interpolation;
   gsl_interp *interp; /* NULL for a single point */
 };
 
@@ -77,7 +78,7 @@ abbe_result abbe_spectrum_make(const double *lambda_nm, const double *value, siz
   abbe_result result = check(lambda_nm, value, count, error);
   if (result != ABBE_OK) return result;
   abbe_spectrum *made = calloc(1, sizeof *made);
-  if (made != NULL) made->count = count;
+  if (made != NULL) *made = (struct abbe_spectrum){.count = count, .interpolation = interpolation};
   if (made == NULL || !allocate(made, interpolation)) {
     abbe_spectrum_free(made);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a spectrum of %zu points", count);
@@ -136,4 +137,8 @@ const double *abbe_spectrum_lambda_nm(const abbe_spectrum *spectrum) {
 }
 const double *abbe_spectrum_value(const abbe_spectrum *spectrum) {
   return spectrum->value;
+}
+
+abbe_interpolation abbe_spectrum_interpolation(const abbe_spectrum *spectrum) {
+  return spectrum->interpolation;
 }

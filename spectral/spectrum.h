@@ -43,6 +43,8 @@ double abbe_spectrum_integral(const abbe_spectrum *spectrum, double from_nm, dou
 size_t abbe_spectrum_count(const abbe_spectrum *spectrum);
 const double *abbe_spectrum_lambda_nm(const abbe_spectrum *spectrum);
 const double *abbe_spectrum_value(const abbe_spectrum *spectrum);
+/* The interpolation that was asked for. */
+abbe_interpolation abbe_spectrum_interpolation(const abbe_spectrum *spectrum);
 
 #ifdef __cplusplus
 }

@@ -41,6 +41,24 @@ static void every_model_gives_its_published_index(void **state) {
               2.614265, 5e-7);
 }
 
+/* Other people's numbers: catalogue n_d of BASF5 (Conrady), silver bromide measured
+ * at the D line (2.253), standard air, silicon at 5 um, urea at 1064 nm (1.59). */
+static void rarer_formulas_give_their_published_index(void **state) {
+  (void)state;
+  assert_near(N_OF(ABBE_DISPERSION_POWERS, ABBE_LINE_D_NM, 1.57410327, 0.0139786149, -1,
+                   8.3004511e-4, -3.5),
+              1.603233, 5e-7);
+  assert_near(N_OF(ABBE_DISPERSION_RII8, 589.3, 0.452505, 0.09939, 0.070537, -0.00015), 2.253,
+              5e-3);
+  assert_near(N_OF(ABBE_DISPERSION_RII6, 589.3, 0, 0.05792105, 238.0185, 0.00167917, 57.362),
+              1.000277, 5e-7);
+  assert_near(N_OF(ABBE_DISPERSION_HERZBERGER, 5000, 3.41983, 0.159906, -0.123109, 1.26878e-6,
+                   -1.95104e-9, 0),
+              3.4261, 5e-5);
+  assert_near(N_OF(ABBE_DISPERSION_RII9, 1064, 2.51527, 0.0240, 0.0300, 0.0202, 1.52, 0.8771), 1.59,
+              1e-2);
+}
+
 static void shorter_forms_drop_their_terms(void **state) {
   (void)state;
   assert_near(N_OF(ABBE_DISPERSION_CAUCHY, 500, 1.5), 1.5, 0);
@@ -237,6 +255,7 @@ static void what_cannot_be_fitted_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_model_gives_its_published_index),
+      cmocka_unit_test(rarer_formulas_give_their_published_index),
       cmocka_unit_test(shorter_forms_drop_their_terms),
       cmocka_unit_test(tabulated_indices_are_interpolated),
       cmocka_unit_test(no_real_index_is_nan),

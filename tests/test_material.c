@@ -71,12 +71,58 @@ static void attenuation_is_zero_or_more(void **state) {
   abbe_material_free(&m);
 }
 
+static void only_what_can_be_read_again_may_stand_in_a_table(void **state) {
+  (void)state;
+  abbe_material m = glass("glass");
+  m.source = (char[]){"a paper"};
+  abbe_error error;
+  assert_int_equal(abbe_material_check(&m, &error), ABBE_OK);
+  const struct {
+    abbe_material m;
+    const char *part;
+  } wrong[] = {
+      {{.name = m.name, .source = NULL, .dispersion = m.dispersion, .min_nm = 400, .max_nm = 700},
+       "names no source"},
+      {{.name = (char[]){" x"}, .source = m.source, .dispersion = m.dispersion}, "is not a name"},
+      {{.name = NULL, .source = m.source}, "is not a name"},
+      {{.name = m.name,
+        .source = m.source,
+        .dispersion = m.dispersion,
+        .min_nm = 700,
+        .max_nm = 400},
+       "does not ascend"},
+      {{.name = m.name,
+        .source = m.source,
+        .dispersion = m.dispersion,
+        .min_nm = 0.5,
+        .max_nm = 400},
+       "does not ascend"},
+      {{.name = m.name,
+        .source = m.source,
+        .min_nm = 400,
+        .max_nm = 700,
+        .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}}},
+       "no real index at 400 nm"},
+      {{.name = m.name,
+        .source = m.source,
+        .min_nm = 400,
+        .max_nm = 700,
+        .dispersion = {.model = ABBE_DISPERSION_SELLMEIER, .count = 2}},
+       "odd number"},
+  };
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    assert_int_equal(abbe_material_check(&wrong[i].m, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, wrong[i].part);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_range_is_kept),
       cmocka_unit_test(extrapolation_is_allowed_and_told),
       cmocka_unit_test(no_real_index_is_an_error),
       cmocka_unit_test(attenuation_is_zero_or_more),
+      cmocka_unit_test(only_what_can_be_read_again_may_stand_in_a_table),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

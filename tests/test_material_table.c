@@ -226,6 +226,8 @@ static void names_are_found_in_any_case_or_suggested(void **state) {
 
 /* ---- the format ---- */
 
+#define GOOD_RECORD "- {name: x, model: constant, coefficients: [1.5], source: s}\n"
+
 static abbe_material_table parse(const char *text) {
   abbe_material_table table;
   abbe_error error = {0};
@@ -283,6 +285,57 @@ static void absorption_is_a_spectrum_or_a_colour(void **state) {
   assert_near(abbe_material_attenuation(a, 380), 0, 0);
   assert_near(abbe_material_attenuation(a, 780), -log(0.9) / 0.02, 1e-12);
   assert_near(abbe_material_attenuation(b, 450), 15, 1e-12);
+  abbe_material_table_free(&t);
+}
+
+static void absorption_is_also_a_transmittance_or_k(void **state) {
+  (void)state;
+  abbe_material_table t = parse("materials:\n"
+                                "- {name: a, model: constant, coefficients: [1.5], source: s,\n"
+                                "   absorption: {transmittance: [[400, 0.5], [500, 1]],\n"
+                                "     thickness_m: 0.01}}\n"
+                                "- {name: b, model: constant, coefficients: [1.5], source: s,\n"
+                                "   absorption: {k: [[400, 1e-7], [500, 2e-7]]}}\n");
+  assert_near(exp(-0.01 * abbe_material_attenuation(&t.material[0], 400)), 0.5, 1e-14);
+  assert_near(abbe_material_attenuation(&t.material[1], 400), 4 * acos(-1) * 0.25, 1e-12);
+  abbe_material_table_free(&t);
+}
+
+static void what_the_catalogue_prints_is_kept(void **state) {
+  (void)state;
+  abbe_material_table t =
+      parse("materials:\n- name: N-BK7\n  model: constant\n  coefficients: [1.5]\n  source: s\n"
+            "  n_d: 1.5168\n  v_d: 64.17\n  comment: step 0.5 available\n"
+            "  catalogue: {code: '517642.251', status: preferred, melt_frequency: 1,\n"
+            "    density_g_cm3: 2.51, expansion_per_k: [7.1e-06, 8.3e-06], dpgf: -0.0009,\n"
+            "    thermal: [1.86e-06, 1.31e-08, -1.37e-11, 4.34e-07, 6.27e-10, 0.17],\n"
+            "    ratings: [1, 1, 0, 1, 2.3, 2.3]}\n");
+  const abbe_material *m = &t.material[0];
+  assert_near(m->published_n_d, 1.5168, 0);
+  assert_near(m->published_v_d, 64.17, 0);
+  assert_string_equal(m->comment, "step 0.5 available");
+  assert_string_equal(m->catalogue.code, "517642.251");
+  assert_string_equal(m->catalogue.status, "preferred");
+  assert_near(m->catalogue.density_g_cm3, 2.51, 0);
+  assert_near(m->catalogue.expansion_per_k[1], 8.3e-6, 0);
+  assert_near(m->catalogue.dpgf, -0.0009, 0);
+  assert_near(m->catalogue.thermal[5], 0.17, 0);
+  assert_int_equal(m->catalogue.rating_count, 6);
+  assert_near(m->catalogue.ratings[5], 2.3, 0);
+  abbe_material_table_free(&t);
+}
+
+static void materials_are_moved_to_a_table(void **state) {
+  (void)state;
+  abbe_material_table t = parse("materials:\n" GOOD_RECORD);
+  for (int i = 0; i < 20; i++) {
+    abbe_material m = {.name = strdup("y"), .published_n_d = i};
+    assert_int_equal(abbe_material_table_append(&t, &m, NULL), ABBE_OK);
+    assert_null(m.name);
+  }
+  assert_int_equal(t.count, 21);
+  assert_near(t.material[20].published_n_d, 19, 0);
+  assert_string_equal(t.material[0].name, "x");
   abbe_material_table_free(&t);
 }
 
@@ -384,7 +437,10 @@ static void bad_absorption_and_fits_are_refused(void **state) {
     const char *rest, *part;
   } cases[] = {
       {"  absorption: red\n", "t.yaml:7: 'absorption' wants"},
-      {"  absorption: {}\n", "wants either"},
+      {"  absorption: {}\n", "wants one of"},
+      {"  absorption: {transmittance: [[400, 0.5]]}\n", "'thickness_m' is missing"},
+      {"  absorption: {transmittance: [[400, 99]], thickness_m: 0.01}\n", "range from 0 to 1"},
+      {"  absorption: {k: [[400, -1]]}\n", "range from 0"},
       {"  absorption: {color: [1, 1, 1], distance_m: 1}\n", "did you mean 'colour'?"},
       {"  absorption: {colour: [1, 1, 1]}\n", "'distance_m' is missing"},
       {"  absorption: {colour: [1, 1, 1], distance_m: 0}\n", "'distance_m: 0'"},
@@ -395,7 +451,7 @@ static void bad_absorption_and_fits_are_refused(void **state) {
       {"  absorption: {attenuation_per_m: 3}\n", "pairs [nm, value]"},
       {"  absorption: {attenuation_per_m: [[400, 1]], distance_m: 2}\n", "no key 'distance_m'"},
       {"  absorption: {attenuation_per_m: [[400, 1]], colour: [1, 1, 1], distance_m: 2}\n",
-       "wants either"},
+       "wants one of"},
       {"  fit: 3\n", "'fit' must be a mapping"},
       {"  fit: {cauchy4: {}}\n", "did you mean 'cauchy2'?"},
       {"  fit: {cauchy2: {coefficients: [1], max_error: 0}}\n", "wants 2 numbers"},
@@ -473,6 +529,9 @@ int main(void) {
       cmocka_unit_test(a_record_may_be_short),
       cmocka_unit_test(points_make_an_index),
       cmocka_unit_test(absorption_is_a_spectrum_or_a_colour),
+      cmocka_unit_test(absorption_is_also_a_transmittance_or_k),
+      cmocka_unit_test(what_the_catalogue_prints_is_kept),
+      cmocka_unit_test(materials_are_moved_to_a_table),
       cmocka_unit_test(aliases_may_share_a_record_part),
       cmocka_unit_test(bad_tables_name_line_and_key),
       cmocka_unit_test(bad_dispersion_is_refused),

@@ -1,0 +1,61 @@
+#include "spectral/number.h"
+
+#include <locale.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static locale_t c_locale;
+static pthread_once_t made = PTHREAD_ONCE_INIT;
+
+/* Lives as long as the process. Without memory for it the host's locale serves. */
+static void make_locale(void) {
+  c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+}
+
+static locale_t enter(void) {
+  pthread_once(&made, make_locale);
+  return c_locale == (locale_t)0 ? (locale_t)0 : uselocale(c_locale);
+}
+
+static void leave(locale_t host) {
+  if (host != (locale_t)0) uselocale(host);
+}
+
+const char *abbe_number_text(double value, char text[ABBE_NUMBER_TEXT_SIZE]) {
+  if (!isfinite(value)) {
+    strcpy(text, isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
+    return text;
+  }
+  locale_t host = enter();
+  /* %g drops the zeros at the end, so 15 digits are as short as the value allows */
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, ABBE_NUMBER_TEXT_SIZE, "%.*g", digits, value);
+    if (strtod(text, NULL) == value) break;
+  }
+  leave(host);
+  return text;
+}
+
+static bool digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+bool abbe_number_read(const char *text, const char **end, double *value) {
+  const char *c = text;
+  while (*c == ' ' || *c == '\t') c++;
+  const char *first = c;
+  if (*c == '+' || *c == '-') c++;
+  if (*c == '.') c++;
+  *end = text;
+  /* what strtod reads beyond decimals: hexadecimal (after a 0), inf and nan (no digit) */
+  if (!digit(*c) || (*c == '0' && (c[1] == 'x' || c[1] == 'X'))) return false;
+  locale_t host = enter();
+  char *past = NULL;
+  *value = strtod(first, &past);
+  leave(host);
+  *end = past;
+  return true;
+}

@@ -1,0 +1,56 @@
+#include "spectral/report.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+void abbe_report_free(abbe_report *report) {
+  free(report->note);
+  *report = (abbe_report){0};
+}
+
+/* Texts from files may hold escape sequences; a terminal must not obey them. */
+static void defuse(char *text) {
+  for (; *text != '\0'; text++)
+    if ((unsigned char)*text < 0x20 || *text == 0x7f) *text = '?';
+}
+
+/* Doubles the array at each power of two; NULL where it must not or cannot grow. */
+static abbe_note *room(abbe_report *report) {
+  size_t count = report->count;
+  if (count >= ABBE_REPORT_MAX_NOTES) return NULL;
+  if ((count & (count - 1)) == 0) {
+    size_t wanted = count == 0 ? 1 : 2 * count;
+    abbe_note *larger = realloc(report->note, wanted * sizeof *larger);
+    if (larger == NULL) return NULL;
+    report->note = larger;
+  }
+  return &report->note[report->count];
+}
+
+void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, const char *name,
+                     const char *format, ...) {
+  if (report == NULL || (int)kind < 0 || kind >= ABBE_NOTE_KIND_COUNT) return;
+  report->kinds[kind]++;
+  abbe_note *note = room(report);
+  if (note == NULL) return;
+  report->count++;
+  note->kind = kind;
+  note->line = line;
+  snprintf(note->name, sizeof note->name, "%s", name == NULL ? "" : name);
+  va_list args;
+  va_start(args, format);
+  vsnprintf(note->text, sizeof note->text, format, args);
+  va_end(args);
+  defuse(note->name);
+  defuse(note->text);
+}
+
+const char *abbe_note_kind_word(abbe_note_kind kind) {
+  static const char *const words[] = {
+#define ABBE_NOTE_WORD(code, word) word,
+      ABBE_NOTE_KINDS(ABBE_NOTE_WORD)
+#undef ABBE_NOTE_WORD
+  };
+  return (int)kind >= 0 && kind < ABBE_NOTE_KIND_COUNT ? words[kind] : "unknown";
+}

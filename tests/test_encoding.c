@@ -1,0 +1,64 @@
+#include "tests/check.h"
+
+#include "spectral/encoding.h"
+
+#include <stdlib.h>
+
+static void becomes(const char *bytes, size_t size, const char *wanted) {
+  char *text = NULL;
+  size_t length = 0;
+  assert_int_equal(abbe_encoding_decode(bytes, size, &text, &length, NULL), ABBE_OK);
+  assert_string_equal(text, wanted);
+  assert_int_equal(length, strlen(wanted));
+  free(text);
+}
+#define BECOMES(bytes, wanted) becomes(bytes, sizeof bytes - 1, wanted)
+
+static void every_encoding_becomes_utf8(void **state) {
+  (void)state;
+  BECOMES("", "");
+  BECOMES("NM F2", "NM F2");
+  BECOMES("\xef\xbb\xbfNM", "NM");
+  BECOMES("\xff\xfeN\0M\0\xb5\0", "NM\xc2\xb5");
+  BECOMES("\xfe\xff\0N\0M\0\xb5", "NM\xc2\xb5");
+  BECOMES("N\0M\0 \0F\0002\0\n\0", "NM F2\n"); /* no mark */
+  BECOMES("\0N\0M\0 \0F\0002\0\n", "NM F2\n");
+  BECOMES("\xff\xfe\x3d\xd8\x8e\xdc", "\xf0\x9f\x92\x8e"); /* a pair of surrogates */
+  BECOMES("25\xb0\x43 \x96 \x80", "25\xc2\xb0\x43 \xe2\x80\x93 \xe2\x82\xac"); /* Windows-1252 */
+  BECOMES("25\xc2\xb0\x43", "25\xc2\xb0\x43");
+}
+
+static void lines_end_in_one_way(void **state) {
+  (void)state;
+  BECOMES("a\r\nb\rc\n\nd", "a\nb\nc\n\nd");
+  BECOMES("\xff\xfe"
+          "a\0\r\0\n\0b\0",
+          "a\nb");
+}
+
+static void what_cannot_be_decoded_is_replaced(void **state) {
+  (void)state;
+  BECOMES("\xff\xfe\x00\xd8"
+          "a\0",
+          "\xef\xbf\xbd"
+          "a"); /* half a pair */
+  BECOMES("\xff\xfe\x00\xdc", "\xef\xbf\xbd");
+  BECOMES("\xff\xfe"
+          "a\0b",
+          "a\xef\xbf\xbd");                                    /* an odd byte at the end */
+  BECOMES("\xef\xbb\xbf\xc0\x80", "\xef\xbf\xbd\xef\xbf\xbd"); /* overlong */
+  BECOMES("\xef\xbb\xbf\xed\xa0\x80", "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
+  BECOMES("a\x1b[2J\x07"
+          "b\tc",
+          "a [2J b\tc");
+  BECOMES("a\0b", "a b");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_encoding_becomes_utf8),
+      cmocka_unit_test(lines_end_in_one_way),
+      cmocka_unit_test(what_cannot_be_decoded_is_replaced),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

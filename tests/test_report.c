@@ -1,0 +1,43 @@
+#include "tests/check.h"
+
+#include "spectral/report.h"
+
+static void notes_are_kept_in_order(void **state) {
+  (void)state;
+  abbe_report report = {0};
+  abbe_report_add(&report, ABBE_NOTE_SKIPPED, 12, "N-BK7", "no formula %d", 99);
+  abbe_report_add(&report, ABBE_NOTE_LOST, 0, NULL, "a \x1b[2J");
+  abbe_report_add(NULL, ABBE_NOTE_LOST, 0, NULL, "unheard");
+  abbe_report_add(&report, (abbe_note_kind)77, 0, NULL, "no such kind");
+  assert_int_equal(report.count, 2);
+  assert_int_equal(report.note[0].kind, ABBE_NOTE_SKIPPED);
+  assert_int_equal(report.note[0].line, 12);
+  assert_string_equal(report.note[0].name, "N-BK7");
+  assert_string_equal(report.note[0].text, "no formula 99");
+  assert_string_equal(report.note[1].name, "");
+  assert_string_equal(report.note[1].text, "a ?[2J");
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
+  assert_string_equal(abbe_note_kind_word(ABBE_NOTE_ASSUMED), "assumed");
+  assert_string_equal(abbe_note_kind_word((abbe_note_kind)-1), "unknown");
+  abbe_report_free(&report);
+  abbe_report_free(&report);
+}
+
+static void there_is_an_end_to_what_is_kept(void **state) {
+  (void)state;
+  abbe_report report = {0};
+  for (int i = 0; i < ABBE_REPORT_MAX_NOTES + 5; i++)
+    abbe_report_add(&report, ABBE_NOTE_CHANGED, (size_t)i, "x", "%d", i);
+  assert_int_equal(report.count, ABBE_REPORT_MAX_NOTES);
+  assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], ABBE_REPORT_MAX_NOTES + 5);
+  assert_string_equal(report.note[ABBE_REPORT_MAX_NOTES - 1].text, "9999");
+  abbe_report_free(&report);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(notes_are_kept_in_order),
+      cmocka_unit_test(there_is_an_end_to_what_is_kept),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
