@@ -2,6 +2,7 @@
 
 #include "spectral/file.h"
 #include "spectral/nearest.h"
+#include "spectral/text_cursor.h"
 
 #include <errno.h>
 #include <locale.h>
@@ -26,7 +27,9 @@ typedef struct node {
   bool open;   /* its end has not been read: an alias to it would be a circle */
   bool quoted; /* a scalar in quotes or as a block is text, never a number */
   bool asked;  /* a key that a getter knows */
+  bool flow;   /* a list or mapping in brackets */
   size_t line;
+  size_t from, to; /* bytes of the text that the node takes up */
   size_t weight; /* nodes below and including it, aliases written out */
   char *text;
   int *child; /* ids; a mapping's are key, value, key, value, … */
@@ -113,7 +116,18 @@ typedef struct builder {
   int stack[MAX_DEPTH];
   size_t depth;
   bool done; /* the document has ended */
+  abbe_text_cursor cursor; /* libyaml's marks count characters */
+  size_t leaf_end; /* byte where the latest leaf or bracket ends */
 } builder;
+
+/* A block scalar's mark stands after the empty lines that follow it. */
+static size_t end_of_leaf(builder *b, const yaml_event_t *event) {
+  size_t from = abbe_text_cursor_byte(&b->cursor, event->start_mark.index);
+  size_t to = abbe_text_cursor_byte(&b->cursor, event->end_mark.index);
+  while (to > from && memchr(" \t\r\n", b->cursor.text[to - 1], 4) != NULL) to--;
+  b->leaf_end = to;
+  return to;
+}
 
 static node *top(const builder *b) {
   return at(b->yaml, (abbe_yaml_node){b->stack[b->depth - 1]});
@@ -198,6 +212,8 @@ static abbe_result add_scalar(builder *b, const yaml_event_t *event, size_t line
   if (result != ABBE_OK) return result;
   node *scalar = at(b->yaml, (abbe_yaml_node){id});
   scalar->quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
+  scalar->from = abbe_text_cursor_byte(&b->cursor, event->start_mark.index);
+  scalar->to = end_of_leaf(b, event);
   scalar->text = malloc(length + 1);
   if (scalar->text == NULL) return no_memory(b->yaml, b->error);
   memcpy(scalar->text, value, length + 1);
@@ -206,8 +222,11 @@ static abbe_result add_scalar(builder *b, const yaml_event_t *event, size_t line
   return result != ABBE_OK ? result : close_node(b, id, line);
 }
 
-static abbe_result open_collection(builder *b, node_kind kind, const yaml_char_t *anchor,
+static abbe_result open_collection(builder *b, node_kind kind, const yaml_event_t *event,
                                    size_t line) {
+  bool list = kind == SEQUENCE;
+  const yaml_char_t *anchor =
+      list ? event->data.sequence_start.anchor : event->data.mapping_start.anchor;
   if (wants_key(b))
     return fail_at(b->yaml, line, ABBE_SCHEMA, b->error, "a key must be a plain word");
   if (b->depth == MAX_DEPTH)
@@ -215,7 +234,12 @@ static abbe_result open_collection(builder *b, node_kind kind, const yaml_char_t
                    MAX_DEPTH);
   int id = 0;
   abbe_result result = add_node(b, kind, line, &id);
-  if (result == ABBE_OK) result = add_anchor(b, anchor, id, line);
+  if (result != ABBE_OK) return result;
+  node *collection = at(b->yaml, (abbe_yaml_node){id});
+  collection->from = abbe_text_cursor_byte(&b->cursor, event->start_mark.index);
+  collection->flow = list ? event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE
+                          : event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE;
+  result = add_anchor(b, anchor, id, line);
   if (result == ABBE_OK) result = attach(b, id);
   if (result == ABBE_OK) b->stack[b->depth++] = id;
   return result;
@@ -252,9 +276,11 @@ static abbe_result check_duplicates(builder *b, const node *mapping) {
   return result;
 }
 
-static abbe_result close_collection(builder *b, size_t line) {
+static abbe_result close_collection(builder *b, const yaml_event_t *event, size_t line) {
   int id = b->stack[b->depth - 1];
-  const node *closing = top(b);
+  node *closing = top(b);
+  if (closing->flow) end_of_leaf(b, event);
+  closing->to = b->leaf_end; /* a block's own mark stands after the comments that follow it */
   abbe_result result = closing->kind == MAPPING ? check_duplicates(b, closing) : ABBE_OK;
   b->depth--;
   return result != ABBE_OK ? result : close_node(b, id, line);
@@ -271,16 +297,17 @@ static abbe_result take_event(builder *b, const yaml_event_t *event) {
     b->done = true;
     return ABBE_OK;
   case YAML_ALIAS_EVENT:
+    end_of_leaf(b, event);
     return add_alias(b, (const char *)event->data.alias.anchor, line);
   case YAML_SCALAR_EVENT:
     return add_scalar(b, event, line);
   case YAML_SEQUENCE_START_EVENT:
-    return open_collection(b, SEQUENCE, event->data.sequence_start.anchor, line);
+    return open_collection(b, SEQUENCE, event, line);
   case YAML_MAPPING_START_EVENT:
-    return open_collection(b, MAPPING, event->data.mapping_start.anchor, line);
+    return open_collection(b, MAPPING, event, line);
   case YAML_SEQUENCE_END_EVENT:
   case YAML_MAPPING_END_EVENT:
-    return close_collection(b, line);
+    return close_collection(b, event, line);
   default:
     return ABBE_OK;
   }
@@ -333,7 +360,7 @@ abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abb
     result = fail_at(yaml, 0, ABBE_IO, error, "is %zu bytes long; at most %d are allowed here",
                      size, MAX_BYTES);
   } else {
-    builder b = {.yaml = yaml, .error = error};
+    builder b = {.yaml = yaml, .error = error, .cursor = abbe_text_cursor_make(text, size)};
     result = build(&b, text, size);
   }
   if (result != ABBE_OK)
@@ -394,6 +421,17 @@ bool abbe_yaml_is_sequence(const abbe_yaml *yaml, abbe_yaml_node which) {
 }
 bool abbe_yaml_is_scalar(const abbe_yaml *yaml, abbe_yaml_node which) {
   return is_kind(yaml, which, SCALAR);
+}
+
+bool abbe_yaml_is_flow(const abbe_yaml *yaml, abbe_yaml_node which) {
+  const node *n = at(yaml, which);
+  return n != NULL && n->flow;
+}
+
+void abbe_yaml_span(const abbe_yaml *yaml, abbe_yaml_node which, size_t *from, size_t *to) {
+  const node *n = at(yaml, which);
+  *from = n == NULL ? 0 : n->from;
+  *to = n == NULL ? 0 : n->to;
 }
 
 const char *abbe_yaml_text(const abbe_yaml *yaml, abbe_yaml_node which) {

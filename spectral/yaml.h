@@ -32,6 +32,12 @@ size_t abbe_yaml_line(const abbe_yaml *yaml, abbe_yaml_node node);
 bool abbe_yaml_is_mapping(const abbe_yaml *yaml, abbe_yaml_node node);
 bool abbe_yaml_is_sequence(const abbe_yaml *yaml, abbe_yaml_node node);
 bool abbe_yaml_is_scalar(const abbe_yaml *yaml, abbe_yaml_node node);
+/* Whether a sequence or mapping is written in brackets, [ ] or { }. */
+bool abbe_yaml_is_flow(const abbe_yaml *yaml, abbe_yaml_node node);
+/* The bytes [*from, *to) of the text that the node takes up: with its anchor and quotes, without
+ * comments and blank lines after it. Where an alias stands, those of what it names. Meaningless
+ * for a text that is not UTF-8. */
+void abbe_yaml_span(const abbe_yaml *yaml, abbe_yaml_node node, size_t *from, size_t *to);
 /* Text of a scalar (owned by the document), NULL for anything else. */
 const char *abbe_yaml_text(const abbe_yaml *yaml, abbe_yaml_node node);
 

@@ -287,6 +287,34 @@ static void files_are_loaded_or_named(void **state) {
   assert_null(y);
 }
 
+/* The text that the value of a key takes up. */
+static void spans(const char *text, const char *key, const char *wanted) {
+  abbe_yaml *y = parse(text);
+  size_t from = 0, to = 0;
+  abbe_yaml_span(y, abbe_yaml_get(y, abbe_yaml_root(y), key), &from, &to);
+  if (to - from != strlen(wanted) || memcmp(text + from, wanted, to - from) != 0)
+    fail_msg("'%s' of '%s' is '%.*s'", key, text, (int)(to - from), text + from);
+  abbe_yaml_free(y);
+}
+
+static void values_know_their_bytes(void **state) {
+  (void)state;
+  spans("a: 1 # one\nb: 2\n", "a", "1");
+  spans("# \u00b5\u2026\na: \u00e9 # \u00e9\nb: 2\n", "b", "2");
+  spans("\xEF\xBB\xBF" "a: 1\r\nb: '2'\r\n", "b", "'2'");
+  spans("a: [1, # one\n  2 ]\nb: 2", "a", "[1, # one\n  2 ]");
+  spans("a:\n  - 1\n  - {c: 2} # two\n\n# b follows\nb: 2\n", "a", "- 1\n  - {c: 2}");
+  spans("a: >-\n  two\n  lines\n\n\nb: 2\n", "a", ">-\n  two\n  lines");
+  spans("a: &x \"q\"\nb: {c: *x}\n", "a", "&x \"q\"");
+  spans("a: &x \"q\"\nb:\n  c: *x\n", "b", "c: *x");
+  spans("a:\nb: 2\n", "a", "");
+  abbe_yaml *y = parse("a: [1]\nb:\n- 1\n");
+  assert_true(abbe_yaml_is_flow(y, abbe_yaml_get(y, abbe_yaml_root(y), "a")));
+  assert_false(abbe_yaml_is_flow(y, abbe_yaml_get(y, abbe_yaml_root(y), "b")));
+  assert_false(abbe_yaml_is_flow(y, abbe_yaml_root(y)));
+  abbe_yaml_free(y);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_mistyped_key_is_named_where_one_is_missing),
@@ -299,6 +327,7 @@ int main(void) {
       cmocka_unit_test(complaints_hold_no_control_characters),
       cmocka_unit_test(aliases_are_resolved_and_kept_harmless),
       cmocka_unit_test(depth_and_size_are_bounded),
+      cmocka_unit_test(values_know_their_bytes),
       cmocka_unit_test(files_are_loaded_or_named),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
