@@ -3,6 +3,7 @@
 #include "spectral/file.h"
 #include "spectral/material_table.h"
 #include "spectral/nearest.h"
+#include "spectral/number.h"
 #include "spectral/text_diff.h"
 #include "spectral/yaml_edit.h"
 
@@ -174,10 +175,10 @@ static abbe_result find_record(const abbe_table_edit *edit, const char *name, si
 
 /* A record's keys in the order of docs/materials.md, so that a new one goes where readers look. */
 static size_t rank(const char *key) {
-  static const char *const order[] = {"name",        "description",   "model",    "coefficients",
-                                      "points",      "interpolation", "range_nm", "temperature_c",
-                                      "extrapolate", "source",        "warning",  "absorption",
-                                      "fit"};
+  static const char *const order[] = {
+      "name",     "description",   "model",       "coefficients", "points", "interpolation",
+      "range_nm", "temperature_c", "extrapolate", "n_d",          "v_d",    "source",
+      "warning",  "comment",       "absorption",  "catalogue",    "fit"};
   enum { COUNT = sizeof order / sizeof order[0] };
   for (size_t i = 0; i < COUNT; i++)
     if (strcmp(order[i], key) == 0) return i;
@@ -308,8 +309,8 @@ abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, co
 
 abbe_result abbe_table_edit_set_number(abbe_table_edit *edit, const char *name, const char *key,
                                        double value, abbe_error *error) {
-  char text[40];
-  return abbe_table_edit_set(edit, name, key, abbe_yaml_edit_number(value, text), error);
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  return abbe_table_edit_set(edit, name, key, abbe_number_text(value, text), error);
 }
 
 /* Where the old list is as long as the new one: the numbers that differ, each in its place. */

@@ -1,5 +1,7 @@
 #include "spectral/yaml_edit.h"
 
+#include "spectral/number.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -560,30 +562,15 @@ abbe_result abbe_yaml_edit_quote(const char *text, char **out, abbe_error *error
   return ABBE_OK;
 }
 
-const char *abbe_yaml_edit_number(double value, char text[40]) {
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, 40, "%.*g", digits, value);
-    if (strtod(text, NULL) == value) break; /* in the same locale as it was written */
-  }
-  char *point = text + strcspn(text, "0123456789");
-  point += strspn(point, "0123456789");
-  size_t length = strcspn(point, "0123456789e");
-  if (*point != '\0' && *point != 'e' && length > 0) {
-    *point = '.';
-    memmove(point + 1, point + length, strlen(point + length) + 1);
-  }
-  return text;
-}
-
 abbe_result abbe_yaml_edit_list(const double *value, size_t count, char **out, abbe_error *error) {
-  size_t size = 42 * count + 3, used = 0;
-  char *made = *out = malloc(size), number[40];
+  size_t size = (ABBE_NUMBER_TEXT_SIZE + 2) * count + 3, used = 0;
+  char *made = *out = malloc(size), number[ABBE_NUMBER_TEXT_SIZE];
   if (made == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu numbers", count);
   made[used++] = '[';
   for (size_t i = 0; i < count; i++)
     used += (size_t)snprintf(made + used, size - used, "%s%s", i > 0 ? ", " : "",
-                             abbe_yaml_edit_number(value[i], number));
+                             abbe_number_text(value[i], number));
   snprintf(made + used, size - used, "]");
   return ABBE_OK;
 }

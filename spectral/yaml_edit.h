@@ -68,8 +68,6 @@ abbe_result abbe_yaml_edit_item(const abbe_yaml_edit *edit, abbe_yaml_node seque
 abbe_result abbe_yaml_edit_quote(const char *text, char **out, abbe_error *error);
 /* count finite numbers as "[a, b, …]", each with the fewest digits that read back the same. */
 abbe_result abbe_yaml_edit_list(const double *value, size_t count, char **out, abbe_error *error);
-/* The shortest decimal that reads back as value (finite), "." as its point whatever the locale. */
-const char *abbe_yaml_edit_number(double value, char text[40]);
 
 #ifdef __cplusplus
 }

@@ -130,7 +130,7 @@ static void each_edit_stays_inside_its_record(void **state) {
         const abbe_material *m = &table.material[i];
         abbe_table_edit *edit = parse(before);
         if (action == 0) must(abbe_table_edit_set(edit, m->name, "warning", "\"# x\"", &error));
-        if (action == 1) must(abbe_table_edit_set(edit, m->name, "coefficients", "[1]", &error));
+        if (action == 1) must(abbe_table_edit_set(edit, m->name, "coefficients", "[1.75]", &error));
         if (action == 2) must(abbe_table_edit_rename(edit, m->name, "Zzz", &error));
         if (action == 3) must(abbe_table_edit_unset(edit, m->name, "source", &error));
         if (action == 4) must(abbe_table_edit_remove(edit, m->name, &error));

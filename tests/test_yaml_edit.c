@@ -240,11 +240,7 @@ static void texts_and_numbers_read_back(void **state) {
       abbe_yaml_edit_free(&e);
       free(quoted);
     }
-  const double numbers[] = {0, 1.5, 0.1, 1e-300, -2.5e10, 1.0 / 3, 0.00600069867, 1e22};
-  char text[40], *list = NULL;
-  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-    assert_true(strtod(abbe_yaml_edit_number(numbers[i], text), NULL) == numbers[i]);
-  assert_string_equal(abbe_yaml_edit_number(0.1, text), "0.1");
+  char *list = NULL;
   assert_int_equal(abbe_yaml_edit_list((double[]){1.5, 0.0042}, 2, &list, NULL), ABBE_OK);
   assert_string_equal(list, "[1.5, 0.0042]");
   free(list);
