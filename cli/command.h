@@ -23,7 +23,8 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(materials, "look into, edit, convert and check tables of materials") \
   X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB") \
   X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO") \
-  X(info, "say what an EXR holds: size, channels, space, settings, statistics")
+  X(info, "say what an EXR holds: size, channels, space, settings, statistics") \
+  X(validate, "hold the reference tracer against optics that is known")
 
 #define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);
 ABBE_COMMANDS(ABBE_COMMAND_DECLARE)

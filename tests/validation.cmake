@@ -4,6 +4,7 @@ foreach(name
     field
     geometry
     interface
+    known_answers
     mask
     media
     route

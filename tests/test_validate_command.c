@@ -1,0 +1,58 @@
+/* The program's `validate`, as a person and as a program meet it. */
+#include "tests/run_program.h"
+
+#include <cjson/cJSON.h>
+
+static void a_group_as_text(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only rainbow"), 0);
+  assert_contains(run_output, "secondary bow at 700 nm");
+  assert_contains(run_output, "6 of 6 known answers are within tolerance");
+  assert_contains(run_output, "tolerance (degrees): ");
+  assert_null(strstr(run_output, "FAILS"));
+  assert_string_equal(run_errors, "");
+}
+
+static void a_group_as_json(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only prism --json"), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_non_null(json);
+  const cJSON *list = cJSON_GetObjectItem(json, "answers"), *row = cJSON_GetArrayItem(list, 1);
+  assert_int_equal(cJSON_GetArraySize(list), 13);
+  assert_int_equal(cJSON_GetObjectItem(json, "passed")->valueint, 13);
+  assert_int_equal(cJSON_GetObjectItem(json, "failed")->valueint, 0);
+  assert_string_equal(cJSON_GetObjectItem(row, "group")->valuestring, "prism");
+  double exact = cJSON_GetObjectItem(row, "exact")->valuedouble;
+  double traced = cJSON_GetObjectItem(row, "traced")->valuedouble;
+  assert_near(cJSON_GetObjectItem(row, "error")->valuedouble, traced - exact, 1e-12);
+  assert_true(cJSON_IsTrue(cJSON_GetObjectItem(row, "passed")));
+  assert_true(strlen(cJSON_GetObjectItem(row, "reason")->valuestring) > 0);
+  cJSON_Delete(json);
+}
+
+static void help_lists_the_groups(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --help"), 0);
+  assert_contains(run_output, "rainbow: primary");
+  assert_contains(run_output, "Examples:");
+}
+
+static void wrong_use_is_explained(void **state) {
+  (void)state;
+  bool right = run_refuses("\"$abbe\" validate --only rainbov", 2, "did you mean 'rainbow'");
+  right = run_refuses("\"$abbe\" validate extra", 2, "'extra' is one argument too many") && right;
+  right = run_refuses("\"$abbe\" validate --samples 0", 2, "--samples '0'") && right;
+  right = run_refuses("\"$abbe\" validate --threads 0", 2, "--threads '0'") && right;
+  assert_true(right);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_group_as_text),
+      cmocka_unit_test(a_group_as_json),
+      cmocka_unit_test(help_lists_the_groups),
+      cmocka_unit_test(wrong_use_is_explained),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}
