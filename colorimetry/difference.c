@@ -76,3 +76,11 @@ double abbe_difference_ciede2000(const double lab1[3], const double lab2[3]) {
   double tl = dl / sl, tc = dc / sc, th = dh / sh;
   return sqrt(fmax(0, tl * tl + tc * tc + th * th + rt * tc * th));
 }
+
+bool abbe_difference_uv(const double xyz[3], double uv[2]) {
+  double sum = xyz[0] + 15 * xyz[1] + 3 * xyz[2];
+  if (!(sum > 0 && xyz[1] > 0)) return false;
+  uv[0] = 4 * xyz[0] / sum;
+  uv[1] = 9 * xyz[1] / sum;
+  return true;
+}

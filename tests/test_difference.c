@@ -80,9 +80,23 @@ static void test_lab(void **state) {
   assert_true(isfinite(lab[0]) && isfinite(lab[1]) && isfinite(lab[2]));
 }
 
+/* D65 and A as [CIE15] prints them. */
+static void test_uv(void **state) {
+  (void)state;
+  const double d65[3] = {95.047, 100, 108.883}, a[3] = {1.0985, 1, 0.35585};
+  const double dark[][3] = {{0, 0, 0}, {1, 0, 1}, {-20, 1, 0}, {NAN, 1, 1}};
+  double uv[2] = {7, 7};
+  for (int i = 0; i < 4; i++) assert_false(abbe_difference_uv(dark[i], uv));
+  assert_true(uv[0] == 7 && uv[1] == 7);
+  assert_true(abbe_difference_uv(d65, uv));
+  assert_true(fabs(uv[0] - 0.1978) < 5e-5 && fabs(uv[1] - 0.4683) < 5e-5);
+  assert_true(abbe_difference_uv(a, uv));
+  assert_true(fabs(uv[0] - 0.2560) < 5e-5 && fabs(uv[1] - 0.5243) < 5e-5);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_published_pairs),
                                      cmocka_unit_test(test_equal_colours),
-                                     cmocka_unit_test(test_lab)};
+                                     cmocka_unit_test(test_lab), cmocka_unit_test(test_uv)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
