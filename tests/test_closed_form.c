@@ -79,6 +79,23 @@ static void a_ball_focuses(void **state) {
   assert_near(abbe_closed_form_ball_crossing(1, 1.5, h), x + y / tan(turn), 1e-12);
 }
 
+/* A core of the shell's own glass is no core; a ball of air with a core is that core; a thin film
+ * of glass around water hardly turns a ray. A bubble at least reflects what grazes it. */
+static void shells_turn_a_ray(void **state) {
+  (void)state;
+  double plain = 2 * (asin(0.4) - asin(0.4 / 1.5));
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.7, 1.5, 0.4), plain, 1e-15);
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.2, 1.0, 0.4), plain, 1e-15);
+  assert_near(abbe_closed_form_shell_turn(5, 1, 1, 1.5, 0.4), plain, 1e-15);
+  double drop = 2 * (asin(0.4) - asin(0.4 / 1.333));
+  assert_near(abbe_closed_form_shell_turn(1 + 1e-9, 1.5, 1, 1.333, 0.4), drop, 1e-8);
+  /* paraxial: powers of the shell's and the core's surfaces add, 2 (n - 1) / n and so on */
+  double h = 1e-6, power = 2 * (1 - 1 / 1.5) + 2 * (1 / 1.5 - 1) / 0.5;
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.5, 1, h) / h, power, 1e-9);
+  double graze = 2 * (asin(0.5) - asin(0.5 / 1.5)) - (PI - 2 * asin(0.5 / (0.5 * 1.5)));
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.5, 1, 0.5), graze, 1e-15);
+}
+
 /* Descartes 1637 for n = 4/3: 137.97 and 230.97 degrees, at incidences of 59.39 and 71.83. */
 static void the_rainbows_of_descartes(void **state) {
   (void)state;
@@ -146,6 +163,7 @@ int main(void) {
       cmocka_unit_test(a_pane_of_glass),
       cmocka_unit_test(a_slab_moves_a_ray),
       cmocka_unit_test(a_ball_focuses),
+      cmocka_unit_test(shells_turn_a_ray),
       cmocka_unit_test(the_rainbows_of_descartes),
       cmocka_unit_test(a_prism_deviates_least_symmetrically),
   };

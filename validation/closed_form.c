@@ -37,6 +37,15 @@ double abbe_closed_form_ball_crossing(double radius, double n, double height) {
   return height / sin(2 * (asin(s) - asin(s / n)));
 }
 
+double abbe_closed_form_shell_turn(double radius, double n, double core, double core_n,
+                                   double height) {
+  double shell = 2 * (asin(height / radius) - asin(height / (radius * n)));
+  double in = height / (core * n), out = height / (core * core_n);
+  if (in >= 1) return shell;
+  if (out >= 1) return shell - (acos(-1) - 2 * asin(in));
+  return shell + 2 * (asin(in) - asin(out));
+}
+
 bool abbe_closed_form_rainbow(double n, size_t order, double *deviation, double *incidence) {
   double k = (double)order;
   if (order < 1 || !(n > 1) || n >= k + 1) return false;

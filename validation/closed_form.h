@@ -33,6 +33,13 @@ double abbe_closed_form_ball_focus(double radius, double n);
  * it, crosses it: the paraxial one less the spherical aberration. 0 < height < radius. */
 double abbe_closed_form_ball_crossing(double radius, double n, double height);
 
+/* Turning towards the axis of a ray that passes a ball of index n with a concentric core of index
+ * core_n, coming parallel to the axis `height` off it: n r sin(angle) is the same at every shell
+ * [BornWolf1999, 3.2.2]. A ray that misses the core turns as in a plain ball; one that the core
+ * reflects totally turns away from it, by the negative of what it returns. 0 < height < radius. */
+double abbe_closed_form_shell_turn(double radius, double n, double core, double core_n,
+                                   double height);
+
 /* Descartes's rainbow of `order` >= 1 inner reflections: the least deviation, in total turning
  * (more than pi for the secondary), and the incidence at which it stands. False for n <= 1 or
  * n >= order + 1, where there is none. [Adam2002] */

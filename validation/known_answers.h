@@ -28,6 +28,7 @@ extern "C" {
   X(prism, "least deviation of 60-degree prisms at the lines F, d and C; diamond has none")        \
   X(slit, "the spectrum of a slit on a wall at 1 m, position against wavelength")                  \
   X(ball, "a ball lens: focal length, its chromatic shift, spherical aberration")                  \
+  X(nest, "a bubble in a glass ball and a ball of water in glass: the later object is there")      \
   X(slab, "how far a plane-parallel slab moves a ray")                                             \
   X(fresnel, "reflectance of a face at five angles from both sides, and critical angles")          \
   X(rainbow, "primary and secondary rainbows of water")
