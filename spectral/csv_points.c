@@ -238,6 +238,7 @@ static abbe_result find_unit(reader *r, double *unit_nm) {
 
 static abbe_result order(reader *r, abbe_points *list, double unit_nm, const char *what) {
   for (size_t i = 0; i < list->count; i++) list->point[i].lambda_nm *= unit_nm;
+  bool repeats = r->options != NULL && r->options->repeats;
   size_t kept = 0, dropped = 0;
   for (size_t i = 0; i < list->count; i++) {
     double lambda_nm = list->point[i].lambda_nm;
@@ -248,7 +249,7 @@ static abbe_result order(reader *r, abbe_points *list, double unit_nm, const cha
     abbe_report_add(r->report, ABBE_NOTE_LOST, 0, NULL, "%zu points of %s lie outside %g to %g nm",
                     list->count - kept, what, ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
   list->count = kept;
-  abbe_result result = abbe_points_sort(list, &dropped, r->error);
+  abbe_result result = abbe_points_sort(list, repeats ? NULL : &dropped, r->error);
   if (dropped > 0)
     abbe_report_add(r->report, ABBE_NOTE_LOST, 0, NULL,
                     "%zu points of %s stand at a wavelength that was there before", dropped, what);

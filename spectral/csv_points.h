@@ -12,6 +12,7 @@
 #include "spectral/points.h"
 #include "spectral/report.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -25,6 +26,7 @@ typedef struct abbe_csv_options {
   double unit_nm;       /* of the first column: 1 for nm, 1000 for um; 0: the header's, or else nm
                            where all are above 100 and um where all are below 50 */
   abbe_csv_third third;
+  bool repeats;         /* keep several points at one wavelength, as measured ones may be */
 } abbe_csv_options;
 
 typedef struct abbe_csv_points {
@@ -37,7 +39,7 @@ void abbe_csv_points_free(abbe_csv_points *points);
 
 /* Reads size bytes of text (any encoding of spectral/encoding.h); name stands for the file in
  * messages, options may be NULL. A line that cannot be used is noted in report and passed over, as
- * are points at a wavelength that was there before. ABBE_PARSE, with line and text, where the unit
+ * are, without options->repeats, points at a wavelength that was there before. ABBE_PARSE, with line and text, where the unit
  * cannot be told; ABBE_SCHEMA where no point remains. */
 abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *name,
                                   const abbe_csv_options *options, abbe_csv_points *out,

@@ -25,16 +25,12 @@ typedef struct abbe_index_points {
   double *n;           /* [count] */
   double *uncertainty; /* [count] standard uncertainty of n, > 0; NULL: not known */
   bool exact;          /* n of a formula, so that residuals are the form's and not noise */
-  bool unit_guessed;   /* the file did not say nm or um; its numbers left one of them possible */
 } abbe_index_points;
 
-/* Reads a CSV file (at most 16 MiB). Fields are separated by commas, semicolons, tabs or blanks;
- * text after '#' and empty lines are skipped. A first line of words may name the columns and so
- * the unit of the wavelengths: "nm", or "um" (also "µm", "micron"). Without it, wavelengths that
- * all are 100 or more are nm, and those that all are below 100 um. Lines may come in any order.
- * ABBE_IO for the file, ABBE_PARSE for a line that is not two or three finite numbers,
- * ABBE_SCHEMA for numbers outside 1 nm to 1 mm, n outside 0.001 to 1000, uncertainties that are
- * not positive or only on some lines, and units that contradict each other. */
+/* Reads a file of columns as spectral/csv_points.h has it, strictly: a line that is not a point is
+ * an error, since a measurement with holes is another one. Lines may come in any order.
+ * ABBE_IO for the file; ABBE_PARSE for a line, or a unit that cannot be told; ABBE_SCHEMA for no
+ * points, points outside 1 nm to 1 mm, and uncertainties on some lines only. */
 abbe_result abbe_index_points_load(const char *path, abbe_index_points *out, abbe_error *error);
 /* The same from text; name stands for the path in messages. */
 abbe_result abbe_index_points_parse(const char *text, size_t size, const char *name,

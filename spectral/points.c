@@ -44,7 +44,7 @@ static bool in_order(const abbe_points *points) {
 }
 
 abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *error) {
-  *dropped = 0;
+  if (dropped != NULL) *dropped = 0;
   if (in_order(points)) return ABBE_OK;
   placed *list = malloc(points->count * sizeof *list);
   if (list == NULL)
@@ -53,11 +53,11 @@ abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *e
   qsort(list, points->count, sizeof *list, by_wavelength);
   size_t kept = 0;
   for (size_t i = 0; i < points->count; i++) {
-    bool again = kept > 0 && list[i].point.lambda_nm == points->point[kept - 1].lambda_nm;
+    bool again = dropped != NULL && kept > 0 && list[i].point.lambda_nm == points->point[kept - 1].lambda_nm;
     if (!again) points->point[kept++] = list[i].point;
   }
   free(list);
-  *dropped = points->count - kept;
+  if (dropped != NULL) *dropped = points->count - kept;
   points->count = kept;
   return ABBE_OK;
 }

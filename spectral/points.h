@@ -32,7 +32,8 @@ void abbe_points_free(abbe_points *points);
 abbe_result abbe_points_add(abbe_points *points, abbe_point point, abbe_error *error);
 
 /* Puts the points in the order of their wavelengths; of several at one wavelength the one that came
- * first stays, and *dropped counts the others. Wavelengths must be numbers. ABBE_NO_MEMORY. */
+ * first stays, and *dropped counts the others; with dropped NULL all stay, in the order in which
+ * they came. Wavelengths must be numbers. ABBE_NO_MEMORY. */
 abbe_result abbe_points_sort(abbe_points *points, size_t *dropped, abbe_error *error);
 
 /* The values as a spectrum; the points must be in order. ABBE_INVALID_ARGUMENT as

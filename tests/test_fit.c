@@ -62,7 +62,7 @@ static void weights_and_covariance_are_the_straight_lines(void **state) {
     double x = 1e6 / (lambda_nm[i] * lambda_nm[i]);
     chi += pow((n[i] - offset - slope * x) / sigma[i], 2);
   }
-  const abbe_index_points points = {5, lambda_nm, n, sigma, false, false};
+  const abbe_index_points points = {5, lambda_nm, n, sigma, false};
   abbe_fit fit = made(&points, (abbe_fit_request){.terms = 2});
   assert_near(fit.dispersion.c[0], offset, 1e-12);
   assert_near(fit.dispersion.c[1], slope, 1e-12);
@@ -75,7 +75,7 @@ static void weights_and_covariance_are_the_straight_lines(void **state) {
   assert_near(abbe_fit_standard_error(&fit, 1), sqrt(S / determinant), 1e-12);
 
   /* without uncertainties, the residuals give the scale */
-  const abbe_index_points plain = {5, lambda_nm, n, NULL, false, false};
+  const abbe_index_points plain = {5, lambda_nm, n, NULL, false};
   fit = made(&plain, (abbe_fit_request){.terms = 2});
   double sum = 0, x_mean = 0, xx = 0;
   for (int i = 0; i < 5; i++) {
@@ -93,7 +93,7 @@ static void uncertain_points_count_less(void **state) {
   (void)state;
   double lambda_nm[] = {400, 500, 600, 700}, n[] = {1.525, 1.516, 1.60, 1.508162};
   double sigma[] = {1e-5, 1e-5, 1, 1e-5};
-  const abbe_index_points points = {4, lambda_nm, n, sigma, false, false};
+  const abbe_index_points points = {4, lambda_nm, n, sigma, false};
   abbe_fit fit = made(&points, (abbe_fit_request){.terms = 2});
   assert_near(fit.dispersion.c[0], 1.5, 5e-5);
   assert_near(fit.dispersion.c[1], 0.004, 1e-5);
@@ -114,7 +114,7 @@ static void standard_errors_are_the_scatter(void **state) {
       sigma[i] = 1e-5 * (1 + i % 3);
       n[i] = 1.5 + 4e3 / (lambda_nm[i] * lambda_nm[i]) + sigma[i] * random_normal(&random);
     }
-    const abbe_index_points points = {COUNT, lambda_nm, n, sigma, false, false};
+    const abbe_index_points points = {COUNT, lambda_nm, n, sigma, false};
     fit = made(&points, (abbe_fit_request){.terms = 2});
     double off[2] = {fit.dispersion.c[0] - 1.5, fit.dispersion.c[1] - 0.004};
     for (int k = 0; k < 2; k++) sum[k] += off[k], squares[k] += off[k] * off[k];
@@ -133,7 +133,7 @@ static void only_points_of_the_range_are_used(void **state) {
   (void)state;
   double lambda_nm[] = {300, 400, 500, 600, 900};
   double n[] = {3, 1.525, 1.516, 1.5 + 0.004 / 0.36, 3};
-  const abbe_index_points points = {5, lambda_nm, n, NULL, false, false};
+  const abbe_index_points points = {5, lambda_nm, n, NULL, false};
   abbe_fit fit = made(&points, (abbe_fit_request){.terms = 2, .min_nm = 380, .max_nm = 780});
   assert_int_equal(fit.points, 3);
   assert_near(fit.min_nm, 400, 0);
@@ -144,7 +144,7 @@ static void only_points_of_the_range_are_used(void **state) {
 static void as_many_points_as_coefficients_leave_no_error_bar(void **state) {
   (void)state;
   double lambda_nm[] = {400, 600}, n[] = {1.525, 1.511}, sigma[] = {1e-5, 1e-5};
-  abbe_index_points points = {2, lambda_nm, n, NULL, false, false};
+  abbe_index_points points = {2, lambda_nm, n, NULL, false};
   abbe_fit fit = made(&points, (abbe_fit_request){.terms = 2});
   assert_true(fit.max_error < 1e-15);
   assert_true(isnan(fit.reduced_chi_squared));
@@ -252,7 +252,7 @@ static void sellmeier_errors_cover_the_truth(void **state) {
       sigma[i] = 1e-6;
       n[i] = abbe_dispersion_n(&truth, lambda_nm[i]) + sigma[i] * random_normal(&random);
     }
-    const abbe_index_points points = {COUNT, lambda_nm, n, sigma, false, false};
+    const abbe_index_points points = {COUNT, lambda_nm, n, sigma, false};
     abbe_fit fit = made(&points, (abbe_fit_request){.form = ABBE_FIT_SELLMEIER, .terms = 2});
     for (size_t k = 1; k < 5; k++)
       squares[k] +=
@@ -274,7 +274,7 @@ static void hosts_handler(const char *reason, const char *file, int line, int nu
 static void what_cannot_be_is_refused(void **state) {
   (void)state;
   double lambda_nm[] = {486.1, 486.1, 587.6, 656.3}, n[] = {1.5224, 1.5223, 1.5168, 1.5143};
-  const abbe_index_points points = {4, lambda_nm, n, NULL, false, false};
+  const abbe_index_points points = {4, lambda_nm, n, NULL, false};
   const struct {
     abbe_fit_request request;
     const char *part;
@@ -317,7 +317,7 @@ static void a_range_too_small_for_the_data_is_refused(void **state) {
       sigma[i] = 1e-3;
       n[i] = abbe_dispersion_n(&bk7, lambda_nm[i]) + 1e-4 * random_normal(&random);
     }
-    const abbe_index_points points = {COUNT, lambda_nm, n, sigma, false, false};
+    const abbe_index_points points = {COUNT, lambda_nm, n, sigma, false};
     abbe_fit fit;
     abbe_error error = {0};
     abbe_result result = abbe_fit_make(&points, &(abbe_fit_request){.terms = 2}, &fit, &error);
@@ -345,7 +345,7 @@ static void sellmeier_terms_that_the_points_do_not_carry_are_refused(void **stat
     lambda_nm[i] = lines_nm[i];
     n[i] = round(abbe_dispersion_n(&bk7, lines_nm[i]) * 1e5) / 1e5;
   }
-  const abbe_index_points points = {9, lambda_nm, n, NULL, false, false};
+  const abbe_index_points points = {9, lambda_nm, n, NULL, false};
   abbe_fit fit;
   abbe_error error = {0};
   abbe_fit_request request = {.form = ABBE_FIT_SELLMEIER, .terms = 3};
