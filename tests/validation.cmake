@@ -8,6 +8,7 @@ foreach(name
     known_answers
     mask
     media
+    rings
     route
     sphere_quadrature
     ztest
