@@ -9,6 +9,7 @@ foreach(name
     mask
     media
     rings
+    pov_file
     route
     sphere_quadrature
     ztest
