@@ -42,6 +42,40 @@ static int by_name(const void *a, const void *b) {
   return order != 0 ? order : (*p > *q) - (*p < *q); /* places in one array */
 }
 
+abbe_result abbe_material_table_unique(abbe_material_table *table, abbe_report *report,
+                                       abbe_error *error) {
+  const abbe_material **sorted = malloc((table->count + 1) * sizeof *sorted);
+  const abbe_material **first = calloc(table->count + 1, sizeof *first);
+  if (sorted == NULL || first == NULL) {
+    free(sorted);
+    free(first);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu names", table->count);
+  }
+  for (size_t i = 0; i < table->count; i++) sorted[i] = &table->material[i];
+  qsort(sorted, table->count, sizeof *sorted, by_name);
+  for (size_t i = 1; i < table->count; i++) {
+    const abbe_material *before = sorted[i - 1];
+    if (strcasecmp(before->name, sorted[i]->name) != 0) continue;
+    size_t place = (size_t)(before - table->material);
+    first[sorted[i] - table->material] = first[place] != NULL ? first[place] : before;
+  }
+  for (size_t i = 0; i < table->count; i++)
+    if (first[i] != NULL)
+      abbe_report_add(report, ABBE_NOTE_SKIPPED, table->material[i].line, table->material[i].name,
+                      "this name was there before, on line %zu", first[i]->line);
+  size_t kept = 0;
+  for (size_t i = 0; i < table->count; i++) {
+    if (first[i] != NULL)
+      abbe_material_free(&table->material[i]);
+    else
+      table->material[kept++] = table->material[i];
+  }
+  table->count = kept;
+  free(sorted);
+  free(first);
+  return ABBE_OK;
+}
+
 /* Sorted, since a table may hold a whole catalogue. */
 static abbe_result check_unique(const abbe_material_table *t, abbe_yaml *yaml, abbe_yaml_node list,
                                 abbe_error *error) {

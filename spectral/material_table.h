@@ -9,6 +9,7 @@
 
 #include "spectral/error.h"
 #include "spectral/material.h"
+#include "spectral/report.h"
 
 #include <stddef.h>
 
@@ -36,6 +37,11 @@ void abbe_material_table_free(abbe_material_table *table);
 /* Moves the material to the end of the table; *material is zeroed. Neither the record nor its name
  * is checked. ABBE_INVALID_ARGUMENT where the table is full; the material is then as it was. */
 abbe_result abbe_material_table_append(abbe_material_table *table, abbe_material *material,
+                                       abbe_error *error);
+
+/* Drops every material whose name (whatever the case) stands earlier in the table, with a note of
+ * kind SKIPPED for each; report may be NULL. */
+abbe_result abbe_material_table_unique(abbe_material_table *table, abbe_report *report,
                                        abbe_error *error);
 
 /* The material of that name (case-insensitive), owned by the table. ABBE_NOT_FOUND names the

@@ -39,6 +39,16 @@ const char *abbe_number_text(double value, char text[ABBE_NUMBER_TEXT_SIZE]) {
   return text;
 }
 
+double abbe_number_tidy(double value) {
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  if (!isfinite(value)) return value;
+  locale_t host = enter();
+  snprintf(text, sizeof text, "%.15g", value);
+  double tidy = strtod(text, NULL);
+  leave(host);
+  return tidy;
+}
+
 static bool digit(char c) {
   return c >= '0' && c <= '9';
 }

@@ -18,6 +18,10 @@ extern "C" {
  * "nan", "inf" or "-inf" where it is not finite. */
 const char *abbe_number_text(double value, char text[ABBE_NUMBER_TEXT_SIZE]);
 
+/* value rounded to 15 digits: what a decimal was before a change of unit bent its last bit
+ * (0.5876 um is 587.6 nm, not 587.5999999999999). */
+double abbe_number_tidy(double value);
+
 /* The number that text begins with (blanks before it are skipped), in decimal or with an exponent,
  * into *value; *end points past it. False, and *end == text, where none begins there. Hexadecimal
  * numbers, infinities and NaN are not numbers here; one too large for a double is infinite. */
