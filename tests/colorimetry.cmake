@@ -1,4 +1,5 @@
-foreach(name difference display_ocio exr illuminant image observer png_file rgb_space weights)
+foreach(name axis chart colour_map difference display_ocio exr illuminant image observer png_file
+        rgb_space weights)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral)
 endforeach()
 abbe_test(colour_commands cpu abbe_colorimetry abbe_spectral PkgConfig::CJSON)
