@@ -107,10 +107,62 @@ static void test_drawn(void **state) {
   assert_int_equal(abbe_mask_make_drawn(&image, &mask, &error), ABBE_INVALID_ARGUMENT);
 }
 
+static abbe_field field_of(const char *const *names, size_t channels, const char *kind,
+                           const float *values) {
+  abbe_image image = {0};
+  abbe_field field = {0};
+  assert_int_equal(abbe_image_make(4, 1, channels, names, &image, NULL), ABBE_OK);
+  memcpy(image.data, values, 4 * channels * sizeof *values);
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:kind", kind, NULL), ABBE_OK);
+  assert_int_equal(abbe_field_make(&image, "it.exr", &field, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  return field;
+}
+
+static void assert_caustic(abbe_field field, const char *in) {
+  abbe_mask mask = {0};
+  abbe_error error = {0};
+  if (abbe_mask_make_caustic(&field, "it.exr", 0.95, &mask, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_memory_equal(mask.in, in, 4);
+  abbe_mask_free(&mask);
+  abbe_field_free(&field);
+}
+
+/* Of a map by Y or by the sum of its bands; of a picture by its caustic layers and not by itself.
+ */
+static void test_caustic(void **state) {
+  (void)state;
+  static const char *const xyz[] = {"X", "Y", "Z", "caustic.X", "caustic.Y", "caustic.Z"},
+                           *const bands[] = {"S0.450nm", "S0.650nm"};
+  static const float map[12] = {9, 0, 9, 0, 50, 0, 0, 46, 0, 9, 2, 9},
+                     band[8] = {1, 1, 50, 0, 0, 46, 0, 0},
+                     picture[24] = {9, 9, 9, 0, 0, 0, 1, 1, 1, 0, 8, 0,
+                                    9, 9, 9, 5, 0, 5, 1, 1, 1, 0, 8, 0};
+  assert_caustic(field_of(xyz, 3, "receiver map", map), "\0\1\1\0");
+  assert_caustic(field_of(bands, 2, "receiver map", band), "\0\1\1\0");
+  assert_caustic(field_of(xyz, 6, "picture", picture), "\0\1\0\1");
+  abbe_field bare = field_of(xyz, 3, "picture", map);
+  abbe_mask mask = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_mask_make_caustic(&bare, "it.exr", 0.95, &mask, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "it.exr");
+  abbe_field_free(&bare);
+  static const float dark[12] = {1, 0, 1};
+  bare = field_of(xyz, 3, "receiver map", dark);
+  assert_int_equal(abbe_mask_make_caustic(&bare, "it.exr", 0.95, &mask, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "it.exr");
+  abbe_field_free(&bare);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_the_fewest_pixels_that_hold_the_share),
-      cmocka_unit_test(test_of_equals_the_first), cmocka_unit_test(test_smallest_on_many_pixels),
-      cmocka_unit_test(test_what_is_no_light), cmocka_unit_test(test_drawn)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_fewest_pixels_that_hold_the_share),
+                                     cmocka_unit_test(test_of_equals_the_first),
+                                     cmocka_unit_test(test_smallest_on_many_pixels),
+                                     cmocka_unit_test(test_what_is_no_light),
+                                     cmocka_unit_test(test_drawn),
+                                     cmocka_unit_test(test_caustic)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

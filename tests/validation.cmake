@@ -2,6 +2,7 @@ set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
 foreach(name
     closed_form
     compare
+    difference_picture
     field
     geometry
     interface

@@ -1,5 +1,7 @@
 #include "validation/mask.h"
 
+#include "colorimetry/rgb_space.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -73,6 +75,47 @@ abbe_result abbe_mask_make_brightest(const double *light, size_t count, double s
   abbe_result result = make_empty(count, out, error);
   if (result == ABBE_OK) fill(light, t, out);
   return result;
+}
+
+static double caustic_light(const abbe_field *f, size_t pixel) {
+  if (f->kind == ABBE_FIELD_PICTURE) {
+    const float *v = f->caustic.value + 3 * pixel;
+    const double rgb[3] = {v[0], v[1], v[2]};
+    double xyz[3];
+    abbe_rgb_space_apply(f->to_xyz, rgb, xyz);
+    return xyz[1];
+  }
+  if (f->colour.channels > 0) {
+    double xyz[3];
+    abbe_field_xyz(f, pixel, xyz, NULL);
+    return xyz[1];
+  }
+  double sum = 0;
+  for (size_t c = 0; c < f->bands.channels; c++)
+    sum += (double)f->bands.value[pixel * f->bands.channels + c];
+  return sum;
+}
+
+abbe_result abbe_mask_make_caustic(const abbe_field *field, const char *name, double share,
+                                   abbe_mask *out, abbe_error *error) {
+  *out = (abbe_mask){0};
+  if (field->kind == ABBE_FIELD_PICTURE && field->caustic.channels == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: a picture without the layers caustic.* does not tell where its "
+                          "caustic is; a picture of 'abbe trace' or of 'abbe render --layers' "
+                          "does, and so does a mask that is drawn",
+                          name);
+  size_t count = field->width * field->height;
+  double *light = count > SIZE_MAX / sizeof *light ? NULL : malloc(count * sizeof *light);
+  if (light == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for a mask of %zu pixels",
+                          count);
+  for (size_t i = 0; i < count; i++) light[i] = caustic_light(field, i);
+  abbe_error why = {0};
+  abbe_result result = abbe_mask_make_brightest(light, count, share, out, &why);
+  free(light);
+  if (result == ABBE_OK) return ABBE_OK;
+  return abbe_error_set(error, result, "%s: its caustic has no mask: %.400s", name, why.text);
 }
 
 static size_t drawn_channel(const abbe_image *image) {

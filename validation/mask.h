@@ -8,6 +8,7 @@
 #define ABBE_VALIDATION_MASK_H
 
 #include "colorimetry/image.h"
+#include "validation/field.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -29,6 +30,11 @@ typedef struct abbe_mask {
  * count out of range; ABBE_NO_MEMORY. */
 abbe_result abbe_mask_make_brightest(const double *light, size_t count, double share,
                                      abbe_mask *out, abbe_error *error);
+/* The brightest pixels of a field's caustic: of the map itself (its Y, or the sum of its bands), or
+ * of the layers caustic.* of a picture. ABBE_INVALID_ARGUMENT, with `name`, where a picture has no
+ * such layers or the caustic is dark. */
+abbe_result abbe_mask_make_caustic(const abbe_field *field, const char *name, double share,
+                                   abbe_mask *out, abbe_error *error);
 /* The pixels whose first channel ("R", then "Y", else the first there is) is above 0.5.
  * ABBE_INVALID_ARGUMENT where there is none. */
 abbe_result abbe_mask_make_drawn(const abbe_image *image, abbe_mask *out, abbe_error *error);
