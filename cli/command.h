@@ -25,6 +25,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO") \
   X(export, "write a scene for POV-Ray, an outside witness of its caustics") \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics") \
+  X(compare, "say how far a picture or a receiver map is from a reference") \
   X(validate, "hold the reference tracer against optics that is known")
 
 #define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);

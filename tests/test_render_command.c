@@ -132,7 +132,8 @@ static void test_a_map_like_another(void **state) {
 static void test_every_command_has_help(void **state) {
   (void)state;
   static const char *const commands[] = {"render",    "plan",    "weights",
-                                         "materials", "display", "info"};
+                                         "materials", "display", "info",
+                                         "compare"};
   assert_int_equal(run_line("\"$abbe\" help"), 0);
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
     char line[128];

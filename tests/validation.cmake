@@ -17,3 +17,6 @@ foreach(name
     )
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
+abbe_test(compare_command program ${validation_rooms} PkgConfig::CJSON)
+target_compile_definitions(test_compare_command PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
+add_dependencies(test_compare_command abbe)
