@@ -90,22 +90,23 @@ static abbe_result check_tolerances(const request *q, const abbe_comparison *c, 
   return ABBE_OK;
 }
 
+static const char *base_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash == NULL ? path : slash + 1;
+}
+
 static abbe_result draw(const request *q, work *w, abbe_error *error) {
   if (q->difference == NULL) return ABBE_OK;
-  abbe_image picture = {0};
   double range = q->range, scale = w->comparison.scale;
+  char title[160];
+  snprintf(title, sizeof title, "%.70s less %.70s", base_of(q->path[1]), base_of(q->path[0]));
   abbe_result result = ABBE_OK;
   if (range == 0)
     result = abbe_difference_picture_range(&w->field[0], &w->field[1], scale, &range, error);
-  if (result == ABBE_OK && range == 0) range = w->comparison.unit; /* nothing differs */
+  if (range == 0) range = w->comparison.unit; /* nothing differs */
   if (result == ABBE_OK)
-    result =
-        abbe_difference_picture_make(&w->field[0], &w->field[1], scale, range, &picture, error);
-  if (result == ABBE_OK) result = abbe_png_write(q->difference, &picture, 8, error);
-  if (result == ABBE_OK)
-    fprintf(stderr, "%s: test less reference in Y, blue -%g to red %g\n", q->difference, range,
-            range);
-  abbe_image_free(&picture);
+    result = abbe_difference_picture_write(q->difference, &w->field[0], &w->field[1], scale, range,
+                                           title, error);
   return result;
 }
 
@@ -179,8 +180,8 @@ static const struct argp_option options[] = {
     {"tolerance", KEY_TOLERANCE, "[mask.]METRIC=X", 0,
      "end with 3 where the metric is above X; of an energy ratio, its distance from 1; repeatable",
      0},
-    {"difference", KEY_DIFFERENCE, "FILE.png", 0, "where TEST is brighter or darker, in colours",
-     0},
+    {"difference", KEY_DIFFERENCE, "FILE", 0,
+     "where TEST is brighter or darker, in colours: a .png or .svg", 0},
     {"range", KEY_RANGE, "X", 0, "of the difference picture, -X to X (99 % of what there is)", 0},
     {"scale", KEY_SCALE, "best", 0, "multiply TEST by its best single factor first", 0},
     {"white", KEY_WHITE, "Y|X,Y,Z", 0,
