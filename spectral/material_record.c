@@ -13,7 +13,15 @@ typedef struct reader {
   abbe_yaml_node record;
   abbe_material *material;
   abbe_error *error;
+  bool lenient; /* for a record that is to be examined */
 } reader;
+
+/* What the lenient reading goes without. */
+static abbe_result require(reader *r, const char *key, abbe_yaml_node *node) {
+  if (!r->lenient) return abbe_yaml_require(r->yaml, r->record, key, node, r->error);
+  *node = abbe_yaml_get(r->yaml, r->record, key);
+  return ABBE_OK;
+}
 
 static const char *const interpolations[] = {"linear", "monotone", "spline", NULL};
 
@@ -71,8 +79,9 @@ static abbe_result read_points(reader *r, abbe_yaml_node list, const char *key, 
 static abbe_result read_range(reader *r, abbe_yaml_node where, const char *key, double *min_nm,
                               double *max_nm) {
   double range[2] = {*min_nm, *max_nm};
-  abbe_result result = abbe_yaml_get_numbers(r->yaml, where, key, 2, ABBE_MATERIAL_LOW_NM,
-                                             ABBE_MATERIAL_HIGH_NM, range, r->error);
+  double low = r->lenient ? 1e-3 : ABBE_MATERIAL_LOW_NM; /* a range in um is one to find */
+  abbe_result result =
+      abbe_yaml_get_numbers(r->yaml, where, key, 2, low, ABBE_MATERIAL_HIGH_NM, range, r->error);
   if (result != ABBE_OK) return result;
   if (range[0] >= range[1])
     return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, where, key), r->error,
@@ -150,11 +159,14 @@ static abbe_result read_formula(reader *r) {
   abbe_material *m = r->material;
   abbe_result result = read_coefficients(r);
   if (result != ABBE_OK) return result;
-  abbe_yaml_node node;
+  abbe_yaml_node node = {0};
   m->min_nm = ABBE_MATERIAL_LOW_NM;
   m->max_nm = ABBE_MATERIAL_HIGH_NM;
-  if (m->dispersion.model != ABBE_DISPERSION_CONSTANT)
-    result = abbe_yaml_require(r->yaml, r->record, "range_nm", &node, r->error);
+  if (m->dispersion.model != ABBE_DISPERSION_CONSTANT) result = require(r, "range_nm", &node);
+  if (r->lenient && node.id == 0 && m->dispersion.model != ABBE_DISPERSION_CONSTANT) {
+    m->min_nm = m->max_nm = 0;
+    return ABBE_OK;
+  }
   return result != ABBE_OK ? result : read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm);
 }
 
@@ -163,7 +175,7 @@ static abbe_result read_dispersion(reader *r) {
   abbe_result result = read_model(r, &d->model);
   if (result != ABBE_OK) return result;
   result = d->model == ABBE_DISPERSION_TABULATED ? read_tabulated(r) : read_formula(r);
-  if (result != ABBE_OK) return result;
+  if (result != ABBE_OK || r->lenient) return result;
   abbe_error why;
   if (abbe_material_check(r->material, &why) != ABBE_OK)
     return abbe_yaml_fail(r->yaml, r->record, r->error, "%s", why.text);
@@ -354,7 +366,7 @@ static abbe_result read_texts(reader *r) {
   if (result == ABBE_OK) result = check_name(r);
   if (result == ABBE_OK)
     result = abbe_yaml_get_string(r->yaml, r->record, "description", &m->description, r->error);
-  if (result == ABBE_OK) result = abbe_yaml_require(r->yaml, r->record, "source", &node, r->error);
+  if (result == ABBE_OK) result = require(r, "source", &node);
   if (result == ABBE_OK)
     result = abbe_yaml_get_string(r->yaml, r->record, "source", &m->source, r->error);
   if (result == ABBE_OK)
@@ -411,6 +423,12 @@ static abbe_result read_record(reader *r) {
 
 abbe_result abbe_material_record_read(abbe_yaml *yaml, abbe_yaml_node record,
                                       abbe_material *material, abbe_error *error) {
-  reader r = {yaml, record, material, error};
+  reader r = {yaml, record, material, error, false};
+  return read_record(&r);
+}
+
+abbe_result abbe_material_record_read_lenient(abbe_yaml *yaml, abbe_yaml_node record,
+                                              abbe_material *material, abbe_error *error) {
+  reader r = {yaml, record, material, error, true};
   return read_record(&r);
 }

@@ -19,6 +19,11 @@ extern "C" {
 abbe_result abbe_material_record_read(abbe_yaml *yaml, abbe_yaml_node record,
                                       abbe_material *material, abbe_error *error);
 
+/* The same for a record that is to be examined, not used: without a source it has none (NULL),
+ * without range_nm it has none (0 to 0), and its formula may have no real index somewhere. */
+abbe_result abbe_material_record_read_lenient(abbe_yaml *yaml, abbe_yaml_node record,
+                                              abbe_material *material, abbe_error *error);
+
 #ifdef __cplusplus
 }
 #endif

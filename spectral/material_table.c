@@ -4,6 +4,7 @@
 #include "spectral/nearest.h"
 #include "spectral/yaml.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,26 +98,62 @@ static abbe_result check_unique(const abbe_material_table *t, abbe_yaml *yaml, a
                         again->name, first->line);
 }
 
-static abbe_result read_records(abbe_yaml *yaml, abbe_yaml_node list, abbe_material_table *t,
-                                abbe_error *error) {
+/* How a table is read: lenient notes what it leaves out. */
+typedef struct mode {
+  bool lenient;
+  abbe_report *report;
+} mode;
+
+static abbe_result no_room(abbe_error *error, size_t count) {
+  return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu materials", count);
+}
+
+/* Notes what is wrong with a record that cannot be read, without the name and line that stand in
+ * the note already. */
+static void leave_out(const mode *how, abbe_yaml *yaml, abbe_yaml_node record, const char *file,
+                      abbe_material *material, const abbe_error *why) {
+  size_t line = abbe_yaml_line(yaml, record), length = strlen(file);
+  const char *text = why->text;
+  if (strncmp(text, file, length) == 0 && text[length] == ':') {
+    char *end = NULL;
+    unsigned long at = strtoul(text + length + 1, &end, 10);
+    if (end > text + length + 1 && end[0] == ':' && end[1] == ' ') {
+      line = at;
+      text = end + 2;
+    }
+  }
+  abbe_report_add(how->report, ABBE_NOTE_SKIPPED, line, material->name, "%s", text);
+  abbe_material_free(material);
+}
+
+static abbe_result read_records(abbe_yaml *yaml, abbe_yaml_node list, const mode *how,
+                                abbe_material_table *t, abbe_error *error) {
   size_t count = abbe_yaml_count(yaml, list);
   if (!abbe_yaml_is_sequence(yaml, list) || count == 0 || count > MAX_MATERIALS)
     return abbe_yaml_fail(yaml, list, error, "'materials' wants a list of 1 to %d records",
                           MAX_MATERIALS);
   t->material = calloc(count, sizeof *t->material);
-  if (t->material == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu materials", count);
+  if (t->material == NULL) return no_room(error, count);
   for (size_t i = 0; i < count; i++) {
     abbe_yaml_node record = abbe_yaml_item(yaml, list, i);
-    t->count = i + 1; /* so that a half-read record is freed too */
-    abbe_result result = abbe_material_record_read(yaml, record, &t->material[i], error);
-    if (result != ABBE_OK) return result;
+    abbe_material *m = &t->material[t->count++]; /* counted now, so that half of one is freed too */
+    if (!how->lenient) {
+      abbe_result result = abbe_material_record_read(yaml, record, m, error);
+      if (result != ABBE_OK) return result;
+      continue;
+    }
+    abbe_error why = {0};
+    abbe_result result = abbe_material_record_read_lenient(yaml, record, m, &why);
+    if (result == ABBE_NO_MEMORY) return no_room(error, count);
+    if (result == ABBE_OK) continue;
+    leave_out(how, yaml, record, t->path, m, &why);
+    t->count--;
   }
-  return check_unique(t, yaml, list, error);
+  return how->lenient ? ABBE_OK : check_unique(t, yaml, list, error);
 }
 
-static abbe_result read_table(abbe_yaml *yaml, const char *name, abbe_material_table *t,
-                              abbe_error *error) {
+static abbe_result read_table(abbe_yaml *yaml, const char *name, const mode *how,
+                              abbe_material_table *t, abbe_error *error) {
   abbe_yaml_node root = abbe_yaml_root(yaml), list;
   t->path = strdup(name);
   if (t->path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", name);
@@ -124,35 +161,56 @@ static abbe_result read_table(abbe_yaml *yaml, const char *name, abbe_material_t
   abbe_result result = abbe_yaml_get_string(yaml, root, "description", &t->description, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, root, "a material table", error);
   if (result == ABBE_OK) result = abbe_yaml_require(yaml, root, "materials", &list, error);
-  return result == ABBE_OK ? read_records(yaml, list, t, error) : result;
+  return result == ABBE_OK ? read_records(yaml, list, how, t, error) : result;
+}
+
+static abbe_result parse(const char *text, size_t size, const char *name, const mode *how,
+                         abbe_material_table *out, abbe_error *error) {
+  *out = (abbe_material_table){0};
+  abbe_yaml *yaml = NULL;
+  abbe_result result = abbe_yaml_parse(text, size, name, &yaml, error);
+  if (result == ABBE_OK) result = read_table(yaml, name, how, out, error);
+  if (result != ABBE_OK) abbe_material_table_free(out);
+  abbe_yaml_free(yaml);
+  return result;
+}
+
+static abbe_result load(const char *path, const mode *how, abbe_material_table *out,
+                        abbe_error *error) {
+  *out = (abbe_material_table){0};
+  if (path == NULL || strcmp(path, "default") == 0)
+    return parse((const char *)abbe_embedded_materials, abbe_embedded_materials_size, "default",
+                 how, out, error);
+  if (strcmp(path, "thesis") == 0)
+    return parse((const char *)abbe_embedded_thesis, abbe_embedded_thesis_size, "thesis", how, out,
+                 error);
+  abbe_yaml *yaml = NULL;
+  abbe_result result = abbe_yaml_load(path, &yaml, error);
+  if (result == ABBE_OK) result = read_table(yaml, path, how, out, error);
+  if (result != ABBE_OK) abbe_material_table_free(out);
+  abbe_yaml_free(yaml);
+  return result;
 }
 
 abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,
                                       abbe_material_table *out, abbe_error *error) {
-  *out = (abbe_material_table){0};
-  abbe_yaml *yaml = NULL;
-  abbe_result result = abbe_yaml_parse(text, size, name, &yaml, error);
-  if (result == ABBE_OK) result = read_table(yaml, name, out, error);
-  if (result != ABBE_OK) abbe_material_table_free(out);
-  abbe_yaml_free(yaml);
-  return result;
+  return parse(text, size, name, &(mode){false, NULL}, out, error);
 }
 
 abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
                                      abbe_error *error) {
-  *out = (abbe_material_table){0};
-  if (path == NULL || strcmp(path, "default") == 0)
-    return abbe_material_table_parse((const char *)abbe_embedded_materials,
-                                     abbe_embedded_materials_size, "default", out, error);
-  if (strcmp(path, "thesis") == 0)
-    return abbe_material_table_parse((const char *)abbe_embedded_thesis, abbe_embedded_thesis_size,
-                                     "thesis", out, error);
-  abbe_yaml *yaml = NULL;
-  abbe_result result = abbe_yaml_load(path, &yaml, error);
-  if (result == ABBE_OK) result = read_table(yaml, path, out, error);
-  if (result != ABBE_OK) abbe_material_table_free(out);
-  abbe_yaml_free(yaml);
-  return result;
+  return load(path, &(mode){false, NULL}, out, error);
+}
+
+abbe_result abbe_material_table_parse_lenient(const char *text, size_t size, const char *name,
+                                              abbe_material_table *out, abbe_report *report,
+                                              abbe_error *error) {
+  return parse(text, size, name, &(mode){true, report}, out, error);
+}
+
+abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_table *out,
+                                             abbe_report *report, abbe_error *error) {
+  return load(path, &(mode){true, report}, out, error);
 }
 
 void abbe_material_table_free(abbe_material_table *table) {

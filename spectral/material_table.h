@@ -32,6 +32,15 @@ abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
 /* The same from text; name stands for the path in messages. */
 abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,
                                       abbe_material_table *out, abbe_error *error);
+/* A table to be examined, not used: records are read as abbe_material_record_read_lenient has it,
+ * one that cannot be read even so is noted in report with its line and left out (the table may
+ * then be empty), and names may stand twice. */
+abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_table *out,
+                                             abbe_report *report, abbe_error *error);
+/* The same from text. */
+abbe_result abbe_material_table_parse_lenient(const char *text, size_t size, const char *name,
+                                              abbe_material_table *out, abbe_report *report,
+                                              abbe_error *error);
 void abbe_material_table_free(abbe_material_table *table);
 
 /* Moves the material to the end of the table; *material is zeroed. Neither the record nor its name

@@ -16,6 +16,7 @@ abbe_test(fit cpu abbe_spectral)
 abbe_test(material_numbers cpu abbe_spectral)
 abbe_test(glass_distance cpu abbe_spectral)
 abbe_test(convert cpu abbe_spectral)
+abbe_test(doctor cpu abbe_spectral)
 abbe_test(material cpu abbe_spectral)
 foreach(name number encoding report tally points absorption csv_points agf agf_formula agf_write
         material_write)

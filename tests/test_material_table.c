@@ -497,6 +497,46 @@ static void the_documented_table_is_one(void **state) {
   free(text);
 }
 
+/* For an examination all that can be read is there, and the rest is told with its line. */
+static void a_lenient_reading_keeps_what_can_be_read(void **state) {
+  (void)state;
+  const char text[] = "materials:\n"
+                      "- {name: a, model: cauchy, coefficients: [1.5, 0.004]}\n"
+                      "- {name: b, model: cauchy, coefficients: [1.5, x], range_nm: [380, 780]}\n"
+                      "- 3\n"
+                      "- {name: A, model: sellmeier2, coefficients: [0, 1, 0.2],\n"
+                      "   range_nm: [0.38, 780], source: s}\n";
+  abbe_material_table t;
+  abbe_report report = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_material_table_parse(text, sizeof text - 1, "t.yaml", &t, &error),
+                   ABBE_SCHEMA);
+  assert_int_equal(
+      abbe_material_table_parse_lenient(text, sizeof text - 1, "t.yaml", &t, &report, &error),
+      ABBE_OK);
+  assert_int_equal(t.count, 2);
+  assert_string_equal(t.material[0].name, "a");
+  assert_null(t.material[0].source);
+  assert_near(t.material[0].max_nm, 0, 0);
+  assert_near(t.material[1].min_nm, 0.38, 0);
+  assert_int_equal(t.material[1].line, 5);
+  assert_int_equal(report.count, 2);
+  assert_int_equal(report.note[0].line, 3);
+  assert_string_equal(report.note[0].name, "b");
+  assert_string_equal(report.note[0].text, "'coefficients: x' is not a finite number");
+  assert_int_equal(report.note[1].line, 4);
+  assert_contains(report.note[1].text, "must be a mapping");
+  abbe_material_table_free(&t);
+  abbe_report_free(&report);
+  assert_int_equal(abbe_material_table_parse_lenient("materials: 3\n", 13, "t.yaml", &t, NULL,
+                                                     &error),
+                   ABBE_SCHEMA);
+  assert_int_equal(abbe_material_table_load_lenient("/no/such.yaml", &t, NULL, &error), ABBE_IO);
+  assert_int_equal(abbe_material_table_load_lenient("thesis", &t, NULL, &error), ABBE_OK);
+  assert_int_equal(t.count, 5);
+  abbe_material_table_free(&t);
+}
+
 /* Any cut of a good file is either a smaller good file or a complaint; nothing leaks or crashes. */
 static void cut_tables_are_harmless(void **state) {
   (void)state;
@@ -538,6 +578,7 @@ int main(void) {
       cmocka_unit_test(bad_absorption_and_fits_are_refused),
       cmocka_unit_test(missing_files_are_named),
       cmocka_unit_test(the_documented_table_is_one),
+      cmocka_unit_test(a_lenient_reading_keeps_what_can_be_read),
       cmocka_unit_test(cut_tables_are_harmless),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
