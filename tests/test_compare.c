@@ -317,6 +317,43 @@ static void test_the_noise_of_both(void **state) {
   abbe_field_free(&b);
 }
 
+/* Errors that are themselves estimated, from 16 passes, as a tracer's are: Student's t holds. */
+static void make_passes(abbe_field *reference, const abbe_field *exact, unsigned seed) {
+  enum { PASSES = 16 };
+  for (size_t i = 0; i < 3 * exact->width * exact->height; i++) {
+    double sum = 0, square = 0, v = (double)exact->colour.value[i];
+    for (int k = 0; k < PASSES; k++) {
+      double sample = v * (1 + 0.3 * normal(&seed));
+      sum += sample;
+      square += sample * sample;
+    }
+    double mean = sum / PASSES;
+    reference->colour.value[i] = (float)mean;
+    reference->colour.error[i] = (float)sqrt((square / PASSES - mean * mean) / (PASSES - 1));
+  }
+  reference->passes = PASSES;
+}
+
+static void test_errors_from_passes(void **state) {
+  (void)state;
+  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  paint(&a);
+  int above = 0;
+  for (unsigned i = 0; i < 8; i++) {
+    make_passes(&b, &a, 31 + i);
+    abbe_comparison c = compare(&b, &a, NULL);
+    const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
+    assert_near(rmse->value / rmse->noise, 1, 0.08);
+    assert_near(value(&c.whole, ABBE_COMPARE_Z_OVER_2), 0.0639, 0.015); /* t, 15 degrees */
+    assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 15.0 / 13, 0.1);
+    above += value(&c.whole, ABBE_COMPARE_Z_EXCESS) > 1;
+    abbe_comparison_free(&c);
+  }
+  assert_true(above <= 1);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
 /* A mask measures what a field of its pixels alone does. */
 static void test_a_mask_is_a_field_of_its_pixels(void **state) {
   (void)state;
@@ -456,6 +493,7 @@ int main(void) {
                                      cmocka_unit_test(test_an_exact_field_lies_in_the_noise),
                                      cmocka_unit_test(test_a_true_difference_is_found),
                                      cmocka_unit_test(test_the_noise_of_both),
+                                     cmocka_unit_test(test_errors_from_passes),
                                      cmocka_unit_test(test_a_mask_is_a_field_of_its_pixels),
                                      cmocka_unit_test(test_bands),
                                      cmocka_unit_test(test_pixels_that_are_not_finite),

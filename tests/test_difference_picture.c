@@ -6,6 +6,12 @@
 
 #include <unistd.h>
 
+/* Fontconfig keeps patterns in caches of its own until the process ends. */
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void) {
+  return "leak:libfontconfig";
+}
+
 static abbe_field field_of(size_t width, size_t height, double y) {
   static const char *const names[] = {"X", "Y", "Z"};
   abbe_image image = {0};

@@ -90,6 +90,22 @@ static void test_layers_by_name(void **state) {
   abbe_image_free(&image);
 }
 
+static void test_errors_that_are_not_known(void **state) {
+  (void)state;
+  static const char *const names[] = {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"};
+  abbe_image image = image_of(2, 1, 6, names);
+  for (size_t i = 0; i < 12; i++)
+    if (i % 6 >= 3) image.data[i] = INFINITY;
+  abbe_field f = field_of(&image);
+  assert_null(f.colour.error);
+  abbe_field_free(&f);
+  image.data[11] = 1;
+  f = field_of(&image);
+  assert_non_null(f.colour.error);
+  abbe_field_free(&f);
+  abbe_image_free(&image);
+}
+
 static void test_spaces(void **state) {
   (void)state;
   static const char *const names[] = {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"};
@@ -295,6 +311,7 @@ static void test_from_a_file(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_layers_by_name),
+                                     cmocka_unit_test(test_errors_that_are_not_known),
                                      cmocka_unit_test(test_spaces),
                                      cmocka_unit_test(test_what_cannot_be_compared),
                                      cmocka_unit_test(test_summing_down_keeps_the_flux),

@@ -65,6 +65,15 @@ static abbe_result take(const abbe_image *image, const char *prefix, const char 
   return *out == NULL ? no_memory(name, error) : ABBE_OK;
 }
 
+/* Standard errors none of which is finite are not known: a trace of one pass has such. */
+static void drop_unknown(float **errors, size_t count) {
+  if (*errors == NULL) return;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite((*errors)[i])) return;
+  free(*errors);
+  *errors = NULL;
+}
+
 /* Colour */
 
 static bool is_stated(const double xy[8]) {
@@ -104,6 +113,7 @@ static abbe_result take_colour(const abbe_image *image, const char *name, abbe_f
   if (result != ABBE_OK || f->colour.value == NULL) return result;
   f->colour.channels = 3;
   result = take(image, "stderr.", names, 3, name, &f->colour.error, error);
+  drop_unknown(&f->colour.error, 3 * image->width * image->height);
   if (result == ABBE_OK) result = take(image, "caustic.", names, 3, name, &f->caustic.value, error);
   if (f->caustic.value != NULL) f->caustic.channels = 3;
   return result == ABBE_OK ? find_space(image, name, f, error) : result;
@@ -162,6 +172,7 @@ static abbe_result take_bands(const abbe_image *image, const char *name, abbe_fi
   abbe_result result = take(image, "", names, count, name, &f->bands.value, error);
   if (result == ABBE_OK)
     result = take(image, "stderr.", names, count, name, &f->bands.error, error);
+  drop_unknown(&f->bands.error, count * image->width * image->height);
   f->bands.channels = f->bands.value == NULL ? 0 : count;
   return result;
 }

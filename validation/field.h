@@ -3,8 +3,8 @@
  * Made from an OpenEXR file of the renderer's, the tracer's or another program's. Colour is three
  * channels, R, G, B or X, Y, Z, kept as the file has them beside the matrix to XYZ; bands are
  * the layers S0.550,000000nm of spectral OpenEXR [Fichet2021]. Standard errors are the channels of
- * the same names behind "stderr.". Two fields are brought to one size and one space here; how far
- * they are apart is compare.h's business.
+ * the same names behind "stderr."; where none of them is finite they are not known. Two fields are
+ * brought to one size and one space here; how far they are apart is compare.h's business.
  */
 #ifndef ABBE_VALIDATION_FIELD_H
 #define ABBE_VALIDATION_FIELD_H
