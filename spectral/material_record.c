@@ -202,7 +202,7 @@ static abbe_result read_attenuation(reader *r, abbe_yaml_node where) {
   abbe_result result = read_interpolation(r, where, &interpolation);
   if (result != ABBE_OK) return result;
   return read_points(r, abbe_yaml_get(r->yaml, where, "attenuation_per_m"), "attenuation_per_m", 0,
-                     1e12, interpolation, &r->material->attenuation);
+                     1e15, interpolation, &r->material->attenuation);
 }
 
 /* Pairs into points, for what is converted. */

@@ -108,7 +108,7 @@ static inline void random_catalogue(abbe_material_catalogue *c) {
   if (rand() % 2) c->code = strdup("517642.251");
   if (rand() % 2) c->status = strdup(rand() % 2 ? "obsolete" : "standard");
   if (c->status != NULL && rand() % 2) c->melt_frequency = 1 + rand() % 5;
-  if (rand() % 2) c->density_g_cm3 = random_in(1, 6);
+  if (rand() % 2) c->density_g_cm3 = round(random_in(1, 6) * 1000) / 1000;
   if (rand() % 2) c->expansion_per_k[0] = round(random_in(1, 20) * 1e4) / 1e10;
   if (rand() % 2) c->dpgf = random_in(-0.01, 0.05);
   if (rand() % 2)

@@ -19,7 +19,7 @@ abbe_test(convert cpu abbe_spectral)
 abbe_test(doctor cpu abbe_spectral)
 abbe_test(material cpu abbe_spectral)
 foreach(name number encoding report tally points absorption csv_points agf agf_formula agf_write
-        material_write)
+        material_write rii rii_write html_text)
   abbe_test(${name} cpu abbe_spectral)
 endforeach()
 abbe_test(material_table cpu abbe_spectral)
