@@ -15,7 +15,11 @@
 /* X(name, summary): every verb NAME is `int abbe_materials_NAME(int argc, char **argv)`. */
 #define ABBE_MATERIALS_VERBS(X)                                                                    \
   X(list, "the materials of a table")                                                              \
-  X(show, "one material: model, indices, Abbe number, absorption, source, fits")
+  X(show, "one material: model, indices, Abbe number, absorption, source, fits")                   \
+  X(set, "change values of a record, and nothing else in the file")                                \
+  X(add, "add a record to a table, new or from another table")                                     \
+  X(remove, "take records out of a table")                                                         \
+  X(rename, "give a record another name")
 
 #define ABBE_MATERIALS_DECLARE(name, summary) int abbe_materials_##name(int argc, char **argv);
 ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)

@@ -175,15 +175,21 @@ static abbe_result parse(const char *text, size_t size, const char *name, const 
   return result;
 }
 
+const char *abbe_material_table_shipped(const char *path, size_t *size) {
+  bool thesis = path != NULL && strcmp(path, "thesis") == 0;
+  bool shipped = thesis || path == NULL || strcmp(path, "default") == 0;
+  *size = !shipped ? 0 : thesis ? abbe_embedded_thesis_size : abbe_embedded_materials_size;
+  if (!shipped) return NULL;
+  return (const char *)(thesis ? abbe_embedded_thesis : abbe_embedded_materials);
+}
+
 static abbe_result load(const char *path, const mode *how, abbe_material_table *out,
                         abbe_error *error) {
   *out = (abbe_material_table){0};
-  if (path == NULL || strcmp(path, "default") == 0)
-    return parse((const char *)abbe_embedded_materials, abbe_embedded_materials_size, "default",
-                 how, out, error);
-  if (strcmp(path, "thesis") == 0)
-    return parse((const char *)abbe_embedded_thesis, abbe_embedded_thesis_size, "thesis", how, out,
-                 error);
+  size_t size;
+  const char *shipped = abbe_material_table_shipped(path, &size);
+  if (shipped != NULL)
+    return parse(shipped, size, path == NULL ? "default" : path, how, out, error);
   abbe_yaml *yaml = NULL;
   abbe_result result = abbe_yaml_load(path, &yaml, error);
   if (result == ABBE_OK) result = read_table(yaml, path, how, out, error);

@@ -26,6 +26,9 @@ typedef struct abbe_material_table {
   abbe_material *material; /* [count], in file order */
 } abbe_material_table;
 
+/* The text of a table that is compiled in, as it is in its file: path is NULL, "default" or
+ * "thesis"; NULL and 0 for any other. */
+const char *abbe_material_table_shipped(const char *path, size_t *size);
 /* Loads a table: NULL or "default", "thesis", or the path of a YAML file (at most 16 MiB). */
 abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
                                      abbe_error *error);

@@ -69,13 +69,13 @@ abbe_result abbe_table_edit_parse(const char *text, size_t size, const char *nam
 
 abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_error *error) {
   *out = NULL;
-  if (path == NULL || strcmp(path, "default") == 0 || strcmp(path, "thesis") == 0)
+  size_t size = 0;
+  if (abbe_material_table_shipped(path, &size) != NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the table '%s' is compiled in and cannot be edited; write a copy of it "
                           "to a file, and edit that",
                           path == NULL ? "default" : path);
   char *text = NULL;
-  size_t size = 0;
   abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
   if (result == ABBE_OK) result = abbe_table_edit_parse(text, size, path, out, error);
   if (result == ABBE_OK) (*out)->in_memory = false;
@@ -107,6 +107,11 @@ void abbe_table_edit_free(abbe_table_edit *edit) {
 const char *abbe_table_edit_text(const abbe_table_edit *edit, size_t *size) {
   *size = edit->yaml.size;
   return edit->yaml.text;
+}
+
+const char *abbe_table_edit_original(const abbe_table_edit *edit, size_t *size) {
+  *size = edit->before_size;
+  return edit->before;
 }
 
 /* ---- records and keys ---- */
@@ -445,6 +450,13 @@ static bool was_a_table(const abbe_table_edit *edit) {
   return good;
 }
 
+abbe_result abbe_table_edit_allow(const abbe_table_edit *edit, abbe_error *error) {
+  abbe_error why = {0};
+  abbe_result result = abbe_table_edit_check(edit, &why);
+  if (result == ABBE_OK || !was_a_table(edit)) return ABBE_OK;
+  return abbe_error_set(error, result, "the edit is refused, nothing was written: %s", why.text);
+}
+
 abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error) {
   if (edit->in_memory)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: was read from memory, not from a file",
@@ -452,10 +464,8 @@ abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error) {
   if (edit->yaml.size == edit->before_size &&
       memcmp(edit->yaml.text, edit->before, edit->before_size) == 0)
     return ABBE_OK;
-  abbe_error why = {0};
-  abbe_result result = abbe_table_edit_check(edit, &why);
-  if (result != ABBE_OK && was_a_table(edit))
-    return abbe_error_set(error, result, "the edit is refused, nothing was written: %s", why.text);
+  abbe_result result = abbe_table_edit_allow(edit, error);
+  if (result != ABBE_OK) return result;
   char *copy = malloc(edit->yaml.size + 1);
   if (copy == NULL) return no_memory(error, edit->yaml.name);
   memcpy(copy, edit->yaml.text, edit->yaml.size);

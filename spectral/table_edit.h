@@ -33,6 +33,9 @@ void abbe_table_edit_free(abbe_table_edit *edit);
 /* The file's text with the changes, owned by the edit, until the next change. */
 const char *abbe_table_edit_text(const abbe_table_edit *edit, size_t *size);
 
+/* The text as it was read or last saved; "" for a new file. */
+const char *abbe_table_edit_original(const abbe_table_edit *edit, size_t *size);
+
 /* The changes. `name` is a record's, whatever the case: ABBE_NOT_FOUND names the nearest. `key` is
  * a key of a record or a path in it: "source", "absorption.distance_m", "coefficients.0". On
  * failure nothing is changed. */
@@ -66,10 +69,13 @@ abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char
 
 /* ABBE_OK where the changed text is a table, else what abbe_material_table_parse says of it. */
 abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error);
+/* What abbe_table_edit_save would say, but for the disk: ABBE_SCHEMA where the text was a table and
+ * would be none after the changes. */
+abbe_result abbe_table_edit_allow(const abbe_table_edit *edit, abbe_error *error);
 /* The changes so far as a unified diff, malloc'd; "" where there are none. */
 abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_error *error);
-/* Writes the file. ABBE_SCHEMA where it was a table before and would be none after; ABBE_IO where
- * the file is not as it was read. Without changes nothing is written. */
+/* Writes the file. ABBE_SCHEMA as above; ABBE_IO where the file is not as it was read. Without
+ * changes nothing is written. */
 abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error);
 
 #ifdef __cplusplus

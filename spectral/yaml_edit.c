@@ -358,11 +358,14 @@ static size_t block_end(const abbe_yaml_edit *e, size_t to, size_t indent) {
 }
 
 /* Whole lines, and of the blank lines around them as many as keep the rest's rhythm. */
-static span block_extent(const abbe_yaml_edit *e, size_t from, size_t to) {
+static span block_extent(const abbe_yaml_edit *e, size_t from, size_t to, bool first) {
   span s = {line_from(e, from), next_line(e, to)};
   size_t after = s.to;
   while (is_blank(e, after) && next_line(e, after) > after) after = next_line(e, after);
-  bool blank_before = s.from > 0 && is_blank(e, line_from(e, s.from - 1));
+  size_t before = s.from > 0 ? line_from(e, s.from - 1) : 0;
+  bool blank_before = s.from > 0 && is_blank(e, before);
+  if (first && s.from > 0 && e->text[before + indent_of(e, before)] != '#')
+    blank_before = true; /* it begins its list: what follows will */
   if (after >= e->size) {
     while (s.from > 0 && is_blank(e, line_from(e, s.from - 1))) s.from = line_from(e, s.from - 1);
     if (s.to == e->size && s.from > 0 && e->text[e->size - 1] != '\n') {
@@ -380,7 +383,7 @@ static span pair_extent(const abbe_yaml_edit *e, abbe_yaml_node mapping, size_t 
   size_t to = span_of(e, abbe_yaml_value(e->yaml, mapping, index)).to;
   if (index == 0 && e->text[line_from(e, key.from) + indent_of(e, line_from(e, key.from))] == '-')
     return (span){key.from, span_of(e, abbe_yaml_key(e->yaml, mapping, 1)).from};
-  return block_extent(e, key.from, line_to(e, to));
+  return block_extent(e, key.from, line_to(e, to), false);
 }
 
 abbe_result abbe_yaml_edit_remove(abbe_yaml_edit *e, abbe_yaml_node parent, size_t index,
@@ -400,7 +403,7 @@ abbe_result abbe_yaml_edit_remove(abbe_yaml_edit *e, abbe_yaml_node parent, size
     where = pair_extent(e, parent, index);
   } else {
     size_t dash = dash_before(e, own.from);
-    where = block_extent(e, dash, block_end(e, own.to, column_of(e, dash)));
+    where = block_extent(e, dash, block_end(e, own.to, column_of(e, dash)), index == 0);
   }
   return splice(e, where, "", error);
 }
@@ -493,7 +496,8 @@ static abbe_result append_block(abbe_yaml_edit *e, abbe_yaml_node mapping, size_
     size_t dash = dash_before(e, span_of(e, abbe_yaml_item(e->yaml, list, count - 1)).from);
     indent = column_of(e, dash);
     at = block_end(e, to, indent);
-    blank = count > 1 && is_blank(e, line_from(e, line_from(e, dash) - 1));
+    /* as the last two are set off; a single one by its length */
+    blank = count > 1 ? is_blank(e, line_from(e, line_from(e, dash) - 1)) : line_to(e, dash) < to;
   }
   char lead[256];
   const char *end = line_end_of(e);

@@ -153,6 +153,7 @@ static void an_item_is_taken_out(void **state) {
           "l:\n  # first\n  - a: 1\n    b: 2\n    # of it\n\n  # second\n  - a: 2\n\n# last\n");
   removed("l:\n- a: 1\n\n- a: 2\n\n- a: 3\n", "l/1", "l:\n- a: 1\n\n- a: 3\n");
   removed("l:\n- a: 1\n\n- a: 2\n\n- a: 3\n", "l/2", "l:\n- a: 1\n\n- a: 2\n");
+  removed("l:\n- a: 1\n\n- a: 2\n", "l/0", "l:\n- a: 2\n");
   removed("l:\n- a: 1\n- a: 2", "l/1", "l:\n- a: 1");
   removed("l:\n-\n  # x\n  a: 1\n- a: 2\n", "l/0", "l:\n- a: 2\n");
   removed("l: [{a: 1}, {a: 2}]\n", "l/0", "l: [{a: 2}]\n");
