@@ -1,6 +1,7 @@
 find_package(PkgConfig REQUIRED)
 find_package(OpenEXR 3.1 REQUIRED CONFIG)
 find_package(PNG REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS C)
 find_package(embree 3.13 REQUIRED CONFIG)
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
 pkg_check_modules(YAML REQUIRED IMPORTED_TARGET yaml-0.1)

@@ -101,6 +101,27 @@ static bool add_triangles(abbe_geometry *g, const abbe_object *o, abbe_surface *
   return true;
 }
 
+static bool add_lamp(abbe_geometry *g, const abbe_light *light, abbe_surface *s, unsigned id) {
+  s->normal = malloc(sizeof *s->normal);
+  RTCGeometry geometry = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+  float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                     4 * sizeof *v, 1);
+  float *n = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3,
+                                     3 * sizeof *n, 1);
+  bool made = v != NULL && n != NULL && s->normal != NULL;
+  if (made) {
+    abbe_geometry_to_frame(g, light->position, s->centre);
+    s->radius = (float)(light->radius / g->unit);
+    for (int k = 0; k < 3; k++) {
+      v[k] = s->centre[k];
+      n[k] = s->normal[0][k] = (float)light->direction[k];
+    }
+    v[3] = s->radius;
+  }
+  attach(g, geometry, id, s->kind);
+  return made;
+}
+
 /* ---- make and free ---- */
 
 static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe_error *error) {
@@ -117,6 +138,8 @@ static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe
         "mesh",
         scene->path ? scene->path : "the scene", g->refractor_count, ABBE_GEOMETRY_MAX_REFRACTORS);
   g->surface_count = scene->object_count;
+  for (size_t i = 0; i < scene->light_count; i++)
+    g->surface_count += scene->light[i].kind == ABBE_LIGHT_DISK;
   g->surface = calloc(g->surface_count + 1, sizeof *g->surface);
   g->refractor_object = calloc(g->refractor_count + 1, sizeof *g->refractor_object);
   if (g->surface == NULL || g->refractor_object == NULL)
@@ -139,6 +162,13 @@ static bool add_objects(abbe_geometry *g) {
       receivers++;
     added = o->exact.kind == ABBE_EXACT_SPHERE ? add_sphere(g, o, s, (unsigned)i)
                                                : add_triangles(g, o, s, (unsigned)i);
+  }
+  size_t id = g->scene->object_count;
+  for (size_t i = 0; i < g->scene->light_count && added; i++) {
+    if (g->scene->light[i].kind != ABBE_LIGHT_DISK) continue;
+    abbe_surface *s = &g->surface[id];
+    *s = (abbe_surface){.kind = ABBE_GEOMETRY_LAMPS, .index = (uint32_t)i, .object = (uint32_t)i};
+    added = add_lamp(g, &g->scene->light[i], s, (unsigned)id++);
   }
   return added;
 }

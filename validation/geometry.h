@@ -1,10 +1,10 @@
 /* geometry.h: a scene's surfaces in Embree, for the reference tracer.
  *
- * Triangles, and spheres as spheres, in a frame of their own: the origin lies in the middle of the
- * refractors and they are about one unit in size, so that single precision serves a scene of any
- * size and place. Faces and interpolated normals point outwards. It finds hits; what light does
- * there is the walks' business. A geometry is read-only once made, by any number of threads; the
- * scene must outlive it.
+ * Triangles, spheres as spheres and disk lights as disks, in a frame of their own: the origin lies
+ * in the middle of the refractors and they are about one unit in size, so that single precision
+ * serves a scene of any size and place. Faces and interpolated normals point outwards. It finds
+ * hits; what light does there is the walks' business. A geometry is read-only once made, by any
+ * number of threads; the scene must outlive it.
  */
 #ifndef ABBE_VALIDATION_GEOMETRY_H
 #define ABBE_VALIDATION_GEOMETRY_H
@@ -83,6 +83,13 @@ static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, flo
     for (int k = 0; k < 3; k++) {
       hit->ng[k] = hit->n[k] = r[k] / length;
       hit->p[k] = s->centre[k] + s->radius * hit->n[k];
+    }
+    return;
+  }
+  if (s->face == NULL) {
+    for (int k = 0; k < 3; k++) {
+      hit->p[k] = o[k] + t * d[k];
+      hit->ng[k] = hit->n[k] = s->normal[0][k];
     }
     return;
   }

@@ -42,6 +42,17 @@ static inline void abbe_interface_reflect(const float d[3], const float n[3], fl
   for (int k = 0; k < 3; k++) out[k] *= scale;
 }
 
+/* An interpolated normal may send light to the wrong side of its face, of unit normal ng: d is then
+ * bent until it runs just along the side wanted, +1 or -1 of ng. */
+static inline void abbe_interface_keep_side(const float ng[3], float side, float d[3]) {
+  const float least = 1e-3f;
+  float along = side * (d[0] * ng[0] + d[1] * ng[1] + d[2] * ng[2]);
+  if (along > 0) return;
+  for (int k = 0; k < 3; k++) d[k] += (least - along) * side * ng[k];
+  float scale = 1 / sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int k = 0; k < 3; k++) d[k] *= scale;
+}
+
 #ifdef __cplusplus
 }
 #endif

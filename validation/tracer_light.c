@@ -1,0 +1,370 @@
+#include "validation/tracer_state.h"
+
+#include "scenes/vector.h"
+#include "validation/random.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TASK = 16384, TRIALS = 65536, SALT = 0x6c6967 };
+
+/* Generalised golden ratio in three dimensions: well spread points, each added to the last. */
+static const float spread[3] = {0.8191725134f, 0.6710436067f, 0.5497004779f};
+
+/* The photons of one light in one pass, cell after cell: cell i has those from first[i] on. */
+typedef struct emission {
+  const abbe_tracer *t;
+  size_t light, count;
+  uint32_t *first; /* [cells + 1] */
+  uint32_t pass;
+} emission;
+
+static abbe_result share_over_cells(const abbe_tracer *t, size_t light, size_t count, uint32_t pass,
+                                    emission *e, abbe_error *error) {
+  const abbe_aim *aim = &t->aim[light];
+  *e = (emission){.t = t, .light = light, .count = aim->count > 0 ? count : 0, .pass = pass};
+  e->first = malloc((aim->count + 1) * sizeof *e->first);
+  if (e->first == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
+  float random[4];
+  abbe_random4((uint32_t)light, 0, pass, t->desc.seed ^ SALT, random);
+  /* every cell gets its share, rounded up or down so that the mean is right */
+  double sum = 0, shift = (double)random[0];
+  for (size_t i = 0; i < aim->count; i++) {
+    e->first[i] = (uint32_t)floor(sum * (double)e->count + shift);
+    sum += (double)aim->cell[i].share;
+  }
+  e->first[aim->count] = (uint32_t)e->count;
+  e->first[0] = 0;
+  for (size_t i = aim->count; i > 0 && e->first[i - 1] > e->first[i]; i--)
+    e->first[i - 1] = e->first[i];
+  return ABBE_OK;
+}
+
+static size_t cell_of(const emission *e, uint32_t photon) {
+  size_t low = 0, high = e->t->aim[e->light].count;
+  while (high - low > 1) {
+    size_t middle = low + (high - low) / 2;
+    if (e->first[middle] <= photon)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* Photons [from, to) of the light; every cell's lie well spread in place and wavelength, shifted
+ * by random numbers of the pass and the cell. */
+static size_t emit(const emission *e, uint32_t from, uint32_t to, abbe_photon *photon) {
+  const abbe_aim *aim = &e->t->aim[e->light];
+  size_t cell = cell_of(e, from), loaded = (size_t)-1;
+  float shift[4] = {0};
+  for (uint32_t j = from; j < to; j++) {
+    while (cell + 1 < aim->count && e->first[cell + 1] <= j) cell++;
+    if (cell != loaded)
+      abbe_random4((uint32_t)cell, (uint32_t)e->light + 1, e->pass, e->t->desc.seed ^ SALT, shift);
+    loaded = cell;
+    float q = (float)(j - e->first[cell]), at[3], disk[4] = {0};
+    for (int k = 0; k < 3; k++) {
+      float x = q * spread[k];
+      at[k] = abbe_random_shift(x - (float)(int32_t)x, shift[k]);
+    }
+    if (aim->radius > 0) abbe_random4(j, (uint32_t)e->light, e->pass, ~e->t->desc.seed, disk);
+    abbe_photon *p = photon++;
+    float flux = abbe_aim_ray(aim, &aim->cell[cell], at, disk, p->o, p->d);
+    p->flux = flux / ((float)e->count * aim->cell[cell].share);
+    p->step = abbe_spectral_sampling_step(at[2], &p->within);
+    p->id = j | (uint32_t)e->light << 27;
+  }
+  return to - from;
+}
+
+/* ---- landings ---- */
+
+typedef struct sink {
+  abbe_tracer *t;
+  size_t thread, light;
+} sink;
+
+static void add_to_map(const sink *s, const abbe_landing *l) {
+  abbe_tracer *t = s->t;
+  if (t->desc.no_map || s->light != t->desc.map_light) return;
+  double p[3];
+  size_t column, row;
+  abbe_geometry_to_world(&t->geometry, l->p, p);
+  if (!abbe_map_layout_texel(&t->layout, t->desc.map_width, t->desc.map_height, p, &column, &row))
+    return;
+  size_t at = (row * t->desc.map_width + column) * t->map_channels;
+  const float *xyz = t->sampling.xyz[s->light * t->sampling.steps + l->step];
+  for (size_t k = 0; k < 3; k++) abbe_accumulator_add(&t->map, s->thread, at + k, l->flux * xyz[k]);
+  if (t->bands.count > 0)
+    abbe_accumulator_add(&t->map, s->thread, at + 3 + t->bands.of_step[l->step],
+                         l->flux * t->sampling.power[s->light * t->sampling.steps + l->step] /
+                             (float)t->bands.width_nm);
+}
+
+/* What a landing adds to the pixel that sees it straight. */
+typedef struct splat {
+  const abbe_landing *landing;
+  size_t pixel;
+  float value; /* radiance of the pixel, for a reflectance of pi */
+} splat;
+
+/* The ray from the landing to the eye in lane k of the packet; false where it cannot be seen. */
+static bool prepare_splat(const abbe_tracer *t, const abbe_landing *l, struct RTCRay16 *packet,
+                          size_t k, splat *out) {
+  float d[3], distance, per_pixel, o[3];
+  size_t pixel;
+  if (!abbe_trace_camera_pixel(&t->camera, l->p, &pixel, &distance, d, &per_pixel)) return false;
+  abbe_hit hit;
+  for (int i = 0; i < 3; i++) d[i] = -d[i];
+  abbe_geometry_place(&t->geometry.surface[l->surface], l->face, l->u, l->v, l->p, d, 0, &hit);
+  float facing = d[0] * hit.ng[0] + d[1] * hit.ng[1] + d[2] * hit.ng[2];
+  if (facing * l->side <= 0) return false;
+  float metres = distance * (float)t->geometry.unit;
+  *out = (splat){.landing = l,
+                 .pixel = pixel,
+                 .value = l->flux * fabsf(facing) * per_pixel / (metres * metres)};
+  abbe_geometry_leave(&hit, d, o);
+  packet->org_x[k] = o[0];
+  packet->org_y[k] = o[1];
+  packet->org_z[k] = o[2];
+  packet->dir_x[k] = d[0];
+  packet->dir_y[k] = d[1];
+  packet->dir_z[k] = d[2];
+  packet->tnear[k] = 0;
+  packet->tfar[k] = distance;
+  packet->mask[k] = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  packet->flags[k] = 0;
+  return true;
+}
+
+static void add_splat(const sink *s, const splat *p) {
+  abbe_tracer *t = s->t;
+  const abbe_landing *l = p->landing;
+  float rgb[3];
+  abbe_reflectance_at(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
+  size_t colour = s->light * t->sampling.steps + l->step, at = p->pixel * t->picture_channels;
+  float value = p->value * 0.318309886f;
+  for (size_t k = 0; k < 3; k++) {
+    float x = value * rgb[k] * t->colour[colour][k];
+    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_RGB + k, x);
+    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, x);
+  }
+  if (t->bands.count == 0) return;
+  abbe_reflectance_rec709(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
+  size_t band = t->bands.of_step[l->step];
+  float kept = abbe_reflectance_band(rgb, t->bands.middle_nm[band]);
+  abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_BANDS + band,
+                       value * kept * t->sampling.power[colour] / (float)t->bands.width_nm);
+}
+
+static uint64_t flush_splats(const sink *s, struct RTCRay16 *packet, const splat *splats,
+                             size_t count) {
+  if (count == 0) return 0;
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  _Alignas(64) int valid[16];
+  for (size_t k = 0; k < 16; k++) valid[k] = k < count ? -1 : 0;
+  rtcOccluded16(valid, s->t->geometry.embree, &context, packet);
+  for (size_t k = 0; k < count; k++)
+    if (!(packet->tfar[k] < 0)) add_splat(s, &splats[k]);
+  return count;
+}
+
+static uint64_t add_to_picture(const sink *s, const abbe_landing *landing, size_t count) {
+  if (s->t->desc.no_picture) return 0;
+  struct RTCRay16 packet;
+  memset(&packet, 0, sizeof packet);
+  splat splats[16];
+  size_t waiting = 0;
+  uint64_t rays = 0;
+  for (size_t i = 0; i < count; i++) {
+    waiting += prepare_splat(s->t, &landing[i], &packet, waiting, &splats[waiting]);
+    if (waiting < 16) continue;
+    rays += flush_splats(s, &packet, splats, waiting);
+    waiting = 0;
+  }
+  return rays + flush_splats(s, &packet, splats, waiting);
+}
+
+/* ---- tasks ---- */
+
+typedef struct task_result {
+  abbe_light_ledger ledger;
+  uint64_t splat_rays;
+  size_t kept; /* landings for the eye's gathers, from the task's first photon on */
+} task_result;
+
+static void run_task(const emission *e, uint32_t from, uint32_t to, size_t thread,
+                     abbe_grid_photon *keep, task_result *out) {
+  abbe_tracer *t = (abbe_tracer *)e->t;
+  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
+  abbe_landing landing[ABBE_LIGHT_WALK_BATCH];
+  sink s = {.t = t, .thread = thread, .light = e->light};
+  *out = (task_result){0};
+  for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
+    uint32_t end = to - j < ABBE_LIGHT_WALK_BATCH ? to : j + ABBE_LIGHT_WALK_BATCH;
+    size_t count = emit(e, j, end, photon);
+    size_t landed = abbe_light_walk_run(t->walk[thread], &t->scene->light[e->light], e->pass,
+                                        photon, count, landing, &out->ledger);
+    for (size_t i = 0; i < landed; i++) add_to_map(&s, &landing[i]);
+    out->splat_rays += add_to_picture(&s, landing, landed);
+    for (size_t i = 0; keep != NULL && i < landed; i++) {
+      const abbe_landing *l = &landing[i];
+      abbe_grid_photon *g = &keep[out->kept++];
+      *g = (abbe_grid_photon){.flux = l->side * l->flux,
+                              .surface = l->surface,
+                              .colour = (uint32_t)(e->light * t->sampling.steps) + l->step};
+      memcpy(g->p, l->p, sizeof g->p);
+    }
+  }
+}
+
+static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
+  to->reached += from->reached;
+  to->landed += from->landed;
+  to->contact += from->contact;
+  to->absorbed += from->absorbed;
+  to->escaped += from->escaped;
+  to->dropped += from->dropped;
+  to->lost += from->lost;
+}
+
+/* The tasks of one light; results are joined in the order of the tasks, whoever did them. */
+static abbe_result run_light(abbe_tracer *t, const emission *e, const volatile int *stop,
+                             size_t *landed, abbe_error *error) {
+  size_t tasks = (e->count + TASK - 1) / TASK;
+  task_result *result = calloc(tasks + 1, sizeof *result);
+  if (result == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu tasks", tasks);
+  size_t base = *landed;
+  bool keeps = t->eye_gathers;
+#pragma omp parallel for schedule(dynamic) num_threads((int)t->desc.threads)
+  for (size_t i = 0; i < tasks; i++) {
+    if (stop != NULL && *stop) continue;
+    uint32_t from = (uint32_t)(i * TASK);
+    uint32_t to = (uint32_t)(e->count - from < TASK ? e->count : from + TASK);
+    run_task(e, from, to, (size_t)omp_get_thread_num(), keeps ? t->landed + base + from : NULL,
+             &result[i]);
+  }
+  for (size_t i = 0; i < tasks; i++) {
+    add_ledger(&t->statistics.ledger, &result[i].ledger);
+    t->statistics.light_rays += result[i].splat_rays;
+    if (keeps && result[i].kept > 0)
+      memmove(t->landed + *landed, t->landed + base + i * TASK, result[i].kept * sizeof *t->landed);
+    *landed += result[i].kept;
+  }
+  t->statistics.photons += e->count;
+  free(result);
+  return stop != NULL && *stop ? abbe_error_set(error, ABBE_CANCELLED, "stopped") : ABBE_OK;
+}
+
+abbe_result abbe_tracer_light_pass(abbe_tracer *t, const volatile int *stop, size_t *landed_count,
+                                   abbe_error *error) {
+  *landed_count = 0;
+  abbe_result result = ABBE_OK;
+  for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
+    if (t->photons[l] == 0) continue;
+    emission e;
+    result = share_over_cells(t, l, t->photons[l], (uint32_t)t->pass, &e, error);
+    if (result == ABBE_OK) result = run_light(t, &e, stop, landed_count, error);
+    free(e.first);
+  }
+  return result;
+}
+
+abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
+  double total = 0;
+  for (size_t l = 0; l < t->scene->light_count; l++) {
+    bool wanted = !t->desc.no_picture || l == t->desc.map_light;
+    abbe_result result = wanted ? abbe_aim_make(&t->geometry, l, &t->aim[l], error) : ABBE_OK;
+    if (result != ABBE_OK) return result;
+    total += t->aim[l].reach;
+  }
+  for (size_t l = 0; l < t->scene->light_count && total > 0; l++) {
+    if (t->aim[l].count == 0 || !(t->aim[l].reach > 0)) continue;
+    t->photons[l] = (size_t)((double)t->desc.photons * t->aim[l].reach / total);
+    /* a faint light still needs enough of them to show where it goes */
+    if (t->photons[l] < t->desc.photons / 16) t->photons[l] = t->desc.photons / 16;
+    if (t->photons[l] < 64) t->photons[l] = 64;
+  }
+  return ABBE_OK;
+}
+
+/* ---- the map's layout ---- */
+
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Window coordinates of trial landings, along right (0) and up (1); their number. */
+static size_t try_landings(const abbe_tracer *t, const abbe_view *view, const emission *e,
+                           double *at[2], double *near, double *far) {
+  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
+  abbe_landing landing[ABBE_LIGHT_WALK_BATCH];
+  abbe_light_ledger ledger = {0};
+  size_t found = 0;
+  for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
+    uint32_t end =
+        j + ABBE_LIGHT_WALK_BATCH < e->count ? j + ABBE_LIGHT_WALK_BATCH : (uint32_t)e->count;
+    size_t count = emit(e, j, end, photon);
+    size_t landed = abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon,
+                                        count, landing, &ledger);
+    for (size_t i = 0; i < landed; i++) {
+      double p[3], from[3], z;
+      abbe_geometry_to_world(&t->geometry, landing[i].p, p);
+      abbe_vector_subtract(p, view->origin, from);
+      z = abbe_vector_dot(from, view->forward);
+      double scale = view->orthographic ? 1 : z;
+      if (!(z > 0)) continue;
+      double x = abbe_vector_dot(from, view->right) / scale;
+      double y = abbe_vector_dot(from, view->up) / scale;
+      if (!view->orthographic && fmax(fabs(x), fabs(y)) > ABBE_VIEW_MAX_TANGENT) continue;
+      at[0][found] = x;
+      at[1][found++] = y;
+      *near = fmin(*near, z);
+      *far = fmax(*far, z);
+    }
+  }
+  return found;
+}
+
+abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
+  const abbe_light *light = &t->scene->light[t->desc.map_light];
+  const abbe_aim *aim = &t->aim[t->desc.map_light];
+  bool parallel = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  double origin[3], way[3], up[3] = {0, 0, 1};
+  abbe_geometry_to_world(&t->geometry, aim->origin, origin);
+  for (int k = 0; k < 3; k++) way[k] = (double)aim->way[k];
+  abbe_view view;
+  abbe_view_look(origin, way, up, parallel, &view);
+  double middle[3];
+  memcpy(middle, t->geometry.origin, sizeof middle);
+  abbe_view_fit(&view, (const double(*)[3]) & middle, 1);
+  double *at[2] = {malloc(TRIALS * sizeof **at), malloc(TRIALS * sizeof **at)};
+  emission e = {0};
+  abbe_result result = share_over_cells(t, t->desc.map_light, TRIALS, 0, &e, error);
+  if (result == ABBE_OK && (at[0] == NULL || at[1] == NULL))
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for trial photons");
+  if (result == ABBE_OK) {
+    double near = view.near, far = view.far;
+    size_t found = try_landings(t, &view, &e, at, &near, &far);
+    for (int k = 0; k < 2 && found > 0; k++) {
+      qsort(at[k], found, sizeof *at[k], by_value);
+      view.window[2 * k] = at[k][found / 1000];
+      view.window[2 * k + 1] = at[k][found - 1 - found / 1000];
+    }
+    view.near = near;
+    view.far = far;
+    abbe_view_pad(&view, 0.05);
+    abbe_map_layout_make(&view, &t->layout);
+    result = abbe_map_layout_check(&t->layout, error);
+  }
+  free(e.first);
+  free(at[0]);
+  free(at[1]);
+  return result;
+}

@@ -1,0 +1,55 @@
+/* tracer_state.h: the insides of a tracer, for tracer.c, tracer_light.c and checkpoint.c alone.
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_TRACER_STATE_H
+#define ABBE_VALIDATION_TRACER_STATE_H
+
+#include "validation/accumulator.h"
+#include "validation/aim.h"
+#include "validation/eye_walk.h"
+#include "validation/tracer.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ABBE_TRACER_RGB = 0, ABBE_TRACER_CAUSTIC = 3, ABBE_TRACER_BANDS = 6 };
+
+struct abbe_tracer {
+  abbe_trace_desc desc; /* every field resolved */
+  const abbe_scene *scene;
+  abbe_geometry geometry;
+  abbe_spectral_sampling sampling;
+  abbe_media media;
+  abbe_bands bands;
+  abbe_reflectance reflectance;
+  abbe_trace_camera camera;
+  abbe_map_layout layout;
+  float (*colour)[3], (*white)[3]; /* in the picture's space */
+  abbe_aim *aim;                   /* [lights] */
+  size_t *photons;                 /* [lights] a pass */
+  abbe_light_walk **walk;          /* [threads] */
+  abbe_accumulator picture, map;
+  size_t picture_channels, map_channels; /* a pixel, a texel */
+  abbe_eye_walk eye;
+  abbe_photon_grid grid;
+  abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
+  size_t landed_room;
+  bool eye_gathers; /* some pixel may show a receiver through or in a refractor */
+  float radius;     /* of the first gather, frame */
+  size_t pass;      /* the next one */
+  abbe_trace_statistics statistics;
+};
+
+/* The photons of the pass; landings go to the map, to the picture, and to tracer->landed. */
+abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop,
+                                   size_t *landed_count, abbe_error *error);
+/* Photons of a pass shared out over the lights by the light that they send to refractors. */
+abbe_result abbe_tracer_share_photons(abbe_tracer *tracer, abbe_error *error);
+/* A view from the map's light around where its light lands. */
+abbe_result abbe_tracer_fit_layout(abbe_tracer *tracer, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
