@@ -53,6 +53,10 @@ bool abbe_progress_update(void *user, double done) {
   return !interrupted;
 }
 
+const volatile int *abbe_progress_stopped(void) {
+  return &interrupted;
+}
+
 void abbe_progress_end(abbe_progress *progress) {
   if (progress->shown) fprintf(stderr, "\r%*s\r", BAR_WIDTH + 60, "");
   on_interrupt(SIG_DFL);

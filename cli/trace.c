@@ -1,0 +1,501 @@
+#include "cli/command.h"
+#include "cli/map_options.h"
+#include "cli/progress.h"
+
+#include "colorimetry/display_ocio.h"
+#include "colorimetry/exr.h"
+#include "colorimetry/png_file.h"
+#include "gl/plan.h"
+#include "scenes/scene_file.h"
+#include "spectral/file.h"
+#include "validation/checkpoint.h"
+#include "validation/tracer.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum {
+  OPTION_PNG = 0x400,
+  OPTION_SPP,
+  OPTION_TIME,
+  OPTION_UNTIL_ERROR,
+  OPTION_PHYSICS,
+  OPTION_PHOTONS,
+  OPTION_SIZE,
+  OPTION_MAP,
+  OPTION_BANDS,
+  OPTION_RANGE,
+  OPTION_SPACE,
+  OPTION_SEED,
+  OPTION_THREADS,
+  OPTION_MATERIALS,
+  OPTION_RESUME,
+  OPTION_CHECKPOINT,
+  OPTION_EVERY,
+  OPTION_VIEW,
+  OPTION_EXPOSURE,
+  OPTION_STATS,
+  OPTION_JSON,
+  OPTION_RATES
+};
+
+enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
+
+typedef struct request {
+  const char *program, *scene, *materials;
+  const char *exr, *png, *stats, *checkpoint;
+  abbe_map_options map;
+  abbe_trace_desc desc;
+  size_t passes;
+  double seconds, until, every;
+  bool resume, json, quiet, rates;
+  abbe_display_desc display;
+  char *checkpoint_path;
+} request;
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE.exr", 0, "the scene-linear picture with its standard errors", 0},
+    {"png", OPTION_PNG, "FILE.png", 0, "the picture for a display, through OpenColorIO", 0},
+    {"stats", OPTION_STATS, "FILE", 0, "passes, rays, times and the energy ledger as JSON", 0},
+    {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
+    {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
+    {"spp", OPTION_SPP, "N", 0, "passes: samples a pixel, each with its photons (64)", 1},
+    {"time", OPTION_TIME, "SECONDS", 0, "stop after this time", 1},
+    {"until-error", OPTION_UNTIL_ERROR, "X", 0,
+     "stop when the relative standard error is below X, 0.01 say", 1},
+    {"photons", OPTION_PHOTONS, "N", 0, "photons a pass (1048576, or four a pixel)", 1},
+    {"physics", OPTION_PHYSICS, "NAME", 0,
+     "full, or matched: what the renderer's plan models and no more", 1},
+    {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
+    {"map", OPTION_MAP, "N", 0, "side of the receiver map (512)", 1},
+    {"bands", OPTION_BANDS, "N", 0, "spectral layers too, N bands over the range", 1},
+    {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
+    {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
+    {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 1},
+    {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 1},
+    {"materials", OPTION_MATERIALS, "TABLE", 0,
+     "a table instead of the scene's: default, thesis or a file", 1},
+    {"resume", OPTION_RESUME, NULL, 0, "go on from the checkpoint, where there is one", 2},
+    {"checkpoint", OPTION_CHECKPOINT, "FILE", 0,
+     "keep it there, also when all is done (OUTPUT.checkpoint, until all is done)", 2},
+    {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
+    {"view", OPTION_VIEW, "NAME", 0, "of the display, for the PNG", 2},
+    {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
+    {"rates", OPTION_RATES, NULL, 0, "rays a second, beside Embree's own rate on the same rays", 2},
+    {0}};
+
+#define ABBE_NAME_OF_3(code, name, ocio) name,
+static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
+static const char *const physics[] = {"full", "matched"};
+
+static void parse_size(request *q, const char *text) {
+  unsigned width = 0, height = 0;
+  char rest;
+  if (sscanf(text, "%5ux%5u%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
+      width > ABBE_TRACER_MAX_SIDE || height > ABBE_TRACER_MAX_SIDE) {
+    fprintf(stderr, "%s: --size '%s' is not a size such as 512x512 (at most %dx%d)\n", q->program,
+            text, ABBE_TRACER_MAX_SIDE, ABBE_TRACER_MAX_SIDE);
+    exit(ABBE_EXIT_USAGE);
+  }
+  q->desc.width = width;
+  q->desc.height = height;
+}
+
+static error_t parse_work(int key, char *text, request *q) {
+  abbe_trace_desc *d = &q->desc;
+  const char *p = q->program;
+  switch (key) {
+  case OPTION_SPP:
+    q->passes = abbe_command_count(p, "--spp", text, 1, MOST_PASSES);
+    return 0;
+  case OPTION_TIME:
+    q->seconds = abbe_command_number(p, "--time", text, 0.001, 1e9);
+    return 0;
+  case OPTION_UNTIL_ERROR:
+    q->until = abbe_command_number(p, "--until-error", text, 1e-9, 1e9);
+    return 0;
+  case OPTION_PHOTONS:
+    d->photons = abbe_command_count(p, "--photons", text, 1, ABBE_TRACER_MAX_PHOTONS);
+    return 0;
+  case OPTION_PHYSICS:
+    d->physics.matched = abbe_command_choice(p, "--physics", text, physics, 2) == 1;
+    return 0;
+  case OPTION_SIZE:
+    parse_size(q, text);
+    return 0;
+  case OPTION_MAP:
+    d->map_width = d->map_height = abbe_command_count(p, "--map", text, 1, ABBE_TRACER_MAX_SIDE);
+    return 0;
+  case OPTION_BANDS:
+    d->bands = abbe_command_count(p, "--bands", text, 1, 256);
+    return 0;
+  case OPTION_RANGE:
+    abbe_command_range(p, "--range", text, &d->min_nm, &d->max_nm);
+    return 0;
+  case OPTION_SPACE:
+    d->space =
+        (abbe_rgb_space)abbe_command_choice(p, "--space", text, spaces, ABBE_RGB_SPACE_COUNT);
+    return 0;
+  case OPTION_SEED:
+    d->seed = (uint32_t)abbe_command_count(p, "--seed", text, 0, UINT32_MAX);
+    return 0;
+  case OPTION_THREADS:
+    d->threads = abbe_command_count(p, "--threads", text, 1, ABBE_TRACER_MAX_THREADS);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  request *q = state->input;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &q->map;
+    return 0;
+  case 'o':
+    q->exr = text;
+    return 0;
+  case OPTION_PNG:
+    q->png = text;
+    return 0;
+  case OPTION_STATS:
+    q->stats = text;
+    return 0;
+  case OPTION_JSON:
+    q->json = true;
+    return 0;
+  case 'q':
+    q->quiet = true;
+    return 0;
+  case OPTION_MATERIALS:
+    q->materials = text;
+    return 0;
+  case OPTION_RESUME:
+    q->resume = true;
+    return 0;
+  case OPTION_CHECKPOINT:
+    q->checkpoint = text;
+    return 0;
+  case OPTION_EVERY:
+    q->every = abbe_command_number(q->program, "--checkpoint-every", text, 0, 1e9);
+    return 0;
+  case OPTION_VIEW:
+    q->display.view = text;
+    return 0;
+  case OPTION_EXPOSURE:
+    q->display.exposure = abbe_command_number(q->program, "--exposure", text, -30, 30);
+    return 0;
+  case OPTION_RATES:
+    q->rates = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (q->scene != NULL) argp_error(state, "one scene at a time: what is '%s'?", text);
+    q->scene = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (q->scene == NULL) argp_error(state, "which scene? Try scenes/sphere.yaml");
+    if (q->exr == NULL && q->png == NULL && q->map.save == NULL && q->stats == NULL && !q->json &&
+        !q->rates)
+      argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
+    return 0;
+  default:
+    return parse_work(key, text, q);
+  }
+}
+
+/* ---- before the work ---- */
+
+static abbe_result check_targets(const request *q, abbe_error *error) {
+  const char *targets[] = {q->exr, q->png, q->map.save, q->stats, q->checkpoint};
+  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+    if (targets[i] == NULL) continue;
+    abbe_file_writer writer = {0};
+    abbe_result result = abbe_file_writer_open(&writer, targets[i], error);
+    abbe_file_writer_discard(&writer);
+    if (result != ABBE_OK) return result;
+  }
+  if (q->png == NULL) return ABBE_OK;
+  abbe_display *display = NULL;
+  abbe_display_desc desc = q->display;
+  desc.source_space = abbe_rgb_space_ocio_name(q->desc.space);
+  abbe_result result = abbe_display_make(&desc, &display, error);
+  abbe_display_free(display);
+  return result;
+}
+
+/* The checkpoint stands beside the first output. */
+static abbe_result name_checkpoint(request *q, abbe_error *error) {
+  const char *beside = q->exr ? q->exr : q->map.save ? q->map.save : q->png;
+  if (q->checkpoint == NULL && beside == NULL) return ABBE_OK;
+  size_t size = strlen(q->checkpoint ? q->checkpoint : beside) + sizeof ".checkpoint";
+  q->checkpoint_path = malloc(size);
+  if (q->checkpoint_path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  snprintf(q->checkpoint_path, size, "%s%s", q->checkpoint ? q->checkpoint : beside,
+           q->checkpoint ? "" : ".checkpoint");
+  return ABBE_OK;
+}
+
+/* What matched physics leaves out is read off the renderer's plan. */
+static abbe_result match_plan(const abbe_scene *scene, abbe_trace_desc *desc, abbe_error *error) {
+  if (!desc->physics.matched) return ABBE_OK;
+  abbe_plan plan;
+  abbe_render_desc render = {.min_nm = desc->min_nm, .max_nm = desc->max_nm};
+  abbe_result result = abbe_plan_make(scene, &render, &plan, error);
+  if (result != ABBE_OK) return result;
+  desc->physics.orders = plan.desc.orders;
+  desc->physics.energy_share = plan.desc.energy_share;
+  abbe_plan_free(&plan);
+  return ABBE_OK;
+}
+
+/* ---- the work ---- */
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* How far the run is by what stops it first. Errors fall as one over the root of the passes. */
+static double progress_made(const request *q, size_t passes, double spent, double error) {
+  double done = q->passes > 0 ? (double)passes / (double)q->passes : 0;
+  if (q->seconds > 0) done = fmax(done, spent / q->seconds);
+  if (q->until > 0 && isfinite(error)) done = fmax(done, pow(q->until / error, 2));
+  return fmin(done, 1);
+}
+
+static bool finished(const request *q, size_t passes, double spent, double error) {
+  if (q->passes > 0 && passes >= q->passes) return true;
+  if (q->seconds > 0 && spent >= q->seconds && passes >= 2) return true;
+  return q->until > 0 && passes >= 4 && error <= q->until;
+}
+
+static abbe_result save_checkpoint(const request *q, const abbe_tracer *tracer, abbe_error *error) {
+  if (q->checkpoint_path == NULL || abbe_tracer_passes(tracer) == 0) return ABBE_OK;
+  return abbe_checkpoint_save(tracer, q->checkpoint_path, error);
+}
+
+/* ABBE_CANCELLED where the user stopped it: what is done is to be saved all the same. */
+static abbe_result run_passes(const request *q, abbe_tracer *tracer, abbe_error *error) {
+  abbe_progress progress;
+  abbe_progress_begin(&progress, "trace", q->quiet);
+  double start = now(), saved = start, estimate = INFINITY;
+  abbe_result result = ABBE_OK;
+  for (;;) {
+    size_t passes = abbe_tracer_passes(tracer);
+    double spent = now() - start;
+    if (q->until > 0) estimate = abbe_tracer_error(tracer);
+    bool goes_on = abbe_progress_update(&progress, progress_made(q, passes, spent, estimate));
+    if (finished(q, passes, spent, estimate)) break;
+    if (!goes_on) result = abbe_error_set(error, ABBE_CANCELLED, "stopped");
+    if (result == ABBE_OK) result = abbe_tracer_pass(tracer, abbe_progress_stopped(), error);
+    if (result != ABBE_OK) break;
+    if (now() - saved < q->every) continue;
+    result = save_checkpoint(q, tracer, error);
+    if (result != ABBE_OK) break;
+    saved = now();
+  }
+  abbe_progress_end(&progress);
+  return result;
+}
+
+/* ---- results ---- */
+
+static void add_ledger(cJSON *root, const abbe_light_ledger *l) {
+  cJSON *energy = cJSON_AddObjectToObject(root, "energy");
+  cJSON_AddNumberToObject(energy, "reached", l->reached);
+  cJSON_AddNumberToObject(energy, "landed", l->landed);
+  cJSON_AddNumberToObject(energy, "contact", l->contact);
+  cJSON_AddNumberToObject(energy, "absorbed", l->absorbed);
+  cJSON_AddNumberToObject(energy, "escaped", l->escaped);
+  cJSON_AddNumberToObject(energy, "dropped", l->dropped);
+  cJSON_AddNumberToObject(energy, "lost", l->lost);
+}
+
+static abbe_result write_stats(const request *q, const abbe_tracer *tracer, abbe_error *error) {
+  if (q->stats == NULL && !q->json) return ABBE_OK;
+  abbe_trace_statistics s;
+  abbe_tracer_statistics(tracer, &s);
+  cJSON *root = cJSON_CreateObject();
+  cJSON_AddNumberToObject(root, "passes", (double)s.passes);
+  cJSON_AddNumberToObject(root, "photons", (double)s.photons);
+  cJSON_AddNumberToObject(root, "light_rays", (double)s.light_rays);
+  cJSON_AddNumberToObject(root, "eye_rays", (double)s.eye_rays);
+  cJSON_AddNumberToObject(root, "light_seconds", s.light_seconds);
+  cJSON_AddNumberToObject(root, "eye_seconds", s.eye_seconds);
+  cJSON_AddNumberToObject(root, "relative_error", abbe_tracer_error(tracer));
+  cJSON_AddNumberToObject(root, "cut", (double)s.cuts);
+  cJSON_AddNumberToObject(root, "gather_radius_m", s.radius);
+  add_ledger(root, &s.ledger);
+  char *text = cJSON_Print(root);
+  cJSON_Delete(root);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
+  if (q->json) printf("%s\n", text);
+  abbe_result result = ABBE_OK;
+  if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
+  free(text);
+  return result;
+}
+
+static abbe_result write_png(const request *q, abbe_image *image, abbe_error *error) {
+  abbe_display *display = NULL;
+  abbe_display_desc desc = q->display;
+  desc.source_space = abbe_rgb_space_ocio_name(q->desc.space);
+  /* the display takes the first three channels: the picture's own must stand there */
+  static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
+  const char *const *name = q->desc.space == ABBE_RGB_SPACE_XYZ ? xyz : rgb;
+  abbe_image plain = {0};
+  abbe_result result = abbe_image_make(image->width, image->height, 3, name, &plain, error);
+  for (size_t k = 0; k < 3 && result == ABBE_OK; k++) {
+    size_t from = abbe_image_find_channel(image, name[k]);
+    for (size_t i = 0; i < image->width * image->height; i++)
+      plain.data[3 * i + k] = image->data[i * image->channels + from];
+  }
+  if (result == ABBE_OK) result = abbe_display_make(&desc, &display, error);
+  if (result == ABBE_OK) result = abbe_display_apply(display, &plain, error);
+  if (result == ABBE_OK) result = abbe_png_write(q->png, &plain, 8, error);
+  abbe_display_free(display);
+  abbe_image_free(&plain);
+  return result;
+}
+
+static abbe_result write_results(const request *q, const abbe_tracer *tracer, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  abbe_image image = {0};
+  if (q->exr != NULL || q->png != NULL) {
+    result = abbe_tracer_picture(tracer, &image, error);
+    if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
+    if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
+    abbe_image_free(&image);
+  }
+  if (result == ABBE_OK && q->map.save != NULL) {
+    result = abbe_tracer_map(tracer, &image, error);
+    if (result == ABBE_OK) result = abbe_exr_write(q->map.save, &image, error);
+    abbe_image_free(&image);
+  }
+  if (result == ABBE_OK) result = write_stats(q, tracer, error);
+  return result;
+}
+
+static void summarise(const request *q, const abbe_tracer *tracer) {
+  if (q->quiet || q->json) return;
+  abbe_trace_statistics s;
+  abbe_tracer_statistics(tracer, &s);
+  double seconds = s.light_seconds + s.eye_seconds;
+  fprintf(stderr, "%zu passes", s.passes);
+  if (seconds > 0) fprintf(stderr, " in %.1f s", seconds);
+  fprintf(stderr, ", %.3g million photons, %.3g million rays; relative standard error %.2g",
+          1e-6 * (double)s.photons, 1e-6 * (double)(s.light_rays + s.eye_rays),
+          abbe_tracer_error(tracer));
+  if (s.ledger.reached > 0)
+    fprintf(stderr,
+            "; of the light that met refractors %.2f %% landed, %.2f %% was absorbed, %.2f %% "
+            "escaped, %.2f %% is not modelled, %.2g %% was lost",
+            100 * s.ledger.landed / s.ledger.reached, 100 * s.ledger.absorbed / s.ledger.reached,
+            100 * s.ledger.escaped / s.ledger.reached, 100 * s.ledger.dropped / s.ledger.reached,
+            100 * s.ledger.lost / s.ledger.reached);
+  fprintf(stderr, "\n");
+  if (s.cuts > 0)
+    fprintf(stderr, "note: %llu contributions were too bright to be kept whole\n",
+            (unsigned long long)s.cuts);
+}
+
+static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error *error) {
+  if (!q->rates) return ABBE_OK;
+  double walk, embree;
+  abbe_result result = abbe_tracer_rates(tracer, &walk, &embree, error);
+  if (result == ABBE_OK)
+    printf("photon walk %.2f million rays/s a thread; Embree alone on the same rays %.2f; share "
+           "%.0f %%\n",
+           1e-6 * walk, 1e-6 * embree, 100 * walk / embree);
+  return result;
+}
+
+/* A user's stop keeps what is done: results are written, and the checkpoint to go on from. */
+static abbe_result trace(const request *q, abbe_tracer *tracer, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (q->resume && q->checkpoint_path != NULL && access(q->checkpoint_path, F_OK) == 0)
+    result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
+  if (result != ABBE_OK) return result;
+  result = run_passes(q, tracer, error);
+  bool stopped = result == ABBE_CANCELLED;
+  if (result != ABBE_OK && !stopped) return result;
+  size_t passes = abbe_tracer_passes(tracer);
+  if (stopped && passes == 0)
+    return abbe_error_set(error, ABBE_CANCELLED,
+                          "stopped before the first pass was done; nothing "
+                          "was written");
+  result = write_results(q, tracer, error);
+  if (result == ABBE_OK && (stopped || q->checkpoint != NULL))
+    result = save_checkpoint(q, tracer, error);
+  else if (result == ABBE_OK && q->checkpoint_path != NULL)
+    unlink(q->checkpoint_path);
+  if (result == ABBE_OK) summarise(q, tracer);
+  if (result == ABBE_OK && stopped)
+    return abbe_error_set(error, ABBE_CANCELLED,
+                          "stopped after %zu passes; what is done is saved, and the same command "
+                          "with --resume goes on",
+                          passes);
+  return result;
+}
+
+static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
+  abbe_tracer *tracer = NULL;
+  abbe_result result = abbe_map_options_resolve(&q->map, scene, false, error);
+  if (result != ABBE_OK) return result;
+  q->desc.map_light = q->map.light_index;
+  if (q->map.like != NULL) {
+    q->desc.layout = &q->map.layout;
+    if (q->desc.map_width == 0) q->desc.map_width = q->desc.map_height = q->map.side;
+  }
+  q->desc.no_picture = q->exr == NULL && q->png == NULL && q->map.save != NULL;
+  q->desc.no_map = q->map.save == NULL && !q->desc.no_picture;
+  result = match_plan(scene, &q->desc, error);
+  if (result == ABBE_OK) result = abbe_tracer_make(scene, &q->desc, &tracer, error);
+  if (result == ABBE_OK) result = print_rates(q, tracer, error);
+  if (result == ABBE_OK && (q->exr || q->png || q->map.save || q->stats || q->json))
+    result = trace(q, tracer, error);
+  abbe_tracer_free(tracer);
+  return result;
+}
+
+int abbe_command_trace(int argc, char **argv) {
+  static const struct argp_child children[] = {{&abbe_map_options_argp, 0, "Receiver map:", 3},
+                                               {0}};
+  static const struct argp argp = {
+      options,
+      parse,
+      "SCENE.yaml",
+      "Traces what light really does in a scene, with standard errors: the reference for "
+      "'abbe render'.\v"
+      "Examples:\n"
+      "  abbe trace scenes/sphere.yaml -o sphere.exr --png sphere.png\n"
+      "  abbe trace scenes/gem.yaml -o gem.exr --until-error 0.01\n"
+      "  abbe trace scenes/prism.yaml --save-map prism-map.exr --spp 256 --bands 40\n"
+      "  abbe trace scenes/bunny.yaml -o bunny.exr --time 600 --resume\n"
+      "  abbe trace scenes/gem.yaml -o matched.exr --physics matched\n",
+      children,
+      NULL,
+      NULL};
+  request q = {.program = argv[0], .every = 30};
+  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  if (q.passes == 0 && !(q.seconds > 0) && !(q.until > 0)) q.passes = DEFAULT_PASSES;
+  if (q.passes == 0) q.passes = MOST_PASSES;
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  abbe_scene_options scene_options = {.materials = q.materials};
+  abbe_result result = check_targets(&q, &error);
+  if (result == ABBE_OK) result = name_checkpoint(&q, &error);
+  if (result == ABBE_OK) result = abbe_scene_load(q.scene, &scene_options, &scene, &error);
+  if (result == ABBE_OK) result = run(&q, &scene, &error);
+  free(q.checkpoint_path);
+  abbe_scene_free(&scene);
+  return abbe_command_end(argv[0], result, &error);
+}
