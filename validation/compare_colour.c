@@ -8,8 +8,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* What stands opposite REF: TEST, or REF again with the noise of REF's errors, or of both. */
-typedef enum opposite { TEST, NOISE_OF_REFERENCE, NOISE_OF_BOTH } opposite;
+/* What is compared: REF and TEST; or what is under REF's noise, with the noise of REF's errors on
+ * REF's side and none on TEST's, or with that of each on its own. */
+typedef enum sides { TEST, NOISE_OF_REFERENCE, NOISE_OF_BOTH } sides;
 
 /* [Steele2014]: a well-mixed number of a counter. */
 static uint64_t mix(uint64_t x) {
@@ -26,18 +27,59 @@ static double normal(uint64_t seed, uint64_t counter) {
   return sqrt(-2 * log(u)) * cos(6.283185307179586 * v);
 }
 
-/* REF's own channels plus noise, in XYZ; the errors of its channels are taken as independent. */
-static void add_noise(const abbe_compare_state *s, size_t pixel, bool both, double xyz[3]) {
+/* X / Y or Z / Y of the pixels around one: their mean, how they vary, and how their errors alone
+ * would make them vary; all weighted by Y. */
+typedef struct tint {
+  double weight, sum, squares, noise;
+} tint;
+
+static void add_tint(const double xyz[3], const double error[3], int c, tint *t) {
+  double ratio = xyz[c] / xyz[1];
+  t->weight += xyz[1];
+  t->sum += xyz[c];
+  t->squares += xyz[c] * ratio;
+  t->noise += (error[c] * error[c] + ratio * ratio * error[1] * error[1]) / xyz[1];
+}
+
+static double quiet_ratio(const tint *t, double own) {
+  double mean = t->sum / t->weight;
+  double variance = t->squares / t->weight - mean * mean;
+  double keep = variance > 0 ? fmax(0, variance - t->noise / t->weight) / variance : 0;
+  return mean + keep * (own - mean);
+}
+
+/* REF's XYZ with the tint of the pixels around where they vary in tint no more than their errors
+ * do, with its own where they vary much more, and in between by their variances [Lee1980]. Noise
+ * drawn about REF itself would be drawn about colours that noise has tinted, and there differences
+ * of colour count less than about the true ones. */
+static void quieten(const abbe_compare_state *s, size_t pixel, double xyz[3]) {
+  enum { REACH = 2 };
   const abbe_field *f = s->reference;
-  double value[3];
+  size_t x = pixel % f->width, y = pixel / f->width;
+  tint t[3] = {{0}};
+  abbe_field_xyz(f, pixel, xyz, NULL);
+  if (!(xyz[1] > 0)) return;
+  for (size_t j = y > REACH ? y - REACH : 0; j <= y + REACH && j < f->height; j++)
+    for (size_t i = x > REACH ? x - REACH : 0; i <= x + REACH && i < f->width; i++) {
+      double near[3], error[3];
+      if (s->bad[j * f->width + i] != 0) continue;
+      abbe_field_xyz(f, j * f->width + i, near, error);
+      for (int c = 0; c < 3 && near[1] > 0; c += 2) add_tint(near, error, c, &t[c]);
+    }
+  for (int c = 0; c < 3; c += 2) xyz[c] = xyz[1] * quiet_ratio(&t[c], xyz[c] / xyz[1]);
+}
+
+/* Adds noise of the errors, drawn for each channel of the file by itself. */
+static void add_noise(const abbe_compare_state *s, const float *errors, double scale,
+                      uint64_t stream, size_t pixel, double xyz[3]) {
+  double noise[3] = {0};
   for (size_t c = 0; c < 3; c++) {
     size_t i = 3 * pixel + c;
-    double error = (double)f->colour.error[i];
-    if (both) error = hypot(error, s->out->scale * (double)s->test->colour.error[i]);
-    value[c] = (double)f->colour.value[i];
-    if (error > 0) value[c] += error * normal(s->options->seed, i);
+    if (errors[i] > 0)
+      noise[c] = scale * (double)errors[i] * normal(s->options->seed, 2 * i + stream);
   }
-  abbe_rgb_space_apply(f->to_xyz, value, xyz);
+  abbe_rgb_space_apply(s->reference->to_xyz, noise, noise);
+  for (int c = 0; c < 3; c++) xyz[c] += noise[c];
 }
 
 /* [pixels] each; NaN where there is none. */
@@ -45,19 +87,27 @@ typedef struct arrays {
   float *ciede2000, *uv;
 } arrays;
 
-static void fill(const abbe_compare_state *s, opposite who, arrays out) {
+static void take_sides(const abbe_compare_state *s, sides who, size_t pixel, double b[3],
+                       double a[3]) {
+  if (who == TEST) {
+    abbe_field_xyz(s->reference, pixel, b, NULL);
+    abbe_field_xyz(s->test, pixel, a, NULL);
+    for (int c = 0; c < 3; c++) a[c] *= s->out->scale;
+    return;
+  }
+  quieten(s, pixel, b);
+  for (int c = 0; c < 3; c++) a[c] = b[c];
+  add_noise(s, s->reference->colour.error, 1, 0, pixel, b);
+  if (who == NOISE_OF_BOTH) add_noise(s, s->test->colour.error, s->out->scale, 1, pixel, a);
+}
+
+static void fill(const abbe_compare_state *s, sides who, arrays out) {
   const double *white = s->out->white;
   for (size_t p = 0; p < s->pixels; p++) {
     out.ciede2000[p] = out.uv[p] = NAN;
     if (s->bad[p] != 0) continue;
     double b[3], a[3], lab_b[3], lab_a[3], uv_b[2], uv_a[2];
-    abbe_field_xyz(s->reference, p, b, NULL);
-    if (who == TEST) {
-      abbe_field_xyz(s->test, p, a, NULL);
-      for (int c = 0; c < 3; c++) a[c] *= s->out->scale;
-    } else {
-      add_noise(s, p, who == NOISE_OF_BOTH, a);
-    }
+    take_sides(s, who, p, b, a);
     abbe_difference_lab(b, white, lab_b);
     abbe_difference_lab(a, white, lab_a);
     out.ciede2000[p] = (float)abbe_difference_ciede2000(lab_b, lab_a);
@@ -116,7 +166,12 @@ static mean mean_uv(const abbe_compare_state *s, const abbe_mask *mask, const fl
   return (mean){value, value + 2 * sqrt(variance * weights2) / weights};
 }
 
-static void set(abbe_compare_value *v, opposite who, mean m) {
+/* To this share the noise of colour is known: up to errors of a tenth of the light it is within
+ * 3 % of what such errors do. */
+static const double slack = 0.03;
+
+static void set(abbe_compare_value *v, sides who, mean m) {
+  m.limit *= 1 + slack;
   if (who == TEST) {
     v->value = m.value;
   } else if (who == NOISE_OF_REFERENCE) {
@@ -128,8 +183,8 @@ static void set(abbe_compare_value *v, opposite who, mean m) {
   }
 }
 
-static void summarise(const abbe_compare_state *s, const abbe_mask *mask, opposite who,
-                      arrays values, float *sorted, abbe_compare_region *region) {
+static void summarise(const abbe_compare_state *s, const abbe_mask *mask, sides who, arrays values,
+                      float *sorted, abbe_compare_region *region) {
   abbe_compare_value *metric = region->metric;
   size_t count = order(s, mask, values.ciede2000, sorted);
   if (count == 0) return;
@@ -148,10 +203,9 @@ static void measure(const abbe_compare_state *s, arrays values, float *sorted) {
                    s->reference->colour.error != NULL && s->test->colour.error != NULL};
   for (int who = TEST; who <= NOISE_OF_BOTH; who++) {
     if (!errors[who]) continue;
-    fill(s, (opposite)who, values);
-    summarise(s, NULL, (opposite)who, values, sorted, &s->out->whole);
-    if (s->out->masked)
-      summarise(s, s->options->mask, (opposite)who, values, sorted, &s->out->mask);
+    fill(s, (sides)who, values);
+    summarise(s, NULL, (sides)who, values, sorted, &s->out->whole);
+    if (s->out->masked) summarise(s, s->options->mask, (sides)who, values, sorted, &s->out->mask);
   }
 }
 
