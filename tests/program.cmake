@@ -5,7 +5,14 @@ add_test(NAME install
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
 set_tests_properties(install scripts PROPERTIES LABELS program TIMEOUT 300)
 
-foreach(name bad_input export_command materials_change_command render_command validate_command)
+foreach(name
+    bad_input
+    export_command
+    materials_change_command
+    outline_command
+    render_command
+    validate_command
+    )
   abbe_test(${name} program abbe_colorimetry abbe_spectral PkgConfig::CJSON)
   target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
   add_dependencies(test_${name} abbe)

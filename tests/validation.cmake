@@ -10,6 +10,7 @@ foreach(name
     mask
     media
     rings
+    outline
     pov_file
     route
     sphere_quadrature

@@ -1,0 +1,200 @@
+#include "cli/command.h"
+
+#include "colorimetry/rgb_space.h"
+#include "validation/field.h"
+#include "validation/outline.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { OPTION_MINUS = 0x100, OPTION_SHARE, OPTION_BLUR, OPTION_JSON };
+
+typedef struct request {
+  const char *program, *file[2], *minus;
+  int files;
+  abbe_outline_options outline;
+  bool json;
+} request;
+
+static const struct argp_option options[] = {
+    {"minus", OPTION_MINUS, "DARK.exr", 0, "the last picture without its caustic, to take off", 0},
+    {"share", OPTION_SHARE, "X", 0, "of the light inside the outline (0.9)", 0},
+    {"blur", OPTION_BLUR, "PIXELS", 0, "smoothing before all else, 0 to 64 (1)", 0},
+    {"json", OPTION_JSON, NULL, 0, "as JSON", 0},
+    {0}};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  request *q = state->input;
+  switch (key) {
+  case OPTION_MINUS:
+    q->minus = text;
+    return 0;
+  case OPTION_SHARE:
+    q->outline.share = abbe_command_number(q->program, "--share", text, 0.001, 1);
+    return 0;
+  case OPTION_BLUR:
+    q->outline.blur = abbe_command_number(q->program, "--blur", text, 0, 64);
+    if (q->outline.blur == 0) q->outline.blur = -1;
+    return 0;
+  case OPTION_JSON:
+    q->json = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (q->files == 2) argp_error(state, "two pictures at the most; '%s' is one too many", text);
+    q->file[q->files++] = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (q->files == 0) argp_error(state, "which picture? Give one or two OpenEXR files");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* Adds factor times the field's caustic, or its colour where it has none apart, in Rec.709. */
+static abbe_result add_picture(const abbe_field *field, const char *name, double factor,
+                               bool caustic, double (*rgb)[3], abbe_error *error) {
+  const bool apart = caustic && field->caustic.channels == 3;
+  const abbe_field_samples *samples = apart ? &field->caustic : &field->colour;
+  if (samples->channels != 3)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: there is no colour in it; R, G, B or X, Y, Z are wanted", name);
+  double from_xyz[9];
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
+  for (size_t i = 0; i < field->width * field->height; i++) {
+    double v[3] = {samples->value[3 * i], samples->value[3 * i + 1], samples->value[3 * i + 2]};
+    abbe_rgb_space_apply(field->to_xyz, v, v);
+    abbe_rgb_space_apply(from_xyz, v, v);
+    for (int c = 0; c < 3; c++) rgb[i][c] += factor * v[c];
+  }
+  return ABBE_OK;
+}
+
+static abbe_result load(const request *q, const char *path, const char *minus, abbe_outline *out,
+                        abbe_error *error) {
+  abbe_field field = {0}, dark = {0};
+  double(*rgb)[3] = NULL;
+  abbe_result result = abbe_field_load(path, &field, error);
+  if (result == ABBE_OK && minus != NULL) result = abbe_field_load(minus, &dark, error);
+  if (result == ABBE_OK && minus != NULL &&
+      (field.width != dark.width || field.height != dark.height))
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s has %zu x %zu pixels and %s %zu x %zu; they must be of one size",
+                            path, field.width, field.height, minus, dark.width, dark.height);
+  if (result == ABBE_OK) {
+    rgb = calloc(field.width * field.height, sizeof *rgb);
+    if (rgb == NULL)
+      result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its pixels", path);
+  }
+  if (result == ABBE_OK) result = add_picture(&field, path, 1, minus == NULL, rgb, error);
+  if (result == ABBE_OK && minus != NULL) result = add_picture(&dark, minus, -1, false, rgb, error);
+  if (result == ABBE_OK)
+    result = abbe_outline_make((const double(*)[3])rgb, field.width, field.height, &q->outline, out,
+                               error);
+  free(rgb);
+  abbe_field_free(&field);
+  abbe_field_free(&dark);
+  return result;
+}
+
+static void print_text(const abbe_outline o[2], int count, const abbe_outline_agreement *a) {
+  printf("%-28s", "");
+  for (int i = 0; i < count; i++) printf("  %-26s", count == 1 ? "" : i == 0 ? "first" : "second");
+  printf("%s\n%-28s", count == 2 ? "  agreement" : "", "light");
+  for (int i = 0; i < count; i++) printf("  %-26.6g", o[i].light);
+  if (count == 2) printf("  second / first %.4f", a->light_ratio);
+  printf("\n%-28s", "inside the outline, pixels");
+  for (int i = 0; i < count; i++) printf("  %-26zu", o[i].mask.inside);
+  if (count == 2)
+    printf("  overlap %.3f, apart %.2f pixels (95 %%: %.2f)", a->overlap, a->mean_apart,
+           a->p95_apart);
+  printf("\n%-28s", "tinted share");
+  for (int i = 0; i < count; i++) printf("  %-26.3f", o[i].tinted);
+  printf("\n");
+  for (int h = 0; h < ABBE_OUTLINE_HUE_COUNT; h++) {
+    printf("%-28s", abbe_outline_hue_name((abbe_outline_hue)h));
+    for (int i = 0; i < count; i++) {
+      const abbe_outline_place *p = &o[i].place[h];
+      printf("  %5.1f %% at %6.1f, %6.1f    ", 100 * p->share, p->x, p->y);
+    }
+    if (count == 2) printf("  overlap %.3f, apart %.2f pixels", a->hue[h].overlap, a->hue[h].apart);
+    printf("\n");
+  }
+}
+
+static cJSON *describe(const char *path, const abbe_outline *o) {
+  cJSON *root = cJSON_CreateObject(), *hues = cJSON_CreateArray();
+  cJSON_AddStringToObject(root, "file", path);
+  cJSON_AddNumberToObject(root, "light", o->light);
+  cJSON_AddNumberToObject(root, "tinted", o->tinted);
+  cJSON_AddNumberToObject(root, "inside", (double)o->mask.inside);
+  cJSON_AddItemToObject(root, "hues", hues);
+  for (int h = 0; h < ABBE_OUTLINE_HUE_COUNT; h++) {
+    cJSON *hue = cJSON_CreateObject();
+    cJSON_AddStringToObject(hue, "name", abbe_outline_hue_name((abbe_outline_hue)h));
+    cJSON_AddNumberToObject(hue, "share", o->place[h].share);
+    cJSON_AddNumberToObject(hue, "x", o->place[h].x);
+    cJSON_AddNumberToObject(hue, "y", o->place[h].y);
+    cJSON_AddNumberToObject(hue, "spread", o->place[h].spread);
+    cJSON_AddItemToArray(hues, hue);
+  }
+  return root;
+}
+
+static abbe_result print_json(const request *q, const abbe_outline o[2],
+                              const abbe_outline_agreement *a, abbe_error *error) {
+  cJSON *root = cJSON_CreateObject(), *pictures = cJSON_AddArrayToObject(root, "pictures");
+  for (int i = 0; i < q->files; i++) cJSON_AddItemToArray(pictures, describe(q->file[i], &o[i]));
+  if (q->files == 2) {
+    cJSON *both = cJSON_AddObjectToObject(root, "agreement");
+    cJSON_AddNumberToObject(both, "light_ratio", a->light_ratio);
+    cJSON_AddNumberToObject(both, "overlap", a->overlap);
+    cJSON_AddNumberToObject(both, "mean_apart", a->mean_apart);
+    cJSON_AddNumberToObject(both, "p95_apart", a->p95_apart);
+    cJSON *hues = cJSON_AddArrayToObject(both, "hues");
+    for (int h = 0; h < ABBE_OUTLINE_HUE_COUNT; h++) {
+      cJSON *hue = cJSON_CreateObject();
+      cJSON_AddStringToObject(hue, "name", abbe_outline_hue_name((abbe_outline_hue)h));
+      cJSON_AddNumberToObject(hue, "overlap", a->hue[h].overlap);
+      cJSON_AddNumberToObject(hue, "apart", a->hue[h].apart);
+      cJSON_AddItemToArray(hues, hue);
+    }
+  }
+  abbe_result result = abbe_command_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+int abbe_command_outline(int argc, char **argv) {
+  static const struct argp argp = {
+      options,
+      parse,
+      "FIRST.exr [SECOND.exr]",
+      "Says where a caustic's light and each of its hues fall in a picture, and how far a second "
+      "one "
+      "agrees. Of pictures that keep the caustic apart (layer caustic) it looks at that.\v"
+      "Examples:\n"
+      "  abbe outline map.exr\n"
+      "  abbe outline traced.exr rendered.exr --json\n"
+      "  abbe outline traced.exr povray.exr --minus povray-dark.exr --share 0.8\n",
+      NULL,
+      NULL,
+      NULL};
+  request q = {.program = argv[0]};
+  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  abbe_error error = {0};
+  abbe_outline outline[2] = {{0}};
+  abbe_outline_agreement agreement = {0};
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < q.files && result == ABBE_OK; i++)
+    result = load(&q, q.file[i], i == q.files - 1 ? q.minus : NULL, &outline[i], &error);
+  if (result == ABBE_OK && q.files == 2)
+    result = abbe_outline_compare(&outline[0], &outline[1], &agreement, &error);
+  if (result == ABBE_OK && q.json) result = print_json(&q, outline, &agreement, &error);
+  if (result == ABBE_OK && !q.json) print_text(outline, q.files, &agreement);
+  for (int i = 0; i < 2; i++) abbe_outline_free(&outline[i]);
+  return abbe_command_end(q.program, result, &error);
+}
