@@ -23,6 +23,7 @@ foreach(name number encoding report tally points absorption csv_points agf agf_f
   abbe_test(${name} cpu abbe_spectral)
 endforeach()
 abbe_test(material_table cpu abbe_spectral)
+abbe_test(table_compare cpu abbe_spectral)
 abbe_test(table_edit cpu abbe_spectral)
 abbe_test(materials_command cpu abbe_spectral PkgConfig::CJSON)
 target_compile_definitions(test_materials_command PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")

@@ -1,6 +1,8 @@
 /* The verbs of `abbe materials` that change a table, as people meet them. */
 #include "tests/run_program.h"
 
+#include <cjson/cJSON.h>
+
 #define TABLE " --table t.yaml"
 #define MATERIALS "\"$abbe\" materials "
 #define RENEW "cp \"$house\"/spectral/thesis.yaml t.yaml && "
@@ -59,6 +61,29 @@ static void records_come_and_go(void **state) {
                                   "    model: constant\n    coefficients: [2]\n    source: s\n");
 }
 
+static void tables_are_compared(void **state) {
+  (void)state;
+  assert_int_equal(done(RENEW MATERIALS "diff thesis t.yaml --tolerance 0"), 0);
+  assert_string_equal(run_output, "thesis -> t.yaml: 0 changed, 0 renamed, 0 only in the first, 0 "
+                                  "only in the second, 5 the same\n");
+  assert_int_equal(
+      done(MATERIALS "set k5 coefficients.0=1.5090" TABLE " && " MATERIALS "diff thesis t.yaml"),
+      0);
+  assert_contains(run_output, "~ k5: coefficients\n    n_d 1.535296 -> 1.522296, V_d 61.071 -> "
+                              "59.588\n    largest change of n 0.013, at ");
+  assert_int_equal(run_line(MATERIALS "diff thesis t.yaml --tolerance 0.01"), 3);
+  assert_contains(run_errors, "the index of 'k5' changes by 0.013");
+  assert_int_equal(done(MATERIALS "diff thesis t.yaml --tolerance 0.02"), 0);
+  assert_int_equal(done(MATERIALS "diff thesis t.yaml --json"), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  const cJSON *row = cJSON_GetArrayItem(cJSON_GetObjectItem(json, "rows"), 2);
+  assert_string_equal(cJSON_GetObjectItem(row, "kind")->valuestring, "changed");
+  assert_near(cJSON_GetObjectItem(row, "largest")->valuedouble, 0.013, 1e-12);
+  assert_near(cJSON_GetObjectItem(row, "mean")->valuedouble, -0.013, 1e-12);
+  cJSON_Delete(json);
+  assert_int_equal(done("rm t.yaml"), 0);
+}
+
 /* A copied record is the shipped one, comments and all. */
 static void a_copy_is_whole(void **state) {
   (void)state;
@@ -104,6 +129,9 @@ static void wrong_use_gets_a_sentence(void **state) {
       {MATERIALS "rename k5" TABLE, "to what?", 2},
       {MATERIALS "rename k5 BK7" TABLE, "is taken", 1},
       {MATERIALS "rename k5 ' x'" TABLE, "'name'", 1},
+      {MATERIALS "diff t.yaml", "Name two tables", 2},
+      {MATERIALS "diff t.yaml no.yaml", "no.yaml: cannot be opened", 1},
+      {MATERIALS "diff a b c", "one argument too many", 2},
       {MATERIALS "rename a b c" TABLE, "one argument too many", 2},
   };
   assert_int_equal(run_line(RENEW "true"), 0);
@@ -118,8 +146,8 @@ static void wrong_use_gets_a_sentence(void **state) {
 
 static void help_shows_examples(void **state) {
   (void)state;
-  const char *const verbs[] = {"set", "add", "remove", "rename"};
-  for (int i = 0; i < 4; i++) {
+  const char *const verbs[] = {"set", "add", "remove", "rename", "diff"};
+  for (int i = 0; i < 5; i++) {
     char line[96], example[64];
     snprintf(line, sizeof line, MATERIALS "%s --help", verbs[i]);
     snprintf(example, sizeof example, "  abbe materials %s ", verbs[i]);
@@ -131,9 +159,9 @@ static void help_shows_examples(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_row_is_mended),     cmocka_unit_test(records_come_and_go),
-      cmocka_unit_test(a_copy_is_whole),     cmocka_unit_test(wrong_use_gets_a_sentence),
-      cmocka_unit_test(help_shows_examples),
+      cmocka_unit_test(a_row_is_mended),           cmocka_unit_test(records_come_and_go),
+      cmocka_unit_test(a_copy_is_whole),           cmocka_unit_test(tables_are_compared),
+      cmocka_unit_test(wrong_use_gets_a_sentence), cmocka_unit_test(help_shows_examples),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }
