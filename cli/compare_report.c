@@ -80,8 +80,7 @@ static void note_errors(abbe_compare_report *r) {
   if (!has_errors(r->field[0]))
     note(r, "the reference has no standard errors, so nothing tells its noise from a difference");
   else if (!r->field[0]->is_xyz && r->field[0]->colour.error != NULL)
-    note(r, "noise of X, Y, Z is told from R, G, B at the most, for errors that go together; of "
-            "CIEDE2000 and u'v' for errors that are independent");
+    note(r, "noise of X, Y, Z is told from R, G, B at the most, for errors that go together");
   if (c->freedom > 0)
     note(r, "the Z-test takes the standard errors to rest on %.0f estimates (Student's t)",
          c->freedom + 1);
@@ -90,6 +89,13 @@ static void note_errors(abbe_compare_report *r) {
          "%zu of %zu samples have no standard error, so they are not in the Z-test; %zu of them "
          "differ",
          z->untested, z->untested + z->count, z->untested_differ);
+  const char *seed[2] = {attribute(r, 0, "abbe:seed"), attribute(r, 1, "abbe:seed")};
+  if (seed[0] != NULL && seed[1] != NULL && strcmp(seed[0], seed[1]) == 0 &&
+      has_errors(r->field[0]) && has_errors(r->field[1]))
+    note(r,
+         "both were traced with the seed %.20s: noise that they share does not show in their "
+         "difference, and less of it is there than is told",
+         seed[0]);
   if (c->whole.invalid_reference > 0 || c->whole.invalid_test > 0)
     note(r, "left out: %zu pixels that are not finite in the reference, %zu in the test",
          c->whole.invalid_reference, c->whole.invalid_test);

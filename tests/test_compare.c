@@ -239,7 +239,7 @@ static void test_an_exact_field_lies_in_the_noise(void **state) {
       const abbe_compare_value *v = &c.whole.metric[m];
       abbe_compare_verdict verdict = abbe_compare_judge((abbe_compare_metric)m, v);
       bool band = m >= ABBE_COMPARE_BANDS_RELATIVE_RMSE && m <= ABBE_COMPARE_BANDS_ENERGY_RATIO;
-      assert_true((verdict == ABBE_COMPARE_UNKNOWN) == band);
+      assert_true((verdict == ABBE_COMPARE_UNKNOWN) == (band || m == ABBE_COMPARE_CIEDE2000_MAX));
       above[m] += verdict == ABBE_COMPARE_ABOVE;
       ratio[m] += v->value / v->noise / rounds;
     }
@@ -252,14 +252,44 @@ static void test_an_exact_field_lies_in_the_noise(void **state) {
   static const abbe_compare_metric told[] = {ABBE_COMPARE_RELATIVE_RMSE,
                                              ABBE_COMPARE_SQUARED_RELATIVE,
                                              ABBE_COMPARE_CIEDE2000_MEAN, ABBE_COMPARE_UV_MEAN};
-  for (int i = 0; i < 4; i++) assert_near(ratio[told[i]], 1, 0.03);
+  for (int i = 0; i < 4; i++) assert_near(ratio[told[i]], 1, i < 2 ? 0.02 : 0.05);
   /* Two standard deviations: one in forty may lie above. */
   for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++) {
-    bool extreme = m == ABBE_COMPARE_CIEDE2000_P95 || m == ABBE_COMPARE_CIEDE2000_MAX;
-    if (!extreme && above[m] > 4)
+    if (above[m] > 4)
       fail_msg("%s: %d of %d above", abbe_compare_metric_name((abbe_compare_metric)m), above[m],
                rounds);
   }
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* Errors that only brighten and darken change no hue: the noise that is told of hues is far less
+ * than that of independent errors of the same size. */
+static void test_errors_that_go_together(void **state) {
+  (void)state;
+  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  for (size_t i = 0; i < 3 * 48 * 48; i++)
+    a.colour.value[i] = (float)(i % 3 == 2 ? 1.5 : 1) * (1 + 0.3f * (float)sin(0.01 * (double)i));
+  double noise[2];
+  for (int together = 0; together < 2; together++) {
+    unsigned seed = 3;
+    for (size_t i = 0; i < 48 * 48; i++) {
+      double common = normal(&seed);
+      for (size_t c = 0; c < 3; c++) {
+        double v = (double)a.colour.value[3 * i + c];
+        b.colour.value[3 * i + c] = (float)(v * (1 + 0.1 * (together ? common : normal(&seed))));
+        b.colour.error[3 * i + c] = (float)(0.1 * v);
+      }
+    }
+    abbe_comparison c = compare(&b, &a, NULL);
+    noise[together] = c.whole.metric[ABBE_COMPARE_UV_MEAN].noise;
+    for (int m = ABBE_COMPARE_CIEDE2000_MEAN; m <= ABBE_COMPARE_UV_MEAN; m++)
+      if (m != ABBE_COMPARE_CIEDE2000_MAX)
+        assert_int_equal(abbe_compare_judge((abbe_compare_metric)m, &c.whole.metric[m]),
+                         ABBE_COMPARE_BELOW_REFERENCE);
+    abbe_comparison_free(&c);
+  }
+  assert_true(noise[1] < 0.02 * noise[0]);
   abbe_field_free(&a);
   abbe_field_free(&b);
 }
@@ -492,6 +522,7 @@ int main(void) {
                                      cmocka_unit_test(test_percentile),
                                      cmocka_unit_test(test_any_space_gives_the_same),
                                      cmocka_unit_test(test_an_exact_field_lies_in_the_noise),
+                                     cmocka_unit_test(test_errors_that_go_together),
                                      cmocka_unit_test(test_a_true_difference_is_found),
                                      cmocka_unit_test(test_the_noise_of_both),
                                      cmocka_unit_test(test_errors_from_passes),

@@ -55,7 +55,8 @@ typedef struct abbe_compare_value {
   double value;
   double noise;      /* expected if TEST were exact, from REF's errors; of a ratio, one standard
                         error; of the Z-test, what noise alone gives */
-  double limit;      /* up to here noise alone explains it: two standard deviations above `noise` */
+  double limit;      /* up to here noise alone explains it: two standard deviations above `noise`;
+                        NaN for the greatest CIEDE2000, which is one pixel's */
   double both_noise; /* the same from the errors of both; NaN where TEST has none */
   double both_limit;
   double net; /* relative RMSE and squared relative error less all known noise; at least 0 */

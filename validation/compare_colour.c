@@ -2,7 +2,6 @@
 #include "validation/compare_state.h"
 
 #include "colorimetry/difference.h"
-#include "colorimetry/rgb_space.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -27,8 +26,8 @@ static double normal(uint64_t seed, uint64_t counter) {
   return sqrt(-2 * log(u)) * cos(6.283185307179586 * v);
 }
 
-/* X / Y or Z / Y of the pixels around one: their mean, how they vary, and how their errors alone
- * would make them vary; all weighted by Y. */
+/* X / Y or Z / Y of the pixels around one: their mean, how they vary, and how errors of X, Y and Z
+ * that are independent would make them vary; all weighted by Y. */
 typedef struct tint {
   double weight, sum, squares, noise;
 } tint;
@@ -41,24 +40,40 @@ static void add_tint(const double xyz[3], const double error[3], int c, tint *t)
   t->noise += (error[c] * error[c] + ratio * ratio * error[1] * error[1]) / xyz[1];
 }
 
-static double quiet_ratio(const tint *t, double own) {
-  double mean = t->sum / t->weight;
-  double variance = t->squares / t->weight - mean * mean;
-  double keep = variance > 0 ? fmax(0, variance - t->noise / t->weight) / variance : 0;
-  return mean + keep * (own - mean);
+/* REF at a pixel less what its noise does to its tint. */
+typedef struct quiet {
+  double xyz[3];
+  double together[3]; /* correlation of the errors of X and of Z with that of Y */
+} quiet;
+
+/* The tint of the pixels around where they vary no more than their errors explain, the pixel's own
+ * where they vary much more, and in between by their variances [Lee1980]. Where they vary less than
+ * independent errors would make them, the errors go together: by how much follows. So few pixels
+ * tell a variance to a quarter or so; it is taken larger by that, lest chance be taken for
+ * togetherness. */
+static void quieten_tint(const tint *t, const double error[3], int c, quiet *q) {
+  double mean = t->sum / t->weight, independent = t->noise / t->weight;
+  double variance = fmax(0, t->squares / t->weight - mean * mean);
+  double keep = variance > 0 ? fmax(0, variance - independent) / variance : 0;
+  double ratio = mean + keep * (q->xyz[c] / q->xyz[1] - mean);
+  double less = independent > 0 ? fmax(0, 1 - 1.3 * variance / independent) : 0;
+  double own = error[c] * error[c] + ratio * ratio * error[1] * error[1];
+  double most = 2 * ratio * error[c] * error[1];
+  q->together[c] = most > 0 ? fmin(1, less * own / most) : 0;
+  q->xyz[c] = q->xyz[1] * ratio;
 }
 
-/* REF's XYZ with the tint of the pixels around where they vary in tint no more than their errors
- * do, with its own where they vary much more, and in between by their variances [Lee1980]. Noise
- * drawn about REF itself would be drawn about colours that noise has tinted, and there differences
- * of colour count less than about the true ones. */
-static void quieten(const abbe_compare_state *s, size_t pixel, double xyz[3]) {
+/* Noise drawn about REF itself would be drawn about colours that noise has tinted, and there
+ * differences of colour count less than about the true ones. */
+static quiet quieten(const abbe_compare_state *s, size_t pixel) {
   enum { REACH = 2 };
   const abbe_field *f = s->reference;
   size_t x = pixel % f->width, y = pixel / f->width;
   tint t[3] = {{0}};
-  abbe_field_xyz(f, pixel, xyz, NULL);
-  if (!(xyz[1] > 0)) return;
+  quiet q = {0};
+  double own_error[3];
+  abbe_field_xyz(f, pixel, q.xyz, own_error);
+  if (!(q.xyz[1] > 0)) return q;
   for (size_t j = y > REACH ? y - REACH : 0; j <= y + REACH && j < f->height; j++)
     for (size_t i = x > REACH ? x - REACH : 0; i <= x + REACH && i < f->width; i++) {
       double near[3], error[3];
@@ -66,20 +81,22 @@ static void quieten(const abbe_compare_state *s, size_t pixel, double xyz[3]) {
       abbe_field_xyz(f, j * f->width + i, near, error);
       for (int c = 0; c < 3 && near[1] > 0; c += 2) add_tint(near, error, c, &t[c]);
     }
-  for (int c = 0; c < 3; c += 2) xyz[c] = xyz[1] * quiet_ratio(&t[c], xyz[c] / xyz[1]);
+  for (int c = 0; c < 3; c += 2) quieten_tint(&t[c], own_error, c, &q);
+  return q;
 }
 
-/* Adds noise of the errors, drawn for each channel of the file by itself. */
-static void add_noise(const abbe_compare_state *s, const float *errors, double scale,
-                      uint64_t stream, size_t pixel, double xyz[3]) {
-  double noise[3] = {0};
-  for (size_t c = 0; c < 3; c++) {
-    size_t i = 3 * pixel + c;
-    if (errors[i] > 0)
-      noise[c] = scale * (double)errors[i] * normal(s->options->seed, 2 * i + stream);
+/* Adds noise of the errors of a field of the same pixels. */
+static void add_noise(const abbe_compare_state *s, const abbe_field *field, double scale,
+                      uint64_t stream, size_t pixel, const quiet *q, double xyz[3]) {
+  double value[3], error[3], drawn[3];
+  abbe_field_xyz(field, pixel, value, error);
+  for (size_t c = 0; c < 3; c++)
+    drawn[c] = error[c] > 0 ? normal(s->options->seed, 2 * (3 * pixel + c) + stream) : 0;
+  xyz[1] += scale * error[1] * drawn[1];
+  for (int c = 0; c < 3; c += 2) {
+    double r = q->together[c];
+    xyz[c] += scale * error[c] * (r * drawn[1] + sqrt(1 - r * r) * drawn[c]);
   }
-  abbe_rgb_space_apply(s->reference->to_xyz, noise, noise);
-  for (int c = 0; c < 3; c++) xyz[c] += noise[c];
 }
 
 /* [pixels] each; NaN where there is none. */
@@ -95,10 +112,10 @@ static void take_sides(const abbe_compare_state *s, sides who, size_t pixel, dou
     for (int c = 0; c < 3; c++) a[c] *= s->out->scale;
     return;
   }
-  quieten(s, pixel, b);
-  for (int c = 0; c < 3; c++) a[c] = b[c];
-  add_noise(s, s->reference->colour.error, 1, 0, pixel, b);
-  if (who == NOISE_OF_BOTH) add_noise(s, s->test->colour.error, s->out->scale, 1, pixel, a);
+  quiet q = quieten(s, pixel);
+  for (int c = 0; c < 3; c++) b[c] = a[c] = q.xyz[c];
+  add_noise(s, s->reference, 1, 0, pixel, &q, b);
+  if (who == NOISE_OF_BOTH) add_noise(s, s->test, s->out->scale, 1, pixel, &q, a);
 }
 
 static void fill(const abbe_compare_state *s, sides who, arrays out) {
@@ -116,10 +133,19 @@ static void fill(const abbe_compare_state *s, sides who, arrays out) {
   }
 }
 
-/* A mean and two of its standard deviations above it. */
+/* A mean, and two standard deviations of it above it. */
 typedef struct mean {
   double value, limit;
 } mean;
+
+/* Magnitudes of errors, of one sign or of two components, spread by 0.2 to 0.4 of their mean
+ * square (half-normal: 1 - 2/pi); what pixels differ by beyond that is theirs and not chance. */
+static const double spread = 0.4;
+
+static mean weighted_mean(double sum, double weights, double weighted_squares) {
+  double value = sum / weights;
+  return (mean){value, value + 2 * sqrt(spread * weighted_squares) / weights};
+}
 
 static int ascending(const void *a, const void *b) {
   float x = *(const float *)a, y = *(const float *)b;
@@ -137,18 +163,17 @@ static size_t order(const abbe_compare_state *s, const abbe_mask *mask, const fl
 }
 
 static mean mean_of(const float *values, size_t count) {
-  double sum = 0, squares = 0, n = (double)count;
+  double sum = 0, squares = 0;
   for (size_t i = 0; i < count; i++) {
     sum += (double)values[i];
     squares += (double)values[i] * (double)values[i];
   }
-  double value = sum / n, variance = fmax(0, squares / n - value * value);
-  return (mean){value, value + 2 * sqrt(variance / n)};
+  return weighted_mean(sum, (double)count, squares);
 }
 
 static mean mean_uv(const abbe_compare_state *s, const abbe_mask *mask, const float *uv,
                     double *share) {
-  double sum = 0, squares = 0, weights = 0, all = 0, weights2 = 0;
+  double sum = 0, squares = 0, weights = 0, all = 0;
   for (size_t p = 0; p < s->pixels; p++) {
     double xyz[3];
     if (!abbe_compare_has(s, mask, p)) continue;
@@ -157,18 +182,16 @@ static mean mean_uv(const abbe_compare_state *s, const abbe_mask *mask, const fl
     all += y;
     if (isnan(d)) continue;
     weights += y;
-    weights2 += y * y;
     sum += y * d;
-    squares += y * d * d;
+    squares += y * y * d * d;
   }
   *share = weights / all;
-  double value = sum / weights, variance = fmax(0, squares / weights - value * value);
-  return (mean){value, value + 2 * sqrt(variance * weights2) / weights};
+  return weighted_mean(sum, weights, squares);
 }
 
-/* To this share the noise of colour is known: up to errors of a tenth of the light it is within
- * 3 % of what such errors do. */
-static const double slack = 0.03;
+/* How well the noise of colour is known: within 5 % of what independent errors of up to a tenth of
+ * the light do; of those that go together a little more is told than they do. */
+static const double slack = 0.05;
 
 static void set(abbe_compare_value *v, sides who, mean m) {
   m.limit *= 1 + slack;
@@ -191,7 +214,7 @@ static void summarise(const abbe_compare_state *s, const abbe_mask *mask, sides 
   double p95 = (double)sorted[(95 * count + 99) / 100 - 1], top = (double)sorted[count - 1];
   set(&metric[ABBE_COMPARE_CIEDE2000_MEAN], who, mean_of(sorted, count));
   set(&metric[ABBE_COMPARE_CIEDE2000_P95], who, (mean){p95, p95});
-  set(&metric[ABBE_COMPARE_CIEDE2000_MAX], who, (mean){top, top});
+  set(&metric[ABBE_COMPARE_CIEDE2000_MAX], who, (mean){top, NAN}); /* one pixel of one draw */
   double share;
   mean uv = mean_uv(s, mask, values.uv, &share);
   set(&metric[ABBE_COMPARE_UV_MEAN], who, uv);

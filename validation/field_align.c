@@ -63,8 +63,8 @@ abbe_result abbe_field_sum_down(abbe_field *field, size_t width, size_t height, 
 static abbe_result differ(const char *name_a, const char *name_b, const char *of, const char *how,
                           abbe_error *error) {
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                        "%s and %s are maps of different %s: %s; 'abbe render --map-like %s' and "
-                        "'--map-light' make one that can be compared",
+                        "%s and %s are maps of different %s: %s; 'abbe render' and 'abbe trace' "
+                        "make one that can be compared with --map-like %s and --map-light",
                         name_a, name_b, of, how, name_a);
 }
 
