@@ -16,6 +16,7 @@
 #define ABBE_MATERIALS_VERBS(X)                                                                    \
   X(list, "the materials of a table")                                                              \
   X(show, "one material: model, indices, Abbe number, absorption, source, fits")                   \
+  X(plot, "draw the index over wavelength, with fits and measurements, or the glass map")          \
   X(diff, "what differs between two tables, and by how much")                                      \
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \

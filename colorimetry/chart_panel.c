@@ -487,70 +487,99 @@ static bool is_free(const abbe_chart_panel *p, box b, const box *taken, size_t c
 }
 
 /* A name goes right, left, above or below its point, or nowhere. */
-static void draw_names(abbe_chart_panel *p, size_t index) {
-  const abbe_chart_series *s = &p->chart->series[index];
-  enum { MAX_NAMES = 2048 };
-  size_t count = 0, total = s->count < MAX_NAMES ? s->count : MAX_NAMES;
-  box *taken = s->text == NULL || s->y == NULL ? NULL : calloc(2 * total + 1, sizeof *taken);
+static void draw_name(abbe_chart_panel *p, const char *name, double x, double y, box *taken,
+                      size_t *count) {
+  double w = text_width(p->cr, name), h = SMALL_FONT;
+  const double place[4][2] = {
+      {x + 6, y - h / 2}, {x - 6 - w, y - h / 2}, {x - w / 2, y - 6 - h}, {x - w / 2, y + 6}};
+  for (int k = 0; k < 4; k++) {
+    box b = {place[k][0], place[k][1], place[k][0] + w, place[k][1] + h};
+    if (!is_free(p, b, taken, *count)) continue;
+    taken[(*count)++] = b;
+    put_text(p->cr, name, b.x0, b.y0 + 1, 0, 0);
+    return;
+  }
+}
+
+static bool has_names(const abbe_chart_series *s) {
+  return s->text != NULL && s->y != NULL;
+}
+
+/* No name covers a point or another name, of whatever series; the last series' come first. */
+static void draw_names(abbe_chart_panel *p) {
+  enum { MAX_NAMES = 4096 };
+  size_t total = 0, count = 0;
+  for (size_t k = 0; k < p->chart->series_count; k++)
+    if (has_names(&p->chart->series[k])) total += p->chart->series[k].count;
+  box *taken = total == 0 || total > MAX_NAMES ? NULL : calloc(2 * total, sizeof *taken);
   if (taken == NULL) return;
   set_font(p->cr, SMALL_FONT, false);
   ink(p->cr, 0.2);
-  for (size_t i = 0; i < total; i++) { /* no name covers a point */
-    double x = to_x(p, s->x[i]), y = to_y(p, s->y[i]);
-    taken[count++] = (box){x - 3, y - 3, x + 3, y + 3};
-  }
-  for (size_t i = 0; i < total; i++) {
-    double x = to_x(p, s->x[i]), y = to_y(p, s->y[i]);
-    if (s->text[i] == NULL || !isfinite(x + y)) continue;
-    double w = text_width(p->cr, s->text[i]), h = SMALL_FONT;
-    const double place[4][2] = {
-        {x + 6, y - h / 2}, {x - 6 - w, y - h / 2}, {x - w / 2, y - 6 - h}, {x - w / 2, y + 6}};
-    for (int k = 0; k < 4; k++) {
-      box b = {place[k][0], place[k][1], place[k][0] + w, place[k][1] + h};
-      if (!is_free(p, b, taken, count)) continue;
-      taken[count++] = b;
-      put_text(p->cr, s->text[i], b.x0, b.y0 + 1, 0, 0);
-      break;
+  for (int round = 0; round < 2; round++)
+    for (size_t k = p->chart->series_count; k-- > 0;) {
+      const abbe_chart_series *s = &p->chart->series[k];
+      for (size_t i = 0; has_names(s) && i < s->count; i++) {
+        double x = to_x(p, s->x[i]), y = to_y(p, s->y[i]);
+        if (!isfinite(x + y)) continue;
+        if (round == 0)
+          taken[count++] = (box){x - 3, y - 3, x + 3, y + 3};
+        else if (s->text[i] != NULL)
+          draw_name(p, s->text[i], x, y, taken, &count);
+      }
     }
-  }
   free(taken);
 }
 
 /* ---- legend ---- */
 
-/* How much of the data lies in the box: points, and steps along the lines between them. */
+/* How many of the steps along a stroke lie in the box. */
+static size_t crossed(box b, double x0, double y0, double x1, double y1) {
+  enum { PIECES = 8 };
+  size_t hits = 0;
+  for (int i = 0; i < PIECES; i++) {
+    double x = x0 + (x1 - x0) * i / PIECES, y = y0 + (y1 - y0) * i / PIECES;
+    hits += x > b.x0 && x < b.x1 && y > b.y0 && y < b.y1;
+  }
+  return hits;
+}
+
+/* How much of the data lies in the box: points, the lines between them, and their bars. */
 static size_t covered(const abbe_chart_panel *p, box b) {
   size_t hits = 0;
   for (size_t k = 0; k < p->chart->series_count; k++) {
     const abbe_chart_series *s = &p->chart->series[k];
-    for (size_t i = 0; i < s->count; i++) {
-      const double *y = s->y != NULL ? s->y : s->high;
-      size_t next = i + 1 < s->count ? i + 1 : i;
-      double from[2] = {to_x(p, s->x[i]), to_y(p, y[i])};
-      double to[2] = {to_x(p, s->x[next]), to_y(p, y[next])};
-      for (int step = 0; step < 8; step++) {
-        double x = from[0] + (to[0] - from[0]) * step / 8;
-        double at = from[1] + (to[1] - from[1]) * step / 8;
-        hits += x > b.x0 && x < b.x1 && at > b.y0 && at < b.y1;
-      }
+    const double *y = s->y != NULL ? s->y : s->high;
+    size_t stride = 1 + s->count / 256; /* a long series is as well judged by some of it */
+    for (size_t i = 0; i < s->count; i += stride) {
+      size_t next = i + stride < s->count ? i + stride : s->count - 1;
+      bool joined = s->style != ABBE_CHART_POINTS;
+      double x0 = to_x(p, s->x[i]), y0 = to_y(p, y[i]);
+      if (joined) hits += crossed(b, x0, y0, to_x(p, s->x[next]), to_y(p, y[next]));
+      if (!joined) hits += 8 * (crossed(b, x0, y0, x0, y0) > 0);
+      if (s->low != NULL) hits += crossed(b, x0, to_y(p, s->low[i]), x0, to_y(p, s->high[i]));
     }
   }
   return hits;
 }
 
+/* The place that hides least; of equal ones that nearest to a corner, the upper right one first. */
 static box place_legend(const abbe_chart_panel *p, double width, double height) {
+  enum { STEPS = 8 };
+  static const int order[STEPS + 1] = {8, 0, 7, 1, 6, 2, 5, 3, 4};
   box best = {0};
   size_t least = SIZE_MAX;
-  for (int k = 0; k < 6; k++) { /* right, left, middle; top, bottom */
-    const double across[3] = {1, 0, 0.5};
-    double x = p->left + 10 + across[k / 2] * (p->right - p->left - 20 - width);
-    double y = k % 2 == 0 ? p->plot_top + 10 : p->plot_bottom - 10 - height;
-    box b = {x, y, x + width, y + height};
-    size_t hits = covered(p, b);
-    if (hits >= least) continue;
-    least = hits;
-    best = b;
-  }
+  for (int sum = 0; sum <= 2 * STEPS; sum++)
+    for (int i = 0; i <= sum; i++) {
+      if (i > STEPS || sum - i > STEPS) continue;
+      double across = order[sum - i] / (double)STEPS, down = 1 - order[i] / (double)STEPS;
+      double x = p->left + 10 + across * (p->right - p->left - 20 - width);
+      double y = p->plot_top + 10 + down * (p->plot_bottom - p->plot_top - 20 - height);
+      box b = {x, y, x + width, y + height};
+      size_t hits = covered(p, b);
+      if (hits >= least) continue;
+      least = hits;
+      best = b;
+    }
   return best;
 }
 
@@ -631,7 +660,7 @@ void abbe_chart_panel_draw(abbe_chart_panel *p) {
     draw_grid(p);
   for (size_t i = 0; i < c->series_count; i++) draw_series(p, i);
   cairo_set_dash(p->cr, NULL, 0, 0);
-  for (size_t i = 0; i < c->series_count; i++) draw_names(p, i);
+  draw_names(p);
   cairo_restore(p->cr);
   draw_legend(p);
   if (has_ticks(c)) draw_ticks(p);

@@ -9,6 +9,7 @@ foreach(name
     bad_input
     export_command
     materials_change_command
+    materials_plot_command
     outline_command
     render_command
     validate_command
