@@ -21,7 +21,9 @@
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \
   X(remove, "take records out of a table")                                                         \
-  X(rename, "give a record another name")
+  X(rename, "give a record another name")                                                          \
+  X(import, "make a table of catalogues, refractiveindex.info files and points")                   \
+  X(export, "write materials as AGF, RII, CSV, YAML, or for other renderers")
 
 #define ABBE_MATERIALS_DECLARE(name, summary) int abbe_materials_##name(int argc, char **argv);
 ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)

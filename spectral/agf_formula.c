@@ -1,5 +1,7 @@
 #include "spectral/agf_formula.h"
 
+#include "spectral/number.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -147,7 +149,7 @@ static bool write_sum(const abbe_dispersion *d, bool pole_squared, abbe_agf_form
     if (d->c[k] == 0) continue;
     if (terms == 5) return false;
     c[2 * terms] = d->c[k];
-    c[2 * terms++ + 1] = pole_squared ? d->c[k + 1] * d->c[k + 1] : d->c[k + 1];
+    c[2 * terms++ + 1] = pole_squared ? abbe_number_tidy(d->c[k + 1] * d->c[k + 1]) : d->c[k + 1];
   }
   if (d->c[0] != 0 && terms == 5) return false;
   if (d->c[0] != 0) c[2 * terms++] = d->c[0];

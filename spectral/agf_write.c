@@ -2,6 +2,7 @@
 
 #include "spectral/absorption.h"
 #include "spectral/agf_formula.h"
+#include "spectral/material_numbers.h"
 #include "spectral/number.h"
 #include "spectral/tally.h"
 #include "spectral/wavelengths.h"
@@ -67,7 +68,9 @@ static int status_number(const char *status) {
 static void write_nm(const abbe_material *m, int formula, abbe_tally *t, FILE *to) {
   const abbe_material_catalogue *c = &m->catalogue;
   abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
-  double n_d = m->published_n_d, v_d = m->published_v_d;
+  abbe_material_published printed; /* also where only the words of the source say it */
+  abbe_material_published_make(m, &printed);
+  double n_d = isnan(printed.n_d) ? 0 : printed.n_d, v_d = isnan(printed.v_d) ? 0 : printed.v_d;
   bool inside = !abbe_material_extrapolates(m, ABBE_LINE_F_NM) &&
                 !abbe_material_extrapolates(m, ABBE_LINE_C_NM);
   if (n_d == 0 && v_d == 0 && inside && isfinite(d.n_d) && isfinite(d.v_d)) {

@@ -237,7 +237,7 @@ static abbe_result find_unit(reader *r, double *unit_nm) {
 }
 
 static abbe_result order(reader *r, abbe_points *list, double unit_nm, const char *what) {
-  for (size_t i = 0; i < list->count; i++)
+  for (size_t i = 0; i < list->count && unit_nm != 1; i++)
     list->point[i].lambda_nm = abbe_number_tidy(list->point[i].lambda_nm * unit_nm);
   bool repeats = r->options != NULL && r->options->repeats;
   size_t kept = 0, dropped = 0;

@@ -1,0 +1,186 @@
+#include "spectral/material_import.h"
+
+#include "spectral/absorption.h"
+#include "spectral/agf.h"
+#include "spectral/encoding.h"
+#include "spectral/file.h"
+#include "spectral/number.h"
+#include "spectral/rii.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_BYTES = 64 << 20 };
+
+const char *abbe_import_format_name(abbe_import_format format) {
+  static const char *const names[] = {
+#define ABBE_IMPORT_NAME(code, name, text) name,
+      ABBE_IMPORT_FORMATS(ABBE_IMPORT_NAME)
+#undef ABBE_IMPORT_NAME
+  };
+  return (int)format >= 0 && format < ABBE_IMPORT_FORMAT_COUNT ? names[format] : "unknown";
+}
+
+/* ---- what a file is ---- */
+
+static bool begins(const char *line, size_t length, const char *word) {
+  size_t count = strlen(word);
+  return length >= count && memcmp(line, word, count) == 0;
+}
+
+static abbe_import_format kind_of_line(const char *line, size_t length) {
+  while (length > 0 && (*line == ' ' || *line == '\t')) line++, length--;
+  if (begins(line, length, "NM ") || begins(line, length, "NM\t")) return ABBE_IMPORT_AGF;
+  if (begins(line, length, "DATA:")) return ABBE_IMPORT_RII;
+  if (begins(line, length, "materials:")) return ABBE_IMPORT_YAML;
+  char start[80];
+  snprintf(start, sizeof start, "%.*s", (int)(length < 79 ? length : 79), line);
+  const char *end;
+  double value;
+  bool number = abbe_number_read(start, &end, &value);
+  return number && *end != '\0' && strchr(" \t,;", *end) != NULL ? ABBE_IMPORT_CSV
+                                                                 : ABBE_IMPORT_AUTO;
+}
+
+abbe_import_format abbe_import_detect(const char *text, size_t size) {
+  char *clean = NULL;
+  size_t length = 0;
+  abbe_import_format found = ABBE_IMPORT_AUTO;
+  if (abbe_encoding_decode(text, size, &clean, &length, NULL) != ABBE_OK) return found;
+  for (const char *line = clean; found == ABBE_IMPORT_AUTO && line != NULL && *line != '\0';) {
+    size_t count = strcspn(line, "\n");
+    found = kind_of_line(line, count);
+    line += count + (line[count] == '\n');
+  }
+  free(clean);
+  return found;
+}
+
+/* ---- points ---- */
+
+static char *text_of(const char *before, const char *path, bool stem) {
+  const char *slash = strrchr(path, '/'), *file = slash != NULL ? slash + 1 : path;
+  const char *dot = strrchr(file, '.');
+  size_t length = stem && dot != NULL && dot > file ? (size_t)(dot - file) : strlen(file);
+  size_t size = strlen(before) + length + 1;
+  char *text = malloc(size);
+  if (text != NULL) snprintf(text, size, "%s%.*s", before, (int)length, file);
+  return text;
+}
+
+static abbe_result make_points(const abbe_csv_points *points, const char *path,
+                               const abbe_import_options *o, abbe_material *m, abbe_report *report,
+                               abbe_error *error) {
+  if (points->n.count == 0)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s: holds k but no n; a material needs n, in a column of that name",
+                          path);
+  *m = (abbe_material){.temperature_c = NAN, .line = points->first_line};
+  m->name = o->name != NULL ? strdup(o->name) : text_of("", path, true);
+  m->source = o->source != NULL ? strdup(o->source) : text_of("measured points in ", path, false);
+  if (m->name == NULL || m->source == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
+  m->dispersion.model = ABBE_DISPERSION_TABULATED;
+  m->min_nm = points->n.point[0].lambda_nm;
+  m->max_nm = points->n.point[points->n.count - 1].lambda_nm;
+  bool uncertain = false, absorbs = false;
+  for (size_t i = 0; i < points->n.count; i++)
+    uncertain = uncertain || points->n.point[i].error > 0;
+  for (size_t i = 0; i < points->k.count; i++) absorbs = absorbs || points->k.point[i].value > 0;
+  if (uncertain)
+    abbe_report_add(report, ABBE_NOTE_LOST, 0, m->name,
+                    "a table's points carry no uncertainties; 'abbe materials fit' uses them");
+  if (o->source == NULL)
+    abbe_report_add(report, ABBE_NOTE_ASSUMED, 0, m->name,
+                    "its source is the file; --source TEXT says a better one");
+  abbe_result result =
+      abbe_points_spectrum(&points->n, ABBE_INTERPOLATION_MONOTONE, &m->dispersion.table, error);
+  if (result == ABBE_OK && absorbs)
+    result = abbe_absorption_spectrum_of_k(&points->k, &m->attenuation, error);
+  return result == ABBE_OK ? abbe_material_check(m, error) : result;
+}
+
+static abbe_result parse_points(const char *bytes, size_t size, const char *path,
+                                const abbe_import_options *o, abbe_material *m, abbe_report *report,
+                                abbe_error *error) {
+  abbe_csv_points points;
+  abbe_result result = abbe_csv_points_parse(bytes, size, path, &o->csv, &points, report, error);
+  if (result == ABBE_OK) result = make_points(&points, path, o, m, report, error);
+  abbe_csv_points_free(&points);
+  return result;
+}
+
+/* ---- into the table ---- */
+
+/* Moves all of `from` to the end of `into`, or nothing. */
+static abbe_result move_all(abbe_material_table *from, abbe_material_table *into,
+                            abbe_error *error) {
+  if (from->count > ABBE_MATERIAL_TABLE_MAX_COUNT - into->count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its %zu materials make more than the %d that a table holds",
+                          from->path, from->count, ABBE_MATERIAL_TABLE_MAX_COUNT);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < from->count && result == ABBE_OK; i++)
+    result = abbe_material_table_append(into, &from->material[i], error);
+  if (result == ABBE_OK && into->count == from->count && into->description == NULL) {
+    into->description = from->description;
+    from->description = NULL;
+  }
+  return result;
+}
+
+static abbe_result parse_as(abbe_import_format format, const char *bytes, size_t size,
+                            const char *path, const abbe_import_options *o,
+                            abbe_material_table *into, abbe_report *report, abbe_error *error) {
+  abbe_material_table table = {0};
+  abbe_material one = {0};
+  abbe_result result;
+  switch (format) {
+  case ABBE_IMPORT_AGF:
+    result = abbe_agf_parse(bytes, size, path, &table, report, error);
+    break;
+  case ABBE_IMPORT_YAML:
+    result = abbe_material_table_parse(bytes, size, path, &table, error);
+    break;
+  case ABBE_IMPORT_RII:
+    result = abbe_rii_parse(bytes, size, path, o->name, &one, report, error);
+    break;
+  default:
+    result = parse_points(bytes, size, path, o, &one, report, error);
+  }
+  if (result == ABBE_OK && one.name != NULL) result = abbe_material_table_append(into, &one, error);
+  if (result == ABBE_OK) result = move_all(&table, into, error);
+  abbe_material_free(&one);
+  abbe_material_table_free(&table);
+  return result;
+}
+
+abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
+                              const abbe_import_options *options, abbe_material_table *into,
+                              abbe_report *report, abbe_error *error) {
+  static const abbe_import_options defaults = {0};
+  const abbe_import_options *o = options != NULL ? options : &defaults;
+  abbe_import_format format =
+      o->format != ABBE_IMPORT_AUTO ? o->format : abbe_import_detect(bytes, size);
+  if (format == ABBE_IMPORT_AUTO)
+    return abbe_error_set(error, ABBE_PARSE,
+                          "%s: is none of what can be read: a Zemax catalogue has NM lines, a file "
+                          "of refractiveindex.info 'DATA:', a table of ours 'materials:', points "
+                          "lines such as 587.6, 1.5168",
+                          path);
+  return parse_as(format, bytes, size, path, o, into, report, error);
+}
+
+abbe_result abbe_import_load(const char *path, const abbe_import_options *options,
+                             abbe_material_table *into, abbe_report *report, abbe_error *error) {
+  char *bytes = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_file_read(path, MAX_BYTES, &bytes, &size, error);
+  if (result == ABBE_OK)
+    result = abbe_import_parse(bytes, size, path, options, into, report, error);
+  free(bytes);
+  return result;
+}
