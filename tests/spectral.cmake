@@ -17,6 +17,8 @@ abbe_test(material_numbers cpu abbe_spectral)
 abbe_test(glass_distance cpu abbe_spectral)
 abbe_test(convert cpu abbe_spectral)
 abbe_test(doctor cpu abbe_spectral)
+abbe_test(material_query cpu abbe_spectral)
+abbe_test(table_mend cpu abbe_spectral)
 abbe_test(material cpu abbe_spectral)
 foreach(name number encoding report tally points absorption csv_points agf agf_formula agf_write
         material_write rii rii_write html_text csv_write material_import)
