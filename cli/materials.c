@@ -1,5 +1,6 @@
 #include "cli/materials.h"
 
+#include "spectral/material_numbers.h"
 #include "spectral/nearest.h"
 
 #include <argp.h>
@@ -77,21 +78,11 @@ _Noreturn void abbe_materials_wrong_use(const char *program, const char *sentenc
   exit(ABBE_EXIT_USAGE);
 }
 
-/* A number is told only where the record vouches for it. */
-static double told(const abbe_material *m, double value, double from_nm, double to_nm) {
-  bool outside = abbe_material_extrapolates(m, from_nm) || abbe_material_extrapolates(m, to_nm);
-  return outside && !m->extrapolate ? NAN : value;
-}
-
 abbe_dispersion_numbers abbe_materials_numbers(const abbe_material *m) {
-  abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
+  abbe_material_numbers n;
+  abbe_material_numbers_make(m, &n);
   return (abbe_dispersion_numbers){
-      .n_d = told(m, d.n_d, ABBE_LINE_D_NM, ABBE_LINE_D_NM),
-      .n_F = told(m, d.n_F, ABBE_LINE_F_NM, ABBE_LINE_F_NM),
-      .n_C = told(m, d.n_C, ABBE_LINE_C_NM, ABBE_LINE_C_NM),
-      .v_d = told(m, d.v_d, ABBE_LINE_F_NM, ABBE_LINE_C_NM),
-      .b_g = told(m, d.b_g, ABBE_LINE_G_NM, ABBE_LINE_B_NM),
-  };
+      .n_d = n.n_d, .n_F = n.n_F, .n_C = n.n_C, .v_d = n.v_d, .b_g = n.b_g};
 }
 
 const char *abbe_materials_number(char *text, size_t size, const char *format, double value) {
@@ -129,14 +120,27 @@ void abbe_materials_add_text(cJSON *to, const char *key, const char *text) {
 
 /* cJSON writes NaN and infinity as null, and every other double so that it reads back the same. */
 void abbe_materials_add_numbers(cJSON *to, const abbe_material *m) {
-  abbe_dispersion_numbers d = abbe_materials_numbers(m);
-  cJSON_AddNumberToObject(to, "n_d", d.n_d);
-  cJSON_AddNumberToObject(to, "v_d", d.v_d);
-  cJSON_AddNumberToObject(to, "n_F", d.n_F);
-  cJSON_AddNumberToObject(to, "n_C", d.n_C);
-  cJSON_AddNumberToObject(to, "b_g", d.b_g);
+  abbe_material_numbers n;
+  abbe_material_numbers_make(m, &n);
+  cJSON_AddNumberToObject(to, "n_d", n.n_d);
+  cJSON_AddNumberToObject(to, "v_d", n.v_d);
+  cJSON_AddNumberToObject(to, "n_F", n.n_F);
+  cJSON_AddNumberToObject(to, "n_C", n.n_C);
+  cJSON_AddNumberToObject(to, "n_e", n.n_e);
+  cJSON_AddNumberToObject(to, "n_g", n.n_g);
+  cJSON_AddNumberToObject(to, "b_g", n.b_g);
+  cJSON_AddNumberToObject(to, "p_gF", n.p_gF);
+  cJSON_AddNumberToObject(to, "dp_gF", n.dp_gF);
 }
 
 void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b) {
   cJSON_AddItemToObject(to, key, cJSON_CreateDoubleArray((double[]){a, b}, 2));
+}
+
+void abbe_materials_round(abbe_dispersion *dispersion) {
+  char text[64];
+  for (size_t i = 0; i < dispersion->count && dispersion->count <= 9; i++) {
+    snprintf(text, sizeof text, "%.12g", dispersion->c[i]);
+    dispersion->c[i] = strtod(text, NULL);
+  }
 }

@@ -17,6 +17,10 @@
   X(list, "the materials of a table")                                                              \
   X(show, "one material: model, indices, Abbe number, absorption, source, fits")                   \
   X(plot, "draw the index over wavelength, with fits and measurements, or the glass map")          \
+  X(nearest, "the materials nearest to an n_d and V_d, to a curve, or to points")                  \
+  X(check, "what is wrong or doubtful in a table, and how to mend it")                             \
+  X(fit, "a Cauchy or Sellmeier form through a material, a formula or points")                     \
+  X(from, "a record from n_d and V_d, a gem's dispersion, A and B, or glTF's pair")                \
   X(diff, "what differs between two tables, and by how much")                                      \
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \
@@ -57,8 +61,10 @@ cJSON *abbe_materials_json(void);
 abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
 /* Adds text, or null where there is none. */
 void abbe_materials_add_text(cJSON *to, const char *key, const char *text);
-/* n_d, v_d, n_F, n_C and b_g; null where the record does not vouch for them. */
+/* n_d, v_d, the indices at the lines, b_g and partial dispersions; null where the record does not vouch for them. */
 void abbe_materials_add_numbers(cJSON *to, const abbe_material *material);
+/* A few coefficients to twelve digits, for a record that people read: no index moves by 1e-10. */
+void abbe_materials_round(abbe_dispersion *dispersion);
 void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b);
 
 #endif

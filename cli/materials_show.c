@@ -1,5 +1,8 @@
 #include "cli/materials.h"
 
+#include "spectral/absorption.h"
+#include "spectral/doctor.h"
+#include "spectral/material_numbers.h"
 #include "spectral/wavelengths.h"
 
 #include <argp.h>
@@ -42,40 +45,77 @@ static void show_absorption(const abbe_material *m) {
   for (size_t i = 0; i < count && i < 8; i++)
     printf(" %.4g at %g%s", a[i], l[i], i + 1 < count ? "," : "");
   printf(count > 8 ? " … (%zu points)\n" : "\n", count);
+  printf("                through 10 mm:");
+  for (int nm = 400; nm <= 700; nm += 100)
+    printf(" %.4g at %d%s", abbe_absorption_transmittance(abbe_material_attenuation(m, nm), 0.01),
+           nm, nm < 700 ? "," : " nm\n");
 }
 
 static void show_fits(const abbe_material *m) {
   for (int i = 0; i < 2; i++) {
     const abbe_material_fit *fit = &m->fit[i];
+    abbe_index_difference off;
     if (fit->terms == 0) continue;
     printf("  Cauchy, %zu     ", fit->terms);
     for (size_t k = 0; k < fit->terms; k++)
       printf("%.9g%s", fit->c[k], k + 1 < fit->terms ? ", " : "");
-    printf("   (largest error %.3g, %g to %g nm)\n", fit->max_error, fit->min_nm, fit->max_nm);
+    printf("   (%g to %g nm: ", fit->min_nm, fit->max_nm);
+    if (abbe_material_fit_residual(m, fit, &off, NULL) == ABBE_OK)
+      printf("rms error %.3g, largest %.3g at %g nm)\n", off.rms, off.max, off.max_nm);
+    else
+      printf("largest error %.3g)\n", fit->max_error);
   }
 }
 
-static abbe_result show_text(const request *r, const abbe_material *m, abbe_error *error) {
-  char text[4][32];
-  abbe_dispersion_numbers d = abbe_materials_numbers(m);
-  printf("%s%s%s\n", m->name, m->description ? ": " : "", m->description ? m->description : "");
+static void show_numbers(const abbe_material *m) {
+  char text[7][32];
+  abbe_material_numbers n;
+  abbe_material_published p;
+  abbe_material_numbers_make(m, &n);
+  abbe_material_published_make(m, &p);
   printf("  n_d %s   V_d %s   B-G %s   n_F - n_C %s\n",
-         abbe_materials_number(text[0], sizeof text[0], "%.6f", d.n_d),
-         abbe_materials_number(text[1], sizeof text[1], "%.3f", d.v_d),
-         abbe_materials_number(text[2], sizeof text[2], "%.6f", d.b_g),
-         abbe_materials_number(text[3], sizeof text[3], "%.6f", d.n_F - d.n_C));
+         abbe_materials_number(text[0], sizeof text[0], "%.6f", n.n_d),
+         abbe_materials_number(text[1], sizeof text[1], "%.3f", n.v_d),
+         abbe_materials_number(text[2], sizeof text[2], "%.6f", n.b_g),
+         abbe_materials_number(text[3], sizeof text[3], "%.6f", n.n_F - n.n_C));
+  printf("  n_e %s   P_gF %s   from the normal line %s\n",
+         abbe_materials_number(text[4], sizeof text[4], "%.6f", n.n_e),
+         abbe_materials_number(text[5], sizeof text[5], "%.4f", n.p_gF),
+         abbe_materials_number(text[6], sizeof text[6], "%+.4f", n.dp_gF));
+  if (p.n_d > 0 || p.v_d > 0) printf("  printed      ");
+  if (p.n_d > 0) printf(" n_d %.8g (here %+.1g)", p.n_d, n.n_d - p.n_d);
+  if (p.v_d > 0) printf(" V_d %.8g (here %+.1g)", p.v_d, n.v_d - p.v_d);
+  if (p.n_d > 0 || p.v_d > 0) printf("\n");
+}
+
+static void show_findings(const abbe_findings *found) {
+  for (size_t i = 0; i < found->count; i++) {
+    const abbe_finding *f = &found->finding[i];
+    printf("  %-13s %s: %s; %s\n", abbe_finding_weight_name(f->weight),
+           abbe_finding_kind_meaning(f->kind), f->evidence, f->mend);
+  }
+}
+
+static abbe_result show_text(const request *r, const abbe_material *m, const abbe_findings *found,
+                             abbe_error *error) {
+  printf("%s%s%s\n", m->name, m->description ? ": " : "", m->description ? m->description : "");
+  show_numbers(m);
   show_formula(m);
   show_absorption(m);
   show_fits(m);
   printf("  source        %s\n", m->source);
+  if (m->comment != NULL) printf("  comment       %s\n", m->comment);
   if (m->warning != NULL) printf("  warning       %s\n", m->warning);
-  if (r->at_count > 0) printf("\n  %10s  %12s\n", "nm", "n");
+  show_findings(found);
+  if (r->at_count > 0)
+    printf("\n  %10s  %12s%s\n", "nm", "n", m->attenuation != NULL ? "         1/m" : "");
   for (size_t i = 0; i < r->at_count; i++) {
     double n = 0;
     abbe_result result = abbe_material_n(m, r->at[i], &n, error);
     if (result != ABBE_OK) return result;
-    printf("  %10.6g  %12.9f%s\n", r->at[i], n,
-           abbe_material_extrapolates(m, r->at[i]) ? "  extrapolated" : "");
+    printf("  %10.6g  %12.9f", r->at[i], n);
+    if (m->attenuation != NULL) printf("  %10.4g", abbe_material_attenuation(m, r->at[i]));
+    printf("%s\n", abbe_material_extrapolates(m, r->at[i]) ? "  extrapolated" : "");
   }
   return ABBE_OK;
 }
@@ -138,12 +178,38 @@ static void add_record(cJSON *to, const abbe_material *m) {
     cJSON_AddNumberToObject(item, "terms", (double)fit->terms);
     cJSON_AddItemToObject(item, "coefficients", cJSON_CreateDoubleArray(fit->c, (int)fit->terms));
     cJSON_AddNumberToObject(item, "max_error", fit->max_error);
+    abbe_index_difference off = {.rms = NAN, .max = NAN};
+    abbe_material_fit_residual(m, fit, &off, NULL);
+    cJSON_AddNumberToObject(item, "residual_rms", off.rms);
+    cJSON_AddNumberToObject(item, "residual_max", off.max);
     abbe_materials_add_pair(item, "range_nm", fit->min_nm, fit->max_nm);
   }
 }
 
+static void add_published(cJSON *to, const abbe_material *m) {
+  abbe_material_published p;
+  abbe_material_published_make(m, &p);
+  cJSON *item = cJSON_AddObjectToObject(to, "printed");
+  cJSON_AddNumberToObject(item, "n_d", p.n_d);
+  cJSON_AddNumberToObject(item, "v_d", p.v_d);
+}
+
+static void add_findings(cJSON *to, const abbe_findings *found) {
+  cJSON *list = cJSON_AddArrayToObject(to, "findings");
+  for (size_t i = 0; i < found->count; i++) {
+    const abbe_finding *f = &found->finding[i];
+    cJSON *item = cJSON_CreateObject();
+    if (item == NULL || !cJSON_AddItemToArray(list, item)) continue;
+    cJSON_AddStringToObject(item, "weight", abbe_finding_weight_name(f->weight));
+    cJSON_AddStringToObject(item, "kind", abbe_finding_kind_name(f->kind));
+    cJSON_AddStringToObject(item, "evidence", f->evidence);
+    cJSON_AddStringToObject(item, "mend", f->mend);
+  }
+}
+
 static abbe_result show_json(const request *r, const abbe_material_table *table,
-                             const abbe_material *m, abbe_error *error) {
+                             const abbe_material *m, const abbe_findings *found,
+                             abbe_error *error) {
   cJSON *root = abbe_materials_json();
   cJSON_AddStringToObject(root, "name", m->name);
   abbe_materials_add_text(root, "description", m->description);
@@ -156,11 +222,14 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
     cJSON *item = cJSON_CreateObject();
     cJSON_AddNumberToObject(item, "lambda_nm", r->at[i]);
     cJSON_AddNumberToObject(item, "n", n);
+    cJSON_AddNumberToObject(item, "attenuation_per_m", abbe_material_attenuation(m, r->at[i]));
     cJSON_AddBoolToObject(item, "extrapolated", abbe_material_extrapolates(m, r->at[i]));
     cJSON_AddItemToArray(list, item);
   }
   abbe_materials_add_numbers(root, m);
   add_record(root, m);
+  add_published(root, m);
+  add_findings(root, found);
   if (result == ABBE_OK) result = abbe_materials_print_json(root, error);
   cJSON_Delete(root);
   return result;
@@ -235,7 +304,15 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
   }
   if (result != ABBE_OK) return result;
   if (r->fit) return show_fit_yaml(m, error);
-  return r->json ? show_json(r, table, m, error) : show_text(r, m, error);
+  abbe_material_table known;
+  abbe_findings found = {0};
+  result = abbe_material_table_load(NULL, &known, error);
+  if (result == ABBE_OK) result = abbe_doctor_check_material(m, &known, &found, error);
+  if (result == ABBE_OK)
+    result = r->json ? show_json(r, table, m, &found, error) : show_text(r, m, &found, error);
+  abbe_findings_free(&found);
+  abbe_material_table_free(&known);
+  return result;
 }
 
 int abbe_materials_show(int argc, char **argv) {

@@ -38,17 +38,17 @@ static reading read_as(const abbe_dispersion *dispersion) {
 /* What the row should have: from its own source, else from its namesake; NaN where unknown. */
 typedef struct target {
   double n_d, v_d;
-  const char *whose;
+  const char *the, *whose; /* "the known " and its name, or "" and "its own source" */
 } target;
 
 static target target_of(const abbe_doctor *d) {
   if (d->published.n_d > 1.0001)
-    return (target){d->published.n_d, d->published.v_d, "its own source"};
+    return (target){d->published.n_d, d->published.v_d, "", "its own source"};
   if (d->namesake != NULL && d->namesake != d->material) {
     abbe_dispersion_numbers known = abbe_dispersion_describe(&d->namesake->dispersion);
-    return (target){known.n_d, known.v_d, d->namesake->name};
+    return (target){known.n_d, known.v_d, "the known ", d->namesake->name};
   }
-  return (target){NAN, NAN, NULL};
+  return (target){NAN, NAN, "", NULL};
 }
 
 static bool meets(const reading *r, const target *t) {
@@ -71,14 +71,15 @@ static void say_target(abbe_doctor *d, abbe_finding *f, const reading *now, cons
                        const target *t, const char *what) {
   if (t->whose != NULL && isnan(t->v_d))
     abbe_doctor_say(d, &f->evidence,
-                    "%s; as it stands n_d is %.5g and V_d %.4g, read so they are %.5g and %.4g; %s "
-                    "has n_d %.6g",
-                    what, now->n_d, now->v_d, other->n_d, other->v_d, t->whose, t->n_d);
+                    "%s; as it stands n_d is %.5g and V_d %.4g, read so they are %.5g and %.4g; "
+                    "%s%s has n_d %.6g",
+                    what, now->n_d, now->v_d, other->n_d, other->v_d, t->the, t->whose, t->n_d);
   else if (t->whose != NULL)
     abbe_doctor_say(d, &f->evidence,
-                    "%s; as it stands n_d is %.5g and V_d %.4g, read so they are %.5g and %.4g; %s "
-                    "has %.6g and %.4g",
-                    what, now->n_d, now->v_d, other->n_d, other->v_d, t->whose, t->n_d, t->v_d);
+                    "%s; as it stands n_d is %.5g and V_d %.4g, read so they are %.5g and %.4g; "
+                    "%s%s has %.6g and %.4g",
+                    what, now->n_d, now->v_d, other->n_d, other->v_d, t->the, t->whose, t->n_d,
+                    t->v_d);
   else
     abbe_doctor_say(d, &f->evidence,
                     "%s; as it stands n_d is %.5g and V_d %.4g, which is no transparent material; "
@@ -152,7 +153,7 @@ static bool known_alone(const abbe_doctor *d, const reading *now, const reading 
       return false;
     if (near.count > 0) {
       const abbe_glass_distance *first = &near.nearest[0];
-      target t = {first->n_d, first->v_d, d->known->material[first->index].name};
+      target t = {first->n_d, first->v_d, "the known ", d->known->material[first->index].name};
       found[i] = meets(readings[i], &t);
       if (i == 1) *nearest = t;
     }
@@ -173,8 +174,8 @@ static bool check_a(abbe_doctor *d, const reading *now, const target *t) {
       abbe_doctor_find(d, ABBE_FINDING_A_IS_ND, sure ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
   if (f == NULL) return true;
   char what[200];
-  snprintf(what, sizeof what, "A %.6g is %.2g from the n_d of %s, and n_d is above A by B / L^2",
-           as->c[0], fabs(as->c[0] - whose.n_d), whose.whose);
+  snprintf(what, sizeof what, "A %.6g is %.2g from the n_d of %s%s, and n_d is above A by B / L^2",
+           as->c[0], fabs(as->c[0] - whose.n_d), whose.the, whose.whose);
   say_target(d, f, now, &other, &whose, what);
   abbe_doctor_say(d, &f->mend, "A is n_d - B / (0.5875618 um)^2 = %.6g", right.c[0]);
   abbe_doctor_set_coefficients(d, f, &right);
