@@ -117,6 +117,26 @@ static void test_maps_of_two_sizes(void **state) {
   assert_contains(run_errors, "receiver map");
 }
 
+/* The way from a reference to a comparison: trace a map, render one like it, compare them. */
+static void test_a_traced_map_and_a_rendered_one(void **state) {
+  (void)state;
+  assert_int_equal(
+      run_line(
+          "\"$abbe\" trace \"$house\"/scenes/sphere.yaml -q -o t.exr --save-map "
+          "ref.exr --size 16x16 --map 32 --spp 8 --photons 20000 --physics matched && \"$abbe\" "
+          "render \"$house\"/scenes/sphere.yaml -q -o r.exr --size 16x16 --layers --photons 64 "
+          "--save-map test.exr --map-like ref.exr"),
+      0);
+  cJSON *json = compare_json(COMPARE "ref.exr test.exr --json --mask caustic", 0);
+  assert_near(number(json, "whole", "energy_ratio", "value"), 1, 0.05);
+  assert_true(number(json, "mask", "relative_rmse", "noise") > 0);
+  cJSON_Delete(json);
+  json = compare_json(COMPARE "t.exr r.exr --json --mask caustic", 0);
+  assert_near(number(json, "whole", "energy_ratio", "value"), 1, 0.05);
+  assert_true(number(json, "whole", "z_mean_square", "value") > 0);
+  cJSON_Delete(json);
+}
+
 static void test_tolerances(void **state) {
   (void)state;
   leave("ref.exr", picture(1, 0));
@@ -289,6 +309,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(test_numbers, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_maps_of_two_sizes, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_a_traced_map_and_a_rendered_one, run_setup,
+                                      run_teardown),
       cmocka_unit_test_setup_teardown(test_tolerances, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_a_pixel_that_is_no_number_keeps_no_tolerance, run_setup,
                                       run_teardown),

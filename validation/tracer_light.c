@@ -339,6 +339,8 @@ abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
   double origin[3], way[3], up[3] = {0, 0, 1};
   abbe_geometry_to_world(&t->geometry, aim->origin, origin);
   for (int k = 0; k < 3; k++) way[k] = (double)aim->way[k];
+  /* From the very place of the light: the renderer takes a map of no other. */
+  memcpy(parallel ? way : origin, parallel ? light->direction : light->position, sizeof way);
   abbe_view view;
   abbe_view_look(origin, way, up, parallel, &view);
   double middle[3];
