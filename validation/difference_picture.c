@@ -104,6 +104,7 @@ abbe_result abbe_difference_picture_write(const char *path, const abbe_field *re
     return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for %zu differences", pixels);
   for (size_t p = 0; p < pixels; p++) value[p] = (float)difference(reference, test, scale, p);
   const char *unit = abbe_image_attribute_text(&reference->header, "abbe:unit");
+  if (unit == NULL) unit = abbe_image_attribute_text(&test->header, "abbe:unit");
   char label[160];
   snprintf(label, sizeof label, "difference of %s%s%.100s",
            reference->colour.channels > 0 ? "Y" : "the sum of bands", unit != NULL ? ": " : "",
