@@ -76,6 +76,7 @@ static abbe_result warn(const request *r, const abbe_material *m, const abbe_mat
                         abbe_error *error) {
   abbe_findings found = {0};
   abbe_result result = abbe_doctor_check_material(m, known, &found, error);
+  fflush(stdout);
   for (size_t i = 0; i < found.count && result == ABBE_OK; i++)
     if (found.finding[i].weight > ABBE_FINDING_NOTE)
       fprintf(stderr, "%s: %s, %s: %s; %s\n", r->program,

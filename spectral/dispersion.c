@@ -1,9 +1,7 @@
 #include "spectral/dispersion.h"
 
-#include "spectral/gsl_guard.h"
+#include "spectral/fit.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_multifit.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -203,110 +201,28 @@ abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error 
 
 /* ---- the Cauchy fit ---- */
 
-enum { MAX_FIT_POINTS = 100001 }; /* 1 nm steps up to 100 um; wider ranges take wider steps */
-
-typedef struct fit {
-  const abbe_dispersion *source;
-  size_t terms, points;
-  double min_nm, max_nm;
-  double middle, half; /* of x = L^-2: the fit runs in t = (x - middle) / half, from -1 to 1 */
-} fit;
-
-static double fit_lambda_nm(const fit *f, size_t i) {
-  if (i + 1 == f->points) return f->max_nm;
-  double span = f->max_nm - f->min_nm;
-  bool by_nm = f->points <= MAX_FIT_POINTS && span > (double)(f->points - 2);
-  return by_nm ? f->min_nm + (double)i : f->min_nm + span * (double)i / (double)(f->points - 1);
-}
-
-static abbe_result plan_fit(const abbe_dispersion *source, size_t terms, double min_nm,
-                            double max_nm, fit *f, abbe_error *error) {
-  if (terms < 1 || terms > 8)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a Cauchy fit of %zu terms is asked for; 1 to 8 are possible", terms);
-  if (!isfinite(min_nm) || !isfinite(max_nm) || min_nm <= 0 || min_nm >= max_nm)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the range %g:%g nm of a Cauchy fit is not one, such as 380:780", min_nm,
-                          max_nm);
-  double steps = fmin(ceil(max_nm - min_nm), MAX_FIT_POINTS - 1);
-  size_t points = (size_t)steps + 1;
-  if (points < 8 * terms) points = 8 * terms;
-  double x_low = 1e6 / (max_nm * max_nm), x_high = 1e6 / (min_nm * min_nm);
-  *f = (fit){source, terms, points, min_nm, max_nm, (x_high + x_low) / 2, (x_high - x_low) / 2};
-  if (isfinite(f->middle) && f->half > 1e-9 * f->middle) return ABBE_OK;
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                        "the range %.17g:%.17g nm is too narrow or too wide for a Cauchy fit",
-                        min_nm, max_nm);
-}
-
-static abbe_result fill(const fit *f, gsl_matrix *basis, gsl_vector *n, abbe_error *error) {
-  for (size_t i = 0; i < f->points; i++) {
-    double lambda_nm = fit_lambda_nm(f, i);
-    double value = abbe_dispersion_n(f->source, lambda_nm);
-    if (isnan(value))
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "the %s formula has no real index at %g nm, so it cannot be fitted",
-                            abbe_dispersion_model_name(f->source->model), lambda_nm);
-    double t = (1e6 / (lambda_nm * lambda_nm) - f->middle) / f->half, power = 1;
-    gsl_vector_set(n, i, value);
-    for (size_t k = 0; k < f->terms; k++, power *= t) gsl_matrix_set(basis, i, k, power);
-  }
-  return ABBE_OK;
-}
-
-/* sum a_k t^k as powers of x, by Horner's rule on polynomials. */
-static void expand(const fit *f, const gsl_vector *a, double *c) {
-  memset(c, 0, ABBE_DISPERSION_MAX_COEFFICIENTS * sizeof *c);
-  for (size_t k = f->terms; k-- > 0;) {
-    for (size_t j = f->terms; j-- > 0;)
-      c[j] = ((j > 0 ? c[j - 1] : 0) - f->middle * c[j]) / f->half;
-    c[0] += gsl_vector_get(a, k);
-  }
-}
-
-static abbe_result solve(const fit *f, double *c, abbe_error *error) {
-  gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(f->points, f->terms);
-  gsl_matrix *basis = gsl_matrix_alloc(f->points, f->terms);
-  gsl_matrix *covariance = gsl_matrix_alloc(f->terms, f->terms);
-  gsl_vector *n = gsl_vector_alloc(f->points), *a = gsl_vector_alloc(f->terms);
-  abbe_result result = ABBE_OK;
-  double chi_squared = 0;
-  if (work == NULL || basis == NULL || covariance == NULL || n == NULL || a == NULL)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a Cauchy fit");
-  if (result == ABBE_OK) result = fill(f, basis, n, error);
-  int status = GSL_SUCCESS;
-  if (result == ABBE_OK) status = gsl_multifit_linear(basis, n, a, covariance, &chi_squared, work);
-  if (status != GSL_SUCCESS)
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the Cauchy fit failed: %s",
-                            gsl_strerror(status));
-  if (result == ABBE_OK) expand(f, a, c);
-  if (work != NULL) gsl_multifit_linear_free(work);
-  gsl_matrix_free(basis);
-  gsl_matrix_free(covariance);
-  gsl_vector_free(n);
-  gsl_vector_free(a);
-  return result;
-}
+enum { MAX_FIT_TERMS = 8, MAX_FIT_POINTS = 100001 }; /* 1 nm steps up to 100 um */
 
 abbe_result abbe_dispersion_fit_cauchy(const abbe_dispersion *source, size_t terms, double min_nm,
                                        double max_nm, abbe_dispersion *out, double *max_error,
                                        abbe_error *error) {
   *out = (abbe_dispersion){0};
-  fit f = {0};
-  abbe_result result = plan_fit(source, terms, min_nm, max_nm, &f, error);
+  if (terms < 1 || terms > MAX_FIT_TERMS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a Cauchy fit of %zu terms is asked for; 1 to %d are possible", terms,
+                          MAX_FIT_TERMS);
+  if (min_nm > 0 && !isfinite(1e6 / (min_nm * min_nm)))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the range %g:%g nm is too wide for a Cauchy fit", min_nm, max_nm);
+  abbe_index_points points;
+  abbe_fit fit;
+  abbe_result result = abbe_index_points_sample(source, min_nm, max_nm, 8 * terms, MAX_FIT_POINTS,
+                                                &points, error);
+  if (result == ABBE_OK)
+    result = abbe_fit_make(&points, &(abbe_fit_request){.terms = terms}, &fit, error);
+  abbe_index_points_free(&points);
   if (result != ABBE_OK) return result;
-  abbe_dispersion made = {.model = ABBE_DISPERSION_CAUCHY, .count = terms};
-  abbe_gsl_guard_enter();
-  result = solve(&f, made.c, error);
-  abbe_gsl_guard_leave();
-  if (result != ABBE_OK) return result;
-  double largest = 0;
-  for (size_t i = 0; i < f.points; i++) {
-    double lambda_nm = fit_lambda_nm(&f, i);
-    double fitted = cauchy(made.c, terms, lambda_nm / 1000);
-    largest = fmax(largest, fabs(fitted - abbe_dispersion_n(source, lambda_nm)));
-  }
-  if (max_error != NULL) *max_error = largest;
-  *out = made;
+  if (max_error != NULL) *max_error = fit.max_error;
+  *out = fit.dispersion;
   return ABBE_OK;
 }

@@ -23,3 +23,8 @@ endforeach()
 add_test(NAME readme_commands
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/readme_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 set_tests_properties(readme_commands PROPERTIES LABELS program TIMEOUT 300)
+
+add_test(NAME materials_page
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+          docs/materials.md)
+set_tests_properties(materials_page PROPERTIES LABELS program TIMEOUT 300)
