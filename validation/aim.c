@@ -13,20 +13,16 @@ static const double least_share = 0.03;
 
 /* ---- the plane ---- */
 
-static bool directional(const abbe_aim *a) {
-  return a->light->kind == ABBE_LIGHT_DIRECTIONAL;
-}
-
 static void ray_at(const abbe_aim *a, float x, float y, float o[3], float d[3]) {
-  if (directional(a)) {
+  if (a->parallel) {
     for (int k = 0; k < 3; k++) {
       o[k] = a->origin[k] + x * a->right[k] + y * a->up[k];
       d[k] = a->way[k];
     }
     return;
   }
-  float square = x * x + y * y;
-  float across = sqrtf(fmaxf(1 - 0.25f * square, 0)), along = 1 - 0.5f * square;
+  float square = x * x + y * y, left = 1 - 0.25f * square;
+  float across = sqrtf(left > 0 ? left : 0), along = 1 - 0.5f * square;
   for (int k = 0; k < 3; k++) {
     o[k] = a->origin[k];
     d[k] = across * (x * a->right[k] + y * a->up[k]) + along * a->way[k];
@@ -35,7 +31,6 @@ static void ray_at(const abbe_aim *a, float x, float y, float o[3], float d[3]) 
 
 /* Intensity of the spot along d, relative to its middle. */
 static float profile(const abbe_aim *a, const float d[3]) {
-  if (a->light->kind != ABBE_LIGHT_SPOT) return 1;
   float c = d[0] * a->facing[0] + d[1] * a->facing[1] + d[2] * a->facing[2];
   if (!(c >= a->cos_outer)) return 0;
   if (c >= a->cos_inner) return 1;
@@ -43,29 +38,36 @@ static float profile(const abbe_aim *a, const float d[3]) {
   return x * x * (3 - 2 * x);
 }
 
+/* A place on the disk of the light, from its middle. */
+static void disk_place(const abbe_aim *a, const float disk[2], float out[3]) {
+  const float *z = a->facing;
+  float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)pi * disk[1];
+  float e[3] = {fabsf(z[0]) < 0.6f, fabsf(z[0]) >= 0.6f, 0}, s[3], t[3];
+  float along = e[0] * z[0] + e[1] * z[1];
+  for (int k = 0; k < 3; k++) s[k] = e[k] - along * z[k];
+  float length = sqrtf(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+  for (int k = 0; k < 3; k++) s[k] /= length;
+  t[0] = z[1] * s[2] - z[2] * s[1];
+  t[1] = z[2] * s[0] - z[0] * s[2];
+  t[2] = z[0] * s[1] - z[1] * s[0];
+  for (int k = 0; k < 3; k++) out[k] = r * (cosf(angle) * s[k] + sinf(angle) * t[k]);
+}
+
 float abbe_aim_ray(const abbe_aim *a, const abbe_aim_cell *cell, const float uv[2],
                    const float disk[2], float o[3], float d[3]) {
   float x = a->low + a->step * ((float)cell->x + uv[0]);
   float y = a->low + a->step * ((float)cell->y + uv[1]);
-  if (!directional(a) && x * x + y * y >= 4) x = y = 1.4f; /* beyond the sphere: no direction */
   ray_at(a, x, y, o, d);
-  float flux = a->power * a->measure * profile(a, d);
+  if (!a->parallel && x * x + y * y >= 4) return 0; /* beyond the sphere of directions */
+  float flux = a->power * a->measure;
+  if (a->light->kind == ABBE_LIGHT_SPOT) return flux * profile(a, d);
   if (a->radius > 0) {
-    float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)pi * disk[1];
-    float e[3] = {fabsf(a->facing[0]) < 0.6f, fabsf(a->facing[0]) >= 0.6f, 0}, s[3], t[3];
-    float along = e[0] * a->facing[0] + e[1] * a->facing[1];
-    for (int k = 0; k < 3; k++) s[k] = e[k] - along * a->facing[k];
-    float length = sqrtf(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-    for (int k = 0; k < 3; k++) s[k] /= length;
-    t[0] = a->facing[1] * s[2] - a->facing[2] * s[1];
-    t[1] = a->facing[2] * s[0] - a->facing[0] * s[2];
-    t[2] = a->facing[0] * s[1] - a->facing[1] * s[0];
-    for (int k = 0; k < 3; k++) o[k] += r * (cosf(angle) * s[k] + sinf(angle) * t[k]);
+    float off[3];
+    disk_place(a, disk, off);
+    for (int k = 0; k < 3; k++) o[k] += off[k];
     flux *= fmaxf(d[0] * a->facing[0] + d[1] * a->facing[1] + d[2] * a->facing[2], 0);
   }
-  float px = a->low + a->step * ((float)cell->x + uv[0]);
-  float py = a->low + a->step * ((float)cell->y + uv[1]);
-  return directional(a) || px * px + py * py < 4 ? flux : 0;
+  return flux;
 }
 
 /* ---- what of the plane a ball covers ---- */
@@ -82,7 +84,7 @@ static patch cover(const abbe_aim *a, const double centre[3], double radius) {
     y += to[k] * (double)a->up[k];
     z += to[k] * (double)a->way[k];
   }
-  if (directional(a)) return (patch){x, y, radius};
+  if (a->parallel) return (patch){x, y, radius};
   double distance = abbe_vector_length(to), grown = radius + (double)a->radius;
   if (distance <= grown * 1.0001) return (patch){0, 0, -1};
   double cap = asin(grown / distance), off = acos(fmin(fmax(z / distance, -1), 1));
@@ -218,7 +220,7 @@ static int by_curve(const void *a, const void *b) {
 
 /* Whether all of the cell lies outside the spot's cone, or beyond the sphere of directions. */
 static bool dark(const abbe_aim *a, const abbe_aim_cell *cell) {
-  if (directional(a)) return false;
+  if (a->parallel) return false;
   float nearest = 1e30f, c = -1;
   for (int i = 0; i < 9; i++) {
     float x = a->low + a->step * ((float)cell->x + 0.5f * (float)(i % 3));
@@ -265,7 +267,7 @@ static void look(const abbe_geometry *g, abbe_aim *a) {
   const abbe_light *light = a->light;
   double middle[3], way[3], right[3], up[3], min[3], max[3], far = 0;
   for (int k = 0; k < 3; k++) middle[k] = -(double)a->origin[k];
-  if (directional(a)) {
+  if (a->parallel) {
     /* the plane stands before everything that may be in the light's way */
     abbe_scene_bounds(g->scene, true, true, min, max);
     for (int k = 0; k < 3; k++) {
@@ -291,9 +293,10 @@ static void look(const abbe_geometry *g, abbe_aim *a) {
 abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim *out,
                           abbe_error *error) {
   const abbe_light *l = &geometry->scene->light[light];
-  abbe_aim a = {.light = l, .power = (float)l->power};
+  abbe_aim a = {
+      .light = l, .parallel = l->kind == ABBE_LIGHT_DIRECTIONAL, .power = (float)l->power};
   *out = a;
-  if (l->kind != ABBE_LIGHT_DIRECTIONAL) abbe_geometry_to_frame(geometry, l->position, a.origin);
+  if (!a.parallel) abbe_geometry_to_frame(geometry, l->position, a.origin);
   if (l->kind == ABBE_LIGHT_DISK) {
     a.radius = (float)(l->radius / geometry->unit);
     a.power = (float)(l->power * pi * l->radius * l->radius);
@@ -305,14 +308,14 @@ abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim 
   cover_list list = {.aim = &a, .take = take_extent, .user = &extent, .fine = 0.02};
   cover_all(geometry, &list);
   if (!(extent > 0)) return ABBE_OK;
-  if (!directional(&a)) extent = fmin(extent, 2);
+  if (!a.parallel) extent = fmin(extent, 2);
   marks *m = calloc(1, sizeof *m);
   if (m == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for cells of light");
   m->low = -extent;
   m->step = 2 * extent / ABBE_AIM_SIDE;
   a.low = (float)m->low;
   a.step = (float)m->step;
-  double side = m->step * (directional(&a) ? geometry->unit : 1);
+  double side = m->step * (a.parallel ? geometry->unit : 1);
   a.measure = (float)(side * side);
   list = (cover_list){.aim = &a, .take = take_marks, .user = m, .fine = 2 * m->step};
   cover_all(geometry, &list);

@@ -13,6 +13,7 @@
 #include "spectral/error.h"
 #include "validation/geometry.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -29,6 +30,7 @@ typedef struct abbe_aim_cell {
 
 typedef struct abbe_aim {
   const abbe_light *light;
+  bool parallel;                 /* a directional light */
   float origin[3];               /* frame: of the light, or of the plane's middle */
   float right[3], up[3], way[3]; /* unit; way: towards the refractors */
   float low, step;               /* of both axes: plane = low + step * (cell + place in it) */

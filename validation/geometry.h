@@ -119,10 +119,13 @@ static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, flo
   }
 }
 
+/* How far a ray starts off the face that it leaves, as a share of its coordinates. */
+#define ABBE_GEOMETRY_OFFSET 0x1p-18f
+
 /* p moved off the face to the side that d points to, by more than the rounding of p, so that a ray
  * from there does not meet the face that it leaves. */
 static inline void abbe_geometry_leave(const abbe_hit *hit, const float d[3], float out[3]) {
-  const float share = 0x1p-18f;
+  const float share = ABBE_GEOMETRY_OFFSET;
   float side = d[0] * hit->ng[0] + d[1] * hit->ng[1] + d[2] * hit->ng[2];
   float size = fmaxf(fmaxf(fabsf(hit->p[0]), fabsf(hit->p[1])), fabsf(hit->p[2]));
   if (hit->surface->sphere) size = fmaxf(size, hit->surface->radius);

@@ -7,13 +7,28 @@
 #include <string.h>
 #include <time.h>
 
-enum { LANES = 16, PACKETS = ABBE_LIGHT_WALK_BATCH / LANES, MAX_STEPS = 10000 };
+/* Compiled for several processors, and chosen when the program starts; sanitizers do not bear it.
+ */
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(NDEBUG)
+#define SIDE_BY_SIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define SIDE_BY_SIDE
+#endif
+
+enum {
+  LANES = 16,
+  PACKETS = ABBE_LIGHT_WALK_BATCH / LANES,
+  MAX_STEPS = 10000,
+  SMALL_SCENE = 4096, /* faces */
+  COHERENT_ROUNDS = 2 /* how often rays of a packet are bent before they are told apart */
+};
 
 typedef struct path {
   abbe_media_set inside;
   uint32_t id, step;
   float within;
   float flux, full; /* W, and W at the start */
+  float y;          /* Y of a watt, for the ledger */
   float carried;    /* matched: share of the light that a splitting path would carry */
   uint16_t steps, walls;
 } path;
@@ -31,6 +46,7 @@ struct abbe_light_walk {
   uint32_t seed;
   uint64_t rays;
   front *now, *next;
+  bool small; /* so few faces that packets stay together wherever their rays go */
   struct RTCRayHit16 *kept;
   size_t kept_count, kept_room;
 };
@@ -49,6 +65,10 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
     abbe_light_walk_free(w);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a batch of photons");
   }
+  size_t faces = 0;
+  for (size_t i = 0; i < geometry->scene->object_count; i++)
+    faces += geometry->scene->object[i].mesh.face_count;
+  w->small = faces < SMALL_SCENE;
   memset(w->now, 0, sizeof *w->now);
   memset(w->next, 0, sizeof *w->next);
   *out = w;
@@ -86,54 +106,60 @@ static void put_ray(front *f, size_t i, const float o[3], const float d[3], unsi
   p->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
 }
 
-static void lane_validity(size_t lanes, int valid[LANES]) {
-  for (size_t k = 0; k < LANES; k++) valid[k] = k < lanes ? -1 : 0;
-}
+/* Kept packets say in a lane's flags whether it holds a ray, and how packets were traced. */
+enum { KEPT = 1, KEPT_COHERENT = 2 };
 
-static void keep(abbe_light_walk *w, const struct RTCRayHit16 *packet, size_t lanes) {
+static void keep(abbe_light_walk *w, const struct RTCRayHit16 *packet, size_t lanes,
+                 bool coherent) {
   if (w->kept_count == w->kept_room) return;
   struct RTCRayHit16 *to = &w->kept[w->kept_count++];
   *to = *packet;
-  for (size_t k = 0; k < LANES; k++) to->ray.flags[k] = k < lanes;
+  for (size_t k = 0; k < LANES; k++)
+    to->ray.flags[k] = k < lanes ? KEPT | (coherent ? KEPT_COHERENT : 0) : 0;
 }
 
-static void intersect(abbe_light_walk *w, front *f) {
+static void trace_packet(const abbe_light_walk *w, struct RTCRayHit16 *packet, size_t lanes,
+                         bool coherent) {
   struct RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   _Alignas(64) int valid[LANES];
+  for (size_t k = 0; k < LANES; k++) valid[k] = k < lanes ? -1 : 0;
+  rtcIntersect16(valid, w->g->embree, &context, packet);
+}
+
+static void intersect(abbe_light_walk *w, front *f, size_t round) {
+  bool coherent = w->small || round < COHERENT_ROUNDS;
   for (size_t first = 0; first < f->count; first += LANES) {
     size_t lanes = f->count - first < LANES ? f->count - first : LANES;
-    lane_validity(lanes, valid);
-    if (w->kept != NULL) keep(w, &f->ray[first / LANES], lanes);
-    rtcIntersect16(valid, w->g->embree, &context, &f->ray[first / LANES]);
+    if (w->kept != NULL) keep(w, &f->ray[first / LANES], lanes, coherent);
+    trace_packet(w, &f->ray[first / LANES], lanes, coherent);
   }
   w->rays += f->count;
 }
 
 void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets) {
   free(walk->kept);
-  walk->kept = aligned_alloc(64, packets * sizeof *walk->kept);
+  walk->kept = packets > 0 ? aligned_alloc(64, packets * sizeof *walk->kept) : NULL;
   walk->kept_room = walk->kept != NULL ? packets : 0;
   walk->kept_count = 0;
 }
 
 bool abbe_light_walk_replay(abbe_light_walk *w, double *seconds, uint64_t *rays) {
   if (w->kept_count == 0) return false;
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   struct timespec from, to;
   *rays = 0;
   clock_gettime(CLOCK_MONOTONIC, &from);
   for (size_t i = 0; i < w->kept_count; i++) {
-    _Alignas(64) int valid[LANES];
+    struct RTCRayHit16 *packet = &w->kept[i];
+    bool coherent = (packet->ray.flags[0] & KEPT_COHERENT) != 0;
+    size_t lanes = 0;
     for (size_t k = 0; k < LANES; k++) {
-      valid[k] = w->kept[i].ray.flags[k] ? -1 : 0;
-      *rays += w->kept[i].ray.flags[k];
-      w->kept[i].ray.flags[k] = 0;
+      lanes += packet->ray.flags[k] & KEPT;
+      packet->ray.flags[k] = 0;
     }
-    rtcIntersect16(valid, w->g->embree, &context, &w->kept[i]);
+    trace_packet(w, packet, lanes, coherent);
+    *rays += lanes;
   }
   clock_gettime(CLOCK_MONOTONIC, &to);
   *seconds = (double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec);
@@ -141,52 +167,46 @@ bool abbe_light_walk_replay(abbe_light_walk *w, double *seconds, uint64_t *rays)
   return true;
 }
 
-/* ---- one step of one path ---- */
+/* ---- one step of sixteen paths ---- */
 
 typedef enum verdict { GOES_ON, LANDS, ESCAPES, DROPS, LOSES, NOT_COUNTED } verdict;
 
-typedef struct lane {
-  float o[3], d[3], t;
-  abbe_hit hit;
-} lane;
-
-static bool get_lane(const abbe_light_walk *w, const front *f, size_t i, lane *l) {
-  const struct RTCRayHit16 *p = &f->ray[i / LANES];
-  size_t k = i % LANES;
-  unsigned id = p->hit.geomID[k];
-  if (id == RTC_INVALID_GEOMETRY_ID) return false;
-  l->o[0] = p->ray.org_x[k];
-  l->o[1] = p->ray.org_y[k];
-  l->o[2] = p->ray.org_z[k];
-  l->d[0] = p->ray.dir_x[k];
-  l->d[1] = p->ray.dir_y[k];
-  l->d[2] = p->ray.dir_z[k];
-  l->t = p->ray.tfar[k];
-  abbe_geometry_place(&w->g->surface[id], p->hit.primID[k], p->hit.u[k], p->hit.v[k], l->o, l->d,
-                      l->t, &l->hit);
-  return true;
-}
+/* A packet's lanes. What is arithmetic stands in arrays, for the compiler to do side by side. */
+typedef struct lanes {
+  _Alignas(64) float d[3][LANES];
+  float p[3][LANES], n[3][LANES], ng[3][LANES]; /* normals on the side that the path comes from */
+  float eta[LANES];                             /* 1: passes straight on */
+  uint32_t id[LANES], step[LANES];              /* counters of the random number */
+  float share[LANES], out[3][LANES], from[3][LANES];
+  int reflects[LANES];
+  float size[LANES]; /* of the coordinates, for the offset */
+  abbe_media_set before[LANES], after[LANES];
+  bool entering[LANES], straight[LANES];
+  verdict verdict[LANES];
+  abbe_hit hit[LANES];
+} lanes;
 
 static float dot(const float a[3], const float b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Absorption on the way, and the roulette that ends paths with little left. */
-static bool absorb(const abbe_light_walk *w, path *s, float length, float random,
+static bool absorb(const abbe_light_walk *w, path *s, float length, uint32_t pass,
                    abbe_light_ledger *ledger) {
+  if (w->media->attenuation == NULL) return true;
   int medium = abbe_media_of(s->inside);
-  if (w->media->attenuation == NULL || medium < 0) return true;
   float left = expf(-length * abbe_media_attenuation(w->media, medium, s->step, s->within));
-  ledger->absorbed += (double)(s->flux * (1 - left));
+  ledger->absorbed += (double)(s->y * s->flux * (1 - left));
   s->flux *= left;
   s->carried *= left;
   const float least = 0.05f;
   if (s->flux >= least * s->full) return true;
-  float chance = s->flux / (least * s->full);
+  float chance = s->flux / (least * s->full), random[4];
+  abbe_random4(s->id, s->steps, pass, ~w->seed, random);
   /* what the roulette takes from some it gives to others: the mean stays */
   float before = s->flux;
-  s->flux = random < chance ? least * s->full : 0;
-  ledger->absorbed += (double)(before - s->flux);
+  s->flux = random[0] < chance ? least * s->full : 0;
+  ledger->absorbed += (double)(s->y * (before - s->flux));
   return s->flux > 0;
 }
 
@@ -201,74 +221,115 @@ static verdict matched_rules(const abbe_light_walk *w, path *s, bool entering, b
   s->walls++;
   if (!reflects) return GOES_ON;
   s->carried *= share;
-  return s->walls >= w->physics.orders || (double)s->carried < w->physics.energy_share ? DROPS
-                                                                                       : GOES_ON;
+  bool goes_on = s->walls < w->physics.orders && (double)s->carried >= w->physics.energy_share;
+  return goes_on ? GOES_ON : DROPS;
 }
 
-/* At a refractor: the new direction in l->d, the place to start from in l->o. */
-static verdict refractor_step(const abbe_light_walk *w, lane *l, path *s, float random) {
-  float along = dot(l->d, l->hit.ng), shaded = dot(l->d, l->hit.n);
+/* What a path meets at a refractor: normals, indices, media. */
+static void meet(const abbe_light_walk *w, const path *s, const float d[3], lanes *l, size_t k) {
+  const abbe_hit *hit = &l->hit[k];
+  float along = dot(d, hit->ng), shaded = dot(d, hit->n);
   bool entering = along < 0;
-  const float *outside = (shaded < 0) == entering ? l->hit.n : l->hit.ng;
-  float n[3], d[3], cos_t, cos_i = fminf(fabsf(outside == l->hit.n ? shaded : along), 1);
-  for (int k = 0; k < 3; k++) n[k] = entering ? outside[k] : -outside[k];
-  abbe_media_set before, after;
-  abbe_media_cross(s->inside, l->hit.surface->index, entering, &before, &after);
-  bool foreign = w->physics.matched && s->inside != 0 &&
-                 abbe_media_of(s->inside) != (int)l->hit.surface->index;
-  int from = abbe_media_of(before), to = abbe_media_of(after);
-  if (foreign || from == to) {
-    if (!foreign) s->inside = after;
-    abbe_geometry_leave(&l->hit, l->d, l->o);
-    return GOES_ON;
+  float side = entering ? 1 : -1;
+  const float *outside = (shaded < 0) == entering ? hit->n : hit->ng;
+  for (int i = 0; i < 3; i++) {
+    l->n[i][k] = side * outside[i];
+    l->ng[i][k] = side * hit->ng[i];
   }
-  float eta = abbe_media_n(w->media, from, s->step, s->within) /
-              abbe_media_n(w->media, to, s->step, s->within);
-  float share = abbe_interface_reflectance(cos_i, eta, &cos_t);
-  bool reflects = random < share;
-  if (reflects)
-    abbe_interface_reflect(l->d, n, cos_i, d);
-  else
-    abbe_interface_refract(l->d, n, eta, cos_i, cos_t, d);
-  abbe_interface_keep_side(l->hit.ng, entering == reflects ? 1 : -1, d);
-  verdict v = matched_rules(w, s, entering, reflects, share);
-  s->inside = reflects ? before : after;
-  memcpy(l->d, d, sizeof d);
-  abbe_geometry_leave(&l->hit, d, l->o);
-  return v;
+  abbe_media_cross(s->inside, hit->surface->index, entering, &l->before[k], &l->after[k]);
+  bool foreign =
+      w->physics.matched && s->inside != 0 && abbe_media_of(s->inside) != (int)hit->surface->index;
+  int from = abbe_media_of(l->before[k]), to = abbe_media_of(l->after[k]);
+  l->entering[k] = entering;
+  l->straight[k] = foreign || from == to;
+  if (foreign) l->after[k] = s->inside;
+  l->eta[k] = l->straight[k] ? 1
+                             : abbe_media_n(w->media, from, s->step, s->within) /
+                                   abbe_media_n(w->media, to, s->step, s->within);
 }
 
-static verdict step(const abbe_light_walk *w, bool met, lane *l, path *s, uint32_t pass,
-                    abbe_light_ledger *ledger) {
+/* Lane k of a packet that Embree has been through: where it is, and what becomes of it if that is
+ * no interface. */
+static void gather(abbe_light_walk *w, const struct RTCRayHit16 *packet, size_t k, path *s,
+                   uint32_t pass, lanes *l, abbe_light_ledger *ledger) {
   bool first = s->steps == 0;
-  if (!met) return first ? NOT_COUNTED : s->inside != 0 ? LOSES : ESCAPES;
-  if (l->hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
-    if (first) return NOT_COUNTED;
-    if (s->inside != 0) ledger->contact += (double)s->flux;
-    return LANDS;
+  unsigned id = packet->hit.geomID[k];
+  float o[3] = {packet->ray.org_x[k], packet->ray.org_y[k], packet->ray.org_z[k]};
+  float d[3] = {packet->ray.dir_x[k], packet->ray.dir_y[k], packet->ray.dir_z[k]};
+  for (int i = 0; i < 3; i++) l->d[i][k] = d[i];
+  if (id == RTC_INVALID_GEOMETRY_ID) {
+    l->verdict[k] = first ? NOT_COUNTED : s->inside != 0 ? LOSES : ESCAPES;
+    return;
   }
-  if (first) ledger->reached += (double)s->flux;
-  float random[4];
-  abbe_random4(s->id, s->steps, pass, w->seed, random);
-  if (!absorb(w, s, l->t, random[1], ledger)) return NOT_COUNTED;
-  if (++s->steps >= MAX_STEPS) return LOSES;
-  return refractor_step(w, l, s, random[0]);
+  abbe_hit *hit = &l->hit[k];
+  abbe_geometry_place(&w->g->surface[id], packet->hit.primID[k], packet->hit.u[k], packet->hit.v[k],
+                      o, d, packet->ray.tfar[k], hit);
+  if (hit->surface->kind != ABBE_GEOMETRY_REFRACTORS) {
+    l->verdict[k] = first ? NOT_COUNTED : LANDS;
+    if (!first && s->inside != 0) ledger->contact += (double)(s->y * s->flux);
+    return;
+  }
+  if (first) ledger->reached += (double)(s->y * s->flux);
+  l->verdict[k] = GOES_ON;
+  if (s->inside != 0 && !absorb(w, s, packet->ray.tfar[k], pass, ledger))
+    l->verdict[k] = NOT_COUNTED;
+  l->id[k] = s->id;
+  l->step[k] = s->steps;
+  if (++s->steps >= MAX_STEPS) l->verdict[k] = LOSES;
+  for (int i = 0; i < 3; i++) l->p[i][k] = hit->p[i];
+  l->size[k] = hit->surface->sphere ? hit->surface->radius : 0;
+  meet(w, s, d, l, k);
+}
+
+/* Snell, Fresnel, the choice, and the place from which the path goes on, for all lanes. */
+SIDE_BY_SIDE static void bend(lanes *l, uint32_t pass, uint32_t seed) {
+  for (size_t k = 0; k < LANES; k++) {
+    uint32_t bits[4];
+    abbe_random_bits(l->id[k], l->step[k], pass, seed, bits);
+    float eta = l->eta[k],
+          c = -(l->d[0][k] * l->n[0][k] + l->d[1][k] * l->n[1][k] + l->d[2][k] * l->n[2][k]);
+    c = c < 1 ? c : 1;
+    float cos_t, share = abbe_interface_reflectance(c, eta, &cos_t);
+    bool reflects = abbe_random_float(bits[0]) < share;
+    float turn = reflects ? 2 * c : eta * c - cos_t, stretch = reflects ? 1 : eta;
+    float out[3];
+    for (int i = 0; i < 3; i++) out[i] = stretch * l->d[i][k] + turn * l->n[i][k];
+    /* light stays on the right side of the face where its normal is bent */
+    float side = reflects ? 1.0f : -1.0f;
+    float scale = 1 / sqrtf(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int i = 0; i < 3; i++) out[i] *= scale;
+    float along = side * (out[0] * l->ng[0][k] + out[1] * l->ng[1][k] + out[2] * l->ng[2][k]);
+    float push = along > 0 ? 0 : side * (1e-3f - along);
+    for (int i = 0; i < 3; i++) out[i] += push * l->ng[i][k];
+    scale = along > 0 ? 1 : 1 / sqrtf(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    float a = fabsf(l->p[0][k]), b = fabsf(l->p[1][k]), e = fabsf(l->p[2][k]), size = l->size[k];
+    size = size > a ? size : a;
+    size = size > b ? size : b;
+    size = size > e ? size : e;
+    float offset = side * size * ABBE_GEOMETRY_OFFSET;
+    for (int i = 0; i < 3; i++) {
+      l->out[i][k] = out[i] * scale;
+      l->from[i][k] = l->p[i][k] + offset * l->ng[i][k];
+    }
+    l->share[k] = share;
+    l->reflects[k] = reflects;
+  }
 }
 
 /* ---- the batch ---- */
 
 /* Matched: the renderer counts light only where the lamp would see the receiver past others. */
-static bool lamp_sees(const abbe_light_walk *w, const abbe_light *light, const lane *l) {
+static bool lamp_sees(const abbe_light_walk *w, const abbe_light *light, const abbe_hit *hit) {
   if (!w->physics.matched) return true;
   float from[3], d[3], o[3], limit = INFINITY;
   for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
   if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
     abbe_geometry_to_frame(w->g, light->position, from);
-    for (int k = 0; k < 3; k++) d[k] = from[k] - l->hit.p[k];
+    for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
     limit = sqrtf(dot(d, d));
     for (int k = 0; k < 3; k++) d[k] /= limit;
   }
-  abbe_geometry_leave(&l->hit, d, o);
+  abbe_geometry_leave(hit, d, o);
   return !abbe_geometry_occluded(w->g, ABBE_GEOMETRY_RECEIVERS, o, d, limit);
 }
 
@@ -278,15 +339,33 @@ static unsigned next_mask(const abbe_light_walk *w, const path *s) {
   return s->inside != 0 ? ABBE_GEOMETRY_REFRACTORS : ABBE_GEOMETRY_RECEIVERS;
 }
 
-static void land(const lane *l, const path *s, abbe_landing *out) {
-  *out = (abbe_landing){.surface = l->hit.surface->object,
-                        .face = l->hit.face,
-                        .u = l->hit.u,
-                        .v = l->hit.v,
-                        .side = dot(l->d, l->hit.ng) < 0 ? 1 : -1,
+/* The path after the interface, into the next front; what matched physics does not follow ends. */
+static verdict go_on(const abbe_light_walk *w, const lanes *l, size_t k, path *s, front *next) {
+  float o[3], d[3];
+  for (int i = 0; i < 3; i++) {
+    o[i] = l->from[i][k];
+    d[i] = l->straight[k] ? l->d[i][k] : l->out[i][k];
+  }
+  bool reflects = l->reflects[k] && !l->straight[k];
+  if (!l->straight[k] && matched_rules(w, s, l->entering[k], reflects, l->share[k]) == DROPS)
+    return DROPS;
+  s->inside = reflects ? l->before[k] : l->after[k];
+  put_ray(next, next->count, o, d, next_mask(w, s));
+  next->state[next->count++] = *s;
+  return GOES_ON;
+}
+
+static void land(const lanes *l, size_t k, const path *s, abbe_landing *out) {
+  const abbe_hit *hit = &l->hit[k];
+  float d[3] = {l->d[0][k], l->d[1][k], l->d[2][k]};
+  *out = (abbe_landing){.surface = hit->surface->object,
+                        .face = hit->face,
+                        .u = hit->u,
+                        .v = hit->v,
+                        .side = dot(d, hit->ng) < 0 ? 1 : -1,
                         .flux = s->flux,
                         .step = s->step};
-  memcpy(out->p, l->hit.p, sizeof out->p);
+  memcpy(out->p, hit->p, sizeof out->p);
 }
 
 static void begin(front *f, const abbe_photon *photon, size_t count) {
@@ -300,6 +379,7 @@ static void begin(front *f, const abbe_photon *photon, size_t count) {
                                   .within = p->within,
                                   .flux = p->flux,
                                   .full = p->flux,
+                                  .y = p->y,
                                   .carried = 1};
   }
 }
@@ -308,29 +388,33 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
                            const abbe_photon *photon, size_t count, abbe_landing *landing,
                            abbe_light_ledger *ledger) {
   size_t landed = 0;
+  lanes l = {0};
   begin(w->now, photon, count);
-  while (w->now->count > 0) {
+  for (size_t round = 0; w->now->count > 0; round++) {
     front *f = w->now, *next = w->next;
-    intersect(w, f);
+    intersect(w, f, round);
     next->count = 0;
-    for (size_t i = 0; i < f->count; i++) {
-      lane l;
-      path *s = &f->state[i];
-      bool met = get_lane(w, f, i, &l);
-      verdict v = step(w, met, &l, s, pass, ledger);
-      if (v == LANDS && !lamp_sees(w, light, &l)) v = DROPS;
-      if (v == GOES_ON) {
-        put_ray(next, next->count, l.o, l.d, next_mask(w, s));
-        next->state[next->count++] = *s;
-      } else if (v == LANDS) {
-        land(&l, s, &landing[landed++]);
-        ledger->landed += (double)s->flux;
-      } else if (v == ESCAPES) {
-        ledger->escaped += (double)s->flux;
-      } else if (v == DROPS) {
-        ledger->dropped += (double)s->flux;
-      } else if (v == LOSES) {
-        ledger->lost += (double)s->flux;
+    for (size_t first = 0; first < f->count; first += LANES) {
+      size_t used = f->count - first < LANES ? f->count - first : LANES;
+      for (size_t k = 0; k < used; k++)
+        gather(w, &f->ray[first / LANES], k, &f->state[first + k], pass, &l, ledger);
+      bend(&l, pass, w->seed);
+      for (size_t k = 0; k < used; k++) {
+        path *s = &f->state[first + k];
+        verdict v = l.verdict[k];
+        if (v == GOES_ON) v = go_on(w, &l, k, s, next);
+        if (v == LANDS && !lamp_sees(w, light, &l.hit[k])) v = DROPS;
+        double flux = (double)(s->y * s->flux);
+        if (v == LANDS) {
+          land(&l, k, s, &landing[landed++]);
+          ledger->landed += flux;
+        } else if (v == ESCAPES) {
+          ledger->escaped += flux;
+        } else if (v == DROPS) {
+          ledger->dropped += flux;
+        } else if (v == LOSES) {
+          ledger->lost += flux;
+        }
       }
     }
     w->now = next;

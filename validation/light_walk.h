@@ -25,6 +25,7 @@ extern "C" {
 typedef struct abbe_photon {
   float o[3], d[3]; /* frame; d unit */
   float flux;       /* W */
+  float y;          /* Y of a watt at its wavelength, for the ledger; mean 1 */
   uint32_t step;    /* of the spectral sampling */
   float within;     /* place in the step, [0, 1) */
   uint32_t id;      /* its random numbers; unique in its pass */
@@ -40,7 +41,7 @@ typedef struct abbe_landing {
   uint32_t step;
 } abbe_landing;
 
-/* Where the flux of the photons went, W. */
+/* Where the light of the photons went: W, each wavelength with its share of Y. */
 typedef struct abbe_light_ledger {
   double reached; /* brought to a refractor, before anything else */
   double landed;  /* on receivers */

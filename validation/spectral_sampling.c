@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { FINE = 8192 }; /* bins of the density that is inverted */
 
@@ -48,25 +49,29 @@ static void invert(const double *density, double min_nm, double max_nm, abbe_spe
   }
 }
 
-static void fill_colours(const abbe_scene *scene, abbe_spectral_sampling *s) {
-  double min_nm = s->lambda_nm[0], max_nm = s->lambda_nm[s->steps];
+static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling *s,
+                                abbe_error *error) {
+  abbe_wavelengths bands = {.count = s->steps, .lambda_nm = s->lambda_nm, .edge_nm = s->lambda_nm};
   for (size_t l = 0; l < s->lights; l++) {
     const abbe_illuminant *illuminant = &scene->light[l].illuminant;
+    abbe_weights weights;
+    abbe_result result = abbe_weights_make(&bands, illuminant, ABBE_RGB_SPACE_XYZ, &weights, error);
+    if (result != ABBE_OK) return result;
     double power = 0;
+    memcpy(s->white[l], weights.sum, sizeof s->white[l]);
     for (size_t k = 0; k < s->steps; k++) {
-      double from = s->lambda_nm[k], to = s->lambda_nm[k + 1], xyz[3];
-      abbe_weights_band_xyz(illuminant, min_nm, max_nm, from, to, xyz);
+      double from = s->lambda_nm[k], to = s->lambda_nm[k + 1];
       double watts = abbe_illuminant_power(illuminant, 0.5 * (from + to)) * (to - from);
       power += watts;
       s->power[l * s->steps + k] = (float)watts;
-      for (int c = 0; c < 3; c++) {
-        s->xyz[l * s->steps + k][c] = (float)((double)s->steps * xyz[c]);
-        s->white[l][c] += xyz[c];
-      }
+      for (int c = 0; c < 3; c++)
+        s->xyz[l * s->steps + k][c] = (float)((double)s->steps * weights.weight[k][c]);
     }
+    abbe_weights_free(&weights);
     for (size_t k = 0; k < s->steps; k++)
       s->power[l * s->steps + k] *= (float)((double)s->steps / power);
   }
+  return ABBE_OK;
 }
 
 abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, double max_nm,
@@ -90,7 +95,7 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, 
   if (result == ABBE_OK) {
     for (size_t i = 0; i < FINE; i++) density[i] = (1 - uniform) * density[i] + uniform / FINE;
     invert(density, min_nm, max_nm, &s);
-    fill_colours(scene, &s);
+    result = fill_colours(scene, &s, error);
   }
   free(density);
   if (result != ABBE_OK) abbe_spectral_sampling_free(&s);

@@ -459,9 +459,3 @@ void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {
   double *part = &out->ledger.reached;
   for (size_t i = 0; i < sizeof out->ledger / sizeof *part; i++) part[i] *= scale;
 }
-
-abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe_error *error) {
-  (void)t;
-  *walk = *embree = 0;
-  return abbe_error_set(error, ABBE_UNSUPPORTED, "no rates");
-}

@@ -6,6 +6,7 @@
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { TASK = 16384, TRIALS = 65536, SALT = 0x6c6967 };
 
@@ -74,6 +75,7 @@ static size_t emit(const emission *e, uint32_t from, uint32_t to, abbe_photon *p
     float flux = abbe_aim_ray(aim, &aim->cell[cell], at, disk, p->o, p->d);
     p->flux = flux / ((float)e->count * aim->cell[cell].share);
     p->step = abbe_spectral_sampling_step(at[2], &p->within);
+    p->y = e->t->sampling.xyz[e->light * e->t->sampling.steps + p->step][1];
     p->id = j | (uint32_t)e->light << 27;
   }
   return to - from;
@@ -291,6 +293,59 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
     if (t->photons[l] < 64) t->photons[l] = 64;
   }
   return ABBE_OK;
+}
+
+/* ---- rates ---- */
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Photons emitted, followed, and sorted into texels, by one thread. */
+static double walk_seconds(abbe_tracer *t, const emission *e) {
+  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
+  abbe_landing landing[ABBE_LIGHT_WALK_BATCH];
+  abbe_light_ledger ledger = {0};
+  sink s = {.t = t, .light = e->light};
+  double start = now();
+  for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
+    uint32_t end =
+        e->count - j < ABBE_LIGHT_WALK_BATCH ? (uint32_t)e->count : j + ABBE_LIGHT_WALK_BATCH;
+    size_t count = emit(e, j, end, photon);
+    size_t landed = abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon,
+                                        count, landing, &ledger);
+    for (size_t i = 0; i < landed; i++) add_to_map(&s, &landing[i]);
+  }
+  double end = now();
+  if (!t->desc.no_map) abbe_accumulator_drop_pass(&t->map);
+  return end - start;
+}
+
+/* The best of a few turns of each, in turn, so that a busy machine harms neither more. */
+abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe_error *error) {
+  enum { TURNS = 5, PHOTONS = 131072, PACKETS = 65536 };
+  *walk = *embree = 0;
+  size_t light = 0;
+  while (light < t->scene->light_count && t->aim[light].count == 0) light++;
+  if (light == t->scene->light_count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "no light reaches a refractor, so there is no walk to time");
+  emission e = {0};
+  abbe_result result = share_over_cells(t, light, PHOTONS, 0, &e, error);
+  for (int i = 0; i < TURNS && result == ABBE_OK; i++) {
+    uint64_t rays = abbe_light_walk_rays(t->walk[0]), replayed;
+    double seconds = walk_seconds(t, &e), alone;
+    *walk = fmax(*walk, (double)(abbe_light_walk_rays(t->walk[0]) - rays) / seconds);
+    abbe_light_walk_keep(t->walk[0], PACKETS);
+    walk_seconds(t, &e);
+    if (abbe_light_walk_replay(t->walk[0], &alone, &replayed))
+      *embree = fmax(*embree, (double)replayed / alone);
+    abbe_light_walk_keep(t->walk[0], 0);
+  }
+  free(e.first);
+  return result;
 }
 
 /* ---- the map's layout ---- */
