@@ -1,6 +1,7 @@
 option(ABBE_WERROR "Treat warnings as errors" OFF)
 option(ABBE_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
 option(ABBE_TESTS "Build the tests" ON)
+option(ABBE_FUZZ "Link the fuzz targets with libFuzzer (clang only)" OFF)
 
 set(CMAKE_C_STANDARD 17)
 set(CMAKE_C_STANDARD_REQUIRED ON)
@@ -28,6 +29,11 @@ if(ABBE_SANITIZE)
   target_compile_options(abbe_build INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(abbe_build INTERFACE -fsanitize=address,undefined)
+endif()
+
+if(ABBE_FUZZ)
+  target_compile_options(abbe_build INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(abbe_build INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
 include(${CMAKE_CURRENT_LIST_DIR}/embed.cmake)

@@ -71,7 +71,8 @@ static void read_rest(int number, const double *c, abbe_dispersion *d) {
     set(d, ABBE_DISPERSION_HERZBERGER, 6, c);
     break;
   case 4:
-    set(d, ABBE_DISPERSION_RII4, 9, (double[]){1 + c[0], c[1], 2, c[2], 2, c[3], 0, c[4], 2});
+    set(d, ABBE_DISPERSION_RII4, 9,
+        (double[]){abbe_number_tidy(1 + c[0]), c[1], 2, c[2], 2, c[3], 0, c[4], 2});
     break;
   case 5:
     read_conrady(c, d);
@@ -201,7 +202,7 @@ static bool write_rii4(const abbe_dispersion *d, abbe_agf_formula *out) {
       fits = isnan(shapes[i].shape[k]) || shapes[i].shape[k] == c[k];
     if (!fits) continue;
     *out = (abbe_agf_formula){.number = shapes[i].number, .c = {c[0], c[1], c[3]}};
-    if (out->number == 4) out->c[0] -= 1;
+    if (out->number == 4) out->c[0] = abbe_number_tidy(out->c[0] - 1);
     if (out->number == 4 || out->number == 9)
       memcpy(out->c + 3, (double[]){c[5], c[7]}, 2 * sizeof *c);
     if (d->count == 11) out->c[3] = -c[9];

@@ -73,7 +73,7 @@ static void write_nm(const abbe_material *m, int formula, abbe_tally *t, FILE *t
   double n_d = isnan(printed.n_d) ? 0 : printed.n_d, v_d = isnan(printed.v_d) ? 0 : printed.v_d;
   bool inside = !abbe_material_extrapolates(m, ABBE_LINE_F_NM) &&
                 !abbe_material_extrapolates(m, ABBE_LINE_C_NM);
-  if (n_d == 0 && v_d == 0 && inside && isfinite(d.n_d) && isfinite(d.v_d)) {
+  if (n_d == 0 && v_d == 0 && inside && isfinite(d.n_d) && fabs(d.v_d) < 1000) {
     n_d = round(d.n_d * 1e6) / 1e6;
     v_d = round(d.v_d * 1e6) / 1e6;
     abbe_tally_add(t, COMPUTED, m->name);

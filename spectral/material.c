@@ -36,9 +36,12 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
   bool ascends = m->min_nm >= ABBE_MATERIAL_LOW_NM && m->max_nm <= ABBE_MATERIAL_HIGH_NM &&
                  m->min_nm < m->max_nm;
   const abbe_spectrum *table = m->dispersion.table;
-  bool single = table != NULL && abbe_spectrum_count(table) == 1 && m->min_nm == m->max_nm &&
-                m->min_nm >= ABBE_MATERIAL_LOW_NM && m->max_nm <= ABBE_MATERIAL_HIGH_NM;
-  if (!ascends && !single)
+  if (table != NULL && abbe_spectrum_count(table) < 2)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: it has an index at a single wavelength; give it two points or more, "
+                          "or the model constant",
+                          m->name);
+  if (!ascends)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
                           m->min_nm, m->max_nm, ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);

@@ -129,7 +129,8 @@ static abbe_result read_tabulated(reader *r) {
   double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(m->dispersion.table) - 1];
   m->min_nm = low;
   m->max_nm = high;
-  result = read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm);
+  if (abbe_yaml_get(r->yaml, r->record, "range_nm").id != 0)
+    result = read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm);
   if (result == ABBE_OK && (m->min_nm < low || m->max_nm > high))
     return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->record, "range_nm"), r->error,
                           "'range_nm: [%g, %g]' is wider than the points, which reach from %g to "

@@ -144,8 +144,7 @@ static void write_dispersion(const abbe_material *m, FILE *to) {
     fputc('\n', to);
   }
   bool all = m->min_nm == ABBE_MATERIAL_LOW_NM && m->max_nm == ABBE_MATERIAL_HIGH_NM;
-  bool point = m->min_nm == m->max_nm;
-  if (!point && (d->model != ABBE_DISPERSION_CONSTANT || !all))
+  if (d->model != ABBE_DISPERSION_CONSTANT || !all)
     fprintf(to, "    range_nm: [%s, %s]\n", abbe_number_text(m->min_nm, low),
             abbe_number_text(m->max_nm, high));
   if (m->extrapolate) fputs("    extrapolate: true\n", to);

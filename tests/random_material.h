@@ -28,7 +28,7 @@ static inline char *random_text(size_t longest) {
 }
 
 static inline abbe_spectrum *random_spectrum(double low, double high) {
-  size_t count = 1 + (size_t)rand() % 40;
+  size_t count = 2 + (size_t)rand() % 40;
   double lambda_nm[64], value[64], at = random_in(200, 500);
   for (size_t i = 0; i < count; i++, at += random_in(0.5, 50)) {
     lambda_nm[i] = at;

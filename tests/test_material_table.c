@@ -420,6 +420,7 @@ static void bad_dispersion_is_refused(void **state) {
   refuses_model("  model: sellmeier\n  coefficients: [0, 1, 0.5]\n  range_nm: [380, 780]\n",
                 "no real index at 380 nm, inside its range");
   refuses_model("  model: tabulated\n", "'points' is missing");
+  refuses_model("  model: tabulated\n  points: [[500, 1.5]]\n", "an index at a single wavelength");
   refuses_model("  model: tabulated\n  points: []\n", "list of 1 to 65536 pairs");
   refuses_model("  model: tabulated\n  points: [[400, 1.5], [390, 1.6]]\n", "must ascend");
   refuses_model("  model: tabulated\n  points: [[400, 1.5], [500]]\n", "pairs such as");
