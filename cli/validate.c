@@ -15,11 +15,16 @@ typedef struct request {
   bool json, quiet;
 } request;
 
+static const char *verdict(const abbe_known_answer *r) {
+  if (r->passed) return "ok";
+  return fabs(r->error) <= r->tolerance ? "TOO NOISY" : "FAILS";
+}
+
 static void print_row(const abbe_known_answer *r) {
   char spread[32] = "";
   if (r->standard_error > 0) snprintf(spread, sizeof spread, "%.2g", r->standard_error);
   printf("  %-62s %-9s %14.8g %14.8g %9s %10.2g %9.2g  %s\n", r->quantity, r->unit, r->exact,
-         r->traced, spread, r->error, r->tolerance, r->passed ? "ok" : "FAILS");
+         r->traced, spread, r->error, r->tolerance, verdict(r));
 }
 
 /* The reasons of a group, each once, under its rows. */

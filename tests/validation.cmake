@@ -7,6 +7,7 @@ foreach(name
     geometry
     interface
     known_answers
+    known_light
     mask
     media
     rings

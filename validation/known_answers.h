@@ -31,7 +31,13 @@ extern "C" {
   X(nest, "a bubble in a glass ball and a ball of water in glass: the later object is there")      \
   X(slab, "how far a plane-parallel slab moves a ray")                                             \
   X(fresnel, "reflectance of a face at five angles from both sides, and critical angles")          \
-  X(rainbow, "primary and secondary rainbows of water")
+  X(rainbow, "primary and secondary rainbows of water")                                            \
+  X(pane, "a slab's reflectance and transmittance with all inner reflections")                     \
+  X(absorption, "Beer-Lambert: what absorbing slabs let pass")                                     \
+  X(furnace, "a white furnace: glass in the same light from everywhere cannot be seen")            \
+  X(sphere, "light under a sphere, rings and enclosed flux, one wavelength")                       \
+  X(white, "light under a sphere in XYZ under D65")                                                \
+  X(convergence, "the error falls as one over the square root of the samples")
 
 #define ABBE_KNOWN_SIGMAS 4.0
 
@@ -42,6 +48,7 @@ typedef struct abbe_known_answer {
   double standard_error; /* of traced, in the unit; 0 where nothing is random */
   double error;          /* traced - exact */
   double tolerance;      /* largest |error| that passes, in the unit */
+  double useful;         /* a tolerance beyond this tells nothing: the row fails; 0: any does */
   bool passed;
 } abbe_known_answer;
 

@@ -17,19 +17,32 @@ static const char stage_floor[] =
     "- {name: far below, shape: rectangle, width: 1e5, height: 1e5, reflectance: 0.5,\n"
     "   transform: [{translate: [0, 0, -1e5]}]}\n";
 
+static abbe_result parse(const char *head, const char *middle, va_list arguments, const char *tail,
+                         abbe_scene *out, abbe_error *error) {
+  char filled[TEXT_SIZE], text[TEXT_SIZE + sizeof stage_head + sizeof stage_floor];
+  *out = (abbe_scene){0};
+  int length = vsnprintf(filled, sizeof filled, middle, arguments);
+  if (length < 0 || length >= TEXT_SIZE)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a known answer's scene is too long");
+  snprintf(text, sizeof text, "%s%s%s", head, filled, tail);
+  return abbe_scene_parse(text, strlen(text), "known answer", NULL, out, error);
+}
+
+abbe_result abbe_known_scene(abbe_scene *out, abbe_error *error, const char *text, ...) {
+  va_list arguments;
+  va_start(arguments, text);
+  abbe_result result = parse("", text, arguments, "", out, error);
+  va_end(arguments);
+  return result;
+}
+
 abbe_result abbe_known_stage_make(abbe_known_stage *stage, abbe_error *error, const char *objects,
                                   ...) {
-  char middle[TEXT_SIZE], text[TEXT_SIZE + sizeof stage_head + sizeof stage_floor];
   *stage = (abbe_known_stage){0};
   va_list arguments;
   va_start(arguments, objects);
-  int length = vsnprintf(middle, sizeof middle, objects, arguments);
+  abbe_result result = parse(stage_head, objects, arguments, stage_floor, &stage->scene, error);
   va_end(arguments);
-  if (length < 0 || length >= TEXT_SIZE)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a known answer's scene is too long");
-  snprintf(text, sizeof text, "%s%s%s", stage_head, middle, stage_floor);
-  abbe_result result =
-      abbe_scene_parse(text, strlen(text), "known answer", NULL, &stage->scene, error);
   if (result == ABBE_OK) result = abbe_geometry_make(&stage->scene, &stage->geometry, error);
   if (result != ABBE_OK) abbe_known_stage_free(stage);
   return result;

@@ -27,12 +27,20 @@ typedef struct abbe_known_run {
 ABBE_KNOWN_GROUPS(ABBE_KNOWN_DECLARE)
 #undef ABBE_KNOWN_DECLARE
 
-/* Adds a row: the caller gives quantity, unit, exact, traced, standard error, tolerance and
- * reason; error and verdict are computed (a traced value that is not finite fails). */
+/* Adds a row: the caller gives quantity, unit, exact, traced, standard error, tolerance, what of it
+ * is useful, and reason; error and verdict are computed (a traced value that is not finite fails).
+ */
 abbe_result abbe_known_add(abbe_known_run *run, abbe_known_answer row, abbe_error *error);
 
 /* Says how much of the group is done, 0 to 1; ABBE_CANCELLED where the caller asked to stop. */
 abbe_result abbe_known_progress(const abbe_known_run *run, double done, abbe_error *error);
+
+/* A scene from text, printf-style. Materials are the default table's unless the text says else. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+abbe_result
+abbe_known_scene(abbe_scene *out, abbe_error *error, const char *text, ...);
 
 #define ABBE_KNOWN_ROOM 12 /* vertices of a ray */
 
