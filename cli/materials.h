@@ -22,6 +22,7 @@
   X(fit, "a Cauchy or Sellmeier form through a material, a formula or points")                     \
   X(from, "a record from n_d and V_d, a gem's dispersion, A and B, or glTF's pair")                \
   X(diff, "what differs between two tables, and by how much")                                      \
+  X(edit, "edit a record on the full screen, with live curves and warnings")                       \
   X(set, "change values of a record, and nothing else in the file")                                \
   X(add, "add a record to a table, new or from another table")                                     \
   X(remove, "take records out of a table")                                                         \

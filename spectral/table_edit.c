@@ -407,6 +407,46 @@ abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char
   return abbe_yaml_edit_item(&edit->yaml, list_of(edit), index, out, error);
 }
 
+abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, const char *key,
+                                char **out, abbe_error *error) {
+  *out = NULL;
+  place p;
+  abbe_error why = {0};
+  abbe_result result = find_key(edit, name, key, &p, &why);
+  size_t item;
+  abbe_yaml_node record;
+  if (result == ABBE_NOT_FOUND && find_record(edit, name, &item, &record, NULL) == ABBE_OK)
+    return ABBE_OK; /* the key leads nowhere */
+  if (result != ABBE_OK) return abbe_error_set(error, result, "%s", why.text);
+  if (!p.found) return ABBE_OK;
+  const abbe_yaml *yaml = edit->yaml.yaml;
+  abbe_yaml_node value = abbe_yaml_is_mapping(yaml, p.parent)
+                             ? abbe_yaml_value(yaml, p.parent, p.index)
+                             : abbe_yaml_item(yaml, p.parent, p.index);
+  const char *text = abbe_yaml_text(yaml, value);
+  size_t from, to;
+  abbe_yaml_span(yaml, value, &from, &to);
+  *out = text != NULL ? strdup(text) : strndup(edit->yaml.text + from, to - from);
+  return *out != NULL ? ABBE_OK : no_memory(error, edit->yaml.name);
+}
+
+char *abbe_table_edit_first_name(const abbe_table_edit *edit) {
+  abbe_yaml_node record = abbe_yaml_item(edit->yaml.yaml, list_of(edit), 0);
+  return record.id != 0 ? strdup(record_name(edit->yaml.yaml, record)) : NULL;
+}
+
+abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error) {
+  static const char empty[] = "materials:\n";
+  abbe_yaml_edit before;
+  const char *text = edit->is_new ? empty : edit->before;
+  size_t size = edit->is_new ? strlen(empty) : edit->before_size;
+  abbe_result result = abbe_yaml_edit_make(text, size, edit->yaml.name, &before, error);
+  if (result != ABBE_OK) return result;
+  abbe_yaml_edit_free(&edit->yaml);
+  edit->yaml = before;
+  return ABBE_OK;
+}
+
 /* ---- what becomes of them ---- */
 
 abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error) {

@@ -67,6 +67,17 @@ abbe_result abbe_table_edit_rename(abbe_table_edit *edit, const char *name, cons
 abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char **out,
                                    abbe_error *error);
 
+/* The value of key: a scalar's text without its quotes, brackets and blocks as they stand; *out is
+ * malloc'd, NULL where the record has no such key. */
+abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, const char *key,
+                                char **out, abbe_error *error);
+
+/* The name of the table's first record as it is written, malloc'd; NULL where there is none. */
+char *abbe_table_edit_first_name(const abbe_table_edit *edit);
+
+/* Takes all changes back: the text is as it was read or last saved. */
+abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error);
+
 /* ABBE_OK where the changed text is a table, else what abbe_material_table_parse says of it. */
 abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error);
 /* What abbe_table_edit_save would say, but for the disk: ABBE_SCHEMA where the text was a table and

@@ -9,6 +9,7 @@ foreach(name
     bad_input
     export_command
     materials_change_command
+    materials_edit_command
     materials_plot_command
     materials_exchange_command
     outline_command

@@ -76,6 +76,34 @@ static void values_are_set(void **state) {
                    "source: \"me: 3 May\"}\n");
 }
 
+static void check_value(const abbe_table_edit *edit, const char *key, const char *wanted) {
+  char *text = NULL;
+  must(abbe_table_edit_get(edit, "Crown", key, &text, &error));
+  if (wanted == NULL)
+    assert_null(text);
+  else
+    assert_string_equal(text, wanted);
+  free(text);
+}
+
+static void values_are_told_and_taken_back(void **state) {
+  (void)state;
+  abbe_table_edit *edit = parse(two);
+  check_value(edit, "source", "[Somebody] p. 3");
+  check_value(edit, "coefficients.0", "1.5220");
+  check_value(edit, "coefficients.2", NULL);
+  check_value(edit, "range_nm", "[380, 780]");
+  check_value(edit, "source.more", NULL);
+  check_value(edit, "warning", NULL);
+  char *text = NULL;
+  assert_int_equal(abbe_table_edit_get(edit, "no", "source", &text, &error), ABBE_NOT_FOUND);
+  must(abbe_table_edit_set(edit, "crown", "source", "x", &error));
+  check_value(edit, "source", "x");
+  must(abbe_table_edit_revert(edit, &error));
+  assert_string_equal(text_of(edit), two);
+  abbe_table_edit_free(edit);
+}
+
 static void new_keys_go_where_the_format_has_them(void **state) {
   (void)state;
   abbe_table_edit *edit = parse(two);
@@ -324,6 +352,7 @@ static void a_record_moves_from_table_to_table(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(values_are_set),
+      cmocka_unit_test(values_are_told_and_taken_back),
       cmocka_unit_test(new_keys_go_where_the_format_has_them),
       cmocka_unit_test(keys_and_records_come_and_go),
       cmocka_unit_test(each_edit_stays_inside_its_record),
