@@ -10,6 +10,7 @@ foreach(name
     export_command
     materials_change_command
     materials_edit_command
+    materials_numbers
     materials_plot_command
     materials_exchange_command
     outline_command

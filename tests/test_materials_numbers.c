@@ -305,8 +305,9 @@ static void every_verb_helps_by_example(void **state) {
     snprintf(line, sizeof line, "$abbe materials %s --help", verbs[i]);
     snprintf(part, sizeof part, "Examples:\n  abbe materials %s", verbs[i]);
     answers(line, 0, part);
-    answers("$abbe materials --help", 0, verbs[i]);
   }
+  answers("$abbe materials --help", 0, verbs[0]);
+  for (size_t i = 1; i < sizeof verbs / sizeof verbs[0]; i++) assert_contains(run_output, verbs[i]);
 }
 
 int main(void) {
