@@ -274,7 +274,7 @@ static int draw_warnings(const app *a, int y, int rows) {
       const abbe_finding *f = &found.finding[i];
       if ((int)f->weight != weight) continue;
       char line[1000];
-      snprintf(line, sizeof line, "%s: %s %s", abbe_finding_weight_name(f->weight), f->evidence,
+      snprintf(line, sizeof line, "%s: %s; %s", abbe_finding_weight_name(f->weight), f->evidence,
                f->mend);
       colour(PAIR_WARNING, weight == ABBE_FINDING_WRONG);
       used += put_wrapped(y + used, rows - used, line);

@@ -10,15 +10,22 @@ bool abbe_change_option(abbe_change *change, int key, const char *arg) {
   return key == ABBE_MATERIALS_KEY_TABLE || key == ABBE_CHANGE_KEY_DRY_RUN;
 }
 
+abbe_result abbe_change_check_table(const char *table, abbe_error *error) {
+  size_t size;
+  if (abbe_material_table_shipped(table, &size) == NULL) return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "the table '%s' is compiled in and cannot be edited; 'abbe materials export "
+      "--table %s --to yaml -o FILE' makes a copy of it, 'abbe materials add NAME "
+      "--from %s --table FILE --create' of one record",
+      table, table, table);
+}
+
 abbe_result abbe_change_open(abbe_change *change, abbe_error *error) {
   if (change->table == NULL)
     abbe_materials_wrong_use(change->program, "which table? Name its file with --table FILE");
-  size_t size;
-  if (abbe_material_table_shipped(change->table, &size) != NULL)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the table '%s' is compiled in and cannot be edited; 'abbe materials add "
-                          "NAME --from %s --table FILE --create' copies a record of it into a file",
-                          change->table, change->table);
+  abbe_result result = abbe_change_check_table(change->table, error);
+  if (result != ABBE_OK) return result;
   return abbe_table_edit_open(change->table, &change->edit, error);
 }
 
@@ -78,8 +85,9 @@ static void say(const abbe_change *change, const char *what, const char *name,
   char t[4][32];
   const char *n_d = abbe_materials_number(t[0], sizeof t[0], "%.6f", now.n_d);
   const char *v_d = abbe_materials_number(t[1], sizeof t[1], "%.3f", now.v_d);
-  if (before == NULL) {
-    printf("  n_d %s, V_d %s\n", n_d, v_d);
+  bool same = before != NULL && memcmp(before, &now, sizeof now) == 0;
+  if (before == NULL || same) {
+    printf("  n_d %s, V_d %s%s\n", n_d, v_d, same ? ", as before" : "");
     return;
   }
   const char *old_n_d = abbe_materials_number(t[2], sizeof t[2], "%.6f", before->n_d);

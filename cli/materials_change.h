@@ -21,6 +21,8 @@ typedef struct abbe_change {
 
 /* Takes one of the two options; false for any other key. */
 bool abbe_change_option(abbe_change *change, int key, const char *arg);
+/* ABBE_UNSUPPORTED, with how to come by a copy, for a table that is compiled in. */
+abbe_result abbe_change_check_table(const char *table, abbe_error *error);
 /* Opens the table; ends the program with ABBE_EXIT_USAGE where --table was not given. */
 abbe_result abbe_change_open(abbe_change *change, abbe_error *error);
 /* Sets NAME's key as one argument "KEY=VALUE" says; a text key's value is taken as it stands, any

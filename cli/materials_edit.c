@@ -1,5 +1,5 @@
 #include "cli/edit_screen.h"
-#include "cli/materials.h"
+#include "cli/materials_change.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -85,8 +85,9 @@ static abbe_result edit(const request *r, const abbe_material_table *known,
                         const abbe_material_table *from, abbe_error *error) {
   abbe_edit_screen screen = {.path = r->table, .known = known};
   abbe_index_points points = {0};
-  abbe_result result = ABBE_OK;
-  if (r->points != NULL) result = abbe_index_points_load(r->points, &points, error);
+  abbe_result result = abbe_change_check_table(r->table, error);
+  if (result == ABBE_OK && r->points != NULL)
+    result = abbe_index_points_load(r->points, &points, error);
   if (result == ABBE_OK && r->against != NULL)
     result = abbe_material_table_find(from, r->against, &screen.source.material, error);
   if (result == ABBE_OK) result = abbe_record_draft_open(r->table, r->name, &screen.draft, error);
