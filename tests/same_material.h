@@ -32,9 +32,23 @@ static inline bool same_spectrum(const abbe_spectrum *a, const abbe_spectrum *b,
          same_numbers(abbe_spectrum_value(a), abbe_spectrum_value(b), count, relative);
 }
 
-static inline bool same_dispersion(const abbe_dispersion *a, const abbe_dispersion *b) {
-  return a->model == b->model && a->count == b->count && same_numbers(a->c, b->c, a->count, 0) &&
-         same_spectrum(a->table, b->table, 0);
+/* Terms of a polynomial whose coefficient is 0 say nothing. */
+static inline abbe_dispersion without_zero_terms(const abbe_dispersion *d) {
+  abbe_dispersion made = *d;
+  if (d->model != ABBE_DISPERSION_POLYNOMIAL) return made;
+  made.count = 1;
+  for (size_t k = 1; k + 1 < d->count; k += 2) {
+    if (d->c[k] == 0) continue;
+    made.c[made.count++] = d->c[k];
+    made.c[made.count++] = d->c[k + 1];
+  }
+  return made;
+}
+
+static inline bool same_dispersion(const abbe_dispersion *p, const abbe_dispersion *q) {
+  abbe_dispersion a = without_zero_terms(p), b = without_zero_terms(q);
+  return a.model == b.model && a.count == b.count && same_numbers(a.c, b.c, a.count, 0) &&
+         same_spectrum(a.table, b.table, 0);
 }
 
 static inline bool same_catalogue(const abbe_material_catalogue *a,
