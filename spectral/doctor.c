@@ -122,6 +122,13 @@ void abbe_doctor_set_coefficients(abbe_doctor *d, abbe_finding *finding,
   finding->key = "coefficients";
 }
 
+/* value to so many digits, whatever the locale's point; returns text. */
+static const char *digits(double value, int count, char text[ABBE_NUMBER_TEXT_SIZE]) {
+  double scale = value == 0 ? 1 : pow(10, count - 1 - floor(log10(fabs(value))));
+  bool fits = isfinite(scale) && isfinite(value * scale) && scale > 0;
+  return abbe_number_text(fits ? round(value * scale) / scale : value, text);
+}
+
 /* ---- the small checks ---- */
 
 static void check_source(abbe_doctor *d) {
@@ -160,7 +167,9 @@ static void check_range(abbe_doctor *d) {
   abbe_doctor_say(d, &f->mend, "%s: %g to %g nm", tabulated ? "points in nm" : "range_nm in nm",
                   1000 * m->min_nm, 1000 * m->max_nm);
   if (tabulated) return;
-  abbe_doctor_say(d, &f->value, "[%.10g, %.10g]", 1000 * m->min_nm, 1000 * m->max_nm);
+  char low[ABBE_NUMBER_TEXT_SIZE], high[ABBE_NUMBER_TEXT_SIZE];
+  abbe_doctor_say(d, &f->value, "[%s, %s]", digits(1000 * m->min_nm, 10, low),
+                  digits(1000 * m->max_nm, 10, high));
   f->key = "range_nm";
   f->certain = true;
 }
@@ -183,12 +192,14 @@ static void check_fit(abbe_doctor *d, const abbe_material_fit *fit) {
   if (abbe_dispersion_fit_cauchy(&m->dispersion, fit->terms, fit->min_nm, fit->max_nm, &right,
                                  &error, NULL) != ABBE_OK)
     return;
-  char list[8 * 24] = "";
+  char list[8 * (ABBE_NUMBER_TEXT_SIZE + 2)] = "", text[3][ABBE_NUMBER_TEXT_SIZE];
   size_t used = 0;
   for (size_t k = 0; k < right.count; k++)
-    used += (size_t)snprintf(list + used, sizeof list - used, "%s%.9g", k ? ", " : "", right.c[k]);
-  abbe_doctor_say(d, &f->value, "{coefficients: [%s], max_error: %.3g, range_nm: [%g, %g]}", list,
-                  error, fit->min_nm, fit->max_nm);
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", k ? ", " : "",
+                             digits(right.c[k], 9, text[0]));
+  abbe_doctor_say(d, &f->value, "{coefficients: [%s], max_error: %s, range_nm: [%s, %s]}", list,
+                  digits(error, 3, text[0]), abbe_number_text(fit->min_nm, text[1]),
+                  abbe_number_text(fit->max_nm, text[2]));
   f->key = fit->terms == 2 ? "fit.cauchy2" : "fit.cauchy3";
   f->certain = true;
 }

@@ -4,7 +4,6 @@
 
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* A number is told only where the record vouches for it. */
@@ -43,9 +42,9 @@ static bool stated(const char *text, const char *word, double *value, double *ha
     if (at > text && (isalnum((unsigned char)at[-1]) || at[-1] == '_')) continue;
     const char *number = at + length + strspn(at + length, " :=");
     if (!isdigit((unsigned char)*number)) continue;
-    const char *end = number + strspn(number, "0123456789.");
+    const char *end = number + strspn(number, "0123456789."), *read;
     while (end[-1] == '.') end--; /* the end of a sentence */
-    *value = strtod(number, NULL);
+    if (!abbe_number_read(number, &read, value)) continue;
     *half = half_digit(number, end);
     return isfinite(*value);
   }
