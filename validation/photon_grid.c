@@ -66,14 +66,15 @@ void abbe_photon_grid_gather(const abbe_photon_grid *g, const float p[3], float 
     low[k] = coordinate(p[k] - radius, g->cell);
     high[k] = coordinate(p[k] + radius, g->cell);
   }
-  size_t seen[8], cells = 0;
+  /* two cubes an axis, or three where single precision is coarse against them */
+  size_t seen[27], cells = 0;
   for (int32_t z = low[2]; z <= high[2]; z++)
     for (int32_t y = low[1]; y <= high[1]; y++)
       for (int32_t x = low[0]; x <= high[0]; x++) {
         /* different cubes may share a cell, which is to be read once */
         size_t c = hash(g, x, y, z), i = 0;
         while (i < cells && seen[i] != c) i++;
-        if (i == cells && cells < 8) seen[cells++] = c;
+        if (i == cells && cells < 27) seen[cells++] = c;
       }
   for (size_t i = 0; i < cells; i++)
     for (uint32_t j = g->first[seen[i]]; j < g->first[seen[i] + 1]; j++) {
