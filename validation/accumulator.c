@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* 2^61: sums of two such still fit. */
+/* 2^61: sums of up to four such fit. */
 static const double range = 2305843009213693952.0;
 
 abbe_result abbe_accumulator_make(size_t values, size_t threads, double most, abbe_accumulator *out,
@@ -46,7 +46,12 @@ void abbe_accumulator_free(abbe_accumulator *a) {
 void abbe_accumulator_end_pass(abbe_accumulator *a, double scale) {
   for (size_t i = 0; i < a->values; i++) {
     int64_t whole = 0;
-    for (size_t t = 0; t < a->threads; t++) whole += a->adding[t][i];
+    for (size_t t = 0; t < a->threads; t++) {
+      int64_t more = a->adding[t][i];
+      if (!__builtin_add_overflow(whole, more, &whole)) continue;
+      a->cut[t]++;
+      whole = more > 0 ? INT64_MAX : INT64_MIN;
+    }
     double value = (double)whole * a->unit * scale;
     a->sum[i] += value;
     a->square[i] += value * value;

@@ -35,14 +35,17 @@ abbe_result abbe_accumulator_make(size_t values, size_t threads, double most, ab
                                   abbe_error *error);
 void abbe_accumulator_free(abbe_accumulator *a);
 
-/* What is not a number adds nothing. */
+/* What is not a number adds nothing; sums beyond what a pass holds are cut. */
 static inline void abbe_accumulator_add(abbe_accumulator *a, size_t thread, size_t value, float x) {
   double y = (double)x;
   if (!(y <= a->limit && y >= -a->limit)) {
     a->cut[thread]++;
     y = y > 0 ? a->limit : y < 0 ? -a->limit : 0;
   }
-  a->adding[thread][value] += (int64_t)(y / a->unit);
+  int64_t whole = (int64_t)(y / a->unit), *sum = &a->adding[thread][value];
+  if (!__builtin_add_overflow(*sum, whole, sum)) return;
+  a->cut[thread]++;
+  *sum = whole > 0 ? INT64_MAX : INT64_MIN;
 }
 
 /* Ends the pass: its sums, times scale, become one sample of every value. */
