@@ -25,9 +25,12 @@ abbe_result abbe_bands_make(const abbe_spectral_sampling *s, size_t count, abbe_
     double at = (0.5 * (s->lambda_nm[k] + s->lambda_nm[k + 1]) - low) / width;
     size_t band = at < (double)count ? (size_t)at : count - 1;
     b.of_step[k] = (uint16_t)band;
-    for (size_t l = 0; l < s->lights; l++)
-      b.power[l * count + band] +=
-          (float)((double)s->power[l * s->steps + k] / (double)s->steps / width);
+  }
+  for (size_t l = 0; l < s->lights; l++) {
+    double share[ABBE_BANDS_MAX] = {0};
+    for (size_t k = 0; k < s->steps; k++)
+      share[b.of_step[k]] += (double)s->power[l * s->steps + k] / (double)s->steps;
+    for (size_t i = 0; i < count; i++) b.power[l * count + i] = (float)(share[i] / width);
   }
   return ABBE_OK;
 }
