@@ -1,5 +1,8 @@
 set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
 foreach(name
+    accumulator
+    bands
+    camera
     closed_form
     compare
     difference_picture
@@ -12,8 +15,12 @@ foreach(name
     media
     rings
     outline
+    photon_grid
     pov_file
+    random
+    reflectance
     route
+    spectral_sampling
     sphere_quadrature
     ztest
     )
