@@ -1,6 +1,7 @@
 set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
 foreach(name
     accumulator
+    aim
     bands
     camera
     closed_form

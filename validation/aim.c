@@ -29,12 +29,19 @@ static void ray_at(const abbe_aim *a, float x, float y, float o[3], float d[3]) 
   }
 }
 
+/* 1 - cos of the angle between d and the light's own direction, also where it is tiny. */
+static float versine(const abbe_aim *a, const float d[3]) {
+  float square = 0;
+  for (int k = 0; k < 3; k++) square += (d[k] - a->facing[k]) * (d[k] - a->facing[k]);
+  return 0.5f * square;
+}
+
 /* Intensity of the spot along d, relative to its middle. */
 static float profile(const abbe_aim *a, const float d[3]) {
-  float c = d[0] * a->facing[0] + d[1] * a->facing[1] + d[2] * a->facing[2];
-  if (!(c >= a->cos_outer)) return 0;
-  if (c >= a->cos_inner) return 1;
-  float x = (c - a->cos_outer) / (a->cos_inner - a->cos_outer);
+  float v = versine(a, d);
+  if (!(v <= a->outer)) return 0;
+  if (v <= a->inner) return 1;
+  float x = (a->outer - v) / (a->outer - a->inner);
   return x * x * (3 - 2 * x);
 }
 
@@ -74,6 +81,7 @@ float abbe_aim_ray(const abbe_aim *a, const abbe_aim_cell *cell, const float uv[
 
 typedef struct patch {
   double x, y, radius; /* a disc of the plane that holds the ball's image; radius < 0: everything */
+  double own;          /* the part of radius that is the ball's, not the lamp's */
 } patch;
 
 static patch cover(const abbe_aim *a, const double centre[3], double radius) {
@@ -84,15 +92,16 @@ static patch cover(const abbe_aim *a, const double centre[3], double radius) {
     y += to[k] * (double)a->up[k];
     z += to[k] * (double)a->way[k];
   }
-  if (a->parallel) return (patch){x, y, radius};
+  if (a->parallel) return (patch){x, y, radius, radius};
   double distance = abbe_vector_length(to), grown = radius + (double)a->radius;
-  if (distance <= grown * 1.0001) return (patch){0, 0, -1};
+  if (distance <= grown * 1.0001) return (patch){.radius = -1};
   double cap = asin(grown / distance), off = acos(fmin(fmax(z / distance, -1), 1));
   double across = hypot(x, y), r = 2 * sin(0.5 * off);
   /* the map stretches angles by 1 / cos(half the angle off its axis), at the most */
-  if (off + cap > 0.95 * pi) return (patch){0, 0, -1};
+  if (off + cap > 0.95 * pi) return (patch){.radius = -1};
   double scale = across > 0 ? r / across : 0;
-  return (patch){x * scale, y * scale, cap / cos(0.5 * (off + cap))};
+  double stretch = 1 / cos(0.5 * (off + cap));
+  return (patch){x * scale, y * scale, stretch * cap, stretch * asin(radius / distance)};
 }
 
 /* Images of every piece of the refractors, largest first halved until it is small. */
@@ -100,7 +109,7 @@ typedef struct cover_list {
   const abbe_aim *aim;
   void (*take)(void *user, patch p);
   void *user;
-  double fine; /* patches below this radius are not split */
+  double fine; /* pieces below this radius are not split, nor small ones before a large lamp */
 } cover_list;
 
 static void cover_triangle(const cover_list *list, const double a[3], const double b[3],
@@ -114,7 +123,7 @@ static void cover_triangle(const cover_list *list, const double a[3], const doub
     radius = fmax(radius, abbe_vector_length(from));
   }
   patch p = cover(list->aim, centre, radius * 1.000001);
-  if (splits == 0 || (p.radius >= 0 && p.radius <= list->fine)) {
+  if (splits == 0 || (p.radius >= 0 && p.own <= fmax(list->fine, 0.1 * p.radius))) {
     list->take(list->user, p);
     return;
   }
@@ -155,7 +164,8 @@ static void take_extent(void *user, patch p) {
 }
 
 typedef struct marks {
-  unsigned char at[ABBE_AIM_SIDE][ABBE_AIM_SIDE]; /* [y][x] */
+  unsigned char at[ABBE_AIM_SIDE][ABBE_AIM_SIDE];    /* [y][x] */
+  unsigned short done[ABBE_AIM_SIDE][ABBE_AIM_SIDE]; /* radius in steps of a disc around a cell */
   double low, step;
 } marks;
 
@@ -164,12 +174,33 @@ static int cell_of(const marks *m, double at) {
   return (int)fmin(fmax(cell, 0), ABBE_AIM_SIDE - 1);
 }
 
+/* The many patches of a fine mesh before a large lamp are much larger than their distances: those
+ * around one cell are taken as one, a little wider. False where that was marked before. */
+static bool widen(marks *m, patch *p) {
+  double size = p->radius / m->step;
+  if (size < 4 || p->own > 0.5 * p->radius) return true;
+  int q = 1 + (int)fmin(size / 12, ABBE_AIM_SIDE - 1);
+  int x = cell_of(m, p->x) / q * q + q / 2, y = cell_of(m, p->y) / q * q + q / 2;
+  if (x >= ABBE_AIM_SIDE) x = ABBE_AIM_SIDE - 1;
+  if (y >= ABBE_AIM_SIDE) y = ABBE_AIM_SIDE - 1;
+  double middle[2] = {m->low + (x + 0.5) * m->step, m->low + (y + 0.5) * m->step};
+  double away = fmax(fabs(p->x - middle[0]), fabs(p->y - middle[1])) / m->step;
+  double most = 0.5 * (q + (q > 1)) * 1.001;
+  if (away > most) return true; /* beyond the plane's cells */
+  double steps = fmin(ceil(size + sqrt(2) * most), 60000);
+  if (m->done[y][x] >= steps) return false;
+  m->done[y][x] = (unsigned short)steps;
+  *p = (patch){middle[0], middle[1], steps * m->step, p->own};
+  return true;
+}
+
 static void take_marks(void *user, patch p) {
   marks *m = user;
   if (p.radius < 0) {
     memset(m->at, 1, sizeof m->at);
     return;
   }
+  if (!widen(m, &p)) return;
   double slack = 0.05 * m->step;
   int x0 = cell_of(m, p.x - p.radius - slack), x1 = cell_of(m, p.x + p.radius + slack);
   int y0 = cell_of(m, p.y - p.radius - slack), y1 = cell_of(m, p.y + p.radius + slack);
@@ -218,21 +249,25 @@ static int by_curve(const void *a, const void *b) {
   return (i > j) - (i < j);
 }
 
+static float angle_of(float versine) {
+  return 2 * asinf(fminf(sqrtf(0.5f * versine), 1));
+}
+
 /* Whether all of the cell lies outside the spot's cone, or beyond the sphere of directions. */
 static bool dark(const abbe_aim *a, const abbe_aim_cell *cell) {
   if (a->parallel) return false;
-  float nearest = 1e30f, c = -1;
+  float nearest = 1e30f, v = 2;
   for (int i = 0; i < 9; i++) {
     float x = a->low + a->step * ((float)cell->x + 0.5f * (float)(i % 3));
     float y = a->low + a->step * ((float)cell->y + 0.5f * (float)(i / 3)), o[3], d[3];
     nearest = fminf(nearest, x * x + y * y);
     ray_at(a, x, y, o, d);
-    c = fmaxf(c, d[0] * a->facing[0] + d[1] * a->facing[1] + d[2] * a->facing[2]);
+    v = fminf(v, versine(a, d));
   }
   if (nearest >= 4) return true;
   /* between the nine places the angle grows by less than half a cell, stretched */
   float slack = a->step / sqrtf(fmaxf(1 - nearest / 4, 0.01f));
-  return a->light->kind == ABBE_LIGHT_SPOT && acosf(fminf(c, 1)) > acosf(a->cos_outer) + slack;
+  return a->light->kind == ABBE_LIGHT_SPOT && angle_of(v) > angle_of(a->outer) + slack;
 }
 
 static abbe_result keep_cells(const abbe_geometry *g, const marks *m, abbe_aim *a,
@@ -263,9 +298,23 @@ static abbe_result keep_cells(const abbe_geometry *g, const marks *m, abbe_aim *
 
 /* ---- make ---- */
 
+/* The plane's axes around a way. */
+static void turn(abbe_aim *a, const double way[3]) {
+  double right[3], up[3];
+  double hint[3] = {fabs(way[0]) < 0.6, fabs(way[0]) >= 0.6, 0};
+  abbe_vector_cross(hint, way, right);
+  abbe_vector_normalise(right);
+  abbe_vector_cross(way, right, up);
+  for (int k = 0; k < 3; k++) {
+    a->way[k] = (float)way[k];
+    a->right[k] = (float)right[k];
+    a->up[k] = (float)up[k];
+  }
+}
+
 static void look(const abbe_geometry *g, abbe_aim *a) {
   const abbe_light *light = a->light;
-  double middle[3], way[3], right[3], up[3], min[3], max[3], far = 0;
+  double middle[3], way[3], min[3], max[3], far = 0;
   for (int k = 0; k < 3; k++) middle[k] = -(double)a->origin[k];
   if (a->parallel) {
     /* the plane stands before everything that may be in the light's way */
@@ -278,16 +327,12 @@ static void look(const abbe_geometry *g, abbe_aim *a) {
   }
   memcpy(way, middle, sizeof way);
   if (!abbe_vector_normalise(way)) memcpy(way, (double[3]){0, 0, -1}, sizeof way);
-  double hint[3] = {fabs(way[0]) < 0.6, fabs(way[0]) >= 0.6, 0};
-  abbe_vector_cross(hint, way, right);
-  abbe_vector_normalise(right);
-  abbe_vector_cross(way, right, up);
-  for (int k = 0; k < 3; k++) {
-    a->way[k] = (float)way[k];
-    a->right[k] = (float)right[k];
-    a->up[k] = (float)up[k];
-    a->facing[k] = (float)light->direction[k];
-  }
+  for (int k = 0; k < 3; k++) a->facing[k] = (float)light->direction[k];
+  turn(a, way);
+}
+
+static double versine_of(double angle) {
+  return 2 * pow(sin(0.5 * angle), 2);
 }
 
 abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim *out,
@@ -301,14 +346,20 @@ abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim 
     a.radius = (float)(l->radius / geometry->unit);
     a.power = (float)(l->power * pi * l->radius * l->radius);
   }
-  a.cos_outer = (float)cos(l->cone_rad);
-  a.cos_inner = (float)cos(fmax(l->cone_rad - l->soft_rad, 0));
+  a.outer = (float)versine_of(l->cone_rad);
+  a.inner = (float)versine_of(fmax(l->cone_rad - l->soft_rad, 0));
   look(geometry, &a);
   double extent = 0;
   cover_list list = {.aim = &a, .take = take_extent, .user = &extent, .fine = 0.02};
   cover_all(geometry, &list);
   if (!(extent > 0)) return ABBE_OK;
   if (!a.parallel) extent = fmin(extent, 2);
+  /* a cone that is narrower than the refractors makes the smaller plane */
+  double cone = 2 * sin(0.5 * l->cone_rad) * 1.0001;
+  if (l->kind == ABBE_LIGHT_SPOT && cone < extent) {
+    extent = cone;
+    turn(&a, l->direction);
+  }
   marks *m = calloc(1, sizeof *m);
   if (m == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for cells of light");
   m->low = -extent;

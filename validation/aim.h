@@ -1,7 +1,8 @@
 /* aim.h: where a light's rays go: at refractors, and nowhere else.
  *
  * The rays of a light are a plane: directions in Lambert's equal-area map around the way to the
- * refractors (point, spot, disk), or the plane across the beam (directional). It is cut into square
+ * refractors (point, spot, disk) or around a spot's own where its cone is narrower, or the plane
+ * across the beam (directional). It is cut into square
  * cells. A cell is kept if a ray of it can meet a refractor: each face's bounding ball is
  * projected, so nothing that refracts is missed and the estimate stays unbiased. A few trial rays a
  * cell then say where refractors are seen past other things; more photons go there, never none
@@ -32,13 +33,13 @@ typedef struct abbe_aim {
   const abbe_light *light;
   bool parallel;                 /* a directional light */
   float origin[3];               /* frame: of the light, or of the plane's middle */
-  float right[3], up[3], way[3]; /* unit; way: towards the refractors */
+  float right[3], up[3], way[3]; /* unit; way: the plane's middle */
   float low, step;               /* of both axes: plane = low + step * (cell + place in it) */
   float measure;                 /* of a cell: sr, or m2 */
   double reach;                  /* W that all cells hold, before anything is met */
   float radius;                  /* frame: of a disk light */
   float facing[3], power;        /* the light's direction; W/sr, W/m2, or W/(m2 sr) times m2 */
-  float cos_outer, cos_inner;    /* spot */
+  float outer, inner;            /* spot: 1 - cos of the cone, and of the part at full intensity */
   size_t count;                  /* cells kept; 0: no refractor, or the light misses them all */
   abbe_aim_cell *cell;           /* [count] along a Z-order curve: neighbours stay together */
 } abbe_aim;

@@ -1,5 +1,6 @@
 #include "validation/eye_walk.h"
 
+#include "scenes/vector.h"
 #include "validation/interface.h"
 #include "validation/random.h"
 
@@ -147,6 +148,7 @@ static float irradiance(const context *c, const abbe_light *light, const abbe_hi
   float facing = dot(n, d);
   if (!(facing > 0)) return 0;
   double away[3] = {-(double)d[0], -(double)d[1], -(double)d[2]};
+  abbe_vector_normalise(away); /* a narrow cone's cosine asks for more than single precision */
   float e = power * falloff * facing * (float)abbe_light_profile(light, away);
   if (!(e > 0)) return 0;
   abbe_geometry_leave(hit, d, o);
