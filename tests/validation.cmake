@@ -10,6 +10,7 @@ foreach(name
     field
     geometry
     interface
+    light_walk
     known_answers
     known_light
     mask

@@ -201,15 +201,15 @@ static void take_marks(void *user, patch p) {
     return;
   }
   if (!widen(m, &p)) return;
-  double slack = 0.05 * m->step;
-  int x0 = cell_of(m, p.x - p.radius - slack), x1 = cell_of(m, p.x + p.radius + slack);
-  int y0 = cell_of(m, p.y - p.radius - slack), y1 = cell_of(m, p.y + p.radius + slack);
+  double reach = p.radius + 0.05 * m->step;
+  int x0 = cell_of(m, p.x - reach), x1 = cell_of(m, p.x + reach);
+  int y0 = cell_of(m, p.y - reach), y1 = cell_of(m, p.y + reach);
   for (int y = y0; y <= y1; y++)
     for (int x = x0; x <= x1; x++) {
       double left = m->low + x * m->step, down = m->low + y * m->step;
       double dx = fmax(fmax(left - p.x, p.x - left - m->step), 0);
       double dy = fmax(fmax(down - p.y, p.y - down - m->step), 0);
-      if (hypot(dx, dy) <= p.radius + slack) m->at[y][x] = 1;
+      if (dx * dx + dy * dy <= reach * reach) m->at[y][x] = 1;
     }
 }
 
