@@ -31,6 +31,25 @@ static void a_group_as_json(void **state) {
   cJSON_Delete(json);
 }
 
+/* Whole runs, small: their tolerances widen with their noise, and would fail where it tells
+ * nothing.
+ */
+static void runs_meet_a_furnace_and_converge(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only furnace --samples 65536 --threads 1"), 0);
+  assert_contains(run_output, "4 of 4 known answers are within tolerance");
+  assert_int_equal(run_line("\"$abbe\" validate --only convergence --samples 65536 --threads 1"),
+                   0);
+  assert_contains(run_output, "slope of the error over the photons");
+}
+
+static void noise_is_no_agreement(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only absorption --samples 1000 --threads 1"), 3);
+  assert_contains(run_output, "TOO NOISY");
+  assert_contains(run_errors, "of 5 known answers are out of tolerance");
+}
+
 static void help_lists_the_groups(void **state) {
   (void)state;
   assert_int_equal(run_line("\"$abbe\" validate --help"), 0);
@@ -51,6 +70,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_group_as_text),
       cmocka_unit_test(a_group_as_json),
+      cmocka_unit_test(runs_meet_a_furnace_and_converge),
+      cmocka_unit_test(noise_is_no_agreement),
       cmocka_unit_test(help_lists_the_groups),
       cmocka_unit_test(wrong_use_is_explained),
   };
