@@ -25,10 +25,17 @@ static void help(FILE *out, const char *program) {
   for (int i = 0; i < VERB_COUNT; i++) fprintf(out, "  %-8s %s\n", verbs[i].name, verbs[i].summary);
   fprintf(out,
           "\nExamples:\n"
-          "  %s list\n"
-          "  %s show diamond --at 430.8 --at 686.7\n"
-          "  %s show --help\n",
-          program, program, program);
+          "  %1$s list\n"
+          "  %1$s show diamond --at 430.8 --at 686.7\n"
+          "  %1$s nearest --nd 1.728 --vd 28.4\n"
+          "  %1$s plot --map -o map.png\n"
+          "  %1$s import maker.agf -o glasses.yaml\n"
+          "  %1$s check --table glasses.yaml\n"
+          "  %1$s set sf10 coefficients.1=1.61625977 --table glasses.yaml --dry-run\n"
+          "  %1$s edit sf10 --table glasses.yaml\n\n"
+          "'%1$s VERB --help' shows a verb's options, with examples; docs/materials.md goes "
+          "from\na catalogue to a picture.\n",
+          program);
 }
 
 static bool is_help(const char *word) {

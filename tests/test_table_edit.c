@@ -179,6 +179,142 @@ static void each_edit_stays_inside_its_record(void **state) {
   }
 }
 
+/* ---- laws, over random tables in every style ---- */
+
+static unsigned long long state_of_chance;
+
+static unsigned chance(unsigned below) { /* [Steele2014] */
+  unsigned long long z = (state_of_chance += 0x9e3779b97f4a7c15ull);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return (unsigned)((z ^ (z >> 31)) >> 33) % below;
+}
+
+/* A value of a record, in one of the ways that YAML has to write it. */
+static void add_values(char *out, const char *end, const char *indent, bool flow) {
+  const char *between = flow ? ", " : end;
+  const char *lead = flow ? "" : indent;
+  const char *note = !flow && chance(3) == 0 ? " # \u00b5, in" : "";
+  out += strlen(out);
+  out += sprintf(out, "%s%smodel: cauchy%s", between, lead, note);
+  if (!flow && chance(3) == 0)
+    out += sprintf(out, "%s%scoefficients:%s%s- 1.5 # A%s%s- 4e-3", between, lead, end, lead, end,
+                   lead);
+  else if (!flow && chance(2) == 0)
+    out += sprintf(out, "%s%scoefficients: [1.5, # A%s%s  4e-3 ]", between, lead, end, lead);
+  else
+    out += sprintf(out, "%s%scoefficients: [1.5, 4e-3]", between, lead);
+  if (!flow && chance(2) == 0) out += sprintf(out, "%s%s# inside", end, lead);
+  out += sprintf(out, "%s%srange_nm: [380, 780]", between, lead);
+  if (chance(2) == 0) out += sprintf(out, "%s%stemperature_c: 20", between, lead);
+  if (!flow && chance(2) == 0)
+    out += sprintf(out, "%s%swarning: >-%s%s  two%s%s  lines", end, lead, end, lead, end, lead);
+  sprintf(out, "%s%ssource: 's: it''s'", between, lead);
+}
+
+/* count records m0, m1, … in block style, in brackets, or some so and some so. */
+static void make_table(char *out, int count) {
+  const char *end = chance(4) == 0 ? "\r\n" : "\n";
+  bool brackets = chance(4) == 0, blank = chance(2) == 0;
+  const char *dash = chance(2) == 0 ? "" : "  ";
+  char indent[8];
+  snprintf(indent, sizeof indent, "%s  ", dash);
+  *out = '\0';
+  if (chance(3) == 0) strcpy(out, "\xEF\xBB\xBF");
+  sprintf(out + strlen(out), "# out%sdescription: a \u2026 table%smaterials:%s", end, end,
+          brackets ? " [" : "");
+  for (int i = 0; i < count; i++) {
+    bool flow = brackets || chance(4) == 0;
+    if (!brackets && i > 0 && blank) strcat(out, end);
+    if (!brackets && chance(3) == 0) sprintf(out + strlen(out), "%s# out", end);
+    sprintf(out + strlen(out), "%s%s%s%sname: m%d", brackets ? (i > 0 ? ", " : "") : end,
+            brackets ? "" : dash, brackets ? "" : "- ", flow ? "{" : "", i);
+    add_values(out, end, indent, flow);
+    if (flow) strcat(out, "}");
+  }
+  if (brackets) strcat(out, "]");
+  if (chance(3) == 0) sprintf(out + strlen(out), "%s# out", end);
+  if (chance(4) > 0) strcat(out, end);
+}
+
+static int count_of(const char *text, const char *part) {
+  int count = 0;
+  for (const char *at = text; (at = strstr(at, part)) != NULL; at++) count++;
+  return count;
+}
+
+/* One random change to the record `name`; true where it is gone after. */
+static bool change(abbe_table_edit *edit, const char *name) {
+  switch (chance(7)) {
+  case 0:
+    must(abbe_table_edit_set(edit, name, "coefficients.1", "5e-3", &error));
+    return false;
+  case 1:
+    must(abbe_table_edit_set_numbers(edit, name, "coefficients", (double[]){1.6, 0, 1e-6}, 3,
+                                     &error));
+    return false;
+  case 2:
+    must(abbe_table_edit_set_text(edit, name, "warning", "a: b # c", &error));
+    return false;
+  case 3:
+    must(abbe_table_edit_set(edit, name, "absorption.colour", "[1, 1, 1]", &error));
+    must(abbe_table_edit_set(edit, name, "absorption.distance_m", "1", &error));
+    return false;
+  case 4:
+    must(abbe_table_edit_set(edit, name, "temperature_c", "21", &error));
+    must(abbe_table_edit_unset(edit, name, "temperature_c", &error));
+    return false;
+  case 5:
+    must(abbe_table_edit_rename(edit, name, "another", &error));
+    return true;
+  default:
+    must(abbe_table_edit_remove(edit, name, &error));
+    return true;
+  }
+}
+
+static void check_random_table(int round) {
+  static char text[1 << 14];
+  enum { COUNT = 4 };
+  char *before[COUNT], name[8];
+  state_of_chance = (unsigned long long)round;
+  make_table(text, COUNT);
+  abbe_table_edit *edit = parse(text);
+  must(abbe_table_edit_check(edit, &error));
+  for (int i = 0; i < COUNT; i++) {
+    snprintf(name, sizeof name, "m%d", i);
+    must(abbe_table_edit_record(edit, name, &before[i], &error));
+  }
+  int chosen = (int)chance(COUNT);
+  snprintf(name, sizeof name, "m%d", chosen);
+  bool gone = change(edit, name);
+  if (abbe_table_edit_check(edit, &error) != ABBE_OK)
+    fail_msg("%d: %s\n%s\n---\n%s", round, error.text, text, text_of(edit));
+  char *after = NULL;
+  bool found = abbe_table_edit_record(edit, name, &after, &error) == ABBE_OK;
+  if (found == gone) fail_msg("%d: %s is %s", round, name, gone ? "there" : "gone");
+  free(after);
+  if (count_of(text, "# out") != count_of(text_of(edit), "# out"))
+    fail_msg("%d: a comment is lost\n%s\n---\n%s", round, text, text_of(edit));
+  for (int i = 0; i < COUNT; i++) {
+    snprintf(name, sizeof name, "m%d", i);
+    if (i != chosen) {
+      must(abbe_table_edit_record(edit, name, &after, &error));
+      assert_string_equal(after, before[i]);
+      free(after);
+    }
+    free(before[i]);
+  }
+  must(abbe_table_edit_revert(edit, &error));
+  assert_string_equal(text_of(edit), text);
+  abbe_table_edit_free(edit);
+}
+
+static void random_tables_keep_their_other_records(void **state) {
+  (void)state;
+  for (int round = 0; round < 1000; round++) check_random_table(round);
+}
+
 static void refuses(const char *text, abbe_result code, const char *part,
                     abbe_result (*act)(abbe_table_edit *, abbe_error *)) {
   abbe_table_edit *edit = parse(text);
@@ -356,6 +492,7 @@ int main(void) {
       cmocka_unit_test(new_keys_go_where_the_format_has_them),
       cmocka_unit_test(keys_and_records_come_and_go),
       cmocka_unit_test(each_edit_stays_inside_its_record),
+      cmocka_unit_test(random_tables_keep_their_other_records),
       cmocka_unit_test(what_cannot_be_is_refused),
       with_file(a_saved_edit_is_on_the_disk),
       with_file(a_file_that_changed_is_not_overwritten),
