@@ -23,18 +23,21 @@ enum { VERB_COUNT = sizeof verbs / sizeof verbs[0] };
 static void help(FILE *out, const char *program) {
   fprintf(out, "usage: %s VERB [OPTION…] [NAME…]\n\n", program);
   for (int i = 0; i < VERB_COUNT; i++) fprintf(out, "  %-8s %s\n", verbs[i].name, verbs[i].summary);
+  static const char *const examples[] = {
+      "list",
+      "show diamond --at 430.8 --at 686.7",
+      "nearest --nd 1.728 --vd 28.4",
+      "plot --map -o map.png",
+      "import maker.agf -o glasses.yaml",
+      "check --table glasses.yaml",
+      "set sf10 coefficients.1=1.61625977 --table glasses.yaml --dry-run",
+      "edit sf10 --table glasses.yaml"};
+  fprintf(out, "\nExamples:\n");
+  for (size_t i = 0; i < sizeof examples / sizeof examples[0]; i++)
+    fprintf(out, "  %s %s\n", program, examples[i]);
   fprintf(out,
-          "\nExamples:\n"
-          "  %1$s list\n"
-          "  %1$s show diamond --at 430.8 --at 686.7\n"
-          "  %1$s nearest --nd 1.728 --vd 28.4\n"
-          "  %1$s plot --map -o map.png\n"
-          "  %1$s import maker.agf -o glasses.yaml\n"
-          "  %1$s check --table glasses.yaml\n"
-          "  %1$s set sf10 coefficients.1=1.61625977 --table glasses.yaml --dry-run\n"
-          "  %1$s edit sf10 --table glasses.yaml\n\n"
-          "'%1$s VERB --help' shows a verb's options, with examples; docs/materials.md goes "
-          "from\na catalogue to a picture.\n",
+          "\n'%s VERB --help' shows a verb's options, with examples; docs/materials.md goes from\n"
+          "a catalogue to a picture.\n",
           program);
 }
 
