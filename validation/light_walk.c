@@ -19,6 +19,7 @@ enum {
   LANES = 16,
   PACKETS = ABBE_LIGHT_WALK_BATCH / LANES,
   MAX_STEPS = 10000,
+  EVEN_STEPS = 3,     /* whose decisions are spread evenly */
   SMALL_SCENE = 4096, /* faces */
   COHERENT_ROUNDS = 2 /* how often rays of a packet are bent before they are told apart */
 };
@@ -46,7 +47,8 @@ struct abbe_light_walk {
   uint32_t seed;
   uint64_t rays;
   front *now, *next;
-  bool small; /* so few faces that packets stay together wherever their rays go */
+  uint32_t shift[4]; /* of the pass's even decisions */
+  bool small;        /* so few faces that packets stay together wherever their rays go */
   struct RTCRayHit16 *kept;
   size_t kept_count, kept_room;
 };
@@ -176,7 +178,7 @@ typedef struct lanes {
   _Alignas(64) float d[3][LANES];
   float p[3][LANES], n[3][LANES], ng[3][LANES]; /* normals on the side that the path comes from */
   float eta[LANES];                             /* 1: passes straight on */
-  uint32_t id[LANES], step[LANES];              /* counters of the random number */
+  float chance[LANES];                          /* in [0, 1): decides between ways */
   float share[LANES], out[3][LANES], from[3][LANES];
   int reflects[LANES];
   float size[LANES]; /* of the coordinates, for the offset */
@@ -188,6 +190,17 @@ typedef struct lanes {
 
 static float dot(const float a[3], const float b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The number that decides at a path's next interface. Neighbouring photons have neighbouring
+ * numbers, so the first decisions are spread evenly over them: the fractional parts of multiples
+ * of generalised golden ratios, shifted at random in every pass [Roberts2018]. */
+static float chance(const abbe_light_walk *w, const path *s, uint32_t pass) {
+  static const uint32_t ratio[EVEN_STEPS] = {3242174889u, 2447445414u, 3679390609u};
+  if (s->steps < EVEN_STEPS) return abbe_random_float(s->id * ratio[s->steps] + w->shift[s->steps]);
+  float random[4];
+  abbe_random4(s->id, s->steps, pass, w->seed, random);
+  return random[0];
 }
 
 /* Absorption on the way, and the roulette that ends paths with little left. */
@@ -273,8 +286,7 @@ static void gather(abbe_light_walk *w, const struct RTCRayHit16 *packet, size_t 
   l->verdict[k] = GOES_ON;
   if (s->inside != 0 && !absorb(w, s, packet->ray.tfar[k], pass, ledger))
     l->verdict[k] = NOT_COUNTED;
-  l->id[k] = s->id;
-  l->step[k] = s->steps;
+  l->chance[k] = chance(w, s, pass);
   if (++s->steps >= MAX_STEPS) l->verdict[k] = LOSES;
   for (int i = 0; i < 3; i++) l->p[i][k] = hit->p[i];
   l->size[k] = hit->surface->sphere ? hit->surface->radius : 0;
@@ -282,15 +294,13 @@ static void gather(abbe_light_walk *w, const struct RTCRayHit16 *packet, size_t 
 }
 
 /* Snell, Fresnel, the choice, and the place from which the path goes on, for all lanes. */
-SIDE_BY_SIDE static void bend(lanes *l, uint32_t pass, uint32_t seed) {
+SIDE_BY_SIDE static void bend(lanes *l) {
   for (size_t k = 0; k < LANES; k++) {
-    uint32_t bits[4];
-    abbe_random_bits(l->id[k], l->step[k], pass, seed, bits);
     float eta = l->eta[k],
           c = -(l->d[0][k] * l->n[0][k] + l->d[1][k] * l->n[1][k] + l->d[2][k] * l->n[2][k]);
     c = c < 1 ? c : 1;
     float cos_t, share = abbe_interface_reflectance(c, eta, &cos_t);
-    bool reflects = abbe_random_float(bits[0]) < share;
+    bool reflects = l->chance[k] < share;
     float turn = reflects ? 2 * c : eta * c - cos_t, stretch = reflects ? 1 : eta;
     float out[3];
     for (int i = 0; i < 3; i++) out[i] = stretch * l->d[i][k] + turn * l->n[i][k];
@@ -389,6 +399,7 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
                            abbe_light_ledger *ledger) {
   size_t landed = 0;
   lanes l = {0};
+  abbe_random_bits(0x73686966, 0, pass, w->seed, w->shift);
   begin(w->now, photon, count);
   for (size_t round = 0; w->now->count > 0; round++) {
     front *f = w->now, *next = w->next;
@@ -398,7 +409,7 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
       size_t used = f->count - first < LANES ? f->count - first : LANES;
       for (size_t k = 0; k < used; k++)
         gather(w, &f->ray[first / LANES], k, &f->state[first + k], pass, &l, ledger);
-      bend(&l, pass, w->seed);
+      bend(&l);
       for (size_t k = 0; k < used; k++) {
         path *s = &f->state[first + k];
         verdict v = l.verdict[k];

@@ -28,7 +28,7 @@ typedef struct abbe_photon {
   float y;          /* Y of a watt at its wavelength, for the ledger; mean 1 */
   uint32_t step;    /* of the spectral sampling */
   float within;     /* place in the step, [0, 1) */
-  uint32_t id;      /* its random numbers; unique in its pass */
+  uint32_t id;      /* its random numbers; unique in its pass, and next to its neighbours' */
 } abbe_photon;
 
 /* Where a photon landed on a receiver. */

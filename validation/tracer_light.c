@@ -10,9 +10,6 @@
 
 enum { TASK = 16384, TRIALS = 65536, SALT = 0x6c6967 };
 
-/* Generalised golden ratio in three dimensions: well spread points, each added to the last. */
-static const float spread[3] = {0.8191725134f, 0.6710436067f, 0.5497004779f};
-
 /* The photons of one light in one pass, cell after cell: cell i has those from first[i] on. */
 typedef struct emission {
   const abbe_tracer *t;
@@ -54,28 +51,42 @@ static size_t cell_of(const emission *e, uint32_t photon) {
   return low;
 }
 
-/* Photons [from, to) of the light; every cell's lie well spread in place and wavelength, shifted
- * by random numbers of the pass and the cell. */
+/* Every other bit, from the lowest on. */
+static uint32_t even_bits(uint32_t z) {
+  z &= 0x55555555u;
+  z = (z | z >> 1) & 0x33333333u;
+  z = (z | z >> 2) & 0x0f0f0f0fu;
+  z = (z | z >> 4) & 0x00ff00ffu;
+  return (z | z >> 8) & 0x0000ffffu;
+}
+
+/* The q-th of n places in a cell: n parts of a Z-order curve through it, one place at random in
+ * each. Photons that follow each other are neighbours, and every part of the cell has its share. */
+static void place_in_cell(uint32_t q, uint32_t n, float random, float uv[2]) {
+  uint32_t z = (uint32_t)(((double)q + (double)random) / (double)n * 4294967296.0);
+  uv[0] = (float)even_bits(z) * 0x1p-16f;
+  uv[1] = (float)even_bits(z >> 1) * 0x1p-16f;
+}
+
+/* Photons [from, to) of the light. Along the curve the wavelengths are the fractional parts of
+ * multiples of the golden ratio, shifted at random: every patch of neighbours has them all. */
 static size_t emit(const emission *e, uint32_t from, uint32_t to, abbe_photon *photon) {
   const abbe_aim *aim = &e->t->aim[e->light];
-  size_t cell = cell_of(e, from), loaded = (size_t)-1;
-  float shift[4] = {0};
+  const uint32_t golden = 2654435769u;
+  const float(*xyz)[3] = (const float(*)[3])e->t->sampling.xyz + e->light * e->t->sampling.steps;
+  uint32_t shift[4], light = (uint32_t)e->light + 1, seed = e->t->desc.seed ^ SALT;
+  size_t cell = cell_of(e, from);
+  abbe_random_bits(0, light, e->pass, seed, shift);
   for (uint32_t j = from; j < to; j++) {
     while (cell + 1 < aim->count && e->first[cell + 1] <= j) cell++;
-    if (cell != loaded)
-      abbe_random4((uint32_t)cell, (uint32_t)e->light + 1, e->pass, e->t->desc.seed ^ SALT, shift);
-    loaded = cell;
-    float q = (float)(j - e->first[cell]), at[3], disk[4] = {0};
-    for (int k = 0; k < 3; k++) {
-      float x = q * spread[k];
-      at[k] = abbe_random_shift(x - (float)(int32_t)x, shift[k]);
-    }
-    if (aim->radius > 0) abbe_random4(j, (uint32_t)e->light, e->pass, ~e->t->desc.seed, disk);
+    float random[4], at[2];
+    abbe_random4(j, light, e->pass, seed, random);
+    place_in_cell(j - e->first[cell], e->first[cell + 1] - e->first[cell], random[0], at);
     abbe_photon *p = photon++;
-    float flux = abbe_aim_ray(aim, &aim->cell[cell], at, disk, p->o, p->d);
+    float flux = abbe_aim_ray(aim, &aim->cell[cell], at, random + 1, p->o, p->d);
     p->flux = flux / ((float)e->count * aim->cell[cell].share);
-    p->step = abbe_spectral_sampling_step(at[2], &p->within);
-    p->y = e->t->sampling.xyz[e->light * e->t->sampling.steps + p->step][1];
+    p->step = abbe_spectral_sampling_step(abbe_random_float(j * golden + shift[0]), &p->within);
+    p->y = xyz[p->step][1];
     p->id = j | (uint32_t)e->light << 27;
   }
   return to - from;
