@@ -288,7 +288,8 @@ static int draw_warnings(const app *a, int y, int rows) {
 static const char *keys_line(const app *a) {
   if (a->asking) return "There are changes. Save them?  y yes   n no   Esc back";
   if (a->editing) return "Enter keep   Esc leave as it was   (shown as you type)";
-  return "Enter edit  s save  q quit  ? help  u undo  r redo  <> last digit  PgUp PgDn tens  Q no "
+  return "Enter edit  s save  q quit  ? help  u undo  r redo  m mend  <> last digit  PgUp PgDn  Q "
+         "no "
          "save";
 }
 
@@ -301,6 +302,7 @@ static void draw_help(void) {
       "Delete           empty the field, which takes an optional key out of the record",
       "u, r             undo, redo",
       "+, X             a coefficient more at the end, or one fewer",
+      "m                put in the doctor's first certain mend",
       "s                save: only this record's bytes change in the file",
       "q                quit, asking first where there are changes",
       "Q                quit without saving",
@@ -477,6 +479,23 @@ static void save(app *a) {
     say(a, error.text);
 }
 
+/* Puts in the first mend that is certain. */
+static void mend(app *a) {
+  const abbe_material *m = abbe_record_draft_material(a->draft);
+  abbe_findings found = {0};
+  abbe_error error = {0};
+  say(a, "The doctor knows no certain mend for this record");
+  if (m != NULL) abbe_doctor_check_material(m, a->screen->known, &found, NULL);
+  for (size_t i = 0; i < found.count; i++) {
+    const abbe_finding *f = &found.finding[i];
+    if (!f->certain || f->key == NULL || f->value == NULL) continue;
+    abbe_result result = abbe_record_draft_put(a->draft, f->key, f->value, &error);
+    say(a, result == ABBE_OK ? f->mend : error.text);
+    break;
+  }
+  abbe_findings_free(&found);
+}
+
 static void resize_record(app *a, bool more) {
   abbe_error error = {0};
   abbe_result result = abbe_record_draft_resize(a->draft, more, &error);
@@ -502,6 +521,9 @@ static void letter(app *a, int key) {
   case '+':
   case 'X':
     resize_record(a, key == '+');
+    return;
+  case 'm':
+    mend(a);
     return;
   case 's':
     save(a);

@@ -282,6 +282,36 @@ static size_t coefficients_of(const field_list *list, double *value) {
   return count;
 }
 
+/* A list of numbers keeps the bytes of those that stay, as typing them one by one would. */
+static abbe_result put_value(abbe_table_edit *edit, const char *name, const char *key,
+                             const char *value, abbe_error *error) {
+  double number[ABBE_DISPERSION_MAX_COEFFICIENTS];
+  size_t count = 0;
+  const char *at = value + 1;
+  bool list = value[0] == '[';
+  for (; list && count < ABBE_DISPERSION_MAX_COEFFICIENTS; at += *at == ',') {
+    list = abbe_number_read(at, &at, &number[count++]);
+    if (*at != ',') break;
+  }
+  if (list && strcmp(at, "]") == 0)
+    return abbe_table_edit_set_numbers(edit, name, key, number, count, error);
+  return abbe_table_edit_set(edit, name, key, value, error);
+}
+
+abbe_result abbe_record_draft_put(abbe_record_draft *d, const char *key, const char *value,
+                                  abbe_error *error) {
+  if (find_field(&d->fields, key) == NULL && strcmp(key, "coefficients") != 0)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "'%.60s' is not edited here; 'set' and 'check --fix' do it", key);
+  char *name = strdup(name_of(d));
+  if (name == NULL) return no_memory(error);
+  abbe_result result = put_value(d->alone, name, key, value, error);
+  if (result == ABBE_OK) result = refresh(d, name, error);
+  if (result == ABBE_OK) result = push_state(d, error);
+  free(name);
+  return result;
+}
+
 abbe_result abbe_record_draft_resize(abbe_record_draft *d, bool more, abbe_error *error) {
   double value[ABBE_DISPERSION_MAX_COEFFICIENTS + 1] = {0};
   size_t count = coefficients_of(&d->fields, value);

@@ -117,6 +117,22 @@ static void changes_are_live_and_undone(void **state) {
   abbe_record_draft_free(d);
 }
 
+static void a_mend_is_put_in(void **state) {
+  (void)state;
+  abbe_record_draft *d = open_draft("k5");
+  assert_int_equal(abbe_record_draft_put(d, "coefficients", "[1.509, 0.00459]", &error), ABBE_OK);
+  assert_string_equal(text(d, "coefficients.0"), "1.509");
+  assert_string_equal(text(d, "coefficients.1"), "0.00459");
+  assert_int_equal(abbe_record_draft_put(d, "model", "sellmeier", &error), ABBE_OK);
+  assert_string_equal(text(d, "model"), "sellmeier");
+  assert_int_equal(abbe_record_draft_put(d, "fit", "{}", &error), ABBE_UNSUPPORTED);
+  assert_int_not_equal(abbe_record_draft_put(d, "coefficients", "[1.509", &error), ABBE_OK);
+  assert_true(abbe_record_draft_undo(d));
+  assert_int_equal(abbe_record_draft_save(d, &error), ABBE_OK);
+  check_file("coefficients: [1.509, # high\n      0.00459]\n", true);
+  abbe_record_draft_free(d);
+}
+
 static void what_is_saved_is_what_was_changed(void **state) {
   (void)state;
   abbe_record_draft *d = open_draft("k5");
@@ -211,8 +227,11 @@ static void undo_reaches_back_a_thousand_changes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      with_file(fields_are_those_of_the_record),       with_file(changes_are_live_and_undone),
-      with_file(what_is_saved_is_what_was_changed),    with_file(wrong_values_are_refused_or_held),
+      with_file(a_mend_is_put_in),
+      with_file(fields_are_those_of_the_record),
+      with_file(changes_are_live_and_undone),
+      with_file(what_is_saved_is_what_was_changed),
+      with_file(wrong_values_are_refused_or_held),
       with_file(undo_reaches_back_a_thousand_changes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
