@@ -340,7 +340,10 @@ static abbe_result take_line(reader *r, const char *line) {
     if (result == ABBE_OK) open_glass(r, line + 2);
     return result;
   }
-  if (is_code(line, "CC")) return keep_text(r, line + 2, &r->remark);
+  if (is_code(line, "CC")) {
+    r->open = NULL;
+    return keep_text(r, line + 2, &r->remark);
+  }
   if (!g->open) return ABBE_OK; /* free text before the first glass */
   if (strchr("0123456789+-.", *line) != NULL) {
     if (r->open != NULL) take_numbers(line, r->open);

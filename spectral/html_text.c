@@ -16,12 +16,14 @@ static const struct {
     {"&deg;", "\xc2\xb0"},   {"&micro;", "\xc2\xb5"},
     {"&times;", "\xc3\x97"},
 };
+enum { MAX_TAG = 2000 };
 enum { ENTITIES = sizeof entities / sizeof entities[0] };
 
 /* Past the tag that begins at c, or c where none does. */
 static const char *past_tag(const char *c) {
   if (c[0] != '<' || !(isalpha((unsigned char)c[1]) || c[1] == '/' || c[1] == '!')) return c;
-  const char *end = strchr(c, '>');
+  /* no farther than any tag reaches, so that many openings without an end cost little */
+  const char *end = memchr(c, '>', strnlen(c, MAX_TAG));
   return end == NULL ? c : end + 1;
 }
 

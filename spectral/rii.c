@@ -209,17 +209,25 @@ static abbe_result read_tabulated_n(reader *r, abbe_yaml_node entry, columns whi
 
 /* ---- the list of data ---- */
 
+/* N of "formula N", whatever N is; -1 where the type is another. */
+static int formula_number(const char *type) {
+  if (strncmp(type, "formula ", 8) != 0) return -1;
+  const char *c = type + 8 + strspn(type + 8, " ");
+  size_t digits = strspn(c, "0123456789");
+  bool ends = c[digits + strspn(c + digits, " ")] == '\0';
+  if (digits == 0 || !ends) return -1;
+  return digits > 4 ? 9999 : (int)strtol(c, NULL, 10);
+}
+
 static abbe_result read_entry(reader *r, abbe_yaml_node entry) {
   const char *type = NULL;
   if (abbe_yaml_is_mapping(r->yaml, entry))
     type = abbe_yaml_text(r->yaml, abbe_yaml_get(r->yaml, entry, "type"));
   if (type == NULL)
     return abbe_yaml_fail(r->yaml, entry, r->error, "an entry of 'DATA' wants a 'type'");
-  int number = 0, end = 0;
-  bool formula = sscanf(type, "formula %d%n", &number, &end) == 1 && end > 0 &&
-                 type[(size_t)end + strspn(type + end, " ")] == '\0';
+  int number = formula_number(type);
   char kind[8] = "";
-  bool table = sscanf(type, "tabulated %7s", kind) == 1;
+  bool formula = number >= 0, table = sscanf(type, "tabulated %7s", kind) == 1;
   bool n = table && kind[0] == 'n' && strcmp(kind, "n2") != 0, nk = n && strcmp(kind, "nk") == 0;
   bool k = table && strcmp(kind, "k") == 0;
   r->nonlinear = r->nonlinear || (table && strcmp(kind, "n2") == 0);

@@ -34,6 +34,20 @@ static void long_texts_are_cut_between_letters(void **state) {
   free(text);
 }
 
+/* A quarter of a million openings, none of which ends. */
+static void unending_tags_take_no_time(void **state) {
+  (void)state;
+  enum { COUNT = 1 << 18 };
+  char *html = malloc(2 * COUNT + 1);
+  assert_non_null(html);
+  for (size_t i = 0; i < COUNT; i++) memcpy(html + 2 * i, "<a", 2);
+  html[2 * COUNT] = '\0';
+  char *text = abbe_html_text(html, 10);
+  assert_string_equal(text, "<a<a<a<a<a");
+  free(text);
+  free(html);
+}
+
 static void escaped_text_comes_back(void **state) {
   (void)state;
   const char *const texts[] = {"a < b > c & d", "<b>", "&amp;", "", "\xc3\xa4"};
@@ -49,6 +63,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tags_and_entities_become_text),
       cmocka_unit_test(long_texts_are_cut_between_letters),
+      cmocka_unit_test(unending_tags_take_no_time),
       cmocka_unit_test(escaped_text_comes_back),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

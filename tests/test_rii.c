@@ -187,6 +187,7 @@ static void what_holds_no_index_is_refused(void **state) {
   refuses("DATA:\n- {type: tabulated n2, data: 0.5 1}\n", ABBE_SCHEMA, "only a nonlinear one");
   refuses("DATA:\n- {type: tabulated k, data: 0.5 1}\n", ABBE_SCHEMA, "a material needs n as well");
   refuses("DATA:\n- {type: formula 12}\n", ABBE_SCHEMA, "x.yml:2: there is no formula 12");
+  refuses("DATA:\n- {type: formula 99999999999999999999}\n", ABBE_SCHEMA, "no formula 9999");
   refuses("DATA:\n- {type: formula 2}\n", ABBE_SCHEMA, "wants its 'coefficients'");
   refuses("DATA:\n- {type: formula 2, coefficients: 0 1 2}\n", ABBE_SCHEMA, "'wavelength_range'");
   refuses("DATA:\n- {type: formula 2, coefficients: 0 1, wavelength_range: 1 2}\n", ABBE_SCHEMA,
