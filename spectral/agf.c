@@ -73,6 +73,7 @@ static const char *take_word(const char *c, char *text, size_t size) {
   size_t length = (size_t)(end - c) < size - 1 ? (size_t)(end - c) : size - 1;
   memcpy(text, c, length);
   text[length] = '\0';
+  abbe_encoding_trim(text);
   return end;
 }
 
@@ -122,6 +123,7 @@ static abbe_result read_source(reader *r, abbe_material *m) {
   char text[2 * MAX_TEXT];
   snprintf(text, sizeof text, "Zemax catalogue %.200s, %s%s%.600s", r->file, g->name,
            r->remark != NULL ? "; " : "", r->remark != NULL ? r->remark : "");
+  abbe_encoding_trim(text);
   return keep_text(r, text, &m->source);
 }
 

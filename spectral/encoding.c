@@ -132,3 +132,18 @@ abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, si
   *length = used;
   return ABBE_OK;
 }
+
+size_t abbe_encoding_letter(const char *text) {
+  uint32_t code;
+  return text[0] == '\0' ? 0 : sequence((const unsigned char *)text, strnlen(text, 4), &code);
+}
+
+void abbe_encoding_trim(char *text) {
+  size_t end = strlen(text), start = end;
+  while (start > 0 && end - start < 4) {
+    start--;
+    if (((unsigned char)text[start] & 0xc0) == 0x80) continue; /* inside a letter */
+    if (start + abbe_encoding_letter(text + start) != end) text[start] = '\0';
+    return;
+  }
+}

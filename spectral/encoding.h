@@ -22,6 +22,11 @@ extern "C" {
 abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, size_t *length,
                                  abbe_error *error);
 
+/* Bytes of the valid UTF-8 letter at text, which ends with a zero; 0 where none begins there. */
+size_t abbe_encoding_letter(const char *text);
+/* Cuts text at its end, where its last letter is incomplete. */
+void abbe_encoding_trim(char *text);
+
 #ifdef __cplusplus
 }
 #endif

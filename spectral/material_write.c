@@ -1,5 +1,6 @@
 #include "spectral/material_write.h"
 
+#include "spectral/encoding.h"
 #include "spectral/number.h"
 
 #include <ctype.h>
@@ -65,8 +66,11 @@ void abbe_material_write_text(const char *text, FILE *to) {
     } else {
       taken = escape(c, to);
     }
-    if (taken == 0) fputc(*c, to);
-    c += taken > 0 ? taken : 1;
+    /* bytes that are no UTF-8 (a file's name may hold them) would make the table unreadable */
+    size_t letter = abbe_encoding_letter((const char *)c);
+    if (taken == 0 && letter == 0) fputs("\\ufffd", to);
+    if (taken == 0) fwrite(c, 1, letter, to);
+    c += taken > 0 ? taken : letter > 0 ? letter : 1;
   }
   fputc('"', to);
 }

@@ -54,9 +54,31 @@ static void what_cannot_be_decoded_is_replaced(void **state) {
   BECOMES("a\0b", "a b");
 }
 
+static void letters_are_told_and_cut_ones_trimmed(void **state) {
+  (void)state;
+  assert_int_equal(abbe_encoding_letter(""), 0);
+  assert_int_equal(abbe_encoding_letter("a"), 1);
+  assert_int_equal(abbe_encoding_letter("\xe2\x82\xac"), 3);
+  assert_int_equal(abbe_encoding_letter("\xe2\x82"), 0);
+  assert_int_equal(abbe_encoding_letter("\x80"), 0);
+  const char *const rows[][2] = {{"", ""},
+                                 {"ab", "ab"},
+                                 {"a\xe2\x82", "a"},
+                                 {"a\xe2\x82\xac", "a\xe2\x82\xac"},
+                                 {"\xf0\x9f\x92", ""},
+                                 {"a\xc3", "a"}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    char text[16];
+    strcpy(text, rows[i][0]);
+    abbe_encoding_trim(text);
+    assert_string_equal(text, rows[i][1]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_encoding_becomes_utf8),
+      cmocka_unit_test(letters_are_told_and_cut_ones_trimmed),
       cmocka_unit_test(lines_end_in_one_way),
       cmocka_unit_test(what_cannot_be_decoded_is_replaced),
   };
