@@ -20,6 +20,11 @@ static void check_rows(abbe_known_answers *a, size_t rows) {
   abbe_known_answers_free(a);
 }
 
+static abbe_result make_picture(abbe_known_run *run, size_t index, bool other, abbe_error *error) {
+  (void)other;
+  return abbe_known_picture_setting(run, index, error);
+}
+
 typedef abbe_result (*setting_maker)(abbe_known_run *run, size_t index, bool other,
                                      abbe_error *error);
 
@@ -52,8 +57,9 @@ static void settings_end(void **state) {
   } beyond[] = {{abbe_known_sphere_setting, 20, false},
                 {abbe_known_sphere_setting, 3, true},
                 {abbe_known_pane_setting, 10, false},
-                {abbe_known_pane_setting, 5, true}};
-  for (int i = 0; i < 4; i++) {
+                {abbe_known_pane_setting, 5, true},
+                {make_picture, 3, false}};
+  for (int i = 0; i < 5; i++) {
     abbe_known_answers a = {0};
     abbe_known_run run = {.options = &few, .out = &a, .group = "group", .to = 1};
     assert_int_equal(beyond[i].make(&run, beyond[i].index, beyond[i].other, NULL),

@@ -43,6 +43,12 @@ static void runs_meet_a_furnace_and_converge(void **state) {
   assert_contains(run_output, "slope of the error over the photons");
 }
 
+static void pictures_show_the_caustic(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only picture --samples 524288 --threads 1"), 0);
+  assert_contains(run_output, "the caustic through a pane");
+}
+
 static void noise_is_no_agreement(void **state) {
   (void)state;
   assert_int_equal(run_line("\"$abbe\" validate --only absorption --samples 1000 --threads 1"), 3);
@@ -71,6 +77,7 @@ int main(void) {
       cmocka_unit_test(a_group_as_text),
       cmocka_unit_test(a_group_as_json),
       cmocka_unit_test(runs_meet_a_furnace_and_converge),
+      cmocka_unit_test(pictures_show_the_caustic),
       cmocka_unit_test(noise_is_no_agreement),
       cmocka_unit_test(help_lists_the_groups),
       cmocka_unit_test(wrong_use_is_explained),

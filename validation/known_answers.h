@@ -37,6 +37,7 @@ extern "C" {
   X(furnace, "a white furnace: glass in the same light from everywhere cannot be seen")            \
   X(sphere, "light under a sphere, rings and enclosed flux, one wavelength")                       \
   X(white, "light under a sphere in XYZ under D65")                                                \
+  X(picture, "light under a sphere as the eye sees it: the caustic, and all light")                \
   X(convergence, "the error falls as one over the square root of the samples")
 
 #define ABBE_KNOWN_SIGMAS 4.0

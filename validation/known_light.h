@@ -41,6 +41,9 @@ abbe_result abbe_known_sphere_setting(abbe_known_run *run, size_t index, bool wh
 /* The row of one pane of the groups `pane` and (absorbs) `absorption`; likewise. */
 abbe_result abbe_known_pane_setting(abbe_known_run *run, size_t index, bool absorbs,
                                     abbe_error *error);
+/* The rows of one picture of the group `picture` (0: under a beam, 1: under a point light, 2:
+ * under a beam, through a pane). */
+abbe_result abbe_known_picture_setting(abbe_known_run *run, size_t index, abbe_error *error);
 
 #ifdef __cplusplus
 }
