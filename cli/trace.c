@@ -32,6 +32,7 @@ enum {
   OPTION_BANDS,
   OPTION_RANGE,
   OPTION_SPACE,
+  OPTION_HALF,
   OPTION_SEED,
   OPTION_THREADS,
   OPTION_MATERIALS,
@@ -54,7 +55,7 @@ typedef struct request {
   abbe_trace_desc desc;
   size_t passes;
   double seconds, until, every;
-  bool resume, json, quiet, rates;
+  bool resume, json, quiet, rates, half;
   abbe_display_desc display;
   char *checkpoint_path;
 } request;
@@ -77,6 +78,7 @@ static const struct argp_option options[] = {
     {"bands", OPTION_BANDS, "N", 0, "spectral layers too, N bands over the range", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
+    {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
     {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 1},
     {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 1},
     {"materials", OPTION_MATERIALS, "TABLE", 0,
@@ -176,6 +178,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_MATERIALS:
     q->materials = text;
+    return 0;
+  case OPTION_HALF:
+    q->half = true;
     return 0;
   case OPTION_RESUME:
     q->resume = true;
@@ -366,18 +371,23 @@ static abbe_result write_png(const request *q, abbe_image *image, abbe_error *er
   return result;
 }
 
+static abbe_result write_exr(const request *q, const char *path, const abbe_image *image,
+                             abbe_error *error) {
+  return q->half ? abbe_exr_write_half(path, image, error) : abbe_exr_write(path, image, error);
+}
+
 static abbe_result write_results(const request *q, const abbe_tracer *tracer, abbe_error *error) {
   abbe_result result = ABBE_OK;
   abbe_image image = {0};
   if (q->exr != NULL || q->png != NULL) {
     result = abbe_tracer_picture(tracer, &image, error);
-    if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
+    if (result == ABBE_OK && q->exr != NULL) result = write_exr(q, q->exr, &image, error);
     if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
     abbe_image_free(&image);
   }
   if (result == ABBE_OK && q->map.save != NULL) {
     result = abbe_tracer_map(tracer, &image, error);
-    if (result == ABBE_OK) result = abbe_exr_write(q->map.save, &image, error);
+    if (result == ABBE_OK) result = write_exr(q, q->map.save, &image, error);
     abbe_image_free(&image);
   }
   if (result == ABBE_OK) result = write_stats(q, tracer, error);

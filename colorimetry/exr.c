@@ -3,6 +3,7 @@
 #include "spectral/file.h"
 
 #include <errno.h>
+#include <math.h>
 #include <openexr.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -45,8 +46,10 @@ static const char *reason(const stream *s, exr_result_t code) {
   return s->message[0] ? s->message : exr_get_default_error_message(code);
 }
 
-/* The one text that is the file's own: whether it is in scan lines or tiles. */
+/* The texts that are the file's own: whether it is in scan lines or tiles, and what a stored 1
+ * stands for. */
 static const char storage_name[] = "type";
+static const char unit_name[] = "abbe:stored_unit";
 
 /* Writing */
 
@@ -76,7 +79,20 @@ static exr_result_t write_chromaticities(exr_context_t context, const double xy[
   return exr_attr_set_chromaticities(context, 0, "chromaticities", &c);
 }
 
-static exr_result_t write_header(exr_context_t context, const abbe_image *image) {
+/* How samples are stored: their type, and what a stored 1 stands for. */
+typedef struct storage {
+  exr_pixel_type_t type;
+  double unit;
+} storage;
+
+static exr_result_t write_unit(exr_context_t context, double unit) {
+  char text[32];
+  if (unit == 1) return EXR_ERR_SUCCESS;
+  snprintf(text, sizeof text, "%.17g", unit);
+  return exr_attr_set_string(context, 0, unit_name, text);
+}
+
+static exr_result_t write_header(exr_context_t context, const abbe_image *image, storage as) {
   int part = 0;
   exr_result_t rv = exr_set_longname_support(context, 1);
   if (rv == 0) rv = exr_add_part(context, "", EXR_STORAGE_SCANLINE, &part);
@@ -84,9 +100,10 @@ static exr_result_t write_header(exr_context_t context, const abbe_image *image)
     rv = exr_initialize_required_attr_simple(context, 0, (int32_t)image->width,
                                              (int32_t)image->height, EXR_COMPRESSION_ZIP);
   for (size_t i = 0; rv == 0 && i < image->channels; i++)
-    rv = exr_add_channel(context, 0, image->channel[i], EXR_PIXEL_FLOAT,
-                         EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    rv =
+        exr_add_channel(context, 0, image->channel[i], as.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
   if (rv == 0) rv = write_chromaticities(context, image->xy);
+  if (rv == 0) rv = write_unit(context, as.unit);
   for (size_t i = 0; rv == 0 && i < image->attribute_count; i++)
     rv = exr_attr_set_string(context, 0, image->attribute[i].name, image->attribute[i].text);
   return rv == 0 ? exr_write_header(context) : rv;
@@ -126,7 +143,7 @@ static exr_result_t write_chunks(exr_context_t context, const abbe_image *image,
   return rv;
 }
 
-static exr_result_t write_image(stream *s, const abbe_image *image) {
+static exr_result_t write_image(stream *s, const abbe_image *image, storage as) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
   setup.error_handler_fn = ignore_error;
   setup.user_data = s;
@@ -135,7 +152,7 @@ static exr_result_t write_image(stream *s, const abbe_image *image) {
   exr_result_t rv = exr_start_write(&context, s->path, EXR_WRITE_FILE_DIRECTLY, &setup);
   if (rv != 0) return rv;
   exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
-  rv = write_header(context, image);
+  rv = write_header(context, image, as);
   if (rv == 0) rv = write_chunks(context, image, &pipe);
   exr_encoding_destroy(context, &pipe);
   exr_result_t finished = exr_finish(&context); /* writes the table of chunks */
@@ -150,28 +167,63 @@ static abbe_result check_image(const char *path, const abbe_image *image, abbe_e
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s: two channels are named '%s'; names differ in a file", path,
                             image->channel[i]);
-  if (abbe_image_attribute_text(image, storage_name) != NULL)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: the attribute '%s' belongs to the file itself; another name can be "
-                          "written",
-                          path, storage_name);
+  for (size_t i = 0; i < image->attribute_count; i++)
+    if (strcmp(image->attribute[i].name, storage_name) == 0 ||
+        strcmp(image->attribute[i].name, unit_name) == 0)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: the attribute '%s' belongs to the file itself; another name can "
+                            "be written",
+                            path, image->attribute[i].name);
   return ABBE_OK;
 }
 
-abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error) {
-  abbe_result result = check_image(path, image, error);
-  if (result != ABBE_OK) return result;
+static abbe_result write_file(const char *path, const abbe_image *image, storage as,
+                              abbe_error *error) {
   abbe_file_writer writer = {0};
-  result = abbe_file_writer_open(&writer, path, error);
+  abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
   stream s = {.path = path, .fd = fileno(writer.stream), .size = -1};
-  exr_result_t rv = write_image(&s, image);
+  exr_result_t rv = write_image(&s, image, as);
   if (rv == EXR_ERR_SUCCESS && s.io_errno == 0) return abbe_file_writer_commit(&writer, error);
   abbe_file_writer_discard(&writer);
   abbe_result code = s.io_errno != 0               ? ABBE_IO
                      : rv == EXR_ERR_OUT_OF_MEMORY ? ABBE_NO_MEMORY
                                                    : ABBE_INVALID_ARGUMENT;
   return abbe_error_set(error, code, "%s: it cannot be written: %s", path, reason(&s, rv));
+}
+
+abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error) {
+  abbe_result result = check_image(path, image, error);
+  if (result != ABBE_OK) return result;
+  return write_file(path, image, (storage){.type = EXR_PIXEL_FLOAT, .unit = 1}, error);
+}
+
+/* The power of two that half precision needs to hold count values. */
+static double half_unit(const float *value, size_t count) {
+  const double greatest_half = 65504;
+  double most = 0;
+  int exponent;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(value[i])) most = fmax(most, fabs((double)value[i]));
+  if (most == 0 || (most >= 1 && most <= greatest_half)) return 1;
+  frexp(most, &exponent); /* most is in [2^(exponent - 1), 2^exponent) */
+  return ldexp(1, exponent - 15);
+}
+
+abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_error *error) {
+  abbe_result result = check_image(path, image, error);
+  if (result != ABBE_OK) return result;
+  size_t count = image->width * image->height * image->channels;
+  storage as = {.type = EXR_PIXEL_HALF, .unit = half_unit(image->data, count)};
+  if (as.unit == 1) return write_file(path, image, as, error);
+  abbe_image scaled = *image;
+  scaled.data = malloc(count * sizeof *scaled.data);
+  if (scaled.data == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for %zu samples", path, count);
+  for (size_t i = 0; i < count; i++) scaled.data[i] = (float)((double)image->data[i] / as.unit);
+  result = write_file(path, &scaled, as, error);
+  free(scaled.data);
+  return result;
 }
 
 /* Reading */
@@ -278,7 +330,19 @@ static abbe_result read_layout(exr_context_t context, const stream *s, layout *l
   return check_layout(s, l, error);
 }
 
-static abbe_result read_attributes(exr_context_t context, abbe_image *image, abbe_error *error) {
+/* abbe:stored_unit, which whole files are in; *unit stays what it is where the text is none. */
+static bool read_unit(const char *text, double *unit) {
+  char *end;
+  int exponent;
+  double value = strtod(text, &end);
+  if (end == text || *end != '\0' || !isfinite(value) || frexp(value, &exponent) != 0.5)
+    return false;
+  *unit = value;
+  return true;
+}
+
+static abbe_result read_attributes(exr_context_t context, const stream *s, abbe_image *image,
+                                   double *unit, abbe_error *error) {
   int32_t count = 0;
   if (exr_get_attribute_count(context, 0, &count) != 0) return ABBE_OK;
   for (int32_t i = 0; i < count; i++) {
@@ -292,19 +356,24 @@ static abbe_result read_attributes(exr_context_t context, abbe_image *image, abb
     }
     if (a->type != EXR_ATTR_STRING || a->name[0] == '\0' || a->string->str == NULL) continue;
     if (strcmp(a->name, storage_name) == 0) continue;
+    if (strcmp(a->name, unit_name) == 0) {
+      if (read_unit(a->string->str, unit)) continue;
+      return abbe_error_set(error, ABBE_PARSE, "%s: %s is '%.40s'; a power of two is right",
+                            s->path, unit_name, a->string->str);
+    }
     abbe_result result = abbe_image_set_attribute(image, a->name, a->string->str, error);
     if (result != ABBE_OK) return result;
   }
   return ABBE_OK;
 }
 
-static abbe_result make_image(exr_context_t context, const layout *l, abbe_image *image,
-                              abbe_error *error) {
+static abbe_result make_image(exr_context_t context, const stream *s, const layout *l,
+                              abbe_image *image, double *unit, abbe_error *error) {
   const char *names[ABBE_IMAGE_MAX_CHANNELS];
   for (int i = 0; i < l->channels->num_channels; i++) names[i] = l->channels->entries[i].name.str;
   abbe_result result = abbe_image_make((size_t)l->width, (size_t)l->height,
                                        (size_t)l->channels->num_channels, names, image, error);
-  return result == ABBE_OK ? read_attributes(context, image, error) : result;
+  return result == ABBE_OK ? read_attributes(context, s, image, unit, error) : result;
 }
 
 /* Decodes one chunk whose first sample belongs at (x, y); only one that fits is decoded. */
@@ -354,13 +423,16 @@ static exr_result_t read_tiles(exr_context_t context, const abbe_image *image,
 static abbe_result read_image(exr_context_t context, const stream *s, abbe_image *image,
                               abbe_error *error) {
   layout l = {0};
+  double unit = 1;
   abbe_result result = read_layout(context, s, &l, error);
-  if (result == ABBE_OK) result = make_image(context, &l, image, error);
+  if (result == ABBE_OK) result = make_image(context, s, &l, image, &unit, error);
   if (result != ABBE_OK) return result;
   exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
   exr_result_t rv = l.storage == EXR_STORAGE_TILED ? read_tiles(context, image, &pipe)
                                                    : read_lines(context, &l, image, &pipe);
   exr_decoding_destroy(context, &pipe);
+  size_t count = unit == 1 ? 0 : image->width * image->height * image->channels;
+  for (size_t i = 0; i < count; i++) image->data[i] = (float)((double)image->data[i] * unit);
   return rv == 0 ? ABBE_OK : fail_read(s, rv, error);
 }
 

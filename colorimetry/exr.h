@@ -1,6 +1,6 @@
 /* exr.h: images as OpenEXR files, through OpenEXR's C core API.
  *
- * Writes one scan-line part, float32, ZIP compressed, named layers as channel-name prefixes,
+ * Writes one scan-line part, float32 or half, ZIP compressed, named layers as channel-name prefixes,
  * chromaticities and text attributes in the header. Reads any single-part scan-line or tiled flat
  * file that the library can decode (the full-resolution level; float, half and whole numbers become
  * float32; the data window's origin is not kept); sizes are checked before allocating.
@@ -18,7 +18,15 @@ extern "C" {
  * ABBE_INVALID_ARGUMENT for two channels of one name and for an attribute whose name OpenEXR keeps
  * for itself ("channels", "compression", …). */
 abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error);
-/* Reads path. ABBE_PARSE for a broken or truncated file; ABBE_UNSUPPORTED for deep data, several
+
+/* The same in half precision: 11 bits, from 6e-5 to 65504, and fixed steps of 6e-8 below that.
+ * Nothing overflows: where the greatest finite magnitude is outside [1, 65504], all values are
+ * divided by the power of two that brings it into [2^14, 2^15), and the text attribute "abbe:stored_unit"
+ * holds that power; abbe_exr_read multiplies by it again. Other programs see the quotients.
+ * Infinities and NaN stay what they are. */
+abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_error *error);
+/* Reads path. ABBE_PARSE for a broken or truncated file, and for an abbe:stored_unit that is no power of
+ * two; ABBE_UNSUPPORTED for deep data, several
  * parts, subsampled channels, and what OpenEXR 3.1's C core cannot decode: DWA, and B44 of other
  * than half channels. */
 abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error);

@@ -68,6 +68,85 @@ static void test_round_trip_is_exact(void **state) {
   }
 }
 
+/* A row of values, written in half precision and read again. */
+static void through_half(const float *value, size_t count, float *back) {
+  static const char *const names[] = {"Y"};
+  abbe_image image = {0}, read = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(count, 1, 1, names, &image, NULL), ABBE_OK);
+  memcpy(image.data, value, count * sizeof *value);
+  if (abbe_exr_write_half(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  if (abbe_exr_read(path, &read, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(read.attribute_count, 0);
+  memcpy(back, read.data, count * sizeof *back);
+  abbe_image_free(&image);
+  abbe_image_free(&read);
+}
+
+/* IEEE 754's binary16: 11 bits, ties to even, steps of 2^-24 at the lower end. */
+static void test_half_precision_rounds_as_it_should(void **state) {
+  (void)state;
+  const float value[] = {1,          1.0f / 3,     -0.1f,    65504,     65503,
+                         0x1.002p0f, 0x1.006p0f,   0x1p-24f, 0x1p-25f,  0x1.8p-25f,
+                         0,          0x1.ff8p-15f, INFINITY, -INFINITY, 2049};
+  const float expected[] = {1, 0x1.554p-2f,  -0x1.998p-4f, 65504,     65504,
+                            1, 0x1.008p0f,   0x1p-24f,     0,         0x1p-24f,
+                            0, 0x1.ff8p-15f, INFINITY,     -INFINITY, 2048};
+  float back[15];
+  through_half(value, 15, back);
+  for (int i = 0; i < 15; i++)
+    if (back[i] != expected[i])
+      fail_msg("%a becomes %a, not %a", (double)value[i], (double)back[i], (double)expected[i]);
+  const float broken[] = {NAN, 1};
+  through_half(broken, 2, back);
+  assert_true(isnan(back[0]) && back[1] == 1);
+}
+
+/* What is too great for half precision, or all too small, comes back all the same. */
+static void test_half_precision_never_overflows(void **state) {
+  (void)state;
+  static const float scale[] = {65505, 1e6f, 1e38f, 0.99f, 1e-6f, 1e-12f, 1e-38f};
+  for (int s = 0; s < 7; s++) {
+    float value[5] = {scale[s], -scale[s] / 3, scale[s] / 1e4f, 0, INFINITY}, back[5];
+    through_half(value, 5, back);
+    for (int i = 0; i < 3; i++)
+      if (!(fabs(back[i] / (double)value[i] - 1) <= 0x1p-11))
+        fail_msg("%g becomes %g", (double)value[i], (double)back[i]);
+    assert_true(back[3] == 0 && back[4] == INFINITY);
+  }
+}
+
+static void test_units_that_are_none(void **state) {
+  (void)state;
+  static const char *const names[] = {"Y"};
+  abbe_image image = {0}, back = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(1, 1, 1, names, &image, NULL), ABBE_OK);
+  image.data[0] = 0x1p-3f; /* unit 2^-17 */
+  assert_int_equal(abbe_exr_write_half(path, &image, &error), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:stored_unit", "2", NULL), ABBE_OK);
+  assert_int_equal(abbe_exr_write_half("/tmp/no.exr", &image, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "'abbe:stored_unit'"));
+  abbe_image_free(&image);
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
+  char *unit = NULL;
+  for (size_t i = 0; i + 17 <= size && unit == NULL; i++)
+    if (memcmp(data + i, "7.62939453125e-06", 17) == 0) unit = data + i;
+  assert_non_null(unit);
+  static const char *const wrong[] = {"7.62939453125e-05", "inf              ", "-7.6293945313e-06",
+                                      "0.000000000000000", "something-or-othe"};
+  for (int i = 0; i < 5; i++) {
+    memcpy(unit, wrong[i], 17);
+    assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+    assert_int_equal(abbe_exr_read(path, &back, &error), ABBE_PARSE);
+    assert_non_null(strstr(error.text, "abbe:stored_unit"));
+    assert_null(back.data);
+  }
+  free(data);
+}
+
 static void test_what_cannot_be_written(void **state) {
   (void)state;
   static const char *const twice[] = {"R", "R"};
@@ -341,6 +420,9 @@ static int leave(void **state) {
 int main(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_exr_%ld.exr", (long)getpid());
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip_is_exact),
+                                     cmocka_unit_test(test_half_precision_rounds_as_it_should),
+                                     cmocka_unit_test(test_half_precision_never_overflows),
+                                     cmocka_unit_test(test_units_that_are_none),
                                      cmocka_unit_test(test_what_cannot_be_written),
                                      cmocka_unit_test(test_a_full_disk_leaves_the_old_file),
                                      cmocka_unit_test(test_foreign_files),
