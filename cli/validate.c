@@ -2,6 +2,7 @@
 #include "cli/progress.h"
 
 #include "validation/known_answers.h"
+#include "validation/known_chart.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
@@ -10,7 +11,7 @@
 #include <string.h>
 
 typedef struct request {
-  const char *program;
+  const char *program, *chart;
   abbe_known_options options;
   bool json, quiet;
 } request;
@@ -97,6 +98,8 @@ static abbe_result validate(request *r, abbe_error *error) {
     result = print_json(&answers, error);
   else if (result == ABBE_OK)
     print_text(&answers);
+  if (result == ABBE_OK && r->chart != NULL)
+    result = abbe_known_chart_write(r->chart, &answers, error);
   if (result == ABBE_OK && failed > 0)
     result = abbe_error_set(error, ABBE_TOLERANCE, "%zu of %zu known answers are out of tolerance",
                             failed, answers.count);
@@ -104,13 +107,23 @@ static abbe_result validate(request *r, abbe_error *error) {
   return result;
 }
 
-enum { KEY_ONLY = 256, KEY_SAMPLES, KEY_SEED, KEY_THREADS, KEY_QUIET, KEY_JSON, MAX_GROUPS = 32 };
+enum {
+  KEY_ONLY = 256,
+  KEY_SAMPLES,
+  KEY_SEED,
+  KEY_THREADS,
+  KEY_CHART,
+  KEY_QUIET,
+  KEY_JSON,
+  MAX_GROUPS = 32
+};
 
 static const struct argp_option options[] = {
     {"only", KEY_ONLY, "GROUP", 0, "one group of answers; see the list below", 0},
     {"samples", KEY_SAMPLES, "N", 0, "paths of each traced light, instead of each group's own", 0},
     {"seed", KEY_SEED, "N", 0, "other random numbers; without it, 0", 0},
     {"threads", KEY_THREADS, "N", 0, "1 to 1024; without it, one a processor", 0},
+    {"chart", KEY_CHART, "FILE", 0, "draw the errors, as .png or .svg", 0},
     {"quiet", KEY_QUIET, NULL, 0, "no progress bar", 0},
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
     {0}};
@@ -123,6 +136,12 @@ static const char *choose_group(const request *r, const char *word) {
     count++;
   }
   return names[abbe_command_choice(r->program, "--only", word, names, count)];
+}
+
+/* Said before the work and not after it. */
+static bool is_picture(const char *path) {
+  const char *dot = strrchr(path, '.');
+  return dot != NULL && (strcmp(dot, ".png") == 0 || strcmp(dot, ".svg") == 0);
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
@@ -139,6 +158,11 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     return 0;
   case KEY_THREADS:
     r->options.threads = abbe_command_count(r->program, "--threads", arg, 1, 1024);
+    return 0;
+  case KEY_CHART:
+    if (!is_picture(arg))
+      argp_error(state, "--chart '%s' wants a name that ends with .png or .svg", arg);
+    r->chart = arg;
     return 0;
   case KEY_QUIET:
     r->quiet = true;
@@ -168,7 +192,8 @@ static const struct argp parser = {
                            "  abbe validate\n"
                            "  abbe validate --only rainbow\n"
                            "  abbe validate --only sphere --samples 100000000 --seed 7\n"
-                           "  abbe validate --json > answers.json\n",
+                           "  abbe validate --json > answers.json\n"
+                           "  abbe validate --only convergence --chart convergence.png\n",
 };
 #undef GROUP_LINE
 

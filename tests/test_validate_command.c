@@ -56,6 +56,15 @@ static void noise_is_no_agreement(void **state) {
   assert_contains(run_errors, "of 5 known answers are out of tolerance");
 }
 
+static void errors_are_drawn(void **state) {
+  (void)state;
+  assert_int_equal(
+      run_line("\"$abbe\" validate --only slab --chart c.svg && grep -c '<svg' c.svg && "
+               "rm c.svg"),
+      0);
+  assert_true(run_refuses("\"$abbe\" validate --chart c.gif", 2, "'c.gif' wants a name"));
+}
+
 static void help_lists_the_groups(void **state) {
   (void)state;
   assert_int_equal(run_line("\"$abbe\" validate --help"), 0);
@@ -79,6 +88,7 @@ int main(void) {
       cmocka_unit_test(runs_meet_a_furnace_and_converge),
       cmocka_unit_test(pictures_show_the_caustic),
       cmocka_unit_test(noise_is_no_agreement),
+      cmocka_unit_test(errors_are_drawn),
       cmocka_unit_test(help_lists_the_groups),
       cmocka_unit_test(wrong_use_is_explained),
   };

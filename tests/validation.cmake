@@ -12,6 +12,7 @@ foreach(name
     interface
     light_walk
     known_answers
+    known_chart
     known_light
     mask
     media

@@ -50,6 +50,7 @@ typedef struct abbe_known_answer {
   double error;          /* traced - exact */
   double tolerance;      /* largest |error| that passes, in the unit */
   double useful;         /* a tolerance beyond this tells nothing: the row fails; 0: any does */
+  double photons;        /* that the row's error belongs to, for a chart of it; 0: it has none */
   bool passed;
 } abbe_known_answer;
 

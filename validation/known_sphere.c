@@ -357,22 +357,21 @@ static abbe_result add_levels(abbe_known_run *run, double (*sum)[3], size_t pass
         .standard_error = relative * rms,
         .tolerance = ABBE_KNOWN_SIGMAS * relative * expected,
         .useful = 0.5 * expected,
+        .photons = (double)(count * photons),
         .reason = "four standard errors of a root mean square over that many runs of four rings, "
                   "three of them free"};
     snprintf(row.quantity, sizeof row.quantity, "error of the rings after %zu photons, %zu runs",
              count * photons, passes / count);
-    if (level % 2 == 0) result = abbe_known_add(run, row, error);
+    result = abbe_known_add(run, row, error);
   }
   double determinant = w * wxx - wx * wx;
-  abbe_known_answer row = {
-      .unit = "power",
-      .exact = -0.5,
-      .traced = (w * wxy - wx * wy) / determinant,
-      .standard_error = sqrt(w / determinant),
-      .tolerance = ABBE_KNOWN_SIGMAS * sqrt(w / determinant),
-      .useful = 0.1,
-      .reason = "four standard errors of the slope through the points, of which every second "
-                "stands above"};
+  abbe_known_answer row = {.unit = "power",
+                           .exact = -0.5,
+                           .traced = (w * wxy - wx * wy) / determinant,
+                           .standard_error = sqrt(w / determinant),
+                           .tolerance = ABBE_KNOWN_SIGMAS * sqrt(w / determinant),
+                           .useful = 0.1,
+                           .reason = "four standard errors of the slope through the points above"};
   snprintf(row.quantity, sizeof row.quantity, "slope of the error over the photons, both as logs");
   return result == ABBE_OK ? abbe_known_add(run, row, error) : result;
 }
