@@ -127,21 +127,24 @@ static void awkward_textures(void **state) {
   abbe_image_free(&scene.object[0].texture);
 }
 
-/* A grey is the same number in every space whose white is neutral; a colour is the matrix's. */
+/* A grey is the same number in every space, XYZ among them; a colour is the matrix's. */
 static void greys_stay_grey(void **state) {
   (void)state;
   abbe_reflectance r;
-  abbe_reflectance_make(&geometry, ABBE_RGB_SPACE_ACESCG, &r);
   float c[3];
-  abbe_reflectance_at(&r, 1, 0, 0, 0, c);
-  for (int k = 0; k < 3; k++) assert_near((double)c[k], 0.5, 1e-5);
+  for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++) {
+    abbe_reflectance_make(&geometry, (abbe_rgb_space)space, &r);
+    abbe_reflectance_at(&r, 1, 0, 0, 0, c);
+    for (int k = 0; k < 3; k++) assert_near((double)c[k], 0.5, 1e-6);
+  }
+  abbe_reflectance_make(&geometry, ABBE_RGB_SPACE_ACESCG, &r);
   double to_xyz[9], from_xyz[9], expected[3];
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, from_xyz);
   abbe_rgb_space_apply(to_xyz, scene.object[0].reflectance, expected);
   abbe_rgb_space_apply(from_xyz, expected, expected);
   abbe_reflectance_at(&r, 0, 0, 0.2f, 0.3f, c);
-  for (int k = 0; k < 3; k++) assert_near((double)c[k], expected[k], 1e-6);
+  for (int k = 0; k < 3; k++) assert_near((double)c[k], expected[k], 1e-5);
 }
 
 static void bands_of_a_colour(void **state) {

@@ -11,6 +11,11 @@ void abbe_reflectance_make(const abbe_geometry *geometry, abbe_rgb_space space,
     abbe_rgb_space_apply(from_xyz, column, column);
     for (int k = 0; k < 3; k++) out->to_space[3 * k + i] = (float)column[k];
   }
+  /* of white: greys are neutral also where the space's white is not (1, 1, 1), as in XYZ */
+  for (int k = 0; k < 3; k++) {
+    float *row = &out->to_space[3 * k], white = row[0] + row[1] + row[2];
+    for (int i = 0; i < 3; i++) row[i] /= white;
+  }
 }
 
 /* Bilinear, repeated; v runs upwards, rows downwards. */

@@ -17,7 +17,7 @@ extern "C" {
 
 typedef struct abbe_reflectance {
   const abbe_geometry *geometry;
-  float to_space[9]; /* from linear Rec.709 to the picture's space, row-major */
+  float to_space[9]; /* from linear Rec.709 to shares of the picture's white, row-major */
 } abbe_reflectance;
 
 void abbe_reflectance_make(const abbe_geometry *geometry, abbe_rgb_space space,
