@@ -7,6 +7,7 @@ foreach(name
     closed_form
     compare
     difference_picture
+    eye_walk
     field
     geometry
     interface
