@@ -26,6 +26,7 @@ foreach(name
     route
     spectral_sampling
     sphere_quadrature
+    tracer
     ztest
     )
   abbe_test(${name} cpu ${validation_rooms})

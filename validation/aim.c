@@ -352,6 +352,7 @@ abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim 
   double extent = 0;
   cover_list list = {.aim = &a, .take = take_extent, .user = &extent, .fine = 0.02};
   cover_all(geometry, &list);
+  *out = a;
   if (!(extent > 0)) return ABBE_OK;
   if (!a.parallel) extent = fmin(extent, 2);
   /* a cone that is narrower than the refractors makes the smaller plane */
