@@ -4,6 +4,7 @@ foreach(name
     aim
     bands
     camera
+    checkpoint
     closed_form
     compare
     difference_picture

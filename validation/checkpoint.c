@@ -10,6 +10,7 @@
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
 static const char magic[] = "abbe checkpoint 1\n";
+enum { HEAD = 4096 }; /* bytes that hold all the lines */
 
 /* ---- hash: FNV-1a, 64 bits ---- */
 
@@ -23,6 +24,16 @@ static const uint64_t hash_start = 14695981039346656037u;
 
 static uint64_t hash_doubles(uint64_t h, const double *x, size_t count) {
   return hash(h, x, count * sizeof *x);
+}
+
+static uint64_t hash_texture(uint64_t h, const abbe_object *o, const abbe_surface *f) {
+  const abbe_image *t = &o->texture;
+  if (t->data == NULL) return h;
+  const double numbers[] = {(double)t->width, (double)t->height, o->texture_repeat[0],
+                            o->texture_repeat[1]};
+  h = hash_doubles(h, numbers, sizeof numbers / sizeof *numbers);
+  if (f->uv != NULL) h = hash(h, f->uv, o->mesh.vertex_count * sizeof *f->uv);
+  return hash(h, t->data, t->width * t->height * t->channels * sizeof *t->data);
 }
 
 /* All that the walks read of the scene. */
@@ -56,9 +67,10 @@ static uint64_t hash_scene(const abbe_tracer *t) {
     h = hash_doubles(h, o->reflectance, 3);
     if (f->position != NULL) h = hash(h, f->position, o->mesh.vertex_count * sizeof *f->position);
     if (f->face != NULL) h = hash(h, f->face, o->mesh.face_count * sizeof *f->face);
-    if (o->texture.data != NULL)
-      h = hash(h, o->texture.data,
-               o->texture.width * o->texture.height * o->texture.channels * sizeof(float));
+    if (f->normal != NULL)
+      h = hash(h, f->normal,
+               (f->flat ? o->mesh.face_count : o->mesh.vertex_count) * sizeof *f->normal);
+    h = hash_texture(h, o, f);
   }
   return h;
 }
@@ -73,20 +85,20 @@ static uint64_t hash_layout(const abbe_tracer *t) {
   return hash_doubles(h, t->layout.knot[0], 2 * (ABBE_MAP_LAYOUT_STEPS + 1));
 }
 
-/* The lines that say what the run is; threads do not matter. */
+/* The lines that say what the run is; threads do not matter. The request comes first, for tables
+ * of the scene depend on it too. */
 static void describe(const abbe_tracer *t, char *out, size_t size) {
   const abbe_trace_desc *d = &t->desc;
   snprintf(out, size,
-           "scene %016llx\nphysics %s, %zu exits, share %.17g\npicture %zu x %zu\n"
-           "map %zu x %zu of light %zu, layout %016llx\nrange %.17g:%.17g\nbands %zu\n"
-           "space %s\nphotons %zu\nseed %u\n\n",
-           (unsigned long long)hash_scene(t), d->physics.matched ? "matched" : "full",
-           d->physics.matched ? d->physics.orders : 0,
+           "physics %s, %zu exits, share %.17g\npicture %zu x %zu\nmap %zu x %zu of light %zu\n"
+           "range %.17g:%.17g\nbands %zu\nspace %s\nphotons %zu\nseed %u\nscene %016llx\n"
+           "layout %016llx\n\n",
+           d->physics.matched ? "matched" : "full", d->physics.matched ? d->physics.orders : 0,
            d->physics.matched ? d->physics.energy_share : 0, d->no_picture ? 0 : d->width,
            d->no_picture ? 0 : d->height, d->no_map ? 0 : d->map_width,
-           d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light,
-           (unsigned long long)hash_layout(t), d->min_nm, d->max_nm, d->bands,
-           abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed);
+           d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light, d->min_nm, d->max_nm,
+           d->bands, abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed,
+           (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t));
 }
 
 /* ---- the numbers ---- */
@@ -185,10 +197,24 @@ static void take(const char **from, void *to, size_t size) {
   *from += size;
 }
 
+/* What the file says of itself, before all of it is read: the file of another request may be much
+ * larger than this one's. */
+static abbe_result check_head(const abbe_tracer *t, const char *path, abbe_error *error) {
+  char head[HEAD + 1];
+  FILE *file = fopen(path, "rb");
+  if (file == NULL) return ABBE_OK; /* reading it whole says why */
+  size_t numbers, size = fread(head, 1, HEAD, file);
+  bool failed = ferror(file) != 0;
+  fclose(file);
+  head[size] = '\0';
+  return failed ? ABBE_OK : check_text(t, path, head, size, &numbers, error);
+}
+
 abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *error) {
   char *data = NULL;
-  size_t size = 0, numbers = 0, most = numbers_size(t) + 4096;
-  abbe_result result = abbe_file_read(path, most, &data, &size, error);
+  size_t size = 0, numbers = 0, most = numbers_size(t) + HEAD;
+  abbe_result result = check_head(t, path, error);
+  if (result == ABBE_OK) result = abbe_file_read(path, most, &data, &size, error);
   if (result != ABBE_OK) return result;
   result = check_text(t, path, data, size, &numbers, error);
   if (result == ABBE_OK) {
@@ -205,6 +231,7 @@ abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *e
     t->pass = t->picture.passes = t->map.passes = (size_t)c.passes;
     t->statistics.photons = c.photons;
     t->statistics.light_rays = c.light_rays;
+    t->other_rays = abbe_tracer_walk_rays(t);
     t->statistics.eye_rays = c.eye_rays;
     t->statistics.cuts = c.cuts;
     t->statistics.ledger = c.ledger;

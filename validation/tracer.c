@@ -196,6 +196,7 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
     return result;
   }
   t->desc.layout = &t->layout;
+  t->other_rays = abbe_tracer_walk_rays(t);
   *out = t;
   return ABBE_OK;
 }
@@ -261,21 +262,33 @@ static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *s
   return stop != NULL && *stop ? abbe_error_set(error, ABBE_CANCELLED, "stopped") : ABBE_OK;
 }
 
-/* Embree's advice: numbers too small for single precision count as zero, on every thread. */
-static void flush_tiny_numbers(const abbe_tracer *t) {
+/* Embree's advice: numbers too small for single precision count as zero, on every thread. The
+ * caller's own thread gets its mode back. */
+static unsigned flush_tiny_numbers(const abbe_tracer *t) {
 #ifdef __SSE__
+  unsigned mode = _mm_getcsr();
 #pragma omp parallel num_threads((int)t->desc.threads)
   {
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
   }
+  return mode;
 #else
   (void)t;
+  return 0;
+#endif
+}
+
+static void restore_mode(unsigned mode) {
+#ifdef __SSE__
+  _mm_setcsr(mode);
+#else
+  (void)mode;
 #endif
 }
 
 abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_error *error) {
-  flush_tiny_numbers(t);
+  unsigned mode = flush_tiny_numbers(t);
   abbe_trace_statistics before = t->statistics;
   size_t landed = 0;
   double start = now();
@@ -283,6 +296,7 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   double middle = now();
   if (result == ABBE_OK && !t->desc.no_picture) result = eye_pass(t, landed, stop, error);
   double end = now();
+  restore_mode(mode);
   if (result != ABBE_OK) {
     t->statistics = before;
     if (!t->desc.no_picture) abbe_accumulator_drop_pass(&t->picture);
@@ -449,10 +463,16 @@ abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *e
   return result;
 }
 
+uint64_t abbe_tracer_walk_rays(const abbe_tracer *t) {
+  uint64_t rays = 0;
+  for (size_t i = 0; i < t->desc.threads; i++) rays += abbe_light_walk_rays(t->walk[i]);
+  return rays;
+}
+
 void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {
   *out = t->statistics;
   out->passes = t->pass;
-  for (size_t i = 0; i < t->desc.threads; i++) out->light_rays += abbe_light_walk_rays(t->walk[i]);
+  out->light_rays += abbe_tracer_walk_rays(t) - t->other_rays;
   if (!t->desc.no_picture) out->cuts += abbe_accumulator_cuts(&t->picture);
   if (!t->desc.no_map) out->cuts += abbe_accumulator_cuts(&t->map);
   double scale = t->pass > 0 ? 1 / (double)t->pass : 0;

@@ -35,12 +35,15 @@ struct abbe_tracer {
   abbe_photon_grid grid;
   abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
   size_t landed_room;
-  bool eye_gathers; /* some pixel may show a receiver through or in a refractor */
-  float radius;     /* of the first gather, frame */
-  size_t pass;      /* the next one */
+  bool eye_gathers;    /* some pixel may show a receiver through or in a refractor */
+  float radius;        /* of the first gather, frame */
+  size_t pass;         /* the next one */
+  uint64_t other_rays; /* of the walks: trials, and from before a checkpoint was taken up */
   abbe_trace_statistics statistics;
 };
 
+/* Rays of the walks of all threads, trials too. */
+uint64_t abbe_tracer_walk_rays(const abbe_tracer *tracer);
 /* The photons of the pass; landings go to the map, to the picture, and to tracer->landed. */
 abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop,
                                    size_t *landed_count, abbe_error *error);
