@@ -428,11 +428,22 @@ static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error
   return result;
 }
 
+/* The image of fewer passes is not in a checkpoint of more. */
+static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *error) {
+  if (!q->resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
+    return ABBE_OK;
+  abbe_result result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
+  size_t passes = abbe_tracer_passes(tracer);
+  if (result != ABBE_OK || passes <= q->passes) return result;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s holds %zu passes already, more than the %zu that are asked for: ask "
+                        "with --spp for as many, or start anew without --resume",
+                        q->checkpoint_path, passes, q->passes);
+}
+
 /* A user's stop keeps what is done: results are written, and the checkpoint to go on from. */
 static abbe_result trace(const request *q, abbe_tracer *tracer, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  if (q->resume && q->checkpoint_path != NULL && access(q->checkpoint_path, F_OK) == 0)
-    result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
+  abbe_result result = resume(q, tracer, error);
   if (result != ABBE_OK) return result;
   result = run_passes(q, tracer, error);
   bool stopped = result == ABBE_CANCELLED;
