@@ -15,6 +15,7 @@ foreach(name
     materials_exchange_command
     outline_command
     render_command
+    trace_command
     validate_command
     )
   abbe_test(${name} program abbe_colorimetry abbe_spectral PkgConfig::CJSON)
