@@ -10,7 +10,7 @@ static abbe_scene scene;
 static const abbe_trace_desc small = {
     .width = 10, .height = 7, .map_width = 8, .photons = 2000, .threads = 1, .bands = 2};
 
-#define SCENE(more) CAMERA POINT_LIGHT FLOOR BALL("crown") more
+#define SCENE(more) CAMERA POINT_LIGHT FLOOR BEADS("crown") more
 
 static int setup(void **state) {
   (void)state;
@@ -166,8 +166,8 @@ static void another_scene_is_told(void **state) {
   scene.camera.fov_y_rad *= 1.001;
   check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
   scene.camera.fov_y_rad /= 1.001;
-  static const char *const others[] = {SCENE(HILL), CAMERA POINT_LIGHT FLOOR BALL("flat"),
-                                       CAMERA SUN FLOOR BALL("crown")};
+  static const char *const others[] = {SCENE(HILL), CAMERA POINT_LIGHT FLOOR BEADS("flat"),
+                                       CAMERA SUN FLOOR BEADS("crown")};
   for (int i = 0; i < 3; i++) {
     abbe_scene other;
     load_text(others[i], &other);

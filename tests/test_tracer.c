@@ -47,7 +47,7 @@ static traced trace(const abbe_scene *scene, const abbe_trace_desc *desc, size_t
 static void threads_do_not_matter_and_the_seed_does(void **state) {
   (void)state;
   abbe_scene scene;
-  load_text(CLOSE TWO_LIGHTS FLOOR BALL("crown") ROOF("smoke"), &scene);
+  load_text(CLOSE TWO_LIGHTS FLOOR BEADS("crown") ROOF("smoke"), &scene);
   abbe_trace_desc desc = small;
   desc.photons = 50000;
   traced one = trace(&scene, &desc, 2);
@@ -87,7 +87,7 @@ static void tiny_numbers_are_left_to_the_caller(void **state) {
 static void a_stopped_pass_is_forgotten(void **state) {
   (void)state;
   abbe_scene scene;
-  load_text(CLOSE POINT_LIGHT FLOOR BALL("crown"), &scene);
+  load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   traced whole = trace(&scene, &small, 3);
   abbe_tracer *tracer = make_tracer(&scene, &small);
   volatile int stop = 1;
@@ -119,7 +119,7 @@ static void standard_errors_are_honest(void **state) {
   (void)state;
   enum { SEEDS = 10, VALUES = 16 };
   abbe_scene scene;
-  load_text(CLOSE POINT_LIGHT FLOOR BALL("crown"), &scene);
+  load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_trace_desc desc = {
       .width = 4, .height = 2, .map_width = 4, .map_height = 2, .photons = 1000, .threads = 1};
   abbe_tracer *first = make_tracer(&scene, &desc);
@@ -274,7 +274,7 @@ static void a_scene_without_glass(void **state) {
 static void the_caustic_is_part_of_the_picture(void **state) {
   (void)state;
   abbe_scene scene;
-  load_text(CLOSE POINT_LIGHT FLOOR BALL("crown"), &scene);
+  load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_trace_desc desc = small;
   desc.bands = 0;
   desc.no_map = true;
@@ -307,7 +307,7 @@ static void the_caustic_is_part_of_the_picture(void **state) {
 static void the_error_falls(void **state) {
   (void)state;
   abbe_scene scene;
-  load_text(CLOSE POINT_LIGHT FLOOR BALL("crown"), &scene);
+  load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
   abbe_tracer *tracer = make_tracer(&scene, &small);
   assert_true(isinf(abbe_tracer_error(tracer)));
   run_passes(tracer, 1);

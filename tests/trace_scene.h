@@ -6,6 +6,14 @@
 
 #include "validation/tracer.h"
 
+/* Two small balls: they fill few of the cells that a light is aimed by, so that a tracer is made
+ * in a moment. */
+#define BEADS(material)                                                                            \
+  "- {name: east, shape: sphere, radius: 0.02, levels: 2, transform: [{translate: [0.15, 0, "      \
+  "0.1]}], material: " material "}\n"                                                              \
+  "- {name: west, shape: sphere, radius: 0.02, levels: 2, transform: [{translate: [-0.15, 0, "     \
+  "0.1]}], material: " material "}\n"
+
 static inline abbe_tracer *make_tracer(const abbe_scene *scene, const abbe_trace_desc *desc) {
   abbe_tracer *tracer = NULL;
   abbe_error error = {0};
