@@ -7,6 +7,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+/* Fontconfig keeps its fonts to the end. */
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void) {
+  return "leak:libfontconfig";
+}
+
 /* The text of the picture that these rows make; the caller frees. */
 static char *draw(abbe_known_answer *row, size_t count) {
   char path[64], *text = NULL;
