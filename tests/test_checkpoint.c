@@ -7,8 +7,16 @@
 static char folder[64], path[80];
 static abbe_scene scene;
 
-static const abbe_trace_desc small = {
-    .width = 10, .height = 7, .map_width = 8, .photons = 2000, .threads = 1, .bands = 2};
+/* The layout of the map is given, for trying where the light lands takes longer than the rest. */
+static abbe_map_layout layout;
+static const abbe_trace_desc small = {.layout = &layout,
+
+                                      .width = 10,
+                                      .height = 7,
+                                      .map_width = 8,
+                                      .photons = 2000,
+                                      .threads = 1,
+                                      .bands = 2};
 
 #define SCENE(more) CAMERA POINT_LIGHT FLOOR BEADS("crown") more
 
@@ -18,6 +26,14 @@ static int setup(void **state) {
   if (mkdtemp(folder) == NULL) return 1;
   snprintf(path, sizeof path, "%s/run.checkpoint", folder);
   load_text(SCENE(""), &scene);
+  abbe_trace_desc fitted = small;
+  fitted.layout = NULL;
+  abbe_tracer *tracer = make_tracer(&scene, &fitted);
+  abbe_image map;
+  assert_int_equal(abbe_tracer_map(tracer, &map, NULL), ABBE_OK);
+  assert_int_equal(abbe_map_layout_read(&map, "map", &layout, NULL), ABBE_OK);
+  abbe_image_free(&map);
+  abbe_tracer_free(tracer);
   return 0;
 }
 
@@ -145,6 +161,7 @@ static void another_request_is_named(void **state) {
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
     abbe_trace_desc desc = others[i].desc;
     desc.threads = 1;
+    desc.layout = &layout;
     check_refused(&scene, &desc, ABBE_INVALID_ARGUMENT, others[i].part);
   }
 }
@@ -166,6 +183,11 @@ static void another_scene_is_told(void **state) {
   scene.camera.fov_y_rad *= 1.001;
   check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
   scene.camera.fov_y_rad /= 1.001;
+  abbe_map_layout moved = layout;
+  abbe_trace_desc other_layout = small;
+  moved.view.window[1] *= 1.5;
+  other_layout.layout = &moved;
+  check_refused(&scene, &other_layout, ABBE_INVALID_ARGUMENT, "layout");
   static const char *const others[] = {SCENE(HILL), CAMERA POINT_LIGHT FLOOR BEADS("flat"),
                                        CAMERA SUN FLOOR BEADS("crown")};
   for (int i = 0; i < 3; i++) {
