@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 #ifdef __SSE__
 #include <pmmintrin.h>
 #include <xmmintrin.h>
@@ -89,7 +90,8 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
         abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);
   if (result == ABBE_OK) result = abbe_bands_make(&t->sampling, d->bands, &t->bands, error);
   if (result != ABBE_OK) return result;
-  abbe_reflectance_make(&t->geometry, d->space, &t->reflectance);
+  t->mixing = d->space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : d->space;
+  abbe_reflectance_make(&t->geometry, t->mixing, &t->reflectance);
   abbe_trace_camera_make(&t->geometry, d->width, d->height, &t->camera);
   size_t lights = t->scene->light_count;
   t->colour = calloc(lights * t->sampling.steps, sizeof *t->colour);
@@ -99,9 +101,11 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   t->walk = calloc(d->threads, sizeof *t->walk);
   if (!t->colour || !t->white || !t->aim || !t->photons || !t->walk)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the lights' tables");
-  abbe_spectral_sampling_colours(&t->sampling, d->space, t->colour);
+  abbe_spectral_sampling_colours(&t->sampling, t->mixing, t->colour);
   double matrix[9], white[3];
-  abbe_rgb_space_from_xyz(d->space, matrix);
+  abbe_rgb_space_to_xyz(t->mixing, matrix);
+  for (int i = 0; i < 9; i++) t->to_xyz[i] = (float)matrix[i];
+  abbe_rgb_space_from_xyz(t->mixing, matrix);
   for (size_t l = 0; l < lights; l++) {
     abbe_rgb_space_apply(matrix, t->sampling.white[l], white);
     for (int k = 0; k < 3; k++) t->white[l][k] = (float)white[k];
@@ -110,6 +114,23 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
     result =
         abbe_light_walk_make(&t->geometry, &t->media, &d->physics, d->seed, &t->walk[i], error);
   return result;
+}
+
+/* A request that cannot fit is refused before it is allocated: the system might grant it and fail
+ * later. */
+static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
+  const abbe_trace_desc *d = &t->desc;
+  double values = 0, pages = (double)sysconf(_SC_PHYS_PAGES), page = (double)sysconf(_SC_PAGESIZE);
+  if (!d->no_picture)
+    values += (double)(d->width * d->height) * (double)(ABBE_TRACER_BANDS + t->bands.count);
+  if (!d->no_map) values += (double)(d->map_width * d->map_height) * (double)(3 + t->bands.count);
+  double needed = values * 8 * (double)(d->threads + 2);
+  if (!(pages > 0) || !(page > 0) || needed < pages * page) return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_NO_MEMORY,
+      "the sums of %zu x %zu pixels, %zu bands and %zu threads need %.0f GiB, the "
+      "machine has %.0f: ask for fewer",
+      d->width, d->height, t->bands.count, d->threads, needed * 0x1p-30, pages * page * 0x1p-30);
 }
 
 /* Radiance of a white receiver in the middle of the scene, for the range of the sums. */
@@ -130,8 +151,8 @@ static double usual_radiance(const abbe_tracer *t) {
 
 static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
   const abbe_trace_desc *d = &t->desc;
-  abbe_result result = ABBE_OK;
-  if (!d->no_picture) {
+  abbe_result result = check_memory(t, error);
+  if (result == ABBE_OK && !d->no_picture) {
     t->picture_channels = ABBE_TRACER_BANDS + t->bands.count;
     /* sums hold values 2^28 times the usual, to 2^-33 of it */
     result = abbe_accumulator_make(d->width * d->height * t->picture_channels, d->threads,
@@ -225,10 +246,13 @@ void abbe_tracer_free(abbe_tracer *t) {
 
 static void add_sample(abbe_tracer *t, size_t thread, size_t pixel, const abbe_eye_sample *s) {
   size_t at = pixel * t->picture_channels;
+  float rgb[3], caustic[3];
+  abbe_tracer_finish(t, s->rgb, rgb);
+  abbe_tracer_finish(t, s->caustic, caustic);
   for (size_t k = 0; k < 3; k++) {
-    abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_RGB + k, s->rgb[k]);
-    if (s->caustic[k] != 0)
-      abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_CAUSTIC + k, s->caustic[k]);
+    abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_RGB + k, rgb[k]);
+    if (caustic[k] != 0)
+      abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_CAUSTIC + k, caustic[k]);
   }
   for (size_t i = 0; i < t->bands.count; i++)
     abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_BANDS + i, s->band[i]);

@@ -158,11 +158,12 @@ static void add_splat(const sink *s, const splat *p) {
   float rgb[3];
   abbe_reflectance_at(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
   size_t colour = s->light * t->sampling.steps + l->step, at = p->pixel * t->picture_channels;
-  float value = p->value * 0.318309886f;
+  float value = p->value * 0.318309886f, seen[3];
+  for (size_t k = 0; k < 3; k++) rgb[k] *= value * t->colour[colour][k];
+  abbe_tracer_finish(t, rgb, seen);
   for (size_t k = 0; k < 3; k++) {
-    float x = value * rgb[k] * t->colour[colour][k];
-    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_RGB + k, x);
-    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, x);
+    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_RGB + k, seen[k]);
+    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, seen[k]);
   }
   if (t->bands.count == 0) return;
   abbe_reflectance_rec709(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
@@ -355,6 +356,7 @@ abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe
       *embree = fmax(*embree, (double)replayed / alone);
     abbe_light_walk_keep(t->walk[0], 0);
   }
+  t->other_rays = abbe_tracer_walk_rays(t);
   free(e.first);
   return result;
 }

@@ -25,7 +25,9 @@ struct abbe_tracer {
   abbe_reflectance reflectance;
   abbe_trace_camera camera;
   abbe_map_layout layout;
-  float (*colour)[3], (*white)[3]; /* in the picture's space */
+  abbe_rgb_space mixing; /* light times reflectance: the picture's space, ACEScg for XYZ */
+  float to_xyz[9];       /* from there, for XYZ pictures; row-major */
+  float (*colour)[3], (*white)[3]; /* in that space */
   abbe_aim *aim;                   /* [lights] */
   size_t *photons;                 /* [lights] a pass */
   abbe_light_walk **walk;          /* [threads] */
@@ -44,6 +46,15 @@ struct abbe_tracer {
 
 /* Rays of the walks of all threads, trials too. */
 uint64_t abbe_tracer_walk_rays(const abbe_tracer *tracer);
+/* From the space of mixing to the picture's. */
+static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3], float out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = t->mixing == t->desc.space
+                 ? mixed[k]
+                 : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
+                       t->to_xyz[3 * k + 2] * mixed[2];
+}
+
 /* The photons of the pass; landings go to the map, to the picture, and to tracer->landed. */
 abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop,
                                    size_t *landed_count, abbe_error *error);
