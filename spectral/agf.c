@@ -157,17 +157,20 @@ static abbe_result read_catalogue(reader *r, abbe_material *m) {
   /* placeholders: 1 for n_d, 0 for V_d */
   m->published_n_d = n_d > 1 && n_d < 1000 ? n_d : 0;
   m->published_v_d = fabs(v_d) < 1e6 ? v_d : 0;
-  c->melt_frequency = at(&g->nm, 4, 0) > 0 && at(&g->nm, 4, 0) < 1e6 ? at(&g->nm, 4, 0) : 0;
+  c->melt_frequency = fmax(at(&g->nm, 4, 0), 0);
   for (int i = 0; i < 2; i++)
     c->expansion_per_k[i] = abbe_number_tidy(at(&g->ed, (size_t)i, 0) * 1e-6);
-  double density = at(&g->ed, 2, 0), dpgf = at(&g->ed, 3, 0);
-  c->density_g_cm3 = density > 0 && density < 1e3 ? density : 0;
-  c->dpgf = fabs(dpgf) < 1e3 ? dpgf : 0;
+  c->density_g_cm3 = fmax(at(&g->ed, 2, 0), 0);
+  c->dpgf = at(&g->ed, 3, 0);
   for (size_t i = 0; i < 6; i++) c->thermal[i] = at(&g->td, i, 0);
   for (size_t i = 0; i < 6; i++) {
     c->ratings[i] = at(&g->od, i, -1);
     if (c->ratings[i] >= 0) c->rating_count = 6;
   }
+  size_t beyond = abbe_material_catalogue_bound(c);
+  if (beyond > 0)
+    abbe_report_add(r->report, ABBE_NOTE_LOST, g->line, g->name,
+                    "%zu of its numbers besides the index are too large to be true", beyond);
   double temperature = at(&g->td, 6, NAN);
   m->temperature_c = temperature >= -273.15 && temperature <= 1e4 ? temperature : NAN;
   if (status >= 0 && status < 5) return keep_text(r, statuses[(int)status], &c->status);

@@ -19,6 +19,24 @@ void abbe_material_free(abbe_material *material) {
 
 /* ---- whether a table may hold it ---- */
 
+/* 1 where the value was none from low to high, and is now `otherwise`. */
+static size_t bound(double *value, double low, double high, double otherwise) {
+  if (*value >= low && *value <= high) return 0;
+  *value = otherwise;
+  return 1;
+}
+
+size_t abbe_material_catalogue_bound(abbe_material_catalogue *c) {
+  const double most = ABBE_MATERIAL_CATALOGUE_MOST;
+  size_t count = bound(&c->melt_frequency, 0, ABBE_MATERIAL_MELT_MOST, 0) +
+                 bound(&c->density_g_cm3, 0, ABBE_MATERIAL_DENSITY_MOST, 0) +
+                 bound(&c->dpgf, -ABBE_MATERIAL_DPGF_MOST, ABBE_MATERIAL_DPGF_MOST, 0);
+  for (int i = 0; i < 2; i++) count += bound(&c->expansion_per_k[i], -most, most, 0);
+  for (int i = 0; i < 6; i++) count += bound(&c->thermal[i], -most, most, 0);
+  for (int i = 0; i < 6; i++) count += bound(&c->ratings[i], -most, most, -1);
+  return count;
+}
+
 abbe_result abbe_material_check_name(const char *name, abbe_error *error) {
   size_t length = name == NULL ? 0 : strlen(name);
   bool good =

@@ -67,6 +67,17 @@ typedef struct abbe_material {
 
 void abbe_material_free(abbe_material *material);
 
+/* What a table holds of a catalogue's numbers: no other is larger. */
+#define ABBE_MATERIAL_CATALOGUE_MOST 1e12
+#define ABBE_MATERIAL_MELT_MOST 1e6
+#define ABBE_MATERIAL_DENSITY_MOST 1e3
+#define ABBE_MATERIAL_DPGF_MOST 1e3
+
+/* Makes a table able to hold what a file says, which may be anything: a number that is not finite
+ * or beyond those bounds, or a density or melt frequency below 0, becomes 0 (a rating -1). How many
+ * did. */
+size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
+
 /* Whether a table may hold the record, that is: what is written of it can be read again. The name
  * has 1 to 80 printable characters and no space at its ends, there is a source, the coefficients go
  * with the model, the range ascends inside [ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM] and inside

@@ -324,7 +324,8 @@ static abbe_result read_published(reader *r) {
 
 static abbe_result read_numbers(reader *r, abbe_yaml_node where, const char *key, size_t count,
                                 double *out) {
-  return abbe_yaml_get_numbers(r->yaml, where, key, count, -1e12, 1e12, out, r->error);
+  return abbe_yaml_get_numbers(r->yaml, where, key, count, -ABBE_MATERIAL_CATALOGUE_MOST,
+                               ABBE_MATERIAL_CATALOGUE_MOST, out, r->error);
 }
 
 static abbe_result read_catalogue(reader *r) {
@@ -335,14 +336,15 @@ static abbe_result read_catalogue(reader *r) {
   if (result == ABBE_OK)
     result = abbe_yaml_get_string(r->yaml, where, "status", &c->status, r->error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "melt_frequency", 0, 1e6, &c->melt_frequency,
-                                  r->error);
+    result = abbe_yaml_get_number(r->yaml, where, "melt_frequency", 0, ABBE_MATERIAL_MELT_MOST,
+                                  &c->melt_frequency, r->error);
   if (result == ABBE_OK)
-    result =
-        abbe_yaml_get_number(r->yaml, where, "density_g_cm3", 0, 1e3, &c->density_g_cm3, r->error);
+    result = abbe_yaml_get_number(r->yaml, where, "density_g_cm3", 0, ABBE_MATERIAL_DENSITY_MOST,
+                                  &c->density_g_cm3, r->error);
   if (result == ABBE_OK) result = read_numbers(r, where, "expansion_per_k", 2, c->expansion_per_k);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "dpgf", -1e3, 1e3, &c->dpgf, r->error);
+    result = abbe_yaml_get_number(r->yaml, where, "dpgf", -ABBE_MATERIAL_DPGF_MOST,
+                                  ABBE_MATERIAL_DPGF_MOST, &c->dpgf, r->error);
   if (result == ABBE_OK) result = read_numbers(r, where, "thermal", 6, c->thermal);
   if (result == ABBE_OK) result = read_numbers(r, where, "ratings", 6, c->ratings);
   if (abbe_yaml_get(r->yaml, where, "ratings").id != 0) c->rating_count = 6;

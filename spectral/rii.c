@@ -365,15 +365,17 @@ static abbe_result read_properties(reader *r, abbe_yaml_node root) {
   if (!abbe_yaml_is_mapping(r->yaml, node)) node = abbe_yaml_get(r->yaml, root, "SPECS");
   if (!abbe_yaml_is_mapping(r->yaml, node)) return ABBE_OK;
   double n_d = 0, v_d = 0, dpgf = 0;
-  if (number_at(r, node, "nd", &n_d) && n_d > 0 && n_d < 1e3) r->m->published_n_d = n_d;
+  if (number_at(r, node, "nd", &n_d) && n_d >= 1e-3 && n_d < 1e3) r->m->published_n_d = n_d;
   if (number_at(r, node, "Vd", &v_d) && fabs(v_d) < 1e6) r->m->published_v_d = v_d;
-  if (number_at(r, node, "dPgF", &dpgf) && fabs(dpgf) < 1e3) c->dpgf = dpgf;
+  if (number_at(r, node, "dPgF", &dpgf)) c->dpgf = dpgf;
   double density = value_of(r, abbe_yaml_get(r->yaml, node, "density"), 0);
-  if (density > 0 && density < 1e6) c->density_g_cm3 = abbe_number_tidy(density / 1000);
+  c->density_g_cm3 = abbe_number_tidy(fmax(density, 0) / 1000);
   abbe_yaml_node expansion = abbe_yaml_get(r->yaml, node, "thermal_expansion");
   for (size_t i = 0; i < 2; i++) c->expansion_per_k[i] = value_of(r, expansion, i);
   read_thermal(r, abbe_yaml_get(r->yaml, node, "thermal_dispersion"));
   read_ratings(r, abbe_yaml_get(r->yaml, node, "resistance"));
+  if (abbe_material_catalogue_bound(c) > 0)
+    note(r, ABBE_NOTE_LOST, node, "properties that are too large to be true are left out");
   abbe_result result = keep(r, node, "glass_code", &c->code);
   return result == ABBE_OK ? keep(r, node, "glass_status", &c->status) : result;
 }

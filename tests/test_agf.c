@@ -142,6 +142,23 @@ static void placeholders_and_missing_fields_are_no_values(void **state) {
   abbe_material_table_free(&t);
 }
 
+/* Numbers that nothing uses may be anything, and must not make a table that cannot be read. */
+static void numbers_beyond_a_table_are_left_out(void **state) {
+  (void)state;
+  abbe_material_table t = parse("NM A 2 0 1.5168 64.17 0 1 1e9\nED 1e300 8.3 1e4 1e5 0\n" BK7_CD
+                                "TD 1e-6 1e200 0 0 0 0.17 20\nOD 1 2 3 4 5 1e13\n"
+                                "LD 0.3 2.5\n");
+  const abbe_material_catalogue *c = &t.material[0].catalogue;
+  assert_true(c->melt_frequency == 0 && c->density_g_cm3 == 0 && c->dpgf == 0);
+  assert_true(c->expansion_per_k[0] == 0 && c->thermal[1] == 0 && c->ratings[5] == -1);
+  assert_near(c->expansion_per_k[1], 8.3e-6, 1e-20);
+  assert_near(c->thermal[0], 1e-6, 0);
+  assert_near(c->ratings[4], 5, 0);
+  assert_int_equal(report.count, 1);
+  assert_contains(report.note[0].text, "6 of its numbers");
+  abbe_material_table_free(&t);
+}
+
 static void one_bad_glass_does_not_stop_the_rest(void **state) {
   (void)state;
   abbe_material_table t =
@@ -227,6 +244,7 @@ int main(void) {
       cmocka_unit_test(wrapped_lines_are_joined),
       cmocka_unit_test(encodings_and_line_ends_do_not_matter),
       cmocka_unit_test(placeholders_and_missing_fields_are_no_values),
+      cmocka_unit_test(numbers_beyond_a_table_are_left_out),
       cmocka_unit_test(one_bad_glass_does_not_stop_the_rest),
       cmocka_unit_test(what_is_no_catalogue_is_refused),
       cmocka_unit_test(a_catalogue_is_read_fast),

@@ -159,6 +159,22 @@ static void tables_are_read_and_put_in_order(void **state) {
   abbe_material_free(&m);
 }
 
+static void properties_beyond_a_table_are_left_out(void **state) {
+  (void)state;
+  abbe_material m =
+      parse_as("REFERENCES: r\nDATA:\n  - type: formula 5\n    wavelength_range: 0.4 0.7\n"
+               "    coefficients: 1.5 0.004 -2\nPROPERTIES:\n    nd: 1e-9\n    dPgF: 1e9\n"
+               "    density:\n      - value: 1e12\n    thermal_expansion:\n"
+               "      - value: 7.1e+206\n      - value: 8.3e-06\n",
+               "a.yml", NULL);
+  assert_true(m.published_n_d == 0 && m.catalogue.dpgf == 0 && m.catalogue.density_g_cm3 == 0);
+  assert_true(m.catalogue.expansion_per_k[0] == 0);
+  assert_near(m.catalogue.expansion_per_k[1], 8.3e-6, 0);
+  assert_int_equal(report.count, 1);
+  assert_contains(report.note[0].text, "too large");
+  abbe_material_free(&m);
+}
+
 static void absolute_indices_get_a_warning(void **state) {
   (void)state;
   abbe_material m = parse_as("REFERENCES: r\nDATA:\n- {type: formula 5, wavelength_range: 0.4 0.7,"
@@ -215,6 +231,7 @@ int main(void) {
       cmocka_unit_test(names_come_from_the_path),
       cmocka_unit_test(every_formula_is_read),
       cmocka_unit_test(tables_are_read_and_put_in_order),
+      cmocka_unit_test(properties_beyond_a_table_are_left_out),
       cmocka_unit_test(absolute_indices_get_a_warning),
       cmocka_unit_test(what_holds_no_index_is_refused),
   };
