@@ -52,7 +52,7 @@ typedef struct abbe_chart_axis {
 typedef struct abbe_chart_shade {
   double from, to;
   bool of_y;
-  const char *label; /* in the legend, or NULL */
+  const char *label; /* in the legend; NULL: more of the range before it, in its grey */
 } abbe_chart_shade;
 
 /* Numbers in false colours. Unless the axes say otherwise x runs from 0 to width, y from 0 at the

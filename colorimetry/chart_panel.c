@@ -450,6 +450,13 @@ static void draw_series(abbe_chart_panel *p, size_t index) {
   if (s->style == ABBE_CHART_POINTS || s->style == ABBE_CHART_JOINED_POINTS) draw_points(p, s);
 }
 
+/* Each label has its grey; the ranges without one that follow it are more of the same. */
+static double grey_of_shade(const abbe_chart *c, size_t index) {
+  size_t labels = 0;
+  for (size_t i = 0; i <= index; i++) labels += c->shade[i].label != NULL;
+  return labels % 2 == 0 ? 0.86 : 0.92;
+}
+
 static void draw_shades(abbe_chart_panel *p) {
   for (size_t i = 0; i < p->chart->shade_count; i++) {
     const abbe_chart_shade *s = &p->chart->shade[i];
@@ -462,7 +469,7 @@ static void draw_shades(abbe_chart_panel *p) {
         x[k] = to_x(p, value);
     }
     if (!isfinite(x[0] + x[1] + y[0] + y[1])) continue;
-    ink(p->cr, i % 2 == 0 ? 0.92 : 0.86);
+    ink(p->cr, grey_of_shade(p->chart, i));
     cairo_rectangle(p->cr, x[0], y[0], x[1] - x[0], y[1] - y[0]);
     cairo_fill(p->cr);
   }
@@ -629,7 +636,7 @@ static void draw_legend(abbe_chart_panel *p) {
     if (i < c->series_count) {
       draw_sample(p, i, x, y);
     } else {
-      ink(p->cr, (i - c->series_count) % 2 == 0 ? 0.92 : 0.86);
+      ink(p->cr, grey_of_shade(c, i - c->series_count));
       cairo_rectangle(p->cr, x, y - 6, SAMPLE, 12);
       cairo_fill(p->cr);
     }

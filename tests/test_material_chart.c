@@ -95,6 +95,9 @@ static void continued_curves_are_dashed(void **state) {
   draw(&chart);
   /* half is solid; of the other half the part within reach is dashed, six on and four off */
   assert_true((double)blue() / whole > 0.5 && (double)blue() / whole < 0.85);
+  chart = (abbe_material_chart){.count = 1, .material = &k5, .min_nm = 300, .max_nm = 800};
+  draw(&chart);
+  assert_near((double)shaded() / whole, 0.4, 0.02); /* both ends in one grey */
 }
 
 static void fits_and_measurements_are_drawn(void **state) {
