@@ -454,7 +454,7 @@ static void draw_series(abbe_chart_panel *p, size_t index) {
 static double grey_of_shade(const abbe_chart *c, size_t index) {
   size_t labels = 0;
   for (size_t i = 0; i <= index; i++) labels += c->shade[i].label != NULL;
-  return labels % 2 == 0 ? 0.86 : 0.92;
+  return labels > 0 && labels % 2 == 0 ? 0.86 : 0.92;
 }
 
 static void draw_shades(abbe_chart_panel *p) {

@@ -171,9 +171,9 @@ static size_t shade(const sheet *s, abbe_chart_shade out[2]) {
   if (s->chart->count != 1) return 0;
   const char *label = m->extrapolate ? "beyond the data" : "no data";
   if (m->min_nm > s->from) out[count++] = (abbe_chart_shade){s->from, m->min_nm, false, label};
-  if (m->max_nm < s->to)
-    out[count++] = (abbe_chart_shade){m->max_nm, s->to, false, count == 0 ? label : NULL};
-  return count;
+  if (!(m->max_nm < s->to)) return count;
+  out[count] = (abbe_chart_shade){m->max_nm, s->to, false, count == 0 ? label : NULL};
+  return count + 1;
 }
 
 /* What the data vouch for decides the height; what is continued may add its own height again, so
