@@ -21,7 +21,8 @@ static const abbe_material *find(const abbe_material_table *table, const char *n
 
 /* ---- the shipped tables ---- */
 
-/* As the catalogues and papers print them; the tolerance is half of the last printed digit. */
+/* As the catalogues print them; for papers that print none, from an evaluation of their formulas by
+ * another hand. The tolerance is half of the last printed digit. */
 static void shipped_indices_are_the_published_ones(void **state) {
   (void)state;
   const struct {
