@@ -285,12 +285,18 @@ static int draw_warnings(const app *a, int y, int rows) {
   return used;
 }
 
+/* Above the keys; a long one takes the place of warnings for the while. */
+static void draw_message(const app *a, int warnings) {
+  int rows = 1 + (int)(characters(a->message, strlen(a->message)) * 10 / 9) / COLS;
+  if (rows > 1 + warnings) rows = 1 + warnings;
+  for (int i = 0; i < rows; i++) put(LINES - 1 - rows + i, 0, COLS, "");
+  put_wrapped(LINES - 1 - rows, rows, a->message);
+}
+
 static const char *keys_line(const app *a) {
   if (a->asking) return "There are changes. Save them?  y yes   n no   Esc back";
   if (a->editing) return "Enter keep   Esc leave as it was   (shown as you type)";
-  return "Enter edit  s save  q quit  ? help  u undo  r redo  m mend  <> last digit  PgUp PgDn  Q "
-         "no "
-         "save";
+  return "Enter edit  s save  q quit  Q quit unsaved  ? help  u undo  r redo  m mend";
 }
 
 static void draw_help(void) {
@@ -342,7 +348,7 @@ static void draw(app *a) {
   if (plots) draw_plots(a, 1, body + 1, width + 1, COLS - width - 1);
   draw_numbers(a, LINES - 3 - warnings);
   draw_warnings(a, LINES - 2 - warnings, warnings);
-  put(LINES - 2, 0, COLS, a->message);
+  draw_message(a, warnings);
   attron(A_DIM);
   put(LINES - 1, 0, COLS - 1, keys_line(a));
   attroff(A_DIM);

@@ -53,6 +53,10 @@ bool abbe_edit_terminal_take(void) {
     handle(ends[i], on_end); /* before curses, which keeps its hands off */
   screen = newterm(NULL, stdout, stdin);
   if (screen == NULL) return false;
+  if (cursor_address == NULL) { /* a terminal of lines only, such as TERM=dumb */
+    abbe_edit_terminal_give_back();
+    return false;
+  }
   farewell[0] = '\0';
   append_capability("sgr0");
   append_capability("cnorm");

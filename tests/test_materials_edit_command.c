@@ -31,6 +31,7 @@ static pid_t child;
 static char path[96], seen[1 << 20];
 static size_t seen_size;
 static struct termios before;
+static const char *terminal = "xterm";
 
 /* ---- a terminal ---- */
 
@@ -60,7 +61,7 @@ static void start(const char *more, unsigned short rows, unsigned short columns)
   close(master);
   close(slave);
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-  setenv("TERM", "xterm", 1);
+  setenv("TERM", terminal, 1);
   setenv("LC_ALL", "C.UTF-8", 1);
   execl("/bin/sh", "sh", "-c", line, (char *)NULL);
   _exit(127);
@@ -217,7 +218,7 @@ static void a_file_changed_meanwhile_is_kept(void **state) {
   type(DOWN DOWN DOWN RIGHT, "n_d 1.535396");
   const char *other = "materials: []\n";
   assert_int_equal(abbe_file_write(path, other, strlen(other), NULL), ABBE_OK);
-  type("s", "t.yaml: ");
+  type("s", "Look at it"); /* the end of a sentence longer than the screen is wide */
   send_keys("Q");
   finish();
   check_file(other);
@@ -280,6 +281,20 @@ static void it_ends_with_its_terminal(void **state) {
   }
 }
 
+static void a_terminal_of_lines_is_refused(void **state) {
+  (void)state;
+  terminal = "dumb";
+  start("", 24, 80);
+  expect("there is no terminal to draw on");
+  terminal = "xterm";
+  int status = 0;
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+  check_file(table);
+  close(slave);
+  close(master);
+}
+
 static void without_a_terminal_it_says_so(void **state) {
   (void)state;
   const struct {
@@ -317,6 +332,7 @@ int main(void) {
       with_table(the_window_may_change_its_size),
       with_table(signals_leave_the_terminal_as_it_was),
       with_table(it_ends_with_its_terminal),
+      with_table(a_terminal_of_lines_is_refused),
       with_table(without_a_terminal_it_says_so),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
