@@ -52,7 +52,8 @@ void abbe_command_range(const char *program, const char *option, const char *tex
   *to = *middle == ':' ? strtod(middle + 1, &end) : 0;
   if (middle == text || end == NULL || end == middle + 1 || *end != '\0' || !isfinite(*from) ||
       !isfinite(*to) || *from >= *to || *from <= 0) {
-    fprintf(stderr, "%s: %s '%s' is not a range such as 380:780\n", program, option, text);
+    fprintf(stderr, "%s: %s '%s' is not a range: two numbers above 0, the smaller first, such as %s\n",
+            program, option, text, *from > 0 && *from < 100 ? "1.5:1.6" : "380:780");
     wrong_use(program);
   }
 }
@@ -61,11 +62,11 @@ int abbe_command_choice(const char *program, const char *option, const char *tex
                         const char *const *names, int count) {
   for (int i = 0; i < count; i++)
     if (strcasecmp(text, names[i]) == 0) return i;
-  fprintf(stderr, "%s: %s '%s' is not known", program, option, text);
   const char *near = abbe_nearest_word(text, names, (size_t)count);
-  if (near != NULL) fprintf(stderr, "; did you mean '%s'?", near);
-  fprintf(stderr, " Known:");
-  for (int i = 0; i < count; i++) fprintf(stderr, " %s", names[i]);
+  fprintf(stderr, "%s: %s '%s' is not known; ", program, option, text);
+  if (near != NULL) fprintf(stderr, "did you mean '%s'? ", near);
+  fprintf(stderr, "it is one of");
+  for (int i = 0; i < count; i++) fprintf(stderr, "%s %s", i > 0 ? "," : "", names[i]);
   fprintf(stderr, "\n");
   wrong_use(program);
 }

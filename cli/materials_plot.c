@@ -38,7 +38,10 @@ static void read_size(request *r, const char *text) {
   if (sscanf(text, "%5zux%5zu%c", &r->width, &r->height, &rest) == 2 && r->width > 0 &&
       r->height > 0 && text[0] != '-' && strstr(text, "x-") == NULL)
     return;
-  abbe_materials_wrong_use(r->program, "--size wants a size such as 960x600");
+  char sentence[120];
+  snprintf(sentence, sizeof sentence, "--size '%.40s' is not WIDTHxHEIGHT in pixels, such as 960x600",
+           text);
+  abbe_materials_wrong_use(r->program, sentence);
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
@@ -84,8 +87,8 @@ static const struct argp parser = {
            "  abbe materials plot n-bk7 f2 sf11 -o glasses.png\n"
            "  abbe materials plot diamond --range 230:1000 -o diamond.svg\n"
            "  abbe materials plot n-bk7 --fits -o fits.png\n"
-           "  abbe materials plot my-glass --table glasses.yaml --points measured.csv -o m.png\n"
-           "  abbe materials plot --map n-bk7 --table default --table glasses.yaml -o map.png\n\n"
+           "  abbe materials plot k5 --table my.yaml --points measured.csv -o k5.png\n"
+           "  abbe materials plot --map n-bk7 --table default --table my.yaml -o map.png\n\n"
            "A curve is drawn through where its data reach, dashed where its record allows it to be "
            "continued, and not at all beyond.",
 };

@@ -45,8 +45,9 @@ const char *abbe_nearest_word(const char *word, const char *const *candidates, s
     size_t longer = length > other ? length : other;
     size_t limit = longer / 3 > 2 ? longer / 3 : 2;
     size_t steps = distance(word, length, candidates[i], other);
-    /* a distance of the whole word means that nothing of it is left */
+    /* two slips must leave more than half of a word: 'zip' is no 'rii' */
     if (steps > limit || steps >= longer || steps >= best) continue;
+    if (steps > 1 && 2 * steps >= longer) continue;
     best = steps;
     nearest = candidates[i];
   }

@@ -133,8 +133,8 @@ static void test_wrong_use(void **state) {
       {GEM " --bits 12" TO, "--bits '12' is not known"},
       {GEM " --profile tesis" TO, "did you mean 'thesis'?"},
       {GEM " --fill smea" TO, "did you mean 'smear'?"},
-      {GEM " --space srgb" TO, "acescg rec709 xyz"},
-      {GEM " --gl vulkan" TO, "osmesa egl"},
+      {GEM " --space srgb" TO, "acescg, rec709, xyz"},
+      {GEM " --gl vulkan" TO, "osmesa, egl"},
   };
   refuse_all(rows, sizeof rows / sizeof *rows, 2);
 }

@@ -19,6 +19,11 @@ static void far_words_are_not(void **state) {
   assert_null(abbe_nearest_word("teapot", words, COUNT));
   assert_null(abbe_nearest_word("", words, COUNT));
   assert_null(abbe_nearest_word("x", words, COUNT));
+  static const char *const shorts[] = {"rii", "from", "k5"};
+  assert_null(abbe_nearest_word("zip", shorts, 3));
+  assert_null(abbe_nearest_word("foo", shorts, 3));
+  assert_null(abbe_nearest_word("f2", shorts, 3));
+  assert_string_equal(abbe_nearest_word("form", shorts, 3), "from");
   assert_null(abbe_nearest_word("water", words, 0));
 }
 
