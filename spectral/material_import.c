@@ -184,3 +184,21 @@ abbe_result abbe_import_load(const char *path, const abbe_import_options *option
   free(bytes);
   return result;
 }
+
+abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error *error) {
+  static const char *const names[ABBE_IMPORT_FORMAT_COUNT] = {
+      [ABBE_IMPORT_AGF] = "a Zemax catalogue",
+      [ABBE_IMPORT_RII] = "a file of refractiveindex.info",
+      [ABBE_IMPORT_CSV] = "a list of points"};
+  char *bytes = NULL;
+  size_t size = 0;
+  if (result != ABBE_PARSE && result != ABBE_SCHEMA) return result;
+  if (abbe_file_read(path, MAX_BYTES, &bytes, &size, NULL) != ABBE_OK) return result;
+  const char *name = names[abbe_import_detect(bytes, size)];
+  free(bytes);
+  if (name == NULL) return result;
+  return abbe_error_set(error, result,
+                        "%s: is %s, not a table of materials; 'abbe materials import %s -o "
+                        "TABLE.yaml' makes one of it",
+                        path, name, path);
+}

@@ -56,6 +56,11 @@ abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
 abbe_result abbe_import_load(const char *path, const abbe_import_options *options,
                              abbe_material_table *into, abbe_report *report, abbe_error *error);
 
+/* After a table could not be read with `result`: where the file at path is a catalogue, a file of
+ * refractiveindex.info or a list of points, error says so and how it becomes a table; else it stays
+ * as it is. Returns result. */
+abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error *error);
+
 #ifdef __cplusplus
 }
 #endif

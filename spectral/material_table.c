@@ -1,5 +1,6 @@
 #include "spectral/material_table.h"
 
+#include "spectral/material_import.h"
 #include "spectral/material_record.h"
 #include "spectral/nearest.h"
 #include "spectral/yaml.h"
@@ -195,7 +196,7 @@ static abbe_result load(const char *path, const mode *how, abbe_material_table *
   if (result == ABBE_OK) result = read_table(yaml, path, how, out, error);
   if (result != ABBE_OK) abbe_material_table_free(out);
   abbe_yaml_free(yaml);
-  return result;
+  return abbe_import_explain(path, result, error);
 }
 
 abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,

@@ -1,6 +1,7 @@
 #include "spectral/table_edit.h"
 
 #include "spectral/file.h"
+#include "spectral/material_import.h"
 #include "spectral/material_table.h"
 #include "spectral/nearest.h"
 #include "spectral/number.h"
@@ -80,7 +81,7 @@ abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_e
   if (result == ABBE_OK) result = abbe_table_edit_parse(text, size, path, out, error);
   if (result == ABBE_OK) (*out)->in_memory = false;
   free(text);
-  return result;
+  return abbe_import_explain(path, result, error);
 }
 
 abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_error *error) {
@@ -213,6 +214,17 @@ static abbe_result no_such_key(const abbe_table_edit *edit, const char *name, co
                         edit->yaml.name, name, key);
 }
 
+/* A step that list `at` has not, though the steps before it are there. */
+static abbe_result no_such_item(const abbe_table_edit *edit, const char *name, const char *key,
+                                abbe_yaml_node at, abbe_error *error) {
+  size_t count = abbe_yaml_count(edit->yaml.yaml, at);
+  if (!abbe_yaml_is_sequence(edit->yaml.yaml, at) || count == 0)
+    return no_such_key(edit, name, key, error);
+  return abbe_error_set(error, ABBE_NOT_FOUND,
+                        "%s: the record '%.80s' has no '%.80s'; the list has %zu items, 0 to %zu",
+                        edit->yaml.name, name, key, count, count - 1);
+}
+
 static bool step_into(const abbe_yaml *yaml, abbe_yaml_node at, const char *step, size_t *index) {
   if (abbe_yaml_is_mapping(yaml, at)) {
     *index = find_pair(yaml, at, step);
@@ -255,7 +267,8 @@ static abbe_result find_key(const abbe_table_edit *edit, const char *name, const
       if (dot != NULL) *dot = '.';
       memmove(out->rest, step, strlen(step) + 1);
       /* only a mapping takes new keys */
-      return abbe_yaml_is_mapping(yaml, at) ? ABBE_OK : no_such_key(edit, name, key, error);
+      return abbe_yaml_is_mapping(yaml, at) ? ABBE_OK
+                                            : no_such_item(edit, name, key, at, error);
     }
     if (dot == NULL) break;
     if (abbe_yaml_edit_is_alias(&edit->yaml, at, out->index)) return shared(edit, key, error);

@@ -114,6 +114,20 @@ static abbe_result splice(abbe_yaml_edit *e, span where, const char *with, abbe_
   return ABBE_OK;
 }
 
+/* Why value is none, where it stands: most often a decimal comma, in a list. */
+static abbe_result not_a_value(const char *value, const char *what, abbe_error *error) {
+  char point[64];
+  snprintf(point, sizeof point, "%s", value);
+  char *comma = strchr(point, ',');
+  bool number = comma != NULL && point[strspn(point, "0123456789+-,.eE")] == '\0';
+  if (comma != NULL) *comma = '.';
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "'%.60s' cannot stand as the value of %.60s; %s%s",
+                        value, what,
+                        number ? "write a number with a decimal point, "
+                               : "put it in quotes, or balance its brackets",
+                        number ? point : "");
+}
+
 /* The change holds only if the value that was put in is read as a value: whole, and alone. */
 static abbe_result splice_value(abbe_yaml_edit *e, span where, const char *with, size_t skip,
                                 const char *value, const char *what, abbe_error *error) {
@@ -133,10 +147,7 @@ static abbe_result splice_value(abbe_yaml_edit *e, span where, const char *with,
     abbe_yaml_edit bad = *e;
     *e = before;
     before = bad;
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "'%.60s' cannot stand as the value of '%.60s'; put it in quotes, or "
-                            "balance its brackets",
-                            value, what);
+    result = not_a_value(value, what, error);
   }
   abbe_yaml_edit_free(&before);
   return result;
