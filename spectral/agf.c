@@ -14,7 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MAX_BYTES = 64 << 20, MAX_FIELDS = 16, MAX_TEXT = 1000 };
+enum { MAX_BYTES = 64 << 20, MAX_FIELDS = 16, MAX_TEXT = 1000, MAX_TITLE = 60 };
 
 /* Range where a catalogue states none: what every glass is measured over. */
 static const double ASSUMED_LOW_NM = 404.66, ASSUMED_HIGH_NM = 656.27;
@@ -113,6 +113,17 @@ static abbe_result keep_text(reader *r, const char *text, char **out) {
 
 /* ---- a glass from what its lines said ---- */
 
+/* What of the catalogue's first remark goes with every glass; the table's description has it all. */
+static void title_of(const char *remark, char title[MAX_TITLE + 8]) {
+  size_t length = strlen(remark);
+  snprintf(title, MAX_TITLE + 8, "; %.*s", MAX_TITLE, remark);
+  if (length <= MAX_TITLE) return;
+  abbe_encoding_trim(title);
+  char *blank_at = strrchr(title + 2, ' ');
+  if (blank_at != NULL) *blank_at = '\0';
+  strcat(title, "…");
+}
+
 static abbe_result read_source(reader *r, abbe_material *m) {
   glass *g = &r->glass;
   if (g->comment != NULL && strncasecmp(g->comment, "source:", 7) == 0) {
@@ -120,9 +131,9 @@ static abbe_result read_source(reader *r, abbe_material *m) {
     if (result != ABBE_OK) return result;
     if (m->source != NULL) return ABBE_OK;
   }
-  char text[2 * MAX_TEXT];
-  snprintf(text, sizeof text, "Zemax catalogue %.200s, %s%s%.600s", r->file, g->name,
-           r->remark != NULL ? "; " : "", r->remark != NULL ? r->remark : "");
+  char text[MAX_TEXT], title[MAX_TITLE + 8] = "";
+  if (r->remark != NULL) title_of(r->remark, title);
+  snprintf(text, sizeof text, "Zemax catalogue %.200s, %s%s", r->file, g->name, title);
   abbe_encoding_trim(text);
   return keep_text(r, text, &m->source);
 }

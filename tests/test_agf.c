@@ -62,6 +62,17 @@ static void a_glass_is_read_whole(void **state) {
   abbe_material_table_free(&t);
 }
 
+/* Catalogues begin with a page of text; a source is a line. */
+static void a_long_title_is_cut_at_a_word(void **state) {
+  (void)state;
+  abbe_material_table t = parse("CC Maker, all glasses of spring 2017 with melt data, for "
+                                "designers only, see our terms of use\n" BK7);
+  assert_string_equal(t.material[0].source, "Zemax catalogue maker.agf, N-BK7; Maker, all glasses of "
+                                            "spring 2017 with melt data, for…");
+  assert_contains(t.description, "see our terms of use");
+  abbe_material_table_free(&t);
+}
+
 /* As one maker prints them. */
 static void wrapped_lines_are_joined(void **state) {
   (void)state;
@@ -241,6 +252,7 @@ static int end(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_glass_is_read_whole),
+      cmocka_unit_test(a_long_title_is_cut_at_a_word),
       cmocka_unit_test(wrapped_lines_are_joined),
       cmocka_unit_test(encodings_and_line_ends_do_not_matter),
       cmocka_unit_test(placeholders_and_missing_fields_are_no_values),
