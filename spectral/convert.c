@@ -218,9 +218,14 @@ abbe_result abbe_convert_judge(const abbe_given *given, abbe_fit_form form,
   abbe_result result = abbe_convert_make(given, form, &made, error);
   if (result != ABBE_OK) return result;
   abbe_index_points probe; /* refuses a range that is none, or meets a pole */
-  result = abbe_index_points_sample(&made, min_nm, max_nm, 401, 4001, &probe, error);
+  abbe_error why = {0};
+  result = abbe_index_points_sample(&made, min_nm, max_nm, 401, 4001, &probe, &why);
   abbe_index_points_free(&probe);
-  if (result != ABBE_OK) return result;
+  if (result != ABBE_OK)
+    return abbe_error_set(error, result,
+                          "the numbers %g and %g go with no material: %s; compare them with their "
+                          "source, and their units",
+                          given->first, given->second, why.text);
   out->rounding = rounding_of(given, form, &made, min_nm, max_nm);
   abbe_dispersion_numbers own = abbe_dispersion_describe(&made);
   size_t index[ABBE_CONVERT_COMPARED];
