@@ -1,4 +1,4 @@
-#include "cli/materials.h"
+#include "cli/materials_change.h"
 
 #include "spectral/doctor.h"
 #include "spectral/table_mend.h"
@@ -144,7 +144,8 @@ static abbe_result mend(const request *r, const abbe_material_table *known, abbe
   abbe_table_edit *edit = NULL;
   abbe_table_mend made = {0};
   char *diff = NULL;
-  abbe_result result = abbe_table_edit_open(r->table, &edit, error);
+  abbe_result result = abbe_change_check_table(r->table, error);
+  if (result == ABBE_OK) result = abbe_table_edit_open(r->table, &edit, error);
   if (result == ABBE_OK) result = abbe_table_mend_make(edit, known, &made, error);
   if (result == ABBE_OK && r->dry_run) {
     result = abbe_table_edit_diff(edit, &diff, error);
@@ -155,6 +156,9 @@ static abbe_result mend(const request *r, const abbe_material_table *known, abbe
   if (result == ABBE_OK)
     fprintf(stderr, "%s: %zu value%s %s\n", r->program, made.mended, made.mended == 1 ? "" : "s",
             r->dry_run ? "would be mended" : "mended");
+  if (result == ABBE_OK && made.warned[0] != '\0')
+    fprintf(stderr, "%s: %s: the row's own warning stays as it was; see whether it still holds\n",
+            r->program, made.warned);
   if (result == ABBE_OK && made.refused > 0)
     fprintf(stderr, "%s: %zu could not be: %s\n", r->program, made.refused, made.why);
   free(diff);
@@ -223,6 +227,8 @@ int abbe_materials_check(int argc, char **argv) {
   abbe_error error = {0};
   abbe_materials_parse(&parser, argc, argv, &r);
   if (r.dry_run && !r.fix) abbe_materials_wrong_use(r.program, "--dry-run goes with --fix");
+  if (r.fix && r.table == NULL)
+    abbe_materials_wrong_use(r.program, "--fix changes a file; name it with --table FILE");
   if (r.fix && (r.name != NULL || r.json))
     abbe_materials_wrong_use(r.program, "--fix mends the whole table, and goes without a name "
                                         "and --json");

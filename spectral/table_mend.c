@@ -19,6 +19,14 @@ static void refuse(abbe_table_mend *out, const char *name, const char *why) {
   if (out->refused++ == 0) snprintf(out->why, sizeof out->why, "%.80s: %.300s", name, why);
 }
 
+static void remember_warning(abbe_table_mend *out, const abbe_material *m) {
+  size_t used = strlen(out->warned), length = strlen(m->name);
+  if (m->warning == NULL || used + length + 3 > sizeof out->warned) return;
+  bool second = used >= length && strcmp(out->warned + used - length, m->name) == 0;
+  if (second) return; /* value of the same row */
+  snprintf(out->warned + used, sizeof out->warned - used, "%s%s", used > 0 ? ", " : "", m->name);
+}
+
 /* The number of values that were set. */
 static size_t apply(abbe_table_edit *edit, const abbe_material_table *table,
                     const abbe_findings *found, abbe_table_mend *out) {
@@ -34,8 +42,10 @@ static size_t apply(abbe_table_edit *edit, const abbe_material_table *table,
       refuse(out, name, "the name stands twice, so it does not say which record to mend");
     else if (abbe_table_edit_set(edit, name, f->key, f->value, &why) != ABBE_OK)
       refuse(out, name, why.text);
-    else
+    else {
+      remember_warning(out, &table->material[f->row]);
       set++;
+    }
   }
   out->mended += set;
   return set;

@@ -20,6 +20,7 @@ typedef struct abbe_table_mend {
   size_t mended;  /* values that were set */
   size_t refused; /* that could not be, since a name stands twice or the text cannot carry it */
   char why[400];  /* the first that was refused; "" without */
+  char warned[400]; /* names of mended rows that have a warning, which may no longer hold: "a, b" */
 } abbe_table_mend;
 
 /* Mends until nothing certain is left: one mend may bring out the next fault. ABBE_PARSE,
