@@ -173,9 +173,25 @@ static abbe_result write_to(const request *r, const abbe_material_table *chosen,
   }
 }
 
+/* The whole answer, or nothing of it. */
+static abbe_result print(const request *r, const abbe_material_table *chosen, abbe_report *report,
+                         abbe_error *error) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  if (to == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the answer");
+  abbe_result result = write_to(r, chosen, to, report, error);
+  if (fclose(to) != 0 && result == ABBE_OK)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the answer");
+  if (result == ABBE_OK) fwrite(text, 1, size, stdout);
+  fflush(stdout); /* before the notes */
+  free(text);
+  return result;
+}
+
 static abbe_result save(const request *r, const abbe_material_table *chosen, abbe_report *report,
                         abbe_error *error) {
-  if (r->output == NULL) return write_to(r, chosen, stdout, report, error);
+  if (r->output == NULL) return print(r, chosen, report, error);
   if (!r->force && access(r->output, F_OK) == 0)
     return abbe_error_set(error, ABBE_IO,
                           "%s: is there already; --force writes over it, or choose another name",

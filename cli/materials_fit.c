@@ -142,6 +142,23 @@ static void print_residuals(const subject *s, const abbe_fit *f) {
   }
 }
 
+/* What is measured at points says nothing beyond them. */
+static void print_reach(const request *r, const subject *s) {
+  size_t used = 0;
+  double low = r->over_to_nm, high = r->over_from_nm;
+  for (size_t i = 0; i < s->points.count; i++) {
+    double lambda_nm = s->points.lambda_nm[i];
+    if (lambda_nm < r->over_from_nm || lambda_nm > r->over_to_nm) continue;
+    low = fmin(low, lambda_nm);
+    high = fmax(high, lambda_nm);
+    used++;
+  }
+  if (s->points.exact)
+    printf("\n");
+  else
+    printf("   (at the %zu points there, %g to %g nm)\n", used, low, high);
+}
+
 static void print_text(const request *r, const subject *s, const abbe_fit *f,
                        const abbe_index_difference *over) {
   abbe_dispersion_numbers d = abbe_dispersion_describe(&f->dispersion);
@@ -153,8 +170,9 @@ static void print_text(const request *r, const subject *s, const abbe_fit *f,
   printf("  rms error      %.3g\n  largest error  %.3g at %g nm\n", f->rms, f->max_error,
          f->max_nm_of_error);
   if (over != NULL)
-    printf("  over %g:%g nm  rms %.3g, largest %.3g at %g nm\n", r->over_from_nm, r->over_to_nm,
+    printf("  over %g:%g nm  rms %.3g, largest %.3g at %g nm", r->over_from_nm, r->over_to_nm,
            over->rms, over->max, over->max_nm);
+  if (over != NULL) print_reach(r, s);
   if (f->weighted && !isnan(f->reduced_chi_squared))
     printf("  reduced chi^2  %.3g%s\n", f->reduced_chi_squared,
            f->reduced_chi_squared > 3 ? "   (the form or the uncertainties are too small)" : "");
@@ -357,10 +375,10 @@ static const struct argp parser = {
            "Examples:\n"
            "  abbe materials fit n-bk7 --terms 3\n"
            "  abbe materials fit n-sf11 --form sellmeier --range 400:700 --over 380:780\n"
-           "  abbe materials fit --points measured.csv --terms 2 --residuals --plot fit.png\n"
+           "  abbe materials fit --points measured.csv --residuals --plot fit.png\n"
            "  abbe materials fit --points measured.csv --record my-glass |\n"
            "    abbe materials add --record - --table glasses.yaml\n"
-           "  abbe materials fit --formula 'cauchy 1.5046 0.0042' --form sellmeier --terms 1\n\n"
+           "  abbe materials fit --formula 'cauchy 1.5 0.004' --form sellmeier --terms 1\n\n"
            "Weighted least squares where the points have uncertainties. What the points cannot "
            "support is refused: more coefficients than wavelengths, a range too narrow, a highest "
            "term that they do not tell from zero.",

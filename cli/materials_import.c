@@ -102,7 +102,7 @@ static const struct argp parser = {
            "YAML, CSV of measured points, tables of ours.\v"
            "Examples:\n"
            "  abbe materials import schott.agf -o schott.yaml\n"
-           "  abbe materials import main/SiO2/nk/Malitson.yml main/C/nk/Peter.yml -o gems.yaml\n"
+           "  abbe materials import SiO2/nk/Malitson.yml C/nk/Peter.yml -o gems.yaml\n"
            "  abbe materials import points.csv --name my-glass --source \"prism, 21 June\"\n"
            "  abbe materials import schott.agf ohara.agf -o both.yaml --all\n\n"
            "A record that cannot be used is reported with its line and the reason and does not "

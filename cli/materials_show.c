@@ -65,6 +65,9 @@ static void show_fits(const abbe_material *m) {
     else
       printf("largest error %.3g)\n", fit->max_error);
   }
+  bool none = m->fit[0].terms == 0 && m->fit[1].terms == 0;
+  if (none && m->dispersion.model != ABBE_DISPERSION_CONSTANT)
+    printf("  Cauchy        no fit recorded; --fit makes them, 'abbe materials fit' others\n");
 }
 
 static void show_numbers(const abbe_material *m) {

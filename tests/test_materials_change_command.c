@@ -108,7 +108,8 @@ static void wrong_use_gets_a_sentence(void **state) {
       {MATERIALS "set k6 source=x" TABLE, "did you mean 'k5'?", 1},
       {MATERIALS "set k5 range_nm=380:780" TABLE, "'range_nm' wants a list of 2 numbers", 1},
       {MATERIALS "set k5 'range_nm=[380'" TABLE, "break the file", 1},
-      {MATERIALS "set k5 coefficients.2=1" TABLE, "has no 'coefficients.2'", 1},
+      {MATERIALS "set k5 coefficients.2=1" TABLE, "has no 'coefficients.2'; the list has 2 items", 1},
+      {MATERIALS "set k5 coefficients.1=0,0046" TABLE, "with a decimal point, 0.0046", 1},
       {MATERIALS "set k5 --unset fit" TABLE, "has no 'fit'", 1},
       {MATERIALS "set k5 --unset source" TABLE, "the key 'source' is missing", 1},
       {MATERIALS "set k5 source=x --table thesis", "is compiled in", 1},
@@ -144,16 +145,22 @@ static void wrong_use_gets_a_sentence(void **state) {
   assert_int_equal(run_line("cmp t.yaml \"$house\"/spectral/thesis.yaml && rm t.yaml"), 0);
 }
 
+/* Each line of the examples is a command or its next line: none was broken to fit the page. */
 static void help_shows_examples(void **state) {
   (void)state;
-  const char *const verbs[] = {"set", "add", "remove", "rename", "diff"};
-  for (int i = 0; i < 5; i++) {
+  const char *const verbs[] = {"list", "show",   "plot",   "nearest", "check", "fit",    "from",
+                               "diff", "edit",   "set",    "add",     "remove", "rename", "import",
+                               "export"};
+  for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
     char line[96], example[64];
     snprintf(line, sizeof line, MATERIALS "%s --help", verbs[i]);
     snprintf(example, sizeof example, "  abbe materials %s ", verbs[i]);
     assert_int_equal(run_line(line), 0);
     assert_contains(run_output, "Examples:");
     assert_contains(run_output, example);
+    const char *c = strstr(run_output, "Examples:\n") + 10;
+    for (; *c != '\n' && *c != '\0'; c += strcspn(c, "\n") + 1)
+      if (c[0] != ' ') fail_msg("%s: a broken example: %.40s", verbs[i], c);
   }
 }
 

@@ -135,6 +135,7 @@ static void fix_mends_a_copy_and_leaves_the_rest(void **state) {
           "$house/spectral/thesis.yaml",
           0, "+    coefficients: [1.447746, 0.00354]\n");
   answers("$abbe materials check --table t.yaml --fix", 0, "5 rows, 0 wrong, 0 doubtful");
+  assert_contains(run_errors, "fused-silica, k5, bak4, baf10: the row's own warning stays as it was");
   answers("diff $house/spectral/thesis.yaml t.yaml | grep -c '^[<>]'", 0, "8\n");
   answers("$abbe materials check --table t.yaml --fix", 0, "0 wrong");
 }
@@ -190,6 +191,8 @@ static void measured_points_are_fitted_and_drawn(void **state) {
   assert_contains(run_output, "from the uncertainties");
   assert_contains(run_output, "reduced chi^2");
   assert_contains(run_output, "PNG");
+  answers(POINTS "$abbe materials fit --points m.csv --over 300:600", 0,
+          "(at the 5 points there, 404.66 to 587.56 nm)");
   answers("$abbe materials fit --points m.csv --plot m.svg >/dev/null && cat m.svg", 0, "<svg");
   abbe_material_table t =
       record_of(POINTS "$abbe materials fit --points m.csv --terms 3 --record my-glass");
@@ -249,7 +252,9 @@ static void wrong_input_gets_a_sentence(void **state) {
       {"$abbe materials list --sort nd", 2, "did you mean 'n_d'?"},
       {"$abbe materials list --columns name,vd", 2, "did you mean 'v_d'?"},
       {"$abbe materials list --columns ,", 2, "names no column"},
-      {"$abbe materials list --nd 1.5", 2, "--nd '1.5' is not a range"},
+      {"$abbe materials list --nd 1.5", 2, "--nd '1.5' is not a range: two numbers above 0, the "
+                                           "smaller first, such as 1.5:1.6"},
+      {"$abbe materials from --nd 1.5 --bg 5", 1, "1.5 and 5 go with no material"},
       {"$abbe materials nearest", 2, "nearest to what?"},
       {"$abbe materials nearest --nd 1.5", 2, "--nd and --vd go together"},
       {"$abbe materials nearest --nd 1.5 --vd 60 --like diamond", 2, "exclude each other"},
@@ -259,8 +264,14 @@ static void wrong_input_gets_a_sentence(void **state) {
       {"$abbe materials nearest --points /no/such.csv", 1, "/no/such.csv"},
       {"$abbe materials nearest --nd 1.5 --vd sixty", 2, "--vd 'sixty' is not a number"},
       {"$abbe materials check --dry-run", 2, "--dry-run goes with --fix"},
-      {"$abbe materials check --fix --json", 2, "mends the whole table"},
-      {"$abbe materials check --fix", 1, "compiled in"},
+      {"$abbe materials check --fix --json --table t", 2, "mends the whole table"},
+      {"$abbe materials check --fix", 2, "--table FILE"},
+      {"$abbe materials check --fix --table thesis", 1, "--to yaml -o FILE' makes a copy"},
+      {"$abbe materials check --table $house/docs/examples/maker.agf", 1,
+       "is a Zemax catalogue, not a table of materials; 'abbe materials import "},
+      {"$abbe materials list --table $house/docs/examples/measured.csv", 1, "is a list of points"},
+      {"$abbe materials set a b=1 --table $house/docs/examples/maker.agf", 1, "Zemax catalogue"},
+      {"$abbe materials export n-bk7 --to csv --range 100:200", 1, "no index at 100 nm"},
       {"$abbe materials check --table /no/such.yaml", 1, "/no/such.yaml"},
       {"$abbe materials check dimond", 1, "did you mean 'diamond'?"},
       {"$abbe materials fit", 2, "fit what?"},
