@@ -105,7 +105,7 @@ static void write_head(const writing *w) {
   fprintf(w->file,
           "// %g units are a metre. The linear picture is radiance, W/(m2 sr), in Rec.709:\n"
           "//   povray +Iscene.pov +Oscene.exr +FE +W%zu +H%zu -D\n"
-          "// Declare=Caustics=0 leaves the light out that refractors throw.\n"
+          "// Declare=Caustics=0 leaves the light out that refractors throw, not their shadows.\n"
           "#version 3.7;\n"
           "#ifndef (Caustics) #declare Caustics = 1; #end\n"
           "#ifndef (Photons) #declare Photons = %zu; #end\n"
@@ -115,8 +115,9 @@ static void write_head(const writing *w) {
           "  assumed_gamma 1\n  ambient_light rgb 1\n  max_trace_level 32\n  adc_bailout 1e-4\n",
           w->scale, s->camera.width, s->camera.height, w->options->photons, w->options->samples);
   if (w->photons)
-    fprintf(w->file, "  photons {\n    count Photons autostop 0 gather Gather, 5 * Gather\n    "
-                     "max_trace_level 16 adc_bailout 1e-3\n  }\n");
+    fprintf(w->file, "  #if (Caustics)\n  photons {\n    count Photons autostop 0 "
+                     "gather Gather, 5 * Gather\n    max_trace_level 16 adc_bailout 1e-3\n  }\n"
+                     "  #end\n");
   fprintf(w->file, "}\nbackground { rgb %.12g }\n", s->background);
 }
 
@@ -257,16 +258,23 @@ static abbe_result write_refractor(const writing *w, const abbe_object *object, 
   comment(w, "refractor", object->name);
   fprintf(w->file, "// %s: off by %.2g at the most (%g nm), by %.2g in the mean\n",
           object->material->name, glass.worst, glass.worst_nm, glass.rms);
+  fprintf(w->file, "#declare Surface = ");
   write_surface(w, object);
   fprintf(w->file,
-          "  pigment { rgbt 1 }\n"
+          "}\n"
+          "object {\n  Surface\n  pigment { rgbt 1 }\n"
           "  finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy }\n"
           "  interior {\n    ior %.12g\n",
           glass.ior);
   if (glass.dispersion != 1)
     fprintf(w->file, "    dispersion %.12g dispersion_samples Samples\n", glass.dispersion);
   write_absorption(w, object->material);
-  fprintf(w->file, "  }\n  photons { target reflection on refraction on collect off }\n}\n");
+  fprintf(w->file, "  }\n  photons { target reflection on refraction on collect off }\n"
+                   "  #if (!Caustics) no_shadow #end\n}\n"
+                   "#if (!Caustics)\n" /* nothing but its shadow */
+                   "object { Surface pigment { rgb 0 } finish { ambient 0 diffuse 0 } no_image "
+                   "no_reflection }\n"
+                   "#end\n");
   return ABBE_OK;
 }
 
@@ -291,9 +299,7 @@ static abbe_result write_receiver(const writing *w, const abbe_object *object, a
   } else {
     vector(w, "  pigment { rgb ", r, 1, " }\n");
   }
-  fprintf(w->file,
-          "  finish { ambient %.12g diffuse %.12g }\n"
-          "  photons { #if (Caustics) collect on #else collect off #end }\n}\n",
+  fprintf(w->file, "  finish { ambient %.12g diffuse %.12g }\n}\n",
           textured ? ambient * grey : ambient, textured ? grey : 1);
   return ABBE_OK;
 }

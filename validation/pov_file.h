@@ -27,7 +27,7 @@ typedef struct abbe_pov_options {
   size_t samples; /* of the spectrum, 2 to 100; 0: 31 */
 } abbe_pov_options;
 
-/* POV-Ray's spectrum runs from 380 to 730 nm, and its indices are
+/* POV-Ray's spectrum runs from 380 to 730 nm, and its indices are [PovRay37]
  * n(lambda) = ior dispersion^((555 nm - lambda) / 350 nm). */
 #define ABBE_POV_MIN_NM 380.0
 #define ABBE_POV_MAX_NM 730.0
@@ -53,7 +53,7 @@ double abbe_pov_glass_n(const abbe_pov_glass *glass, double lambda_nm);
 double abbe_pov_file_scale(const abbe_scene *scene);
 
 /* Writes the scene to path (beside and renamed); options may be NULL. In the file four values can
- * be set by POV-Ray's command line: Declare=Caustics=0 lets receivers take no photons, Photons and
+ * be set by POV-Ray's command line: Declare=Caustics=0 leaves caustics out, Photons and
  * Samples replace the options, Gather is how many photons make a place's light at the least.
  * ABBE_INVALID_ARGUMENT for options out of range, ABBE_UNSUPPORTED for the path of a texture that
  * POV-Ray cannot spell, errors of abbe_pov_file_glass, ABBE_IO. */
