@@ -10,6 +10,7 @@ foreach(name
     difference_picture
     eye_walk
     field
+    front
     geometry
     interface
     light_walk
@@ -26,8 +27,11 @@ foreach(name
     reflectance
     route
     spectral_sampling
+    reference
     sphere_quadrature
     tracer
+    sweep_plot
+    sweep_table
     ztest
     )
   abbe_test(${name} cpu ${validation_rooms})
