@@ -115,7 +115,7 @@ static void add_noise(const abbe_sweep_table *table, abbe_sweep_number number, f
                                                      .count = 2,
                                                      .x = f->noise_x,
                                                      .y = f->noise_y,
-                                                     .colour = 8};
+                                                     .colour = 7};
 }
 
 static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number number, figures *f,
@@ -156,7 +156,8 @@ abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table,
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < count && result == ABBE_OK; i++)
     result = make_chart(table, errors[i], &f[i], &charts[i], error);
-  snprintf(title, sizeof title, "%s, %s", table->fact[ABBE_SWEEP_FACT_SCENE],
+  const char *scene = table->fact[ABBE_SWEEP_FACT_SCENE], *slash = strrchr(scene, '/');
+  snprintf(title, sizeof title, "%s, %s", slash != NULL ? slash + 1 : scene,
            table->fact[ABBE_SWEEP_FACT_SIZE]);
   charts[0].title = title;
   if (result == ABBE_OK) result = abbe_chart_write(path, charts, count, 1100, 560 * count, error);

@@ -1,0 +1,366 @@
+#include "cli/sweep_report.h"
+
+#include "cli/command.h"
+
+#include "colorimetry/display_ocio.h"
+#include "colorimetry/exr.h"
+#include "colorimetry/png_file.h"
+#include "gl/renderer.h"
+#include "scenes/scene_file.h"
+#include "spectral/file.h"
+#include "validation/front.h"
+#include "validation/sweep.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_SIZE = 1024, SHOWN = 5 };
+
+/* Against the thesis */
+
+static bool is_default_thesis(const abbe_sweep_setting *s) {
+  return strcmp(s->profile, "thesis") == 0 && s->wavelengths == 7 && s->photons == 512 &&
+         s->map == 1024 && strcmp(s->fill, "smear") == 0;
+}
+
+void abbe_sweep_report_duel(const abbe_sweep_table *table, abbe_sweep_number error,
+                            abbe_sweep_duel *out) {
+  *out = (abbe_sweep_duel){NULL, NAN, NAN};
+  for (size_t i = 0; i < table->count; i++)
+    if (is_default_thesis(&table->row[i].setting)) out->baseline = &table->row[i];
+  if (out->baseline == NULL) return;
+  double time = out->baseline->number[ABBE_SWEEP_FRAME_MS], wrong = out->baseline->number[error];
+  double least_time = INFINITY, least_error = INFINITY;
+  for (size_t i = 0; i < table->count; i++) {
+    const abbe_sweep_row *row = &table->row[i];
+    if (strcmp(row->setting.profile, "default") != 0) continue;
+    double ms = row->number[ABBE_SWEEP_FRAME_MS], e = row->number[error];
+    if (e <= wrong) least_time = fmin(least_time, ms);
+    if (ms <= time) least_error = fmin(least_error, e);
+  }
+  if (isfinite(least_time)) out->equal_error_speedup = time / least_time;
+  if (isfinite(least_error) && wrong > 0) out->equal_time_error_ratio = least_error / wrong;
+}
+
+/* The front in the order of time; indices are malloc'd. */
+static size_t order_front(const abbe_sweep_table *table, size_t **out) {
+  size_t count = 0;
+  size_t *order = calloc(table->count + 1, sizeof *order);
+  for (size_t i = 0; order != NULL && i < table->count; i++) {
+    if (!table->row[i].front) continue;
+    size_t at = count++;
+    double ms = table->row[i].number[ABBE_SWEEP_FRAME_MS];
+    for (; at > 0 && table->row[order[at - 1]].number[ABBE_SWEEP_FRAME_MS] > ms; at--)
+      order[at] = order[at - 1];
+    order[at] = i;
+  }
+  *out = order;
+  return count;
+}
+
+/* What a table of the front shows beside the setting. */
+static const abbe_sweep_number shown[] = {ABBE_SWEEP_FRAME_MS,     ABBE_SWEEP_CAUSTIC_DE,
+                                          ABBE_SWEEP_CAUSTIC_RMSE, ABBE_SWEEP_MAP_RMSE,
+                                          ABBE_SWEEP_MAP_ENERGY,   ABBE_SWEEP_PICTURE_DE};
+enum { SHOWN_NUMBERS = sizeof shown / sizeof *shown };
+
+static const char *number_text(double value, char out[24]) {
+  snprintf(out, 24, isfinite(value) ? "%.3g" : "-", value);
+  if (isfinite(value) && fabs(value) >= 1000) snprintf(out, 24, "%.0f", value);
+  return out;
+}
+
+static void print_row(const abbe_sweep_row *row) {
+  char label[64], text[24];
+  abbe_sweep_setting_label(&row->setting, label, sizeof label);
+  printf("%-34s", label);
+  for (int k = 0; k < SHOWN_NUMBERS; k++) printf(" %12s", number_text(row->number[shown[k]], text));
+  printf("\n");
+}
+
+void abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number error) {
+  size_t *order, count = order_front(table, &order);
+  abbe_sweep_duel duel;
+  char text[24];
+  printf("%s, %s: %zu settings, %zu on the front of time and %s\n\n%-34s",
+         table->fact[ABBE_SWEEP_FACT_SCENE], table->fact[ABBE_SWEEP_FACT_SIZE], table->count, count,
+         abbe_sweep_number_name(error), "");
+  for (int k = 0; k < SHOWN_NUMBERS; k++) printf(" %12s", abbe_sweep_number_name(shown[k]));
+  printf("\n");
+  for (size_t i = 0; i < count && order != NULL; i++) print_row(&table->row[order[i]]);
+  abbe_sweep_report_duel(table, error, &duel);
+  if (count > 0 && order != NULL)
+    printf("the reference's own noise: %s of %s\n",
+           number_text(table->row[order[0]].number[error + 1], text),
+           abbe_sweep_number_name(error));
+  free(order);
+  if (duel.baseline == NULL) return;
+  printf("\nat its own settings, with the best factor on its brightness:\n");
+  print_row(duel.baseline);
+  printf("the default profile at its error: %s times as fast",
+         number_text(duel.equal_error_speedup, text));
+  printf("; in its time: %s of its error\n", number_text(duel.equal_time_error_ratio, text));
+}
+
+/* JSON */
+
+static void add_number(cJSON *object, const char *name, double value) {
+  if (isfinite(value))
+    cJSON_AddNumberToObject(object, name, value);
+  else
+    cJSON_AddNullToObject(object, name);
+}
+
+static cJSON *describe_row(const abbe_sweep_row *row) {
+  const abbe_sweep_setting *s = &row->setting;
+  cJSON *o = cJSON_CreateObject();
+  cJSON_AddStringToObject(o, "profile", s->profile);
+  cJSON_AddNumberToObject(o, "wavelengths", (double)s->wavelengths);
+  cJSON_AddNumberToObject(o, "photons", (double)s->photons);
+  cJSON_AddNumberToObject(o, "map", (double)s->map);
+  cJSON_AddNumberToObject(o, "samples", (double)s->samples);
+  cJSON_AddStringToObject(o, "fill", s->fill);
+  cJSON_AddNumberToObject(o, "exits", (double)s->exits);
+  cJSON_AddNumberToObject(o, "share", s->share);
+  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++)
+    add_number(o, abbe_sweep_number_name((abbe_sweep_number)i), row->number[i]);
+  cJSON_AddBoolToObject(o, "front", row->front);
+  return o;
+}
+
+abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number number,
+                                         abbe_error *error) {
+  abbe_sweep_duel duel;
+  cJSON *root = cJSON_CreateObject();
+  for (int i = 0; i < ABBE_SWEEP_FACT_COUNT; i++)
+    cJSON_AddStringToObject(root, abbe_sweep_fact_name((abbe_sweep_fact)i), table->fact[i]);
+  cJSON_AddStringToObject(root, "error", abbe_sweep_number_name(number));
+  abbe_sweep_report_duel(table, number, &duel);
+  add_number(root, "equal_error_speedup", duel.equal_error_speedup);
+  add_number(root, "equal_time_error_ratio", duel.equal_time_error_ratio);
+  cJSON *rows = cJSON_AddArrayToObject(root, "rows");
+  for (size_t i = 0; i < table->count; i++)
+    cJSON_AddItemToArray(rows, describe_row(&table->row[i]));
+  abbe_result result = abbe_command_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+/* Pictures */
+
+static abbe_result write_png(const abbe_image *image, double scale, const char *path,
+                             abbe_error *error) {
+  static const char *const rgb[] = {"R", "G", "B"}, *const xyz[] = {"X", "Y", "Z"};
+  const char *const *name = abbe_image_find_channel(image, "R") != (size_t)-1 ? rgb : xyz;
+  const char *word = abbe_image_attribute_text(image, "abbe:space");
+  abbe_display_desc desc = {0};
+  abbe_display *display = NULL;
+  abbe_image plain = {0};
+  for (int i = 0; word != NULL && i < ABBE_RGB_SPACE_COUNT; i++)
+    if (strcmp(word, abbe_rgb_space_name((abbe_rgb_space)i)) == 0)
+      desc.source_space = abbe_rgb_space_ocio_name((abbe_rgb_space)i);
+  abbe_result result = abbe_image_make(image->width, image->height, 3, name, &plain, error);
+  for (size_t k = 0; k < 3 && result == ABBE_OK; k++) {
+    size_t from = abbe_image_find_channel(image, name[k]);
+    if (from == (size_t)-1) continue;
+    for (size_t i = 0; i < image->width * image->height; i++)
+      plain.data[3 * i + k] = (float)(scale * (double)image->data[i * image->channels + from]);
+  }
+  if (result == ABBE_OK) result = abbe_display_make(&desc, &display, error);
+  if (result == ABBE_OK) result = abbe_display_apply(display, &plain, error);
+  if (result == ABBE_OK) result = abbe_png_write(path, &plain, 8, error);
+  abbe_display_free(display);
+  abbe_image_free(&plain);
+  return result;
+}
+
+/* A picture of the page: a file's name, and what it shows. */
+typedef struct shot {
+  char file[PATH_SIZE], text[160];
+  bool there;
+} shot;
+
+static abbe_result draw(abbe_context *context, const abbe_scene *scene, const abbe_sweep_table *t,
+                        const abbe_sweep_row *row, const char *path, abbe_error *error) {
+  abbe_render_desc desc;
+  abbe_renderer *renderer = NULL;
+  abbe_image image = {0};
+  abbe_result result = abbe_sweep_setting_desc(&row->setting, &desc, error);
+  sscanf(t->fact[ABBE_SWEEP_FACT_SIZE], "%5zux%5zu", &desc.width, &desc.height);
+  double scale = row->number[ABBE_SWEEP_SCALE];
+  if (result == ABBE_OK) result = abbe_renderer_make(context, scene, &desc, &renderer, error);
+  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
+  if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, &image, error);
+  if (result == ABBE_OK) result = write_png(&image, isfinite(scale) ? scale : 1, path, error);
+  abbe_image_free(&image);
+  abbe_renderer_free(renderer);
+  return result;
+}
+
+typedef struct page {
+  const char *path; /* of the page */
+  FILE *out;
+  abbe_context *context;
+  abbe_sweep_number number;
+} page;
+
+static const char *base_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash == NULL ? path : slash + 1;
+}
+
+/* "PAGE-SCENE-what.png", beside the page. */
+static void name_shot(const page *p, const abbe_sweep_table *t, const char *what, shot *out) {
+  const char *scene = base_of(t->fact[ABBE_SWEEP_FACT_SCENE]);
+  const char *dot = strrchr(p->path, '.');
+  int stem = dot != NULL && strchr(dot, '/') == NULL ? (int)(dot - p->path) : (int)strlen(p->path);
+  snprintf(out->file, sizeof out->file, "%.*s-%.*s-%s.png", stem, p->path, (int)strcspn(scene, "."),
+           scene, what);
+}
+
+static void say_row(const page *p, const abbe_sweep_row *row, const char *what, shot *out) {
+  char label[64], a[24], b[24];
+  abbe_sweep_setting_label(&row->setting, label, sizeof label);
+  snprintf(out->text, sizeof out->text, "%s: %s, %s ms, %s", what, label,
+           number_text(row->number[ABBE_SWEEP_FRAME_MS], a),
+           number_text(row->number[p->number], b));
+}
+
+static void show_reference(const page *p, const abbe_sweep_table *t, shot *out) {
+  abbe_image image = {0};
+  name_shot(p, t, "reference", out);
+  snprintf(out->text, sizeof out->text, "reference");
+  out->there = abbe_exr_read(t->fact[ABBE_SWEEP_FACT_REFERENCE], &image, NULL) == ABBE_OK &&
+               write_png(&image, 1, out->file, NULL) == ABBE_OK;
+  abbe_image_free(&image);
+}
+
+/* The reference, three settings of the default profile's front, and the thesis profile. */
+static void take_shots(const page *p, const abbe_sweep_table *t, const size_t *order, size_t count,
+                       shot *shots) {
+  static const char *const names[] = {"reference", "cheapest", "middle", "accurate", "thesis"};
+  abbe_sweep_duel duel;
+  abbe_scene scene = {0};
+  const abbe_sweep_row *rows[SHOWN] = {0};
+  abbe_sweep_report_duel(t, p->number, &duel);
+  if (count > 0) {
+    rows[1] = &t->row[order[0]];
+    rows[2] = &t->row[order[count / 2]];
+    rows[3] = &t->row[order[count - 1]];
+  }
+  rows[4] = duel.baseline;
+  show_reference(p, t, &shots[0]);
+  bool loaded = abbe_scene_load(t->fact[ABBE_SWEEP_FACT_SCENE], NULL, &scene, NULL) == ABBE_OK;
+  for (int i = 1; i < SHOWN; i++) {
+    if (rows[i] == NULL || !loaded) continue;
+    name_shot(p, t, names[i], &shots[i]);
+    say_row(p, rows[i], names[i], &shots[i]);
+    shots[i].there = draw(p->context, &scene, t, rows[i], shots[i].file, NULL) == ABBE_OK;
+  }
+  abbe_scene_free(&scene);
+}
+
+/* The page */
+
+static void write_row(FILE *out, const char *first, const abbe_sweep_row *row) {
+  char label[64], text[24], noise[24];
+  abbe_sweep_setting_label(&row->setting, label, sizeof label);
+  fprintf(out, "| %s%s |", first, label);
+  for (int k = 0; k < SHOWN_NUMBERS; k++) {
+    fprintf(out, " %s", number_text(row->number[shown[k]], text));
+    bool noisy = shown[k] != ABBE_SWEEP_FRAME_MS && isfinite(row->number[shown[k] + 1]);
+    if (noisy) fprintf(out, " (%s)", number_text(row->number[shown[k] + 1], noise));
+    fprintf(out, " |");
+  }
+  fprintf(out, "\n");
+}
+
+static void write_pictures(FILE *out, const shot *shots) {
+  for (int line = 0; line < 3; line++) {
+    fprintf(out, "|");
+    for (int i = 0; i < SHOWN; i++) {
+      if (!shots[i].there) continue;
+      if (line == 0) fprintf(out, " ![%s](%s) |", shots[i].text, base_of(shots[i].file));
+      if (line == 1) fprintf(out, "---|");
+      if (line == 2) fprintf(out, " %s |", shots[i].text);
+    }
+    fprintf(out, "\n");
+  }
+  fprintf(out, "\n");
+  int missing = 0;
+  for (int i = 0; i < SHOWN; i++) missing += !shots[i].there;
+  if (missing > 0)
+    fprintf(out, "%d pictures are missing: the scene, its reference or a setting is gone.\n\n",
+            missing);
+}
+
+static void write_duel(const page *p, const abbe_sweep_table *t) {
+  abbe_sweep_duel duel;
+  char a[24], b[24];
+  abbe_sweep_report_duel(t, p->number, &duel);
+  if (duel.baseline == NULL) return;
+  fprintf(
+      p->out,
+      "The thesis profile at its own settings, with the best factor on its brightness, is beaten "
+      "%s times in time at its error; in its time the error is %s of its own.\n\n",
+      number_text(duel.equal_error_speedup, a), number_text(duel.equal_time_error_ratio, b));
+}
+
+static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_error *error) {
+  shot *shots = calloc(SHOWN, sizeof *shots);
+  size_t *order, count = order_front(t, &order);
+  abbe_result result = ABBE_OK;
+  if (shots == NULL || order == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the report");
+  if (result == ABBE_OK) {
+    abbe_sweep_duel duel;
+    abbe_sweep_report_duel(t, p->number, &duel);
+    fprintf(p->out, "## %s\n\n", base_of(t->fact[ABBE_SWEEP_FACT_SCENE]));
+    take_shots(p, t, order, count, shots);
+    write_pictures(p->out, shots);
+    fprintf(p->out, "%s pixels, medians of %s frames. %s. %s. %s.\n\n",
+            t->fact[ABBE_SWEEP_FACT_SIZE], t->fact[ABBE_SWEEP_FACT_FRAMES],
+            t->fact[ABBE_SWEEP_FACT_MACHINE], t->fact[ABBE_SWEEP_FACT_DEVICE],
+            t->fact[ABBE_SWEEP_FACT_DATE]);
+    fprintf(p->out, "| of %zu settings, the front |", t->count);
+    for (int k = 0; k < SHOWN_NUMBERS; k++)
+      fprintf(p->out, " %s |", abbe_sweep_number_text(shown[k]));
+    fprintf(p->out, "\n|---|---|---|---|---|---|---|\n");
+    for (size_t i = 0; i < count; i++) write_row(p->out, "", &t->row[order[i]]);
+    if (duel.baseline != NULL) write_row(p->out, "baseline: ", duel.baseline);
+    fprintf(p->out, "\n");
+    write_duel(p, t);
+  }
+  free(order);
+  free(shots);
+  return result;
+}
+
+abbe_result abbe_sweep_report_write(const char *path, const abbe_sweep_table *tables, size_t count,
+                                    abbe_sweep_number number, abbe_context_backend backend,
+                                    abbe_error *error) {
+  abbe_file_writer writer = {0};
+  page p = {.path = path, .number = number};
+  if (strlen(path) > PATH_SIZE / 2)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the path '%.80s…' is too long", path);
+  abbe_result result = abbe_context_make(backend, &p.context, error);
+  if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
+  if (result == ABBE_OK) {
+    p.out = writer.stream;
+    fprintf(p.out,
+            "# Time against error\n\nThe front of the frame's time and %s; in brackets what "
+            "the reference's own noise makes of an error.\n\n",
+            abbe_sweep_number_text(number));
+  }
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    result = write_sweep(&p, &tables[i], error);
+  if (result == ABBE_OK)
+    result = abbe_file_writer_commit(&writer, error);
+  else
+    abbe_file_writer_discard(&writer);
+  abbe_context_free(p.context);
+  return result;
+}

@@ -1,0 +1,31 @@
+/* sweep_report.h: sweeps for people: the front as text and JSON, and a page with pictures. */
+#ifndef ABBE_CLI_SWEEP_REPORT_H
+#define ABBE_CLI_SWEEP_REPORT_H
+
+#include "gl/context.h"
+#include "validation/sweep_table.h"
+
+/* The default profile held against the thesis profile at its own settings; NaN: not known. */
+typedef struct abbe_sweep_duel {
+  const abbe_sweep_row *baseline; /* NULL: not in the table */
+  double equal_error_speedup;     /* its time over the least time of an error no larger */
+  double equal_time_error_ratio;  /* the least error in a time no longer, over its error */
+} abbe_sweep_duel;
+
+void abbe_sweep_report_duel(const abbe_sweep_table *table, abbe_sweep_number error,
+                            abbe_sweep_duel *out);
+
+/* The front, settings and numbers, on stdout. */
+void abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number error);
+abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number number,
+                                         abbe_error *error);
+
+/* A Markdown page of one or more sweeps, beside it the pictures of each scene: the reference, the
+ * cheapest, the middle and the most accurate setting of its front, and the thesis profile. Scenes
+ * and references are read from the paths in the tables; what is gone leaves out its pictures, with
+ * a note. */
+abbe_result abbe_sweep_report_write(const char *path, const abbe_sweep_table *tables, size_t count,
+                                    abbe_sweep_number number, abbe_context_backend backend,
+                                    abbe_error *error);
+
+#endif

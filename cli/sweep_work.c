@@ -1,0 +1,297 @@
+#include "cli/sweep_work.h"
+
+#include "cli/progress.h"
+
+#include "colorimetry/exr.h"
+#include "scenes/scene_file.h"
+#include "validation/reference.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifndef ABBE_VERSION
+#error "the build defines ABBE_VERSION"
+#endif
+
+enum { PATH_SIZE = 1024, DEFAULT_TEXELS = 256 };
+
+/* Says for which scene and request a reference was traced, so that no other takes it. */
+static const char *const stamp_name = "abbe:sweep";
+
+/* All that is loaded or made on the way. */
+typedef struct work {
+  const abbe_sweep_request *q;
+  abbe_scene scene;
+  abbe_context *context;
+  abbe_image picture, map; /* the reference */
+  char picture_path[PATH_SIZE], map_path[PATH_SIZE], checkpoint_path[PATH_SIZE];
+  char stamp[256];
+  abbe_sweep sweep;
+  abbe_sweep_setting *setting;
+  size_t setting_count;
+  abbe_sweep_table table;
+} work;
+
+static void close_work(work *w) {
+  free(w->setting);
+  abbe_image_free(&w->picture);
+  abbe_image_free(&w->map);
+  abbe_context_free(w->context);
+  abbe_scene_free(&w->scene);
+}
+
+/* The reference */
+
+static abbe_result name_files(work *w, abbe_error *error) {
+  const char *csv = w->q->csv, *dot = strrchr(csv, '.'), *slash = strrchr(csv, '/');
+  int stem = dot != NULL && (slash == NULL || dot > slash) ? (int)(dot - csv) : (int)strlen(csv);
+  if (stem > PATH_SIZE - 64)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the path '%.80s…' is too long", csv);
+  snprintf(w->picture_path, PATH_SIZE, "%.*s-reference.exr", stem, csv);
+  snprintf(w->map_path, PATH_SIZE, "%.*s-reference-map.exr", stem, csv);
+  snprintf(w->checkpoint_path, PATH_SIZE, "%.*s-reference.checkpoint", stem, csv);
+  return ABBE_OK;
+}
+
+static size_t passes_of(const abbe_sweep_request *q) {
+  return q->passes > 0 ? q->passes : ABBE_REFERENCE_PASSES;
+}
+
+static bool is_stamped(const char *path, const char *stamp, abbe_image *image) {
+  if (access(path, F_OK) != 0 || abbe_exr_read(path, image, NULL) != ABBE_OK) return false;
+  const char *text = abbe_image_attribute_text(image, stamp_name);
+  if (text != NULL && strcmp(text, stamp) == 0) return true;
+  abbe_image_free(image);
+  return false;
+}
+
+/* Written and read again, so that every run has the same image to the bit. */
+static abbe_result keep(abbe_image *image, const char *stamp, const char *path, abbe_error *error) {
+  abbe_result result = abbe_image_set_attribute(image, stamp_name, stamp, error);
+  if (result == ABBE_OK) result = abbe_exr_write(path, image, error);
+  if (result != ABBE_OK) return result;
+  abbe_image_free(image);
+  return abbe_exr_read(path, image, error);
+}
+
+static abbe_result trace_reference(work *w, abbe_error *error) {
+  const abbe_sweep_request *q = w->q;
+  abbe_map_layout layout;
+  abbe_progress progress;
+  abbe_reference_desc desc = {.trace = {.width = q->width, .height = q->height},
+                              .passes = passes_of(q),
+                              .checkpoint = w->checkpoint_path,
+                              .progress = abbe_progress_update,
+                              .user = &progress,
+                              .stop = abbe_progress_stopped()};
+  abbe_result result = abbe_sweep_fit_layout(w->context, &w->scene, 0, &layout, error);
+  if (result != ABBE_OK) return result;
+  desc.trace.layout = &layout;
+  desc.trace.photons = q->photons;
+  desc.trace.map_width = desc.trace.map_height = q->texels > 0 ? q->texels : DEFAULT_TEXELS;
+  if (q->matched) {
+    abbe_plan plan;
+    result = abbe_plan_make(&w->scene, NULL, &plan, error);
+    if (result != ABBE_OK) return result;
+    desc.trace.physics = (abbe_physics){true, plan.desc.orders, plan.desc.energy_share};
+    abbe_plan_free(&plan);
+  }
+  abbe_progress_begin(&progress, "reference", q->quiet);
+  result = abbe_reference_trace(&w->scene, &desc, &w->picture, &w->map, error);
+  abbe_progress_end(&progress);
+  if (result == ABBE_OK) result = keep(&w->picture, w->stamp, w->picture_path, error);
+  if (result == ABBE_OK) result = keep(&w->map, w->stamp, w->map_path, error);
+  return result;
+}
+
+/* A reference that this scene and request left before is taken; else it is traced. */
+static abbe_result find_reference(work *w, abbe_error *error) {
+  const abbe_sweep_request *q = w->q;
+  size_t width = q->width > 0 ? q->width : w->scene.camera.width;
+  size_t height = q->height > 0 ? q->height : w->scene.camera.height;
+  snprintf(w->stamp, sizeof w->stamp,
+           "scene %016llx, %zu x %zu pixels, %zu texels a side, %zu passes of %zu photons, %s",
+           abbe_sweep_hash_scene(&w->scene), width, height,
+           q->texels > 0 ? q->texels : (size_t)DEFAULT_TEXELS, passes_of(q), q->photons,
+           q->matched ? "matched" : "full");
+  if (is_stamped(w->picture_path, w->stamp, &w->picture)) {
+    if (is_stamped(w->map_path, w->stamp, &w->map)) return ABBE_OK;
+    abbe_image_free(&w->picture);
+  }
+  return trace_reference(w, error);
+}
+
+/* Files that the user names: what is not named is not compared. */
+static abbe_result load_reference(work *w, abbe_error *error) {
+  const abbe_sweep_request *q = w->q;
+  abbe_result result = ABBE_OK;
+  snprintf(w->picture_path, PATH_SIZE, "%s", q->reference != NULL ? q->reference : "");
+  snprintf(w->map_path, PATH_SIZE, "%s", q->reference_map != NULL ? q->reference_map : "");
+  if (q->reference != NULL) result = abbe_exr_read(q->reference, &w->picture, error);
+  if (result == ABBE_OK && q->reference_map != NULL)
+    result = abbe_exr_read(q->reference_map, &w->map, error);
+  const char *light = abbe_image_attribute_text(&w->map, "abbe:map_light");
+  abbe_map_layout layout;
+  if (result == ABBE_OK && q->reference_map != NULL)
+    result = abbe_map_layout_read(&w->map, q->reference_map, &layout, error);
+  if (result == ABBE_OK && light != NULL)
+    result = abbe_scene_find_light(&w->scene, light, &w->sweep.light, error);
+  return result;
+}
+
+static abbe_result get_reference(work *w, abbe_error *error) {
+  bool named = w->q->reference != NULL || w->q->reference_map != NULL;
+  abbe_result result = named ? load_reference(w, error) : find_reference(w, error);
+  if (w->picture.data != NULL) w->sweep.picture = &w->picture;
+  if (w->map.data != NULL) w->sweep.map = &w->map;
+  return result;
+}
+
+/* What the table belongs to */
+
+static void describe_machine(char *out, size_t size) {
+  char line[256], name[200] = "unknown processor";
+  FILE *file = fopen("/proc/cpuinfo", "r");
+  while (file != NULL && fgets(line, sizeof line, file) != NULL)
+    if (strncmp(line, "model name", 10) == 0 && sscanf(line, "%*[^:]: %199[^\n]", name) == 1) break;
+  if (file != NULL) fclose(file);
+  snprintf(out, size, "%s, %ld threads", name, sysconf(_SC_NPROCESSORS_ONLN));
+}
+
+static void state_facts(work *w, abbe_sweep_table *t) {
+  char text[256];
+  struct tm day;
+  time_t now = time(NULL);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_PROGRAM, "abbe " ABBE_VERSION);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_SCENE, w->q->scene);
+  snprintf(text, sizeof text, "%016llx", abbe_sweep_hash_scene(&w->scene));
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_SCENE_HASH, text);
+  size_t width = w->scene.camera.width, height = w->scene.camera.height;
+  snprintf(text, sizeof text, "%zux%zu", w->picture.data != NULL ? w->picture.width : width,
+           w->picture.data != NULL ? w->picture.height : height);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_SIZE, text);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE, w->picture_path);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE_MAP, w->map_path);
+  snprintf(text, sizeof text, "%016llx", abbe_sweep_hash_images(w->sweep.picture, w->sweep.map));
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE_HASH, text);
+  snprintf(text, sizeof text, "%zu", w->sweep.frames);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_FRAMES, text);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_DEVICE, abbe_context_description(w->context));
+  describe_machine(text, sizeof text);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_MACHINE, text);
+  if (gmtime_r(&now, &day) != NULL && strftime(text, sizeof text, "%Y-%m-%d", &day) > 0)
+    abbe_sweep_table_set(t, ABBE_SWEEP_FACT_DATE, text);
+}
+
+/* Takes up the rows of an earlier run, if they belong to this one. */
+static abbe_result open_table(work *w, abbe_error *error) {
+  abbe_sweep_table now = {0};
+  state_facts(w, &now);
+  if (access(w->q->csv, F_OK) != 0) {
+    w->table = now;
+    return ABBE_OK;
+  }
+  abbe_result result = abbe_sweep_table_load(w->q->csv, &w->table, error);
+  if (result == ABBE_OK) result = abbe_sweep_table_agree(&w->table, w->q->csv, &now, error);
+  return result;
+}
+
+/* The rows */
+
+static abbe_result get_settings(work *w, abbe_error *error) {
+  size_t refused;
+  abbe_error why = {0};
+  abbe_result result = abbe_sweep_grid_expand(&w->scene, w->q->grid, w->q->grid_count, &w->setting,
+                                              &w->setting_count, &refused, &why, error);
+  if (result == ABBE_OK && refused > 0 && !w->q->quiet)
+    fprintf(stderr, "note: %zu settings of the grid are left out; the first: %s\n", refused,
+            why.text);
+  return result;
+}
+
+/* One frame's progress within the whole sweep's. */
+typedef struct step {
+  abbe_progress *progress;
+  double done, share;
+} step;
+
+static bool step_on(void *user, double done) {
+  const step *s = user;
+  return abbe_progress_update(s->progress, s->done + s->share * done);
+}
+
+static abbe_result measure(work *w, const abbe_sweep_setting *setting, step *s, abbe_error *error) {
+  abbe_sweep_row row;
+  char text[200];
+  abbe_error why = {0};
+  abbe_result result = abbe_sweep_measure(&w->sweep, setting, step_on, s, &row, NULL, &why);
+  abbe_sweep_setting_describe(setting, text, sizeof text);
+  if (result != ABBE_OK) return abbe_error_set(error, result, "%s: %.700s", text, why.text);
+  result = abbe_sweep_table_add(&w->table, &row, error);
+  if (result == ABBE_OK) result = abbe_sweep_table_mark(&w->table, w->q->error, NULL, error);
+  return result == ABBE_OK ? abbe_sweep_table_save(&w->table, w->q->csv, error) : result;
+}
+
+static abbe_result run(work *w, abbe_error *error) {
+  abbe_progress progress;
+  size_t missing = 0, done = 0;
+  for (size_t i = 0; i < w->setting_count; i++)
+    missing += abbe_sweep_table_find(&w->table, &w->setting[i]) == NULL;
+  abbe_progress_begin(&progress, "sweep", w->q->quiet);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < w->setting_count && result == ABBE_OK; i++) {
+    if (abbe_sweep_table_find(&w->table, &w->setting[i]) != NULL) continue;
+    step s = {&progress, (double)done / (double)missing, 1 / (double)missing};
+    result = measure(w, &w->setting[i], &s, error);
+    done += result == ABBE_OK;
+  }
+  abbe_progress_end(&progress);
+  if (result == ABBE_CANCELLED)
+    return abbe_error_set(error, result,
+                          "stopped; %zu of %zu settings are in %s, and the same command goes on",
+                          w->table.count, w->setting_count, w->q->csv);
+  /* The front is of the error that is asked for now. */
+  if (result == ABBE_OK) result = abbe_sweep_table_mark(&w->table, w->q->error, NULL, error);
+  return result == ABBE_OK ? abbe_sweep_table_save(&w->table, w->q->csv, error) : result;
+}
+
+static abbe_result list(const work *w) {
+  char text[200];
+  for (size_t i = 0; i < w->setting_count; i++) {
+    abbe_sweep_setting_describe(&w->setting[i], text, sizeof text);
+    printf("%s\n", text);
+  }
+  return ABBE_OK;
+}
+
+static abbe_result work_on(work *w, abbe_error *error) {
+  abbe_scene_options options = {.materials = w->q->materials};
+  abbe_result result = abbe_scene_load(w->q->scene, &options, &w->scene, error);
+  if (result == ABBE_OK) result = get_settings(w, error);
+  if (result == ABBE_OK && w->q->list) return list(w);
+  if (result == ABBE_OK) result = name_files(w, error);
+  if (result == ABBE_OK) result = abbe_context_make(w->q->backend, &w->context, error);
+  w->sweep = (abbe_sweep){.context = w->context, .scene = &w->scene, .frames = w->q->frames};
+  if (result == ABBE_OK) result = get_reference(w, error);
+  if (result == ABBE_CANCELLED)
+    return abbe_error_set(error, result,
+                          "stopped while the reference was traced; what is done is kept, and the "
+                          "same command goes on");
+  if (result == ABBE_OK) result = open_table(w, error);
+  return result == ABBE_OK ? run(w, error) : result;
+}
+
+abbe_result abbe_sweep_work(const abbe_sweep_request *q, abbe_sweep_table *out, abbe_error *error) {
+  work w = {.q = q};
+  abbe_result result = work_on(&w, error);
+  close_work(&w);
+  if (result == ABBE_OK)
+    *out = w.table;
+  else
+    abbe_sweep_table_free(&w.table);
+  return result;
+}
