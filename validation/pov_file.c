@@ -112,7 +112,7 @@ static void write_head(const writing *w) {
           "#ifndef (Samples) #declare Samples = %zu; #end\n"
           "#ifndef (Gather) #declare Gather = 100; #end\n"
           "global_settings {\n"
-          "  assumed_gamma 1\n  ambient_light rgb 1\n  max_trace_level 32\n  adc_bailout 1e-4\n",
+          "  assumed_gamma 1\n  ambient_light rgb 1\n  max_trace_level 24\n  adc_bailout 1e-3\n",
           w->scale, s->camera.width, s->camera.height, w->options->photons, w->options->samples);
   if (w->photons)
     fprintf(w->file, "  #if (Caustics)\n  photons {\n    count Photons autostop 0 "
