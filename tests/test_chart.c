@@ -1,5 +1,6 @@
 #define _XOPEN_SOURCE 700
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include "colorimetry/chart.h"
 #include "colorimetry/png_file.h"
@@ -8,12 +9,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-/* Fontconfig keeps patterns in caches of its own until the process ends. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) {
-  return "leak:libfontconfig";
-}
 
 static char folder[64], path[2][96];
 

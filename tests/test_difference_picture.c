@@ -3,14 +3,9 @@
 #include "colorimetry/colour_map.h"
 #include "colorimetry/png_file.h"
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include <unistd.h>
-
-/* Fontconfig keeps patterns in caches of its own until the process ends. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) {
-  return "leak:libfontconfig";
-}
 
 static abbe_field field_of(size_t width, size_t height, double y) {
   static const char *const names[] = {"X", "Y", "Z"};

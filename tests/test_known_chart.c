@@ -1,17 +1,12 @@
 /* The chart of known answers: what is in it, and what is refused. */
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include "spectral/file.h"
 #include "validation/known_chart.h"
 
 #include <stdlib.h>
 #include <unistd.h>
-
-/* Fontconfig keeps its fonts to the end. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) {
-  return "leak:libfontconfig";
-}
 
 /* The text of the picture that these rows make; the caller frees. */
 static char *draw(abbe_known_answer *row, size_t count) {

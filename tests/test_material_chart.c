@@ -1,17 +1,12 @@
 #define _XOPEN_SOURCE 700
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include "colorimetry/material_chart.h"
 #include "colorimetry/png_file.h"
 
 #include <stdlib.h>
 #include <unistd.h>
-
-/* Fontconfig keeps patterns in caches of its own until the process ends. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) {
-  return "leak:libfontconfig";
-}
 
 static char folder[64], path[96];
 static abbe_material_table table;
