@@ -233,12 +233,16 @@ static abbe_result not_found(const abbe_material_table *table, const char *name,
   const char **names = malloc((table->count + 1) * sizeof *names);
   if (names == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
   char list[700] = "";
-  size_t used = 0;
+  size_t used = 0, shown = 0;
   for (size_t i = 0; i < table->count; i++) {
     names[i] = table->material[i].name;
-    if (used < sizeof list)
-      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
+    if (shown < i || used + strlen(names[i]) + 60 > sizeof list) continue; /* whole names alone */
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
+    shown++;
   }
+  if (shown < table->count)
+    snprintf(list + used, sizeof list - used, " and %zu more; 'abbe materials list' has them",
+             table->count - shown);
   const char *near = abbe_nearest_word(name, names, table->count);
   free(names);
   if (near != NULL)

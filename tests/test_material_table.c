@@ -225,6 +225,26 @@ static void names_are_found_in_any_case_or_suggested(void **state) {
   abbe_material_table_free(&table);
 }
 
+static void of_a_long_list_whole_names_are_told(void **state) {
+  (void)state;
+  char name[300][24];
+  abbe_material material[300] = {0};
+  abbe_material_table table = {.path = (char[]){"t"}, .count = 300, .material = material};
+  for (size_t i = 0; i < 300; i++) {
+    snprintf(name[i], sizeof name[i], "glass-number-%zu", 1000 + i);
+    material[i].name = name[i];
+  }
+  const abbe_material *m = NULL;
+  abbe_error error = {0};
+  assert_int_equal(abbe_material_table_find(&table, "krypton", &m, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "it has glass-number-1000, glass-number-1001, ");
+  assert_contains(error.text, " more; 'abbe materials list' has them");
+  size_t shown = 0, more = 0;
+  for (const char *c = error.text; (c = strstr(c, "glass-number-")) != NULL; c++) shown++;
+  sscanf(strstr(error.text, " and "), " and %zu", &more);
+  assert_int_equal(shown + more, 300);
+}
+
 /* ---- the format ---- */
 
 #define GOOD_RECORD "- {name: x, model: constant, coefficients: [1.5], source: s}\n"
@@ -568,6 +588,7 @@ int main(void) {
       cmocka_unit_test(every_source_is_in_the_bibliography),
       cmocka_unit_test(the_thesis_is_kept_as_printed),
       cmocka_unit_test(names_are_found_in_any_case_or_suggested),
+      cmocka_unit_test(of_a_long_list_whole_names_are_told),
       cmocka_unit_test(a_record_may_be_short),
       cmocka_unit_test(points_make_an_index),
       cmocka_unit_test(absorption_is_a_spectrum_or_a_colour),
