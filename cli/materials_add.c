@@ -1,6 +1,7 @@
 #include "cli/materials_change.h"
 #include "spectral/file.h"
 #include "spectral/yaml_edit.h"
+#include "spectral/yaml_quote.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -123,7 +124,7 @@ static abbe_result read_record(const char *path, char **out, abbe_error *error) 
 
 static abbe_result bare_record(const char *name, char **out, abbe_error *error) {
   char *quoted = NULL;
-  abbe_result result = abbe_yaml_edit_quote(name, &quoted, error);
+  abbe_result result = abbe_yaml_quote_make(name, &quoted, error);
   if (result != ABBE_OK) return result;
   size_t size = strlen(quoted) + 8;
   *out = malloc(size);

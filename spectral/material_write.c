@@ -1,7 +1,7 @@
 #include "spectral/material_write.h"
 
-#include "spectral/encoding.h"
 #include "spectral/number.h"
+#include "spectral/yaml_quote.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -15,70 +15,10 @@ static const char *const interpolations[] = {"linear", "monotone", "spline"};
 
 /* ---- text ---- */
 
-static bool is_word(const char *text) {
-  static const char *const reserved[] = {"true", "false", "null", "yes", "no",
-                                         "on",   "off",   "y",    "n"};
-  size_t length = strlen(text);
-  if (length == 0 || !isalpha((unsigned char)text[0]) || text[length - 1] == ' ') return false;
-  for (size_t i = 0; i < length; i++)
-    if (!isalnum((unsigned char)text[i]) && strchr(" ._-/()+", text[i]) == NULL) return false;
-  for (size_t i = 0; i < sizeof reserved / sizeof reserved[0]; i++)
-    if (strcasecmp(text, reserved[i]) == 0) return false;
-  return true;
-}
-
-/* What YAML does not take as it stands: controls, U+0080 to U+009F, line separators, U+FEFF and the
- * two that are no characters. Returns the bytes that it read. */
-static size_t escape(const unsigned char *c, FILE *to) {
-  if (c[0] < 0x20 || c[0] == 0x7f) {
-    fprintf(to, "\\x%02x", c[0]);
-    return 1;
-  }
-  if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0) {
-    fprintf(to, "\\x%02x", c[1]);
-    return 2;
-  }
-  if (c[0] == 0xe2 && c[1] == 0x80 && (c[2] == 0xa8 || c[2] == 0xa9)) {
-    fprintf(to, "\\u20%02x", c[2] - 0x80);
-    return 3;
-  }
-  if (c[0] == 0xef && ((c[1] == 0xbb && c[2] == 0xbf) || (c[1] == 0xbf && c[2] >= 0xbe))) {
-    fprintf(to, c[1] == 0xbb ? "\\ufeff" : "\\uff%02x", c[2] + 0x40);
-    return 3;
-  }
-  return 0;
-}
-
-void abbe_material_write_text(const char *text, FILE *to) {
-  if (is_word(text)) {
-    fputs(text, to);
-    return;
-  }
-  fputc('"', to);
-  for (const unsigned char *c = (const unsigned char *)text; *c != '\0';) {
-    size_t taken = 0;
-    if (*c == '"' || *c == '\\') {
-      fprintf(to, "\\%c", *c);
-      taken = 1;
-    } else if (*c == '\n' || *c == '\t') {
-      fputs(*c == '\n' ? "\\n" : "\\t", to);
-      taken = 1;
-    } else {
-      taken = escape(c, to);
-    }
-    /* bytes that are no UTF-8 (a file's name may hold them) would make the table unreadable */
-    size_t letter = abbe_encoding_letter((const char *)c);
-    if (taken == 0 && letter == 0) fputs("\\ufffd", to);
-    if (taken == 0) fwrite(c, 1, letter, to);
-    c += taken > 0 ? taken : letter > 0 ? letter : 1;
-  }
-  fputc('"', to);
-}
-
 static void write_text(const char *key, const char *text, FILE *to) {
   if (text == NULL || text[0] == '\0') return;
   fprintf(to, "%s: ", key);
-  abbe_material_write_text(text, to);
+  abbe_yaml_quote_write(text, to);
   fputc('\n', to);
 }
 

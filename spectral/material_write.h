@@ -26,9 +26,6 @@ abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_er
 abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to,
                                       abbe_error *error);
 
-/* Text as one YAML scalar on one line: plain where it can be, else in double quotes. */
-void abbe_material_write_text(const char *text, FILE *to);
-
 #ifdef __cplusplus
 }
 #endif

@@ -2,8 +2,8 @@
 
 #include "spectral/absorption.h"
 #include "spectral/html_text.h"
-#include "spectral/material_write.h"
 #include "spectral/number.h"
+#include "spectral/yaml_quote.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -25,7 +25,7 @@ static bool write_text(FILE *to, const char *key, const char *text) {
   char *html = abbe_html_escape(text);
   if (html == NULL) return false;
   fprintf(to, "%s: ", key);
-  abbe_material_write_text(html, to);
+  abbe_yaml_quote_write(html, to);
   fputc('\n', to);
   free(html);
   return true;

@@ -7,6 +7,7 @@
 #include "spectral/number.h"
 #include "spectral/text_diff.h"
 #include "spectral/yaml_edit.h"
+#include "spectral/yaml_quote.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -319,7 +320,7 @@ abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const c
 abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, const char *key,
                                      const char *text, abbe_error *error) {
   char *quoted = NULL;
-  abbe_result result = abbe_yaml_edit_quote(text, &quoted, error);
+  abbe_result result = abbe_yaml_quote_make(text, &quoted, error);
   if (result == ABBE_OK) result = abbe_table_edit_set(edit, name, key, quoted, error);
   free(quoted);
   return result;

@@ -1,6 +1,7 @@
 #include "spectral/yaml_edit.h"
 
 #include "spectral/number.h"
+#include "spectral/yaml_quote.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -464,7 +465,7 @@ static void print_flow(FILE *out, const abbe_yaml *yaml, abbe_yaml_node node) {
     char *text = NULL;
     double value;
     bool number = abbe_yaml_number(yaml, node, "", -HUGE_VAL, HUGE_VAL, &value, NULL) == ABBE_OK;
-    if (!number && abbe_yaml_edit_quote(abbe_yaml_text(yaml, node), &text, NULL) != ABBE_OK) return;
+    if (!number && abbe_yaml_quote_make(abbe_yaml_text(yaml, node), &text, NULL) != ABBE_OK) return;
     fputs(number ? abbe_yaml_text(yaml, node) : text, out);
     free(text);
     return;
@@ -541,41 +542,7 @@ abbe_result abbe_yaml_edit_append(abbe_yaml_edit *e, abbe_yaml_node mapping, siz
   return result;
 }
 
-/* ---- texts and numbers ---- */
-
-/* Letters, digits and a few signs that no place in YAML takes for anything else. */
-static bool is_plain(const char *text) {
-  static const char *const words[] = {"true", "false", "null", "yes", "no", "on", "off"};
-  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
-    if (strcasecmp(text, words[i]) == 0) return false;
-  size_t length = strlen(text);
-  bool letter = (text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z');
-  if (!letter || text[length - 1] == ' ') return false;
-  return strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._/+()=;-") ==
-         length;
-}
-
-abbe_result abbe_yaml_edit_quote(const char *text, char **out, abbe_error *error) {
-  size_t size = 4 * strlen(text) + 3, used = 0;
-  char *made = *out = malloc(size);
-  if (made == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to quote a text");
-  if (is_plain(text)) {
-    strcpy(made, text);
-    return ABBE_OK;
-  }
-  made[used++] = '"';
-  for (const char *c = text; *c != '\0'; c++) {
-    if (*c == '"' || *c == '\\')
-      used += (size_t)snprintf(made + used, size - used, "\\%c", *c);
-    else if ((unsigned char)*c < 0x20 || *c == 0x7f)
-      used += (size_t)snprintf(made + used, size - used, "\\x%02X", (unsigned char)*c);
-    else
-      made[used++] = *c;
-  }
-  made[used++] = '"';
-  made[used] = '\0';
-  return ABBE_OK;
-}
+/* ---- numbers ---- */
 
 abbe_result abbe_yaml_edit_list(const double *value, size_t count, char **out, abbe_error *error) {
   size_t size = (ABBE_NUMBER_TEXT_SIZE + 2) * count + 3, used = 0;

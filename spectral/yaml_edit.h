@@ -63,9 +63,6 @@ abbe_result abbe_yaml_edit_append(abbe_yaml_edit *edit, abbe_yaml_node mapping, 
 abbe_result abbe_yaml_edit_item(const abbe_yaml_edit *edit, abbe_yaml_node sequence, size_t index,
                                 char **out, abbe_error *error);
 
-/* text as one line of YAML that reads back the same: as it is, or in quotes where it must be;
- * *out is malloc'd. */
-abbe_result abbe_yaml_edit_quote(const char *text, char **out, abbe_error *error);
 /* count finite numbers as "[a, b, …]", each with the fewest digits that read back the same. */
 abbe_result abbe_yaml_edit_list(const double *value, size_t count, char **out, abbe_error *error);
 

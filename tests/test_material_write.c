@@ -105,17 +105,6 @@ static void odd_texts_come_back_the_same(void **state) {
   }
 }
 
-static void bytes_that_are_no_letters_are_replaced(void **state) {
-  (void)state;
-  char *text = NULL;
-  size_t size = 0;
-  FILE *to = open_memstream(&text, &size);
-  abbe_material_write_text("caf\xe9 \xe2\x82", to);
-  fclose(to);
-  assert_string_equal(text, "\"caf\\ufffd \\ufffd\\ufffd\"");
-  free(text);
-}
-
 static void what_could_not_be_read_again_is_not_written(void **state) {
   (void)state;
   abbe_material m = {.name = (char[]){"x"},
@@ -144,7 +133,6 @@ int main(void) {
       cmocka_unit_test(shipped_tables_come_back_the_same),
       cmocka_unit_test(random_records_come_back_the_same),
       cmocka_unit_test(odd_texts_come_back_the_same),
-      cmocka_unit_test(bytes_that_are_no_letters_are_replaced),
       cmocka_unit_test(what_could_not_be_read_again_is_not_written),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
