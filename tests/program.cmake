@@ -31,3 +31,7 @@ add_test(NAME materials_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           docs/materials.md)
 set_tests_properties(materials_page PROPERTIES LABELS program TIMEOUT 300)
+
+# All known answers at full size: it keeps both cores busy for a minute or so.
+add_test(NAME known_answers_whole COMMAND abbe validate --quiet)
+set_tests_properties(known_answers_whole PROPERTIES LABELS program TIMEOUT 900)
