@@ -213,10 +213,13 @@ static void rows_that_are_alike_are_found(void **state) {
       "- {name: c, model: cauchy, coefficients: [1.5, 0.004], range_nm: [380, 780], source: s1}\n"
       "- {name: B, model: cauchy, coefficients: [1.600004, 0.009], range_nm: [380, 780], "
       "source: s1}\n"
+      "- {name: f, model: cauchy, coefficients: [1.70001, 0.01], range_nm: [380, 780], source: s1}\n"
+      "- {name: g, model: cauchy, coefficients: [1.7, 0.01], range_nm: [380, 780], source: s1}\n"
+      "- {name: h, model: cauchy, coefficients: [1.70003, 0.01], range_nm: [380, 780], source: s1}\n"
       "- {name: d, model: constant, coefficients: [1.5], source: s1}\n"
       "- {name: e, model: constant, coefficients: [1.5], source: s1}\n");
   abbe_findings found = check_table(&table);
-  assert_int_equal(found.count, 3);
+  assert_int_equal(found.count, 4);
   assert_int_equal(found.finding[0].kind, ABBE_FINDING_SAME);
   assert_int_equal(found.finding[0].row, 2);
   assert_int_equal(found.finding[0].other, 0);
@@ -227,6 +230,8 @@ static void rows_that_are_alike_are_found(void **state) {
   assert_contains(found.finding[1].evidence, "lines 3 and 5");
   assert_int_equal(found.finding[2].kind, ABBE_FINDING_NEAR);
   assert_contains(found.finding[2].evidence, "by 4e-06");
+  assert_int_equal(found.finding[3].kind, ABBE_FINDING_NEAR); /* a slip in the last digit */
+  assert_contains(found.finding[3].evidence, "that of f (line 6) by 1e-05");
   abbe_findings_free(&found);
   abbe_material_table_free(&table);
 }
