@@ -79,13 +79,13 @@ static abbe_result report(const request *q, const abbe_scene *scene, abbe_error 
     if (result != ABBE_OK) break;
     if (!q->json) {
       fprintf(stderr, "%s: ior %.6f, dispersion %.6f; n off by %.2g at %g nm, %.2g in the mean\n",
-              m->name, g.ior, g.dispersion, g.worst, g.worst_nm, g.rms);
+              m->name, g.index.ior, g.index.dispersion, g.worst, g.worst_nm, g.rms);
       continue;
     }
     cJSON *glass = cJSON_CreateObject();
     cJSON_AddStringToObject(glass, "name", m->name);
-    cJSON_AddNumberToObject(glass, "ior", g.ior);
-    cJSON_AddNumberToObject(glass, "dispersion", g.dispersion);
+    cJSON_AddNumberToObject(glass, "ior", g.index.ior);
+    cJSON_AddNumberToObject(glass, "dispersion", g.index.dispersion);
     cJSON_AddNumberToObject(glass, "worst", g.worst);
     cJSON_AddNumberToObject(glass, "worst_nm", g.worst_nm);
     cJSON_AddNumberToObject(glass, "rms", g.rms);

@@ -39,8 +39,8 @@ static void read_size(request *r, const char *text) {
       r->height > 0 && text[0] != '-' && strstr(text, "x-") == NULL)
     return;
   char sentence[120];
-  snprintf(sentence, sizeof sentence, "--size '%.40s' is not WIDTHxHEIGHT in pixels, such as 960x600",
-           text);
+  snprintf(sentence, sizeof sentence,
+           "--size '%.40s' is not WIDTHxHEIGHT in pixels, such as 960x600", text);
   abbe_materials_wrong_use(r->program, sentence);
 }
 

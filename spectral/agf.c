@@ -113,7 +113,8 @@ static abbe_result keep_text(reader *r, const char *text, char **out) {
 
 /* ---- a glass from what its lines said ---- */
 
-/* What of the catalogue's first remark goes with every glass; the table's description has it all. */
+/* What of the catalogue's first remark goes with every glass; the table's description has it all.
+ */
 static void title_of(const char *remark, char title[MAX_TITLE + 8]) {
   size_t length = strlen(remark);
   snprintf(title, MAX_TITLE + 8, "; %.*s", MAX_TITLE, remark);

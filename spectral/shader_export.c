@@ -2,6 +2,7 @@
 
 #include "spectral/absorption.h"
 #include "spectral/number.h"
+#include "spectral/povray_index.h"
 #include "spectral/wavelengths.h"
 
 #include <ctype.h>
@@ -14,7 +15,6 @@ enum { STEP_NM = 5, MAX_IDENTIFIER = 120 };
 
 /* What pbrt-v4 samples; a spectrum of it is 0 outside its points. */
 static const double PBRT_LOW_NM = 360, PBRT_HIGH_NM = 830;
-static const double POV_VIOLET_NM = 380, POV_RED_NM = 730;
 
 const char *abbe_shader_name(abbe_shader shader) {
   static const char *const names[] = {
@@ -43,24 +43,20 @@ static bool vouched(const abbe_material *m, double *low, double *high) {
 
 void abbe_shader_povray_numbers(const abbe_material *material, double *ior, double *dispersion,
                                 double *max_error) {
-  const double centre = (POV_VIOLET_NM + POV_RED_NM) / 2, width = POV_RED_NM - POV_VIOLET_NM;
-  double low = POV_VIOLET_NM, high = POV_RED_NM, sums[5] = {0};
-  if (!vouched(material, &low, &high)) low = POV_VIOLET_NM, high = POV_RED_NM;
-  for (int i = 0; i <= 350; i++) {
-    double lambda_nm = low + (high - low) * i / 350, x = -(lambda_nm - centre) / width;
-    double y = log(index_at(material, lambda_nm));
-    double terms[5] = {1, x, x * x, y, x * y};
-    for (int k = 0; k < 5; k++) sums[k] += terms[k];
+  enum { STEPS = 350 };
+  double low = ABBE_POVRAY_VIOLET_NM, high = ABBE_POVRAY_RED_NM;
+  double lambda_nm[STEPS + 1], n[STEPS + 1];
+  if (!vouched(material, &low, &high)) low = ABBE_POVRAY_VIOLET_NM, high = ABBE_POVRAY_RED_NM;
+  for (int i = 0; i <= STEPS; i++) {
+    lambda_nm[i] = low + (high - low) * i / STEPS;
+    n[i] = index_at(material, lambda_nm[i]);
   }
-  double slope = (sums[0] * sums[4] - sums[1] * sums[3]) / (sums[0] * sums[2] - sums[1] * sums[1]);
-  *dispersion = exp(slope);
-  *ior = exp((sums[3] - slope * sums[1]) / sums[0]);
+  abbe_povray_index index = abbe_povray_index_fit(lambda_nm, n, NULL, STEPS + 1);
+  *ior = index.ior;
+  *dispersion = index.dispersion;
   *max_error = 0;
-  for (int i = 0; i <= 350; i++) {
-    double lambda_nm = low + (high - low) * i / 350;
-    double n = *ior * pow(*dispersion, -(lambda_nm - centre) / width);
-    *max_error = fmax(*max_error, fabs(n - index_at(material, lambda_nm)));
-  }
+  for (int i = 0; i <= STEPS; i++)
+    *max_error = fmax(*max_error, fabs(abbe_povray_index_at(&index, lambda_nm[i]) - n[i]));
 }
 
 void abbe_shader_gltf_numbers(const abbe_material *material, double *ior, double *dispersion,
@@ -216,7 +212,7 @@ static void write_povray(writer *w, const abbe_material *m) {
       "n is an exponential of the wavelength, ior %.6g and dispersion %.6g; from 380 to "
       "730 nm it is off by up to %.2g%s",
       ior, dispersion, max_error, m->attenuation != NULL ? "; absorption is three numbers" : "");
-  note_range(w, m, POV_VIOLET_NM, POV_RED_NM);
+  note_range(w, m, ABBE_POVRAY_VIOLET_NM, ABBE_POVRAY_RED_NM);
 }
 
 /* ---- MDL ---- */

@@ -33,8 +33,8 @@ typedef enum abbe_shader {
 
 const char *abbe_shader_name(abbe_shader shader);
 
-/* POV-Ray's law: n = ior dispersion^(-(lambda - 555 nm) / 350 nm) [POVRay38]; the two numbers by
- * least squares of ln n over 380 to 730 nm, and the largest error of n there. */
+/* POV-Ray's two numbers (spectral/povray_index.h), fitted over the part of 380 to 730 nm that the
+ * record vouches for, and the largest error of n there. */
 void abbe_shader_povray_numbers(const abbe_material *material, double *ior, double *dispersion,
                                 double *max_error);
 /* glTF's law: Cauchy's two terms through n_d and V_d = 20 / dispersion [glTFDispersion]; the largest

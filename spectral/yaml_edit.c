@@ -122,8 +122,8 @@ static abbe_result not_a_value(const char *value, const char *what, abbe_error *
   char *comma = strchr(point, ',');
   bool number = comma != NULL && point[strspn(point, "0123456789+-,.eE")] == '\0';
   if (comma != NULL) *comma = '.';
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "'%.60s' cannot stand as the value of %.60s; %s%s",
-                        value, what,
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "'%.60s' cannot stand as the value of %.60s; %s%s", value, what,
                         number ? "write a number with a decimal point, "
                                : "put it in quotes, or balance its brackets",
                         number ? point : "");

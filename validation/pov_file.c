@@ -17,50 +17,34 @@
 /* --- the index --- */
 
 enum { STEPS = 350 }; /* a nanometre each */
-static const double middle_nm = 0.5 * (ABBE_POV_MIN_NM + ABBE_POV_MAX_NM);
-
-static double along(double lambda_nm) {
-  return (middle_nm - lambda_nm) / (ABBE_POV_MAX_NM - ABBE_POV_MIN_NM);
-}
-
-double abbe_pov_glass_n(const abbe_pov_glass *glass, double lambda_nm) {
-  return glass->ior * pow(glass->dispersion, along(lambda_nm));
-}
 
 static double light_at(const abbe_illuminant *illuminant, double lambda_nm) {
   double xyz[3];
-  abbe_weights_band_xyz(illuminant, ABBE_POV_MIN_NM, ABBE_POV_MAX_NM, lambda_nm - 0.5,
+  abbe_weights_band_xyz(illuminant, ABBE_POVRAY_VIOLET_NM, ABBE_POVRAY_RED_NM, lambda_nm - 0.5,
                         lambda_nm + 0.5, xyz);
   return xyz[0] + xyz[1] + xyz[2];
 }
 
 abbe_result abbe_pov_file_glass(const abbe_material *material, const abbe_illuminant *illuminant,
                                 abbe_pov_glass *out, abbe_error *error) {
-  double index[STEPS + 1], light[STEPS + 1], s = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, sum = 0;
+  double lambda_nm[STEPS + 1], n[STEPS + 1], light[STEPS + 1], sum = 0, all = 0;
   memset(out, 0, sizeof *out);
   for (int i = 0; i <= STEPS; i++) {
-    const double nm = ABBE_POV_MIN_NM + i, x = along(nm);
-    const abbe_result result = abbe_material_n(material, nm, &index[i], error);
+    lambda_nm[i] = ABBE_POVRAY_VIOLET_NM + i;
+    const abbe_result result = abbe_material_n(material, lambda_nm[i], &n[i], error);
     if (result != ABBE_OK) return result;
-    light[i] = light_at(illuminant, nm);
-    const double w = light[i], y = log(index[i]);
-    s += w;
-    sx += w * x;
-    sy += w * y;
-    sxx += w * x * x;
-    sxy += w * x * y;
+    light[i] = light_at(illuminant, lambda_nm[i]);
   }
-  const double slope = (s * sxy - sx * sy) / (s * sxx - sx * sx);
-  out->ior = exp((sy - slope * sx) / s);
-  out->dispersion = fabs(slope) < 1e-12 ? 1 : exp(slope);
+  out->index = abbe_povray_index_fit(lambda_nm, n, light, STEPS + 1);
   for (int i = 0; i <= STEPS; i++) {
-    const double nm = ABBE_POV_MIN_NM + i, off = fabs(abbe_pov_glass_n(out, nm) - index[i]);
+    const double off = fabs(abbe_povray_index_at(&out->index, lambda_nm[i]) - n[i]);
     sum += light[i] * off * off;
+    all += light[i];
     if (off <= out->worst && i > 0) continue;
     out->worst = off;
-    out->worst_nm = nm;
+    out->worst_nm = lambda_nm[i];
   }
-  out->rms = sqrt(sum / s);
+  out->rms = sqrt(sum / all);
   return ABBE_OK;
 }
 
@@ -236,7 +220,8 @@ static void write_surface(const writing *w, const abbe_object *object) {
 /* exp(-(1 - fade_color) depth / fade_distance): three attenuations, each of its colour's third of
  * the light. */
 static void write_absorption(const writing *w, const abbe_material *material) {
-  static const double range[3][2] = {{580, ABBE_POV_MAX_NM}, {490, 580}, {ABBE_POV_MIN_NM, 490}};
+  static const double range[3][2] = {
+      {580, ABBE_POVRAY_RED_NM}, {490, 580}, {ABBE_POVRAY_VIOLET_NM, 490}};
   double mean[3] = {0}, most = 0;
   for (int c = 0; c < 3; c++) {
     int count = 0;
@@ -265,9 +250,9 @@ static abbe_result write_refractor(const writing *w, const abbe_object *object, 
           "object {\n  Surface\n  pigment { rgbt 1 }\n"
           "  finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy }\n"
           "  interior {\n    ior %.12g\n",
-          glass.ior);
-  if (glass.dispersion != 1)
-    fprintf(w->file, "    dispersion %.12g dispersion_samples Samples\n", glass.dispersion);
+          glass.index.ior);
+  if (glass.index.dispersion != 1)
+    fprintf(w->file, "    dispersion %.12g dispersion_samples Samples\n", glass.index.dispersion);
   write_absorption(w, object->material);
   fprintf(w->file, "  }\n  photons { target reflection on refraction on collect off }\n"
                    "  #if (!Caustics) no_shadow #end\n}\n"

@@ -11,6 +11,7 @@
 
 #include "scenes/scene.h"
 #include "spectral/error.h"
+#include "spectral/povray_index.h"
 
 #include <stddef.h>
 
@@ -27,17 +28,11 @@ typedef struct abbe_pov_options {
   size_t samples; /* of the spectrum, 2 to 100; 0: 31 */
 } abbe_pov_options;
 
-/* POV-Ray's spectrum runs from 380 to 730 nm, and its indices are [PovRay37]
- * n(lambda) = ior dispersion^((555 nm - lambda) / 350 nm). */
-#define ABBE_POV_MIN_NM 380.0
-#define ABBE_POV_MAX_NM 730.0
-
 typedef struct abbe_pov_glass {
-  double ior;        /* at 555 nm */
-  double dispersion; /* n(380 nm) / n(730 nm); 1 where the index is constant */
-  double worst;      /* largest |n - the material's| over the range */
-  double worst_nm;   /* where that is */
-  double rms;        /* root mean square of n - the material's, weighted as the fit is */
+  abbe_povray_index index;
+  double worst;    /* largest |n - the material's| over POV-Ray's spectrum */
+  double worst_nm; /* where that is */
+  double rms;      /* root mean square of n - the material's, weighted as the fit is */
 } abbe_pov_glass;
 
 /* The two numbers that serve a material best: least squares in log n, each nanometre weighted by
@@ -45,8 +40,6 @@ typedef struct abbe_pov_glass {
  * range. */
 abbe_result abbe_pov_file_glass(const abbe_material *material, const abbe_illuminant *illuminant,
                                 abbe_pov_glass *out, abbe_error *error);
-/* n at lambda_nm as POV-Ray takes it. */
-double abbe_pov_glass_n(const abbe_pov_glass *glass, double lambda_nm);
 
 /* POV-Ray units per metre: a power of ten that brings the scene near a size of 30, where POV-Ray's
  * fixed tolerances do no harm. */
