@@ -23,7 +23,8 @@ static const double ASSUMED_LOW_NM = 404.66, ASSUMED_HIGH_NM = 656.27;
 typedef struct list {
   double value[MAX_FIELDS];
   size_t count;
-  bool bad; /* something in it was no number */
+  bool bad;    /* something in it was no number */
+  bool commas; /* it had decimal commas */
 } list;
 
 typedef struct glass {
@@ -77,17 +78,41 @@ static const char *take_word(const char *c, char *text, size_t size) {
   return end;
 }
 
+/* Length of 1,5168 where that is all between two blanks; 0 where a comma parts two numbers. */
+static size_t decimal_comma(const char *c) {
+  static const char digits[] = "0123456789";
+  size_t sign = *c == '-' || *c == '+', whole = strspn(c + sign, digits);
+  const char *comma = c + sign + whole;
+  size_t part = *comma == ',' ? strspn(comma + 1, digits) : 0;
+  if (whole == 0 || part == 0) return 0;
+  const char *end = comma + 1 + part;
+  if (*end == 'e' || *end == 'E') {
+    end += 1 + (end[1] == '-' || end[1] == '+');
+    end += strspn(end, digits);
+  }
+  return *end == '\0' || *end == ' ' || *end == '\t' ? (size_t)(end - c) : 0;
+}
+
 static void take_numbers(const char *c, list *to) {
-  for (c = skip(c); *c != '\0'; c = skip(field_end(c))) {
-    if (to->count == MAX_FIELDS) return;
+  const char *end = c;
+  for (c = skip(c); *c != '\0' && to->count < MAX_FIELDS; c = skip(end)) {
     double value = NAN;
-    const char *end = c;
+    char text[64];
+    bool parted = memchr(end, ',', (size_t)(c - end)) != NULL;
+    size_t length = parted ? 0 : decimal_comma(c);
+    const char *field = c, *past = c;
+    end = length > 0 ? c + length : field_end(c);
+    if (length > 0 && length < sizeof text) {
+      snprintf(text, sizeof text, "%.*s", (int)length, c);
+      *strchr(text, ',') = '.';
+      field = past = text;
+      to->commas = true;
+    }
     bool unknown = (c[0] == '-' || c[0] == '?') && (c[1] == '\0' || blank(c[1]));
-    bool good =
-        abbe_number_read(c, &end, &value) && (*end == '\0' || blank(*end)) && isfinite(value);
-    if (!good) value = NAN;
+    bool good = abbe_number_read(field, &past, &value) && (*past == '\0' || blank(*past)) &&
+                isfinite(value);
     to->bad = to->bad || (!good && !unknown);
-    to->value[to->count++] = value;
+    to->value[to->count++] = good ? value : NAN;
   }
 }
 
@@ -281,6 +306,9 @@ static abbe_result take_glass(reader *r, abbe_material *m) {
   }
   result = read_absorption(r, m);
   if (result != ABBE_OK) return result;
+  if (g->nm.commas || g->cd.commas || g->ld.commas)
+    abbe_report_add(r->report, ABBE_NOTE_CHANGED, g->line, g->name,
+                    "its decimal commas are read as points");
   if (at(&g->nm, 2, 0) != 0 || at(&g->ed, 4, 0) != 0)
     abbe_report_add(r->report, ABBE_NOTE_LOST, g->line, g->name,
                     "its flags to exclude it from substitution or to ignore expansion are Zemax's "

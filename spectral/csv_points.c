@@ -253,7 +253,8 @@ static abbe_result order(reader *r, abbe_points *list, double unit_nm, const cha
   abbe_result result = abbe_points_sort(list, repeats ? NULL : &dropped, r->error);
   if (dropped > 0)
     abbe_report_add(r->report, ABBE_NOTE_LOST, 0, NULL,
-                    "%zu points of %s stand at a wavelength that was there before", dropped, what);
+                    "%zu point%s of %s at a wavelength that was there before", dropped,
+                    dropped == 1 ? "" : "s", what);
   return result;
 }
 

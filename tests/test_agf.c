@@ -62,13 +62,35 @@ static void a_glass_is_read_whole(void **state) {
   abbe_material_table_free(&t);
 }
 
+static void commas_part_numbers_or_begin_their_decimals(void **state) {
+  (void)state;
+  abbe_material_table t =
+      parse("NM A 2 517642 1,5168 64,17\nCD 1,03961212E+00 6,00069867E-03 "
+            "2,31792344e-1 0,0200179144\n1,01046945 103,560653\nLD 0,3 2,5\n"
+            "IT 0,4 0,992 25\n"
+            "NM B 2 517642,1.5168,64.17\nCD 1.03961212,0.00600069867,"
+            "0.231792344, 0.0200179144,1.01046945,103.560653,0,0\nLD 0.3,2.5\n");
+  assert_int_equal(t.count, 2);
+  for (size_t i = 0; i < 2; i++) {
+    assert_near(abbe_dispersion_describe(&t.material[i].dispersion).n_d, 1.5168, 5e-6);
+    assert_near(t.material[i].min_nm, 300, 0);
+    assert_near(t.material[i].max_nm, 2500, 0);
+  }
+  assert_near(t.material[0].published_v_d, 64.17, 0);
+  assert_near(exp(-0.025 * abbe_material_attenuation(&t.material[0], 400)), 0.992, 1e-15);
+  assert_int_equal(report.count, 1);
+  assert_contains(report.note[0].text, "decimal commas");
+  abbe_material_table_free(&t);
+}
+
 /* Catalogues begin with a page of text; a source is a line. */
 static void a_long_title_is_cut_at_a_word(void **state) {
   (void)state;
   abbe_material_table t = parse("CC Maker, all glasses of spring 2017 with melt data, for "
                                 "designers only, see our terms of use\n" BK7);
-  assert_string_equal(t.material[0].source, "Zemax catalogue maker.agf, N-BK7; Maker, all glasses of "
-                                            "spring 2017 with melt data, for…");
+  assert_string_equal(t.material[0].source,
+                      "Zemax catalogue maker.agf, N-BK7; Maker, all glasses of "
+                      "spring 2017 with melt data, for…");
   assert_contains(t.description, "see our terms of use");
   abbe_material_table_free(&t);
 }
@@ -252,6 +274,7 @@ static int end(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_glass_is_read_whole),
+      cmocka_unit_test(commas_part_numbers_or_begin_their_decimals),
       cmocka_unit_test(a_long_title_is_cut_at_a_word),
       cmocka_unit_test(wrapped_lines_are_joined),
       cmocka_unit_test(encodings_and_line_ends_do_not_matter),
