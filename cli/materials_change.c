@@ -108,8 +108,11 @@ int abbe_change_end(abbe_change *change, abbe_result result, const char *what, c
   abbe_dispersion_numbers before;
   bool known = false;
   if (result == ABBE_OK) {
-    size_t size = 0;
+    size_t size = 0, new_size = 0;
     const char *old = abbe_table_edit_original(change->edit, &size);
+    const char *new = abbe_table_edit_text(change->edit, &new_size);
+    if (size == new_size && memcmp(old, new, size) == 0)
+      what = "it says so already; nothing is changed";
     known = name != NULL && numbers_of(old, size, name, &before);
     result = abbe_table_edit_allow(change->edit, error);
   }

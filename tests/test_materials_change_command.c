@@ -42,6 +42,13 @@ static void a_row_is_mended(void **state) {
   assert_int_equal(done("rm t.yaml"), 0);
 }
 
+static void what_is_so_already_is_not_changed(void **state) {
+  (void)state;
+  assert_int_equal(run_line(RENEW MATERIALS "set k5 coefficients.1=0.00459" TABLE), 0);
+  assert_contains(run_output, "it says so already; nothing is changed");
+  assert_int_equal(run_line("cmp t.yaml \"$house\"/spectral/thesis.yaml"), 0);
+}
+
 static void records_come_and_go(void **state) {
   (void)state;
   assert_int_equal(done(MATERIALS "add n-bk7 --from default --create" TABLE), 0);
@@ -168,6 +175,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_row_is_mended),           cmocka_unit_test(records_come_and_go),
       cmocka_unit_test(a_copy_is_whole),           cmocka_unit_test(tables_are_compared),
+      cmocka_unit_test(what_is_so_already_is_not_changed),
       cmocka_unit_test(wrong_use_gets_a_sentence), cmocka_unit_test(help_shows_examples),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
