@@ -1,5 +1,6 @@
 #include "cli/command.h"
 #include "cli/map_options.h"
+#include "cli/preset_options.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
 
@@ -37,6 +38,7 @@ enum {
 typedef struct request {
   abbe_render_options render;
   abbe_map_options map;
+  abbe_preset_options preset;
   const char *exr, *png, *stats;
   bool layers, unfilled, quiet, json;
   int bits;
@@ -70,6 +72,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &q->render;
     state->child_inputs[1] = &q->map;
+    state->child_inputs[2] = &q->preset;
     return 0;
   case 'o':
     q->exr = text;
@@ -148,7 +151,7 @@ static abbe_result check_display(const request *q, abbe_error *error) {
   return result;
 }
 
-static cJSON *describe(const abbe_statistics *s, const abbe_context *context) {
+static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_context *context) {
   cJSON *root = cJSON_CreateObject();
   cJSON_AddNumberToObject(root, "frame_ms", s->frame_ms);
   if (s->floor_ms > 0) cJSON_AddNumberToObject(root, "floor_ms", s->floor_ms);
@@ -175,13 +178,14 @@ static cJSON *describe(const abbe_statistics *s, const abbe_context *context) {
   if (getrusage(RUSAGE_SELF, &usage) == 0)
     cJSON_AddNumberToObject(root, "peak_bytes", 1024.0 * (double)usage.ru_maxrss);
   cJSON_AddStringToObject(root, "device", abbe_context_description(context));
+  abbe_preset_options_describe(&q->preset, s, root);
   return root;
 }
 
 static abbe_result write_stats(const request *q, const abbe_statistics *s,
                                const abbe_context *context, abbe_error *error) {
   if (q->stats == NULL && !q->json) return ABBE_OK;
-  cJSON *root = describe(s, context);
+  cJSON *root = describe(q, s, context);
   char *text = cJSON_Print(root);
   cJSON_Delete(root);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
@@ -334,6 +338,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_progress_end(&progress);
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
+    if (!q->quiet) abbe_preset_options_note(&q->preset);
     if (q->map.save != NULL && !abbe_renderer_plan(renderer)->caustics)
       result = abbe_error_set(error, ABBE_UNSUPPORTED,
                               "%s has no refractor, so there is no spectral map to save",
@@ -357,6 +362,7 @@ int abbe_command_render(int argc, char **argv) {
   static const struct argp_child children[] = {
       {&abbe_render_options_argp, 0, "Speed and accuracy:", 1},
       {&abbe_map_options_argp, 0, "Spectral map:", 3},
+      {&abbe_preset_options_argp, 0, "By error or by time:", 2},
       {0}};
   static const struct argp argp = {
       options,
@@ -368,11 +374,13 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/prism.yaml --png prism.png --wavelengths 21 --photons 1024\n"
       "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"
       "  abbe render scenes/gem.yaml --stats gem.json --frames 9\n"
+      "  abbe render scenes/gem.yaml --png gem.png --preset draft\n"
+      "  abbe render scenes/gem.yaml --png gem.png --budget-ms 100 --json\n"
       "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
       children,
       NULL,
       NULL};
-  request q = {.render.program = argv[0], .bits = 8};
+  request q = {.render.program = argv[0], .preset.program = argv[0], .bits = 8};
   argp_parse(&argp, argc, argv, 0, NULL, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
@@ -386,7 +394,11 @@ int abbe_command_render(int argc, char **argv) {
   if (loaded)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
   if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
+  bool timed = q.stats != NULL || q.json;
+  if (result == ABBE_OK)
+    result = abbe_preset_options_resolve(&q.preset, context, &scene, timed, &q.render.desc, &error);
   if (result == ABBE_OK) result = render(&q, &scene, context, &error);
+  abbe_preset_options_free(&q.preset);
   abbe_context_free(context);
   abbe_scene_free(&scene);
   return abbe_render_options_end(&q.render, loaded, result, &error);

@@ -5,6 +5,7 @@
 #include "spectral/file.h"
 #include "spectral/nearest.h"
 #include "validation/sweep_plot.h"
+#include "validation/sweep_presets.h"
 #include "validation/tracer.h"
 
 #include <argp.h>
@@ -15,6 +16,7 @@
 enum {
   OPTION_PLOT = 0x500,
   OPTION_REPORT,
+  OPTION_WRITE_PRESETS,
   OPTION_GRID,
   OPTION_PROFILES,
   OPTION_WAVELENGTHS,
@@ -46,6 +48,7 @@ typedef struct request {
   int grid;             /* abbe_sweep_grid_name, or -1 */
   abbe_sweep_grid list; /* of the options' lists */
   bool listed, traced;  /* a list, or something of the reference that is traced, was given */
+  const char *presets;  /* file to write */
   size_t argument_count;
   const char *argument[MAX_ARGUMENTS];
 } request;
@@ -54,11 +57,14 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE.csv", 0, "the table; rows that it holds are not measured again", 0},
     {"plot", OPTION_PLOT, "FILE", 0, "error against time, log-log: a .png or .svg", 0},
     {"report", OPTION_REPORT, "FILE.md", 0, "a page with the front and pictures beside it", 0},
+    {"write-presets", OPTION_WRITE_PRESETS, "FILE.yaml", 0,
+     "presets off the fronts of the given tables", 0},
     {"error", OPTION_ERROR, "COLUMN", 0,
      "that makes the front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
     {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress", 0},
-    {"grid", OPTION_GRID, "quick|full", 0, "a named set of settings (quick)", 1},
+    {"grid", OPTION_GRID, "quick|full|presets", 0,
+     "a named set of settings; presets: do they keep their promise here? (quick)", 1},
     {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis (both)", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "LIST", 0, "such as 3,7,21", 1},
     {"photons", OPTION_PHOTONS, "LIST", 0, "sides of the photon grid", 1},
@@ -121,7 +127,7 @@ static void take_share(const request *q, const char *option, const char *word, s
 #define ABBE_NAME_OF(code, name) name,
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF)};
-static const char *const grids[] = {ABBE_SWEEP_GRIDS(ABBE_NAME_OF)};
+static const char *const grids[] = {ABBE_SWEEP_GRIDS(ABBE_NAME_OF) "presets"};
 static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(ABBE_NAME_OF)};
 
 static void take_name(const request *q, const char *option, const char *word, size_t at,
@@ -229,6 +235,8 @@ static void finish(request *q, struct argp_state *state) {
       argp_error(state, "'%s' is a table: it is shown, and nothing is measured", q->argument[0]);
     return;
   }
+  if (q->presets != NULL)
+    argp_error(state, "--write-presets reads tables: give SWEEP.csv..., and no scene");
   w->scene = q->argument[0];
   if (q->argument_count > 1)
     argp_error(state, "one scene at a time: '%s' and '%s'", w->scene, q->argument[1]);
@@ -256,6 +264,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_REPORT:
     w->report = text;
     return 0;
+  case OPTION_WRITE_PRESETS:
+    q->presets = text;
+    return 0;
   case OPTION_ERROR:
     parse_error(q, text, state);
     return 0;
@@ -266,7 +277,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     w->quiet = true;
     return 0;
   case OPTION_GRID:
-    q->grid = abbe_command_choice(w->program, "--grid", text, grids, ABBE_SWEEP_GRID_COUNT);
+    q->grid = abbe_command_choice(w->program, "--grid", text, grids, ABBE_SWEEP_GRID_COUNT + 1);
+    w->presets = q->grid == ABBE_SWEEP_GRID_COUNT;
     return 0;
   case OPTION_FRAMES:
     w->frames = abbe_command_count(w->program, "--frames", text, 1, 1000);
@@ -313,6 +325,7 @@ static abbe_result check_targets(const abbe_sweep_request *q, abbe_error *error)
 
 static void choose_grid(request *q) {
   abbe_sweep_request *w = &q->work;
+  if (w->presets) return;
   if (!q->listed) {
     abbe_sweep_grid_name name =
         q->grid >= 0 ? (abbe_sweep_grid_name)q->grid : ABBE_SWEEP_GRID_QUICK;
@@ -344,12 +357,16 @@ static abbe_result show(const request *q, const abbe_sweep_table *tables, size_t
     result = abbe_sweep_plot(w->plot, &tables[0], &w->error, 1, error);
   if (result == ABBE_OK && w->report != NULL)
     result = abbe_sweep_report_write(w->report, tables, count, w->error, w->backend, error);
+  if (result == ABBE_OK && q->presets != NULL)
+    result = abbe_sweep_presets_write(q->presets, tables, q->argument, count, w->error, error);
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     if (w->json)
       result = abbe_sweep_report_print_json(&tables[i], w->error, error);
     else
       abbe_sweep_report_print(&tables[i], w->error);
   }
+  if (result == ABBE_OK && w->presets && !w->json)
+    result = abbe_sweep_report_print_promises(&tables[0], error);
   return result;
 }
 
@@ -381,7 +398,8 @@ int abbe_command_sweep(int argc, char **argv) {
       "  abbe sweep scenes/gem.yaml -o gem.csv --grid full --frames 9 --spp 256\n"
       "  abbe sweep scenes/prism.yaml -o slit.csv --wavelengths 3,7,21 --photons 64,256\n"
       "  abbe sweep scenes/gem.yaml -o gem.csv --reference gem.exr --reference-map map.exr\n"
-      "  abbe sweep gem.csv sphere.csv --report trade.md\n",
+      "  abbe sweep gem.csv sphere.csv --report trade.md\n"
+      "  abbe sweep *.csv --write-presets presets.yaml\n",
       NULL,
       NULL,
       NULL};

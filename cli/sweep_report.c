@@ -5,6 +5,7 @@
 #include "colorimetry/display_ocio.h"
 #include "colorimetry/exr.h"
 #include "colorimetry/png_file.h"
+#include "gl/preset.h"
 #include "gl/renderer.h"
 #include "scenes/scene_file.h"
 #include "spectral/file.h"
@@ -103,6 +104,59 @@ void abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number er
   printf("the default profile at its error: %s times as fast",
          number_text(duel.equal_error_speedup, text));
   printf("; in its time: %s of its error\n", number_text(duel.equal_time_error_ratio, text));
+}
+
+/* Promises */
+
+static const abbe_preset_front *find_front(const abbe_presets *presets, const char *of) {
+  for (size_t i = 0; i < presets->count; i++)
+    if (strcmp(abbe_preset_class_name(presets->front[i].of), of) == 0) return &presets->front[i];
+  return NULL;
+}
+
+static const abbe_sweep_row *find_point(const abbe_sweep_table *table, const abbe_preset_point *p) {
+  abbe_sweep_setting setting;
+  abbe_sweep_setting_of(&p->desc, &setting);
+  return abbe_sweep_table_find(table, &setting);
+}
+
+static const char *preset_of(const abbe_preset_front *front, size_t point) {
+  for (int i = 0; i < ABBE_PRESET_COUNT; i++)
+    if (front->named[i] == point) return abbe_preset_name_text((abbe_preset_name)i);
+  return "";
+}
+
+static void print_promise(const abbe_preset_front *front, size_t i, const abbe_preset_speed *speed,
+                          abbe_sweep_number number, const abbe_sweep_row *row) {
+  const abbe_preset_point *p = &front->point[i];
+  char label[64], e[24], ms[24];
+  double promised_ms = abbe_preset_ms(p, speed);
+  abbe_sweep_setting_label(&row->setting, label, sizeof label);
+  printf("%-9s %-24s error %.3g to %.3g promised, %s met", preset_of(front, i), label, p->least,
+         p->error, number_text(row->number[number], e));
+  printf("%s; %.0f ms promised, %s met\n", row->number[number] <= p->error ? "" : " (MORE)",
+         promised_ms, number_text(row->number[ABBE_SWEEP_FRAME_MS], ms));
+}
+
+abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, abbe_error *error) {
+  abbe_presets presets;
+  abbe_result result = abbe_presets_load(NULL, &presets, error);
+  if (result != ABBE_OK) return result;
+  const abbe_preset_front *front = find_front(&presets, table->fact[ABBE_SWEEP_FACT_CLASS]);
+  const abbe_sweep_row *first = front != NULL ? find_point(table, &front->point[0]) : NULL;
+  abbe_sweep_number number = abbe_sweep_number_find(presets.error);
+  if (first != NULL && number != ABBE_SWEEP_NUMBER_COUNT) {
+    const abbe_preset_point *p = &front->point[0];
+    abbe_preset_speed speed = {first->number[ABBE_SWEEP_LIGHT_MS] / fmax(p->light_ms, 0.01),
+                               first->number[ABBE_SWEEP_EYE_MS] / fmax(p->eye_ms, 0.01)};
+    printf("\npresets, %s, made on %s:\n", presets.error_text, front->scenes);
+    for (size_t i = 0; i < front->count; i++) {
+      const abbe_sweep_row *row = find_point(table, &front->point[i]);
+      if (row != NULL) print_promise(front, i, &speed, number, row);
+    }
+  }
+  abbe_presets_free(&presets);
+  return result;
 }
 
 /* JSON */
@@ -241,7 +295,7 @@ static void show_reference(const page *p, const abbe_sweep_table *t, shot *out) 
 /* The reference, three settings of the default profile's front, and the thesis profile. */
 static void take_shots(const page *p, const abbe_sweep_table *t, const size_t *order, size_t count,
                        shot *shots) {
-  static const char *const names[] = {"reference", "cheapest", "middle", "accurate", "thesis"};
+  static const char *const names[] = {"reference", "cheapest", "middle", "accurate", "baseline"};
   abbe_sweep_duel duel;
   abbe_scene scene = {0};
   const abbe_sweep_row *rows[SHOWN] = {0};
@@ -304,8 +358,9 @@ static void write_duel(const page *p, const abbe_sweep_table *t) {
   if (duel.baseline == NULL) return;
   fprintf(
       p->out,
-      "The thesis profile at its own settings, with the best factor on its brightness, is beaten "
-      "%s times in time at its error; in its time the error is %s of its own.\n\n",
+      "The baseline is the thesis profile at its own settings, with the best factor on its "
+      "brightness. The default profile has its error %s times as fast, and in its time %s of its "
+      "error.\n\n",
       number_text(duel.equal_error_speedup, a), number_text(duel.equal_time_error_ratio, b));
 }
 

@@ -20,6 +20,10 @@ void abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number er
 abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number number,
                                          abbe_error *error);
 
+/* What the shipped presets promise for the table's class of scenes, beside what it measured: the
+ * errors as they are, the times by the ratio of the cheapest point's. */
+abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, abbe_error *error);
+
 /* A Markdown page of one or more sweeps, beside it the pictures of each scene: the reference, the
  * cheapest, the middle and the most accurate setting of its front, and the thesis profile. Scenes
  * and references are read from the paths in the tables; what is gone leaves out its pictures, with

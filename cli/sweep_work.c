@@ -3,6 +3,7 @@
 #include "cli/progress.h"
 
 #include "colorimetry/exr.h"
+#include "gl/preset.h"
 #include "scenes/scene_file.h"
 #include "validation/reference.h"
 
@@ -162,6 +163,14 @@ static void describe_machine(char *out, size_t size) {
   snprintf(out, size, "%s, %ld threads", name, sysconf(_SC_NPROCESSORS_ONLN));
 }
 
+static const char *class_of(const abbe_scene *scene) {
+  abbe_plan plan;
+  if (abbe_plan_make(scene, NULL, &plan, NULL) != ABBE_OK) return "";
+  abbe_preset_class of = abbe_preset_class_of(&plan);
+  abbe_plan_free(&plan);
+  return abbe_preset_class_name(of);
+}
+
 static void state_facts(work *w, abbe_sweep_table *t) {
   char text[256];
   struct tm day;
@@ -170,6 +179,7 @@ static void state_facts(work *w, abbe_sweep_table *t) {
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_SCENE, w->q->scene);
   snprintf(text, sizeof text, "%016llx", abbe_sweep_hash_scene(&w->scene));
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_SCENE_HASH, text);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_CLASS, class_of(&w->scene));
   size_t width = w->scene.camera.width, height = w->scene.camera.height;
   snprintf(text, sizeof text, "%zux%zu", w->picture.data != NULL ? w->picture.width : width,
            w->picture.data != NULL ? w->picture.height : height);
@@ -202,7 +212,27 @@ static abbe_result open_table(work *w, abbe_error *error) {
 
 /* The rows */
 
+/* The settings of the presets' front for this scene. */
+static abbe_result get_preset_settings(work *w, abbe_error *error) {
+  abbe_presets presets = {0};
+  const abbe_preset_front *front = NULL;
+  abbe_plan plan;
+  abbe_result result = abbe_plan_make(&w->scene, NULL, &plan, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_presets_load(NULL, &presets, error);
+  if (result == ABBE_OK) result = abbe_presets_find(&presets, &plan, &front, error);
+  abbe_plan_free(&plan);
+  if (result == ABBE_OK) w->setting = calloc(front->count, sizeof *w->setting);
+  if (result == ABBE_OK && w->setting == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the presets");
+  for (size_t i = 0; result == ABBE_OK && i < front->count; i++)
+    abbe_sweep_setting_of(&front->point[i].desc, &w->setting[w->setting_count++]);
+  abbe_presets_free(&presets);
+  return result;
+}
+
 static abbe_result get_settings(work *w, abbe_error *error) {
+  if (w->q->presets) return get_preset_settings(w, error);
   size_t refused;
   abbe_error why = {0};
   abbe_result result = abbe_sweep_grid_expand(&w->scene, w->q->grid, w->q->grid_count, &w->setting,

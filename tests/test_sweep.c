@@ -186,6 +186,15 @@ static void test_the_thesis_gets_its_best_brightness(void **state) {
   assert_near(row.number[ABBE_SWEEP_PICTURE_RMSE], 0, 1e-5);
   assert_near(row.number[ABBE_SWEEP_MAP_RMSE], 0, 1e-5);
   assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 1e-5);
+  /* Light only where it has none: no factor helps but 0, and then all of it is missing. */
+  for (size_t i = 0; i < 128 * 128; i++) {
+    bool dark = map.data[3 * i] == 0 && map.data[3 * i + 1] == 0 && map.data[3 * i + 2] == 0;
+    for (size_t c = 0; c < 3; c++) map.data[3 * i + c] = dark ? 1 : 0;
+  }
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_MAP_SCALE], 0, 0);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 0, 0);
+  assert_true(row.number[ABBE_SWEEP_MAP_RMSE] >= 1);
   abbe_image_free(&picture);
   abbe_image_free(&map);
   abbe_scene_free(&scene);

@@ -1,17 +1,12 @@
 /* A sweep's chart: the file's texts say what is drawn, and what cannot be drawn is refused. */
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include "spectral/file.h"
 #include "validation/sweep_plot.h"
 
 #include <stdlib.h>
 #include <unistd.h>
-
-/* Fontconfig keeps patterns in caches of its own until the process ends. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) {
-  return "leak:libfontconfig";
-}
 
 static void add(abbe_sweep_table *table, const char *profile, size_t photons, double ms, double e) {
   abbe_sweep_row row = {.setting = {.wavelengths = 7,

@@ -31,6 +31,7 @@ foreach(name
     sphere_quadrature
     tracer
     sweep_plot
+    sweep_presets
     sweep_table
     ztest
     )
@@ -38,8 +39,9 @@ foreach(name
 endforeach()
 abbe_test(sweep gl abbe_sweep abbe_gl ${validation_rooms})
 abbe_test(compare_command program ${validation_rooms} PkgConfig::CJSON)
+abbe_test(preset_command program ${validation_rooms} PkgConfig::CJSON)
 abbe_test(sweep_command program ${validation_rooms} PkgConfig::CJSON)
-foreach(name compare_command sweep_command)
+foreach(name compare_command preset_command sweep_command)
   target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
   add_dependencies(test_${name} abbe)
 endforeach()

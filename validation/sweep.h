@@ -66,7 +66,7 @@ typedef struct abbe_sweep {
   abbe_context *context;
   const abbe_scene *scene;
   size_t light;              /* whose map is compared */
-  size_t frames;             /* behind a median; 0: 5 */
+  size_t frames;             /* behind a median; 0: 5; three where they took over 3 s */
   const abbe_image *picture; /* the reference; NULL: no picture is compared */
   const abbe_image *map;     /* the same, with its layout; NULL: no map */
 } abbe_sweep;

@@ -1,0 +1,154 @@
+/* Presets off sweeps: what is common to a class, its worst errors, and the three that get names. */
+#include "tests/check.h"
+
+#include "spectral/file.h"
+#include "spectral/yaml.h"
+#include "validation/sweep_presets.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static char path[64];
+
+static int setup(void **state) {
+  (void)state;
+  snprintf(path, sizeof path, "/tmp/abbe-test-presets-XXXXXX");
+  int file = mkstemp(path);
+  return file < 0 || close(file) != 0;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  return unlink(path);
+}
+
+static void add(abbe_sweep_table *t, const char *profile, size_t photons, double light, double eye,
+                double error) {
+  abbe_sweep_row row = {.setting = {.wavelengths = 7,
+                                    .photons = photons,
+                                    .map = 512,
+                                    .samples = 1,
+                                    .share = 0.01,
+                                    .exits = 8}};
+  snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
+  snprintf(row.setting.fill, sizeof row.setting.fill, "bridge");
+  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
+  row.number[ABBE_SWEEP_LIGHT_MS] = light;
+  row.number[ABBE_SWEEP_EYE_MS] = eye;
+  row.number[ABBE_SWEEP_FRAME_MS] = light + eye;
+  row.number[ABBE_SWEEP_CAUSTIC_DE] = error;
+  assert_int_equal(abbe_sweep_table_add(t, &row, NULL), ABBE_OK);
+}
+
+static abbe_sweep_table table_of(const char *scene, const char *of) {
+  abbe_sweep_table t = {0};
+  abbe_sweep_table_set(&t, ABBE_SWEEP_FACT_SCENE, scene);
+  abbe_sweep_table_set(&t, ABBE_SWEEP_FACT_CLASS, of);
+  abbe_sweep_table_set(&t, ABBE_SWEEP_FACT_MACHINE, "a \"good\" one");
+  return t;
+}
+
+static double number(abbe_yaml *yaml, abbe_yaml_node node, const char *key) {
+  double value = NAN;
+  assert_int_equal(abbe_yaml_get_number(yaml, node, key, -1e9, 1e9, &value, NULL), ABBE_OK);
+  return value;
+}
+
+static void test_a_class_of_two_scenes(void **state) {
+  (void)state;
+  static const char *const names[] = {"n.csv", "a.csv", "b.csv", "c.csv"};
+  abbe_sweep_table all[] = {
+      table_of("scenes/noisy.yaml", "convex"), table_of("scenes/gem.yaml", "convex"),
+      table_of("scenes/prism.yaml", "convex"), table_of("scenes/ball.yaml", "spheres")};
+  abbe_sweep_table *t = all + 1;
+  /* A reference so noisy that its errors tell nothing: no part of the class. */
+  add(&all[0], "default", 64, 1, 1, 90);
+  all[0].row[0].number[ABBE_SWEEP_CAUSTIC_DE_NOISE] = 85;
+  add(&t[0], "default", 64, 10, 1, 8);
+  add(&t[1], "default", 64, 40, 4, 4);
+  add(&t[0], "default", 128, 20, 1, 3);
+  add(&t[1], "default", 128, 80, 1, 2);
+  add(&t[0], "default", 256, 90, 1, 2.02);
+  add(&t[1], "default", 256, 90, 1, 1);
+  add(&t[0], "default", 512, 400, 1, 2);
+  add(&t[1], "default", 512, 400, 1, 1);
+  add(&t[0], "default", 48, 1, 1, 1);  /* in one of the two only */
+  add(&t[1], "default", 32, 1, 1, 50); /* of an unknown error in the other */
+  add(&t[0], "default", 32, 1, 1, NAN);
+  add(&t[0], "thesis", 16, 1, 1, 0.1); /* no preset whatever it is worth */
+  add(&t[1], "thesis", 16, 1, 1, 0.1);
+  add(&t[2], "default", 64, 5, 5, 1);
+  abbe_error error = {0};
+  abbe_yaml *yaml = NULL;
+  if (abbe_sweep_presets_write(path, all, names, 4, ABBE_SWEEP_CAUSTIC_DE, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  if (abbe_yaml_load(path, &yaml, &error) != ABBE_OK) fail_msg("%s", error.text);
+  abbe_yaml_node root = abbe_yaml_root(yaml), classes = abbe_yaml_get(yaml, root, "classes");
+  assert_string_equal(abbe_yaml_text(yaml, abbe_yaml_get(yaml, root, "error")), "caustic_de");
+  assert_contains(abbe_yaml_text(yaml, abbe_yaml_get(yaml, root, "run")), "a \"good\" one");
+  assert_int_equal(abbe_yaml_count(yaml, classes), 2);
+  abbe_yaml_node convex = abbe_yaml_item(yaml, classes, 0);
+  assert_string_equal(abbe_yaml_text(yaml, abbe_yaml_get(yaml, convex, "scenes")), "gem, prism");
+  abbe_yaml_node front = abbe_yaml_get(yaml, convex, "front");
+  static const double right[][5] = {{64, 20, 2, 8, 4}, /* geometric means, worst, best */
+                                    {128, 40, 1, 3, 2},
+                                    {256, 90, 1, 2.02, 1},
+                                    {512, 400, 1, 2, 1}};
+  static const char *const keys[] = {"photons", "light_ms", "eye_ms", "error", "least"};
+  assert_int_equal(abbe_yaml_count(yaml, front), 4);
+  for (size_t i = 0; i < 4; i++)
+    for (size_t k = 0; k < 5; k++)
+      assert_near(number(yaml, abbe_yaml_item(yaml, front, i), keys[k]), right[i][k], 1e-6);
+  assert_near(number(yaml, convex, "draft"), 0, 0);
+  assert_near(number(yaml, convex, "balanced"), 1, 0); /* the one between */
+  assert_near(number(yaml, convex, "accurate"), 2, 0); /* 2.02 is within 2 % of 2 */
+  abbe_yaml_free(yaml);
+  char *text;
+  size_t size;
+  assert_int_equal(abbe_file_read(path, 1 << 16, &text, &size, NULL), ABBE_OK);
+  assert_contains(text, "# left out, for its reference's noise explains its errors: noisy.yaml");
+  free(text);
+  /* Alone it makes no presets. */
+  assert_int_equal(abbe_sweep_presets_write(path, all, names, 1, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "n.csv");
+  for (int i = 0; i < 4; i++) abbe_sweep_table_free(&all[i]);
+}
+
+static void test_what_is_refused(void **state) {
+  (void)state;
+  static const char *const names[] = {"a.csv", "b.csv"};
+  abbe_sweep_table t[] = {table_of("gem.yaml", "convex"), table_of("prism.yaml", "convex")};
+  abbe_error error = {0};
+  char *text;
+  size_t size;
+  assert_int_equal(abbe_file_write(path, "before", 6, NULL), ABBE_OK);
+  add(&t[0], "default", 64, 1, 1, 1);
+  add(&t[1], "default", 32, 1, 1, 1);
+  assert_int_equal(abbe_sweep_presets_write(path, t, names, 2, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "a.csv: its class, convex, has no setting");
+  abbe_sweep_table_set(&t[1], ABBE_SWEEP_FACT_MACHINE, "another");
+  assert_int_equal(abbe_sweep_presets_write(path, t, names, 2, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "a.csv and b.csv are of different machines");
+  abbe_sweep_table_set(&t[0], ABBE_SWEEP_FACT_CLASS, "");
+  assert_int_equal(abbe_sweep_presets_write(path, t, names, 1, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "does not name its scene's class");
+  assert_int_equal(abbe_sweep_presets_write(path, t, names, 0, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  /* The file that was there is as it was. */
+  assert_int_equal(abbe_file_read(path, 100, &text, &size, NULL), ABBE_OK);
+  assert_string_equal(text, "before");
+  free(text);
+  for (int i = 0; i < 2; i++) abbe_sweep_table_free(&t[i]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_class_of_two_scenes),
+      cmocka_unit_test(test_what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

@@ -1,0 +1,28 @@
+/* sweep_presets.h: presets read off sweeps: one front for every class of scenes, as YAML.
+ *
+ * A class's front is over the settings of the default profile that all its sweeps have: cost is the
+ * geometric mean of their times, error the worst of theirs. The three named ones are picked by
+ * rule: draft is the cheapest, accurate the cheapest whose error is at most 2 % above the least,
+ * balanced where the front between the two bends most. gl/preset.h reads the file.
+ */
+#ifndef ABBE_VALIDATION_SWEEP_PRESETS_H
+#define ABBE_VALIDATION_SWEEP_PRESETS_H
+
+#include "validation/sweep_table.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes the presets of the tables to path, beside and renamed; name[count] are the tables' paths,
+ * for sentences. ABBE_INVALID_ARGUMENT where a table names no class, was made on another machine or
+ * device than the first, or where the sweeps of a class have no setting in common with a known
+ * error. */
+abbe_result abbe_sweep_presets_write(const char *path, const abbe_sweep_table *tables,
+                                     const char *const *names, size_t count,
+                                     abbe_sweep_number number, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
