@@ -95,7 +95,6 @@ static void test_what_is_refused(void **state) {
       {GEM "--json --preset draft --profile thesis", "the thesis profile has none", 2},
       {GEM "--json --preset draft --presets no.yaml", "no.yaml", 1},
   };
-  run_line("rm -f p.yaml");
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
     assert_true(run_refuses(wrong[i].line, wrong[i].code, wrong[i].part));
 }
@@ -120,10 +119,10 @@ static void test_presets_of_a_sweep(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_by_name),
-      cmocka_unit_test(test_by_error_and_by_time),
-      cmocka_unit_test(test_what_is_refused),
-      cmocka_unit_test(test_presets_of_a_sweep),
+      cmocka_unit_test_setup_teardown(test_by_name, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_by_error_and_by_time, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_presets_of_a_sweep, run_setup, run_teardown),
   };
-  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+  return cmocka_run_group_tests(tests, NULL, NULL);
 }
