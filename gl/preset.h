@@ -43,7 +43,7 @@ abbe_preset_class abbe_preset_class_of(const abbe_plan *plan);
 
 typedef struct abbe_preset_point {
   abbe_render_desc desc;   /* wavelengths, photons, map, samples, fill, share, exits; the rest 0 */
-  double light_ms, eye_ms; /* on the run's machine, geometric mean over its scenes */
+  double light_ms, eye_ms; /* on the run's machine; of its scenes, the worst in ratio */
   double error;            /* of the run's scenes, the worst */
   double least;            /* and the best */
 } abbe_preset_point;

@@ -76,6 +76,28 @@ static bool gather(const front *f, const abbe_sweep_setting *setting, point *out
   return true;
 }
 
+/* Costs as they are promised: what the cheapest setting takes, times the worst of the scenes'
+ * ratios to it. */
+static void make_costs_the_worst(front *f) {
+  size_t base = 0;
+  for (size_t i = 1; i < f->points; i++)
+    if (f->point[i].light_ms + f->point[i].eye_ms < f->point[base].light_ms + f->point[base].eye_ms)
+      base = i;
+  const point cheapest = f->point[base];
+  for (size_t k = 0; k < f->points; k++) {
+    double light = 0, eye = 0;
+    for (size_t i = 0; i < f->count; i++) {
+      if (!is_of(f, i)) continue;
+      const double *own = abbe_sweep_table_find(&f->tables[i], f->point[k].setting)->number;
+      const double *least = abbe_sweep_table_find(&f->tables[i], cheapest.setting)->number;
+      light = fmax(light, own[ABBE_SWEEP_LIGHT_MS] / least[ABBE_SWEEP_LIGHT_MS]);
+      eye = fmax(eye, own[ABBE_SWEEP_EYE_MS] / least[ABBE_SWEEP_EYE_MS]);
+    }
+    f->point[k].light_ms = cheapest.light_ms * light;
+    f->point[k].eye_ms = cheapest.eye_ms * eye;
+  }
+}
+
 static void close_front(front *f) {
   free(f->point);
   free(f->order);
@@ -98,6 +120,7 @@ static abbe_result open_front(const abbe_sweep_table *tables, size_t count, size
     if (strcmp(setting->profile, "default") != 0) continue;
     f->points += gather(f, setting, &f->point[f->points]);
   }
+  make_costs_the_worst(f);
   for (size_t i = 0; i < f->points; i++) {
     f->cost[i] = f->point[i].light_ms + f->point[i].eye_ms;
     f->error[i] = f->point[i].error;
@@ -156,11 +179,13 @@ static void write_head(FILE *out, const abbe_sweep_table *t, abbe_sweep_number n
     used += (size_t)snprintf(text + used, sizeof text - used, "%.200s; ", t->fact[run[i]]);
   snprintf(text + used, sizeof text - used, "medians of %.20s frames",
            t->fact[ABBE_SWEEP_FACT_FRAMES]);
-  fprintf(out, "# Settings that are worth their time, read off sweeps; made by\n"
-               "#   abbe sweep SWEEP.csv... --write-presets FILE\n"
-               "# and not by hand. Times are geometric means over the scenes, error the worst of\n"
-               "# them and least the best; draft, balanced and accurate count the points from 0.\n"
-               "error: ");
+  fprintf(out,
+          "# Settings that are worth their time, read off sweeps; made by\n"
+          "#   abbe sweep SWEEP.csv... --write-presets FILE\n"
+          "# and not by hand. Times are the cheapest setting's, geometric means over the scenes,\n"
+          "# times the worst of the scenes' ratios to it; error is the worst of\n"
+          "# them and least the best; draft, balanced and accurate count the points from 0.\n"
+          "error: ");
   abbe_yaml_quote_write(abbe_sweep_number_name(number), out);
   fprintf(out, "\nwhat: ");
   abbe_yaml_quote_write(abbe_sweep_number_text(number), out);

@@ -1,7 +1,8 @@
 /* sweep_presets.h: presets read off sweeps: one front for every class of scenes, as YAML.
  *
  * A class's front is over the settings of the default profile that all its sweeps have: cost is the
- * geometric mean of their times, error the worst of theirs. The three named ones are picked by
+ * cheapest setting's time (geometric mean) times the worst of the sweeps' ratios to it, error the
+ * worst of theirs. The three named ones are picked by
  * rule: draft is the cheapest, accurate the cheapest whose error is at most 2 % above the least,
  * balanced where the front between the two bends most. gl/preset.h reads the file.
  */
