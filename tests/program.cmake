@@ -35,3 +35,17 @@ set_tests_properties(materials_page PROPERTIES LABELS program TIMEOUT 300)
 # All known answers at full size: it keeps both cores busy for a minute or so.
 add_test(NAME known_answers_whole COMMAND abbe validate --quiet)
 set_tests_properties(known_answers_whole PROPERTIES LABELS program TIMEOUT 900)
+foreach(scene sphere ring gem bunny glass prism rainbow)
+  add_test(NAME reference_${scene}
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})
+  set_tests_properties(reference_${scene} PROPERTIES LABELS program TIMEOUT 300)
+endforeach()
+# Tolerances that catch nothing are none.
+add_test(NAME reference_broken_exits
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+          --broken gem --exits 1)
+add_test(NAME reference_broken_wavelengths
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+          --broken prism --wavelengths 1)
+set_tests_properties(reference_broken_exits reference_broken_wavelengths
+  PROPERTIES LABELS program TIMEOUT 300)
