@@ -71,6 +71,26 @@ static void threads_do_not_matter_and_the_seed_does(void **state) {
 }
 
 /* The caller's arithmetic is as it was: numbers below 2^-126 are still numbers. */
+/* Maps of two seeds can be compared: their texels lie alike. */
+static void the_layout_does_not_hang_on_the_seed(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
+  abbe_map_layout layout[2];
+  for (uint32_t seed = 0; seed < 2; seed++) {
+    abbe_trace_desc desc = {.no_picture = true, .map_width = 16, .photons = 1000, .seed = seed};
+    abbe_tracer *tracer = make_tracer(&scene, &desc);
+    run_passes(tracer, 1);
+    abbe_image map;
+    assert_int_equal(abbe_tracer_map(tracer, &map, NULL), ABBE_OK);
+    assert_int_equal(abbe_map_layout_read(&map, "map", &layout[seed], NULL), ABBE_OK);
+    abbe_image_free(&map);
+    abbe_tracer_free(tracer);
+  }
+  assert_true(abbe_map_layout_same(&layout[0], &layout[1]));
+  abbe_scene_free(&scene);
+}
+
 static void tiny_numbers_are_left_to_the_caller(void **state) {
   (void)state;
   abbe_scene scene;
@@ -406,6 +426,7 @@ static void size_does_not_matter(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(threads_do_not_matter_and_the_seed_does),
+      cmocka_unit_test(the_layout_does_not_hang_on_the_seed),
       cmocka_unit_test(tiny_numbers_are_left_to_the_caller),
       cmocka_unit_test(a_stopped_pass_is_forgotten),
       cmocka_unit_test(standard_errors_are_honest),

@@ -15,17 +15,21 @@ typedef struct emission {
   const abbe_tracer *t;
   size_t light, count;
   uint32_t *first; /* [cells + 1] */
-  uint32_t pass;
+  uint32_t pass, seed;
 } emission;
 
 static abbe_result share_over_cells(const abbe_tracer *t, size_t light, size_t count, uint32_t pass,
-                                    emission *e, abbe_error *error) {
+                                    uint32_t seed, emission *e, abbe_error *error) {
   const abbe_aim *aim = &t->aim[light];
-  *e = (emission){.t = t, .light = light, .count = aim->count > 0 ? count : 0, .pass = pass};
+  *e = (emission){.t = t,
+                  .light = light,
+                  .count = aim->count > 0 ? count : 0,
+                  .pass = pass,
+                  .seed = seed ^ SALT};
   e->first = malloc((aim->count + 1) * sizeof *e->first);
   if (e->first == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
   float random[4];
-  abbe_random4((uint32_t)light, 0, pass, t->desc.seed ^ SALT, random);
+  abbe_random4((uint32_t)light, 0, pass, e->seed, random);
   /* every cell gets its share, rounded up or down so that the mean is right */
   double sum = 0, shift = (double)random[0];
   for (size_t i = 0; i < aim->count; i++) {
@@ -74,7 +78,7 @@ static size_t emit(const emission *e, uint32_t from, uint32_t to, abbe_photon *p
   const abbe_aim *aim = &e->t->aim[e->light];
   const uint32_t golden = 2654435769u;
   const float(*xyz)[3] = (const float(*)[3])e->t->sampling.xyz + e->light * e->t->sampling.steps;
-  uint32_t shift[4], light = (uint32_t)e->light + 1, seed = e->t->desc.seed ^ SALT;
+  uint32_t shift[4], light = (uint32_t)e->light + 1, seed = e->seed;
   size_t cell = cell_of(e, from);
   abbe_random_bits(0, light, e->pass, seed, shift);
   for (uint32_t j = from; j < to; j++) {
@@ -282,7 +286,7 @@ abbe_result abbe_tracer_light_pass(abbe_tracer *t, const volatile int *stop, siz
   for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
     if (t->photons[l] == 0) continue;
     emission e;
-    result = share_over_cells(t, l, t->photons[l], (uint32_t)t->pass, &e, error);
+    result = share_over_cells(t, l, t->photons[l], (uint32_t)t->pass, t->desc.seed, &e, error);
     if (result == ABBE_OK) result = run_light(t, &e, stop, landed_count, error);
     free(e.first);
   }
@@ -345,7 +349,7 @@ abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "no light reaches a refractor, so there is no walk to time");
   emission e = {0};
-  abbe_result result = share_over_cells(t, light, PHOTONS, 0, &e, error);
+  abbe_result result = share_over_cells(t, light, PHOTONS, 0, t->desc.seed, &e, error);
   for (int i = 0; i < TURNS && result == ABBE_OK; i++) {
     uint64_t rays = abbe_light_walk_rays(t->walk[0]), replayed;
     double seconds = walk_seconds(t, &e), alone;
@@ -369,8 +373,8 @@ static int by_value(const void *a, const void *b) {
 }
 
 /* Window coordinates of trial landings, along right (0) and up (1); their number. */
-static size_t try_landings(const abbe_tracer *t, const abbe_view *view, const emission *e,
-                           double *at[2], double *near, double *far) {
+static size_t try_landings(const abbe_tracer *t, abbe_light_walk *walk, const abbe_view *view,
+                           const emission *e, double *at[2], double *near, double *far) {
   abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
   abbe_landing landing[ABBE_LIGHT_WALK_BATCH];
   abbe_light_ledger ledger = {0};
@@ -379,8 +383,8 @@ static size_t try_landings(const abbe_tracer *t, const abbe_view *view, const em
     uint32_t end =
         j + ABBE_LIGHT_WALK_BATCH < e->count ? j + ABBE_LIGHT_WALK_BATCH : (uint32_t)e->count;
     size_t count = emit(e, j, end, photon);
-    size_t landed = abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon,
-                                        count, landing, &ledger);
+    size_t landed = abbe_light_walk_run(walk, &t->scene->light[e->light], e->pass, photon, count,
+                                        landing, &ledger);
     for (size_t i = 0; i < landed; i++) {
       double p[3], from[3], z;
       abbe_geometry_to_world(&t->geometry, landing[i].p, p);
@@ -416,12 +420,16 @@ abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
   abbe_view_fit(&view, (const double(*)[3]) & middle, 1);
   double *at[2] = {malloc(TRIALS * sizeof **at), malloc(TRIALS * sizeof **at)};
   emission e = {0};
-  abbe_result result = share_over_cells(t, t->desc.map_light, TRIALS, 0, &e, error);
+  abbe_light_walk *walk = NULL;
+  /* no seed but this one: maps of other seeds are to have the same layout */
+  abbe_result result = share_over_cells(t, t->desc.map_light, TRIALS, 0, 0, &e, error);
+  if (result == ABBE_OK)
+    result = abbe_light_walk_make(&t->geometry, &t->media, &t->desc.physics, 0, &walk, error);
   if (result == ABBE_OK && (at[0] == NULL || at[1] == NULL))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for trial photons");
   if (result == ABBE_OK) {
     double near = view.near, far = view.far;
-    size_t found = try_landings(t, &view, &e, at, &near, &far);
+    size_t found = try_landings(t, walk, &view, &e, at, &near, &far);
     for (int k = 0; k < 2 && found > 0; k++) {
       qsort(at[k], found, sizeof *at[k], by_value);
       view.window[2 * k] = at[k][found / 1000];
@@ -433,6 +441,7 @@ abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
     abbe_map_layout_make(&view, &t->layout);
     result = abbe_map_layout_check(&t->layout, error);
   }
+  abbe_light_walk_free(walk);
   free(e.first);
   free(at[0]);
   free(at[1]);
