@@ -1,5 +1,7 @@
 #include "cli/command.h"
 
+#include "spectral/file.h"
+
 #include "spectral/nearest.h"
 
 #include <cjson/cJSON.h>
@@ -52,7 +54,8 @@ void abbe_command_range(const char *program, const char *option, const char *tex
   *to = *middle == ':' ? strtod(middle + 1, &end) : 0;
   if (middle == text || end == NULL || end == middle + 1 || *end != '\0' || !isfinite(*from) ||
       !isfinite(*to) || *from >= *to || *from <= 0) {
-    fprintf(stderr, "%s: %s '%s' is not a range: two numbers above 0, the smaller first, such as %s\n",
+    fprintf(stderr,
+            "%s: %s '%s' is not a range: two numbers above 0, the smaller first, such as %s\n",
             program, option, text, *from > 0 && *from < 100 ? "1.5:1.6" : "380:780");
     wrong_use(program);
   }
@@ -84,4 +87,28 @@ int abbe_command_end(const char *program, abbe_result result, abbe_error *error)
     result = abbe_error_set(error, ABBE_IO, "the results could not be written to the output: %s",
                             strerror(errno));
   return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(program, error);
+}
+
+void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
+                       size_t *width, size_t *height) {
+  unsigned w = 0, h = 0;
+  char rest;
+  if (sscanf(text, "%6ux%6u%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > most || h > most) {
+    fprintf(stderr, "%s: %s '%s' is not a size such as 512x512 (at most %zux%zu)\n", program,
+            option, text, most, most);
+    exit(ABBE_EXIT_USAGE);
+  }
+  *width = w;
+  *height = h;
+}
+
+abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error) {
+  for (size_t i = 0; i < count; i++) {
+    if (paths[i] == NULL) continue;
+    abbe_file_writer writer = {0};
+    abbe_result result = abbe_file_writer_open(&writer, paths[i], error);
+    abbe_file_writer_discard(&writer);
+    if (result != ABBE_OK) return result;
+  }
+  return ABBE_OK;
 }

@@ -10,6 +10,7 @@
 #include "spectral/error.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 
 struct cJSON;
 
@@ -17,18 +18,18 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
 
 /* X(name, summary): every subcommand NAME is `int abbe_command_NAME(int argc, char **argv)`;
  * argv[0] is "abbe NAME". */
-#define ABBE_COMMANDS(X) \
-  X(render, "render a scene to OpenEXR and PNG") \
-  X(trace, "trace the reference: what light really does, with standard errors") \
-  X(plan, "say which passes and models a scene asks for, and why") \
-  X(materials, "look into, edit, convert and check tables of materials") \
-  X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB") \
-  X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO") \
-  X(export, "write a scene for POV-Ray, an outside witness of its caustics") \
-  X(outline, "say where a caustic's light and hues fall, and how far two pictures agree") \
-  X(info, "say what an EXR holds: size, channels, space, settings, statistics") \
-  X(sweep, "measure settings: time against error, and which are worth it") \
-  X(compare, "say how far a picture or a receiver map is from a reference") \
+#define ABBE_COMMANDS(X)                                                                           \
+  X(render, "render a scene to OpenEXR and PNG")                                                   \
+  X(trace, "trace the reference: what light really does, with standard errors")                    \
+  X(plan, "say which passes and models a scene asks for, and why")                                 \
+  X(materials, "look into, edit, convert and check tables of materials")                           \
+  X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
+  X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
+  X(export, "write a scene for POV-Ray, an outside witness of its caustics")                       \
+  X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
+  X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
+  X(sweep, "measure settings: time against error, and which are worth it")                         \
+  X(compare, "say how far a picture or a receiver map is from a reference")                        \
   X(validate, "hold the reference tracer against optics that is known")
 
 #define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);
@@ -52,6 +53,14 @@ void abbe_command_range(const char *program, const char *option, const char *tex
 /* One word of names[count]; its index. An unknown word names the nearest and the list. */
 int abbe_command_choice(const char *program, const char *option, const char *text,
                         const char *const *names, int count);
+
+/* "512x512" as width and height, each 1 to `most`. */
+void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
+                       size_t *width, size_t *height);
+
+/* Opens and discards each of the files (NULL: none), so that a target that cannot be written is
+ * found out before the work, not after it. */
+abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error);
 
 /* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
 abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);

@@ -125,20 +125,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-/* A target that cannot be written is found out before the work, not after it. */
-static abbe_result check_targets(const request *q, abbe_error *error) {
-  const char *targets[] = {q->exr, q->png, q->map.save, q->stats};
-  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
-    if (targets[i] == NULL) continue;
-    abbe_file_writer writer = {0};
-    abbe_result result = abbe_file_writer_open(&writer, targets[i], error);
-    abbe_file_writer_discard(&writer);
-    if (result != ABBE_OK) return result;
-  }
-  return ABBE_OK;
-}
-
-/* So is a view that the configuration does not have. */
+/* A view that the configuration does not have is found out before the work, as a target is. */
 static abbe_result check_display(const request *q, abbe_error *error) {
   if (q->png == NULL) return ABBE_OK;
   abbe_display *display = NULL;
@@ -387,7 +374,8 @@ int abbe_command_render(int argc, char **argv) {
   abbe_context *context = NULL;
   abbe_scene_options scene_options = {.materials = q.render.materials};
   q.render.desc.layers = q.layers;
-  abbe_result result = check_targets(&q, &error);
+  const char *const targets[] = {q.exr, q.png, q.map.save, q.stats};
+  abbe_result result = abbe_command_check_targets(targets, 4, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);
   bool loaded = result == ABBE_OK;

@@ -36,19 +36,6 @@ static const struct argp_option options[] = {
      "a table instead of the scene's: default, thesis or a file", 1},
     {0}};
 
-static void parse_size(abbe_render_options *o, const char *text) {
-  unsigned width = 0, height = 0;
-  char rest;
-  if (sscanf(text, "%5ux%5u%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
-      width > ABBE_RENDER_MAX_SIDE || height > ABBE_RENDER_MAX_SIDE) {
-    fprintf(stderr, "%s: --size '%s' is not a size such as 512x512 (at most %dx%d)\n", o->program,
-            text, ABBE_RENDER_MAX_SIDE, ABBE_RENDER_MAX_SIDE);
-    exit(ABBE_EXIT_USAGE);
-  }
-  o->desc.width = width;
-  o->desc.height = height;
-}
-
 #define ABBE_NAME_OF_2(code, name) name,
 #define ABBE_NAME_OF_3(code, name, ocio) name,
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF_2)};
@@ -65,7 +52,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
         (abbe_profile)abbe_command_choice(p, "--profile", text, profiles, ABBE_PROFILE_COUNT);
     return 0;
   case OPTION_SIZE:
-    parse_size(o, text);
+    abbe_command_size(p, "--size", text, ABBE_RENDER_MAX_SIDE, &d->width, &d->height);
     return 0;
   case OPTION_WAVELENGTHS:
     d->wavelengths = abbe_command_count(p, "--wavelengths", text, 1, ABBE_RENDER_MAX_WAVELENGTHS);

@@ -138,16 +138,6 @@ static void take_name(const request *q, const char *option, const char *word, si
                                   profile ? ABBE_PROFILE_COUNT : ABBE_FILL_COUNT);
 }
 
-static void parse_size(request *q, const char *text, struct argp_state *state) {
-  unsigned width = 0, height = 0;
-  char rest;
-  if (sscanf(text, "%5ux%5u%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
-      width > ABBE_RENDER_MAX_SIDE || height > ABBE_RENDER_MAX_SIDE)
-    argp_error(state, "--size '%s' is not a size such as 512x512", text);
-  q->work.width = width;
-  q->work.height = height;
-}
-
 static void parse_error(request *q, const char *text, struct argp_state *state) {
   const char *names[ABBE_SWEEP_NUMBER_COUNT];
   char list[400] = "";
@@ -284,7 +274,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     w->frames = abbe_command_count(w->program, "--frames", text, 1, 1000);
     return 0;
   case OPTION_SIZE:
-    parse_size(q, text, state);
+    abbe_command_size(w->program, "--size", text, ABBE_RENDER_MAX_SIDE, &w->width, &w->height);
     return 0;
   case OPTION_GL:
     w->backend = (abbe_context_backend)abbe_command_choice(w->program, "--gl", text, backends,
@@ -310,18 +300,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 /* The work */
-
-static abbe_result check_targets(const abbe_sweep_request *q, abbe_error *error) {
-  const char *const targets[] = {q->csv, q->plot, q->report};
-  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
-    if (targets[i] == NULL) continue;
-    abbe_file_writer writer = {0};
-    abbe_result result = abbe_file_writer_open(&writer, targets[i], error);
-    abbe_file_writer_discard(&writer);
-    if (result != ABBE_OK) return result;
-  }
-  return ABBE_OK;
-}
 
 static void choose_grid(request *q) {
   abbe_sweep_request *w = &q->work;
@@ -375,7 +353,8 @@ static abbe_result run(request *q, abbe_error *error) {
   size_t count = shown ? q->argument_count : 1;
   abbe_sweep_table *tables = calloc(count, sizeof *tables);
   if (tables == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the tables");
-  abbe_result result = check_targets(&q->work, error);
+  const char *const targets[] = {q->work.csv, q->work.plot, q->work.report};
+  abbe_result result = abbe_command_check_targets(targets, 3, error);
   if (result == ABBE_OK)
     result = shown ? load_tables(q, tables, error) : abbe_sweep_work(&q->work, &tables[0], error);
   if (result == ABBE_OK && !q->work.list) result = show(q, tables, count, error);

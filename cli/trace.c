@@ -96,19 +96,6 @@ static const struct argp_option options[] = {
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 static const char *const physics[] = {"full", "matched"};
 
-static void parse_size(request *q, const char *text) {
-  unsigned width = 0, height = 0;
-  char rest;
-  if (sscanf(text, "%5ux%5u%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
-      width > ABBE_TRACER_MAX_SIDE || height > ABBE_TRACER_MAX_SIDE) {
-    fprintf(stderr, "%s: --size '%s' is not a size such as 512x512 (at most %dx%d)\n", q->program,
-            text, ABBE_TRACER_MAX_SIDE, ABBE_TRACER_MAX_SIDE);
-    exit(ABBE_EXIT_USAGE);
-  }
-  q->desc.width = width;
-  q->desc.height = height;
-}
-
 static error_t parse_work(int key, char *text, request *q) {
   abbe_trace_desc *d = &q->desc;
   const char *p = q->program;
@@ -129,7 +116,7 @@ static error_t parse_work(int key, char *text, request *q) {
     d->physics.matched = abbe_command_choice(p, "--physics", text, physics, 2) == 1;
     return 0;
   case OPTION_SIZE:
-    parse_size(q, text);
+    abbe_command_size(p, "--size", text, ABBE_TRACER_MAX_SIDE, &d->width, &d->height);
     return 0;
   case OPTION_MAP:
     d->map_width = d->map_height = abbe_command_count(p, "--map", text, 1, ABBE_TRACER_MAX_SIDE);
@@ -218,14 +205,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 /* ---- before the work ---- */
 
 static abbe_result check_targets(const request *q, abbe_error *error) {
-  const char *targets[] = {q->exr, q->png, q->map.save, q->stats, q->checkpoint};
-  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
-    if (targets[i] == NULL) continue;
-    abbe_file_writer writer = {0};
-    abbe_result result = abbe_file_writer_open(&writer, targets[i], error);
-    abbe_file_writer_discard(&writer);
-    if (result != ABBE_OK) return result;
-  }
+  const char *const targets[] = {q->exr, q->png, q->map.save, q->stats, q->checkpoint};
+  abbe_result targeted = abbe_command_check_targets(targets, 5, error);
+  if (targeted != ABBE_OK) return targeted;
   if (q->png == NULL) return ABBE_OK;
   abbe_display *display = NULL;
   abbe_display_desc desc = q->display;
