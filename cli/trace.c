@@ -386,13 +386,16 @@ static void summarise(const request *q, const abbe_tracer *tracer) {
   fprintf(stderr, ", %.3g million photons, %.3g million rays; relative standard error %.2g",
           1e-6 * (double)s.photons, 1e-6 * (double)(s.light_rays + s.eye_rays),
           abbe_tracer_error(tracer));
-  if (s.ledger.reached > 0)
+  if (s.ledger.reached > 0) {
+    double whole = 100 / s.ledger.reached;
     fprintf(stderr,
             "; of the light that met refractors %.2f %% landed, %.2f %% was absorbed, %.2f %% "
-            "escaped, %.2f %% is not modelled, %.2g %% was lost",
-            100 * s.ledger.landed / s.ledger.reached, 100 * s.ledger.absorbed / s.ledger.reached,
-            100 * s.ledger.escaped / s.ledger.reached, 100 * s.ledger.dropped / s.ledger.reached,
-            100 * s.ledger.lost / s.ledger.reached);
+            "escaped, %.2g %% was lost",
+            whole * s.ledger.landed, whole * s.ledger.absorbed, whole * s.ledger.escaped,
+            whole * s.ledger.lost);
+    if (s.ledger.dropped > 0)
+      fprintf(stderr, ", %.2f %% is not modelled", whole * s.ledger.dropped);
+  }
   fprintf(stderr, "\n");
   if (s.cuts > 0)
     fprintf(stderr, "note: %llu contributions were too bright to be kept whole\n",
