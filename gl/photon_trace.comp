@@ -1,5 +1,5 @@
-// A photon a wavelength: from the light through a refractor to a receiver. Every exit that still
-// carries energy is followed, one landing each; what leaves the path is entered in the ledger.
+// A photon a wavelength, on the paths of photon_path.glsl; what leaves a path is entered in the
+// ledger.
 layout(local_size_x = 256) in;
 #include "refractor.glsl"
 #include "photon_list.glsl"
@@ -32,112 +32,15 @@ uniform float ledger_unit;   // W
 
 shared uint book[5];
 
-const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
-
-// Lands the ray on a receiver that the light's map can hold.
-bool land(vec3 p, vec3 d, out vec3 at, out uint receiver) {
-  Light l = lights[light];
-  vec3 uvz;
-#ifdef EXACT_RECEIVERS
-  float t;
-  int r = receiver_hit(p, d, scene_size * 1e-6, 1e30, t);
-  if (r < 0) return false;
-  at = p + t * d;
-  receiver = uint(r) + 1u;
-  if (!project(l.map_view, at, uvz) || !inside(uvz.xy)) return false;
-  vec3 from;
-  float distance_m;
-  light_to(l, at, from, distance_m);
-  return receiver_lit(light, at, from, distance_m);
-#else
-  float t;
-  receiver = 1u;
-  float start = max(distance(refractor_bounds.xyz, p), 0.1 * scene_size);
-  if (!march(l.map_view, light_receivers, float(light), p, d, start, 2.0 * scene_size, t))
-    return false;
-  at = p + t * d;
-  return project(l.map_view, at, uvz) && inside(uvz.xy);
-#endif
+// A landing of the photon at lane's wavelength, in the path's slot.
+void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path) {
+  uint listed = photon * ORDERS + order, index = listed * LANES + lane;
+  landing[index] = vec4(at, flux);
+  if (atomicExchange(path_mark[listed], 1u) == 0u) path_list[atomicAdd(path_count, 1u)] = listed;
+  signature[index] = path;
 }
 
-#ifdef LAYERS
-uniform usampler2DArray layer_owner;  // refractor + 1 of the front layer, one layer a light
-
-// What the light's view holds at uv, where that belongs to a refractor without an exact surface.
-bool layers_front(vec2 uv, vec3 o, vec3 d, inout Hit h) {
-  ivec2 at = ivec2(uv * vec2(textureSize(layer_owner, 0).xy));
-  int owner = int(texelFetch(layer_owner, ivec3(at, light), 0).x) - 1;
-  vec4 front = texelFetch(light_layers, ivec3(at, 2 * light), 0);
-  if (owner < 0 || refractors[owner].info.x != MODEL_LAYERS || front.w <= 0.0 || front.w >= h.t)
-    return false;
-  h.t = front.w;
-  h.p = o + h.t * d;
-  h.n = normalize(front.xyz);
-  // An interpolated normal at the rim may face away; the surface that the light sees does not.
-  float c = dot(h.n, d);
-  if (c > -1e-3) h.n = normalize(h.n - (c + 1e-3) * d);
-  h.refractor = owner;
-  h.facet = -1;
-  return true;
-}
-#endif
-
-void trace(uint photon, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,
-           out float entry[5]) {
-  int lane = i - lane_first;
-  for (int k = 0; k < 5; k++) entry[k] = 0.0;
-  if (!reached) return;
-  int r = front.refractor;
-  vec2 spectrum = spectra[r * WAVELENGTHS + i].xy;
-  float n = spectrum.x, cos_i = -dot(d, front.n);
-  float reflected = fresnel(cos_i, 1.0 / n);
-  entry[REACHED] = 1.0;
-  entry[REFLECTED] = reflected;
-  float share = 1.0 - reflected;
-  vec3 p = front.p, inner, wall_n;
-  if (!refract_direction(d, front.n, 1.0 / n, inner)) return;
-  int facet = front.facet;
-  uint path = uint(r) * 131u + uint(facet);
-  for (int order = 0; order < ORDERS; order++) {
-    vec3 wall;
-    int next;
-    inner_hit(r, facet, p, inner,
-#ifdef LAYERS
-              lights[light].near_view, light_layers, 2.0 * float(light),
-#endif
-              wall, wall_n, next);
-#ifdef ABSORBING
-    float left = exp(-spectrum.y * distance(wall, p));
-    entry[ABSORBED] += share * (1.0 - left);
-    share *= left;
-#endif
-    path = path * 31u + uint(next) + 1u;
-    float kept = fresnel(dot(inner, wall_n), n);
-    float out_share = share * (1.0 - kept);
-    vec3 outer;
-    if (out_share > 0.0 && refract_direction(inner, -wall_n, n, outer)) {
-      vec3 at;
-      uint receiver;
-      if (land(wall, outer, at, receiver)) {
-        uint index = (photon * ORDERS + order) * LANES + lane;
-        landing[index] = vec4(at, out_share * flux);
-        if (atomicExchange(path_mark[photon * ORDERS + order], 1u) == 0u)
-          path_list[atomicAdd(path_count, 1u)] = photon * ORDERS + order;
-        signature[index] = (path * 31u + receiver) << 8 | 0x80000000u | uint(r);
-      } else {
-        entry[MISSED] += out_share;
-      }
-    } else {
-      kept = 1.0;
-    }
-    share *= kept;
-    if (share < share_limit) break;
-    p = wall;
-    facet = next;
-    inner = reflect(inner, wall_n);
-  }
-  entry[TRAPPED] += share;
-}
+#include "photon_path.glsl"
 
 void main() {
   if (gl_LocalInvocationID.x < 5u) book[gl_LocalInvocationID.x] = 0u;
@@ -159,7 +62,7 @@ void main() {
 #endif
     reached = reached && flux > 0.0 && receiver_lit(light, front.p, d, front.t);
     float entry[5];
-    trace(photon, i, flux, o, d, front, reached, entry);
+    trace(photon, i - lane_first, i, flux, o, d, front, reached, entry);
     float scale = flux * sample_weight[light * WAVELENGTHS + i].y / ledger_unit;
     for (int k = 0; k < 5; k++)
       if (entry[k] > 0.0 && i >= ledger_first) atomicAdd(book[k], uint(entry[k] * scale + 0.5));
