@@ -1,6 +1,7 @@
 #include "scenes/object_file.h"
 
 #include "colorimetry/png_file.h"
+#include "scenes/brilliant.h"
 #include "scenes/shape.h"
 #include "scenes/transform.h"
 #include "scenes/vector.h"
@@ -13,8 +14,18 @@
 #define RADIANS (3.14159265358979323846 / 180.0)
 #define FAR 1e6 /* m: no coordinate or length may be larger */
 
-typedef enum shape_kind { SPHERE, RING, GEM, PRISM, BOX, RECTANGLE, LATHE, MESH } shape_kind;
-static const char *const shape_names[] = {"sphere", "ring",      "gem",   "prism",
+typedef enum shape_kind {
+  SPHERE,
+  RING,
+  GEM,
+  BRILLIANT,
+  PRISM,
+  BOX,
+  RECTANGLE,
+  LATHE,
+  MESH
+} shape_kind;
+static const char *const shape_names[] = {"sphere", "ring",      "gem",   "brilliant", "prism",
                                           "box",    "rectangle", "lathe", NULL};
 
 /* What is known of an object while it is read. */
@@ -95,6 +106,23 @@ static abbe_result read_gem(const reading *r, abbe_mesh *out, abbe_error *error)
   return result == ABBE_OK
              ? abbe_shape_gem(sides, length[0], length[1], length[2], length[3], out, error)
              : result;
+}
+
+/* Angles in degrees, the rest in shares of the diameter or of the way; 0 stays the default. */
+static abbe_result read_brilliant(const reading *r, abbe_mesh *out, abbe_error *error) {
+  abbe_brilliant cut = {0};
+  double crown = 34.5, pavilion = 40.75;
+  const struct {
+    const char *key;
+    double *value;
+  } keys[] = {{"table", &cut.table},   {"star", &cut.star}, {"lower", &cut.lower},
+              {"girdle", &cut.girdle}, {"crown", &crown},   {"pavilion", &pavilion}};
+  abbe_result result = need_length(r, "diameter", &cut.diameter, error);
+  for (size_t i = 0; i < sizeof keys / sizeof *keys && result == ABBE_OK; i++)
+    result = abbe_yaml_get_number(r->yaml, r->node, keys[i].key, 1e-6, 90, keys[i].value, error);
+  cut.crown_rad = crown * RADIANS;
+  cut.pavilion_rad = pavilion * RADIANS;
+  return result == ABBE_OK ? abbe_brilliant_make(&cut, out, error) : result;
 }
 
 static abbe_result read_prism(const reading *r, abbe_mesh *out, abbe_error *error) {
@@ -201,6 +229,9 @@ static abbe_result read_surface(reading *r, abbe_mesh *out, abbe_error *error) {
     break;
   case GEM:
     result = read_gem(r, out, error);
+    break;
+  case BRILLIANT:
+    result = read_brilliant(r, out, error);
     break;
   case PRISM:
     result = read_prism(r, out, error);
