@@ -267,10 +267,10 @@ static const struct {
   abbe_refractor_model model;
   bool textured;
 } shipped[] = {
-    {"sphere", ABBE_REFRACTOR_SPHERE, false}, {"rainbow", ABBE_REFRACTOR_SPHERE, false},
-    {"gem", ABBE_REFRACTOR_CONVEX, false},    {"prism", ABBE_REFRACTOR_CONVEX, true},
-    {"ring", ABBE_REFRACTOR_LAYERS, false},   {"bunny", ABBE_REFRACTOR_LAYERS, false},
-    {"glass", ABBE_REFRACTOR_LAYERS, true},
+    {"sphere", ABBE_REFRACTOR_SPHERE, false},  {"rainbow", ABBE_REFRACTOR_SPHERE, false},
+    {"gem", ABBE_REFRACTOR_CONVEX, false},     {"prism", ABBE_REFRACTOR_CONVEX, true},
+    {"diamond", ABBE_REFRACTOR_CONVEX, false}, {"ring", ABBE_REFRACTOR_LAYERS, false},
+    {"bunny", ABBE_REFRACTOR_LAYERS, false},   {"glass", ABBE_REFRACTOR_LAYERS, true},
 };
 
 static void test_shipped_scenes(void **state) {
