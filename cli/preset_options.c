@@ -63,9 +63,9 @@ abbe_result abbe_preset_options_resolve(abbe_preset_options *o, abbe_context *co
   abbe_plan plan;
   abbe_preset_speed speed = {0};
   if (!is_asked(o)) return ABBE_OK;
-  if (desc->profile == ABBE_PROFILE_THESIS)
+  if (desc->profile != ABBE_PROFILE_DEFAULT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "presets are of the default profile; the thesis profile has none");
+                          "presets are of the default profile; a thesis profile has none");
   abbe_result result = abbe_presets_load(o->file, &o->presets, error);
   if (result == ABBE_OK) result = abbe_plan_make(scene, desc, &plan, error);
   if (result != ABBE_OK) return result;

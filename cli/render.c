@@ -227,7 +227,7 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   abbe_progress_end(&progress);
   qsort(all, count, sizeof *all, by_time);
   *out = all[count / 2];
-  if (result == ABBE_OK && !once && q->render.desc.profile != ABBE_PROFILE_THESIS)
+  if (result == ABBE_OK && !once && !abbe_profile_is_thesis(q->render.desc.profile))
     result = measure_floor(renderer, count, &out->floor_ms, error);
   free(all);
   return result;

@@ -21,7 +21,7 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"profile", OPTION_PROFILE, "NAME", 0, "default, or thesis: the historical baseline", 1},
+    {"profile", OPTION_PROFILE, "NAME", 0, "default; baselines: thesis, and thesis-cie with CIE weights in W", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0, "samples of the spectrum, 1 to 1000 (7)", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},

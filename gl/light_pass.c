@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double narrow_rad = 0.17; /* ten degrees */
+
 enum { MIN_LAYER_SIDE = 256, MAX_LAYER_SIDE = 2048 };
 
 static void look_from_light(const abbe_renderer *r, const abbe_light *light, abbe_view *view) {
@@ -31,12 +33,14 @@ static void fit_objects(const abbe_renderer *r, const size_t *object, size_t cou
   }
 }
 
-/* The thesis's light sees through one frustum: its cone, or all there is. */
+/* The thesis's light sees through one frustum: its cone, or all there is. With the CIE's weights
+ * also where the cone is narrow: a prism throws all of its light out of it. */
 static void fit_thesis(abbe_renderer *r, const abbe_light *light, light_state *state) {
   abbe_view *view = &state->near_view;
   fit_objects(r, r->plan.refractor_object, r->plan.refractor_count, view);
   fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, view);
-  if (light->kind == ABBE_LIGHT_SPOT) {
+  bool narrow = r->plan.desc.profile == ABBE_PROFILE_THESIS_CIE && light->cone_rad < narrow_rad;
+  if (light->kind == ABBE_LIGHT_SPOT && !narrow) {
     double look[3];
     memcpy(look, light->direction, sizeof look);
     double near = view->near, far = view->far;
@@ -81,7 +85,7 @@ static void fit_views(abbe_renderer *r) {
     light_state *state = &r->light[i];
     look_from_light(r, light, &state->near_view);
     abbe_view map_view = state->near_view;
-    if (r->plan.desc.profile == ABBE_PROFILE_THESIS) {
+    if (abbe_profile_is_thesis(r->plan.desc.profile)) {
       fit_thesis(r, light, state);
       continue;
     }
@@ -143,7 +147,7 @@ abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
     result = abbe_program_make_compute(r->gl, "photon_place.comp", NULL, &r->place, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_groups.comp", NULL, &r->groups, error);
-  if (result == ABBE_OK && r->plan.desc.profile != ABBE_PROFILE_THESIS)
+  if (result == ABBE_OK && !abbe_profile_is_thesis(r->plan.desc.profile))
     result = make_layers(r, error);
   if (result == ABBE_OK) result = make_lists(r, error);
   return result;

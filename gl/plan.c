@@ -18,6 +18,10 @@ const char *abbe_profile_name(abbe_profile profile) {
   return (int)profile >= 0 && profile < ABBE_PROFILE_COUNT ? names[profile] : "unknown";
 }
 
+bool abbe_profile_is_thesis(abbe_profile profile) {
+  return profile == ABBE_PROFILE_THESIS || profile == ABBE_PROFILE_THESIS_CIE;
+}
+
 const char *abbe_fill_name(abbe_fill fill) {
   static const char *const names[] = {ABBE_FILLS(ABBE_NAME_OF)};
   return (int)fill >= 0 && fill < ABBE_FILL_COUNT ? names[fill] : "unknown";
@@ -70,11 +74,11 @@ static abbe_result check_limit(const char *what, size_t value, size_t most, abbe
 static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc *desc,
                                 abbe_plan *plan, abbe_error *error) {
   abbe_render_desc d = desc != NULL ? *desc : (abbe_render_desc){0};
-  bool thesis = d.profile == ABBE_PROFILE_THESIS;
+  bool thesis = abbe_profile_is_thesis(d.profile);
   if (d.width == 0) d.width = scene->camera.width;
   if (d.height == 0) d.height = scene->camera.height;
   if (d.min_nm == 0) d.min_nm = ABBE_WAVELENGTH_MIN_NM;
-  if (d.max_nm == 0) d.max_nm = thesis ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
+  if (d.max_nm == 0) d.max_nm = d.profile == ABBE_PROFILE_THESIS ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
   if (d.photons == 0) d.photons = thesis ? 512 : 256;
   if (d.map_size == 0) d.map_size = 1024;
   if (d.supersample == 0) d.supersample = thesis ? 1 : 2;
@@ -146,7 +150,7 @@ static const char *model_reason(const abbe_object *object, bool thesis) {
 }
 
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
-  bool thesis = plan->desc.profile == ABBE_PROFILE_THESIS;
+  bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->refractor_object = calloc(scene->object_count + 1, sizeof *plan->refractor_object);
   plan->receiver_object = calloc(scene->object_count + 1, sizeof *plan->receiver_object);
   plan->model = calloc(scene->object_count + 1, sizeof *plan->model);
@@ -258,8 +262,8 @@ static void resolve_wavelengths(abbe_plan *plan) {
                                  : "all indices are constant, one geometry serves all");
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : 8;
-  if (plan->desc.profile == ABBE_PROFILE_THESIS) plan->desc.orders = 1;
-  bool thesis = plan->desc.profile == ABBE_PROFILE_THESIS;
+  if (abbe_profile_is_thesis(plan->desc.profile)) plan->desc.orders = 1;
+  bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   if (plan->refractor_count == 0)
     add(plan, false, "inner reflections", "nothing refracts");
   else if (plan->desc.orders == 1)
@@ -305,7 +309,7 @@ static void note_overlaps(const abbe_scene *scene, abbe_plan *plan) {
 }
 
 static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
-  bool thesis = plan->desc.profile == ABBE_PROFILE_THESIS, caustics = plan->caustics;
+  bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
   bool depth = plan->receivers == ABBE_RECEIVER_DEPTH;
   add(plan, depth, "light: receiver depth",
       depth ? "receivers are found by their depth from the light" : "receivers are hit exactly");
@@ -360,7 +364,7 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
 }
 
 static abbe_result check_thesis(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
-  if (plan->desc.profile != ABBE_PROFILE_THESIS) return ABBE_OK;
+  if (!abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
   if (scene->light_count != 1)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the thesis profile knows one light; this scene has %zu",
@@ -398,7 +402,7 @@ static abbe_result check_layout(const abbe_scene *scene, const abbe_plan *plan, 
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the map layout is for light %zu; the scene has %zu", index + 1,
                           scene->light_count);
-  if (plan->desc.profile == ABBE_PROFILE_THESIS)
+  if (abbe_profile_is_thesis(plan->desc.profile))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the thesis profile lays its map out by the light's cone; a given layout "
                           "goes with the default profile");
@@ -433,7 +437,7 @@ static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_
   static const double up[3] = {0, 1, 0};
   double min[3], max[3], forward[3];
   bool any = abbe_scene_bounds(scene, true, false, min, max);
-  if (!any || plan->desc.profile == ABBE_PROFILE_THESIS) return ABBE_OK;
+  if (!any || abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
     if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;

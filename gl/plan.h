@@ -19,7 +19,9 @@
 extern "C" {
 #endif
 
-#define ABBE_PROFILES(X) X(DEFAULT, "default") X(THESIS, "thesis")
+/* thesis: the thesis's method with its constants; thesis-cie: the same passes with the default
+ * profile's wavelengths, CIE weights, indices, Fresnel's law and units. */
+#define ABBE_PROFILES(X) X(DEFAULT, "default") X(THESIS, "thesis") X(THESIS_CIE, "thesis-cie")
 typedef enum abbe_profile {
 #define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
   ABBE_PROFILES(ABBE_PROFILE_ENUM)
@@ -117,6 +119,8 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
 void abbe_plan_free(abbe_plan *plan);
 
 const char *abbe_profile_name(abbe_profile profile);
+/* Whether it draws with the thesis's passes. */
+bool abbe_profile_is_thesis(abbe_profile profile);
 const char *abbe_fill_name(abbe_fill fill);
 const char *abbe_refractor_model_name(abbe_refractor_model model);
 const char *abbe_receiver_model_name(abbe_receiver_model model);

@@ -96,7 +96,7 @@ static abbe_result make_passes(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_renderer_upload_scene(r, error);
   if (result == ABBE_OK) result = make_map(r, error);
   if (result == ABBE_OK) result = abbe_renderer_make_light(r, error);
-  if (result == ABBE_OK && r->plan.desc.profile == ABBE_PROFILE_THESIS)
+  if (result == ABBE_OK && abbe_profile_is_thesis(r->plan.desc.profile))
     return abbe_renderer_make_thesis(r, error);
   if (result == ABBE_OK && r->plan.caustics) result = abbe_renderer_make_photons(r, error);
   if (result == ABBE_OK) result = abbe_renderer_make_eye(r, error);
@@ -182,7 +182,7 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
   double start_ms = abbe_renderer_now_ms();
   abbe_renderer_bind_tables(r);
   abbe_result result;
-  if (r->plan.desc.profile == ABBE_PROFILE_THESIS) {
+  if (abbe_profile_is_thesis(r->plan.desc.profile)) {
     result = abbe_renderer_thesis_frame(r, error);
   } else {
     result = abbe_renderer_light_layers(r, error);
@@ -235,7 +235,7 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
                                     "direct.Y", "direct.Z", "caustic.X", "caustic.Y", "caustic.Z"};
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   bool as_xyz = r->plan.desc.space == ABBE_RGB_SPACE_XYZ && !thesis;
-  layers = layers && r->plan.desc.layers && !thesis;
+  layers = layers && r->plan.desc.layers && !abbe_profile_is_thesis(r->plan.desc.profile);
   abbe_result result = abbe_image_make(r->plan.desc.width, r->plan.desc.height, layers ? 10 : 3,
                                        as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;
@@ -270,6 +270,7 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
                                    abbe_error *error) {
   static const char *const xyz[] = {"X", "Y", "Z"}, *const rgb[] = {"R", "G", "B"};
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
+  bool flat = abbe_profile_is_thesis(r->plan.desc.profile);
   if (light >= r->plan.light_count || !r->plan.caustics)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the scene has no spectral map of light %zu", light);
@@ -281,13 +282,15 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
     abbe_image_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   }
-  GLenum target = thesis ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
-  r->gl->BindTexture(target, thesis ? abbe_renderer_thesis_map(r, filled) : r->map);
+  GLenum target = flat ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
+  r->gl->BindTexture(target, flat ? abbe_renderer_thesis_map(r, filled) : r->map);
   r->gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
   copy_flipped(data + light * side * side * 4, 4, 0, out, 0, 3, 1);
   free(data);
+  /* The thesis's passes sum the light of a lamp of unit power. */
+  double power = flat ? r->scene->light[light].power : 1;
   for (size_t y = 0; y < side && !thesis; y++) {
-    double height = abbe_renderer_texel_size(r, light, 1, side - 1 - y);
+    double height = power * abbe_renderer_texel_size(r, light, 1, side - 1 - y);
     for (size_t x = 0; x < side; x++)
       for (size_t c = 0; c < 3; c++)
         out->data[(y * side + x) * 3 + c] *=

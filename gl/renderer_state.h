@@ -106,6 +106,8 @@ size_t abbe_renderer_map_words(const abbe_renderer *r);
 
 /* scene_buffers.c: geometry and tables on the device. */
 abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error);
+/* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
+void abbe_renderer_to_working(const abbe_renderer *r, const double rgb[3], double out[3]);
 void abbe_renderer_upload_lights(abbe_renderer *r);
 void abbe_renderer_free_scene(abbe_renderer *r);
 

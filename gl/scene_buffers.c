@@ -169,7 +169,7 @@ static abbe_rgb_space working_space(const abbe_renderer *r) {
   return r->plan.desc.space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : r->plan.desc.space;
 }
 
-static void rec709_to_working(const abbe_renderer *r, const double rgb[3], double out[3]) {
+void abbe_renderer_to_working(const abbe_renderer *r, const double rgb[3], double out[3]) {
   double to_xyz[9], from_xyz[9];
   abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
   abbe_rgb_space_from_xyz(working_space(r), from_xyz);
@@ -204,7 +204,7 @@ static abbe_result upload_textures(abbe_renderer *r, gpu_surface *surface, abbe_
             t->data +
             ((height - 1 - y) * t->height / height * t->width + x * t->width / width) * t->channels;
         double rgb[3] = {from[0], from[1], from[2]};
-        rec709_to_working(r, rgb, rgb);
+        abbe_renderer_to_working(r, rgb, rgb);
         store(rgb, 1, texel + 4 * (y * width + x));
       }
     r->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width, (GLsizei)height, 1,
@@ -221,7 +221,7 @@ static abbe_result upload_surfaces(abbe_renderer *r, abbe_error *error) {
   for (size_t i = 0; i < r->plan.receiver_count; i++) {
     const abbe_object *object = &r->scene->object[r->plan.receiver_object[i]];
     double rgb[3];
-    rec709_to_working(r, object->reflectance, rgb);
+    abbe_renderer_to_working(r, object->reflectance, rgb);
     store(rgb, 1, surface[i].reflectance);
     surface[i].texture_info[0] = -1.0f;
     surface[i].texture_info[1] = (float)object->texture_repeat[0];

@@ -1,13 +1,21 @@
 /* The thesis profile [Blanchette2012]: geometry shader and Gaussian point splats, fixed iteration,
  * smearing fill, and its brightness factors. Where the thesis is silent: 1024 x 1024 light buffers,
  * photon levels 128, 256, 512; the splat modifier is (map / photons)^2 / 3.5, which makes
- * undisturbed light white; scene ambient 0.1; colours for other counts than seven are its seven,
- * interpolated and scaled to the same sum. */
+ * undisturbed light white; the shadow's bias, 0.005, is a share of the light's range; scene ambient
+ * 0.1; colours for other counts than seven are its seven, interpolated and scaled to the same sum.
+ *
+ * With CIE weights (thesis-cie) the same passes, splats, levels, steps and fill have the default
+ * profile's wavelengths, indices, attenuation and colours in XYZ, Fresnel's law at both interfaces,
+ * and flux in place of brightness factors: a splat is divided by the integral of its Gaussian, the
+ * fill takes means, irradiance follows from flux as it does in receiver.glsl. Its map holds flux
+ * over window area for a lamp of unit power, so that undisturbed light on the axis is white and the
+ * fill's thresholds mean what they do in the thesis. */
 #include "gl/program.h"
 #include "gl/renderer_state.h"
 
 #include "colorimetry/weights.h"
 #include "scenes/transform.h"
+#include "spectral/wavelengths.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,11 +28,43 @@ struct thesis_state {
   GLuint eye_normals, eye_depths, eye_receiver_depth, eye_receivers;
   double light_look[16], light_clip[16], eye_look[16], eye_clip[16];
   float (*colour)[3];
-  float *index;
+  float *index, *attenuation_of; /* [wavelengths] */
+  bool cie;
+  float white[3]; /* XYZ, of all weights */
   double attenuation;
 };
 
 static const double colour_sum = 3.5;
+
+/* Integral of the splat's Gaussian over its disk, in texels. */
+static const double splat_sum = 2.6075;
+
+/* XYZ weights, indices and attenuations of the default profile. */
+static abbe_result make_cie_tables(abbe_renderer *r, abbe_error *error) {
+  thesis_state *t = r->thesis;
+  size_t n = r->plan.desc.wavelengths;
+  const abbe_material *material = r->scene->object[r->plan.refractor_object[0]].material;
+  abbe_wavelengths nodes = {0};
+  abbe_weights xyz = {0};
+  abbe_result result =
+      abbe_wavelengths_make(n, r->plan.desc.min_nm, r->plan.desc.max_nm, &nodes, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_weights_make(&nodes, &r->scene->light[0].illuminant, ABBE_RGB_SPACE_XYZ, &xyz, error);
+  for (size_t i = 0; i < n && result == ABBE_OK; i++) {
+    double index = 1;
+    result = abbe_material_n(material, nodes.lambda_nm[i], &index, error);
+    t->index[i] = (float)index;
+    t->attenuation_of[i] = (float)abbe_material_attenuation(material, nodes.lambda_nm[i]);
+    for (int c = 0; c < 3; c++) {
+      t->colour[i][c] = (float)xyz.weight[i][c];
+      t->white[c] = (float)xyz.sum[c];
+    }
+  }
+  abbe_weights_free(&xyz);
+  abbe_wavelengths_free(&nodes);
+  return result;
+}
 
 /* The seven colours, or as many as asked for along the same curve, with the same sum. */
 static abbe_result make_tables(abbe_renderer *r, abbe_error *error) {
@@ -32,8 +72,10 @@ static abbe_result make_tables(abbe_renderer *r, abbe_error *error) {
   size_t n = r->plan.desc.wavelengths;
   t->colour = calloc(n, sizeof *t->colour);
   t->index = calloc(n, sizeof *t->index);
-  if (t->colour == NULL || t->index == NULL)
+  t->attenuation_of = calloc(n, sizeof *t->attenuation_of);
+  if (t->colour == NULL || t->index == NULL || t->attenuation_of == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the thesis's colours");
+  if (t->cie) return make_cie_tables(r, error);
   const abbe_material *material = r->scene->object[r->plan.refractor_object[0]].material;
   double sum[3] = {0, 0, 0};
   for (size_t i = 0; i < n; i++) {
@@ -92,6 +134,8 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
 
 static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
+  char defines[sizeof r->defines + 16];
+  snprintf(defines, sizeof defines, "%s%s", r->defines, t->cie ? "#define CIE\n" : "");
   static const abbe_program_stage layers[] = {{GL_VERTEX_SHADER, "thesis_layers.vert"},
                                               {GL_GEOMETRY_SHADER, "thesis_layers.geom"},
                                               {GL_FRAGMENT_SHADER, "thesis_layers.frag"}};
@@ -114,7 +158,7 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
              {fill, 2, &t->fill},     {lit, 2, &t->receivers},    {refracted, 2, &t->refraction}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_program_make(r->gl, all[i].stages, all[i].count, r->defines, all[i].out, error);
+    result = abbe_program_make(r->gl, all[i].stages, all[i].count, defines, all[i].out, error);
   return result;
 }
 
@@ -122,6 +166,7 @@ abbe_result abbe_renderer_make_thesis(abbe_renderer *r, abbe_error *error) {
   r->thesis = calloc(1, sizeof *r->thesis);
   if (r->thesis == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the thesis profile");
+  r->thesis->cie = r->plan.desc.profile == ABBE_PROFILE_THESIS_CIE;
   abbe_renderer_fit_eye(r);
   look_and_clip(&r->light[0].map.view, r->thesis->light_look, r->thesis->light_clip);
   look_and_clip(&r->eye, r->thesis->eye_look, r->thesis->eye_clip);
@@ -137,6 +182,11 @@ static void set_matrix(abbe_renderer *r, GLuint program, const char *name, const
   r->gl->UniformMatrix4fv(r->gl->GetUniformLocation(program, name), 1, GL_FALSE, f);
 }
 
+static void set_planes(abbe_renderer *r, GLuint program, const abbe_view *view) {
+  r->gl->Uniform3f(r->gl->GetUniformLocation(program, "planes"), (float)(view->near * view->far),
+                   (float)(view->far - view->near), (float)view->far);
+}
+
 static void set_common(abbe_renderer *r, GLuint program, const abbe_view *view,
                        const double clip[16]) {
   const abbe_gl *gl = r->gl;
@@ -145,10 +195,10 @@ static void set_common(abbe_renderer *r, GLuint program, const abbe_view *view,
   set_matrix(r, program, "projection", clip);
   gl->Uniform4f(gl->GetUniformLocation(program, "window"), (float)w[0], (float)w[1], (float)w[2],
                 (float)w[3]);
-  gl->Uniform3f(gl->GetUniformLocation(program, "planes"), (float)(view->near * view->far),
-                (float)(view->far - view->near), (float)view->far);
+  set_planes(r, program, view);
   GLsizei n = (GLsizei)r->plan.desc.wavelengths;
   gl->Uniform1fv(gl->GetUniformLocation(program, "index"), n, t->index);
+  gl->Uniform1fv(gl->GetUniformLocation(program, "attenuation_of"), n, t->attenuation_of);
 }
 
 /* The lamp: white in Rec.709 at full strength, a cone; a point light's reaches everywhere. */
@@ -238,7 +288,8 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   double across = (double)map / (double)r->plan.desc.photons;
   abbe_renderer_set_int(r, t->splat, "grid", (int)r->plan.desc.photons);
   abbe_renderer_set_float(r, t->splat, "resolution", (double)map);
-  abbe_renderer_set_float(r, t->splat, "modifier", across * across / colour_sum);
+  abbe_renderer_set_float(r, t->splat, "modifier",
+                          across * across / (t->cie ? splat_sum : colour_sum));
   gl->Uniform3fv(gl->GetUniformLocation(t->splat, "colour"), (GLsizei)r->plan.desc.wavelengths,
                  &t->colour[0][0]);
   gl->BindVertexArray(r->empty_array);
@@ -275,25 +326,45 @@ static void set_surface(abbe_renderer *r, size_t receiver, int *layer) {
   const abbe_object *o = &r->scene->object[r->plan.receiver_object[receiver]];
   GLuint p = r->thesis->receivers;
   bool textured = o->texture.data != NULL;
-  r->gl->Uniform3f(r->gl->GetUniformLocation(p, "reflectance"), (float)o->reflectance[0],
-                   (float)o->reflectance[1], (float)o->reflectance[2]);
+  double rgb[3] = {o->reflectance[0], o->reflectance[1], o->reflectance[2]};
+  if (r->thesis->cie) abbe_renderer_to_working(r, rgb, rgb);
+  r->gl->Uniform3f(r->gl->GetUniformLocation(p, "reflectance"), (float)rgb[0], (float)rgb[1],
+                   (float)rgb[2]);
   r->gl->Uniform3f(r->gl->GetUniformLocation(p, "texture_info"), textured ? (float)*layer : -1.0f,
                    (float)o->texture_repeat[0], (float)o->texture_repeat[1]);
   *layer += textured;
+}
+
+/* What only the physical units ask for; programs without them have no such uniforms. */
+static void set_units(abbe_renderer *r, GLuint program) {
+  const abbe_gl *gl = r->gl;
+  const double *forward = r->light[0].map.view.forward;
+  const float *white = r->thesis->white, *m = r->rgb_from_xyz;
+  if (!r->thesis->cie) return;
+  gl->UniformMatrix3fv(gl->GetUniformLocation(program, "rgb_from_xyz"), 1, GL_FALSE, m);
+  gl->UniformMatrix3fv(gl->GetUniformLocation(program, "xyz_from_rgb"), 1, GL_FALSE,
+                       r->xyz_from_rgb);
+  gl->Uniform3f(gl->GetUniformLocation(program, "forward"), (float)forward[0], (float)forward[1],
+                (float)forward[2]);
+  gl->Uniform3f(gl->GetUniformLocation(program, "white"), white[0], white[1], white[2]);
+  abbe_renderer_set_float(r, program, "power", r->scene->light[0].power);
+  abbe_renderer_set_float(r, program, "ambient", r->scene->ambient);
 }
 
 static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
   const abbe_gl *gl = r->gl;
   static const int flat = -1;
-  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  static const GLfloat far = 1;
   double matrix[16];
   abbe_renderer_begin_pass(r);
   abbe_result result =
       abbe_renderer_set_target(r, &t->eye_receivers, &flat, 1, t->eye_receiver_depth,
                                r->plan.desc.width, r->plan.desc.height, error);
   if (result != ABBE_OK) return result;
-  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  const GLfloat sky = t->cie ? (float)r->scene->background : 0;
+  const GLfloat background[4] = {sky, sky, sky, 0};
+  gl->ClearBufferfv(GL_COLOR, 0, background);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(t->receivers);
@@ -302,6 +373,8 @@ static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
   abbe_transform_multiply(t->light_clip, t->light_look, matrix);
   set_matrix(r, t->receivers, "light_matrix", matrix);
   set_spot(r, t->receivers, r->scene->light[0].direction);
+  set_planes(r, t->receivers, &r->light[0].map.view);
+  set_units(r, t->receivers);
   const double *lamp = r->scene->light[0].position, *eye = r->scene->camera.eye;
   gl->Uniform3f(gl->GetUniformLocation(t->receivers, "light_position"), (float)lamp[0],
                 (float)lamp[1], (float)lamp[2]);
@@ -337,6 +410,7 @@ static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
   double lamp[3], none[3] = {0, 0, -1};
   abbe_transform_point(t->eye_look, r->scene->light[0].position, lamp);
   set_spot(r, t->refraction, none);
+  set_units(r, t->refraction);
   gl->Uniform3f(gl->GetUniformLocation(t->refraction, "light_position"), (float)lamp[0],
                 (float)lamp[1], (float)lamp[2]);
   gl->Uniform2f(gl->GetUniformLocation(t->refraction, "picture_size"), (float)width, (float)height);
@@ -344,7 +418,7 @@ static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
   float(*colour)[3] = malloc((size_t)n * sizeof *colour);
   if (colour == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for colours");
   for (GLsizei i = 0; i < n; i++)
-    for (int c = 0; c < 3; c++) colour[i][c] = 0.26f * t->colour[i][c];
+    for (int c = 0; c < 3; c++) colour[i][c] = t->colour[i][c] * (t->cie ? 1 / t->white[c] : 0.26f);
   gl->Uniform3fv(gl->GetUniformLocation(t->refraction, "colour"), n, &colour[0][0]);
   free(colour);
   abbe_renderer_bind_texture(r, t->refraction, "normals", 0, t->eye_normals);
@@ -388,5 +462,6 @@ void abbe_renderer_free_thesis(abbe_renderer *r) {
   r->gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
   free(t->colour);
   free(t->index);
+  free(t->attenuation_of);
   free(t);
 }

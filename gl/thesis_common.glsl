@@ -6,6 +6,13 @@ uniform mat4 projection;
 uniform vec4 window;
 uniform vec3 planes;
 
+#ifdef CIE
+#include "optics.glsl"
+const float OUTSIDE = 1.0;  // indices are relative to the air
+#else
+const float OUTSIDE = 1.0003;
+#endif
+
 vec2 to_texture(vec4 p) {
   vec4 c = projection * p;
   return 0.5 * c.xy / c.w + 0.5;
@@ -25,15 +32,21 @@ vec4 refraction(vec3 incident, vec3 normal, float ni_nt) {
 }
 
 // Two interfaces by the distance between front and back along the view; the receiver by
-// `iterations` steps of the image-space search. Position in view space.
+// `iterations` steps of the image-space search. Position in view space. passes: the share of the
+// light that the two interfaces let through.
 vec4 find_receiver(vec3 p1, vec3 n1, float d_v, float n, sampler2DArray normals,
-                   sampler2D receiver_depth, int iterations, out bool total) {
-  vec3 t1 = refract(normalize(p1), n1, 1.0003 / n);
+                   sampler2D receiver_depth, int iterations, out float passes) {
+  vec3 t1 = refract(normalize(p1), n1, OUTSIDE / n);
   vec4 p2 = vec4(t1 * d_v + p1, 1.0);
   vec3 n2 = texture(normals, vec3(to_texture(p2), 1.0)).xyz;
   if (dot(n2, n2) == 0.0) n2 = normalize(vec3(t1.xy, 0.0));
   vec4 t2 = refraction(t1, -n2, n);
-  total = t2.w < 0.0;
+  passes = 1.0;
+#ifdef CIE
+  // Where all light is reflected it goes on as in the thesis, and none is taken off.
+  passes = 1.0 - fresnel(dot(-normalize(p1), n1), 1.0 / n);
+  if (t2.w > 0.0) passes *= 1.0 - fresnel(dot(t1, n2), n);
+#endif
   t2.w = 0.0;
   vec4 step_ = t2 / -t2.z;
   float at = 1000.0, nearest = 1000.0;

@@ -2,7 +2,11 @@
 uniform sampler2D spectral_map;
 layout(location = 0) out vec4 filled;
 const int STEPS_OUT = 20;
+#ifdef CIE
+const float BRIGHTNESS = 1.0 / float(STEPS_OUT - 1);  // a mean
+#else
 const float BRIGHTNESS = 0.2;
+#endif
 
 vec3 gather(ivec2 at, ivec2 direction) {
   vec3 sum = vec3(0);

@@ -14,6 +14,10 @@ void main() {
   float r2 = dot(d, d);
   float g = 0.918 + 0.918 * ((exp(-3.906 * r2 / size2) - 1.0) / 0.858152111);
   float inside = r2 / size2 < 0.25 ? 1.0 : 0.0;
+#ifdef CIE
+  splat = vec4(strength * modifier * inside * g * colour[wavelength], 1.0);
+#else
   float adjustment = modifier * inside * g / (10.5 * size2 / 25.0);
   splat = vec4(spot_colour * strength * adjustment * colour[wavelength], 1.0);
+#endif
 }

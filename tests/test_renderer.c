@@ -75,13 +75,12 @@ static void test_shipped_scenes_balance_and_repeat(void **state) {
 }
 
 /* The thesis's map is the light's own frustum, so that it holds nothing of the prism's light. */
-static void test_the_thesis_profile_renders(void **state) {
-  (void)state;
+static void the_thesis_renders(abbe_profile profile) {
   for (int i = 0; i < SHIPPED; i++) {
     abbe_scene scene = {0};
     abbe_image image = {0}, map = {0};
     abbe_render_desc desc = small_frame;
-    desc.profile = ABBE_PROFILE_THESIS;
+    desc.profile = profile;
     load_shipped(shipped[i], &scene);
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     abbe_statistics s = draw_frame(renderer);
@@ -98,6 +97,12 @@ static void test_the_thesis_profile_renders(void **state) {
     abbe_renderer_free(renderer);
     abbe_scene_free(&scene);
   }
+}
+
+static void test_the_thesis_profiles_render(void **state) {
+  (void)state;
+  the_thesis_renders(ABBE_PROFILE_THESIS);
+  the_thesis_renders(ABBE_PROFILE_THESIS_CIE);
 }
 
 /* Every model, light and material at once, at sizes that divide nothing. */
@@ -375,7 +380,7 @@ static void test_what_is_not_there_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_shipped_scenes_balance_and_repeat),
-      cmocka_unit_test(test_the_thesis_profile_renders),
+      cmocka_unit_test(test_the_thesis_profiles_render),
       cmocka_unit_test(test_mixed_scenes_balance),
       cmocka_unit_test(test_many_wavelengths_add_up),
       cmocka_unit_test(test_white_in_white_out),
