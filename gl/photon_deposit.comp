@@ -43,7 +43,7 @@ vec2 neighbour_step(ivec2 c, int order, int lane, uint path, vec2 here) {
   bool there = all(greaterThanEqual(c, ivec2(0))) && all(lessThan(c, ivec2(grid)));
   uint at = slot[there ? c.y * grid + c.x : 0];
   there = there && at != 0u;
-  uint index = ((there ? at - 1u : 0u) * ORDERS + order) * LANES + lane;
+  uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
   there = there && signature[index] == path;
   return there ? map_position(landing[index].xyz) - here : vec2(0);
 }
@@ -53,8 +53,8 @@ void main() {
          gl_LocalInvocationID.x;
   if (listed >= path_count) return;
   uint photon_path = path_list[listed];
-  uint photon = photon_path / ORDERS;
-  int order = int(photon_path % ORDERS);
+  uint photon = photon_path / SLOTS;
+  int order = int(photon_path % SLOTS);
   uint first = photon_path * LANES;
   uint packed_cell = photon_cell[photon];
   if (packed_cell * 2654435761u % chunks != chunk) return;

@@ -98,7 +98,7 @@ static void list_pieces(abbe_renderer *r, size_t light, size_t first, size_t cou
   gl->Uniform1ui(gl->GetUniformLocation(r->deposit, "most"), (GLuint)r->splat_room);
   clear_count(r, r->splat_list);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->path_list);
-  dispatch_list(r, r->deposit, r->path_list, r->light[light].photon_count * r->plan.desc.orders);
+  dispatch_list(r, r->deposit, r->path_list, r->light[light].photon_count * r->plan.slots);
 }
 
 static abbe_result deposit_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
@@ -289,7 +289,7 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t most = 1;
   for (size_t i = 0; i < r->plan.light_count; i++)
     if (r->light[i].photon_count > most) most = r->light[i].photon_count;
-  size_t a_lane = most * r->plan.desc.orders, n = r->plan.desc.wavelengths;
+  size_t a_lane = most * r->plan.slots, n = r->plan.desc.wavelengths;
   size_t lanes = MAX_LANDING_BYTES / LANDING_BYTES / a_lane;
   if (a_lane * 2 * LANDING_BYTES > MOST_LANDING_BYTES)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -333,7 +333,7 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
 
 /* The batch's landings, zero where there is none; malloc'd. */
 static abbe_result read_batch(abbe_renderer *r, size_t light, float **data, abbe_error *error) {
-  size_t count = r->light[light].photon_count * r->plan.desc.orders * r->lanes;
+  size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
   float *landing = malloc(count * 16 + 1);
   GLuint *path = malloc(count * 4 + 1);
   if (landing == NULL || path == NULL) {
@@ -443,9 +443,8 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
     result = read_batch(r, light, &landing, error);
     if (result == ABBE_OK)
-      total +=
-          sort_landings(&r->light[light].map.view, landing,
-                        r->light[light].photon_count * r->plan.desc.orders * r->lanes, histogram);
+      total += sort_landings(&r->light[light].map.view, landing,
+                             r->light[light].photon_count * r->plan.slots * r->lanes, histogram);
     free(landing);
   }
   if (result == ABBE_OK && total > 0) fit_axes(&r->light[light], histogram, total);
@@ -481,7 +480,7 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
     result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
   if (result != ABBE_OK) return result;
   *count = r->light[light].photon_count;
-  *orders = r->plan.desc.orders;
+  *orders = r->plan.slots;
   *lanes = r->lanes;
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);

@@ -63,13 +63,22 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   float n = spectrum.x, cos_i = -dot(d, front.n);
   float reflected = fresnel(cos_i, 1.0 / n);
   entry[REACHED] = 1.0;
-  entry[REFLECTED] = reflected;
+  vec3 at;
+  uint receiver;
+  uint path = uint(r) * 131u + uint(front.facet);
+  if (reflected > 0.0) {
+    // The mirror on the outside takes the slot behind the exits'; it is the same for all colours.
+    if (land(front.p, reflect(d, front.n), at, receiver))
+      keep_landing(photon, EXITS, lane, at, reflected * flux,
+                   (path * 17u + receiver) << 8 | 0x80000000u | uint(r));
+    else
+      entry[REFLECTED] = reflected;
+  }
   float share = 1.0 - reflected;
   vec3 p = front.p, inner, wall_n;
   if (!refract_direction(d, front.n, 1.0 / n, inner)) return;
   int facet = front.facet;
-  uint path = uint(r) * 131u + uint(facet);
-  for (int order = 0; order < ORDERS; order++) {
+  for (int order = 0; order < EXITS; order++) {
     vec3 wall;
     int next;
     inner_hit(r, facet, p, inner,
@@ -87,8 +96,6 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
     float out_share = share * (1.0 - kept);
     vec3 outer;
     if (out_share > 0.0 && refract_direction(inner, -wall_n, n, outer)) {
-      vec3 at;
-      uint receiver;
       if (land(wall, outer, at, receiver)) {
         keep_landing(photon, order, lane, at, out_share * flux,
                      (path * 31u + receiver) << 8 | 0x80000000u | uint(r));

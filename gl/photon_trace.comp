@@ -6,14 +6,14 @@ layout(local_size_x = 256) in;
 #include "wide_sum.glsl"
 #include "receiver.glsl"
 
-// [(photon * ORDERS + order) * LANES + lane]: where it lands; w: flux for unit weight, W.
+// [(photon * SLOTS + order) * LANES + lane]: where it lands; w: flux for unit weight, W.
 layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
 // Receiver and facets along the way, equal for paths that vary continuously; refractor in the low
 // eight bits; 0: no landing.
 layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
 // Y weight of the samples at [light * WAVELENGTHS + i].
 layout(std430, binding = 11) readonly buffer SampleWeights { vec4 sample_weight[]; };
-// Paths (photon * ORDERS + order) that land at some wavelength, each listed once.
+// Paths (photon * SLOTS + order) that land at some wavelength, each listed once.
 layout(std430, binding = 7) buffer PathMarks { uint path_mark[]; };
 layout(std430, binding = 13) buffer PathList {
   uint path_count, path_groups[3];
@@ -34,7 +34,7 @@ shared uint book[5];
 
 // A landing of the photon at lane's wavelength, in the path's slot.
 void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path) {
-  uint listed = photon * ORDERS + order, index = listed * LANES + lane;
+  uint listed = photon * SLOTS + order, index = listed * LANES + lane;
   landing[index] = vec4(at, flux);
   if (atomicExchange(path_mark[listed], 1u) == 0u) path_list[atomicAdd(path_count, 1u)] = listed;
   signature[index] = path;

@@ -264,6 +264,7 @@ static void resolve_wavelengths(abbe_plan *plan) {
   if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : 8;
   if (abbe_profile_is_thesis(plan->desc.profile)) plan->desc.orders = 1;
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  plan->slots = plan->desc.orders + (thesis ? 0 : 1);
   if (plan->refractor_count == 0)
     add(plan, false, "inner reflections", "nothing refracts");
   else if (plan->desc.orders == 1)
@@ -352,8 +353,6 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
       plan->desc.supersample);
   add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
-  if (!thesis && refractors)
-    note(plan, "light that a refractor reflects on its outside reaches no receiver");
   if (!thesis && refractors && depth)
     note(plan, "through refractors, receivers show as far as the eye also sees them straight");
   if (plan->refractor_count > 1)

@@ -104,6 +104,7 @@ typedef struct abbe_plan {
   bool dispersive;              /* some index varies over the range */
   bool absorbing;               /* some attenuation is above zero in the range */
   bool textured;
+  size_t slots;  /* landings of a photon at the most: its exits, and the mirror on the outside */
   bool caustics; /* a light can reach a refractor */
   size_t light_count;
   size_t entry_count; /* passes and models, in the order in which they run */

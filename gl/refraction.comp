@@ -141,7 +141,7 @@ void main() {
     float share = 1.0 - reflected;
     int facet = front.facet;
     vec3 light = vec3(0);
-    for (int order = 0; order < ORDERS; order++) {
+    for (int order = 0; order < EXITS; order++) {
       vec3 wall, wall_n, outer;
       int next;
       inner_hit(refractor, facet, p, inner,

@@ -38,12 +38,13 @@ static void write_defines(abbe_renderer *r) {
       planes += r->scene->object[p->refractor_object[i]].exact.count;
   snprintf(r->defines, sizeof r->defines,
            "#define LIGHTS %zu\n#define REFRACTORS %zu\n#define RECEIVERS %zu\n"
-           "#define WAVELENGTHS %zu\n#define ORDERS %zu\n#define LIGHT_ROOM %zu\n"
+           "#define WAVELENGTHS %zu\n#define EXITS %zu\n#define SLOTS %zu\n"
+           "#define LIGHT_ROOM %zu\n"
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
            "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
-           p->desc.orders, room(p->light_count), room(p->refractor_count), room(planes),
+           p->desc.orders, p->slots, room(p->light_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
            r->band_levels, room(p->refractor_count * r->band_count),
            storage(p->refractor_count * r->band_count, 32, "#define BANDS_IN_STORAGE\n"),

@@ -15,7 +15,7 @@ extern "C" {
  */
 typedef struct abbe_ledger {
   double reached;
-  double reflected; /* on the outside, at the first interface */
+  double reflected; /* on the outside, at the first interface, and landed nowhere */
   double absorbed;  /* along inner paths */
   double trapped;   /* still inside when the path ended: total or repeated internal reflection */
   double missed;    /* met no receiver, or one that the map does not hold */

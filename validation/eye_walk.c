@@ -19,7 +19,6 @@ typedef struct eye_path {
   uint32_t step;
   float within;
   abbe_media_set inside;
-  unsigned mask;
   float carried; /* matched: what a splitting path would carry */
   uint32_t walls, steps, id;
 } eye_path;
@@ -179,9 +178,11 @@ static void shade(const context *c, const eye_path *p, const abbe_hit *hit, bool
 
 /* ---- paths ---- */
 
+enum { ALL_KINDS = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_LAMPS };
+
 static bool trace(const context *c, const eye_path *p, abbe_hit *hit, float *length) {
   c->out->rays++;
-  if (!abbe_geometry_hit(c->w->geometry, p->mask, p->o, p->d, INFINITY, hit)) return false;
+  if (!abbe_geometry_hit(c->w->geometry, ALL_KINDS, p->o, p->d, INFINITY, hit)) return false;
   float square = 0;
   for (int k = 0; k < 3; k++) square += (hit->p[k] - p->o[k]) * (hit->p[k] - p->o[k]);
   *length = sqrtf(square);
@@ -247,17 +248,13 @@ static void send(eye_path *p, const abbe_hit *hit, const crossing *x, bool refle
   abbe_geometry_leave(hit, d, p->o);
 }
 
-/* Matched physics: whether the renderer would follow the path any further, and what it may meet. */
+/* Matched physics: whether the renderer would follow the path any further. */
 static bool matched_rules(const context *c, eye_path *p, bool reflects, float share) {
   const abbe_physics *physics = &c->w->physics;
   if (!physics->matched) return true;
   p->walls++;
-  if (!reflects) {
-    p->mask = ABBE_GEOMETRY_RECEIVERS;
-    return true;
-  }
-  p->carried *= share;
-  return p->walls < physics->orders && (double)p->carried >= physics->energy_share;
+  p->carried *= reflects ? share : 1 - share;
+  return !reflects || (p->walls < physics->orders && (double)p->carried >= physics->energy_share);
 }
 
 static bool disperses(const context *c, const crossing *x) {
@@ -292,10 +289,8 @@ static void follow(const context *c, eye_path p) {
     }
     crossing x;
     cross(&p, &hit, &x);
-    bool foreign = c->w->physics.matched && p.inside != 0 &&
-                   abbe_media_of(p.inside) != (int)hit.surface->index;
-    if (foreign || x.from == x.to) {
-      if (!foreign) p.inside = x.after;
+    if (x.from == x.to) {
+      p.inside = x.after;
       abbe_geometry_leave(&hit, p.d, p.o);
       continue;
     }
@@ -337,7 +332,7 @@ static void follow_mirror(const context *c, const eye_path *first, const abbe_hi
       p.tint[k] *= sum[k] / all;
     }
   }
-  if (w->physics.matched) p.mask = ABBE_GEOMETRY_RECEIVERS;
+  p.carried = reflectance_at(c, x, (uint32_t)w->sampling->steps / 2, 0, &eta, &cos_t);
   send(&p, hit, x, true, eta, cos_t);
   follow(c, p);
 }
@@ -354,7 +349,6 @@ static void follow_through(const context *c, const eye_path *first, const abbe_h
     if (share >= 1) continue;
     p.share *= 1 - share;
     p.carried = 1 - share;
-    if (c->w->physics.matched) p.mask = ABBE_GEOMETRY_REFRACTORS;
     send(&p, hit, x, false, eta, cos_t);
     follow(c, p);
   }
@@ -370,10 +364,7 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
   context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
   float random[4];
   random4(&c, 0, 0, random);
-  eye_path p = {.share = 1,
-                .tint = {1, 1, 1},
-                .carried = 1,
-                .mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_LAMPS};
+  eye_path p = {.share = 1, .tint = {1, 1, 1}, .carried = 1};
   memcpy(p.o, w->camera->eye, sizeof p.o);
   float x = (float)(pixel % w->camera->width) + random[0];
   float y = (float)(pixel / w->camera->width) + random[1];

@@ -29,7 +29,7 @@ typedef struct setting {
   const char *material;
   double light; /* 0: a beam */
   double plane;
-  bool two_faces; /* only what passes two faces, as matched physics without inner walls has it */
+  bool two_faces; /* no inner walls, as matched physics without any has it */
 } setting;
 
 static abbe_sphere_setup setup_of(const setting *s, size_t orders) {
@@ -39,7 +39,7 @@ static abbe_sphere_setup setup_of(const setting *s, size_t orders) {
                              .plane_distance = s->plane * RADIUS,
                              .power = 1,
                              .inner_orders = s->two_faces ? 0 : orders,
-                             .outside = !s->two_faces};
+                             .outside = true};
 }
 
 /* W that fall on the sphere for a power of 1. */

@@ -32,6 +32,7 @@ typedef struct path {
   float y;          /* Y of a watt, for the ledger */
   float carried;    /* matched: share of the light that a splitting path would carry */
   uint16_t steps, walls;
+  bool begun; /* has met its first interface */
 } path;
 
 typedef struct front {
@@ -183,7 +184,7 @@ typedef struct lanes {
   int reflects[LANES];
   float size[LANES]; /* of the coordinates, for the offset */
   abbe_media_set before[LANES], after[LANES];
-  bool entering[LANES], straight[LANES];
+  bool straight[LANES];
   verdict verdict[LANES];
   abbe_hit hit[LANES];
 } lanes;
@@ -224,16 +225,14 @@ static bool absorb(const abbe_light_walk *w, path *s, float length, uint32_t pas
 }
 
 /* Matched physics: what the renderer's walk would still follow. */
-static verdict matched_rules(const abbe_light_walk *w, path *s, bool entering, bool reflects,
-                             float share) {
+static verdict matched_rules(const abbe_light_walk *w, path *s, bool reflects, float share) {
   if (!w->physics.matched) return GOES_ON;
-  if (s->walls == 0 && entering) {
-    s->carried = 1 - share;
-    return reflects ? DROPS : GOES_ON;
+  s->carried *= reflects ? share : 1 - share;
+  if (s->begun) s->walls++;
+  if (!s->begun || !reflects) {
+    s->begun = true;
+    return GOES_ON;
   }
-  s->walls++;
-  if (!reflects) return GOES_ON;
-  s->carried *= share;
   bool goes_on = s->walls < w->physics.orders && (double)s->carried >= w->physics.energy_share;
   return goes_on ? GOES_ON : DROPS;
 }
@@ -250,12 +249,8 @@ static void meet(const abbe_light_walk *w, const path *s, const float d[3], lane
     l->ng[i][k] = side * hit->ng[i];
   }
   abbe_media_cross(s->inside, hit->surface->index, entering, &l->before[k], &l->after[k]);
-  bool foreign =
-      w->physics.matched && s->inside != 0 && abbe_media_of(s->inside) != (int)hit->surface->index;
   int from = abbe_media_of(l->before[k]), to = abbe_media_of(l->after[k]);
-  l->entering[k] = entering;
-  l->straight[k] = foreign || from == to;
-  if (foreign) l->after[k] = s->inside;
+  l->straight[k] = from == to;
   l->eta[k] = l->straight[k] ? 1
                              : abbe_media_n(w->media, from, s->step, s->within) /
                                    abbe_media_n(w->media, to, s->step, s->within);
@@ -343,12 +338,6 @@ static bool lamp_sees(const abbe_light_walk *w, const abbe_light *light, const a
   return !abbe_geometry_occluded(w->g, ABBE_GEOMETRY_RECEIVERS, o, d, limit);
 }
 
-/* Matched: inside a refractor only its walls count, and what has left it meets none. */
-static unsigned next_mask(const abbe_light_walk *w, const path *s) {
-  if (!w->physics.matched) return ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
-  return s->inside != 0 ? ABBE_GEOMETRY_REFRACTORS : ABBE_GEOMETRY_RECEIVERS;
-}
-
 /* The path after the interface, into the next front; what matched physics does not follow ends. */
 static verdict go_on(const abbe_light_walk *w, const lanes *l, size_t k, path *s, front *next) {
   float o[3], d[3];
@@ -357,10 +346,9 @@ static verdict go_on(const abbe_light_walk *w, const lanes *l, size_t k, path *s
     d[i] = l->straight[k] ? l->d[i][k] : l->out[i][k];
   }
   bool reflects = l->reflects[k] && !l->straight[k];
-  if (!l->straight[k] && matched_rules(w, s, l->entering[k], reflects, l->share[k]) == DROPS)
-    return DROPS;
+  if (!l->straight[k] && matched_rules(w, s, reflects, l->share[k]) == DROPS) return DROPS;
   s->inside = reflects ? l->before[k] : l->after[k];
-  put_ray(next, next->count, o, d, next_mask(w, s));
+  put_ray(next, next->count, o, d, ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS);
   next->state[next->count++] = *s;
   return GOES_ON;
 }

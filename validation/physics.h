@@ -1,10 +1,10 @@
 /* physics.h: what the tracer models: what light does (full), or what a renderer says it models
  * (matched).
  *
- * Matched leaves out what the renderer's plan leaves out: light that a refractor reflects on its
- * outside reaches no receiver; light that has left a refractor meets no other, nor the same again;
- * paths end below a share of their light or after a number of inner walls; and light counts only
- * where the lamp would see the receiver past others. The surfaces are the true ones in both.
+ * Matched leaves out what the renderer's plan leaves out: where a path that has met its first
+ * interface is reflected, it ends if it is left with less than a share of its light or has met a
+ * number of interfaces since; and light counts only where the lamp would see the receiver past
+ * others. The surfaces are the true ones in both.
  */
 #ifndef ABBE_VALIDATION_PHYSICS_H
 #define ABBE_VALIDATION_PHYSICS_H
@@ -19,8 +19,8 @@ extern "C" {
 /* A zeroed struct is full physics. */
 typedef struct abbe_physics {
   bool matched;
-  size_t orders;       /* matched: inner walls met at the most */
-  double energy_share; /* matched: paths below this share of their light end */
+  size_t orders;       /* matched: interfaces after the first that may reflect, and one */
+  double energy_share; /* matched: what is reflected below this share of its light ends */
 } abbe_physics;
 
 #ifdef __cplusplus
