@@ -1,0 +1,91 @@
+// Triangles in a hierarchy of boxes (scenes/hierarchy.h), several trees in one buffer: the nearest
+// one on a ray. HIERARCHY_STACK: what the deepest tree stacks at the most. Loops end at their top
+// alone: Mesa 22's llvmpipe clobbers what is loaded in a loop that lanes leave in its middle.
+
+layout(std430, binding = 0) readonly buffer HierarchyNodes { vec4 hierarchy_node[]; };
+// A corner (w: part of its mesh) and the two edges from there, three a triangle.
+layout(std430, binding = 1) readonly buffer HierarchyTriangles { vec4 hierarchy_triangle[]; };
+// Normals at the corners, w: u of the texture; v of the three in the fourth.
+layout(std430, binding = 3) readonly buffer HierarchyCorners { vec4 hierarchy_corner[]; };
+
+struct TriangleHit {
+  float t, u, v;  // barycentric, of the second and third corner
+  int triangle;   // -1: none
+};
+
+// Where the ray enters the box of node i, or 1e30.
+float hierarchy_enter(vec4 low, vec4 high, vec3 o, vec3 inverse, float t_min, float t_max) {
+  vec3 a = (low.xyz - o) * inverse, b = (high.xyz - o) * inverse;
+  vec3 near = min(a, b), far = max(a, b);
+  float from = max(max(near.x, near.y), max(near.z, t_min));
+  float to = min(min(far.x, far.y), min(far.z, t_max)) * 1.0000005;
+  return from <= to ? from : 1e30;
+}
+
+// What a node leads to, as one number: its first child, or the complement of its triangles' first
+// (from the fourth bit) and count; -1: nothing.
+int hierarchy_code(vec4 low, vec4 high) {
+  int first = floatBitsToInt(low.w), count = floatBitsToInt(high.w);
+  return count > 0 ? ~(first << 3 | count) : first;
+}
+
+// Nearest triangle of the tree at `root` with t_min < t < h.t. side 1: only those that the ray meets
+// against their normal, -1: along it, 0: all. any: the first that is found will do.
+bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
+                   inout TriangleHit h) {
+  int stack[HIERARCHY_STACK];
+  vec3 least = vec3(1e-20);
+  vec3 inverse = 1.0 / mix(d, mix(-least, least, greaterThanEqual(d, vec3(0))),
+                           lessThan(abs(d), least));
+  float nearest = h.t, hit_u = 0.0, hit_v = 0.0;
+  vec4 root_low = hierarchy_node[2 * root], root_high = hierarchy_node[2 * root + 1];
+  bool meets = hierarchy_enter(root_low, root_high, o, inverse, t_min, nearest) < 1e30;
+  int todo = meets ? hierarchy_code(root_low, root_high) : -1;
+  int waiting = 0, found = -1, leaf = ~todo;
+  int node = todo, next = todo < 0 ? leaf >> 3 : 0, end = next + (todo < 0 ? leaf & 7 : 0);
+  while (node >= 0 || next < end) {
+    if (next < end) {
+      vec3 corner = hierarchy_triangle[3 * next].xyz;
+      vec3 e1 = hierarchy_triangle[3 * next + 1].xyz, e2 = hierarchy_triangle[3 * next + 2].xyz;
+      vec3 across = cross(d, e2), from = o - corner;
+      float det = dot(e1, across);
+      vec3 q = cross(from, e1);
+      float scale = 1.0 / det;
+      float u = dot(from, across) * scale, v = dot(d, q) * scale, t = dot(e2, q) * scale;
+      // A triangle is a little larger than it is, so that no ray slips through between two.
+      bool hit = det != 0.0 && det * side >= 0.0 && min(u, v) >= -2e-6 && u + v <= 1.000002 &&
+                 t > t_min && t < nearest;
+      found = hit ? next : found;
+      nearest = hit ? t : nearest;
+      hit_u = hit ? u : hit_u;
+      hit_v = hit ? v : hit_v;
+      next++;
+      todo = -1;
+    } else {
+      vec4 low_a = hierarchy_node[2 * node], high_a = hierarchy_node[2 * node + 1];
+      vec4 low_b = hierarchy_node[2 * node + 2], high_b = hierarchy_node[2 * node + 3];
+      float a = hierarchy_enter(low_a, high_a, o, inverse, t_min, nearest);
+      float b = hierarchy_enter(low_b, high_b, o, inverse, t_min, nearest);
+      int code_a = a < 1e30 ? hierarchy_code(low_a, high_a) : -1;
+      int code_b = b < 1e30 ? hierarchy_code(low_b, high_b) : -1;
+      bool both = code_a != -1 && code_b != -1;
+      if (both) stack[waiting] = b < a ? code_a : code_b;
+      waiting += both ? 1 : 0;
+      todo = both ? (b < a ? code_b : code_a) : code_a != -1 ? code_a : code_b;
+      node = -1;
+    }
+    bool done = next >= end && todo == -1;
+    bool over = waiting == 0 || (any && found >= 0);
+    waiting -= done && !over ? 1 : 0;
+    if (done && !over) todo = stack[waiting];
+    leaf = ~todo;
+    next = todo < -1 ? leaf >> 3 : any && found >= 0 ? end : next;
+    end = todo < -1 ? next + (leaf & 7) : end;
+    node = todo >= 0 ? todo : -1;
+  }
+  h.t = nearest;
+  h.u = hit_u;
+  h.v = hit_v;
+  h.triangle = found;
+  return found >= 0;
+}

@@ -1,0 +1,260 @@
+/* The hierarchy against every triangle in turn: in double precision, and as the shaders have it. */
+#include "tests/glsl.h"
+
+#include "scenes/hierarchy.h"
+#include "scenes/shape.h"
+#include "tests/random.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct soup {
+  double (*triangle)[9];
+  size_t count;
+  double size;
+  abbe_hierarchy h;
+} soup;
+
+static abbe_context *context;
+
+static int make_context(void **state) {
+  abbe_error error = {0};
+  (void)state;
+  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error) == ABBE_OK) return 0;
+  print_error("%s\n", error.text);
+  return 1;
+}
+
+static int free_context(void **state) {
+  (void)state;
+  abbe_context_free(context);
+  return 0;
+}
+
+static void finish(soup *s) {
+  assert_non_null(s->triangle);
+  assert_int_equal(abbe_hierarchy_make((const double(*)[9])s->triangle, s->count, &s->h, NULL),
+                   ABBE_OK);
+}
+
+static void drop(soup *s) {
+  abbe_hierarchy_free(&s->h);
+  free(s->triangle);
+}
+
+/* What awkward triangles there are: tiny and huge, needles, without area, all at one place. */
+static void make_soup(size_t count, double size, soup *s) {
+  uint64_t random = count;
+  *s = (soup){.count = count, .size = size, .triangle = calloc(count, sizeof *s->triangle)};
+  for (size_t i = 0; i < count; i++) {
+    double extent = size * pow(10, random_between(&random, -3, 0)), at[3];
+    for (int k = 0; k < 3; k++) at[k] = random_between(&random, -size, size);
+    for (int k = 0; k < 9; k++) s->triangle[i][k] = at[k % 3] + random_between(&random, 0, extent);
+    if (i % 50 == 0) memcpy(s->triangle[i] + 6, s->triangle[i] + 3, 3 * sizeof(double));
+    if (i % 50 == 1 && i > 1) memcpy(s->triangle[i], s->triangle[1], sizeof *s->triangle);
+  }
+  finish(s);
+}
+
+static void make_ring(soup *s) {
+  abbe_mesh mesh = {0};
+  assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);
+  *s = (soup){.count = mesh.face_count, .size = 0.1, .triangle = abbe_hierarchy_triangles(&mesh)};
+  abbe_mesh_free(&mesh);
+  finish(s);
+}
+
+static void random_ray(const soup *s, uint64_t *random, double o[3], double d[3]) {
+  double length = 0;
+  for (int k = 0; k < 3; k++) {
+    o[k] = (double)(float)random_between(random, -1.5 * s->size, 1.5 * s->size);
+    d[k] = random_between(random, -s->size, s->size) - o[k];
+    length += d[k] * d[k];
+  }
+  /* along the axes, too, where a direction's parts are zero */
+  if (random_bits(random) % 8 == 0) {
+    int axis = (int)(random_bits(random) % 3);
+    for (int k = 0; k < 3; k++) d[k] = k == axis ? (random_bits(random) % 2 ? 1 : -1) : 0;
+    length = 1;
+  }
+  for (int k = 0; k < 3; k++) d[k] = (double)(float)(d[k] / sqrt(length));
+}
+
+static bool brute_force(const soup *s, const double o[3], const double d[3], int side,
+                        abbe_hierarchy_hit *hit) {
+  bool found = false;
+  double nearest = INFINITY;
+  for (size_t i = 0; i < s->count; i++) {
+    if (!abbe_hierarchy_meet(s->triangle[i], o, d, side, 0, nearest, hit)) continue;
+    nearest = hit->t;
+    hit->index = i;
+    found = true;
+  }
+  return found;
+}
+
+static void compare(const soup *s, size_t rays) {
+  uint64_t random = 7;
+  size_t hits = 0;
+  for (size_t i = 0; i < rays; i++) {
+    double o[3], d[3];
+    abbe_hierarchy_hit a = {0}, b = {0};
+    int side = (int)(i % 3) - 1;
+    random_ray(s, &random, o, d);
+    bool met =
+        abbe_hierarchy_trace(&s->h, (const double(*)[9])s->triangle, o, d, side, 0, INFINITY, &a);
+    assert_true(met == brute_force(s, o, d, side, &b));
+    if (!met) continue;
+    hits++;
+    /* the same arithmetic on the same numbers; of two equal triangles either may win */
+    assert_true(a.t == b.t && a.u == b.u && a.v == b.v);
+  }
+  assert_true(hits > rays / 20);
+}
+
+static void nearest_of_all_triangles(void **state) {
+  (void)state;
+  soup s;
+  static const size_t counts[] = {1, 2, 5, 300, 3000};
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+    make_soup(counts[i], i % 2 ? 1 : 1e4, &s);
+    if (counts[i] >= 300) compare(&s, 1000);
+    assert_true(s.h.node_count < 2 * counts[i] && s.h.depth <= ABBE_HIERARCHY_MAX_DEPTH);
+    drop(&s);
+  }
+  make_ring(&s);
+  compare(&s, 1000);
+  drop(&s);
+}
+
+/* Every triangle is in one leaf, and every box holds what is below it. */
+static void boxes_hold_their_triangles(void **state) {
+  (void)state;
+  soup s;
+  make_soup(1000, 1, &s);
+  size_t seen = 0;
+  for (size_t i = 0; i < s.h.node_count; i++) {
+    const abbe_hierarchy_node *n = &s.h.node[i];
+    assert_true(n->count <= 4);
+    for (int k = 0; k < n->count; k++, seen++)
+      for (int c = 0; c < 9; c++) {
+        double x = s.triangle[s.h.triangle[n->first + k]][c];
+        assert_true((double)n->min[c % 3] <= x && x <= (double)n->max[c % 3]);
+      }
+    for (int child = 0; n->count == 0 && child < 2; child++)
+      for (int k = 0; k < 3; k++) {
+        assert_true(n->min[k] <= s.h.node[n->first + child].min[k]);
+        assert_true(n->max[k] >= s.h.node[n->first + child].max[k]);
+      }
+  }
+  assert_int_equal(seen, s.count);
+  drop(&s);
+}
+
+static void equal_triangles_end_in_leaves(void **state) {
+  (void)state;
+  soup s = {.count = 100000, .triangle = calloc(100000, sizeof *s.triangle)};
+  for (size_t i = 0; i < s.count; i++) s.triangle[i][3] = s.triangle[i][7] = 1;
+  finish(&s);
+  assert_true(s.h.depth <= ABBE_HIERARCHY_MAX_DEPTH);
+  drop(&s);
+  assert_int_equal(abbe_hierarchy_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
+}
+
+static void upload(const soup *s) {
+  const abbe_gl *gl = abbe_context_gl(context);
+  float(*triangle)[4] = calloc(3 * s->count, sizeof *triangle);
+  for (size_t i = 0; i < s->count; i++)
+    for (int k = 0; k < 3; k++) {
+      const double *from = s->triangle[s->h.triangle[i]];
+      triangle[3 * i][k] = (float)from[k];
+      triangle[3 * i + 1][k] = (float)(from[3 + k] - from[k]);
+      triangle[3 * i + 2][k] = (float)(from[6 + k] - from[k]);
+    }
+  glsl_buffer(gl, 0, s->h.node_count * sizeof *s->h.node, s->h.node);
+  glsl_buffer(gl, 1, 3 * s->count * sizeof *triangle, triangle);
+  free(triangle);
+}
+
+/* Single precision: a hit lies 1e-5 of the scene's size from the true one, but for rays that graze
+ * a triangle or its edge, which may miss it: one in two hundred. */
+static void the_shaders_find_the_same(void **state) {
+  (void)state;
+  enum { RAYS = 4096 };
+  static float in[RAYS][8], out[RAYS][4];
+  soup s[2];
+  make_soup(3000, 1, &s[0]);
+  make_ring(&s[1]);
+  for (int which = 0; which < 2; which++) {
+    char text[512];
+    uint64_t random = 11;
+    size_t odd = 0, hits = 0;
+    for (size_t i = 0; i < RAYS; i++) {
+      double o[3], d[3];
+      random_ray(&s[which], &random, o, d);
+      for (int k = 0; k < 3; k++) {
+        in[i][k] = (float)o[k];
+        in[i][4 + k] = (float)d[k];
+      }
+      in[i][3] = (float)((int)(i % 3) - 1);
+    }
+    upload(&s[which]);
+    snprintf(text, sizeof text,
+             "#define HIERARCHY_STACK %zu\n#include \"hierarchy.glsl\"\n"
+             "vec4 f(vec4 a, vec4 b) {\n"
+             "  TriangleHit h, any;\n  h.t = any.t = 1e30;\n"
+             "  bool met = hierarchy_hit(0, a.xyz, b.xyz, a.w, 0.0, false, h);\n"
+             "  bool some = hierarchy_hit(0, a.xyz, b.xyz, a.w, 0.0, true, any);\n"
+             "  return met != some ? vec4(-2) : met ? vec4(h.t, h.u, h.v, 1) : vec4(-1);\n}\n",
+             s[which].h.depth + 1);
+    glsl_evaluate(abbe_context_gl(context), text, (const float(*)[8])in, RAYS, out);
+    for (size_t i = 0; i < RAYS; i++) {
+      double o[3], d[3];
+      abbe_hierarchy_hit hit;
+      for (int k = 0; k < 3; k++) {
+        o[k] = (double)in[i][k];
+        d[k] = (double)in[i][4 + k];
+      }
+      bool met = brute_force(&s[which], o, d, (int)in[i][3], &hit);
+      hits += met;
+      assert_true(out[i][3] > -2);
+      bool same = met == (out[i][3] > 0) &&
+                  (!met || fabs((double)out[i][0] - hit.t) < 1e-5 * s[which].size);
+      odd += !same;
+    }
+    assert_true(hits > RAYS / 20);
+    if (odd * 200 >= RAYS) print_error("%zu of %d rays differ\n", odd, RAYS);
+    assert_true(odd * 200 < RAYS);
+  }
+  drop(&s[0]);
+  drop(&s[1]);
+}
+
+/* A box has six, a ring one; a box without normals that break, one. */
+static void parts_end_where_normals_break(void **state) {
+  (void)state;
+  abbe_mesh mesh = {0};
+  uint32_t group[8192];
+  assert_int_equal(abbe_shape_box((double[3]){1, 2, 3}, &mesh, NULL), ABBE_OK);
+  assert_int_equal(abbe_hierarchy_parts(&mesh, group), 6);
+  for (size_t i = 0; i < mesh.face_count; i++)
+    for (size_t k = 0; k < mesh.face_count; k++) {
+      const double *a = mesh.normal[mesh.face[i][0]], *b = mesh.normal[mesh.face[k][0]];
+      assert_true((group[i] == group[k]) == (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]));
+    }
+  assert_int_equal(abbe_mesh_compute_normals(&mesh, true, NULL), ABBE_OK);
+  assert_int_equal(abbe_hierarchy_parts(&mesh, group), 1);
+  abbe_mesh_free(&mesh);
+  assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);
+  assert_int_equal(abbe_hierarchy_parts(&mesh, group), 1);
+  abbe_mesh_free(&mesh);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nearest_of_all_triangles),      cmocka_unit_test(boxes_hold_their_triangles),
+      cmocka_unit_test(equal_triangles_end_in_leaves), cmocka_unit_test(the_shaders_find_the_same),
+      cmocka_unit_test(parts_end_where_normals_break),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
