@@ -35,6 +35,7 @@ enum {
   OPTION_TRACED_PHOTONS,
   OPTION_TEXELS,
   OPTION_PHYSICS,
+  OPTION_SPLIT,
   OPTION_MATERIALS,
   OPTION_GL,
   OPTION_LIST,
@@ -65,7 +66,7 @@ static const struct argp_option options[] = {
     {"quiet", 'q', NULL, 0, "no progress", 0},
     {"grid", OPTION_GRID, "quick|full|presets", 0,
      "a named set of settings; presets: do they keep their promise here? (quick)", 1},
-    {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis (both)", 1},
+    {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis,thesis-cie (all)", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "LIST", 0, "such as 3,7,21", 1},
     {"photons", OPTION_PHOTONS, "LIST", 0, "sides of the photon grid", 1},
     {"map", OPTION_MAP, "LIST", 0, "sides of the spectral map", 1},
@@ -84,6 +85,8 @@ static const struct argp_option options[] = {
     {"spp", OPTION_SPP, "N", 0, "passes of the reference (64)", 2},
     {"traced-photons", OPTION_TRACED_PHOTONS, "N", 0, "photons a pass (1048576)", 2},
     {"texels", OPTION_TEXELS, "N", 0, "side of the reference's map (256)", 2},
+    {"split", OPTION_SPLIT, NULL, 0,
+     "trace matched physics too: what is the model's, and what is sampling's?", 2},
     {"physics", OPTION_PHYSICS, "NAME", 0, "of the reference: full or matched (full)", 2},
     {0}};
 
@@ -205,6 +208,9 @@ static error_t parse_reference(int key, char *text, request *q) {
   case OPTION_PHYSICS:
     w->matched = abbe_command_choice(w->program, "--physics", text, physics, 2) == 1;
     break;
+  case OPTION_SPLIT:
+    w->split = true;
+    break;
   default:
     return parse_list(key, text, q);
   }
@@ -235,8 +241,11 @@ static void finish(request *q, struct argp_state *state) {
     argp_error(state, "--grid and lists such as --wavelengths 3,7: one or the other");
   bool named = w->reference != NULL || w->reference_map != NULL;
   if (named && q->traced)
-    argp_error(state, "--spp, --texels, --physics and --traced-photons are for a reference that is "
-                      "traced, and one is given");
+    argp_error(state,
+               "--spp, --texels, --physics, --split and --traced-photons are for a reference "
+               "that is traced, and one is given");
+  if (w->split && w->matched)
+    argp_error(state, "--split traces full and matched physics; --physics asks for one of them");
   if (w->reference != NULL && w->width != 0)
     argp_error(state, "--size goes with a reference that is traced; the given one has its own");
 }
@@ -311,7 +320,8 @@ static void choose_grid(request *q) {
     return;
   }
   if (q->list.profiles.count == 0)
-    q->list.profiles = (abbe_sweep_values){2, {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_THESIS}};
+    q->list.profiles = (abbe_sweep_values){
+        3, {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE}};
   w->grid[0] = q->list;
   w->grid_count = 1;
 }
@@ -341,7 +351,7 @@ static abbe_result show(const request *q, const abbe_sweep_table *tables, size_t
     if (w->json)
       result = abbe_sweep_report_print_json(&tables[i], w->error, error);
     else
-      abbe_sweep_report_print(&tables[i], w->error);
+      result = abbe_sweep_report_print(&tables[i], w->error, error);
   }
   if (result == ABBE_OK && w->presets && !w->json)
     result = abbe_sweep_report_print_promises(&tables[0], error);

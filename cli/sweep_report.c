@@ -11,6 +11,8 @@
 #include "spectral/file.h"
 #include "validation/front.h"
 #include "validation/sweep.h"
+#include "validation/sweep_duel.h"
+#include "validation/sweep_split.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -18,33 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 1024, SHOWN = 5 };
-
-/* Against the thesis */
-
-static bool is_default_thesis(const abbe_sweep_setting *s) {
-  return strcmp(s->profile, "thesis") == 0 && s->wavelengths == 7 && s->photons == 512 &&
-         s->map == 1024 && strcmp(s->fill, "smear") == 0;
-}
-
-void abbe_sweep_report_duel(const abbe_sweep_table *table, abbe_sweep_number error,
-                            abbe_sweep_duel *out) {
-  *out = (abbe_sweep_duel){NULL, NAN, NAN};
-  for (size_t i = 0; i < table->count; i++)
-    if (is_default_thesis(&table->row[i].setting)) out->baseline = &table->row[i];
-  if (out->baseline == NULL) return;
-  double time = out->baseline->number[ABBE_SWEEP_FRAME_MS], wrong = out->baseline->number[error];
-  double least_time = INFINITY, least_error = INFINITY;
-  for (size_t i = 0; i < table->count; i++) {
-    const abbe_sweep_row *row = &table->row[i];
-    if (strcmp(row->setting.profile, "default") != 0) continue;
-    double ms = row->number[ABBE_SWEEP_FRAME_MS], e = row->number[error];
-    if (e <= wrong) least_time = fmin(least_time, ms);
-    if (ms <= time) least_error = fmin(least_error, e);
-  }
-  if (isfinite(least_time)) out->equal_error_speedup = time / least_time;
-  if (isfinite(least_error) && wrong > 0) out->equal_time_error_ratio = least_error / wrong;
-}
+enum { PATH_SIZE = 1024, SHOWN = 6, PARAGRAPH = 2000 };
 
 /* The front in the order of time; indices are malloc'd. */
 static size_t order_front(const abbe_sweep_table *table, size_t **out) {
@@ -82,28 +58,51 @@ static void print_row(const abbe_sweep_row *row) {
   printf("\n");
 }
 
-void abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number error) {
-  size_t *order, count = order_front(table, &order);
+static abbe_result print_duel(const abbe_sweep_table *table, const char *profile,
+                              abbe_sweep_number number, abbe_error *error) {
   abbe_sweep_duel duel;
+  char a[24], b[24];
+  abbe_result result = abbe_sweep_duel_make(table, profile, number, &duel, error);
+  if (result != ABBE_OK || duel.front == 0) return result;
+  printf("\n%s", abbe_sweep_baseline_text(profile));
+  if (duel.baseline != NULL) {
+    printf(", at its own settings:\n");
+    print_row(duel.baseline);
+    printf("the default profile at its error: %s times as fast; in its time: %s of its error",
+           number_text(duel.equal_error_speedup, a), number_text(duel.equal_time_error_ratio, b));
+  }
+  printf("\nagainst its own front of %zu settings: at least %s times as fast; at most %s of its "
+         "error; %zu are beaten in both\n",
+         duel.front, number_text(duel.front_speedup, a), number_text(duel.front_ratio, b),
+         duel.beaten);
+  return ABBE_OK;
+}
+
+abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number number,
+                                    abbe_error *error) {
+  size_t *order, count = order_front(table, &order);
   char text[24];
+  if (order == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the front");
   printf("%s, %s: %zu settings, %zu on the front of time and %s\n\n%-34s",
          table->fact[ABBE_SWEEP_FACT_SCENE], table->fact[ABBE_SWEEP_FACT_SIZE], table->count, count,
-         abbe_sweep_number_name(error), "");
+         abbe_sweep_number_name(number), "");
   for (int k = 0; k < SHOWN_NUMBERS; k++) printf(" %12s", abbe_sweep_number_name(shown[k]));
   printf("\n");
-  for (size_t i = 0; i < count && order != NULL; i++) print_row(&table->row[order[i]]);
-  abbe_sweep_report_duel(table, error, &duel);
-  if (count > 0 && order != NULL)
+  for (size_t i = 0; i < count; i++) print_row(&table->row[order[i]]);
+  if (count > 0)
     printf("the reference's own noise: %s of %s\n",
-           number_text(table->row[order[0]].number[error + 1], text),
-           abbe_sweep_number_name(error));
+           number_text(table->row[order[0]].number[number + 1], text),
+           abbe_sweep_number_name(number));
   free(order);
-  if (duel.baseline == NULL) return;
-  printf("\nat its own settings, with the best factor on its brightness:\n");
-  print_row(duel.baseline);
-  printf("the default profile at its error: %s times as fast",
-         number_text(duel.equal_error_speedup, text));
-  printf("; in its time: %s of its error\n", number_text(duel.equal_time_error_ratio, text));
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < ABBE_SWEEP_BASELINE_COUNT && result == ABBE_OK; i++)
+    result = print_duel(table, abbe_sweep_baselines[i], number, error);
+  abbe_sweep_split split;
+  char words[PARAGRAPH];
+  abbe_sweep_split_make(table, &split);
+  abbe_sweep_split_say(&split, words, sizeof words);
+  if (isfinite(split.rest)) printf("\n%s\n", words);
+  return result;
 }
 
 /* Promises */
@@ -185,20 +184,59 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
   return o;
 }
 
+/* "equal_error_speedup" against the thesis profile, "vs_fair_..." against its method in units. */
+static abbe_result describe_duel(const abbe_sweep_table *table, const char *profile,
+                                 abbe_sweep_number number, cJSON *root, abbe_error *error) {
+  abbe_sweep_duel d;
+  abbe_result result = abbe_sweep_duel_make(table, profile, number, &d, error);
+  if (result != ABBE_OK) return result;
+  const struct {
+    const char *name;
+    double value;
+  } all[] = {{"equal_error_speedup", d.equal_error_speedup},
+             {"equal_time_error_ratio", d.equal_time_error_ratio},
+             {"front_speedup", d.front_speedup},
+             {"front_ratio", d.front_ratio},
+             {"front_points", (double)d.front},
+             {"front_points_beaten", (double)d.beaten}};
+  const char *before = strcmp(profile, abbe_sweep_baselines[0]) == 0 ? "" : "vs_fair_";
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    char name[64];
+    snprintf(name, sizeof name, "%s%s", before, all[i].name);
+    add_number(root, name, all[i].value);
+  }
+  return ABBE_OK;
+}
+
+static void describe_split(const abbe_sweep_table *table, cJSON *root) {
+  abbe_sweep_split s;
+  char words[PARAGRAPH];
+  abbe_sweep_split_make(table, &s);
+  if (s.row == NULL) return;
+  abbe_sweep_split_say(&s, words, sizeof words);
+  cJSON *o = cJSON_AddObjectToObject(root, "split");
+  add_number(o, "total", s.total);
+  add_number(o, "model", s.model);
+  add_number(o, "sampling_and_reconstruction", s.rest);
+  add_number(o, "with_fill", s.with_fill);
+  add_number(o, "without_fill", s.without_fill);
+  cJSON_AddStringToObject(o, "words", words);
+}
+
 abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number number,
                                          abbe_error *error) {
-  abbe_sweep_duel duel;
   cJSON *root = cJSON_CreateObject();
+  abbe_result result = ABBE_OK;
   for (int i = 0; i < ABBE_SWEEP_FACT_COUNT; i++)
     cJSON_AddStringToObject(root, abbe_sweep_fact_name((abbe_sweep_fact)i), table->fact[i]);
   cJSON_AddStringToObject(root, "error", abbe_sweep_number_name(number));
-  abbe_sweep_report_duel(table, number, &duel);
-  add_number(root, "equal_error_speedup", duel.equal_error_speedup);
-  add_number(root, "equal_time_error_ratio", duel.equal_time_error_ratio);
+  for (int i = 0; i < ABBE_SWEEP_BASELINE_COUNT && result == ABBE_OK; i++)
+    result = describe_duel(table, abbe_sweep_baselines[i], number, root, error);
+  describe_split(table, root);
   cJSON *rows = cJSON_AddArrayToObject(root, "rows");
   for (size_t i = 0; i < table->count; i++)
     cJSON_AddItemToArray(rows, describe_row(&table->row[i]));
-  abbe_result result = abbe_command_print_json(root, error);
+  if (result == ABBE_OK) result = abbe_command_print_json(root, error);
   cJSON_Delete(root);
   return result;
 }
@@ -292,20 +330,28 @@ static void show_reference(const page *p, const abbe_sweep_table *t, shot *out) 
   abbe_image_free(&image);
 }
 
-/* The reference, three settings of the default profile's front, and the thesis profile. */
+/* The row of a baseline's own settings, or NULL. */
+static const abbe_sweep_row *find_baseline(const abbe_sweep_table *t, int which,
+                                           abbe_sweep_number number) {
+  abbe_sweep_duel duel;
+  if (abbe_sweep_duel_make(t, abbe_sweep_baselines[which], number, &duel, NULL) != ABBE_OK)
+    return NULL;
+  return duel.baseline;
+}
+
+/* The reference, three settings of the front, and the two baselines. */
 static void take_shots(const page *p, const abbe_sweep_table *t, const size_t *order, size_t count,
                        shot *shots) {
-  static const char *const names[] = {"reference", "cheapest", "middle", "accurate", "baseline"};
-  abbe_sweep_duel duel;
+  static const char *const names[] = {"reference", "cheapest", "middle",
+                                      "accurate",  "thesis",   "thesis-cie"};
   abbe_scene scene = {0};
   const abbe_sweep_row *rows[SHOWN] = {0};
-  abbe_sweep_report_duel(t, p->number, &duel);
   if (count > 0) {
     rows[1] = &t->row[order[0]];
     rows[2] = &t->row[order[count / 2]];
     rows[3] = &t->row[order[count - 1]];
   }
-  rows[4] = duel.baseline;
+  for (int i = 0; i < ABBE_SWEEP_BASELINE_COUNT; i++) rows[4 + i] = find_baseline(t, i, p->number);
   show_reference(p, t, &shots[0]);
   bool loaded = abbe_scene_load(t->fact[ABBE_SWEEP_FACT_SCENE], NULL, &scene, NULL) == ABBE_OK;
   for (int i = 1; i < SHOWN; i++) {
@@ -351,17 +397,70 @@ static void write_pictures(FILE *out, const shot *shots) {
             missing);
 }
 
-static void write_duel(const page *p, const abbe_sweep_table *t) {
+static abbe_result write_duel(const page *p, const abbe_sweep_table *t, const char *profile,
+                              abbe_error *error) {
   abbe_sweep_duel duel;
-  char a[24], b[24];
-  abbe_sweep_report_duel(t, p->number, &duel);
-  if (duel.baseline == NULL) return;
-  fprintf(
-      p->out,
-      "The baseline is the thesis profile at its own settings, with the best factor on its "
-      "brightness. The default profile has its error %s times as fast, and in its time %s of its "
-      "error.\n\n",
-      number_text(duel.equal_error_speedup, a), number_text(duel.equal_time_error_ratio, b));
+  char text[4][24];
+  abbe_result result = abbe_sweep_duel_make(t, profile, p->number, &duel, error);
+  if (result != ABBE_OK || duel.front == 0) return result;
+  fprintf(p->out, "| %s | %s | %s | %s | %s | %zu of %zu |\n", abbe_sweep_baseline_text(profile),
+          number_text(duel.equal_error_speedup, text[0]),
+          number_text(duel.equal_time_error_ratio, text[1]),
+          number_text(duel.front_speedup, text[2]), number_text(duel.front_ratio, text[3]),
+          duel.beaten, duel.front);
+  return ABBE_OK;
+}
+
+static abbe_result write_duels(const page *p, const abbe_sweep_table *t, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  fprintf(p->out, "| the default profile against the | as fast at its error | of its error in its "
+                  "time | as fast, over its front | of the error, over its front | points of it "
+                  "beaten in both |\n|---|---|---|---|---|---|\n");
+  for (int i = 0; i < ABBE_SWEEP_BASELINE_COUNT && result == ABBE_OK; i++)
+    result = write_duel(p, t, abbe_sweep_baselines[i], error);
+  fprintf(p->out, "\n");
+  return result;
+}
+
+/* What each fill adds to the map and drops from it, and what the map then holds of what arrives. */
+static void write_fills(const page *p, const abbe_sweep_table *t) {
+  const abbe_sweep_row *rows[2 + 2 * ABBE_SWEEP_BASELINE_COUNT] = {0};
+  size_t count = 0;
+  for (size_t i = 0; i < t->count; i++) {
+    /* Every setting that is there without its fill too, and its twin. */
+    abbe_sweep_setting filled = t->row[i].setting;
+    if (strcmp(filled.fill, "none") != 0 || count + 2 > sizeof rows / sizeof *rows) continue;
+    bool plain = strcmp(filled.profile, "default") == 0;
+    snprintf(filled.fill, sizeof filled.fill, "%s", plain ? "bridge" : "smear");
+    const abbe_sweep_row *twin = abbe_sweep_table_find(t, &filled);
+    if (twin == NULL) continue;
+    rows[count++] = &t->row[i];
+    rows[count++] = twin;
+  }
+  if (count == 0) return;
+  fprintf(p->out, "| fill | added | dropped | map's energy | map, relative RMSE | caustic, "
+                  "CIEDE2000 |\n|---|---|---|---|---|---|\n");
+  for (size_t i = 0; i < count; i++) {
+    static const abbe_sweep_number cells[] = {ABBE_SWEEP_FILL_INVENTED, ABBE_SWEEP_FILL_LOST,
+                                              ABBE_SWEEP_MAP_ENERGY, ABBE_SWEEP_MAP_RMSE,
+                                              ABBE_SWEEP_CAUSTIC_DE};
+    char label[64], text[24];
+    abbe_sweep_setting_label(&rows[i]->setting, label, sizeof label);
+    fprintf(p->out, "| %s%s%s |", label, i % 2 == 1 ? ", " : "",
+            i % 2 == 1 ? rows[i]->setting.fill : "");
+    for (size_t k = 0; k < sizeof cells / sizeof *cells; k++)
+      fprintf(p->out, " %s |", number_text(rows[i]->number[cells[k]], text));
+    fprintf(p->out, "\n");
+  }
+  fprintf(p->out, "\n");
+}
+
+static void write_split(const page *p, const abbe_sweep_table *t) {
+  abbe_sweep_split split;
+  char words[PARAGRAPH];
+  abbe_sweep_split_make(t, &split);
+  abbe_sweep_split_say(&split, words, sizeof words);
+  if (words[0] != '\0') fprintf(p->out, "%s\n\n", words);
 }
 
 static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_error *error) {
@@ -371,8 +470,6 @@ static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_er
   if (shots == NULL || order == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the report");
   if (result == ABBE_OK) {
-    abbe_sweep_duel duel;
-    abbe_sweep_report_duel(t, p->number, &duel);
     fprintf(p->out, "## %s\n\n", base_of(t->fact[ABBE_SWEEP_FACT_SCENE]));
     take_shots(p, t, order, count, shots);
     write_pictures(p->out, shots);
@@ -385,9 +482,14 @@ static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_er
       fprintf(p->out, " %s |", abbe_sweep_number_text(shown[k]));
     fprintf(p->out, "\n|---|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < count; i++) write_row(p->out, "", &t->row[order[i]]);
-    if (duel.baseline != NULL) write_row(p->out, "baseline: ", duel.baseline);
+    for (int i = 0; i < ABBE_SWEEP_BASELINE_COUNT; i++) {
+      const abbe_sweep_row *baseline = find_baseline(t, i, p->number);
+      if (baseline != NULL && !baseline->front) write_row(p->out, "baseline: ", baseline);
+    }
     fprintf(p->out, "\n");
-    write_duel(p, t);
+    result = write_duels(p, t, error);
+    write_fills(p, t);
+    write_split(p, t);
   }
   free(order);
   free(shots);

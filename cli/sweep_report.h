@@ -5,18 +5,9 @@
 #include "gl/context.h"
 #include "validation/sweep_table.h"
 
-/* The default profile held against the thesis profile at its own settings; NaN: not known. */
-typedef struct abbe_sweep_duel {
-  const abbe_sweep_row *baseline; /* NULL: not in the table */
-  double equal_error_speedup;     /* its time over the least time of an error no larger */
-  double equal_time_error_ratio;  /* the least error in a time no longer, over its error */
-} abbe_sweep_duel;
-
-void abbe_sweep_report_duel(const abbe_sweep_table *table, abbe_sweep_number error,
-                            abbe_sweep_duel *out);
-
-/* The front, settings and numbers, on stdout. */
-void abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number error);
+/* The front, the baselines and what the error is made of, on stdout. */
+abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number number,
+                                    abbe_error *error);
 abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number number,
                                          abbe_error *error);
 
@@ -25,7 +16,7 @@ abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_swe
 abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, abbe_error *error);
 
 /* A Markdown page of one or more sweeps, beside it the pictures of each scene: the reference, the
- * cheapest, the middle and the most accurate setting of its front, and the thesis profile. Scenes
+ * cheapest, the middle and the most accurate setting of its front, and the two baselines. Scenes
  * and references are read from the paths in the tables; what is gone leaves out its pictures, with
  * a note. */
 abbe_result abbe_sweep_report_write(const char *path, const abbe_sweep_table *tables, size_t count,

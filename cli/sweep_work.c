@@ -23,14 +23,20 @@ enum { PATH_SIZE = 1024, DEFAULT_TEXELS = 256 };
 /* Says for which scene and request a reference was traced, so that no other takes it. */
 static const char *const stamp_name = "abbe:sweep";
 
+/* A reference, its files, and the stamp of those that the sweep traces itself. */
+typedef struct traced {
+  abbe_image picture, map;
+  char picture_path[PATH_SIZE], map_path[PATH_SIZE], checkpoint_path[PATH_SIZE];
+  char stamp[256];
+} traced;
+
 /* All that is loaded or made on the way. */
 typedef struct work {
   const abbe_sweep_request *q;
   abbe_scene scene;
   abbe_context *context;
-  abbe_image picture, map; /* the reference */
-  char picture_path[PATH_SIZE], map_path[PATH_SIZE], checkpoint_path[PATH_SIZE];
-  char stamp[256];
+  traced full, matched; /* matched: where the split is asked for */
+  abbe_sweep_model model;
   abbe_sweep sweep;
   abbe_sweep_setting *setting;
   size_t setting_count;
@@ -39,22 +45,30 @@ typedef struct work {
 
 static void close_work(work *w) {
   free(w->setting);
-  abbe_image_free(&w->picture);
-  abbe_image_free(&w->map);
+  traced *const all[] = {&w->full, &w->matched};
+  for (int i = 0; i < 2; i++) {
+    abbe_image_free(&all[i]->picture);
+    abbe_image_free(&all[i]->map);
+  }
   abbe_context_free(w->context);
   abbe_scene_free(&w->scene);
 }
 
 /* The reference */
 
+/* Beside the table: STEM-reference.exr, STEM-matched.exr, their maps and checkpoints. */
 static abbe_result name_files(work *w, abbe_error *error) {
   const char *csv = w->q->csv, *dot = strrchr(csv, '.'), *slash = strrchr(csv, '/');
   int stem = dot != NULL && (slash == NULL || dot > slash) ? (int)(dot - csv) : (int)strlen(csv);
   if (stem > PATH_SIZE - 64)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the path '%.80s…' is too long", csv);
-  snprintf(w->picture_path, PATH_SIZE, "%.*s-reference.exr", stem, csv);
-  snprintf(w->map_path, PATH_SIZE, "%.*s-reference-map.exr", stem, csv);
-  snprintf(w->checkpoint_path, PATH_SIZE, "%.*s-reference.checkpoint", stem, csv);
+  for (int i = 0; i < 2; i++) {
+    traced *t = i == 0 ? &w->full : &w->matched;
+    const char *kind = i == 0 ? "reference" : "matched";
+    snprintf(t->picture_path, PATH_SIZE, "%.*s-%s.exr", stem, csv, kind);
+    snprintf(t->map_path, PATH_SIZE, "%.*s-%s-map.exr", stem, csv, kind);
+    snprintf(t->checkpoint_path, PATH_SIZE, "%.*s-%s.checkpoint", stem, csv, kind);
+  }
   return ABBE_OK;
 }
 
@@ -79,13 +93,13 @@ static abbe_result keep(abbe_image *image, const char *stamp, const char *path, 
   return abbe_exr_read(path, image, error);
 }
 
-static abbe_result trace_reference(work *w, abbe_error *error) {
+static abbe_result trace_reference(work *w, bool matched, traced *to, abbe_error *error) {
   const abbe_sweep_request *q = w->q;
   abbe_map_layout layout;
   abbe_progress progress;
   abbe_reference_desc desc = {.trace = {.width = q->width, .height = q->height},
                               .passes = passes_of(q),
-                              .checkpoint = w->checkpoint_path,
+                              .checkpoint = to->checkpoint_path,
                               .progress = abbe_progress_update,
                               .user = &progress,
                               .stop = abbe_progress_stopped()};
@@ -93,63 +107,72 @@ static abbe_result trace_reference(work *w, abbe_error *error) {
   if (result != ABBE_OK) return result;
   desc.trace.layout = &layout;
   desc.trace.photons = q->photons;
+  /* Noise of its own: what the two have in common must not cancel. */
+  desc.trace.seed = matched && q->split ? 1 : 0;
   desc.trace.map_width = desc.trace.map_height = q->texels > 0 ? q->texels : DEFAULT_TEXELS;
-  if (q->matched) {
+  if (matched) {
     abbe_plan plan;
     result = abbe_plan_make(&w->scene, NULL, &plan, error);
     if (result != ABBE_OK) return result;
     desc.trace.physics = (abbe_physics){true, plan.desc.orders, plan.desc.energy_share};
     abbe_plan_free(&plan);
   }
-  abbe_progress_begin(&progress, "reference", q->quiet);
-  result = abbe_reference_trace(&w->scene, &desc, &w->picture, &w->map, error);
+  abbe_progress_begin(&progress, matched ? "matched" : "reference", q->quiet);
+  result = abbe_reference_trace(&w->scene, &desc, &to->picture, &to->map, error);
   abbe_progress_end(&progress);
-  if (result == ABBE_OK) result = keep(&w->picture, w->stamp, w->picture_path, error);
-  if (result == ABBE_OK) result = keep(&w->map, w->stamp, w->map_path, error);
+  if (result == ABBE_OK) result = keep(&to->picture, to->stamp, to->picture_path, error);
+  if (result == ABBE_OK) result = keep(&to->map, to->stamp, to->map_path, error);
   return result;
 }
 
 /* A reference that this scene and request left before is taken; else it is traced. */
-static abbe_result find_reference(work *w, abbe_error *error) {
+static abbe_result find_reference(work *w, bool matched, traced *to, abbe_error *error) {
   const abbe_sweep_request *q = w->q;
   size_t width = q->width > 0 ? q->width : w->scene.camera.width;
   size_t height = q->height > 0 ? q->height : w->scene.camera.height;
-  snprintf(w->stamp, sizeof w->stamp,
+  snprintf(to->stamp, sizeof to->stamp,
            "scene %016llx, %zu x %zu pixels, %zu texels a side, %zu passes of %zu photons, %s",
            abbe_sweep_hash_scene(&w->scene), width, height,
            q->texels > 0 ? q->texels : (size_t)DEFAULT_TEXELS, passes_of(q), q->photons,
-           q->matched ? "matched" : "full");
-  if (is_stamped(w->picture_path, w->stamp, &w->picture)) {
-    if (is_stamped(w->map_path, w->stamp, &w->map)) return ABBE_OK;
-    abbe_image_free(&w->picture);
+           matched ? "matched" : "full");
+  if (is_stamped(to->picture_path, to->stamp, &to->picture)) {
+    if (is_stamped(to->map_path, to->stamp, &to->map)) return ABBE_OK;
+    abbe_image_free(&to->picture);
   }
-  return trace_reference(w, error);
+  return trace_reference(w, matched, to, error);
 }
 
 /* Files that the user names: what is not named is not compared. */
 static abbe_result load_reference(work *w, abbe_error *error) {
   const abbe_sweep_request *q = w->q;
   abbe_result result = ABBE_OK;
-  snprintf(w->picture_path, PATH_SIZE, "%s", q->reference != NULL ? q->reference : "");
-  snprintf(w->map_path, PATH_SIZE, "%s", q->reference_map != NULL ? q->reference_map : "");
-  if (q->reference != NULL) result = abbe_exr_read(q->reference, &w->picture, error);
+  snprintf(w->full.picture_path, PATH_SIZE, "%s", q->reference != NULL ? q->reference : "");
+  snprintf(w->full.map_path, PATH_SIZE, "%s", q->reference_map != NULL ? q->reference_map : "");
+  if (q->reference != NULL) result = abbe_exr_read(q->reference, &w->full.picture, error);
   if (result == ABBE_OK && q->reference_map != NULL)
-    result = abbe_exr_read(q->reference_map, &w->map, error);
-  const char *light = abbe_image_attribute_text(&w->map, "abbe:map_light");
+    result = abbe_exr_read(q->reference_map, &w->full.map, error);
+  const char *light = abbe_image_attribute_text(&w->full.map, "abbe:map_light");
   abbe_map_layout layout;
   if (result == ABBE_OK && q->reference_map != NULL)
-    result = abbe_map_layout_read(&w->map, q->reference_map, &layout, error);
+    result = abbe_map_layout_read(&w->full.map, q->reference_map, &layout, error);
   if (result == ABBE_OK && light != NULL)
     result = abbe_scene_find_light(&w->scene, light, &w->sweep.light, error);
   return result;
 }
 
 static abbe_result get_reference(work *w, abbe_error *error) {
-  bool named = w->q->reference != NULL || w->q->reference_map != NULL;
-  abbe_result result = named ? load_reference(w, error) : find_reference(w, error);
-  if (w->picture.data != NULL) w->sweep.picture = &w->picture;
-  if (w->map.data != NULL) w->sweep.map = &w->map;
-  return result;
+  const abbe_sweep_request *q = w->q;
+  bool named = q->reference != NULL || q->reference_map != NULL;
+  abbe_result result =
+      named ? load_reference(w, error) : find_reference(w, q->matched, &w->full, error);
+  if (result == ABBE_OK && q->split) result = find_reference(w, true, &w->matched, error);
+  if (result != ABBE_OK) return result;
+  if (w->full.picture.data != NULL) w->sweep.picture = &w->full.picture;
+  if (w->full.map.data != NULL) w->sweep.map = &w->full.map;
+  if (!q->split) return ABBE_OK;
+  w->sweep.matched_picture = &w->matched.picture;
+  w->sweep.matched_map = &w->matched.map;
+  return abbe_sweep_model_measure(&w->sweep, &w->model, error);
 }
 
 /* What the table belongs to */
@@ -181,13 +204,15 @@ static void state_facts(work *w, abbe_sweep_table *t) {
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_SCENE_HASH, text);
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_CLASS, class_of(&w->scene));
   size_t width = w->scene.camera.width, height = w->scene.camera.height;
-  snprintf(text, sizeof text, "%zux%zu", w->picture.data != NULL ? w->picture.width : width,
-           w->picture.data != NULL ? w->picture.height : height);
+  snprintf(text, sizeof text, "%zux%zu",
+           w->full.picture.data != NULL ? w->full.picture.width : width,
+           w->full.picture.data != NULL ? w->full.picture.height : height);
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_SIZE, text);
-  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE, w->picture_path);
-  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE_MAP, w->map_path);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE, w->full.picture_path);
+  abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE_MAP, w->full.map_path);
   snprintf(text, sizeof text, "%016llx", abbe_sweep_hash_images(w->sweep.picture, w->sweep.map));
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_REFERENCE_HASH, text);
+  if (w->q->split) abbe_sweep_model_write(&w->model, t);
   snprintf(text, sizeof text, "%zu", w->sweep.frames);
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_FRAMES, text);
   abbe_sweep_table_set(t, ABBE_SWEEP_FACT_DEVICE, abbe_context_description(w->context));

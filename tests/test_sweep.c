@@ -200,6 +200,44 @@ static void test_the_thesis_gets_its_best_brightness(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* The same method in physical units is judged in them, and its fill's light is counted. */
+static void test_the_method_in_units_gets_no_factor(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture, map;
+  load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
+  abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_THESIS_CIE);
+  own_reference(&scene, &setting, &picture, &map);
+  abbe_sweep sweep = {
+      .context = frame_context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
+  abbe_sweep_row row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_PICTURE_RMSE], 0, 1e-6);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 1e-6);
+  assert_true(isnan(row.number[ABBE_SWEEP_FLOOR_MS]));
+  double added = row.number[ABBE_SWEEP_FILL_INVENTED] - row.number[ABBE_SWEEP_FILL_LOST];
+  assert_true(row.number[ABBE_SWEEP_FILL_INVENTED] > 0 && row.number[ABBE_SWEEP_FILL_LOST] > 0);
+  /* Without the fill: nothing is added, and the map has that much less. */
+  snprintf(setting.fill, sizeof setting.fill, "none");
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_FILL_INVENTED], 0, 0);
+  assert_near(row.number[ABBE_SWEEP_FILL_LOST], 0, 0);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY] * (1 + added), 1, 1e-4);
+  /* Against twice the light it stays what it is. */
+  for (size_t i = 0; i < 32 * 32 * 3; i++) picture.data[i] *= 2;
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_SCALE], 1, 0);
+  assert_true(row.number[ABBE_SWEEP_PICTURE_RMSE] > 0.4);
+  /* The default profile's bridge adds nothing: its ledger closes. */
+  setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
+  sweep.picture = sweep.map = NULL;
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_FILL_INVENTED], 0, 1e-4);
+  assert_near(row.number[ABBE_SWEEP_FILL_LOST], 0, 1e-4);
+  abbe_image_free(&picture);
+  abbe_image_free(&map);
+  abbe_scene_free(&scene);
+}
+
 static bool never(void *user, double done) {
   (void)user;
   (void)done;
@@ -226,15 +264,29 @@ static void test_against_a_traced_reference(void **state) {
                                               .threads = 2},
                                     .passes = 4};
   assert_ok(abbe_reference_trace(&scene, &desc, &picture, &map, &error), &error);
-  const abbe_sweep sweep = {
-      .context = frame_context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
+  /* The same against itself: the model leaves out nothing. */
+  const abbe_sweep sweep = {.context = frame_context,
+                            .scene = &scene,
+                            .frames = 1,
+                            .picture = &picture,
+                            .map = &map,
+                            .matched_picture = &picture,
+                            .matched_map = &map};
+  abbe_sweep_model model;
+  assert_ok(abbe_sweep_model_measure(&sweep, &model, &error), &error);
+  assert_near(model.de, 0, 1e-6);
+  assert_near(model.energy, 1, 1e-9);
+  assert_true(model.map_noise > 0);
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
   static const size_t sides[] = {128, 96, 32}; /* summed down, resampled, and coarser */
   for (size_t i = 0; i < 3; i++) {
     setting.map = sides[i];
     abbe_sweep_row row = measure(&sweep, &setting);
-    for (int k = ABBE_SWEEP_MAP_RMSE; k < ABBE_SWEEP_NUMBER_COUNT; k++)
-      assert_true(isfinite(row.number[k]));
+    for (int k = ABBE_SWEEP_MAP_RMSE; k < ABBE_SWEEP_MATCHED_DE; k++)
+      if (k != ABBE_SWEEP_MAP_BANDS && k != ABBE_SWEEP_MAP_BANDS_NOISE)
+        assert_true(isfinite(row.number[k]));
+    assert_near(row.number[ABBE_SWEEP_MATCHED_DE], row.number[ABBE_SWEEP_CAUSTIC_DE], 1e-9);
+    assert_near(row.number[ABBE_SWEEP_MATCHED_MAP], row.number[ABBE_SWEEP_MAP_RMSE], 1e-9);
     assert_true(row.number[ABBE_SWEEP_MAP_RMSE_NOISE] > 0);
     assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 0.02);
     assert_true(row.number[ABBE_SWEEP_CAUSTIC_DE] < 10);
@@ -294,6 +346,7 @@ int main(void) {
       cmocka_unit_test(test_what_a_profile_does_not_know_is_left_out),
       cmocka_unit_test(test_the_same_picture_has_no_error),
       cmocka_unit_test(test_the_thesis_gets_its_best_brightness),
+      cmocka_unit_test(test_the_method_in_units_gets_no_factor),
       cmocka_unit_test(test_against_a_traced_reference),
       cmocka_unit_test(test_hashes_tell_scenes_and_references_apart),
       cmocka_unit_test(test_a_scene_without_refractors_has_no_map),

@@ -60,7 +60,7 @@ static void test_the_thesis_beside_it(void **state) {
   cJSON *json = cJSON_Parse(run_output);
   assert_non_null(json);
   const cJSON *rows = cJSON_GetObjectItemCaseSensitive(json, "rows"), *row;
-  assert_int_equal(cJSON_GetArraySize(rows), 2);
+  assert_int_equal(cJSON_GetArraySize(rows), 3);
   row = cJSON_GetArrayItem(rows, 1);
   assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "profile")),
                       "thesis");
@@ -77,6 +77,28 @@ static void test_the_thesis_beside_it(void **state) {
   assert_contains(run_output, "2");
   run_well("\"$abbe\" sweep s.csv --plot s.svg --json && rm s.svg s.csv t.csv s-reference*.exr");
   assert_int_equal(run_left(), 0);
+}
+
+/* Full and matched physics: what the model leaves out is a fact of the table, and said. */
+static void test_the_error_is_split(void **state) {
+  (void)state;
+  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --split");
+  assert_contains(run_output, "What is left: w3 p16 m64 s1 has ");
+  run_well("grep -c '^# model: caustic_de ' s.csv && ls s-matched.exr s-matched-map.exr");
+  /* Rows of another split are not mixed. */
+  assert_int_equal(run_line(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv"),
+                   1);
+  assert_contains(run_errors, "its rows were measured with the model 'caustic_de");
+  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv --split --json");
+  cJSON *json = cJSON_Parse(run_output);
+  const cJSON *split = cJSON_GetObjectItemCaseSensitive(json, "split");
+  static const char *const parts[] = {"total", "model", "sampling_and_reconstruction"};
+  for (int i = 0; i < 3; i++)
+    assert_true(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(split, parts[i])) > 0);
+  cJSON_Delete(json);
+  run_well("rm s.csv s-reference*.exr s-matched*.exr");
+  assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --split --physics matched", 2,
+                          "--split traces full and matched physics"));
 }
 
 static void test_given_references(void **state) {
@@ -151,6 +173,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(test_rows_are_measured_once, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_the_thesis_beside_it, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_the_error_is_split, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_given_references, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_ctrl_c_keeps_what_is_done, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),

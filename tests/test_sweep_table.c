@@ -150,7 +150,7 @@ static void test_broken_tables_are_named(void **state) {
       {"0.01,10,", "0.01,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
       {"0.01,10,", "0.01,1e999,", "is not a number"},
       {"0.01,10,", "0,10,", "is not a share above 0"},
-      {"0.01,10,", "0.01,10,,", "the row has 35 cells, not 34"},
+      {"0.01,10,", "0.01,10,,", "the row has 43 cells, not 42"},
       {"frame_ms", "frame_s", "column 9 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };

@@ -30,8 +30,10 @@ foreach(name
     reference
     sphere_quadrature
     tracer
+    sweep_duel
     sweep_plot
     sweep_presets
+    sweep_split
     sweep_table
     ztest
     )

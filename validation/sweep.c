@@ -21,16 +21,35 @@ static const double enough_ms = 3000;
     .count = sizeof((size_t[]){__VA_ARGS__}) / sizeof(size_t), .value = { __VA_ARGS__ }            \
   }
 
+#define BASELINES VALUES(ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE)
+
 size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
   static const abbe_sweep_grid quick[] = {
       {.wavelengths = VALUES(3, 7, 21),
        .photons = VALUES(64, 128, 256),
-       .map = VALUES(512, 1024),
+       .map = VALUES(512),
        .samples = VALUES(1)},
-      {.profiles = VALUES(ABBE_PROFILE_THESIS),
+      {.wavelengths = VALUES(7),
+       .photons = VALUES(64, 128, 256),
+       .map = VALUES(256, 1024),
+       .samples = VALUES(1)},
+      {.wavelengths = VALUES(7, 21),
+       .photons = VALUES(512),
+       .map = VALUES(1024),
+       .samples = VALUES(1)},
+      {.wavelengths = VALUES(7),
+       .photons = VALUES(256),
+       .map = VALUES(1024),
+       .samples = VALUES(1),
+       .fills = VALUES(ABBE_FILL_NONE)},
+      {.profiles = BASELINES,
        .wavelengths = VALUES(7, 21),
        .photons = VALUES(128, 512),
        .map = VALUES(512, 1024)},
+      {.profiles = BASELINES,
+       .wavelengths = VALUES(7),
+       .photons = VALUES(512),
+       .fills = VALUES(ABBE_FILL_NONE)},
   };
   static const abbe_sweep_grid full[] = {
       {.wavelengths = VALUES(3, 5, 7, 14, 21, 41),
@@ -50,11 +69,12 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
        .samples = VALUES(1),
        .share_count = 3,
        .share = {0.1, 0.03, 0.001}},
-      {.profiles = VALUES(ABBE_PROFILE_THESIS),
+      {.profiles = BASELINES,
        .wavelengths = VALUES(3, 7, 21, 41),
        .photons = VALUES(64, 128, 256, 512, 1024),
        .map = VALUES(512, 1024, 2048)},
-      {.profiles = VALUES(ABBE_PROFILE_THESIS),
+      {.profiles = BASELINES,
+       .wavelengths = VALUES(7, 21),
        .photons = VALUES(512, 1024),
        .fills = VALUES(ABBE_FILL_NONE)},
   };
@@ -67,7 +87,7 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
 /* Settings */
 
 void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
-  bool thesis = d->profile == ABBE_PROFILE_THESIS;
+  bool thesis = abbe_profile_is_thesis(d->profile);
   *out = (abbe_sweep_setting){.wavelengths = d->wavelengths,
                               .photons = d->photons,
                               .map = d->map_size,
@@ -212,6 +232,14 @@ static void note_times(const abbe_statistics *sorted, size_t count, abbe_sweep_r
   out->number[ABBE_SWEEP_EYE_MS] = passes_ms(median, "eye:");
 }
 
+/* What is bridged while it is deposited is in the ledger, which sums the map itself. */
+static void note_balance(const abbe_ledger *e, abbe_sweep_row *out) {
+  double parts = e->reflected + e->absorbed + e->trapped + e->missed + e->deposited;
+  if (!(e->deposited > 0)) return;
+  out->number[ABBE_SWEEP_FILL_INVENTED] = fmax(parts - e->reached, 0) / e->deposited;
+  out->number[ABBE_SWEEP_FILL_LOST] = fmax(e->reached - parts, 0) / e->deposited;
+}
+
 /* A warming frame, then the median of the others; slow ones are not drawn as often, for they vary
  * less. The floor is the median of three. */
 static abbe_result time_frames(const abbe_sweep *s, abbe_renderer *renderer,
@@ -231,12 +259,13 @@ static abbe_result time_frames(const abbe_sweep *s, abbe_renderer *renderer,
     if (result == ABBE_OK && i + 1 >= ENOUGH_FRAMES && spent_ms > enough_ms) count = i + 1;
   }
   if (result == ABBE_OK) {
+    note_balance(&all[0].energy, out);
     qsort(all, count, sizeof *all, by_time);
     note_times(all, count, out);
   }
   free(all);
   double floor_ms[3] = {NAN, NAN, NAN};
-  bool thesis = abbe_renderer_plan(renderer)->desc.profile == ABBE_PROFILE_THESIS;
+  bool thesis = abbe_profile_is_thesis(abbe_renderer_plan(renderer)->desc.profile);
   for (int i = 0; i < 3 && !thesis && result == ABBE_OK; i++)
     result = abbe_renderer_floor(renderer, &floor_ms[i], error);
   if (result == ABBE_OK && !thesis)
@@ -326,24 +355,71 @@ static abbe_result fit_map(const abbe_sweep *s, abbe_image *map, bool own_layout
   return ABBE_OK;
 }
 
-static abbe_result compare_map(const abbe_sweep *s, abbe_renderer *renderer, bool thesis,
-                               abbe_sweep_row *out, abbe_error *error) {
-  abbe_image map = {0};
+/* The same against what the model keeps of the light. */
+static abbe_result compare_matched(const abbe_image *reference, const abbe_image *test, bool scaled,
+                                   abbe_compare_metric metric, abbe_sweep_number number,
+                                   abbe_sweep_row *out, abbe_error *error) {
   abbe_comparison c;
-  if (s->map == NULL) return ABBE_OK;
-  abbe_result result = abbe_renderer_read_map(renderer, s->light, true, &map, error);
+  if (reference == NULL) return ABBE_OK;
+  abbe_result result = compare(reference, test, scaled, &c, error);
   if (result != ABBE_OK) return result;
-  result = fit_map(s, &map, thesis, error);
-  if (result == ABBE_OK) result = compare(s->map, &map, thesis, &c, error);
-  abbe_image_free(&map);
+  note(out, number, &(c.masked ? &c.mask : &c.whole)->metric[metric]);
+  abbe_comparison_free(&c);
+  return ABBE_OK;
+}
+
+static abbe_result compare_map(const abbe_sweep *s, abbe_image *map, bool scaled, bool own_layout,
+                               abbe_sweep_row *out, abbe_error *error) {
+  abbe_comparison c;
+  abbe_result result = fit_map(s, map, own_layout, error);
+  if (result == ABBE_OK)
+    result = compare_matched(s->matched_map, map, scaled, ABBE_COMPARE_RELATIVE_RMSE,
+                             ABBE_SWEEP_MATCHED_MAP, out, error);
+  if (result == ABBE_OK) result = compare(s->map, map, scaled, &c, error);
   if (result != ABBE_OK) return result;
   const abbe_compare_region *region = c.masked ? &c.mask : &c.whole;
   out->number[ABBE_SWEEP_MAP_SCALE] = c.scale;
   note(out, ABBE_SWEEP_MAP_RMSE, &region->metric[ABBE_COMPARE_RELATIVE_RMSE]);
+  note(out, ABBE_SWEEP_MAP_BANDS, &region->metric[ABBE_COMPARE_BANDS_RELATIVE_RMSE]);
   note(out, ABBE_SWEEP_MAP_UV, &region->metric[ABBE_COMPARE_UV_MEAN]);
   note(out, ABBE_SWEEP_MAP_ENERGY, &c.whole.metric[ABBE_COMPARE_ENERGY_RATIO]);
   abbe_comparison_free(&c);
   return ABBE_OK;
+}
+
+/* The fill */
+
+/* What a pass that fills the map adds to it here and takes off there, by its brightest-weighted
+ * channel: Y, or green. */
+static void note_fill(const abbe_image *before, const abbe_image *after, abbe_sweep_row *out) {
+  double sum = 0, more = 0, less = 0;
+  for (size_t i = 0; i < before->width * before->height; i++) {
+    double a = (double)before->data[3 * i + 1], b = (double)after->data[3 * i + 1];
+    sum += a;
+    more += fmax(b - a, 0);
+    less += fmax(a - b, 0);
+  }
+  if (!(sum > 0)) return;
+  out->number[ABBE_SWEEP_FILL_INVENTED] = more / sum;
+  out->number[ABBE_SWEEP_FILL_LOST] = less / sum;
+}
+
+static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abbe_sweep_row *out,
+                               abbe_error *error) {
+  abbe_image map = {0}, before = {0};
+  const abbe_plan *plan = abbe_renderer_plan(renderer);
+  bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  if (!plan->caustics || s->light >= plan->light_count) return ABBE_OK;
+  abbe_result result = abbe_renderer_read_map(renderer, s->light, true, &map, error);
+  if (result == ABBE_OK && thesis) {
+    result = abbe_renderer_read_map(renderer, s->light, false, &before, error);
+    if (result == ABBE_OK) note_fill(&before, &map, out);
+  }
+  if (result == ABBE_OK && s->map != NULL)
+    result = compare_map(s, &map, plan->desc.profile == ABBE_PROFILE_THESIS, thesis, out, error);
+  abbe_image_free(&map);
+  abbe_image_free(&before);
+  return result;
 }
 
 /* One setting */
@@ -354,7 +430,7 @@ static abbe_result make_desc(const abbe_sweep *s, const abbe_sweep_setting *sett
   if (result != ABBE_OK) return result;
   out->width = s->picture != NULL ? s->picture->width : 0;
   out->height = s->picture != NULL ? s->picture->height : 0;
-  if (s->map == NULL || out->profile == ABBE_PROFILE_THESIS) return ABBE_OK;
+  if (s->map == NULL || abbe_profile_is_thesis(out->profile)) return ABBE_OK;
   out->map_layout = layout;
   out->map_layout_light = s->light;
   return abbe_map_layout_read(s->map, "the reference", layout, error);
@@ -371,17 +447,42 @@ abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *se
   *out = (abbe_sweep_row){.setting = *setting};
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) out->number[i] = NAN;
   abbe_result result = make_desc(s, setting, &layout, &desc, error);
-  bool thesis = desc.profile == ABBE_PROFILE_THESIS;
+  bool scaled = desc.profile == ABBE_PROFILE_THESIS;
   if (result == ABBE_OK) result = abbe_renderer_make(s->context, s->scene, &desc, &renderer, error);
   if (result == ABBE_OK) result = time_frames(s, renderer, progress, user, out, error);
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, drawn, error);
   if (result == ABBE_OK && s->picture != NULL)
-    result = compare_picture(s, drawn, thesis, out, error);
-  if (result == ABBE_OK) result = compare_map(s, renderer, thesis, out, error);
+    result = compare_picture(s, drawn, scaled, out, error);
+  if (result == ABBE_OK)
+    result = compare_matched(s->matched_picture, drawn, scaled, ABBE_COMPARE_CIEDE2000_MEAN,
+                             ABBE_SWEEP_MATCHED_DE, out, error);
+  if (result == ABBE_OK) result = measure_map(s, renderer, out, error);
   abbe_renderer_free(renderer);
   abbe_image_free(&own);
   if (result != ABBE_OK && picture != NULL) abbe_image_free(picture);
   return result;
+}
+
+abbe_result abbe_sweep_model_measure(const abbe_sweep *s, abbe_sweep_model *out,
+                                     abbe_error *error) {
+  abbe_comparison picture, map;
+  *out = (abbe_sweep_model){NAN, NAN, NAN, NAN, NAN};
+  abbe_result result = compare(s->picture, s->matched_picture, false, &picture, error);
+  if (result != ABBE_OK) return result;
+  const abbe_compare_region *region = picture.masked ? &picture.mask : &picture.whole;
+  const abbe_compare_value *de = &region->metric[ABBE_COMPARE_CIEDE2000_MEAN];
+  out->de = de->value;
+  out->de_noise = isfinite(de->both_noise) ? de->both_noise : de->noise;
+  abbe_comparison_free(&picture);
+  result = compare(s->map, s->matched_map, false, &map, error);
+  if (result != ABBE_OK) return result;
+  region = map.masked ? &map.mask : &map.whole;
+  const abbe_compare_value *rmse = &region->metric[ABBE_COMPARE_RELATIVE_RMSE];
+  out->map = rmse->value;
+  out->map_noise = isfinite(rmse->both_noise) ? rmse->both_noise : rmse->noise;
+  out->energy = map.whole.metric[ABBE_COMPARE_ENERGY_RATIO].value;
+  abbe_comparison_free(&map);
+  return ABBE_OK;
 }
 
 abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene, size_t light,

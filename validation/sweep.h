@@ -3,8 +3,9 @@
  * The only part of validation/ that uses gl/. A setting is drawn, timed as the median of warmed
  * frames, and compared with the reference: its receiver map in the reference's layout, its picture
  * pixel by pixel. The thesis profile knows no units, so its map and its picture are first
- * multiplied by the one factor each that suits it best; its map, which it lays out by the lamp's
- * cone, is resampled. It keeps no files and draws no charts.
+ * multiplied by the one factor each that suits it best; the same method in physical units
+ * (thesis-cie) gets none. Maps of both, which they lay out by the lamp's cone, are resampled. It
+ * keeps no files and draws no charts.
  */
 #ifndef ABBE_VALIDATION_SWEEP_H
 #define ABBE_VALIDATION_SWEEP_H
@@ -69,6 +70,9 @@ typedef struct abbe_sweep {
   size_t frames;             /* behind a median; 0: 5; three where they took over 3 s */
   const abbe_image *picture; /* the reference; NULL: no picture is compared */
   const abbe_image *map;     /* the same, with its layout; NULL: no map */
+  /* The same with matched physics, which tells what the model leaves out from what sampling does;
+   * or NULL. */
+  const abbe_image *matched_picture, *matched_map;
 } abbe_sweep;
 
 /* The layout into which the default profile's default fits the light's map: the reference's.
@@ -82,6 +86,11 @@ abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene
 abbe_result abbe_sweep_measure(const abbe_sweep *sweep, const abbe_sweep_setting *setting,
                                abbe_render_progress progress, void *user, abbe_sweep_row *out,
                                abbe_image *picture, abbe_error *error);
+
+/* How far matched physics is from full: what a renderer would have that leaves out nothing but what
+ * the model does. Needs all four references. */
+abbe_result abbe_sweep_model_measure(const abbe_sweep *sweep, abbe_sweep_model *out,
+                                     abbe_error *error);
 
 /* Numbers that tell whether two sweeps saw one scene, and one reference (either may be NULL). */
 unsigned long long abbe_sweep_hash_scene(const abbe_scene *scene);

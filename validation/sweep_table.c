@@ -155,7 +155,8 @@ abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
                                    const abbe_sweep_table *b, abbe_error *error) {
   static const abbe_sweep_fact must[] = {ABBE_SWEEP_FACT_PROGRAM, ABBE_SWEEP_FACT_SCENE_HASH,
                                          ABBE_SWEEP_FACT_SIZE,    ABBE_SWEEP_FACT_REFERENCE_HASH,
-                                         ABBE_SWEEP_FACT_DEVICE,  ABBE_SWEEP_FACT_MACHINE};
+                                         ABBE_SWEEP_FACT_MODEL,   ABBE_SWEEP_FACT_DEVICE,
+                                         ABBE_SWEEP_FACT_MACHINE};
   for (size_t i = 0; i < sizeof must / sizeof *must; i++) {
     if (strcmp(a->fact[must[i]], b->fact[must[i]]) == 0) continue;
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -164,6 +165,28 @@ abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
                           name, fact_names[must[i]], a->fact[must[i]], b->fact[must[i]]);
   }
   return ABBE_OK;
+}
+
+/* What the model leaves out */
+
+static const char *const model_form = "caustic_de %lg (%lg), map_rmse %lg (%lg), map_energy %lg";
+
+void abbe_sweep_model_write(const abbe_sweep_model *m, abbe_sweep_table *table) {
+  const double value[] = {m->de, m->de_noise, m->map, m->map_noise, m->energy};
+  char number[5][ABBE_NUMBER_TEXT_SIZE], text[200];
+  for (int i = 0; i < 5; i++) abbe_number_text(value[i], number[i]);
+  snprintf(text, sizeof text, "caustic_de %s (%s), map_rmse %s (%s), map_energy %s", number[0],
+           number[1], number[2], number[3], number[4]);
+  abbe_sweep_table_set(table, ABBE_SWEEP_FACT_MODEL, text);
+}
+
+bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out) {
+  abbe_sweep_model m;
+  if (sscanf(table->fact[ABBE_SWEEP_FACT_MODEL], model_form, &m.de, &m.de_noise, &m.map,
+             &m.map_noise, &m.energy) != 5)
+    return false;
+  *out = m;
+  return true;
 }
 
 /* Writing */

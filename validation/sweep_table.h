@@ -36,12 +36,16 @@ typedef struct abbe_sweep_setting {
   X(FASTEST_MS, "fastest_ms", "fastest frame, ms") /* of them */                                   \
   X(LIGHT_MS, "light_ms", "light's passes, ms")    /* of the median frame */                       \
   X(EYE_MS, "eye_ms", "eye's passes, ms")                                                          \
-  X(FLOOR_MS, "floor_ms", "surfaces alone, ms")           /* default profile */                    \
+  X(FLOOR_MS, "floor_ms", "surfaces alone, ms") /* default profile */                              \
+  X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
+  X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \
   X(MAP_RMSE, "map_rmse", "map's caustic, relative RMSE") /* X, Y, Z together */                   \
   X(MAP_RMSE_NOISE, "map_rmse_noise", "noise of it")                                               \
   X(MAP_UV, "map_uv", "map's caustic, u'v' distance")                                              \
   X(MAP_UV_NOISE, "map_uv_noise", "noise of it")                                                   \
+  X(MAP_BANDS, "map_bands", "map's caustic, relative RMSE of the bands")                           \
+  X(MAP_BANDS_NOISE, "map_bands_noise", "noise of it")                                             \
   X(MAP_ENERGY, "map_energy", "map's energy ratio") /* of all its Y */                             \
   X(MAP_ENERGY_NOISE, "map_energy_noise", "noise of it")                                           \
   X(SCALE, "scale", "factor on the picture")                                                       \
@@ -56,7 +60,11 @@ typedef struct abbe_sweep_setting {
   X(PICTURE_DE95, "picture_de95", "picture, 95 % CIEDE2000")                                       \
   X(PICTURE_DE95_NOISE, "picture_de95_noise", "noise of it")                                       \
   X(PICTURE_RMSE, "picture_rmse", "picture, relative RMSE")                                        \
-  X(PICTURE_RMSE_NOISE, "picture_rmse_noise", "noise of it")
+  X(PICTURE_RMSE_NOISE, "picture_rmse_noise", "noise of it")                                       \
+  X(MATCHED_DE, "matched_de", "caustic against matched physics, mean CIEDE2000")                   \
+  X(MATCHED_DE_NOISE, "matched_de_noise", "noise of it")                                           \
+  X(MATCHED_MAP, "matched_map", "map's caustic against matched physics, relative RMSE")            \
+  X(MATCHED_MAP_NOISE, "matched_map_noise", "noise of it")
 
 typedef enum abbe_sweep_number {
 #define ABBE_SWEEP_ENUM(code, column, text) ABBE_SWEEP_##code,
@@ -75,6 +83,7 @@ typedef enum abbe_sweep_number {
   X(REFERENCE, "reference") /* path of the picture */                                              \
   X(REFERENCE_MAP, "reference map")                                                                \
   X(REFERENCE_HASH, "reference hash")                                                              \
+  X(MODEL, "model")     /* errors of matched physics: abbe_sweep_model */                          \
   X(FRAMES, "frames")   /* behind each median */                                                   \
   X(DEVICE, "device")   /* what draws */                                                           \
   X(MACHINE, "machine") /* the processor, and how many of its threads */                           \
@@ -137,6 +146,17 @@ abbe_result abbe_sweep_table_save(const abbe_sweep_table *table, const char *pat
 abbe_result abbe_sweep_table_parse(const char *text, size_t size, const char *name,
                                    abbe_sweep_table *out, abbe_error *error);
 abbe_result abbe_sweep_table_load(const char *path, abbe_sweep_table *out, abbe_error *error);
+
+/* Errors of matched physics against full, as the fact `model` has them: "caustic_de 1.2 (0.3),
+ * map_rmse 0.1 (0.02), map_energy 0.93", noise in brackets. */
+typedef struct abbe_sweep_model {
+  double de, de_noise; /* caustic, mean CIEDE2000 */
+  double map, map_noise, energy;
+} abbe_sweep_model;
+
+void abbe_sweep_model_write(const abbe_sweep_model *model, abbe_sweep_table *table);
+/* False where the table has no such fact. */
+bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out);
 
 /* ABBE_INVALID_ARGUMENT names the first fact in which two tables differ, so that rows of the two
  * do not belong together. The date, paths of references and the count of frames may differ. */
