@@ -113,7 +113,10 @@ void abbe_preset_options_describe(const abbe_preset_options *o, const abbe_stati
   cJSON_AddBoolToObject(p, "overridden", o->overridden);
   cJSON_AddStringToObject(p, "error_name", o->presets.error);
   cJSON_AddNumberToObject(p, "error", point->error);
+  cJSON_AddNumberToObject(p, "error_at_worst", point->worst);
   cJSON_AddNumberToObject(p, "error_at_best", point->least);
+  cJSON_AddNumberToObject(p, "margin", o->front->margin);
+  cJSON_AddNumberToObject(p, "margin_scenes", (double)o->front->margin_scenes);
   /* Only a reference tells the error: abbe sweep, abbe compare. */
   cJSON_AddNullToObject(p, "error_met");
   if (o->timed) cJSON_AddNumberToObject(p, "ms", o->promised_ms);
@@ -126,8 +129,8 @@ void abbe_preset_options_note(const abbe_preset_options *o) {
   if (!o->chosen) return;
   const abbe_preset_point *point = &o->front->point[o->point];
   describe_point(o, text, sizeof text);
-  fprintf(stderr, "note: %s; %s was %.3g to %.3g on %s", text, o->presets.error_text, point->least,
-          point->error, o->front->scenes);
+  fprintf(stderr, "note: %s; %s was %.3g to %.3g on %s, and at most %.3g is promised", text,
+          o->presets.error_text, point->least, point->worst, o->front->scenes, point->error);
   if (o->timed) fprintf(stderr, "; %.0f ms are promised", o->promised_ms);
   fprintf(stderr, "\n");
   if (o->overridden)

@@ -17,6 +17,7 @@ enum {
   OPTION_PLOT = 0x500,
   OPTION_REPORT,
   OPTION_WRITE_PRESETS,
+  OPTION_PRESETS,
   OPTION_GRID,
   OPTION_PROFILES,
   OPTION_WAVELENGTHS,
@@ -60,6 +61,8 @@ static const struct argp_option options[] = {
     {"report", OPTION_REPORT, "FILE.md", 0, "a page with the front and pictures beside it", 0},
     {"write-presets", OPTION_WRITE_PRESETS, "FILE.yaml", 0,
      "presets off the fronts of the given tables", 0},
+    {"presets", OPTION_PRESETS, "FILE.yaml", 0,
+     "say what these promise beside what was met (the shipped ones)", 0},
     {"error", OPTION_ERROR, "COLUMN", 0,
      "that makes the front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
     {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
@@ -266,6 +269,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_WRITE_PRESETS:
     q->presets = text;
     return 0;
+  case OPTION_PRESETS:
+    w->presets_file = text;
+    return 0;
   case OPTION_ERROR:
     parse_error(q, text, state);
     return 0;
@@ -353,8 +359,9 @@ static abbe_result show(const request *q, const abbe_sweep_table *tables, size_t
     else
       result = abbe_sweep_report_print(&tables[i], w->error, error);
   }
-  if (result == ABBE_OK && w->presets && !w->json)
-    result = abbe_sweep_report_print_promises(&tables[0], error);
+  bool promised = (w->presets || w->presets_file != NULL) && !w->json;
+  for (size_t i = 0; i < count && promised && result == ABBE_OK; i++)
+    result = abbe_sweep_report_print_promises(&tables[i], w->presets_file, error);
   return result;
 }
 

@@ -131,15 +131,16 @@ static void print_promise(const abbe_preset_front *front, size_t i, const abbe_p
   char label[64], e[24], ms[24];
   double promised_ms = abbe_preset_ms(p, speed);
   abbe_sweep_setting_label(&row->setting, label, sizeof label);
-  printf("%-9s %-24s error %.3g to %.3g promised, %s met", preset_of(front, i), label, p->least,
-         p->error, number_text(row->number[number], e));
+  printf("%-9s %-24s error %.3g promised, %s met", preset_of(front, i), label, p->error,
+         number_text(row->number[number], e));
   printf("%s; %.0f ms promised, %s met\n", row->number[number] <= p->error ? "" : " (MORE)",
          promised_ms, number_text(row->number[ABBE_SWEEP_FRAME_MS], ms));
 }
 
-abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, abbe_error *error) {
+abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, const char *file,
+                                             abbe_error *error) {
   abbe_presets presets;
-  abbe_result result = abbe_presets_load(NULL, &presets, error);
+  abbe_result result = abbe_presets_load(file, &presets, error);
   if (result != ABBE_OK) return result;
   const abbe_preset_front *front = find_front(&presets, table->fact[ABBE_SWEEP_FACT_CLASS]);
   const abbe_sweep_row *first = front != NULL ? find_point(table, &front->point[0]) : NULL;
@@ -148,7 +149,8 @@ abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, abbe
     const abbe_preset_point *p = &front->point[0];
     abbe_preset_speed speed = {first->number[ABBE_SWEEP_LIGHT_MS] / fmax(p->light_ms, 0.01),
                                first->number[ABBE_SWEEP_EYE_MS] / fmax(p->eye_ms, 0.01)};
-    printf("\npresets, %s, made on %s:\n", presets.error_text, front->scenes);
+    printf("\npresets, %s, made on %s; margin %.3g for the error, %.3g for the time:\n",
+           presets.error_text, front->scenes, front->margin, front->time_margin);
     for (size_t i = 0; i < front->count; i++) {
       const abbe_sweep_row *row = find_point(table, &front->point[i]);
       if (row != NULL) print_promise(front, i, &speed, number, row);

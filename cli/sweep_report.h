@@ -11,9 +11,11 @@ abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_nu
 abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number number,
                                          abbe_error *error);
 
-/* What the shipped presets promise for the table's class of scenes, beside what it measured: the
- * errors as they are, the times by the ratio of the cheapest point's. */
-abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, abbe_error *error);
+/* What the presets in a file (NULL: the shipped ones) promise for the table's class of scenes,
+ * beside what it measured: the errors as they are, the times by the ratio of the cheapest point's.
+ */
+abbe_result abbe_sweep_report_print_promises(const abbe_sweep_table *table, const char *file,
+                                             abbe_error *error);
 
 /* A Markdown page of one or more sweeps, beside it the pictures of each scene: the reference, the
  * cheapest, the middle and the most accurate setting of its front, and the two baselines. Scenes

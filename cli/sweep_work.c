@@ -244,7 +244,7 @@ static abbe_result get_preset_settings(work *w, abbe_error *error) {
   abbe_plan plan;
   abbe_result result = abbe_plan_make(&w->scene, NULL, &plan, error);
   if (result != ABBE_OK) return result;
-  result = abbe_presets_load(NULL, &presets, error);
+  result = abbe_presets_load(w->q->presets_file, &presets, error);
   if (result == ABBE_OK) result = abbe_presets_find(&presets, &plan, &front, error);
   abbe_plan_free(&plan);
   if (result == ABBE_OK) w->setting = calloc(front->count, sizeof *w->setting);

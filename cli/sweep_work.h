@@ -14,9 +14,10 @@ typedef struct abbe_sweep_request {
   abbe_context_backend backend;
   size_t width, height; /* pixels; 0: the scene's */
   size_t frames, passes, photons, texels;
-  bool matched; /* physics of the reference */
-  bool split;   /* a second one with matched physics */
-  bool presets; /* the grid is the front of the presets for the scene's class */
+  bool matched;             /* physics of the reference */
+  bool split;               /* a second one with matched physics */
+  bool presets;             /* the grid is the front of the presets for the scene's class */
+  const char *presets_file; /* NULL: the shipped ones */
   size_t grid_count;
   abbe_sweep_grid grid[ABBE_SWEEP_MAX_GRIDS];
   abbe_sweep_number error; /* that makes the front */

@@ -84,6 +84,14 @@ static abbe_result read_point(const reader *r, abbe_yaml_node node, abbe_preset_
   return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "point", r->error) : result;
 }
 
+/* The first point's time is measured again on every machine. */
+static void widen(const abbe_preset_front *front, bool timed, abbe_preset_point *p) {
+  p->worst = p->error;
+  p->error *= front->margin;
+  p->light_ms *= timed ? front->time_margin : 1;
+  p->eye_ms *= timed ? front->time_margin : 1;
+}
+
 static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_preset_front *out) {
   size_t count = abbe_yaml_count(r->yaml, list);
   if (!abbe_yaml_is_sequence(r->yaml, list) || count < 1 || count > ABBE_PRESET_MAX_POINTS)
@@ -96,6 +104,7 @@ static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_preset
     abbe_preset_point *p = &out->point[i];
     abbe_result result = read_point(r, node, p);
     if (result != ABBE_OK) return result;
+    widen(out, i > 0, p);
     bool rises = i == 0 || (p->light_ms + p->eye_ms >= p[-1].light_ms + p[-1].eye_ms &&
                             p->error <= p[-1].error);
     if (!rises)
@@ -105,6 +114,20 @@ static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_preset
   }
   out->count = count;
   return ABBE_OK;
+}
+
+/* Without margins a front promises what was measured. */
+static abbe_result read_margins(const reader *r, abbe_yaml_node node, abbe_preset_front *out) {
+  out->margin = out->time_margin = 1;
+  abbe_result result =
+      abbe_yaml_get_number(r->yaml, node, "margin", 1, 1e6, &out->margin, r->error);
+  if (result == ABBE_OK)
+    result =
+        abbe_yaml_get_number(r->yaml, node, "time_margin", 1, 1e6, &out->time_margin, r->error);
+  if (result == ABBE_OK)
+    result =
+        abbe_yaml_get_count(r->yaml, node, "margin_scenes", 0, 1000, &out->margin_scenes, r->error);
+  return result;
 }
 
 static abbe_result copy_text(const reader *r, abbe_yaml_node node, const char *key, char *out,
@@ -126,6 +149,7 @@ static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_preset_
     result = abbe_yaml_get_choice(r->yaml, node, "class", class_names, &of, r->error);
   out->of = (abbe_preset_class)of;
   if (result == ABBE_OK) result = copy_text(r, node, "scenes", out->scenes, sizeof out->scenes);
+  if (result == ABBE_OK) result = read_margins(r, node, out);
   if (result == ABBE_OK) result = read_points(r, list, out);
   for (int i = 0; i < ABBE_PRESET_COUNT && result == ABBE_OK; i++)
     result = abbe_yaml_get_count(r->yaml, node, preset_names[i], 0, out->count - 1, &out->named[i],

@@ -3,8 +3,8 @@
  * For every class of scenes a front: settings of rising cost and falling error, read off sweeps
  * (abbe sweep --write-presets) and kept in gl/presets.yaml with the run that made them. Three of
  * them have names. Others are chosen by an error or by a time; for a time, one quick frame on this
- * machine tells how fast it is. An error is what was measured on the front's own scenes, the worst
- * of them: for another scene it is a promise, and no measurement.
+ * machine tells how fast it is. An error is a promise and no measurement: the worst of the front's
+ * own scenes, times the margin by which leaving one of them out would have been wrong.
  */
 #ifndef ABBE_GL_PRESET_H
 #define ABBE_GL_PRESET_H
@@ -43,14 +43,18 @@ abbe_preset_class abbe_preset_class_of(const abbe_plan *plan);
 
 typedef struct abbe_preset_point {
   abbe_render_desc desc;   /* wavelengths, photons, map, samples, fill, share, exits; the rest 0 */
-  double light_ms, eye_ms; /* on the run's machine; of its scenes, the worst in ratio */
-  double error;            /* of the run's scenes, the worst */
-  double least;            /* and the best */
+  double light_ms, eye_ms; /* on the run's machine, as promised: the worst of its scenes in ratio to
+                              the first point, times the time's margin */
+  double error;            /* that is promised: the worst times the front's margin */
+  double worst, least;     /* as measured, of the run's scenes */
 } abbe_preset_point;
 
 typedef struct abbe_preset_front {
   abbe_preset_class of;
   char scenes[256];
+  /* The most by which one of the run's scenes was worse than the others had promised. */
+  double margin, time_margin;
+  size_t margin_scenes; /* behind them; 0: too few of this class, so another class's are taken */
   size_t named[ABBE_PRESET_COUNT]; /* indices of points */
   size_t count;                    /* at least 1 */
   abbe_preset_point *point;        /* [count] of rising cost and falling error */

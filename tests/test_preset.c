@@ -64,6 +64,7 @@ static void test_broken_files_are_named(void **state) {
       {HEAD "- class: convex\n  scenes: a\n", "front"},
       {HEAD CLASS "  - {photons: 3}\n", "has no 'wavelengths'"},
       {HEAD CLASS THREE "wrong: 1\n", "wrong"},
+      {HEAD CLASS THREE "  margin: 0.9\n", "margin"},
   };
   for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
     abbe_presets presets;
@@ -74,6 +75,34 @@ static void test_broken_files_are_named(void **state) {
     assert_contains(error.text, "/tmp/abbe-test-presets-");
     assert_int_equal(presets.count, 0);
   }
+}
+
+/* What is promised is what was measured times the margin; the first point's time is measured anew.
+ */
+static void test_margins_widen_promises(void **state) {
+  (void)state;
+  abbe_presets presets;
+  abbe_error error = {0};
+  bool kept;
+  assert_ok(load_presets(HEAD CLASS THREE "  margin: 1.5\n  time_margin: 2\n  margin_scenes: 3\n",
+                         &presets, &error),
+            &error);
+  const abbe_preset_front *f = &presets.front[0];
+  assert_int_equal(f->margin_scenes, 3);
+  static const double worst[] = {8, 4, 2}, light[] = {20, 80, 320}, eye[] = {10, 20, 20};
+  for (size_t i = 0; i < 3; i++) {
+    assert_near(f->point[i].worst, worst[i], 1e-12);
+    assert_near(f->point[i].error, 1.5 * worst[i], 1e-12);
+    assert_near(f->point[i].light_ms, light[i], 1e-12);
+    assert_near(f->point[i].eye_ms, eye[i], 1e-12);
+  }
+  /* 4 was measured, but 6 is promised. */
+  assert_int_equal(abbe_preset_for_error(f, 5.9, &kept), 2);
+  assert_int_equal(abbe_preset_for_error(f, 6, &kept), 1);
+  const abbe_preset_speed same = {1, 1};
+  assert_int_equal(abbe_preset_for_time(f, &same, 99, &kept), 0);
+  assert_int_equal(abbe_preset_for_time(f, &same, 100, &kept), 1);
+  abbe_presets_free(&presets);
 }
 
 static void test_choices(void **state) {
@@ -162,6 +191,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_shipped_presets_are_whole),
       cmocka_unit_test(test_broken_files_are_named),
+      cmocka_unit_test(test_margins_widen_promises),
       cmocka_unit_test(test_choices),
       cmocka_unit_test(test_what_the_caller_asks_for_stays),
       cmocka_unit_test(test_classes_and_calibration),

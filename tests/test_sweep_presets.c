@@ -99,6 +99,16 @@ static void test_a_class_of_two_scenes(void **state) {
   for (size_t i = 0; i < 4; i++)
     for (size_t k = 0; k < 5; k++)
       assert_near(number(yaml, abbe_yaml_item(yaml, front, i), keys[k]), right[i][k], 1e-6);
+  /* Either scene left out: the gem's 2.02 against the prism's 1 is the worst; and its 91 ms against
+   * the 10 x 2.25 + 1 x 0.25 that the prism's ratios promise. */
+  assert_near(number(yaml, convex, "margin"), 2.02, 1e-9);
+  assert_near(number(yaml, convex, "time_margin"), 4, 1e-9);
+  assert_near(number(yaml, convex, "margin_scenes"), 2, 0);
+  /* One scene tells nothing of others: the widest margins there are. */
+  abbe_yaml_node spheres = abbe_yaml_item(yaml, classes, 1);
+  assert_near(number(yaml, spheres, "margin"), 2.02, 1e-9);
+  assert_near(number(yaml, spheres, "time_margin"), 4, 1e-9);
+  assert_near(number(yaml, spheres, "margin_scenes"), 0, 0);
   assert_near(number(yaml, convex, "draft"), 0, 0);
   assert_near(number(yaml, convex, "balanced"), 1, 0); /* the one between */
   assert_near(number(yaml, convex, "accurate"), 2, 0); /* 2.02 is within 2 % of 2 */

@@ -31,7 +31,14 @@ typedef struct front {
   point *point;
   size_t points, *order, on_front;
   double *cost, *error; /* of all points, then of the front's */
+  size_t cheapest;      /* of the points: the one that costs are told by */
 } front;
+
+/* What a promise is widened by: the worst that leaving one scene out would have been wrong by. */
+typedef struct margins {
+  double error, time;
+  size_t scenes; /* 0: too few to tell */
+} margins;
 
 static const char *class_of(const abbe_sweep_table *table) {
   return table->fact[ABBE_SWEEP_FACT_CLASS];
@@ -84,6 +91,7 @@ static void make_costs_the_worst(front *f) {
     if (f->point[i].light_ms + f->point[i].eye_ms < f->point[base].light_ms + f->point[base].eye_ms)
       base = i;
   const point cheapest = f->point[base];
+  f->cheapest = base;
   for (size_t k = 0; k < f->points; k++) {
     double light = 0, eye = 0;
     for (size_t i = 0; i < f->count; i++) {
@@ -135,6 +143,47 @@ static abbe_result open_front(const abbe_sweep_table *tables, size_t count, size
   return ABBE_OK;
 }
 
+/* Times of a scene's light's and eye's passes for a point, over those for the cheapest. */
+static void get_ratios(const front *f, size_t table, const point *p, double out[2]) {
+  const abbe_sweep_table *t = &f->tables[table];
+  const double *own = abbe_sweep_table_find(t, p->setting)->number;
+  const double *least = abbe_sweep_table_find(t, f->point[f->cheapest].setting)->number;
+  out[0] = own[ABBE_SWEEP_LIGHT_MS] / least[ABBE_SWEEP_LIGHT_MS];
+  out[1] = own[ABBE_SWEEP_EYE_MS] / least[ABBE_SWEEP_EYE_MS];
+}
+
+/* One scene's error and time at a point against what the other scenes alone would have promised. */
+static void leave_out(const front *f, size_t table, const point *p, margins *m) {
+  const double *own = abbe_sweep_table_find(&f->tables[table], p->setting)->number;
+  const double *base =
+      abbe_sweep_table_find(&f->tables[table], f->point[f->cheapest].setting)->number;
+  double error = 0, most[2] = {0, 0};
+  for (size_t i = 0; i < f->count; i++) {
+    double ratio[2];
+    if (i == table || !is_of(f, i)) continue;
+    error = fmax(error, abbe_sweep_table_find(&f->tables[i], p->setting)->number[f->number]);
+    get_ratios(f, i, p, ratio);
+    for (int k = 0; k < 2; k++) most[k] = fmax(most[k], ratio[k]);
+  }
+  double promised_ms = base[ABBE_SWEEP_LIGHT_MS] * most[0] + base[ABBE_SWEEP_EYE_MS] * most[1];
+  double ms = own[ABBE_SWEEP_LIGHT_MS] + own[ABBE_SWEEP_EYE_MS];
+  if (error > 0) m->error = fmax(m->error, own[f->number] / error);
+  m->time = fmax(m->time, ms / promised_ms);
+}
+
+/* Over the front's points: those are what is promised. */
+static void find_margins(const front *f, margins *out) {
+  *out = (margins){1, 1, 0};
+  for (size_t i = 0; i < f->count; i++) out->scenes += is_of(f, i);
+  if (out->scenes < 2) {
+    out->scenes = 0;
+    return;
+  }
+  for (size_t i = 0; i < f->count; i++)
+    for (size_t k = 0; k < f->on_front && is_of(f, i); k++)
+      leave_out(f, i, &f->point[f->order[k]], out);
+}
+
 static void write_point(FILE *out, const point *p) {
   const abbe_sweep_setting *s = p->setting;
   char share[ABBE_NUMBER_TEXT_SIZE];
@@ -150,7 +199,8 @@ static const char *base_of(const char *path) {
   return slash == NULL ? path : slash + 1;
 }
 
-static void write_class(FILE *out, const front *f) {
+static void write_class(FILE *out, const front *f, const margins *widest) {
+  margins own;
   char scenes[512] = "";
   size_t used = 0;
   for (size_t i = 0; i < f->count && used < sizeof scenes / 2; i++) {
@@ -163,6 +213,10 @@ static void write_class(FILE *out, const front *f) {
   abbe_yaml_quote_write(f->of, out);
   fprintf(out, "\n  scenes: ");
   abbe_yaml_quote_write(scenes, out);
+  find_margins(f, &own);
+  if (own.scenes == 0) own = (margins){widest->error, widest->time, 0};
+  fprintf(out, "\n  margin: %.4g\n  time_margin: %.4g\n  margin_scenes: %zu", own.error, own.time,
+          own.scenes);
   size_t accurate = abbe_front_accurate(f->error, f->on_front, slack);
   fprintf(out, "\n  draft: 0\n  balanced: %zu\n  accurate: %zu\n  front:\n",
           abbe_front_knee(f->cost, f->error, accurate + 1), accurate);
@@ -185,6 +239,9 @@ static void write_head(FILE *out, const abbe_sweep_table *t, abbe_sweep_number n
           "# and not by hand. Times are the cheapest setting's, geometric means over the scenes,\n"
           "# times the worst of the scenes' ratios to it; error is the worst of\n"
           "# them and least the best; draft, balanced and accurate count the points from 0.\n"
+          "# What is promised of another scene is error times margin, and the time times\n"
+          "# time_margin: the most by which a scene of margin_scenes was worse than the others\n"
+          "# had promised (0: the class has too few, and the widest of the others is taken).\n"
           "error: ");
   abbe_yaml_quote_write(abbe_sweep_number_name(number), out);
   fprintf(out, "\nwhat: ");
@@ -237,9 +294,29 @@ static bool opens_class(const abbe_sweep_table *tables, size_t count, size_t ind
   return first == index;
 }
 
+/* The widest margins of the classes that have scenes enough. */
+static abbe_result find_widest(const abbe_sweep_table *tables, size_t count,
+                               abbe_sweep_number number, margins *out, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  *out = (margins){1, 1, 0};
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    front f;
+    margins own;
+    if (!opens_class(tables, count, i, number)) continue;
+    result = open_front(tables, count, i, number, &f, error);
+    if (result == ABBE_OK && f.on_front > 0) {
+      find_margins(&f, &own);
+      *out = (margins){fmax(out->error, own.error), fmax(out->time, own.time), 0};
+    }
+    close_front(&f);
+  }
+  return result;
+}
+
 static abbe_result write_all(FILE *out, const abbe_sweep_table *tables, const char *const *names,
                              size_t count, abbe_sweep_number number, abbe_error *error) {
-  abbe_result result = ABBE_OK;
+  margins widest;
+  abbe_result result = find_widest(tables, count, number, &widest, error);
   write_head(out, &tables[0], number);
   write_noisy(out, tables, count, number);
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
@@ -252,7 +329,7 @@ static abbe_result write_all(FILE *out, const abbe_sweep_table *tables, const ch
                          "%s: its class, %s, has no setting of the default profile whose %s is "
                          "known in all its sweeps",
                          names[i], f.of, abbe_sweep_number_name(number));
-    if (result == ABBE_OK) write_class(out, &f);
+    if (result == ABBE_OK) write_class(out, &f, &widest);
     close_front(&f);
   }
   return result;
