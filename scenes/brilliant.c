@@ -115,14 +115,13 @@ abbe_result abbe_brilliant_make(const abbe_brilliant *cut, abbe_mesh *out, abbe_
   if (result != ABBE_OK) return result;
   place_all(&c, out);
   join_all(out);
-  if (!abbe_mesh_convex_planes(out, PLANES, plane, &planes)) {
-    abbe_mesh_free(out);
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a brilliant with a star of %g and lower halves of %g is not convex; 0.5 "
-                          "and 0.77 are usual",
-                          c.star, c.lower);
-  }
-  result = abbe_mesh_compute_normals(out, false, error);
+  result = abbe_mesh_convex_planes(out, PLANES, plane, &planes, error);
+  if (result == ABBE_OK && planes == 0)
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "a brilliant with a star of %g and lower halves of %g is not convex; "
+                            "0.5 and 0.77 are usual",
+                            c.star, c.lower);
+  if (result == ABBE_OK) result = abbe_mesh_compute_normals(out, false, error);
   if (result != ABBE_OK) abbe_mesh_free(out);
   return result;
 }

@@ -165,16 +165,18 @@ static bool inside_planes(const abbe_mesh *mesh, const double centre[3], double 
   return true;
 }
 
-static bool closed_solid(const abbe_mesh *mesh) {
+static abbe_result closed_solid(const abbe_mesh *mesh, bool *closed, abbe_error *error) {
   abbe_mesh_report report;
-  return abbe_mesh_check(mesh, &report, NULL) == ABBE_OK && report.open_edges == 0 &&
-         report.crowded_edges == 0 && report.flipped_edges == 0 && report.shells == 1 &&
-         report.volume > 0.0;
+  const abbe_result result = abbe_mesh_check(mesh, &report, error);
+  *closed = result == ABBE_OK && report.open_edges == 0 && report.crowded_edges == 0 &&
+            report.flipped_edges == 0 && report.shells == 1 && report.volume > 0.0;
+  return result == ABBE_NO_MEMORY ? result : ABBE_OK;
 }
 
-bool abbe_mesh_convex_planes(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
-                             size_t *count) {
-  if (mesh->face_count == 0 || max_planes == 0 || max_planes > 4096) return false;
+abbe_result abbe_mesh_convex_planes(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
+                                    size_t *count, abbe_error *error) {
+  *count = 0;
+  if (mesh->face_count == 0 || max_planes == 0 || max_planes > 4096) return ABBE_OK;
   double low[3], high[3], centre[3], diagonal = 0.0;
   memcpy(low, mesh->position[0], sizeof low);
   memcpy(high, low, sizeof high);
@@ -188,18 +190,17 @@ bool abbe_mesh_convex_planes(const abbe_mesh *mesh, size_t max_planes, double (*
     diagonal = hypot(diagonal, high[k] - low[k]);
   }
   face_plane *found = malloc(max_planes * sizeof *found);
-  if (!found) return false;
+  if (!found) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu planes", max_planes);
   size_t n = 0;
   const double tolerance = 1e-6 * diagonal;
-  const bool convex = gather_planes(mesh, centre, tolerance, max_planes, found, &n) &&
-                      inside_planes(mesh, centre, tolerance, found, n) && closed_solid(mesh);
-  if (convex) {
-    for (size_t i = 0; i < n; i++) {
-      memcpy(plane[i], found[i].n, sizeof found[i].n);
-      plane[i][3] = found[i].d + abbe_vector_dot(found[i].n, centre);
-    }
-    *count = n;
+  bool convex = gather_planes(mesh, centre, tolerance, max_planes, found, &n) &&
+                inside_planes(mesh, centre, tolerance, found, n);
+  const abbe_result result = convex ? closed_solid(mesh, &convex, error) : ABBE_OK;
+  for (size_t i = 0; convex && i < n; i++) {
+    memcpy(plane[i], found[i].n, sizeof found[i].n);
+    plane[i][3] = found[i].d + abbe_vector_dot(found[i].n, centre);
   }
+  if (convex) *count = n;
   free(found);
-  return convex;
+  return result;
 }

@@ -72,9 +72,9 @@ abbe_result abbe_mesh_transform(abbe_mesh *mesh, const double matrix[16], abbe_e
 
 /* Where the closed mesh is a convex polyhedron with at most max_planes distinct face planes:
  * writes them (unit outward normal and offset: n . x <= d) to plane[][4] and their number to
- * *count, and returns true. Faces within 1e-6 of the same plane share one. */
-bool abbe_mesh_convex_planes(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
-                             size_t *count);
+ * *count; else *count is 0. Faces within 1e-6 of the same plane share one. ABBE_NO_MEMORY. */
+abbe_result abbe_mesh_convex_planes(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
+                                    size_t *count, abbe_error *error);
 
 #ifdef __cplusplus
 }

@@ -7,6 +7,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -15,22 +16,45 @@
 
 #define MAX_FILE_BYTES ((off_t)1 << 30)
 
-/* assimp allocates what a PLY header announces: each element must at least have a byte in the
- * file. */
-static abbe_result check_ply_counts(const char *path, off_t size, abbe_error *error) {
-  FILE *file = fopen(path, "rb");
-  if (!file) return abbe_error_set(error, ABBE_IO, "%s: the mesh file cannot be opened", path);
-  char line[512], name[64];
+/* assimp allocates what a PLY header announces, and looks for its end forever: each element must at
+ * least have a byte in the file, and every line be one that the format knows. */
+static abbe_result check_ply_line(const char *path, const char *line, int number, off_t size,
+                                  abbe_error *error) {
+  static const char *const known[] = {"ply",      "format ",   "comment",   "obj_info",
+                                      "element ", "property ", "end_header"};
+  char name[64];
   unsigned long long count = 0;
+  bool ok = false;
+  for (size_t i = number == 1 ? 0 : 1; i < (number == 1 ? 1 : sizeof known / sizeof *known); i++)
+    ok = ok || strncmp(line, known[i], strlen(known[i])) == 0;
+  if (!ok)
+    return abbe_error_set(error, ABBE_PARSE,
+                          "%s: line %d is none of a PLY header; it begins with 'ply', then lines "
+                          "of format, comment, obj_info, element or property, and end_header",
+                          path, number);
+  if (sscanf(line, "element %63s %20llu", name, &count) == 2 && count > (unsigned long long)size)
+    return abbe_error_set(error, ABBE_PARSE,
+                          "%s: line %d announces %llu elements '%s', more than the %lld bytes "
+                          "of the file can hold",
+                          path, number, count, name, (long long)size);
+  return ABBE_OK;
+}
+
+static abbe_result check_ply_header(const char *path, off_t size, abbe_error *error) {
+  FILE *file = fopen(path, "rb");
+  if (!file)
+    return abbe_error_set(error, ABBE_IO, "%s: the mesh file cannot be opened: %s", path,
+                          strerror(errno));
+  char line[512] = "";
   abbe_result result = ABBE_OK;
-  for (int i = 0; i < 256 && result == ABBE_OK && fgets(line, sizeof line, file); i++) {
-    if (strncmp(line, "end_header", 10) == 0) break;
-    if (sscanf(line, "element %63s %20llu", name, &count) == 2 && count > (unsigned long long)size)
-      result = abbe_error_set(error, ABBE_PARSE,
-                              "%s: line %d announces %llu elements '%s', more than the %lld bytes "
-                              "of the file can hold",
-                              path, i + 1, count, name, (long long)size);
+  bool ended = false;
+  for (int i = 1; i <= 256 && result == ABBE_OK && !ended && fgets(line, sizeof line, file); i++) {
+    result = check_ply_line(path, line, i, size, error);
+    ended = strncmp(line, "end_header", 10) == 0;
   }
+  if (result == ABBE_OK && !ended)
+    result = abbe_error_set(error, ABBE_PARSE,
+                            "%s: the PLY header has no end_header in its first 256 lines", path);
   fclose(file);
   return result;
 }
@@ -50,7 +74,7 @@ static abbe_result check_file(const char *path, abbe_error *error) {
   if (status.st_size > MAX_FILE_BYTES)
     return abbe_error_set(error, ABBE_IO, "%s: the mesh file has %lld bytes, the limit is %lld",
                           path, (long long)status.st_size, (long long)MAX_FILE_BYTES);
-  if (strcasecmp(dot, ".ply") == 0) return check_ply_counts(path, status.st_size, error);
+  if (strcasecmp(dot, ".ply") == 0) return check_ply_header(path, status.st_size, error);
   return ABBE_OK;
 }
 

@@ -365,7 +365,10 @@ static abbe_result demand_sound(const abbe_mesh *mesh, abbe_error *error) {
                           "mended safely: %zu open edges, %zu edges with more than two faces, "
                           "%zu edges with faces turned against each other, %zu faces without area",
                           r.open_edges, r.crowded_edges, r.flipped_edges, r.degenerate_faces);
-  if (!(r.volume > 0.0))
+  double diagonal = 0.0;
+  for (int k = 0; k < 3; k++) diagonal = hypot(diagonal, r.max[k] - r.min[k]);
+  /* what rounding may make of nothing, and a thousandth of what points that are two may enclose */
+  if (!(r.volume > 1e-12 * r.area * diagonal))
     return abbe_error_set(error, ABBE_GEOMETRY,
                           "the mesh encloses no volume (%g m3), so it has no inside to refract in",
                           r.volume);

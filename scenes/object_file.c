@@ -457,13 +457,15 @@ static abbe_result parallelograms(abbe_object *out, abbe_error *error) {
 static abbe_result convex(abbe_object *out, abbe_error *error) {
   double(*plane)[4] = malloc(ABBE_SCENE_MAX_PLANES * sizeof *plane);
   if (!plane) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
-  if (abbe_mesh_convex_planes(&out->mesh, ABBE_SCENE_MAX_PLANES, plane, &out->exact.count)) {
+  const abbe_result result =
+      abbe_mesh_convex_planes(&out->mesh, ABBE_SCENE_MAX_PLANES, plane, &out->exact.count, error);
+  if (out->exact.count > 0) {
     out->exact.kind = ABBE_EXACT_CONVEX;
     out->exact.plane = plane;
   } else {
     free(plane);
   }
-  return ABBE_OK;
+  return result;
 }
 
 static abbe_result find_exact(const reading *r, abbe_object *out, abbe_error *error) {

@@ -1,5 +1,6 @@
 #include "scenes/topology.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -102,7 +103,7 @@ static void grid_fit(grid *g, const abbe_mesh *mesh) {
   double diagonal = 0.0;
   for (int k = 0; k < 3; k++) diagonal = hypot(diagonal, high[k] - g->origin[k]);
   if (!(diagonal > 0.0)) diagonal = 1.0;
-  g->tolerance = 1e-9 * diagonal;
+  g->tolerance = fmax(1e-9 * diagonal, DBL_MIN); /* below that, cells have no size */
   g->cell = 64.0 * g->tolerance;
 }
 

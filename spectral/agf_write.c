@@ -162,18 +162,21 @@ static void fit_range(const abbe_material *m, double *low_nm, double *high_nm) {
   *high_nm = m->max_nm;
 }
 
-static void write_glass(const abbe_material *m, abbe_tally *t, abbe_report *report, FILE *to) {
+static abbe_result write_glass(const abbe_material *m, abbe_tally *t, abbe_report *report, FILE *to,
+                               abbe_error *error) {
   abbe_agf_formula formula;
   abbe_agf_fidelity fidelity;
   abbe_error why = {0};
   double low_nm, high_nm, max_error = 0;
   fit_range(m, &low_nm, &high_nm);
-  if (abbe_agf_formula_write(&m->dispersion, low_nm, high_nm, &formula, &fidelity, &max_error,
-                             &why) != ABBE_OK) {
+  abbe_result result = abbe_agf_formula_write(&m->dispersion, low_nm, high_nm, &formula, &fidelity,
+                                              &max_error, &why);
+  if (result == ABBE_NO_MEMORY) return abbe_error_set(error, result, "%s: %s", m->name, why.text);
+  if (result != ABBE_OK) {
     abbe_report_add(report, ABBE_NOTE_SKIPPED, m->line, m->name,
                     "no formula of a catalogue computes its %s, and it cannot be fitted: %s",
                     abbe_dispersion_model_name(m->dispersion.model), why.text);
-    return;
+    return ABBE_OK;
   }
   if (fidelity == ABBE_AGF_REWRITTEN) abbe_tally_add(t, REWRITTEN, m->name);
   if (fidelity == ABBE_AGF_FITTED)
@@ -187,6 +190,7 @@ static void write_glass(const abbe_material *m, abbe_tally *t, abbe_report *repo
   write_gc(m, to);
   write_lines(m, formula.c, fitted ? low_nm : m->min_nm, fitted ? high_nm : m->max_nm, to);
   write_it(m, t, to);
+  return ABBE_OK;
 }
 
 abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_report *report,
@@ -195,14 +199,16 @@ abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_repo
   fputs("CC ", to);
   put_line(to, table->description != NULL ? table->description : "written by Abbe");
   fputc('\n', to);
-  for (size_t i = 0; i < table->count; i++) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < table->count && result == ABBE_OK; i++) {
     abbe_error why;
     if (abbe_material_check(&table->material[i], &why) != ABBE_OK)
       abbe_report_add(report, ABBE_NOTE_SKIPPED, table->material[i].line, NULL, "%s", why.text);
     else
-      write_glass(&table->material[i], &t, report, to);
+      result = write_glass(&table->material[i], &t, report, to, error);
   }
   abbe_tally_report(&t, losses, LOSSES, report);
+  if (result != ABBE_OK) return result;
   if (fflush(to) == 0 && !ferror(to)) return ABBE_OK;
   return abbe_error_set(error, ABBE_IO, "the catalogue could not be written");
 }

@@ -145,26 +145,29 @@ abbe_result abbe_convert_make(const abbe_given *given, abbe_fit_form form, abbe_
 /* ---- the error ---- */
 
 /* The largest of the changes that half a last digit makes, the two numbers apart and together. */
-static double rounding_of(const abbe_given *given, abbe_fit_form form, const abbe_dispersion *made,
-                          double min_nm, double max_nm) {
+static abbe_result rounding_of(const abbe_given *given, abbe_fit_form form,
+                               const abbe_dispersion *made, double min_nm, double max_nm,
+                               double *out, abbe_error *error) {
   static const int signs[][2] = {{1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
-  double largest = 0;
+  *out = 0;
   for (int i = 0; i < 4; i++) {
     abbe_given other = *given;
     abbe_dispersion moved;
     abbe_index_difference d;
     other.first += signs[i][0] * given->first_half;
     other.second += signs[i][1] * given->second_half;
-    if (abbe_convert_make(&other, form, &moved, NULL) == ABBE_OK &&
-        abbe_index_difference_of_curves(&moved, made, min_nm, max_nm, &d, NULL) == ABBE_OK)
-      largest = fmax(largest, d.max);
+    if (abbe_convert_make(&other, form, &moved, NULL) != ABBE_OK) continue;
+    abbe_result result = abbe_index_difference_of_curves(&moved, made, min_nm, max_nm, &d, error);
+    if (result == ABBE_NO_MEMORY) return result;
+    if (result == ABBE_OK) *out = fmax(*out, d.max);
   }
-  return largest;
+  return ABBE_OK;
 }
 
 /* The same conversion of a material whose curve is known. */
 static abbe_result same_of(const abbe_material *m, abbe_given_kind kind, abbe_fit_form form,
-                           double min_nm, double max_nm, abbe_index_difference *out) {
+                           double min_nm, double max_nm, abbe_index_difference *out,
+                           abbe_error *error) {
   abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
   abbe_given given = {.kind = kind, .first = d.n_d, .second = d.v_d};
   if (kind == ABBE_GIVEN_ND_BG) given.second = d.b_g;
@@ -173,18 +176,18 @@ static abbe_result same_of(const abbe_material *m, abbe_given_kind kind, abbe_fi
     abbe_index_points points;
     abbe_fit fit;
     abbe_result result =
-        abbe_index_points_sample(&m->dispersion, min_nm, max_nm, 64, 401, &points, NULL);
+        abbe_index_points_sample(&m->dispersion, min_nm, max_nm, 64, 401, &points, error);
     if (result == ABBE_OK)
-      result = abbe_fit_make(&points, &(abbe_fit_request){.terms = 2}, &fit, NULL);
+      result = abbe_fit_make(&points, &(abbe_fit_request){.terms = 2}, &fit, error);
     abbe_index_points_free(&points);
     if (result != ABBE_OK) return result;
     given.first = fit.dispersion.c[0];
     given.second = fit.dispersion.c[1];
   }
   abbe_dispersion made;
-  abbe_result result = abbe_convert_make(&given, form, &made, NULL);
+  abbe_result result = abbe_convert_make(&given, form, &made, error);
   if (result != ABBE_OK) return result;
-  return abbe_index_difference_of_curves(&made, &m->dispersion, min_nm, max_nm, out, NULL);
+  return abbe_index_difference_of_curves(&made, &m->dispersion, min_nm, max_nm, out, error);
 }
 
 /* The materials nearest in V_d, nearest first: index and distance in ln V_d. */
@@ -226,7 +229,8 @@ abbe_result abbe_convert_judge(const abbe_given *given, abbe_fit_form form,
                           "the numbers %g and %g go with no material: %s; compare them with their "
                           "source, and their units",
                           given->first, given->second, why.text);
-  out->rounding = rounding_of(given, form, &made, min_nm, max_nm);
+  result = rounding_of(given, form, &made, min_nm, max_nm, &out->rounding, error);
+  if (result != ABBE_OK) return result;
   abbe_dispersion_numbers own = abbe_dispersion_describe(&made);
   size_t index[ABBE_CONVERT_COMPARED];
   size_t count = nearest_in_v_d(known, own.v_d, min_nm, max_nm, index);
@@ -234,7 +238,9 @@ abbe_result abbe_convert_judge(const abbe_given *given, abbe_fit_form form,
   for (size_t i = 0; i < count; i++) {
     abbe_index_difference d;
     const abbe_material *m = &known->material[index[i]];
-    if (same_of(m, given->kind, form, min_nm, max_nm, &d) != ABBE_OK) continue;
+    result = same_of(m, given->kind, form, min_nm, max_nm, &d, error);
+    if (result == ABBE_NO_MEMORY) return result;
+    if (result != ABBE_OK) continue;
     abbe_dispersion_numbers other = abbe_dispersion_describe(&m->dispersion);
     double scale = (own.n_F - own.n_C) / (other.n_F - other.n_C);
     sum += d.rms * scale;

@@ -45,17 +45,25 @@ static abbe_import_format kind_of_line(const char *line, size_t length) {
                                                                  : ABBE_IMPORT_AUTO;
 }
 
-abbe_import_format abbe_import_detect(const char *text, size_t size) {
+static abbe_result detect(const char *text, size_t size, abbe_import_format *out,
+                          abbe_error *error) {
   char *clean = NULL;
   size_t length = 0;
-  abbe_import_format found = ABBE_IMPORT_AUTO;
-  if (abbe_encoding_decode(text, size, &clean, &length, NULL) != ABBE_OK) return found;
-  for (const char *line = clean; found == ABBE_IMPORT_AUTO && line != NULL && *line != '\0';) {
+  *out = ABBE_IMPORT_AUTO;
+  abbe_result result = abbe_encoding_decode(text, size, &clean, &length, error);
+  if (result != ABBE_OK) return result;
+  for (const char *line = clean; *out == ABBE_IMPORT_AUTO && *line != '\0';) {
     size_t count = strcspn(line, "\n");
-    found = kind_of_line(line, count);
+    *out = kind_of_line(line, count);
     line += count + (line[count] == '\n');
   }
   free(clean);
+  return ABBE_OK;
+}
+
+abbe_import_format abbe_import_detect(const char *text, size_t size) {
+  abbe_import_format found;
+  detect(text, size, &found, NULL);
   return found;
 }
 
@@ -163,8 +171,10 @@ abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
                               abbe_report *report, abbe_error *error) {
   static const abbe_import_options defaults = {0};
   const abbe_import_options *o = options != NULL ? options : &defaults;
-  abbe_import_format format =
-      o->format != ABBE_IMPORT_AUTO ? o->format : abbe_import_detect(bytes, size);
+  abbe_import_format format = o->format;
+  if (format == ABBE_IMPORT_AUTO &&
+      detect(bytes, size, &format, error) == ABBE_NO_MEMORY) /* else it is of no known format */
+    return ABBE_NO_MEMORY;
   if (format == ABBE_IMPORT_AUTO)
     return abbe_error_set(error, ABBE_PARSE,
                           "%s: is none of what can be read: a Zemax catalogue has NM lines, a file "

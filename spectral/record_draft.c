@@ -141,8 +141,10 @@ static abbe_result refresh(abbe_record_draft *d, const char *name, abbe_error *e
   const char *text = abbe_table_edit_text(d->alone, &size);
   abbe_material_table_free(&d->table);
   d->trouble = (abbe_error){0};
-  abbe_material_table_parse(text, size, "the record", &d->table, &d->trouble);
-  return ABBE_OK;
+  result = abbe_material_table_parse(text, size, "the record", &d->table, &d->trouble);
+  if (result != ABBE_NO_MEMORY) return ABBE_OK; /* other trouble is the user's, to be shown */
+  if (error != NULL) *error = d->trouble;
+  return result;
 }
 
 /* Puts a text in the place of `alone`; on failure all is as it was. */

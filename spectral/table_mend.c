@@ -27,10 +27,10 @@ static void remember_warning(abbe_table_mend *out, const abbe_material *m) {
   snprintf(out->warned + used, sizeof out->warned - used, "%s%s", used > 0 ? ", " : "", m->name);
 }
 
-/* The number of values that were set. */
-static size_t apply(abbe_table_edit *edit, const abbe_material_table *table,
-                    const abbe_findings *found, abbe_table_mend *out) {
-  size_t set = 0;
+/* The number of values that were set, into *set. */
+static abbe_result apply(abbe_table_edit *edit, const abbe_material_table *table,
+                         const abbe_findings *found, abbe_table_mend *out, size_t *set,
+                         abbe_error *error) {
   out->refused = 0;
   out->why[0] = '\0';
   for (size_t i = 0; i < found->count; i++) {
@@ -38,17 +38,21 @@ static size_t apply(abbe_table_edit *edit, const abbe_material_table *table,
     if (!f->certain || f->key == NULL || f->value == NULL) continue;
     const char *name = table->material[f->row].name;
     abbe_error why = {0};
-    if (stands_twice(table, f->row))
+    if (stands_twice(table, f->row)) {
       refuse(out, name, "the name stands twice, so it does not say which record to mend");
-    else if (abbe_table_edit_set(edit, name, f->key, f->value, &why) != ABBE_OK)
+      continue;
+    }
+    abbe_result result = abbe_table_edit_set(edit, name, f->key, f->value, &why);
+    if (result == ABBE_NO_MEMORY) return abbe_error_set(error, result, "%s", why.text);
+    if (result != ABBE_OK) {
       refuse(out, name, why.text);
-    else {
+    } else {
       remember_warning(out, &table->material[f->row]);
-      set++;
+      ++*set;
     }
   }
-  out->mended += set;
-  return set;
+  out->mended += *set;
+  return ABBE_OK;
 }
 
 static abbe_result pass(abbe_table_edit *edit, const abbe_material_table *known,
@@ -61,7 +65,7 @@ static abbe_result pass(abbe_table_edit *edit, const abbe_material_table *known,
       abbe_material_table_parse_lenient(text, size, "the table", &table, NULL, error);
   if (result != ABBE_OK) return result;
   result = abbe_doctor_check_table(&table, known, &found, error);
-  if (result == ABBE_OK) *set = apply(edit, &table, &found, out);
+  if (result == ABBE_OK) result = apply(edit, &table, &found, out, set, error);
   abbe_findings_free(&found);
   abbe_material_table_free(&table);
   return result;
