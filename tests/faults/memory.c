@@ -1,0 +1,92 @@
+#include "tests/faults/memory.h"
+
+#include <errno.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_integration.h>
+#include <gsl/gsl_interp.h>
+#include <gsl/gsl_multifit.h>
+#include <gsl/gsl_multifit_nlinear.h>
+#include <locale.h>
+#include <png.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+static atomic_bool on, every;
+static atomic_size_t seen, wanted, failed;
+static char what[160];
+
+void faults_memory_begin(size_t n, bool all) {
+  seen = failed = 0;
+  wanted = n;
+  every = all;
+  what[0] = '\0';
+  on = true;
+}
+
+size_t faults_memory_end(void) {
+  on = false;
+  return seen;
+}
+
+size_t faults_memory_failed(void) {
+  return failed;
+}
+
+const char *faults_memory_what(void) {
+  return what;
+}
+
+static bool fails(const char *name, const void *caller) {
+  if (!on) return false;
+  const size_t mine = ++seen;
+  if (wanted == 0 || mine < wanted || (mine > wanted && !every)) return false;
+  if (failed++ == 0) snprintf(what, sizeof what, "%s called at %p", name, caller);
+  errno = ENOMEM;
+  return true;
+}
+
+/* WRAP(type, name, (parameters), (arguments), result): of the same name, with a failure in turn. */
+#define WRAP(type, name, parameters, arguments, none)                                              \
+  type __real_##name parameters;                                                                   \
+  type __wrap_##name parameters;                                                                   \
+  type __wrap_##name parameters {                                                                  \
+    return fails(#name, __builtin_return_address(0)) ? (none) : __real_##name arguments;           \
+  }
+
+WRAP(void *, malloc, (size_t size), (size), NULL)
+WRAP(void *, calloc, (size_t count, size_t size), (count, size), NULL)
+WRAP(void *, realloc, (void *old, size_t size), (old, size), NULL)
+WRAP(void *, aligned_alloc, (size_t alignment, size_t size), (alignment, size), NULL)
+WRAP(char *, strdup, (const char *text), (text), NULL)
+WRAP(char *, strndup, (const char *text, size_t size), (text, size), NULL)
+WRAP(char *, realpath, (const char *path, char *resolved), (path, resolved), NULL)
+WRAP(FILE *, fopen, (const char *path, const char *mode), (path, mode), NULL)
+WRAP(FILE *, fdopen, (int fd, const char *mode), (fd, mode), NULL)
+WRAP(FILE *, open_memstream, (char **text, size_t *size), (text, size), NULL)
+WRAP(locale_t, newlocale, (int mask, const char *name, locale_t base), (mask, name, base),
+     (locale_t)0)
+
+WRAP(int, yaml_parser_initialize, (yaml_parser_t * parser), (parser), 0)
+WRAP(int, yaml_parser_parse, (yaml_parser_t * parser, yaml_event_t *event), (parser, event),
+     (memset(event, 0, sizeof *event), parser->error = YAML_MEMORY_ERROR, 0))
+
+WRAP(png_structp, png_create_write_struct,
+     (png_const_charp version, png_voidp user, png_error_ptr error, png_error_ptr warn),
+     (version, user, error, warn), NULL)
+WRAP(png_structp, png_create_read_struct,
+     (png_const_charp version, png_voidp user, png_error_ptr error, png_error_ptr warn),
+     (version, user, error, warn), NULL)
+WRAP(png_infop, png_create_info_struct, (png_const_structrp png), (png), NULL)
+
+WRAP(gsl_vector *, gsl_vector_alloc, (size_t n), (n), NULL)
+WRAP(gsl_matrix *, gsl_matrix_alloc, (size_t n, size_t m), (n, m), NULL)
+WRAP(gsl_interp *, gsl_interp_alloc, (const gsl_interp_type *type, size_t n), (type, n), NULL)
+WRAP(gsl_integration_workspace *, gsl_integration_workspace_alloc, (size_t n), (n), NULL)
+WRAP(gsl_multifit_linear_workspace *, gsl_multifit_linear_alloc, (size_t n, size_t p), (n, p), NULL)
+WRAP(gsl_multifit_nlinear_workspace *, gsl_multifit_nlinear_alloc,
+     (const gsl_multifit_nlinear_type *type, const gsl_multifit_nlinear_parameters *parameters,
+      size_t n, size_t p),
+     (type, parameters, n, p), NULL)
