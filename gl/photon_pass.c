@@ -485,6 +485,9 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);
   result = read_batch(r, light, data, error);
+  for (size_t i = 0; result == ABBE_OK && i < *count * *orders * *lanes; i++)
+    for (size_t k = 0; k < 3 && (*data)[4 * i + 3] > 0; k++)
+      (*data)[4 * i + k] = (float)((double)(*data)[4 * i + k] + r->local.origin[k]);
   if (result != ABBE_OK || cells == NULL) return result;
   *cells = malloc(*count * 4 + 4);
   if (*cells == NULL) {

@@ -112,8 +112,14 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
   if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
   r->context = context;
   r->gl = abbe_context_gl(context);
-  r->scene = scene;
   abbe_result result = abbe_plan_make(scene, desc, &r->plan, error);
+  if (result == ABBE_OK) result = abbe_local_scene_make(scene, &r->local, error);
+  r->scene = r->local.scene;
+  if (result == ABBE_OK && r->local.moved && r->plan.desc.map_layout != NULL) {
+    r->given = *r->plan.desc.map_layout;
+    abbe_local_scene_from_world(&r->local, &r->given.view);
+    r->plan.desc.map_layout = &r->given;
+  }
   if (result == ABBE_OK) {
     write_defines(r);
     result = make_passes(r, error);
@@ -131,6 +137,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   const abbe_gl *gl = r->gl;
   abbe_renderer_free_thesis(r);
   abbe_renderer_free_scene(r);
+  abbe_local_scene_free(&r->local);
   r->buffer[BINDING_PHOTONS] = 0; /* one of the lists */
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
@@ -160,10 +167,12 @@ const abbe_plan *abbe_renderer_plan(const abbe_renderer *r) {
 
 void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *out) {
   *out = r->light[light].near_view;
+  abbe_local_scene_to_world(&r->local, out);
 }
 
 void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_layout *out) {
   *out = r->light[light].map;
+  abbe_local_scene_to_world(&r->local, &out->view);
 }
 
 static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
@@ -299,8 +308,10 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   }
   abbe_rgb_space_chromaticities(thesis ? ABBE_RGB_SPACE_REC709 : ABBE_RGB_SPACE_XYZ, out->xy);
   result = abbe_gl_check(r->gl, "the reading of the map", error);
+  abbe_map_layout layout;
+  abbe_renderer_map_layout(r, light, &layout);
   if (result == ABBE_OK)
-    result = abbe_map_layout_write(&r->light[light].map, r->scene->light[light].name, out, error);
+    result = abbe_map_layout_write(&layout, r->scene->light[light].name, out, error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
 }

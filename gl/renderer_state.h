@@ -3,6 +3,7 @@
 #define ABBE_GL_RENDERER_STATE_H
 
 #include "gl/api.h"
+#include "gl/local_scene.h"
 #include "gl/plan.h"
 #include "gl/renderer.h"
 
@@ -52,7 +53,9 @@ typedef struct thesis_state thesis_state;
 struct abbe_renderer {
   abbe_context *context;
   const abbe_gl *gl;
-  const abbe_scene *scene;
+  abbe_local_scene local;
+  const abbe_scene *scene; /* the local one: every place below is in its coordinates */
+  abbe_map_layout given;   /* the request's layout there, where the scene is moved */
   abbe_plan plan;
 
   mesh_buffers *mesh; /* [scene->object_count] */

@@ -1,0 +1,42 @@
+/* local_scene.h: a scene moved to where single precision serves it.
+ *
+ * Shaders compute in floats, which carry seven digits of a coordinate: a gem of a decimetre, a
+ * hundred kilometres from the origin, would be known to a centimetre. Where the refractors stand
+ * that far away in terms of their own size, the renderer works in a copy whose origin is in their
+ * middle. Nothing else changes; textures, materials and topology are the original's.
+ */
+#ifndef ABBE_GL_LOCAL_SCENE_H
+#define ABBE_GL_LOCAL_SCENE_H
+
+#include "scenes/map_layout.h"
+#include "scenes/scene.h"
+#include "spectral/error.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_local_scene {
+  const abbe_scene *scene; /* the original, or the moved copy below */
+  double origin[3];        /* world = origin + local, m; zero where nothing is moved */
+  bool moved;
+  abbe_scene copy;
+} abbe_local_scene;
+
+/* Moves the scene where its refractors (without any: its objects) stand more than 256 times the
+ * radius of their bounds from the origin. The original outlives it; out may not be copied.
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out,
+                                  abbe_error *error);
+void abbe_local_scene_free(abbe_local_scene *local);
+
+/* A map's layout between the world and the local scene. */
+void abbe_local_scene_from_world(const abbe_local_scene *local, abbe_view *view);
+void abbe_local_scene_to_world(const abbe_local_scene *local, abbe_view *view);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
