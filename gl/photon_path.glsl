@@ -10,7 +10,7 @@ bool land(vec3 p, vec3 d, out vec3 at, out uint receiver) {
   vec3 uvz;
 #ifdef EXACT_RECEIVERS
   float t;
-  int r = receiver_hit(p, d, scene_size * 1e-6, 1e30, t);
+  int r = receiver_hit(p, d, -touch * refractor_bounds.w, 1e30, t);
   if (r < 0) return false;
   at = p + t * d;
   receiver = uint(r) + 1u;

@@ -1,5 +1,6 @@
 #include "gl/plan.h"
 
+#include "gl/precision.h"
 #include "scenes/vector.h"
 #include "scenes/view.h"
 #include "spectral/wavelengths.h"
@@ -149,6 +150,36 @@ static const char *model_reason(const abbe_object *object, bool thesis) {
   return "the object is a general closed mesh: what a view sees of it, front and back";
 }
 
+static bool overlap(const abbe_object *a, const abbe_object *b) {
+  for (int k = 0; k < 3; k++)
+    if (!(a->min[k] < b->max[k] && b->min[k] < a->max[k])) return false;
+  if (a->exact.kind != ABBE_EXACT_SPHERE || b->exact.kind != ABBE_EXACT_SPHERE) return true;
+  double apart[3];
+  abbe_vector_subtract(a->exact.centre, b->exact.centre, apart);
+  return abbe_vector_length(apart) < a->exact.radius + b->exact.radius;
+}
+
+/* An index as near to air's as this bends no ray by more than that, a few grazing ones aside. */
+static const double invisible = 2e-6;
+
+/* Whether light goes through the object as through air: clear, of air's index, and no bubble. */
+static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
+                         const abbe_plan *plan) {
+  const double min = plan->desc.min_nm, max = plan->desc.max_nm;
+  if (plan->desc.profile == ABBE_PROFILE_THESIS) return false;
+  for (int i = 0; i < RANGE_STEPS; i++) {
+    double lambda_nm = min + (max - min) * i / (RANGE_STEPS - 1), n = 0;
+    if (abbe_material_n(object->material, lambda_nm, &n, NULL) != ABBE_OK) return false;
+    if (!(fabs(n - 1) <= invisible)) return false;
+    if (abbe_material_attenuation(object->material, lambda_nm) > 0) return false;
+  }
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (&scene->object[i] != object && scene->object[i].material != NULL &&
+        overlap(&scene->object[i], object))
+      return false;
+  return true;
+}
+
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->refractor_object = calloc(scene->object_count + 1, sizeof *plan->refractor_object);
@@ -168,6 +199,12 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     }
     if (plan->refractor_count == 255)
       return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than 255 refractors");
+    char name[64];
+    snprintf(name, sizeof name, "model: %.50s", object->name);
+    if (is_invisible(scene, object, plan)) {
+      add(plan, false, name, "clear, and its index is that of air: light does not notice it");
+      continue;
+    }
     abbe_result result = examine_material(scene, object->material, plan, error);
     if (result != ABBE_OK) return result;
     abbe_refractor_model model = choose_model(object, thesis);
@@ -176,8 +213,6 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     plan->spheres = plan->spheres || model == ABBE_REFRACTOR_SPHERE;
     plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
     plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
-    char name[64];
-    snprintf(name, sizeof name, "model: %.50s", object->name);
     add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), model_reason(object, thesis));
   }
   if (plan->refractor_count > MAX_MODEL_ENTRIES)
@@ -203,8 +238,8 @@ static double side_of(const double p[9], const double at[3]) {
   return sum / sqrt(length);
 }
 
-/* Whether the parallelogram's plane has everything on one side of it: all other corners, and the
- * place that light k comes from. */
+/* Whether the parallelogram's plane has everything on one side of it: all other corners, those of
+ * the refractors' bounds, and the places that light comes from. */
 static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const double p[9],
                        double tolerance) {
   double low = 0, high = 0;
@@ -220,6 +255,14 @@ static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const dou
         low = fmin(low, side);
         high = fmax(high, side);
       }
+  }
+  for (size_t i = 0; i < 8 * plan->refractor_count; i++) {
+    const abbe_object *object = &scene->object[plan->refractor_object[i / 8]];
+    double corner[3];
+    for (int x = 0; x < 3; x++) corner[x] = i >> x & 1 ? object->max[x] : object->min[x];
+    double side = side_of(p, corner);
+    low = fmin(low, side);
+    high = fmax(high, side);
   }
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
@@ -274,15 +317,6 @@ static void resolve_wavelengths(abbe_plan *plan) {
     add(plan, true, "inner reflections",
         "followed until less than %g of the light is left, %zu exits at most",
         plan->desc.energy_share, plan->desc.orders);
-}
-
-static bool overlap(const abbe_object *a, const abbe_object *b) {
-  for (int k = 0; k < 3; k++)
-    if (!(a->min[k] < b->max[k] && b->min[k] < a->max[k])) return false;
-  if (a->exact.kind != ABBE_EXACT_SPHERE || b->exact.kind != ABBE_EXACT_SPHERE) return true;
-  double apart[3];
-  abbe_vector_subtract(a->exact.centre, b->exact.centre, apart);
-  return abbe_vector_length(apart) < a->exact.radius + b->exact.radius;
 }
 
 /* The scene's rule, that the later object wins, is not the renderer's. */
@@ -478,6 +512,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   if (result == ABBE_OK) result = check_thesis(scene, out, error);
   if (result == ABBE_OK) result = check_layout(scene, out, error);
   if (result == ABBE_OK) result = examine_views(scene, out, error);
+  if (result == ABBE_OK) result = abbe_precision_check(scene, out, error);
   if (result != ABBE_OK) {
     abbe_plan_free(out);
     return result;

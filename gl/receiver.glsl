@@ -17,6 +17,10 @@ uniform vec4 refractor_bounds;  // centre, radius of all refractors
 uniform float scene_size;
 
 #ifdef EXACT_RECEIVERS
+// How far behind a refractor's wall a receiver may lie to be lit by what leaves there: a refractor
+// that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
+const float touch = 1e-5;
+
 int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
   int found = -1;
   t = t_max;

@@ -45,7 +45,7 @@ View eye_as_view() {
 vec3 seen(vec3 p, vec3 d) {
   float t;
 #ifdef EXACT_RECEIVERS
-  int r = receiver_hit(p, d, scene_size * 1e-6, 1e30, t);
+  int r = receiver_hit(p, d, -touch * refractor_bounds.w, 1e30, t);
   if (r < 0) return background;
   Receiver rc = receivers[r];
   vec3 x = p + t * d, n = rc.normal.xyz;
@@ -80,7 +80,7 @@ float sphere_spread(Hit front, vec3 d, int first, int last) {
     what[k] = 0;
 #ifdef EXACT_RECEIVERS
     float t;
-    what[k] = receiver_hit(wall, outer, scene_size * 1e-6, 1e30, t);
+    what[k] = receiver_hit(wall, outer, -touch * refractor_bounds.w, 1e30, t);
     at[k] = wall + min(t, scene_size) * outer;
 #endif
   }

@@ -1,0 +1,106 @@
+#include "gl/precision.h"
+
+#include "scenes/vector.h"
+#include "scenes/view.h"
+
+#include <math.h>
+
+/* The smallest width of the object, m: of a convex solid across its faces, else of its bounds. */
+static double thickness(const abbe_object *object) {
+  double least = INFINITY;
+  for (int k = 0; k < 3; k++) least = fmin(least, object->max[k] - object->min[k]);
+  for (size_t i = 0; object->exact.kind == ABBE_EXACT_CONVEX && i < object->exact.count; i++) {
+    const double *plane = object->exact.plane[i];
+    double low = plane[3];
+    for (size_t v = 0; v < object->mesh.vertex_count; v++)
+      low = fmin(low, abbe_vector_dot(plane, object->mesh.position[v]));
+    least = fmin(least, plane[3] - low);
+  }
+  return least;
+}
+
+/* A float keeps 2^-24 of a distance. A refractor's shape is safe at 2^16 times its radius, where
+ * that is a part in 256 of it; its front and back are told apart at 2^20 times its thickness. */
+static const double most_radii = 65536, most_thicknesses = 1048576;
+
+static abbe_result check_distance(const abbe_scene *scene, const abbe_light *light,
+                                  const abbe_object *object, abbe_error *error) {
+  bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  double min[3], max[3], apart[3], half[3], size[3];
+  abbe_scene_bounds(scene, true, true, min, max);
+  for (int k = 0; k < 3; k++) {
+    apart[k] = 0.5 * (object->min[k] + object->max[k]) - light->position[k];
+    half[k] = 0.5 * (object->max[k] - object->min[k]);
+    size[k] = max[k] - min[k];
+  }
+  double distance = abbe_vector_length(sun ? size : apart), thick = thickness(object);
+  double radius =
+      object->exact.kind == ABBE_EXACT_SPHERE ? object->exact.radius : abbe_vector_length(half);
+  if (distance > most_radii * radius && sun)
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the scene is %.3g m wide and its refractor '%s' %.3g m: single precision "
+        "loses the refractor's shape in it; make the receivers smaller",
+        distance, object->name, 2 * radius);
+  if (distance > most_radii * radius)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the light '%s' is %.3g m from the refractor '%s', which is %.3g m wide: "
+                          "single precision loses its shape over that distance; make it a "
+                          "directional light of %.6g W/m2",
+                          light->name, distance, object->name, 2 * radius,
+                          light->power / (distance * distance));
+  if (distance > most_thicknesses * thick)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the refractor '%s' is %.3g m thin, %.3g m from the light '%s': single "
+                          "precision does not tell its front from its back; make it at least %.3g "
+                          "m thick, or leave it out",
+                          object->name, thick, distance, light->name, distance / most_thicknesses);
+  return ABBE_OK;
+}
+
+/* Photons are the middles of a grid's cells over all refractors: one that is smaller than half a
+ * cell is met by chance. A grid of less than four a side is no grid. */
+static abbe_result check_cells(const abbe_plan *plan, const abbe_light *light, const abbe_view *all,
+                               const abbe_object *object, abbe_error *error) {
+  abbe_view own;
+  double cells = INFINITY;
+  abbe_view_look(all->origin, all->forward, all->up, all->orthographic, &own);
+  abbe_view_fit(&own, (const double(*)[3])object->mesh.position, object->mesh.vertex_count);
+  for (int axis = 0; axis < 2; axis++) {
+    const double *a = &all->window[2 * axis], *o = &own.window[2 * axis];
+    if (a[1] > a[0]) cells = fmin(cells, (o[1] - o[0]) / (a[1] - a[0]));
+  }
+  cells *= (double)plan->desc.photons;
+  if (plan->desc.photons < 4 || cells >= 0.5) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "the refractor '%s' is %.2g cells of the photon grid of the light '%s' "
+                        "wide, so that its light would be a matter of chance; ask for %.0f photons "
+                        "a side, or move the refractors nearer together",
+                        object->name, cells, light->name, ceil((double)plan->desc.photons / cells));
+}
+
+abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
+                                 abbe_error *error) {
+  static const double up[3] = {0, 1, 0};
+  double min[3], max[3], forward[3];
+  abbe_result result = ABBE_OK;
+  if (plan->refractor_count == 0 || plan->desc.profile == ABBE_PROFILE_THESIS) return ABBE_OK;
+  abbe_scene_bounds(scene, true, false, min, max);
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
+    abbe_view view;
+    for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - light->position[k];
+    abbe_view_look(sun ? min : light->position, sun ? light->direction : forward, up, sun, &view);
+    for (size_t k = 0; k < plan->refractor_count; k++) {
+      const abbe_mesh *mesh = &scene->object[plan->refractor_object[k]].mesh;
+      abbe_view_fit(&view, (const double(*)[3])mesh->position, mesh->vertex_count);
+    }
+    for (size_t k = 0; k < plan->refractor_count && result == ABBE_OK; k++) {
+      const abbe_object *object = &scene->object[plan->refractor_object[k]];
+      result = check_distance(scene, light, object, error);
+      if (result == ABBE_OK) result = check_cells(plan, light, &view, object, error);
+    }
+  }
+  return result;
+}
