@@ -18,6 +18,7 @@ enum {
   OPTION_REPORT,
   OPTION_WRITE_PRESETS,
   OPTION_PRESETS,
+  OPTION_GROWTH,
   OPTION_GRID,
   OPTION_PROFILES,
   OPTION_WAVELENGTHS,
@@ -63,6 +64,8 @@ static const struct argp_option options[] = {
      "presets off the fronts of the given tables", 0},
     {"presets", OPTION_PRESETS, "FILE.yaml", 0,
      "say what these promise beside what was met (the shipped ones)", 0},
+    {"growth", OPTION_GROWTH, NULL, 0,
+     "instead: how the time grows with photons, wavelengths, pixels, faces, share of the view", 0},
     {"error", OPTION_ERROR, "COLUMN", 0,
      "that makes the front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
     {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
@@ -230,7 +233,7 @@ static void finish(request *q, struct argp_state *state) {
   abbe_sweep_request *w = &q->work;
   if (q->argument_count == 0) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
   if (is_table(q->argument[0])) {
-    if (w->csv != NULL || q->listed || q->grid >= 0)
+    if (w->csv != NULL || q->listed || q->grid >= 0 || w->growth)
       argp_error(state, "'%s' is a table: it is shown, and nothing is measured", q->argument[0]);
     return;
   }
@@ -242,6 +245,10 @@ static void finish(request *q, struct argp_state *state) {
   if (w->csv == NULL && !w->list) argp_error(state, "where to? Give -o FILE.csv");
   if (q->listed && q->grid >= 0)
     argp_error(state, "--grid and lists such as --wavelengths 3,7: one or the other");
+  if (w->growth && (q->listed || q->grid >= 0 || q->traced || w->report != NULL || w->json ||
+                    w->width != w->height || w->list))
+    argp_error(state, "--growth times frames: it goes with -o, --plot, --frames, --gl, --materials "
+                      "and a square --size alone");
   bool named = w->reference != NULL || w->reference_map != NULL;
   if (named && q->traced)
     argp_error(state,
@@ -268,6 +275,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_WRITE_PRESETS:
     q->presets = text;
+    return 0;
+  case OPTION_GROWTH:
+    w->growth = true;
     return 0;
   case OPTION_PRESETS:
     w->presets_file = text;
@@ -366,6 +376,11 @@ static abbe_result show(const request *q, const abbe_sweep_table *tables, size_t
 }
 
 static abbe_result run(request *q, abbe_error *error) {
+  const char *const grown[] = {q->work.csv, q->work.plot};
+  if (q->work.growth) {
+    abbe_result result = abbe_command_check_targets(grown, 2, error);
+    return result == ABBE_OK ? abbe_sweep_grow(&q->work, error) : result;
+  }
   bool shown = is_table(q->argument[0]);
   size_t count = shown ? q->argument_count : 1;
   abbe_sweep_table *tables = calloc(count, sizeof *tables);
@@ -395,6 +410,8 @@ int abbe_command_sweep(int argc, char **argv) {
       "  abbe sweep scenes/prism.yaml -o slit.csv --wavelengths 3,7,21 --photons 64,256\n"
       "  abbe sweep scenes/gem.yaml -o gem.csv --reference gem.exr --reference-map map.exr\n"
       "  abbe sweep gem.csv sphere.csv --report trade.md\n"
+      "  abbe sweep scenes/gem.yaml -o gem.csv --split --report gem.md\n"
+      "  abbe sweep scenes/gem.yaml -o grows.csv --growth --plot grows.png\n"
       "  abbe sweep *.csv --write-presets presets.yaml\n",
       NULL,
       NULL,

@@ -6,6 +6,7 @@
 #include "gl/preset.h"
 #include "scenes/scene_file.h"
 #include "validation/reference.h"
+#include "validation/sweep_growth.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -348,5 +349,29 @@ abbe_result abbe_sweep_work(const abbe_sweep_request *q, abbe_sweep_table *out, 
     *out = w.table;
   else
     abbe_sweep_table_free(&w.table);
+  return result;
+}
+
+abbe_result abbe_sweep_grow(const abbe_sweep_request *q, abbe_error *error) {
+  abbe_scene scene = {0};
+  abbe_context *context = NULL;
+  abbe_sweep_growth growth;
+  abbe_progress progress;
+  abbe_scene_options options = {.materials = q->materials};
+  abbe_result result = abbe_scene_load(q->scene, &options, &scene, error);
+  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) {
+    const abbe_sweep sweep = {.context = context, .scene = &scene, .frames = q->frames};
+    abbe_progress_begin(&progress, "growth", q->quiet);
+    result = abbe_sweep_growth_measure(&sweep, &scene, q->width > 0 ? q->width : 256,
+                                       abbe_progress_update, &progress, &growth, error);
+    abbe_progress_end(&progress);
+  }
+  if (result == ABBE_OK) result = abbe_sweep_growth_save(&growth, q->csv, error);
+  if (result == ABBE_OK && q->plot != NULL)
+    result = abbe_sweep_growth_plot(&growth, q->plot, error);
+  if (result == ABBE_OK) abbe_sweep_growth_print(&growth, stdout);
+  abbe_context_free(context);
+  abbe_scene_free(&scene);
   return result;
 }

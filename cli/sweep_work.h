@@ -15,6 +15,7 @@ typedef struct abbe_sweep_request {
   size_t width, height; /* pixels; 0: the scene's */
   size_t frames, passes, photons, texels;
   bool matched;             /* physics of the reference */
+  bool growth;              /* instead of a sweep: how a frame's time grows */
   bool split;               /* a second one with matched physics */
   bool presets;             /* the grid is the front of the presets for the scene's class */
   const char *presets_file; /* NULL: the shipped ones */
@@ -28,5 +29,8 @@ typedef struct abbe_sweep_request {
  * there row by row, and gives the whole table with its front marked. ABBE_CANCELLED where the user
  * stopped it: what is done is kept. */
 abbe_result abbe_sweep_work(const abbe_sweep_request *q, abbe_sweep_table *out, abbe_error *error);
+
+/* --growth: times how a frame grows, keeps the times at q->csv, draws and prints them. */
+abbe_result abbe_sweep_grow(const abbe_sweep_request *q, abbe_error *error);
 
 #endif

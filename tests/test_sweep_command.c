@@ -101,6 +101,18 @@ static void test_the_error_is_split(void **state) {
                           "--split traces full and matched physics"));
 }
 
+/* The times alone: what grows, and by which power. */
+static void test_growth(void **state) {
+  (void)state;
+  run_well(
+      "\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --growth -o g.csv --plot g.svg --size 16x16 "
+      "--frames 1");
+  assert_contains(run_output, "| cells of the photon grid (slope ");
+  assert_contains(run_output, "| faces of the refractors (slope ");
+  run_well("grep -q '^share,2,' g.csv && grep -q svg g.svg && rm g.csv g.svg");
+  assert_true(run_refuses("\"$abbe\" sweep a.yaml -o g.csv --growth --spp 3", 2, "--growth times"));
+}
+
 static void test_given_references(void **state) {
   (void)state;
   run_well("\"$abbe\" render \"$house\"/scenes/gem.yaml -q --size 24x24 --photons 32 --map 64 "
@@ -174,6 +186,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_rows_are_measured_once, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_the_thesis_beside_it, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_the_error_is_split, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_growth, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_given_references, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_ctrl_c_keeps_what_is_done, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),

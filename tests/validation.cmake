@@ -40,6 +40,7 @@ foreach(name
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(sweep gl abbe_sweep abbe_gl ${validation_rooms})
+abbe_test(sweep_growth gl abbe_sweep abbe_gl ${validation_rooms})
 abbe_test(compare_command program ${validation_rooms} PkgConfig::CJSON)
 abbe_test(preset_command program ${validation_rooms} PkgConfig::CJSON)
 abbe_test(sweep_command program ${validation_rooms} PkgConfig::CJSON)

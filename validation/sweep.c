@@ -463,6 +463,21 @@ abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *se
   return result;
 }
 
+abbe_result abbe_sweep_time(const abbe_sweep *s, const abbe_sweep_setting *setting, size_t width,
+                            size_t height, abbe_sweep_row *out, abbe_error *error) {
+  abbe_render_desc desc;
+  abbe_renderer *renderer = NULL;
+  *out = (abbe_sweep_row){.setting = *setting};
+  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) out->number[i] = NAN;
+  abbe_result result = abbe_sweep_setting_desc(setting, &desc, error);
+  desc.width = width;
+  desc.height = height;
+  if (result == ABBE_OK) result = abbe_renderer_make(s->context, s->scene, &desc, &renderer, error);
+  if (result == ABBE_OK) result = time_frames(s, renderer, NULL, NULL, out, error);
+  abbe_renderer_free(renderer);
+  return result;
+}
+
 abbe_result abbe_sweep_model_measure(const abbe_sweep *s, abbe_sweep_model *out,
                                      abbe_error *error) {
   abbe_comparison picture, map;

@@ -87,6 +87,10 @@ abbe_result abbe_sweep_measure(const abbe_sweep *sweep, const abbe_sweep_setting
                                abbe_render_progress progress, void *user, abbe_sweep_row *out,
                                abbe_image *picture, abbe_error *error);
 
+/* The times alone, at another size (0: the scene's). */
+abbe_result abbe_sweep_time(const abbe_sweep *sweep, const abbe_sweep_setting *setting,
+                            size_t width, size_t height, abbe_sweep_row *out, abbe_error *error);
+
 /* How far matched physics is from full: what a renderer would have that leaves out nothing but what
  * the model does. Needs all four references. */
 abbe_result abbe_sweep_model_measure(const abbe_sweep *sweep, abbe_sweep_model *out,
