@@ -5,6 +5,7 @@
 
 #include <cjson/cJSON.h>
 #include <stdio.h>
+#include <string.h>
 
 enum { OPTION_PRESET = 0x600, OPTION_MAX_ERROR, OPTION_BUDGET, OPTION_PRESETS };
 
@@ -96,7 +97,7 @@ static void describe_point(const abbe_preset_options *o, char *out, size_t size)
 }
 
 void abbe_preset_options_describe(const abbe_preset_options *o, const abbe_statistics *s,
-                                  cJSON *root) {
+                                  double estimate, cJSON *root) {
   char text[200];
   if (!o->chosen) return;
   const abbe_preset_point *point = &o->front->point[o->point];
@@ -118,7 +119,12 @@ void abbe_preset_options_describe(const abbe_preset_options *o, const abbe_stati
   cJSON_AddNumberToObject(p, "margin", o->front->margin);
   cJSON_AddNumberToObject(p, "margin_scenes", (double)o->front->margin_scenes);
   /* Only a reference tells the error: abbe sweep, abbe compare. */
-  cJSON_AddNullToObject(p, "error_met");
+  if (estimate >= 0 && strcmp(o->presets.error, "caustic_de") == 0) {
+    cJSON_AddNumberToObject(p, "error_met", estimate);
+    cJSON_AddStringToObject(p, "error_met_is", "an estimate by error bars: sampling alone");
+  } else {
+    cJSON_AddNullToObject(p, "error_met");
+  }
   if (o->timed) cJSON_AddNumberToObject(p, "ms", o->promised_ms);
   cJSON_AddNumberToObject(p, "ms_met", s->frame_ms);
   if (o->budget_ms > 0) cJSON_AddBoolToObject(p, "budget_met", s->frame_ms <= o->budget_ms);

@@ -39,9 +39,11 @@ abbe_result abbe_preset_options_resolve(abbe_preset_options *options, abbe_conte
 void abbe_preset_options_free(abbe_preset_options *options);
 
 /* Adds "promise" to the statistics: what was chosen, promised and met; nothing where nothing was
- * asked for. */
+ * asked for. `estimate` is the caustic's mean CIEDE2000 by the picture's error bars; below 0: not
+ * known. */
 void abbe_preset_options_describe(const abbe_preset_options *options,
-                                  const abbe_statistics *statistics, struct cJSON *root);
+                                  const abbe_statistics *statistics, double estimate,
+                                  struct cJSON *root);
 /* Says on stderr what was chosen, and what cannot be kept. */
 void abbe_preset_options_note(const abbe_preset_options *options);
 

@@ -1,4 +1,5 @@
 #include "cli/command.h"
+#include "cli/error_options.h"
 #include "cli/map_options.h"
 #include "cli/preset_options.h"
 #include "cli/progress.h"
@@ -39,6 +40,7 @@ typedef struct request {
   abbe_render_options render;
   abbe_map_options map;
   abbe_preset_options preset;
+  abbe_error_options errors;
   const char *exr, *png, *stats;
   bool layers, unfilled, quiet, json;
   int bits;
@@ -73,6 +75,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &q->render;
     state->child_inputs[1] = &q->map;
     state->child_inputs[2] = &q->preset;
+    state->child_inputs[3] = &q->errors;
     return 0;
   case 'o':
     q->exr = text;
@@ -117,8 +120,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->display.exposure = abbe_command_number(p, "--exposure", text, -30, 30);
     return 0;
   case ARGP_KEY_END:
-    if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json)
+    if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
+        q->errors.png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
+    if (q->errors.mean && q->layers)
+      argp_error(state, "--mean has no --layers: they are of one picture, not of the mean");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -138,7 +144,8 @@ static abbe_result check_display(const request *q, abbe_error *error) {
   return result;
 }
 
-static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_context *context) {
+static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_error_bars *bars,
+                       const abbe_context *context) {
   cJSON *root = cJSON_CreateObject();
   cJSON_AddNumberToObject(root, "frame_ms", s->frame_ms);
   if (s->floor_ms > 0) cJSON_AddNumberToObject(root, "floor_ms", s->floor_ms);
@@ -165,14 +172,17 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_co
   if (getrusage(RUSAGE_SELF, &usage) == 0)
     cJSON_AddNumberToObject(root, "peak_bytes", 1024.0 * (double)usage.ru_maxrss);
   cJSON_AddStringToObject(root, "device", abbe_context_description(context));
-  abbe_preset_options_describe(&q->preset, s, root);
+  abbe_error_options_describe(&q->errors, bars, root);
+  double estimate = bars->caustic.pixels > 0 ? bars->caustic.ciede2000 : -1;
+  abbe_preset_options_describe(&q->preset, s, estimate, root);
   return root;
 }
 
 static abbe_result write_stats(const request *q, const abbe_statistics *s,
-                               const abbe_context *context, abbe_error *error) {
+                               const abbe_error_bars *bars, const abbe_context *context,
+                               abbe_error *error) {
   if (q->stats == NULL && !q->json) return ABBE_OK;
-  cJSON *root = describe(q, s, context);
+  cJSON *root = describe(q, s, bars, context);
   char *text = cJSON_Print(root);
   cJSON_Delete(root);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
@@ -311,6 +321,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_renderer *renderer = NULL;
   abbe_statistics statistics;
   abbe_image image = {0};
+  abbe_error_bars bars = {0};
   abbe_progress progress;
   abbe_render_desc desc = q->render.desc;
   if (q->map.like != NULL) {
@@ -335,11 +346,16 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   }
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->layers, &image, error);
   if (result == ABBE_OK) result = annotate(q, renderer, context, &image, error);
+  if (result == ABBE_OK)
+    result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, &bars,
+                                     error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
   if (result == ABBE_OK && q->map.save != NULL) result = save_map(q, renderer, error);
   if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
-  if (result == ABBE_OK) result = write_stats(q, &statistics, context, error);
+  if (result == ABBE_OK) result = write_stats(q, &statistics, &bars, context, error);
   if (result == ABBE_OK) summarise(q, &statistics);
+  if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
+  abbe_error_bars_free(&bars);
   abbe_image_free(&image);
   abbe_renderer_free(renderer);
   return result;
@@ -350,6 +366,7 @@ int abbe_command_render(int argc, char **argv) {
       {&abbe_render_options_argp, 0, "Speed and accuracy:", 1},
       {&abbe_map_options_argp, 0, "Spectral map:", 3},
       {&abbe_preset_options_argp, 0, "By error or by time:", 2},
+      {&abbe_error_options_argp, 0, "How far off it is:", 4},
       {0}};
   static const struct argp argp = {
       options,
@@ -363,23 +380,27 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/gem.yaml --stats gem.json --frames 9\n"
       "  abbe render scenes/gem.yaml --png gem.png --preset draft\n"
       "  abbe render scenes/gem.yaml --png gem.png --budget-ms 100 --json\n"
+      "  abbe render scenes/gem.yaml -o gem.exr --error-bars --error-png gem-error.png\n"
       "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
       children,
       NULL,
       NULL};
-  request q = {.render.program = argv[0], .preset.program = argv[0], .bits = 8};
+  request q = {
+      .render.program = argv[0], .preset.program = argv[0], .errors.program = argv[0], .bits = 8};
   argp_parse(&argp, argc, argv, 0, NULL, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
   abbe_context *context = NULL;
   abbe_scene_options scene_options = {.materials = q.render.materials};
-  q.render.desc.layers = q.layers;
-  const char *const targets[] = {q.exr, q.png, q.map.save, q.stats};
-  abbe_result result = abbe_command_check_targets(targets, 4, &error);
+  /* The layers tell where the caustic is, whose error is summed up. */
+  q.render.desc.layers = q.layers || q.errors.asked;
+  const char *const targets[] = {q.exr, q.png, q.map.save, q.stats, q.errors.png};
+  abbe_result result = abbe_command_check_targets(targets, 5, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);
   bool loaded = result == ABBE_OK;
-  if (loaded)
+  if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
+  if (result == ABBE_OK)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
   if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
   bool timed = q.stats != NULL || q.json;

@@ -19,7 +19,11 @@ void abbe_renderer_fit_eye(abbe_renderer *r) {
   abbe_view_pad(&r->eye, 0.01);
   double y = tan(0.5 * camera->fov_y_rad);
   double x = y * (double)r->plan.desc.width / (double)r->plan.desc.height;
-  double window[4] = {-x, x, -y, y};
+  double right = r->plan.desc.sample_shift[0] * 2 * x / (double)r->plan.desc.width;
+  double up = r->plan.desc.sample_shift[1] * 2 * y / (double)r->plan.desc.height;
+  right /= (double)r->plan.desc.supersample;
+  up /= (double)r->plan.desc.supersample;
+  double window[4] = {right - x, right + x, up - y, up + y};
   memcpy(r->eye.window, window, sizeof window);
 }
 

@@ -77,6 +77,20 @@ static void take_layout(const abbe_renderer *r, const abbe_map_layout *given,
   memcpy(out->view.window, given->view.window, sizeof out->view.window);
 }
 
+/* Moves the photon grid by a part of a cell; the refractors stay in the window. */
+static void shift_cells(const abbe_render_desc *desc, abbe_view *view) {
+  const double *shift = desc->photon_shift;
+  double most = fmax(fabs(shift[0]), fabs(shift[1])), cells = (double)desc->photons;
+  if (most == 0) return;
+  abbe_view_pad(view, 0.5 / cells);
+  for (int axis = 0; axis < 2; axis++) {
+    double *low = &view->window[2 * axis], *high = &view->window[2 * axis + 1];
+    double cell = (*high - *low) / cells;
+    *low += shift[axis] * cell;
+    *high += shift[axis] * cell;
+  }
+}
+
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
  * to the photons' landings later where the request does not give it. */
 static void fit_views(abbe_renderer *r) {
@@ -94,6 +108,7 @@ static void fit_views(abbe_renderer *r) {
     else
       fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->near_view);
     abbe_view_pad(&state->near_view, 0.01);
+    shift_cells(&r->plan.desc, &state->near_view);
     fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &map_view);
     abbe_view_pad(&map_view, 0.01);
     abbe_map_layout_make(&map_view, &state->map);

@@ -66,6 +66,9 @@ typedef struct abbe_render_desc {
    * fitted to where its light lands. */
   const abbe_map_layout *map_layout;
   size_t map_layout_light;
+  /* Of the photon grid in cells and of the eye's samples in their distance, x and y, -0.5 to 0.5:
+   * other pictures that the same request could have given (gl/error_bars.h). */
+  double photon_shift[2], sample_shift[2];
   bool layers;                   /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
   void *progress_user;

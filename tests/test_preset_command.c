@@ -43,6 +43,11 @@ static void test_by_name(void **state) {
   assert_true(cJSON_IsTrue(item(json, "possible")));
   assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(json, "wavelengths")), 3, 0);
   cJSON_Delete(json);
+  /* Error bars tell it by an estimate, and say so. */
+  json = promise_of(GEM "--presets p.yaml --preset balanced --json -q --error-bars=2");
+  assert_true(cJSON_GetNumberValue(item(json, "error_met")) > 0);
+  assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "estimate");
+  cJSON_Delete(json);
   /* One's own option stays, and the promise is void. */
   json = promise_of(GEM "--presets p.yaml --preset draft --wavelengths 5 --json");
   assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(json, "wavelengths")), 5, 0);

@@ -129,11 +129,55 @@ static void test_a_map_like_another(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+static void test_error_bars(void **state) {
+  (void)state;
+  char path[128];
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(
+      run_line(GEM " -o a.exr --error-bars=2 --error-png e.png --json && test -s e.png"), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  const cJSON *bars = cJSON_GetObjectItemCaseSensitive(json, "error_bars");
+  const cJSON *caustic = cJSON_GetObjectItemCaseSensitive(bars, "caustic");
+  assert_near(number(bars, "variants"), 2, 0);
+  assert_near(number(bars, "frames"), 3, 0);
+  assert_true(number(bars, "ms") > 0);
+  assert_true(number(caustic, "relative_rmse") > 0);
+  assert_true(number(caustic, "ciede2000_mean") > 0);
+  cJSON_Delete(json);
+  snprintf(path, sizeof path, "%s/a.exr", run_folder);
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);
+  assert_int_equal(image.channels, 6);
+  assert_true(abbe_image_find_channel(&image, "stderr.G") != (size_t)-1);
+  assert_contains(abbe_image_attribute_text(&image, "abbe:stderr"), "what is not modelled");
+  abbe_image_free(&image);
+  /* The errors leave the picture alone; the mean is another. */
+  assert_int_equal(run_line(GEM " -q --png b.png && " GEM " -q --png c.png --error-bars=2 && "
+                                "cmp b.png c.png"),
+                   0);
+  assert_int_equal(run_line(GEM " -q --png c.png --error-bars=2 --mean && ! cmp -s b.png c.png"),
+                   0);
+  assert_int_equal(run_line("rm a.exr e.png b.png c.png"), 0);
+  static const struct {
+    const char *line, *says;
+  } refused[] = {
+      {GEM " -o a.exr --mean", "--mean goes with --error-bars"},
+      {GEM " --error-png e.png", "--error-png goes with --error-bars"},
+      {GEM " -o a.exr --error-bars=1", "--error-bars"},
+      {GEM " -o a.exr --error-bars --mean --layers", "--mean has no --layers"},
+      {GEM " -o a.exr --error-bars --profile thesis", "thesis profile has no error bars"},
+  };
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    assert_int_equal(run_line(refused[i].line), 2);
+    assert_contains(run_errors, refused[i].says);
+  }
+  assert_int_equal(run_left(), 0);
+}
+
 static void test_every_command_has_help(void **state) {
   (void)state;
-  static const char *const commands[] = {"render",    "plan",    "weights",
-                                         "materials", "display", "info",
-                                         "compare"};
+  static const char *const commands[] = {"render",  "plan", "weights", "materials",
+                                         "display", "info", "compare"};
   assert_int_equal(run_line("\"$abbe\" help"), 0);
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
     char line[128];
@@ -193,9 +237,13 @@ static void test_ctrl_c_stops_cleanly(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_statistics_as_json),     cmocka_unit_test(test_the_plan_as_json),
-      cmocka_unit_test(test_pictures_are_written),   cmocka_unit_test(test_a_map_like_another),
-      cmocka_unit_test(test_every_command_has_help), cmocka_unit_test(test_ctrl_c_stops_cleanly),
+      cmocka_unit_test(test_statistics_as_json),
+      cmocka_unit_test(test_the_plan_as_json),
+      cmocka_unit_test(test_pictures_are_written),
+      cmocka_unit_test(test_a_map_like_another),
+      cmocka_unit_test(test_every_command_has_help),
+      cmocka_unit_test(test_ctrl_c_stops_cleanly),
+      cmocka_unit_test(test_error_bars),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }
