@@ -127,9 +127,9 @@ static void test_the_mean_has_less_error(void **state) {
   (void)state;
   abbe_scene scene = {0};
   abbe_error_bars bars[2] = {{.ms = 0}};
-  abbe_error_bars_desc desc = {.of_mean = true};
+  abbe_error_bars_desc two = {.variants = 2}, desc = {.variants = 2, .of_mean = true};
   load_shipped("sphere", &scene);
-  make_bars(&scene, &small_frame, NULL, NULL, &bars[0]);
+  make_bars(&scene, &small_frame, &two, NULL, &bars[0]);
   make_bars(&scene, &small_frame, &desc, NULL, &bars[1]);
   assert_true(bars[1].whole.relative_rmse < bars[0].whole.relative_rmse);
   /* The same variants give the same bits. */
@@ -146,14 +146,15 @@ static void test_errors_shrink_with_finer_settings(void **state) {
   abbe_scene scene = {0};
   abbe_render_desc coarse = coarse_frame, fine = coarse_frame;
   abbe_error_bars bars[2] = {{.ms = 0}};
+  abbe_error_bars_desc two = {.variants = 2};
   coarse.width = coarse.height = fine.width = fine.height = 64;
   coarse.photons = 32;
   fine.photons = 128;
   fine.map_size = 512;
   fine.wavelengths = 9;
   load_shipped("gem", &scene);
-  make_bars(&scene, &coarse, NULL, NULL, &bars[0]);
-  make_bars(&scene, &fine, NULL, NULL, &bars[1]);
+  make_bars(&scene, &coarse, &two, NULL, &bars[0]);
+  make_bars(&scene, &fine, &two, NULL, &bars[1]);
   assert_true(bars[1].caustic.relative_rmse < 0.7 * bars[0].caustic.relative_rmse);
   assert_true(bars[1].caustic.ciede2000 < 0.7 * bars[0].caustic.ciede2000);
   abbe_error_bars_free(&bars[0]);
@@ -189,8 +190,9 @@ static void test_edges_have_errors(void **state) {
   (void)state;
   abbe_scene scene = {0};
   abbe_error_bars bars = {0};
+  abbe_error_bars_desc two = {.variants = 2};
   load_text(CAMERA SUN FLOOR HILL, &scene);
-  make_bars(&scene, &small_frame, NULL, NULL, &bars);
+  make_bars(&scene, &small_frame, &two, NULL, &bars);
   assert_true(image_max(&bars.error, 0) > 0);
   assert_finite(&bars.error);
   abbe_error_bars_free(&bars);
@@ -205,9 +207,10 @@ static void test_the_layer_is_what_compare_reads(void **state) {
   abbe_error error = {0};
   abbe_field field = {0};
   abbe_render_desc xyz = small_frame;
+  abbe_error_bars_desc two = {.variants = 2};
   xyz.space = ABBE_RGB_SPACE_XYZ;
   load_shipped("sphere", &scene);
-  make_bars(&scene, &xyz, NULL, &picture, &bars);
+  make_bars(&scene, &xyz, &two, &picture, &bars);
   assert_string_equal(bars.error.channel[1], "stderr.Y");
   assert_ok(abbe_error_bars_attach(&bars, &picture, &error), &error);
   assert_int_equal(picture.channels, 6);
