@@ -200,7 +200,7 @@ static pid_t start_long_render(int fd) {
   assert_true(child >= 0);
   if (child > 0) return child;
   if (chdir(run_folder) != 0 || dup2(fd, STDERR_FILENO) < 0) _exit(99);
-  execl(ABBE_PROGRAM, "abbe", "render", ABBE_SOURCE_DIR "/scenes/rainbow.yaml", "--photons", "64",
+  execl(ABBE_PROGRAM, "abbe", "render", ABBE_SOURCE_DIR "/scenes/gem.yaml", "--photons", "64",
         "--wavelengths", "100", "--size", "2048x2048", "-o", "picture.exr", "--png", "picture.png",
         (char *)NULL);
   _exit(99);
@@ -237,13 +237,10 @@ static void test_ctrl_c_stops_cleanly(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_statistics_as_json),
-      cmocka_unit_test(test_the_plan_as_json),
-      cmocka_unit_test(test_pictures_are_written),
-      cmocka_unit_test(test_a_map_like_another),
-      cmocka_unit_test(test_every_command_has_help),
+      cmocka_unit_test(test_statistics_as_json),     cmocka_unit_test(test_the_plan_as_json),
+      cmocka_unit_test(test_pictures_are_written),   cmocka_unit_test(test_a_map_like_another),
+      cmocka_unit_test(test_every_command_has_help), cmocka_unit_test(test_error_bars),
       cmocka_unit_test(test_ctrl_c_stops_cleanly),
-      cmocka_unit_test(test_error_bars),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }
