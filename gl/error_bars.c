@@ -19,11 +19,11 @@ enum { AXES = 6 };
 
 abbe_result abbe_error_bars_check(abbe_profile profile, const abbe_error_bars_desc *desc,
                                   abbe_error *error) {
-  if (profile == ABBE_PROFILE_THESIS)
-    return abbe_error_set(
-        error, ABBE_INVALID_ARGUMENT,
-        "the thesis profile has no error bars: its brightness is no radiance that "
-        "finer settings would come nearer to; use the default profile");
+  if (abbe_profile_is_thesis(profile))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the profile '%s' has no error bars: it keeps to the thesis's own "
+                          "sampling; use the default profile",
+                          abbe_profile_name(profile));
   size_t variants = desc != NULL ? desc->variants : 0;
   if (variants != 1 && variants <= ABBE_ERROR_BARS_MAX_VARIANTS) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

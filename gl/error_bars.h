@@ -67,7 +67,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
                                  abbe_error_bars *out, abbe_error *error);
 void abbe_error_bars_free(abbe_error_bars *bars);
 
-/* ABBE_INVALID_ARGUMENT for the thesis profile and for a number of variants outside the limits. */
+/* ABBE_INVALID_ARGUMENT for a thesis profile and for a number of variants outside the limits. */
 abbe_result abbe_error_bars_check(abbe_profile profile, const abbe_error_bars_desc *desc,
                                   abbe_error *error);
 

@@ -256,7 +256,9 @@ static void test_what_is_refused(void **state) {
   assert_null(bars.error.data);
   abbe_renderer_free(renderer);
   assert_int_equal(abbe_error_bars_check(ABBE_PROFILE_THESIS, NULL, &error), ABBE_INVALID_ARGUMENT);
-  assert_non_null(strstr(error.text, "thesis"));
+  assert_non_null(strstr(error.text, "'thesis'"));
+  assert_int_equal(abbe_error_bars_check(ABBE_PROFILE_THESIS_CIE, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
   abbe_scene_free(&scene);
 }
 

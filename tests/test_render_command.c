@@ -165,7 +165,7 @@ static void test_error_bars(void **state) {
       {GEM " --error-png e.png", "--error-png goes with --error-bars"},
       {GEM " -o a.exr --error-bars=1", "--error-bars"},
       {GEM " -o a.exr --error-bars --mean --layers", "--mean has no --layers"},
-      {GEM " -o a.exr --error-bars --profile thesis", "thesis profile has no error bars"},
+      {GEM " -o a.exr --error-bars --profile thesis", "'thesis' has no error bars"},
   };
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
     assert_int_equal(run_line(refused[i].line), 2);
