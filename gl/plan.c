@@ -107,6 +107,13 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the share of energy at which paths end is %g; it may be above 0, to 1",
                           d.energy_share);
+  const double shift[4] = {d.photon_shift[0], d.photon_shift[1], d.sample_shift[0],
+                           d.sample_shift[1]};
+  for (int k = 0; k < 4; k++)
+    if (!(fabs(shift[k]) <= 0.5))
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "the %s are shifted by %g of their distance; it may be -0.5 to 0.5",
+                            k < 2 ? "photons" : "samples", shift[k]);
   if (thesis != (d.fill == ABBE_FILL_SMEAR) && d.fill != ABBE_FILL_NONE)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'", abbe_fill_name(d.fill),

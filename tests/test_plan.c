@@ -217,6 +217,8 @@ static void test_limits_are_kept(void **state) {
       {{.energy_share = -0.1}, "-0.1"},
       {{.energy_share = 1.5}, "1.5"},
       {{.energy_share = NAN}, "nan"},
+      {{.photon_shift = {0, 0.6}}, "photons are shifted by 0.6"},
+      {{.sample_shift = {NAN, 0}}, "samples are shifted by nan"},
       {{.fill = ABBE_FILL_SMEAR}, "'smear'"},
       {{.profile = ABBE_PROFILE_THESIS, .fill = ABBE_FILL_BRIDGE}, "'thesis'"},
   };
