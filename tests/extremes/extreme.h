@@ -38,6 +38,7 @@ typedef struct extreme {
   abbe_render_desc desc; /* zero fields: 48 x 48 pixels, 48 photons, a map of 96 */
   abbe_result refused;   /* ABBE_OK: it renders */
   const char *reason;    /* part of the refusal's sentence */
+  bool by_device;        /* refused only once there is a device */
   bool heavy;            /* takes more than a second or a gigabyte: on request only */
   bool dark;             /* no light may reach a receiver through the refractor */
 } extreme;

@@ -1,5 +1,6 @@
 /* The renderer at the extremes: test_extremes [--table] [--heavy] [GROUP…]. */
 #include "tests/extremes/laws.h"
+#include "tests/extremes/limits.h"
 
 #include <stdio.h>
 
@@ -23,6 +24,11 @@ int main(int count, char **argument) {
     return 1;
   }
   extreme_for_each(&s.report, run, &s);
+  for (size_t i = 0; i < extreme_limit_count && extreme_report_wants(&s.report, "limits"); i++) {
+    extreme_row row = {{0}, {0}};
+    extreme_limits[i].check(s.context, &row);
+    extreme_report_add(&s.report, "limits", extreme_limits[i].name, &row);
+  }
   abbe_context_free(s.context);
   return extreme_report_end(&s.report);
 }
