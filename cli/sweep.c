@@ -38,6 +38,7 @@ enum {
   OPTION_TEXELS,
   OPTION_PHYSICS,
   OPTION_SPLIT,
+  OPTION_TRACE_ONLY,
   OPTION_MATERIALS,
   OPTION_GL,
   OPTION_LIST,
@@ -70,7 +71,7 @@ static const struct argp_option options[] = {
      "that makes the front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
     {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress", 0},
-    {"grid", OPTION_GRID, "quick|full|presets", 0,
+    {"grid", OPTION_GRID, "quick|full|thin|presets", 0,
      "a named set of settings; presets: do they keep their promise here? (quick)", 1},
     {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis,thesis-cie (all)", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "LIST", 0, "such as 3,7,21", 1},
@@ -93,6 +94,8 @@ static const struct argp_option options[] = {
     {"texels", OPTION_TEXELS, "N", 0, "side of the reference's map (256)", 2},
     {"split", OPTION_SPLIT, NULL, 0,
      "trace matched physics too: what is the model's, and what is sampling's?", 2},
+    {"trace-only", OPTION_TRACE_ONLY, NULL, 0,
+     "trace the references, for sweeps to come, and measure nothing", 2},
     {"physics", OPTION_PHYSICS, "NAME", 0, "of the reference: full or matched (full)", 2},
     {0}};
 
@@ -214,6 +217,9 @@ static error_t parse_reference(int key, char *text, request *q) {
   case OPTION_PHYSICS:
     w->matched = abbe_command_choice(w->program, "--physics", text, physics, 2) == 1;
     break;
+  case OPTION_TRACE_ONLY:
+    w->trace_only = true;
+    break;
   case OPTION_SPLIT:
     w->split = true;
     break;
@@ -251,9 +257,9 @@ static void finish(request *q, struct argp_state *state) {
                       "and a square --size alone");
   bool named = w->reference != NULL || w->reference_map != NULL;
   if (named && q->traced)
-    argp_error(state,
-               "--spp, --texels, --physics, --split and --traced-photons are for a reference "
-               "that is traced, and one is given");
+    argp_error(state, "--spp, --texels, --physics, --split, --trace-only and --traced-photons are "
+                      "for a reference "
+                      "that is traced, and one is given");
   if (w->split && w->matched)
     argp_error(state, "--split traces full and matched physics; --physics asks for one of them");
   if (w->reference != NULL && w->width != 0)
@@ -389,7 +395,8 @@ static abbe_result run(request *q, abbe_error *error) {
   abbe_result result = abbe_command_check_targets(targets, 3, error);
   if (result == ABBE_OK)
     result = shown ? load_tables(q, tables, error) : abbe_sweep_work(&q->work, &tables[0], error);
-  if (result == ABBE_OK && !q->work.list) result = show(q, tables, count, error);
+  if (result == ABBE_OK && !q->work.list && !q->work.trace_only)
+    result = show(q, tables, count, error);
   for (size_t i = 0; i < count; i++) abbe_sweep_table_free(&tables[i]);
   free(tables);
   return result;

@@ -337,7 +337,8 @@ static abbe_result work_on(work *w, abbe_error *error) {
     return abbe_error_set(error, result,
                           "stopped while the reference was traced; what is done is kept, and the "
                           "same command goes on");
-  if (result == ABBE_OK) result = open_table(w, error);
+  if (result != ABBE_OK || w->q->trace_only) return result;
+  result = open_table(w, error);
   return result == ABBE_OK ? run(w, error) : result;
 }
 

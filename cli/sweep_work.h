@@ -16,6 +16,7 @@ typedef struct abbe_sweep_request {
   size_t frames, passes, photons, texels;
   bool matched;             /* physics of the reference */
   bool growth;              /* instead of a sweep: how a frame's time grows */
+  bool trace_only;          /* no rows */
   bool split;               /* a second one with matched physics */
   bool presets;             /* the grid is the front of the presets for the scene's class */
   const char *presets_file; /* NULL: the shipped ones */

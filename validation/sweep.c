@@ -78,10 +78,41 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
        .photons = VALUES(512, 1024),
        .fills = VALUES(ABBE_FILL_NONE)},
   };
-  bool is_full = name == ABBE_SWEEP_GRID_FULL;
-  size_t count = is_full ? sizeof full / sizeof *full : sizeof quick / sizeof *quick;
-  memcpy(out, is_full ? full : quick, count * sizeof *out);
-  return count;
+  static const abbe_sweep_grid thin[] = {
+      {.wavelengths = VALUES(3, 7),
+       .photons = VALUES(64),
+       .map = VALUES(256),
+       .samples = VALUES(1)},
+      {.wavelengths = VALUES(7, 21),
+       .photons = VALUES(64, 128, 256),
+       .map = VALUES(512),
+       .samples = VALUES(1)},
+      {.wavelengths = VALUES(7), .photons = VALUES(512), .samples = VALUES(1)},
+      {.wavelengths = VALUES(7),
+       .photons = VALUES(256),
+       .map = VALUES(512),
+       .samples = VALUES(1),
+       .fills = VALUES(ABBE_FILL_NONE)},
+      {.profiles = BASELINES,
+       .wavelengths = VALUES(7),
+       .photons = VALUES(128, 512),
+       .map = VALUES(512, 1024)},
+      {.profiles = BASELINES, .wavelengths = VALUES(21), .photons = VALUES(512)},
+      {.profiles = BASELINES,
+       .wavelengths = VALUES(7),
+       .photons = VALUES(512),
+       .fills = VALUES(ABBE_FILL_NONE)},
+  };
+  static const struct {
+    const abbe_sweep_grid *part;
+    size_t count;
+  } grids[ABBE_SWEEP_GRID_COUNT] = {
+      [ABBE_SWEEP_GRID_QUICK] = {quick, sizeof quick / sizeof *quick},
+      [ABBE_SWEEP_GRID_FULL] = {full, sizeof full / sizeof *full},
+      [ABBE_SWEEP_GRID_THIN] = {thin, sizeof thin / sizeof *thin},
+  };
+  memcpy(out, grids[name].part, grids[name].count * sizeof *out);
+  return grids[name].count;
 }
 
 /* Settings */

@@ -36,8 +36,9 @@ typedef struct abbe_sweep_grid {
   double share[ABBE_SWEEP_MAX_VALUES];
 } abbe_sweep_grid;
 
-/* X(code, name): quick shows the shape of the front in a few minutes; full has all axes. */
-#define ABBE_SWEEP_GRIDS(X) X(QUICK, "quick") X(FULL, "full")
+/* X(code, name): quick shows the shape of the front in a few minutes; full has all axes; thin has
+ * what many scenes in one run leave time for. */
+#define ABBE_SWEEP_GRIDS(X) X(QUICK, "quick") X(FULL, "full") X(THIN, "thin")
 typedef enum abbe_sweep_grid_name {
 #define ABBE_SWEEP_ENUM(code, name) ABBE_SWEEP_GRID_##code,
   ABBE_SWEEP_GRIDS(ABBE_SWEEP_ENUM)
