@@ -3,7 +3,9 @@ add_test(NAME install
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/check ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR}
           ${CMAKE_C_COMPILER})
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
-set_tests_properties(install scripts PROPERTIES LABELS program TIMEOUT 300)
+add_test(NAME measuring_scripts
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/measure $<TARGET_FILE:abbe>)
+set_tests_properties(install scripts measuring_scripts PROPERTIES LABELS program TIMEOUT 300)
 
 foreach(name
     bad_input
