@@ -12,12 +12,16 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Clear and constant, dispersive, absorbing, and two known over a part of the range only. */
+/* Clear and constant, dispersive, air's, dispersive and absorbing below 500 nm, constant and
+ * absorbing, and two known over a part of the range only. */
 #define GLASSES                                                                                    \
   "materials:\n"                                                                                   \
   "- {name: flat, model: constant, coefficients: [1.5], source: made up}\n"                        \
   "- {name: crown, model: cauchy, coefficients: [1.5, 0.006], range_nm: [300, 2500],\n"            \
   "   source: made up}\n"                                                                          \
+  "- {name: air, model: constant, coefficients: [1], source: made up}\n"                           \
+  "- {name: murk, model: cauchy, coefficients: [1.5, 0.006], range_nm: [300, 2500], source: "      \
+  "made up,\n   absorption: {attenuation_per_m: [[400, 20], [500, 0], [700, 0]]}}\n"               \
   "- {name: smoke, model: constant, coefficients: [1.5], source: made up,\n"                       \
   "   absorption: {attenuation_per_m: [[400, 20], [700, 5]]}}\n"                                   \
   "- {name: narrow, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 700],\n"            \

@@ -1,0 +1,528 @@
+/* The plan of each shipped scene, whole, and what one fact more or less in a scene changes of its
+ * plan. Rows tell the entries in their order: '+' runs, '-' does not, then the name, '|' and a part
+ * of the reason; '!' a part of a note; '=' wavelengths, exits and landings of a photon. */
+#include "tests/scene_text.h"
+
+#include "gl/plan.h"
+
+#include <stdio.h>
+
+enum { MAX_LINES = ABBE_PLAN_MAX_ENTRIES + 16 };
+
+typedef struct lines {
+  size_t count;
+  char line[MAX_LINES][300];
+} lines;
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static void
+put(lines *l, const char *format, ...) {
+  assert_true(l->count < MAX_LINES);
+  va_list args;
+  va_start(args, format);
+  vsnprintf(l->line[l->count++], sizeof l->line[0], format, args);
+  va_end(args);
+}
+
+static void tell(const abbe_plan *plan, lines *out) {
+  out->count = 0;
+  put(out, "=%zu wavelengths, %zu exits, %zu landings", plan->desc.wavelengths, plan->desc.orders,
+      plan->slots);
+  for (size_t i = 0; i < plan->entry_count; i++)
+    put(out, "%c%s|%s", plan->entry[i].runs ? '+' : '-', plan->entry[i].name,
+        plan->entry[i].reason);
+  for (size_t i = 0; i < plan->note_count; i++) put(out, "!%s", plan->note[i]);
+}
+
+static void plan_of(const abbe_scene *scene, const abbe_render_desc *desc, lines *out) {
+  abbe_plan plan;
+  abbe_error error = {0};
+  if (abbe_plan_make(scene, desc, &plan, &error) != ABBE_OK) fail_msg("%s", error.text);
+  tell(&plan, out);
+  abbe_plan_free(&plan);
+}
+
+/* "+name|part" holds for "+name|reason" where the part is in the reason. */
+static bool holds(const char *row, const char *line) {
+  const char *bar = strchr(row, '|');
+  if (*row == '!') return *line == '!' && strstr(line + 1, row + 1) != NULL;
+  if (bar == NULL) return strcmp(row, line) == 0;
+  size_t name = (size_t)(bar - row) + 1;
+  return strncmp(row, line, name) == 0 && strstr(line + name, bar + 1) != NULL;
+}
+
+static void check(const char *scene, const char *const *row, const lines *l) {
+  size_t rows = 0;
+  while (row[rows] != NULL) rows++;
+  for (size_t i = 0; i < rows || i < l->count; i++) {
+    if (i < rows && i < l->count && holds(row[i], l->line[i])) continue;
+    for (size_t k = 0; k < l->count; k++) print_message("  %s\n", l->line[k]);
+    fail_msg("%s: row %zu: '%s', not '%s'", scene, i + 1, i < l->count ? l->line[i] : "no more",
+             i < rows ? row[i] : "no more");
+  }
+}
+
+static bool has(const lines *l, const char *line) {
+  for (size_t i = 0; i < l->count; i++)
+    if (strcmp(l->line[i], line) == 0) return true;
+  return false;
+}
+
+/* Up to the reason. */
+static bool names(const lines *l, const char *line) {
+  const char *bar = strchr(line, '|');
+  size_t name = bar != NULL ? (size_t)(bar - line) : strlen(line);
+  for (size_t i = 0; i < l->count; i++)
+    if (strlen(l->line[i]) > name && strncmp(l->line[i] + 1, line + 1, name - 1) == 0 &&
+        l->line[i][name] == '|')
+      return true;
+  return false;
+}
+
+/* What the other plan has otherwise, in its order; then the names that it has no more. */
+static void differ(const lines *from, const lines *to, lines *out) {
+  out->count = 0;
+  for (size_t i = 0; i < to->count; i++)
+    if (!has(from, to->line[i])) put(out, "%s", to->line[i]);
+  for (size_t i = 0; i < from->count; i++) {
+    if (has(to, from->line[i])) continue;
+    if (from->line[i][0] != '=' && !names(to, from->line[i]))
+      put(out, "no %.*s", (int)strcspn(from->line[i] + 1, "|"), from->line[i] + 1);
+  }
+}
+
+#define EYE_ASIDE "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [-0.6, 0, 0.05]}\n"
+#define SPOT(target)                                                                               \
+  "lights:\n- {name: lamp, kind: spot, position: [0.05, 0.03, 0.6], target: " target               \
+  ", cone: 10, intensity: 1}\n"
+#define LIGHT_ASIDE "- {name: second, kind: point, position: [-0.1, 0.03, 0.6], intensity: 1}\n"
+#define CARD                                                                                       \
+  "- {name: card, shape: rectangle, width: 0.1, height: 0.1, transform: [{translate: [-0.4, 0, "   \
+  "0.3]}], reflectance: 0.5}\n"
+#define WOOD                                                                                       \
+  "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5, "            \
+  "texture: " ABBE_SOURCE_DIR "/scenes/wood.png}\n"
+#define CUBE(material)                                                                             \
+  "- {name: ball, shape: box, size: [0.1, 0.1, 0.1], transform: [{translate: [0, 0, 0.2]}], "      \
+  "material: " material "}\n"
+#define EGG(material)                                                                              \
+  "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{scale: [1, 1, 1.2]}, "      \
+  "{translate: [0, 0, 0.2]}], material: " material "}\n"
+#define TORUS(material)                                                                            \
+  "- {name: ball, shape: ring, major: 0.08, minor: 0.02, transform: [{translate: [0, 0, 0.2]}], "  \
+  "material: " material "}\n"
+#define YOLK(material)                                                                             \
+  "- {name: yolk, shape: sphere, radius: 0.04, levels: 3, transform: [{translate: [0, 0, 0.2]}], " \
+  "material: " material "}\n"
+#define SUNK(material)                                                                             \
+  "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0, 0, 0.05]}]," \
+  " material: " material "}\n"
+
+/* What each has in common, and differs from in one fact. */
+static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("crown");
+
+static const char flat[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
+static const char torus[] = CAMERA POINT_LIGHT FLOOR TORUS("crown");
+
+typedef struct pair {
+  const char *fact, *from, *to;
+  abbe_render_desc desc; /* of the second */
+  const char *row[40];
+} pair;
+
+static const char *const ball_rows[] = {
+    "=7 wavelengths, 8 exits, 9 landings",
+    "+model: ball|exact sphere: the object is a sphere",
+    "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",
+    "-shadows of receivers|the receivers bound a convex room around the lights",
+    "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",
+    "+inner reflections|followed until less than 0.01 of the light is left, 8 exits at most",
+    "-light: receiver depth|receivers are hit exactly",
+    "+light: refractor front|photons start where the light sees a refractor",
+    "-light: refractor back|every refractor has an exact surface",
+    "+light: photon placement|256 photons a side, refined only where a refractor is",
+    "+light: photons|7 wavelengths through the refractors",
+    "+light: spectral map|1024 x 1024 texels",
+    "+light: gap fill|bridge: wavelengths land apart",
+    "-absorption|every material is clear",
+    "+eye: receivers|light, shadow and spectral map",
+    "+eye: refractor front|the pixels that show a refractor",
+    "-eye: refractor back|every refractor has an exact surface",
+    "+eye: refraction|one direction a wavelength",
+    "+eye: picture|2 x 2 samples a pixel",
+    "-textures|none",
+    NULL};
+
+static const pair pairs[] = {
+    {"no refractor",
+     ball,
+     CAMERA POINT_LIGHT FLOOR,
+     {0},
+     {"=1 wavelengths, 8 exits, 9 landings", "+wavelengths|1 from 380 to 780 nm: nothing refracts",
+      "-inner reflections|nothing refracts", "-light: refractor front|no light meets a refractor",
+      "-light: photon placement|no light meets a refractor",
+      "-light: photons|no light meets a refractor",
+      "-light: spectral map|no light meets a refractor", "-light: gap fill|nothing lands apart",
+      "-eye: refractor front|nothing refracts", "-eye: refraction|nothing refracts",
+      "no model: ball", NULL}},
+    {"an index that is constant",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("flat"),
+     {0},
+     {"=1 wavelengths, 8 exits, 9 landings",
+      "+wavelengths|1 from 380 to 780 nm: all indices are constant, one geometry serves all",
+      "+light: photons|1 wavelengths through the refractors",
+      "-light: gap fill|nothing lands apart", NULL}},
+    {"an index that is air's",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("air"),
+     {0},
+     {"=1 wavelengths, 8 exits, 9 landings",
+      "-model: ball|clear, and its index is that of air: light does not notice it",
+      "+wavelengths|1 from 380 to 780 nm: nothing refracts", "-inner reflections|nothing refracts",
+      "-light: refractor front|no light meets a refractor",
+      "-light: photon placement|no light meets a refractor",
+      "-light: photons|no light meets a refractor",
+      "-light: spectral map|no light meets a refractor", "-light: gap fill|nothing lands apart",
+      "-eye: refractor front|nothing refracts", "-eye: refraction|nothing refracts", NULL}},
+    {"a material that absorbs",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("murk"),
+     {0},
+     {"+absorption|a material attenuates; path lengths are kept", NULL}},
+    {"a material that absorbs outside the range alone",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("murk"),
+     {.min_nm = 500},
+     {"+wavelengths|7 from 500 to 780 nm: the index varies with wavelength", NULL}},
+    {"a constant index, and an attenuation that varies",
+     flat,
+     CAMERA POINT_LIGHT FLOOR BALL("smoke"),
+     {0},
+     {"+absorption|a material attenuates; path lengths are kept", NULL}},
+    {"a cube for the ball",
+     ball,
+     CAMERA POINT_LIGHT FLOOR CUBE("crown"),
+     {0},
+     {"+model: ball|convex planes: the object is a convex faceted solid", NULL}},
+    {"a convex mesh for the ball",
+     ball,
+     CAMERA POINT_LIGHT FLOOR EGG("crown"),
+     {0},
+     {"=7 wavelengths, 4 exits, 5 landings",
+      "+model: ball|front and back layers: the object is a general closed mesh: what a view sees "
+      "of it, front and back",
+      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
+      "+light: refractor back|a mesh without an exact surface ends at its back layer",
+      "+eye: refractor back|a mesh without an exact surface ends at its back layer", NULL}},
+    {"a mesh with a hole for the ball",
+     ball,
+     CAMERA POINT_LIGHT FLOOR TORUS("crown"),
+     {0},
+     {"=7 wavelengths, 4 exits, 5 landings",
+      "+model: ball|front and back layers: the object is a general closed mesh: what a view sees "
+      "of it, front and back",
+      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
+      "+light: refractor back|a mesh without an exact surface ends at its back layer",
+      "+eye: refractor back|a mesh without an exact surface ends at its back layer", NULL}},
+    {"a second refractor, apart",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"),
+     {0},
+     {"+model: brick|convex planes: the object is a convex faceted solid",
+      "!light that leaves one refractor and meets another goes on unrefracted", NULL}},
+    {"a second refractor, within",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("crown") YOLK("crown"),
+     {0},
+     {"+model: yolk|exact sphere: the object is a sphere",
+      "!light that leaves one refractor and meets another goes on unrefracted",
+      "!the refractors 'ball' and 'yolk' overlap, to judge by their bounds; each is taken as if it "
+      "stood in air alone",
+      NULL}},
+    {"a refractor that reaches into the floor",
+     ball,
+     CAMERA POINT_LIGHT FLOOR SUNK("crown"),
+     {0},
+     {"+shadows of receivers|a receiver may stand between a light and another", NULL}},
+    {"a directional light",
+     ball,
+     CAMERA SUN FLOOR BALL("crown"),
+     {0},
+     {
+
+         NULL}},
+    {"a spot that shines on the refractor",
+     ball,
+     CAMERA SPOT("[0, 0, 0]") FLOOR BALL("crown"),
+     {0},
+     {
+
+         NULL}},
+    {"a spot that shines past the refractor",
+     ball,
+     CAMERA SPOT("[-0.5, 0, 0]") FLOOR BALL("crown"),
+     {0},
+     {
+
+         NULL}},
+    {"a spot that shines past a mesh",
+     torus,
+     CAMERA SPOT("[-0.5, 0, 0]") FLOOR TORUS("crown"),
+     {0},
+     {
+
+         NULL}},
+    {"a second light",
+     ball,
+     CAMERA POINT_LIGHT LIGHT_ASIDE FLOOR BALL("crown"),
+     {0},
+     {"!through refractors, colours are split by the first light's illuminant", NULL}},
+    {"a receiver that may hide another",
+     ball,
+     CAMERA POINT_LIGHT FLOOR CARD BALL("crown"),
+     {0},
+     {"+shadows of receivers|a receiver may stand between a light and another", NULL}},
+    {"a receiver that is no rectangle",
+     ball,
+     CAMERA POINT_LIGHT FLOOR HILL BALL("crown"),
+     {0},
+     {"+model: receivers|iterated image space: some receiver is a general mesh",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+light: receiver depth|receivers are found by their depth from the light",
+      "!through refractors, receivers show as far as the eye also sees them straight", NULL}},
+    {"a texture",
+     ball,
+     CAMERA POINT_LIGHT WOOD BALL("crown"),
+     {0},
+     {"+textures|a receiver has one", NULL}},
+    {"an eye that looks past the refractor",
+     ball,
+     EYE_ASIDE POINT_LIGHT FLOOR BALL("crown"),
+     {0},
+     {
+
+         NULL}},
+    {"an eye that looks past a mesh",
+     torus,
+     EYE_ASIDE POINT_LIGHT FLOOR TORUS("crown"),
+     {0},
+     {
+
+         NULL}},
+    {"neither light nor eye for the refractor",
+     ball,
+     EYE_ASIDE SPOT("[-0.5, 0, 0]") FLOOR BALL("murk"),
+     {0},
+     {"+absorption|a material attenuates; path lengths are kept", NULL}},
+    {"one wavelength, as asked",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("crown"),
+     {.wavelengths = 1},
+     {"=1 wavelengths, 8 exits, 9 landings", "+wavelengths|1 from 380 to 780 nm: as asked",
+      "+light: photons|1 wavelengths through the refractors",
+      "-light: gap fill|nothing lands apart", NULL}},
+    {"many wavelengths of a constant index, as asked",
+     flat,
+     CAMERA POINT_LIGHT FLOOR BALL("flat"),
+     {.wavelengths = 21},
+     {"=21 wavelengths, 8 exits, 9 landings", "+wavelengths|21 from 380 to 780 nm: as asked",
+      "+light: photons|21 wavelengths through the refractors",
+      "+light: gap fill|bridge: wavelengths land apart", NULL}},
+    {"no fill, as asked",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("crown"),
+     {.fill = ABBE_FILL_NONE},
+     {"-light: gap fill|none, as asked", NULL}},
+    {"one exit, as asked",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("crown"),
+     {.orders = 1},
+     {"=7 wavelengths, 1 exits, 2 landings", "-inner reflections|two interfaces only, as asked",
+      NULL}},
+    {"the thesis profile, as asked",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("crown"),
+     {.profile = ABBE_PROFILE_THESIS},
+     {"=7 wavelengths, 1 exits, 1 landings",
+      "+model: ball|front and back layers: the thesis profile knows no other model",
+      "+model: receivers|iterated image space: the thesis profile knows no other model",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+wavelengths|7 from 380 to 680 nm: the index varies with wavelength",
+      "-inner reflections|two interfaces only, as in the thesis",
+      "+light: receiver depth|receivers are found by their depth from the light",
+      "+light: refractor back|a mesh without an exact surface ends at its back layer",
+      "+light: photon placement|512 photons a side, refined only where a refractor is",
+      "+light: gap fill|smear: wavelengths land apart",
+      "+eye: refractor back|a mesh without an exact surface ends at its back layer",
+      "+eye: picture|1 x 1 samples a pixel", NULL}},
+};
+
+static const char *const sphere_rows[] = {
+    "=7 wavelengths, 8 exits, 9 landings",
+    "+model: ball|exact sphere: the object is a sphere",
+    "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",
+    "-shadows of receivers|the receivers bound a convex room around the lights",
+    "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",
+    "+inner reflections|followed until less than 0.01 of the light is left, 8 exits at most",
+    "-light: receiver depth|receivers are hit exactly",
+    "+light: refractor front|photons start where the light sees a refractor",
+    "-light: refractor back|every refractor has an exact surface",
+    "+light: photon placement|256 photons a side, refined only where a refractor is",
+    "+light: photons|7 wavelengths through the refractors",
+    "+light: spectral map|1024 x 1024 texels",
+    "+light: gap fill|bridge: wavelengths land apart",
+    "-absorption|every material is clear",
+    "+eye: receivers|light, shadow and spectral map",
+    "+eye: refractor front|the pixels that show a refractor",
+    "-eye: refractor back|every refractor has an exact surface",
+    "+eye: refraction|one direction a wavelength",
+    "+eye: picture|2 x 2 samples a pixel",
+    "-textures|none",
+    "!receivers more than 76 degrees off the way from the light 'lamp' to the refractors get no "
+    "light through them",
+    NULL};
+
+/* What each has otherwise than scenes/sphere.yaml. */
+static const struct {
+  const char *name, *row[24];
+} shipped[] = {
+    {"rainbow",
+     {"+model: drop|exact sphere: the object is a sphere",
+      "+shadows of receivers|a receiver may stand between a light and another", "no model: ball",
+      "no receivers more than 76 degrees off the way from the light 'lamp' to the refractors get "
+      "no light through them",
+      NULL}},
+    {"gem",
+     {"+model: gem|convex planes: the object is a convex faceted solid",
+      "+absorption|a material attenuates; path lengths are kept", "no model: ball", NULL}},
+    {"prism",
+     {"+model: prism|convex planes: the object is a convex faceted solid",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+textures|a receiver has one", "no model: ball",
+      "no receivers more than 76 degrees off the way from the light 'lamp' to the refractors get "
+      "no light through them",
+      NULL}},
+    {"diamond",
+     {"+model: diamond|convex planes: the object is a convex faceted solid",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "!diamond: the index is extrapolated outside its valid range, 226 to 760 nm",
+      "!receivers more than 76 degrees off the way from the light 'lamp of the left card' to the "
+      "refractors get no light through them",
+      "!receivers more than 76 degrees off the way from the light 'lamp of the high card' to the "
+      "refractors get no light through them",
+      "!through refractors, colours are split by the first light's illuminant", "no model: ball",
+      NULL}},
+    {"ring",
+     {"=7 wavelengths, 4 exits, 5 landings",
+      "+model: ring|front and back layers: the object is a general closed mesh: what a view sees "
+      "of it, front and back",
+      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
+      "+light: refractor back|a mesh without an exact surface ends at its back layer",
+      "+eye: refractor back|a mesh without an exact surface ends at its back layer",
+      "no model: ball", NULL}},
+    {"bunny",
+     {"=7 wavelengths, 4 exits, 5 landings",
+      "+model: bunny|front and back layers: the object is a general closed mesh: what a view sees "
+      "of it, front and back",
+      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
+      "+light: refractor back|a mesh without an exact surface ends at its back layer",
+      "+eye: refractor back|a mesh without an exact surface ends at its back layer",
+      "no model: ball", NULL}},
+    {"glass",
+     {"=7 wavelengths, 4 exits, 5 landings",
+      "+model: glass|front and back layers: the object is a general closed mesh: what a view sees "
+      "of it, front and back",
+      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
+      "+light: refractor back|a mesh without an exact surface ends at its back layer",
+      "+eye: refractor back|a mesh without an exact surface ends at its back layer",
+      "+textures|a receiver has one", "no model: ball", NULL}},
+};
+
+static void load_and_plan(const char *text, const abbe_render_desc *desc, lines *out) {
+  abbe_scene scene = {0};
+  load_text(text, &scene);
+  plan_of(&scene, desc, out);
+  abbe_scene_free(&scene);
+}
+
+static void load_and_plan_shipped(const char *name, lines *out) {
+  abbe_scene scene = {0};
+  load_shipped(name, &scene);
+  plan_of(&scene, NULL, out);
+  abbe_scene_free(&scene);
+}
+
+static void test_shipped_scenes(void **state) {
+  (void)state;
+  static lines sphere, other, difference;
+  load_and_plan_shipped("sphere", &sphere);
+  check("sphere", sphere_rows, &sphere);
+  for (size_t i = 0; i < sizeof shipped / sizeof *shipped; i++) {
+    load_and_plan_shipped(shipped[i].name, &other);
+    differ(&sphere, &other, &difference);
+    check(shipped[i].name, shipped[i].row, &difference);
+  }
+}
+
+static void test_a_fact_changes_what_follows_from_it_alone(void **state) {
+  (void)state;
+  static lines from, to, difference;
+  load_and_plan(ball, NULL, &from);
+  check("ball", ball_rows, &from);
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+    load_and_plan(pairs[i].from, NULL, &from);
+    load_and_plan(pairs[i].to, &pairs[i].desc, &to);
+    differ(&from, &to, &difference);
+    check(pairs[i].fact, pairs[i].row, &difference);
+  }
+}
+
+/* 1 where the entry runs, 0 where it does not, -1 where there is none. */
+static int runs(const lines *l, const char *name, size_t length) {
+  for (size_t i = 0; i < l->count; i++)
+    if (strncmp(l->line[i] + 1, name, length) == 0 && l->line[i][length + 1] == '|')
+      return l->line[i][0] == '+';
+  return -1;
+}
+
+/* What every picture of the default profile needs: some light, some receiver and the eye. */
+static bool is_always_there(const char *name, size_t length) {
+  static const char *const always[] = {"model: receivers", "wavelengths", "eye: receivers",
+                                       "eye: picture"};
+  for (size_t i = 0; i < sizeof always / sizeof *always; i++)
+    if (strncmp(name, always[i], length) == 0 && always[i][length] == '\0') return true;
+  return false;
+}
+
+static void test_every_pass_goes_with_some_fact(void **state) {
+  (void)state;
+  enum { PAIRS = sizeof pairs / sizeof *pairs };
+  static lines all, from[PAIRS], to[PAIRS];
+  load_and_plan(ball, NULL, &all);
+  for (size_t k = 0; k < PAIRS; k++) {
+    load_and_plan(pairs[k].from, NULL, &from[k]);
+    load_and_plan(pairs[k].to, &pairs[k].desc, &to[k]);
+  }
+  for (size_t i = 0; i < all.count; i++) {
+    if (all.line[i][0] != '+' && all.line[i][0] != '-') continue;
+    const char *name = all.line[i] + 1;
+    size_t length = strcspn(name, "|");
+    bool flips = false;
+    for (size_t k = 0; k < PAIRS && !flips; k++)
+      flips = runs(&from[k], name, length) + runs(&to[k], name, length) == 1;
+    if (flips == is_always_there(name, length))
+      fail_msg("'%.*s' goes with %s", (int)length, name, flips ? "a fact" : "no fact");
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_shipped_scenes),
+      cmocka_unit_test(test_a_fact_changes_what_follows_from_it_alone),
+      cmocka_unit_test(test_every_pass_goes_with_some_fact),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
