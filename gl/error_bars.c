@@ -15,6 +15,10 @@
  * it was fitted to stands in docs/trade.md, "Error bars". */
 static const double rest = 0.7;
 
+/* Of the distance between samples that variants move them by. A picture that moves as a whole is no
+ * error; since samples see the map as wide as they are apart, little else would be left of it. */
+static const double sample_part = 1.0 / 3;
+
 enum { AXES = 6 };
 
 abbe_result abbe_error_bars_check(abbe_profile profile, const abbe_error_bars_desc *desc,
@@ -68,7 +72,7 @@ void abbe_error_bars_variant(const abbe_render_desc *desc, const abbe_map_layout
   out->map_layout = layout;
   for (int k = 0; k < 2; k++) {
     out->photon_shift[k] = place(k, i, variants);
-    out->sample_shift[k] = place(2 + k, i, variants);
+    out->sample_shift[k] = sample_part * place(2 + k, i, variants);
     move_texels(layout, k, place(4 + k, i, variants), desc->map_size);
   }
 }

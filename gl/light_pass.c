@@ -77,26 +77,13 @@ static void take_layout(const abbe_renderer *r, const abbe_map_layout *given,
   memcpy(out->view.window, given->view.window, sizeof out->view.window);
 }
 
-/* Moves the photon grid by a part of a cell; the refractors stay in the window. */
-static void shift_cells(const abbe_render_desc *desc, abbe_view *view) {
-  const double *shift = desc->photon_shift;
-  double most = fmax(fabs(shift[0]), fabs(shift[1])), cells = (double)desc->photons;
-  if (most == 0) return;
-  abbe_view_pad(view, 0.5 / cells);
-  for (int axis = 0; axis < 2; axis++) {
-    double *low = &view->window[2 * axis], *high = &view->window[2 * axis + 1];
-    double cell = (*high - *low) / cells;
-    *low += shift[axis] * cell;
-    *high += shift[axis] * cell;
-  }
-}
-
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
  * to the photons' landings later where the request does not give it. */
 static void fit_views(abbe_renderer *r) {
   for (size_t i = 0; i < r->plan.light_count; i++) {
     const abbe_light *light = &r->scene->light[i];
     light_state *state = &r->light[i];
+    state->cells[0] = state->cells[1] = r->plan.desc.photons;
     look_from_light(r, light, &state->near_view);
     abbe_view map_view = state->near_view;
     if (abbe_profile_is_thesis(r->plan.desc.profile)) {
@@ -108,7 +95,6 @@ static void fit_views(abbe_renderer *r) {
     else
       fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->near_view);
     abbe_view_pad(&state->near_view, 0.01);
-    shift_cells(&r->plan.desc, &state->near_view);
     fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &map_view);
     abbe_view_pad(&map_view, 0.01);
     abbe_map_layout_make(&map_view, &state->map);
@@ -147,9 +133,86 @@ static abbe_result make_lists(abbe_renderer *r, abbe_error *error) {
     size_t room = level == LEVELS - 1 ? cells : 4 * side * side;
     result = abbe_renderer_make_buffer(r, PHOTON_HEADER + room * 4, NULL, &r->list[level], error);
   }
+  if (result != ABBE_OK || r->plan.desc.profile == ABBE_PROFILE_THESIS) return result;
+  result = abbe_renderer_make_buffer(r, cells * 4, NULL, &r->buffer[BINDING_SLOTS], error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, cells * 4, NULL, &r->buffer[BINDING_SLOTS], error);
+    result = abbe_renderer_make_buffer(r, PHOTON_HEADER + cells * PHOTON_BYTES, NULL,
+                                       &r->buffer[BINDING_PHOTONS], error);
   return result;
+}
+
+void abbe_renderer_shift_cells(abbe_renderer *r, size_t light) {
+  const double *shift = r->plan.desc.photon_shift;
+  light_state *state = &r->light[light];
+  if (fmax(fabs(shift[0]), fabs(shift[1])) == 0) return;
+  for (int axis = 0; axis < 2; axis++) {
+    double *low = &state->near_view.window[2 * axis], *high = low + 1;
+    double cell = (*high - *low) / (double)state->cells[axis];
+    *low += (shift[axis] - 0.5) * cell;
+    *high += (shift[axis] + 0.5) * cell;
+  }
+}
+
+static void set_start(abbe_renderer *r, GLuint program, size_t light) {
+  r->gl->UseProgram(program);
+  abbe_renderer_set_lighting(r, program);
+  abbe_renderer_bind_texture(r, program, "layer_owner", 4, r->light_owner);
+  abbe_renderer_set_int(r, program, "light", (int)light);
+}
+
+/* A mesh's inside is what the near view sees of it, and receivers that are found by depth hide
+ * nothing that is finer than a texel: there the view stays. */
+static bool fits_to_light(const abbe_renderer *r) {
+  return !r->plan.layers && (r->plan.receivers == ABBE_RECEIVER_EXACT || !r->plan.receiver_shadows);
+}
+
+/* Shrinks the near view to the rays that reach a refractor. Each turn sees as finely as the last
+ * one left it, and leaves a ray's width on every side. */
+static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_box, size_t light) {
+  enum { SIDE = 1024, TURNS = 4 };
+  const abbe_gl *gl = r->gl;
+  double *window = r->light[light].near_view.window;
+  for (int turn = 0; turn < TURNS; turn++) {
+    static const GLuint none[4] = {SIDE, 0, SIDE, 0};
+    GLuint found[4] = {0};
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, found_box);
+    gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
+    abbe_renderer_bind_tables(r);
+    set_start(r, program, light);
+    abbe_renderer_set_int(r, program, "side", SIDE);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, found_box);
+    abbe_renderer_dispatch_2d(r, SIDE, SIDE);
+    gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof found, found);
+    if (found[0] > found[1]) break; /* nothing is lit */
+    bool shrinks = false;
+    double box[4];
+    for (int axis = 0; axis < 2; axis++) {
+      double low = window[2 * axis], ray = (window[2 * axis + 1] - low) / SIDE;
+      double first = fmax((double)found[2 * axis] - 0.5, 0);
+      double last = fmin((double)found[2 * axis + 1] + 1.5, SIDE);
+      box[2 * axis] = low + ray * first;
+      box[2 * axis + 1] = low + ray * last;
+      shrinks = shrinks || last - first < 0.9 * SIDE;
+    }
+    if (turn == 0 && !shrinks) break; /* nothing to speak of is cut off */
+    memcpy(window, box, sizeof box);
+    abbe_renderer_upload_lights(r);
+    if (!shrinks) break;
+  }
+  return ABBE_OK;
+}
+
+static abbe_result fit_to_light(abbe_renderer *r, abbe_error *error) {
+  GLuint program = 0, box = 0;
+  abbe_result result =
+      abbe_program_make_compute(r->gl, "light_fit.comp", r->defines, &program, error);
+  if (result == ABBE_OK) result = abbe_renderer_make_buffer(r, 4 * 4, NULL, &box, error);
+  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++)
+    result = fit_near_view(r, program, box, i);
+  r->gl->DeleteBuffers(1, &box);
+  r->gl->DeleteProgram(program);
+  return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the fit of the light's view", error);
 }
 
 abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
@@ -165,6 +228,9 @@ abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK && !abbe_profile_is_thesis(r->plan.desc.profile))
     result = make_layers(r, error);
   if (result == ABBE_OK) result = make_lists(r, error);
+  if (result == ABBE_OK && r->plan.caustics && r->plan.desc.profile != ABBE_PROFILE_THESIS)
+    result = abbe_program_make_compute(r->gl, "photon_cover.comp", r->defines, &r->cover, error);
+  if (result == ABBE_OK && r->cover != 0 && fits_to_light(r)) result = fit_to_light(r, error);
   return result;
 }
 
@@ -253,30 +319,34 @@ static void count_groups(abbe_renderer *r, GLuint list, GLuint rows) {
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int coverage_layer,
-                                        abbe_error *error) {
+void abbe_renderer_set_grid(abbe_renderer *r, GLuint program, size_t light) {
+  const size_t *cells = r->light[light].cells;
+  r->gl->Uniform2i(r->gl->GetUniformLocation(program, "grid"), (GLint)cells[0], (GLint)cells[1]);
+}
+
+abbe_result abbe_renderer_place_photons(abbe_renderer *r, size_t light, GLuint coverage,
+                                        int coverage_layer, abbe_error *error) {
   const abbe_gl *gl = r->gl;
   static const GLuint zero[PHOTON_HEADER / 4] = {0};
-  int grid = (int)r->plan.desc.photons;
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SLOTS]);
-  gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, zero);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SLOTS, r->buffer[BINDING_SLOTS]);
+  const size_t *cells = r->light[light].cells;
   for (int level = 0; level < LEVELS; level++) {
-    int cell = 1 << (LEVELS - 1 - level), side = (grid + cell - 1) / cell;
+    int cell = 1 << (LEVELS - 1 - level);
+    size_t part = (size_t)cell, across = (cells[0] + part - 1) / part,
+           down = (cells[1] + part - 1) / part;
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[level]);
     gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
     if (level > 0) count_groups(r, r->list[level - 1], 1);
     gl->UseProgram(r->place);
     abbe_renderer_bind_texture(r, r->place, "coverage", 0, coverage);
     abbe_renderer_set_int(r, r->place, "coverage_layer", coverage_layer);
-    abbe_renderer_set_int(r, r->place, "grid", grid);
+    abbe_renderer_set_grid(r, r->place, light);
     abbe_renderer_set_int(r, r->place, "cell", cell);
     abbe_renderer_set_int(r, r->place, "first", level == 0);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, r->list[level]);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN,
                        r->list[level > 0 ? level - 1 : 1]);
     if (level == 0) {
-      gl->DispatchCompute((GLuint)((side * side + PHOTON_GROUP - 1) / PHOTON_GROUP), 1, 1);
+      gl->DispatchCompute((GLuint)((across * down + PHOTON_GROUP - 1) / PHOTON_GROUP), 1, 1);
     } else {
       gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->list[level - 1]);
       gl->DispatchComputeIndirect(4);
@@ -285,7 +355,25 @@ abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int c
                       GL_BUFFER_UPDATE_BARRIER_BIT);
   }
   count_groups(r, r->list[LEVELS - 1], 1);
-  r->buffer[BINDING_PHOTONS] = r->list[LEVELS - 1];
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, r->list[LEVELS - 1]);
   return abbe_gl_check(gl, "the placement of photons", error);
+}
+
+abbe_result abbe_renderer_start_photons(abbe_renderer *r, size_t light, abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  static const GLuint zero[PHOTON_HEADER / 4] = {0};
+  abbe_result result =
+      abbe_renderer_place_photons(r, light, r->light_layers, 2 * (int)light, error);
+  if (result != ABBE_OK) return result;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SLOTS]);
+  gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, zero);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
+  gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+  abbe_renderer_bind_tables(r);
+  set_start(r, r->cover, light);
+  abbe_renderer_set_grid(r, r->cover, light);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, r->list[LEVELS - 1]);
+  gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->list[LEVELS - 1]);
+  gl->DispatchComputeIndirect(4);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  return abbe_gl_check(gl, "the start of photons", error);
 }

@@ -6,9 +6,18 @@
 // coarser level of the map. No branch saves time on a software rasteriser, so there are few.
 layout(local_size_x = 256) in;
 #include "common.glsl"
-#include "photon_list.glsl"
 #include "splat_list.glsl"
 
+struct Photon {  // as in photon_start.glsl
+  uint cell;
+  float flux;
+  uint offset, extent;
+};
+layout(std430, binding = 6) readonly buffer Photons {
+  uint photon_count, groups_x, groups_y, groups_z;
+  uint draw[4];
+  Photon photon_at[];
+};
 layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
 layout(std430, binding = 9) readonly buffer Landings { vec4 landing[]; };
 layout(std430, binding = 10) readonly buffer Signatures { uint signature[]; };  // 0: none
@@ -21,7 +30,7 @@ layout(std430, binding = 13) readonly buffer PathList {
 layout(std430, binding = 14) readonly buffer Intervals { vec4 interval_sum[]; };
 
 uniform int light;
-uniform int grid;
+uniform ivec2 grid;
 uniform int map_size;
 uniform int lane_first;
 uniform int lane_count;
@@ -38,14 +47,25 @@ vec2 map_position(vec3 p) {
   return warp(light, uvz.xy) * float(map_size);
 }
 
-// To the landing of the neighbouring photon on the same path, in texels; zero if there is none.
-vec2 neighbour_step(ivec2 c, int order, int lane, uint path, vec2 here) {
-  bool there = all(greaterThanEqual(c, ivec2(0))) && all(lessThan(c, ivec2(grid)));
-  uint at = slot[there ? c.y * grid + c.x : 0];
+// From a landing to that of the neighbouring photon on the same path, in texels, as far as if the
+// two started a cell apart; zero if there is none.
+vec2 neighbour_step(ivec2 c, ivec2 to, vec2 start, int order, int lane, uint path, vec2 here) {
+  c += to;
+  bool there = all(greaterThanEqual(c, ivec2(0))) && all(lessThan(c, grid));
+  uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
-  uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
+  uint other = there ? at - 1u : 0u;
+  uint index = (other * SLOTS + order) * LANES + lane;
   there = there && signature[index] == path;
-  return there ? map_position(landing[index].xyz) - here : vec2(0);
+  vec2 way = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
+  float apart = max(dot(way, vec2(to)), 0.25);
+  return there ? (map_position(landing[index].xyz) - here) / apart : vec2(0);
+}
+
+// A cell's image along one axis, from the steps to both neighbours: their mean where both are.
+vec2 image_of_side(vec2 to_next, vec2 to_last) {
+  if (to_next == vec2(0)) return -to_last;
+  return to_last == vec2(0) ? to_next : 0.5 * (to_next - to_last);
 }
 
 void main() {
@@ -56,7 +76,8 @@ void main() {
   uint photon = photon_path / SLOTS;
   int order = int(photon_path % SLOTS);
   uint first = photon_path * LANES;
-  uint packed_cell = photon_cell[photon];
+  Photon from_cell = photon_at[photon];
+  uint packed_cell = from_cell.cell;
   if (packed_cell * 2654435761u % chunks != chunk) return;
   ivec2 cell = ivec2(packed_cell & 0xffffu, packed_cell >> 16);
 
@@ -73,19 +94,18 @@ void main() {
     }
   }
   vec2 here = map_position(landing[first + reference].xyz);
-  vec2 a = neighbour_step(cell + ivec2(1, 0), order, reference, path, here);
-  vec2 b = neighbour_step(cell + ivec2(0, 1), order, reference, path, here);
-  vec2 a_back = neighbour_step(cell - ivec2(1, 0), order, reference, path, here);
-  vec2 b_back = neighbour_step(cell - ivec2(0, 1), order, reference, path, here);
-  if (a == vec2(0)) a = -a_back;
-  if (b == vec2(0)) b = -b_back;
+  vec2 start = unpackSnorm2x16(from_cell.offset), extent = unpackUnorm2x16(from_cell.extent);
+  vec2 a = extent.x * image_of_side(neighbour_step(cell, ivec2(1, 0), start, order, reference, path, here),
+                                    neighbour_step(cell, ivec2(-1, 0), start, order, reference, path, here));
+  vec2 b = extent.y * image_of_side(neighbour_step(cell, ivec2(0, 1), start, order, reference, path, here),
+                                    neighbour_step(cell, ivec2(0, -1), start, order, reference, path, here));
   // Principal axes of the cell's image: a fold makes it thin, whatever way the cell's sides point.
   float xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
   float half_trace = 0.5 * (xx + yy), root = length(vec2(0.5 * (xx - yy), xy));
   float wide = sqrt(half_trace + root), narrow = sqrt(max(half_trace - root, 0.0));
   vec2 axis = xx > yy ? vec2(0.5 * (xx - yy) + root, xy) : vec2(xy, 0.5 * (yy - xx) + root);
   vec2 across = wide * axis / max(length(axis), 1e-20);
-  float least = max(max(narrow, wide / float(MAX_PIECES)), 1.0);
+  float least = max(max(narrow, wide / float(MAX_PIECES)), 0.5);
   int level = clamp(int(ceil(log2(least) + 0.4)), 0, MAP_LEVELS - 1);
   float size = exp2(float(level));
   int across_pieces = clamp(int(ceil(wide / size)), 1, MAX_PIECES);

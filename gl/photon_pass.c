@@ -65,7 +65,7 @@ void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, siz
   abbe_renderer_set_lighting(r, r->trace);
   abbe_renderer_bind_texture(r, r->trace, "layer_owner", 4, r->light_owner);
   abbe_renderer_set_int(r, r->trace, "light", (int)light);
-  abbe_renderer_set_int(r, r->trace, "grid", (int)r->plan.desc.photons);
+  abbe_renderer_set_grid(r, r->trace, light);
   abbe_renderer_set_int(r, r->trace, "lane_first", (int)first);
   abbe_renderer_set_int(r, r->trace, "lane_count", (int)count);
   abbe_renderer_set_int(r, r->trace, "ledger_first", (int)ledger_first);
@@ -87,7 +87,7 @@ static void list_pieces(abbe_renderer *r, size_t light, size_t first, size_t cou
   const abbe_gl *gl = r->gl;
   gl->UseProgram(r->deposit);
   abbe_renderer_set_int(r, r->deposit, "light", (int)light);
-  abbe_renderer_set_int(r, r->deposit, "grid", (int)r->plan.desc.photons);
+  abbe_renderer_set_grid(r, r->deposit, light);
   abbe_renderer_set_int(r, r->deposit, "map_size", (int)r->plan.desc.map_size);
   abbe_renderer_set_int(r, r->deposit, "lane_first", (int)first);
   abbe_renderer_set_int(r, r->deposit, "lane_count", (int)count);
@@ -136,6 +136,22 @@ static void resolve_map(abbe_renderer *r, size_t light) {
     GLuint side = (GLuint)(r->plan.desc.map_size >> level);
     abbe_renderer_set_int(r, r->resolve, "level", level);
     r->gl->BindImageTexture(0, r->map, level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    abbe_renderer_dispatch_2d(r, side, side);
+    r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  }
+}
+
+/* What the eye sees of the map where its samples are farther apart than texels. */
+static void make_mips(abbe_renderer *r, size_t light) {
+  r->gl->UseProgram(r->mip);
+  abbe_renderer_set_int(r, r->mip, "light", (int)light);
+  abbe_renderer_set_int(r, r->mip, "map_size", (int)r->plan.desc.map_size);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, r->texel_sizes);
+  abbe_renderer_bind_texture(r, r->mip, "map_levels", 0, r->map);
+  for (size_t level = 1; level < r->map_levels; level++) {
+    size_t side = r->plan.desc.map_size >> level;
+    abbe_renderer_set_int(r, r->mip, "level", (int)level);
+    r->gl->BindImageTexture(0, r->map, (GLint)level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
     abbe_renderer_dispatch_2d(r, side, side);
     r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   }
@@ -198,7 +214,7 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     batch b = {0};
     size_t done = 0;
-    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+    result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_bind_tables(r);
     clear_buffer(r, r->buffer[BINDING_LEDGER]);
     while (result == ABBE_OK && next_batch(r, &b)) {
@@ -229,7 +245,7 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
   abbe_result result = ABBE_OK;
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     abbe_renderer_begin_pass(r);
-    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+    result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_end_pass(r, "light: photon placement");
     abbe_renderer_bind_tables(r);
     clear_buffer(r, r->map_sums);
@@ -239,6 +255,7 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
     if (result != ABBE_OK) return result;
     abbe_renderer_begin_pass(r);
     resolve_map(r, light);
+    make_mips(r, light);
     abbe_renderer_end_pass(r, "light: spectral map");
     if (r->statistics == NULL) continue;
     double start_ms = abbe_renderer_now_ms();
@@ -274,11 +291,11 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
 }
 
 static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
-  abbe_result result = abbe_renderer_light_layers(r, error);
+  abbe_result result = ABBE_OK;
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     GLuint count = 0;
-    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
+    result = abbe_renderer_start_photons(r, light, error);
+    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
     r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
     r->light[light].photon_count = count;
   }
@@ -289,6 +306,9 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t most = 1;
   for (size_t i = 0; i < r->plan.light_count; i++)
     if (r->light[i].photon_count > most) most = r->light[i].photon_count;
+  /* A grid that is moved or made coarser may show a little more: a rim of cells. */
+  size_t cells = r->plan.desc.photons * r->plan.desc.photons, rim = 8 * r->plan.desc.photons;
+  most = most + rim < cells ? most + rim : cells;
   size_t a_lane = most * r->plan.slots, n = r->plan.desc.wavelengths;
   size_t lanes = MAX_LANDING_BYTES / LANDING_BYTES / a_lane;
   if (a_lane * 2 * LANDING_BYTES > MOST_LANDING_BYTES)
@@ -328,11 +348,14 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
     result = abbe_program_make_compute(r->gl, "photon_splat.comp", r->defines, &r->splat, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "map_resolve.comp", r->defines, &r->resolve, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "map_mip.comp", NULL, &r->mip, error);
   return result;
 }
 
 /* The batch's landings, zero where there is none; malloc'd. */
-static abbe_result read_batch(abbe_renderer *r, size_t light, float **data, abbe_error *error) {
+abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **data, GLuint **paths,
+                                     abbe_error *error) {
   size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
   float *landing = malloc(count * 16 + 1);
   GLuint *path = malloc(count * 4 + 1);
@@ -348,8 +371,11 @@ static abbe_result read_batch(abbe_renderer *r, size_t light, float **data, abbe
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * 4), path);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < 4 && path[i] == 0; k++) landing[4 * i + k] = 0;
-  free(path);
   *data = landing;
+  if (paths != NULL)
+    *paths = path;
+  else
+    free(path);
   return abbe_gl_check(gl, "the reading of landings", error);
 }
 
@@ -435,13 +461,13 @@ static void fit_axes(light_state *state, const double *histogram, double total) 
 static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
   double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0;
   if (histogram == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
-  abbe_result result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+  abbe_result result = abbe_renderer_start_photons(r, light, error);
   abbe_renderer_bind_tables(r);
   batch b = {0};
   while (result == ABBE_OK && next_batch(r, &b)) {
     float *landing = NULL;
     abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
-    result = read_batch(r, light, &landing, error);
+    result = abbe_renderer_read_batch(r, light, &landing, NULL, error);
     if (result == ABBE_OK)
       total += sort_landings(&r->light[light].map.view, landing,
                              r->light[light].photon_count * r->plan.slots * r->lanes, histogram);
@@ -453,7 +479,8 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
 }
 
 abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
-  abbe_result result = count_photons(r, error);
+  abbe_result result = abbe_renderer_light_layers(r, error);
+  if (result == ABBE_OK) result = count_photons(r, error);
   if (result == ABBE_OK) result = make_landings(r, error);
   if (result == ABBE_OK) result = make_programs(r, error);
   if (result == ABBE_OK)
@@ -464,7 +491,12 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
         abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
     if (!abbe_renderer_map_is_given(r, light)) result = fit_map(r, light, error);
+  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
+    result = abbe_renderer_fit_cells(r, light, error);
+  for (size_t light = 0; light < r->plan.light_count; light++) abbe_renderer_shift_cells(r, light);
   if (result == ABBE_OK) abbe_renderer_upload_lights(r);
+  if (result == ABBE_OK) result = abbe_renderer_light_layers(r, error);
+  if (result == ABBE_OK) result = count_photons(r, error);
   if (result == ABBE_OK) result = make_splats(r, error);
   return result;
 }
@@ -476,27 +508,27 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
   if (light >= r->plan.light_count || r->trace == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
   abbe_result result = abbe_renderer_light_layers(r, error);
-  if (result == ABBE_OK)
-    result = abbe_renderer_place_photons(r, r->light_layers, 2 * (int)light, error);
+  if (result == ABBE_OK) result = abbe_renderer_start_photons(r, light, error);
   if (result != ABBE_OK) return result;
   *count = r->light[light].photon_count;
   *orders = r->plan.slots;
   *lanes = r->lanes;
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);
-  result = read_batch(r, light, data, error);
+  result = abbe_renderer_read_batch(r, light, data, NULL, error);
   for (size_t i = 0; result == ABBE_OK && i < *count * *orders * *lanes; i++)
     for (size_t k = 0; k < 3 && (*data)[4 * i + 3] > 0; k++)
       (*data)[4 * i + k] = (float)((double)(*data)[4 * i + k] + r->local.origin[k]);
   if (result != ABBE_OK || cells == NULL) return result;
-  *cells = malloc(*count * 4 + 4);
+  *cells = malloc(*count * PHOTON_BYTES + PHOTON_BYTES);
   if (*cells == NULL) {
     free(*data);
     *data = NULL;
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", *count);
   }
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
-  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER, (GLsizeiptr)(*count * 4),
-                          *cells);
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
+  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER,
+                          (GLsizeiptr)(*count * PHOTON_BYTES), *cells);
+  for (size_t i = 0; i < *count; i++) (*cells)[i] = (*cells)[i * (PHOTON_BYTES / sizeof **cells)];
   return abbe_gl_check(r->gl, "the reading of photons", error);
 }

@@ -30,28 +30,6 @@ bool land(vec3 p, vec3 d, out vec3 at, out uint receiver) {
 #endif
 }
 
-#ifdef LAYERS
-uniform usampler2DArray layer_owner;  // refractor + 1 of the front layer, one layer a light
-
-// What the light's view holds at uv, where that belongs to a refractor without an exact surface.
-bool layers_front(vec2 uv, vec3 o, vec3 d, inout Hit h) {
-  ivec2 at = ivec2(uv * vec2(textureSize(layer_owner, 0).xy));
-  int owner = int(texelFetch(layer_owner, ivec3(at, light), 0).x) - 1;
-  vec4 front = texelFetch(light_layers, ivec3(at, 2 * light), 0);
-  if (owner < 0 || refractors[owner].info.x != MODEL_LAYERS || front.w <= 0.0 || front.w >= h.t)
-    return false;
-  h.t = front.w;
-  h.p = o + h.t * d;
-  h.n = normalize(front.xyz);
-  // An interpolated normal at the rim may face away; the surface that the light sees does not.
-  float c = dot(h.n, d);
-  if (c > -1e-3) h.n = normalize(h.n - (c + 1e-3) * d);
-  h.refractor = owner;
-  h.facet = -1;
-  return true;
-}
-#endif
-
 // A photon's light at wavelength i, from the refractor that it meets first. Each landing is handed
 // on with its slot; `entry` takes the shares of the light that go elsewhere.
 void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,

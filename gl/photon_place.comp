@@ -9,11 +9,10 @@ layout(std430, binding = 7) readonly buffer InputList {
   uint in_draw[4];
   uint in_cell[];
 };
-layout(std430, binding = 8) writeonly buffer Slots { uint slot[]; };  // list index + 1, by cell
 
 uniform sampler2DArray coverage;  // front layer: distance in w
 uniform int coverage_layer;
-uniform int grid;     // photons a side, the last level's cells
+uniform ivec2 grid;   // the last level's cells, across and down
 uniform int cell;     // side of this level's cells, in last-level cells
 uniform bool first;   // the input is the whole level
 
@@ -30,22 +29,21 @@ bool covered(ivec2 from) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  int side = (grid + cell - 1) / cell;
-  uint total = first ? uint(side * side) : in_count;
+  ivec2 side = (grid + cell - 1) / cell;
+  uint total = first ? uint(side.x * side.y) : in_count;
   if (i >= total) return;
-  ivec2 c = first ? ivec2(int(i) % side, int(i) / side)
+  ivec2 c = first ? ivec2(int(i) % side.x, int(i) / side.x)
                   : ivec2(in_cell[i] & 0xffffu, in_cell[i] >> 16);
   ivec2 from = c * cell;
   if (!covered(from)) return;
   if (cell == 1) {
     uint at = atomicAdd(photon_count, 1u);
     photon_cell[at] = uint(c.x) | uint(c.y) << 16;
-    slot[c.y * grid + c.x] = at + 1u;
     return;
   }
   for (int k = 0; k < 4; k++) {
     ivec2 child = 2 * c + ivec2(k & 1, k >> 1);
-    if (any(greaterThanEqual(child * (cell / 2), ivec2(grid)))) continue;
+    if (any(greaterThanEqual(child * (cell / 2), grid))) continue;
     uint at = atomicAdd(photon_count, 1u);
     photon_cell[at] = uint(child.x) | uint(child.y) << 16;
   }

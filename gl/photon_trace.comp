@@ -2,7 +2,6 @@
 // ledger.
 layout(local_size_x = 256) in;
 #include "refractor.glsl"
-#include "photon_list.glsl"
 #include "wide_sum.glsl"
 #include "receiver.glsl"
 
@@ -23,12 +22,19 @@ layout(std430, binding = 13) buffer PathList {
 layout(std430, binding = 12) buffer Ledger { uint ledger[]; };
 
 uniform int light;
-uniform int grid;
+uniform ivec2 grid;
+#include "photon_start.glsl"
 uniform int lane_first;  // wavelengths lane_first .. lane_first + LANES - 1 in this batch
 uniform int lane_count;
 uniform int ledger_first;  // wavelengths before this one are in the ledger already
 uniform float share_limit;   // paths below this share of their light end
 uniform float ledger_unit;   // W
+
+layout(std430, binding = 6) readonly buffer Photons {
+  uint photon_count, groups_x, groups_y, groups_z;
+  uint draw[4];
+  Photon photon_at[];
+};
 
 shared uint book[5];
 
@@ -48,19 +54,14 @@ void main() {
   uint photon = gl_GlobalInvocationID.x;
   int i = lane_first + int(gl_GlobalInvocationID.y);
   if (photon < photon_count && int(gl_GlobalInvocationID.y) < lane_count) {
-    Light l = lights[light];
-    vec2 cell = vec2(photon_cell[photon] & 0xffffu, photon_cell[photon] >> 16);
+    Photon from = photon_at[photon];
+    vec2 cell = vec2(from.cell & 0xffffu, from.cell >> 16);
+    vec2 uv = (cell + 0.5 + unpackSnorm2x16(from.offset)) / vec2(grid);
     vec3 o, d;
-    vec2 uv = (cell + 0.5) / float(grid);
-    view_ray(l.near_view, uv, o, d);
-    float flux = l.white.w * light_profile(l, d) * window_measure(l.near_view, d) / l.misc.z;
     Hit front;
-    front.t = 1e30;
-    bool reached = exact_front(o, d, front);
-#ifdef LAYERS
-    if (layers_front(uv, o, d, front)) reached = true;
-#endif
-    reached = reached && flux > 0.0 && receiver_lit(light, front.p, d, front.t);
+    float flux;
+    bool reached = photon_start(uv, o, d, front, flux);
+    flux = from.flux;
     float entry[5];
     trace(photon, i - lane_first, i, flux, o, d, front, reached, entry);
     float scale = flux * sample_weight[light * WAVELENGTHS + i].y / ledger_unit;

@@ -94,6 +94,30 @@ float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
 #endif
 }
 
+// To the neighbouring samples of what is shaded: the map is seen no finer than these are apart.
+vec3 across = vec3(0), down = vec3(0);
+
+const float MOST_TAPS = 4.0;
+
+// The map's mean between p, p + across and p + down: taps along the longer way, in a level whose
+// texels are half as wide as the shorter one.
+vec3 map_flux(int light, View v, vec3 p, vec2 uv) {
+  vec3 right, above;
+  vec2 at = warp(light, uv);
+  if (!project(v, p + across, right) || !project(v, p + down, above))
+    return textureLod(spectral_map, vec3(at, light), 0.0).xyz;
+  vec2 slope = warp_slope(light, uv), a = (right.xy - uv) * slope, b = (above.xy - uv) * slope;
+  vec2 longer = dot(a, a) > dot(b, b) ? a : b, shorter = dot(a, a) > dot(b, b) ? b : a;
+  float side = float(textureSize(spectral_map, 0).x);
+  float wide = length(longer) * side, narrow = max(length(shorter) * side, wide / MOST_TAPS);
+  float level = max(log2(max(narrow, 1e-6)) - 0.8, 0.0);
+  float taps = clamp(ceil(wide / max(narrow, 1.0) - 0.2), 1.0, MOST_TAPS);
+  vec3 sum = vec3(0);
+  for (float k = 0.5; k < taps; k += 1.0)
+    sum += textureLod(spectral_map, vec3(at + longer * (k / taps - 0.5), light), level).xyz;
+  return sum / taps;
+}
+
 // rgb irradiance from one light on p (n faces the viewer): straight, and through refractors.
 void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caustic) {
   Light l = lights[light];
@@ -114,7 +138,7 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
   vec3 uvz;
   if (!project(l.map_view, p, uvz) || !inside(uvz.xy)) return;
-  vec3 flux = textureLod(spectral_map, vec3(warp(light, uvz.xy), light), 0.0).xyz;
+  vec3 flux = map_flux(light, l.map_view, p, uvz.xy);
   caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
 }
 

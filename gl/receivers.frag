@@ -15,6 +15,8 @@ layout(location = 2) out vec4 caustic;
 void main() {
   vec3 n = normalize(world_normal);
   if (dot(n, eye - world) < 0.0) n = -n;
+  across = dFdx(world);
+  down = dFdy(world);
   Shading s = shade(world, n, surface, surface_uv);
   radiance = vec4(s.direct + s.caustic + s.fill, distance(eye, world));
 #ifdef LIGHT_LAYERS_OUT

@@ -79,7 +79,7 @@ static abbe_result make_map(abbe_renderer *r, abbe_error *error) {
   gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map);
   gl->TexStorage3D(GL_TEXTURE_2D_ARRAY, (GLsizei)r->map_levels, GL_RGBA32F, (GLsizei)side,
                    (GLsizei)side, (GLsizei)lights);
-  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -138,7 +138,6 @@ void abbe_renderer_free(abbe_renderer *r) {
   abbe_renderer_free_thesis(r);
   abbe_renderer_free_scene(r);
   abbe_local_scene_free(&r->local);
-  r->buffer[BINDING_PHOTONS] = 0; /* one of the lists */
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
   gl->DeleteBuffers(1, &r->table_bands);
@@ -151,9 +150,10 @@ void abbe_renderer_free(abbe_renderer *r) {
       r->eye_direct,      r->eye_caustic,           r->eye_depth,   r->eye_refraction,
       r->eye_layers,      r->eye_layers_depth,      r->eye_owner,   r->eye_picture};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  const GLuint programs[] = {r->place,     r->groups,      r->trace,           r->deposit,
-                             r->splat,     r->list_groups, r->resolve,         r->layer,
-                             r->receivers, r->refraction,  r->refraction_list, r->eye_resolve};
+  const GLuint programs[] = {
+      r->place,     r->cover,       r->groups,          r->trace,      r->deposit,
+      r->splat,     r->list_groups, r->resolve,         r->mip,        r->layer,
+      r->receivers, r->refraction,  r->refraction_list, r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
   gl->DeleteFramebuffers(1, &r->framebuffer);
   gl->DeleteVertexArrays(1, &r->empty_array);
@@ -180,7 +180,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   s->wavelengths = r->plan.desc.wavelengths;
   s->device_bytes = r->device_bytes;
   for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
-  double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
+  double cells = (double)r->light[0].cells[0] * (double)r->light[0].cells[1];
   s->refractor_share = (double)r->light[0].photon_count / cells;
 }
 

@@ -28,7 +28,13 @@ enum {
   BINDING_LIST = BINDING_COUNT /* pieces of light, pixels */
 };
 
-enum { PHOTON_GROUP = 256, PHOTON_HEADER = 8 * 4, LEDGER_WORDS = 10, LEVELS = 3 };
+enum {
+  PHOTON_GROUP = 256,
+  PHOTON_HEADER = 8 * 4,
+  PHOTON_BYTES = 16,
+  LEDGER_WORDS = 10,
+  LEVELS = 3
+};
 
 /* Up to so many photons (cells times wavelengths) 32-bit sums round to well below 1e-4 of the light
  * without ever overflowing. */
@@ -42,6 +48,7 @@ typedef struct mesh_buffers {
 typedef struct light_state {
   abbe_view near_view;
   abbe_map_layout map;
+  size_t cells[2]; /* of the photon grid, across and up */
   size_t photon_count;
   double cell_flux;    /* most that one photon cell can carry, W */
   double white_peak;   /* largest of X, Y, Z of the light's white, by its Y */
@@ -72,7 +79,7 @@ struct abbe_renderer {
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
   GLuint path_marks, path_list, splat_list, map_sums;
   size_t splat_room, chunks; /* pieces of light that are listed at a time */
-  GLuint list[LEVELS];       /* photon lists, last level last */
+  GLuint list[LEVELS];       /* cells that may show a refractor, last level last */
   GLuint texture_surface;
   GLuint light_layers, light_owner, light_depth, light_receivers, light_receivers_depth;
   GLuint map; /* XYZ flux over window area, one layer a light, in levels */
@@ -87,8 +94,8 @@ struct abbe_renderer {
   size_t device_bytes;
   char defines[1024];
 
-  GLuint place, groups, list_groups, trace, deposit, splat, resolve, layer, receivers, refraction,
-      refraction_list, eye_resolve;
+  GLuint place, cover, groups, list_groups, trace, deposit, splat, resolve, mip, layer, receivers,
+      refraction, refraction_list, eye_resolve;
   thesis_state *thesis;
 
   bool wide;                   /* the map's sums have 64 bits, else 32 */
@@ -137,8 +144,13 @@ void abbe_renderer_end_pass(abbe_renderer *r, const char *name);
 /* light_pass.c: the light's views, their layers, and the photons. */
 abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error);
 abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error);
-abbe_result abbe_renderer_place_photons(abbe_renderer *r, GLuint coverage, int coverage_layer,
-                                        abbe_error *error);
+/* Moves the photon grid by the request's part of a cell; what is lit stays in the window. */
+void abbe_renderer_shift_cells(abbe_renderer *r, size_t light);
+void abbe_renderer_set_grid(abbe_renderer *r, GLuint program, size_t light);
+abbe_result abbe_renderer_place_photons(abbe_renderer *r, size_t light, GLuint coverage,
+                                        int coverage_layer, abbe_error *error);
+/* A photon for each placed cell that is lit and shows a refractor, in some part. */
+abbe_result abbe_renderer_start_photons(abbe_renderer *r, size_t light, abbe_error *error);
 
 /* photon_pass.c: photons to the spectral map. */
 abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error);
@@ -146,8 +158,14 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
                                   abbe_error *error);
 abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledger *ledger,
                                       abbe_error *error);
+/* The batch's landings, zero where there is none, and their paths (may be NULL); malloc'd. */
+abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **data, GLuint **paths,
+                                     abbe_error *error);
 void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
                                size_t ledger_first);
+
+/* cell_fit.c: photon grids no finer than the maps can tell. */
+abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *error);
 
 /* eye_pass.c: the picture. */
 void abbe_renderer_fit_eye(abbe_renderer *r);

@@ -474,7 +474,6 @@ static void upload_warps(abbe_renderer *r, size_t light) {
 
 /* Called again whenever a light's view changes. */
 void abbe_renderer_upload_lights(abbe_renderer *r) {
-  double grid = (double)r->plan.desc.photons;
   for (size_t i = 0; i < r->plan.light_count; i++) {
     const abbe_light *light = &r->scene->light[i];
     light_state *state = &r->light[i];
@@ -485,7 +484,8 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     abbe_rgb_space_from_xyz(working_space(r), matrix);
     abbe_rgb_space_apply(matrix, white, rgb);
     state->white_peak = fmax(white[0], fmax(white[1], white[2])) / white[1];
-    double cell_area = abbe_view_area(&state->near_view) / (grid * grid);
+    double cell_area =
+        abbe_view_area(&state->near_view) / ((double)state->cells[0] * (double)state->cells[1]);
     state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);
     abbe_view_pack(&state->map.view, g.map_view);

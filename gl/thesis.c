@@ -267,7 +267,7 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   abbe_renderer_begin_pass(r);
-  abbe_result result = abbe_renderer_place_photons(r, t->light_normals, 0, error);
+  abbe_result result = abbe_renderer_place_photons(r, 0, t->light_normals, 0, error);
   abbe_renderer_end_pass(r, "light: photon placement");
   if (result == ABBE_OK)
     result = abbe_renderer_set_target(r, &t->map, &flat, 1, 0, map, map, error);

@@ -19,7 +19,8 @@ static void make_bars(const abbe_scene *scene, const abbe_render_desc *desc,
   abbe_renderer_free(renderer);
 }
 
-/* Along every axis each variant has a place of its own, evenly spread about the picture's. */
+/* Along every axis each variant has a place of its own, evenly spread about the picture's: over a
+ * step of the grid and of the texels, over a third of the samples' distance. */
 static void test_variants_spread_evenly(void **state) {
   (void)state;
   static const size_t counts[] = {2, 4, 7, ABBE_ERROR_BARS_MAX_VARIANTS};
@@ -36,7 +37,7 @@ static void test_variants_spread_evenly(void **state) {
       abbe_render_desc request;
       abbe_error_bars_variant(desc, &map, i, n, &layout, &request);
       const double shift[4] = {request.photon_shift[0], request.photon_shift[1],
-                               request.sample_shift[0], request.sample_shift[1]};
+                               3 * request.sample_shift[0], 3 * request.sample_shift[1]};
       for (int a = 0; a < 4; a++) {
         assert_true(fabs(shift[a]) < 0.5);
         seen[a][(size_t)((shift[a] + 0.5) * (double)n)]++;

@@ -1,0 +1,129 @@
+#include "gl/renderer_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A light's photon cells no finer than its map can tell: where the images of nearly all cells are
+ * thinner than this, a coarser grid lays the same light with fewer pieces. In texels, and the
+ * share of the light whose cells count. */
+static const double least_image = 2, counted_share = 0.95;
+enum { LEAST_CELLS = 16, STEP_BINS = 256 };
+
+typedef struct batch_view {
+  const abbe_map_layout *map;
+  double texels;
+  const float *landing; /* [photons][orders][lanes][4] */
+  const GLuint *path;   /* the same without the last */
+  const GLuint *photon; /* [photons][PHOTON_BYTES / 4] */
+  size_t photons, orders, lanes, lane;
+  const GLuint *slot; /* [cells], photon + 1 */
+  size_t cells[2];
+} batch_view;
+
+static double warped(const double knot[WARP_STEPS + 1], double u) {
+  double s = fmin(fmax(u, 0), 1) * WARP_STEPS;
+  int k = (int)fmin(s, WARP_STEPS - 1);
+  return knot[k] + (knot[k + 1] - knot[k]) * (s - k);
+}
+
+static bool texel_of(const batch_view *b, const float *at, double out[2]) {
+  double p[3] = {at[0], at[1], at[2]}, uvz[3];
+  if (!abbe_view_project(&b->map->view, p, uvz)) return false;
+  for (int axis = 0; axis < 2; axis++)
+    out[axis] = b->texels * warped(b->map->knot[axis], uvz[axis]);
+  return true;
+}
+
+/* Bins of a sixteenth of an octave, from 2^-8 texels. */
+static int step_bin(double texels) {
+  double bin = 16 * (log2(fmax(texels, 1e-9)) + 8);
+  return (int)fmin(fmax(bin, 0), STEP_BINS - 1);
+}
+
+/* Light by how far, in texels, the next cell's landing on the same path lies from this one's. */
+static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS]) {
+  for (size_t i = 0; i < b->photons; i++) {
+    GLuint cell = b->photon[i * (PHOTON_BYTES / 4)];
+    size_t at[2] = {cell & 0xffffu, cell >> 16};
+    at[axis]++;
+    if (at[axis] >= b->cells[axis]) continue;
+    GLuint next = b->slot[at[1] * b->cells[0] + at[0]];
+    if (next == 0) continue;
+    for (size_t order = 0; order < b->orders; order++) {
+      size_t here = (i * b->orders + order) * b->lanes + b->lane;
+      size_t there = ((next - 1) * b->orders + order) * b->lanes + b->lane;
+      double from[2], to[2];
+      if (b->path[here] == 0 || b->path[here] != b->path[there] ||
+          !texel_of(b, b->landing + 4 * here, from) || !texel_of(b, b->landing + 4 * there, to))
+        continue;
+      double step = hypot(to[0] - from[0], to[1] - from[1]);
+      histogram[step_bin(step)] += b->landing[4 * here + 3];
+    }
+  }
+}
+
+/* The step that all but the rest of the light stays under; 0 where there is no light. */
+static double common_step(const double histogram[STEP_BINS]) {
+  double total = 0, sum = 0;
+  for (int i = 0; i < STEP_BINS; i++) total += histogram[i];
+  int bin = 0;
+  while (bin < STEP_BINS - 1 && (sum += histogram[bin]) < counted_share * total) bin++;
+  return total > 0 ? exp2((bin + 1) / 16.0 - 8) : 0;
+}
+
+static void choose_cells(const batch_view *b, size_t out[2]) {
+  for (int axis = 0; axis < 2; axis++) {
+    double histogram[STEP_BINS] = {0};
+    sort_steps(b, axis, histogram);
+    double step = common_step(histogram), cells = ceil((double)b->cells[axis] * step / least_image);
+    size_t least = b->cells[axis] < LEAST_CELLS ? b->cells[axis] : LEAST_CELLS;
+    if (step > 0 && cells < (double)b->cells[axis])
+      out[axis] = cells < (double)least ? least : (size_t)cells;
+  }
+}
+
+static GLuint *read_words(abbe_renderer *r, GLuint buffer, size_t offset, size_t words) {
+  GLuint *data = malloc(words * 4 + 4);
+  if (data == NULL) return NULL;
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)offset, (GLsizeiptr)(words * 4),
+                          data);
+  return data;
+}
+
+abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *error) {
+  light_state *state = &r->light[light];
+  float *landing = NULL;
+  GLuint *path = NULL;
+  size_t middle = r->plan.desc.wavelengths / 2, first = middle - r->lanes / 2;
+  abbe_result result = abbe_renderer_start_photons(r, light, error);
+  if (result != ABBE_OK) return result;
+  abbe_renderer_bind_tables(r);
+  abbe_renderer_trace_batch(r, light, first, r->lanes, r->plan.desc.wavelengths);
+  result = abbe_renderer_read_batch(r, light, &landing, &path, error);
+  GLuint *photon = read_words(r, r->buffer[BINDING_PHOTONS], PHOTON_HEADER,
+                              state->photon_count * (PHOTON_BYTES / 4));
+  GLuint *slot = read_words(r, r->buffer[BINDING_SLOTS], 0, state->cells[0] * state->cells[1]);
+  if (result == ABBE_OK && (photon == NULL || slot == NULL))
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the photons' cells");
+  if (result == ABBE_OK) {
+    batch_view b = {.map = &state->map,
+                    .texels = (double)r->plan.desc.map_size,
+                    .landing = landing,
+                    .path = path,
+                    .photon = photon,
+                    .photons = state->photon_count,
+                    .orders = r->plan.slots,
+                    .lanes = r->lanes,
+                    .lane = middle - first,
+                    .slot = slot,
+                    .cells = {state->cells[0], state->cells[1]}};
+    choose_cells(&b, state->cells);
+  }
+  free(landing);
+  free(path);
+  free(photon);
+  free(slot);
+  return result;
+}

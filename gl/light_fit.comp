@@ -1,0 +1,24 @@
+// The part of a light's near view through which light reaches refractors: the least and greatest
+// column and row of a lattice of rays that do.
+layout(local_size_x = 32, local_size_y = 16) in;
+#include "refractor.glsl"
+#include "receiver.glsl"
+
+uniform int light;
+#include "photon_start.glsl"
+
+uniform int side;  // rays
+layout(std430, binding = 15) buffer Box { uint box[4]; };  // left, right, bottom, top
+
+void main() {
+  uvec2 at = gl_GlobalInvocationID.xy;
+  if (max(at.x, at.y) >= uint(side)) return;
+  vec3 o, d;
+  Hit front;
+  float flux;
+  if (!photon_start((vec2(at) + 0.5) / float(side), o, d, front, flux)) return;
+  atomicMin(box[0], at.x);
+  atomicMax(box[1], at.x);
+  atomicMin(box[2], at.y);
+  atomicMax(box[3], at.y);
+}

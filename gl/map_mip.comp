@@ -1,0 +1,33 @@
+// One coarser picture of a finished map, for eyes that see many texels at once: the flux of four over
+// their window area.
+layout(local_size_x = 32, local_size_y = 16) in;
+uniform sampler2DArray map_levels;
+layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
+// Window width of the map's columns, then height of its rows, a light after another.
+layout(std430, binding = 9) readonly buffer TexelSizes { float texel_size[]; };
+uniform int light;
+uniform int map_size;
+uniform int level;
+
+// Of a column (or row, from `first` on) of the finer level.
+float size_of(int first, int column) {
+  float sum = 0.0;
+  int texels = 1 << (level - 1);
+  for (int k = 0; k < texels; k++) sum += texel_size[first + column * texels + k];
+  return sum;
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (max(texel.x, texel.y) >= map_size >> level) return;
+  int columns = light * 2 * map_size, rows = columns + map_size;
+  vec4 sum = vec4(0);
+  float area = 0.0;
+  for (int k = 0; k < 4; k++) {
+    ivec2 from = 2 * texel + ivec2(k & 1, k >> 1);
+    float part = size_of(columns, from.x) * size_of(rows, from.y);
+    sum += part * texelFetch(map_levels, ivec3(from, light), level - 1);
+    area += part;
+  }
+  imageStore(map, ivec3(texel, light), sum / area);
+}
