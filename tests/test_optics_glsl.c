@@ -94,8 +94,8 @@ static void test_fresnel(void **state) {
     assert_true(value >= 0 && value <= 1 + steps_out * eps);
     if (allowed < 1e-4) worst = fmax(worst, fabs(value - expected));
   }
-  /* 2e-6 is what llvmpipe does; five times that leaves room for another driver's square root. */
-  assert_true(worst < 1e-5);
+  /* 7e-7 is what llvmpipe does; five times that leaves room for another driver's square root. */
+  assert_true(worst < 3.5e-6);
   print_message("largest error of fresnel where it is well conditioned: %.2g\n", worst);
 }
 
@@ -144,8 +144,8 @@ static void test_refract_direction(void **state) {
                 "}\n",
                 (const float(*)[8])inputs, count, outputs);
   for (size_t i = 0; i < count; i++) check_direction(inputs[i], outputs[i], &worst);
-  /* 5e-6 on llvmpipe. */
-  assert_true(worst < 2.5e-5);
+  /* 3.5e-6 on llvmpipe, towards the critical angle. */
+  assert_true(worst < 1.8e-5);
   print_message("largest error of refract_direction, well conditioned: %.2g\n", worst);
 }
 
@@ -158,13 +158,12 @@ static void test_equal_indices_change_nothing(void **state) {
                 "vec4 f(vec4 a, vec4 b) {\n"
                 "  vec3 t;\n"
                 "  bool passes = refract_direction(a.xyz, b.xyz, 1.0, t);\n"
-                "  return vec4(passes || b.w < 1e-3 ? distance(t, a.xyz) : 9.0,\n"
+                "  return vec4(passes ? distance(t, a.xyz) : 9.0,\n"
                 "              fresnel(b.w, 1.0), 0, 0);\n"
                 "}\n",
                 (const float(*)[8])inputs, count, outputs);
   for (size_t i = 0; i < count; i++) {
-    /* 1 - (1 - c^2) keeps no digits of c^2 below eps: sqrt(eps) at grazing. */
-    assert_near(outputs[i][0], 0, inputs[i][7] < 0.1f ? 2 * sqrt(eps) : 16 * eps);
+    assert_near(outputs[i][0], 0, 0);
     assert_true(outputs[i][1] == 0.0f);
   }
 }
