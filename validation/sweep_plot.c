@@ -18,10 +18,11 @@ typedef struct figures {
   char (*label)[LABEL]; /* [front] */
   const char **text;    /* [front] */
   size_t *order, front;
+  double *bx, *by; /* the other profiles' fronts, one after another */
   const char *profile[MAX_PROFILES];
   size_t profiles, start[MAX_PROFILES + 1];
   double noise_x[2], noise_y[2];
-  abbe_chart_series series[MAX_PROFILES + 2];
+  abbe_chart_series series[2 * MAX_PROFILES + 2];
   size_t series_count;
   char x_label[96], y_label[96];
 } figures;
@@ -34,7 +35,7 @@ static void close_figures(figures *f) {
 }
 
 static abbe_result open_figures(size_t count, figures *f, abbe_error *error) {
-  f->x = calloc(6 * count + 1, sizeof *f->x);
+  f->x = calloc(9 * count + 1, sizeof *f->x);
   f->label = calloc(count + 1, sizeof *f->label);
   f->text = calloc(count + 1, sizeof *f->text);
   f->order = calloc(count + 1, sizeof *f->order);
@@ -45,6 +46,8 @@ static abbe_result open_figures(size_t count, figures *f, abbe_error *error) {
   f->py = f->x + 3 * count;
   f->fx = f->x + 4 * count;
   f->fy = f->x + 5 * count;
+  f->bx = f->x + 6 * count;
+  f->by = f->x + 7 * count;
   return ABBE_OK;
 }
 
@@ -72,6 +75,28 @@ static void add_points(const abbe_sweep_table *table, figures *f) {
                                                        .x = f->px + f->start[k],
                                                        .y = f->py + f->start[k],
                                                        .colour = (int)(k % 5) + 2};
+  }
+}
+
+/* A line through the best that each other profile has, in its colour. */
+static void add_other_fronts(const abbe_sweep_table *table, figures *f) {
+  double *own = f->by + table->count;
+  size_t at = 0;
+  for (size_t k = 0; k < f->profiles; k++) {
+    if (strcmp(f->profile[k], "default") == 0) continue;
+    for (size_t i = 0; i < table->count; i++)
+      own[i] = strcmp(table->row[i].setting.profile, f->profile[k]) == 0 ? f->x[i] : NAN;
+    size_t count = abbe_front_order(own, f->y, table->count, f->order);
+    for (size_t i = 0; i < count; i++) {
+      f->bx[at + i] = f->x[f->order[i]];
+      f->by[at + i] = f->y[f->order[i]];
+    }
+    f->series[f->series_count++] = (abbe_chart_series){.style = ABBE_CHART_LINE,
+                                                       .count = count,
+                                                       .x = f->bx + at,
+                                                       .y = f->by + at,
+                                                       .colour = (int)(k % 5) + 2};
+    at += count;
   }
 }
 
@@ -131,6 +156,7 @@ static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number n
   }
   find_profiles(table, f);
   add_points(table, f);
+  add_other_fronts(table, f);
   add_front(table, f);
   add_noise(table, number, f);
   if (f->front == 0)

@@ -1,6 +1,7 @@
 /* sweep_plot.h: a sweep as a picture: error against time in logarithms, and the front.
  *
- * Every setting is a point, a profile a colour; the front is a line with its settings' names; the
+ * Every setting is a point, a profile a colour; the front is a line with its settings' names,
+ * and each other profile's own front a line without; the
  * reference's own noise is a dashed line, below which an error is not known. It marks no front.
  */
 #ifndef ABBE_VALIDATION_SWEEP_PLOT_H
