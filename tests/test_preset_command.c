@@ -113,7 +113,9 @@ static void test_presets_of_a_sweep(void **state) {
                "--photons 16,32 --profiles default -o s.csv && "
                "\"$abbe\" sweep s.csv --write-presets p.yaml && cat p.yaml");
   if (code != 0) fail_msg("%s", run_errors);
-  assert_contains(run_output, "- class: convex\n  scenes: gem\n  margin: 1\n  time_margin: 1\n  margin_scenes: 0\n");
+  assert_contains(
+      run_output,
+      "- class: convex\n  scenes: gem\n  margin: 1\n  time_margin: 1\n  margin_scenes: 0\n");
   cJSON *json = promise_of(GEM "--presets p.yaml --preset draft --json -q");
   assert_contains(cJSON_GetStringValue(item(json, "run")), "24x24; medians of 1 frames");
   cJSON_Delete(json);
