@@ -105,18 +105,6 @@ static void test_the_error_is_split(void **state) {
                           "--split traces full and matched physics"));
 }
 
-/* The times alone: what grows, and by which power. */
-static void test_growth(void **state) {
-  (void)state;
-  run_well(
-      "\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --growth -o g.csv --plot g.svg --size 16x16 "
-      "--frames 1");
-  assert_contains(run_output, "| cells of the photon grid (slope ");
-  assert_contains(run_output, "| faces of the refractors (slope ");
-  run_well("grep -q '^share,2,' g.csv && grep -q svg g.svg && rm g.csv g.svg");
-  assert_true(run_refuses("\"$abbe\" sweep a.yaml -o g.csv --growth --spp 3", 2, "--growth times"));
-}
-
 static void test_given_references(void **state) {
   (void)state;
   run_well("\"$abbe\" render \"$house\"/scenes/gem.yaml -q --size 24x24 --photons 32 --map 64 "
@@ -166,6 +154,11 @@ static void test_what_is_refused(void **state) {
       {"\"$abbe\" sweep a.yaml -o s.csv --error caustic_da", "did you mean 'caustic_de'?", 2},
       {"\"$abbe\" sweep a.yaml -o s.csv --error frame_ms", "is no error", 2},
       {"\"$abbe\" sweep a.yaml -o s.csv --reference r.exr --spp 9", "and one is given", 2},
+      {"\"$abbe\" sweep a.yaml -o s.csv --growth --spp 3", "--growth times frames", 2},
+      {"\"$abbe\" sweep a.yaml -o s.csv --growth --size 16x8", "a square --size", 2},
+      {"\"$abbe\" sweep a.yaml -o s.csv --growth", "a.yaml", 1},
+      {"\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q -o s.csv --growth --size 20x20", "in eights",
+       1},
       {"\"$abbe\" sweep a.yaml -o s.csv", "a.yaml", 1},
       {"\"$abbe\" sweep a.csv", "a.csv", 1},
       {"\"$abbe\" sweep \"$house\"/scenes/gem.yaml -o no/s.csv", "no/s.csv", 1},
@@ -190,7 +183,6 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_rows_are_measured_once, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_the_thesis_beside_it, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_the_error_is_split, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_growth, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_given_references, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_ctrl_c_keeps_what_is_done, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
