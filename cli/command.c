@@ -82,10 +82,28 @@ abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error)
   return ABBE_OK;
 }
 
+static bool output_told;
+
+/* Why not everything reached stdout; NULL where it did. An earlier write leaves no reason behind.
+ */
+static const char *output_trouble(void) {
+  if (fflush(stdout) != 0) return strerror(errno);
+  return ferror(stdout) ? "an earlier write failed" : NULL;
+}
+
+bool abbe_command_output_failed(void) {
+  const char *why = output_told ? NULL : output_trouble();
+  if (why != NULL) fprintf(stderr, "abbe: it could not be written to the output: %s\n", why);
+  return why != NULL;
+}
+
 int abbe_command_end(const char *program, abbe_result result, abbe_error *error) {
-  if (result == ABBE_OK && (fflush(stdout) != 0 || ferror(stdout)))
-    result = abbe_error_set(error, ABBE_IO, "the results could not be written to the output: %s",
-                            strerror(errno));
+  const char *why = result == ABBE_OK ? output_trouble() : NULL;
+  if (why != NULL) {
+    output_told = true;
+    result =
+        abbe_error_set(error, ABBE_IO, "the results could not be written to the output: %s", why);
+  }
   return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(program, error);
 }
 

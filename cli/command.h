@@ -64,6 +64,9 @@ abbe_result abbe_command_check_targets(const char *const *paths, size_t count, a
 
 /* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
 abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);
+/* At the end of the program: true, and a sentence on stderr, where something did not reach stdout and
+ * no command has said so. */
+bool abbe_command_output_failed(void);
 /* Ends a command: 0 where all results reached stdout; else the failure, said on stderr. */
 int abbe_command_end(const char *program, abbe_result result, abbe_error *error);
 

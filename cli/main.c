@@ -3,9 +3,12 @@
 #include "spectral/nearest.h"
 
 #include <argp.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #ifndef ABBE_VERSION
 #error "the build defines ABBE_VERSION"
@@ -39,7 +42,21 @@ static void help(FILE *out) {
                "Exit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
 }
 
+/* What a page of help or a version says goes to stdout too, past all commands. */
+static void check_output(void) {
+  if (abbe_command_output_failed()) _exit(ABBE_EXIT_FAILED);
+}
+
+/* A file that is opened later must not become the output of a program that was given none. */
+static void hold_streams(void) {
+  static const int flags[] = {O_RDONLY, O_RDONLY, O_WRONLY}; /* writing to stdout fails */
+  for (int fd = 0; fd < 3; fd++)
+    if (fcntl(fd, F_GETFD) < 0) (void)!open("/dev/null", flags[fd]);
+}
+
 int main(int argc, char **argv) {
+  hold_streams();
+  atexit(check_output);
   argp_err_exit_status = ABBE_EXIT_USAGE;
   /* A closed pipe or a file-size limit is a write error with a sentence, not a sudden end. */
   signal(SIGPIPE, SIG_IGN);

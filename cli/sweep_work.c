@@ -123,6 +123,7 @@ static abbe_result trace_reference(work *w, bool matched, traced *to, abbe_error
   abbe_progress_end(&progress);
   if (result == ABBE_OK) result = keep(&to->picture, to->stamp, to->picture_path, error);
   if (result == ABBE_OK) result = keep(&to->map, to->stamp, to->map_path, error);
+  if (result == ABBE_OK) unlink(to->checkpoint_path);
   return result;
 }
 
@@ -137,7 +138,10 @@ static abbe_result find_reference(work *w, bool matched, traced *to, abbe_error 
            q->texels > 0 ? q->texels : (size_t)DEFAULT_TEXELS, passes_of(q), q->photons,
            matched ? "matched" : "full");
   if (is_stamped(to->picture_path, to->stamp, &to->picture)) {
-    if (is_stamped(to->map_path, to->stamp, &to->map)) return ABBE_OK;
+    if (is_stamped(to->map_path, to->stamp, &to->map)) {
+      unlink(to->checkpoint_path); /* a kill may have left it, and another request refuses it */
+      return ABBE_OK;
+    }
     abbe_image_free(&to->picture);
   }
   return trace_reference(w, matched, to, error);

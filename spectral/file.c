@@ -1,4 +1,4 @@
-#define _XOPEN_SOURCE 700 /* realpath */
+#define _GNU_SOURCE /* O_TMPFILE, realpath */
 
 #include "spectral/file.h"
 
@@ -109,23 +109,60 @@ static abbe_result resolve(const char *path, char **target, struct stat *status,
   return ABBE_OK;
 }
 
-/* A new file in the target's folder. Its name does not grow with the target's, which may be as
- * long as names can be. mkstemp would make it private to its owner, whatever the umask says. */
-static int open_beside(const char *target, char **temporary) {
+static size_t folder_length(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash == NULL ? 0 : (size_t)(slash - path) + 1;
+}
+
+/* A file without a name, of which a kill leaves nothing; -1 where the file system has none. A name
+ * is given to it through /proc. */
+static int open_unnamed(const char *target) {
+  size_t length = folder_length(target);
+  char *folder = length == 0 ? copy_text(".", 1) : copy_text(target, length), link[64];
+  if (folder == NULL) return -1;
+  int fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  free(folder);
+  if (fd < 0) return -1;
+  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+  if (access(link, F_OK) == 0) return fd;
+  close(fd);
+  return -1;
+}
+
+/* A name in the target's folder that no file has, made by `take`, which is -1 with EEXIST where one
+ * has it. The name does not grow with the target's, which may be as long as names can be. */
+static int name_beside(const char *target, char **temporary, int (*take)(const char *name, int fd),
+                       int fd) {
   static atomic_uint counter;
-  const char *slash = strrchr(target, '/');
-  size_t folder = slash == NULL ? 0 : (size_t)(slash - target) + 1;
-  size_t size = folder + 64;
+  size_t folder = folder_length(target), size = folder + 64;
   *temporary = malloc(size);
   if (*temporary == NULL) return -1;
   memcpy(*temporary, target, folder);
+  int taken = -1;
   for (int tries = 0; tries < 1000; tries++) {
     snprintf(*temporary + folder, size - folder, ".abbe-%ld-%u.part", (long)getpid(),
              atomic_fetch_add(&counter, 1));
-    int fd = open(*temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (fd >= 0 || errno != EEXIST) return fd;
+    taken = take(*temporary, fd);
+    if (taken >= 0 || errno != EEXIST) break;
   }
+  if (taken >= 0) return taken;
+  int number = errno;
+  free(*temporary);
+  *temporary = NULL;
+  errno = number;
   return -1;
+}
+
+/* mkstemp would make it private to its owner, whatever the umask says. */
+static int take_by_opening(const char *name, int fd) {
+  (void)fd;
+  return open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+static int take_by_linking(const char *name, int fd) {
+  char link[64];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+  return linkat(AT_FDCWD, link, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
 }
 
 static void writer_clear(abbe_file_writer *writer) {
@@ -143,7 +180,8 @@ abbe_result abbe_file_writer_open(abbe_file_writer *writer, const char *path, ab
     writer_clear(writer);
     return result;
   }
-  int fd = open_beside(writer->path, &writer->temporary);
+  int fd = open_unnamed(writer->path);
+  if (fd < 0) fd = name_beside(writer->path, &writer->temporary, take_by_opening, -1);
   if (fd < 0) {
     int number = errno;
     writer_clear(writer);
@@ -154,7 +192,7 @@ abbe_result abbe_file_writer_open(abbe_file_writer *writer, const char *path, ab
   if (writer->stream == NULL) {
     int number = errno;
     close(fd);
-    unlink(writer->temporary);
+    if (writer->temporary != NULL) unlink(writer->temporary);
     writer_clear(writer);
     return fail_io(error, path, "cannot be written", number);
   }
@@ -164,8 +202,7 @@ abbe_result abbe_file_writer_open(abbe_file_writer *writer, const char *path, ab
 /* The rename itself reaches the disk with its folder. A folder that cannot be synced (some
  * network file systems) still holds a whole file. */
 static void sync_folder(const char *path) {
-  const char *slash = strrchr(path, '/');
-  size_t length = slash == NULL ? 0 : (size_t)(slash - path) + 1;
+  size_t length = folder_length(path);
   char *folder = length == 0 ? copy_text(".", 1) : copy_text(path, length);
   if (folder == NULL) return;
   int fd = open(folder, O_RDONLY | O_CLOEXEC);
@@ -183,14 +220,18 @@ static int write_trouble(FILE *stream) {
   return EIO;
 }
 
-/* 0, or the number of the error that kept the bytes from the disk. */
-static int finish_stream(FILE *stream) {
+/* 0, or the number of the error that kept the bytes from the disk or the file from its name. */
+static int finish_stream(abbe_file_writer *writer) {
+  FILE *stream = writer->stream;
   int number = 0;
   if (fflush(stream) != 0)
     number = errno;
   else if (ferror(stream))
     number = write_trouble(stream);
   else if (fsync(fileno(stream)) != 0 && errno != EINVAL && errno != EROFS)
+    number = errno;
+  else if (writer->temporary == NULL &&
+           name_beside(writer->path, &writer->temporary, take_by_linking, fileno(stream)) < 0)
     number = errno;
   if (fclose(stream) != 0 && number == 0) number = errno;
   return number;
@@ -199,13 +240,13 @@ static int finish_stream(FILE *stream) {
 abbe_result abbe_file_writer_commit(abbe_file_writer *writer, abbe_error *error) {
   if (writer->stream == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no open file to commit");
-  int number = finish_stream(writer->stream);
+  int number = finish_stream(writer);
   if (number == 0 && rename(writer->temporary, writer->path) != 0) number = errno;
   abbe_result result = ABBE_OK;
   if (number == 0) {
     sync_folder(writer->path);
   } else {
-    unlink(writer->temporary);
+    if (writer->temporary != NULL) unlink(writer->temporary);
     result = fail_io(error, writer->path, "could not be written and is as it was", number);
   }
   writer_clear(writer);
@@ -215,7 +256,7 @@ abbe_result abbe_file_writer_commit(abbe_file_writer *writer, abbe_error *error)
 void abbe_file_writer_discard(abbe_file_writer *writer) {
   if (writer->stream != NULL) {
     fclose(writer->stream);
-    unlink(writer->temporary);
+    if (writer->temporary != NULL) unlink(writer->temporary);
   }
   writer_clear(writer);
 }

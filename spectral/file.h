@@ -2,7 +2,8 @@
  *
  * Reading checks the size against a limit before it allocates. Writing goes to a temporary file
  * beside the target which is renamed over it on commit: a kill at any moment leaves the old file
- * or the new one. It does not stream, lock or watch files.
+ * or the new one, and where the file system has files without names (O_TMPFILE) nothing besides.
+ * It does not stream, lock or watch files.
  */
 #ifndef ABBE_SPECTRAL_FILE_H
 #define ABBE_SPECTRAL_FILE_H
@@ -27,7 +28,7 @@ abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_
 typedef struct abbe_file_writer {
   FILE *stream;
   char *path;      /* the target */
-  char *temporary; /* beside it */
+  char *temporary; /* beside it; NULL while it has no name */
 } abbe_file_writer;
 
 /* Opens a temporary file in the target's folder. ABBE_IO where that cannot be. */

@@ -53,7 +53,6 @@ abbe_result abbe_reference_trace(const abbe_scene *scene, const abbe_reference_d
   if (result == ABBE_OK) {
     *picture = shown;
     *map = landed;
-    if (desc->checkpoint != NULL) unlink(desc->checkpoint);
     return ABBE_OK;
   }
   abbe_image_free(&shown);

@@ -17,8 +17,8 @@ extern "C" {
 typedef struct abbe_reference_desc {
   abbe_trace_desc trace;
   size_t passes;          /* 0: ABBE_REFERENCE_PASSES */
-  const char *checkpoint; /* a file to go on from, kept every 30 s and when stopped, removed when
-                             all is done; or NULL */
+  const char *checkpoint; /* a file to go on from, kept every 30 s and when stopped; whoever has put
+                             away what is given removes it; or NULL */
   bool (*progress)(void *user, double done); /* false stops; or NULL */
   void *user;
   const volatile int *stop; /* other than 0 stops a pass midway; or NULL */
