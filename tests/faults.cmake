@@ -13,3 +13,11 @@ endforeach()
 abbe_test(no_memory_tables cpu faults_memory abbe_spectral)
 abbe_test(no_memory_scenes cpu faults_memory abbe_gl abbe_scenes abbe_colorimetry abbe_spectral)
 abbe_test(no_memory_trace cpu faults_memory abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
+
+# The calls with which Abbe's own objects write files (faults/disk.h).
+add_library(faults_disk OBJECT faults/disk.c)
+target_link_libraries(faults_disk PUBLIC abbe_build)
+foreach(name open linkat fdopen fchmod fsync fclose rename pwrite)
+  target_link_options(faults_disk INTERFACE LINKER:--wrap=${name})
+endforeach()
+abbe_test(full_disk cpu faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
