@@ -392,18 +392,28 @@ static void tighten(const double *histogram, double total, double *low, double *
   *high = from + width * (last + 1);
 }
 
-/* Adds landings to the histograms of x and y; returns their flux. */
-static double sort_landings(const abbe_view *view, const float *landing, size_t count,
+/* The brightest landing in 2^24 parts: flux is counted in whole ones, whose sums do not depend on
+ * the order in which photons land. */
+static double part_of(const float *landing, size_t count) {
+  float most = 0;
+  for (size_t i = 0; i < count; i++)
+    if (landing[4 * i + 3] > most) most = landing[4 * i + 3];
+  return (double)most / (1 << 24);
+}
+
+/* Adds landings to the histograms of x and y; returns their flux, all in parts. */
+static double sort_landings(const abbe_view *view, const float *landing, size_t count, double part,
                             double *histogram) {
   double total = 0;
   for (size_t i = 0; i < count; i++) {
     const float *at = landing + 4 * i;
     double p[3] = {at[0], at[1], at[2]}, uvz[3];
     if (!(at[3] > 0) || !abbe_view_project(view, p, uvz)) continue;
-    total += at[3];
+    double parts = rint(at[3] / part);
+    total += parts;
     for (int axis = 0; axis < 2; axis++) {
       double bin = fmin(fmax(floor(uvz[axis] * FIT_BINS), 0), FIT_BINS - 1);
-      histogram[axis * FIT_BINS + (int)bin] += at[3];
+      histogram[axis * FIT_BINS + (int)bin] += parts;
     }
   }
   return total;
@@ -459,7 +469,7 @@ static void fit_axes(light_state *state, const double *histogram, double total) 
 }
 
 static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
-  double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0;
+  double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0, part = 0;
   if (histogram == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
   abbe_result result = abbe_renderer_start_photons(r, light, error);
   abbe_renderer_bind_tables(r);
@@ -468,9 +478,10 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     float *landing = NULL;
     abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
     result = abbe_renderer_read_batch(r, light, &landing, NULL, error);
-    if (result == ABBE_OK)
-      total += sort_landings(&r->light[light].map.view, landing,
-                             r->light[light].photon_count * r->plan.slots * r->lanes, histogram);
+    size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
+    if (result == ABBE_OK && part == 0) part = part_of(landing, count);
+    if (result == ABBE_OK && part > 0)
+      total += sort_landings(&r->light[light].map.view, landing, count, part, histogram);
     free(landing);
   }
   if (result == ABBE_OK && total > 0) fit_axes(&r->light[light], histogram, total);
