@@ -21,17 +21,16 @@ static double now_s(void) {
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Whoever asks for the end, a user or a machine that goes down: what is done is saved. What the
- * parent has told to ignore stays ignored (nohup). */
+/* Whoever asks for the end, a user or a machine that goes down: what is done is saved. A terminal
+ * that hangs up ends nothing where the parent said so (nohup). */
 static void on_interrupt(void (*handler)(int)) {
-  static const int ends[] = {SIGINT, SIGTERM, SIGHUP};
-  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-    struct sigaction action, present;
-    memset(&action, 0, sizeof action);
-    action.sa_handler = handler;
-    sigaction(ends[i], NULL, &present);
-    if (present.sa_handler != SIG_IGN) sigaction(ends[i], &action, NULL);
-  }
+  struct sigaction action, present;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = handler;
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGHUP, NULL, &present);
+  if (present.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
 }
 
 void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet) {

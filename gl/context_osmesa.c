@@ -37,6 +37,6 @@ abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
                           "or try --gl egl");
   out->handle[0] = context;
   if (!OSMesaMakeCurrent(context, out->handle[1], GL_UNSIGNED_BYTE, BUFFER_SIDE, BUFFER_SIDE))
-    return abbe_error_set(error, ABBE_GL, "OSMesa's context cannot be made current");
+    return abbe_error_set(error, ABBE_GL, "OSMesa's context cannot be made current; try --gl egl");
   return ABBE_OK;
 }
