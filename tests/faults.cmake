@@ -21,3 +21,16 @@ foreach(name open linkat fdopen fchmod fsync fclose rename pwrite)
   target_link_options(faults_disk INTERFACE LINKER:--wrap=${name})
 endforeach()
 abbe_test(full_disk cpu faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
+
+# Kills the program, or starves it, at a chosen call (faults/preload.c).
+add_library(faults_preload MODULE faults/preload.c)
+target_link_libraries(faults_preload PRIVATE abbe_build ${CMAKE_DL_LIBS})
+foreach(name killed_command starved_command)
+  abbe_test(${name} program abbe_spectral)
+  target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>"
+    ABBE_PRELOAD="$<TARGET_FILE:faults_preload>")
+  add_dependencies(test_${name} abbe faults_preload)
+endforeach()
+
+abbe_test(gl_faults gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral)
+target_link_options(test_gl_faults PRIVATE LINKER:--wrap=abbe_context_osmesa)
