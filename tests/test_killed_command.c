@@ -124,7 +124,7 @@ static void test_a_picture(void **state) {
                              {"r.exr", "r.png"},
                              "old",
                              NULL,
-                             19});
+                             40});
 }
 
 static void test_a_table(void **state) {
@@ -146,7 +146,7 @@ static void test_a_sweep(void **state) {
   assert_int_equal(run_line(sweep), 0);
   content picture = read_whole("s-reference.exr"), map = read_whole("s-reference-map.exr");
   size_t tried = 0;
-  for (size_t n = 2;; n += 89, tried++) {
+  for (size_t n = 2;; n += 110, tried++) {
     run_each(run_remove, NULL);
     snprintf(line, sizeof line, "LD_PRELOAD='" ABBE_PRELOAD "' ABBE_FAULT=kill:%zu %s", n, sweep);
     const int code = run_line(line);
