@@ -187,13 +187,14 @@ static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_
     if (found[0] > found[1]) break; /* nothing is lit */
     bool shrinks = false;
     double box[4];
+    for (int axis = 0; axis < 2; axis++)
+      shrinks = shrinks || found[2 * axis + 1] - found[2 * axis] < 9 * SIDE / 10;
     for (int axis = 0; axis < 2; axis++) {
       double low = window[2 * axis], ray = (window[2 * axis + 1] - low) / SIDE;
-      double first = fmax((double)found[2 * axis] - 0.5, 0);
-      double last = fmin((double)found[2 * axis + 1] + 1.5, SIDE);
-      box[2 * axis] = low + ray * first;
-      box[2 * axis + 1] = low + ray * last;
-      shrinks = shrinks || last - first < 0.9 * SIDE;
+      /* The edge lies half a ray to either side of where the last lit ray's place begins. */
+      double room = shrinks ? 0.5 : 0;
+      box[2 * axis] = low + ray * fmax((double)found[2 * axis] - room, 0);
+      box[2 * axis + 1] = low + ray * fmin((double)found[2 * axis + 1] + 1 + room, SIDE);
     }
     if (turn == 0 && !shrinks) break; /* nothing to speak of is cut off */
     memcpy(window, box, sizeof box);

@@ -362,7 +362,7 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
                    : "every refractor has an exact surface");
   if (caustics) {
     add(plan, true, "light: photon placement",
-        "%zu photons a side, refined only where a refractor is", plan->desc.photons);
+        "at most %zu a side, where light meets a refractor", plan->desc.photons);
     add(plan, true, "light: photons", "%zu wavelengths through the refractors",
         plan->desc.wavelengths);
     add(plan, true, "light: spectral map", "%zu x %zu texels%s", plan->desc.map_size,

@@ -275,6 +275,27 @@ static void test_the_depth_model_lands_near_the_exact_one(void **state) {
   }
 }
 
+/* The prism's slit is 2 by 30 mm, 0.6 m before the lamp of 40 W/sr and within its cone. Its light
+ * does not depend on how many cells there are, nor on where they lie: 2 in 1024 rays of the view's
+ * fit, and what 8 x 8 rays tell of cells that the jaws cut. */
+static void test_a_slit_lets_its_light_through_whatever_the_grid(void **state) {
+  (void)state;
+  static const size_t grids[] = {20, 33, 64, 150};
+  double expected = 40 * 0.002 * 0.03 / (0.6 * 0.6) * (1 - 1.5 * (0.03 * 0.03 / 12) / (0.6 * 0.6));
+  abbe_scene scene = {0};
+  load_shipped("prism", &scene);
+  for (size_t i = 0; i < 8; i++) {
+    abbe_render_desc desc = small_frame;
+    desc.photons = grids[i % 4];
+    desc.photon_shift[0] = i < 4 ? 0 : 0.4;
+    desc.photon_shift[1] = i < 4 ? 0 : -0.3;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    assert_near(draw_frame(renderer).energy.reached / expected, 1, i < 4 ? 2e-3 : 8e-3);
+    abbe_renderer_free(renderer);
+  }
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_sphere_lands_as_double_precision_says),
@@ -282,6 +303,7 @@ int main(void) {
       cmocka_unit_test(test_violet_is_bent_more_than_red),
       cmocka_unit_test(test_the_shipped_prism_makes_a_spectrum),
       cmocka_unit_test(test_the_depth_model_lands_near_the_exact_one),
+      cmocka_unit_test(test_a_slit_lets_its_light_through_whatever_the_grid),
   };
   return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
 }
