@@ -10,7 +10,8 @@ struct Light {
   vec4 position;   // w: 0 point, 1 spot, 2 directional
   vec4 direction;  // w: cosine of the cone's half angle
   vec4 white;      // rgb of unit power; w: power, W/sr or W/m2
-  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, W; photons by window area
+  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, W; photons by window area;
+                   // whether it meets a refractor
 };
 
 struct Refractor {

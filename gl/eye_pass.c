@@ -30,7 +30,7 @@ void abbe_renderer_fit_eye(abbe_renderer *r) {
 static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   size_t w = r->plan.desc.width * r->plan.desc.supersample;
   size_t h = r->plan.desc.height * r->plan.desc.supersample;
-  bool layers = r->plan.refractor_count > 0;
+  bool layers = r->plan.seen;
   GLint most = 0;
   r->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   if (w > (size_t)most || h > (size_t)most)
@@ -74,9 +74,9 @@ abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_result result = make_targets(r, error);
   if (result == ABBE_OK)
     result = abbe_program_make(r->gl, lit, 2, r->defines, &r->receivers, error);
-  if (result == ABBE_OK && r->plan.refractor_count > 0)
+  if (result == ABBE_OK && r->plan.seen)
     result = abbe_program_make_compute(r->gl, "refraction.comp", r->defines, &r->refraction, error);
-  if (result == ABBE_OK && r->plan.refractor_count > 0)
+  if (result == ABBE_OK && r->plan.seen)
     result =
         abbe_program_make_compute(r->gl, "refraction_list.comp", NULL, &r->refraction_list, error);
   if (result == ABBE_OK)
@@ -229,7 +229,7 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progre
   abbe_result result = abbe_renderer_set_target(r, &r->eye_refraction, &flat, 1, 0, w, h, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  if (r->plan.refractor_count == 0) return ABBE_OK;
+  if (!r->plan.seen) return ABBE_OK;
   list_pixels(r, w, h);
   gl->UseProgram(r->refraction);
   abbe_renderer_set_lighting(r, r->refraction);

@@ -210,7 +210,7 @@ static abbe_result fit_to_light(abbe_renderer *r, abbe_error *error) {
       abbe_program_make_compute(r->gl, "light_fit.comp", r->defines, &program, error);
   if (result == ABBE_OK) result = abbe_renderer_make_buffer(r, 4 * 4, NULL, &box, error);
   for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++)
-    result = fit_near_view(r, program, box, i);
+    if (r->plan.reaches[i]) result = fit_near_view(r, program, box, i);
   r->gl->DeleteBuffers(1, &box);
   r->gl->DeleteProgram(program);
   return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the fit of the light's view", error);
@@ -304,7 +304,7 @@ abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
   r->gl->Enable(GL_DEPTH_TEST);
   for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++) {
     if (r->plan.receivers == ABBE_RECEIVER_DEPTH) result = receiver_depth(r, i, error);
-    if (result == ABBE_OK && r->plan.caustics) result = front_and_back(r, i, error);
+    if (result == ABBE_OK && r->plan.reaches[i]) result = front_and_back(r, i, error);
   }
   return result;
 }

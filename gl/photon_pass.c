@@ -103,10 +103,9 @@ static void list_pieces(abbe_renderer *r, size_t light, size_t first, size_t cou
 
 static abbe_result deposit_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
                                  size_t interval_first, size_t interval_end, abbe_error *error) {
-  bool fills = r->plan.desc.fill != ABBE_FILL_NONE && r->plan.desc.wavelengths > 1;
   for (size_t chunk = 0; chunk < r->chunks; chunk++) {
     list_pieces(r, light, first, count, interval_first, interval_end, chunk);
-    abbe_renderer_end_pass(r, fills ? "light: gap fill" : "light: spectral map");
+    abbe_renderer_end_pass(r, r->plan.fills ? "light: gap fill" : "light: spectral map");
     bool look = r->chunks > 1 || r->statistics != NULL;
     if (look && read_count(r, r->splat_list) > r->splat_room)
       return abbe_error_set(error, ABBE_GL,
@@ -214,6 +213,7 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     batch b = {0};
     size_t done = 0;
+    if (!r->plan.reaches[light]) continue;
     result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_bind_tables(r);
     clear_buffer(r, r->buffer[BINDING_LEDGER]);
@@ -244,6 +244,7 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
                                   abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+    if (!r->plan.reaches[light]) continue;
     abbe_renderer_begin_pass(r);
     result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_end_pass(r, "light: photon placement");
@@ -294,6 +295,7 @@ static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     GLuint count = 0;
+    if (!r->plan.reaches[light]) continue;
     result = abbe_renderer_start_photons(r, light, error);
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
     r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
@@ -335,8 +337,7 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
   snprintf(
       defines, sizeof defines,
       "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n%s#define MAX_BRIDGE %s\n",
-      r->defines, r->lanes, r->steps, r->map_levels,
-      r->plan.desc.fill == ABBE_FILL_BRIDGE ? "#define BRIDGE\n" : "",
+      r->defines, r->lanes, r->steps, r->map_levels, r->plan.fills ? "#define BRIDGE\n" : "",
       r->plan.layers ? "float(map_size) / 16.0" : "float(map_size)");
   abbe_result result =
       abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
@@ -501,9 +502,10 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
     result =
         abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
-    if (!abbe_renderer_map_is_given(r, light)) result = fit_map(r, light, error);
+    if (r->plan.reaches[light] && !abbe_renderer_map_is_given(r, light))
+      result = fit_map(r, light, error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
-    result = abbe_renderer_fit_cells(r, light, error);
+    if (r->plan.reaches[light]) result = abbe_renderer_fit_cells(r, light, error);
   for (size_t light = 0; light < r->plan.light_count; light++) abbe_renderer_shift_cells(r, light);
   if (result == ABBE_OK) abbe_renderer_upload_lights(r);
   if (result == ABBE_OK) result = abbe_renderer_light_layers(r, error);
@@ -516,7 +518,7 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
                                         unsigned **cells, size_t *count, size_t *orders,
                                         size_t *lanes, abbe_error *error) {
   *data = NULL;
-  if (light >= r->plan.light_count || r->trace == 0)
+  if (light >= r->plan.light_count || !r->plan.reaches[light] || r->trace == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
   abbe_result result = abbe_renderer_light_layers(r, error);
   if (result == ABBE_OK) result = abbe_renderer_start_photons(r, light, error);

@@ -1,6 +1,7 @@
 #include "gl/plan.h"
 
 #include "gl/precision.h"
+#include "gl/reach.h"
 #include "scenes/vector.h"
 #include "scenes/view.h"
 #include "spectral/wavelengths.h"
@@ -124,16 +125,19 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
 /* Whether n and the attenuation over the range ask for more than constants. */
 static abbe_result examine_material(const abbe_scene *scene, const abbe_material *material,
                                     abbe_plan *plan, abbe_error *error) {
-  double min = plan->desc.min_nm, max = plan->desc.max_nm, first = 0;
+  double min = plan->desc.min_nm, max = plan->desc.max_nm, first = 0, first_per_m = 0;
   bool outside =
       abbe_material_extrapolates(material, min) || abbe_material_extrapolates(material, max);
   for (int i = 0; i < RANGE_STEPS; i++) {
     double lambda_nm = min + (max - min) * i / (RANGE_STEPS - 1), n = 0;
     abbe_result result = abbe_material_n(material, lambda_nm, &n, error);
     if (result != ABBE_OK) return result;
+    double per_m = abbe_material_attenuation(material, lambda_nm);
     if (i == 0) first = n;
+    if (i == 0) first_per_m = per_m;
     if (n != first) plan->dispersive = true;
-    if (abbe_material_attenuation(material, lambda_nm) > 0) plan->absorbing = true;
+    if (per_m != first_per_m) plan->tinting = true;
+    if (per_m > 0) plan->absorbing = true;
   }
   for (size_t i = 0; i < plan->refractor_count && outside; i++)
     if (scene->object[plan->refractor_object[i]].material == material) outside = false;
@@ -300,23 +304,50 @@ static void examine_shadows(const abbe_scene *scene, abbe_plan *plan) {
                              : "the receivers bound a convex room around the lights");
 }
 
+/* Which lights and whether the eye may meet a refractor; what none of them meets takes no light
+ * and costs nothing. */
+static void examine_reach(const abbe_scene *scene, abbe_plan *plan) {
+  bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  for (size_t k = 0; k < plan->refractor_count; k++) {
+    const abbe_object *object = &scene->object[plan->refractor_object[k]];
+    for (size_t i = 0; i < scene->light_count; i++)
+      if (thesis || abbe_reach_light(&scene->light[i], object))
+        plan->caustics = plan->reaches[i] = true;
+    if (thesis || abbe_reach_eye(&scene->camera, plan->desc.width, plan->desc.height, object))
+      plan->seen = true;
+  }
+  if (plan->caustics || plan->seen) return;
+  plan->dispersive = plan->absorbing = plan->tinting = false;
+}
+
+/* Why nothing refracts, or NULL. */
+static const char *no_refraction(const abbe_plan *plan) {
+  return plan->caustics || plan->seen ? NULL
+         : plan->refractor_count == 0 ? "nothing refracts"
+                                      : "neither a light nor the eye meets a refractor";
+}
+
+static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
+  return no_refraction(plan) != NULL ? no_refraction(plan)
+         : asked                     ? "as asked"
+         : plan->dispersive          ? "the index varies with wavelength"
+         : plan->tinting             ? "the attenuation varies with wavelength"
+                                     : "all indices are constant, one geometry serves all";
+}
+
 static void resolve_wavelengths(abbe_plan *plan) {
   bool asked = plan->desc.wavelengths != 0;
-  if (!asked) plan->desc.wavelengths = plan->dispersive ? 7 : 1;
-  if (plan->refractor_count == 0) plan->desc.wavelengths = 1;
+  if (!asked) plan->desc.wavelengths = plan->dispersive || plan->tinting ? 7 : 1;
+  if (no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
   add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
-      plan->desc.min_nm, plan->desc.max_nm,
-      plan->refractor_count == 0 ? "nothing refracts"
-      : asked                    ? "as asked"
-      : plan->dispersive         ? "the index varies with wavelength"
-                                 : "all indices are constant, one geometry serves all");
+      plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : 8;
   if (abbe_profile_is_thesis(plan->desc.profile)) plan->desc.orders = 1;
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->slots = plan->desc.orders + (thesis ? 0 : 1);
-  if (plan->refractor_count == 0)
-    add(plan, false, "inner reflections", "nothing refracts");
+  if (no_refraction(plan) != NULL)
+    add(plan, false, "inner reflections", "%s", no_refraction(plan));
   else if (plan->desc.orders == 1)
     add(plan, false, "inner reflections", "two interfaces only, %s",
         thesis ? "as in the thesis" : "as asked");
@@ -353,13 +384,20 @@ static void note_overlaps(const abbe_scene *scene, abbe_plan *plan) {
 static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
   bool depth = plan->receivers == ABBE_RECEIVER_DEPTH;
+  for (size_t i = 0; i < scene->light_count && plan->refractor_count > 0; i++) {
+    char name[64];
+    snprintf(name, sizeof name, "map: %.50s", scene->light[i].name);
+    add(plan, plan->reaches[i], name, "%s",
+        plan->reaches[i] ? "the light may meet a refractor" : "its cone misses every refractor");
+  }
   add(plan, depth, "light: receiver depth",
       depth ? "receivers are found by their depth from the light" : "receivers are hit exactly");
   add(plan, caustics, "light: refractor front",
       caustics ? "photons start where the light sees a refractor" : "no light meets a refractor");
   add(plan, caustics && plan->layers, "light: refractor back",
-      plan->layers ? "a mesh without an exact surface ends at its back layer"
-                   : "every refractor has an exact surface");
+      !plan->layers ? "every refractor has an exact surface"
+      : caustics    ? "a mesh without an exact surface ends at its back layer"
+                    : "no light meets a refractor");
   if (caustics) {
     add(plan, true, "light: photon placement",
         "at most %zu a side, where light meets a refractor", plan->desc.photons);
@@ -373,33 +411,35 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
                                          "light: spectral map"};
     for (int k = 0; k < 3; k++) add(plan, false, passes[k], "no light meets a refractor");
   }
-  bool fill = caustics && plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
-  if (fill)
-    add(plan, true, "light: gap fill", "%s: wavelengths land apart",
-        abbe_fill_name(plan->desc.fill));
+  bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
+  plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
+  if (plan->fills)
+    add(plan, true, "light: gap fill", "%s: %s", abbe_fill_name(plan->desc.fill),
+        apart ? "wavelengths land apart" : "the thesis fills whatever lands");
   else
-    add(plan, false, "light: gap fill",
-        plan->desc.wavelengths > 1 && caustics ? "none, as asked" : "nothing lands apart");
-  add(plan, plan->absorbing, "absorption",
-      plan->absorbing ? "a material attenuates; path lengths are kept" : "every material is clear");
+    add(plan, false, "light: gap fill", apart ? "none, as asked" : "nothing lands apart");
+  add(plan, plan->absorbing, "absorption", "%s",
+      no_refraction(plan) != NULL ? no_refraction(plan)
+      : plan->absorbing           ? "a material attenuates; path lengths are kept"
+                                  : "every material is clear");
   add(plan, true, "eye: receivers", "light, shadow and spectral map");
-  bool refractors = plan->refractor_count > 0;
-  add(plan, refractors, "eye: refractor front",
-      refractors ? "the pixels that show a refractor" : "nothing refracts");
-  add(plan, refractors && plan->layers, "eye: refractor back",
-      plan->layers ? "a mesh without an exact surface ends at its back layer"
-                   : "every refractor has an exact surface");
-  add(plan, refractors, "eye: refraction",
-      refractors ? "one direction a wavelength" : "nothing refracts");
+  bool seen = plan->seen;
+  const char *unseen = plan->refractor_count > 0 ? "the eye sees no refractor" : "nothing refracts";
+  add(plan, seen, "eye: refractor front", "%s", seen ? "the pixels that show a refractor" : unseen);
+  add(plan, seen && plan->layers, "eye: refractor back", "%s",
+      !plan->layers ? "every refractor has an exact surface"
+      : seen        ? "a mesh without an exact surface ends at its back layer"
+                    : unseen);
+  add(plan, seen, "eye: refraction", "%s", seen ? "one direction a wavelength" : unseen);
   add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
       plan->desc.supersample);
   add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
-  if (!thesis && refractors && depth)
+  if (!thesis && seen && depth)
     note(plan, "through refractors, receivers show as far as the eye also sees them straight");
   if (plan->refractor_count > 1)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   note_overlaps(scene, plan);
-  if (scene->light_count > 1 && refractors)
+  if (scene->light_count > 1 && seen)
     note(plan, "through refractors, colours are split by the first light's illuminant");
 }
 
@@ -471,8 +511,8 @@ static abbe_result check_lights(const abbe_scene *scene, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Every light needs one view that holds all refractors; receivers outside it get no light through
- * them, which is noted. */
+/* A light that meets a refractor needs one view that holds all of them; receivers outside it get no
+ * light through them, which is noted. */
 static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
   static const double up[3] = {0, 1, 0};
   double min[3], max[3], forward[3];
@@ -480,7 +520,7 @@ static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_
   if (!any || abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
-    if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;
+    if (light->kind == ABBE_LIGHT_DIRECTIONAL || !plan->reaches[i]) continue;
     for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - light->position[k];
     if (forward[0] == 0 && forward[1] == 0 && forward[2] == 0) forward[2] = -1;
     abbe_view view;
@@ -518,6 +558,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   if (result == ABBE_OK) result = examine_objects(scene, out, error);
   if (result == ABBE_OK) result = check_thesis(scene, out, error);
   if (result == ABBE_OK) result = check_layout(scene, out, error);
+  if (result == ABBE_OK) examine_reach(scene, out);
   if (result == ABBE_OK) result = examine_views(scene, out, error);
   if (result == ABBE_OK) result = abbe_precision_check(scene, out, error);
   if (result != ABBE_OK) {
@@ -525,7 +566,6 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
     return result;
   }
   out->light_count = scene->light_count;
-  out->caustics = out->refractor_count > 0 && out->light_count > 0;
   examine_shadows(scene, out);
   resolve_wavelengths(out);
   list_passes(scene, out);

@@ -52,7 +52,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 typedef struct abbe_render_desc {
   abbe_profile profile;
   size_t width, height;  /* pixels; 0: the scene's */
-  size_t wavelengths;    /* samples; 0: 7, or 1 where no index varies */
+  size_t wavelengths;    /* samples; 0: 7, or 1 where neither index nor attenuation varies */
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
   size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
   size_t map_size;       /* side of the spectral map; 0: 1024 */
@@ -106,9 +106,13 @@ typedef struct abbe_plan {
   bool spheres, convex, layers; /* models in use */
   bool dispersive;              /* some index varies over the range */
   bool absorbing;               /* some attenuation is above zero in the range */
+  bool tinting;                 /* some attenuation varies over the range */
   bool textured;
-  size_t slots;  /* landings of a photon at the most: its exits, and the mirror on the outside */
-  bool caustics; /* a light can reach a refractor */
+  size_t slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
+  bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
+  bool caustics;                       /* some light may */
+  bool seen;                           /* the eye may */
+  bool fills;                          /* light is laid between wavelengths */
   size_t light_count;
   size_t entry_count; /* passes and models, in the order in which they run */
   abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];

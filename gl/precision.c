@@ -90,6 +90,7 @@ abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
     const abbe_light *light = &scene->light[i];
     bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
     abbe_view view;
+    if (!plan->reaches[i]) continue;
     for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - light->position[k];
     abbe_view_look(sun ? min : light->position, sun ? light->direction : forward, up, sun, &view);
     for (size_t k = 0; k < plan->refractor_count; k++) {

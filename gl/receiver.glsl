@@ -2,7 +2,9 @@
 // otherwise what the light's and the eye's views see of them.
 
 uniform sampler2DArray spectral_map;   // XYZ flux over window area, one layer a light
+#ifdef TEXTURED
 uniform sampler2DArray surface_texture;
+#endif
 #ifdef LAYERS
 uniform sampler2DArray light_layers;   // refractor front (2 * light) and back (+ 1): n, distance
 #endif
@@ -69,6 +71,7 @@ bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
 
 // Share of direct light that no refractor takes away on its way to p.
 float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
+  if (lights[light].misc.w == 0.0) return 1.0;
   Hit h;
   h.t = distance_m;
   if (exact_front(p - distance_m * d, d, h)) return 0.0;
@@ -134,19 +137,25 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
     float e = l.white.w * light_profile(l, d) * facing * falloff;
     if (e > 0.0) direct = l.white.rgb * (e * refractor_shadow(light, p, d, distance_m));
   }
+#ifdef CAUSTICS
+  if (l.misc.w == 0.0) return;
   // The map holds the light of the side that faces the refractors.
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
   vec3 uvz;
   if (!project(l.map_view, p, uvz) || !inside(uvz.xy)) return;
   vec3 flux = map_flux(light, l.map_view, p, uvz.xy);
   caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
+#endif
 }
 
 vec3 surface_reflectance(int surface, vec2 uv) {
   Surface s = surfaces[surface];
-  if (s.texture_info.x < 0.0) return s.reflectance.rgb;
-  return s.reflectance.rgb *
-         textureLod(surface_texture, vec3(uv * s.texture_info.yz, s.texture_info.x), 0.0).rgb;
+#ifdef TEXTURED
+  if (s.texture_info.x >= 0.0)
+    return s.reflectance.rgb *
+           textureLod(surface_texture, vec3(uv * s.texture_info.yz, s.texture_info.x), 0.0).rgb;
+#endif
+  return s.reflectance.rgb;
 }
 
 struct Shading {

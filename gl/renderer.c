@@ -42,7 +42,7 @@ static void write_defines(abbe_renderer *r) {
            "#define LIGHT_ROOM %zu\n"
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
-           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s",
+           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, p->slots, room(p->light_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
@@ -57,7 +57,8 @@ static void write_defines(abbe_renderer *r) {
            p->spheres ? "#define SPHERES\n" : "", p->convex ? "#define CONVEX\n" : "",
            p->layers ? "#define LAYERS\n" : "",
            p->receivers == ABBE_RECEIVER_EXACT ? "#define EXACT_RECEIVERS\n" : "",
-           p->absorbing ? "#define ABSORBING\n" : "");
+           p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
+           p->caustics ? "#define CAUSTICS\n" : "");
 }
 
 /* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
@@ -281,7 +282,7 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   static const char *const xyz[] = {"X", "Y", "Z"}, *const rgb[] = {"R", "G", "B"};
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   bool flat = abbe_profile_is_thesis(r->plan.desc.profile);
-  if (light >= r->plan.light_count || !r->plan.caustics)
+  if (light >= r->plan.light_count || !r->plan.reaches[light])
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the scene has no spectral map of light %zu", light);
   size_t side = r->plan.desc.map_size;

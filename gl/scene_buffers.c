@@ -495,6 +495,7 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     g.misc[0] = (float)cos(fmax(light->cone_rad - light->soft_rad, 0));
     g.misc[1] = (float)abbe_renderer_map_unit(r, i);
     g.misc[2] = (float)(1 / cell_area);
+    g.misc[3] = r->plan.reaches[i] ? 1 : 0;
     upload_warps(r, i);
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);
     r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g), sizeof g, &g);
