@@ -41,8 +41,18 @@ static int step_bin(double texels) {
   return (int)fmin(fmax(bin, 0), STEP_BINS - 1);
 }
 
+/* The brightest landing in 2^24 parts: flux is counted in whole ones, whose sums do not depend on
+ * the order in which photons are listed. */
+static double part_of(const batch_view *b) {
+  float most = 0;
+  for (size_t i = 0; i < b->photons * b->orders * b->lanes; i++)
+    most = fmaxf(most, b->landing[4 * i + 3]);
+  return most > 0 ? (double)most / (1 << 24) : 1;
+}
+
 /* Light by how far, in texels, the next cell's landing on the same path lies from this one's. */
 static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS]) {
+  double part = part_of(b);
   for (size_t i = 0; i < b->photons; i++) {
     GLuint cell = b->photon[i * (PHOTON_BYTES / 4)];
     size_t at[2] = {cell & 0xffffu, cell >> 16};
@@ -58,7 +68,7 @@ static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS
           !texel_of(b, b->landing + 4 * here, from) || !texel_of(b, b->landing + 4 * there, to))
         continue;
       double step = hypot(to[0] - from[0], to[1] - from[1]);
-      histogram[step_bin(step)] += b->landing[4 * here + 3];
+      histogram[step_bin(step)] += rint((double)b->landing[4 * here + 3] / part);
     }
   }
 }
