@@ -26,6 +26,7 @@ enum {
   OPTION_BITS,
   OPTION_LAYERS,
   OPTION_UNFILLED,
+  OPTION_BANDS,
   OPTION_STATS,
   OPTION_GL,
   OPTION_FRAMES,
@@ -44,7 +45,7 @@ typedef struct request {
   const char *exr, *png, *stats;
   bool layers, unfilled, quiet, json;
   int bits;
-  size_t frames;
+  size_t frames, bands;
   abbe_context_backend backend;
   abbe_display_desc display;
 } request;
@@ -54,6 +55,7 @@ static const struct argp_option options[] = {
     {"png", OPTION_PNG, "FILE.png", 0, "the picture for a display, through OpenColorIO", 0},
     {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8)", 0},
     {"layers", OPTION_LAYERS, NULL, 0, "direct, caustic and distance layers in the EXR", 0},
+    {"bands", OPTION_BANDS, "N", 0, "N bands of wavelengths in the saved map too, in W/nm", 0},
     {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
     {"stats", OPTION_STATS, "FILE", 0, "times, photons and the energy ledger as JSON", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
@@ -89,6 +91,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_LAYERS:
     q->layers = true;
     return 0;
+  case OPTION_BANDS:
+    q->bands = abbe_command_count(p, "--bands", text, 1, ABBE_RENDER_MAX_BANDS);
+    return 0;
   case OPTION_UNFILLED:
     q->unfilled = true;
     return 0;
@@ -123,6 +128,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
         q->errors.png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
+    if (q->bands > 0 && q->map.save == NULL)
+      argp_error(state, "--bands are those of a map: give --save-map FILE.exr too");
     if (q->errors.mean && q->layers)
       argp_error(state, "--mean has no --layers: they are of one picture, not of the mean");
     return 0;
@@ -283,7 +290,9 @@ static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_erro
   abbe_image map = {0};
   bool thesis = abbe_renderer_plan(renderer)->desc.profile == ABBE_PROFILE_THESIS;
   abbe_result result =
-      abbe_renderer_read_map(renderer, q->map.light_index, !q->unfilled, &map, error);
+      q->bands > 0
+          ? abbe_renderer_read_map_bands(renderer, q->map.light_index, q->bands, &map, error)
+          : abbe_renderer_read_map(renderer, q->map.light_index, !q->unfilled, &map, error);
   if (result != ABBE_OK) return result;
   result = abbe_image_set_attribute(&map, "abbe:unit",
                                     thesis ? "display brightness" : "flux a texel, W", error);

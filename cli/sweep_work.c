@@ -108,6 +108,7 @@ static abbe_result trace_reference(work *w, bool matched, traced *to, abbe_error
   if (result != ABBE_OK) return result;
   desc.trace.layout = &layout;
   desc.trace.photons = q->photons;
+  desc.trace.bands = ABBE_SWEEP_BANDS;
   /* Noise of its own: what the two have in common must not cancel. */
   desc.trace.seed = matched && q->split ? 1 : 0;
   desc.trace.map_width = desc.trace.map_height = q->texels > 0 ? q->texels : DEFAULT_TEXELS;
@@ -132,11 +133,12 @@ static abbe_result find_reference(work *w, bool matched, traced *to, abbe_error 
   const abbe_sweep_request *q = w->q;
   size_t width = q->width > 0 ? q->width : w->scene.camera.width;
   size_t height = q->height > 0 ? q->height : w->scene.camera.height;
-  snprintf(to->stamp, sizeof to->stamp,
-           "scene %016llx, %zu x %zu pixels, %zu texels a side, %zu passes of %zu photons, %s",
-           abbe_sweep_hash_scene(&w->scene), width, height,
-           q->texels > 0 ? q->texels : (size_t)DEFAULT_TEXELS, passes_of(q), q->photons,
-           matched ? "matched" : "full");
+  snprintf(
+      to->stamp, sizeof to->stamp,
+      "scene %016llx, %zu x %zu pixels, %zu texels a side, %d bands, %zu passes of %zu photons, %s",
+      abbe_sweep_hash_scene(&w->scene), width, height,
+      q->texels > 0 ? q->texels : (size_t)DEFAULT_TEXELS, ABBE_SWEEP_BANDS, passes_of(q),
+      q->photons, matched ? "matched" : "full");
   if (is_stamped(to->picture_path, to->stamp, &to->picture)) {
     if (is_stamped(to->map_path, to->stamp, &to->map)) {
       unlink(to->checkpoint_path); /* a kill may have left it, and another request refuses it */

@@ -2,6 +2,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -112,4 +113,12 @@ size_t abbe_image_find_channel(const abbe_image *image, const char *name) {
   for (size_t i = 0; i < image->channels; i++)
     if (strcmp(image->channel[i], name) == 0) return i;
   return (size_t)-1;
+}
+
+void abbe_image_band_name(double middle_nm, char *out, size_t size) {
+  char number[64];
+  snprintf(number, sizeof number, "%.6f", middle_nm);
+  for (char *c = number; *c != '\0'; c++)
+    if (*c == '.') *c = ',';
+  snprintf(out, size, "S0.%snm", number);
 }

@@ -46,6 +46,9 @@ const char *abbe_image_attribute_text(const abbe_image *image, const char *name)
 /* Index of the named channel, or (size_t)-1. */
 size_t abbe_image_find_channel(const abbe_image *image, const char *name);
 
+/* The channel of a band of wavelengths, by the one in its middle: "S0.550,000000nm" [Fichet2021]. */
+void abbe_image_band_name(double middle_nm, char *out, size_t size);
+
 #ifdef __cplusplus
 }
 #endif

@@ -99,6 +99,26 @@ void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, dou
   for (int k = 0; k < 3; k++) xyz[k] = white[1] > 0 ? xyz[k] / white[1] : 0;
 }
 
+/* The illuminant's power over [from, to], relative, cut where its table has a knot. */
+static double integrate_power(const abbe_illuminant *illuminant, double from, double to) {
+  double sum = 0;
+  while (from < to) {
+    double next = fmin(fmin(cie_knot_above(from), table_knot_above(illuminant, from)), to);
+    double half = (next - from) / 2, middle = from + half;
+    for (int i = 0; i < RULE_COUNT; i++)
+      sum += half * rule_w[i] * abbe_illuminant_power(illuminant, middle + half * rule_x[i]);
+    from = next;
+  }
+  return sum;
+}
+
+double abbe_weights_band_power(const abbe_illuminant *illuminant, double min_nm, double max_nm,
+                               double from_nm, double to_nm) {
+  double all = integrate_power(illuminant, min_nm, max_nm);
+  double band = integrate_power(illuminant, fmax(from_nm, min_nm), fmin(to_nm, max_nm));
+  return all > 0 ? band / all : 0;
+}
+
 static void sum_weights(abbe_weights *weights) {
   sum3 sum = {0};
   for (size_t i = 0; i < weights->count; i++) sum_add(&sum, weights->weight[i]);

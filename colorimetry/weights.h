@@ -37,6 +37,10 @@ void abbe_weights_free(abbe_weights *weights);
 void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                            double from_nm, double to_nm, double xyz[3]);
 
+/* Share of the illuminant's power over [min_nm, max_nm] that lies in [from_nm, to_nm]. */
+double abbe_weights_band_power(const abbe_illuminant *illuminant, double min_nm, double max_nm,
+                               double from_nm, double to_nm);
+
 /* The thesis's seven samples: nodes 380, 430, … 680 nm, and as linear RGB the values that its
  * shaders add (appendix A: 0.3 0 0.8 … 1 0 0; sums 3.5), not those of its Table 2 / 255. */
 #define ABBE_WEIGHTS_THESIS_COUNT 7

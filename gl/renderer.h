@@ -54,6 +54,13 @@ abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image 
 abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool filled,
                                    abbe_image *out, abbe_error *error);
 
+/* The same with so many bands of equal width over the range beside X, Y, Z, in W/nm, named as
+ * abbe_image_band_name does. It follows the photons anew, once for three bands and once more, so
+ * that the renderer is then as it was. Default profile only, 1 to ABBE_RENDER_MAX_BANDS. */
+#define ABBE_RENDER_MAX_BANDS 256
+abbe_result abbe_renderer_read_map_bands(abbe_renderer *renderer, size_t light, size_t bands,
+                                         abbe_image *out, abbe_error *error);
+
 /* The layout of a light's map: fitted to its landings, or the request's. */
 void abbe_renderer_map_layout(const abbe_renderer *renderer, size_t light, abbe_map_layout *out);
 

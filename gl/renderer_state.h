@@ -91,6 +91,8 @@ struct abbe_renderer {
   size_t layer_side; /* of the light's layers */
   size_t lanes;      /* wavelengths traced in one batch */
   size_t steps;      /* of an interval */
+  size_t map_bands, map_band; /* bands of the range whose light the map sums, and the first of the
+                                 three; 0: X, Y, Z */
   size_t device_bytes;
   char defines[1024];
 
@@ -119,6 +121,9 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error);
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_renderer_to_working(const abbe_renderer *r, const double rgb[3], double out[3]);
 void abbe_renderer_upload_lights(abbe_renderer *r);
+/* What the map sums: bands first to first + 2 of so many, or with 0 bands X, Y, Z. */
+abbe_result abbe_renderer_weigh_bands(abbe_renderer *r, size_t bands, size_t first,
+                                      abbe_error *error);
 void abbe_renderer_free_scene(abbe_renderer *r);
 
 /* resources.c: buffers and textures, counted. */

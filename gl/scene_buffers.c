@@ -256,6 +256,20 @@ static abbe_result upload_spectra(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
+/* X, Y, Z of a part of the light's spectrum, or its share in each of three bands. */
+static void weigh_part(const abbe_renderer *r, const abbe_illuminant *illuminant, double min,
+                       double max, double from, double to, double out[3]) {
+  if (r->map_bands == 0) {
+    abbe_weights_band_xyz(illuminant, min, max, from, to, out);
+    return;
+  }
+  double width = (max - min) / (double)r->map_bands;
+  for (int c = 0; c < 3; c++) {
+    double low = min + width * (double)(r->map_band + (size_t)c);
+    out[c] = abbe_weights_band_power(illuminant, min, max, fmax(from, low), fmin(to, low + width));
+  }
+}
+
 /* One interval between nodes a = i - 1 and b = i: XYZ up to each step, and how far the index has
  * moved from one node's to the other's: landings follow it nearly linearly. */
 static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, size_t light,
@@ -279,7 +293,7 @@ static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, siz
     double n = n_a, xyz[3];
     abbe_material_n(material, lambda_nm, &n, NULL);
     double t = n_a != n_b ? (n - n_a) / (n_b - n_a) : b > a ? (lambda_nm - a) / (b - a) : 0;
-    abbe_weights_band_xyz(illuminant, min, max, before, lambda_nm, xyz);
+    weigh_part(r, illuminant, min, max, before, lambda_nm, xyz);
     for (int c = 0; c < 3; c++) sum[c] += xyz[c];
     store(sum, t, out[k]);
     before = lambda_nm;
@@ -297,9 +311,27 @@ static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
       for (size_t i = 0; i <= w->count; i++, row++)
         fill_interval(r, w, light, r->scene->object[r->plan.refractor_object[k]].material, i,
                       table + row * (r->steps + 1));
-  abbe_result result = abbe_renderer_make_buffer(r, rows * (r->steps + 1) * sizeof *table, table,
-                                                 &r->buffer[BINDING_INTERVALS], error);
+  const size_t size = rows * (r->steps + 1) * sizeof *table;
+  abbe_result result = ABBE_OK;
+  if (r->buffer[BINDING_INTERVALS] == 0) {
+    result = abbe_renderer_make_buffer(r, size, table, &r->buffer[BINDING_INTERVALS], error);
+  } else {
+    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_INTERVALS]);
+    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
+  }
   free(table);
+  return result;
+}
+
+abbe_result abbe_renderer_weigh_bands(abbe_renderer *r, size_t bands, size_t first,
+                                      abbe_error *error) {
+  abbe_wavelengths w = {0};
+  r->map_bands = bands;
+  r->map_band = first;
+  abbe_result result = abbe_wavelengths_make(r->plan.desc.wavelengths, r->plan.desc.min_nm,
+                                             r->plan.desc.max_nm, &w, error);
+  if (result == ABBE_OK) result = upload_intervals(r, &w, error);
+  abbe_wavelengths_free(&w);
   return result;
 }
 

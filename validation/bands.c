@@ -1,5 +1,7 @@
 #include "validation/bands.h"
 
+#include "colorimetry/image.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -44,9 +46,5 @@ void abbe_bands_free(abbe_bands *b) {
 }
 
 void abbe_bands_name(const abbe_bands *bands, size_t band, char *out, size_t size) {
-  char number[64];
-  snprintf(number, sizeof number, "%.6f", bands->middle_nm[band]);
-  for (char *c = number; *c != '\0'; c++)
-    if (*c == '.') *c = ',';
-  snprintf(out, size, "S0.%snm", number);
+  abbe_image_band_name(bands->middle_nm[band], out, size);
 }

@@ -441,7 +441,9 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   if (!plan->caustics || s->light >= plan->light_count) return ABBE_OK;
-  abbe_result result = abbe_renderer_read_map(renderer, s->light, true, &map, error);
+  abbe_result result =
+      thesis ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
+             : abbe_renderer_read_map_bands(renderer, s->light, ABBE_SWEEP_BANDS, &map, error);
   if (result == ABBE_OK && thesis) {
     result = abbe_renderer_read_map(renderer, s->light, false, &before, error);
     if (result == ABBE_OK) note_fill(&before, &map, out);

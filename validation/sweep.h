@@ -20,6 +20,7 @@ extern "C" {
 
 #define ABBE_SWEEP_MAX_VALUES 16 /* of one axis */
 #define ABBE_SWEEP_MAX_GRIDS 8
+#define ABBE_SWEEP_BANDS 8 /* in which maps are compared over wavelength */
 
 /* Values of one axis; none: the profile's default. */
 typedef struct abbe_sweep_values {
