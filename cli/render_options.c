@@ -13,6 +13,7 @@ enum {
   OPTION_PHOTONS,
   OPTION_MAP,
   OPTION_SAMPLES,
+  OPTION_MODEL,
   OPTION_FILL,
   OPTION_SHARE,
   OPTION_EXITS,
@@ -28,9 +29,11 @@ static const struct argp_option options[] = {
     {"photons", OPTION_PHOTONS, "N", 0, "side of the photon grid, 1 to 4096 (256)", 1},
     {"map", OPTION_MAP, "N", 0, "side of the spectral map, 1 to 4096 (1024)", 1},
     {"samples", OPTION_SAMPLES, "N", 0, "samples a pixel side, 1 to 4 (2; thesis 1)", 1},
+    {"model", OPTION_MODEL, "NAME", 0,
+     "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)", 1},
     {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
     {"share", OPTION_SHARE, "X", 0, "paths end below this share of their light (0.01)", 1},
-    {"exits", OPTION_EXITS, "N", 0, "exits followed at the most, 1 to 16 (8; 4 for meshes)", 1},
+    {"exits", OPTION_EXITS, "N", 0, "exits followed at the most, 1 to 16 (8; 4 by layers)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
     {"materials", OPTION_MATERIALS, "TABLE", 0,
      "a table instead of the scene's: default, thesis or a file", 1},
@@ -39,6 +42,7 @@ static const struct argp_option options[] = {
 #define ABBE_NAME_OF_2(code, name) name,
 #define ABBE_NAME_OF_3(code, name, ocio) name,
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF_2)};
+static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF_2)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 
@@ -68,6 +72,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_SAMPLES:
     d->supersample = abbe_command_count(p, "--samples", text, 1, 4);
+    return 0;
+  case OPTION_MODEL:
+    d->model = (abbe_model)abbe_command_choice(p, "--model", text, models, ABBE_MODEL_COUNT);
     return 0;
   case OPTION_FILL:
     d->fill = (abbe_fill)abbe_command_choice(p, "--fill", text, fills, ABBE_FILL_COUNT);

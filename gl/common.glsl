@@ -16,7 +16,7 @@ struct Light {
 
 struct Refractor {
   vec4 sphere;  // centre, radius
-  ivec4 info;   // model, first plane, planes, index among refractors
+  ivec4 info;   // model, first plane or root of its hierarchy, planes
 };
 
 struct Receiver {  // a parallelogram
@@ -32,6 +32,7 @@ struct Surface {
 const int MODEL_SPHERE = 0;
 const int MODEL_CONVEX = 1;
 const int MODEL_LAYERS = 2;
+const int MODEL_HIERARCHY = 3;
 
 // Tables of the scene. They are uniform blocks wherever they fit: a software rasteriser reads
 // those far faster than storage. ROOM: at least one element, whatever the count.

@@ -44,24 +44,7 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   int waiting = 0, found = -1, leaf = ~todo;
   int node = todo, next = todo < 0 ? leaf >> 3 : 0, end = next + (todo < 0 ? leaf & 7 : 0);
   while (node >= 0 || next < end) {
-    if (next < end) {
-      vec3 corner = hierarchy_triangle[3 * next].xyz;
-      vec3 e1 = hierarchy_triangle[3 * next + 1].xyz, e2 = hierarchy_triangle[3 * next + 2].xyz;
-      vec3 across = cross(d, e2), from = o - corner;
-      float det = dot(e1, across);
-      vec3 q = cross(from, e1);
-      float scale = 1.0 / det;
-      float u = dot(from, across) * scale, v = dot(d, q) * scale, t = dot(e2, q) * scale;
-      // A triangle is a little larger than it is, so that no ray slips through between two.
-      bool hit = det != 0.0 && det * side >= 0.0 && min(u, v) >= -2e-6 && u + v <= 1.000002 &&
-                 t > t_min && t < nearest;
-      found = hit ? next : found;
-      nearest = hit ? t : nearest;
-      hit_u = hit ? u : hit_u;
-      hit_v = hit ? v : hit_v;
-      next++;
-      todo = -1;
-    } else {
+    while (node >= 0) {
       vec4 low_a = hierarchy_node[2 * node], high_a = hierarchy_node[2 * node + 1];
       vec4 low_b = hierarchy_node[2 * node + 2], high_b = hierarchy_node[2 * node + 3];
       float a = hierarchy_enter(low_a, high_a, o, inverse, t_min, nearest);
@@ -69,19 +52,42 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
       int code_a = a < 1e30 ? hierarchy_code(low_a, high_a) : -1;
       int code_b = b < 1e30 ? hierarchy_code(low_b, high_b) : -1;
       bool both = code_a != -1 && code_b != -1;
-      if (both) stack[waiting] = b < a ? code_a : code_b;
+      stack[waiting] = b < a ? code_a : code_b;
       waiting += both ? 1 : 0;
       todo = both ? (b < a ? code_b : code_a) : code_a != -1 ? code_a : code_b;
-      node = -1;
+      bool pop = todo == -1 && waiting > 0;
+      waiting -= pop ? 1 : 0;
+      int top = stack[waiting];
+      todo = pop ? top : todo;
+      node = todo;
     }
-    bool done = next >= end && todo == -1;
-    bool over = waiting == 0 || (any && found >= 0);
-    waiting -= done && !over ? 1 : 0;
-    if (done && !over) todo = stack[waiting];
     leaf = ~todo;
-    next = todo < -1 ? leaf >> 3 : any && found >= 0 ? end : next;
-    end = todo < -1 ? next + (leaf & 7) : end;
-    node = todo >= 0 ? todo : -1;
+    next = leaf >> 3;
+    end = next + (leaf & 7);
+    while (next < end) {
+      vec3 corner = hierarchy_triangle[3 * next].xyz;
+      vec3 e1 = hierarchy_triangle[3 * next + 1].xyz, e2 = hierarchy_triangle[3 * next + 2].xyz;
+      vec3 across = cross(d, e2), from = o - corner;
+      float det = dot(e1, across);
+      vec3 q = cross(from, e1);
+      float scale = 1.0 / det;
+      float u = dot(from, across) * scale, v = dot(d, q) * scale, t = dot(e2, q) * scale;
+      bool hit = det != 0.0 && det * side >= 0.0 && min(u, v) >= -2e-6 && u + v <= 1.000002 &&
+                 t > t_min && t < nearest;
+      found = hit ? next : found;
+      nearest = hit ? t : nearest;
+      hit_u = hit ? u : hit_u;
+      hit_v = hit ? v : hit_v;
+      next++;
+    }
+    bool pop = waiting > 0 && !(any && found >= 0);
+    waiting -= pop ? 1 : 0;
+    int top = stack[waiting];
+    todo = pop ? top : -1;
+    leaf = ~todo;
+    node = todo;
+    next = todo < 0 ? leaf >> 3 : 0;
+    end = todo < 0 ? next + (leaf & 7) : 0;
   }
   h.t = nearest;
   h.u = hit_u;

@@ -333,12 +333,12 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
 }
 
 static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
-  char defines[1280];
+  char defines[2304];
   snprintf(
       defines, sizeof defines,
       "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n%s#define MAX_BRIDGE %s\n",
       r->defines, r->lanes, r->steps, r->map_levels, r->plan.fills ? "#define BRIDGE\n" : "",
-      r->plan.layers ? "float(map_size) / 16.0" : "float(map_size)");
+      r->plan.layers || r->plan.hierarchy ? "float(map_size) / 16.0" : "float(map_size)");
   abbe_result result =
       abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
   if (result == ABBE_OK)

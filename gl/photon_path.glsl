@@ -1,37 +1,45 @@
-// The way of a photon's light of one wavelength: from the light through a refractor to receivers.
+// The way of a photon's light of one wavelength: from the light through refractors to receivers.
 // Every exit that still carries energy is followed, one landing each. Who includes this gives
 // `light`, `share_limit` and keep_landing(photon, slot, lane, place, flux in W, signature).
 
 const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 
-// Lands the ray on a receiver that the light's map can hold.
-bool land(vec3 p, vec3 d, out vec3 at, out uint receiver) {
+const int NO_RECEIVER = 0, NOT_HELD = 1, LANDED = 2;
+
+// The first receiver on the ray, and whether the light's map can hold what lands there.
+int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out uint receiver) {
   Light l = lights[light];
   vec3 uvz;
-#ifdef EXACT_RECEIVERS
   float t;
-  int r = receiver_hit(p, d, -touch * refractor_bounds.w, 1e30, t);
-  if (r < 0) return false;
+  receiver = 1u;
+  at = p;
+#ifdef EXACT_RECEIVERS
+  int r = receiver_hit(p, d, t_min, t_max, t);
+  if (r < 0) return NO_RECEIVER;
   at = p + t * d;
   receiver = uint(r) + 1u;
-  if (!project(l.map_view, at, uvz) || !inside(uvz.xy)) return false;
+  if (!project(l.map_view, at, uvz) || !inside(uvz.xy)) return NOT_HELD;
   vec3 from;
   float distance_m;
   light_to(l, at, from, distance_m);
-  return receiver_lit(light, at, from, distance_m);
+  return receiver_lit(light, at, from, distance_m) ? LANDED : NOT_HELD;
 #else
-  float t;
-  receiver = 1u;
   float start = max(distance(refractor_bounds.xyz, p), 0.1 * scene_size);
-  if (!march(l.map_view, light_receivers, float(light), p, d, start, 2.0 * scene_size, t))
-    return false;
+  if (!march(l.map_view, light_receivers, float(light), p, d, start, 2.0 * scene_size, t) ||
+      t >= t_max)
+    return NO_RECEIVER;
   at = p + t * d;
-  return project(l.map_view, at, uvz) && inside(uvz.xy);
+  return project(l.map_view, at, uvz) && inside(uvz.xy) ? LANDED : NOT_HELD;
 #endif
 }
 
+#ifdef WALK
+#include "photon_walk.glsl"
+#else
+
 // A photon's light at wavelength i, from the refractor that it meets first. Each landing is handed
-// on with its slot; `entry` takes the shares of the light that go elsewhere.
+// on with its slot; `entry` takes the shares of the light that go elsewhere. Light that leaves a
+// refractor meets none again.
 void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,
            out float entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = 0.0;
@@ -46,7 +54,7 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   uint path = uint(r) * 131u + uint(front.facet);
   if (reflected > 0.0) {
     // The mirror on the outside takes the slot behind the exits'; it is the same for all colours.
-    if (land(front.p, reflect(d, front.n), at, receiver))
+    if (land(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, at, receiver) == LANDED)
       keep_landing(photon, EXITS, lane, at, reflected * flux,
                    (path * 17u + receiver) << 8 | 0x80000000u | uint(r));
     else
@@ -74,7 +82,7 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
     float out_share = share * (1.0 - kept);
     vec3 outer;
     if (out_share > 0.0 && refract_direction(inner, -wall_n, n, outer)) {
-      if (land(wall, outer, at, receiver)) {
+      if (land(wall, outer, -touch * refractor_bounds.w, 1e30, at, receiver) == LANDED) {
         keep_landing(photon, order, lane, at, out_share * flux,
                      (path * 31u + receiver) << 8 | 0x80000000u | uint(r));
       } else {
@@ -91,3 +99,4 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   }
   entry[TRAPPED] += share;
 }
+#endif

@@ -9,7 +9,7 @@ struct Photon {
   uint extent;  // of the lit part, in cells, packUnorm2x16
 };
 
-#ifdef LAYERS
+#ifdef FRONT_LAYER
 uniform usampler2DArray layer_owner;  // refractor + 1 of the front layer, one layer a light
 
 // What the light's view holds at uv, where that belongs to a refractor without an exact surface.
@@ -17,7 +17,7 @@ bool layers_front(vec2 uv, vec3 o, vec3 d, inout Hit h) {
   ivec2 at = ivec2(uv * vec2(textureSize(layer_owner, 0).xy));
   int owner = int(texelFetch(layer_owner, ivec3(at, light), 0).x) - 1;
   vec4 front = texelFetch(light_layers, ivec3(at, 2 * light), 0);
-  if (owner < 0 || refractors[owner].info.x != MODEL_LAYERS || front.w <= 0.0 || front.w >= h.t)
+  if (owner < 0 || refractors[owner].info.x < MODEL_LAYERS || front.w <= 0.0 || front.w >= h.t)
     return false;
   h.t = front.w;
   h.p = o + h.t * d;
@@ -39,7 +39,7 @@ bool photon_start(vec2 uv, out vec3 o, out vec3 d, out Hit front, out float flux
   flux = l.white.w * light_profile(l, d) * window_measure(l.near_view, d) / l.misc.z;
   front.t = 1e30;
   bool reached = exact_front(o, d, front);
-#ifdef LAYERS
+#ifdef FRONT_LAYER
   if (layers_front(uv, o, d, front)) reached = true;
 #endif
   return reached && flux > 0.0 && receiver_lit(light, front.p, d, front.t);

@@ -51,9 +51,12 @@ void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint pa
 void main() {
   if (gl_LocalInvocationID.x < 5u) book[gl_LocalInvocationID.x] = 0u;
   barrier();
-  uint photon = gl_GlobalInvocationID.x;
-  int i = lane_first + int(gl_GlobalInvocationID.y);
-  if (photon < photon_count && int(gl_GlobalInvocationID.y) < lane_count) {
+  // A photon's wavelengths side by side: they take the same ways for longer than its neighbours.
+  uint id = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x +
+            gl_GlobalInvocationID.x;
+  uint photon = id / uint(lane_count);
+  int lane = int(id % uint(lane_count)), i = lane_first + lane;
+  if (photon < photon_count) {
     Photon from = photon_at[photon];
     vec2 cell = vec2(from.cell & 0xffffu, from.cell >> 16);
     vec2 uv = (cell + 0.5 + unpackSnorm2x16(from.offset)) / vec2(grid);
@@ -63,7 +66,7 @@ void main() {
     bool reached = photon_start(uv, o, d, front, flux);
     flux = from.flux;
     float entry[5];
-    trace(photon, i - lane_first, i, flux, o, d, front, reached, entry);
+    trace(photon, lane, i, flux, o, d, front, reached, entry);
     float scale = flux * sample_weight[light * WAVELENGTHS + i].y / ledger_unit;
     for (int k = 0; k < 5; k++)
       if (entry[k] > 0.0 && i >= ledger_first) atomicAdd(book[k], uint(entry[k] * scale + 0.5));

@@ -12,7 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_PARALLELOGRAMS = 96, RANGE_STEPS = 81, MAX_MODEL_ENTRIES = 48 };
+enum {
+  MAX_PARALLELOGRAMS = 96,
+  RANGE_STEPS = 81,
+  MAX_MODEL_ENTRIES = 48,
+  MAX_WALK_REFRACTORS = 32,
+  WALK_SLOTS = 16
+};
 
 #define ABBE_NAME_OF(code, name) name,
 const char *abbe_profile_name(abbe_profile profile) {
@@ -28,12 +34,18 @@ const char *abbe_fill_name(abbe_fill fill) {
   static const char *const names[] = {ABBE_FILLS(ABBE_NAME_OF)};
   return (int)fill >= 0 && fill < ABBE_FILL_COUNT ? names[fill] : "unknown";
 }
+
+const char *abbe_model_name(abbe_model model) {
+  static const char *const names[] = {ABBE_MODELS(ABBE_NAME_OF)};
+  return (int)model >= 0 && model < ABBE_MODEL_COUNT ? names[model] : "unknown";
+}
 #undef ABBE_NAME_OF
 
 const char *abbe_refractor_model_name(abbe_refractor_model model) {
   return model == ABBE_REFRACTOR_SPHERE   ? "exact sphere"
          : model == ABBE_REFRACTOR_CONVEX ? "convex planes"
-                                          : "front and back layers";
+         : model == ABBE_REFRACTOR_LAYERS ? "front and back layers"
+                                          : "triangle hierarchy";
 }
 
 const char *abbe_receiver_model_name(abbe_receiver_model model) {
@@ -115,6 +127,10 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "the %s are shifted by %g of their distance; it may be -0.5 to 0.5",
                             k < 2 ? "photons" : "samples", shift[k]);
+  if ((int)d.model < 0 || d.model >= ABBE_MODEL_COUNT || (thesis && d.model != ABBE_MODEL_AUTO))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the model '%s' does not go with the profile '%s'",
+                          abbe_model_name(d.model), abbe_profile_name(d.profile));
   if (thesis != (d.fill == ABBE_FILL_SMEAR) && d.fill != ABBE_FILL_NONE)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'", abbe_fill_name(d.fill),
@@ -147,23 +163,27 @@ static abbe_result examine_material(const abbe_scene *scene, const abbe_material
   return ABBE_OK;
 }
 
-static abbe_refractor_model choose_model(const abbe_object *object, bool thesis) {
-  if (thesis) return ABBE_REFRACTOR_LAYERS;
-  if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
-  if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
-  return ABBE_REFRACTOR_LAYERS;
+static double side_of(const double p[9], const double at[3]) {
+  const double *u = p + 3, *v = p + 6;
+  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  double sum = 0, length = 0;
+  for (int k = 0; k < 3; k++) {
+    sum += n[k] * (at[k] - p[k]);
+    length += n[k] * n[k];
+  }
+  return sum / sqrt(length);
 }
 
-static const char *model_reason(const abbe_object *object, bool thesis) {
-  if (thesis) return "the thesis profile knows no other model";
-  if (object->exact.kind == ABBE_EXACT_SPHERE) return "the object is a sphere";
-  if (object->exact.kind == ABBE_EXACT_CONVEX) return "the object is a convex faceted solid";
-  return "the object is a general closed mesh: what a view sees of it, front and back";
+/* Between the boxes that bound them. */
+static bool boxes_meet(const double a_min[3], const double a_max[3], const double b_min[3],
+                       const double b_max[3]) {
+  for (int k = 0; k < 3; k++)
+    if (!(a_min[k] < b_max[k] && b_min[k] < a_max[k])) return false;
+  return true;
 }
 
 static bool overlap(const abbe_object *a, const abbe_object *b) {
-  for (int k = 0; k < 3; k++)
-    if (!(a->min[k] < b->max[k] && b->min[k] < a->max[k])) return false;
+  if (!boxes_meet(a->min, a->max, b->min, b->max)) return false;
   if (a->exact.kind != ABBE_EXACT_SPHERE || b->exact.kind != ABBE_EXACT_SPHERE) return true;
   double apart[3];
   abbe_vector_subtract(a->exact.centre, b->exact.centre, apart);
@@ -191,6 +211,101 @@ static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
   return true;
 }
 
+/* Whether the box has corners on both sides of the parallelogram's plane, near enough to touch it.
+ */
+static bool reaches_into(const double p[9], const abbe_object *refractor) {
+  double min[3], max[3], low = INFINITY, high = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    min[k] = p[k] + fmin(p[3 + k], 0) + fmin(p[6 + k], 0);
+    max[k] = p[k] + fmax(p[3 + k], 0) + fmax(p[6 + k], 0);
+    /* a parallelogram in a plane of two axes has no third extent */
+    double least = 1e-9 * (refractor->max[k] - refractor->min[k]);
+    min[k] -= least;
+    max[k] += least;
+  }
+  if (!boxes_meet(min, max, refractor->min, refractor->max)) return false;
+  for (int c = 0; c < 8; c++) {
+    double corner[3];
+    for (int k = 0; k < 3; k++) corner[k] = c >> k & 1 ? refractor->max[k] : refractor->min[k];
+    double side = side_of(p, corner);
+    low = fmin(low, side);
+    high = fmax(high, side);
+  }
+  return low < 0 && high > 0;
+}
+
+static bool receiver_reaches(const abbe_scene *scene, const abbe_object *refractor) {
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->material != NULL) continue;
+    if (o->exact.kind != ABBE_EXACT_PARALLELOGRAMS &&
+        boxes_meet(o->min, o->max, refractor->min, refractor->max))
+      return true;
+    for (size_t k = 0; o->exact.kind == ABBE_EXACT_PARALLELOGRAMS && k < o->exact.count; k++)
+      if (reaches_into(o->exact.parallelogram[k], refractor)) return true;
+  }
+  return false;
+}
+
+/* Why light that has left a refractor may meet one again, or a receiver within; NULL: it cannot. */
+static const char *examine_walk(const abbe_scene *scene, const abbe_plan *plan) {
+  const abbe_object *only = NULL;
+  size_t refractors = 0;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->material == NULL || is_invisible(scene, o, plan)) continue;
+    only = o;
+    refractors++;
+  }
+  if (abbe_profile_is_thesis(plan->desc.profile) || refractors == 0) return NULL;
+  if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_WALK_REFRACTORS) return NULL;
+  if (plan->desc.model == ABBE_MODEL_HIERARCHY) return "as asked";
+  if (refractors > 1) return "there is more than one refractor";
+  if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
+      !abbe_mesh_is_convex(&only->mesh))
+    return "the refractor is not convex";
+  if (receiver_reaches(scene, only)) return "a receiver may reach into the refractor";
+  return NULL;
+}
+
+/* Whether a model that is asked for can serve the object. */
+static abbe_result check_model(const abbe_object *object, const abbe_plan *plan,
+                               abbe_error *error) {
+  abbe_model asked = plan->desc.model;
+  if (asked == ABBE_MODEL_SPHERE && object->exact.kind != ABBE_EXACT_SPHERE)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the model 'sphere' cannot serve '%s', which is no sphere", object->name);
+  if (asked == ABBE_MODEL_CONVEX && object->exact.kind != ABBE_EXACT_CONVEX)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the model 'convex' cannot serve '%s', which is no convex solid of at "
+                          "most %d faces",
+                          object->name, ABBE_SCENE_MAX_PLANES);
+  if (asked == ABBE_MODEL_HIERARCHY && !plan->walk)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the model 'hierarchy' follows light through at most %d refractors; the "
+                          "scene has more",
+                          MAX_WALK_REFRACTORS);
+  return ABBE_OK;
+}
+
+static abbe_refractor_model choose_model(const abbe_object *object, const abbe_plan *plan) {
+  if (abbe_profile_is_thesis(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
+  if (plan->desc.model != ABBE_MODEL_AUTO)
+    return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
+  if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
+  if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
+  return plan->walk ? ABBE_REFRACTOR_HIERARCHY : ABBE_REFRACTOR_LAYERS;
+}
+
+static const char *model_reason(const abbe_object *object, const abbe_plan *plan) {
+  if (abbe_profile_is_thesis(plan->desc.profile)) return "the thesis profile knows no other model";
+  if (plan->desc.model != ABBE_MODEL_AUTO) return "as asked";
+  if (object->exact.kind == ABBE_EXACT_SPHERE) return "the object is a sphere";
+  if (object->exact.kind == ABBE_EXACT_CONVEX) return "the object is a convex faceted solid";
+  if (plan->walk) return "the object is a general mesh, and light may meet it more than twice";
+  return "the object is a convex mesh and stands alone: a view sees all of it, front and back";
+}
+
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->refractor_object = calloc(scene->object_count + 1, sizeof *plan->refractor_object);
@@ -199,6 +314,8 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
   if (plan->refractor_object == NULL || plan->receiver_object == NULL || plan->model == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
   bool exact = !thesis;
+  const char *walk = examine_walk(scene, plan);
+  plan->walk = walk != NULL;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
     if (object->material == NULL) {
@@ -218,16 +335,27 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     }
     abbe_result result = examine_material(scene, object->material, plan, error);
     if (result != ABBE_OK) return result;
-    abbe_refractor_model model = choose_model(object, thesis);
+    result = check_model(object, plan, error);
+    if (result != ABBE_OK) return result;
+    abbe_refractor_model model = choose_model(object, plan);
     plan->refractor_object[plan->refractor_count] = i;
     plan->model[plan->refractor_count++] = model;
     plan->spheres = plan->spheres || model == ABBE_REFRACTOR_SPHERE;
     plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
     plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
-    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), model_reason(object, thesis));
+    plan->hierarchy = plan->hierarchy || model == ABBE_REFRACTOR_HIERARCHY;
+    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), model_reason(object, plan));
   }
   if (plan->refractor_count > MAX_MODEL_ENTRIES)
     add(plan, true, "models", "and %zu refractors more", plan->refractor_count - MAX_MODEL_ENTRIES);
+  add(plan, plan->walk, "refractors in turn", "%s",
+      plan->refractor_count == 0 ? "nothing refracts"
+      : plan->walk               ? walk
+      : thesis                   ? "the thesis profile follows two interfaces"
+      : plan->desc.model == ABBE_MODEL_LAYERS
+          ? "light goes through two layers and no further, as asked"
+      : plan->refractor_count < 2 ? "light that leaves the refractor cannot meet it again"
+                                  : "there are more refractors than are followed");
   exact = exact && plan->parallelogram_count <= MAX_PARALLELOGRAMS;
   plan->receivers = exact ? ABBE_RECEIVER_EXACT : ABBE_RECEIVER_DEPTH;
   if (!exact) plan->parallelogram_count = 0;
@@ -236,17 +364,6 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
       : thesis ? "the thesis profile knows no other model"
                : "some receiver is a general mesh");
   return ABBE_OK;
-}
-
-static double side_of(const double p[9], const double at[3]) {
-  const double *u = p + 3, *v = p + 6;
-  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  double sum = 0, length = 0;
-  for (int k = 0; k < 3; k++) {
-    sum += n[k] * (at[k] - p[k]);
-    length += n[k] * n[k];
-  }
-  return sum / sqrt(length);
 }
 
 /* Whether the parallelogram's plane has everything on one side of it: all other corners, those of
@@ -345,7 +462,7 @@ static void resolve_wavelengths(abbe_plan *plan) {
   if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : 8;
   if (abbe_profile_is_thesis(plan->desc.profile)) plan->desc.orders = 1;
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
-  plan->slots = plan->desc.orders + (thesis ? 0 : 1);
+  plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
   if (no_refraction(plan) != NULL)
     add(plan, false, "inner reflections", "%s", no_refraction(plan));
   else if (plan->desc.orders == 1)
@@ -399,8 +516,8 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
       : caustics    ? "a mesh without an exact surface ends at its back layer"
                     : "no light meets a refractor");
   if (caustics) {
-    add(plan, true, "light: photon placement",
-        "at most %zu a side, where light meets a refractor", plan->desc.photons);
+    add(plan, true, "light: photon placement", "at most %zu a side, where light meets a refractor",
+        plan->desc.photons);
     add(plan, true, "light: photons", "%zu wavelengths through the refractors",
         plan->desc.wavelengths);
     add(plan, true, "light: spectral map", "%zu x %zu texels%s", plan->desc.map_size,
@@ -436,9 +553,9 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
   if (!thesis && seen && depth)
     note(plan, "through refractors, receivers show as far as the eye also sees them straight");
-  if (plan->refractor_count > 1)
+  if (plan->refractor_count > 1 && !plan->walk)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
-  note_overlaps(scene, plan);
+  if (!plan->walk) note_overlaps(scene, plan);
   if (scene->light_count > 1 && seen)
     note(plan, "through refractors, colours are split by the first light's illuminant");
 }

@@ -39,6 +39,18 @@ typedef enum abbe_fill {
       ABBE_FILL_COUNT
 } abbe_fill;
 
+/* How light is followed through refractors. AUTO: by the scene; the others ask for one model for
+ * all refractors. */
+#define ABBE_MODELS(X)                                                                             \
+  X(AUTO, "auto")                                                                                  \
+  X(SPHERE, "sphere") X(CONVEX, "convex") X(LAYERS, "layers") X(HIERARCHY, "hierarchy")
+typedef enum abbe_model {
+#define ABBE_MODEL_ENUM(code, name) ABBE_MODEL_##code,
+  ABBE_MODELS(ABBE_MODEL_ENUM)
+#undef ABBE_MODEL_ENUM
+      ABBE_MODEL_COUNT
+} abbe_model;
+
 #define ABBE_RENDER_MAX_SIDE 8192
 #define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
 #define ABBE_RENDER_MAX_MAP 4096     /* a side */
@@ -58,6 +70,7 @@ typedef struct abbe_render_desc {
   size_t map_size;       /* side of the spectral map; 0: 1024 */
   size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis: 1) */
   abbe_fill fill;
+  abbe_model model;
   double energy_share;  /* paths below this share of their light end; 0: 0.01 */
   size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8
                              (4 where a mesh is known by its layers) */
@@ -75,9 +88,11 @@ typedef struct abbe_render_desc {
 } abbe_render_desc;
 
 typedef enum abbe_refractor_model {
-  ABBE_REFRACTOR_SPHERE, /* exact quadric */
-  ABBE_REFRACTOR_CONVEX, /* plane tests */
-  ABBE_REFRACTOR_LAYERS  /* front and back as a view sees them */
+  ABBE_REFRACTOR_SPHERE,    /* exact quadric */
+  ABBE_REFRACTOR_CONVEX,    /* plane tests */
+  ABBE_REFRACTOR_LAYERS,    /* front and back as a view sees them */
+  ABBE_REFRACTOR_HIERARCHY, /* triangles, traversed */
+  ABBE_REFRACTOR_MODEL_COUNT
 } abbe_refractor_model;
 
 typedef enum abbe_receiver_model {
@@ -102,11 +117,12 @@ typedef struct abbe_plan {
   size_t *receiver_object;    /* [receiver_count] */
   size_t parallelogram_count; /* of all receivers; 0 with the depth model */
   abbe_receiver_model receivers;
-  bool receiver_shadows;        /* some receiver may hide another from a light */
-  bool spheres, convex, layers; /* models in use */
-  bool dispersive;              /* some index varies over the range */
-  bool absorbing;               /* some attenuation is above zero in the range */
-  bool tinting;                 /* some attenuation varies over the range */
+  bool receiver_shadows;                   /* some receiver may hide another from a light */
+  bool spheres, convex, layers, hierarchy; /* models in use */
+  bool walk;       /* light that leaves a refractor may meet one again, and is followed */
+  bool dispersive; /* some index varies over the range */
+  bool absorbing;  /* some attenuation is above zero in the range */
+  bool tinting;    /* some attenuation varies over the range */
   bool textured;
   size_t slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
@@ -130,6 +146,7 @@ const char *abbe_profile_name(abbe_profile profile);
 /* Whether it draws with the thesis's passes. */
 bool abbe_profile_is_thesis(abbe_profile profile);
 const char *abbe_fill_name(abbe_fill fill);
+const char *abbe_model_name(abbe_model model);
 const char *abbe_refractor_model_name(abbe_refractor_model model);
 const char *abbe_receiver_model_name(abbe_receiver_model model);
 

@@ -5,7 +5,7 @@ uniform sampler2DArray spectral_map;   // XYZ flux over window area, one layer a
 #ifdef TEXTURED
 uniform sampler2DArray surface_texture;
 #endif
-#ifdef LAYERS
+#ifdef FRONT_LAYER
 uniform sampler2DArray light_layers;   // refractor front (2 * light) and back (+ 1): n, distance
 #endif
 #ifndef EXACT_RECEIVERS
@@ -18,11 +18,11 @@ uniform vec3 background;  // rgb radiance
 uniform vec4 refractor_bounds;  // centre, radius of all refractors
 uniform float scene_size;
 
-#ifdef EXACT_RECEIVERS
 // How far behind a refractor's wall a receiver may lie to be lit by what leaves there: a refractor
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
 
+#ifdef EXACT_RECEIVERS
 int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
   int found = -1;
   t = t_max;
@@ -75,7 +75,7 @@ float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
   Hit h;
   h.t = distance_m;
   if (exact_front(p - distance_m * d, d, h)) return 0.0;
-#ifdef LAYERS
+#ifdef FRONT_LAYER
   vec3 uvz;
   View v = lights[light].near_view;
   if (!project(v, p, uvz)) return 1.0;

@@ -41,12 +41,15 @@ View eye_as_view() {
   return View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);
 }
 
-// Radiance along the ray from p, refractors taken away.
-vec3 seen(vec3 p, vec3 d) {
+// Radiance along the ray from p, refractors taken away, of a receiver no farther than t_max; met:
+// there is one.
+vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   float t;
+  met = false;
 #ifdef EXACT_RECEIVERS
-  int r = receiver_hit(p, d, -touch * refractor_bounds.w, 1e30, t);
+  int r = receiver_hit(p, d, t_min, t_max, t);
   if (r < 0) return background;
+  met = true;
   Receiver rc = receivers[r];
   vec3 x = p + t * d, n = rc.normal.xyz;
   vec2 uv = vec2(dot(x - rc.corner.xyz, rc.du.xyz), dot(x - rc.corner.xyz, rc.dv.xyz));
@@ -55,7 +58,9 @@ vec3 seen(vec3 p, vec3 d) {
 #else
   View v = eye_as_view();
   float start = max(distance(refractor_bounds.xyz, p), 0.1 * scene_size);
-  if (!march(v, eye_receivers, 0.0, p, d, start, 2.0 * scene_size, t)) return background;
+  if (!march(v, eye_receivers, 0.0, p, d, start, 2.0 * scene_size, t) || t >= t_max)
+    return background;
+  met = true;
   vec3 uvz;
   if (!project(v, p + t * d, uvz) || !inside(uvz.xy)) return background;
   return textureLod(eye_receivers, vec3(uvz.xy, 0), 0.0).rgb;
@@ -102,6 +107,43 @@ float wanted_bands(Hit front, vec3 d, int first, int last) {
   return turn * scene_size / (4.0 * front.t * pixel_angle) / 1.5;
 }
 
+#ifdef WALK
+#include "refraction_walk.glsl"
+#else
+// Through the refractor alone, from wall to wall: the light of one band.
+vec3 through(Hit front, vec3 d, int band) {
+  float n = bands[band].weight_n.w;
+  vec3 inner, p = front.p, light = vec3(0);
+  if (!refract_direction(d, front.n, 1.0 / n, inner)) return light;
+  float share = 1.0 - fresnel(-dot(d, front.n), 1.0 / n);
+  int facet = front.facet;
+  bool met;
+  for (int order = 0; order < EXITS; order++) {
+    vec3 wall, wall_n, outer;
+    int next;
+    inner_hit(refractor, facet, p, inner,
+#ifdef LAYERS
+              eye_as_view(), eye_layers, 0.0,
+#endif
+              wall, wall_n, next);
+#ifdef ABSORBING
+    share *= exp(-bands[band].attenuation.x * distance(wall, p));
+#endif
+    float kept = fresnel(dot(inner, wall_n), n);
+    float out_share = share * (1.0 - kept);
+    bool leaves = refract_direction(inner, -wall_n, n, outer);
+    if (leaves && out_share > 0.5 * share_limit)
+      light += out_share * seen(wall, outer, -touch * refractor_bounds.w, 1e30, met);
+    share *= leaves ? kept : 1.0;
+    if (share < share_limit) break;
+    p = wall;
+    facet = next;
+    inner = reflect(inner, wall_n);
+  }
+  return light;
+}
+#endif
+
 void main() {
   uint listed = pixel_first + gl_GlobalInvocationID.x;
   if (listed >= pixel_count) return;
@@ -110,6 +152,14 @@ void main() {
   vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
   vec3 o, d;
   view_ray(eye_as_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, d);
+#ifdef WALK
+  Way start = Way(eye, d, 1.0, 0u, 0u, -1, -1, -1);
+  Interface first;
+  first.hit.t = 1e30;
+  bool found = next_interface(start, first);
+  Hit front = first.hit;
+  if (found) refractor = front.refractor;
+#else
   Hit front;
   front.t = 1e30;
   bool found = exact_front(eye, d, front) && front.refractor == refractor;
@@ -122,6 +172,7 @@ void main() {
     if (c > -1e-3) front.n = normalize(front.n - (c + 1e-3) * d);
     front.facet = -1;
   }
+#endif
 
   int base = refractor * BAND_COUNT, count = WAVELENGTHS;
   float wanted = wanted_bands(front, d, base, base + WAVELENGTHS - 1);
@@ -133,38 +184,22 @@ void main() {
   vec3 sum = vec3(0), mirror = vec3(0);
   for (int i = 0; i < count; i++) {
     vec4 band = bands[base + i].weight_n;
-    float n = band.w;
-    float reflected = fresnel(-dot(d, front.n), 1.0 / n);
-    mirror += reflected * band.xyz;
-    vec3 inner, p = front.p;
-    if (!refract_direction(d, front.n, 1.0 / n, inner)) continue;
-    float share = 1.0 - reflected;
-    int facet = front.facet;
-    vec3 light = vec3(0);
-    for (int order = 0; order < EXITS; order++) {
-      vec3 wall, wall_n, outer;
-      int next;
-      inner_hit(refractor, facet, p, inner,
-#ifdef LAYERS
-                eye_as_view(), eye_layers, 0.0,
+#ifdef WALK
+    Way mirrored;
+    vec3 light = through(start, first, base + i - refractor * BAND_COUNT, mirrored);
+    mirror += mirrored.share * band.xyz;
+#else
+    vec3 light = through(front, d, base + i);
+    mirror += fresnel(-dot(d, front.n), 1.0 / band.w) * band.xyz;
 #endif
-                wall, wall_n, next);
-#ifdef ABSORBING
-      share *= exp(-bands[base + i].attenuation.x * distance(wall, p));
-#endif
-      float kept = fresnel(dot(inner, wall_n), n);
-      float out_share = share * (1.0 - kept);
-      bool leaves = refract_direction(inner, -wall_n, n, outer);
-      if (leaves && out_share > 0.5 * share_limit) light += out_share * seen(wall, outer);
-      share *= leaves ? kept : 1.0;
-      if (share < share_limit) break;
-      p = wall;
-      facet = next;
-      inner = reflect(inner, wall_n);
-    }
     sum += (xyz_from_rgb * light) * band.xyz;
   }
-  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(d, front.n)));
+#ifdef WALK
+  sum += mirror * (xyz_from_rgb * in_the_mirror(start, first, base + count / 2 - refractor * BAND_COUNT));
+#else
+  bool met;
+  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, met));
+#endif
   sum = rgb_from_xyz * sum;
   // At the rim an exact surface may miss the pixel that its triangles cover: what lies behind shows.
   imageStore(picture, at, found ? vec4(sum, front.t) : vec4(0));

@@ -3,6 +3,9 @@
 
 #include "common.glsl"
 #include "optics.glsl"
+#ifdef HIERARCHY
+#include "hierarchy.glsl"
+#endif
 #ifndef EXACT_RECEIVERS
 #include "march.glsl"
 #endif

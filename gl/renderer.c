@@ -42,7 +42,8 @@ static void write_defines(abbe_renderer *r) {
            "#define LIGHT_ROOM %zu\n"
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
-           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s",
+           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s"
+           "#define HIERARCHY_STACK %zu\n",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, p->slots, room(p->light_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
@@ -56,9 +57,12 @@ static void write_defines(abbe_renderer *r) {
            storage(spectra, 16, "#define SPECTRA_IN_STORAGE\n"),
            p->spheres ? "#define SPHERES\n" : "", p->convex ? "#define CONVEX\n" : "",
            p->layers ? "#define LAYERS\n" : "",
+           p->layers || p->hierarchy ? "#define FRONT_LAYER\n" : "",
+           p->hierarchy ? "#define HIERARCHY\n" : "",
            p->receivers == ABBE_RECEIVER_EXACT ? "#define EXACT_RECEIVERS\n" : "",
            p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
-           p->caustics ? "#define CAUSTICS\n" : "");
+           p->caustics ? "#define CAUSTICS\n" : "", p->walk ? "#define WALK\n" : "",
+           r->hierarchy_depth + 1);
 }
 
 /* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
@@ -121,6 +125,7 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
     abbe_local_scene_from_world(&r->local, &r->given.view);
     r->plan.desc.map_layout = &r->given;
   }
+  if (result == ABBE_OK) result = abbe_renderer_make_hierarchy(r, error);
   if (result == ABBE_OK) {
     write_defines(r);
     result = make_passes(r, error);
@@ -141,6 +146,8 @@ void abbe_renderer_free(abbe_renderer *r) {
   abbe_local_scene_free(&r->local);
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
+  gl->DeleteBuffers(3, r->hierarchy);
+  free(r->refractor_root);
   gl->DeleteBuffers(1, &r->table_bands);
   const GLuint lists[] = {r->table_warps, r->texel_sizes, r->pixel_list, r->path_marks,
                           r->path_list,   r->splat_list,  r->map_sums};

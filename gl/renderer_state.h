@@ -75,6 +75,9 @@ struct abbe_renderer {
   abbe_view eye;
 
   GLuint buffer[BINDING_COUNT];
+  GLuint hierarchy[3];    /* nodes, triangles, normals; 0: no model needs them */
+  size_t *refractor_root; /* [refractor_count] of its tree */
+  size_t hierarchy_depth;
   GLuint table_bands, table_warps, texel_sizes;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
   GLuint path_marks, path_list, splat_list, map_sums;
@@ -94,7 +97,7 @@ struct abbe_renderer {
   size_t map_bands, map_band; /* bands of the range whose light the map sums, and the first of the
                                  three; 0: X, Y, Z */
   size_t device_bytes;
-  char defines[1024];
+  char defines[2048];
 
   GLuint place, cover, groups, list_groups, trace, deposit, splat, resolve, mip, layer, receivers,
       refraction, refraction_list, eye_resolve;
@@ -125,6 +128,9 @@ void abbe_renderer_upload_lights(abbe_renderer *r);
 abbe_result abbe_renderer_weigh_bands(abbe_renderer *r, size_t bands, size_t first,
                                       abbe_error *error);
 void abbe_renderer_free_scene(abbe_renderer *r);
+
+/* scene_hierarchy.c: the triangles of what is traversed, before the shaders are made. */
+abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error);
 
 /* resources.c: buffers and textures, counted. */
 abbe_result abbe_renderer_make_buffer(abbe_renderer *r, size_t size, const void *data, GLuint *out,

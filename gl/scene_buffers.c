@@ -113,6 +113,8 @@ static abbe_result upload_refractors(abbe_renderer *r, abbe_error *error) {
           refractor[i].sphere);
     refractor[i].info[0] = (int)plan->model[i];
     refractor[i].info[1] = (int)next;
+    if (plan->model[i] == ABBE_REFRACTOR_HIERARCHY)
+      refractor[i].info[1] = (int)r->refractor_root[i];
     if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;
     refractor[i].info[2] = (int)object->exact.count;
     for (size_t k = 0; k < object->exact.count; k++)

@@ -204,3 +204,27 @@ abbe_result abbe_mesh_convex_planes(const abbe_mesh *mesh, size_t max_planes, do
   free(found);
   return result;
 }
+
+bool abbe_mesh_is_convex(const abbe_mesh *mesh) {
+  double min[3], max[3], size = 0;
+  if (mesh->face_count == 0 || mesh->face_count > ABBE_MESH_MAX_CONVEX_FACES) return false;
+  for (int k = 0; k < 3; k++) {
+    min[k] = max[k] = mesh->position[0][k];
+    for (size_t v = 1; v < mesh->vertex_count; v++) {
+      min[k] = fmin(min[k], mesh->position[v][k]);
+      max[k] = fmax(max[k], mesh->position[v][k]);
+    }
+    size = fmax(size, max[k] - min[k]);
+  }
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    const uint32_t *corner = mesh->face[f];
+    double n[3];
+    abbe_vector_triangle(mesh->position[corner[0]], mesh->position[corner[1]],
+                         mesh->position[corner[2]], n);
+    if (!abbe_vector_normalise(n)) continue;
+    double most = abbe_vector_dot(n, mesh->position[corner[0]]) + 1e-6 * size;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+      if (abbe_vector_dot(n, mesh->position[v]) > most) return false;
+  }
+  return true;
+}

@@ -76,6 +76,12 @@ abbe_result abbe_mesh_transform(abbe_mesh *mesh, const double matrix[16], abbe_e
 abbe_result abbe_mesh_convex_planes(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
                                     size_t *count, abbe_error *error);
 
+#define ABBE_MESH_MAX_CONVEX_FACES 30000u
+
+/* Whether every vertex lies behind every face, to 1e-6 of the mesh's size. Larger meshes than
+ * ABBE_MESH_MAX_CONVEX_FACES are not examined: false. */
+bool abbe_mesh_is_convex(const abbe_mesh *mesh);
+
 #ifdef __cplusplus
 }
 #endif

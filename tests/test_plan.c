@@ -102,11 +102,26 @@ static void test_absorption_runs_where_something_absorbs(void **state) {
   abbe_plan_free(&plan);
 }
 
+/* Convex, and no sphere. */
+#define EGG(material)                                                                              \
+  "- {name: egg, shape: sphere, radius: 0.08, levels: 4, transform: [{scale: [1, 1, 1.4]}, "       \
+  "{translate: [0, 0, 0.2]}], material: " material "}\n"
+
 static void test_a_mesh_asks_for_its_back_layer(void **state) {
   (void)state;
   abbe_plan plan;
   make_text(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &plan);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_HIERARCHY);
+  assert_true(plan.walk && plan.hierarchy && !plan.layers);
+  assert_runs(&plan, "refractors in turn", true);
+  assert_runs(&plan, "light: refractor back", false);
+  assert_runs(&plan, "eye: refractor back", false);
+  assert_contains(abbe_plan_find(&plan, "refractors in turn")->reason, "not convex");
+  abbe_plan_free(&plan);
+  make_text(CAMERA POINT_LIGHT FLOOR EGG("crown"), NULL, &plan);
   assert_int_equal(plan.model[0], ABBE_REFRACTOR_LAYERS);
+  assert_true(!plan.walk && !plan.hierarchy && plan.layers);
+  assert_runs(&plan, "refractors in turn", false);
   assert_runs(&plan, "light: refractor back", true);
   assert_runs(&plan, "eye: refractor back", true);
   assert_runs(&plan, "inner reflections", true);
@@ -117,9 +132,80 @@ static void test_a_mesh_asks_for_its_back_layer(void **state) {
   assert_runs(&plan, "inner reflections", true);
   abbe_plan_free(&plan);
   make_text(CAMERA POINT_LIGHT FLOOR RING("crown") BALL("flat") BRICK("flat"), NULL, &plan);
-  assert_true(plan.spheres && plan.convex && plan.layers);
-  assert_true(noted(&plan, "meets another"));
+  assert_true(plan.spheres && plan.convex && plan.hierarchy && plan.walk && !plan.layers);
+  assert_true(!noted(&plan, "meets another"));
+  assert_contains(abbe_plan_find(&plan, "refractors in turn")->reason, "more than one");
   abbe_plan_free(&plan);
+}
+
+/* One refractor alone is not walked; a second, a hollow, or a receiver within it asks for that. */
+static void test_what_light_may_meet_again_is_walked(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    bool walk;
+  } rows[] = {
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), false},
+      {CAMERA POINT_LIGHT FLOOR BRICK("crown"), false},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), true},
+      {CAMERA POINT_LIGHT FLOOR
+       "- {name: low, shape: sphere, radius: 0.08, transform: [{translate: [0, 0, 0.05]}], "
+       "material: crown}\n",
+       true},
+      {CAMERA POINT_LIGHT FLOOR
+       "- {name: room, shape: box, size: [3, 3, 3], reflectance: 0.5}\n" BALL("crown"),
+       false},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_plan plan;
+    make_text(rows[i].text, NULL, &plan);
+    if (plan.walk != rows[i].walk) print_error("scene %zu\n", i);
+    assert_true(plan.walk == rows[i].walk);
+    assert_runs(&plan, "refractors in turn", rows[i].walk);
+    abbe_plan_free(&plan);
+  }
+}
+
+/* What is asked for is taken where it can serve, and refused by name where it cannot. */
+static void test_a_model_that_is_asked_for(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    abbe_model model;
+    abbe_refractor_model expected;
+    bool walk;
+    const char *refusal; /* NULL: none */
+  } rows[] = {
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_SPHERE, ABBE_REFRACTOR_SPHERE, false,
+       NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
+       NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_HIERARCHY, ABBE_REFRACTOR_HIERARCHY, true,
+       NULL},
+      {CAMERA POINT_LIGHT FLOOR RING("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
+       NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown") RING("crown"), ABBE_MODEL_SPHERE,
+       ABBE_REFRACTOR_SPHERE, false, "'sphere' cannot serve 'ring'"},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_CONVEX, ABBE_REFRACTOR_CONVEX, false,
+       "'convex' cannot serve 'ball'"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene = {0};
+    abbe_plan plan;
+    abbe_error error = {0};
+    load_text(rows[i].text, &scene);
+    abbe_result result =
+        abbe_plan_make(&scene, &(abbe_render_desc){.model = rows[i].model}, &plan, &error);
+    assert_int_equal(result, rows[i].refusal != NULL ? ABBE_UNSUPPORTED : ABBE_OK);
+    if (rows[i].refusal != NULL) {
+      assert_contains(error.text, rows[i].refusal);
+    } else {
+      assert_int_equal(plan.model[0], rows[i].expected);
+      assert_true(plan.walk == rows[i].walk);
+      abbe_plan_free(&plan);
+    }
+    abbe_scene_free(&scene);
+  }
 }
 
 static void test_a_curved_receiver_asks_for_its_depth(void **state) {
@@ -269,10 +355,10 @@ static const struct {
   abbe_refractor_model model;
   bool textured;
 } shipped[] = {
-    {"sphere", ABBE_REFRACTOR_SPHERE, false},  {"rainbow", ABBE_REFRACTOR_SPHERE, false},
-    {"gem", ABBE_REFRACTOR_CONVEX, false},     {"prism", ABBE_REFRACTOR_CONVEX, true},
-    {"diamond", ABBE_REFRACTOR_CONVEX, false}, {"ring", ABBE_REFRACTOR_LAYERS, false},
-    {"bunny", ABBE_REFRACTOR_LAYERS, false},   {"glass", ABBE_REFRACTOR_LAYERS, true},
+    {"sphere", ABBE_REFRACTOR_SPHERE, false},   {"rainbow", ABBE_REFRACTOR_SPHERE, false},
+    {"gem", ABBE_REFRACTOR_CONVEX, false},      {"prism", ABBE_REFRACTOR_CONVEX, true},
+    {"diamond", ABBE_REFRACTOR_CONVEX, false},  {"ring", ABBE_REFRACTOR_HIERARCHY, false},
+    {"bunny", ABBE_REFRACTOR_HIERARCHY, false}, {"glass", ABBE_REFRACTOR_HIERARCHY, true},
 };
 
 static void test_shipped_scenes(void **state) {
@@ -327,11 +413,13 @@ static void test_refractors_that_overlap_are_noted(void **state) {
        "'a' and 'b' (and 2 pairs more) overlap"},
       {CAMERA POINT_LIGHT FLOOR RING("flat") BALL("flat"), "'ring' and 'ball' overlap"},
   };
+  /* walked light keeps the scene's rule; two layers know one refractor at a time */
+  const abbe_render_desc apart = {.model = ABBE_MODEL_LAYERS};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     abbe_scene scene;
     abbe_plan plan;
     load_text(rows[i].text, &scene);
-    assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+    assert_int_equal(abbe_plan_make(&scene, &apart, &plan, NULL), ABBE_OK);
     if (notes(&plan, "overlap") != (rows[i].part != NULL) ||
         (rows[i].part != NULL && !notes(&plan, rows[i].part)))
       fail_msg("scene %zu: %s", i,
@@ -410,6 +498,8 @@ int main(void) {
       cmocka_unit_test(test_a_constant_index_needs_one_wavelength),
       cmocka_unit_test(test_absorption_runs_where_something_absorbs),
       cmocka_unit_test(test_a_mesh_asks_for_its_back_layer),
+      cmocka_unit_test(test_what_light_may_meet_again_is_walked),
+      cmocka_unit_test(test_a_model_that_is_asked_for),
       cmocka_unit_test(test_a_curved_receiver_asks_for_its_depth),
       cmocka_unit_test(test_too_many_rectangles_are_found_by_depth),
       cmocka_unit_test(test_the_thesis_profile_knows_one_way),

@@ -124,7 +124,7 @@ static void differ(const lines *from, const lines *to, lines *out) {
 static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("crown");
 
 static const char flat[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
-static const char torus[] = CAMERA POINT_LIGHT FLOOR TORUS("crown");
+static const char egg[] = CAMERA POINT_LIGHT FLOOR EGG("crown");
 
 typedef struct pair {
   const char *fact, *from, *to;
@@ -135,6 +135,7 @@ typedef struct pair {
 static const char *const ball_rows[] = {
     "=7 wavelengths, 8 exits, 9 landings",
     "+model: ball|exact sphere: the object is a sphere",
+    "-refractors in turn|light that leaves the refractor cannot meet it again",
     "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",
     "-shadows of receivers|the receivers bound a convex room around the lights",
     "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",
@@ -161,8 +162,9 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR,
      {0},
-     {"=1 wavelengths, 8 exits, 9 landings", "+wavelengths|1 from 380 to 780 nm: nothing refracts",
-      "-inner reflections|nothing refracts", "-light: refractor front|no light meets a refractor",
+     {"=1 wavelengths, 8 exits, 9 landings", "-refractors in turn|nothing refracts",
+      "+wavelengths|1 from 380 to 780 nm: nothing refracts", "-inner reflections|nothing refracts",
+      "-light: refractor front|no light meets a refractor",
       "-light: photon placement|no light meets a refractor",
       "-light: photons|no light meets a refractor",
       "-light: spectral map|no light meets a refractor", "-light: gap fill|nothing lands apart",
@@ -182,8 +184,8 @@ static const pair pairs[] = {
      {0},
      {"=1 wavelengths, 8 exits, 9 landings",
       "-model: ball|clear, and its index is that of air: light does not notice it",
-      "+wavelengths|1 from 380 to 780 nm: nothing refracts", "-inner reflections|nothing refracts",
-      "-light: refractor front|no light meets a refractor",
+      "-refractors in turn|nothing refracts", "+wavelengths|1 from 380 to 780 nm: nothing refracts",
+      "-inner reflections|nothing refracts", "-light: refractor front|no light meets a refractor",
       "-light: photon placement|no light meets a refractor",
       "-light: photons|no light meets a refractor",
       "-light: spectral map|no light meets a refractor", "-light: gap fill|nothing lands apart",
@@ -217,8 +219,8 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR EGG("crown"),
      {0},
      {"=7 wavelengths, 4 exits, 5 landings",
-      "+model: ball|front and back layers: the object is a general closed mesh: what a view sees "
-      "of it, front and back",
+      "+model: ball|front and back layers: the object is a convex mesh and stands alone: a view "
+      "sees all of it, front and back",
       "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
       "+light: refractor back|a mesh without an exact surface ends at its back layer",
       "+eye: refractor back|a mesh without an exact surface ends at its back layer", NULL}},
@@ -226,32 +228,30 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR TORUS("crown"),
      {0},
-     {"=7 wavelengths, 4 exits, 5 landings",
-      "+model: ball|front and back layers: the object is a general closed mesh: what a view sees "
-      "of it, front and back",
-      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
-      "+light: refractor back|a mesh without an exact surface ends at its back layer",
-      "+eye: refractor back|a mesh without an exact surface ends at its back layer", NULL}},
+     {"=7 wavelengths, 8 exits, 16 landings",
+      "+model: ball|triangle hierarchy: the object is a general mesh, and light may meet it more "
+      "than twice",
+      "+refractors in turn|the refractor is not convex", NULL}},
     {"a second refractor, apart",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"),
      {0},
-     {"+model: brick|convex planes: the object is a convex faceted solid",
-      "!light that leaves one refractor and meets another goes on unrefracted", NULL}},
+     {"=7 wavelengths, 8 exits, 16 landings",
+      "+model: brick|convex planes: the object is a convex faceted solid",
+      "+refractors in turn|there is more than one refractor", NULL}},
     {"a second refractor, within",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown") YOLK("crown"),
      {0},
-     {"+model: yolk|exact sphere: the object is a sphere",
-      "!light that leaves one refractor and meets another goes on unrefracted",
-      "!the refractors 'ball' and 'yolk' overlap, to judge by their bounds; each is taken as if it "
-      "stood in air alone",
-      NULL}},
+     {"=7 wavelengths, 8 exits, 16 landings", "+model: yolk|exact sphere: the object is a sphere",
+      "+refractors in turn|there is more than one refractor", NULL}},
     {"a refractor that reaches into the floor",
      ball,
      CAMERA POINT_LIGHT FLOOR SUNK("crown"),
      {0},
-     {"+shadows of receivers|a receiver may stand between a light and another", NULL}},
+     {"=7 wavelengths, 8 exits, 16 landings",
+      "+refractors in turn|a receiver may reach into the refractor",
+      "+shadows of receivers|a receiver may stand between a light and another", NULL}},
     {"a directional light",
      ball,
      CAMERA SUN FLOOR BALL("crown"),
@@ -275,8 +275,8 @@ static const pair pairs[] = {
       "-light: spectral map|no light meets a refractor", "-light: gap fill|nothing lands apart",
       NULL}},
     {"a spot that shines past a mesh",
-     torus,
-     CAMERA SPOT("[-0.5, 0, 0]") FLOOR TORUS("crown"),
+     egg,
+     CAMERA SPOT("[-0.5, 0, 0]") FLOOR EGG("crown"),
      {0},
      {"-map: lamp|its cone misses every refractor",
       "-light: refractor front|no light meets a refractor",
@@ -316,8 +316,8 @@ static const pair pairs[] = {
      {"-eye: refractor front|the eye sees no refractor",
       "-eye: refraction|the eye sees no refractor", NULL}},
     {"an eye that looks past a mesh",
-     torus,
-     EYE_ASIDE POINT_LIGHT FLOOR TORUS("crown"),
+     egg,
+     EYE_ASIDE POINT_LIGHT FLOOR EGG("crown"),
      {0},
      {"-eye: refractor front|the eye sees no refractor",
       "-eye: refractor back|the eye sees no refractor",
@@ -367,6 +367,7 @@ static const pair pairs[] = {
      {.profile = ABBE_PROFILE_THESIS},
      {"=7 wavelengths, 1 exits, 1 landings",
       "+model: ball|front and back layers: the thesis profile knows no other model",
+      "-refractors in turn|the thesis profile follows two interfaces",
       "+model: receivers|iterated image space: the thesis profile knows no other model",
       "+shadows of receivers|a receiver may stand between a light and another",
       "+wavelengths|7 from 380 to 680 nm: the index varies with wavelength",
@@ -382,6 +383,7 @@ static const pair pairs[] = {
 static const char *const sphere_rows[] = {
     "=7 wavelengths, 8 exits, 9 landings",
     "+model: ball|exact sphere: the object is a sphere",
+    "-refractors in turn|light that leaves the refractor cannot meet it again",
     "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",
     "-shadows of receivers|the receivers bound a convex room around the lights",
     "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",
@@ -434,29 +436,21 @@ static const struct {
       "!through refractors, colours are split by the first light's illuminant", "no model: ball",
       NULL}},
     {"ring",
-     {"=7 wavelengths, 4 exits, 5 landings",
-      "+model: ring|front and back layers: the object is a general closed mesh: what a view sees "
-      "of it, front and back",
-      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
-      "+light: refractor back|a mesh without an exact surface ends at its back layer",
-      "+eye: refractor back|a mesh without an exact surface ends at its back layer",
-      "no model: ball", NULL}},
+     {"=7 wavelengths, 8 exits, 16 landings",
+      "+model: ring|triangle hierarchy: the object is a general mesh, and light may meet it more "
+      "than twice",
+      "+refractors in turn|the refractor is not convex", "no model: ball", NULL}},
     {"bunny",
-     {"=7 wavelengths, 4 exits, 5 landings",
-      "+model: bunny|front and back layers: the object is a general closed mesh: what a view sees "
-      "of it, front and back",
-      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
-      "+light: refractor back|a mesh without an exact surface ends at its back layer",
-      "+eye: refractor back|a mesh without an exact surface ends at its back layer",
-      "no model: ball", NULL}},
+     {"=7 wavelengths, 8 exits, 16 landings",
+      "+model: bunny|triangle hierarchy: the object is a general mesh, and light may meet it more "
+      "than twice",
+      "+refractors in turn|the refractor is not convex", "no model: ball", NULL}},
     {"glass",
-     {"=7 wavelengths, 4 exits, 5 landings",
-      "+model: glass|front and back layers: the object is a general closed mesh: what a view sees "
-      "of it, front and back",
-      "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
-      "+light: refractor back|a mesh without an exact surface ends at its back layer",
-      "+eye: refractor back|a mesh without an exact surface ends at its back layer",
-      "+textures|a receiver has one", "no model: ball", NULL}},
+     {"=7 wavelengths, 8 exits, 16 landings",
+      "+model: glass|triangle hierarchy: the object is a general mesh, and light may meet it more "
+      "than twice",
+      "+refractors in turn|the refractor is not convex", "+textures|a receiver has one",
+      "no model: ball", NULL}},
 };
 
 static void load_and_plan(const char *text, const abbe_render_desc *desc, lines *out) {

@@ -27,19 +27,20 @@ static int free_context(void **state) {
   return 0;
 }
 
-/* Bits: spheres, convex, layers, exact receivers, absorbing. */
+/* Bits: spheres, convex, layers, exact receivers, absorbing, shadows, hierarchy, walk. */
 static void write_defines(unsigned bits, char *out, size_t size) {
-  static const char *const names[] = {"SPHERES",         "CONVEX",    "LAYERS",
-                                      "EXACT_RECEIVERS", "ABSORBING", "RECEIVER_SHADOWS"};
-  int used =
-      snprintf(out, size,
-               "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
-               "#define WAVELENGTHS 7\n#define EXITS 3\n#define SLOTS 4\n#define LANES 7\n"
-               "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
-               "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
-               "#define BAND_COUNT 14\n#define BAND_LEVELS 4\n#define BAND_ROOM 28\n"
-               "#define STEPS 64\n#define MAP_LEVELS 6\n#define BRIDGE\n#define MAX_BRIDGE 64.0\n");
-  for (int i = 0; i < 6; i++)
+  static const char *const names[] = {"SPHERES",         "CONVEX",    "LAYERS\n#define FRONT_LAYER",
+                                      "EXACT_RECEIVERS", "ABSORBING", "RECEIVER_SHADOWS",
+                                      "HIERARCHY",       "WALK"};
+  int used = snprintf(out, size,
+                      "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
+                      "#define WAVELENGTHS 7\n#define EXITS 3\n#define SLOTS 4\n#define LANES 7\n"
+                      "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
+                      "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
+                      "#define BAND_COUNT 14\n#define BAND_LEVELS 4\n#define BAND_ROOM 28\n"
+                      "#define HIERARCHY_STACK 20\n#define STEPS 64\n#define MAP_LEVELS 6\n#define "
+                      "BRIDGE\n#define MAX_BRIDGE 64.0\n");
+  for (int i = 0; i < 8; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }
 
@@ -56,7 +57,11 @@ static void compiles(const abbe_program_stage *stages, size_t count, const char 
 static void test_all_combinations(void **state) {
   (void)state;
   char defines[1024];
-  for (unsigned bits = 0; bits < 64; bits++) {
+  for (unsigned bits = 0; bits < 256; bits++) {
+    /* triangles are walked, and layers are not */
+    if ((bits >> 6 & 1) > (bits >> 7) || (bits >> 7 & bits >> 2 & 1)) continue;
+    /* what those two add is tried with and without the rest */
+    if ((bits >> 7 & 1) && (bits >> 4 & 1) != (bits >> 5 & 1)) continue;
     write_defines(bits, defines, sizeof defines);
     const abbe_program_stage trace = {GL_COMPUTE_SHADER, "photon_trace.comp"};
     const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},

@@ -1,0 +1,204 @@
+// The general way of light through a scene: from interface to interface of all refractors, each
+// known by its own model, reflected and refracted at each. Where refractors overlap the one listed
+// last is there. Who includes this gives refractor_spectrum(r): n and attenuation (1/m) of refractor
+// r at the wavelength that is followed.
+
+struct Way {
+  vec3 p, d;
+  float share;    // of the light that it began with
+  uint inside;    // bit r: within refractor r
+  uint path;      // what it met and did on its way, as one number
+  int walls;      // interfaces since the first; -1: none yet
+  int refractor, facet;  // that p lies on
+};
+
+struct Interface {
+  Hit hit;      // n: interpolated, outwards
+  vec3 face_n;  // of the face itself, outwards
+};
+
+const int PENDING = 4;  // branches that wait, the strongest
+
+vec2 refractor_spectrum(int r);
+
+int medium_of(uint inside) {
+  return findMSB(inside);
+}
+
+float medium_n(uint inside) {
+  return inside == 0u ? 1.0 : refractor_spectrum(medium_of(inside)).x;
+}
+
+#ifdef SPHERES
+// The wall of a sphere that p is in.
+bool sphere_wall(vec4 s, vec3 p, vec3 d, inout Hit h) {
+  vec3 oc = p - s.xyz;
+  float b = dot(oc, d);
+  vec3 across = oc - b * d;
+  float disc = s.w * s.w - dot(across, across);
+  float t = sqrt(max(disc, 0.0)) - b;
+  if (disc <= 0.0 || t >= h.t) return false;
+  h.t = max(t, 0.0);
+  h.n = normalize(across + sqrt(disc) * d);
+  h.p = s.xyz + s.w * h.n;
+  h.facet = 0;
+  return true;
+}
+#endif
+
+#ifdef CONVEX
+// The wall of a convex solid that p is in; p lies on `facet`, or on none (-1).
+bool convex_wall(ivec4 info, int facet, vec3 p, vec3 d, inout Hit h) {
+  float nearest = h.t;
+  int next = -1;
+  for (int i = 0; i < PLANE_COUNT; i++) {
+    vec4 plane = planes[PLANE_FIRST + i];
+    float slope = dot(plane.xyz, d);
+    float t = max((plane.w - dot(plane.xyz, p)) / slope, 0.0);
+    bool nearer = slope > 0.0 && i != facet && t < nearest;
+    nearest = nearer ? t : nearest;
+    next = nearer ? i : next;
+  }
+  if (next < 0) return false;
+  h.t = nearest;
+  h.p = p + nearest * d;
+  h.n = planes[PLANE_FIRST + next].xyz;
+  h.facet = next;
+  return true;
+}
+#endif
+
+// The next surface of a refractor on the way, no farther than h.hit.t. Of each refractor only those
+// faces count that lead in where the way is outside, and out where it is inside: so no way meets the
+// face that it leaves, however it is rounded.
+bool next_interface(Way w, inout Interface h) {
+  bool found = false;
+#ifdef HIERARCHY
+  TriangleHit triangle;
+  triangle.t = h.hit.t;
+  triangle.triangle = -1;
+  int owner = -1;
+#endif
+  for (int r = 0; r < REFRACTORS; r++) {
+    bool within = (w.inside >> r & 1u) != 0u, hit = false;
+    ivec4 info = refractors[r].info;
+#ifdef SPHERES
+    if (info.x == MODEL_SPHERE)
+      hit = within ? sphere_wall(refractors[r].sphere, w.p, w.d, h.hit)
+                   : sphere_front(refractors[r].sphere, w.p, w.d, h.hit);
+#endif
+#ifdef CONVEX
+    if (info.x == MODEL_CONVEX)
+      hit = within ? convex_wall(info, w.refractor == r ? w.facet : -1, w.p, w.d, h.hit)
+                   : convex_front(info, w.p, w.d, h.hit);
+#endif
+    if (hit) {
+      h.hit.refractor = r;
+      h.face_n = h.hit.n;
+      found = true;
+#ifdef HIERARCHY
+      owner = -1;
+      triangle.t = h.hit.t;
+#endif
+    }
+#ifdef HIERARCHY
+    if (info.x == MODEL_HIERARCHY) {
+      float least = -1e-6 * refractors[r].sphere.w;
+      TriangleHit one = triangle;
+      bool met = hierarchy_hit(info.y, w.p, w.d, within ? -1.0 : 1.0, least, false, one);
+      owner = met ? r : owner;
+      if (met) triangle = one;
+      h.hit.t = met ? one.t : h.hit.t;
+      found = found || met;
+    }
+#endif
+  }
+#ifdef HIERARCHY
+  if (owner >= 0) {
+    int i = triangle.triangle;
+    vec4 corner = hierarchy_triangle[3 * i];
+    vec3 e1 = hierarchy_triangle[3 * i + 1].xyz, e2 = hierarchy_triangle[3 * i + 2].xyz;
+    vec3 n = (1.0 - triangle.u - triangle.v) * hierarchy_corner[4 * i].xyz +
+             triangle.u * hierarchy_corner[4 * i + 1].xyz +
+             triangle.v * hierarchy_corner[4 * i + 2].xyz;
+    h.face_n = normalize(cross(e1, e2));
+    h.hit.n = dot(n, n) > 0.0 ? normalize(n) : h.face_n;
+    h.hit.p = corner.xyz + triangle.u * e1 + triangle.v * e2;
+    h.hit.t = max(triangle.t, 0.0);
+    h.hit.facet = floatBitsToInt(corner.w);
+    h.hit.refractor = owner;
+  }
+#endif
+  return found;
+}
+
+// An interpolated normal may send light to the wrong side of its face, of unit normal `face_n`: it
+// is bent until it runs just along the side wanted.
+vec3 keep_side(vec3 face_n, vec3 d) {
+  float along = dot(d, face_n);
+  return along > 0.0 ? d : normalize(d + (1e-3 - along) * face_n);
+}
+
+// Both ways on from an interface that w comes to; their shares add up to w's. False where the
+// medium does not change: w goes on behind it.
+bool split(inout Way w, Interface h, out Way mirrored) {
+  int r = h.hit.refractor;
+  uint after = w.inside ^ 1u << r;
+  bool entering = (w.inside >> r & 1u) == 0u;
+  w.p = h.hit.p;
+  w.refractor = r;
+  w.facet = h.hit.facet;
+  mirrored = w;
+  w.inside = after;
+  if (medium_of(mirrored.inside) == medium_of(after)) return false;
+  float eta = medium_n(mirrored.inside) / medium_n(after);
+  vec3 n = entering ? h.hit.n : -h.hit.n, face_n = entering ? h.face_n : -h.face_n;
+  if (dot(w.d, n) >= 0.0) n = face_n;
+  float reflected = fresnel(-dot(w.d, n), eta);
+  vec3 through;
+  if (!refract_direction(w.d, n, eta, through)) reflected = 1.0;
+  mirrored.d = keep_side(face_n, reflect(w.d, n));
+  w.d = keep_side(-face_n, through);
+  mirrored.share *= reflected;
+  w.share -= mirrored.share;
+  w.walls = mirrored.walls = w.walls + 1;
+  w.path = w.path * 31u + uint(r * 2) + uint(h.hit.facet) * 7u + 1u;
+  mirrored.path = w.path + 1u;
+  return true;
+}
+
+// Keeps a branch for later, in the place of the weakest where there is none free; returns the share
+// that is given up.
+float keep_pending(Way w, inout Way pending[PENDING]) {
+  int weakest = 0;
+  float least = pending[0].share;
+  for (int k = 1; k < PENDING; k++) {
+    bool weaker = pending[k].share < least;
+    least = weaker ? pending[k].share : least;
+    weakest = weaker ? k : weakest;
+  }
+  if (w.share <= least) return w.share;
+  for (int k = 0; k < PENDING; k++)
+    if (k == weakest) pending[k] = w;
+  return least;
+}
+
+// The strongest branch that waits; share 0: none does.
+Way take_pending(inout Way pending[PENDING]) {
+  int strongest = 0;
+  Way w = pending[0];
+  for (int k = 1; k < PENDING; k++) {
+    bool stronger = pending[k].share > w.share;
+    strongest = stronger ? k : strongest;
+    if (stronger) w = pending[k];
+  }
+  for (int k = 0; k < PENDING; k++)
+    if (k == strongest) pending[k].share = 0.0;
+  return w;
+}
+
+// What may be reflected further: always at the first interface, then until too little is left or
+// too many interfaces are met.
+bool reflects_on(Way mirrored) {
+  return mirrored.walls <= 0 || (mirrored.walls < EXITS && mirrored.share >= share_limit);
+}
