@@ -2,6 +2,7 @@
 
 #include "gl/precision.h"
 #include "gl/reach.h"
+#include "gl/transport.h"
 #include "scenes/vector.h"
 #include "scenes/view.h"
 #include "spectral/wavelengths.h"
@@ -163,149 +164,6 @@ static abbe_result examine_material(const abbe_scene *scene, const abbe_material
   return ABBE_OK;
 }
 
-static double side_of(const double p[9], const double at[3]) {
-  const double *u = p + 3, *v = p + 6;
-  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  double sum = 0, length = 0;
-  for (int k = 0; k < 3; k++) {
-    sum += n[k] * (at[k] - p[k]);
-    length += n[k] * n[k];
-  }
-  return sum / sqrt(length);
-}
-
-/* Between the boxes that bound them. */
-static bool boxes_meet(const double a_min[3], const double a_max[3], const double b_min[3],
-                       const double b_max[3]) {
-  for (int k = 0; k < 3; k++)
-    if (!(a_min[k] < b_max[k] && b_min[k] < a_max[k])) return false;
-  return true;
-}
-
-static bool overlap(const abbe_object *a, const abbe_object *b) {
-  if (!boxes_meet(a->min, a->max, b->min, b->max)) return false;
-  if (a->exact.kind != ABBE_EXACT_SPHERE || b->exact.kind != ABBE_EXACT_SPHERE) return true;
-  double apart[3];
-  abbe_vector_subtract(a->exact.centre, b->exact.centre, apart);
-  return abbe_vector_length(apart) < a->exact.radius + b->exact.radius;
-}
-
-/* An index as near to air's as this bends no ray by more than that, a few grazing ones aside. */
-static const double invisible = 2e-6;
-
-/* Whether light goes through the object as through air: clear, of air's index, and no bubble. */
-static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
-                         const abbe_plan *plan) {
-  const double min = plan->desc.min_nm, max = plan->desc.max_nm;
-  if (plan->desc.profile == ABBE_PROFILE_THESIS) return false;
-  for (int i = 0; i < RANGE_STEPS; i++) {
-    double lambda_nm = min + (max - min) * i / (RANGE_STEPS - 1), n = 0;
-    if (abbe_material_n(object->material, lambda_nm, &n, NULL) != ABBE_OK) return false;
-    if (!(fabs(n - 1) <= invisible)) return false;
-    if (abbe_material_attenuation(object->material, lambda_nm) > 0) return false;
-  }
-  for (size_t i = 0; i < scene->object_count; i++)
-    if (&scene->object[i] != object && scene->object[i].material != NULL &&
-        overlap(&scene->object[i], object))
-      return false;
-  return true;
-}
-
-/* Whether the box has corners on both sides of the parallelogram's plane, near enough to touch it.
- */
-static bool reaches_into(const double p[9], const abbe_object *refractor) {
-  double min[3], max[3], low = INFINITY, high = -INFINITY;
-  for (int k = 0; k < 3; k++) {
-    min[k] = p[k] + fmin(p[3 + k], 0) + fmin(p[6 + k], 0);
-    max[k] = p[k] + fmax(p[3 + k], 0) + fmax(p[6 + k], 0);
-    /* a parallelogram in a plane of two axes has no third extent */
-    double least = 1e-9 * (refractor->max[k] - refractor->min[k]);
-    min[k] -= least;
-    max[k] += least;
-  }
-  if (!boxes_meet(min, max, refractor->min, refractor->max)) return false;
-  for (int c = 0; c < 8; c++) {
-    double corner[3];
-    for (int k = 0; k < 3; k++) corner[k] = c >> k & 1 ? refractor->max[k] : refractor->min[k];
-    double side = side_of(p, corner);
-    low = fmin(low, side);
-    high = fmax(high, side);
-  }
-  return low < 0 && high > 0;
-}
-
-static bool receiver_reaches(const abbe_scene *scene, const abbe_object *refractor) {
-  for (size_t i = 0; i < scene->object_count; i++) {
-    const abbe_object *o = &scene->object[i];
-    if (o->material != NULL) continue;
-    if (o->exact.kind != ABBE_EXACT_PARALLELOGRAMS &&
-        boxes_meet(o->min, o->max, refractor->min, refractor->max))
-      return true;
-    for (size_t k = 0; o->exact.kind == ABBE_EXACT_PARALLELOGRAMS && k < o->exact.count; k++)
-      if (reaches_into(o->exact.parallelogram[k], refractor)) return true;
-  }
-  return false;
-}
-
-/* Why light that has left a refractor may meet one again, or a receiver within; NULL: it cannot. */
-static const char *examine_walk(const abbe_scene *scene, const abbe_plan *plan) {
-  const abbe_object *only = NULL;
-  size_t refractors = 0;
-  for (size_t i = 0; i < scene->object_count; i++) {
-    const abbe_object *o = &scene->object[i];
-    if (o->material == NULL || is_invisible(scene, o, plan)) continue;
-    only = o;
-    refractors++;
-  }
-  if (abbe_profile_is_thesis(plan->desc.profile) || refractors == 0) return NULL;
-  if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_WALK_REFRACTORS) return NULL;
-  if (plan->desc.model == ABBE_MODEL_HIERARCHY) return "as asked";
-  if (refractors > 1) return "there is more than one refractor";
-  if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
-      !abbe_mesh_is_convex(&only->mesh))
-    return "the refractor is not convex";
-  if (receiver_reaches(scene, only)) return "a receiver may reach into the refractor";
-  return NULL;
-}
-
-/* Whether a model that is asked for can serve the object. */
-static abbe_result check_model(const abbe_object *object, const abbe_plan *plan,
-                               abbe_error *error) {
-  abbe_model asked = plan->desc.model;
-  if (asked == ABBE_MODEL_SPHERE && object->exact.kind != ABBE_EXACT_SPHERE)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the model 'sphere' cannot serve '%s', which is no sphere", object->name);
-  if (asked == ABBE_MODEL_CONVEX && object->exact.kind != ABBE_EXACT_CONVEX)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the model 'convex' cannot serve '%s', which is no convex solid of at "
-                          "most %d faces",
-                          object->name, ABBE_SCENE_MAX_PLANES);
-  if (asked == ABBE_MODEL_HIERARCHY && !plan->walk)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the model 'hierarchy' follows light through at most %d refractors; the "
-                          "scene has more",
-                          MAX_WALK_REFRACTORS);
-  return ABBE_OK;
-}
-
-static abbe_refractor_model choose_model(const abbe_object *object, const abbe_plan *plan) {
-  if (abbe_profile_is_thesis(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
-  if (plan->desc.model != ABBE_MODEL_AUTO)
-    return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
-  if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
-  if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
-  return plan->walk ? ABBE_REFRACTOR_HIERARCHY : ABBE_REFRACTOR_LAYERS;
-}
-
-static const char *model_reason(const abbe_object *object, const abbe_plan *plan) {
-  if (abbe_profile_is_thesis(plan->desc.profile)) return "the thesis profile knows no other model";
-  if (plan->desc.model != ABBE_MODEL_AUTO) return "as asked";
-  if (object->exact.kind == ABBE_EXACT_SPHERE) return "the object is a sphere";
-  if (object->exact.kind == ABBE_EXACT_CONVEX) return "the object is a convex faceted solid";
-  if (plan->walk) return "the object is a general mesh, and light may meet it more than twice";
-  return "the object is a convex mesh and stands alone: a view sees all of it, front and back";
-}
-
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->refractor_object = calloc(scene->object_count + 1, sizeof *plan->refractor_object);
@@ -314,7 +172,7 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
   if (plan->refractor_object == NULL || plan->receiver_object == NULL || plan->model == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
   bool exact = !thesis;
-  const char *walk = examine_walk(scene, plan);
+  const char *walk = abbe_transport_walk(scene, plan);
   plan->walk = walk != NULL;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
@@ -329,22 +187,23 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
       return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than 255 refractors");
     char name[64];
     snprintf(name, sizeof name, "model: %.50s", object->name);
-    if (is_invisible(scene, object, plan)) {
+    if (abbe_transport_invisible(scene, object, plan)) {
       add(plan, false, name, "clear, and its index is that of air: light does not notice it");
       continue;
     }
     abbe_result result = examine_material(scene, object->material, plan, error);
     if (result != ABBE_OK) return result;
-    result = check_model(object, plan, error);
+    result = abbe_transport_check(object, plan, error);
     if (result != ABBE_OK) return result;
-    abbe_refractor_model model = choose_model(object, plan);
+    abbe_refractor_model model = abbe_transport_model(object, plan);
     plan->refractor_object[plan->refractor_count] = i;
     plan->model[plan->refractor_count++] = model;
     plan->spheres = plan->spheres || model == ABBE_REFRACTOR_SPHERE;
     plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
     plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
     plan->hierarchy = plan->hierarchy || model == ABBE_REFRACTOR_HIERARCHY;
-    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), model_reason(object, plan));
+    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model),
+        abbe_transport_reason(object, plan));
   }
   if (plan->refractor_count > MAX_MODEL_ENTRIES)
     add(plan, true, "models", "and %zu refractors more", plan->refractor_count - MAX_MODEL_ENTRIES);
@@ -379,7 +238,7 @@ static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const dou
         double corner[3];
         for (int x = 0; x < 3; x++)
           corner[x] = q[x] + (c & 1 ? q[3 + x] : 0) + (c & 2 ? q[6 + x] : 0);
-        double side = side_of(p, corner);
+        double side = abbe_transport_side(p, corner);
         low = fmin(low, side);
         high = fmax(high, side);
       }
@@ -388,7 +247,7 @@ static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const dou
     const abbe_object *object = &scene->object[plan->refractor_object[i / 8]];
     double corner[3];
     for (int x = 0; x < 3; x++) corner[x] = i >> x & 1 ? object->max[x] : object->min[x];
-    double side = side_of(p, corner);
+    double side = abbe_transport_side(p, corner);
     low = fmin(low, side);
     high = fmax(high, side);
   }
@@ -398,7 +257,7 @@ static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const dou
     for (int x = 0; x < 3; x++)
       from[x] = light->kind == ABBE_LIGHT_DIRECTIONAL ? p[x] - light->direction[x] * 1e6
                                                       : light->position[x];
-    double side = side_of(p, from);
+    double side = abbe_transport_side(p, from);
     low = fmin(low, side);
     high = fmax(high, side);
   }
@@ -482,7 +341,7 @@ static void note_overlaps(const abbe_scene *scene, abbe_plan *plan) {
     for (size_t k = i + 1; k < plan->refractor_count; k++) {
       const abbe_object *a = &scene->object[plan->refractor_object[i]];
       const abbe_object *b = &scene->object[plan->refractor_object[k]];
-      if (!overlap(a, b)) continue;
+      if (!abbe_transport_overlap(a, b)) continue;
       if (pairs++ > 0) continue;
       first[0] = a;
       first[1] = b;
