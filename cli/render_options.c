@@ -18,6 +18,7 @@ enum {
   OPTION_SHARE,
   OPTION_EXITS,
   OPTION_SPACE,
+  OPTION_EVERYTHING,
   OPTION_MATERIALS
 };
 
@@ -33,8 +34,10 @@ static const struct argp_option options[] = {
      "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)", 1},
     {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
     {"share", OPTION_SHARE, "X", 0, "paths end below this share of their light (0.01)", 1},
-    {"exits", OPTION_EXITS, "N", 0, "exits followed at the most, 1 to 16 (8; 4 by layers)", 1},
+    {"exits", OPTION_EXITS, "N", 0, "exits followed at the most, 1 to 16 (8; 16 for a high index; 4 by layers)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
+    {"everything", OPTION_EVERYTHING, NULL, 0,
+     "switch on what no fact asks for, to measure what the plan saves", 1},
     {"materials", OPTION_MATERIALS, "TABLE", 0,
      "a table instead of the scene's: default, thesis or a file", 1},
     {0}};
@@ -88,6 +91,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_SPACE:
     d->space =
         (abbe_rgb_space)abbe_command_choice(p, "--space", text, spaces, ABBE_RGB_SPACE_COUNT);
+    return 0;
+  case OPTION_EVERYTHING:
+    d->everything = true;
     return 0;
   case OPTION_MATERIALS:
     o->materials = text;

@@ -50,7 +50,7 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
       {&r->eye_caustic, GL_RGBA32F, 0, r->plan.desc.layers},
       {&r->eye_refraction, GL_RGBA32F, 0, true},
       {&r->eye_depth, GL_DEPTH_COMPONENT32F, 0, true},
-      {&r->eye_layers, GL_RGBA32F, r->plan.layers ? 2 : 1, layers},
+      {&r->eye_layers, GL_RGBA32F, r->plan.back ? 2 : 1, layers},
       {&r->eye_owner, GL_R16UI, 0, layers},
       {&r->eye_layers_depth, GL_DEPTH_COMPONENT32F, 0, layers},
   };
@@ -159,7 +159,7 @@ static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
   set_eye(r, r->layer);
   gl->Enable(GL_DEPTH_TEST);
   gl->Enable(GL_CULL_FACE);
-  for (int back = 0; back <= (r->plan.layers ? 1 : 0); back++) {
+  for (int back = 0; back <= (r->plan.back ? 1 : 0); back++) {
     GLuint target[2] = {r->eye_layers, r->eye_owner};
     int layer[2] = {back, -1};
     abbe_result result =

@@ -1,5 +1,6 @@
 #include "gl/plan.h"
 
+#include "gl/everything.h"
 #include "gl/precision.h"
 #include "gl/reach.h"
 #include "gl/transport.h"
@@ -20,38 +21,6 @@ enum {
   MAX_WALK_REFRACTORS = 32,
   WALK_SLOTS = 16
 };
-
-#define ABBE_NAME_OF(code, name) name,
-const char *abbe_profile_name(abbe_profile profile) {
-  static const char *const names[] = {ABBE_PROFILES(ABBE_NAME_OF)};
-  return (int)profile >= 0 && profile < ABBE_PROFILE_COUNT ? names[profile] : "unknown";
-}
-
-bool abbe_profile_is_thesis(abbe_profile profile) {
-  return profile == ABBE_PROFILE_THESIS || profile == ABBE_PROFILE_THESIS_CIE;
-}
-
-const char *abbe_fill_name(abbe_fill fill) {
-  static const char *const names[] = {ABBE_FILLS(ABBE_NAME_OF)};
-  return (int)fill >= 0 && fill < ABBE_FILL_COUNT ? names[fill] : "unknown";
-}
-
-const char *abbe_model_name(abbe_model model) {
-  static const char *const names[] = {ABBE_MODELS(ABBE_NAME_OF)};
-  return (int)model >= 0 && model < ABBE_MODEL_COUNT ? names[model] : "unknown";
-}
-#undef ABBE_NAME_OF
-
-const char *abbe_refractor_model_name(abbe_refractor_model model) {
-  return model == ABBE_REFRACTOR_SPHERE   ? "exact sphere"
-         : model == ABBE_REFRACTOR_CONVEX ? "convex planes"
-         : model == ABBE_REFRACTOR_LAYERS ? "front and back layers"
-                                          : "triangle hierarchy";
-}
-
-const char *abbe_receiver_model_name(abbe_receiver_model model) {
-  return model == ABBE_RECEIVER_EXACT ? "exact parallelograms" : "iterated image space";
-}
 
 #if defined(__GNUC__)
 __attribute__((format(printf, 4, 5)))
@@ -153,6 +122,7 @@ static abbe_result examine_material(const abbe_scene *scene, const abbe_material
     if (i == 0) first = n;
     if (i == 0) first_per_m = per_m;
     if (n != first) plan->dispersive = true;
+    if (n > 2) plan->dense = true;
     if (per_m != first_per_m) plan->tinting = true;
     if (per_m > 0) plan->absorbing = true;
   }
@@ -318,7 +288,10 @@ static void resolve_wavelengths(abbe_plan *plan) {
   add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
       plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
-  if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : 8;
+  /* Between facets light of an index above 2 finds out at a wall from less than a seventh of all
+   * directions; in a sphere it leaves where it came in. */
+  bool kept = plan->dense && plan->convex && !plan->layers && !plan->walk;
+  if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : kept ? 16 : 8;
   if (abbe_profile_is_thesis(plan->desc.profile)) plan->desc.orders = 1;
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
@@ -329,8 +302,9 @@ static void resolve_wavelengths(abbe_plan *plan) {
         thesis ? "as in the thesis" : "as asked");
   else
     add(plan, true, "inner reflections",
-        "followed until less than %g of the light is left, %zu exits at most",
-        plan->desc.energy_share, plan->desc.orders);
+        "followed until less than %g of the light is left, %zu exits at most%s",
+        plan->desc.energy_share, plan->desc.orders,
+        kept ? ": an index above 2 keeps it between facets" : "");
 }
 
 /* The scene's rule, that the later object wins, is not the renderer's. */
@@ -545,6 +519,8 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   examine_shadows(scene, out);
   resolve_wavelengths(out);
   list_passes(scene, out);
+  out->back = out->layers;
+  if (out->desc.everything) abbe_everything_switch_on(scene, desc, out);
   return ABBE_OK;
 }
 
@@ -553,10 +529,4 @@ void abbe_plan_free(abbe_plan *plan) {
   free(plan->receiver_object);
   free(plan->model);
   memset(plan, 0, sizeof *plan);
-}
-
-const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name) {
-  for (size_t i = 0; i < plan->entry_count; i++)
-    if (strcmp(plan->entry[i].name, name) == 0) return &plan->entry[i];
-  return NULL;
 }

@@ -72,7 +72,8 @@ typedef struct abbe_render_desc {
   abbe_fill fill;
   abbe_model model;
   double energy_share;  /* paths below this share of their light end; 0: 0.01 */
-  size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8
+  size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8,
+                             16 where facets keep light inside
                              (4 where a mesh is known by its layers) */
   abbe_rgb_space space; /* of the picture */
   /* Layout of one light's map, and which light's; it lives as long as the plan. NULL: each map is
@@ -82,6 +83,7 @@ typedef struct abbe_render_desc {
   /* Of the photon grid in cells and of the eye's samples in their distance, x and y, -0.5 to 0.5:
    * other pictures that the same request could have given (gl/error_bars.h). */
   double photon_shift[2], sample_shift[2];
+  bool everything;               /* all on, to measure what the plan saves (gl/everything.h) */
   bool layers;                   /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
   void *progress_user;
@@ -123,12 +125,14 @@ typedef struct abbe_plan {
   bool dispersive; /* some index varies over the range */
   bool absorbing;  /* some attenuation is above zero in the range */
   bool tinting;    /* some attenuation varies over the range */
+  bool dense;      /* some index is above 2 in the range */
   bool textured;
   size_t slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may */
   bool seen;                           /* the eye may */
   bool fills;                          /* light is laid between wavelengths */
+  bool back;                           /* the back of refractors is drawn */
   size_t light_count;
   size_t entry_count; /* passes and models, in the order in which they run */
   abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];

@@ -12,12 +12,14 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Clear and constant, dispersive, air's, dispersive and absorbing below 500 nm, constant and
- * absorbing, and two known over a part of the range only. */
+/* Clear and constant, dispersive, also of a high index, air's, dispersive and absorbing below
+ * 500 nm, constant and absorbing, and two known over a part of the range only. */
 #define GLASSES                                                                                    \
   "materials:\n"                                                                                   \
   "- {name: flat, model: constant, coefficients: [1.5], source: made up}\n"                        \
   "- {name: crown, model: cauchy, coefficients: [1.5, 0.006], range_nm: [300, 2500],\n"            \
+  "   source: made up}\n"                                                                          \
+  "- {name: dense, model: cauchy, coefficients: [2.4, 0.006], range_nm: [300, 2500],\n"            \
   "   source: made up}\n"                                                                          \
   "- {name: air, model: constant, coefficients: [1], source: made up}\n"                           \
   "- {name: murk, model: cauchy, coefficients: [1.5, 0.006], range_nm: [300, 2500], source: "      \

@@ -124,6 +124,7 @@ static void differ(const lines *from, const lines *to, lines *out) {
 static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("crown");
 
 static const char flat[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
+static const char cube[] = CAMERA POINT_LIGHT FLOOR CUBE("crown");
 static const char egg[] = CAMERA POINT_LIGHT FLOOR EGG("crown");
 
 typedef struct pair {
@@ -214,6 +215,21 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR CUBE("crown"),
      {0},
      {"+model: ball|convex planes: the object is a convex faceted solid", NULL}},
+    {"an index above 2, of a cube",
+     cube,
+     CAMERA POINT_LIGHT FLOOR CUBE("dense"),
+     {0},
+     {"=7 wavelengths, 16 exits, 17 landings",
+      "+inner reflections|followed until less than 0.01 of the light is left, 16 exits at most: an "
+      "index above 2 keeps it between facets",
+      NULL}},
+    {"an index above 2, of a ball",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("dense"),
+     {0},
+     {
+
+         NULL}},
     {"a convex mesh for the ball",
      ball,
      CAMERA POINT_LIGHT FLOOR EGG("crown"),
@@ -428,8 +444,11 @@ static const struct {
       "no light through them",
       NULL}},
     {"diamond",
-     {"+model: diamond|convex planes: the object is a convex faceted solid",
+     {"=7 wavelengths, 16 exits, 17 landings",
+      "+model: diamond|convex planes: the object is a convex faceted solid",
       "+shadows of receivers|a receiver may stand between a light and another",
+      "+inner reflections|followed until less than 0.01 of the light is left, 16 exits at most: an "
+      "index above 2 keeps it between facets",
       "-map: lamp of the left card|its cone misses every refractor",
       "-map: lamp of the high card|its cone misses every refractor",
       "!diamond: the index is extrapolated outside its valid range, 226 to 760 nm",
