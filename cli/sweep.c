@@ -27,6 +27,7 @@ enum {
   OPTION_SAMPLES,
   OPTION_FILL,
   OPTION_EXITS,
+  OPTION_MODEL,
   OPTION_SHARE,
   OPTION_FRAMES,
   OPTION_SIZE,
@@ -79,6 +80,7 @@ static const struct argp_option options[] = {
     {"map", OPTION_MAP, "LIST", 0, "sides of the spectral map", 1},
     {"samples", OPTION_SAMPLES, "LIST", 0, "a pixel side", 1},
     {"fill", OPTION_FILL, "LIST", 0, "auto,none", 1},
+    {"model", OPTION_MODEL, "LIST", 0, "of transport: auto, layers, hierarchy, ...", 1},
     {"exits", OPTION_EXITS, "LIST", 0, "followed at the most", 1},
     {"share", OPTION_SHARE, "LIST", 0, "of their light below which paths end", 1},
     {"frames", OPTION_FRAMES, "N", 0, "warm up, then the median of N (5)", 1},
@@ -139,15 +141,20 @@ static void take_share(const request *q, const char *option, const char *word, s
 #define ABBE_NAME_OF(code, name) name,
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF)};
+static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF)};
 static const char *const grids[] = {ABBE_SWEEP_GRIDS(ABBE_NAME_OF) "presets"};
 static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(ABBE_NAME_OF)};
 
 static void take_name(const request *q, const char *option, const char *word, size_t at,
                       void *out) {
-  bool profile = strcmp(option, "--profiles") == 0;
-  ((abbe_sweep_values *)out)->value[at] =
-      (size_t)abbe_command_choice(q->work.program, option, word, profile ? profiles : fills,
-                                  profile ? ABBE_PROFILE_COUNT : ABBE_FILL_COUNT);
+  const bool profile = strcmp(option, "--profiles") == 0, model = strcmp(option, "--model") == 0;
+  ((abbe_sweep_values *)out)->value[at] = (size_t)abbe_command_choice(q->work.program, option, word,
+                                                                      profile ? profiles
+                                                                      : model ? models
+                                                                              : fills,
+                                                                      profile ? ABBE_PROFILE_COUNT
+                                                                      : model ? ABBE_MODEL_COUNT
+                                                                              : ABBE_FILL_COUNT);
 }
 
 static void parse_error(request *q, const char *text, struct argp_state *state) {
@@ -179,10 +186,11 @@ static error_t parse_list(int key, const char *text, request *q) {
                {OPTION_SAMPLES, "--samples", &g->samples},
                {OPTION_EXITS, "--exits", &g->exits},
                {OPTION_PROFILES, "--profiles", &g->profiles},
+               {OPTION_MODEL, "--model", &g->models},
                {OPTION_FILL, "--fill", &g->fills}};
   for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
     if (lists[i].key != key) continue;
-    bool words = key == OPTION_PROFILES || key == OPTION_FILL;
+    bool words = key == OPTION_PROFILES || key == OPTION_FILL || key == OPTION_MODEL;
     each_word(q, lists[i].option, text, &lists[i].values->count, words ? take_name : take_count,
               lists[i].values);
     q->listed = true;

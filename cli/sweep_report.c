@@ -180,6 +180,7 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
   cJSON_AddStringToObject(o, "fill", s->fill);
   cJSON_AddNumberToObject(o, "exits", (double)s->exits);
   cJSON_AddNumberToObject(o, "share", s->share);
+  cJSON_AddStringToObject(o, "model", s->model);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++)
     add_number(o, abbe_sweep_number_name((abbe_sweep_number)i), row->number[i]);
   cJSON_AddBoolToObject(o, "front", row->front);

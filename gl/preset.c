@@ -15,6 +15,7 @@ extern const size_t abbe_embedded_presets_yaml_size;
 static const char *const preset_names[] = {ABBE_PRESETS(ABBE_NAME_OF) NULL};
 static const char *const class_names[] = {ABBE_PRESET_CLASSES(ABBE_NAME_OF) NULL};
 static const char *const fill_names[] = {ABBE_FILLS(ABBE_NAME_OF) NULL};
+static const char *const model_names[] = {ABBE_MODELS(ABBE_NAME_OF) NULL};
 #undef ABBE_NAME_OF
 
 const char *abbe_preset_name_text(abbe_preset_name name) {
@@ -26,10 +27,10 @@ const char *abbe_preset_class_name(abbe_preset_class which) {
 }
 
 abbe_preset_class abbe_preset_class_of(const abbe_plan *plan) {
-  return plan->layers    ? ABBE_PRESET_CLASS_MESHES
-         : plan->convex  ? ABBE_PRESET_CLASS_CONVEX
-         : plan->spheres ? ABBE_PRESET_CLASS_SPHERES
-                         : ABBE_PRESET_CLASS_NONE;
+  return plan->layers || plan->hierarchy ? ABBE_PRESET_CLASS_MESHES
+         : plan->convex                  ? ABBE_PRESET_CLASS_CONVEX
+         : plan->spheres                 ? ABBE_PRESET_CLASS_SPHERES
+                                         : ABBE_PRESET_CLASS_NONE;
 }
 
 /* Reading */
@@ -69,11 +70,14 @@ static abbe_result get_counts(const reader *r, abbe_yaml_node node, abbe_render_
 }
 
 static abbe_result read_point(const reader *r, abbe_yaml_node node, abbe_preset_point *out) {
-  int fill = ABBE_FILL_BRIDGE;
+  int fill = ABBE_FILL_BRIDGE, model = ABBE_MODEL_AUTO;
   abbe_result result = get_counts(r, node, &out->desc);
   if (result == ABBE_OK)
     result = abbe_yaml_get_choice(r->yaml, node, "fill", fill_names, &fill, r->error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_choice(r->yaml, node, "model", model_names, &model, r->error);
   out->desc.fill = (abbe_fill)fill;
+  out->desc.model = (abbe_model)model;
   if (result == ABBE_OK) result = get_positive(r, node, "share", &out->desc.energy_share);
   if (result == ABBE_OK && !(out->desc.energy_share > 0 && out->desc.energy_share <= 1))
     result = abbe_yaml_fail(r->yaml, node, r->error, "the share may be above 0, to 1");
@@ -223,7 +227,8 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
   same = take(&d->orders, p->orders) && same;
   if (d->fill == ABBE_FILL_AUTO) d->fill = p->fill;
   if (d->energy_share == 0) d->energy_share = p->energy_share;
-  return same && d->fill == p->fill && d->energy_share == p->energy_share &&
+  if (d->model == ABBE_MODEL_AUTO) d->model = p->model;
+  return same && d->fill == p->fill && d->energy_share == p->energy_share && d->model == p->model &&
          d->profile == ABBE_PROFILE_DEFAULT;
 }
 

@@ -11,6 +11,7 @@ static void add(abbe_sweep_table *table, const char *profile, size_t photons, do
       .setting = {.wavelengths = 7, .photons = photons, .map = 1024, .samples = 1, .share = 0.01}};
   snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
   snprintf(row.setting.fill, sizeof row.setting.fill, "%s", plain ? "bridge" : "smear");
+  snprintf(row.setting.model, sizeof row.setting.model, "auto");
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
   row.number[ABBE_SWEEP_FRAME_MS] = ms;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = e;

@@ -17,6 +17,7 @@ static void add(abbe_sweep_table *table, const char *profile, size_t photons, do
                                     .exits = 8}};
   snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
   snprintf(row.setting.fill, sizeof row.setting.fill, "bridge");
+  snprintf(row.setting.model, sizeof row.setting.model, "auto");
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
   row.number[ABBE_SWEEP_FRAME_MS] = ms;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = e;

@@ -32,6 +32,7 @@ static void add(abbe_sweep_table *t, const char *profile, size_t photons, double
                                     .exits = 8}};
   snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
   snprintf(row.setting.fill, sizeof row.setting.fill, "bridge");
+  snprintf(row.setting.model, sizeof row.setting.model, "auto");
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
   row.number[ABBE_SWEEP_LIGHT_MS] = light;
   row.number[ABBE_SWEEP_EYE_MS] = eye;

@@ -15,6 +15,7 @@ static abbe_sweep_row *add(abbe_sweep_table *table, size_t wavelengths, size_t p
                                     .share = 0.01,
                                     .exits = 8}};
   snprintf(row.setting.fill, sizeof row.setting.fill, "%s", fill);
+  snprintf(row.setting.model, sizeof row.setting.model, "auto");
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = total;
   row.number[ABBE_SWEEP_CAUSTIC_DE_NOISE] = 0.1;

@@ -16,6 +16,7 @@ static abbe_sweep_row row_of(const char *profile, size_t wavelengths, double ms,
                                     .exits = 8}};
   snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
   snprintf(row.setting.fill, sizeof row.setting.fill, "bridge");
+  snprintf(row.setting.model, sizeof row.setting.model, "auto");
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
   row.number[ABBE_SWEEP_FRAME_MS] = ms;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = error;
@@ -91,6 +92,10 @@ static void test_settings_are_told_apart(void **state) {
   snprintf(row.setting.fill, sizeof row.setting.fill, "none");
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
   assert_string_equal(text, "w7 p128 m512 s2 no fill e1");
+  snprintf(row.setting.model, sizeof row.setting.model, "layers");
+  assert_null(abbe_sweep_table_find(&table, &row.setting));
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s2 no fill e1 layers");
   snprintf(row.setting.profile, sizeof row.setting.profile, "thesis");
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
   assert_string_equal(text, "thesis w7 p128 m512 s2 no fill");
@@ -147,11 +152,11 @@ static void test_broken_tables_are_named(void **state) {
       {"default,7,", "default,-7,", "is not a whole number"},
       {"default,7,", ",7,", "s.csv:3: profile '' is not a word"},
       {"default,7,", "a-profile-of-a-long-name,7,", "is not a word of 1 to 15 letters"},
-      {"0.01,10,", "0.01,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
-      {"0.01,10,", "0.01,1e999,", "is not a number"},
-      {"0.01,10,", "0,10,", "is not a share above 0"},
-      {"0.01,10,", "0.01,10,,", "the row has 43 cells, not 42"},
-      {"frame_ms", "frame_s", "column 9 is 'frame_s' where a sweep has 'frame_ms'"},
+      {"auto,10,", "auto,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
+      {"auto,10,", "auto,1e999,", "is not a number"},
+      {"0.01,auto,10,", "0,auto,10,", "is not a share above 0"},
+      {"auto,10,", "auto,10,,", "the row has 44 cells, not 43"},
+      {"frame_ms", "frame_s", "column 10 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };
   char *text = text_of_one_row(), changed[8300];

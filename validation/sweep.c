@@ -83,16 +83,22 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
        .photons = VALUES(64),
        .map = VALUES(256),
        .samples = VALUES(1)},
-      {.wavelengths = VALUES(7, 21),
-       .photons = VALUES(64, 128, 256),
+      {.wavelengths = VALUES(7),
+       .photons = VALUES(64, 128),
        .map = VALUES(512),
        .samples = VALUES(1)},
-      {.wavelengths = VALUES(7), .photons = VALUES(512), .samples = VALUES(1)},
+      {.wavelengths = VALUES(21), .photons = VALUES(128), .map = VALUES(512), .samples = VALUES(1)},
+      {.wavelengths = VALUES(7), .photons = VALUES(256), .samples = VALUES(1)},
       {.wavelengths = VALUES(7),
-       .photons = VALUES(256),
+       .photons = VALUES(128),
        .map = VALUES(512),
        .samples = VALUES(1),
        .fills = VALUES(ABBE_FILL_NONE)},
+      {.wavelengths = VALUES(3, 7),
+       .photons = VALUES(64, 128),
+       .map = VALUES(256),
+       .samples = VALUES(1),
+       .models = VALUES(ABBE_MODEL_LAYERS)},
       {.profiles = BASELINES,
        .wavelengths = VALUES(7),
        .photons = VALUES(128, 512),
@@ -128,27 +134,32 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
                               .exits = d->orders};
   snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
   snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
+  snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
 }
 
 abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
                                     abbe_error *error) {
-  int profile = 0, fill = 0;
+  int profile = 0, fill = 0, model = 0;
   while (profile < ABBE_PROFILE_COUNT &&
          strcmp(abbe_profile_name((abbe_profile)profile), setting->profile) != 0)
     profile++;
   while (fill < ABBE_FILL_COUNT && strcmp(abbe_fill_name((abbe_fill)fill), setting->fill) != 0)
     fill++;
+  while (model < ABBE_MODEL_COUNT &&
+         strcmp(abbe_model_name((abbe_model)model), setting->model) != 0)
+    model++;
   *out = (abbe_render_desc){0};
-  if (profile == ABBE_PROFILE_COUNT || fill == ABBE_FILL_COUNT)
+  if (profile == ABBE_PROFILE_COUNT || fill == ABBE_FILL_COUNT || model == ABBE_MODEL_COUNT)
     return abbe_error_set(error, ABBE_NOT_FOUND,
-                          "the renderer has no profile '%s' with a fill '%s'", setting->profile,
-                          setting->fill);
+                          "the renderer has no profile '%s' with a fill '%s' and a model '%s'",
+                          setting->profile, setting->fill, setting->model);
   *out = (abbe_render_desc){.profile = (abbe_profile)profile,
                             .wavelengths = setting->wavelengths,
                             .photons = setting->photons,
                             .map_size = setting->map,
                             .supersample = setting->samples,
                             .fill = (abbe_fill)fill,
+                            .model = (abbe_model)model,
                             .energy_share = setting->share,
                             .orders = setting->exits};
   return ABBE_OK;
@@ -197,7 +208,7 @@ static abbe_result add_setting(expansion *e, const abbe_render_desc *desc, abbe_
 static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *error) {
   size_t shares = g->share_count > 0 ? g->share_count : 1, total = shares;
   const abbe_sweep_values *const axes[] = {&g->profiles, &g->wavelengths, &g->photons, &g->map,
-                                           &g->samples,  &g->exits,       &g->fills};
+                                           &g->samples,  &g->exits,       &g->fills,   &g->models};
   for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) total *= length_of(axes[i]);
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < total && result == ABBE_OK; i++) {
@@ -208,6 +219,7 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
     d.supersample = take(&g->samples, &counter);
     d.orders = take(&g->exits, &counter);
     d.fill = (abbe_fill)take(&g->fills, &counter);
+    d.model = (abbe_model)take(&g->models, &counter);
     d.profile = (abbe_profile)take(&g->profiles, &counter);
     if (g->share_count > 0) d.energy_share = g->share[counter % shares];
     result = add_setting(e, &d, error);

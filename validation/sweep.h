@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 #define ABBE_SWEEP_MAX_VALUES 16 /* of one axis */
-#define ABBE_SWEEP_MAX_GRIDS 8
+#define ABBE_SWEEP_MAX_GRIDS 12
 #define ABBE_SWEEP_BANDS 8 /* in which maps are compared over wavelength */
 
 /* Values of one axis; none: the profile's default. */
@@ -32,7 +32,8 @@ typedef struct abbe_sweep_values {
 typedef struct abbe_sweep_grid {
   abbe_sweep_values profiles; /* abbe_profile */
   abbe_sweep_values wavelengths, photons, map, samples, exits;
-  abbe_sweep_values fills; /* abbe_fill */
+  abbe_sweep_values fills;    /* abbe_fill */
+  abbe_sweep_values models;   /* abbe_model */
   size_t share_count;
   double share[ABBE_SWEEP_MAX_VALUES];
 } abbe_sweep_grid;

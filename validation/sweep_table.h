@@ -24,6 +24,7 @@ typedef struct abbe_sweep_setting {
   char profile[ABBE_SWEEP_WORD];
   size_t wavelengths, photons, map, samples;
   char fill[ABBE_SWEEP_WORD];
+  char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */
   double share;
   size_t exits;
 } abbe_sweep_setting;
