@@ -25,7 +25,8 @@ enum {
 static const struct argp_option options[] = {
     {"profile", OPTION_PROFILE, "NAME", 0, "default; baselines: thesis, and thesis-cie with CIE weights in W", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
-    {"wavelengths", OPTION_WAVELENGTHS, "N", 0, "samples of the spectrum, 1 to 1000 (7)", 1},
+    {"wavelengths", OPTION_WAVELENGTHS, "N", 0,
+     "samples of the spectrum that a photon takes at the most, 1 to 1000 (7)", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"photons", OPTION_PHOTONS, "N", 0, "side of the photon grid, 1 to 4096 (256)", 1},
     {"map", OPTION_MAP, "N", 0, "side of the spectral map, 1 to 4096 (1024)", 1},

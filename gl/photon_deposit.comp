@@ -3,9 +3,11 @@
 // the colour of its own part of the band; where the ways differ each keeps its half of the band to
 // itself. Pieces that fall closer together than the photons do are added first. A piece is spread
 // over the parallelogram that the neighbouring photons' landings span: where that is wide, in a
-// coarser level of the map. No branch saves time on a software rasteriser, so there are few.
+// coarser level of the map. REFINED: the intervals on the list, by all their wavelengths; else those
+// of the coarse set that are not on it. No branch saves time on a software rasteriser, so there are few.
 layout(local_size_x = 256) in;
 #include "common.glsl"
+#include "photon_nodes.glsl"
 #include "splat_list.glsl"
 
 struct Photon {  // as in photon_start.glsl
@@ -25,8 +27,18 @@ layout(std430, binding = 13) readonly buffer PathList {
   uint path_count, path_groups[3];
   uint path_list[];
 };
-// Interval i lies between nodes i - 1 and i. [(light * REFRACTORS + refractor) * (WAVELENGTHS + 1)
-// + i] * (STEPS + 1) + k: XYZ of the interval up to step k, and how far along (0 to 1) that is.
+#ifdef REFINED
+layout(std430, binding = 7) readonly buffer PairList {
+  uint pair_count, pair_groups[3];
+  uint pair_at[];
+};
+layout(std430, binding = 11) readonly buffer FineLandings { vec4 fine_landing[]; };
+layout(std430, binding = 12) readonly buffer FineSignatures { uint fine_signature[]; };
+#else
+layout(std430, binding = 7) readonly buffer Wants { uint want[]; };  // a bit a refined interval
+#endif
+// Interval i lies between nodes i - 1 and i. [table_first + (light * REFRACTORS + refractor) *
+// (nodes + 1) + i] * (STEPS + 1) + k: XYZ of the interval up to step k, and how far along (0 to 1) that is.
 layout(std430, binding = 14) readonly buffer Intervals { vec4 interval_sum[]; };
 
 uniform int light;
@@ -36,6 +48,8 @@ uniform int lane_first;
 uniform int lane_count;
 uniform int interval_first;
 uniform int interval_end;
+uniform int nodes;  // of the set whose landings these are
+uniform int table_first;
 uniform uint chunks, chunk;  // only paths of this chunk
 uniform uint most;           // pieces that the list has room for
 
@@ -56,7 +70,7 @@ vec2 neighbour_step(ivec2 c, ivec2 to, vec2 start, int order, int lane, uint pat
   there = there && at != 0u;
   uint other = there ? at - 1u : 0u;
   uint index = (other * SLOTS + order) * LANES + lane;
-  there = there && signature[index] == path;
+  there = there && path != 0u && signature[index] == path;
   vec2 way = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
   float apart = max(dot(way, vec2(to)), 0.25);
   return there ? (map_position(landing[index].xyz) - here) / apart : vec2(0);
@@ -73,9 +87,20 @@ void main() {
          gl_LocalInvocationID.x;
   if (listed >= path_count) return;
   uint photon_path = path_list[listed];
-  uint photon = photon_path / SLOTS;
   int order = int(photon_path % SLOTS);
-  uint first = photon_path * LANES;
+#ifdef REFINED
+  uint pair = pair_at[photon_path / SLOTS];
+  uint photon = pair / PAIR_INTERVALS, coarse_interval = pair % PAIR_INTERVALS;
+  int node_a = coarse_node(int(coarse_interval)), node_end = coarse_node(int(coarse_interval) + 1);
+  int turns = FINE_NODES - 1, twice_middle = 2 * int(coarse_interval) + 1;
+  uint fine_first = photon_path * FINE_NODES;
+#else
+  uint photon = photon_path / SLOTS;
+  int node_a = interval_first - 1;
+  int turns = interval_end - interval_first, twice_middle = lane_count;
+  uint refined = want[photon] << 1;
+#endif
+  uint first = (photon * SLOTS + uint(order)) * LANES;
   Photon from_cell = photon_at[photon];
   uint packed_cell = from_cell.cell;
   if (packed_cell * 2654435761u % chunks != chunk) return;
@@ -87,7 +112,7 @@ void main() {
   uint path = 0u;
   for (int i = 0; i < lane_count; i++) {
     uint found = signature[first + i];
-    bool nearer = path == 0u || abs(2 * i - lane_count) < abs(2 * reference - lane_count);
+    bool nearer = path == 0u || abs(2 * i - twice_middle) < abs(2 * reference - twice_middle);
     if (found != 0u && nearer) {
       path = found;
       reference = i;
@@ -116,34 +141,47 @@ void main() {
   vec2 gathered_at = vec2(0), gathered_from = vec2(0);
   float gathered_weight = 0.0;
   float to_units = 1.0 / (lights[light].misc.y * float(across_pieces));
-  int row = (light * REFRACTORS + int(path & 255u)) * (WAVELENGTHS + 1);
-
   uint path_a = 0u;
   vec4 from = vec4(0);
+#ifdef REFINED
+  path_a = fine_signature[fine_first];
+  from = fine_landing[fine_first];
+  for (int i = 0; i < FINE_NODES; i++) path = max(path, fine_signature[fine_first + uint(i)]);
+#else
   if (interval_first > 0) {
     path_a = signature[first + uint(interval_first - 1 - lane_first)];
     from = landing[first + uint(interval_first - 1 - lane_first)];
   }
+#endif
+  int row = table_first + (light * REFRACTORS + int(path & 255u)) * (nodes + 1);
   vec2 pa = path_a != 0u ? map_position(from.xyz) : here;
-  for (int interval = interval_first; interval <= interval_end; interval++) {
-    bool last = interval == interval_end;  // one more turn, to write what is gathered
-    bool has_b = interval < WAVELENGTHS && !last;
+  for (int turn = 0; turn <= turns; turn++) {
+    bool last = turn == turns;  // one more turn, to write what is gathered
+    int interval = node_a + 1 + turn;
+#ifdef REFINED
+    bool has_b = interval <= node_end && !last, taken = has_b;
+    uint index_b = fine_first + uint(has_b ? turn + 1 : 0);
+    uint path_b = has_b ? fine_signature[index_b] : 0u;
+    vec4 to = fine_landing[index_b];
+#else
+    bool has_b = interval < nodes && !last, taken = (refined >> uint(min(interval, 31)) & 1u) == 0u;
     uint index_b = first + uint(has_b ? interval - lane_first : 0);
     uint path_b = has_b ? signature[index_b] : 0u;
     vec4 to = landing[index_b];
+#endif
     vec2 pb = path_b != 0u ? map_position(to.xyz) : pa;
-    float share_a = path_a != 0u ? from.w : 0.0, share_b = path_b != 0u ? to.w : 0.0;
+    float share_a = path_a != 0u && taken ? from.w : 0.0, share_b = path_b != 0u && taken ? to.w : 0.0;
     bool bridge = false;
     // Halves whose landings fall together are one piece.
     int pieces = share_a > 0.0 && share_b > 0.0 ? 2 : 1;
 #ifdef BRIDGE
     float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
-    bridge = path_a != 0u && path_a == path_b && way < MAX_BRIDGE;
+    bridge = taken && path_a != 0u && path_a == path_b && way < MAX_BRIDGE;
     if (bridge) pieces = 1;
     while (bridge && pieces < STEPS && float(pieces) * size < way) pieces *= 2;
 #endif
     pieces = last ? 1 : pieces;
-    int intervals_row = (row + min(interval, WAVELENGTHS)) * (STEPS + 1);
+    int intervals_row = (row + min(interval, nodes)) * (STEPS + 1);
     vec3 middle = interval_sum[intervals_row + STEPS / 2].xyz;
     vec4 before = vec4(0);
     for (int k = 1; k <= pieces; k++) {

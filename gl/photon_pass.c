@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { LIST_HEADER = 16, SPLAT_BYTES = 20, MAX_SPLATS = 6 << 20 };
-enum { MOST_LANDING_BYTES = 1 << 30 };
+enum { MOST_LANDING_BYTES = 1 << 30, LEAST_LANES = 7 };
 enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
 
 /* Share of the light that may fall outside the fitted map, on each of its four sides. */
@@ -22,7 +22,7 @@ static double ledger_unit(const abbe_renderer *r, size_t light) {
   return ldexp(r->light[light].cell_flux, -22);
 }
 
-static void clear_buffer(abbe_renderer *r, GLuint buffer) {
+void abbe_renderer_clear_buffer(abbe_renderer *r, GLuint buffer) {
   static const GLuint zero = 0;
   r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
   r->gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
@@ -42,69 +42,109 @@ static size_t read_count(abbe_renderer *r, GLuint list) {
   return count;
 }
 
-/* One thread an element of the list; `most` is its room. The program is set up by then. */
-static void dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t most) {
+/* So many threads an element of the list; `most` is its room. The program is set up by then. */
+void abbe_renderer_dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t most,
+                                 size_t threads) {
   const abbe_gl *gl = r->gl;
   gl->UseProgram(r->list_groups);
   gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "group_size"), PHOTON_GROUP);
   gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "most"), (GLuint)most);
+  gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "threads"), (GLuint)threads);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, list);
   gl->DispatchCompute(1, 1, 1);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   gl->UseProgram(program);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, r->splat_list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST,
+                     program == r->trace ? r->pair_list : r->splat_list);
   gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
   gl->DispatchComputeIndirect(4);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-/* Wavelengths first .. first + count - 1; those below ledger_first are in the ledger already. */
-void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
-                               size_t ledger_first) {
+void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, size_t count) {
+  const bool fine = set == TRACE_REFINED;
+  abbe_renderer_bind_tables(r);
   r->gl->UseProgram(r->trace);
   abbe_renderer_set_lighting(r, r->trace);
   abbe_renderer_bind_texture(r, r->trace, "layer_owner", 4, r->light_owner);
   abbe_renderer_set_int(r, r->trace, "light", (int)light);
   abbe_renderer_set_grid(r, r->trace, light);
-  abbe_renderer_set_int(r, r->trace, "lane_first", (int)first);
+  abbe_renderer_set_int(r, r->trace, "set", (int)set);
+  abbe_renderer_set_int(r, r->trace, "lane_first", 0);
   abbe_renderer_set_int(r, r->trace, "lane_count", (int)count);
-  abbe_renderer_set_int(r, r->trace, "ledger_first", (int)ledger_first);
+  abbe_renderer_set_int(r, r->trace, "lane_stride", (int)(fine ? r->fine_nodes : r->lanes));
+  abbe_renderer_set_int(r, r->trace, "ledger_first", 0);
   abbe_renderer_set_float(r, r->trace, "share_limit", r->plan.desc.energy_share);
   abbe_renderer_set_float(r, r->trace, "ledger_unit", ledger_unit(r, light));
-  clear_buffer(r, r->buffer[BINDING_SIGNATURES]);
-  clear_buffer(r, r->path_marks);
-  clear_count(r, r->path_list);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, r->path_marks);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->path_list);
+  r->gl->Uniform1ui(r->gl->GetUniformLocation(r->trace, "most_pairs"), (GLuint)r->pair_room);
+  const GLuint landings = fine ? r->fine_landings : r->buffer[BINDING_LANDINGS];
+  const GLuint signatures = fine ? r->fine_signatures : r->buffer[BINDING_SIGNATURES];
+  const GLuint marks = fine ? r->fine_marks : r->path_marks;
+  const GLuint paths = fine ? r->fine_paths : r->path_list;
+  abbe_renderer_clear_buffer(r, signatures);
+  abbe_renderer_clear_buffer(r, marks);
+  clear_count(r, paths);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, landings);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SIGNATURES, signatures);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, marks);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, paths);
+}
+
+/* Wavelengths first .. first + count - 1; those below ledger_first are in the ledger already. */
+void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
+                               size_t ledger_first) {
+  abbe_renderer_begin_trace(r, light, TRACE_ALL, count);
+  abbe_renderer_set_int(r, r->trace, "lane_first", (int)first);
+  abbe_renderer_set_int(r, r->trace, "ledger_first", (int)ledger_first);
   size_t groups = (r->light[light].photon_count + PHOTON_GROUP - 1) / PHOTON_GROUP;
   if (groups > 0) r->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
   r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+/* A batch of wavelengths of all photons, the coarse set, or a chunk of the refined intervals. */
+typedef struct batch {
+  trace_set set;
+  size_t first, count; /* wavelengths */
+  size_t interval_first, interval_end;
+  size_t pair_chunk;
+} batch;
+
 /* Lists the batch's pieces of light, those of one chunk of the photons. */
-static void list_pieces(abbe_renderer *r, size_t light, size_t first, size_t count,
-                        size_t interval_first, size_t interval_end, size_t chunk) {
+static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t chunk) {
   const abbe_gl *gl = r->gl;
-  gl->UseProgram(r->deposit);
-  abbe_renderer_set_int(r, r->deposit, "light", (int)light);
-  abbe_renderer_set_grid(r, r->deposit, light);
-  abbe_renderer_set_int(r, r->deposit, "map_size", (int)r->plan.desc.map_size);
-  abbe_renderer_set_int(r, r->deposit, "lane_first", (int)first);
-  abbe_renderer_set_int(r, r->deposit, "lane_count", (int)count);
-  abbe_renderer_set_int(r, r->deposit, "interval_first", (int)interval_first);
-  abbe_renderer_set_int(r, r->deposit, "interval_end", (int)interval_end);
-  gl->Uniform1ui(gl->GetUniformLocation(r->deposit, "chunks"), (GLuint)r->chunks);
-  gl->Uniform1ui(gl->GetUniformLocation(r->deposit, "chunk"), (GLuint)chunk);
-  gl->Uniform1ui(gl->GetUniformLocation(r->deposit, "most"), (GLuint)r->splat_room);
+  const bool fine = b->set == TRACE_REFINED;
+  const GLuint deposit = fine ? r->deposit_fine : r->deposit;
+  const size_t coarse_rows = r->plan.light_count * r->plan.refractor_count * (r->nodes + 1);
+  const GLuint paths = fine ? r->fine_paths : r->path_list;
+  abbe_renderer_bind_tables(r);
+  gl->UseProgram(deposit);
+  abbe_renderer_set_int(r, deposit, "light", (int)light);
+  abbe_renderer_set_grid(r, deposit, light);
+  abbe_renderer_set_int(r, deposit, "map_size", (int)r->plan.desc.map_size);
+  abbe_renderer_set_int(r, deposit, "lane_first", (int)b->first);
+  abbe_renderer_set_int(r, deposit, "lane_count", (int)b->count);
+  abbe_renderer_set_int(r, deposit, "interval_first", (int)b->interval_first);
+  abbe_renderer_set_int(r, deposit, "interval_end", (int)b->interval_end);
+  abbe_renderer_set_int(r, deposit, "nodes", (int)(fine ? r->plan.desc.wavelengths : r->nodes));
+  abbe_renderer_set_int(r, deposit, "table_first", fine ? (int)coarse_rows : 0);
+  gl->Uniform1ui(gl->GetUniformLocation(deposit, "chunks"), (GLuint)r->chunks);
+  gl->Uniform1ui(gl->GetUniformLocation(deposit, "chunk"), (GLuint)chunk);
+  gl->Uniform1ui(gl->GetUniformLocation(deposit, "most"), (GLuint)r->splat_room);
   clear_count(r, r->splat_list);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->path_list);
-  dispatch_list(r, r->deposit, r->path_list, r->light[light].photon_count * r->plan.slots);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, fine ? r->pair_list : r->wants);
+  if (fine) {
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SAMPLE_WEIGHTS, r->fine_landings);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LEDGER, r->fine_signatures);
+  }
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, paths);
+  const size_t items = fine ? r->pair_room : r->light[light].photon_count;
+  abbe_renderer_dispatch_list(r, deposit, paths, items * r->plan.slots, 1);
 }
 
-static abbe_result deposit_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
-                                 size_t interval_first, size_t interval_end, abbe_error *error) {
+static abbe_result deposit_batch(abbe_renderer *r, size_t light, const batch *b,
+                                 abbe_error *error) {
   for (size_t chunk = 0; chunk < r->chunks; chunk++) {
-    list_pieces(r, light, first, count, interval_first, interval_end, chunk);
+    list_pieces(r, light, b, chunk);
     abbe_renderer_end_pass(r, r->plan.fills ? "light: gap fill" : "light: spectral map");
     bool look = r->chunks > 1 || r->statistics != NULL;
     if (look && read_count(r, r->splat_list) > r->splat_room)
@@ -116,7 +156,7 @@ static abbe_result deposit_batch(abbe_renderer *r, size_t light, size_t first, s
     abbe_renderer_set_int(r, r->splat, "map_size", (int)r->plan.desc.map_size);
     r->gl->Uniform1ui(r->gl->GetUniformLocation(r->splat, "most"), (GLuint)r->splat_room);
     r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
-    dispatch_list(r, r->splat, r->splat_list, r->splat_room);
+    abbe_renderer_dispatch_list(r, r->splat, r->splat_list, r->splat_room, 1);
     abbe_renderer_end_pass(r, "light: spectral map");
   }
   return ABBE_OK;
@@ -156,11 +196,6 @@ static void make_mips(abbe_renderer *r, size_t light) {
   }
 }
 
-typedef struct batch {
-  size_t first, count; /* wavelengths */
-  size_t interval_first, interval_end;
-} batch;
-
 /* All wavelengths in batches that overlap by one node, so that every interval between nodes lies
  * in exactly one of them. False after the last. */
 static bool next_batch(const abbe_renderer *r, batch *b) {
@@ -173,20 +208,45 @@ static bool next_batch(const abbe_renderer *r, batch *b) {
   return true;
 }
 
+/* Traces what next_batch() would, or the coarse set and then its refined intervals; deposited in
+ * another order: the coarse set last, when it is known what is refined. Returns false after the
+ * last. */
+static bool trace_next(abbe_renderer *r, size_t light, batch *b) {
+  if (!abbe_renderer_refines(r)) {
+    size_t done = b->first + b->count;
+    if (!next_batch(r, b)) return false;
+    abbe_renderer_trace_batch(r, light, b->first, b->count, done);
+    return true;
+  }
+  if (b->set == TRACE_COARSE) return false;
+  size_t chunk = b->set == TRACE_ALL ? 0 : b->pair_chunk + 1;
+  if (b->set == TRACE_ALL) abbe_renderer_trace_coarse(r, light);
+  *b = (batch){.set = TRACE_REFINED, .pair_chunk = chunk, .count = r->fine_nodes};
+  if (chunk < r->pair_chunks) {
+    abbe_renderer_trace_refined(r, light, chunk);
+    return true;
+  }
+  *b = (batch){.set = TRACE_COARSE, .count = r->nodes, .interval_end = r->nodes + 1};
+  return true;
+}
+
+static double share_done(const abbe_renderer *r, const batch *b) {
+  if (b->set == TRACE_ALL) return (double)(b->first + b->count) / (double)r->plan.desc.wavelengths;
+  return b->set == TRACE_COARSE ? 1 : (double)(b->pair_chunk + 1) / (double)(r->pair_chunks + 1);
+}
+
 static abbe_result trace_and_deposit(abbe_renderer *r, size_t light, abbe_render_progress progress,
                                      void *user, abbe_error *error) {
-  size_t n = r->plan.desc.wavelengths, done = 0;
   batch b = {0};
   abbe_result result = ABBE_OK;
-  while (result == ABBE_OK && next_batch(r, &b)) {
-    abbe_renderer_begin_pass(r);
-    abbe_renderer_trace_batch(r, light, b.first, b.count, done);
+  abbe_renderer_begin_pass(r);
+  while (result == ABBE_OK && trace_next(r, light, &b)) {
     abbe_renderer_end_pass(r, "light: photons");
-    result = deposit_batch(r, light, b.first, b.count, b.interval_first, b.interval_end, error);
-    done = b.first + b.count;
-    double share = ((double)light + (double)done / (double)n) / (double)r->plan.light_count;
+    result = deposit_batch(r, light, &b, error);
+    double share = ((double)light + share_done(r, &b)) / (double)r->plan.light_count;
     if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
       result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+    abbe_renderer_begin_pass(r);
   }
   return result;
 }
@@ -196,10 +256,30 @@ static abbe_result show_making(abbe_renderer *r, int pass, size_t light, const b
                                abbe_error *error) {
   const abbe_render_desc *d = &r->plan.desc;
   if (d->progress == NULL) return ABBE_OK;
-  double of_light = (double)(b->first + b->count) / (double)d->wavelengths;
-  double share = 0.5 * pass + 0.5 * ((double)light + of_light) / (double)r->plan.light_count;
+  double share =
+      0.5 * pass + 0.5 * ((double)light + share_done(r, b)) / (double)r->plan.light_count;
   if (d->progress(d->progress_user, share)) return ABBE_OK;
   return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+}
+
+/* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
+static size_t chunks_for(size_t count, size_t room) {
+  return count > room ? count / (room * 4 / 5) + 1 : 1;
+}
+
+/* Counts the refined intervals, the same in every frame. */
+static abbe_result count_pairs(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  size_t most = 0;
+  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+    if (!r->plan.reaches[light] || !abbe_renderer_refines(r)) continue;
+    result = abbe_renderer_start_photons(r, light, error);
+    abbe_renderer_trace_coarse(r, light);
+    size_t count = abbe_renderer_count_pairs(r, light);
+    if (count > most) most = count;
+  }
+  r->pair_chunks = chunks_for(most, r->pair_room);
+  return result;
 }
 
 /* Counts the pieces of light, the same in every frame, and makes room for them. */
@@ -210,17 +290,15 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
       abbe_renderer_make_buffer(r, LIST_HEADER + SPLAT_BYTES, NULL, &r->splat_list, error);
   /* Receivers' depth is seen through the map's view, which is fitted by now. */
   if (result == ABBE_OK) result = abbe_renderer_light_layers(r, error);
+  if (result == ABBE_OK) result = count_pairs(r, error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     batch b = {0};
-    size_t done = 0;
     if (!r->plan.reaches[light]) continue;
     result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_bind_tables(r);
-    clear_buffer(r, r->buffer[BINDING_LEDGER]);
-    while (result == ABBE_OK && next_batch(r, &b)) {
-      abbe_renderer_trace_batch(r, light, b.first, b.count, done);
-      done = b.first + b.count;
-      list_pieces(r, light, b.first, b.count, b.interval_first, b.interval_end, 0);
+    abbe_renderer_clear_buffer(r, r->buffer[BINDING_LEDGER]);
+    while (result == ABBE_OK && trace_next(r, light, &b)) {
+      list_pieces(r, light, &b, 0);
       size_t count = read_count(r, r->splat_list);
       if (count > most) most = count;
       result = show_making(r, 1, light, &b, error);
@@ -232,8 +310,7 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
   }
   abbe_renderer_upload_lights(r);
   if (result != ABBE_OK) return result;
-  /* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
-  r->chunks = most > MAX_SPLATS ? most / (MAX_SPLATS * 4 / 5) + 1 : 1;
+  r->chunks = chunks_for(most, MAX_SPLATS);
   r->splat_room = most > MAX_SPLATS ? MAX_SPLATS : most;
   r->gl->DeleteBuffers(1, &r->splat_list);
   return abbe_renderer_make_buffer(r, LIST_HEADER + (r->splat_room + 1) * SPLAT_BYTES, NULL,
@@ -249,8 +326,8 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
     result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_end_pass(r, "light: photon placement");
     abbe_renderer_bind_tables(r);
-    clear_buffer(r, r->map_sums);
-    clear_buffer(r, r->buffer[BINDING_LEDGER]);
+    abbe_renderer_clear_buffer(r, r->map_sums);
+    abbe_renderer_clear_buffer(r, r->buffer[BINDING_LEDGER]);
     abbe_renderer_end_pass(r, "light: spectral map");
     if (result == ABBE_OK) result = trace_and_deposit(r, light, progress, user, error);
     if (result != ABBE_OK) return result;
@@ -319,7 +396,9 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
                           "time; use a grid below %zu or fewer exits",
                           most, r->plan.desc.orders, r->plan.desc.photons);
   r->lanes = lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
-  if (r->lanes > n) r->lanes = n;
+  const size_t enough = abbe_renderer_refines(r) ? LEAST_LANES : n;
+  if (r->lanes > enough) r->lanes = enough < n ? enough : n;
+  if (r->lanes < r->nodes && abbe_renderer_refines(r)) r->lanes = r->nodes;
   abbe_result result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 16, NULL,
                                                  &r->buffer[BINDING_LANDINGS], error);
   if (result == ABBE_OK)
@@ -329,20 +408,23 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
     result = abbe_renderer_make_buffer(r, a_lane * 4, NULL, &r->path_marks, error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, LIST_HEADER + a_lane * 4, NULL, &r->path_list, error);
+  if (result == ABBE_OK) result = abbe_renderer_make_refinement(r, most, error);
   return result;
 }
 
 static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
-  char defines[2304];
-  snprintf(
-      defines, sizeof defines,
-      "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n%s#define MAX_BRIDGE %s\n",
-      r->defines, r->lanes, r->steps, r->map_levels, r->plan.fills ? "#define BRIDGE\n" : "",
-      r->plan.layers || r->plan.hierarchy ? "float(map_size) / 16.0" : "float(map_size)");
+  char defines[2560];
+  snprintf(defines, sizeof defines,
+           "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n"
+           "#define NODES %zu\n%s#define MAX_BRIDGE %s\n",
+           r->defines, r->lanes, r->steps, r->map_levels, r->nodes,
+           r->plan.fills ? "#define BRIDGE\n" : "",
+           r->plan.layers || r->plan.hierarchy ? "float(map_size) / 16.0" : "float(map_size)");
   abbe_result result =
       abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_deposit.comp", defines, &r->deposit, error);
+  if (result == ABBE_OK) result = abbe_renderer_make_refining_programs(r, defines, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "list_groups.comp", NULL, &r->list_groups, error);
   if (result == ABBE_OK)

@@ -10,13 +10,18 @@ layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
 // Receiver and facets along the way, equal for paths that vary continuously; refractor in the low
 // eight bits; 0: no landing.
 layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
-// Y weight of the samples at [light * WAVELENGTHS + i].
+// Y weight of the samples at [light * WAVELENGTHS + i]: of the parts of their bands below and above
+// the node, then those in the coarse set.
 layout(std430, binding = 11) readonly buffer SampleWeights { vec4 sample_weight[]; };
 // Paths (photon * SLOTS + order) that land at some wavelength, each listed once.
 layout(std430, binding = 7) buffer PathMarks { uint path_mark[]; };
 layout(std430, binding = 13) buffer PathList {
   uint path_count, path_groups[3];
   uint path_list[];
+};
+layout(std430, binding = 15) readonly buffer PairList {
+  uint pair_count, pair_groups[3];
+  uint pair_at[];
 };
 // lo and hi of reached, reflected, absorbed, trapped, missed.
 layout(std430, binding = 12) buffer Ledger { uint ledger[]; };
@@ -27,6 +32,12 @@ uniform ivec2 grid;
 uniform int lane_first;  // wavelengths lane_first .. lane_first + LANES - 1 in this batch
 uniform int lane_count;
 uniform int ledger_first;  // wavelengths before this one are in the ledger already
+// ALL: consecutive wavelengths of all photons; COARSE: the coarse set of all photons; REFINED: all
+// wavelengths of the intervals on the list, landings by their place on it.
+const int ALL = 0, COARSE = 1, REFINED = 2;
+uniform int set;
+uniform int lane_stride;
+uniform uint most_pairs;
 uniform float share_limit;   // paths below this share of their light end
 uniform float ledger_unit;   // W
 
@@ -36,11 +47,13 @@ layout(std430, binding = 6) readonly buffer Photons {
   Photon photon_at[];
 };
 
-shared uint book[5];
+#include "photon_nodes.glsl"
+
+shared uint book[5], unbook[5];
 
 // A landing of the photon at lane's wavelength, in the path's slot.
 void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path) {
-  uint listed = photon * SLOTS + order, index = listed * LANES + lane;
+  uint listed = photon * SLOTS + order, index = listed * lane_stride + lane;
   landing[index] = vec4(at, flux);
   if (atomicExchange(path_mark[listed], 1u) == 0u) path_list[atomicAdd(path_count, 1u)] = listed;
   signature[index] = path;
@@ -49,14 +62,29 @@ void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint pa
 #include "photon_path.glsl"
 
 void main() {
-  if (gl_LocalInvocationID.x < 5u) book[gl_LocalInvocationID.x] = 0u;
+  if (gl_LocalInvocationID.x < 5u) {
+    book[gl_LocalInvocationID.x] = 0u;
+    unbook[gl_LocalInvocationID.x] = 0u;
+  }
   barrier();
   // A photon's wavelengths side by side: they take the same ways for longer than its neighbours.
-  uint id = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x +
-            gl_GlobalInvocationID.x;
-  uint photon = id / uint(lane_count);
-  int lane = int(id % uint(lane_count)), i = lane_first + lane;
-  if (photon < photon_count) {
+  uint id = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
+            gl_LocalInvocationID.x;
+  uint item = id / uint(lane_count), photon = item;
+  int lane = int(id % uint(lane_count));
+  bool there = item < (set == REFINED ? min(pair_count, most_pairs) : photon_count);
+  int i = set == COARSE ? coarse_node(lane) : lane_first + lane;
+  int low = -1, high = -1;  // ends of the interval
+  if (set == REFINED && there) {
+    uint pair = pair_at[item];
+    int interval = int(pair % PAIR_INTERVALS);
+    photon = pair / PAIR_INTERVALS;
+    low = coarse_node(interval);
+    high = coarse_node(interval + 1);
+    i = low + lane;
+    there = i <= high;
+  }
+  if (there) {
     Photon from = photon_at[photon];
     vec2 cell = vec2(from.cell & 0xffffu, from.cell >> 16);
     vec2 uv = (cell + 0.5 + unpackSnorm2x16(from.offset)) / vec2(grid);
@@ -66,14 +94,23 @@ void main() {
     bool reached = photon_start(uv, o, d, front, flux);
     flux = from.flux;
     float entry[5];
-    trace(photon, lane, i, flux, o, d, front, reached, entry);
-    float scale = flux * sample_weight[light * WAVELENGTHS + i].y / ledger_unit;
-    for (int k = 0; k < 5; k++)
-      if (entry[k] > 0.0 && i >= ledger_first) atomicAdd(book[k], uint(entry[k] * scale + 0.5));
+    trace(item, lane, i, flux, o, d, front, reached, entry);
+    // A refined interval's ends give back what the coarse set entered for it.
+    vec4 weight = sample_weight[light * WAVELENGTHS + i];
+    float below = set == COARSE ? weight.z : i == low ? 0.0 : weight.x;
+    float above = set == COARSE ? weight.w : i == high ? 0.0 : weight.y;
+    float back = i == low ? weight.w : i == high ? weight.z : 0.0;
+    float scale = flux / ledger_unit;
+    for (int k = 0; k < 5; k++) {
+      if (entry[k] <= 0.0 || i < ledger_first) continue;
+      atomicAdd(book[k], uint(entry[k] * (below * scale) + 0.5) + uint(entry[k] * (above * scale) + 0.5));
+      if (back > 0.0) atomicAdd(unbook[k], uint(entry[k] * (back * scale) + 0.5));
+    }
   }
   barrier();
   if (gl_LocalInvocationID.x < 5u) {
     uint k = gl_LocalInvocationID.x;
     WIDE_ADD(ledger, 2u * k, 2u * k + 1u, book[k])
+    WIDE_SUBTRACT(ledger, 2u * k, 2u * k + 1u, unbook[k])
   }
 }

@@ -273,6 +273,14 @@ static const char *no_refraction(const abbe_plan *plan) {
                                       : "neither a light nor the eye meets a refractor";
 }
 
+size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
+  /* Below so many, tracing some of them twice costs what leaving others out saves. */
+  static const size_t coarse = 5, refined_from = 9;
+  const size_t n = plan->desc.wavelengths;
+  const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
+  return apart && n >= refined_from ? coarse : n;
+}
+
 static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
   return no_refraction(plan) != NULL ? no_refraction(plan)
          : asked                     ? "as asked"
@@ -348,11 +356,17 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
       !plan->layers ? "every refractor has an exact surface"
       : caustics    ? "a mesh without an exact surface ends at its back layer"
                     : "no light meets a refractor");
+  bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
+  plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
+  size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
   if (caustics) {
     add(plan, true, "light: photon placement", "at most %zu a side, where light meets a refractor",
         plan->desc.photons);
-    add(plan, true, "light: photons", "%zu wavelengths through the refractors",
-        plan->desc.wavelengths);
+    if (least < most)
+      add(plan, true, "light: photons", "%zu to %zu wavelengths, as each photon's landings ask",
+          least, most);
+    else
+      add(plan, true, "light: photons", "%zu wavelengths through the refractors", most);
     add(plan, true, "light: spectral map", "%zu x %zu texels%s", plan->desc.map_size,
         plan->desc.map_size,
         plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "");
@@ -361,8 +375,6 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
                                          "light: spectral map"};
     for (int k = 0; k < 3; k++) add(plan, false, passes[k], "no light meets a refractor");
   }
-  bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
-  plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
   if (plan->fills)
     add(plan, true, "light: gap fill", "%s: %s", abbe_fill_name(plan->desc.fill),
         apart ? "wavelengths land apart" : "the thesis fills whatever lands");

@@ -64,7 +64,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 typedef struct abbe_render_desc {
   abbe_profile profile;
   size_t width, height;  /* pixels; 0: the scene's */
-  size_t wavelengths;    /* samples; 0: 7, or 1 where neither index nor attenuation varies */
+  size_t wavelengths;    /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
   size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
   size_t map_size;       /* side of the spectral map; 0: 1024 */
@@ -149,6 +149,8 @@ void abbe_plan_free(abbe_plan *plan);
 const char *abbe_profile_name(abbe_profile profile);
 /* Whether it draws with the thesis's passes. */
 bool abbe_profile_is_thesis(abbe_profile profile);
+/* Wavelengths that every photon is traced at; more, up to the plan's, where its landings ask. */
+size_t abbe_plan_least_wavelengths(const abbe_plan *plan);
 const char *abbe_fill_name(abbe_fill fill);
 const char *abbe_model_name(abbe_model model);
 const char *abbe_refractor_model_name(abbe_refractor_model model);

@@ -143,6 +143,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   const abbe_gl *gl = r->gl;
   abbe_renderer_free_thesis(r);
   abbe_renderer_free_scene(r);
+  abbe_renderer_free_refinement(r);
   abbe_local_scene_free(&r->local);
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);

@@ -81,6 +81,11 @@ struct abbe_renderer {
   GLuint table_bands, table_warps, texel_sizes;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
   GLuint path_marks, path_list, splat_list, map_sums;
+  GLuint wants, pair_list; /* intervals that ask for all their wavelengths */
+  GLuint fine_landings, fine_signatures, fine_marks, fine_paths;
+  size_t nodes;      /* wavelengths that every photon takes; all of them where none are refined */
+  size_t fine_nodes; /* of an interval between two of those, at the most, with both ends */
+  size_t pair_room, pair_chunks;
   size_t splat_room, chunks; /* pieces of light that are listed at a time */
   GLuint list[LEVELS];       /* cells that may show a refractor, last level last */
   GLuint texture_surface;
@@ -99,7 +104,7 @@ struct abbe_renderer {
   size_t device_bytes;
   char defines[2048];
 
-  GLuint place, cover, groups, list_groups, trace, deposit, splat, resolve, mip, layer, receivers,
+  GLuint place, cover, groups, list_groups, trace, deposit, select, deposit_fine, splat, resolve, mip, layer, receivers,
       refraction, refraction_list, eye_resolve;
   thesis_state *thesis;
 
@@ -174,6 +179,29 @@ abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **dat
                                      abbe_error *error);
 void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
                                size_t ledger_first);
+
+/* photon_refine.c: which photons take which wavelengths. */
+typedef enum trace_set { TRACE_ALL, TRACE_COARSE, TRACE_REFINED } trace_set;
+/* Index among all wavelengths of node k of so many. */
+size_t abbe_renderer_coarse_node(size_t wavelengths, size_t nodes, size_t k);
+bool abbe_renderer_refines(const abbe_renderer *r);
+/* What a refined interval's landings need; after the landings' own buffers. */
+abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons,
+                                          abbe_error *error);
+abbe_result abbe_renderer_make_refining_programs(abbe_renderer *r, const char *defines,
+                                                 abbe_error *error);
+void abbe_renderer_trace_coarse(abbe_renderer *r, size_t light);
+/* How many intervals ask, of those photons in one chunk. The coarse set is traced by then. */
+size_t abbe_renderer_count_pairs(abbe_renderer *r, size_t light);
+/* Lists and traces one chunk's refined intervals. */
+void abbe_renderer_trace_refined(abbe_renderer *r, size_t light, size_t chunk);
+void abbe_renderer_free_refinement(abbe_renderer *r);
+
+/* Sets the trace up, and clears what it lists. */
+void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, size_t count);
+void abbe_renderer_dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t most,
+                                 size_t threads);
+void abbe_renderer_clear_buffer(abbe_renderer *r, GLuint buffer);
 
 /* cell_fit.c: photon grids no finer than the maps can tell. */
 abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *error);

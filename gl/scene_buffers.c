@@ -302,25 +302,53 @@ static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, siz
   }
 }
 
-static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
-                                    abbe_error *error) {
-  size_t rows = r->plan.light_count * r->plan.refractor_count * (w->count + 1);
-  float(*table)[4] = calloc(rows * (r->steps + 1) + 1, sizeof *table);
-  if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
-  size_t row = 0;
+/* The nodes that every photon takes, as a sampling of their own. */
+static abbe_result coarse_wavelengths(const abbe_renderer *r, const abbe_wavelengths *all,
+                                      abbe_wavelengths *out, abbe_error *error) {
+  const size_t n = all->count, last = r->nodes;
+  *out = (abbe_wavelengths){.count = last,
+                            .lambda_nm = calloc(last, sizeof *out->lambda_nm),
+                            .edge_nm = calloc(last + 1, sizeof *out->edge_nm)};
+  if (out->lambda_nm == NULL || out->edge_nm == NULL) {
+    abbe_wavelengths_free(out);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  }
+  for (size_t k = 0; k < last; k++)
+    out->lambda_nm[k] = all->lambda_nm[abbe_renderer_coarse_node(n, last, k)];
+  for (size_t k = 1; k < last; k++)
+    out->edge_nm[k] =
+        last == n ? all->edge_nm[k] : 0.5 * (out->lambda_nm[k - 1] + out->lambda_nm[k]);
+  out->edge_nm[0] = all->edge_nm[0];
+  out->edge_nm[last] = all->edge_nm[n];
+  return ABBE_OK;
+}
+
+static float (*fill_intervals(const abbe_renderer *r, const abbe_wavelengths *w,
+                              float (*out)[4]))[4] {
   for (size_t light = 0; light < r->plan.light_count; light++)
     for (size_t k = 0; k < r->plan.refractor_count; k++)
-      for (size_t i = 0; i <= w->count; i++, row++)
-        fill_interval(r, w, light, r->scene->object[r->plan.refractor_object[k]].material, i,
-                      table + row * (r->steps + 1));
+      for (size_t i = 0; i <= w->count; i++, out += r->steps + 1)
+        fill_interval(r, w, light, r->scene->object[r->plan.refractor_object[k]].material, i, out);
+  return out;
+}
+
+/* The coarse set's, then those of all wavelengths. */
+static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
+                                    abbe_error *error) {
+  const size_t rows = r->plan.light_count * r->plan.refractor_count * (w->count + r->nodes + 2);
+  abbe_wavelengths coarse = {0};
+  float(*table)[4] = calloc(rows * (r->steps + 1) + 1, sizeof *table);
+  if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  abbe_result result = coarse_wavelengths(r, w, &coarse, error);
+  if (result == ABBE_OK) fill_intervals(r, w, fill_intervals(r, &coarse, table));
   const size_t size = rows * (r->steps + 1) * sizeof *table;
-  abbe_result result = ABBE_OK;
-  if (r->buffer[BINDING_INTERVALS] == 0) {
+  if (result == ABBE_OK && r->buffer[BINDING_INTERVALS] == 0) {
     result = abbe_renderer_make_buffer(r, size, table, &r->buffer[BINDING_INTERVALS], error);
-  } else {
+  } else if (result == ABBE_OK) {
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_INTERVALS]);
     r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
   }
+  abbe_wavelengths_free(&coarse);
   free(table);
   return result;
 }
@@ -337,23 +365,37 @@ abbe_result abbe_renderer_weigh_bands(abbe_renderer *r, size_t bands, size_t fir
   return result;
 }
 
+/* Y of the light's band below and above each node, into `part` and the next of every sample. */
+static void weigh_halves(const abbe_renderer *r, const abbe_wavelengths *w, size_t light, int part,
+                         float (*sample)[4]) {
+  const abbe_illuminant *illuminant = &r->scene->light[light].illuminant;
+  const size_t n = r->plan.desc.wavelengths;
+  const double min = w->edge_nm[0], max = w->edge_nm[w->count];
+  for (size_t k = 0; k < w->count; k++) {
+    const size_t i = w->count == n ? k : abbe_renderer_coarse_node(n, w->count, k);
+    double below[3], above[3];
+    abbe_weights_band_xyz(illuminant, min, max, w->edge_nm[k], w->lambda_nm[k], below);
+    abbe_weights_band_xyz(illuminant, min, max, w->lambda_nm[k], w->edge_nm[k + 1], above);
+    sample[i][part] = (float)below[1];
+    sample[i][part + 1] = (float)above[1];
+  }
+}
+
 static abbe_result upload_sample_weights(abbe_renderer *r, const abbe_wavelengths *w,
                                          abbe_error *error) {
   size_t n = w->count;
+  abbe_wavelengths coarse = {0};
   float(*sample)[4] = calloc(r->plan.light_count * n + 1, sizeof *sample);
   if (sample == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
-  abbe_result result = ABBE_OK;
+  abbe_result result = coarse_wavelengths(r, w, &coarse, error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
-    abbe_weights xyz = {0};
-    result =
-        abbe_weights_make(w, &r->scene->light[light].illuminant, ABBE_RGB_SPACE_XYZ, &xyz, error);
-    for (size_t i = 0; i < n && result == ABBE_OK; i++)
-      store(xyz.weight[i], 0, sample[light * n + i]);
-    abbe_weights_free(&xyz);
+    weigh_halves(r, w, light, 0, sample + light * n);
+    weigh_halves(r, &coarse, light, 2, sample + light * n);
   }
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, r->plan.light_count * n * sizeof *sample, sample,
                                        &r->buffer[BINDING_SAMPLE_WEIGHTS], error);
+  abbe_wavelengths_free(&coarse);
   free(sample);
   return result;
 }
@@ -420,8 +462,9 @@ static abbe_result upload_wavelengths(abbe_renderer *r, abbe_error *error) {
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
   else
     memcpy(r->lambda_nm, w.lambda_nm, n * sizeof *r->lambda_nm);
+  r->nodes = abbe_plan_least_wavelengths(&r->plan);
   r->steps = 64;
-  while (r->steps > 2 && r->steps * n > 1024) r->steps /= 2;
+  while (r->steps > 2 && r->steps * r->nodes > 1024) r->steps /= 2;
   if (result == ABBE_OK) result = upload_spectra(r, error);
   if (result == ABBE_OK) result = upload_intervals(r, &w, error);
   if (result == ABBE_OK) result = upload_sample_weights(r, &w, error);

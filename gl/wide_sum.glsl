@@ -7,3 +7,10 @@
     uint wide_old = atomicAdd(words[lo_index], wide_value);                 \
     if (wide_old + wide_value < wide_old) atomicAdd(words[hi_index], 1u);   \
   }
+// What is subtracted may stand before what it is from: the sum is right modulo 2^64.
+#define WIDE_SUBTRACT(words, lo_index, hi_index, value)                     \
+  {                                                                         \
+    uint wide_value = (value);                                              \
+    uint wide_old = atomicAdd(words[lo_index], 0u - wide_value);            \
+    if (wide_old < wide_value) atomicAdd(words[hi_index], 0xffffffffu);     \
+  }

@@ -1,0 +1,122 @@
+// Lists the intervals between coarse wavelengths that ask for all wavelengths in them: where the
+// landings bend or leave their path by more than what the map resolves of the photon, or where the
+// light that they carry changes.
+layout(local_size_x = 256) in;
+#include "common.glsl"
+#include "photon_nodes.glsl"
+
+struct Photon {  // as in photon_start.glsl
+  uint cell;
+  float flux;
+  uint offset, extent;
+};
+layout(std430, binding = 6) readonly buffer Photons {
+  uint photon_count, groups_x, groups_y, groups_z;
+  uint draw[4];
+  Photon photon_at[];
+};
+layout(std430, binding = 7) buffer Wants { uint want[]; };  // a bit an interval
+layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
+layout(std430, binding = 9) readonly buffer Landings { vec4 landing[]; };
+layout(std430, binding = 10) readonly buffer Signatures { uint signature[]; };
+layout(std430, binding = 11) buffer PairList {
+  uint pair_count, pair_groups[3];
+  uint pair_at[];
+};
+layout(std430, binding = 13) readonly buffer PathList {
+  uint path_count, path_groups[3];
+  uint path_list[];
+};
+
+uniform int light;
+uniform ivec2 grid;
+uniform int map_size;
+uniform uint chunks, chunk;  // only photons of this chunk
+uniform uint most_pairs;     // that the list has room for
+
+uniform float interval_weight[NODES];  // of the light, by the intervals' mean
+
+// Of the photon's light in an interval: what may lie wrong by a footprint's width.
+const float MOST_WRONG = 0.02;
+
+vec2 map_position(vec3 p) {
+  vec3 uvz;
+  project(lights[light].map_view, p, uvz);
+  return warp(light, uvz.xy) * float(map_size);
+}
+
+// Texels to the landing of the next photon on the same path; 0 if there is none.
+float step_to(ivec2 c, uint order, uint lane, uint path, vec2 here) {
+  bool there = all(lessThan(c, grid));
+  uint at = slot[there ? c.y * grid.x + c.x : 0];
+  there = there && at != 0u;
+  uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
+  there = there && signature[index] == path;
+  return there ? distance(map_position(landing[index].xyz), here) : 0.0;
+}
+
+void main() {
+  uint listed = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
+         gl_LocalInvocationID.x;
+  if (listed >= path_count) return;
+  uint photon_path = path_list[listed];
+  uint photon = photon_path / SLOTS, order = photon_path % SLOTS, first = photon_path * LANES;
+  Photon from_cell = photon_at[photon];
+  if (from_cell.cell * 2654435761u % chunks != chunk) return;
+  ivec2 cell = ivec2(from_cell.cell & 0xffffu, from_cell.cell >> 16);
+
+  uint path[NODES];
+  vec2 at[NODES];
+  float flux[NODES], index[NODES];
+  int reference = 0;
+  for (int k = 0; k < NODES; k++) {
+    uint found = signature[first + uint(k)];
+    vec4 to = landing[first + uint(k)];
+    path[k] = found;
+    flux[k] = found != 0u ? to.w : 0.0;
+    at[k] = found != 0u ? map_position(to.xyz) : vec2(0);
+    index[k] = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].x;
+    if (found != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
+  }
+  uint path_here = signature[first + uint(reference)];
+  vec2 here = map_position(landing[first + uint(reference)].xyz);
+  float a = path_here != 0u ? step_to(cell + ivec2(1, 0), order, uint(reference), path_here, here) : 0.0;
+  float b = path_here != 0u ? step_to(cell + ivec2(0, 1), order, uint(reference), path_here, here) : 0.0;
+  // What the map resolves of this photon, in texels.
+  float size = max(a > 0.0 && b > 0.0 ? min(a, b) : max(a, b), 1.0);
+
+  // How far node k lies from where its neighbours' landings would put it.
+  float bend[NODES];
+  for (int k = 0; k < NODES; k++) {
+    bool there = k > 0 && k + 1 < NODES;
+    int before = max(k - 1, 0), after = min(k + 1, NODES - 1);
+    bool on_path = there && path[k] != 0u && path[k] == path[before] && path[k] == path[after];
+    float span = index[after] - index[before];
+    float t = span != 0.0 ? (index[k] - index[before]) / span : 0.5;
+    bend[k] = on_path ? distance(at[k], mix(at[before], at[after], t)) : -1.0;
+  }
+  uint wanted = 0u;
+  for (int k = 0; k + 1 < NODES; k++) {
+    float most = max(flux[k], flux[k + 1]) / from_cell.flux * interval_weight[k];
+    bool same = path[k] == path[k + 1];
+    bool alone = bend[k] < 0.0 && bend[k + 1] < 0.0;
+    // A line's distance from its curve is a quarter of how far the middle of both is off.
+    float wrong = 0.25 * (alone ? distance(at[k], at[k + 1]) : max(bend[k], bend[k + 1]));
+    // Where a path ends on the way, its landings would have moved on as before.
+    int before = max(k - 1, 0), after = min(k + 2, NODES - 1);
+    bool known_a = k > 0 && path[before] == path[k], known_b = k + 2 < NODES && path[after] == path[k + 1];
+    float moves_a = path[k] == 0u ? 0.0 : known_a ? distance(at[before], at[k]) : size;
+    float moves_b = path[k + 1] == 0u ? 0.0 : known_b ? distance(at[after], at[k + 1]) : size;
+    if (!same) wrong = 0.25 * max(moves_a, moves_b);
+    // The light is taken to stay what it is at a node up to halfway to the next.
+    float changed = same ? 0.25 * abs(flux[k] - flux[k + 1]) / max(max(flux[k], flux[k + 1]), 1e-30) : 0.0;
+    if (most * max(min(wrong / size, 1.0), changed) > MOST_WRONG) wanted |= 1u << uint(k);
+  }
+  if (wanted == 0u) return;
+  uint added = wanted & ~atomicOr(want[photon], wanted);
+  for (int k = 0; k + 1 < NODES; k++) {
+    if ((added >> uint(k) & 1u) == 0u) continue;
+    uint place = atomicAdd(pair_count, 1u);
+    if (place < most_pairs) pair_at[place] = photon * PAIR_INTERVALS + uint(k);
+  }
+}
