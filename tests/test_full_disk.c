@@ -65,6 +65,7 @@ static abbe_result write_chart(const char *path, abbe_error *error) {
 static abbe_result write_sweep(const char *path, abbe_error *error) {
   abbe_sweep_table table = {0};
   abbe_sweep_row row = {.setting = {.profile = "default",
+                                    .model = "auto",
                                     .wavelengths = 7,
                                     .photons = 64,
                                     .map = 512,

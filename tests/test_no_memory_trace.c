@@ -164,6 +164,7 @@ static abbe_result fill_table(abbe_sweep_table *table, abbe_error *error) {
   abbe_sweep_table_set(table, ABBE_SWEEP_FACT_SCENE, "scenes/gem.yaml");
   for (size_t i = 0; i < 20 && result == ABBE_OK; i++) {
     abbe_sweep_row row = {.setting = {.profile = "default",
+                                      .model = "auto",
                                       .wavelengths = i + 1,
                                       .photons = 64,
                                       .map = 512,
