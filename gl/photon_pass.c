@@ -396,11 +396,18 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
                           "time; use a grid below %zu or fewer exits",
                           most, r->plan.desc.orders, r->plan.desc.photons);
   r->lanes = lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
+  abbe_result result = ABBE_OK;
+  if (a_lane * r->nodes * LANDING_BYTES > MOST_LANDING_BYTES) {
+    /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
+    r->nodes = n;
+    result = abbe_renderer_weigh_bands(r, 0, 0, error);
+  }
   const size_t enough = abbe_renderer_refines(r) ? LEAST_LANES : n;
   if (r->lanes > enough) r->lanes = enough < n ? enough : n;
   if (r->lanes < r->nodes && abbe_renderer_refines(r)) r->lanes = r->nodes;
-  abbe_result result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 16, NULL,
-                                                 &r->buffer[BINDING_LANDINGS], error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 16, NULL,
+                                       &r->buffer[BINDING_LANDINGS], error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 4, NULL,
                                        &r->buffer[BINDING_SIGNATURES], error);

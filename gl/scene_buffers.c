@@ -332,15 +332,20 @@ static float (*fill_intervals(const abbe_renderer *r, const abbe_wavelengths *w,
   return out;
 }
 
-/* The coarse set's, then those of all wavelengths. */
+/* The coarse set's, then where it is not all those of all wavelengths. */
 static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
                                     abbe_error *error) {
-  const size_t rows = r->plan.light_count * r->plan.refractor_count * (w->count + r->nodes + 2);
+  const bool refines = abbe_renderer_refines(r);
+  const size_t sets = r->nodes + 1 + (refines ? w->count + 1 : 0);
+  const size_t rows = r->plan.light_count * r->plan.refractor_count * sets;
   abbe_wavelengths coarse = {0};
   float(*table)[4] = calloc(rows * (r->steps + 1) + 1, sizeof *table);
   if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
   abbe_result result = coarse_wavelengths(r, w, &coarse, error);
-  if (result == ABBE_OK) fill_intervals(r, w, fill_intervals(r, &coarse, table));
+  if (result == ABBE_OK) {
+    float(*rest)[4] = fill_intervals(r, &coarse, table);
+    if (refines) fill_intervals(r, w, rest);
+  }
   const size_t size = rows * (r->steps + 1) * sizeof *table;
   if (result == ABBE_OK && r->buffer[BINDING_INTERVALS] == 0) {
     result = abbe_renderer_make_buffer(r, size, table, &r->buffer[BINDING_INTERVALS], error);
