@@ -173,7 +173,7 @@ void main() {
     float share_a = path_a != 0u && taken ? from.w : 0.0, share_b = path_b != 0u && taken ? to.w : 0.0;
     bool bridge = false;
     // Halves whose landings fall together are one piece.
-    int pieces = share_a > 0.0 && share_b > 0.0 ? 2 : 1;
+    int pieces = share_a > 0.0 && share_b > 0.0 && pa != pb ? 2 : 1;
 #ifdef BRIDGE
     float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
     bridge = taken && path_a != 0u && path_a == path_b && way < MAX_BRIDGE;
@@ -190,7 +190,7 @@ void main() {
       vec3 flux = share_a * lower + share_b * (upto.xyz - before.xyz - lower);
       float half_way = share_b > 0.0 ? share_a > 0.0 ? (2 * k <= pieces ? 0.0 : 1.0) : 1.0 : 0.0;
       // What does not land has no place: no share of it may come into the sum.
-      vec2 at = bridge ? mix(pa, pb, 0.5 * (before.w + upto.w)) : half_way > 0.0 ? pb : pa;
+      vec2 at = bridge ? pa + 0.5 * (before.w + upto.w) * (pb - pa) : half_way > 0.0 ? pb : pa;
       before = upto;
       float weight = last ? 0.0 : flux.x + flux.y + flux.z;
       vec2 off = abs(at - gathered_from);
