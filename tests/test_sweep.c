@@ -63,7 +63,7 @@ static void test_grids_hold_each_setting_once(void **state) {
     abbe_sweep_grid parts[ABBE_SWEEP_MAX_GRIDS];
     size_t n = abbe_sweep_grid_make((abbe_sweep_grid_name)name, parts);
     assert_true(n > 0 && n <= ABBE_SWEEP_MAX_GRIDS);
-    static const size_t least[] = {30, 150, 20};
+    static const size_t least[] = {30, 150, 18};
     assert_true(expand(&scene, parts, n, &list, &refused) >= least[name]);
     assert_int_equal(refused, 0);
     free(list);

@@ -98,7 +98,8 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
        .photons = VALUES(64, 128),
        .map = VALUES(256),
        .samples = VALUES(1),
-       .models = VALUES(ABBE_MODEL_LAYERS)},
+       .models = VALUES(ABBE_MODEL_LAYERS),
+       .meshes = true},
       {.profiles = BASELINES,
        .wavelengths = VALUES(7),
        .photons = VALUES(128, 512),
@@ -205,12 +206,20 @@ static abbe_result add_setting(expansion *e, const abbe_render_desc *desc, abbe_
   return ABBE_OK;
 }
 
+static bool has_mesh(const abbe_scene *scene) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].material != NULL && scene->object[i].exact.kind == ABBE_EXACT_NONE)
+      return true;
+  return false;
+}
+
 static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *error) {
   size_t shares = g->share_count > 0 ? g->share_count : 1, total = shares;
   const abbe_sweep_values *const axes[] = {&g->profiles, &g->wavelengths, &g->photons, &g->map,
                                            &g->samples,  &g->exits,       &g->fills,   &g->models};
   for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) total *= length_of(axes[i]);
   abbe_result result = ABBE_OK;
+  if (g->meshes && !has_mesh(e->scene)) return ABBE_OK;
   for (size_t i = 0; i < total && result == ABBE_OK; i++) {
     size_t counter = i;
     abbe_render_desc d = {.wavelengths = take(&g->wavelengths, &counter)};

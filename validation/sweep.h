@@ -34,6 +34,7 @@ typedef struct abbe_sweep_grid {
   abbe_sweep_values wavelengths, photons, map, samples, exits;
   abbe_sweep_values fills;    /* abbe_fill */
   abbe_sweep_values models;   /* abbe_model */
+  bool meshes; /* only where a refractor is a general mesh */
   size_t share_count;
   double share[ABBE_SWEEP_MAX_VALUES];
 } abbe_sweep_grid;
