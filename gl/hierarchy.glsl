@@ -40,9 +40,9 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   float nearest = h.t, hit_u = 0.0, hit_v = 0.0;
   vec4 root_low = hierarchy_node[2 * root], root_high = hierarchy_node[2 * root + 1];
   bool meets = hierarchy_enter(root_low, root_high, o, inverse, t_min, nearest) < 1e30;
-  int todo = meets ? hierarchy_code(root_low, root_high) : -1;
-  int waiting = 0, found = -1, leaf = ~todo;
-  int node = todo, next = todo < 0 ? leaf >> 3 : 0, end = next + (todo < 0 ? leaf & 7 : 0);
+  int code = meets ? hierarchy_code(root_low, root_high) : -1;
+  int waiting = 0, found = -1, leaf = ~code;
+  int node = code, next = code < 0 ? leaf >> 3 : 0, end = next + (code < 0 ? leaf & 7 : 0);
   while (node >= 0 || next < end) {
     while (node >= 0) {
       vec4 low_a = hierarchy_node[2 * node], high_a = hierarchy_node[2 * node + 1];
@@ -54,14 +54,14 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
       bool both = code_a != -1 && code_b != -1;
       stack[waiting] = b < a ? code_a : code_b;
       waiting += both ? 1 : 0;
-      todo = both ? (b < a ? code_b : code_a) : code_a != -1 ? code_a : code_b;
-      bool pop = todo == -1 && waiting > 0;
+      code = both ? (b < a ? code_b : code_a) : code_a != -1 ? code_a : code_b;
+      bool pop = code == -1 && waiting > 0;
       waiting -= pop ? 1 : 0;
       int top = stack[waiting];
-      todo = pop ? top : todo;
-      node = todo;
+      code = pop ? top : code;
+      node = code;
     }
-    leaf = ~todo;
+    leaf = ~code;
     next = leaf >> 3;
     end = next + (leaf & 7);
     while (next < end) {
@@ -83,11 +83,11 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
     bool pop = waiting > 0 && !(any && found >= 0);
     waiting -= pop ? 1 : 0;
     int top = stack[waiting];
-    todo = pop ? top : -1;
-    leaf = ~todo;
-    node = todo;
-    next = todo < 0 ? leaf >> 3 : 0;
-    end = todo < 0 ? next + (leaf & 7) : 0;
+    code = pop ? top : -1;
+    leaf = ~code;
+    node = code;
+    next = code < 0 ? leaf >> 3 : 0;
+    end = code < 0 ? next + (leaf & 7) : 0;
   }
   h.t = nearest;
   h.u = hit_u;

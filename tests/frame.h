@@ -2,6 +2,7 @@
 #ifndef ABBE_TESTS_FRAME_H
 #define ABBE_TESTS_FRAME_H
 
+#include "tests/gl_context.h"
 #include "tests/scene_text.h"
 
 #include "gl/renderer.h"
@@ -9,22 +10,6 @@
 /* Small, and complete: every pass runs as it does in a large one. */
 static const abbe_render_desc small_frame = {
     .width = 64, .height = 64, .photons = 64, .map_size = 128};
-
-static abbe_context *frame_context;
-
-static int frame_setup(void **state) {
-  abbe_error error = {0};
-  (void)state;
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &frame_context, &error) == ABBE_OK) return 0;
-  print_error("%s\n", error.text);
-  return 1;
-}
-
-static int frame_teardown(void **state) {
-  (void)state;
-  abbe_context_free(frame_context);
-  return 0;
-}
 
 static inline void assert_ok(abbe_result result, const abbe_error *error) {
   if (result != ABBE_OK) print_error("%s\n", error->text);
@@ -34,7 +19,7 @@ static inline void assert_ok(abbe_result result, const abbe_error *error) {
 static inline abbe_renderer *make_renderer(const abbe_scene *scene, const abbe_render_desc *desc) {
   abbe_renderer *renderer = NULL;
   abbe_error error = {0};
-  assert_ok(abbe_renderer_make(frame_context, scene, desc, &renderer, &error), &error);
+  assert_ok(abbe_renderer_make(context, scene, desc, &renderer, &error), &error);
   return renderer;
 }
 

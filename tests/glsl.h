@@ -6,9 +6,8 @@
 #ifndef ABBE_TESTS_GLSL_H
 #define ABBE_TESTS_GLSL_H
 
-#include "tests/check.h"
+#include "tests/gl_context.h"
 
-#include "gl/context.h"
 #include "gl/program.h"
 
 static inline GLuint glsl_buffer(const abbe_gl *gl, GLuint binding, size_t size, const void *data) {

@@ -78,5 +78,5 @@ int main(void) {
       cmocka_unit_test(test_what_arrives_is_what_was_sent),
       cmocka_unit_test(test_light_in_the_open_is_the_same),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

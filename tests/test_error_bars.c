@@ -15,7 +15,7 @@ static void make_bars(const abbe_scene *scene, const abbe_render_desc *desc,
   abbe_renderer *renderer = make_renderer(scene, desc);
   draw_frame(renderer);
   if (picture != NULL) read_picture(renderer, false, picture);
-  assert_ok(abbe_error_bars_make(frame_context, scene, renderer, bars_desc, bars, &error), &error);
+  assert_ok(abbe_error_bars_make(context, scene, renderer, bars_desc, bars, &error), &error);
   abbe_renderer_free(renderer);
 }
 
@@ -247,12 +247,12 @@ static void test_what_is_refused(void **state) {
   load_shipped("sphere", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);
-  assert_int_equal(abbe_error_bars_make(frame_context, &scene, renderer, &one, &bars, &error),
+  assert_int_equal(abbe_error_bars_make(context, &scene, renderer, &one, &bars, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_non_null(strstr(error.text, "1 variants: there may be 2 to 64"));
-  assert_int_equal(abbe_error_bars_make(frame_context, &scene, renderer, &many, &bars, &error),
+  assert_int_equal(abbe_error_bars_make(context, &scene, renderer, &many, &bars, &error),
                    ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_error_bars_make(frame_context, &scene, renderer, &stopped, &bars, &error),
+  assert_int_equal(abbe_error_bars_make(context, &scene, renderer, &stopped, &bars, &error),
                    ABBE_CANCELLED);
   assert_null(bars.error.data);
   abbe_renderer_free(renderer);
@@ -275,5 +275,5 @@ int main(void) {
       cmocka_unit_test(test_the_layer_is_what_compare_reads),
       cmocka_unit_test(test_what_is_refused),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -98,5 +98,5 @@ int main(void) {
       cmocka_unit_test(test_every_switch_is_on),
       cmocka_unit_test(test_what_is_asked_for_stays),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

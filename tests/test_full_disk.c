@@ -3,6 +3,7 @@
 #include "tests/check.h"
 #include "tests/faults/disk.h"
 #include "tests/fontconfig.h"
+#include "tests/sweep_row.h"
 
 #include "colorimetry/chart.h"
 #include "colorimetry/exr.h"
@@ -64,15 +65,7 @@ static abbe_result write_chart(const char *path, abbe_error *error) {
 
 static abbe_result write_sweep(const char *path, abbe_error *error) {
   abbe_sweep_table table = {0};
-  abbe_sweep_row row = {.setting = {.profile = "default",
-                                    .model = "auto",
-                                    .wavelengths = 7,
-                                    .photons = 64,
-                                    .map = 512,
-                                    .samples = 1,
-                                    .fill = "bridge",
-                                    .share = 0.01,
-                                    .exits = 8}};
+  abbe_sweep_row row = sweep_row("default", 64);
   abbe_result result = abbe_sweep_table_add(&table, &row, error);
   if (result == ABBE_OK) result = abbe_sweep_table_save(&table, path, error);
   abbe_sweep_table_free(&table);

@@ -16,7 +16,6 @@ enum { RAYS = 8192 };
 static const double eps = FLT_EPSILON;
 static const double sizes[] = {1e-4, 1, 1e5};
 
-static abbe_context *context;
 static const abbe_gl *gl;
 static float inputs[RAYS][8], outputs[RAYS][4];
 
@@ -26,16 +25,9 @@ static const char rooms[] =
     "#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define SPHERES\n#define CONVEX\n"
     "#define EXACT_RECEIVERS\n#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n";
 
-static int make_context(void **state) {
-  (void)state;
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL) != ABBE_OK) return 1;
+static int make_gl(void **state) {
+  if (make_context(state) != 0) return 1;
   gl = abbe_context_gl(context);
-  return 0;
-}
-
-static int free_context(void **state) {
-  (void)state;
-  abbe_context_free(context);
   return 0;
 }
 
@@ -427,5 +419,5 @@ int main(void) {
       cmocka_unit_test(receivers_are_met), cmocka_unit_test(views_project),
       cmocka_unit_test(maps_are_warped),   cmocka_unit_test(spots_fade),
   };
-  return cmocka_run_group_tests(tests, make_context, free_context);
+  return cmocka_run_group_tests(tests, make_gl, free_context);
 }

@@ -15,22 +15,6 @@ typedef struct soup {
   abbe_hierarchy h;
 } soup;
 
-static abbe_context *context;
-
-static int make_context(void **state) {
-  abbe_error error = {0};
-  (void)state;
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error) == ABBE_OK) return 0;
-  print_error("%s\n", error.text);
-  return 1;
-}
-
-static int free_context(void **state) {
-  (void)state;
-  abbe_context_free(context);
-  return 0;
-}
-
 static void finish(soup *s) {
   assert_non_null(s->triangle);
   assert_int_equal(abbe_hierarchy_make((const double(*)[9])s->triangle, s->count, &s->h, NULL),

@@ -2,23 +2,14 @@
 
 #include "colorimetry/weights.h"
 
-#include <string.h>
-
 enum { BANDS = 12 };
-
-static void load(const char *name, abbe_scene *out) {
-  char path[512];
-  abbe_error error = {0};
-  snprintf(path, sizeof path, "%s/scenes/%s.yaml", ABBE_SOURCE_DIR, name);
-  assert_ok(abbe_scene_load(path, NULL, out, &error), &error);
-}
 
 static void bands_add_up_to_the_colour(void **state) {
   (void)state;
   abbe_scene scene;
   abbe_image map;
   abbe_error error = {0};
-  load("gem", &scene);
+  load_shipped("gem", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);
   assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
@@ -63,7 +54,7 @@ static void a_prism_sorts_the_bands(void **state) {
   abbe_scene scene;
   abbe_image map;
   abbe_error error = {0};
-  load("prism", &scene);
+  load_shipped("prism", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);
   assert_ok(abbe_renderer_read_map_bands(renderer, 0, 8, &map, &error), &error);
@@ -84,7 +75,7 @@ static void the_renderer_is_as_it_was(void **state) {
   abbe_scene scene;
   abbe_image before, bands, after;
   abbe_error error = {0};
-  load("gem", &scene);
+  load_shipped("gem", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);
   read_map(renderer, 0, &before);
@@ -109,7 +100,7 @@ static void refuses_what_has_no_bands(void **state) {
   abbe_scene scene;
   abbe_image map;
   abbe_error error = {0};
-  load("gem", &scene);
+  load_shipped("gem", &scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   const size_t bad[] = {0, ABBE_RENDER_MAX_BANDS + 1};
   for (size_t i = 0; i < 2; i++)
@@ -135,5 +126,5 @@ int main(void) {
       cmocka_unit_test(the_renderer_is_as_it_was),
       cmocka_unit_test(refuses_what_has_no_bands),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -5,22 +5,14 @@
 
 enum { SIDE = 512, RAYS = 256 };
 
-static abbe_context *context;
 static const abbe_gl *gl;
 static abbe_view view;
 static float layer[SIDE][SIDE][4], rays[RAYS][8], hits[RAYS][4];
 static size_t ray_count;
 
-static int make_context(void **state) {
-  (void)state;
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL) != ABBE_OK) return 1;
+static int make_gl(void **state) {
+  if (make_context(state) != 0) return 1;
   gl = abbe_context_gl(context);
-  return 0;
-}
-
-static int free_context(void **state) {
-  (void)state;
-  abbe_context_free(context);
   return 0;
 }
 
@@ -238,5 +230,5 @@ int main(void) {
       cmocka_unit_test(test_a_rim_is_no_hit),
       cmocka_unit_test(test_misses_are_misses),
   };
-  return cmocka_run_group_tests(tests, make_context, free_context);
+  return cmocka_run_group_tests(tests, make_gl, free_context);
 }

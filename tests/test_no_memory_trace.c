@@ -2,6 +2,7 @@
  */
 #include "tests/faults/operations.h"
 #include "tests/fontconfig.h"
+#include "tests/sweep_row.h"
 
 #include "scenes/scene_file.h"
 #include "spectral/file.h"
@@ -163,15 +164,8 @@ static abbe_result fill_table(abbe_sweep_table *table, abbe_error *error) {
   abbe_result result = ABBE_OK;
   abbe_sweep_table_set(table, ABBE_SWEEP_FACT_SCENE, "scenes/gem.yaml");
   for (size_t i = 0; i < 20 && result == ABBE_OK; i++) {
-    abbe_sweep_row row = {.setting = {.profile = "default",
-                                      .model = "auto",
-                                      .wavelengths = i + 1,
-                                      .photons = 64,
-                                      .map = 512,
-                                      .samples = 1,
-                                      .fill = "bridge",
-                                      .share = 0.01,
-                                      .exits = 8}};
+    abbe_sweep_row row = sweep_row("default", 64);
+    row.setting.wavelengths = i + 1;
     for (int k = 0; k < ABBE_SWEEP_NUMBER_COUNT; k++)
       row.number[k] = (double)(k == ABBE_SWEEP_CAUSTIC_DE ? 40 - i : 10 + i);
     result = abbe_sweep_table_add(table, &row, error);

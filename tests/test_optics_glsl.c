@@ -16,20 +16,8 @@ static const double eps = FLT_EPSILON;
 static const double steps_in = 4;  /* units in the last place, of the inputs */
 static const double steps_out = 8; /* of the results */
 
-static abbe_context *context;
 static float inputs[MAX_CASES][8], outputs[MAX_CASES][4];
 static size_t count;
-
-static int make_context(void **state) {
-  (void)state;
-  return abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL) != ABBE_OK;
-}
-
-static int free_context(void **state) {
-  (void)state;
-  abbe_context_free(context);
-  return 0;
-}
 
 static const double indices[] = {1,    1 + 1e-7, 1 + 1e-6, 1 + 1e-5, 1.0001, 1.001, 1.01, 1.1,
                                  1.33, 1.5,      1.77,     2,        2.42,   3,     4};

@@ -80,5 +80,5 @@ int main(void) {
       cmocka_unit_test(every_photon_is_entered_once),
       cmocka_unit_test(refined_maps_are_those_of_all_wavelengths),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -306,5 +306,5 @@ int main(void) {
       cmocka_unit_test(test_the_depth_model_lands_near_the_exact_one),
       cmocka_unit_test(test_a_slit_lets_its_light_through_whatever_the_grid),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

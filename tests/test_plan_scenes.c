@@ -133,30 +133,29 @@ typedef struct pair {
   const char *row[40];
 } pair;
 
-static const char *const ball_rows[] = {
-    "=7 wavelengths, 8 exits, 9 landings",
-    "+model: ball|exact sphere: the object is a sphere",
-    "-refractors in turn|light that leaves the refractor cannot meet it again",
-    "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",
-    "-shadows of receivers|the receivers bound a convex room around the lights",
-    "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",
-    "+inner reflections|followed until less than 0.01 of the light is left, 8 exits at most",
-    "+map: lamp|the light may meet a refractor",
-    "-light: receiver depth|receivers are hit exactly",
-    "+light: refractor front|photons start where the light sees a refractor",
-    "-light: refractor back|every refractor has an exact surface",
-    "+light: photon placement|at most 256 a side, where light meets a refractor",
-    "+light: photons|7 wavelengths through the refractors",
-    "+light: spectral map|1024 x 1024 texels",
-    "+light: gap fill|bridge: wavelengths land apart",
-    "-absorption|every material is clear",
-    "+eye: receivers|light, shadow and spectral map",
-    "+eye: refractor front|the pixels that show a refractor",
-    "-eye: refractor back|every refractor has an exact surface",
-    "+eye: refraction|one direction a wavelength",
-    "+eye: picture|2 x 2 samples a pixel",
-    "-textures|none",
-    NULL};
+/* The plan of one ball on a floor. */
+#define BALL_ROWS                                                                                  \
+  "=7 wavelengths, 8 exits, 9 landings", "+model: ball|exact sphere: the object is a sphere",      \
+      "-refractors in turn|light that leaves the refractor cannot meet it again",                  \
+      "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",            \
+      "-shadows of receivers|the receivers bound a convex room around the lights",                 \
+      "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",                       \
+      "+inner reflections|followed until less than 0.01 of the light is left, 8 exits at most",    \
+      "+map: lamp|the light may meet a refractor",                                                 \
+      "-light: receiver depth|receivers are hit exactly",                                          \
+      "+light: refractor front|photons start where the light sees a refractor",                    \
+      "-light: refractor back|every refractor has an exact surface",                               \
+      "+light: photon placement|at most 256 a side, where light meets a refractor",                \
+      "+light: photons|7 wavelengths through the refractors",                                      \
+      "+light: spectral map|1024 x 1024 texels",                                                   \
+      "+light: gap fill|bridge: wavelengths land apart", "-absorption|every material is clear",    \
+      "+eye: receivers|light, shadow and spectral map",                                            \
+      "+eye: refractor front|the pixels that show a refractor",                                    \
+      "-eye: refractor back|every refractor has an exact surface",                                 \
+      "+eye: refraction|one direction a wavelength", "+eye: picture|2 x 2 samples a pixel",        \
+      "-textures|none",
+
+static const char *const ball_rows[] = {BALL_ROWS NULL};
 
 static const pair pairs[] = {
     {"no refractor",
@@ -397,28 +396,7 @@ static const pair pairs[] = {
 };
 
 static const char *const sphere_rows[] = {
-    "=7 wavelengths, 8 exits, 9 landings",
-    "+model: ball|exact sphere: the object is a sphere",
-    "-refractors in turn|light that leaves the refractor cannot meet it again",
-    "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",
-    "-shadows of receivers|the receivers bound a convex room around the lights",
-    "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",
-    "+inner reflections|followed until less than 0.01 of the light is left, 8 exits at most",
-    "+map: lamp|the light may meet a refractor",
-    "-light: receiver depth|receivers are hit exactly",
-    "+light: refractor front|photons start where the light sees a refractor",
-    "-light: refractor back|every refractor has an exact surface",
-    "+light: photon placement|at most 256 a side, where light meets a refractor",
-    "+light: photons|7 wavelengths through the refractors",
-    "+light: spectral map|1024 x 1024 texels",
-    "+light: gap fill|bridge: wavelengths land apart",
-    "-absorption|every material is clear",
-    "+eye: receivers|light, shadow and spectral map",
-    "+eye: refractor front|the pixels that show a refractor",
-    "-eye: refractor back|every refractor has an exact surface",
-    "+eye: refraction|one direction a wavelength",
-    "+eye: picture|2 x 2 samples a pixel",
-    "-textures|none",
+    BALL_ROWS
     "!receivers more than 76 degrees off the way from the light 'lamp' to the refractors get no "
     "light through them",
     NULL};

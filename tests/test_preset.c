@@ -176,8 +176,7 @@ static void test_classes_and_calibration(void **state) {
     if (result == ABBE_OK) {
       abbe_preset_speed speed = {0};
       const abbe_render_desc small = {.width = 16, .height = 16};
-      assert_ok(abbe_preset_calibrate(frame_context, &scene, front, &small, &speed, &error),
-                &error);
+      assert_ok(abbe_preset_calibrate(context, &scene, front, &small, &speed, &error), &error);
       assert_true(speed.light > 0 && isfinite(speed.light));
       assert_true(speed.eye > 0 && isfinite(speed.eye));
     }
@@ -196,5 +195,5 @@ int main(void) {
       cmocka_unit_test(test_what_the_caller_asks_for_stays),
       cmocka_unit_test(test_classes_and_calibration),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

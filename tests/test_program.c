@@ -1,31 +1,10 @@
 /* Every shader compiles, in every combination of models that a plan can ask for. */
-#include "gl/context.h"
+#include "tests/gl_context.h"
+
 #include "gl/program.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
-
-static abbe_context *context;
-
-static int make_context(void **state) {
-  abbe_error error = {0};
-  (void)state;
-  if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error) == ABBE_OK) return 0;
-  fprintf(stderr, "%s\n", error.text);
-  return 1;
-}
-
-static int free_context(void **state) {
-  (void)state;
-  abbe_context_free(context);
-  return 0;
-}
 
 /* Bits: spheres, convex, layers, exact receivers, absorbing (and caustics), shadows (and
  * textures), hierarchy, walk. */

@@ -364,7 +364,7 @@ static void test_what_is_not_there_is_refused(void **state) {
   abbe_renderer *renderer = NULL;
   const abbe_render_desc huge = {.photons = ABBE_RENDER_MAX_PHOTONS + 1};
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
-  assert_int_equal(abbe_renderer_make(frame_context, &scene, &huge, &renderer, &error),
+  assert_int_equal(abbe_renderer_make(context, &scene, &huge, &renderer, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_null(renderer);
   renderer = make_renderer(&scene, &small_frame);
@@ -390,5 +390,5 @@ int main(void) {
       cmocka_unit_test(test_a_map_takes_a_given_layout),
       cmocka_unit_test(test_what_is_not_there_is_refused),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -137,7 +137,7 @@ static void test_the_same_picture_has_no_error(void **state) {
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
   own_reference(&scene, &setting, &picture, &map);
   abbe_sweep sweep = {
-      .context = frame_context, .scene = &scene, .frames = 3, .picture = &picture, .map = &map};
+      .context = context, .scene = &scene, .frames = 3, .picture = &picture, .map = &map};
   abbe_sweep_row row = measure(&sweep, &setting);
   static const abbe_sweep_number none[] = {ABBE_SWEEP_MAP_RMSE,   ABBE_SWEEP_MAP_UV,
                                            ABBE_SWEEP_CAUSTIC_DE, ABBE_SWEEP_CAUSTIC_RMSE,
@@ -180,7 +180,7 @@ static void test_the_thesis_gets_its_best_brightness(void **state) {
   for (size_t i = 0; i < 128 * 128 * 3; i++) map.data[i] *= 0.125f;
   for (size_t i = 0; i < 32 * 32 * 3; i++) picture.data[i] *= 4;
   const abbe_sweep sweep = {
-      .context = frame_context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
+      .context = context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
   abbe_sweep_row row = measure(&sweep, &setting);
   assert_near(row.number[ABBE_SWEEP_SCALE], 4, 1e-5);
   assert_near(row.number[ABBE_SWEEP_MAP_SCALE], 0.125, 1e-6);
@@ -210,7 +210,7 @@ static void test_the_method_in_units_gets_no_factor(void **state) {
   abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_THESIS_CIE);
   own_reference(&scene, &setting, &picture, &map);
   abbe_sweep sweep = {
-      .context = frame_context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
+      .context = context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
   abbe_sweep_row row = measure(&sweep, &setting);
   assert_near(row.number[ABBE_SWEEP_PICTURE_RMSE], 0, 1e-6);
   assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 1e-6);
@@ -253,7 +253,7 @@ static void test_against_a_traced_reference(void **state) {
   abbe_map_layout layout;
   abbe_error error = {0};
   load_text(SCENE, &scene);
-  assert_ok(abbe_sweep_fit_layout(frame_context, &scene, 0, &layout, &error), &error);
+  assert_ok(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error), &error);
   /* What the renderer models and no more, so that what is left is sampling. */
   const abbe_reference_desc desc = {.trace = {.physics = {true, 8, 0.01},
                                               .width = 32,
@@ -266,7 +266,7 @@ static void test_against_a_traced_reference(void **state) {
                                     .passes = 4};
   assert_ok(abbe_reference_trace(&scene, &desc, &picture, &map, &error), &error);
   /* The same against itself: the model leaves out nothing. */
-  const abbe_sweep sweep = {.context = frame_context,
+  const abbe_sweep sweep = {.context = context,
                             .scene = &scene,
                             .frames = 1,
                             .picture = &picture,
@@ -335,8 +335,7 @@ static void test_a_scene_without_refractors_has_no_map(void **state) {
   abbe_map_layout layout;
   abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
-  assert_int_equal(abbe_sweep_fit_layout(frame_context, &scene, 0, &layout, &error),
-                   ABBE_UNSUPPORTED);
+  assert_int_equal(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error), ABBE_UNSUPPORTED);
   assert_contains(error.text, "no refractor");
   abbe_scene_free(&scene);
 }
@@ -352,5 +351,5 @@ int main(void) {
       cmocka_unit_test(test_hashes_tell_scenes_and_references_apart),
       cmocka_unit_test(test_a_scene_without_refractors_has_no_map),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

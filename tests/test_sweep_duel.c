@@ -1,5 +1,5 @@
 /* The default profile against a baseline: numbers worked out by hand. */
-#include "tests/check.h"
+#include "tests/sweep_row.h"
 
 #include "validation/sweep_duel.h"
 
@@ -7,12 +7,9 @@
 
 static void add(abbe_sweep_table *table, const char *profile, size_t photons, double ms, double e) {
   bool plain = strcmp(profile, "default") == 0;
-  abbe_sweep_row row = {
-      .setting = {.wavelengths = 7, .photons = photons, .map = 1024, .samples = 1, .share = 0.01}};
-  snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
-  snprintf(row.setting.fill, sizeof row.setting.fill, "%s", plain ? "bridge" : "smear");
-  snprintf(row.setting.model, sizeof row.setting.model, "auto");
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
+  abbe_sweep_row row = sweep_row(profile, photons);
+  row.setting.map = 1024;
+  if (!plain) snprintf(row.setting.fill, sizeof row.setting.fill, "smear");
   row.number[ABBE_SWEEP_FRAME_MS] = ms;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = e;
   assert_int_equal(abbe_sweep_table_add(table, &row, NULL), ABBE_OK);

@@ -36,7 +36,7 @@ static void test_all_axes(void **state) {
   abbe_error error = {0};
   load_text(SCENE, &scene);
   unsigned long long before = abbe_sweep_hash_scene(&scene);
-  const abbe_sweep sweep = {.context = frame_context, .scene = &scene, .frames = 1};
+  const abbe_sweep sweep = {.context = context, .scene = &scene, .frames = 1};
   assert_int_equal(abbe_sweep_growth_measure(&sweep, &scene, 32, never, NULL, &g, &error),
                    ABBE_CANCELLED);
   assert_int_equal(abbe_sweep_growth_measure(&sweep, &scene, 4, NULL, NULL, &g, &error),
@@ -73,5 +73,5 @@ static void test_all_axes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_slopes),
                                      cmocka_unit_test(test_all_axes)};
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -1,6 +1,6 @@
 /* A sweep's chart: the file's texts say what is drawn, and what cannot be drawn is refused. */
-#include "tests/check.h"
 #include "tests/fontconfig.h"
+#include "tests/sweep_row.h"
 
 #include "spectral/file.h"
 #include "validation/sweep_plot.h"
@@ -9,16 +9,7 @@
 #include <unistd.h>
 
 static void add(abbe_sweep_table *table, const char *profile, size_t photons, double ms, double e) {
-  abbe_sweep_row row = {.setting = {.wavelengths = 7,
-                                    .photons = photons,
-                                    .map = 512,
-                                    .samples = 1,
-                                    .share = 0.01,
-                                    .exits = 8}};
-  snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
-  snprintf(row.setting.fill, sizeof row.setting.fill, "bridge");
-  snprintf(row.setting.model, sizeof row.setting.model, "auto");
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
+  abbe_sweep_row row = sweep_row(profile, photons);
   row.number[ABBE_SWEEP_FRAME_MS] = ms;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = e;
   row.number[ABBE_SWEEP_CAUSTIC_DE_NOISE] = 0.05;

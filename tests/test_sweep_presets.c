@@ -1,5 +1,5 @@
 /* Presets off sweeps: what is common to a class, its worst errors, and the three that get names. */
-#include "tests/check.h"
+#include "tests/sweep_row.h"
 
 #include "spectral/file.h"
 #include "spectral/yaml.h"
@@ -24,16 +24,7 @@ static int teardown(void **state) {
 
 static void add(abbe_sweep_table *t, const char *profile, size_t photons, double light, double eye,
                 double error) {
-  abbe_sweep_row row = {.setting = {.wavelengths = 7,
-                                    .photons = photons,
-                                    .map = 512,
-                                    .samples = 1,
-                                    .share = 0.01,
-                                    .exits = 8}};
-  snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
-  snprintf(row.setting.fill, sizeof row.setting.fill, "bridge");
-  snprintf(row.setting.model, sizeof row.setting.model, "auto");
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
+  abbe_sweep_row row = sweep_row(profile, photons);
   row.number[ABBE_SWEEP_LIGHT_MS] = light;
   row.number[ABBE_SWEEP_EYE_MS] = eye;
   row.number[ABBE_SWEEP_FRAME_MS] = light + eye;

@@ -1,5 +1,5 @@
 /* What a sweep's error is made of: the parts that are found, and the sentence for each case. */
-#include "tests/check.h"
+#include "tests/sweep_row.h"
 
 #include "validation/sweep_split.h"
 
@@ -7,16 +7,9 @@
 
 static abbe_sweep_row *add(abbe_sweep_table *table, size_t wavelengths, size_t photons,
                            const char *fill, double total, double rest) {
-  abbe_sweep_row row = {.setting = {.profile = "default",
-                                    .wavelengths = wavelengths,
-                                    .photons = photons,
-                                    .map = 512,
-                                    .samples = 1,
-                                    .share = 0.01,
-                                    .exits = 8}};
+  abbe_sweep_row row = sweep_row("default", photons);
+  row.setting.wavelengths = wavelengths;
   snprintf(row.setting.fill, sizeof row.setting.fill, "%s", fill);
-  snprintf(row.setting.model, sizeof row.setting.model, "auto");
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = total;
   row.number[ABBE_SWEEP_CAUSTIC_DE_NOISE] = 0.1;
   row.number[ABBE_SWEEP_MATCHED_DE] = rest;

@@ -1,5 +1,5 @@
 /* Sweeps as tables: every bit written is read again, broken ones are named, fronts are marked. */
-#include "tests/check.h"
+#include "tests/sweep_row.h"
 
 #include "tests/random.h"
 #include "validation/sweep_table.h"
@@ -8,16 +8,9 @@
 #include <unistd.h>
 
 static abbe_sweep_row row_of(const char *profile, size_t wavelengths, double ms, double error) {
-  abbe_sweep_row row = {.setting = {.wavelengths = wavelengths,
-                                    .photons = 128,
-                                    .map = 512,
-                                    .samples = 2,
-                                    .share = 0.01,
-                                    .exits = 8}};
-  snprintf(row.setting.profile, sizeof row.setting.profile, "%s", profile);
-  snprintf(row.setting.fill, sizeof row.setting.fill, "bridge");
-  snprintf(row.setting.model, sizeof row.setting.model, "auto");
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
+  abbe_sweep_row row = sweep_row(profile, 128);
+  row.setting.wavelengths = wavelengths;
+  row.setting.samples = 2;
   row.number[ABBE_SWEEP_FRAME_MS] = ms;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = error;
   return row;

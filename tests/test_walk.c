@@ -101,5 +101,5 @@ int main(void) {
       cmocka_unit_test(glass_in_the_same_glass_is_not_seen),
       cmocka_unit_test(triangles_do_as_planes_do),
   };
-  return cmocka_run_group_tests(tests, frame_setup, frame_teardown);
+  return cmocka_run_group_tests(tests, make_context, free_context);
 }
