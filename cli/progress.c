@@ -10,8 +10,12 @@ enum { BAR_WIDTH = 30 };
 
 static volatile sig_atomic_t interrupted;
 
+/* The first asks the work to stop, at once or as soon as some begins; a second ends the program. */
 static void interrupt(int signal_number) {
-  (void)signal_number;
+  if (interrupted) {
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+  }
   interrupted = 1;
 }
 
@@ -23,10 +27,10 @@ static double now_s(void) {
 
 /* Whoever asks for the end, a user or a machine that goes down: what is done is saved. A terminal
  * that hangs up ends nothing where the parent said so (nohup). */
-static void on_interrupt(void (*handler)(int)) {
+static void catch_interrupts(void) {
   struct sigaction action, present;
   memset(&action, 0, sizeof action);
-  action.sa_handler = handler;
+  action.sa_handler = interrupt;
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   sigaction(SIGHUP, NULL, &present);
@@ -38,7 +42,7 @@ void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet) 
   progress->what = what;
   progress->silent = quiet || !isatty(STDERR_FILENO);
   progress->start_s = now_s();
-  on_interrupt(interrupt);
+  catch_interrupts();
 }
 
 bool abbe_progress_update(void *user, double done) {
@@ -64,5 +68,4 @@ const volatile int *abbe_progress_stopped(void) {
 
 void abbe_progress_end(abbe_progress *progress) {
   if (progress->shown) fprintf(stderr, "\r%*s\r", BAR_WIDTH + 60, "");
-  on_interrupt(SIG_DFL);
 }
