@@ -70,14 +70,6 @@ vec2 warp(int light, vec2 uv) {
               mix(warps[row + k.y].y, warps[row + k.y + 1].y, f.y));
 }
 
-// How much wider than its part of the window a place is on the map.
-vec2 warp_slope(int light, vec2 uv) {
-  ivec2 k = min(ivec2(clamp(uv, vec2(0), vec2(1)) * float(WARP_STEPS)), ivec2(WARP_STEPS - 1));
-  int row = light * (WARP_STEPS + 1);
-  return float(WARP_STEPS) * vec2(warps[row + k.x + 1].x - warps[row + k.x].x,
-                                  warps[row + k.y + 1].y - warps[row + k.y].y);
-}
-
 float light_profile(Light l, vec3 direction) {
   if (int(l.position.w) != 1) return 1.0;
   float c = dot(direction, l.direction.xyz);

@@ -97,19 +97,14 @@ float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
 #endif
 }
 
-// To the neighbouring samples of what is shaded: the map is seen no finer than these are apart.
-vec3 across = vec3(0), down = vec3(0);
-
 const float MOST_TAPS = 4.0;
 
-// The map's mean between p, p + across and p + down: taps along the longer way, in a level whose
-// texels are half as wide as the shorter one.
-vec3 map_flux(int light, View v, vec3 p, vec2 uv) {
-  vec3 right, above;
-  vec2 at = warp(light, uv);
-  if (!project(v, p + across, right) || !project(v, p + down, above))
-    return textureLod(spectral_map, vec3(at, light), 0.0).xyz;
-  vec2 slope = warp_slope(light, uv), a = (right.xy - uv) * slope, b = (above.xy - uv) * slope;
+// The map's mean over what lies between `at` and the neighbouring samples, `a` and `b` away on the
+// map: taps along the longer way, in a level whose texels are half as wide as the shorter one.
+vec3 map_flux(int light, vec2 at, vec2 a, vec2 b) {
+  // Of a neighbour that the map's view does not hold nothing is known.
+  a = all(lessThan(abs(a), vec2(1))) ? a : vec2(0);
+  b = all(lessThan(abs(b), vec2(1))) ? b : vec2(0);
   vec2 longer = dot(a, a) > dot(b, b) ? a : b, shorter = dot(a, a) > dot(b, b) ? b : a;
   float side = float(textureSize(spectral_map, 0).x);
   float wide = length(longer) * side, narrow = max(length(shorter) * side, wide / MOST_TAPS);
@@ -130,6 +125,16 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   caustic = vec3(0);
   light_to(l, p, d, distance_m);
   float facing = -dot(n, d);
+#ifdef CAUSTICS
+  vec3 uvz;
+  bool held = project(l.map_view, p, uvz) && inside(uvz.xy);
+  vec2 at = warp(light, uvz.xy);
+#ifdef SEEN_BY_PIXELS
+  vec2 to_right = dFdx(at), to_above = dFdy(at);  // before any pixel of the four goes its own way
+#else
+  const vec2 to_right = vec2(0), to_above = vec2(0);
+#endif
+#endif
   if (!receiver_lit(light, p, d, distance_m)) return;
   bool directional = int(l.position.w) == 2;
   float falloff = directional ? 1.0 : 1.0 / (distance_m * distance_m);
@@ -141,9 +146,8 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   if (l.misc.w == 0.0) return;
   // The map holds the light of the side that faces the refractors.
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
-  vec3 uvz;
-  if (!project(l.map_view, p, uvz) || !inside(uvz.xy)) return;
-  vec3 flux = map_flux(light, l.map_view, p, uvz.xy);
+  if (!held) return;
+  vec3 flux = map_flux(light, at, to_right, to_above);
   caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
 #endif
 }

@@ -1,4 +1,5 @@
 // Receivers as the eye sees them: light, shadow and spectral map in one.
+#define SEEN_BY_PIXELS  // neighbouring fragments are neighbouring samples
 #include "refractor.glsl"
 #include "receiver.glsl"
 in vec3 world;
@@ -15,8 +16,6 @@ layout(location = 2) out vec4 caustic;
 void main() {
   vec3 n = normalize(world_normal);
   if (dot(n, eye - world) < 0.0) n = -n;
-  across = dFdx(world);
-  down = dFdy(world);
   Shading s = shade(world, n, surface, surface_uv);
   radiance = vec4(s.direct + s.caustic + s.fill, distance(eye, world));
 #ifdef LIGHT_LAYERS_OUT
