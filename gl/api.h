@@ -59,7 +59,8 @@ extern "C" {
                                   X(LINKPROGRAM, LinkProgram) X(MEMORYBARRIER, MemoryBarrier) X(   \
                                       PIXELSTOREI,                                                 \
                                       PixelStorei) X(SHADERSOURCE,                                 \
-                                                     ShaderSource) X(TEXPARAMETERI, TexParameteri) \
+                                                     ShaderSource) X(TEXBUFFER, TexBuffer)         \
+                                      X(TEXPARAMETERI, TexParameteri)                              \
                                       X(TEXSTORAGE2D, TexStorage2D) X(                             \
                                           TEXSTORAGE3D,                                            \
                                           TexStorage3D) X(TEXSUBIMAGE3D, TexSubImage3D)            \

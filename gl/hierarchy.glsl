@@ -2,11 +2,16 @@
 // one on a ray. HIERARCHY_STACK: what the deepest tree stacks at the most. Loops end at their top
 // alone: Mesa 22's llvmpipe clobbers what is loaded in a loop that lanes leave in its middle.
 
-layout(std430, binding = 0) readonly buffer HierarchyNodes { vec4 hierarchy_node[]; };
+// Buffers as textures: llvmpipe fetches a texel of all lanes at once, and storage word by word.
+layout(binding = 7) uniform samplerBuffer hierarchy_nodes;
+layout(binding = 8) uniform samplerBuffer hierarchy_triangles;
+layout(binding = 9) uniform samplerBuffer hierarchy_corners;
+
+vec4 hierarchy_node(int i) { return texelFetch(hierarchy_nodes, i); }
 // A corner (w: part of its mesh) and the two edges from there, three a triangle.
-layout(std430, binding = 1) readonly buffer HierarchyTriangles { vec4 hierarchy_triangle[]; };
+vec4 hierarchy_triangle(int i) { return texelFetch(hierarchy_triangles, i); }
 // Normals at the corners, w: u of the texture; v of the three in the fourth.
-layout(std430, binding = 3) readonly buffer HierarchyCorners { vec4 hierarchy_corner[]; };
+vec4 hierarchy_corner(int i) { return texelFetch(hierarchy_corners, i); }
 
 struct TriangleHit {
   float t, u, v;  // barycentric, of the second and third corner
@@ -38,15 +43,15 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   vec3 inverse = 1.0 / mix(d, mix(-least, least, greaterThanEqual(d, vec3(0))),
                            lessThan(abs(d), least));
   float nearest = h.t, hit_u = 0.0, hit_v = 0.0;
-  vec4 root_low = hierarchy_node[2 * root], root_high = hierarchy_node[2 * root + 1];
+  vec4 root_low = hierarchy_node(2 * root), root_high = hierarchy_node(2 * root + 1);
   bool meets = hierarchy_enter(root_low, root_high, o, inverse, t_min, nearest) < 1e30;
   int code = meets ? hierarchy_code(root_low, root_high) : -1;
   int waiting = 0, found = -1, leaf = ~code;
   int node = code, next = code < 0 ? leaf >> 3 : 0, end = next + (code < 0 ? leaf & 7 : 0);
   while (node >= 0 || next < end) {
     while (node >= 0) {
-      vec4 low_a = hierarchy_node[2 * node], high_a = hierarchy_node[2 * node + 1];
-      vec4 low_b = hierarchy_node[2 * node + 2], high_b = hierarchy_node[2 * node + 3];
+      vec4 low_a = hierarchy_node(2 * node), high_a = hierarchy_node(2 * node + 1);
+      vec4 low_b = hierarchy_node(2 * node + 2), high_b = hierarchy_node(2 * node + 3);
       float a = hierarchy_enter(low_a, high_a, o, inverse, t_min, nearest);
       float b = hierarchy_enter(low_b, high_b, o, inverse, t_min, nearest);
       int code_a = a < 1e30 ? hierarchy_code(low_a, high_a) : -1;
@@ -65,8 +70,8 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
     next = leaf >> 3;
     end = next + (leaf & 7);
     while (next < end) {
-      vec3 corner = hierarchy_triangle[3 * next].xyz;
-      vec3 e1 = hierarchy_triangle[3 * next + 1].xyz, e2 = hierarchy_triangle[3 * next + 2].xyz;
+      vec3 corner = hierarchy_triangle(3 * next).xyz;
+      vec3 e1 = hierarchy_triangle(3 * next + 1).xyz, e2 = hierarchy_triangle(3 * next + 2).xyz;
       vec3 across = cross(d, e2), from = o - corner;
       float det = dot(e1, across);
       vec3 q = cross(from, e1);

@@ -147,6 +147,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   abbe_local_scene_free(&r->local);
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
+  gl->DeleteTextures(3, r->hierarchy_texture);
   gl->DeleteBuffers(3, r->hierarchy);
   free(r->refractor_root);
   gl->DeleteBuffers(1, &r->table_bands);

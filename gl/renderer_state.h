@@ -28,6 +28,9 @@ enum {
   BINDING_LIST = BINDING_COUNT /* pieces of light, pixels */
 };
 
+/* Texture units of the hierarchy's buffers, from the first; passes bind theirs below. */
+enum { HIERARCHY_UNIT = 7 };
+
 enum {
   PHOTON_GROUP = 256,
   PHOTON_HEADER = 8 * 4,
@@ -76,6 +79,7 @@ struct abbe_renderer {
 
   GLuint buffer[BINDING_COUNT];
   GLuint hierarchy[3];    /* nodes, triangles, normals; 0: no model needs them */
+  GLuint hierarchy_texture[3];
   size_t *refractor_root; /* [refractor_count] of its tree */
   size_t hierarchy_depth;
   GLuint table_bands, table_warps, texel_sizes;

@@ -106,11 +106,11 @@ void abbe_renderer_bind_tables(abbe_renderer *r) {
     if (i <= BINDING_SPECTRA) r->gl->BindBufferBase(GL_UNIFORM_BUFFER, i, r->buffer[i]);
     r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, r->buffer[i]);
   }
-  /* Places of storage that uniform blocks leave free. */
-  static const GLuint hierarchy[3] = {BINDING_LIGHTS, BINDING_REFRACTORS, BINDING_RECEIVERS};
-  for (int k = 0; k < 3; k++)
-    if (r->hierarchy[k] != 0)
-      r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, hierarchy[k], r->hierarchy[k]);
+  for (GLenum k = 0; k < 3; k++) {
+    if (r->hierarchy_texture[k] == 0) continue;
+    r->gl->ActiveTexture(GL_TEXTURE0 + HIERARCHY_UNIT + k);
+    r->gl->BindTexture(GL_TEXTURE_BUFFER, r->hierarchy_texture[k]);
+  }
   if (r->table_warps != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 2, r->table_warps);
   if (r->table_bands != 0)

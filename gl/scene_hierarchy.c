@@ -90,15 +90,31 @@ static abbe_result add_mesh(abbe_renderer *r, const abbe_mesh *mesh, forest *f, 
   return result;
 }
 
+/* A buffer that the shaders read as a texture of vec4. */
+static abbe_result upload_texels(abbe_renderer *r, int which, size_t size, const void *data,
+                                 abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  GLint most = 0;
+  gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (size / 16 > (size_t)most)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the meshes that light is traced through take %zu texels in a buffer; "
+                          "this OpenGL reads at most %d: use smaller meshes or the model 'layers'",
+                          size / 16, most);
+  abbe_result result = abbe_renderer_make_buffer(r, size, data, &r->hierarchy[which], error);
+  if (result != ABBE_OK) return result;
+  gl->GenTextures(1, &r->hierarchy_texture[which]);
+  gl->BindTexture(GL_TEXTURE_BUFFER, r->hierarchy_texture[which]);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, r->hierarchy[which]);
+  return abbe_gl_check(gl, "the upload of a hierarchy", error);
+}
+
 static abbe_result upload(abbe_renderer *r, const forest *f, abbe_error *error) {
-  abbe_result result = abbe_renderer_make_buffer(r, f->node_count * sizeof *f->node, f->node,
-                                                 &r->hierarchy[0], error);
+  abbe_result result = upload_texels(r, 0, f->node_count * sizeof *f->node, f->node, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, f->triangle_count * sizeof *f->triangle, f->triangle,
-                                       &r->hierarchy[1], error);
+    result = upload_texels(r, 1, f->triangle_count * sizeof *f->triangle, f->triangle, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, f->triangle_count * sizeof *f->corners, f->corners,
-                                       &r->hierarchy[2], error);
+    result = upload_texels(r, 2, f->triangle_count * sizeof *f->corners, f->corners, error);
   return result;
 }
 

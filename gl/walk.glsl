@@ -116,11 +116,11 @@ bool next_interface(Way w, inout Interface h) {
 #ifdef HIERARCHY
   if (owner >= 0) {
     int i = triangle.triangle;
-    vec4 corner = hierarchy_triangle[3 * i];
-    vec3 e1 = hierarchy_triangle[3 * i + 1].xyz, e2 = hierarchy_triangle[3 * i + 2].xyz;
-    vec3 n = (1.0 - triangle.u - triangle.v) * hierarchy_corner[4 * i].xyz +
-             triangle.u * hierarchy_corner[4 * i + 1].xyz +
-             triangle.v * hierarchy_corner[4 * i + 2].xyz;
+    vec4 corner = hierarchy_triangle(3 * i);
+    vec3 e1 = hierarchy_triangle(3 * i + 1).xyz, e2 = hierarchy_triangle(3 * i + 2).xyz;
+    vec3 n = (1.0 - triangle.u - triangle.v) * hierarchy_corner(4 * i).xyz +
+             triangle.u * hierarchy_corner(4 * i + 1).xyz +
+             triangle.v * hierarchy_corner(4 * i + 2).xyz;
     h.face_n = normalize(cross(e1, e2));
     h.hit.n = dot(n, n) > 0.0 ? normalize(n) : h.face_n;
     h.hit.p = corner.xyz + triangle.u * e1 + triangle.v * e2;
