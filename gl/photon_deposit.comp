@@ -21,8 +21,9 @@ layout(std430, binding = 6) readonly buffer Photons {
   Photon photon_at[];
 };
 layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
-layout(std430, binding = 9) readonly buffer Landings { vec4 landing[]; };
-layout(std430, binding = 10) readonly buffer Signatures { uint signature[]; };  // 0: none
+// As textures: a software rasteriser fetches a texel in one load, and storage number by number.
+uniform samplerBuffer landings;
+uniform usamplerBuffer signatures;  // 0: none
 layout(std430, binding = 13) readonly buffer PathList {
   uint path_count, path_groups[3];
   uint path_list[];
@@ -32,14 +33,14 @@ layout(std430, binding = 7) readonly buffer PairList {
   uint pair_count, pair_groups[3];
   uint pair_at[];
 };
-layout(std430, binding = 11) readonly buffer FineLandings { vec4 fine_landing[]; };
-layout(std430, binding = 12) readonly buffer FineSignatures { uint fine_signature[]; };
+uniform samplerBuffer fine_landings;
+uniform usamplerBuffer fine_signatures;
 #else
 layout(std430, binding = 7) readonly buffer Wants { uint want[]; };  // a bit a refined interval
 #endif
 // Interval i lies between nodes i - 1 and i. [table_first + (light * REFRACTORS + refractor) *
 // (nodes + 1) + i] * (STEPS + 1) + k: XYZ of the interval up to step k, and how far along (0 to 1) that is.
-layout(std430, binding = 14) readonly buffer Intervals { vec4 interval_sum[]; };
+uniform samplerBuffer interval_sums;
 
 uniform int light;
 uniform ivec2 grid;
@@ -70,10 +71,10 @@ vec2 neighbour_step(ivec2 c, ivec2 to, vec2 start, int order, int lane, uint pat
   there = there && at != 0u;
   uint other = there ? at - 1u : 0u;
   uint index = (other * SLOTS + order) * LANES + lane;
-  there = there && path != 0u && signature[index] == path;
+  there = there && path != 0u && texelFetch(signatures, int(index)).x == path;
   vec2 way = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
   float apart = max(dot(way, vec2(to)), 0.25);
-  return there ? (map_position(landing[index].xyz) - here) / apart : vec2(0);
+  return there ? (map_position(texelFetch(landings, int(index)).xyz) - here) / apart : vec2(0);
 }
 
 // A cell's image along one axis, from the steps to both neighbours: their mean where both are.
@@ -111,14 +112,14 @@ void main() {
   int reference = 0;
   uint path = 0u;
   for (int i = 0; i < lane_count; i++) {
-    uint found = signature[first + i];
+    uint found = texelFetch(signatures, int(first + i)).x;
     bool nearer = path == 0u || abs(2 * i - twice_middle) < abs(2 * reference - twice_middle);
     if (found != 0u && nearer) {
       path = found;
       reference = i;
     }
   }
-  vec2 here = map_position(landing[first + reference].xyz);
+  vec2 here = map_position(texelFetch(landings, int(first + reference)).xyz);
   vec2 start = unpackSnorm2x16(from_cell.offset), extent = unpackUnorm2x16(from_cell.extent);
   vec2 a = extent.x * image_of_side(neighbour_step(cell, ivec2(1, 0), start, order, reference, path, here),
                                     neighbour_step(cell, ivec2(-1, 0), start, order, reference, path, here));
@@ -137,6 +138,7 @@ void main() {
   // A tear between neighbours is not a footprint: no farther than the pieces can cover.
   across *= min(1.0, 2.0 * size * float(MAX_PIECES) / max(wide, 1e-20));
 
+  uint packed_across = packHalf2x16(across);
   vec3 gathered = vec3(0);
   vec2 gathered_at = vec2(0), gathered_from = vec2(0);
   float gathered_weight = 0.0;
@@ -144,13 +146,13 @@ void main() {
   uint path_a = 0u;
   vec4 from = vec4(0);
 #ifdef REFINED
-  path_a = fine_signature[fine_first];
-  from = fine_landing[fine_first];
-  for (int i = 0; i < FINE_NODES; i++) path = max(path, fine_signature[fine_first + uint(i)]);
+  path_a = texelFetch(fine_signatures, int(fine_first)).x;
+  from = texelFetch(fine_landings, int(fine_first));
+  for (int i = 0; i < FINE_NODES; i++) path = max(path, texelFetch(fine_signatures, int(fine_first + uint(i))).x);
 #else
   if (interval_first > 0) {
-    path_a = signature[first + uint(interval_first - 1 - lane_first)];
-    from = landing[first + uint(interval_first - 1 - lane_first)];
+    path_a = texelFetch(signatures, int(first + uint(interval_first - 1 - lane_first))).x;
+    from = texelFetch(landings, int(first + uint(interval_first - 1 - lane_first)));
   }
 #endif
   int row = table_first + (light * REFRACTORS + int(path & 255u)) * (nodes + 1);
@@ -161,13 +163,13 @@ void main() {
 #ifdef REFINED
     bool has_b = interval <= node_end && !last, taken = has_b;
     uint index_b = fine_first + uint(has_b ? turn + 1 : 0);
-    uint path_b = has_b ? fine_signature[index_b] : 0u;
-    vec4 to = fine_landing[index_b];
+    uint path_b = has_b ? texelFetch(fine_signatures, int(index_b)).x : 0u;
+    vec4 to = texelFetch(fine_landings, int(index_b));
 #else
     bool has_b = interval < nodes && !last, taken = (refined >> uint(min(interval, 31)) & 1u) == 0u;
     uint index_b = first + uint(has_b ? interval - lane_first : 0);
-    uint path_b = has_b ? signature[index_b] : 0u;
-    vec4 to = landing[index_b];
+    uint path_b = has_b ? texelFetch(signatures, int(index_b)).x : 0u;
+    vec4 to = texelFetch(landings, int(index_b));
 #endif
     vec2 pb = path_b != 0u ? map_position(to.xyz) : pa;
     float share_a = path_a != 0u && taken ? from.w : 0.0, share_b = path_b != 0u && taken ? to.w : 0.0;
@@ -182,10 +184,10 @@ void main() {
 #endif
     pieces = last ? 1 : pieces;
     int intervals_row = (row + min(interval, nodes)) * (STEPS + 1);
-    vec3 middle = interval_sum[intervals_row + STEPS / 2].xyz;
+    vec3 middle = texelFetch(interval_sums, int(intervals_row + STEPS / 2)).xyz;
     vec4 before = vec4(0);
     for (int k = 1; k <= pieces; k++) {
-      vec4 upto = interval_sum[intervals_row + k * STEPS / pieces];
+      vec4 upto = texelFetch(interval_sums, int(intervals_row + k * STEPS / pieces));
       vec3 lower = min(upto.xyz, middle) - min(before.xyz, middle);
       vec3 flux = share_a * lower + share_b * (upto.xyz - before.xyz - lower);
       float half_way = share_b > 0.0 ? share_a > 0.0 ? (2 * k <= pieces ? 0.0 : 1.0) : 1.0 : 0.0;
@@ -195,19 +197,17 @@ void main() {
       float weight = last ? 0.0 : flux.x + flux.y + flux.z;
       vec2 off = abs(at - gathered_from);
       bool write = gathered_weight > 0.0 && (last || (weight > 0.0 && max(off.x, off.y) > 0.75 * size));
-      vec2 centre = gathered_at / max(gathered_weight, 1e-30);
-      for (int n = 0; write && n < across_pieces; n++) {
-        vec2 p = centre + across * ((float(n) + 0.5) / float(across_pieces) - 0.5);
-        uvec2 fixed_point =
-            uvec2(clamp(p, vec2(0), vec2(float(map_size) - 0.01)) * vec2(1048576.0, 131072.0));
+      if (write) {
+        vec2 centre = clamp(gathered_at / gathered_weight, vec2(0), vec2(float(map_size) - 0.01));
+        uvec2 fixed_point = uvec2(centre * vec2(65536.0, 131072.0));
         uvec3 units = uvec3(gathered * to_units + 0.5);
-        uint at_splat = atomicAdd(splat_count, 1u);
-        uint word = min(at_splat, most) * SPLAT_WORDS;
-        splat[word] = fixed_point.x;
+        uint word = min(atomicAdd(splat_count, 1u), most) * SPLAT_WORDS;
+        splat[word] = fixed_point.x << 4 | uint(across_pieces);
         splat[word + 1u] = fixed_point.y << 3 | uint(level);
-        splat[word + 2u] = units.x;
-        splat[word + 3u] = units.y;
-        splat[word + 4u] = units.z;
+        splat[word + 2u] = packed_across;
+        splat[word + 3u] = units.x;
+        splat[word + 4u] = units.y;
+        splat[word + 5u] = units.z;
       }
       if (write) {
         gathered = vec3(0);

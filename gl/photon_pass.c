@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LIST_HEADER = 16, SPLAT_BYTES = 20, MAX_SPLATS = 6 << 20 };
+enum { LIST_HEADER = 16, SPLAT_BYTES = 24, MAX_SPLATS = 5 << 20 };
 enum { MOST_LANDING_BYTES = 1 << 30, LEAST_LANES = 7 };
 enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
 
@@ -132,9 +132,13 @@ static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t c
   gl->Uniform1ui(gl->GetUniformLocation(deposit, "most"), (GLuint)r->splat_room);
   clear_count(r, r->splat_list);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, fine ? r->pair_list : r->wants);
+  abbe_renderer_bind_texels(r, deposit, "landings", 0, GL_RGBA32F, r->buffer[BINDING_LANDINGS]);
+  abbe_renderer_bind_texels(r, deposit, "signatures", 1, GL_R32UI, r->buffer[BINDING_SIGNATURES]);
+  abbe_renderer_bind_texels(r, deposit, "interval_sums", 2, GL_RGBA32F,
+                            r->buffer[BINDING_INTERVALS]);
   if (fine) {
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SAMPLE_WEIGHTS, r->fine_landings);
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LEDGER, r->fine_signatures);
+    abbe_renderer_bind_texels(r, deposit, "fine_landings", 3, GL_RGBA32F, r->fine_landings);
+    abbe_renderer_bind_texels(r, deposit, "fine_signatures", 4, GL_R32UI, r->fine_signatures);
   }
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, paths);
   const size_t items = fine ? r->pair_room : r->light[light].photon_count;
@@ -381,6 +385,14 @@ static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
+/* That a buffer can hold and a shader can read as texels. */
+static size_t most_landings(const abbe_renderer *r) {
+  GLint texels = 0;
+  r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  const size_t most = MOST_LANDING_BYTES / LANDING_BYTES;
+  return most < (size_t)texels ? most : (size_t)texels;
+}
+
 static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t most = 1;
   for (size_t i = 0; i < r->plan.light_count; i++)
@@ -389,15 +401,16 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t cells = r->plan.desc.photons * r->plan.desc.photons, rim = 8 * r->plan.desc.photons;
   most = most + rim < cells ? most + rim : cells;
   size_t a_lane = most * r->plan.slots, n = r->plan.desc.wavelengths;
-  size_t lanes = MAX_LANDING_BYTES / LANDING_BYTES / a_lane;
-  if (a_lane * 2 * LANDING_BYTES > MOST_LANDING_BYTES)
+  size_t lanes = MAX_LANDING_BYTES / LANDING_BYTES / a_lane, room = most_landings(r);
+  if (a_lane * 2 > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "
                           "time; use a grid below %zu or fewer exits",
                           most, r->plan.desc.orders, r->plan.desc.photons);
+  if (lanes > room / a_lane) lanes = room / a_lane;
   r->lanes = lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
   abbe_result result = ABBE_OK;
-  if (a_lane * r->nodes * LANDING_BYTES > MOST_LANDING_BYTES) {
+  if (a_lane * r->nodes > room) {
     /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
     r->nodes = n;
     result = abbe_renderer_weigh_bands(r, 0, 0, error);

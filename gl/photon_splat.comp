@@ -1,5 +1,5 @@
-// Adds listed pieces to their level of the map, bilinearly over four texels; the four parts of a
-// piece add up to it, to the last unit.
+// Adds listed pieces to their level of the map, part by part and each bilinearly over four texels,
+// which together get all of it, to the last unit.
 layout(local_size_x = 256) in;
 #include "splat_list.glsl"
 #include "wide_sum.glsl"
@@ -32,22 +32,27 @@ void main() {
   uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
          gl_LocalInvocationID.x;
   if (i >= min(splat_count, most)) return;
-  uint word = i * SPLAT_WORDS;
-  uint y_level = splat[word + 1u];
-  int level = int(y_level & 7u), side = map_size >> level;
-  vec2 p = vec2(splat[word], y_level >> 3) * vec2(1.0 / 1048576.0, 1.0 / 131072.0);
-  uvec3 units = uvec3(splat[word + 2u], splat[word + 3u], splat[word + 4u]);
-  vec2 at = p * exp2(-float(level)) - 0.5;
-  ivec2 base = ivec2(floor(at));
-  vec2 f = at - vec2(base);
-  ivec2 lo = clamp(base, ivec2(0), ivec2(side - 1)), hi = clamp(base + 1, ivec2(0), ivec2(side - 1));
-  uint row_lo = level_offset(level) + uint(lo.y * side), row_hi = level_offset(level) + uint(hi.y * side);
+  uint word = i * SPLAT_WORDS, x_parts = splat[word], y_level = splat[word + 1u];
+  vec2 across = unpackHalf2x16(splat[word + 2u]);
+  uvec3 units = uvec3(splat[word + 3u], splat[word + 4u], splat[word + 5u]);
+  int level = int(y_level & 7u), side = map_size >> level, parts = int(x_parts & 15u);
+  float size = exp2(float(level));
+  vec2 centre = vec2(x_parts >> 4, y_level >> 3) * vec2(1.0 / 65536.0, 1.0 / 131072.0);
+  uint first = level_offset(level);
   vec3 whole = vec3(units);
-  uvec3 part_0 = min(uvec3(whole * ((1.0 - f.x) * (1.0 - f.y))), units);
-  uvec3 part_1 = min(uvec3(whole * (f.x * (1.0 - f.y))), units - part_0);
-  uvec3 part_2 = min(uvec3(whole * ((1.0 - f.x) * f.y)), units - part_0 - part_1);
-  add(row_lo + uint(lo.x), part_0);
-  add(row_lo + uint(hi.x), part_1);
-  add(row_hi + uint(lo.x), part_2);
-  add(row_hi + uint(hi.x), units - part_0 - part_1 - part_2);
+  for (int n = 0; n < parts; n++) {
+    vec2 p = centre + across * ((float(n) + 0.5) / float(parts) - 0.5);
+    vec2 at = clamp(p, vec2(0), vec2(float(map_size) - 0.01)) / size - 0.5;
+    ivec2 base = ivec2(floor(at));
+    vec2 f = at - vec2(base);
+    ivec2 lo = clamp(base, ivec2(0), ivec2(side - 1)), hi = clamp(base + 1, ivec2(0), ivec2(side - 1));
+    uint row_lo = first + uint(lo.y * side), row_hi = first + uint(hi.y * side);
+    uvec3 part_0 = min(uvec3(whole * ((1.0 - f.x) * (1.0 - f.y))), units);
+    uvec3 part_1 = min(uvec3(whole * (f.x * (1.0 - f.y))), units - part_0);
+    uvec3 part_2 = min(uvec3(whole * ((1.0 - f.x) * f.y)), units - part_0 - part_1);
+    add(row_lo + uint(lo.x), part_0);
+    add(row_lo + uint(hi.x), part_1);
+    add(row_hi + uint(lo.x), part_2);
+    add(row_hi + uint(hi.x), units - part_0 - part_1 - part_2);
+  }
 }

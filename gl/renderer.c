@@ -149,6 +149,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteBuffers(LEVELS, r->list);
   gl->DeleteTextures(3, r->hierarchy_texture);
   gl->DeleteBuffers(3, r->hierarchy);
+  gl->DeleteTextures(sizeof r->texels / sizeof *r->texels, r->texels);
   free(r->refractor_root);
   gl->DeleteBuffers(1, &r->table_bands);
   const GLuint lists[] = {r->table_warps, r->texel_sizes, r->pixel_list, r->path_marks,

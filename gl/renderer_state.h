@@ -93,6 +93,7 @@ struct abbe_renderer {
   size_t splat_room, chunks; /* pieces of light that are listed at a time */
   GLuint list[LEVELS];       /* cells that may show a refractor, last level last */
   GLuint texture_surface;
+  GLuint texels[5]; /* of buffers that are read as texels, one a unit */
   GLuint light_layers, light_owner, light_depth, light_receivers, light_receivers_depth;
   GLuint map; /* XYZ flux over window area, one layer a light, in levels */
   size_t map_levels, map_texels;
@@ -153,6 +154,9 @@ void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *na
                                 GLuint texture);
 void abbe_renderer_bind_texture_2d(abbe_renderer *r, GLuint program, const char *name, int unit,
                                    GLuint texture);
+/* A buffer whose elements a shader reads as texels. */
+void abbe_renderer_bind_texels(abbe_renderer *r, GLuint program, const char *name, int unit,
+                               GLenum format, GLuint buffer);
 void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value);
 void abbe_renderer_set_float(abbe_renderer *r, GLuint program, const char *name, double value);
 void abbe_renderer_bind_tables(abbe_renderer *r);

@@ -91,6 +91,16 @@ void abbe_renderer_bind_texture_2d(abbe_renderer *r, GLuint program, const char 
   r->gl->Uniform1i(r->gl->GetUniformLocation(program, name), unit);
 }
 
+void abbe_renderer_bind_texels(abbe_renderer *r, GLuint program, const char *name, int unit,
+                               GLenum format, GLuint buffer) {
+  const abbe_gl *gl = r->gl;
+  if (r->texels[unit] == 0) gl->GenTextures(1, &r->texels[unit]);
+  gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  gl->BindTexture(GL_TEXTURE_BUFFER, r->texels[unit]);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, format, buffer);
+  gl->Uniform1i(gl->GetUniformLocation(program, name), unit);
+}
+
 void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value) {
   r->gl->Uniform1i(r->gl->GetUniformLocation(program, name), value);
 }
