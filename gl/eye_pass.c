@@ -90,7 +90,6 @@ void abbe_renderer_set_lighting(abbe_renderer *r, GLuint program) {
   abbe_renderer_bind_texture(r, program, "spectral_map", 0, r->map);
   abbe_renderer_bind_texture(r, program, "surface_texture", 1, r->texture_surface);
   abbe_renderer_bind_texture(r, program, "light_layers", 2, r->light_layers);
-  abbe_renderer_bind_texture(r, program, "light_receivers", 3, r->light_receivers);
   GLint matrix = gl->GetUniformLocation(program, "rgb_from_xyz");
   if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, r->rgb_from_xyz);
   matrix = gl->GetUniformLocation(program, "xyz_from_rgb");
@@ -234,7 +233,6 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progre
   gl->UseProgram(r->refraction);
   abbe_renderer_set_lighting(r, r->refraction);
   abbe_renderer_bind_texture(r, r->refraction, "eye_layers", 4, r->eye_layers);
-  abbe_renderer_bind_texture(r, r->refraction, "eye_receivers", 5, r->eye_receivers);
   abbe_renderer_bind_texture_2d(r, r->refraction, "eye_owner", 6, r->eye_owner);
   set_eye(r, r->refraction);
   abbe_renderer_set_float(r, r->refraction, "share_limit", r->plan.desc.energy_share);

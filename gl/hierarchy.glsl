@@ -8,7 +8,8 @@ layout(binding = 8) uniform samplerBuffer hierarchy_triangles;
 layout(binding = 9) uniform samplerBuffer hierarchy_corners;
 
 vec4 hierarchy_node(int i) { return texelFetch(hierarchy_nodes, i); }
-// A corner (w: part of its mesh) and the two edges from there, three a triangle.
+// A corner (w: smooth part of its mesh) and the two edges from there (w of the first: surface, of
+// receivers), three a triangle.
 vec4 hierarchy_triangle(int i) { return texelFetch(hierarchy_triangles, i); }
 // Normals at the corners, w: u of the texture; v of the three in the fourth.
 vec4 hierarchy_corner(int i) { return texelFetch(hierarchy_corners, i); }

@@ -114,13 +114,6 @@ static abbe_result make_layers(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_renderer_make_texture(r, GL_DEPTH_COMPONENT32F, side, side, 0, false,
                                         &r->light_depth, error);
-  if (result != ABBE_OK || r->plan.receivers != ABBE_RECEIVER_DEPTH) return result;
-  size_t map = r->plan.desc.map_size;
-  result = abbe_renderer_make_texture(r, GL_RGBA32F, map, map, lights, false, &r->light_receivers,
-                                      error);
-  if (result == ABBE_OK)
-    result = abbe_renderer_make_texture(r, GL_DEPTH_COMPONENT32F, map, map, 0, false,
-                                        &r->light_receivers_depth, error);
   return result;
 }
 
@@ -160,10 +153,9 @@ static void set_start(abbe_renderer *r, GLuint program, size_t light) {
   abbe_renderer_set_int(r, program, "light", (int)light);
 }
 
-/* A mesh's inside is what the near view sees of it, and receivers that are found by depth hide
- * nothing that is finer than a texel: there the view stays. */
+/* A mesh's inside is what the near view sees of it: there the view stays. */
 static bool fits_to_light(const abbe_renderer *r) {
-  return !r->plan.layers && (r->plan.receivers == ABBE_RECEIVER_EXACT || !r->plan.receiver_shadows);
+  return !r->plan.layers;
 }
 
 /* Shrinks the near view to the rays that reach a refractor. Each turn sees as finely as the last
@@ -284,27 +276,11 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
   return ABBE_OK;
 }
 
-static abbe_result receiver_depth(abbe_renderer *r, size_t light, abbe_error *error) {
-  int layer = (int)light;
-  size_t map = r->plan.desc.map_size;
-  abbe_renderer_begin_pass(r);
-  set_layer_view(r, &r->light[light].map.view);
-  abbe_result result = abbe_renderer_set_target(r, &r->light_receivers, &layer, 1,
-                                                r->light_receivers_depth, map, map, error);
-  if (result != ABBE_OK) return result;
-  clear_target(r->gl, false);
-  for (size_t i = 0; i < r->plan.receiver_count; i++)
-    abbe_renderer_draw(r, r->plan.receiver_object[i]);
-  abbe_renderer_end_pass(r, "light: receiver depth");
-  return ABBE_OK;
-}
-
 abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
   r->gl->Enable(GL_DEPTH_TEST);
   for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++) {
-    if (r->plan.receivers == ABBE_RECEIVER_DEPTH) result = receiver_depth(r, i, error);
-    if (result == ABBE_OK && r->plan.reaches[i]) result = front_and_back(r, i, error);
+    if (r->plan.reaches[i]) result = front_and_back(r, i, error);
   }
   return result;
 }

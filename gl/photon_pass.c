@@ -292,8 +292,6 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
   r->chunks = 1;
   abbe_result result =
       abbe_renderer_make_buffer(r, LIST_HEADER + SPLAT_BYTES, NULL, &r->splat_list, error);
-  /* Receivers' depth is seen through the map's view, which is fitted by now. */
-  if (result == ABBE_OK) result = abbe_renderer_light_layers(r, error);
   if (result == ABBE_OK) result = count_pairs(r, error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     batch b = {0};

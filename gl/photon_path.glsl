@@ -13,24 +13,15 @@ int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out uint receive
   float t;
   receiver = 1u;
   at = p;
-#ifdef EXACT_RECEIVERS
   int r = receiver_hit(p, d, t_min, t_max, t);
   if (r < 0) return NO_RECEIVER;
   at = p + t * d;
-  receiver = uint(r) + 1u;
+  receiver = uint(receiver_part(r)) + 1u;
   if (!project(l.map_view, at, uvz) || !inside(uvz.xy)) return NOT_HELD;
   vec3 from;
   float distance_m;
   light_to(l, at, from, distance_m);
   return receiver_lit(light, at, from, distance_m) ? LANDED : NOT_HELD;
-#else
-  float start = max(distance(refractor_bounds.xyz, p), 0.1 * scene_size);
-  if (!march(l.map_view, light_receivers, float(light), p, d, start, 2.0 * scene_size, t) ||
-      t >= t_max)
-    return NO_RECEIVER;
-  at = p + t * d;
-  return project(l.map_view, at, uvz) && inside(uvz.xy) ? LANDED : NOT_HELD;
-#endif
 }
 
 #ifdef WALK

@@ -134,22 +134,51 @@ static abbe_result examine_material(const abbe_scene *scene, const abbe_material
   return ABBE_OK;
 }
 
+/* Parallelograms as they come, as many as there is room for; triangles of all others. */
+static void choose_receiver_models(const abbe_scene *scene, abbe_plan *plan) {
+  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  const abbe_object *general = NULL, *beyond = NULL;
+  plan->receivers = thesis ? ABBE_RECEIVER_DEPTH : ABBE_RECEIVER_EXACT;
+  for (size_t i = 0; i < plan->receiver_count; i++) {
+    const abbe_object *object = &scene->object[plan->receiver_object[i]];
+    const bool flat = object->exact.kind == ABBE_EXACT_PARALLELOGRAMS;
+    const bool room = flat && object->exact.count <= MAX_PARALLELOGRAMS - plan->parallelogram_count;
+    plan->receiver_model[i] = thesis ? ABBE_RECEIVER_DEPTH
+                              : room ? ABBE_RECEIVER_EXACT
+                                     : ABBE_RECEIVER_HIERARCHY;
+    if (plan->receiver_model[i] == ABBE_RECEIVER_EXACT)
+      plan->parallelogram_count += object->exact.count;
+    if (!flat && general == NULL) general = object;
+    if (flat && !room && beyond == NULL) beyond = object;
+  }
+  if (!thesis && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_HIERARCHY;
+  const char *model = abbe_receiver_model_name(plan->receivers);
+  if (thesis)
+    add(plan, true, "model: receivers", "%s: the thesis profile knows no other model", model);
+  else if (general != NULL)
+    add(plan, true, "model: receivers", "%s: '%.50s' is a general mesh", model, general->name);
+  else if (beyond != NULL)
+    add(plan, true, "model: receivers", "%s: with '%.50s' there are more than %d parallelograms",
+        model, beyond->name, MAX_PARALLELOGRAMS);
+  else
+    add(plan, true, "model: receivers", "%s: every receiver is a rectangle or a box", model);
+}
+
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->refractor_object = calloc(scene->object_count + 1, sizeof *plan->refractor_object);
   plan->receiver_object = calloc(scene->object_count + 1, sizeof *plan->receiver_object);
+  plan->receiver_model = calloc(scene->object_count + 1, sizeof *plan->receiver_model);
   plan->model = calloc(scene->object_count + 1, sizeof *plan->model);
-  if (plan->refractor_object == NULL || plan->receiver_object == NULL || plan->model == NULL)
+  if (plan->refractor_object == NULL || plan->receiver_object == NULL ||
+      plan->receiver_model == NULL || plan->model == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
-  bool exact = !thesis;
   const char *walk = abbe_transport_walk(scene, plan);
   plan->walk = walk != NULL;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
     if (object->material == NULL) {
       plan->receiver_object[plan->receiver_count++] = i;
-      exact = exact && object->exact.kind == ABBE_EXACT_PARALLELOGRAMS;
-      plan->parallelogram_count += object->exact.count;
       plan->textured = plan->textured || object->texture.data != NULL;
       continue;
     }
@@ -185,13 +214,7 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
           ? "light goes through two layers and no further, as asked"
       : plan->refractor_count < 2 ? "light that leaves the refractor cannot meet it again"
                                   : "there are more refractors than are followed");
-  exact = exact && plan->parallelogram_count <= MAX_PARALLELOGRAMS;
-  plan->receivers = exact ? ABBE_RECEIVER_EXACT : ABBE_RECEIVER_DEPTH;
-  if (!exact) plan->parallelogram_count = 0;
-  add(plan, true, "model: receivers", "%s: %s", abbe_receiver_model_name(plan->receivers),
-      exact    ? "every receiver is a rectangle or a box"
-      : thesis ? "the thesis profile knows no other model"
-               : "some receiver is a general mesh");
+  choose_receiver_models(scene, plan);
   return ABBE_OK;
 }
 
@@ -239,7 +262,7 @@ static void examine_shadows(const abbe_scene *scene, abbe_plan *plan) {
   double min[3], max[3], size = 0;
   abbe_scene_bounds(scene, true, true, min, max);
   for (int k = 0; k < 3; k++) size = fmax(size, max[k] - min[k]);
-  plan->receiver_shadows = plan->receivers == ABBE_RECEIVER_DEPTH;
+  plan->receiver_shadows = plan->receivers != ABBE_RECEIVER_EXACT;
   for (size_t i = 0; i < plan->receiver_count && !plan->receiver_shadows; i++) {
     const abbe_exact *exact = &scene->object[plan->receiver_object[i]].exact;
     for (size_t k = 0; k < exact->count && !plan->receiver_shadows; k++)
@@ -396,8 +419,6 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
       plan->desc.supersample);
   add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
-  if (!thesis && seen && depth)
-    note(plan, "through refractors, receivers show as far as the eye also sees them straight");
   if (plan->refractor_count > 1 && !plan->walk)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   if (!plan->walk) note_overlaps(scene, plan);
@@ -539,6 +560,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
 void abbe_plan_free(abbe_plan *plan) {
   free(plan->refractor_object);
   free(plan->receiver_object);
+  free(plan->receiver_model);
   free(plan->model);
   memset(plan, 0, sizeof *plan);
 }

@@ -63,8 +63,9 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 /* A request; zero means the default in every field. */
 typedef struct abbe_render_desc {
   abbe_profile profile;
-  size_t width, height;  /* pixels; 0: the scene's */
-  size_t wavelengths;    /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
+  size_t width, height; /* pixels; 0: the scene's */
+  size_t
+      wavelengths; /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
   size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
   size_t map_size;       /* side of the spectral map; 0: 1024 */
@@ -98,8 +99,9 @@ typedef enum abbe_refractor_model {
 } abbe_refractor_model;
 
 typedef enum abbe_receiver_model {
-  ABBE_RECEIVER_EXACT, /* parallelograms, hit exactly */
-  ABBE_RECEIVER_DEPTH  /* iterated image-space intersection */
+  ABBE_RECEIVER_EXACT,     /* parallelograms, hit exactly */
+  ABBE_RECEIVER_HIERARCHY, /* triangles, traversed */
+  ABBE_RECEIVER_DEPTH      /* iterated image-space intersection */
 } abbe_receiver_model;
 
 typedef struct abbe_plan_entry {
@@ -116,9 +118,10 @@ typedef struct abbe_plan {
   size_t *refractor_object;    /* [refractor_count] index into the scene's objects */
   abbe_refractor_model *model; /* [refractor_count] */
   size_t receiver_count;
-  size_t *receiver_object;    /* [receiver_count] */
-  size_t parallelogram_count; /* of all receivers; 0 with the depth model */
-  abbe_receiver_model receivers;
+  size_t *receiver_object;                 /* [receiver_count] */
+  abbe_receiver_model *receiver_model;     /* [receiver_count] */
+  size_t parallelogram_count;              /* of the exact receivers */
+  abbe_receiver_model receivers;           /* the most general of theirs */
   bool receiver_shadows;                   /* some receiver may hide another from a light */
   bool spheres, convex, layers, hierarchy; /* models in use */
   bool walk;       /* light that leaves a refractor may meet one again, and is followed */

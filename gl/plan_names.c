@@ -31,7 +31,9 @@ const char *abbe_refractor_model_name(abbe_refractor_model model) {
 }
 
 const char *abbe_receiver_model_name(abbe_receiver_model model) {
-  return model == ABBE_RECEIVER_EXACT ? "exact parallelograms" : "iterated image space";
+  return model == ABBE_RECEIVER_EXACT       ? "exact parallelograms"
+         : model == ABBE_RECEIVER_HIERARCHY ? "triangle hierarchy"
+                                            : "iterated image space";
 }
 
 const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name) {

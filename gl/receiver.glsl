@@ -1,5 +1,5 @@
-// Receivers and the light on them. EXACT_RECEIVERS: parallelograms, hit exactly, from anywhere;
-// otherwise what the light's and the eye's views see of them.
+// Receivers and the light on them. They are hit exactly, from anywhere: parallelograms, and
+// RECEIVER_HIERARCHY: triangles of all others.
 
 uniform sampler2DArray spectral_map;   // XYZ flux over window area, one layer a light
 #ifdef TEXTURED
@@ -7,9 +7,6 @@ uniform sampler2DArray surface_texture;
 #endif
 #ifdef FRONT_LAYER
 uniform sampler2DArray light_layers;   // refractor front (2 * light) and back (+ 1): n, distance
-#endif
-#ifndef EXACT_RECEIVERS
-uniform sampler2DArray light_receivers;  // receiver distance in w, one layer a light
 #endif
 
 uniform mat3 rgb_from_xyz;
@@ -22,8 +19,8 @@ uniform float scene_size;
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
 
-#ifdef EXACT_RECEIVERS
-int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
+// Nearest parallelogram on the ray; -1: none.
+int parallelogram_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
   int found = -1;
   t = t_max;
   for (int i = 0; i < RECEIVERS; i++) {
@@ -37,6 +34,67 @@ int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
     found = hit ? i : found;
   }
   return found;
+}
+
+// Nearest receiver on the ray: a parallelogram, or RECEIVERS and further a triangle; -1: none.
+int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
+  int found = parallelogram_hit(o, d, t_min, t_max, t);
+#ifdef RECEIVER_HIERARCHY
+  TriangleHit h;
+  h.t = t;
+  if (hierarchy_hit(RECEIVER_ROOT, o, d, 0.0, t_min, false, h)) {
+    t = h.t;
+    found = RECEIVERS + h.triangle;
+  }
+#endif
+  return found;
+}
+
+bool receiver_between(vec3 o, vec3 d, float t_min, float t_max) {
+  float t;
+  if (parallelogram_hit(o, d, t_min, t_max, t) >= 0) return true;
+#ifdef RECEIVER_HIERARCHY
+  TriangleHit h;
+  h.t = t_max;
+  return hierarchy_hit(RECEIVER_ROOT, o, d, 0.0, t_min, true, h);
+#else
+  return false;
+#endif
+}
+
+// What is one surface to light that varies continuously: a parallelogram, a smooth part of meshes.
+int receiver_part(int receiver) {
+#ifdef RECEIVER_HIERARCHY
+  if (receiver >= RECEIVERS)
+    return RECEIVERS + floatBitsToInt(hierarchy_triangle(3 * (receiver - RECEIVERS)).w);
+#endif
+  return receiver;
+}
+
+#ifdef RECEIVER_HIERARCHY
+vec3 face_n;  // of the face that is shaded, towards the viewer
+
+// The side of an interpolated normal that the viewer sees, to whom `view` points; the face's where
+// that is bent away from the viewer. Sets face_n.
+vec3 seen_normal(vec3 n, vec3 face, vec3 view) {
+  face_n = dot(face, view) < 0.0 ? -face : face;
+  vec3 side = dot(n, face_n) < 0.0 ? -n : n;
+  return dot(side, view) > 0.0 ? normalize(side) : face_n;
+}
+
+// Normal, surface and texture coordinates of a triangle at x.
+void triangle_at(int i, vec3 x, vec3 view, out vec3 n, out int surface, out vec2 uv) {
+  vec3 from = x - hierarchy_triangle(3 * i).xyz;
+  vec4 e1 = hierarchy_triangle(3 * i + 1);
+  vec3 e2 = hierarchy_triangle(3 * i + 2).xyz, across_both = cross(e1.xyz, e2);
+  float scale = 1.0 / dot(across_both, across_both);
+  float u = dot(cross(from, e2), across_both) * scale;
+  float v = dot(cross(e1.xyz, from), across_both) * scale, w = 1.0 - u - v;
+  vec4 a = hierarchy_corner(4 * i), b = hierarchy_corner(4 * i + 1);
+  vec4 c = hierarchy_corner(4 * i + 2), v_part = hierarchy_corner(4 * i + 3);
+  n = seen_normal(w * a.xyz + u * b.xyz + v * c.xyz, normalize(across_both), view);
+  surface = floatBitsToInt(e1.w);
+  uv = vec2(w * a.w + u * b.w + v * c.w, w * v_part.x + u * v_part.y + v * v_part.z);
 }
 #endif
 
@@ -56,16 +114,8 @@ void light_to(Light l, vec3 p, out vec3 d, out float distance_m) {
 bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
 #ifndef RECEIVER_SHADOWS
   return true;
-#elif defined(EXACT_RECEIVERS)
-  float t;
-  return receiver_hit(p - distance_m * d, d, 0.0, distance_m * (1.0 - 2e-5), t) < 0;
 #else
-  vec3 uvz;
-  View v = lights[light].map_view;
-  if (!project(v, p, uvz) || !inside(uvz.xy)) return true;
-  float seen = texture(light_receivers, vec3(uvz.xy, light)).w;
-  float bias = scene_size * 2e-3;
-  return seen <= 0.0 || uvz.z <= seen + bias;
+  return !receiver_between(p - distance_m * d, d, 0.0, distance_m * (1.0 - 2e-5));
 #endif
 }
 
@@ -144,6 +194,10 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   }
 #ifdef CAUSTICS
   if (l.misc.w == 0.0) return;
+#ifdef RECEIVER_HIERARCHY
+  n = face_n;
+  facing = -dot(n, d);
+#endif
   // The map holds the light of the side that faces the refractors.
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
   if (!held) return;

@@ -15,7 +15,12 @@ layout(location = 2) out vec4 caustic;
 
 void main() {
   vec3 n = normalize(world_normal);
+#ifdef RECEIVER_HIERARCHY
+  vec3 face = cross(normalize(dFdx(world)), normalize(dFdy(world)));
+  n = seen_normal(world_normal, dot(face, face) > 0.0 ? normalize(face) : n, eye - world);
+#else
   if (dot(n, eye - world) < 0.0) n = -n;
+#endif
   Shading s = shade(world, n, surface, surface_uv);
   radiance = vec4(s.direct + s.caustic + s.fill, distance(eye, world));
 #ifdef LIGHT_LAYERS_OUT

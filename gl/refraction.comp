@@ -31,9 +31,6 @@ uniform vec3 eye;
 uniform float share_limit;
 uniform mat3 xyz_from_rgb;
 uniform float pixel_angle;  // rad
-#ifndef EXACT_RECEIVERS
-uniform sampler2DArray eye_receivers;  // lit receivers; distance in w
-#endif
 
 int refractor;  // that this thread's pixel shows
 
@@ -46,25 +43,24 @@ View eye_as_view() {
 vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   float t;
   met = false;
-#ifdef EXACT_RECEIVERS
   int r = receiver_hit(p, d, t_min, t_max, t);
   if (r < 0) return background;
   met = true;
+#ifdef RECEIVER_HIERARCHY
+  Receiver rc = receivers[min(r, RECEIVER_ROOM - 1)];
+#else
   Receiver rc = receivers[r];
+#endif
   vec3 x = p + t * d, n = rc.normal.xyz;
   vec2 uv = vec2(dot(x - rc.corner.xyz, rc.du.xyz), dot(x - rc.corner.xyz, rc.dv.xyz));
-  Shading s = shade(x, dot(n, d) > 0.0 ? -n : n, int(rc.corner.w), uv);
-  return s.direct + s.caustic + s.fill;
-#else
-  View v = eye_as_view();
-  float start = max(distance(refractor_bounds.xyz, p), 0.1 * scene_size);
-  if (!march(v, eye_receivers, 0.0, p, d, start, 2.0 * scene_size, t) || t >= t_max)
-    return background;
-  met = true;
-  vec3 uvz;
-  if (!project(v, p + t * d, uvz) || !inside(uvz.xy)) return background;
-  return textureLod(eye_receivers, vec3(uvz.xy, 0), 0.0).rgb;
+  n = dot(n, d) > 0.0 ? -n : n;
+  int surface = int(rc.corner.w);
+#ifdef RECEIVER_HIERARCHY
+  face_n = n;
+  if (r >= RECEIVERS) triangle_at(r - RECEIVERS, x, -d, n, surface, uv);
 #endif
+  Shading s = shade(x, n, surface, uv);
+  return s.direct + s.caustic + s.fill;
 }
 
 #ifdef SPHERES
@@ -83,11 +79,10 @@ float sphere_spread(Hit front, vec3 d, int first, int last) {
     vec3 wall = s.xyz + s.w * wall_n;
     at[k] = wall + scene_size * outer;
     what[k] = 0;
-#ifdef EXACT_RECEIVERS
     float t;
     what[k] = receiver_hit(wall, outer, -touch * refractor_bounds.w, 1e30, t);
+    if (what[k] >= 0) what[k] = receiver_part(what[k]);
     at[k] = wall + min(t, scene_size) * outer;
-#endif
   }
   return what[0] != what[1] ? 1e9 : distance(at[0], at[1]) / (pixel_angle * distance(eye, at[0]));
 }

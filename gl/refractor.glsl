@@ -3,11 +3,8 @@
 
 #include "common.glsl"
 #include "optics.glsl"
-#ifdef HIERARCHY
+#if defined(HIERARCHY) || defined(RECEIVER_HIERARCHY)
 #include "hierarchy.glsl"
-#endif
-#ifndef EXACT_RECEIVERS
-#include "march.glsl"
 #endif
 
 struct Hit {

@@ -43,7 +43,7 @@ static void write_defines(abbe_renderer *r) {
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
            "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s"
-           "#define HIERARCHY_STACK %zu\n",
+           "#define HIERARCHY_STACK %zu\n#define RECEIVER_ROOT %zu\n",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, p->slots, room(p->light_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
@@ -59,10 +59,10 @@ static void write_defines(abbe_renderer *r) {
            p->layers ? "#define LAYERS\n" : "",
            p->layers || p->hierarchy ? "#define FRONT_LAYER\n" : "",
            p->hierarchy ? "#define HIERARCHY\n" : "",
-           p->receivers == ABBE_RECEIVER_EXACT ? "#define EXACT_RECEIVERS\n" : "",
+           p->receivers == ABBE_RECEIVER_HIERARCHY ? "#define RECEIVER_HIERARCHY\n" : "",
            p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
            p->caustics ? "#define CAUSTICS\n" : "", p->walk ? "#define WALK\n" : "",
-           r->hierarchy_depth + 1);
+           r->hierarchy_depth + 1, r->receiver_root);
 }
 
 /* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
@@ -156,10 +156,9 @@ void abbe_renderer_free(abbe_renderer *r) {
                           r->path_list,   r->splat_list,  r->map_sums};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
-      r->texture_surface, r->light_layers,          r->light_owner, r->light_depth,
-      r->light_receivers, r->light_receivers_depth, r->map,         r->eye_receivers,
-      r->eye_direct,      r->eye_caustic,           r->eye_depth,   r->eye_refraction,
-      r->eye_layers,      r->eye_layers_depth,      r->eye_owner,   r->eye_picture};
+      r->texture_surface, r->light_layers,     r->light_owner, r->light_depth, r->map,
+      r->eye_receivers,   r->eye_direct,       r->eye_caustic, r->eye_depth,   r->eye_refraction,
+      r->eye_layers,      r->eye_layers_depth, r->eye_owner,   r->eye_picture};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
   const GLuint programs[] = {
       r->place,     r->cover,       r->groups,          r->trace,      r->deposit,

@@ -81,6 +81,7 @@ struct abbe_renderer {
   GLuint hierarchy[3];    /* nodes, triangles, normals; 0: no model needs them */
   GLuint hierarchy_texture[3];
   size_t *refractor_root; /* [refractor_count] of its tree */
+  size_t receiver_root;   /* of the tree of all receivers that are traversed */
   size_t hierarchy_depth;
   GLuint table_bands, table_warps, texel_sizes;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
@@ -94,7 +95,7 @@ struct abbe_renderer {
   GLuint list[LEVELS];       /* cells that may show a refractor, last level last */
   GLuint texture_surface;
   GLuint texels[5]; /* of buffers that are read as texels, one a unit */
-  GLuint light_layers, light_owner, light_depth, light_receivers, light_receivers_depth;
+  GLuint light_layers, light_owner, light_depth;
   GLuint map; /* XYZ flux over window area, one layer a light, in levels */
   size_t map_levels, map_texels;
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,

@@ -154,7 +154,8 @@ static abbe_result upload_receivers(abbe_renderer *r, abbe_error *error) {
   size_t count = r->plan.parallelogram_count, next = 0;
   gpu_receiver *receiver = calloc(count + 1, sizeof *receiver);
   if (receiver == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
-  for (size_t i = 0; i < r->plan.receiver_count && next < count; i++) {
+  for (size_t i = 0; i < r->plan.receiver_count; i++) {
+    if (r->plan.receiver_model[i] != ABBE_RECEIVER_EXACT) continue;
     const abbe_exact *exact = &r->scene->object[r->plan.receiver_object[i]].exact;
     for (size_t k = 0; k < exact->count && next < count; k++)
       store_parallelogram(exact->parallelogram[k], i, &receiver[next++]);

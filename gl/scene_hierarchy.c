@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the shaders read of one triangle (hierarchy.glsl). */
+/* What the shaders read of one triangle (hierarchy.glsl). Whole numbers stand as bits. */
 typedef struct gpu_triangle {
   float corner[4], edge[2][4];
 } gpu_triangle;
@@ -35,18 +35,31 @@ static bool make_room(forest *f, size_t nodes, size_t triangles) {
   return node != NULL && triangle != NULL && corners != NULL;
 }
 
-static void store_triangle(const abbe_mesh *mesh, uint32_t face, uint32_t part, gpu_triangle *t,
-                           gpu_corners *c) {
-  const uint32_t *f = mesh->face[face];
+/* One tree's triangles: meshes one after another, their faces and smooth parts numbered through. */
+typedef struct grove {
+  const abbe_mesh **mesh;
+  uint32_t *surface, *face_first; /* of each mesh; face_first has one more */
+  size_t mesh_count;
+  uint32_t *owner, *part; /* of each face: its mesh, and which part */
+} grove;
+
+static void store_bits(uint32_t bits, float *out) {
+  memcpy(out, &bits, sizeof bits);
+}
+
+static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_corners *c) {
+  const uint32_t m = g->owner[face];
+  const abbe_mesh *mesh = g->mesh[m];
+  const uint32_t *f = mesh->face[face - g->face_first[m]];
   const double *a = mesh->position[f[0]];
-  float bits;
-  memcpy(&bits, &part, sizeof bits);
-  store(a, bits, t->corner);
+  store(a, 0, t->corner);
   for (int e = 0; e < 2; e++) {
     double edge[3];
     for (int k = 0; k < 3; k++) edge[k] = mesh->position[f[e + 1]][k] - a[k];
     store(edge, 0, t->edge[e]);
   }
+  store_bits(g->part[face], &t->corner[3]);
+  store_bits(g->surface[m], &t->edge[0][3]);
   memset(c->v_part, 0, sizeof c->v_part);
   for (int k = 0; k < 3; k++) {
     store(mesh->normal[f[k]], mesh->uv != NULL ? (float)mesh->uv[f[k]][0] : 0, c->normal[k]);
@@ -54,9 +67,9 @@ static void store_triangle(const abbe_mesh *mesh, uint32_t face, uint32_t part, 
   }
 }
 
-/* One mesh's tree behind the others; its root's index. */
-static abbe_result plant(const abbe_mesh *mesh, const abbe_hierarchy *h, const uint32_t *part,
-                         forest *f, size_t *root, abbe_error *error) {
+/* The tree behind the others; its root's index. */
+static abbe_result plant(const grove *g, const abbe_hierarchy *h, forest *f, size_t *root,
+                         abbe_error *error) {
   if (!make_room(f, h->node_count + 1, h->triangle_count))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
   *root = f->node_count;
@@ -66,28 +79,64 @@ static abbe_result plant(const abbe_mesh *mesh, const abbe_hierarchy *h, const u
     n->first += (int32_t)(n->count > 0 ? f->triangle_count : f->node_count);
   }
   for (size_t i = 0; i < h->triangle_count; i++)
-    store_triangle(mesh, h->triangle[i], part[h->triangle[i]], &f->triangle[f->triangle_count + i],
+    store_triangle(g, h->triangle[i], &f->triangle[f->triangle_count + i],
                    &f->corners[f->triangle_count + i]);
   f->node_count += h->node_count;
   f->triangle_count += h->triangle_count;
   return ABBE_OK;
 }
 
-static abbe_result add_mesh(abbe_renderer *r, const abbe_mesh *mesh, forest *f, size_t *root,
-                            abbe_error *error) {
+/* Corners and parts of all meshes; false: no memory. */
+static bool gather(grove *g, double (*triangle)[9]) {
+  size_t parts = 0;
+  for (size_t m = 0; m < g->mesh_count; m++) {
+    const size_t first = g->face_first[m], count = g->mesh[m]->face_count;
+    double(*corners)[9] = abbe_hierarchy_triangles(g->mesh[m]);
+    const size_t own = abbe_hierarchy_parts(g->mesh[m], g->part + first);
+    if (corners != NULL) memcpy(triangle + first, corners, count * sizeof *triangle);
+    free(corners);
+    if (corners == NULL || own == 0) return false;
+    for (size_t i = 0; i < count; i++) {
+      g->part[first + i] += (uint32_t)parts;
+      g->owner[first + i] = (uint32_t)m;
+    }
+    parts += own;
+  }
+  return true;
+}
+
+static abbe_result grow(abbe_renderer *r, grove *g, forest *f, size_t *root, abbe_error *error) {
+  const size_t faces = g->face_first[g->mesh_count];
   abbe_hierarchy h = {0};
-  double(*triangle)[9] = abbe_hierarchy_triangles(mesh);
-  uint32_t *part = calloc(mesh->face_count + 1, sizeof *part);
+  double(*triangle)[9] = calloc(faces + 1, sizeof *triangle);
+  g->part = calloc(faces + 1, sizeof *g->part);
+  g->owner = calloc(faces + 1, sizeof *g->owner);
   abbe_result result =
-      triangle == NULL || part == NULL || abbe_hierarchy_parts(mesh, part) == 0
+      triangle == NULL || g->part == NULL || g->owner == NULL || !gather(g, triangle)
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
-          : abbe_hierarchy_make((const double(*)[9])triangle, mesh->face_count, &h, error);
-  if (result == ABBE_OK) result = plant(mesh, &h, part, f, root, error);
+          : abbe_hierarchy_make((const double(*)[9])triangle, faces, &h, error);
+  if (result == ABBE_OK) result = plant(g, &h, f, root, error);
   if (h.depth > r->hierarchy_depth) r->hierarchy_depth = h.depth;
   abbe_hierarchy_free(&h);
   free(triangle);
-  free(part);
+  free(g->part);
+  free(g->owner);
   return result;
+}
+
+/* Shaders have a leaf's first triangle and how many there are, below eight, in one number. */
+enum { MOST_TRIANGLES = INT32_MAX / 8 };
+
+static abbe_result add_mesh(grove *g, const forest *f, const abbe_mesh *mesh, size_t surface,
+                            abbe_error *error) {
+  const size_t first = g->face_first[g->mesh_count];
+  if (f->triangle_count + first + mesh->face_count > MOST_TRIANGLES)
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than %d triangles",
+                          MOST_TRIANGLES);
+  g->mesh[g->mesh_count] = mesh;
+  g->surface[g->mesh_count++] = (uint32_t)surface;
+  g->face_first[g->mesh_count] = (uint32_t)(first + mesh->face_count);
+  return ABBE_OK;
 }
 
 /* A buffer that the shaders read as a texture of vec4. */
@@ -99,7 +148,8 @@ static abbe_result upload_texels(abbe_renderer *r, int which, size_t size, const
   if (size / 16 > (size_t)most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the meshes that light is traced through take %zu texels in a buffer; "
-                          "this OpenGL reads at most %d: use smaller meshes or the model 'layers'",
+                          "this OpenGL reads at most %d: use smaller meshes, or "
+                          "the model 'layers' for those that refract",
                           size / 16, most);
   abbe_result result = abbe_renderer_make_buffer(r, size, data, &r->hierarchy[which], error);
   if (result != ABBE_OK) return result;
@@ -118,19 +168,46 @@ static abbe_result upload(abbe_renderer *r, const forest *f, abbe_error *error) 
   return result;
 }
 
-abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error) {
+/* A tree for each mesh that refracts. */
+static abbe_result grow_refractors(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  forest f = {0};
-  if (!r->plan.hierarchy) return ABBE_OK;
-  r->refractor_root = calloc(r->plan.refractor_count + 1, sizeof *r->refractor_root);
-  if (r->refractor_root == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
   for (size_t i = 0; i < r->plan.refractor_count && result == ABBE_OK; i++) {
-    const abbe_object *object = &r->scene->object[r->plan.refractor_object[i]];
-    if (r->plan.model[i] == ABBE_REFRACTOR_HIERARCHY)
-      result = add_mesh(r, &object->mesh, &f, &r->refractor_root[i], error);
+    if (r->plan.model[i] != ABBE_REFRACTOR_HIERARCHY) continue;
+    g->mesh_count = 0;
+    result = add_mesh(g, f, &r->scene->object[r->plan.refractor_object[i]].mesh, 0, error);
+    if (result == ABBE_OK) result = grow(r, g, f, &r->refractor_root[i], error);
   }
+  return result;
+}
+
+/* One tree for all receivers that are traversed. */
+static abbe_result grow_receivers(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  g->mesh_count = 0;
+  for (size_t i = 0; i < r->plan.receiver_count && result == ABBE_OK; i++)
+    if (r->plan.receiver_model[i] == ABBE_RECEIVER_HIERARCHY)
+      result = add_mesh(g, f, &r->scene->object[r->plan.receiver_object[i]].mesh, i, error);
+  return result == ABBE_OK ? grow(r, g, f, &r->receiver_root, error) : result;
+}
+
+abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error) {
+  const size_t most = r->scene->object_count + 1;
+  forest f = {0};
+  if (!r->plan.hierarchy && r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  r->refractor_root = calloc(most, sizeof *r->refractor_root);
+  grove g = {.mesh = calloc(most, sizeof *g.mesh),
+             .surface = calloc(most, sizeof *g.surface),
+             .face_first = calloc(most, sizeof *g.face_first)};
+  abbe_result result =
+      r->refractor_root == NULL || g.mesh == NULL || g.surface == NULL || g.face_first == NULL
+          ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
+          : grow_refractors(r, &g, &f, error);
+  if (result == ABBE_OK) result = grow_receivers(r, &g, &f, error);
   if (result == ABBE_OK) result = upload(r, &f, error);
+  free(g.mesh);
+  free(g.surface);
+  free(g.face_first);
   free(f.node);
   free(f.triangle);
   free(f.corners);

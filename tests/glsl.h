@@ -19,6 +19,18 @@ static inline GLuint glsl_buffer(const abbe_gl *gl, GLuint binding, size_t size,
   return buffer;
 }
 
+/* As the shaders read nodes and triangles, at that texture unit. */
+static inline void glsl_texels(const abbe_gl *gl, GLenum unit, size_t size, const void *data) {
+  GLuint buffer = 0, texture = 0;
+  gl->GenBuffers(1, &buffer);
+  gl->BindBuffer(GL_TEXTURE_BUFFER, buffer);
+  gl->BufferData(GL_TEXTURE_BUFFER, (GLsizeiptr)size, data, GL_STATIC_DRAW);
+  gl->GenTextures(1, &texture);
+  gl->ActiveTexture(GL_TEXTURE0 + unit);
+  gl->BindTexture(GL_TEXTURE_BUFFER, texture);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
+}
+
 /* The program of a function's text; the caller sets its uniforms and deletes it. */
 static inline GLuint glsl_make(const abbe_gl *gl, const char *text) {
   static const char harness[] =

@@ -23,7 +23,7 @@ static const char rooms[] =
     "#define LIGHTS 1\n#define LIGHT_ROOM 1\n#define REFRACTORS 2\n#define REFRACTOR_ROOM 2\n"
     "#define PLANE_ROOM 6\n#define RECEIVERS 1\n#define RECEIVER_ROOM 1\n#define SURFACE_ROOM 1\n"
     "#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define SPHERES\n#define CONVEX\n"
-    "#define EXACT_RECEIVERS\n#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n";
+    "#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n";
 
 static int make_gl(void **state) {
   if (make_context(state) != 0) return 1;

@@ -145,18 +145,6 @@ static void equal_triangles_end_in_leaves(void **state) {
   assert_int_equal(abbe_hierarchy_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
 }
 
-/* As the shaders read nodes and triangles, at that texture unit. */
-static void texels(const abbe_gl *gl, GLenum unit, size_t size, const void *data) {
-  GLuint buffer = 0, texture = 0;
-  gl->GenBuffers(1, &buffer);
-  gl->BindBuffer(GL_TEXTURE_BUFFER, buffer);
-  gl->BufferData(GL_TEXTURE_BUFFER, (GLsizeiptr)size, data, GL_STATIC_DRAW);
-  gl->GenTextures(1, &texture);
-  gl->ActiveTexture(GL_TEXTURE0 + unit);
-  gl->BindTexture(GL_TEXTURE_BUFFER, texture);
-  gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
-}
-
 static void upload(const soup *s) {
   const abbe_gl *gl = abbe_context_gl(context);
   float(*triangle)[4] = calloc(3 * s->count, sizeof *triangle);
@@ -167,8 +155,8 @@ static void upload(const soup *s) {
       triangle[3 * i + 1][k] = (float)(from[3 + k] - from[k]);
       triangle[3 * i + 2][k] = (float)(from[6 + k] - from[k]);
     }
-  texels(gl, 7, s->h.node_count * sizeof *s->h.node, s->h.node);
-  texels(gl, 8, 3 * s->count * sizeof *triangle, triangle);
+  glsl_texels(gl, 7, s->h.node_count * sizeof *s->h.node, s->h.node);
+  glsl_texels(gl, 8, 3 * s->count * sizeof *triangle, triangle);
   free(triangle);
 }
 

@@ -208,18 +208,20 @@ static void test_a_model_that_is_asked_for(void **state) {
   }
 }
 
-static void test_a_curved_receiver_asks_for_its_depth(void **state) {
+static void test_a_curved_receiver_asks_for_a_hierarchy(void **state) {
   (void)state;
   abbe_plan plan;
   make_text(CAMERA POINT_LIGHT FLOOR HILL BALL("crown"), NULL, &plan);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_DEPTH);
-  assert_int_equal(plan.parallelogram_count, 0);
-  assert_runs(&plan, "light: receiver depth", true);
-  assert_contains(abbe_plan_find(&plan, "model: receivers")->reason, "general mesh");
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_HIERARCHY);
+  assert_int_equal(plan.receiver_model[0], ABBE_RECEIVER_EXACT);
+  assert_int_equal(plan.receiver_model[1], ABBE_RECEIVER_HIERARCHY);
+  assert_int_equal(plan.parallelogram_count, 1);
+  assert_runs(&plan, "light: receiver depth", false);
+  assert_contains(abbe_plan_find(&plan, "model: receivers")->reason, "'hill' is a general mesh");
   abbe_plan_free(&plan);
 }
 
-static void test_too_many_rectangles_are_found_by_depth(void **state) {
+static void test_too_many_rectangles_are_traversed(void **state) {
   (void)state;
   abbe_scene scene = {0};
   abbe_plan plan;
@@ -235,7 +237,10 @@ static void test_too_many_rectangles_are_found_by_depth(void **state) {
   abbe_plan_free(&plan);
   exact->count = 97;
   make(&scene, NULL, &plan);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_DEPTH);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_HIERARCHY);
+  assert_int_equal(plan.parallelogram_count, 0);
+  assert_contains(abbe_plan_find(&plan, "model: receivers")->reason,
+                  "with 'floor' there are more than 96 parallelograms");
   abbe_plan_free(&plan);
   *exact = floor;
   abbe_scene_free(&scene);
@@ -500,8 +505,8 @@ int main(void) {
       cmocka_unit_test(test_a_mesh_asks_for_its_back_layer),
       cmocka_unit_test(test_what_light_may_meet_again_is_walked),
       cmocka_unit_test(test_a_model_that_is_asked_for),
-      cmocka_unit_test(test_a_curved_receiver_asks_for_its_depth),
-      cmocka_unit_test(test_too_many_rectangles_are_found_by_depth),
+      cmocka_unit_test(test_a_curved_receiver_asks_for_a_hierarchy),
+      cmocka_unit_test(test_too_many_rectangles_are_traversed),
       cmocka_unit_test(test_the_thesis_profile_knows_one_way),
       cmocka_unit_test(test_the_fill_goes_when_it_is_not_wanted),
       cmocka_unit_test(test_limits_are_kept),
