@@ -37,7 +37,7 @@ uniform uint most_pairs;     // that the list has room for
 uniform float interval_weight[NODES];  // of the light, by the intervals' mean
 
 // Of the photon's light in an interval: what may lie wrong by a footprint's width.
-const float MOST_WRONG = 0.02;
+const float MOST_WRONG = 0.05;
 
 vec2 map_position(vec3 p) {
   vec3 uvz;

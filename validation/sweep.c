@@ -25,6 +25,10 @@ static const double enough_ms = 3000;
 
 size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
   static const abbe_sweep_grid quick[] = {
+      {.wavelengths = VALUES(3, 5),
+       .photons = VALUES(24, 48),
+       .map = VALUES(128),
+       .samples = VALUES(1)},
       {.wavelengths = VALUES(3, 7, 21),
        .photons = VALUES(64, 128, 256),
        .map = VALUES(512),
@@ -79,27 +83,38 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
        .fills = VALUES(ABBE_FILL_NONE)},
   };
   static const abbe_sweep_grid thin[] = {
-      {.wavelengths = VALUES(3, 7),
-       .photons = VALUES(64),
-       .map = VALUES(256),
+      {.wavelengths = VALUES(3, 5),
+       .photons = VALUES(24),
+       .map = VALUES(128),
        .samples = VALUES(1)},
+      {.wavelengths = VALUES(5), .photons = VALUES(48), .map = VALUES(128), .samples = VALUES(1)},
+      {.wavelengths = VALUES(7), .photons = VALUES(64), .map = VALUES(256), .samples = VALUES(1)},
       {.wavelengths = VALUES(7),
        .photons = VALUES(64, 128),
        .map = VALUES(512),
        .samples = VALUES(1)},
       {.wavelengths = VALUES(21), .photons = VALUES(128), .map = VALUES(512), .samples = VALUES(1)},
+      {.wavelengths = VALUES(7), .photons = VALUES(192), .map = VALUES(512), .samples = VALUES(1)},
       {.wavelengths = VALUES(7), .photons = VALUES(256), .samples = VALUES(1)},
       {.wavelengths = VALUES(7),
        .photons = VALUES(128),
        .map = VALUES(512),
        .samples = VALUES(1),
        .fills = VALUES(ABBE_FILL_NONE)},
+      {.wavelengths = VALUES(3),
+       .photons = VALUES(24),
+       .map = VALUES(128),
+       .samples = VALUES(1),
+       .exits = VALUES(1, 4),
+       .models = VALUES(ABBE_MODEL_LAYERS),
+       .meshes = true},
       {.wavelengths = VALUES(3, 7),
-       .photons = VALUES(64, 128),
+       .photons = VALUES(64),
        .map = VALUES(256),
        .samples = VALUES(1),
        .models = VALUES(ABBE_MODEL_LAYERS),
        .meshes = true},
+      {.profiles = BASELINES, .wavelengths = VALUES(7), .photons = VALUES(64), .map = VALUES(256)},
       {.profiles = BASELINES,
        .wavelengths = VALUES(7),
        .photons = VALUES(128, 512),
@@ -110,6 +125,9 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
        .photons = VALUES(512),
        .fills = VALUES(ABBE_FILL_NONE)},
   };
+  _Static_assert(sizeof quick <= ABBE_SWEEP_MAX_GRIDS * sizeof *quick, "parts of quick");
+  _Static_assert(sizeof full <= ABBE_SWEEP_MAX_GRIDS * sizeof *full, "parts of full");
+  _Static_assert(sizeof thin <= ABBE_SWEEP_MAX_GRIDS * sizeof *thin, "parts of thin");
   static const struct {
     const abbe_sweep_grid *part;
     size_t count;
