@@ -30,9 +30,12 @@ static void grow(box *b, const double p[3]) {
   }
 }
 
+/* other: may hold nothing */
 static void join(box *b, const box *other) {
-  grow(b, other->min);
-  grow(b, other->max);
+  for (int k = 0; k < 3; k++) {
+    b->min[k] = fmin(b->min[k], other->min[k]);
+    b->max[k] = fmax(b->max[k], other->max[k]);
+  }
 }
 
 static double area(const box *b) {

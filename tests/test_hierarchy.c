@@ -135,6 +135,33 @@ static void boxes_hold_their_triangles(void **state) {
   drop(&s);
 }
 
+/* What rays pay: the boxes' surfaces by the root's. Where most of a node is empty it is cut there.
+ */
+static void boxes_are_tight(void **state) {
+  (void)state;
+  soup s;
+  make_ring(&s);
+  double area = 0, whole = 0;
+  for (size_t i = 0; i < s.h.node_count; i++) {
+    double side[3];
+    for (int k = 0; k < 3; k++) side[k] = (double)s.h.node[i].max[k] - (double)s.h.node[i].min[k];
+    area += side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
+    if (i == 0) whole = area;
+  }
+  print_message("ring: %.1f areas of the root\n", area / whole);
+  assert_true(area < 30 * whole);
+  drop(&s);
+  s = (soup){.count = 64, .triangle = calloc(64, sizeof *s.triangle)};
+  uint64_t random = 5;
+  for (size_t i = 0; i < s.count; i++)
+    for (int c = 0; c < 9; c++)
+      s.triangle[i][c] = random_between(&random, 0, 1) + (c % 3 == 0 && i % 2 ? 100 : 0);
+  finish(&s);
+  const abbe_hierarchy_node *child = s.h.node + s.h.node->first;
+  assert_true(child[0].max[0] < child[1].min[0] || child[1].max[0] < child[0].min[0]);
+  drop(&s);
+}
+
 static void equal_triangles_end_in_leaves(void **state) {
   (void)state;
   soup s = {.count = 100000, .triangle = calloc(100000, sizeof *s.triangle)};
@@ -236,9 +263,9 @@ static void parts_end_where_normals_break(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nearest_of_all_triangles),      cmocka_unit_test(boxes_hold_their_triangles),
-      cmocka_unit_test(equal_triangles_end_in_leaves), cmocka_unit_test(the_shaders_find_the_same),
-      cmocka_unit_test(parts_end_where_normals_break),
+      cmocka_unit_test(nearest_of_all_triangles),  cmocka_unit_test(boxes_hold_their_triangles),
+      cmocka_unit_test(boxes_are_tight),           cmocka_unit_test(equal_triangles_end_in_leaves),
+      cmocka_unit_test(the_shaders_find_the_same), cmocka_unit_test(parts_end_where_normals_break),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
