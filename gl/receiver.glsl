@@ -194,12 +194,15 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   }
 #ifdef CAUSTICS
   if (l.misc.w == 0.0) return;
-#ifdef RECEIVER_HIERARCHY
-  n = face_n;
-  facing = -dot(n, d);
-#endif
   // The map holds the light of the side that faces the refractors.
+#ifdef RECEIVER_HIERARCHY
+  // Where a face's plane cuts their bounds, that is the side that the light is on.
+  facing = -dot(face_n, d);
+  float before = dot(face_n, refractor_bounds.xyz - p);
+  if (before <= 0.0 && (before <= -refractor_bounds.w || facing <= 0.0)) return;
+#else
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
+#endif
   if (!held) return;
   vec3 flux = map_flux(light, at, to_right, to_above);
   caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));

@@ -43,9 +43,12 @@ static double with_everything(const abbe_scene *scene, size_t exits) {
 static void test_what_no_fact_asks_for_changes_nothing(void **state) {
   (void)state;
   static const char *const texts[] = {
-      CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"),  CAMERA POINT_LIGHT ASIDE FLOOR BRICK("crown"),
-      EYE_ASIDE POINT_LIGHT FLOOR BALL("crown"),    CAMERA POINT_LIGHT FLOOR,
+      CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"),
+      CAMERA POINT_LIGHT ASIDE FLOOR BRICK("crown"),
+      EYE_ASIDE POINT_LIGHT FLOOR BALL("crown"),
+      CAMERA POINT_LIGHT FLOOR,
       CAMERA POINT_LIGHT ASIDE FLOOR BALL("smoke"),
+      CAMERA POINT_LIGHT ASIDE FLOOR HILL BALL("flat"),
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
     abbe_scene scene = {0};

@@ -7,6 +7,7 @@
 #include "scenes/hierarchy.h"
 #include "scenes/shape.h"
 #include "scenes/vector.h"
+#include "scenes/view.h"
 
 /* ---- the nearest receiver ---- */
 
@@ -232,16 +233,17 @@ static double apart(const abbe_image *a, const abbe_image *b) {
   "- {name: crate, shape: box, size: [0.1, 0.12, 0.08], transform: [{rotate: {axis: [0, 0, 1], "   \
   "angle: 20}}, {translate: [0.09, 0.05, 0.04]}], reflectance: [0.6, 0.5, 0.2]}\n"
 
-/* A rectangle and a box, by their parallelograms and by their triangles: through a ball, which sees
- * both, and through a ring, whose light goes the general way. */
+/* A rectangle and a box beside a hill, by their parallelograms and by their triangles: through a
+ * ball, which sees both, and through a ring, whose light goes the general way. */
 static void triangles_do_as_parallelograms_do(void **state) {
   (void)state;
-  static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE BALL("crown"),
-                                      CAMERA SUN TEXTURED_FLOOR CRATE RING("flat")};
+  static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE HILL BALL("crown"),
+                                      CAMERA SUN TEXTURED_FLOOR CRATE HILL RING("flat")};
   for (int i = 0; i < 2; i++) {
     abbe_scene scene = {0};
     abbe_map_layout layout;
     abbe_render_desc desc = small_frame;
+    if (i == 1) desc.width = desc.height = desc.photons = 32;
     frame flat, mesh;
     load_text(texts[i], &scene);
     draw(&scene, &desc, &layout, &flat);
@@ -260,10 +262,152 @@ static void triangles_do_as_parallelograms_do(void **state) {
   }
 }
 
+/* ---- a ball in closed form ---- */
+
+/* Of a pane between faces that reflect r = 0.04 each at normal incidence, any number of times. */
+static const double pane_passes = (1 - 0.04) / (1 + 0.04), pane_reflects = 2 * 0.04 / (1 + 0.04);
+
+#define UNDER_A_PANE                                                                               \
+  "materials: glass.yaml\ncamera: {eye: [0, -1, 0.3], target: [0, 0, 0.15], fov: 14}\n"            \
+  "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}\n" FLOOR        \
+  "- {name: pane, shape: box, size: [0.3, 0.3, 0.05], transform: [{translate: [0, 0, 0.5]}], "     \
+  "material: flat}\n"                                                                              \
+  "- {name: globe, shape: sphere, radius: 0.1, levels: 5, transform: [{translate: [0, 0, 0.15]}]," \
+  " reflectance: 0.5}\n"
+
+static const double globe_centre[3] = {0, 0, 0.15}, globe_radius = 0.1;
+
+/* Where the pixel's ray meets the globe, as a unit normal. */
+static bool globe_normal(const abbe_camera *camera, size_t side, size_t pixel, double n[3]) {
+  double forward[3], o[3], d[3], along = 0, square = 0;
+  abbe_view view;
+  abbe_vector_subtract(camera->target, camera->eye, forward);
+  abbe_view_look(camera->eye, forward, camera->up, false, &view);
+  const double y = tan(0.5 * camera->fov_y_rad);
+  memcpy(view.window, (const double[4]){-y, y, -y, y}, sizeof view.window);
+  const double uv[2] = {((double)(pixel % side) + 0.5) / (double)side,
+                        1 - ((double)(pixel / side) + 0.5) / (double)side};
+  abbe_view_ray(&view, uv, o, d);
+  for (int k = 0; k < 3; k++) {
+    along += (o[k] - globe_centre[k]) * d[k];
+    square += (o[k] - globe_centre[k]) * (o[k] - globe_centre[k]);
+  }
+  const double inside = along * along - square + globe_radius * globe_radius;
+  for (int k = 0; k < 3; k++)
+    n[k] = (o[k] + (-along - sqrt(inside)) * d[k] - globe_centre[k]) / globe_radius;
+  return inside > 0;
+}
+
+/* Every photon goes straight down, to the globe or past it. Its facets lie at most 2e-4 m within
+ * it, and are inclined to it by
+ * up to 0.04, which the cosine shows, beside what a texel and a pixel hold. */
+static void light_lands_on_a_ball_behind_a_pane(void **state) {
+  (void)state;
+  enum { SIDE = 48 };
+  const abbe_render_desc desc = {.width = SIDE,
+                                 .height = SIDE,
+                                 .supersample = 1,
+                                 .photons = 96,
+                                 .map_size = 256,
+                                 .energy_share = 1e-6,
+                                 .orders = ABBE_RENDER_MAX_ORDERS,
+                                 .space = ABBE_RGB_SPACE_XYZ,
+                                 .layers = true};
+  abbe_scene scene = {0};
+  abbe_image picture = {0};
+  abbe_error error = {0};
+  float *at = NULL;
+  size_t count, orders, lanes, on_globe = 0, seen = 0;
+  load_text(UNDER_A_PANE, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  const abbe_ledger e = draw_frame(renderer).energy;
+  assert_true(abbe_ledger_imbalance(&e) < 1e-4);
+  assert_near(e.deposited / e.reached, pane_passes, 1e-3);
+  assert_ok(abbe_renderer_read_landings(renderer, 0, &at, NULL, &count, &orders, &lanes, &error),
+            &error);
+  for (size_t i = 0; i < count * orders * lanes; i++) {
+    const float *p = at + 4 * i;
+    if (p[3] <= 0) continue;
+    const double aside = hypot((double)p[0], (double)p[1]);
+    const double up = (double)p[2] - globe_centre[2];
+    if (aside < globe_radius - 5e-4) {
+      assert_true(hypot(aside, up) < globe_radius + 1e-6);
+      assert_true(hypot(aside, up) > globe_radius - 2e-4 && up > 0);
+      on_globe++;
+    } else if (aside > globe_radius) {
+      assert_near(p[2], 0, 1e-6);
+    }
+  }
+  assert_true(on_globe > count / 4);
+  read_picture(renderer, true, &picture);
+  const size_t caustic = abbe_image_find_channel(&picture, "caustic.Y");
+  const size_t direct = abbe_image_find_channel(&picture, "direct.Y");
+  double sum = 0, expected = 0, worst = 0;
+  for (size_t i = 0; i < SIDE * SIDE; i++) {
+    double n[3];
+    if (!globe_normal(&scene.camera, SIDE, i, n) || n[2] < 0.2 || n[1] > -0.2) continue;
+    const double known = 0.5 / acos(-1) * pane_passes * n[2];
+    const double found = (double)picture.data[i * picture.channels + caustic];
+    assert_true(picture.data[i * picture.channels + direct] == 0);
+    sum += found;
+    expected += known;
+    seen++;
+    worst = fmax(worst, fabs(found / known - 1) * n[2]);
+  }
+  assert_true(seen > 100);
+  assert_near(sum / expected, 1, 5e-3);
+  assert_true(worst < 0.06);
+  abbe_image_free(&picture);
+  free(at);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* The eye looks along y into a pane; a moon in its back is all that the pane can mirror, and
+ * nothing lies behind. By its planes, and by its triangles, which asks for the general way. */
+#define MOON_BEHIND_THE_EYE                                                                        \
+  "materials: glass.yaml\ncamera: {eye: [0, -1, 0.3], target: [0, 0, 0.3], fov: 12}\n"             \
+  "ambient: 0.2\nlights:\n- {name: sun, kind: directional, direction: [0, 1, -1], "                \
+  "irradiance: 1}\nobjects:\n"                                                                     \
+  "- {name: card, shape: rectangle, width: 0.02, height: 0.02, transform: [{translate: [0.075, "   \
+  "-0.2, 0.375]}], reflectance: 0.5}\n"                                                            \
+  "- {name: moon, shape: sphere, radius: 0.3, levels: 4, transform: [{translate: [0, -2, 0.3]}],"  \
+  " reflectance: 0.5}\n"                                                                           \
+  "- {name: pane, shape: box, size: [0.4, 0.05, 0.4], transform: [{translate: [0, 0, 0.3]}], "     \
+  "material: flat}\n"
+
+static void a_pane_mirrors_what_is_behind_the_eye(void **state) {
+  (void)state;
+  const double known = pane_reflects * 0.5 * 0.2 / acos(-1);
+  abbe_scene scene = {0};
+  load_text(MOON_BEHIND_THE_EYE, &scene);
+  for (int i = 0; i < 2; i++) {
+    abbe_render_desc desc = small_frame;
+    abbe_image picture = {0};
+    desc.space = ABBE_RGB_SPACE_XYZ;
+    desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_HIERARCHY;
+    desc.width = desc.height = 16;
+    desc.energy_share = 1e-6;
+    desc.orders = ABBE_RENDER_MAX_ORDERS;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, false, &picture);
+    for (size_t k = 0; k < 8 * 8; k++) {
+      const size_t pixel = (4 + k / 8) * 16 + 4 + k % 8; /* the middle, which shows no card */
+      assert_near(picture.data[pixel * picture.channels + 1] / known, 1, 2e-3);
+    }
+    abbe_image_free(&picture);
+    abbe_renderer_free(renderer);
+  }
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shaders_find_the_nearest_of_both),
       cmocka_unit_test(triangles_do_as_parallelograms_do),
+      cmocka_unit_test(light_lands_on_a_ball_behind_a_pane),
+      cmocka_unit_test(a_pane_mirrors_what_is_behind_the_eye),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
