@@ -3,11 +3,11 @@
 // alone: Mesa 22's llvmpipe clobbers what is loaded in a loop that lanes leave in its middle.
 
 // Buffers as textures: llvmpipe fetches a texel of all lanes at once, and storage word by word.
-layout(binding = 7) uniform samplerBuffer hierarchy_nodes;
+layout(binding = 7) uniform usamplerBuffer hierarchy_nodes;  // as hierarchy_nodes.h has them
 layout(binding = 8) uniform samplerBuffer hierarchy_triangles;
 layout(binding = 9) uniform samplerBuffer hierarchy_corners;
 
-vec4 hierarchy_node(int i) { return texelFetch(hierarchy_nodes, i); }
+uvec4 hierarchy_node(int i) { return texelFetch(hierarchy_nodes, i); }
 // A corner (w: smooth part of its mesh) and the two edges from there (w of the first: surface, of
 // receivers), three a triangle.
 vec4 hierarchy_triangle(int i) { return texelFetch(hierarchy_triangles, i); }
@@ -19,20 +19,19 @@ struct TriangleHit {
   int triangle;   // -1: none
 };
 
-// Where the ray enters the box of node i, or 1e30.
-float hierarchy_enter(vec4 low, vec4 high, vec3 o, vec3 inverse, float t_min, float t_max) {
-  vec3 a = (low.xyz - o) * inverse, b = (high.xyz - o) * inverse;
+// Where the ray enters the box, or 1e30; it passes grid point g at base + g * step.
+float hierarchy_enter(uvec3 box, vec3 base, vec3 step, float t_min, float t_max) {
+  vec3 a = base + vec3(box & 0xffffu) * step, b = base + vec3(box >> 16) * step;
   vec3 near = min(a, b), far = max(a, b);
   float from = max(max(near.x, near.y), max(near.z, t_min));
-  float to = min(min(far.x, far.y), min(far.z, t_max)) * 1.0000005;
+  float to = min(min(far.x, far.y), min(far.z, t_max));
   return from <= to ? from : 1e30;
 }
 
-// What a node leads to, as one number: its first child, or the complement of its triangles' first
-// (from the fourth bit) and count; -1: nothing.
-int hierarchy_code(vec4 low, vec4 high) {
-  int first = floatBitsToInt(low.w), count = floatBitsToInt(high.w);
-  return count > 0 ? ~(first << 3 | count) : first;
+// Whether all normals in a cone have `away`'s direction.
+bool hierarchy_turned(uvec2 cone, vec3 away) {
+  ivec4 word = ivec4(cone.x << 16, cone.x, cone.y << 16, cone.y) >> 16;
+  return dot(vec3(word.xyz), away) > float(word.w);
 }
 
 // Nearest triangle of the tree at `root` with t_min < t < h.t. side 1: only those that the ray meets
@@ -43,20 +42,30 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   vec3 least = vec3(1e-20);
   vec3 inverse = 1.0 / mix(d, mix(-least, least, greaterThanEqual(d, vec3(0))),
                            lessThan(abs(d), least));
-  float nearest = h.t, hit_u = 0.0, hit_v = 0.0;
-  vec4 root_low = hierarchy_node(2 * root), root_high = hierarchy_node(2 * root + 1);
-  bool meets = hierarchy_enter(root_low, root_high, o, inverse, t_min, nearest) < 1e30;
-  int code = meets ? hierarchy_code(root_low, root_high) : -1;
+  uvec4 low = hierarchy_node(root);
+  vec3 cell = uintBitsToFloat(hierarchy_node(root + 1).xyz);
+  vec3 base = (uintBitsToFloat(low.xyz) - o) * inverse, step = cell * inverse, far_base = base + 65535.0 * step;
+  vec3 first = min(base, far_base), last = max(base, far_base);
+  float start = max(max(first.x, first.y), max(first.z, t_min));
+  bool meets = start <= min(min(last.x, last.y), min(last.z, h.t)) * 1.0000005;
+  // From where the tree begins, however far that is: its boxes are known to its size.
+  start = meets ? max(start, 0.0) : 0.0;
+  o += start * d;
+  base = (uintBitsToFloat(low.xyz) - o) * inverse;
+  t_min -= start;
+  float nearest = h.t - start, hit_u = 0.0, hit_v = 0.0;
+  vec3 away = side * d;
+  int code = meets ? int(low.w) : -1;
   int waiting = 0, found = -1, leaf = ~code;
   int node = code, next = code < 0 ? leaf >> 3 : 0, end = next + (code < 0 ? leaf & 7 : 0);
   while (node >= 0 || next < end) {
     while (node >= 0) {
-      vec4 low_a = hierarchy_node(2 * node), high_a = hierarchy_node(2 * node + 1);
-      vec4 low_b = hierarchy_node(2 * node + 2), high_b = hierarchy_node(2 * node + 3);
-      float a = hierarchy_enter(low_a, high_a, o, inverse, t_min, nearest);
-      float b = hierarchy_enter(low_b, high_b, o, inverse, t_min, nearest);
-      int code_a = a < 1e30 ? hierarchy_code(low_a, high_a) : -1;
-      int code_b = b < 1e30 ? hierarchy_code(low_b, high_b) : -1;
+      uvec4 first_child = hierarchy_node(node), second_child = hierarchy_node(node + 1);
+      uvec4 cones = hierarchy_node(node + 2);
+      float a = hierarchy_enter(first_child.xyz, base, step, t_min, nearest);
+      float b = hierarchy_enter(second_child.xyz, base, step, t_min, nearest);
+      int code_a = a < 1e30 && !hierarchy_turned(cones.xy, away) ? int(first_child.w) : -1;
+      int code_b = b < 1e30 && !hierarchy_turned(cones.zw, away) ? int(second_child.w) : -1;
       bool both = code_a != -1 && code_b != -1;
       stack[waiting] = b < a ? code_a : code_b;
       waiting += both ? 1 : 0;
@@ -95,7 +104,7 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
     next = code < 0 ? leaf >> 3 : 0;
     end = code < 0 ? next + (leaf & 7) : 0;
   }
-  h.t = nearest;
+  h.t = nearest + start;
   h.u = hit_u;
   h.v = hit_v;
   h.triangle = found;

@@ -1,3 +1,4 @@
+#include "gl/hierarchy_nodes.h"
 #include "gl/renderer_state.h"
 #include "scenes/hierarchy.h"
 
@@ -14,10 +15,10 @@ typedef struct gpu_corners {
 } gpu_corners;
 
 typedef struct forest {
-  abbe_hierarchy_node *node;
+  uint32_t (*texel)[4]; /* hierarchy_nodes.h */
   gpu_triangle *triangle;
   gpu_corners *corners;
-  size_t node_count, triangle_count;
+  size_t texel_count, triangle_count;
 } forest;
 
 static void store(const double v[3], float w, float out[4]) {
@@ -25,14 +26,14 @@ static void store(const double v[3], float w, float out[4]) {
   out[3] = w;
 }
 
-static bool make_room(forest *f, size_t nodes, size_t triangles) {
-  void *node = realloc(f->node, (f->node_count + nodes) * sizeof *f->node);
-  if (node != NULL) f->node = node;
+static bool make_room(forest *f, size_t texels, size_t triangles) {
+  void *texel = realloc(f->texel, (f->texel_count + texels) * sizeof *f->texel);
+  if (texel != NULL) f->texel = texel;
   void *triangle = realloc(f->triangle, (f->triangle_count + triangles) * sizeof *f->triangle);
   if (triangle != NULL) f->triangle = triangle;
   void *corners = realloc(f->corners, (f->triangle_count + triangles) * sizeof *f->corners);
   if (corners != NULL) f->corners = corners;
-  return node != NULL && triangle != NULL && corners != NULL;
+  return texel != NULL && triangle != NULL && corners != NULL;
 }
 
 /* One tree's triangles: meshes one after another, their faces and smooth parts numbered through. */
@@ -67,21 +68,19 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
   }
 }
 
-/* The tree behind the others; its root's index. */
-static abbe_result plant(const grove *g, const abbe_hierarchy *h, forest *f, size_t *root,
-                         abbe_error *error) {
-  if (!make_room(f, h->node_count + 1, h->triangle_count))
+/* The tree behind the others; its root's texel. */
+static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_hierarchy *h,
+                         forest *f, size_t *root, abbe_error *error) {
+  const size_t texels = abbe_hierarchy_nodes_count(h);
+  if (!make_room(f, texels, h->triangle_count))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
-  *root = f->node_count;
-  for (size_t i = 0; i < h->node_count; i++) {
-    abbe_hierarchy_node *n = &f->node[f->node_count + i];
-    *n = h->node[i];
-    n->first += (int32_t)(n->count > 0 ? f->triangle_count : f->node_count);
-  }
+  *root = f->texel_count;
+  abbe_hierarchy_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
+                            f->texel + f->texel_count);
   for (size_t i = 0; i < h->triangle_count; i++)
     store_triangle(g, h->triangle[i], &f->triangle[f->triangle_count + i],
                    &f->corners[f->triangle_count + i]);
-  f->node_count += h->node_count;
+  f->texel_count += texels;
   f->triangle_count += h->triangle_count;
   return ABBE_OK;
 }
@@ -115,7 +114,7 @@ static abbe_result grow(abbe_renderer *r, grove *g, forest *f, size_t *root, abb
       triangle == NULL || g->part == NULL || g->owner == NULL || !gather(g, triangle)
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
           : abbe_hierarchy_make((const double(*)[9])triangle, faces, &h, error);
-  if (result == ABBE_OK) result = plant(g, &h, f, root, error);
+  if (result == ABBE_OK) result = plant(g, (const double(*)[9])triangle, &h, f, root, error);
   if (h.depth > r->hierarchy_depth) r->hierarchy_depth = h.depth;
   abbe_hierarchy_free(&h);
   free(triangle);
@@ -140,8 +139,8 @@ static abbe_result add_mesh(grove *g, const forest *f, const abbe_mesh *mesh, si
 }
 
 /* A buffer that the shaders read as a texture of vec4. */
-static abbe_result upload_texels(abbe_renderer *r, int which, size_t size, const void *data,
-                                 abbe_error *error) {
+static abbe_result upload_texels(abbe_renderer *r, int which, GLenum format, size_t size,
+                                 const void *data, abbe_error *error) {
   const abbe_gl *gl = r->gl;
   GLint most = 0;
   gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
@@ -155,16 +154,19 @@ static abbe_result upload_texels(abbe_renderer *r, int which, size_t size, const
   if (result != ABBE_OK) return result;
   gl->GenTextures(1, &r->hierarchy_texture[which]);
   gl->BindTexture(GL_TEXTURE_BUFFER, r->hierarchy_texture[which]);
-  gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, r->hierarchy[which]);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, format, r->hierarchy[which]);
   return abbe_gl_check(gl, "the upload of a hierarchy", error);
 }
 
 static abbe_result upload(abbe_renderer *r, const forest *f, abbe_error *error) {
-  abbe_result result = upload_texels(r, 0, f->node_count * sizeof *f->node, f->node, error);
+  abbe_result result =
+      upload_texels(r, 0, GL_RGBA32UI, f->texel_count * sizeof *f->texel, f->texel, error);
   if (result == ABBE_OK)
-    result = upload_texels(r, 1, f->triangle_count * sizeof *f->triangle, f->triangle, error);
+    result = upload_texels(r, 1, GL_RGBA32F, f->triangle_count * sizeof *f->triangle, f->triangle,
+                           error);
   if (result == ABBE_OK)
-    result = upload_texels(r, 2, f->triangle_count * sizeof *f->corners, f->corners, error);
+    result =
+        upload_texels(r, 2, GL_RGBA32F, f->triangle_count * sizeof *f->corners, f->corners, error);
   return result;
 }
 
@@ -208,7 +210,7 @@ abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error) {
   free(g.mesh);
   free(g.surface);
   free(g.face_first);
-  free(f.node);
+  free(f.texel);
   free(f.triangle);
   free(f.corners);
   return result;

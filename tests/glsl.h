@@ -8,7 +8,10 @@
 
 #include "tests/gl_context.h"
 
+#include "gl/hierarchy_nodes.h"
 #include "gl/program.h"
+
+#include <stdlib.h>
 
 static inline GLuint glsl_buffer(const abbe_gl *gl, GLuint binding, size_t size, const void *data) {
   GLuint buffer = 0;
@@ -20,7 +23,8 @@ static inline GLuint glsl_buffer(const abbe_gl *gl, GLuint binding, size_t size,
 }
 
 /* As the shaders read nodes and triangles, at that texture unit. */
-static inline void glsl_texels(const abbe_gl *gl, GLenum unit, size_t size, const void *data) {
+static inline void glsl_texels(const abbe_gl *gl, GLenum unit, GLenum format, size_t size,
+                               const void *data) {
   GLuint buffer = 0, texture = 0;
   gl->GenBuffers(1, &buffer);
   gl->BindBuffer(GL_TEXTURE_BUFFER, buffer);
@@ -28,7 +32,17 @@ static inline void glsl_texels(const abbe_gl *gl, GLenum unit, size_t size, cons
   gl->GenTextures(1, &texture);
   gl->ActiveTexture(GL_TEXTURE0 + unit);
   gl->BindTexture(GL_TEXTURE_BUFFER, texture);
-  gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, format, buffer);
+}
+
+/* A tree's nodes where the shaders read them. */
+static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_hierarchy *h,
+                                  const double (*triangle)[9]) {
+  const size_t count = abbe_hierarchy_nodes_count(h);
+  uint32_t(*texel)[4] = calloc(count, sizeof *texel);
+  abbe_hierarchy_nodes_pack(h, triangle, 0, 0, texel);
+  glsl_texels(gl, 7, GL_RGBA32UI, count * sizeof *texel, texel);
+  free(texel);
 }
 
 /* The program of a function's text; the caller sets its uniforms and deletes it. */

@@ -1,6 +1,7 @@
 /* The hierarchy against every triangle in turn: in double precision, and as the shaders have it. */
 #include "tests/glsl.h"
 
+#include "gl/hierarchy_nodes.h"
 #include "scenes/hierarchy.h"
 #include "scenes/shape.h"
 #include "tests/random.h"
@@ -172,6 +173,68 @@ static void equal_triangles_end_in_leaves(void **state) {
   assert_int_equal(abbe_hierarchy_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
 }
 
+static float float_of(uint32_t bits) {
+  float x;
+  memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+/* Child c of the inner node at `at`, as the shaders read it, against its triangles: whether a ray
+ * along d leaves it out, and what its box holds. Returns how many are below. */
+static size_t check_packed(const soup *s, uint32_t (*texel)[4], size_t at, int c, const double d[3],
+                           bool above, size_t *left_out) {
+  const uint32_t *box = texel[at + (size_t)c], *cone = texel[at + 2] + 2 * c;
+  const int32_t code = (int32_t)box[3];
+  double along = 0;
+  for (int k = 0; k < 3; k++)
+    along += d[k] * (int16_t)(k < 2 ? cone[0] >> 16 * k & 0xffff : cone[1] & 0xffff);
+  const bool out = above || along > (double)(int16_t)(cone[1] >> 16);
+  if (code >= 0)
+    return check_packed(s, texel, (size_t)code, 0, d, out, left_out) +
+           check_packed(s, texel, (size_t)code, 1, d, out, left_out);
+  const size_t first = (size_t)~code >> 3, count = (size_t)~code & 7;
+  for (size_t i = first; i < first + count; i++) {
+    const double *t = s->triangle[s->h.triangle[i]];
+    abbe_hierarchy_hit hit;
+    for (int k = 0; k < 9; k++) {
+      double low = (double)float_of(texel[0][k % 3]), cell = (double)float_of(texel[1][k % 3]);
+      assert_true(low + cell * (box[k % 3] & 0xffff) < t[k]);
+      assert_true(low + cell * (box[k % 3] >> 16) > t[k]);
+    }
+    double o[3];
+    for (int k = 0; k < 3; k++) o[k] = (t[k] + t[3 + k] + t[6 + k]) / 3 - s->size * d[k];
+    if (out) assert_false(abbe_hierarchy_meet(t, o, d, 1, 0, INFINITY, &hit));
+  }
+  *left_out += out ? count : 0;
+  return count;
+}
+
+/* Packed boxes hold their triangles, and cones leave out no face that a ray meets from outside. */
+static void packed_nodes_leave_nothing_out(void **state) {
+  (void)state;
+  soup s[2];
+  make_soup(3000, 1e4, &s[0]);
+  make_ring(&s[1]);
+  for (int which = 0; which < 2; which++) {
+    uint64_t random = 3;
+    size_t left_out = 0, seen = 0;
+    uint32_t(*texel)[4] = calloc(abbe_hierarchy_nodes_count(&s[which].h), sizeof *texel);
+    abbe_hierarchy_nodes_pack(&s[which].h, (const double(*)[9])s[which].triangle, 0, 0, texel);
+    for (int i = 0; i < 20; i++) {
+      double o[3], d[3];
+      random_ray(&s[which], &random, o, d);
+      for (int c = 0; c < 2; c++)
+        seen += check_packed(&s[which], texel, (size_t)texel[0][3], c, d, false, &left_out);
+    }
+    assert_int_equal(seen, 20 * s[which].count);
+    /* of a closed surface half is turned away */
+    print_message("%zu of %zu left out\n", left_out, seen);
+    if (which == 1) assert_true(left_out > 0.4 * (double)seen);
+    free(texel);
+    drop(&s[which]);
+  }
+}
+
 static void upload(const soup *s) {
   const abbe_gl *gl = abbe_context_gl(context);
   float(*triangle)[4] = calloc(3 * s->count, sizeof *triangle);
@@ -182,8 +245,8 @@ static void upload(const soup *s) {
       triangle[3 * i + 1][k] = (float)(from[3 + k] - from[k]);
       triangle[3 * i + 2][k] = (float)(from[6 + k] - from[k]);
     }
-  glsl_texels(gl, 7, s->h.node_count * sizeof *s->h.node, s->h.node);
-  glsl_texels(gl, 8, 3 * s->count * sizeof *triangle, triangle);
+  glsl_hierarchy(gl, &s->h, (const double(*)[9])s->triangle);
+  glsl_texels(gl, 8, GL_RGBA32F, 3 * s->count * sizeof *triangle, triangle);
   free(triangle);
 }
 
@@ -263,9 +326,13 @@ static void parts_end_where_normals_break(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nearest_of_all_triangles),  cmocka_unit_test(boxes_hold_their_triangles),
-      cmocka_unit_test(boxes_are_tight),           cmocka_unit_test(equal_triangles_end_in_leaves),
-      cmocka_unit_test(the_shaders_find_the_same), cmocka_unit_test(parts_end_where_normals_break),
+      cmocka_unit_test(nearest_of_all_triangles),
+      cmocka_unit_test(boxes_hold_their_triangles),
+      cmocka_unit_test(boxes_are_tight),
+      cmocka_unit_test(equal_triangles_end_in_leaves),
+      cmocka_unit_test(packed_nodes_leave_nothing_out),
+      cmocka_unit_test(the_shaders_find_the_same),
+      cmocka_unit_test(parts_end_where_normals_break),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

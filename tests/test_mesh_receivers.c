@@ -72,9 +72,9 @@ static void upload_receivers(receivers *r) {
     memcpy(&triangle[3 * i + 1][3], &surface, sizeof surface);
   }
   uniform_block(3, r->flat, sizeof r->flat);
-  glsl_texels(gl, 7, r->h.node_count * sizeof *r->h.node, r->h.node);
-  glsl_texels(gl, 8, 3 * r->h.triangle_count * sizeof *triangle, triangle);
-  glsl_texels(gl, 9, 4 * r->h.triangle_count * sizeof *corner, corner);
+  glsl_hierarchy(gl, &r->h, (const double(*)[9])r->triangle);
+  glsl_texels(gl, 8, GL_RGBA32F, 3 * r->h.triangle_count * sizeof *triangle, triangle);
+  glsl_texels(gl, 9, GL_RGBA32F, 4 * r->h.triangle_count * sizeof *corner, corner);
   free(triangle);
   free(corner);
 }
