@@ -2,7 +2,17 @@
 #include "gl/renderer_state.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+/* Of a pixel, traced first; from FINE_FROM wavelengths on, where they are more. */
+enum { COARSE_BANDS = 7, FINE_FROM = 9 };
+/* Pixels at a time whose bands may ask for all their samples. */
+enum { REFINE_ROOM = 1 << 20, LIST_HEADER = 16 };
+
+static bool refines(const abbe_renderer *r) {
+  return r->plan.desc.wavelengths >= FINE_FROM && !r->plan.desc.everything;
+}
 
 void abbe_renderer_fit_eye(abbe_renderer *r) {
   const abbe_camera *camera = &r->scene->camera;
@@ -60,11 +70,28 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
       result = abbe_renderer_make_texture(r, targets[i].format, w, h, targets[i].layers, false,
                                           targets[i].texture, error);
   if (result == ABBE_OK && layers)
-    result = abbe_renderer_make_buffer(r, 16 + 4 * w * h, NULL, &r->pixel_list, error);
+    result = abbe_renderer_make_buffer(r, LIST_HEADER + 4 * w * h, NULL, &r->pixel_list, error);
+  if (result == ABBE_OK && layers && refines(r)) {
+    size_t room = w * h < REFINE_ROOM ? w * h : REFINE_ROOM;
+    result = abbe_renderer_make_buffer(r, LIST_HEADER + 8 * room, NULL, &r->refine_list, error);
+  }
   if (result == ABBE_OK)
     result = abbe_renderer_make_texture(r, GL_RGBA32F, r->plan.desc.width, r->plan.desc.height, 0,
                                         false, &r->eye_picture, error);
   return result;
+}
+
+static abbe_result make_refraction(abbe_renderer *r, abbe_error *error) {
+  char defines[sizeof r->defines + 64];
+  if (!refines(r))
+    return abbe_program_make_compute(r->gl, "refraction.comp", r->defines, &r->refraction, error);
+  snprintf(defines, sizeof defines, "%s#define REFINES\n#define COARSE_BANDS %d\n", r->defines,
+           COARSE_BANDS);
+  abbe_result result =
+      abbe_program_make_compute(r->gl, "refraction.comp", defines, &r->refraction, error);
+  if (result != ABBE_OK) return result;
+  snprintf(defines, sizeof defines, "%s#define REFINED\n", r->defines);
+  return abbe_program_make_compute(r->gl, "refraction.comp", defines, &r->refraction_fine, error);
 }
 
 abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
@@ -74,8 +101,7 @@ abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_result result = make_targets(r, error);
   if (result == ABBE_OK)
     result = abbe_program_make(r->gl, lit, 2, r->defines, &r->receivers, error);
-  if (result == ABBE_OK && r->plan.seen)
-    result = abbe_program_make_compute(r->gl, "refraction.comp", r->defines, &r->refraction, error);
+  if (result == ABBE_OK && r->plan.seen) result = make_refraction(r, error);
   if (result == ABBE_OK && r->plan.seen)
     result =
         abbe_program_make_compute(r->gl, "refraction_list.comp", NULL, &r->refraction_list, error);
@@ -193,6 +219,13 @@ static void list_pixels(abbe_renderer *r, size_t w, size_t h) {
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+static void clear_refine_list(abbe_renderer *r) {
+  static const GLuint zero[4] = {0, 0, 0, 0};
+  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->refine_list);
+  r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, r->refine_list);
+}
+
 /* In strips where somebody watches, so that a long frame shows its progress and can be stopped. */
 static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progress, void *user,
                                   abbe_error *error) {
@@ -204,10 +237,18 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progres
   GLuint step = (count / strips / PHOTON_GROUP + 1) * PHOTON_GROUP;
   if (step > 65535u * PHOTON_GROUP)
     step = 65535u * PHOTON_GROUP; /* the most groups of a dispatch */
+  if (refines(r) && step > REFINE_ROOM) step = REFINE_ROOM;
   for (GLuint first = 0; first < count; first += step) {
     GLuint size = count - first < step ? count - first : step;
+    gl->UseProgram(r->refraction);
     gl->Uniform1ui(gl->GetUniformLocation(r->refraction, "pixel_first"), first);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, r->pixel_list);
+    if (refines(r)) clear_refine_list(r);
     gl->DispatchCompute((size + PHOTON_GROUP - 1) / PHOTON_GROUP, 1, 1);
+    if (refines(r)) {
+      gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+      abbe_renderer_dispatch_list(r, r->refraction_fine, r->refine_list, REFINE_ROOM, 1);
+    }
     if (progress == NULL) continue;
     gl->Finish();
     if (!progress(user, 0.5 + 0.5 * (double)(first + size) / (double)count))
@@ -215,6 +256,17 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progres
   }
   gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   return ABBE_OK;
+}
+
+static void set_refraction(abbe_renderer *r, GLuint program, size_t rows) {
+  r->gl->UseProgram(program);
+  abbe_renderer_set_lighting(r, program);
+  abbe_renderer_bind_texture(r, program, "eye_layers", 4, r->eye_layers);
+  abbe_renderer_bind_texture_2d(r, program, "eye_owner", 6, r->eye_owner);
+  set_eye(r, program);
+  abbe_renderer_set_float(r, program, "share_limit", r->plan.desc.energy_share);
+  double angle = (r->eye.window[3] - r->eye.window[2]) / (double)rows;
+  abbe_renderer_set_float(r, program, "pixel_angle", angle);
 }
 
 static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progress, void *user,
@@ -230,16 +282,10 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progre
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   if (!r->plan.seen) return ABBE_OK;
   list_pixels(r, w, h);
-  gl->UseProgram(r->refraction);
-  abbe_renderer_set_lighting(r, r->refraction);
-  abbe_renderer_bind_texture(r, r->refraction, "eye_layers", 4, r->eye_layers);
-  abbe_renderer_bind_texture_2d(r, r->refraction, "eye_owner", 6, r->eye_owner);
-  set_eye(r, r->refraction);
-  abbe_renderer_set_float(r, r->refraction, "share_limit", r->plan.desc.energy_share);
-  double angle = (r->eye.window[3] - r->eye.window[2]) / (double)h;
-  abbe_renderer_set_float(r, r->refraction, "pixel_angle", angle);
+  if (refines(r)) set_refraction(r, r->refraction_fine, h);
+  set_refraction(r, r->refraction, h);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_INTERVALS, r->table_bands);
-  gl->BindImageTexture(0, r->eye_refraction, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  gl->BindImageTexture(0, r->eye_refraction, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
   result = refract_pixels(r, progress, user, error);
   abbe_renderer_end_pass(r, "eye: refraction");
   return result;

@@ -218,6 +218,8 @@ abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
     result = abbe_program_make_compute(r->gl, "photon_place.comp", NULL, &r->place, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_groups.comp", NULL, &r->groups, error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(r->gl, "list_groups.comp", NULL, &r->list_groups, error);
   if (result == ABBE_OK && !abbe_profile_is_thesis(r->plan.desc.profile))
     result = make_layers(r, error);
   if (result == ABBE_OK) result = make_lists(r, error);

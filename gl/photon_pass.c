@@ -55,7 +55,9 @@ void abbe_renderer_dispatch_list(abbe_renderer *r, GLuint program, GLuint list, 
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   gl->UseProgram(program);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST,
-                     program == r->trace ? r->pair_list : r->splat_list);
+                     program == r->trace             ? r->pair_list
+                     : program == r->refraction_fine ? r->refine_list
+                                                     : r->splat_list);
   gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
   gl->DispatchComputeIndirect(4);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -443,8 +445,6 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_deposit.comp", defines, &r->deposit, error);
   if (result == ABBE_OK) result = abbe_renderer_make_refining_programs(r, defines, error);
-  if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "list_groups.comp", NULL, &r->list_groups, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_splat.comp", r->defines, &r->splat, error);
   if (result == ABBE_OK)

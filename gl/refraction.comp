@@ -1,15 +1,33 @@
 // Refractors as the eye sees them: one direction a wavelength, each exit that carries enough
 // energy followed to what it shows, and the reflection on the outside. Opaque things in front win
 // by the depth test. One thread a listed pixel: triangles smaller than a pixel cost nothing more.
+// REFINES: bands are joined first, and listed where what they show differs from what their neighbours
+// show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
 #include "refractor.glsl"
 #include "receiver.glsl"
 
+// Pixel as below; joined bands (a bit each), level (four bits) whose bands are wanted, and how many
+// levels above it they were joined.
+#ifdef REFINED
+layout(std430, binding = 15) readonly buffer RefineList {
+  uint refine_count, refine_groups[3];
+  uvec2 refine[];
+};
+layout(rgba32f, binding = 0) uniform image2D picture;
+#else
 layout(std430, binding = 15) readonly buffer PixelList {
   uint pixel_count, pixel_groups[3];
   uint pixel[];  // x | y << 16
 };
+#ifdef REFINES
+layout(std430, binding = 7) buffer RefineList {
+  uint refine_count, refine_groups[3];
+  uvec2 refine[];
+};
+#endif
 layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distance from the eye
+#endif
 uniform sampler2DArray eye_layers;    // 0: front, 1: back; normal, distance
 uniform usampler2D eye_owner;         // refractor + 1
 uniform vec4 eye_view[6];
@@ -139,63 +157,149 @@ vec3 through(Hit front, vec3 d, int band) {
 }
 #endif
 
+// What the pixel's ray meets first.
+bool found;
+vec3 sight;
+Hit front;
+#ifdef WALK
+Way start;
+Interface first;
+#endif
+
+void look(ivec2 at) {
+  vec3 o;
+  refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
+  vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
+  view_ray(eye_as_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, sight);
+#ifdef WALK
+  start = Way(eye, sight, 1.0, 0u, 0u, -1, -1, -1);
+  first.hit.t = 1e30;
+  found = next_interface(start, first);
+  front = first.hit;
+  if (found) refractor = front.refractor;
+#else
+  front.t = 1e30;
+  found = exact_front(eye, sight, front) && front.refractor == refractor;
+  if (refractors[refractor].info.x == MODEL_LAYERS) {
+    found = true;
+    front.t = layer.w;
+    front.p = eye + layer.w * sight;
+    front.n = normalize(layer.xyz);
+    float c = dot(front.n, sight);
+    if (c > -1e-3) front.n = normalize(front.n - (c + 1e-3) * sight);
+    front.facet = -1;
+  }
+#endif
+}
+
+// XYZ of what a band shows through the first interface; the share that is mirrored there.
+vec3 band_light(int band, out float mirrored) {
+#ifdef WALK
+  Way reflected;
+  vec3 light = through(start, first, band - refractor * BAND_COUNT, reflected);
+  mirrored = reflected.share;
+#else
+  vec3 light = through(front, sight, band);
+  mirrored = fresnel(-dot(sight, front.n), 1.0 / bands[band].weight_n.w);
+#endif
+  return xyz_from_rgb * light;
+}
+
+// The first band of the next level, where each of `count` is two of this one's.
+void coarsen(bool coarser, inout int base, inout int count) {
+  base += coarser ? count : 0;
+  count = coarser ? (count + 1) / 2 : count;
+}
+
+#ifdef REFINED
+void main() {
+  uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (listed >= refine_count) return;
+  uint where = refine[listed].x, what = refine[listed].y;
+  ivec2 at = ivec2(where & 0xffffu, where >> 16);
+  look(at);
+  int level = int(what >> 8 & 15u), joined = int(what >> 12 & 15u);
+  int base = refractor * BAND_COUNT, count = WAVELENGTHS;
+  for (int k = 0; k < BAND_LEVELS - 1; k++) coarsen(k < level, base, count);
+  vec3 sum = vec3(0);
+  uint wanted = what & 255u;
+  while (wanted != 0u) {
+    int band = findLSB(wanted), end = min((band + 1) << joined, count);
+    for (int i = band << joined; i < end; i++) {
+      float mirrored;
+      sum += band_light(base + i, mirrored) * bands[base + i].weight_n.xyz;
+    }
+    wanted &= wanted - 1u;
+  }
+  vec4 others = imageLoad(picture, at);
+  imageStore(picture, at, vec4(others.rgb + rgb_from_xyz * sum, others.w));
+}
+#else
+#ifdef REFINES
+// Of a pixel's light, what a joined band may show wrong.
+const float MOST_WRONG = 0.05;
+#endif
+
 void main() {
   uint listed = pixel_first + gl_GlobalInvocationID.x;
   if (listed >= pixel_count) return;
   ivec2 at = ivec2(pixel[listed] & 0xffffu, pixel[listed] >> 16);
-  refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
-  vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
-  vec3 o, d;
-  view_ray(eye_as_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, d);
-#ifdef WALK
-  Way start = Way(eye, d, 1.0, 0u, 0u, -1, -1, -1);
-  Interface first;
-  first.hit.t = 1e30;
-  bool found = next_interface(start, first);
-  Hit front = first.hit;
-  if (found) refractor = front.refractor;
-#else
-  Hit front;
-  front.t = 1e30;
-  bool found = exact_front(eye, d, front) && front.refractor == refractor;
-  if (refractors[refractor].info.x == MODEL_LAYERS) {
-    found = true;
-    front.t = layer.w;
-    front.p = eye + layer.w * d;
-    front.n = normalize(layer.xyz);
-    float c = dot(front.n, d);
-    if (c > -1e-3) front.n = normalize(front.n - (c + 1e-3) * d);
-    front.facet = -1;
-  }
-#endif
-
+  look(at);
   int base = refractor * BAND_COUNT, count = WAVELENGTHS;
-  float wanted = wanted_bands(front, d, base, base + WAVELENGTHS - 1);
+  float wanted = wanted_bands(front, sight, base, base + WAVELENGTHS - 1);
+#ifdef REFINES
+  int level = 0, joined = 0;
+  vec3 shown[COARSE_BANDS];
+#endif
   for (int k = 0; k < BAND_LEVELS - 1; k++) {
     bool coarser = float((count + 1) / 2) >= wanted;
-    base += coarser ? count : 0;
-    count = coarser ? (count + 1) / 2 : count;
+    coarsen(coarser, base, count);
+#ifdef REFINES
+    level += coarser ? 1 : 0;
+#endif
   }
+#ifdef REFINES
+  for (int k = 0; k < BAND_LEVELS - 1; k++) {
+    bool coarser = count > COARSE_BANDS;
+    coarsen(coarser, base, count);
+    joined += coarser ? 1 : 0;
+  }
+#endif
   vec3 sum = vec3(0), mirror = vec3(0);
   for (int i = 0; i < count; i++) {
-    vec4 band = bands[base + i].weight_n;
-#ifdef WALK
-    Way mirrored;
-    vec3 light = through(start, first, base + i - refractor * BAND_COUNT, mirrored);
-    mirror += mirrored.share * band.xyz;
-#else
-    vec3 light = through(front, d, base + i);
-    mirror += fresnel(-dot(d, front.n), 1.0 / band.w) * band.xyz;
+    float mirrored;
+    vec3 light = band_light(base + i, mirrored), weight = bands[base + i].weight_n.xyz;
+    mirror += mirrored * weight;
+    sum += light * weight;
+#ifdef REFINES
+    shown[i] = light;
 #endif
-    sum += (xyz_from_rgb * light) * band.xyz;
   }
 #ifdef WALK
   sum += mirror * (xyz_from_rgb * in_the_mirror(start, first, base + count / 2 - refractor * BAND_COUNT));
 #else
   bool met;
-  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, met));
+  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met));
+#endif
+#ifdef REFINES
+  // Within a band the light is taken to change by half of the way to its neighbours.
+  uint asked = 0u;
+  float most = MOST_WRONG * dot(sum, vec3(1)) * 2.0;
+  vec3 left = sum;
+  for (int i = 0; i < COARSE_BANDS; i++) {
+    bool there = i < count && joined > 0 && found;
+    vec3 light = shown[i], weight = bands[base + min(i, count - 1)].weight_n.xyz;
+    vec3 before = abs(light - shown[max(i - 1, 0)]), after = abs(light - shown[min(i + 1, count - 1)]);
+    bool wrong = there && dot(max(before, after), weight) > most;
+    asked |= wrong ? 1u << uint(i) : 0u;
+    left -= wrong ? light * weight : vec3(0);
+  }
+  sum = left;
+  if (asked != 0u)
+    refine[atomicAdd(refine_count, 1u)] = uvec2(pixel[listed], asked | uint(level) << 8 | uint(joined) << 12);
 #endif
   sum = rgb_from_xyz * sum;
   // At the rim an exact surface may miss the pixel that its triangles cover: what lies behind shows.
   imageStore(picture, at, found ? vec4(sum, front.t) : vec4(0));
 }
+#endif

@@ -152,8 +152,8 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteTextures(sizeof r->texels / sizeof *r->texels, r->texels);
   free(r->refractor_root);
   gl->DeleteBuffers(1, &r->table_bands);
-  const GLuint lists[] = {r->table_warps, r->texel_sizes, r->pixel_list, r->path_marks,
-                          r->path_list,   r->splat_list,  r->map_sums};
+  const GLuint lists[] = {r->table_warps, r->texel_sizes, r->pixel_list, r->refine_list,
+                          r->path_marks,  r->path_list,   r->splat_list, r->map_sums};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,     r->light_owner, r->light_depth, r->map,
@@ -161,9 +161,9 @@ void abbe_renderer_free(abbe_renderer *r) {
       r->eye_layers,      r->eye_layers_depth, r->eye_owner,   r->eye_picture};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
   const GLuint programs[] = {
-      r->place,     r->cover,       r->groups,          r->trace,      r->deposit,
-      r->splat,     r->list_groups, r->resolve,         r->mip,        r->layer,
-      r->receivers, r->refraction,  r->refraction_list, r->eye_resolve};
+      r->place,           r->cover,           r->groups,     r->trace, r->deposit,   r->splat,
+      r->list_groups,     r->resolve,         r->mip,        r->layer, r->receivers, r->refraction,
+      r->refraction_fine, r->refraction_list, r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
   gl->DeleteFramebuffers(1, &r->framebuffer);
   gl->DeleteVertexArrays(1, &r->empty_array);

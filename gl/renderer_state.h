@@ -100,7 +100,7 @@ struct abbe_renderer {
   size_t map_levels, map_texels;
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
       eye_layers_depth, eye_picture;
-  GLuint eye_owner, pixel_list;
+  GLuint eye_owner, pixel_list, refine_list;
   GLuint framebuffer, empty_array;
   size_t layer_side; /* of the light's layers */
   size_t lanes;      /* wavelengths traced in one batch */
@@ -111,7 +111,7 @@ struct abbe_renderer {
   char defines[2048];
 
   GLuint place, cover, groups, list_groups, trace, deposit, select, deposit_fine, splat, resolve, mip, layer, receivers,
-      refraction, refraction_list, eye_resolve;
+      refraction, refraction_fine, refraction_list, eye_resolve;
   thesis_state *thesis;
 
   bool wide;                   /* the map's sums have 64 bits, else 32 */
