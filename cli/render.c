@@ -173,6 +173,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddNumberToObject(energy, "trapped", s->energy.trapped);
   cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
   cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
+  cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_pages);
   cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
   cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);
   struct rusage usage;

@@ -11,6 +11,7 @@ static const double least_image = 2, counted_share = 0.95;
 enum { LEAST_CELLS = 16, STEP_BINS = 256 };
 
 typedef struct batch_view {
+  const abbe_renderer *renderer;
   const abbe_map_layout *map;
   double texels;
   const float *landing; /* [photons][orders][lanes][4] */
@@ -27,8 +28,12 @@ static double warped(const double knot[WARP_STEPS + 1], double u) {
   return knot[k] + (knot[k + 1] - knot[k]) * (s - k);
 }
 
-static bool texel_of(const batch_view *b, const float *at, double out[2]) {
+static bool texel_of(const batch_view *b, const float *at, GLuint path, double out[2]) {
   double p[3] = {at[0], at[1], at[2]}, uvz[3];
+  if (abbe_renderer_is_on_page(b->renderer, path)) {
+    memcpy(out, p, 2 * sizeof *out);
+    return true;
+  }
   if (!abbe_view_project(&b->map->view, p, uvz)) return false;
   for (int axis = 0; axis < 2; axis++)
     out[axis] = b->texels * warped(b->map->knot[axis], uvz[axis]);
@@ -65,7 +70,8 @@ static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS
       size_t there = ((next - 1) * b->orders + order) * b->lanes + b->lane;
       double from[2], to[2];
       if (b->path[here] == 0 || b->path[here] != b->path[there] ||
-          !texel_of(b, b->landing + 4 * here, from) || !texel_of(b, b->landing + 4 * there, to))
+          !texel_of(b, b->landing + 4 * here, b->path[here], from) ||
+          !texel_of(b, b->landing + 4 * there, b->path[there], to))
         continue;
       double step = hypot(to[0] - from[0], to[1] - from[1]);
       histogram[step_bin(step)] += rint((double)b->landing[4 * here + 3] / part);
@@ -118,7 +124,8 @@ abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *
   if (result == ABBE_OK && (photon == NULL || slot == NULL))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the photons' cells");
   if (result == ABBE_OK) {
-    batch_view b = {.map = &state->map,
+    batch_view b = {.renderer = r,
+                    .map = &state->map,
                     .texels = (double)r->plan.desc.map_size,
                     .landing = landing,
                     .path = path,

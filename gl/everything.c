@@ -44,17 +44,12 @@ static void rewrite(abbe_plan *plan, const char *name, size_t count, const char 
 
 static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc *asked,
                                  abbe_plan *plan) {
-  static const char *const passes[] = {"light: refractor front",
-                                       "light: refractor back",
-                                       "light: photon placement",
-                                       "light: photons",
-                                       "light: spectral map",
-                                       "light: gap fill",
-                                       "absorption",
-                                       "eye: refractor front",
-                                       "eye: refractor back",
-                                       "eye: refraction",
-                                       "inner reflections"};
+  static const char *const passes[] = {"light: refractor front",  "light: refractor back",
+                                       "light: photon placement", "maps on receivers",
+                                       "light: photons",          "light: spectral map",
+                                       "light: gap fill",         "absorption",
+                                       "eye: refractor front",    "eye: refractor back",
+                                       "eye: refraction",         "inner reflections"};
   for (size_t i = 0; i < scene->light_count; i++) {
     char name[64];
     if (!plan->reaches[i] && !holds_refractors(scene, &scene->light[i], plan)) continue;
@@ -63,6 +58,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
     say(plan, name);
   }
   plan->seen = plan->back = plan->absorbing = true;
+  plan->pages = plan->caustics && plan->parallelogram_count > 0;
   if (plan->desc.wavelengths < 7 && (asked == NULL || asked->wavelengths == 0)) {
     plan->desc.wavelengths = 7;
     rewrite(plan, "wavelengths", 7, "wavelengths");
@@ -75,7 +71,9 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
     rewrite(plan, "inner reflections", plan->desc.orders, "exits at most");
   }
   for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)
-    if (plan->fills || strcmp(passes[i], "light: gap fill") != 0) say(plan, passes[i]);
+    if ((plan->fills || strcmp(passes[i], "light: gap fill") != 0) &&
+        (plan->pages || strcmp(passes[i], "maps on receivers") != 0))
+      say(plan, passes[i]);
 }
 
 void abbe_everything_switch_on(const abbe_scene *scene, const abbe_render_desc *asked,

@@ -1,11 +1,12 @@
 // One coarser picture of a finished map, for eyes that see many texels at once: the flux of four over
-// their window area.
+// their window area; where texels are alike, as those of a page are, their mean.
 layout(local_size_x = 32, local_size_y = 16) in;
 uniform sampler2DArray map_levels;
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 // Window width of the map's columns, then height of its rows, a light after another.
 layout(std430, binding = 9) readonly buffer TexelSizes { float texel_size[]; };
 uniform int light;
+uniform int layer;  // another than the light's: of its pages
 uniform int map_size;
 uniform int level;
 
@@ -25,9 +26,9 @@ void main() {
   float area = 0.0;
   for (int k = 0; k < 4; k++) {
     ivec2 from = 2 * texel + ivec2(k & 1, k >> 1);
-    float part = size_of(columns, from.x) * size_of(rows, from.y);
-    sum += part * texelFetch(map_levels, ivec3(from, light), level - 1);
+    float part = layer == light ? size_of(columns, from.x) * size_of(rows, from.y) : 1.0;
+    sum += part * texelFetch(map_levels, ivec3(from, layer), level - 1);
     area += part;
   }
-  imageStore(map, ivec3(texel, light), sum / area);
+  imageStore(map, ivec3(texel, layer), sum / area);
 }

@@ -1,13 +1,17 @@
 // Fixed-point sums to XYZ flux, and on the finest level to flux over window area: one level of the
-// map, with what the coarser levels hold laid over it bilinearly, which keeps their sum.
+// map, with what the coarser levels hold laid over it bilinearly, which keeps their sum. A layer of
+// pages comes to irradiance, each page by itself.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "common.glsl"
+#include "receiver_pages.glsl"
 layout(std430, binding = 13) readonly buffer MapSums { uint map_sum[]; };
 // Window width of the map's columns, then height of its rows, a light after another.
 layout(std430, binding = 9) readonly buffer TexelSizes { float texel_size[]; };
 uniform sampler2DArray coarser_map;  // the same texture: its next level is done
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 uniform int light;
+uniform int layer;  // LIGHTS or more: of the light's pages
+uniform uint map_texels;
 uniform int map_size;
 uniform int level;
 uniform int levels;
@@ -30,11 +34,45 @@ uint level_offset(int l) {
   return (texels - (texels >> (2 * l))) / 3u * 4u;
 }
 
+#ifdef PAGES
+// The page of the light that holds the texel, in the level's texels: left, bottom, right, top, all
+// empty where there is none; area: of a texel of the finest level, m2.
+vec4 page_at(ivec2 texel, out float area) {
+  vec4 found = vec4(-1);
+  area = 1.0;
+  for (int k = 0; k < MOST_PAGES; k++) {
+    vec4 rect = pages[light * MOST_PAGES + k].rect * exp2(-float(level)), info = pages[light * MOST_PAGES + k].info;
+    bool here = info.x >= 0.0 && is_within(rect, vec2(texel) + 0.5);
+    found = here ? rect : found;
+    area = here ? info.z : area;
+  }
+  return found;
+}
+
+void resolve_page(ivec2 texel, vec3 flux) {
+  float area;
+  vec4 rect = page_at(texel, area);
+  // At its edges a page's coarser texels have no neighbours but themselves.
+  vec2 at = clamp(0.5 * (vec2(texel) + 0.5), 0.5 * rect.xy + 0.5, 0.5 * rect.zw - 0.5);
+  if (level + 1 < levels)
+    flux += 0.25 * textureLod(coarser_map, vec3(at / float(map_size >> (level + 1)), layer),
+                              float(level + 1)).xyz;
+  if (level == 0) flux /= area;
+  imageStore(map, ivec3(texel, layer), rect.z < 0.0 ? vec4(0) : vec4(flux, 1));
+}
+#endif
+
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   int side = map_size >> level;
   if (texel.x >= side || texel.y >= side) return;
   uint at = level_offset(level) + uint(texel.y * side + texel.x);
+#ifdef PAGES
+  if (layer >= LIGHTS) {
+    resolve_page(texel, units_at(map_texels + at) * lights[light].misc.y);
+    return;
+  }
+#endif
   vec3 flux = units_at(at) * lights[light].misc.y;
   // The filter's weights at a fine texel's centre are the 3/4 and 1/4 of bilinear subdivision; a
   // coarse texel's flux goes to four.

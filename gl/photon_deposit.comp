@@ -56,11 +56,7 @@ uniform uint most;           // pieces that the list has room for
 
 const int MAX_PIECES = 12;  // of one footprint
 
-vec2 map_position(vec3 p) {
-  vec3 uvz;
-  project(lights[light].map_view, p, uvz);
-  return warp(light, uvz.xy) * float(map_size);
-}
+#include "landing_place.glsl"
 
 // From a landing to that of the neighbouring photon on the same path, in texels, as far as if the
 // two started a cell apart; zero if there is none.
@@ -74,7 +70,29 @@ vec2 neighbour_step(ivec2 c, ivec2 to, vec2 start, int order, int lane, uint pat
   there = there && path != 0u && texelFetch(signatures, int(index)).x == path;
   vec2 way = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
   float apart = max(dot(way, vec2(to)), 0.25);
-  return there ? (map_position(texelFetch(landings, int(index)).xyz) - here) / apart : vec2(0);
+  return there ? (map_position(texelFetch(landings, int(index)).xyz, path) - here) / apart : vec2(0);
+}
+
+const int NO_PAGE = -1;
+
+int page_of(vec4 landed, uint path) {
+#ifdef PAGES
+  if ((path & ON_A_PAGE) != 0u) return int(landed.z);
+#endif
+  return NO_PAGE;
+}
+
+// The first two words of a piece (splat_list.glsl).
+uvec2 packed_place(vec2 at, int page, int parts, int level) {
+#ifdef PAGES
+  vec4 rect = page == NO_PAGE ? vec4(0, 0, vec2(map_size)) : pages[light * MOST_PAGES + page].rect;
+  at = clamp(at, rect.xy, rect.zw - 0.01);
+  return uvec2(uint(at.x * 65536.0) << 4 | uint(parts),
+               uint(at.y * 8192.0) << 7 | uint(page + 1) << 3 | uint(level));
+#else
+  uvec2 fixed_point = uvec2(clamp(at, vec2(0), vec2(float(map_size) - 0.01)) * vec2(65536.0, 131072.0));
+  return uvec2(fixed_point.x << 4 | uint(parts), fixed_point.y << 3 | uint(level));
+#endif
 }
 
 // A cell's image along one axis, from the steps to both neighbours: their mean where both are.
@@ -119,7 +137,7 @@ void main() {
       reference = i;
     }
   }
-  vec2 here = map_position(texelFetch(landings, int(first + reference)).xyz);
+  vec2 here = map_position(texelFetch(landings, int(first + reference)).xyz, path);
   vec2 start = unpackSnorm2x16(from_cell.offset), extent = unpackUnorm2x16(from_cell.extent);
   vec2 a = extent.x * image_of_side(neighbour_step(cell, ivec2(1, 0), start, order, reference, path, here),
                                     neighbour_step(cell, ivec2(-1, 0), start, order, reference, path, here));
@@ -156,7 +174,8 @@ void main() {
   }
 #endif
   int row = table_first + (light * REFRACTORS + int(path & 255u)) * (nodes + 1);
-  vec2 pa = path_a != 0u ? map_position(from.xyz) : here;
+  vec2 pa = path_a != 0u ? map_position(from.xyz, path_a) : here;
+  int page_a = page_of(from, path_a), gathered_page = NO_PAGE;
   for (int turn = 0; turn <= turns; turn++) {
     bool last = turn == turns;  // one more turn, to write what is gathered
     int interval = node_a + 1 + turn;
@@ -171,11 +190,13 @@ void main() {
     uint path_b = has_b ? texelFetch(signatures, int(index_b)).x : 0u;
     vec4 to = texelFetch(landings, int(index_b));
 #endif
-    vec2 pb = path_b != 0u ? map_position(to.xyz) : pa;
+    vec2 pb = path_b != 0u ? map_position(to.xyz, path_b) : pa;
+    int page_b = page_of(to, path_b);
     float share_a = path_a != 0u && taken ? from.w : 0.0, share_b = path_b != 0u && taken ? to.w : 0.0;
     bool bridge = false;
     // Halves whose landings fall together are one piece.
-    int pieces = share_a > 0.0 && share_b > 0.0 && pa != pb ? 2 : 1;
+    bool apart = pa != pb || page_a != page_b;
+    int pieces = share_a > 0.0 && share_b > 0.0 && apart ? 2 : 1;
 #ifdef BRIDGE
     float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
     bridge = taken && path_a != 0u && path_a == path_b && way < MAX_BRIDGE;
@@ -193,17 +214,18 @@ void main() {
       float half_way = share_b > 0.0 ? share_a > 0.0 ? (2 * k <= pieces ? 0.0 : 1.0) : 1.0 : 0.0;
       // What does not land has no place: no share of it may come into the sum.
       vec2 at = bridge ? pa + 0.5 * (before.w + upto.w) * (pb - pa) : half_way > 0.0 ? pb : pa;
+      int page = half_way > 0.0 ? page_b : page_a;
       before = upto;
       float weight = last ? 0.0 : flux.x + flux.y + flux.z;
       vec2 off = abs(at - gathered_from);
-      bool write = gathered_weight > 0.0 && (last || (weight > 0.0 && max(off.x, off.y) > 0.75 * size));
+      bool elsewhere = max(off.x, off.y) > 0.75 * size || page != gathered_page;
+      bool write = gathered_weight > 0.0 && (last || (weight > 0.0 && elsewhere));
       if (write) {
-        vec2 centre = clamp(gathered_at / gathered_weight, vec2(0), vec2(float(map_size) - 0.01));
-        uvec2 fixed_point = uvec2(centre * vec2(65536.0, 131072.0));
+        uvec2 place = packed_place(gathered_at / gathered_weight, gathered_page, across_pieces, level);
         uvec3 units = uvec3(gathered * to_units + 0.5);
         uint word = min(atomicAdd(splat_count, 1u), most) * SPLAT_WORDS;
-        splat[word] = fixed_point.x << 4 | uint(across_pieces);
-        splat[word + 1u] = fixed_point.y << 3 | uint(level);
+        splat[word] = place.x;
+        splat[word + 1u] = place.y;
         splat[word + 2u] = packed_across;
         splat[word + 3u] = units.x;
         splat[word + 4u] = units.y;
@@ -215,7 +237,10 @@ void main() {
         gathered_weight = 0.0;
       }
       if (weight > 0.0) {
-        if (gathered_weight == 0.0) gathered_from = at;
+        if (gathered_weight == 0.0) {
+          gathered_from = at;
+          gathered_page = page;
+        }
         gathered += flux;
         gathered_at += weight * at;
         gathered_weight += weight;
@@ -224,5 +249,6 @@ void main() {
     path_a = path_b;
     from = to;
     pa = pb;
+    page_a = page_b;
   }
 }

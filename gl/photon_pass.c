@@ -8,10 +8,8 @@
 
 enum { LIST_HEADER = 16, SPLAT_BYTES = 24, MAX_SPLATS = 5 << 20 };
 enum { MOST_LANDING_BYTES = 1 << 30, LEAST_LANES = 7 };
+enum { PHOTON_DEFINES = 2560 };
 enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
-
-/* Share of the light that may fall outside the fitted map, on each of its four sides. */
-static const double map_tail = 2e-4;
 
 static double wide(const GLuint *lo_hi) {
   return ldexp((double)lo_hi[1], 32) + lo_hi[0];
@@ -78,6 +76,7 @@ void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, si
   abbe_renderer_set_int(r, r->trace, "ledger_first", 0);
   abbe_renderer_set_float(r, r->trace, "share_limit", r->plan.desc.energy_share);
   abbe_renderer_set_float(r, r->trace, "ledger_unit", ledger_unit(r, light));
+  abbe_renderer_set_int(r, r->trace, "fits_pages", r->fits_pages ? 1 : 0);
   r->gl->Uniform1ui(r->gl->GetUniformLocation(r->trace, "most_pairs"), (GLuint)r->pair_room);
   const GLuint landings = fine ? r->fine_landings : r->buffer[BINDING_LANDINGS];
   const GLuint signatures = fine ? r->fine_signatures : r->buffer[BINDING_SIGNATURES];
@@ -161,6 +160,8 @@ static abbe_result deposit_batch(abbe_renderer *r, size_t light, const batch *b,
     r->gl->UseProgram(r->splat);
     abbe_renderer_set_int(r, r->splat, "map_size", (int)r->plan.desc.map_size);
     r->gl->Uniform1ui(r->gl->GetUniformLocation(r->splat, "most"), (GLuint)r->splat_room);
+    abbe_renderer_set_int(r, r->splat, "light", (int)light);
+    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->splat, "map_texels"), (GLuint)r->map_texels);
     r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
     abbe_renderer_dispatch_list(r, r->splat, r->splat_list, r->splat_room, 1);
     abbe_renderer_end_pass(r, "light: spectral map");
@@ -168,10 +169,12 @@ static abbe_result deposit_batch(abbe_renderer *r, size_t light, const batch *b,
   return ABBE_OK;
 }
 
-/* Coarse to fine: each level takes over what the coarser ones hold. */
-static void resolve_map(abbe_renderer *r, size_t light) {
+/* Coarse to fine: each level takes over what the coarser ones hold; so many rows of a layer. */
+static void resolve_layer(abbe_renderer *r, size_t light, size_t layer, size_t rows) {
   r->gl->UseProgram(r->resolve);
   abbe_renderer_set_int(r, r->resolve, "light", (int)light);
+  abbe_renderer_set_int(r, r->resolve, "layer", (int)layer);
+  r->gl->Uniform1ui(r->gl->GetUniformLocation(r->resolve, "map_texels"), (GLuint)r->map_texels);
   abbe_renderer_set_int(r, r->resolve, "map_size", (int)r->plan.desc.map_size);
   abbe_renderer_set_int(r, r->resolve, "levels", (int)r->map_levels);
   r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
@@ -181,15 +184,16 @@ static void resolve_map(abbe_renderer *r, size_t light) {
     GLuint side = (GLuint)(r->plan.desc.map_size >> level);
     abbe_renderer_set_int(r, r->resolve, "level", level);
     r->gl->BindImageTexture(0, r->map, level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    abbe_renderer_dispatch_2d(r, side, side);
+    abbe_renderer_dispatch_2d(r, side, rows >> level);
     r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   }
 }
 
 /* What the eye sees of the map where its samples are farther apart than texels. */
-static void make_mips(abbe_renderer *r, size_t light) {
+static void make_mips(abbe_renderer *r, size_t light, size_t layer, size_t rows) {
   r->gl->UseProgram(r->mip);
   abbe_renderer_set_int(r, r->mip, "light", (int)light);
+  abbe_renderer_set_int(r, r->mip, "layer", (int)layer);
   abbe_renderer_set_int(r, r->mip, "map_size", (int)r->plan.desc.map_size);
   r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, r->texel_sizes);
   abbe_renderer_bind_texture(r, r->mip, "map_levels", 0, r->map);
@@ -197,9 +201,19 @@ static void make_mips(abbe_renderer *r, size_t light) {
     size_t side = r->plan.desc.map_size >> level;
     abbe_renderer_set_int(r, r->mip, "level", (int)level);
     r->gl->BindImageTexture(0, r->map, (GLint)level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    abbe_renderer_dispatch_2d(r, side, side);
+    abbe_renderer_dispatch_2d(r, side, rows >> level);
     r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   }
+}
+
+static void finish_map(abbe_renderer *r, size_t light) {
+  const size_t side = r->plan.desc.map_size;
+  const light_state *state = &r->light[light];
+  resolve_layer(r, light, light, side);
+  make_mips(r, light, light, side);
+  if (state->pages.count == 0) return;
+  resolve_layer(r, light, state->page_layer, state->pages.rows);
+  make_mips(r, light, state->page_layer, state->pages.rows);
 }
 
 /* All wavelengths in batches that overlap by one node, so that every interval between nodes lies
@@ -336,8 +350,7 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
     if (result == ABBE_OK) result = trace_and_deposit(r, light, progress, user, error);
     if (result != ABBE_OK) return result;
     abbe_renderer_begin_pass(r);
-    resolve_map(r, light);
-    make_mips(r, light);
+    finish_map(r, light);
     abbe_renderer_end_pass(r, "light: spectral map");
     if (r->statistics == NULL) continue;
     double start_ms = abbe_renderer_now_ms();
@@ -347,7 +360,7 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
   return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the photon passes", error);
 }
 
-/* Adds the light's entries; what was deposited is summed from the map's own Y. */
+/* Adds the light's entries; what was deposited is summed from the map's and the pages' own Y. */
 abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledger *ledger,
                                       abbe_error *error) {
   GLuint word[LEDGER_WORDS];
@@ -359,16 +372,19 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
   ledger->absorbed += wide(word + 4) * unit;
   ledger->trapped += wide(word + 6) * unit;
   ledger->missed += wide(word + 8) * unit;
-  size_t words = abbe_renderer_map_words(r), size = r->map_texels * words * sizeof(GLuint);
+  const size_t texels = r->map_texels * (r->pages ? 2 : 1);
+  size_t words = abbe_renderer_map_words(r), size = texels * words * sizeof(GLuint);
   GLuint *sum = malloc(size);
   if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->map_sums);
   r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, sum);
-  double deposited = 0;
-  for (size_t i = 0; i < r->map_texels; i++)
-    deposited += r->wide ? wide(sum + 6 * i + 2) : sum[3 * i + 1];
+  double deposited[2] = {0, 0};
+  for (size_t i = 0; i < texels; i++)
+    deposited[i / r->map_texels] += r->wide ? wide(sum + 6 * i + 2) : sum[3 * i + 1];
   free(sum);
-  ledger->deposited += deposited * abbe_renderer_map_unit(r, light);
+  const double map_unit = abbe_renderer_map_unit(r, light);
+  ledger->deposited += (deposited[0] + deposited[1]) * map_unit;
+  ledger->on_pages += deposited[1] * map_unit;
   return abbe_gl_check(r->gl, "the reading of the ledger", error);
 }
 
@@ -432,18 +448,28 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
-static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
-  char defines[2560];
-  snprintf(defines, sizeof defines,
+static void write_photon_defines(const abbe_renderer *r, char defines[PHOTON_DEFINES]) {
+  snprintf(defines, PHOTON_DEFINES,
            "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n"
            "#define NODES %zu\n%s#define MAX_BRIDGE %s\n",
            r->defines, r->lanes, r->steps, r->map_levels, r->nodes,
            r->plan.fills ? "#define BRIDGE\n" : "",
            r->plan.layers || r->plan.hierarchy ? "float(map_size) / 16.0" : "float(map_size)");
+}
+
+static abbe_result make_trace(abbe_renderer *r, abbe_error *error) {
+  char defines[PHOTON_DEFINES];
+  write_photon_defines(r, defines);
+  r->gl->DeleteProgram(r->trace);
+  return abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
+}
+
+/* All that follow the trace. */
+static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
+  char defines[PHOTON_DEFINES];
+  write_photon_defines(r, defines);
   abbe_result result =
-      abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
-  if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "photon_deposit.comp", defines, &r->deposit, error);
+      abbe_program_make_compute(r->gl, "photon_deposit.comp", defines, &r->deposit, error);
   if (result == ABBE_OK) result = abbe_renderer_make_refining_programs(r, defines, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_splat.comp", r->defines, &r->splat, error);
@@ -480,113 +506,36 @@ abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **dat
   return abbe_gl_check(gl, "the reading of landings", error);
 }
 
-/* Flux by window coordinate, and the range that leaves map_tail on each side. */
-enum { FIT_BINS = 1 << 15 };
-
-static void tighten(const double *histogram, double total, double *low, double *high) {
-  double from = *low, width = (*high - *low) / FIT_BINS, sum = 0;
-  int first = 0, last = FIT_BINS - 1;
-  while (first < last && (sum += histogram[first]) <= map_tail * total) first++;
-  sum = 0;
-  while (last > first && (sum += histogram[last]) <= map_tail * total) last--;
-  *low = from + width * first;
-  *high = from + width * (last + 1);
-}
-
-/* The brightest landing in 2^24 parts: flux is counted in whole ones, whose sums do not depend on
- * the order in which photons land. */
-static double part_of(const float *landing, size_t count) {
-  float most = 0;
-  for (size_t i = 0; i < count; i++)
-    if (landing[4 * i + 3] > most) most = landing[4 * i + 3];
-  return (double)most / (1 << 24);
-}
-
-/* Adds landings to the histograms of x and y; returns their flux, all in parts. */
-static double sort_landings(const abbe_view *view, const float *landing, size_t count, double part,
-                            double *histogram) {
-  double total = 0;
-  for (size_t i = 0; i < count; i++) {
-    const float *at = landing + 4 * i;
-    double p[3] = {at[0], at[1], at[2]}, uvz[3];
-    if (!(at[3] > 0) || !abbe_view_project(view, p, uvz)) continue;
-    double parts = rint(at[3] / part);
-    total += parts;
-    for (int axis = 0; axis < 2; axis++) {
-      double bin = fmin(fmax(floor(uvz[axis] * FIT_BINS), 0), FIT_BINS - 1);
-      histogram[axis * FIT_BINS + (int)bin] += parts;
-    }
-  }
-  return total;
-}
-
-/* The histogram of a window's range [low, high], sorted again into the steps of [from, to]. */
-static void resort(const double *histogram, double low, double high, double from, double to,
-                   double share[WARP_STEPS]) {
-  memset(share, 0, WARP_STEPS * sizeof *share);
-  for (int i = 0; i < FIT_BINS; i++) {
-    double at = low + (high - low) * (i + 0.5) / FIT_BINS;
-    double step = floor((at - from) / (to - from) * WARP_STEPS);
-    share[(int)fmin(fmax(step, 0), WARP_STEPS - 1)] += histogram[i];
-  }
-}
-
-/* A share of the texels goes evenly, the rest to where light lands; smooth, so that neighbouring
- * texels are alike. */
-enum { WARP_BLUR = 8 };
-
-static void make_warp(const double share[WARP_STEPS], double total, double knot[WARP_STEPS + 1]) {
-  static const double even = 0.4;
-  double sum = 0;
-  knot[0] = 0;
-  for (int k = 0; k < WARP_STEPS; k++) {
-    double near = 0, weight = 0;
-    for (int j = k - WARP_BLUR; j <= k + WARP_BLUR; j++) {
-      double w = WARP_BLUR + 1 - abs(j - k);
-      weight += w;
-      if (j >= 0 && j < WARP_STEPS) near += w * share[j];
-    }
-    sum += even / WARP_STEPS + (1 - even) * near / (weight * total);
-    knot[k + 1] = sum;
-  }
-  for (int k = 1; k <= WARP_STEPS; k++) knot[k] /= sum;
-}
-
-static void fit_axes(light_state *state, const double *histogram, double total) {
-  abbe_view *view = &state->map.view;
-  double old[4], near = view->near, far = view->far, share[WARP_STEPS];
-  memcpy(old, view->window, sizeof old);
-  for (int axis = 0; axis < 2; axis++)
-    tighten(histogram + axis * FIT_BINS, total, &view->window[2 * axis],
-            &view->window[2 * axis + 1]);
-  abbe_view_pad(view, 0.02);
-  view->near = near;
-  view->far = far;
-  for (int axis = 0; axis < 2; axis++) {
-    resort(histogram + axis * FIT_BINS, old[2 * axis], old[2 * axis + 1], view->window[2 * axis],
-           view->window[2 * axis + 1], share);
-    make_warp(share, total, state->map.knot[axis]);
-  }
-}
-
 static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
   double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0, part = 0;
-  if (histogram == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
+  abbe_page_light *aside = calloc(r->pages ? r->plan.parallelogram_count : 1, sizeof *aside);
+  if (histogram == NULL || aside == NULL) {
+    free(histogram);
+    free(aside);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
+  }
   abbe_result result = abbe_renderer_start_photons(r, light, error);
   abbe_renderer_bind_tables(r);
   batch b = {0};
   while (result == ABBE_OK && next_batch(r, &b)) {
     float *landing = NULL;
+    GLuint *path = NULL;
     abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
-    result = abbe_renderer_read_batch(r, light, &landing, NULL, error);
+    result = abbe_renderer_read_batch(r, light, &landing, &path, error);
     size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
-    if (result == ABBE_OK && part == 0) part = part_of(landing, count);
-    if (result == ABBE_OK && part > 0)
-      total += sort_landings(&r->light[light].map.view, landing, count, part, histogram);
+    if (result == ABBE_OK && part == 0) part = abbe_renderer_part_of(landing, count);
+    if (result == ABBE_OK && part > 0) {
+      total += abbe_renderer_sort_landings(r, light, landing, path, count, part, histogram);
+      abbe_renderer_sort_pages(r, landing, path, count, part, aside);
+    }
     free(landing);
+    free(path);
   }
-  if (result == ABBE_OK && total > 0) fit_axes(&r->light[light], histogram, total);
+  if (result == ABBE_OK && total > 0 && !abbe_renderer_map_is_given(r, light))
+    abbe_renderer_fit_axes(&r->light[light], histogram, total);
+  if (result == ABBE_OK) abbe_renderer_choose_pages(r, light, aside, total);
   free(histogram);
+  free(aside);
   return result;
 }
 
@@ -594,16 +543,24 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_renderer_light_layers(r, error);
   if (result == ABBE_OK) result = count_photons(r, error);
   if (result == ABBE_OK) result = make_landings(r, error);
-  if (result == ABBE_OK) result = make_programs(r, error);
-  if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->map_texels * abbe_renderer_map_words(r) * 4, NULL,
-                                       &r->map_sums, error);
+  if (result == ABBE_OK && r->plan.pages) result = abbe_renderer_expect_pages(r, error);
+  if (result == ABBE_OK) result = make_trace(r, error);
   if (result == ABBE_OK)
     result =
         abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
-    if (r->plan.reaches[light] && !abbe_renderer_map_is_given(r, light))
+    if (r->plan.reaches[light] && (r->pages || !abbe_renderer_map_is_given(r, light)))
       result = fit_map(r, light, error);
+  if (result == ABBE_OK && r->pages) {
+    result = abbe_renderer_keep_pages(r, error);
+    if (result == ABBE_OK) result = make_trace(r, error);
+  }
+  if (result == ABBE_OK) result = make_programs(r, error);
+  if (result == ABBE_OK) result = abbe_renderer_make_map(r, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_make_buffer(
+        r, (r->pages ? 2 : 1) * r->map_texels * abbe_renderer_map_words(r) * 4, NULL, &r->map_sums,
+        error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
     if (r->plan.reaches[light]) result = abbe_renderer_fit_cells(r, light, error);
   for (size_t light = 0; light < r->plan.light_count; light++) abbe_renderer_shift_cells(r, light);
@@ -628,10 +585,16 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
   *lanes = r->lanes;
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);
-  result = abbe_renderer_read_batch(r, light, data, NULL, error);
-  for (size_t i = 0; result == ABBE_OK && i < *count * *orders * *lanes; i++)
-    for (size_t k = 0; k < 3 && (*data)[4 * i + 3] > 0; k++)
-      (*data)[4 * i + k] = (float)((double)(*data)[4 * i + k] + r->local.origin[k]);
+  GLuint *path = NULL;
+  result = abbe_renderer_read_batch(r, light, data, &path, error);
+  for (size_t i = 0; result == ABBE_OK && i < *count * *orders * *lanes; i++) {
+    float *at = *data + 4 * i;
+    double place[3] = {at[0], at[1], at[2]};
+    if (!(at[3] > 0)) continue;
+    if (abbe_renderer_is_on_page(r, path[i])) abbe_renderer_page_place(r, light, at, place);
+    for (size_t k = 0; k < 3; k++) at[k] = (float)(place[k] + r->local.origin[k]);
+  }
+  free(path);
   if (result != ABBE_OK || cells == NULL) return result;
   *cells = malloc(*count * PHOTON_BYTES + PHOTON_BYTES);
   if (*cells == NULL) {

@@ -4,24 +4,60 @@
 
 const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 
-const int NO_RECEIVER = 0, NOT_HELD = 1, LANDED = 2;
+const int NO_RECEIVER = 0, NOT_HELD = 1, LANDED = 2, LANDED_ON_PAGE = 3;
 
-// The first receiver on the ray, and whether the light's map can hold what lands there.
-int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out uint receiver) {
+#ifdef PAGES
+uniform bool fits_pages;  // they are yet to be chosen: any parallelogram's coordinates will do
+
+// Where the light's map does not hold a place on receiver r: the place on its page, and which that
+// is; false where it has none.
+bool beside_map(int r, vec3 at, out vec3 place) {
+  int known = min(r, RECEIVERS - 1);  // the others are no parallelograms
+  vec3 from = at - receivers[known].corner.xyz;
+  place = vec3(dot(from, receivers[known].du.xyz), dot(from, receivers[known].dv.xyz), known);
+  bool found = fits_pages && r < RECEIVERS;
+  for (int k = 0; k < MOST_PAGES; k++) {
+    Page page = pages[light * MOST_PAGES + k];
+    vec2 texels = texels_on(page, at);
+    bool here = !fits_pages && int(page.info.x) == r && is_within(page.rect, texels);
+    place = here ? vec3(texels, k) : place;
+    found = found || here;
+  }
+  return found;
+}
+#endif
+
+// The first receiver on the ray, and whether the light's map or a page can hold what lands there;
+// place: where its landing is kept (landing_place.glsl).
+int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out vec3 place, out uint receiver) {
   Light l = lights[light];
   vec3 uvz;
   float t;
   receiver = 1u;
   at = p;
+  place = p;
   int r = receiver_hit(p, d, t_min, t_max, t);
   if (r < 0) return NO_RECEIVER;
   at = p + t * d;
+  place = at;
   receiver = uint(receiver_part(r)) + 1u;
-  if (!project(l.map_view, at, uvz) || !inside(uvz.xy)) return NOT_HELD;
   vec3 from;
   float distance_m;
   light_to(l, at, from, distance_m);
-  return receiver_lit(light, at, from, distance_m) ? LANDED : NOT_HELD;
+  bool held = project(l.map_view, at, uvz) && inside(uvz.xy) && receiver_lit(light, at, from, distance_m);
+#ifdef PAGES
+  if (!held && beside_map(r, at, place)) return LANDED_ON_PAGE;
+#endif
+  return held ? LANDED : NOT_HELD;
+}
+
+// A landing's signature; `path` counts the receiver too.
+uint signature_of(uint path, int landed, uint owner) {
+#ifdef PAGES
+  return (path << 8 & ~ON_A_PAGE) | 0x80000000u | (landed == LANDED_ON_PAGE ? ON_A_PAGE : 0u) | owner;
+#else
+  return path << 8 | 0x80000000u | owner;
+#endif
 }
 
 #ifdef WALK
@@ -40,14 +76,16 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   float n = spectrum.x, cos_i = -dot(d, front.n);
   float reflected = fresnel(cos_i, 1.0 / n);
   entry[REACHED] = 1.0;
-  vec3 at;
+  vec3 at, place;
   uint receiver;
   uint path = uint(r) * 131u + uint(front.facet);
   if (reflected > 0.0) {
     // The mirror on the outside takes the slot behind the exits'; it is the same for all colours.
-    if (land(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, at, receiver) == LANDED)
-      keep_landing(photon, EXITS, lane, at, reflected * flux,
-                   (path * 17u + receiver) << 8 | 0x80000000u | uint(r));
+    int landed =
+        land(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, at, place, receiver);
+    if (landed >= LANDED)
+      keep_landing(photon, EXITS, lane, place, reflected * flux,
+                   signature_of(path * 17u + receiver, landed, uint(r)));
     else
       entry[REFLECTED] = reflected;
   }
@@ -73,9 +111,10 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
     float out_share = share * (1.0 - kept);
     vec3 outer;
     if (out_share > 0.0 && refract_direction(inner, -wall_n, n, outer)) {
-      if (land(wall, outer, -touch * refractor_bounds.w, 1e30, at, receiver) == LANDED) {
-        keep_landing(photon, order, lane, at, out_share * flux,
-                     (path * 31u + receiver) << 8 | 0x80000000u | uint(r));
+      int landed = land(wall, outer, -touch * refractor_bounds.w, 1e30, at, place, receiver);
+      if (landed >= LANDED) {
+        keep_landing(photon, order, lane, place, out_share * flux,
+                     signature_of(path * 31u + receiver, landed, uint(r)));
       } else {
         entry[MISSED] += out_share;
       }

@@ -39,11 +39,7 @@ uniform float interval_weight[NODES];  // of the light, by the intervals' mean
 // Of the photon's light in an interval: what may lie wrong by a footprint's width.
 const float MOST_WRONG = 0.05;
 
-vec2 map_position(vec3 p) {
-  vec3 uvz;
-  project(lights[light].map_view, p, uvz);
-  return warp(light, uvz.xy) * float(map_size);
-}
+#include "landing_place.glsl"
 
 // Texels to the landing of the next photon on the same path; 0 if there is none.
 float step_to(ivec2 c, uint order, uint lane, uint path, vec2 here) {
@@ -52,7 +48,7 @@ float step_to(ivec2 c, uint order, uint lane, uint path, vec2 here) {
   there = there && at != 0u;
   uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
   there = there && signature[index] == path;
-  return there ? distance(map_position(landing[index].xyz), here) : 0.0;
+  return there ? distance(map_position(landing[index].xyz, path), here) : 0.0;
 }
 
 void main() {
@@ -74,12 +70,12 @@ void main() {
     vec4 to = landing[first + uint(k)];
     path[k] = found;
     flux[k] = found != 0u ? to.w : 0.0;
-    at[k] = found != 0u ? map_position(to.xyz) : vec2(0);
+    at[k] = found != 0u ? map_position(to.xyz, found) : vec2(0);
     index[k] = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].x;
     if (found != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
   }
   uint path_here = signature[first + uint(reference)];
-  vec2 here = map_position(landing[first + uint(reference)].xyz);
+  vec2 here = map_position(landing[first + uint(reference)].xyz, path_here);
   float a = path_here != 0u ? step_to(cell + ivec2(1, 0), order, uint(reference), path_here, here) : 0.0;
   float b = path_here != 0u ? step_to(cell + ivec2(0, 1), order, uint(reference), path_here, here) : 0.0;
   // What the map resolves of this photon, in texels.

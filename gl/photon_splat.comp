@@ -3,10 +3,14 @@
 layout(local_size_x = 256) in;
 #include "splat_list.glsl"
 #include "wide_sum.glsl"
-// Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each.
+#include "receiver_pages.glsl"
+// Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each. PAGES: then the same of their
+// layer.
 layout(std430, binding = 13) buffer MapSums { uint map_sum[]; };
+uniform int light;
 uniform int map_size;
 uniform uint most;
+uniform uint map_texels;  // of all levels
 
 uint level_offset(int level) {
   // side^2 (1 + 1/4 + ...), level terms.
@@ -37,12 +41,26 @@ void main() {
   uvec3 units = uvec3(splat[word + 3u], splat[word + 4u], splat[word + 5u]);
   int level = int(y_level & 7u), side = map_size >> level, parts = int(x_parts & 15u);
   float size = exp2(float(level));
-  vec2 centre = vec2(x_parts >> 4, y_level >> 3) * vec2(1.0 / 65536.0, 1.0 / 131072.0);
   uint first = level_offset(level);
+  vec2 low = vec2(0), high = vec2(float(map_size) - 0.01);
+#ifdef PAGES
+  vec2 centre = vec2(x_parts >> 4, y_level >> 7) * vec2(1.0 / 65536.0, 1.0 / 8192.0);
+  uint page = y_level >> 3 & 15u;  // and one more; 0: the map
+  vec4 rect = pages[light * MOST_PAGES + max(int(page), 1) - 1].rect;
+  first += page > 0u ? map_texels : 0u;
+  low = page > 0u ? rect.xy + 0.5 * size : low;
+  high = page > 0u ? rect.zw - 0.5 * size : high;
+#else
+  vec2 centre = vec2(x_parts >> 4, y_level >> 3) * vec2(1.0 / 65536.0, 1.0 / 131072.0);
+#endif
   vec3 whole = vec3(units);
   for (int n = 0; n < parts; n++) {
     vec2 p = centre + across * ((float(n) + 0.5) / float(parts) - 0.5);
-    vec2 at = clamp(p, vec2(0), vec2(float(map_size) - 0.01)) / size - 0.5;
+#ifdef PAGES
+    // What would lie beyond a page's edge, where the receiver ends, is folded back.
+    p = page > 0u ? min(max(p, 2.0 * rect.xy - p), max(2.0 * rect.zw - p, rect.xy)) : p;
+#endif
+    vec2 at = clamp(p, low, high) / size - 0.5;
     ivec2 base = ivec2(floor(at));
     vec2 f = at - vec2(base);
     ivec2 lo = clamp(base, ivec2(0), ivec2(side - 1)), hi = clamp(base + 1, ivec2(0), ivec2(side - 1));

@@ -5,10 +5,11 @@ layout(local_size_x = 256) in;
 #include "wide_sum.glsl"
 #include "receiver.glsl"
 
-// [(photon * SLOTS + order) * LANES + lane]: where it lands; w: flux for unit weight, W.
+// [(photon * SLOTS + order) * LANES + lane]: where it lands, in space or on a page
+// (landing_place.glsl); w: flux for unit weight, W.
 layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
-// Receiver and facets along the way, equal for paths that vary continuously; refractor in the low
-// eight bits; 0: no landing.
+// Receiver, facets along the way and whether on a page, equal for paths that vary continuously;
+// refractor in the low eight bits; 0: no landing.
 layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
 // Y weight of the samples at [light * WAVELENGTHS + i]: of the parts of their bands below and above
 // the node, then those in the coarse set.

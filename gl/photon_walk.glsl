@@ -56,11 +56,11 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
     h.hit.t = 1e30;
     bool met = next_interface(w, h);
-    vec3 at;
+    vec3 at, place;
     uint receiver;
     // What leaves a refractor that touches a receiver lands there.
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
-    int landed = land(w.p, w.d, t_min, met ? h.hit.t : 1e30, at, receiver);
+    int landed = land(w.p, w.d, t_min, met ? h.hit.t : 1e30, at, place, receiver);
 #ifdef ABSORBING
     if (w.inside != 0u && (met || landed != NO_RECEIVER)) {
       float way = landed != NO_RECEIVER ? distance(at, w.p) : h.hit.t;
@@ -72,11 +72,11 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
     if (landed == NO_RECEIVER && met) {
       trapped += branch(w, h, pending);
     } else {
-      int slot = landed == LANDED ? take_slot(w.path, used) : -1;
+      int slot = landed >= LANDED ? take_slot(w.path, used) : -1;
       if (slot >= 0)
-        keep_landing(photon, slot, lane, at, w.share * flux,
-                     (w.path * 31u + receiver) << 8 | 0x80000000u | owner);
-      else if (landed == LANDED || (landed == NO_RECEIVER && w.inside != 0u))
+        keep_landing(photon, slot, lane, place, w.share * flux,
+                     signature_of(w.path * 31u + receiver, landed, owner));
+      else if (landed >= LANDED || (landed == NO_RECEIVER && w.inside != 0u))
         trapped += w.share;
       else if (w.walls == 0 && w.inside == 0u)
         reflected += w.share;

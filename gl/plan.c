@@ -371,6 +371,14 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
     add(plan, plan->reaches[i], name, "%s",
         plan->reaches[i] ? "the light may meet a refractor" : "its cone misses every refractor");
   }
+  const bool exact = plan->parallelogram_count > 0;
+  plan->pages = caustics && exact && (plan->receiver_shadows || plan->aside);
+  add(plan, plan->pages, "maps on receivers", "%s",
+      !caustics                ? "no light meets a refractor"
+      : !exact                 ? "no receiver is a rectangle or a box"
+      : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
+      : plan->aside ? "a receiver lies more than 76 degrees off the view of a light's map"
+                    : "the lights' maps hold all receivers");
   add(plan, depth, "light: receiver depth",
       depth ? "receivers are found by their depth from the light" : "receivers are hit exactly");
   add(plan, caustics, "light: refractor front",
@@ -494,8 +502,8 @@ static abbe_result check_lights(const abbe_scene *scene, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* A light that meets a refractor needs one view that holds all of them; receivers outside it get no
- * light through them, which is noted. */
+/* A light that meets a refractor needs one view that holds all of them. Parallelograms outside it
+ * have pages; meshes there get no light through refractors, which is noted. */
 static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
   static const double up[3] = {0, 1, 0};
   double min[3], max[3], forward[3];
@@ -514,19 +522,22 @@ static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_
                          object->mesh.vertex_count))
         return abbe_error_set(error, ABBE_UNSUPPORTED,
                               "the light '%s' sees the refractor '%s' more than 76 degrees off the "
-                              "middle of all refractors; move it away from them",
+                              "middle of all refractors; move it away from them, or trace the "
+                              "scene",
                               light->name, object->name);
     }
-    bool all = true;
+    bool meshes = true;
     for (size_t k = 0; k < plan->receiver_count; k++) {
       const abbe_object *object = &scene->object[plan->receiver_object[k]];
-      all = abbe_view_fit(&view, (const double(*)[3])object->mesh.position,
-                          object->mesh.vertex_count) &&
-            all;
+      const bool exact = plan->receiver_model[k] == ABBE_RECEIVER_EXACT;
+      const bool held = abbe_view_fit(&view, (const double(*)[3])object->mesh.position,
+                                      object->mesh.vertex_count);
+      plan->aside = plan->aside || (exact && !held);
+      meshes = meshes && (exact || held);
     }
-    if (!all)
+    if (!meshes)
       note(plan,
-           "receivers more than 76 degrees off the way from the light '%.60s' to the "
+           "meshes more than 76 degrees off the way from the light '%.60s' to the "
            "refractors get no light through them",
            light->name);
   }

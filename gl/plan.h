@@ -123,6 +123,8 @@ typedef struct abbe_plan {
   size_t parallelogram_count;              /* of the exact receivers */
   abbe_receiver_model receivers;           /* the most general of theirs */
   bool receiver_shadows;                   /* some receiver may hide another from a light */
+  bool aside; /* some parallelogram lies beyond a light's map view */
+  bool pages; /* light may land where its light's map cannot hold it, and receivers have pages */
   bool spheres, convex, layers, hierarchy; /* models in use */
   bool walk;       /* light that leaves a refractor may meet one again, and is followed */
   bool dispersive; /* some index varies over the range */

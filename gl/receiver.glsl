@@ -1,7 +1,10 @@
 // Receivers and the light on them. They are hit exactly, from anywhere: parallelograms, and
 // RECEIVER_HIERARCHY: triangles of all others.
 
-uniform sampler2DArray spectral_map;   // XYZ flux over window area, one layer a light
+#include "receiver_pages.glsl"
+
+uniform sampler2DArray spectral_map;   // XYZ flux over window area, one layer a light; then irradiance
+                                       // on receivers, one layer for the pages of a light
 #ifdef TEXTURED
 uniform sampler2DArray surface_texture;
 #endif
@@ -149,10 +152,11 @@ float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
 
 const float MOST_TAPS = 4.0;
 
-// The map's mean over what lies between `at` and the neighbouring samples, `a` and `b` away on the
-// map: taps along the longer way, in a level whose texels are half as wide as the shorter one.
-vec3 map_flux(int light, vec2 at, vec2 a, vec2 b) {
-  // Of a neighbour that the map's view does not hold nothing is known.
+// The mean of a layer over what lies between `at` and the neighbouring samples, `a` and `b` away: taps
+// along the longer way, in a level whose texels are half as wide as the shorter one; of nothing outside
+// rect: left, bottom, right, top. All in parts of the layer.
+vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect) {
+  // Of a neighbour that the layer does not hold nothing is known.
   a = all(lessThan(abs(a), vec2(1))) ? a : vec2(0);
   b = all(lessThan(abs(b), vec2(1))) ? b : vec2(0);
   vec2 longer = dot(a, a) > dot(b, b) ? a : b, shorter = dot(a, a) > dot(b, b) ? b : a;
@@ -160,11 +164,32 @@ vec3 map_flux(int light, vec2 at, vec2 a, vec2 b) {
   float wide = length(longer) * side, narrow = max(length(shorter) * side, wide / MOST_TAPS);
   float level = max(log2(max(narrow, 1e-6)) - 0.8, 0.0);
   float taps = clamp(ceil(wide / max(narrow, 1.0) - 0.2), 1.0, MOST_TAPS);
+  vec2 rim = vec2(0.5 * exp2(ceil(level)) / side), middle = 0.5 * (rect.xy + rect.zw);
+  vec2 low = min(rect.xy + rim, middle), high = max(rect.zw - rim, middle);
   vec3 sum = vec3(0);
   for (float k = 0.5; k < taps; k += 1.0)
-    sum += textureLod(spectral_map, vec3(at + longer * (k / taps - 0.5), light), level).xyz;
+    sum += textureLod(spectral_map, vec3(clamp(at + longer * (k / taps - 0.5), low, high), layer), level).xyz;
   return sum / taps;
 }
+
+#ifdef PAGES
+// XYZ irradiance that the pages hold at p, on a receiver of normal n; across and down: to the
+// neighbouring samples.
+vec3 page_irradiance(int light, vec3 p, vec3 n, vec3 across, vec3 down) {
+  int found = -1;
+  for (int k = light * MOST_PAGES; k < light * MOST_PAGES + MOST_PAGES; k++) {
+    bool here = abs(dot(pages[k].plane.xyz, p) - pages[k].plane.w) < pages[k].info.w &&
+                abs(dot(pages[k].plane.xyz, n)) > 0.99 && is_within(pages[k].rect, texels_on(pages[k], p));
+    found = here ? k : found;
+  }
+  if (found < 0) return vec3(0);
+  Page page = pages[found];
+  float side = float(textureSize(spectral_map, 0).x);
+  vec2 a = vec2(dot(page.to_x.xyz, across), dot(page.to_y.xyz, across));
+  vec2 b = vec2(dot(page.to_x.xyz, down), dot(page.to_y.xyz, down));
+  return layer_mean(int(page.info.y), texels_on(page, p) / side, a / side, b / side, page.rect / side);
+}
+#endif
 
 // rgb irradiance from one light on p (n faces the viewer): straight, and through refractors.
 void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caustic) {
@@ -181,8 +206,14 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   vec2 at = warp(light, uvz.xy);
 #ifdef SEEN_BY_PIXELS
   vec2 to_right = dFdx(at), to_above = dFdy(at);  // before any pixel of the four goes its own way
+  vec3 across = dFdx(p), down = dFdy(p);
 #else
   const vec2 to_right = vec2(0), to_above = vec2(0);
+  const vec3 across = vec3(0), down = vec3(0);
+#endif
+#ifdef PAGES
+  if (l.misc.w != 0.0 && dot(n, refractor_bounds.xyz - p) > 0.0)
+    caustic = rgb_from_xyz * page_irradiance(light, p, n, across, down);
 #endif
 #endif
   if (!receiver_lit(light, p, d, distance_m)) return;
@@ -204,8 +235,8 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
 #endif
   if (!held) return;
-  vec3 flux = map_flux(light, at, to_right, to_above);
-  caustic = rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
+  vec3 flux = layer_mean(light, at, to_right, to_above, vec4(0, 0, 1, 1));
+  caustic += rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
 #endif
 }
 

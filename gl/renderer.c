@@ -76,22 +76,29 @@ static void size_map(abbe_renderer *r, size_t side) {
   }
 }
 
-static abbe_result make_map(abbe_renderer *r, abbe_error *error) {
+static size_t map_side(const abbe_renderer *r) {
+  return r->plan.caustics ? r->plan.desc.map_size : 1;
+}
+
+abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error) {
   const abbe_gl *gl = r->gl;
-  size_t side = r->plan.caustics ? r->plan.desc.map_size : 1, lights = r->plan.light_count;
-  size_map(r, side);
+  const size_t side = map_side(r);
+  size_t layers = r->plan.light_count;
+  for (size_t i = 0; i < r->plan.light_count; i++)
+    if (r->light[i].pages.count > 0) layers++;
+  r->map_layers = layers;
   gl->GenTextures(1, &r->map);
   gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map);
   gl->TexStorage3D(GL_TEXTURE_2D_ARRAY, (GLsizei)r->map_levels, GL_RGBA32F, (GLsizei)side,
-                   (GLsizei)side, (GLsizei)lights);
+                   (GLsizei)side, (GLsizei)layers);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  r->device_bytes += r->map_texels * lights * 16;
+  r->device_bytes += r->map_texels * layers * 16;
   if (r->plan.caustics) return abbe_gl_check(gl, "the allocation of the map", error);
   static const float black[4] = {0, 0, 0, 0};
-  for (size_t i = 0; i < lights; i++)
+  for (size_t i = 0; i < layers; i++)
     gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, 1, 1, 1, GL_RGBA, GL_FLOAT, black);
   return abbe_gl_check(gl, "the clearing of the map", error);
 }
@@ -100,7 +107,10 @@ static abbe_result make_passes(abbe_renderer *r, abbe_error *error) {
   r->gl->GenFramebuffers(1, &r->framebuffer);
   r->gl->GenVertexArrays(1, &r->empty_array);
   abbe_result result = abbe_renderer_upload_scene(r, error);
-  if (result == ABBE_OK) result = make_map(r, error);
+  size_map(r, map_side(r));
+  /* Photons tell first which layers it has. */
+  const bool photons = r->plan.caustics && !abbe_profile_is_thesis(r->plan.desc.profile);
+  if (result == ABBE_OK && !photons) result = abbe_renderer_make_map(r, error);
   if (result == ABBE_OK) result = abbe_renderer_make_light(r, error);
   if (result == ABBE_OK && abbe_profile_is_thesis(r->plan.desc.profile))
     return abbe_renderer_make_thesis(r, error);
@@ -151,9 +161,11 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteBuffers(3, r->hierarchy);
   gl->DeleteTextures(sizeof r->texels / sizeof *r->texels, r->texels);
   free(r->refractor_root);
+  free(r->parallelogram);
   gl->DeleteBuffers(1, &r->table_bands);
-  const GLuint lists[] = {r->table_warps, r->texel_sizes, r->pixel_list, r->refine_list,
-                          r->path_marks,  r->path_list,   r->splat_list, r->map_sums};
+  const GLuint lists[] = {r->table_pages, r->table_warps, r->texel_sizes,
+                          r->pixel_list,  r->refine_list, r->path_marks,
+                          r->path_list,   r->splat_list,  r->map_sums};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,     r->light_owner, r->light_depth, r->map,
@@ -297,7 +309,7 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   size_t side = r->plan.desc.map_size;
   abbe_result result = abbe_image_make(side, side, 3, thesis ? rgb : xyz, out, error);
   if (result != ABBE_OK) return result;
-  float *data = malloc(r->plan.light_count * side * side * 4 * sizeof *data);
+  float *data = malloc((flat ? 1 : r->map_layers) * side * side * 4 * sizeof *data);
   if (data == NULL) {
     abbe_image_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");

@@ -5,6 +5,7 @@
 #include "gl/api.h"
 #include "gl/local_scene.h"
 #include "gl/plan.h"
+#include "gl/receiver_pages.h"
 #include "gl/renderer.h"
 
 /* Shader storage bindings, as the shaders name them. */
@@ -56,6 +57,8 @@ typedef struct light_state {
   double cell_flux;    /* most that one photon cell can carry, W */
   double white_peak;   /* largest of X, Y, Z of the light's white, by its Y */
   double reached_flux; /* that all cells together bring to refractors, weighted by ybar, W */
+  abbe_receiver_pages pages;
+  size_t page_layer; /* of the map, where it has pages */
 } light_state;
 
 typedef struct thesis_state thesis_state;
@@ -96,22 +99,27 @@ struct abbe_renderer {
   GLuint texture_surface;
   GLuint texels[5]; /* of buffers that are read as texels, one a unit */
   GLuint light_layers, light_owner, light_depth;
-  GLuint map; /* XYZ flux over window area, one layer a light, in levels */
-  size_t map_levels, map_texels;
+  GLuint map; /* XYZ flux over window area, one layer a light, in levels; then those of pages */
+  size_t map_levels, map_texels, map_layers;
+  double (*parallelogram)[9]; /* corner, U, V of each, as the shaders count them */
+  GLuint table_pages;
+  bool pages;      /* shaders have PAGES: some light has any, or they are yet to be chosen */
+  bool fits_pages; /* they are yet to be chosen */
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
       eye_layers_depth, eye_picture;
   GLuint eye_owner, pixel_list, refine_list;
   GLuint framebuffer, empty_array;
-  size_t layer_side; /* of the light's layers */
-  size_t lanes;      /* wavelengths traced in one batch */
-  size_t steps;      /* of an interval */
+  size_t layer_side;          /* of the light's layers */
+  size_t lanes;               /* wavelengths traced in one batch */
+  size_t steps;               /* of an interval */
   size_t map_bands, map_band; /* bands of the range whose light the map sums, and the first of the
                                  three; 0: X, Y, Z */
   size_t device_bytes;
   char defines[2048];
+  size_t page_defines; /* where in them those of pages start */
 
-  GLuint place, cover, groups, list_groups, trace, deposit, select, deposit_fine, splat, resolve, mip, layer, receivers,
-      refraction, refraction_fine, refraction_list, eye_resolve;
+  GLuint place, cover, groups, list_groups, trace, deposit, select, deposit_fine, splat, resolve,
+      mip, layer, receivers, refraction, refraction_fine, refraction_list, eye_resolve;
   thesis_state *thesis;
 
   bool wide;                   /* the map's sums have 64 bits, else 32 */
@@ -189,14 +197,43 @@ abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **dat
 void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
                                size_t ledger_first);
 
+/* map_fit.c: windows and warps of maps by where light lands, on FIT_BINS steps of x, then of y. */
+enum { FIT_BINS = 1 << 15 };
+/* Flux that landings are counted in whole parts of. */
+double abbe_renderer_part_of(const float *landing, size_t count);
+/* Adds landings in the map to the histogram; returns their flux, all in parts. */
+double abbe_renderer_sort_landings(const abbe_renderer *r, size_t light, const float *landing,
+                                   const GLuint *path, size_t count, double part,
+                                   double *histogram);
+void abbe_renderer_fit_axes(light_state *state, const double *histogram, double total);
+
+/* receiver_pages_pass.c: which lights have maps on receivers, and where. */
+/* Before the photons' shaders are made, where the plan asks for pages. */
+abbe_result abbe_renderer_expect_pages(abbe_renderer *r, abbe_error *error);
+/* Sorts one batch of landings in as long as the pages are yet to be chosen, fluxes in whole parts.
+ */
+void abbe_renderer_sort_pages(const abbe_renderer *r, const float *landing, const GLuint *path,
+                              size_t count, double part, abbe_page_light *light);
+/* What landed on parallelograms, of `total` that landed: sets the light's pages. */
+void abbe_renderer_choose_pages(abbe_renderer *r, size_t light, const abbe_page_light *found,
+                                double total);
+/* All lights' pages are chosen: their table, or shaders without. */
+abbe_result abbe_renderer_keep_pages(abbe_renderer *r, abbe_error *error);
+/* Whether a landing of that path lies on a page; its place is then texels and the page's number. */
+bool abbe_renderer_is_on_page(const abbe_renderer *r, GLuint path);
+void abbe_renderer_page_place(const abbe_renderer *r, size_t light, const float *landing,
+                              double out[3]);
+
+/* renderer.c: the map's texture, with a layer for each light that has pages. */
+abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error);
+
 /* photon_refine.c: which photons take which wavelengths. */
 typedef enum trace_set { TRACE_ALL, TRACE_COARSE, TRACE_REFINED } trace_set;
 /* Index among all wavelengths of node k of so many. */
 size_t abbe_renderer_coarse_node(size_t wavelengths, size_t nodes, size_t k);
 bool abbe_renderer_refines(const abbe_renderer *r);
 /* What a refined interval's landings need; after the landings' own buffers. */
-abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons,
-                                          abbe_error *error);
+abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons, abbe_error *error);
 abbe_result abbe_renderer_make_refining_programs(abbe_renderer *r, const char *defines,
                                                  abbe_error *error);
 void abbe_renderer_trace_coarse(abbe_renderer *r, size_t light);

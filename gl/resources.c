@@ -123,6 +123,8 @@ void abbe_renderer_bind_tables(abbe_renderer *r) {
   }
   if (r->table_warps != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 2, r->table_warps);
+  if (r->table_pages != 0)
+    r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 3, r->table_pages);
   if (r->table_bands != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 1, r->table_bands);
 }

@@ -1,6 +1,7 @@
 // Pieces of light on their way to the map: place of the middle in texels (x in 12.16 fixed point
-// with the number of parts in the low four bits, y in 12.17 with the level in the low three), the
-// way across all parts (two halves), and XYZ of a part in map units, so that the list is what is summed.
+// with the number of parts in the low four bits, y in 12.17 with the level in the low three; PAGES: y
+// in 12.13, then the page's number from 1, 0 for the map, in four), the way across all parts (two
+// halves), and XYZ of a part in map units, so that the list is what is summed.
 const uint SPLAT_WORDS = 6u;
 layout(std430, binding = 15) buffer SplatList {
   uint splat_count, splat_groups_x, splat_groups_y, splat_groups_z;

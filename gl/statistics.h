@@ -18,8 +18,9 @@ typedef struct abbe_ledger {
   double reflected; /* on the outside, at the first interface, and landed nowhere */
   double absorbed;  /* along inner paths */
   double trapped;   /* still inside when the path ended: total or repeated internal reflection */
-  double missed;    /* met no receiver, or one that the map does not hold */
-  double deposited; /* in the spectral map */
+  double missed;    /* met no receiver, or one where neither map nor page holds it */
+  double deposited; /* in the spectral map and on receivers' pages */
+  double on_pages;  /* of what is deposited */
 } abbe_ledger;
 
 /* |reached - the parts| / reached; 0 where nothing was reached. */

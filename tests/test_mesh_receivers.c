@@ -231,10 +231,11 @@ static double apart(const abbe_image *a, const abbe_image *b) {
   "texture: " ABBE_SOURCE_DIR "/scenes/wood.png, repeat: [2, 3]}\n"
 #define CRATE                                                                                      \
   "- {name: crate, shape: box, size: [0.1, 0.12, 0.08], transform: [{rotate: {axis: [0, 0, 1], "   \
-  "angle: 20}}, {translate: [0.09, 0.05, 0.04]}], reflectance: [0.6, 0.5, 0.2]}\n"
+  "angle: 20}}, {translate: [-0.3, 0.4, 0.04]}], reflectance: [0.6, 0.5, 0.2]}\n"
 
 /* A rectangle and a box beside a hill, by their parallelograms and by their triangles: through a
- * ball, which sees both, and through a ring, whose light goes the general way. */
+ * ball, which sees both, and through a ring, whose light goes the general way. The box hides none
+ * of that light from the lamp: places that it hides have maps where they are parallelograms. */
 static void triangles_do_as_parallelograms_do(void **state) {
   (void)state;
   static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE HILL BALL("crown"),

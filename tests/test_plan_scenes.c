@@ -101,6 +101,13 @@ static void differ(const lines *from, const lines *to, lines *out) {
 #define CARD                                                                                       \
   "- {name: card, shape: rectangle, width: 0.1, height: 0.1, transform: [{translate: [-0.4, 0, "   \
   "0.3]}], reflectance: 0.5}\n"
+#define CEILING                                                                                    \
+  "- {name: ceiling, shape: rectangle, width: 2, height: 2, transform: [{rotate: {axis: [1, 0, "   \
+  "0], angle: 180}}, {translate: [0, 0, 0.7]}], reflectance: 0.5}\n"
+#define PEBBLE "- {name: pebble, shape: sphere, radius: 0.05, reflectance: 0.5}\n"
+#define DOME                                                                                       \
+  "- {name: dome, shape: sphere, radius: 0.05, transform: [{translate: [0.5, 0, 0.8]}], "          \
+  "reflectance: 0.5}\n"
 #define WOOD                                                                                       \
   "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5, "            \
   "texture: " ABBE_SOURCE_DIR "/scenes/wood.png}\n"
@@ -134,14 +141,14 @@ typedef struct pair {
 } pair;
 
 /* The plan of one ball on a floor. */
-#define BALL_ROWS                                                                                  \
+#define BALL_ROWS(pages)                                                                           \
   "=7 wavelengths, 8 exits, 9 landings", "+model: ball|exact sphere: the object is a sphere",      \
       "-refractors in turn|light that leaves the refractor cannot meet it again",                  \
       "+model: receivers|exact parallelograms: every receiver is a rectangle or a box",            \
       "-shadows of receivers|the receivers bound a convex room around the lights",                 \
       "+wavelengths|7 from 380 to 780 nm: the index varies with wavelength",                       \
       "+inner reflections|followed until less than 0.01 of the light is left, 8 exits at most",    \
-      "+map: lamp|the light may meet a refractor",                                                 \
+      "+map: lamp|the light may meet a refractor", pages,                                          \
       "-light: receiver depth|receivers are hit exactly",                                          \
       "+light: refractor front|photons start where the light sees a refractor",                    \
       "-light: refractor back|every refractor has an exact surface",                               \
@@ -155,7 +162,8 @@ typedef struct pair {
       "+eye: refraction|one direction a wavelength", "+eye: picture|2 x 2 samples a pixel",        \
       "-textures|none",
 
-static const char *const ball_rows[] = {BALL_ROWS NULL};
+static const char *const ball_rows[] = {
+    BALL_ROWS("-maps on receivers|the lights' maps hold all receivers") NULL};
 
 static const pair pairs[] = {
     {"no refractor",
@@ -164,6 +172,7 @@ static const pair pairs[] = {
      {0},
      {"=1 wavelengths, 8 exits, 9 landings", "-refractors in turn|nothing refracts",
       "+wavelengths|1 from 380 to 780 nm: nothing refracts", "-inner reflections|nothing refracts",
+      "-maps on receivers|no light meets a refractor",
       "-light: refractor front|no light meets a refractor",
       "-light: photon placement|no light meets a refractor",
       "-light: photons|no light meets a refractor",
@@ -185,7 +194,8 @@ static const pair pairs[] = {
      {"=1 wavelengths, 8 exits, 9 landings",
       "-model: ball|clear, and its index is that of air: light does not notice it",
       "-refractors in turn|nothing refracts", "+wavelengths|1 from 380 to 780 nm: nothing refracts",
-      "-inner reflections|nothing refracts", "-light: refractor front|no light meets a refractor",
+      "-inner reflections|nothing refracts", "-maps on receivers|no light meets a refractor",
+      "-light: refractor front|no light meets a refractor",
       "-light: photon placement|no light meets a refractor",
       "-light: photons|no light meets a refractor",
       "-light: spectral map|no light meets a refractor", "-light: gap fill|nothing lands apart",
@@ -266,7 +276,8 @@ static const pair pairs[] = {
      {0},
      {"=7 wavelengths, 8 exits, 16 landings",
       "+refractors in turn|a receiver may reach into the refractor",
-      "+shadows of receivers|a receiver may stand between a light and another", NULL}},
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+maps on receivers|a receiver may hide from a light where its light lands", NULL}},
     {"a directional light",
      ball,
      CAMERA SUN FLOOR BALL("crown"),
@@ -283,7 +294,7 @@ static const pair pairs[] = {
      ball,
      CAMERA SPOT("[-0.5, 0, 0]") FLOOR BALL("crown"),
      {0},
-     {"-map: lamp|its cone misses every refractor",
+     {"-map: lamp|its cone misses every refractor", "-maps on receivers|no light meets a refractor",
       "-light: refractor front|no light meets a refractor",
       "-light: photon placement|no light meets a refractor",
       "-light: photons|no light meets a refractor",
@@ -293,7 +304,7 @@ static const pair pairs[] = {
      egg,
      CAMERA SPOT("[-0.5, 0, 0]") FLOOR EGG("crown"),
      {0},
-     {"-map: lamp|its cone misses every refractor",
+     {"-map: lamp|its cone misses every refractor", "-maps on receivers|no light meets a refractor",
       "-light: refractor front|no light meets a refractor",
       "-light: refractor back|no light meets a refractor",
       "-light: photon placement|no light meets a refractor",
@@ -310,13 +321,41 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR CARD BALL("crown"),
      {0},
-     {"+shadows of receivers|a receiver may stand between a light and another", NULL}},
+     {"+shadows of receivers|a receiver may stand between a light and another",
+      "+maps on receivers|a receiver may hide from a light where its light lands", NULL}},
+    {"a receiver far off the way to the refractor",
+     ball,
+     CAMERA POINT_LIGHT FLOOR CEILING BALL("crown"),
+     {0},
+     {"+maps on receivers|a receiver lies more than 76 degrees off the view of a light's map",
+      NULL}},
+    {"a mesh far off the way to the refractor",
+     ball,
+     CAMERA POINT_LIGHT FLOOR DOME BALL("crown"),
+     {0},
+     {"+model: receivers|triangle hierarchy: 'dome' is a general mesh",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+maps on receivers|a receiver may hide from a light where its light lands",
+      "!meshes more than 76 degrees off the way from the light 'lamp' to the refractors get no "
+      "light through them",
+      NULL}},
+    {"meshes alone",
+     ball,
+     CAMERA POINT_LIGHT "objects:\n" PEBBLE DOME BALL("crown"),
+     {0},
+     {"+model: receivers|triangle hierarchy: 'pebble' is a general mesh",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "-maps on receivers|no receiver is a rectangle or a box",
+      "!meshes more than 76 degrees off the way from the light 'lamp' to the refractors get no "
+      "light through them",
+      NULL}},
     {"a receiver that is no rectangle",
      ball,
      CAMERA POINT_LIGHT FLOOR HILL BALL("crown"),
      {0},
      {"+model: receivers|triangle hierarchy: 'hill' is a general mesh",
-      "+shadows of receivers|a receiver may stand between a light and another", NULL}},
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+maps on receivers|a receiver may hide from a light where its light lands", NULL}},
     {"a receiver that is no rectangle, and layers as asked",
      egg,
      CAMERA POINT_LIGHT FLOOR HILL EGG("crown"),
@@ -324,7 +363,8 @@ static const pair pairs[] = {
      {"+model: ball|front and back layers: as asked",
       "-refractors in turn|light goes through two layers and no further, as asked",
       "+model: receivers|triangle hierarchy: 'hill' is a general mesh",
-      "+shadows of receivers|a receiver may stand between a light and another", NULL}},
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+maps on receivers|a receiver may hide from a light where its light lands", NULL}},
     {"a texture",
      ball,
      CAMERA POINT_LIGHT WOOD BALL("crown"),
@@ -350,7 +390,7 @@ static const pair pairs[] = {
      {"=1 wavelengths, 8 exits, 9 landings",
       "+wavelengths|1 from 380 to 780 nm: neither a light nor the eye meets a refractor",
       "-inner reflections|neither a light nor the eye meets a refractor",
-      "-map: lamp|its cone misses every refractor",
+      "-map: lamp|its cone misses every refractor", "-maps on receivers|no light meets a refractor",
       "-light: refractor front|no light meets a refractor",
       "-light: photon placement|no light meets a refractor",
       "-light: photons|no light meets a refractor",
@@ -393,6 +433,7 @@ static const pair pairs[] = {
       "+shadows of receivers|a receiver may stand between a light and another",
       "+wavelengths|7 from 380 to 680 nm: the index varies with wavelength",
       "-inner reflections|two interfaces only, as in the thesis",
+      "-maps on receivers|no receiver is a rectangle or a box",
       "+light: receiver depth|receivers are found by their depth from the light",
       "+light: refractor back|a mesh without an exact surface ends at its back layer",
       "+light: photon placement|at most 512 a side, where light meets a refractor",
@@ -401,11 +442,8 @@ static const pair pairs[] = {
       "+eye: picture|1 x 1 samples a pixel", NULL}},
 };
 
-static const char *const sphere_rows[] = {
-    BALL_ROWS
-    "!receivers more than 76 degrees off the way from the light 'lamp' to the refractors get no "
-    "light through them",
-    NULL};
+static const char *const sphere_rows[] = {BALL_ROWS(
+    "+maps on receivers|a receiver lies more than 76 degrees off the view of a light's map") NULL};
 
 /* What each has otherwise than scenes/sphere.yaml. */
 static const struct {
@@ -413,9 +451,8 @@ static const struct {
 } shipped[] = {
     {"rainbow",
      {"+model: drop|exact sphere: the object is a sphere",
-      "+shadows of receivers|a receiver may stand between a light and another", "no model: ball",
-      "no receivers more than 76 degrees off the way from the light 'lamp' to the refractors get "
-      "no light through them",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+maps on receivers|a receiver may hide from a light where its light lands", "no model: ball",
       NULL}},
     {"gem",
      {"+model: gem|convex planes: the object is a convex faceted solid",
@@ -423,10 +460,8 @@ static const struct {
     {"prism",
      {"+model: prism|convex planes: the object is a convex faceted solid",
       "+shadows of receivers|a receiver may stand between a light and another",
-      "+textures|a receiver has one", "no model: ball",
-      "no receivers more than 76 degrees off the way from the light 'lamp' to the refractors get "
-      "no light through them",
-      NULL}},
+      "+maps on receivers|a receiver may hide from a light where its light lands",
+      "+textures|a receiver has one", "no model: ball", NULL}},
     {"diamond",
      {"=7 wavelengths, 16 exits, 17 landings",
       "+model: diamond|convex planes: the object is a convex faceted solid",
@@ -435,6 +470,7 @@ static const struct {
       "index above 2 keeps it between facets",
       "-map: lamp of the left card|its cone misses every refractor",
       "-map: lamp of the high card|its cone misses every refractor",
+      "+maps on receivers|a receiver may hide from a light where its light lands",
       "!diamond: the index is extrapolated outside its valid range, 226 to 760 nm",
       "!through refractors, colours are split by the first light's illuminant", "no model: ball",
       NULL}},
