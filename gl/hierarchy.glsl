@@ -19,12 +19,16 @@ struct TriangleHit {
   int triangle;   // -1: none
 };
 
-// Where the ray enters the box, or 1e30; it passes grid point g at base + g * step.
-float hierarchy_enter(uvec3 box, vec3 base, vec3 step, float t_min, float t_max) {
-  vec3 a = base + vec3(box & 0xffffu) * step, b = base + vec3(box >> 16) * step;
-  vec3 near = min(a, b), far = max(a, b);
-  float from = max(max(near.x, near.y), max(near.z, t_min));
-  float to = min(min(far.x, far.y), min(far.z, t_max));
+// Where the ray enters the box, or 1e30; it passes grid point g at base + g * step. turn: by how many
+// bits the side that it comes to stands in the box's words.
+float hierarchy_enter(uvec3 box, uvec3 turn, vec3 base, vec3 step, float t_min, float t_max) {
+  vec3 near = base + vec3(box >> turn & 0xffffu) * step;
+  vec3 far = base + vec3(box >> (16u - turn) & 0xffffu) * step;
+  float from = near.x > near.y ? near.x : near.y, to = far.x < far.y ? far.x : far.y;
+  from = from > near.z ? from : near.z;
+  to = to < far.z ? to : far.z;
+  from = from > t_min ? from : t_min;
+  to = to < t_max ? to : t_max;
   return from <= to ? from : 1e30;
 }
 
@@ -38,13 +42,16 @@ bool hierarchy_turned(uvec2 cone, vec3 away) {
 // against their normal, -1: along it, 0: all. any: the first that is found will do.
 bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
                    inout TriangleHit h) {
-  int stack[HIERARCHY_STACK];
+  // What waits: the last four, for llvmpipe writes arrays lane by lane, and below them the others.
+  ivec4 top = ivec4(0);
+  int deep[HIERARCHY_STACK];
   vec3 least = vec3(1e-20);
   vec3 inverse = 1.0 / mix(d, mix(-least, least, greaterThanEqual(d, vec3(0))),
                            lessThan(abs(d), least));
   uvec4 low = hierarchy_node(root);
   vec3 cell = uintBitsToFloat(hierarchy_node(root + 1).xyz);
-  vec3 base = (uintBitsToFloat(low.xyz) - o) * inverse, step = cell * inverse, far_base = base + 65535.0 * step;
+  vec3 base = (uintBitsToFloat(low.xyz) - o) * inverse, step = cell * inverse;
+  vec3 far_base = base + 65535.0 * step;
   vec3 first = min(base, far_base), last = max(base, far_base);
   float start = max(max(first.x, first.y), max(first.z, t_min));
   bool meets = start <= min(min(last.x, last.y), min(last.z, h.t)) * 1.0000005;
@@ -55,6 +62,7 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   t_min -= start;
   float nearest = h.t - start, hit_u = 0.0, hit_v = 0.0;
   vec3 away = side * d;
+  uvec3 turn = mix(uvec3(16), uvec3(0), greaterThanEqual(d, vec3(0)));
   int code = meets ? int(low.w) : -1;
   int waiting = 0, found = -1, leaf = ~code;
   int node = code, next = code < 0 ? leaf >> 3 : 0, end = next + (code < 0 ? leaf & 7 : 0);
@@ -62,18 +70,20 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
     while (node >= 0) {
       uvec4 first_child = hierarchy_node(node), second_child = hierarchy_node(node + 1);
       uvec4 cones = hierarchy_node(node + 2);
-      float a = hierarchy_enter(first_child.xyz, base, step, t_min, nearest);
-      float b = hierarchy_enter(second_child.xyz, base, step, t_min, nearest);
+      float a = hierarchy_enter(first_child.xyz, turn, base, step, t_min, nearest);
+      float b = hierarchy_enter(second_child.xyz, turn, base, step, t_min, nearest);
       int code_a = a < 1e30 && !hierarchy_turned(cones.xy, away) ? int(first_child.w) : -1;
       int code_b = b < 1e30 && !hierarchy_turned(cones.zw, away) ? int(second_child.w) : -1;
       bool both = code_a != -1 && code_b != -1;
-      stack[waiting] = b < a ? code_a : code_b;
-      waiting += both ? 1 : 0;
+      int far = b < a ? code_a : code_b;
       code = both ? (b < a ? code_b : code_a) : code_a != -1 ? code_a : code_b;
       bool pop = code == -1 && waiting > 0;
-      waiting -= pop ? 1 : 0;
-      int top = stack[waiting];
-      code = pop ? top : code;
+      code = pop ? top.x : code;
+      if (both && waiting >= 4) deep[waiting - 4] = top.w;
+      ivec4 popped = ivec4(top.yzw, 0);
+      if (pop && waiting > 4) popped.w = deep[waiting - 5];
+      top = mix(mix(top, popped, bvec4(pop)), ivec4(far, top.xyz), bvec4(both));
+      waiting += both ? 1 : pop ? -1 : 0;
       node = code;
     }
     leaf = ~code;
@@ -96,9 +106,11 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
       next++;
     }
     bool pop = waiting > 0 && !(any && found >= 0);
+    code = pop ? top.x : -1;
+    ivec4 popped = ivec4(top.yzw, 0);
+    if (pop && waiting > 4) popped.w = deep[waiting - 5];
+    top = mix(top, popped, bvec4(pop));
     waiting -= pop ? 1 : 0;
-    int top = stack[waiting];
-    code = pop ? top : -1;
     leaf = ~code;
     node = code;
     next = code < 0 ? leaf >> 3 : 0;
