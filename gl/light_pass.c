@@ -158,15 +158,78 @@ static bool fits_to_light(const abbe_renderer *r) {
   return !r->plan.layers;
 }
 
+static void set_layer_view(abbe_renderer *r, const abbe_view *view) {
+  double matrix[16];
+  float clip[16];
+  abbe_view_matrix(view, matrix);
+  for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
+  const abbe_gl *gl = r->gl;
+  gl->UseProgram(r->layer);
+  gl->UniformMatrix4fv(gl->GetUniformLocation(r->layer, "view_projection"), 1, GL_FALSE, clip);
+  gl->Uniform4f(gl->GetUniformLocation(r->layer, "view_origin"), (float)view->origin[0],
+                (float)view->origin[1], (float)view->origin[2], view->orthographic ? 0.0f : 1.0f);
+  gl->Uniform3f(gl->GetUniformLocation(r->layer, "view_forward"), (float)view->forward[0],
+                (float)view->forward[1], (float)view->forward[2]);
+}
+
+static void clear_target(const abbe_gl *gl, bool owner) {
+  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  static const GLuint nobody[4] = {0, 0, 0, 0};
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  if (owner) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+}
+
+static void draw_refractors(abbe_renderer *r) {
+  for (size_t i = 0; i < r->plan.refractor_count; i++) {
+    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
+    abbe_renderer_draw(r, r->plan.refractor_object[i]);
+  }
+}
+
+static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  set_layer_view(r, &r->light[light].near_view);
+  gl->Enable(GL_DEPTH_TEST);
+  gl->Enable(GL_CULL_FACE);
+  for (int back = 0; back <= (r->plan.back ? 1 : 0); back++) {
+    abbe_renderer_begin_pass(r);
+    GLuint target[2] = {r->light_layers, r->light_owner};
+    int layer[2] = {2 * (int)light + back, (int)light};
+    abbe_result result = abbe_renderer_set_target(r, target, layer, back ? 1 : 2, r->light_depth,
+                                                  r->layer_side, r->layer_side, error);
+    if (result != ABBE_OK) return result;
+    clear_target(gl, !back);
+    gl->CullFace(back ? GL_FRONT : GL_BACK);
+    draw_refractors(r);
+    abbe_renderer_end_pass(r, back ? "light: refractor back" : "light: refractor front");
+  }
+  gl->Disable(GL_CULL_FACE);
+  return ABBE_OK;
+}
+
+abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  r->gl->Enable(GL_DEPTH_TEST);
+  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++) {
+    if (r->plan.reaches[i]) result = front_and_back(r, i, error);
+  }
+  return result;
+}
+
 /* Shrinks the near view to the rays that reach a refractor. Each turn sees as finely as the last
  * one left it, and leaves a ray's width on every side. */
-static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_box, size_t light) {
+static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_box, size_t light,
+                                 abbe_error *error) {
   enum { SIDE = 1024, TURNS = 4 };
   const abbe_gl *gl = r->gl;
   double *window = r->light[light].near_view.window;
   for (int turn = 0; turn < TURNS; turn++) {
     static const GLuint none[4] = {SIDE, 0, SIDE, 0};
     GLuint found[4] = {0};
+    /* What rays meet of meshes is told by the front layer of the view as it is now. */
+    abbe_result result = r->plan.hierarchy ? front_and_back(r, light, error) : ABBE_OK;
+    if (result != ABBE_OK) return result;
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, found_box);
     gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
     abbe_renderer_bind_tables(r);
@@ -202,7 +265,7 @@ static abbe_result fit_to_light(abbe_renderer *r, abbe_error *error) {
       abbe_program_make_compute(r->gl, "light_fit.comp", r->defines, &program, error);
   if (result == ABBE_OK) result = abbe_renderer_make_buffer(r, 4 * 4, NULL, &box, error);
   for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++)
-    if (r->plan.reaches[i]) result = fit_near_view(r, program, box, i);
+    if (r->plan.reaches[i]) result = fit_near_view(r, program, box, i, error);
   r->gl->DeleteBuffers(1, &box);
   r->gl->DeleteProgram(program);
   return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the fit of the light's view", error);
@@ -226,64 +289,6 @@ abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK && r->plan.caustics && r->plan.desc.profile != ABBE_PROFILE_THESIS)
     result = abbe_program_make_compute(r->gl, "photon_cover.comp", r->defines, &r->cover, error);
   if (result == ABBE_OK && r->cover != 0 && fits_to_light(r)) result = fit_to_light(r, error);
-  return result;
-}
-
-static void set_layer_view(abbe_renderer *r, const abbe_view *view) {
-  double matrix[16];
-  float clip[16];
-  abbe_view_matrix(view, matrix);
-  for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
-  const abbe_gl *gl = r->gl;
-  gl->UseProgram(r->layer);
-  gl->UniformMatrix4fv(gl->GetUniformLocation(r->layer, "view_projection"), 1, GL_FALSE, clip);
-  gl->Uniform4f(gl->GetUniformLocation(r->layer, "view_origin"), (float)view->origin[0],
-                (float)view->origin[1], (float)view->origin[2], view->orthographic ? 0.0f : 1.0f);
-  gl->Uniform3f(gl->GetUniformLocation(r->layer, "view_forward"), (float)view->forward[0],
-                (float)view->forward[1], (float)view->forward[2]);
-}
-
-static void clear_target(const abbe_gl *gl, bool owner) {
-  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  static const GLuint nobody[4] = {0, 0, 0, 0};
-  gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  if (owner) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
-  gl->ClearBufferfv(GL_DEPTH, 0, &far);
-}
-
-static void draw_refractors(abbe_renderer *r) {
-  for (size_t i = 0; i < r->plan.refractor_count; i++) {
-    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
-    abbe_renderer_draw(r, r->plan.refractor_object[i]);
-  }
-}
-
-static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
-  set_layer_view(r, &r->light[light].near_view);
-  gl->Enable(GL_CULL_FACE);
-  for (int back = 0; back <= (r->plan.back ? 1 : 0); back++) {
-    abbe_renderer_begin_pass(r);
-    GLuint target[2] = {r->light_layers, r->light_owner};
-    int layer[2] = {2 * (int)light + back, (int)light};
-    abbe_result result = abbe_renderer_set_target(r, target, layer, back ? 1 : 2, r->light_depth,
-                                                  r->layer_side, r->layer_side, error);
-    if (result != ABBE_OK) return result;
-    clear_target(gl, !back);
-    gl->CullFace(back ? GL_FRONT : GL_BACK);
-    draw_refractors(r);
-    abbe_renderer_end_pass(r, back ? "light: refractor back" : "light: refractor front");
-  }
-  gl->Disable(GL_CULL_FACE);
-  return ABBE_OK;
-}
-
-abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  r->gl->Enable(GL_DEPTH_TEST);
-  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++) {
-    if (r->plan.reaches[i]) result = front_and_back(r, i, error);
-  }
   return result;
 }
 

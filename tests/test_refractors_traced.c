@@ -1,0 +1,124 @@
+/* Light through refractors that lie in one another, and from their outsides alone: the map of the
+ * renderer against the reference tracer's, which shares no code with it. */
+#include "tests/frame.h"
+#include "tests/trace_scene.h"
+
+enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12 };
+
+/* Y of blocks of texels: finer than that the tracer's few photons are noise. */
+static void sum_blocks(const abbe_image *map, double block[BLOCKS * BLOCKS]) {
+  const size_t y = abbe_image_find_channel(map, "Y");
+  memset(block, 0, BLOCKS * BLOCKS * sizeof *block);
+  for (size_t i = 0; i < SIDE * SIDE; i++)
+    block[i / SIDE / BLOCK * BLOCKS + i % SIDE / BLOCK] += (double)map->data[i * map->channels + y];
+}
+
+typedef struct agreement {
+  double energy;  /* the renderer's light over the tracer's */
+  double trapped; /* what its ledger gives up within refractors, over the same */
+  double apart;   /* sum of the blocks' absolute differences, over the light */
+  double light;   /* W */
+} agreement;
+
+static agreement compare(const char *text) {
+  abbe_scene scene;
+  abbe_image drawn, traced;
+  abbe_error error = {0};
+  abbe_render_desc desc = small_frame;
+  desc.photons = 128;
+  desc.map_size = SIDE;
+  load_text(text, &scene);
+  desc.orders = 16;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  const abbe_statistics statistics = draw_frame(renderer);
+  read_map(renderer, 0, &drawn);
+  abbe_renderer_free(renderer);
+  abbe_map_layout layout;
+  assert_ok(abbe_map_layout_read(&drawn, "drawn", &layout, &error), &error);
+  abbe_tracer *tracer = make_tracer(&scene, &(abbe_trace_desc){.no_picture = true,
+                                                               .map_width = SIDE,
+                                                               .map_height = SIDE,
+                                                               .layout = &layout,
+                                                               .photons = 1 << 17,
+                                                               .space = ABBE_RGB_SPACE_XYZ});
+  run_passes(tracer, PASSES);
+  assert_ok(abbe_tracer_map(tracer, &traced, &error), &error);
+  double a[BLOCKS * BLOCKS], b[BLOCKS * BLOCKS];
+  sum_blocks(&drawn, a);
+  sum_blocks(&traced, b);
+  agreement found = {0};
+  double light = 0;
+  for (size_t i = 0; i < BLOCKS * BLOCKS; i++) {
+    found.apart += fabs(a[i] - b[i]);
+    light += a[i];
+    found.light += b[i];
+  }
+  assert_true(found.light > 0);
+  found.energy = light / found.light;
+  found.apart /= found.light;
+  found.trapped = statistics.energy.trapped / found.light;
+  print_message("%.4f of the tracer's light, %.4f given up, %.4f of it elsewhere\n", found.energy,
+                found.trapped, found.apart);
+  abbe_tracer_free(tracer);
+  abbe_image_free(&drawn);
+  abbe_image_free(&traced);
+  abbe_scene_free(&scene);
+  return found;
+}
+
+#define INNER(material)                                                                            \
+  "- {name: core, shape: sphere, radius: 0.06, levels: 4, transform: [{translate: [0.005, 0, "     \
+  "0.2]}], material: " material "}\n"
+
+/* What the map lacks is what the ledger says that was given up; of that some would not have landed.
+ */
+static void check(const char *text, double least_light) {
+  const agreement found = compare(text);
+  assert_true(found.light > least_light);
+  assert_true(found.energy < 1.01);
+  assert_true(found.energy + found.trapped > 0.995);
+  assert_true(found.apart < found.trapped + 0.03);
+}
+
+static void test_a_hollow_ball(void **state) {
+  (void)state;
+  check(CAMERA POINT_LIGHT FLOOR BALL("crown") INNER("air"), 1e-3);
+}
+
+static void test_a_ball_in_another(void **state) {
+  (void)state;
+  check(CAMERA POINT_LIGHT FLOOR BALL("crown") INNER("dense"), 1e-3);
+}
+
+/* A cup of glass with water up to its inner wall: the water is listed last and reaches into the
+ * glass. */
+static void test_a_cup_of_water(void **state) {
+  (void)state;
+  check(CAMERA POINT_LIGHT FLOOR
+        "- {name: cup, shape: lathe, around: 48, profile: [[0, 0], [0.06, 0], [0.06, 0.12],"
+        " [0.05, 0.12], [0.05, 0.01], [0, 0.01]],"
+        " transform: [{translate: [0, 0, 0.1]}], material: crown}\n"
+        "- {name: water, shape: lathe, around: 48, profile: [[0, 0], [0.055, 0], [0.055, 0.08],"
+        " [0, 0.08]], transform: [{translate: [0, 0, 0.105]}], material: flat}\n",
+        1e-3);
+}
+
+/* Light comes to the wall from the pane's mirror alone. */
+static void test_the_outside_alone(void **state) {
+  (void)state;
+  check("materials: glass.yaml\ncamera: {eye: [-1, -1, 0.5], target: [0, 0, 0.05]}\n"
+        "lights:\n- {name: lamp, kind: spot, position: [-0.5, 0, 0.6], target: [0, 0, 0.1],"
+        " cone: 12, intensity: 1}\n"
+        "objects:\n- {name: brick, shape: box, size: [0.3, 0.3, 0.1], transform: [{translate: "
+        "[0, 0, 0.05]}], material: smoke}\n"
+        "- {name: wall, shape: rectangle, width: 2, height: 2, reflectance: 0.5, transform: "
+        "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.6, 0, 1.12]}]}\n",
+        1e-4);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_hollow_ball), cmocka_unit_test(test_a_ball_in_another),
+      cmocka_unit_test(test_a_cup_of_water), cmocka_unit_test(test_the_outside_alone)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
