@@ -323,7 +323,8 @@ SIDE_BY_SIDE static void bend(lanes *l) {
 
 /* ---- the batch ---- */
 
-/* Matched: the renderer counts light only where the lamp would see the receiver past others. */
+/* Matched: the map of the renderer's light holds only what the lamp would see past other receivers;
+ * its pictures show the rest too. */
 static bool lamp_sees(const abbe_light_walk *w, const abbe_light *light, const abbe_hit *hit) {
   if (!w->physics.matched) return true;
   float from[3], d[3], o[3], limit = INFINITY;
@@ -402,10 +403,10 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
         path *s = &f->state[first + k];
         verdict v = l.verdict[k];
         if (v == GOES_ON) v = go_on(w, &l, k, s, next);
-        if (v == LANDS && !lamp_sees(w, light, &l.hit[k])) v = DROPS;
         double flux = (double)(s->y * s->flux);
         if (v == LANDS) {
-          land(&l, k, s, &landing[landed++]);
+          land(&l, k, s, &landing[landed]);
+          landing[landed++].hidden = !lamp_sees(w, light, &l.hit[k]);
           ledger->landed += flux;
         } else if (v == ESCAPES) {
           ledger->escaped += flux;

@@ -39,6 +39,7 @@ typedef struct abbe_landing {
   float side; /* +1: on the side of the face's normal, -1: on the other */
   float flux; /* W */
   uint32_t step;
+  bool hidden; /* matched: from the lamp by other receivers, so that its map has no place for it */
 } abbe_landing;
 
 /* Where the light of the photons went: W, each wavelength with its share of Y. */

@@ -105,7 +105,7 @@ typedef struct sink {
 
 static void add_to_map(const sink *s, const abbe_landing *l) {
   abbe_tracer *t = s->t;
-  if (t->desc.no_map || s->light != t->desc.map_light) return;
+  if (t->desc.no_map || s->light != t->desc.map_light || l->hidden) return;
   double p[3];
   size_t column, row;
   abbe_geometry_to_world(&t->geometry, l->p, p);
@@ -387,6 +387,7 @@ static size_t try_landings(const abbe_tracer *t, abbe_light_walk *walk, const ab
                                         landing, &ledger);
     for (size_t i = 0; i < landed; i++) {
       double p[3], from[3], z;
+      if (landing[i].hidden) continue;
       abbe_geometry_to_world(&t->geometry, landing[i].p, p);
       abbe_vector_subtract(p, view->origin, from);
       z = abbe_vector_dot(from, view->forward);
