@@ -200,7 +200,7 @@ static pid_t start_long_render(int fd) {
   assert_true(child >= 0);
   if (child > 0) return child;
   if (chdir(run_folder) != 0 || dup2(fd, STDERR_FILENO) < 0) _exit(99);
-  execl(ABBE_PROGRAM, "abbe", "render", ABBE_SOURCE_DIR "/scenes/gem.yaml", "--photons", "64",
+  execl(ABBE_PROGRAM, "abbe", "render", ABBE_SOURCE_DIR "/scenes/diamond.yaml", "--photons", "64",
         "--wavelengths", "100", "--size", "2048x2048", "-o", "picture.exr", "--png", "picture.png",
         (char *)NULL);
   _exit(99);
