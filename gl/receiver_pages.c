@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Shares of the light: on each side of a window, of one page, and of all of them. */
-static const double tail = 2e-4, least_page = 2e-4, least_pages = 1e-3;
+static const double tail = 2e-4, least_page = 1e-3, least_pages = 1e-3;
 /* Of the layer: a page gets four times the share that its light is of all, within these. */
 static const double least_area = 1.0 / 16, most_area = 1;
 /* Below it all rectangles are as small as they may be. */

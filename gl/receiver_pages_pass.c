@@ -10,6 +10,10 @@ static const GLuint on_a_page = 0x40000000u;
 
 static const char page_defines[] = "#define PAGES\n#define MOST_PAGES %zu\n";
 
+/* A page costs as much as a map: what lands beside the map is given up below so many times the share
+ * below which paths end. */
+static const double least_share = 1.5;
+
 /* How far off its plane a place on a receiver may be found, in parts of the scene. */
 static const double thickness = 4e-6;
 
@@ -70,8 +74,11 @@ void abbe_renderer_sort_pages(const abbe_renderer *r, const float *landing, cons
 void abbe_renderer_choose_pages(abbe_renderer *r, size_t light, const abbe_page_light *found,
                                 double total) {
   const size_t side = r->plan.desc.map_size, align = (size_t)1 << (r->map_levels - 1);
+  double beside = 0;
   if (!r->pages) return;
-  for (size_t i = 0; i < r->plan.parallelogram_count; i++) total += found[i].flux;
+  for (size_t i = 0; i < r->plan.parallelogram_count; i++) beside += found[i].flux;
+  total += beside;
+  if (beside < least_share * r->plan.desc.energy_share * total) return;
   abbe_receiver_pages_lay_out(found, (const double(*)[9])r->parallelogram,
                               r->plan.parallelogram_count, total, side, align,
                               &r->light[light].pages);

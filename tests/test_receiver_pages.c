@@ -226,6 +226,7 @@ static void test_behind_the_lamp(void **state) {
   size_t pages = 0;
   desc.width = desc.height = 16;
   desc.photons = 512;
+  desc.energy_share = 1e-3; /* little light asks for pages then */
   draw(CEILING_EYE BULB ROOM GREAT_BALL, &desc, &picture, &pages);
   assert_true(pages >= 1);
   const double n = 1.5, d = 0.3, l = 0.6, radius = 0.1;
@@ -278,6 +279,7 @@ static void test_a_closed_room(void **state) {
     abbe_scene scene = {0};
     abbe_render_desc desc = small_frame;
     desc.wavelengths = rooms[i].wavelengths;
+    desc.energy_share = 1e-3; /* little light asks for pages then */
     load_text(rooms[i].text, &scene);
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     const abbe_statistics s = draw_frame(renderer);

@@ -101,10 +101,12 @@ static bool white_of(const extreme *e, const extreme_frame *f, double white[3]) 
   return known;
 }
 
-/* The map holds what the ledger says, and X and Z as much as Y: a sum that had wrapped around
- * would lack at least as much as all light together, and one that starved its small parts. */
+/* The map holds what the ledger says that receivers' pages do not, and X and Z as much as Y: a sum
+ * that had wrapped around would lack at least as much as all light together, and one that starved
+ * its small parts. */
 static void check_map(const extreme *e, const extreme_frame *f, extreme_row *row) {
-  double deposited = f->statistics.energy.deposited, white[3], worst = 0;
+  const abbe_ledger *energy = &f->statistics.energy;
+  double deposited = energy->deposited - energy->on_pages, white[3], worst = 0;
   if (f->map.data == NULL || f->scene.light_count > 1 || !(deposited > 0)) return;
   if (!white_of(e, f, white)) {
     extreme_row_break(row, "the light has no white");
