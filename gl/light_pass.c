@@ -77,6 +77,14 @@ static void take_layout(const abbe_renderer *r, const abbe_map_layout *given,
   memcpy(out->view.window, given->view.window, sizeof out->view.window);
 }
 
+void abbe_renderer_whole_map(const abbe_renderer *r, size_t light, abbe_map_layout *out) {
+  abbe_view view;
+  look_from_light(r, &r->scene->light[light], &view);
+  fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &view);
+  abbe_view_pad(&view, 0.01);
+  abbe_map_layout_make(&view, out);
+}
+
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
  * to the photons' landings later where the request does not give it. */
 static void fit_views(abbe_renderer *r) {
@@ -85,7 +93,6 @@ static void fit_views(abbe_renderer *r) {
     light_state *state = &r->light[i];
     state->cells[0] = state->cells[1] = r->plan.desc.photons;
     look_from_light(r, light, &state->near_view);
-    abbe_view map_view = state->near_view;
     if (abbe_profile_is_thesis(r->plan.desc.profile)) {
       fit_thesis(r, light, state);
       continue;
@@ -95,9 +102,7 @@ static void fit_views(abbe_renderer *r) {
     else
       fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->near_view);
     abbe_view_pad(&state->near_view, 0.01);
-    fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &map_view);
-    abbe_view_pad(&map_view, 0.01);
-    abbe_map_layout_make(&map_view, &state->map);
+    abbe_renderer_whole_map(r, i, &state->map);
     if (abbe_renderer_map_is_given(r, i)) take_layout(r, r->plan.desc.map_layout, &state->map);
   }
 }

@@ -514,6 +514,13 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     free(aside);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
   }
+  /* Pages are for what no map of the light could hold, whichever window is given. */
+  const bool given = abbe_renderer_map_is_given(r, light);
+  const abbe_map_layout layout = r->light[light].map;
+  if (given) {
+    abbe_renderer_whole_map(r, light, &r->light[light].map);
+    abbe_renderer_upload_lights(r);
+  }
   abbe_result result = abbe_renderer_start_photons(r, light, error);
   abbe_renderer_bind_tables(r);
   batch b = {0};
@@ -531,7 +538,8 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     free(landing);
     free(path);
   }
-  if (result == ABBE_OK && total > 0 && !abbe_renderer_map_is_given(r, light))
+  if (given) r->light[light].map = layout;
+  if (result == ABBE_OK && total > 0 && !given)
     abbe_renderer_fit_axes(&r->light[light], histogram, total);
   if (result == ABBE_OK) abbe_renderer_choose_pages(r, light, aside, total);
   free(histogram);

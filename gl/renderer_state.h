@@ -176,6 +176,8 @@ void abbe_renderer_end_pass(abbe_renderer *r, const char *name);
 
 /* light_pass.c: the light's views, their layers, and the photons. */
 abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error);
+/* A light's map around all receivers, before it is fitted to the landings. */
+void abbe_renderer_whole_map(const abbe_renderer *r, size_t light, abbe_map_layout *out);
 abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error);
 /* Moves the photon grid by the request's part of a cell; what is lit stays in the window. */
 void abbe_renderer_shift_cells(abbe_renderer *r, size_t light);
