@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Shares of the light: on each side of a window, of one page, and of all of them. */
-static const double tail = 2e-4, least_page = 1e-3, least_pages = 1e-3;
+static const double tail = 2e-4, least_page = 1e-3;
 /* Of the layer: a page gets four times the share that its light is of all, within these. */
 static const double least_area = 1.0 / 16, most_area = 1;
 /* Below it all rectangles are as small as they may be. */
@@ -89,7 +89,7 @@ void abbe_receiver_pages_lay_out(const abbe_page_light *light, const double (*pa
   double sum = 0;
   memset(out, 0, sizeof *out);
   for (size_t i = 0; i < count; i++) sum += light[i].flux;
-  if (!(sum >= least_pages * total) || !(sum > 0)) return;
+  if (!(sum >= least_page * total) || !(sum > 0)) return;
   for (size_t i = 0; i < count; i++) {
     if (!(light[i].flux >= least_page * total)) continue;
     size_t at = out->count;

@@ -42,9 +42,8 @@ void abbe_page_light_add(abbe_page_light *light, double u, double v, double flux
 
 /* Pages for those of `count` parallelograms (corner, U, V) that take most light, in a layer of side
  * x side texels, brightest first. A rectangle's sides are multiples of `align`, which divides
- * `side`; its texels are nearly squares on the receiver. None where all of it is less than a
- * thousandth of `total`, the flux of all that lands; a parallelogram has one from a fifth of that
- * on. All but 2e-4 of its light on each side lies in a page's window. */
+ * `side`; its texels are nearly squares on the receiver. None for less than a thousandth of `total`,
+ * the flux of all that lands. All but 2e-4 of its light on each side lies in a page's window. */
 void abbe_receiver_pages_lay_out(const abbe_page_light *light, const double (*parallelogram)[9],
                                  size_t count, double total, size_t side, size_t align,
                                  abbe_receiver_pages *out);
