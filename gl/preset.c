@@ -213,6 +213,14 @@ abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan
                                    : "no sweep of such a scene made any");
 }
 
+/* Exits that plans have by themselves; of a high index they have more, and are left to it. */
+static bool take_exits(size_t *mine, const abbe_render_desc *preset) {
+  const size_t planned = preset->model == ABBE_MODEL_LAYERS ? 4 : 8;
+  const bool same = *mine == 0 || *mine == preset->orders;
+  if (*mine == 0 && preset->orders < planned) *mine = preset->orders;
+  return same;
+}
+
 static bool take(size_t *mine, size_t preset) {
   if (*mine == 0) *mine = preset;
   return *mine == preset;
@@ -224,7 +232,7 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
   same = take(&d->photons, p->photons) && same;
   same = take(&d->map_size, p->map_size) && same;
   same = take(&d->supersample, p->supersample) && same;
-  same = take(&d->orders, p->orders) && same;
+  same = take_exits(&d->orders, p) && same;
   if (d->fill == ABBE_FILL_AUTO) d->fill = p->fill;
   if (d->energy_share == 0) d->energy_share = p->energy_share;
   if (d->model == ABBE_MODEL_AUTO) d->model = p->model;

@@ -141,13 +141,20 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   assert_int_equal(empty.photons, 64);
   assert_int_equal(empty.map_size, 512);
   assert_int_equal(empty.supersample, 1);
-  assert_int_equal(empty.orders, 8);
+  assert_int_equal(empty.orders, 0); /* as many as a plan has by itself: left to it */
   assert_int_equal(empty.fill, ABBE_FILL_BRIDGE);
   assert_near(empty.energy_share, 0.01, 0);
   assert_false(abbe_preset_apply(point, &own));
   assert_int_equal(own.wavelengths, 21);
   assert_int_equal(own.photons, 64);
   assert_true(abbe_preset_apply(point, &equal));
+  abbe_preset_point fewer = *point;
+  abbe_render_desc some = {0}, other = {.orders = 3};
+  fewer.desc.orders = 2;
+  assert_true(abbe_preset_apply(&fewer, &some));
+  assert_int_equal(some.orders, 2);
+  assert_false(abbe_preset_apply(&fewer, &other));
+  assert_int_equal(other.orders, 3);
   abbe_presets_free(&presets);
 }
 

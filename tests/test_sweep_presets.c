@@ -69,6 +69,10 @@ static void test_a_class_of_two_scenes(void **state) {
   add(&t[0], "default", 32, 1, 1, NAN);
   add(&t[0], "thesis", 16, 1, 1, 0.1); /* no preset whatever it is worth */
   add(&t[1], "thesis", 16, 1, 1, 0.1);
+  for (int k = 0; k < 2; k++) { /* cheap, but it gives up what others may be made of */
+    add(&t[k], "default", 24, 1, 1, 0.5);
+    t[k].row[t[k].count - 1].setting.share = 0.1;
+  }
   add(&t[2], "default", 64, 5, 5, 1);
   abbe_error error = {0};
   abbe_yaml *yaml = NULL;

@@ -17,6 +17,10 @@ static const double slack = 0.02;
 /* An error that is not above the reference's own noise by this much tells nothing of settings. */
 static const double most_noise = 0.9;
 
+/* Settings that give up paths sooner than the default does are no presets: what they leave out may
+ * be all that a scene that was not swept is made of, as a rainbow is of light reflected inside. */
+static const double most_share = 0.01;
+
 /* A setting that all sweeps of a class have. */
 typedef struct point {
   const abbe_sweep_setting *setting;
@@ -125,7 +129,7 @@ static abbe_result open_front(const abbe_sweep_table *tables, size_t count, size
   f->error = f->cost + own->count;
   for (size_t i = 0; i < own->count; i++) {
     const abbe_sweep_setting *setting = &own->row[i].setting;
-    if (strcmp(setting->profile, "default") != 0) continue;
+    if (strcmp(setting->profile, "default") != 0 || setting->share > most_share) continue;
     f->points += gather(f, setting, &f->point[f->points]);
   }
   make_costs_the_worst(f);
