@@ -66,6 +66,10 @@ const volatile int *abbe_progress_stopped(void) {
   return &interrupted;
 }
 
+double abbe_progress_seconds(const abbe_progress *progress) {
+  return now_s() - progress->start_s;
+}
+
 void abbe_progress_end(abbe_progress *progress) {
   if (progress->shown) fprintf(stderr, "\r%*s\r", BAR_WIDTH + 60, "");
 }

@@ -304,10 +304,10 @@ static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_erro
   return result;
 }
 
-static void summarise(const request *q, const abbe_statistics *s) {
+static void summarise(const request *q, const abbe_statistics *s, double prepared_s) {
   if (q->quiet || q->json) return;
-  fprintf(stderr, "%.0f ms, %zu photons x %zu wavelengths", s->frame_ms, s->photons,
-          s->wavelengths);
+  fprintf(stderr, "a frame of %.0f ms, prepared in %.1f s, %zu photons x %zu wavelengths",
+          s->frame_ms, prepared_s, s->photons, s->wavelengths);
   const abbe_ledger *e = &s->energy;
   if (e->reached > 0)
     fprintf(stderr,
@@ -343,6 +343,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   desc.progress_user = &progress;
   abbe_progress_begin(&progress, "prepare", q->quiet);
   abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);
+  const double prepared_s = abbe_progress_seconds(&progress);
   abbe_progress_end(&progress);
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
@@ -363,7 +364,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   if (result == ABBE_OK && q->map.save != NULL) result = save_map(q, renderer, error);
   if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
   if (result == ABBE_OK) result = write_stats(q, &statistics, &bars, context, error);
-  if (result == ABBE_OK) summarise(q, &statistics);
+  if (result == ABBE_OK) summarise(q, &statistics, prepared_s);
   if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
   abbe_error_bars_free(&bars);
   abbe_image_free(&image);

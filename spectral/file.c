@@ -185,7 +185,11 @@ abbe_result abbe_file_writer_open(abbe_file_writer *writer, const char *path, ab
   if (fd < 0) {
     int number = errno;
     writer_clear(writer);
-    return fail_io(error, path, "cannot be written", number);
+    return fail_io(error, path,
+                   number == ENOENT
+                       ? "cannot be written, for its folder is not there; make it first"
+                       : "cannot be written",
+                   number);
   }
   if (exists) (void)!fchmod(fd, status.st_mode & 0777); /* refused by some file systems: no harm */
   writer->stream = fdopen(fd, "w+b");
