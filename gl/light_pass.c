@@ -215,10 +215,8 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
 
 abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  r->gl->Enable(GL_DEPTH_TEST);
-  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++)
     if (r->plan.reaches[i]) result = front_and_back(r, i, error);
-  }
   return result;
 }
 

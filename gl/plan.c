@@ -322,7 +322,8 @@ static void resolve_wavelengths(abbe_plan *plan) {
   /* Between facets light of an index above 2 finds out at a wall from less than a seventh of all
    * directions; in a sphere it leaves where it came in. */
   bool kept = plan->dense && plan->convex && !plan->layers && !plan->walk;
-  if (plan->desc.orders == 0) plan->desc.orders = plan->layers ? 4 : kept ? 16 : 8;
+  if (plan->desc.orders == 0)
+    plan->desc.orders = plan->layers ? ABBE_PLAN_LAYER_EXITS : kept ? 16 : ABBE_PLAN_EXITS;
   if (abbe_profile_is_thesis(plan->desc.profile)) plan->desc.orders = 1;
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);

@@ -60,12 +60,16 @@ typedef enum abbe_model {
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
 
+/* Exits that are followed at the most where the request leaves it open and no index is above 2. */
+#define ABBE_PLAN_EXITS 8
+#define ABBE_PLAN_LAYER_EXITS 4 /* where a refractor is known by its layers */
+
 /* A request; zero means the default in every field. */
 typedef struct abbe_render_desc {
   abbe_profile profile;
   size_t width, height; /* pixels; 0: the scene's */
-  size_t
-      wavelengths; /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
+  /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
+  size_t wavelengths;
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
   size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
   size_t map_size;       /* side of the spectral map; 0: 1024 */

@@ -215,7 +215,8 @@ abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan
 
 /* Exits that plans have by themselves; of a high index they have more, and are left to it. */
 static bool take_exits(size_t *mine, const abbe_render_desc *preset) {
-  const size_t planned = preset->model == ABBE_MODEL_LAYERS ? 4 : 8;
+  const size_t planned =
+      preset->model == ABBE_MODEL_LAYERS ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
   const bool same = *mine == 0 || *mine == preset->orders;
   if (*mine == 0 && preset->orders < planned) *mine = preset->orders;
   return same;

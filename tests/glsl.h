@@ -13,13 +13,23 @@
 
 #include <stdlib.h>
 
-static inline GLuint glsl_buffer(const abbe_gl *gl, GLuint binding, size_t size, const void *data) {
+/* A bound buffer of that target: GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER. */
+static inline GLuint glsl_bind(const abbe_gl *gl, GLenum target, GLuint binding, size_t size,
+                               const void *data) {
   GLuint buffer = 0;
   gl->GenBuffers(1, &buffer);
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_STATIC_DRAW);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
+  gl->BindBuffer(target, buffer);
+  gl->BufferData(target, (GLsizeiptr)size, data, GL_STATIC_DRAW);
+  gl->BindBufferBase(target, binding, buffer);
   return buffer;
+}
+
+static inline GLuint glsl_buffer(const abbe_gl *gl, GLuint binding, size_t size, const void *data) {
+  return glsl_bind(gl, GL_SHADER_STORAGE_BUFFER, binding, size, data);
+}
+
+static inline GLuint glsl_block(const abbe_gl *gl, GLuint binding, size_t size, const void *data) {
+  return glsl_bind(gl, GL_UNIFORM_BUFFER, binding, size, data);
 }
 
 /* As the shaders read nodes and triangles, at that texture unit. */

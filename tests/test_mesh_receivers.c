@@ -21,16 +21,6 @@ typedef struct receivers {
   double (*tiles)[9]; /* two triangles a parallelogram */
 } receivers;
 
-static GLuint uniform_block(GLuint binding, const void *data, size_t size) {
-  const abbe_gl *gl = abbe_context_gl(context);
-  GLuint buffer = 0;
-  gl->GenBuffers(1, &buffer);
-  gl->BindBuffer(GL_UNIFORM_BUFFER, buffer);
-  gl->BufferData(GL_UNIFORM_BUFFER, (GLsizeiptr)size, data, GL_STATIC_DRAW);
-  gl->BindBufferBase(GL_UNIFORM_BUFFER, binding, buffer);
-  return buffer;
-}
-
 /* Parallelogram k: a skew one, facing another way each. */
 static void make_flat(int k, receivers *r) {
   const double corner[3] = {-0.2 + 0.1 * k, -0.15, 0.05 * k - 0.1};
@@ -71,7 +61,7 @@ static void upload_receivers(receivers *r) {
     }
     memcpy(&triangle[3 * i + 1][3], &surface, sizeof surface);
   }
-  uniform_block(3, r->flat, sizeof r->flat);
+  glsl_block(gl, 3, sizeof r->flat, r->flat);
   glsl_hierarchy(gl, &r->h, (const double(*)[9])r->triangle);
   glsl_texels(gl, 8, GL_RGBA32F, 3 * r->h.triangle_count * sizeof *triangle, triangle);
   glsl_texels(gl, 9, GL_RGBA32F, 4 * r->h.triangle_count * sizeof *corner, corner);
