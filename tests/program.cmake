@@ -5,7 +5,9 @@ add_test(NAME install
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
 add_test(NAME measuring_scripts
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/measure $<TARGET_FILE:abbe>)
-set_tests_properties(install scripts measuring_scripts PROPERTIES LABELS program TIMEOUT 300)
+add_test(NAME slits
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/slits $<TARGET_FILE:abbe>)
+set_tests_properties(install scripts measuring_scripts slits PROPERTIES LABELS program TIMEOUT 300)
 
 foreach(name
     bad_input
