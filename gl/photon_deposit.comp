@@ -54,6 +54,16 @@ uniform int table_first;
 uniform uint chunks, chunk;  // only paths of this chunk
 uniform uint most;           // pieces that the list has room for
 
+#ifdef REFINED
+#define NODE_LANDINGS fine_landings
+#define NODE_SIGNATURES fine_signatures
+#define NODES_HERE (node_end + 1)
+#else
+#define NODE_LANDINGS landings
+#define NODE_SIGNATURES signatures
+#define NODES_HERE (lane_first + lane_count)
+#endif
+
 const int MAX_PIECES = 12;  // of one footprint
 
 #include "landing_place.glsl"
@@ -176,6 +186,9 @@ void main() {
   int row = table_first + (light * REFRACTORS + int(path & 255u)) * (nodes + 1);
   vec2 pa = path_a != 0u ? map_position(from.xyz, path_a) : here;
   int page_a = page_of(from, path_a), gathered_page = NO_PAGE;
+#ifdef DOUBTS_BRIDGES
+  vec2 way_before = vec2(0);
+#endif
   for (int turn = 0; turn <= turns; turn++) {
     bool last = turn == turns;  // one more turn, to write what is gathered
     int interval = node_a + 1 + turn;
@@ -199,7 +212,21 @@ void main() {
     int pieces = share_a > 0.0 && share_b > 0.0 && apart ? 2 : 1;
 #ifdef BRIDGE
     float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
-    bridge = taken && path_a != 0u && path_a == path_b && way < MAX_BRIDGE;
+    bool one_path = path_a != 0u && path_a == path_b;
+#ifdef DOUBTS_BRIDGES
+    // Paths through a mesh may be alike and yet part: a long way is a spectrum's where the light
+    // moves on likewise in the interval before or after it.
+    bool has_c = has_b && interval + 1 < NODES_HERE;
+    uint path_c = has_c ? texelFetch(NODE_SIGNATURES, int(index_b) + 1).x : 0u;
+    vec4 beyond = texelFetch(NODE_LANDINGS, int(index_b) + (has_c ? 1 : 0));
+    vec2 pc = path_c != 0u ? map_position(beyond.xyz, path_c) : pb;
+    vec2 on = pb - pa, after = path_c == path_b ? pc - pb : vec2(0);
+    bool likewise = min(distance(on, way_before), distance(on, after)) < 0.75 * length(on);
+    way_before = one_path ? on : vec2(0);
+    bridge = taken && one_path && (way < float(map_size) / 16.0 || likewise);
+#else
+    bridge = taken && one_path;
+#endif
     if (bridge) pieces = 1;
     while (bridge && pieces < STEPS && float(pieces) * size < way) pieces *= 2;
 #endif

@@ -451,10 +451,10 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
 static void write_photon_defines(const abbe_renderer *r, char defines[PHOTON_DEFINES]) {
   snprintf(defines, PHOTON_DEFINES,
            "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n"
-           "#define NODES %zu\n%s#define MAX_BRIDGE %s\n",
+           "#define NODES %zu\n%s%s",
            r->defines, r->lanes, r->steps, r->map_levels, r->nodes,
            r->plan.fills ? "#define BRIDGE\n" : "",
-           r->plan.layers || r->plan.hierarchy ? "float(map_size) / 16.0" : "float(map_size)");
+           r->plan.layers || r->plan.hierarchy ? "#define DOUBTS_BRIDGES\n" : "");
 }
 
 static abbe_result make_trace(abbe_renderer *r, abbe_error *error) {

@@ -25,7 +25,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
                       "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
                       "#define BAND_COUNT 14\n#define BAND_LEVELS 4\n#define BAND_ROOM 28\n"
                       "#define HIERARCHY_STACK 20\n#define STEPS 64\n#define MAP_LEVELS 6\n#define "
-                      "BRIDGE\n#define MAX_BRIDGE 64.0\n");
+                      "BRIDGE\n#define DOUBTS_BRIDGES\n");
   for (int i = 0; i < 8; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }
