@@ -17,7 +17,7 @@
 
 enum {
   LANES = 16,
-  PACKETS = ABBE_LIGHT_WALK_BATCH / LANES,
+  PACKETS = ABBE_LIGHT_WALK_LANDINGS / LANES,
   MAX_STEPS = 10000,
   EVEN_STEPS = 3,     /* whose decisions are spread evenly */
   SMALL_SCENE = 4096, /* faces */
@@ -31,6 +31,7 @@ typedef struct path {
   float flux, full; /* W, and W at the start */
   float y;          /* Y of a watt, for the ledger */
   float carried;    /* matched: share of the light that a splitting path would carry */
+  float way[ABBE_LIGHT_WALK_SPLITS];
   uint16_t steps, walls;
   bool begun; /* has met its first interface */
 } path;
@@ -38,7 +39,7 @@ typedef struct path {
 typedef struct front {
   size_t count;
   struct RTCRayHit16 ray[PACKETS];
-  path state[ABBE_LIGHT_WALK_BATCH];
+  path state[ABBE_LIGHT_WALK_LANDINGS];
 } front;
 
 struct abbe_light_walk {
@@ -49,6 +50,7 @@ struct abbe_light_walk {
   uint64_t rays;
   front *now, *next;
   uint32_t shift[4]; /* of the pass's even decisions */
+  unsigned parts;    /* interfaces at which photons go both ways, a bit each */
   bool small;        /* so few faces that packets stay together wherever their rays go */
   struct RTCRayHit16 *kept;
   size_t kept_count, kept_room;
@@ -88,6 +90,30 @@ void abbe_light_walk_free(abbe_light_walk *walk) {
 
 uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {
   return walk->rays;
+}
+
+void abbe_light_walk_part(abbe_light_walk *walk, unsigned interfaces) {
+  walk->parts = interfaces & ((1u << ABBE_LIGHT_WALK_SPLITS) - 1);
+}
+
+unsigned abbe_light_walk_best_parts(const abbe_landing *landing, size_t count) {
+  unsigned best = 0;
+  double least = INFINITY;
+  for (unsigned parts = 0; parts < 1u << ABBE_LIGHT_WALK_SPLITS; parts++) {
+    double squares = 0, rays = 1;
+    for (int k = 0; k < ABBE_LIGHT_WALK_SPLITS; k++) rays *= parts >> k & 1 ? 2 : 1;
+    for (size_t i = 0; i < count; i++) {
+      double weight = 1;
+      for (int k = 0; k < ABBE_LIGHT_WALK_SPLITS; k++)
+        weight *= parts >> k & 1 ? (double)landing[i].way[k] : 1;
+      squares += weight * (double)landing[i].flux * (double)landing[i].flux;
+    }
+    if (squares * rays < least) {
+      least = squares * rays;
+      best = parts;
+    }
+  }
+  return best;
 }
 
 /* ---- rays in packets ---- */
@@ -354,6 +380,24 @@ static verdict go_on(const abbe_light_walk *w, const lanes *l, size_t k, path *s
   return GOES_ON;
 }
 
+/* Numbers that decide for one way at any share, but for total reflection's. */
+static const float MIRRORS = -1, PASSES = 2;
+
+/* What the path carries on the way that was chosen, or on one of both; false for no light. */
+static bool take_way(const lanes *l, size_t k, size_t round, bool parts, path *s) {
+  const bool reflects = l->reflects[k] && !l->straight[k];
+  const float share = l->straight[k] ? 0 : l->share[k], part = reflects ? share : 1 - share;
+  if (!parts) {
+    if (round < ABBE_LIGHT_WALK_SPLITS) s->way[round] = part;
+    return true;
+  }
+  const bool first = l->chance[k] < 0;
+  if (first != reflects) return false; /* nothing is mirrored where it goes straight on */
+  s->flux *= part;
+  s->full *= part;
+  return part > 0;
+}
+
 static void land(const lanes *l, size_t k, const path *s, abbe_landing *out) {
   const abbe_hit *hit = &l->hit[k];
   float d[3] = {l->d[0][k], l->d[1][k], l->d[2][k]};
@@ -363,7 +407,8 @@ static void land(const lanes *l, size_t k, const path *s, abbe_landing *out) {
                         .v = hit->v,
                         .side = dot(d, hit->ng) < 0 ? 1 : -1,
                         .flux = s->flux,
-                        .step = s->step};
+                        .step = s->step,
+                        .way = {s->way[0], s->way[1]}};
   memcpy(out->p, hit->p, sizeof out->p);
 }
 
@@ -379,7 +424,8 @@ static void begin(front *f, const abbe_photon *photon, size_t count) {
                                   .flux = p->flux,
                                   .full = p->flux,
                                   .y = p->y,
-                                  .carried = 1};
+                                  .carried = 1,
+                                  .way = {1, 1}};
   }
 }
 
@@ -398,22 +444,29 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
       size_t used = f->count - first < LANES ? f->count - first : LANES;
       for (size_t k = 0; k < used; k++)
         gather(w, &f->ray[first / LANES], k, &f->state[first + k], pass, &l, ledger);
-      bend(&l);
-      for (size_t k = 0; k < used; k++) {
-        path *s = &f->state[first + k];
-        verdict v = l.verdict[k];
-        if (v == GOES_ON) v = go_on(w, &l, k, s, next);
-        double flux = (double)(s->y * s->flux);
-        if (v == LANDS) {
-          land(&l, k, s, &landing[landed]);
-          landing[landed++].hidden = !lamp_sees(w, light, &l.hit[k]);
-          ledger->landed += flux;
-        } else if (v == ESCAPES) {
-          ledger->escaped += flux;
-        } else if (v == DROPS) {
-          ledger->dropped += flux;
-        } else if (v == LOSES) {
-          ledger->lost += flux;
+      const bool parts = round < ABBE_LIGHT_WALK_SPLITS && (w->parts >> round & 1) != 0;
+      for (int turn = parts ? 0 : 1; turn < 2; turn++) {
+        if (parts)
+          for (size_t k = 0; k < used; k++) l.chance[k] = turn == 0 ? MIRRORS : PASSES;
+        bend(&l);
+        for (size_t k = 0; k < used; k++) {
+          path s = f->state[first + k];
+          verdict v = l.verdict[k];
+          if (v != GOES_ON && turn == 0) continue;
+          if (v == GOES_ON && !take_way(&l, k, round, parts, &s)) continue;
+          if (v == GOES_ON) v = go_on(w, &l, k, &s, next);
+          double flux = (double)(s.y * s.flux);
+          if (v == LANDS) {
+            land(&l, k, &s, &landing[landed]);
+            landing[landed++].hidden = !lamp_sees(w, light, &l.hit[k]);
+            ledger->landed += flux;
+          } else if (v == ESCAPES) {
+            ledger->escaped += flux;
+          } else if (v == DROPS) {
+            ledger->dropped += flux;
+          } else if (v == LOSES) {
+            ledger->lost += flux;
+          }
         }
       }
     }

@@ -21,6 +21,8 @@ extern "C" {
 #endif
 
 #define ABBE_LIGHT_WALK_BATCH 1024u /* photons side by side */
+#define ABBE_LIGHT_WALK_SPLITS 2    /* first interfaces that a photon may be parted at */
+#define ABBE_LIGHT_WALK_LANDINGS (ABBE_LIGHT_WALK_BATCH << ABBE_LIGHT_WALK_SPLITS)
 
 typedef struct abbe_photon {
   float o[3], d[3]; /* frame; d unit */
@@ -39,6 +41,9 @@ typedef struct abbe_landing {
   float side; /* +1: on the side of the face's normal, -1: on the other */
   float flux; /* W */
   uint32_t step;
+  /* Chance with which the first interfaces sent it where they did; 1 where it was parted there, or
+   * where there was no choice. */
+  float way[ABBE_LIGHT_WALK_SPLITS];
   bool hidden; /* matched: from the lamp by other receivers, so that its map has no place for it */
 } abbe_landing;
 
@@ -62,8 +67,16 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
                                  abbe_error *error);
 void abbe_light_walk_free(abbe_light_walk *walk);
 
-/* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light; writes at most count landings and
- * adds to the ledger. pass: of the random numbers. Returns the number of landings. */
+/* At which of its first interfaces (bit 0: the first) a photon of the next runs goes both ways, each
+ * with its share of the light, where it else takes one of them by chance. Nothing is biased by
+ * either: parting pays where the way that is rarely taken is the one that lands. */
+void abbe_light_walk_part(abbe_light_walk *walk, unsigned interfaces);
+/* The interfaces to part at, by the landings of a trial without: those that make the least of the
+ * mean square of a landing's light, times the number of rays. */
+unsigned abbe_light_walk_best_parts(const abbe_landing *landing, size_t count);
+
+/* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light; writes at most count landings, twice
+ * as many for each interface to part at (ABBE_LIGHT_WALK_LANDINGS), and adds to the ledger. pass: of the random numbers. Returns the number of landings. */
 size_t abbe_light_walk_run(abbe_light_walk *walk, const abbe_light *light, uint32_t pass,
                            const abbe_photon *photon, size_t count, abbe_landing *landing,
                            abbe_light_ledger *ledger);

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { TASK = 16384, TRIALS = 65536, SALT = 0x6c6967 };
+enum { TASK = 16384, TRIALS = 65536, PART_TRIALS = 16384, SALT = 0x6c6967 };
 
 /* The photons of one light in one pass, cell after cell: cell i has those from first[i] on. */
 typedef struct emission {
@@ -219,9 +219,10 @@ static void run_task(const emission *e, uint32_t from, uint32_t to, size_t threa
                      abbe_grid_photon *keep, task_result *out) {
   abbe_tracer *t = (abbe_tracer *)e->t;
   abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
-  abbe_landing landing[ABBE_LIGHT_WALK_BATCH];
+  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
   sink s = {.t = t, .thread = thread, .light = e->light};
   *out = (task_result){0};
+  abbe_light_walk_part(t->walk[thread], t->parts[e->light]);
   for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
     uint32_t end = to - j < ABBE_LIGHT_WALK_BATCH ? to : j + ABBE_LIGHT_WALK_BATCH;
     size_t count = emit(e, j, end, photon);
@@ -264,14 +265,17 @@ static abbe_result run_light(abbe_tracer *t, const emission *e, const volatile i
     if (stop != NULL && *stop) continue;
     uint32_t from = (uint32_t)(i * TASK);
     uint32_t to = (uint32_t)(e->count - from < TASK ? e->count : from + TASK);
-    run_task(e, from, to, (size_t)omp_get_thread_num(), keeps ? t->landed + base + from : NULL,
+    run_task(e, from, to, (size_t)omp_get_thread_num(),
+             keeps ? t->landed + base + abbe_tracer_most_landings(t, e->light, from) : NULL,
              &result[i]);
   }
   for (size_t i = 0; i < tasks; i++) {
     add_ledger(&t->statistics.ledger, &result[i].ledger);
     t->statistics.light_rays += result[i].splat_rays;
     if (keeps && result[i].kept > 0)
-      memmove(t->landed + *landed, t->landed + base + i * TASK, result[i].kept * sizeof *t->landed);
+      memmove(t->landed + *landed,
+              t->landed + base + abbe_tracer_most_landings(t, e->light, i * TASK),
+              result[i].kept * sizeof *t->landed);
     *landed += result[i].kept;
   }
   t->statistics.photons += e->count;
@@ -311,6 +315,38 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
   return ABBE_OK;
 }
 
+/* The trial's photons, followed without parting. */
+static size_t land_trial(const abbe_tracer *t, const emission *e, abbe_landing *landing) {
+  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
+  abbe_light_ledger ledger = {0};
+  size_t landed = 0;
+  abbe_light_walk_part(t->walk[0], 0);
+  for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
+    uint32_t end =
+        e->count - j < ABBE_LIGHT_WALK_BATCH ? (uint32_t)e->count : j + ABBE_LIGHT_WALK_BATCH;
+    size_t count = emit(e, j, end, photon);
+    landed += abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon, count,
+                                  landing + landed, &ledger);
+  }
+  return landed;
+}
+
+abbe_result abbe_tracer_choose_parts(abbe_tracer *t, abbe_error *error) {
+  abbe_landing *landing = malloc(PART_TRIALS * sizeof *landing);
+  abbe_result result =
+      landing != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a trial");
+  for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
+    if (t->photons[l] == 0) continue;
+    emission e;
+    result = share_over_cells(t, l, PART_TRIALS, 0, t->desc.seed, &e, error);
+    if (result == ABBE_OK)
+      t->parts[l] = abbe_light_walk_best_parts(landing, land_trial(t, &e, landing));
+    free(e.first);
+  }
+  free(landing);
+  return result;
+}
+
 /* ---- rates ---- */
 
 static double now(void) {
@@ -322,7 +358,7 @@ static double now(void) {
 /* Photons emitted, followed, and sorted into texels, by one thread. */
 static double walk_seconds(abbe_tracer *t, const emission *e) {
   abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
-  abbe_landing landing[ABBE_LIGHT_WALK_BATCH];
+  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
   abbe_light_ledger ledger = {0};
   sink s = {.t = t, .light = e->light};
   double start = now();
@@ -376,7 +412,7 @@ static int by_value(const void *a, const void *b) {
 static size_t try_landings(const abbe_tracer *t, abbe_light_walk *walk, const abbe_view *view,
                            const emission *e, double *at[2], double *near, double *far) {
   abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
-  abbe_landing landing[ABBE_LIGHT_WALK_BATCH];
+  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
   abbe_light_ledger ledger = {0};
   size_t found = 0;
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {

@@ -30,6 +30,7 @@ struct abbe_tracer {
   float (*colour)[3], (*white)[3]; /* in that space */
   abbe_aim *aim;                   /* [lights] */
   size_t *photons;                 /* [lights] a pass */
+  unsigned *parts;                 /* [lights] interfaces at which its photons go both ways */
   abbe_light_walk **walk;          /* [threads] */
   abbe_accumulator picture, map;
   size_t picture_channels, map_channels; /* a pixel, a texel */
@@ -60,6 +61,13 @@ abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop
                                    size_t *landed_count, abbe_error *error);
 /* Photons of a pass shared out over the lights by the light that they send to refractors. */
 abbe_result abbe_tracer_share_photons(abbe_tracer *tracer, abbe_error *error);
+/* Chooses where photons are parted, by a trial of each light's. */
+abbe_result abbe_tracer_choose_parts(abbe_tracer *tracer, abbe_error *error);
+/* Most landings of so many photons of the light. */
+static inline size_t abbe_tracer_most_landings(const abbe_tracer *t, size_t light, size_t photons) {
+  for (int k = 0; k < ABBE_LIGHT_WALK_SPLITS; k++) photons <<= t->parts[light] >> k & 1;
+  return photons;
+}
 /* A view from the map's light around where its light lands. */
 abbe_result abbe_tracer_fit_layout(abbe_tracer *tracer, abbe_error *error);
 
