@@ -300,6 +300,7 @@ static void add_ledger(cJSON *root, const abbe_light_ledger *l) {
   cJSON_AddNumberToObject(energy, "reached", l->reached);
   cJSON_AddNumberToObject(energy, "landed", l->landed);
   cJSON_AddNumberToObject(energy, "contact", l->contact);
+  cJSON_AddNumberToObject(energy, "hidden", l->hidden);
   cJSON_AddNumberToObject(energy, "absorbed", l->absorbed);
   cJSON_AddNumberToObject(energy, "escaped", l->escaped);
   cJSON_AddNumberToObject(energy, "dropped", l->dropped);
@@ -393,6 +394,9 @@ static void summarise(const request *q, const abbe_tracer *tracer) {
             "escaped, %.2g %% was lost",
             whole * s.ledger.landed, whole * s.ledger.absorbed, whole * s.ledger.escaped,
             whole * s.ledger.lost);
+    if (s.ledger.hidden > 0)
+      fprintf(stderr, ", %.2f %% landed where receivers hide it from its lamp, in no map",
+              whole * s.ledger.hidden);
     if (s.ledger.dropped > 0)
       fprintf(stderr, ", %.2f %% is not modelled", whole * s.ledger.dropped);
   }

@@ -270,28 +270,55 @@ static void matched_light_passes_two_refractors(void **state) {
   drop(&f);
 }
 
-/* Matched: what lands where other receivers hide it from the lamp is told from the rest. */
-static void matched_light_that_the_lamp_does_not_see_is_hidden(void **state) {
+/* What lands where other receivers hide it from the lamp is told from the rest, in either physics.
+ */
+static void light_that_the_lamp_does_not_see_is_hidden(void **state) {
   (void)state;
   static const abbe_physics matched = {.matched = true, .orders = 4, .energy_share = 0};
   static fixture f;
   /* the ray bends at the brick's slanted way and gets around the lid's edge to the floor */
-  const char *text =
-      CAMERA POINT_LIGHT FLOOR SLAB("flat") "- {name: lid, shape: rectangle, width: 0.4, height: "
-                                            "0.4, transform: [{translate: [0.2005, "
-                                            "0, 0.1]}], reflectance: 0.5}\n";
+  const char *text = CAMERA
+      "lights:\n- {name: lamp, kind: point, position: [-0.5, 0, 0.62], intensity: 1}\n" FLOOR SLAB(
+          "flat") "- {name: lid, shape: rectangle, width: 0.4, height: "
+                  "0.4, transform: [{translate: [0.2005, "
+                  "0, 0.1]}], reflectance: 0.5}\n";
   /* straight on the ray would meet z = 0.1 at x = 0.02, on the lid; the slab shifts it back by
    * more than that */
   double from[3] = {-0.5, 0, 0.62}, d[3] = {1, 0, -1};
   for (int i = 0; i < 2; i++) {
     make(text, i ? &matched : NULL, &f);
-    for (int k = 0; k < 3; k++) f.scene.light[0].position[k] = from[k];
     size_t landed = shoot(&f, from, d, 4);
     if (!i) assert_true(landed > 3 * BATCH);
     /* the slab's side mirrors down to the floor before it: at 45 degrees rp = rs^2 */
     double t = asin(sqrt(0.5) / 1.5), q = acos(-1) / 4, rs = pow(sin(q - t) / sin(q + t), 2);
-    if (i) check_share((double)(landed - f.hidden), (double)f.photons, (rs + rs * rs) / 2);
-    assert_true(i ? f.hidden > 0.8 * (double)f.photons : f.hidden == 0);
+    double seen = (double)(landed - f.hidden);
+    if (i) check_share(seen, (double)f.photons, (rs + rs * rs) / 2);
+    assert_true(f.hidden > 0.8 * (double)f.photons);
+    assert_near(f.ledger.hidden, (double)f.hidden, 1e-6 * (double)f.photons);
+    drop(&f);
+  }
+}
+
+/* A floor or the walls of a room hide nothing from a lamp in it; and a card that hides a floor does
+ * not hide what lands on the card. */
+static void walls_hide_nothing(void **state) {
+  (void)state;
+  static fixture f;
+  const char *const more[] = {
+      "",
+      "- {name: wall, shape: rectangle, width: 2, height: 2, transform: [{rotate: {axis: [0, 1, 0],"
+      " angle: 90}}, {translate: [-1, 0, 1]}], reflectance: 0.5}\n",
+      "- {name: card, shape: rectangle, width: 2, height: 2, transform: [{translate: [0, 0, "
+      "0.1]}], "
+      "reflectance: 0.5}\n- {name: under, shape: rectangle, width: 4, height: 4, transform: "
+      "[{translate: [0, 0, -0.5]}], reflectance: 0.5}\n"};
+  for (size_t i = 0; i < sizeof more / sizeof *more; i++) {
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s%s", CAMERA POINT_LIGHT FLOOR, more[i], BALL("flat"));
+    make(text, NULL, &f);
+    flood(&f, 4);
+    assert_true(f.ledger.landed > 0);
+    assert_true(f.ledger.hidden == 0);
     drop(&f);
   }
 }
@@ -426,7 +453,8 @@ int main(void) {
       cmocka_unit_test(light_that_misses_is_not_counted),
       cmocka_unit_test(matched_rules_drop_what_they_say),
       cmocka_unit_test(matched_light_passes_two_refractors),
-      cmocka_unit_test(matched_light_that_the_lamp_does_not_see_is_hidden),
+      cmocka_unit_test(light_that_the_lamp_does_not_see_is_hidden),
+      cmocka_unit_test(walls_hide_nothing),
       cmocka_unit_test(contact_is_told),
       cmocka_unit_test(a_walk_repeats_itself),
       cmocka_unit_test(parted_light_is_the_same_light),

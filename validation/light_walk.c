@@ -21,6 +21,7 @@ enum {
   MAX_STEPS = 10000,
   EVEN_STEPS = 3,     /* whose decisions are spread evenly */
   SMALL_SCENE = 4096, /* faces */
+  FEW_FACES = 256,    /* of receivers, held against each other */
   COHERENT_ROUNDS = 2 /* how often rays of a packet are bent before they are told apart */
 };
 
@@ -42,7 +43,16 @@ typedef struct front {
   path state[ABBE_LIGHT_WALK_LANDINGS];
 } front;
 
+/* Landings that wait for their ray to the lamp. */
+typedef struct shadows {
+  struct RTCRay16 ray;
+  size_t count;
+  abbe_landing *landing[LANES];
+  double flux[LANES]; /* W, for the ledger */
+} shadows;
+
 struct abbe_light_walk {
+  shadows shadows;
   const abbe_geometry *g;
   const abbe_media *media;
   abbe_physics physics;
@@ -52,21 +62,84 @@ struct abbe_light_walk {
   uint32_t shift[4]; /* of the pass's even decisions */
   unsigned parts;    /* interfaces at which photons go both ways, a bit each */
   bool small;        /* so few faces that packets stay together wherever their rays go */
+  bool *hides;       /* [lights] some receiver may hide a place on another from the lamp */
   struct RTCRayHit16 *kept;
   size_t kept_count, kept_room;
 };
+
+/* ---- what receivers may hide ---- */
+
+static float above(const float n[3], const float a[3], const float p[3]) {
+  return n[0] * (p[0] - a[0]) + n[1] * (p[1] - a[1]) + n[2] * (p[2] - a[2]);
+}
+
+/* Whether a corner of a receiver lies on the other side of a face's plane than the lamp. */
+static bool stands_before(const abbe_geometry *g, const abbe_light *light, const float corner[3],
+                          const float n[3]) {
+  float lamp[3], toward = 0;
+  for (int k = 0; k < 3; k++) toward -= n[k] * (float)light->direction[k];
+  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
+    abbe_geometry_to_frame(g, light->position, lamp);
+    toward = above(n, corner, lamp);
+  }
+  for (size_t i = 0; i < g->surface_count; i++) {
+    const abbe_surface *s = &g->surface[i];
+    if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
+    size_t count = s->sphere ? 0 : g->scene->object[s->object].mesh.vertex_count;
+    for (size_t v = 0; v < count; v++) {
+      float behind = above(n, corner, s->position[v]), size = 0;
+      for (int k = 0; k < 3; k++)
+        size = fmaxf(size, fmaxf(fabsf(s->position[v][k]), fabsf(corner[k])));
+      if (toward > 0 ? behind < -1e-5f * size : behind > 1e-5f * size) return true;
+    }
+  }
+  return false;
+}
+
+/* Receivers that are the walls of a convex room around the lamp hide nothing. */
+static bool receivers_hide(const abbe_geometry *g, const abbe_light *light) {
+  size_t faces = 0;
+  for (size_t i = 0; i < g->surface_count; i++) {
+    const abbe_surface *s = &g->surface[i];
+    if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
+    faces += g->scene->object[s->object].mesh.face_count;
+    if (s->sphere || faces > FEW_FACES) return true;
+  }
+  for (size_t i = 0; i < g->surface_count; i++) {
+    const abbe_surface *s = &g->surface[i];
+    if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
+    for (size_t f = 0; f < g->scene->object[s->object].mesh.face_count; f++) {
+      const float *a = s->position[s->face[f][0]], *b = s->position[s->face[f][1]],
+                  *c = s->position[s->face[f][2]];
+      float e[3], h[3];
+      for (int k = 0; k < 3; k++) {
+        e[k] = b[k] - a[k];
+        h[k] = c[k] - a[k];
+      }
+      float n[3] = {e[1] * h[2] - e[2] * h[1], e[2] * h[0] - e[0] * h[2],
+                    e[0] * h[1] - e[1] * h[0]};
+      float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+      if (!(length > 0)) return true;
+      for (int k = 0; k < 3; k++) n[k] /= length;
+      if (stands_before(g, light, a, n)) return true;
+    }
+  }
+  return false;
+}
 
 abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
                                  const abbe_physics *physics, uint32_t seed, abbe_light_walk **out,
                                  abbe_error *error) {
   *out = NULL;
-  abbe_light_walk *w = calloc(1, sizeof *w);
+  abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
+  size_t lights = geometry->scene->light_count;
   if (w != NULL) {
     *w = (abbe_light_walk){.g = geometry, .media = media, .physics = *physics, .seed = seed};
     w->now = aligned_alloc(64, (sizeof *w->now + 63) / 64 * 64);
     w->next = aligned_alloc(64, (sizeof *w->next + 63) / 64 * 64);
+    w->hides = calloc(lights + 1, sizeof *w->hides);
   }
-  if (w == NULL || w->now == NULL || w->next == NULL) {
+  if (w == NULL || w->now == NULL || w->next == NULL || w->hides == NULL) {
     abbe_light_walk_free(w);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a batch of photons");
   }
@@ -74,6 +147,8 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
   for (size_t i = 0; i < geometry->scene->object_count; i++)
     faces += geometry->scene->object[i].mesh.face_count;
   w->small = faces < SMALL_SCENE;
+  for (size_t i = 0; i < lights; i++)
+    w->hides[i] = receivers_hide(geometry, &geometry->scene->light[i]);
   memset(w->now, 0, sizeof *w->now);
   memset(w->next, 0, sizeof *w->next);
   *out = w;
@@ -85,6 +160,7 @@ void abbe_light_walk_free(abbe_light_walk *walk) {
   free(walk->now);
   free(walk->next);
   free(walk->kept);
+  free(walk->hides);
   free(walk);
 }
 
@@ -349,10 +425,27 @@ SIDE_BY_SIDE static void bend(lanes *l) {
 
 /* ---- the batch ---- */
 
-/* Matched: the map of the renderer's light holds only what the lamp would see past other receivers;
- * its pictures show the rest too. */
-static bool lamp_sees(const abbe_light_walk *w, const abbe_light *light, const abbe_hit *hit) {
-  if (!w->physics.matched) return true;
+/* The map of a light holds only what lands where the lamp would see the receiver past others: the
+ * rays that wait are traced, and their landings marked. */
+static void ask_lamp(abbe_light_walk *w, abbe_light_ledger *ledger) {
+  shadows *s = &w->shadows;
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  _Alignas(64) int valid[LANES];
+  for (size_t k = 0; k < LANES; k++) valid[k] = k < s->count ? -1 : 0;
+  if (s->count > 0) rtcOccluded16(valid, w->g->embree, &context, &s->ray);
+  for (size_t k = 0; k < s->count; k++) {
+    s->landing[k]->hidden = s->ray.tfar[k] < 0;
+    if (s->landing[k]->hidden) ledger->hidden += s->flux[k];
+  }
+  s->count = 0;
+}
+
+static void wait_for_lamp(abbe_light_walk *w, const abbe_light *light, const abbe_hit *hit,
+                          abbe_landing *landing, double flux, abbe_light_ledger *ledger) {
+  shadows *s = &w->shadows;
+  size_t at = s->count++;
   float from[3], d[3], o[3], limit = INFINITY;
   for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
   if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
@@ -362,7 +455,20 @@ static bool lamp_sees(const abbe_light_walk *w, const abbe_light *light, const a
     for (int k = 0; k < 3; k++) d[k] /= limit;
   }
   abbe_geometry_leave(hit, d, o);
-  return !abbe_geometry_occluded(w->g, ABBE_GEOMETRY_RECEIVERS, o, d, limit);
+  struct RTCRay16 *ray = &s->ray;
+  ray->org_x[at] = o[0];
+  ray->org_y[at] = o[1];
+  ray->org_z[at] = o[2];
+  ray->dir_x[at] = d[0];
+  ray->dir_y[at] = d[1];
+  ray->dir_z[at] = d[2];
+  ray->tnear[at] = 0;
+  ray->tfar[at] = limit;
+  ray->mask[at] = ABBE_GEOMETRY_RECEIVERS;
+  ray->flags[at] = 0;
+  s->landing[at] = landing;
+  s->flux[at] = flux;
+  if (s->count == LANES) ask_lamp(w, ledger);
 }
 
 /* The path after the interface, into the next front; what matched physics does not follow ends. */
@@ -433,6 +539,7 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
                            const abbe_photon *photon, size_t count, abbe_landing *landing,
                            abbe_light_ledger *ledger) {
   size_t landed = 0;
+  bool hides = w->hides[light - w->g->scene->light];
   lanes l = {0};
   abbe_random_bits(0x73686966, 0, pass, w->seed, w->shift);
   begin(w->now, photon, count);
@@ -458,8 +565,9 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
           double flux = (double)(s.y * s.flux);
           if (v == LANDS) {
             land(&l, k, &s, &landing[landed]);
-            landing[landed++].hidden = !lamp_sees(w, light, &l.hit[k]);
             ledger->landed += flux;
+            if (hides) wait_for_lamp(w, light, &l.hit[k], &landing[landed], flux, ledger);
+            landed++;
           } else if (v == ESCAPES) {
             ledger->escaped += flux;
           } else if (v == DROPS) {
@@ -473,5 +581,6 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
     w->now = next;
     w->next = f;
   }
+  ask_lamp(w, ledger);
   return landed;
 }

@@ -44,7 +44,7 @@ typedef struct abbe_landing {
   /* Chance with which the first interfaces sent it where they did; 1 where it was parted there, or
    * where there was no choice. */
   float way[ABBE_LIGHT_WALK_SPLITS];
-  bool hidden; /* matched: from the lamp by other receivers, so that its map has no place for it */
+  bool hidden; /* from the lamp by other receivers, so that its map has no place for it */
 } abbe_landing;
 
 /* Where the light of the photons went: W, each wavelength with its share of Y. */
@@ -52,6 +52,7 @@ typedef struct abbe_light_ledger {
   double reached; /* brought to a refractor, before anything else */
   double landed;  /* on receivers */
   double contact; /* the part of it that came from inside a refractor that touches the receiver */
+  double hidden;  /* the part of it that other receivers hide from the lamp: in no map */
   double absorbed;
   double escaped; /* met nothing any more */
   double dropped; /* not modelled by matched physics */
@@ -75,13 +76,14 @@ void abbe_light_walk_part(abbe_light_walk *walk, unsigned interfaces);
  * mean square of a landing's light, times the number of rays. */
 unsigned abbe_light_walk_best_parts(const abbe_landing *landing, size_t count);
 
-/* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light; writes at most count landings, twice
- * as many for each interface to part at (ABBE_LIGHT_WALK_LANDINGS), and adds to the ledger. pass: of the random numbers. Returns the number of landings. */
+/* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene; writes at most
+ * count landings, twice as many for each interface to part at (ABBE_LIGHT_WALK_LANDINGS), and adds to
+ * the ledger. pass: of the random numbers. Returns the number of landings. */
 size_t abbe_light_walk_run(abbe_light_walk *walk, const abbe_light *light, uint32_t pass,
                            const abbe_photon *photon, size_t count, abbe_landing *landing,
                            abbe_light_ledger *ledger);
 
-/* Rays that were traced so far. */
+/* Rays of paths that were traced so far; those that ask what is hidden are not among them. */
 uint64_t abbe_light_walk_rays(const abbe_light_walk *walk);
 /* Keeps every packet of rays of the next runs, up to a limit, to trace them again for its own
  * sake: seconds that Embree alone takes for them, and their number. False before any were kept. */

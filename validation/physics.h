@@ -3,8 +3,8 @@
  *
  * Matched leaves out what the renderer's plan leaves out: where a path that has met its first
  * interface is reflected, it ends if it is left with less than a share of its light or has met a
- * number of interfaces since; and the map of a light holds only what lands where the lamp would see
- * the receiver past others. The surfaces are the true ones in both.
+ * number of interfaces since. The surfaces are the true ones in both, and so is what the map of a
+ * light holds: what lands where the lamp would see the receiver past others.
  */
 #ifndef ABBE_VALIDATION_PHYSICS_H
 #define ABBE_VALIDATION_PHYSICS_H

@@ -245,6 +245,7 @@ static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
   to->reached += from->reached;
   to->landed += from->landed;
   to->contact += from->contact;
+  to->hidden += from->hidden;
   to->absorbed += from->absorbed;
   to->escaped += from->escaped;
   to->dropped += from->dropped;
