@@ -107,6 +107,25 @@ int abbe_command_end(const char *program, abbe_result result, abbe_error *error)
   return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(program, error);
 }
 
+const char *abbe_command_target(const char *program, const char *option, const char *text,
+                                const char *ending) {
+  static const char *const known[] = {".exr",  ".png", ".jpg",  ".jpeg", ".svg", ".tif",
+                                      ".tiff", ".bmp", ".gif",  ".hdr",  ".pfm", ".webp",
+                                      ".json", ".csv", ".yaml", ".pov"};
+  const char *dot = strrchr(text, '.');
+  if (dot == NULL || strcasecmp(dot, ending) == 0) return text;
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    if (strcasecmp(dot, known[i]) != 0) continue;
+    bool looks = strcmp(ending, ".exr") == 0 && strcmp(option, "-o") == 0;
+    fprintf(stderr,
+            "%s: %s writes a %s file, and '%s' ends like another kind; name it '%.*s%s'%s\n",
+            program, option, ending, text, (int)(dot - text), text, ending,
+            looks ? ", or take --png for a picture to look at" : "");
+    exit(ABBE_EXIT_USAGE);
+  }
+  return text;
+}
+
 void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
                        size_t *width, size_t *height) {
   unsigned w = 0, h = 0;

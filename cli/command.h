@@ -54,6 +54,11 @@ void abbe_command_range(const char *program, const char *option, const char *tex
 int abbe_command_choice(const char *program, const char *option, const char *text,
                         const char *const *names, int count);
 
+/* The name of a file that the option writes. One that ends like a file of another kind, such as
+ * 'gem.png' or 'gem.jpg' for .exr, is refused; any other ending is the user's own. */
+const char *abbe_command_target(const char *program, const char *option, const char *text,
+                                const char *ending);
+
 /* "512x512" as width and height, each 1 to `most`. */
 void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
                        size_t *width, size_t *height);
@@ -64,8 +69,8 @@ abbe_result abbe_command_check_targets(const char *const *paths, size_t count, a
 
 /* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
 abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);
-/* At the end of the program: true, and a sentence on stderr, where something did not reach stdout and
- * no command has said so. */
+/* At the end of the program: true, and a sentence on stderr, where something did not reach stdout
+ * and no command has said so. */
 bool abbe_command_output_failed(void);
 /* Ends a command: 0 where all results reached stdout; else the failure, said on stderr. */
 int abbe_command_end(const char *program, abbe_result result, abbe_error *error);

@@ -168,7 +168,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
   switch (key) {
   case 'o':
-    r->out = arg;
+    r->out = abbe_command_target(state->name, "-o", arg, ".png");
     return 0;
   case KEY_OCIO:
     r->desc.config = arg;

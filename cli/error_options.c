@@ -31,7 +31,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
           abbe_command_count(o->program, "--error-bars", text, 2, ABBE_ERROR_BARS_MAX_VARIANTS);
     return 0;
   case OPTION_ERROR_PNG:
-    o->png = text;
+    o->png = abbe_command_target(state->name, "--error-png", text, ".png");
     return 0;
   case OPTION_MEAN:
     o->mean = true;

@@ -30,7 +30,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
   switch (key) {
   case 'o':
-    q->output = text;
+    q->output = abbe_command_target(state->name, "-o", text, ".pov");
     return 0;
   case OPTION_PHOTONS:
     q->pov.photons = abbe_command_count(q->program, "--photons", text, 1, ABBE_POV_MAX_PHOTONS);

@@ -1,5 +1,6 @@
 #include "cli/map_options.h"
 
+#include "cli/command.h"
 #include "colorimetry/exr.h"
 
 #include <stdio.h>
@@ -18,7 +19,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_map_options *o = state->input;
   switch (key) {
   case OPTION_SAVE_MAP:
-    o->save = text;
+    o->save = abbe_command_target(state->name, "--save-map", text, ".exr");
     return 0;
   case OPTION_MAP_LIGHT:
     o->light = text;

@@ -80,10 +80,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[3] = &q->errors;
     return 0;
   case 'o':
-    q->exr = text;
+    q->exr = abbe_command_target(state->name, "-o", text, ".exr");
     return 0;
   case OPTION_PNG:
-    q->png = text;
+    q->png = abbe_command_target(state->name, "--png", text, ".png");
     return 0;
   case OPTION_BITS:
     q->bits = abbe_command_choice(p, "--bits", text, bits, 2) == 0 ? 8 : 16;
@@ -98,7 +98,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->unfilled = true;
     return 0;
   case OPTION_STATS:
-    q->stats = text;
+    q->stats = abbe_command_target(state->name, "--stats", text, ".json");
     return 0;
   case OPTION_JSON:
     q->json = true;

@@ -279,7 +279,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_sweep_request *w = &q->work;
   switch (key) {
   case 'o':
-    w->csv = text;
+    w->csv = abbe_command_target(state->name, "-o", text, ".csv");
     return 0;
   case OPTION_PLOT:
     w->plot = text;

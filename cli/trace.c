@@ -149,13 +149,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[0] = &q->map;
     return 0;
   case 'o':
-    q->exr = text;
+    q->exr = abbe_command_target(state->name, "-o", text, ".exr");
     return 0;
   case OPTION_PNG:
-    q->png = text;
+    q->png = abbe_command_target(state->name, "--png", text, ".png");
     return 0;
   case OPTION_STATS:
-    q->stats = text;
+    q->stats = abbe_command_target(state->name, "--stats", text, ".json");
     return 0;
   case OPTION_JSON:
     q->json = true;

@@ -102,6 +102,12 @@ static void test_a_full_disk(void **state) {
 static void test_wrong_use(void **state) {
   (void)state;
   static const refusal rows[] = {
+      {GEM " -o gem.png", "-o writes a .exr file, and 'gem.png' ends like another kind; name it "
+                          "'gem.exr', or take --png"},
+      {GEM " --png gem.JPG", "name it 'gem.png'"},
+      {GEM " --save-map map.png", "name it 'map.exr'"},
+      {GEM " --stats gem.csv", "name it 'gem.json'"},
+      {"\"$abbe\" trace gem.yaml -o gem.png", "name it 'gem.exr'"},
       {GEM " --fill smear" TO, "'smear' does not go with the profile 'default'"},
       {GEM " --profile thesis --wavelengths 65" TO, "wavelengths is 65"},
       {"\"$abbe\"", "usage: abbe COMMAND"},
