@@ -12,6 +12,7 @@ struct Light {
   vec4 white;      // rgb of unit power; w: power, W/sr or W/m2
   vec4 misc;       // cosine where the soft edge starts; flux of one map unit, W; photons by window area;
                    // whether it meets a refractor
+  vec4 cube;       // faces of the cube around it whose light this is, a bit each
 };
 
 struct Refractor {
@@ -70,7 +71,22 @@ vec2 warp(int light, vec2 uv) {
               mix(warps[row + k.y].y, warps[row + k.y + 1].y, f.y));
 }
 
+#ifdef CUBES
+const int ALL_FACES = 63;
+
+// The face of a cube to which a direction belongs: the same rule as abbe_light_cube_face.
+int cube_face(vec3 d) {
+  vec3 a = abs(d);
+  bool x = a.x >= a.y && a.x >= a.z, y = !x && a.y >= a.z;
+  float along = x ? d.x : y ? d.y : d.z;
+  return (x ? 0 : y ? 2 : 4) + (along < 0.0 ? 1 : 0);
+}
+#endif
+
 float light_profile(Light l, vec3 direction) {
+#ifdef CUBES
+  if ((int(l.cube.x) >> cube_face(direction) & 1) == 0) return 0.0;
+#endif
   if (int(l.position.w) != 1) return 1.0;
   float c = dot(direction, l.direction.xyz);
   float outer = l.direction.w, inner = l.misc.x;

@@ -1,5 +1,7 @@
+#include "gl/light_cube.h"
 #include "gl/program.h"
 #include "gl/renderer_state.h"
+#include "scenes/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,8 +11,17 @@ static const double narrow_rad = 0.17; /* ten degrees */
 
 enum { MIN_LAYER_SIDE = 256, MAX_LAYER_SIDE = 2048 };
 
-static void look_from_light(const abbe_renderer *r, const abbe_light *light, abbe_view *view) {
+bool abbe_renderer_is_face(const abbe_renderer *r, size_t light) {
+  return r->plan.lamp[light].face >= 0;
+}
+
+static void look_from_light(const abbe_renderer *r, size_t index, abbe_view *view) {
   static const double up[3] = {0, 1, 0};
+  const abbe_light *light = &r->scene->light[index];
+  if (abbe_renderer_is_face(r, index)) {
+    abbe_light_cube_look(light->position, r->plan.lamp[index].face, view);
+    return;
+  }
   double origin[3], forward[3];
   for (int k = 0; k < 3; k++) {
     double centre = r->plan.refractor_count > 0 ? r->refractor_centre[k]
@@ -63,7 +74,8 @@ static void fit_thesis(abbe_renderer *r, const abbe_light *light, light_state *s
 }
 
 bool abbe_renderer_map_is_given(const abbe_renderer *r, size_t light) {
-  return r->plan.desc.map_layout != NULL && r->plan.desc.map_layout_light == light;
+  return r->plan.desc.map_layout != NULL &&
+         r->plan.desc.map_layout_light == r->plan.lamp[light].light;
 }
 
 /* All of it but the range, which must hold this scene's receivers. */
@@ -79,10 +91,42 @@ static void take_layout(const abbe_renderer *r, const abbe_map_layout *given,
 
 void abbe_renderer_whole_map(const abbe_renderer *r, size_t light, abbe_map_layout *out) {
   abbe_view view;
-  look_from_light(r, &r->scene->light[light], &view);
+  look_from_light(r, light, &view);
   fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &view);
+  if (abbe_renderer_is_face(r, light)) /* receivers lie all around it, as the refractors do */
+    for (int k = 0; k < 4; k++)
+      view.window[k] = k % 2 != 0 ? ABBE_VIEW_MAX_TANGENT : -ABBE_VIEW_MAX_TANGENT;
   abbe_view_pad(&view, 0.01);
   abbe_map_layout_make(&view, out);
+}
+
+/* Around what the face shows of the refractors. The shaders' profile of the light keeps photons in
+ * the face; the window ends there too, unless layers are read beyond it. */
+static void fit_face(const abbe_renderer *r, size_t light, abbe_view *view) {
+  const abbe_plan *plan = &r->plan;
+  const abbe_light *from = &r->scene->light[light];
+  double near = INFINITY, far = 0;
+  for (size_t i = 0; i < plan->refractor_count; i++) {
+    const abbe_object *object = &r->scene->object[plan->refractor_object[i]];
+    const abbe_mesh *mesh = &object->mesh;
+    if ((abbe_light_cube_reached(from, object) >> plan->lamp[light].face & 1) == 0) continue;
+    abbe_light_cube_fit(view, object);
+    if (plan->model[i] == ABBE_REFRACTOR_LAYERS)
+      abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count);
+    near = fmin(near, 0.5 * abbe_light_cube_distance(from->position, object));
+    for (size_t k = 0; k < mesh->vertex_count; k++) {
+      double to[3];
+      abbe_vector_subtract(mesh->position[k], from->position, to);
+      far = fmax(far, 1.01 * abbe_vector_length(to));
+    }
+  }
+  for (int k = 0; k < 4; k++) /* a seam's rounding may leave it empty */
+    if (!isfinite(view->window[k])) view->window[k] = 0;
+  abbe_view_pad(view, 0.01);
+  for (int k = 0; k < 4 && !plan->layers && !plan->hierarchy; k++)
+    view->window[k] = fmin(fmax(view->window[k], -1), 1);
+  view->far = far > 0 ? far : 1;
+  view->near = fmax(fmin(near, 0.5 * view->far), 1e-4 * view->far);
 }
 
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
@@ -92,7 +136,7 @@ static void fit_views(abbe_renderer *r) {
     const abbe_light *light = &r->scene->light[i];
     light_state *state = &r->light[i];
     state->cells[0] = state->cells[1] = r->plan.desc.photons;
-    look_from_light(r, light, &state->near_view);
+    look_from_light(r, i, &state->near_view);
     if (abbe_profile_is_thesis(r->plan.desc.profile)) {
       fit_thesis(r, light, state);
       continue;
@@ -102,6 +146,10 @@ static void fit_views(abbe_renderer *r) {
     else
       fit_objects(r, r->plan.receiver_object, r->plan.receiver_count, &state->near_view);
     abbe_view_pad(&state->near_view, 0.01);
+    if (abbe_renderer_is_face(r, i)) {
+      look_from_light(r, i, &state->near_view);
+      fit_face(r, i, &state->near_view);
+    }
     abbe_renderer_whole_map(r, i, &state->map);
     if (abbe_renderer_map_is_given(r, i)) take_layout(r, r->plan.desc.map_layout, &state->map);
   }
@@ -177,9 +225,10 @@ static void set_layer_view(abbe_renderer *r, const abbe_view *view) {
                 (float)view->forward[1], (float)view->forward[2]);
 }
 
-static void clear_target(const abbe_gl *gl, bool owner) {
-  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+static void clear_target(const abbe_gl *gl, GLfloat distance, bool owner) {
+  static const GLfloat far = 1;
   static const GLuint nobody[4] = {0, 0, 0, 0};
+  const GLfloat nothing[4] = {0, 0, 0, distance};
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   if (owner) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
@@ -204,9 +253,11 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
     abbe_result result = abbe_renderer_set_target(r, target, layer, back ? 1 : 2, r->light_depth,
                                                   r->layer_side, r->layer_side, error);
     if (result != ABBE_OK) return result;
-    clear_target(gl, !back);
+    /* So near to exact surfaces their triangles tell too little of what they cover. */
+    const bool all = abbe_renderer_is_face(r, light) && !r->plan.layers && !r->plan.hierarchy;
+    clear_target(gl, all ? 1 : 0, !back);
     gl->CullFace(back ? GL_FRONT : GL_BACK);
-    draw_refractors(r);
+    if (!all) draw_refractors(r);
     abbe_renderer_end_pass(r, back ? "light: refractor back" : "light: refractor front");
   }
   gl->Disable(GL_CULL_FACE);

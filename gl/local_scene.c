@@ -87,7 +87,27 @@ abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out
   return ABBE_OK;
 }
 
+abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t *of, size_t count,
+                                           abbe_error *error) {
+  const abbe_scene *scene = local->scene;
+  const size_t own = scene->light_count;
+  abbe_light *light = calloc(own + count + 1, sizeof *light);
+  if (light == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for lights");
+  memcpy(light, scene->light, own * sizeof *light);
+  for (size_t i = 0; i < count; i++) light[own + i] = scene->light[of[i]];
+  if (local->moved || local->repeated)
+    free(local->copy.light);
+  else
+    local->copy = *scene;
+  local->copy.light = light;
+  local->copy.light_count = own + count;
+  local->repeated = true;
+  local->scene = &local->copy;
+  return ABBE_OK;
+}
+
 void abbe_local_scene_free(abbe_local_scene *local) {
+  if (local->repeated && !local->moved) free(local->copy.light);
   if (local->moved) {
     for (size_t i = 0; local->copy.object != NULL && i < local->copy.object_count; i++) {
       free(local->copy.object[i].mesh.position);

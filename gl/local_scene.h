@@ -19,9 +19,10 @@ extern "C" {
 #endif
 
 typedef struct abbe_local_scene {
-  const abbe_scene *scene; /* the original, or the moved copy below */
+  const abbe_scene *scene; /* the original, or the copy below */
   double origin[3];        /* world = origin + local, m; zero where nothing is moved */
   bool moved;
+  bool repeated; /* lights are */
   abbe_scene copy;
 } abbe_local_scene;
 
@@ -31,6 +32,11 @@ typedef struct abbe_local_scene {
 abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out,
                                   abbe_error *error);
 void abbe_local_scene_free(abbe_local_scene *local);
+
+/* Appends copies of the scene's lights of these indices to those of the local scene, which is then a
+ * copy. ABBE_NO_MEMORY. */
+abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t *of, size_t count,
+                                           abbe_error *error);
 
 /* A map's layout between the world and the local scene. */
 void abbe_local_scene_from_world(const abbe_local_scene *local, abbe_view *view);

@@ -59,11 +59,10 @@ abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t 
   if (abbe_profile_is_thesis(r->plan.desc.profile))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the thesis's passes sum colours; bands go with the default profile");
-  if (light >= r->plan.light_count || !r->plan.caustics)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the scene has no spectral map of light %zu", light);
   const double width = (r->plan.desc.max_nm - r->plan.desc.min_nm) / (double)bands;
-  abbe_result result = make_image(r, bands, out, error);
+  abbe_result result = abbe_renderer_check_map(r, light, error);
+  if (result != ABBE_OK) return result;
+  result = make_image(r, bands, out, error);
   if (result == ABBE_OK) result = read_three(r, light, 1, 0, out, error);
   for (size_t first = 0; first < bands && result == ABBE_OK; first += 3) {
     result = sum_again(r, bands, first, error);

@@ -1,6 +1,7 @@
 #include "gl/plan.h"
 
 #include "gl/everything.h"
+#include "gl/light_cube.h"
 #include "gl/precision.h"
 #include "gl/reach.h"
 #include "gl/transport.h"
@@ -363,14 +364,27 @@ static void note_overlaps(const abbe_scene *scene, abbe_plan *plan) {
       first[0]->name, first[1]->name, more);
 }
 
+static int count_faces(const abbe_plan *plan, size_t light) {
+  int faces = 0;
+  for (size_t i = 0; i < plan->light_count; i++)
+    if (plan->lamp[i].light == light) faces++;
+  return faces;
+}
+
 static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
   bool depth = plan->receivers == ABBE_RECEIVER_DEPTH;
   for (size_t i = 0; i < scene->light_count && plan->refractor_count > 0; i++) {
     char name[64];
     snprintf(name, sizeof name, "map: %.50s", scene->light[i].name);
-    add(plan, plan->reaches[i], name, "%s",
-        plan->reaches[i] ? "the light may meet a refractor" : "its cone misses every refractor");
+    if (plan->lamp[i].face >= 0)
+      add(plan, true, name,
+          "a cube: %d of 6 faces, as '%.50s' is more than 76 degrees off the middle of all "
+          "refractors",
+          count_faces(plan, i), scene->object[plan->off_view[i]].name);
+    else
+      add(plan, plan->reaches[i], name, "%s",
+          plan->reaches[i] ? "the light may meet a refractor" : "its cone misses every refractor");
   }
   const bool exact = plan->parallelogram_count > 0;
   plan->pages = caustics && exact && (plan->receiver_shadows || plan->aside);
@@ -503,45 +517,119 @@ static abbe_result check_lights(const abbe_scene *scene, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* A light that meets a refractor needs one view that holds all of them. Parallelograms outside it
- * have pages; meshes there get no light through refractors, which is noted. */
-static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
-  static const double up[3] = {0, 1, 0};
-  double min[3], max[3], forward[3];
-  bool any = abbe_scene_bounds(scene, true, false, min, max);
-  if (!any || abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
-  for (size_t i = 0; i < scene->light_count; i++) {
-    const abbe_light *light = &scene->light[i];
-    if (light->kind == ABBE_LIGHT_DIRECTIONAL || !plan->reaches[i]) continue;
-    for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - light->position[k];
-    if (forward[0] == 0 && forward[1] == 0 && forward[2] == 0) forward[2] = -1;
-    abbe_view view;
-    abbe_view_look(light->position, forward, up, false, &view);
-    for (size_t k = 0; k < plan->refractor_count; k++) {
-      const abbe_object *object = &scene->object[plan->refractor_object[k]];
-      if (!abbe_view_fit(&view, (const double(*)[3])object->mesh.position,
-                         object->mesh.vertex_count))
-        return abbe_error_set(error, ABBE_UNSUPPORTED,
-                              "the light '%s' sees the refractor '%s' more than 76 degrees off the "
-                              "middle of all refractors; move it away from them, or trace the "
-                              "scene",
-                              light->name, object->name);
-    }
-    bool meshes = true;
-    for (size_t k = 0; k < plan->receiver_count; k++) {
-      const abbe_object *object = &scene->object[plan->receiver_object[k]];
-      const bool exact = plan->receiver_model[k] == ABBE_RECEIVER_EXACT;
-      const bool held = abbe_view_fit(&view, (const double(*)[3])object->mesh.position,
-                                      object->mesh.vertex_count);
-      plan->aside = plan->aside || (exact && !held);
-      meshes = meshes && (exact || held);
-    }
-    if (!meshes)
-      note(plan,
-           "meshes more than 76 degrees off the way from the light '%.60s' to the "
-           "refractors get no light through them",
-           light->name);
+/* Parallelograms outside the view have pages; meshes there get no light through refractors. */
+static bool holds_meshes(const abbe_scene *scene, abbe_plan *plan, abbe_view *view) {
+  bool meshes = true;
+  for (size_t k = 0; k < plan->receiver_count; k++) {
+    const abbe_object *object = &scene->object[plan->receiver_object[k]];
+    const bool exact = plan->receiver_model[k] == ABBE_RECEIVER_EXACT;
+    const bool held =
+        abbe_view_fit(view, (const double(*)[3])object->mesh.position, object->mesh.vertex_count);
+    plan->aside = plan->aside || (exact && !held);
+    meshes = meshes && (exact || held);
   }
+  return meshes;
+}
+
+/* What a mesh is inside is told by its layers, which no seam may cut. */
+static abbe_result check_layers(const abbe_scene *scene, const abbe_plan *plan,
+                                const abbe_light *light, int face, size_t refractor,
+                                abbe_error *error) {
+  const abbe_object *object = &scene->object[plan->refractor_object[refractor]];
+  abbe_view view;
+  if (plan->model[refractor] != ABBE_REFRACTOR_LAYERS) return ABBE_OK;
+  abbe_light_cube_look(light->position, face, &view);
+  if (abbe_view_fit(&view, (const double(*)[3])object->mesh.position, object->mesh.vertex_count))
+    return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "the light '%s' is so near to the refractor '%s' that no view holds its "
+      "layers, 76 degrees to each side; ask for the model 'hierarchy', or move it "
+      "away",
+      light->name, object->name);
+}
+
+/* One lamp for each face of the cube through which light may reach a refractor; the first stands
+ * in the light's own place. */
+static abbe_result make_cube(const abbe_scene *scene, size_t light, abbe_plan *plan,
+                             abbe_error *error) {
+  const abbe_light *from = &scene->light[light];
+  unsigned all = 0;
+  bool first = true, meshes = true;
+  for (size_t k = 0; k < plan->refractor_count; k++) {
+    const unsigned faces = abbe_light_cube_reached(from, &scene->object[plan->refractor_object[k]]);
+    for (int face = 0; face < ABBE_LIGHT_CUBE_FACES; face++) {
+      abbe_result result =
+          faces >> face & 1 ? check_layers(scene, plan, from, face, k, error) : ABBE_OK;
+      if (result != ABBE_OK) return result;
+    }
+    all |= faces;
+  }
+  plan->reaches[light] = all != 0;
+  for (int face = 0; face < ABBE_LIGHT_CUBE_FACES; face++) {
+    abbe_view view;
+    if ((all >> face & 1) == 0) continue;
+    if (!first && plan->light_count == ABBE_SCENE_MAX_LIGHTS)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the refractors around the light '%s' need a cube of maps, and all "
+                            "lights together more than %d maps; move it away from them, or leave "
+                            "lights out",
+                            from->name, ABBE_SCENE_MAX_LIGHTS);
+    const size_t at = first ? light : plan->light_count++;
+    const unsigned rest = first ? ABBE_LIGHT_CUBE_ALL & ~all : 0;
+    plan->lamp[at] = (abbe_plan_lamp){light, face, 1u << face | rest};
+    plan->reaches[at] = plan->cubes = true;
+    first = false;
+    abbe_light_cube_look(from->position, face, &view);
+    meshes = holds_meshes(scene, plan, &view) && meshes;
+  }
+  if (!meshes)
+    note(plan,
+         "meshes more than 76 degrees off the axis of a face of the cube around '%.60s' get no "
+         "light through that face's refractors",
+         from->name);
+  return ABBE_OK;
+}
+
+/* Where one view of the light holds all refractors, it has that; else a cube of them. */
+static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan *plan,
+                                abbe_error *error) {
+  static const double up[3] = {0, 1, 0};
+  const abbe_light *from = &scene->light[light];
+  double min[3], max[3], forward[3];
+  abbe_scene_bounds(scene, true, false, min, max);
+  for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - from->position[k];
+  if (forward[0] == 0 && forward[1] == 0 && forward[2] == 0) forward[2] = -1;
+  abbe_view view;
+  abbe_view_look(from->position, forward, up, false, &view);
+  for (size_t k = 0; k < plan->refractor_count; k++) {
+    const abbe_object *object = &scene->object[plan->refractor_object[k]];
+    if (abbe_view_fit(&view, (const double(*)[3])object->mesh.position, object->mesh.vertex_count))
+      continue;
+    plan->off_view[light] = plan->refractor_object[k];
+    return make_cube(scene, light, plan, error);
+  }
+  if (!holds_meshes(scene, plan, &view))
+    note(plan,
+         "meshes more than 76 degrees off the way from the light '%.60s' to the "
+         "refractors get no light through them",
+         from->name);
+  return ABBE_OK;
+}
+
+static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
+  plan->light_count = scene->light_count;
+  for (size_t i = 0; i < scene->light_count; i++)
+    plan->lamp[i] = (abbe_plan_lamp){i, -1, ABBE_LIGHT_CUBE_ALL};
+  if (plan->refractor_count == 0 || abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
+  for (size_t i = 0; i < scene->light_count; i++) {
+    if (scene->light[i].kind == ABBE_LIGHT_DIRECTIONAL || !plan->reaches[i]) continue;
+    abbe_result result = examine_view(scene, i, plan, error);
+    if (result != ABBE_OK) return result;
+  }
+  plan->caustics = false;
+  for (size_t i = 0; i < plan->light_count; i++)
+    plan->caustics = plan->caustics || plan->reaches[i];
   return ABBE_OK;
 }
 
@@ -560,7 +648,6 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
     abbe_plan_free(out);
     return result;
   }
-  out->light_count = scene->light_count;
   examine_shadows(scene, out);
   resolve_wavelengths(out);
   list_passes(scene, out);

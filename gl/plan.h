@@ -116,6 +116,14 @@ typedef struct abbe_plan_entry {
 
 #define ABBE_PLAN_MAX_ENTRIES 96
 
+/* A light, or a face of the cube around one whose refractors do not fit one view. */
+typedef struct abbe_plan_lamp {
+  size_t light;   /* the scene's */
+  int face;       /* that it looks through (gl/light_cube.h); -1: it is no part of a cube */
+  unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
+                     those through which no light reaches a refractor; without a cube, all */
+} abbe_plan_lamp;
+
 typedef struct abbe_plan {
   abbe_render_desc desc; /* every field resolved, none zero */
   size_t refractor_count;
@@ -142,7 +150,10 @@ typedef struct abbe_plan {
   bool seen;                           /* the eye may */
   bool fills;                          /* light is laid between wavelengths */
   bool back;                           /* the back of refractors is drawn */
-  size_t light_count;
+  size_t light_count; /* the scene's lights, and after them what cubes have more than one face each */
+  abbe_plan_lamp lamp[ABBE_SCENE_MAX_LIGHTS];
+  bool cubes; /* some light has one */
+  size_t off_view[ABBE_SCENE_MAX_LIGHTS]; /* of a light with a cube: an object that asks for it */
   size_t entry_count; /* passes and models, in the order in which they run */
   abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];
   size_t note_count; /* what is not modelled, or extrapolated */

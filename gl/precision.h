@@ -17,8 +17,9 @@ extern "C" {
 
 /* ABBE_UNSUPPORTED, with a sentence, where some refractor of the plan is so far from a light that
  * its shape is lost (65536 of its radii), so thin that its front and back are one (2^-20 of that
- * distance), or, of the grid of four photons a side or more, less than half a cell wide. Default
- * profile only. */
+ * distance), or, of the grid of four photons a side or more, less than half a cell wide; or where a
+ * light with a cube of views is nearer to one than 1/4096 of half its diagonal. Default profile
+ * only. */
 abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
 #ifdef __cplusplus

@@ -134,6 +134,10 @@ float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
   if (!project(v, p, uvz)) return 1.0;
   ivec2 size = textureSize(light_layers, 0).xy;
   vec2 at = uvz.xy * vec2(size) - 0.5;
+#ifdef CUBES
+  // What a refractor shows beyond the seam of two faces is another face's.
+  if (int(lights[light].cube.x) != ALL_FACES && inside(uvz.xy)) at = clamp(at, vec2(0), vec2(size - 1));
+#endif
   ivec2 base = ivec2(floor(at));
   vec2 f = at - vec2(base);
   float lit = 0.0;
@@ -191,6 +195,22 @@ vec2 page_place(int light, vec3 p, vec3 n, out vec4 rect) {
 }
 #endif
 
+// Whether the side of a receiver at p that n points from looks to the refractors. Where its plane cuts
+// their bounds, that is also the side that the light is on.
+bool is_before(vec3 n, float facing, vec3 p) {
+  float before = dot(n, refractor_bounds.xyz - p);
+  return before > 0.0 || (before > -refractor_bounds.w && facing > 0.0);
+}
+
+// The same of a parallelogram.
+bool takes_refracted(vec3 n, float facing, vec3 p) {
+#ifdef CUBES
+  return is_before(n, facing, p);  // they stand all around the light
+#else
+  return dot(n, refractor_bounds.xyz - p) > 0.0;
+#endif
+}
+
 // rgb irradiance from one light on p (n faces the viewer): straight, and through refractors.
 void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caustic) {
   Light l = lights[light];
@@ -218,7 +238,7 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
 #else
   const vec2 page_right = vec2(0), page_above = vec2(0);
 #endif
-  if (l.misc.w != 0.0 && on_page.x >= 0.0 && dot(n, refractor_bounds.xyz - p) > 0.0)
+  if (l.misc.w != 0.0 && on_page.x >= 0.0 && takes_refracted(n, facing, p))
     caustic = rgb_from_xyz * layer_mean(int(pages[light * MOST_PAGES].info.y), on_page, page_right,
                                         page_above, rect / side);
 #endif
@@ -234,12 +254,10 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   if (l.misc.w == 0.0) return;
   // The map holds the light of the side that faces the refractors.
 #ifdef RECEIVER_HIERARCHY
-  // Where a face's plane cuts their bounds, that is the side that the light is on.
   facing = -dot(face_n, d);
-  float before = dot(face_n, refractor_bounds.xyz - p);
-  if (before <= 0.0 && (before <= -refractor_bounds.w || facing <= 0.0)) return;
+  if (!is_before(face_n, facing, p)) return;
 #else
-  if (dot(n, refractor_bounds.xyz - p) <= 0.0) return;
+  if (!takes_refracted(n, facing, p)) return;
 #endif
   if (!held) return;
   vec3 flux = layer_mean(light, at, to_right, to_above, vec4(0, 0, 1, 1));

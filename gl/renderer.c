@@ -42,7 +42,7 @@ static void write_defines(abbe_renderer *r) {
            "#define LIGHT_ROOM %zu\n"
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
-           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s"
+           "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s"
            "#define HIERARCHY_STACK %zu\n#define RECEIVER_ROOT %zu\n",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, p->slots, room(p->light_count), room(p->refractor_count), room(planes),
@@ -62,7 +62,7 @@ static void write_defines(abbe_renderer *r) {
            p->receivers == ABBE_RECEIVER_HIERARCHY ? "#define RECEIVER_HIERARCHY\n" : "",
            p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
            p->caustics ? "#define CAUSTICS\n" : "", p->walk ? "#define WALK\n" : "",
-           r->hierarchy_depth + 1, r->receiver_root);
+           p->cubes ? "#define CUBES\n" : "", r->hierarchy_depth + 1, r->receiver_root);
 }
 
 /* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
@@ -119,6 +119,14 @@ static abbe_result make_passes(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
+/* A cube's further faces are lights of their own. */
+static abbe_result repeat_lights(abbe_renderer *r, const abbe_scene *scene, abbe_error *error) {
+  const size_t own = scene->light_count;
+  size_t of[ABBE_SCENE_MAX_LIGHTS] = {0};
+  for (size_t i = own; i < r->plan.light_count; i++) of[i - own] = r->plan.lamp[i].light;
+  return abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_count - own, error);
+}
+
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                const abbe_render_desc *desc, abbe_renderer **out,
                                abbe_error *error) {
@@ -129,6 +137,7 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
   r->gl = abbe_context_gl(context);
   abbe_result result = abbe_plan_make(scene, desc, &r->plan, error);
   if (result == ABBE_OK) result = abbe_local_scene_make(scene, &r->local, error);
+  if (result == ABBE_OK && r->plan.cubes) result = repeat_lights(r, scene, error);
   r->scene = r->local.scene;
   if (result == ABBE_OK && r->local.moved && r->plan.desc.map_layout != NULL) {
     r->given = *r->plan.desc.map_layout;
@@ -298,16 +307,26 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
   return result;
 }
 
+abbe_result abbe_renderer_check_map(const abbe_renderer *r, size_t light, abbe_error *error) {
+  if (light >= r->plan.light_count || !r->plan.reaches[light] || r->plan.lamp[light].light != light)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the scene has no spectral map of light %zu", light);
+  if (!abbe_renderer_is_face(r, light) || abbe_renderer_map_is_given(r, light)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "the light '%s' has a cube of maps, each with its own layout; give one "
+                        "layout for all, such as that of a traced map (--map-like)",
+                        r->scene->light[light].name);
+}
+
 abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
                                    abbe_error *error) {
   static const char *const xyz[] = {"X", "Y", "Z"}, *const rgb[] = {"R", "G", "B"};
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   bool flat = abbe_profile_is_thesis(r->plan.desc.profile);
-  if (light >= r->plan.light_count || !r->plan.reaches[light])
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the scene has no spectral map of light %zu", light);
   size_t side = r->plan.desc.map_size;
-  abbe_result result = abbe_image_make(side, side, 3, thesis ? rgb : xyz, out, error);
+  abbe_result result = abbe_renderer_check_map(r, light, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_image_make(side, side, 3, thesis ? rgb : xyz, out, error);
   if (result != ABBE_OK) return result;
   float *data = malloc((flat ? 1 : r->map_layers) * side * side * 4 * sizeof *data);
   if (data == NULL) {
@@ -317,6 +336,12 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   GLenum target = flat ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
   r->gl->BindTexture(target, flat ? abbe_renderer_thesis_map(r, filled) : r->map);
   r->gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
+  /* Faces of a cube that share a layout add up. */
+  for (size_t i = 0; i < r->plan.light_count; i++) {
+    const float *layer = data + i * side * side * 4;
+    if (i == light || r->plan.lamp[i].light != light) continue;
+    for (size_t k = 0; k < side * side * 4; k++) data[light * side * side * 4 + k] += layer[k];
+  }
   copy_flipped(data + light * side * side * 4, 4, 0, out, 0, 3, 1);
   free(data);
   /* The thesis's passes sum the light of a lamp of unit power. */

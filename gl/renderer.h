@@ -49,7 +49,8 @@ abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image 
                                abbe_error *error);
 
 /* A light's spectral map: channels X, Y, Z, flux a texel in W, with its layout and the light's name
- * in its attributes (abbe_map_layout_read). filled: after the gap fill, where the fill is a pass of
+ * in its attributes (abbe_map_layout_read). Of a light with a cube of maps only where the request
+ * gives one layout for all, else ABBE_UNSUPPORTED. filled: after the gap fill, where the fill is a pass of
  * its own (smear). */
 abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool filled,
                                    abbe_image *out, abbe_error *error);
@@ -61,7 +62,8 @@ abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool f
 abbe_result abbe_renderer_read_map_bands(abbe_renderer *renderer, size_t light, size_t bands,
                                          abbe_image *out, abbe_error *error);
 
-/* The layout of a light's map: fitted to its landings, or the request's. */
+/* The layout of a light's map: fitted to its landings, or the request's; of the first face of a
+ * light with a cube. */
 void abbe_renderer_map_layout(const abbe_renderer *renderer, size_t light, abbe_map_layout *out);
 
 /* Landings of the first batch of wavelengths, for tests: [count][orders][lanes] x 4 floats, world

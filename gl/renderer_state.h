@@ -135,6 +135,11 @@ double abbe_renderer_map_unit(const abbe_renderer *r, size_t light);
 double abbe_renderer_texel_size(const abbe_renderer *r, size_t light, int axis, size_t texel);
 /* Whether the request gives the layout of this light's map. */
 bool abbe_renderer_map_is_given(const abbe_renderer *r, size_t light);
+/* Whether the light looks through one face of a cube, and shares its power with the others. */
+bool abbe_renderer_is_face(const abbe_renderer *r, size_t light);
+/* Whether the light's map can be read as one picture: ABBE_UNSUPPORTED for a cube of maps that no
+ * layout joins, ABBE_INVALID_ARGUMENT where the light has none. */
+abbe_result abbe_renderer_check_map(const abbe_renderer *r, size_t light, abbe_error *error);
 /* 32-bit words of a map texel's sums. */
 size_t abbe_renderer_map_words(const abbe_renderer *r);
 

@@ -10,7 +10,7 @@
 
 /* Float copies of the shaders' structs (common.glsl). */
 typedef struct gpu_light {
-  float near_view[24], map_view[24], position[4], direction[4], white[4], misc[4];
+  float near_view[24], map_view[24], position[4], direction[4], white[4], misc[4], cube[4];
 } gpu_light;
 
 typedef struct gpu_refractor {
@@ -579,6 +579,7 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     g.misc[1] = (float)abbe_renderer_map_unit(r, i);
     g.misc[2] = (float)(1 / cell_area);
     g.misc[3] = r->plan.reaches[i] ? 1 : 0;
+    g.cube[0] = (float)r->plan.lamp[i].faces;
     upload_warps(r, i);
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);
     r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g), sizeof g, &g);

@@ -373,7 +373,7 @@ static void spots_fade(void **state) {
   const double rad = acos(-1) / 180;
   for (int s = 0; s < 9; s++) {
     abbe_light spot = {.kind = ABBE_LIGHT_SPOT, .direction = {0, 0, -1}};
-    float block[16][4] = {{0}};
+    float block[17][4] = {{0}};
     spot.cone_rad = cone[s / 3] * rad;
     spot.soft_rad = fmin(soft[s % 3], cone[s / 3]) * rad;
     block[12][3] = ABBE_LIGHT_SPOT;

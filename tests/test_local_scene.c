@@ -83,10 +83,40 @@ static void everything_moves_together(void **state) {
   abbe_scene_free(&scene);
 }
 
+static void lights_repeat_where_the_scene_is(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      CAMERA POINT_LIGHT FLOOR BALL("crown"), CAMERA POINT_LIGHT FLOOR
+      "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [1000, 0, "
+      "0.2]}], material: crown}\n"};
+  for (int i = 0; i < 2; i++) {
+    abbe_scene scene;
+    abbe_local_scene local;
+    abbe_error error = {0};
+    load_text(texts[i], &scene);
+    make(&scene, &local);
+    assert_true(local.moved == (i == 1));
+    double at[3];
+    memcpy(at, local.scene->light[0].position, sizeof at);
+    assert_int_equal(abbe_local_scene_repeat_lights(&local, (const size_t[3]){0, 0, 0}, 3, &error),
+                     ABBE_OK);
+    assert_int_equal(local.scene->light_count, 4);
+    assert_int_equal(scene.light_count, 1);
+    for (size_t k = 0; k < 4; k++) {
+      assert_memory_equal(local.scene->light[k].position, at, sizeof at);
+      assert_string_equal(local.scene->light[k].name, "lamp");
+    }
+    assert_int_equal(local.scene->object_count, scene.object_count);
+    abbe_local_scene_free(&local);
+    abbe_scene_free(&scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_scene_around_the_origin_stays),
       cmocka_unit_test(everything_moves_together),
+      cmocka_unit_test(lights_repeat_where_the_scene_is),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -134,6 +134,13 @@ static const char flat[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
 static const char cube[] = CAMERA POINT_LIGHT FLOOR CUBE("crown");
 static const char egg[] = CAMERA POINT_LIGHT FLOOR EGG("crown");
 
+#define BALL_BESIDE                                                                                \
+  "- {name: other, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0.5, 0, "      \
+  "0.2]}], material: crown}\n"
+#define LAMP_BETWEEN                                                                               \
+  "lights:\n- {name: lamp, kind: point, position: [0.25, 0, 0.2], intensity: 1}\n"
+static const char two_balls[] = CAMERA POINT_LIGHT FLOOR BALL("crown") BALL_BESIDE;
+
 typedef struct pair {
   const char *fact, *from, *to;
   abbe_render_desc desc; /* of the second */
@@ -179,6 +186,25 @@ static const pair pairs[] = {
       "-light: spectral map|no light meets a refractor", "-light: gap fill|nothing lands apart",
       "-absorption|nothing refracts", "-eye: refractor front|nothing refracts",
       "-eye: refraction|nothing refracts", "no model: ball", "no map: lamp", NULL}},
+    {"a lamp between the refractors",
+     two_balls,
+     CAMERA LAMP_BETWEEN FLOOR BALL("crown") BALL_BESIDE,
+     {0},
+     {"+map: lamp|a cube: 2 of 6 faces, as 'other' is more than 76 degrees off the middle of all "
+      "refractors",
+      NULL}},
+    {"a mesh about a lamp between the refractors",
+     two_balls,
+     CAMERA LAMP_BETWEEN FLOOR DOME BALL("crown") BALL_BESIDE,
+     {0},
+     {"+model: receivers|triangle hierarchy: 'dome' is a general mesh",
+      "+shadows of receivers|a receiver may stand between a light and another",
+      "+map: lamp|a cube: 2 of 6 faces, as 'other' is more than 76 degrees off the middle of all "
+      "refractors",
+      "+maps on receivers|a receiver may hide from a light where its light lands",
+      "!meshes more than 76 degrees off the axis of a face of the cube around 'lamp' get no light "
+      "through that face's refractors",
+      NULL}},
     {"an index that is constant",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("flat"),

@@ -80,6 +80,22 @@ static void specks_between_photons_are_told(void **state) {
                    ABBE_OK);
 }
 
+#define CLOSE(at)                                                                                  \
+  CAMERA "lights:\n- {name: lamp, kind: point, position: [" at "], intensity: 1}\n" FLOOR
+
+/* Half the ball's diagonal is 0.1386 m, a 4096th of it 3.4e-5 m. */
+static void a_light_that_touches_is_told(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  assert_int_equal(check(CLOSE("0, 0, 0.28004") BALL("flat"), 0, &error), ABBE_OK);
+  assert_int_equal(check(CLOSE("0, 0, 0.28003") BALL("flat"), 0, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'lamp' is 3e-05 m from the surface of the refractor 'ball'");
+  assert_contains(error.text, "at least 3.38e-05 m away");
+  /* Over the middle of a box's side: its corners are no measure of the way. */
+  assert_int_equal(check(CLOSE("0.2, 0, 0.23002") BRICK("flat"), 0, &error), ABBE_OK);
+  assert_int_equal(check(CLOSE("0.2, 0, 0.23001") BRICK("flat"), 0, &error), ABBE_UNSUPPORTED);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ordinary_scenes_are_fine),
@@ -87,6 +103,7 @@ int main(void) {
       cmocka_unit_test(a_refractor_lost_in_its_scene_is_told),
       cmocka_unit_test(a_skin_has_no_inside),
       cmocka_unit_test(specks_between_photons_are_told),
+      cmocka_unit_test(a_light_that_touches_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

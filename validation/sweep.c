@@ -593,6 +593,12 @@ abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s has no refractor that a light reaches: there is no map to compare",
                             scene->path);
+  else if (abbe_renderer_plan(renderer)->lamp[light].face >= 0)
+    result =
+        abbe_error_set(error, ABBE_UNSUPPORTED,
+                       "the light '%s' of %s has a cube of maps and no single layout to compare "
+                       "them by; trace a reference map and render with --map-like",
+                       scene->light[light].name, scene->path);
   else
     abbe_renderer_map_layout(renderer, light, out);
   abbe_renderer_free(renderer);

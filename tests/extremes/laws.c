@@ -21,6 +21,19 @@ static abbe_result read_frame(abbe_renderer *renderer, extreme_frame *out, abbe_
   return abbe_renderer_read_map(renderer, 0, true, &out->map, error);
 }
 
+/* Faces of a cube have no layout in common but a given one: the floor as the light sees it. */
+static void look_down(const abbe_scene *scene, abbe_map_layout *out) {
+  static const double down[3] = {0, 0, -1}, up[3] = {0, 1, 0};
+  abbe_view view;
+  abbe_view_look(scene->light[0].position, down, up, false, &view);
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].material == NULL)
+      abbe_view_fit(&view, (const double(*)[3])scene->object[i].mesh.position,
+                    scene->object[i].mesh.vertex_count);
+  abbe_view_pad(&view, 0.01);
+  abbe_map_layout_make(&view, out);
+}
+
 abbe_result extreme_frame_make(abbe_context *context, const extreme *e, extreme_frame *out,
                                abbe_error *error) {
   abbe_render_desc desc = extreme_desc(e);
@@ -28,6 +41,14 @@ abbe_result extreme_frame_make(abbe_context *context, const extreme *e, extreme_
   memset(out, 0, sizeof *out);
   abbe_result result = extreme_load(&e->scene, &out->scene, error);
   if (result == ABBE_OK) result = abbe_renderer_make(context, &out->scene, &desc, &renderer, error);
+  abbe_map_layout layout;
+  if (result == ABBE_OK && abbe_renderer_plan(renderer)->cubes && desc.map_layout == NULL) {
+    look_down(&out->scene, &layout);
+    desc.map_layout = &layout;
+    abbe_renderer_free(renderer);
+    renderer = NULL;
+    result = abbe_renderer_make(context, &out->scene, &desc, &renderer, error);
+  }
   if (result == ABBE_OK) result = read_frame(renderer, out, error);
   abbe_renderer_free(renderer);
   if (result != ABBE_OK) extreme_frame_free(out);
