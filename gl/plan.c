@@ -595,8 +595,10 @@ static abbe_result make_cube(const abbe_scene *scene, size_t light, abbe_plan *p
 static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan *plan,
                                 abbe_error *error) {
   static const double up[3] = {0, 1, 0};
+  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   const abbe_light *from = &scene->light[light];
   double min[3], max[3], forward[3];
+  if (thesis && from->kind == ABBE_LIGHT_SPOT) return ABBE_OK; /* its view is its cone */
   abbe_scene_bounds(scene, true, false, min, max);
   for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - from->position[k];
   if (forward[0] == 0 && forward[1] == 0 && forward[2] == 0) forward[2] = -1;
@@ -607,9 +609,14 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
     if (abbe_view_fit(&view, (const double(*)[3])object->mesh.position, object->mesh.vertex_count))
       continue;
     plan->off_view[light] = plan->refractor_object[k];
-    return make_cube(scene, light, plan, error);
+    if (!thesis) return make_cube(scene, light, plan, error);
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile looks through one view, and the light '%s' sees the "
+                          "refractor '%s' more than 76 degrees off the middle of all; move it "
+                          "away, or take the default profile",
+                          from->name, object->name);
   }
-  if (!holds_meshes(scene, plan, &view))
+  if (!thesis && !holds_meshes(scene, plan, &view))
     note(plan,
          "meshes more than 76 degrees off the way from the light '%.60s' to the "
          "refractors get no light through them",
@@ -621,7 +628,7 @@ static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_
   plan->light_count = scene->light_count;
   for (size_t i = 0; i < scene->light_count; i++)
     plan->lamp[i] = (abbe_plan_lamp){i, -1, ABBE_LIGHT_CUBE_ALL};
-  if (plan->refractor_count == 0 || abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
+  if (plan->refractor_count == 0) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count; i++) {
     if (scene->light[i].kind == ABBE_LIGHT_DIRECTIONAL || !plan->reaches[i]) continue;
     abbe_result result = examine_view(scene, i, plan, error);
