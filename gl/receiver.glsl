@@ -122,12 +122,55 @@ bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
 #endif
 }
 
+#ifdef SHADOW_PLANES
+// The shadows of convex refractors (shadow_planes.h): where the planes of each light and refractor begin,
+// and how many they are. ONE_SHADOW: they are all of one, and the loop has a constant bound, for then it
+// is unrolled; others are real loops, which a software rasteriser ends where no lane takes part.
+layout(std140, binding = 9) uniform ShadowPlanes {
+  ivec4 shadow_range[LIGHT_ROOM * REFRACTOR_ROOM];
+  vec4 shadow_planes[SHADOW_PLANES];
+};
+
+bool convex_shadow(int light, int refractor, vec3 p) {
+  vec3 x = int(lights[light].position.w) == 2 ? p : p - lights[light].position.xyz;
+#ifdef ONE_SHADOW
+  const int first = 0, count = SHADOW_PLANES;
+#else
+  ivec2 range = shadow_range[light * REFRACTORS + refractor].xy;
+  int first = range.x, count = range.y;
+#endif
+  float most = -1e30;
+  for (int i = 0; i < count; i++) {
+    vec4 plane = shadow_planes[first + i];
+    most = max(most, dot(plane.xyz, x) - plane.w);
+  }
+  return count > 0 && most < 0.0;
+}
+#endif
+
+// A refractor with an exact surface stands between the light and p, or around p.
+bool exact_shadow(int light, vec3 p, vec3 d, float distance_m) {
+  Hit h;
+  h.t = distance_m;
+#ifndef SHADOW_PLANES
+  return exact_front(p - distance_m * d, d, h);
+#else
+  bool hidden = false;
+  for (int r = 0; r < REFRACTORS; r++) {
+    hidden = convex_shadow(light, r, p) || hidden;
+#ifdef SPHERES
+    if (refractors[r].info.x == MODEL_SPHERE)
+      hidden = sphere_front(refractors[r].sphere, p - distance_m * d, d, h) || hidden;
+#endif
+  }
+  return hidden;
+#endif
+}
+
 // Share of direct light that no refractor takes away on its way to p.
 float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
   if (lights[light].misc.w == 0.0) return 1.0;
-  Hit h;
-  h.t = distance_m;
-  if (exact_front(p - distance_m * d, d, h)) return 0.0;
+  if (exact_shadow(light, p, d, distance_m)) return 0.0;
 #ifdef FRONT_LAYER
   vec3 uvz;
   View v = lights[light].near_view;

@@ -19,9 +19,8 @@ static size_t room(size_t count) {
   return count > 0 ? count : 1;
 }
 
-/* OpenGL promises uniform blocks of 16 KiB; every desktop driver, llvmpipe too, has 64. */
 static const char *storage(size_t count, size_t element, const char *define) {
-  return count * element > 65536 ? define : "";
+  return count * element > BLOCK_BYTES ? define : "";
 }
 
 static void write_defines(abbe_renderer *r) {
@@ -63,6 +62,11 @@ static void write_defines(abbe_renderer *r) {
            p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
            p->caustics ? "#define CAUSTICS\n" : "", p->walk ? "#define WALK\n" : "",
            p->cubes ? "#define CUBES\n" : "", r->hierarchy_depth + 1, r->receiver_root);
+  const size_t used = strlen(r->defines);
+  if (r->shadow_planes > 0)
+    snprintf(r->defines + used, sizeof r->defines - used, "#define SHADOW_PLANES %zu\n%s",
+             r->shadow_planes,
+             p->light_count * p->refractor_count == 1 ? "#define ONE_SHADOW\n" : "");
 }
 
 /* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
@@ -145,6 +149,7 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
     r->plan.desc.map_layout = &r->given;
   }
   if (result == ABBE_OK) result = abbe_renderer_make_hierarchy(r, error);
+  if (result == ABBE_OK) result = abbe_renderer_make_shadows(r, error);
   if (result == ABBE_OK) {
     write_defines(r);
     result = make_passes(r, error);
@@ -171,10 +176,11 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteTextures(sizeof r->texels / sizeof *r->texels, r->texels);
   free(r->refractor_root);
   free(r->parallelogram);
+  free(r->shadow_row);
   gl->DeleteBuffers(1, &r->table_bands);
-  const GLuint lists[] = {r->table_pages, r->table_warps, r->texel_sizes,
-                          r->pixel_list,  r->refine_list, r->path_marks,
-                          r->path_list,   r->splat_list,  r->map_sums};
+  const GLuint lists[] = {r->table_pages, r->table_warps, r->table_shadows, r->texel_sizes,
+                          r->pixel_list,  r->refine_list, r->path_marks,    r->path_list,
+                          r->splat_list,  r->map_sums};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,     r->light_owner, r->light_depth, r->map,

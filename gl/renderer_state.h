@@ -61,6 +61,9 @@ typedef struct light_state {
   size_t page_layer; /* of the map, where it has pages */
 } light_state;
 
+/* OpenGL promises uniform blocks of 16 KiB; every desktop driver, llvmpipe too, has 64. */
+enum { BLOCK_BYTES = 65536 };
+
 typedef struct thesis_state thesis_state;
 
 struct abbe_renderer {
@@ -86,7 +89,12 @@ struct abbe_renderer {
   size_t *refractor_root; /* [refractor_count] of its tree */
   size_t receiver_root;   /* of the tree of all receivers that are traversed */
   size_t hierarchy_depth;
-  GLuint table_bands, table_warps, texel_sizes;
+  union {         /* as the shaders' block has them */
+    int range[4]; /* first plane of each light and refractor, and how many */
+    float plane[4];
+  } *shadow_row;        /* all ranges, then all planes */
+  size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
+  GLuint table_bands, table_warps, table_shadows, texel_sizes;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
   GLuint path_marks, path_list, splat_list, map_sums;
   GLuint wants, pair_list; /* intervals that ask for all their wavelengths */
@@ -155,6 +163,10 @@ void abbe_renderer_free_scene(abbe_renderer *r);
 
 /* scene_hierarchy.c: the triangles of what is traversed, before the shaders are made. */
 abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error);
+
+/* scene_shadows.c: the planes of convex refractors' shadows, before the shaders are made. */
+abbe_result abbe_renderer_make_shadows(abbe_renderer *r, abbe_error *error);
+abbe_result abbe_renderer_upload_shadows(abbe_renderer *r, abbe_error *error);
 
 /* resources.c: buffers and textures, counted. */
 abbe_result abbe_renderer_make_buffer(abbe_renderer *r, size_t size, const void *data, GLuint *out,

@@ -125,6 +125,8 @@ void abbe_renderer_bind_tables(abbe_renderer *r) {
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 2, r->table_warps);
   if (r->table_pages != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 3, r->table_pages);
+  if (r->table_shadows != 0)
+    r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 4, r->table_shadows);
   if (r->table_bands != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 1, r->table_bands);
 }

@@ -505,6 +505,7 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
       r->xyz_from_rgb[3 * column + row] = (float)matrix[3 * row + column];
   abbe_result result = upload_meshes(r, error);
   if (result == ABBE_OK) result = upload_refractors(r, error);
+  if (result == ABBE_OK) result = abbe_renderer_upload_shadows(r, error);
   if (result == ABBE_OK) result = upload_receivers(r, error);
   if (result == ABBE_OK) result = upload_surfaces(r, error);
   if (result == ABBE_OK) result = upload_wavelengths(r, error);

@@ -9,14 +9,15 @@
 /* Bits: spheres, convex, layers, exact receivers, absorbing (and caustics), shadows (and
  * textures), hierarchy, walk. */
 static void write_defines(unsigned bits, char *out, size_t size) {
-  static const char *const names[] = {"SPHERES",
-                                      "CONVEX",
-                                      "LAYERS\n#define FRONT_LAYER",
-                                      "EXACT_RECEIVERS",
-                                      "ABSORBING\n#define CAUSTICS",
-                                      "RECEIVER_SHADOWS\n#define TEXTURED",
-                                      "HIERARCHY",
-                                      "WALK"};
+  static const char *const names[] = {
+      "SPHERES",
+      "CONVEX",
+      "LAYERS\n#define FRONT_LAYER",
+      "EXACT_RECEIVERS",
+      "ABSORBING\n#define CAUSTICS",
+      "RECEIVER_SHADOWS\n#define TEXTURED\n#define SHADOW_PLANES 32",
+      "HIERARCHY",
+      "WALK"};
   int used = snprintf(out, size,
                       "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
                       "#define WAVELENGTHS 7\n#define EXITS 3\n#define SLOTS 4\n#define LANES 7\n"
