@@ -301,8 +301,9 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   /* Below so many, tracing some of them twice costs what leaving others out saves. */
   static const size_t coarse = 5, refined_from = 9;
   const size_t n = plan->desc.wavelengths;
+  /* Landings do not ask for what absorption changes between two wavelengths: it needs them all. */
   const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
-  return apart && n >= refined_from ? coarse : n;
+  return apart && !plan->tinting && n >= refined_from ? coarse : n;
 }
 
 static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {

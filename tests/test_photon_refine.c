@@ -42,6 +42,18 @@ static void every_photon_is_entered_once(void **state) {
   }
 }
 
+/* N-SF11 absorbs violet by tens in a metre and green by ones: what 21 wavelengths leave of it is
+ * what 200 do, to a part in a thousand of the light. */
+static void absorption_is_that_of_all_wavelengths(void **state) {
+  (void)state;
+  const abbe_ledger all = draw("gem", 61, ABBE_FILL_NONE, NULL);
+  const abbe_ledger some = draw("gem", 21, ABBE_FILL_BRIDGE, NULL);
+  print_message("absorbed: %.4f %% of 61, %.4f %% of 21\n", 100 * all.absorbed / all.reached,
+                100 * some.absorbed / some.reached);
+  assert_true(all.absorbed > 0.05 * all.reached);
+  assert_near(some.absorbed / some.reached, all.absorbed / all.reached, 0.001);
+}
+
 static double difference(const abbe_image *a, const abbe_image *b) {
   double sum = 0, square = 0;
   for (size_t i = 0; i < a->width * a->height * a->channels; i++) {
@@ -78,6 +90,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(coarse_nodes_reach_both_ends_in_order),
       cmocka_unit_test(every_photon_is_entered_once),
+      cmocka_unit_test(absorption_is_that_of_all_wavelengths),
       cmocka_unit_test(refined_maps_are_those_of_all_wavelengths),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
