@@ -286,6 +286,12 @@ static void examine_reach(const abbe_scene *scene, abbe_plan *plan) {
     if (thesis || abbe_reach_eye(&scene->camera, plan->desc.width, plan->desc.height, object))
       plan->seen = true;
   }
+  for (size_t i = 0; i < scene->light_count && !plan->through; i++)
+    for (size_t k = 0; k < plan->refractor_count && plan->reaches[i] && !plan->through; k++)
+      for (size_t j = 0; j < plan->receiver_count && !plan->through; j++)
+        plan->through =
+            abbe_reach_through(&scene->light[i], &scene->object[plan->refractor_object[k]],
+                               &scene->object[plan->receiver_object[j]]);
   if (plan->caustics || plan->seen) return;
   plan->dispersive = plan->absorbing = plan->tinting = false;
 }

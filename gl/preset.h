@@ -26,9 +26,11 @@ typedef enum abbe_preset_name {
 
 const char *abbe_preset_name_text(abbe_preset_name name);
 
-/* X(code, name): of a scene, its hardest refractor as the plan models it. */
+/* X(code, name): of a scene, its hardest refractor as the plan models it. Bows are of spheres that
+ * no receiver stands behind, so that only what they reflect lands: little light, from many photons.
+ */
 #define ABBE_PRESET_CLASSES(X)                                                                     \
-  X(NONE, "none") X(SPHERES, "spheres") X(CONVEX, "convex") X(MESHES, "meshes")
+  X(NONE, "none") X(SPHERES, "spheres") X(BOWS, "bows") X(CONVEX, "convex") X(MESHES, "meshes")
 typedef enum abbe_preset_class {
 #define ABBE_PRESET_ENUM(code, name) ABBE_PRESET_CLASS_##code,
   ABBE_PRESET_CLASSES(ABBE_PRESET_ENUM)
@@ -42,7 +44,8 @@ abbe_preset_class abbe_preset_class_of(const abbe_plan *plan);
 #define ABBE_PRESET_MAX_POINTS 128
 
 typedef struct abbe_preset_point {
-  abbe_render_desc desc;   /* wavelengths, photons, map, samples, fill, share, exits, model; the rest 0 */
+  abbe_render_desc
+      desc; /* wavelengths, photons, map, samples, fill, share, exits, model; the rest 0 */
   double light_ms, eye_ms; /* on the run's machine, as promised: the worst of its scenes in ratio to
                               the first point, times the time's margin */
   double error;            /* that is promised: the worst times the front's margin */

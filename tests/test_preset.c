@@ -41,6 +41,7 @@ static void test_the_shipped_presets_are_whole(void **state) {
     for (size_t k = 0; k < f->count; k++) assert_true(f->point[k].least <= f->point[k].error);
   }
   assert_true(seen[ABBE_PRESET_CLASS_SPHERES]);
+  assert_true(seen[ABBE_PRESET_CLASS_BOWS]);
   assert_true(seen[ABBE_PRESET_CLASS_CONVEX]);
   assert_true(seen[ABBE_PRESET_CLASS_MESHES]);
   abbe_presets_free(&presets);
@@ -158,6 +159,8 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   abbe_presets_free(&presets);
 }
 
+/* From between floor and ball: no receiver stands behind it. */
+#define LAMP_BELOW "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.02], intensity: 1}\n"
 static void test_classes_and_calibration(void **state) {
   (void)state;
   static const struct {
@@ -165,6 +168,8 @@ static void test_classes_and_calibration(void **state) {
     abbe_preset_class of;
   } scenes[] = {{CAMERA POINT_LIGHT FLOOR, ABBE_PRESET_CLASS_NONE},
                 {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_PRESET_CLASS_SPHERES},
+                {CAMERA LAMP_BELOW FLOOR BALL("crown"), ABBE_PRESET_CLASS_BOWS},
+                {CAMERA LAMP_BELOW FLOOR BRICK("crown"), ABBE_PRESET_CLASS_CONVEX},
                 {CAMERA POINT_LIGHT FLOOR RING("crown"), ABBE_PRESET_CLASS_MESHES},
                 {CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), ABBE_PRESET_CLASS_CONVEX}};
   abbe_presets presets;

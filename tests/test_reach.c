@@ -36,6 +36,31 @@ static void test_a_cone_touches_a_ball(void **state) {
   }
 }
 
+/* A ball of 0.1 at the distance 1 from a lamp: what stands behind, before and beside it. */
+static void test_what_stands_behind_a_ball(void **state) {
+  (void)state;
+  const abbe_object object = ball(0, 0, 0, 0.1);
+  const double tangent = 0.1 / sqrt(1 - 0.01);
+  abbe_light light = spot;
+  for (int turn = 0; turn < 2; turn++) {
+    light.kind = turn == 0 ? ABBE_LIGHT_POINT : ABBE_LIGHT_DIRECTIONAL;
+    /* the shadow at z = -1 is 2 tangents wide from a point, as wide as the ball along a direction
+     */
+    const double rim = turn == 0 ? 2 * tangent : 0.1;
+    for (int k = -1; k <= 1; k += 2) {
+      const abbe_object beside = {.min = {rim + 1e-3 * k, -1, -1}, .max = {2, 1, -1}};
+      assert_int_equal(abbe_reach_through(&light, &object, &beside), k < 0);
+      const abbe_object above = {.min = {-1, -1, 0.1 + 1e-3 * k}, .max = {1, 1, 0.1 + 1e-3 * k}};
+      assert_int_equal(abbe_reach_through(&light, &object, &above), k < 0);
+    }
+    const abbe_object floor = {.min = {-1, -1, -1}, .max = {1, 1, -1}};
+    assert_true(abbe_reach_through(&light, &object, &floor));
+  }
+  light.kind = ABBE_LIGHT_POINT;
+  const abbe_object around = ball(0, 0, 1, 0.1), anywhere = box(0, 5, 0, 0.1);
+  assert_true(abbe_reach_through(&light, &around, &anywhere));
+}
+
 static void test_light_without_a_cone_goes_everywhere(void **state) {
   (void)state;
   abbe_object behind = ball(0, 0, 3, 0.1), around = ball(0, 0, 1, 0.1);
@@ -121,6 +146,7 @@ static void test_an_exact_ball_stands_out_of_its_triangles(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_cone_touches_a_ball),
+      cmocka_unit_test(test_what_stands_behind_a_ball),
       cmocka_unit_test(test_light_without_a_cone_goes_everywhere),
       cmocka_unit_test(test_a_cone_is_never_wrongly_said_to_miss),
       cmocka_unit_test(test_the_eye_sees_to_its_windows_rim),
