@@ -123,7 +123,8 @@ static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t c
   abbe_renderer_set_grid(r, deposit, light);
   abbe_renderer_set_int(r, deposit, "map_size", (int)r->plan.desc.map_size);
   abbe_renderer_set_int(r, deposit, "lane_first", (int)b->first);
-  abbe_renderer_set_int(r, deposit, "lane_count", (int)b->count);
+  /* of the landings that photons have; a refined interval may have more of its own */
+  abbe_renderer_set_int(r, deposit, "lane_count", (int)(fine ? r->nodes : b->count));
   abbe_renderer_set_int(r, deposit, "interval_first", (int)b->interval_first);
   abbe_renderer_set_int(r, deposit, "interval_end", (int)b->interval_end);
   abbe_renderer_set_int(r, deposit, "nodes", (int)(fine ? r->plan.desc.wavelengths : r->nodes));

@@ -58,7 +58,8 @@ void main() {
   uint photon_path = path_list[listed];
   uint photon = photon_path / SLOTS, order = photon_path % SLOTS, first = photon_path * LANES;
   Photon from_cell = photon_at[photon];
-  if (from_cell.cell * 2654435761u % chunks != chunk) return;
+  // Other bits than those that choose the chunks of pieces, or one of these would get all.
+  if ((from_cell.cell * 2654435761u >> 16) % chunks != chunk) return;
   ivec2 cell = ivec2(from_cell.cell & 0xffffu, from_cell.cell >> 16);
 
   uint path[NODES];

@@ -86,12 +86,30 @@ static void refined_maps_are_those_of_all_wavelengths(void **state) {
   }
 }
 
+/* More wavelengths in an interval than in the coarse set, and paths that few of them take: what is
+ * read of the coarse landings is the photon's own, in whatever order photons stand. */
+static void a_mesh_is_refined_alike_every_time(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map[2] = {{0}, {0}};
+  abbe_render_desc desc = small_frame;
+  desc.width = desc.height = 16;
+  desc.photons = 128;
+  desc.wavelengths = 28;
+  load_shipped("bunny", &scene);
+  for (int i = 0; i < 2; i++) make_map(&scene, &desc, &map[i]);
+  assert_same_pixels(&map[0], &map[1]);
+  for (int i = 0; i < 2; i++) abbe_image_free(&map[i]);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(coarse_nodes_reach_both_ends_in_order),
       cmocka_unit_test(every_photon_is_entered_once),
       cmocka_unit_test(absorption_is_that_of_all_wavelengths),
       cmocka_unit_test(refined_maps_are_those_of_all_wavelengths),
+      cmocka_unit_test(a_mesh_is_refined_alike_every_time),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
