@@ -452,6 +452,15 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->refractor_count > 1 && !plan->walk)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   if (!plan->walk) note_overlaps(scene, plan);
+  for (size_t k = 0; plan->caustics && k < plan->receiver_count; k++) {
+    if (plan->receiver_model[k] != ABBE_RECEIVER_HIERARCHY) continue;
+    note(plan,
+         "light through refractors is drawn on the mesh '%.60s' only where a light itself may "
+         "shine; "
+         "elsewhere on meshes it counts as missed",
+         scene->object[plan->receiver_object[k]].name);
+    break;
+  }
   if (scene->light_count > 1 && seen)
     note(plan, "through refractors, colours are split by the first light's illuminant");
 }

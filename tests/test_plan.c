@@ -424,6 +424,9 @@ static bool notes(const abbe_plan *plan, const char *part) {
   return false;
 }
 
+#define WHITE_BALL                                                                                 \
+  "- {name: white, shape: sphere, radius: 0.05, levels: 2, "                                       \
+  "transform: [{translate: [-0.2, 0, 0.1]}], reflectance: 0.5}\n"
 #define DROP(name, radius, z)                                                                      \
   "- {name: " name ", shape: sphere, radius: " radius ", levels: 2, "                              \
   "transform: [{translate: [0.09, 0.09, " z "]}], material: flat}\n"
@@ -456,6 +459,28 @@ static void test_refractors_that_overlap_are_noted(void **state) {
         (rows[i].part != NULL && !notes(&plan, rows[i].part)))
       fail_msg("scene %zu: %s", i,
                plan.note_count > 0 ? plan.note[plan.note_count - 1] : "no note");
+    abbe_plan_free(&plan);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* A map holds what the light itself shines on, and only parallelograms have more. */
+static void test_meshes_that_a_light_may_not_reach_are_noted(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    bool noted;
+  } rows[] = {
+      {CAMERA POINT_LIGHT FLOOR BALL("flat"), false},
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") WHITE_BALL, true},
+      {CAMERA POINT_LIGHT FLOOR WHITE_BALL, false},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene;
+    abbe_plan plan;
+    load_text(rows[i].text, &scene);
+    assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+    assert_int_equal(notes(&plan, "the mesh 'white' only where a light"), rows[i].noted);
     abbe_plan_free(&plan);
     abbe_scene_free(&scene);
   }
@@ -541,6 +566,7 @@ int main(void) {
       cmocka_unit_test(test_an_index_that_is_not_known_is_refused_or_noted),
       cmocka_unit_test(test_too_many_refractors_are_unsupported),
       cmocka_unit_test(test_refractors_that_overlap_are_noted),
+      cmocka_unit_test(test_meshes_that_a_light_may_not_reach_are_noted),
       cmocka_unit_test(test_a_disk_is_refused_by_name),
       cmocka_unit_test(test_a_map_layout_belongs_to_its_light),
       cmocka_unit_test(test_shipped_scenes),
