@@ -1,11 +1,7 @@
-/* Meshes from files through assimp's C interface. */
+/* Meshes from files. */
 #include "scenes/mesh.h"
+#include "scenes/mesh_import.h"
 #include "scenes/topology.h"
-
-#include <assimp/cimport.h>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 
 #include <errno.h>
 #include <math.h>
@@ -59,7 +55,7 @@ static abbe_result check_ply_header(const char *path, off_t size, abbe_error *er
   return result;
 }
 
-static abbe_result check_file(const char *path, abbe_error *error) {
+static abbe_result check_file(const char *path, size_t *bytes, abbe_error *error) {
   static const char *const known[] = {".obj", ".ply", ".stl", ".gltf", ".glb"};
   const char *dot = strrchr(path, '.');
   bool ok = false;
@@ -74,86 +70,9 @@ static abbe_result check_file(const char *path, abbe_error *error) {
   if (status.st_size > MAX_FILE_BYTES)
     return abbe_error_set(error, ABBE_IO, "%s: the mesh file has %lld bytes, the limit is %lld",
                           path, (long long)status.st_size, (long long)MAX_FILE_BYTES);
+  *bytes = (size_t)status.st_size;
   if (strcasecmp(dot, ".ply") == 0) return check_ply_header(path, status.st_size, error);
   return ABBE_OK;
-}
-
-static const struct aiScene *import(const char *path) {
-  struct aiPropertyStore *store = aiCreatePropertyStore();
-  if (!store) return NULL;
-  aiSetImportPropertyInteger(store, AI_CONFIG_PP_SBP_REMOVE,
-                             aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  aiSetImportPropertyInteger(store, AI_CONFIG_PP_RVC_FLAGS,
-                             aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                 aiComponent_COLORS | aiComponent_BONEWEIGHTS |
-                                 aiComponent_ANIMATIONS | aiComponent_TEXTURES |
-                                 aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
-  /* assimp joins vertices nearer than 1e-5 units, too coarse for small stones; they are joined
-   * here, relative to the mesh's size */
-  const struct aiScene *scene = aiImportFileExWithProperties(
-      path,
-      aiProcess_ValidateDataStructure | aiProcess_RemoveComponent | aiProcess_Triangulate |
-          aiProcess_PreTransformVertices | aiProcess_SortByPType,
-      NULL, store);
-  aiReleasePropertyStore(store);
-  return scene;
-}
-
-static bool usable(const struct aiMesh *part) {
-  return part && part->mVertices && part->mFaces &&
-         (part->mPrimitiveTypes & (unsigned)aiPrimitiveType_TRIANGLE);
-}
-
-static abbe_result copy_part(const struct aiMesh *part, const char *path, size_t first_vertex,
-                             size_t *face_count, abbe_mesh *out, abbe_error *error) {
-  for (size_t v = 0; v < part->mNumVertices; v++) {
-    const double p[3] = {part->mVertices[v].x, part->mVertices[v].y, part->mVertices[v].z};
-    if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
-      return abbe_error_set(error, ABBE_GEOMETRY,
-                            "%s: vertex %zu is at (%g, %g, %g); coordinates must be finite", path,
-                            v, p[0], p[1], p[2]);
-    memcpy(out->position[first_vertex + v], p, sizeof p);
-    if (!out->uv || !part->mTextureCoords[0]) continue;
-    const double uv[2] = {part->mTextureCoords[0][v].x, part->mTextureCoords[0][v].y};
-    if (isfinite(uv[0]) && isfinite(uv[1])) memcpy(out->uv[first_vertex + v], uv, sizeof uv);
-  }
-  for (size_t f = 0; f < part->mNumFaces; f++) {
-    const struct aiFace *face = &part->mFaces[f];
-    if (face->mNumIndices != 3) continue;
-    for (int k = 0; k < 3; k++) {
-      if (face->mIndices[k] >= part->mNumVertices)
-        return abbe_error_set(error, ABBE_GEOMETRY, "%s: face %zu names vertex %u of %u", path, f,
-                              face->mIndices[k], part->mNumVertices);
-      out->face[*face_count][k] = (uint32_t)(first_vertex + face->mIndices[k]);
-    }
-    ++*face_count;
-  }
-  return ABBE_OK;
-}
-
-static abbe_result copy_scene(const struct aiScene *scene, const char *path, abbe_mesh *out,
-                              abbe_error *error) {
-  size_t vertices = 0, faces = 0;
-  bool with_uv = false;
-  for (unsigned m = 0; m < scene->mNumMeshes; m++) {
-    const struct aiMesh *part = scene->mMeshes[m];
-    if (!usable(part)) continue;
-    vertices += part->mNumVertices;
-    with_uv = with_uv || part->mTextureCoords[0];
-    for (unsigned f = 0; f < part->mNumFaces; f++) faces += part->mFaces[f].mNumIndices == 3;
-  }
-  if (vertices == 0 || faces == 0)
-    return abbe_error_set(error, ABBE_GEOMETRY, "%s: the file has no triangles", path);
-  abbe_result result = abbe_mesh_make(vertices, faces, with_uv, out, error);
-  size_t first_vertex = 0, face_count = 0;
-  for (unsigned m = 0; result == ABBE_OK && m < scene->mNumMeshes; m++) {
-    const struct aiMesh *part = scene->mMeshes[m];
-    if (!usable(part)) continue;
-    result = copy_part(part, path, first_vertex, &face_count, out, error);
-    first_vertex += part->mNumVertices;
-  }
-  if (result != ABBE_OK) abbe_mesh_free(out);
-  return result;
 }
 
 /* One vertex a point, where no texture coordinates keep them apart. */
@@ -176,14 +95,9 @@ static abbe_result join_vertices(abbe_mesh *mesh, abbe_error *error) {
 
 abbe_result abbe_mesh_load(const char *path, bool smooth, abbe_mesh *out, abbe_error *error) {
   memset(out, 0, sizeof *out);
-  abbe_result result = check_file(path, error);
-  if (result != ABBE_OK) return result;
-  const struct aiScene *scene = import(path);
-  if (!scene)
-    return abbe_error_set(error, ABBE_PARSE, "%s: the mesh cannot be read: %s", path,
-                          aiGetErrorString());
-  result = copy_scene(scene, path, out, error);
-  aiReleaseImport(scene);
+  size_t bytes = 0;
+  abbe_result result = check_file(path, &bytes, error);
+  if (result == ABBE_OK) result = abbe_mesh_import(path, bytes, out, error);
   if (result == ABBE_OK) result = join_vertices(out, error);
   if (result == ABBE_OK) result = abbe_mesh_compute_normals(out, smooth, error);
   if (result != ABBE_OK) abbe_mesh_free(out);

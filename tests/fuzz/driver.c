@@ -131,13 +131,22 @@ static void feed(void) {
   free(data);
 }
 
+static int is_named(const struct dirent *entry) {
+  return entry->d_name[0] != '.';
+}
+
+/* By name: the order of a folder differs from disk to disk, and the inputs would with it. */
+static int by_name(const struct dirent **a, const struct dirent **b) {
+  return strcmp((*a)->d_name, (*b)->d_name);
+}
+
 static int load(const char *folder) {
-  DIR *dir = opendir(folder);
-  if (dir == NULL) return 0;
-  for (struct dirent *entry; (entry = readdir(dir)) != NULL && file_count < MAX_FILES;) {
+  struct dirent **entry;
+  const int count = scandir(folder, &entry, is_named, by_name);
+  if (count < 0) return 0;
+  for (int i = 0; i < count && file_count < MAX_FILES; i++) {
     char path[1024];
-    if (entry->d_name[0] == '.') continue;
-    snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+    snprintf(path, sizeof path, "%s/%s", folder, entry[i]->d_name);
     FILE *file = fopen(path, "rb");
     input *made = calloc(1, sizeof *made);
     if (file == NULL || made == NULL) exit(2);
@@ -145,7 +154,8 @@ static int load(const char *folder) {
     fclose(file);
     files[file_count++] = made;
   }
-  closedir(dir);
+  for (int i = 0; i < count; i++) free(entry[i]);
+  free(entry);
   return file_count > 0;
 }
 

@@ -29,12 +29,6 @@ const char *const fuzz_words[] = {"v 0 0 1\n",
                                   "\"count\":3,\"type\":\"VEC3\"}]",
                                   NULL};
 
-/* assimp forgets some of a file that it gives up on; what it keeps is its own affair. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) {
-  return "leak:libassimp\n";
-}
-
 static const char *link_named(const char *target, const char *kind) {
   static char name[64];
   snprintf(name, sizeof name, "fuzz_mesh_file.%ld.%s", (long)getpid(), kind);
