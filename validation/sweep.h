@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 #define ABBE_SWEEP_MAX_VALUES 16 /* of one axis */
-#define ABBE_SWEEP_MAX_GRIDS 16
+#define ABBE_SWEEP_MAX_GRIDS 24
 #define ABBE_SWEEP_BANDS 8 /* in which maps are compared over wavelength */
 
 /* Values of one axis; none: the profile's default. */
