@@ -196,7 +196,7 @@ static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
     gl->CullFace(back ? GL_FRONT : GL_BACK);
     for (size_t i = 0; i < r->plan.refractor_count; i++) {
       gl->Uniform1ui(gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
-      abbe_renderer_draw(r, r->plan.refractor_object[i]);
+      abbe_renderer_draw_refractor(r, i);
     }
     abbe_renderer_end_pass(r, back ? "eye: refractor back" : "eye: refractor front");
   }

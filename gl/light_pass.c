@@ -237,7 +237,7 @@ static void clear_target(const abbe_gl *gl, GLfloat distance, bool owner) {
 static void draw_refractors(abbe_renderer *r) {
   for (size_t i = 0; i < r->plan.refractor_count; i++) {
     r->gl->Uniform1ui(r->gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
-    abbe_renderer_draw(r, r->plan.refractor_object[i]);
+    abbe_renderer_draw_refractor(r, i);
   }
 }
 
@@ -329,8 +329,10 @@ abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
   static const abbe_program_stage layer_stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
                                                     {GL_FRAGMENT_SHADER, "layer.frag"}};
   fit_views(r);
+  abbe_renderer_fit_eye(r);
   abbe_renderer_upload_lights(r);
-  abbe_result result = abbe_program_make(r->gl, layer_stages, 2, NULL, &r->layer, error);
+  abbe_result result = abbe_renderer_make_layer_faces(r, error);
+  if (result == ABBE_OK) result = abbe_program_make(r->gl, layer_stages, 2, NULL, &r->layer, error);
   if (result == ABBE_OK)
     result = abbe_program_make_compute(r->gl, "photon_place.comp", NULL, &r->place, error);
   if (result == ABBE_OK)

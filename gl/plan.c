@@ -1,6 +1,7 @@
 #include "gl/plan.h"
 
 #include "gl/everything.h"
+#include "gl/layer_detail.h"
 #include "gl/light_cube.h"
 #include "gl/precision.h"
 #include "gl/reach.h"
@@ -445,6 +446,9 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
       !plan->layers ? "every refractor has an exact surface"
       : seen        ? "a mesh without an exact surface ends at its back layer"
                     : unseen);
+  char fewer[160];
+  if (plan->layers && !thesis)
+    add(plan, abbe_layer_detail_reason(scene, plan, fewer), "simplified layers", "%s", fewer);
   add(plan, seen, "eye: refraction", "%s", seen ? "one direction a wavelength" : unseen);
   add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
       plan->desc.supersample);

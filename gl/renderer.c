@@ -216,6 +216,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   s->frame_ms = abbe_renderer_now_ms() - start_ms - r->untimed_ms;
   s->wavelengths = r->plan.desc.wavelengths;
   s->device_bytes = r->device_bytes;
+  if (!abbe_profile_is_thesis(r->plan.desc.profile)) s->layer_faces = abbe_renderer_layer_faces(r);
   for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
   double cells = (double)r->light[0].cells[0] * (double)r->light[0].cells[1];
   s->refractor_share = (double)r->light[0].photon_count / cells;

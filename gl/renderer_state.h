@@ -47,6 +47,8 @@ enum { MAX_NARROW_PHOTONS = 1 << 20, WARP_STEPS = ABBE_MAP_LAYOUT_STEPS };
 typedef struct mesh_buffers {
   GLuint array, vertices, indices;
   GLsizei index_count;
+  GLuint layer_array, layer_indices; /* of fewer faces, where layers are drawn with them; else 0 */
+  GLsizei layer_index_count;
 } mesh_buffers;
 
 typedef struct light_state {
@@ -160,6 +162,13 @@ void abbe_renderer_upload_lights(abbe_renderer *r);
 abbe_result abbe_renderer_weigh_bands(abbe_renderer *r, size_t bands, size_t first,
                                       abbe_error *error);
 void abbe_renderer_free_scene(abbe_renderer *r);
+/* The attributes of surface.vert, in the bound array from the bound buffer. */
+void abbe_renderer_point_to_vertices(const abbe_renderer *r);
+
+/* layer_faces.c: the faces that layers are drawn with, once the views are known. */
+abbe_result abbe_renderer_make_layer_faces(abbe_renderer *r, abbe_error *error);
+size_t abbe_renderer_layer_faces(const abbe_renderer *r);
+void abbe_renderer_draw_refractor(abbe_renderer *r, size_t refractor);
 
 /* scene_hierarchy.c: the triangles of what is traversed, before the shaders are made. */
 abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error);

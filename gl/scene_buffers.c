@@ -39,6 +39,18 @@ static void store(const double v[3], double w, float out[4]) {
   out[3] = (float)w;
 }
 
+void abbe_renderer_point_to_vertices(const abbe_renderer *r) {
+  static const struct {
+    GLint size;
+    size_t offset;
+  } attribute[3] = {{3, 0}, {3, 12}, {2, 24}};
+  for (GLuint k = 0; k < 3; k++) {
+    r->gl->EnableVertexAttribArray(k);
+    r->gl->VertexAttribPointer(k, attribute[k].size, GL_FLOAT, GL_FALSE, 32,
+                               (const char *)NULL + attribute[k].offset);
+  }
+}
+
 static abbe_result upload_mesh(abbe_renderer *r, const abbe_mesh *mesh, mesh_buffers *out,
                                abbe_error *error) {
   const abbe_gl *gl = r->gl;
@@ -64,15 +76,7 @@ static abbe_result upload_mesh(abbe_renderer *r, const abbe_mesh *mesh, mesh_buf
   gl->GenBuffers(1, &out->indices);
   gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, out->indices);
   gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_size, mesh->face, GL_STATIC_DRAW);
-  static const struct {
-    GLint size;
-    size_t offset;
-  } attribute[3] = {{3, 0}, {3, 12}, {2, 24}};
-  for (GLuint k = 0; k < 3; k++) {
-    gl->EnableVertexAttribArray(k);
-    gl->VertexAttribPointer(k, attribute[k].size, GL_FLOAT, GL_FALSE, 32,
-                            (const char *)NULL + attribute[k].offset);
-  }
+  abbe_renderer_point_to_vertices(r);
   out->index_count = (GLsizei)(3 * mesh->face_count);
   r->device_bytes += size + index_size;
   return abbe_gl_check(gl, "the upload of a mesh", error);
@@ -592,6 +596,8 @@ void abbe_renderer_free_scene(abbe_renderer *r) {
     r->gl->DeleteVertexArrays(1, &r->mesh[i].array);
     r->gl->DeleteBuffers(1, &r->mesh[i].vertices);
     r->gl->DeleteBuffers(1, &r->mesh[i].indices);
+    r->gl->DeleteVertexArrays(1, &r->mesh[i].layer_array);
+    r->gl->DeleteBuffers(1, &r->mesh[i].layer_indices);
   }
   free(r->mesh);
   free(r->lambda_nm);

@@ -187,6 +187,10 @@ static abbe_result meshes(abbe_error *error) {
     if (result == ABBE_OK) digest(plane, count * sizeof *plane);
     if (result == ABBE_OK) result = abbe_mesh_subdivide(&mesh, 1, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
+    uint32_t(*few)[3] = NULL;
+    if (result == ABBE_OK) result = abbe_mesh_simplify(&mesh, 0.1, &few, &count, error);
+    if (result == ABBE_OK) digest(few, count * sizeof *few);
+    free(few);
     if (result == ABBE_OK) digest_text(what);
     free(what);
     abbe_mesh_free(&mesh);
