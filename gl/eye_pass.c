@@ -10,6 +10,11 @@ enum { COARSE_BANDS = 7, FINE_FROM = 9 };
 /* Pixels at a time whose bands may ask for all their samples. */
 enum { REFINE_ROOM = 1 << 20, LIST_HEADER = 16 };
 
+/* One sample a pixel is the picture: refractors are written over receivers. */
+static bool resolves(const abbe_renderer *r) {
+  return r->plan.desc.supersample > 1;
+}
+
 static bool refines(const abbe_renderer *r) {
   return r->plan.desc.wavelengths >= FINE_FROM && !r->plan.desc.everything;
 }
@@ -58,7 +63,7 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
       {&r->eye_receivers, GL_RGBA32F, 1, true},
       {&r->eye_direct, GL_RGBA32F, 0, r->plan.desc.layers},
       {&r->eye_caustic, GL_RGBA32F, 0, r->plan.desc.layers},
-      {&r->eye_refraction, GL_RGBA32F, 0, true},
+      {&r->eye_refraction, GL_RGBA32F, 0, resolves(r)},
       {&r->eye_depth, GL_DEPTH_COMPONENT32F, 0, true},
       {&r->eye_layers, GL_RGBA32F, r->plan.back ? 2 : 1, layers},
       {&r->eye_owner, GL_R16UI, 0, layers},
@@ -75,7 +80,7 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
     size_t room = w * h < REFINE_ROOM ? w * h : REFINE_ROOM;
     result = abbe_renderer_make_buffer(r, LIST_HEADER + 8 * room, NULL, &r->refine_list, error);
   }
-  if (result == ABBE_OK)
+  if (result == ABBE_OK && resolves(r))
     result = abbe_renderer_make_texture(r, GL_RGBA32F, r->plan.desc.width, r->plan.desc.height, 0,
                                         false, &r->eye_picture, error);
   return result;
@@ -105,7 +110,7 @@ abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK && r->plan.seen)
     result =
         abbe_program_make_compute(r->gl, "refraction_list.comp", NULL, &r->refraction_list, error);
-  if (result == ABBE_OK)
+  if (result == ABBE_OK && resolves(r))
     result = abbe_program_make_compute(r->gl, "eye_resolve.comp", NULL, &r->eye_resolve, error);
   return result;
 }
@@ -254,7 +259,8 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progres
     if (!progress(user, 0.5 + 0.5 * (double)(first + size) / (double)count))
       return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
   }
-  gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                    GL_TEXTURE_UPDATE_BARRIER_BIT);
   return ABBE_OK;
 }
 
@@ -277,15 +283,19 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progre
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   abbe_renderer_begin_pass(r);
-  abbe_result result = abbe_renderer_set_target(r, &r->eye_refraction, &flat, 1, 0, w, h, error);
-  if (result != ABBE_OK) return result;
-  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  abbe_result result = ABBE_OK;
+  if (resolves(r)) {
+    result = abbe_renderer_set_target(r, &r->eye_refraction, &flat, 1, 0, w, h, error);
+    if (result != ABBE_OK) return result;
+    gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  }
   if (!r->plan.seen) return ABBE_OK;
   list_pixels(r, w, h);
   if (refines(r)) set_refraction(r, r->refraction_fine, h);
   set_refraction(r, r->refraction, h);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_INTERVALS, r->table_bands);
-  gl->BindImageTexture(0, r->eye_refraction, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+  gl->BindImageTexture(0, resolves(r) ? r->eye_refraction : r->eye_receivers, 0, GL_FALSE, 0,
+                       GL_READ_WRITE, GL_RGBA32F);
   result = refract_pixels(r, progress, user, error);
   abbe_renderer_end_pass(r, "eye: refraction");
   return result;
@@ -311,7 +321,7 @@ abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, v
   abbe_result result = draw_receivers(r, error);
   if (result == ABBE_OK && r->eye_layers != 0) result = draw_layers(r, error);
   if (result == ABBE_OK) result = draw_refraction(r, progress, user, error);
-  if (result == ABBE_OK) resolve_picture(r);
+  if (result == ABBE_OK && resolves(r)) resolve_picture(r);
   return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the eye's passes", error);
 }
 

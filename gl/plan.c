@@ -450,8 +450,11 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->layers && !thesis)
     add(plan, abbe_layer_detail_reason(scene, plan, fewer), "simplified layers", "%s", fewer);
   add(plan, seen, "eye: refraction", "%s", seen ? "one direction a wavelength" : unseen);
-  add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
-      plan->desc.supersample);
+  if (plan->desc.supersample > 1)
+    add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
+        plan->desc.supersample);
+  else
+    add(plan, false, "eye: picture", "one sample a pixel: nothing is averaged");
   add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
   if (plan->refractor_count > 1 && !plan->walk)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");

@@ -300,6 +300,6 @@ void main() {
 #endif
   sum = rgb_from_xyz * sum;
   // At the rim an exact surface may miss the pixel that its triangles cover: what lies behind shows.
-  imageStore(picture, at, found ? vec4(sum, front.t) : vec4(0));
+  if (found) imageStore(picture, at, vec4(sum, front.t));
 }
 #endif

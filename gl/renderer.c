@@ -294,8 +294,10 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");
   }
   const abbe_gl *gl = r->gl;
-  gl->BindTexture(GL_TEXTURE_2D, r->eye_picture);
-  gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
+  const bool resolved = r->eye_picture != 0;
+  const GLenum target = resolved ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
+  gl->BindTexture(target, resolved ? r->eye_picture : r->eye_receivers);
+  gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
   copy_flipped(data, 4, 0, out, 0, layers ? 4 : 3, 1);
   to_output_space(r, out, 0);
   const GLuint texture[2] = {r->eye_direct, r->eye_caustic};
