@@ -86,6 +86,12 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
   };
   static const abbe_sweep_grid thin[] = {
       {.wavelengths = VALUES(3, 5),
+       .photons = VALUES(16),
+       .map = VALUES(64),
+       .samples = VALUES(1),
+       .share_count = 1,
+       .share = {0.1}},
+      {.wavelengths = VALUES(3, 5),
        .photons = VALUES(24),
        .map = VALUES(128),
        .samples = VALUES(1),
