@@ -333,13 +333,16 @@ abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error)
   size_t h = r->plan.desc.height * r->plan.desc.supersample;
   if (r->eye_receivers == 0)
     return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no floor of its own");
+  abbe_result result = ABBE_OK;
+  if (r->eye_floor == 0) /* the picture may be what lies in eye_receivers, and stays */
+    result = abbe_renderer_make_texture(r, GL_RGBA32F, w, h, 1, false, &r->eye_floor, error);
+  if (result != ABBE_OK) return result;
   gl->Finish();
   double start_ms = abbe_renderer_now_ms();
   gl->UseProgram(r->layer);
   set_eye(r, r->layer);
   gl->Enable(GL_DEPTH_TEST);
-  abbe_result result =
-      abbe_renderer_set_target(r, &r->eye_receivers, &first, 1, r->eye_depth, w, h, error);
+  result = abbe_renderer_set_target(r, &r->eye_floor, &first, 1, r->eye_depth, w, h, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);

@@ -185,7 +185,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,     r->light_owner, r->light_depth, r->map,
       r->eye_receivers,   r->eye_direct,       r->eye_caustic, r->eye_depth,   r->eye_refraction,
-      r->eye_layers,      r->eye_layers_depth, r->eye_owner,   r->eye_picture};
+      r->eye_layers,      r->eye_layers_depth, r->eye_owner,   r->eye_picture, r->eye_floor};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
   const GLuint programs[] = {
       r->place,           r->cover,           r->groups,     r->trace, r->deposit,   r->splat,

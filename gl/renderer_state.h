@@ -116,7 +116,7 @@ struct abbe_renderer {
   bool pages;      /* shaders have PAGES: some light has any, or they are yet to be chosen */
   bool fits_pages; /* they are yet to be chosen */
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
-      eye_layers_depth, eye_picture;
+      eye_layers_depth, eye_picture, eye_floor;
   GLuint eye_owner, pixel_list, refine_list;
   GLuint framebuffer, empty_array;
   size_t layer_side;          /* of the light's layers */

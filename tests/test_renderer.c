@@ -304,6 +304,33 @@ static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
 
 /* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
  * its energy is the same, and each light has a map of its own. */
+static void test_the_floor_leaves_the_picture(void **state) {
+  (void)state;
+  for (size_t samples = 1; samples <= 2; samples++) {
+    abbe_scene scene = {0};
+    abbe_image before = {0}, after = {0};
+    double ms = 0;
+    load_shipped("sphere", &scene);
+    const abbe_render_desc desc = {.width = 32,
+                                   .height = 32,
+                                   .photons = 32,
+                                   .map_size = 64,
+                                   .wavelengths = 3,
+                                   .supersample = samples};
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, false, &before);
+    assert_int_equal(abbe_renderer_floor(renderer, &ms, NULL), ABBE_OK);
+    assert_true(ms > 0);
+    read_picture(renderer, false, &after);
+    assert_same_pixels(&before, &after);
+    abbe_image_free(&before);
+    abbe_image_free(&after);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
 static void test_a_map_takes_a_given_layout(void **state) {
   (void)state;
   abbe_scene scene;
@@ -387,6 +414,7 @@ int main(void) {
       cmocka_unit_test(test_no_dispersion_no_colour),
       cmocka_unit_test(test_dispersion_goes_to_the_map_without),
       cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
+      cmocka_unit_test(test_the_floor_leaves_the_picture),
       cmocka_unit_test(test_a_map_takes_a_given_layout),
       cmocka_unit_test(test_what_is_not_there_is_refused),
   };
