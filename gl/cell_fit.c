@@ -117,7 +117,7 @@ abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *
   if (result != ABBE_OK) return result;
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, first, r->lanes, r->plan.desc.wavelengths);
-  result = abbe_renderer_read_batch(r, light, &landing, &path, error);
+  result = abbe_renderer_read_batch(r, light, first, &landing, &path, error);
   GLuint *photon = read_words(r, r->buffer[BINDING_PHOTONS], PHOTON_HEADER,
                               state->photon_count * (PHOTON_BYTES / 4));
   GLuint *slot = read_words(r, r->buffer[BINDING_SLOTS], 0, state->cells[0] * state->cells[1]);

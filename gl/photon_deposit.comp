@@ -23,7 +23,7 @@ layout(std430, binding = 6) readonly buffer Photons {
 layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
 // As textures: a software rasteriser fetches a texel in one load, and storage number by number.
 uniform samplerBuffer landings;
-uniform usamplerBuffer signatures;  // 0: none
+uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the way inside
 layout(std430, binding = 13) readonly buffer PathList {
   uint path_count, path_groups[3];
   uint path_list[];
@@ -41,6 +41,11 @@ layout(std430, binding = 7) readonly buffer Wants { uint want[]; };  // a bit a 
 // Interval i lies between nodes i - 1 and i. [table_first + (light * REFRACTORS + refractor) *
 // (nodes + 1) + i] * (STEPS + 1) + k: XYZ of the interval up to step k, and how far along (0 to 1) that is.
 uniform samplerBuffer interval_sums;
+#ifdef TINTING
+// As in photon_absorption.glsl; band_first: where the set of these landings begins.
+uniform samplerBuffer band_attenuation;
+uniform int band_first;
+#endif
 
 uniform int light;
 uniform ivec2 grid;
@@ -111,6 +116,20 @@ vec2 image_of_side(vec2 to_next, vec2 to_last) {
   return to_last == vec2(0) ? to_next : 0.5 * (to_next - to_last);
 }
 
+#ifdef TINTING
+// Parts of a half of a band are laid as one where what is left of them differs by less.
+const float EVEN = 0.05;
+
+float spread(vec4 v) {
+  return max(max(v.x, v.y), max(v.z, v.w)) - min(min(v.x, v.y), min(v.z, v.w));
+}
+
+float part_of(vec4 v, int k) {
+  vec2 two = k < 2 ? v.xy : v.zw;
+  return (k & 1) == 0 ? two.x : two.y;
+}
+#endif
+
 void main() {
   uint listed = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
          gl_LocalInvocationID.x;
@@ -173,17 +192,31 @@ void main() {
   float to_units = 1.0 / (lights[light].misc.y * float(across_pieces));
   uint path_a = 0u;
   vec4 from = vec4(0);
+#ifdef TINTING
+  float way_a = 0.0;
+#endif
 #ifdef REFINED
   path_a = texelFetch(fine_signatures, int(fine_first)).x;
   from = texelFetch(fine_landings, int(fine_first));
+#ifdef TINTING
+  way_a = uintBitsToFloat(texelFetch(fine_signatures, int(fine_first)).y);
+#endif
   for (int i = 0; i < FINE_NODES; i++) path = max(path, texelFetch(fine_signatures, int(fine_first + uint(i))).x);
 #else
   if (interval_first > 0) {
-    path_a = texelFetch(signatures, int(first + uint(interval_first - 1 - lane_first))).x;
-    from = texelFetch(landings, int(first + uint(interval_first - 1 - lane_first)));
+    uint index_a = first + uint(interval_first - 1 - lane_first);
+    path_a = texelFetch(signatures, int(index_a)).x;
+#ifdef TINTING
+    way_a = uintBitsToFloat(texelFetch(signatures, int(index_a)).y);
+#endif
+    from = texelFetch(landings, int(index_a));
   }
 #endif
-  int row = table_first + (light * REFRACTORS + int(path & 255u)) * (nodes + 1);
+  int owner_row = light * REFRACTORS + int(path & 255u);
+  int row = table_first + owner_row * (nodes + 1);
+#ifdef TINTING
+  int band_row = band_first + owner_row * nodes;
+#endif
   vec2 pa = path_a != 0u ? map_position(from.xyz, path_a) : here;
   int page_a = page_of(from, path_a), gathered_page = NO_PAGE;
 #ifdef DOUBTS_BRIDGES
@@ -206,10 +239,24 @@ void main() {
     vec2 pb = path_b != 0u ? map_position(to.xyz, path_b) : pa;
     int page_b = page_of(to, path_b);
     float share_a = path_a != 0u && taken ? from.w : 0.0, share_b = path_b != 0u && taken ? to.w : 0.0;
+#ifdef TINTING
+    // What is left of the interval's light in eight parts, four to each node, after their ways inside.
+    float way_b = has_b ? uintBitsToFloat(texelFetch(NODE_SIGNATURES, int(index_b)).y) : 0.0;
+    int half_a = 4 * (band_row + max(interval - 1, 0)) + 2, half_b = 4 * (band_row + min(interval, nodes - 1));
+    vec4 left_a = exp(-way_a * texelFetch(band_attenuation, half_a));
+    vec4 left_b = exp(-way_b * texelFetch(band_attenuation, half_b));
+    bool even = (share_a == 0.0 || spread(left_a) < EVEN) && (share_b == 0.0 || spread(left_b) < EVEN);
+    left_a = even ? vec4(dot(left_a, texelFetch(band_attenuation, half_a + 1))) : left_a;
+    left_b = even ? vec4(dot(left_b, texelFetch(band_attenuation, half_b + 1))) : left_b;
+    int least = even ? 1 : 8;
+#else
+    const int least = 1;
+#endif
     bool bridge = false;
     // Halves whose landings fall together are one piece.
     bool apart = pa != pb || page_a != page_b;
     int pieces = share_a > 0.0 && share_b > 0.0 && apart ? 2 : 1;
+    pieces = max(pieces, least);
 #ifdef BRIDGE
     float way = max(abs(pb.x - pa.x), abs(pb.y - pa.y));
     bool one_path = path_a != 0u && path_a == path_b;
@@ -227,7 +274,7 @@ void main() {
 #else
     bridge = taken && one_path;
 #endif
-    if (bridge) pieces = 1;
+    if (bridge) pieces = least;
     while (bridge && pieces < STEPS && float(pieces) * size < way) pieces *= 2;
 #endif
     pieces = last ? 1 : pieces;
@@ -237,7 +284,13 @@ void main() {
     for (int k = 1; k <= pieces; k++) {
       vec4 upto = texelFetch(interval_sums, int(intervals_row + k * STEPS / pieces));
       vec3 lower = min(upto.xyz, middle) - min(before.xyz, middle);
+#ifdef TINTING
+      int part = (k - 1) * 8 / pieces;
+      vec3 upper = upto.xyz - before.xyz - lower;
+      vec3 flux = share_a * part_of(left_a, min(part, 3)) * lower + share_b * part_of(left_b, max(part - 4, 0)) * upper;
+#else
       vec3 flux = share_a * lower + share_b * (upto.xyz - before.xyz - lower);
+#endif
       float half_way = share_b > 0.0 ? share_a > 0.0 ? (2 * k <= pieces ? 0.0 : 1.0) : 1.0 : 0.0;
       // What does not land has no place: no share of it may come into the sum.
       vec2 at = bridge ? pa + 0.5 * (before.w + upto.w) * (pb - pa) : half_way > 0.0 ? pb : pa;
@@ -275,6 +328,9 @@ void main() {
     }
     path_a = path_b;
     from = to;
+#ifdef TINTING
+    way_a = way_b;
+#endif
     pa = pb;
     page_a = page_b;
   }

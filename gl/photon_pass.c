@@ -9,7 +9,7 @@
 enum { LIST_HEADER = 16, SPLAT_BYTES = 24, MAX_SPLATS = 5 << 20 };
 enum { MOST_LANDING_BYTES = 1 << 30, LEAST_LANES = 7 };
 enum { PHOTON_DEFINES = 2560 };
-enum { LANDING_BYTES = 16 + 4, MAX_LANDING_BYTES = 96 << 20 };
+enum { PLACE_BYTES = 16, MAX_LANDING_BYTES = 96 << 20 };
 
 static double wide(const GLuint *lo_hi) {
   return ldexp((double)lo_hi[1], 32) + lo_hi[0];
@@ -77,6 +77,8 @@ void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, si
   abbe_renderer_set_float(r, r->trace, "share_limit", r->plan.desc.energy_share);
   abbe_renderer_set_float(r, r->trace, "ledger_unit", ledger_unit(r, light));
   abbe_renderer_set_int(r, r->trace, "fits_pages", r->fits_pages ? 1 : 0);
+  if (r->plan.lengths)
+    abbe_renderer_bind_texels(r, r->trace, "band_attenuation", 5, GL_RGBA32F, r->band_attenuation);
   r->gl->Uniform1ui(r->gl->GetUniformLocation(r->trace, "most_pairs"), (GLuint)r->pair_room);
   const GLuint landings = fine ? r->fine_landings : r->buffer[BINDING_LANDINGS];
   const GLuint signatures = fine ? r->fine_signatures : r->buffer[BINDING_SIGNATURES];
@@ -135,12 +137,18 @@ static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t c
   clear_count(r, r->splat_list);
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, fine ? r->pair_list : r->wants);
   abbe_renderer_bind_texels(r, deposit, "landings", 0, GL_RGBA32F, r->buffer[BINDING_LANDINGS]);
-  abbe_renderer_bind_texels(r, deposit, "signatures", 1, GL_R32UI, r->buffer[BINDING_SIGNATURES]);
+  const GLenum signature = r->plan.lengths ? GL_RG32UI : GL_R32UI;
+  abbe_renderer_bind_texels(r, deposit, "signatures", 1, signature, r->buffer[BINDING_SIGNATURES]);
   abbe_renderer_bind_texels(r, deposit, "interval_sums", 2, GL_RGBA32F,
                             r->buffer[BINDING_INTERVALS]);
   if (fine) {
     abbe_renderer_bind_texels(r, deposit, "fine_landings", 3, GL_RGBA32F, r->fine_landings);
-    abbe_renderer_bind_texels(r, deposit, "fine_signatures", 4, GL_R32UI, r->fine_signatures);
+    abbe_renderer_bind_texels(r, deposit, "fine_signatures", 4, signature, r->fine_signatures);
+  }
+  if (r->plan.lengths) {
+    const size_t rows = r->plan.light_count * r->plan.refractor_count;
+    abbe_renderer_bind_texels(r, deposit, "band_attenuation", 5, GL_RGBA32F, r->band_attenuation);
+    abbe_renderer_set_int(r, deposit, "band_first", (int)(fine ? rows * r->nodes : 0));
   }
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, paths);
   const size_t items = fine ? r->pair_room : r->light[light].photon_count;
@@ -406,7 +414,7 @@ static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
 static size_t most_landings(const abbe_renderer *r) {
   GLint texels = 0;
   r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-  const size_t most = MOST_LANDING_BYTES / LANDING_BYTES;
+  const size_t most = MOST_LANDING_BYTES / (PLACE_BYTES + abbe_renderer_signature_bytes(r));
   return most < (size_t)texels ? most : (size_t)texels;
 }
 
@@ -418,7 +426,8 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t cells = r->plan.desc.photons * r->plan.desc.photons, rim = 8 * r->plan.desc.photons;
   most = most + rim < cells ? most + rim : cells;
   size_t a_lane = most * r->plan.slots, n = r->plan.desc.wavelengths;
-  size_t lanes = MAX_LANDING_BYTES / LANDING_BYTES / a_lane, room = most_landings(r);
+  const size_t a_landing = PLACE_BYTES + abbe_renderer_signature_bytes(r);
+  size_t lanes = MAX_LANDING_BYTES / a_landing / a_lane, room = most_landings(r);
   if (a_lane * 2 > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "
@@ -439,8 +448,8 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
     result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 16, NULL,
                                        &r->buffer[BINDING_LANDINGS], error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 4, NULL,
-                                       &r->buffer[BINDING_SIGNATURES], error);
+    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * abbe_renderer_signature_bytes(r),
+                                       NULL, &r->buffer[BINDING_SIGNATURES], error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, a_lane * 4, NULL, &r->path_marks, error);
   if (result == ABBE_OK)
@@ -452,10 +461,11 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
 static void write_photon_defines(const abbe_renderer *r, char defines[PHOTON_DEFINES]) {
   snprintf(defines, PHOTON_DEFINES,
            "%s#define LANES %zu\n#define STEPS %zu\n#define MAP_LEVELS %zu\n"
-           "#define NODES %zu\n%s%s",
+           "#define NODES %zu\n%s%s%s",
            r->defines, r->lanes, r->steps, r->map_levels, r->nodes,
            r->plan.fills ? "#define BRIDGE\n" : "",
-           r->plan.layers || r->plan.hierarchy ? "#define DOUBTS_BRIDGES\n" : "");
+           r->plan.layers || r->plan.hierarchy ? "#define DOUBTS_BRIDGES\n" : "",
+           r->plan.lengths ? "#define TINTING\n" : "");
 }
 
 static abbe_result make_trace(abbe_renderer *r, abbe_error *error) {
@@ -482,11 +492,12 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
 }
 
 /* The batch's landings, zero where there is none; malloc'd. */
-abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **data, GLuint **paths,
-                                     abbe_error *error) {
+abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, size_t first, float **data,
+                                     GLuint **paths, abbe_error *error) {
   size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
   float *landing = malloc(count * 16 + 1);
-  GLuint *path = malloc(count * 4 + 1);
+  const size_t signature_bytes = abbe_renderer_signature_bytes(r);
+  GLuint *path = malloc(count * signature_bytes + 1);
   if (landing == NULL || path == NULL) {
     free(landing);
     free(path);
@@ -496,7 +507,8 @@ abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **dat
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LANDINGS]);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * 16), landing);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SIGNATURES]);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * 4), path);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * signature_bytes), path);
+  abbe_renderer_attenuate(r, first, count, landing, path);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < 4 && path[i] == 0; k++) landing[4 * i + k] = 0;
   *data = landing;
@@ -529,7 +541,7 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     float *landing = NULL;
     GLuint *path = NULL;
     abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
-    result = abbe_renderer_read_batch(r, light, &landing, &path, error);
+    result = abbe_renderer_read_batch(r, light, b.first, &landing, &path, error);
     size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
     if (result == ABBE_OK && part == 0) part = abbe_renderer_part_of(landing, count);
     if (result == ABBE_OK && part > 0) {
@@ -595,7 +607,7 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);
   GLuint *path = NULL;
-  result = abbe_renderer_read_batch(r, light, data, &path, error);
+  result = abbe_renderer_read_batch(r, light, 0, data, &path, error);
   for (size_t i = 0; result == ABBE_OK && i < *count * *orders * *lanes; i++) {
     float *at = *data + 4 * i;
     double place[3] = {at[0], at[1], at[2]};

@@ -1,6 +1,9 @@
 // The way of a photon's light of one wavelength: from the light through refractors to receivers.
 // Every exit that still carries energy is followed, one landing each. Who includes this gives
-// `light`, `share_limit` and keep_landing(photon, slot, lane, place, flux in W, signature).
+// `light`, `share_limit` and keep_landing(photon, slot, lane, place, flux in W, signature, length), the
+// flux without what is absorbed where landings keep the length of their way inside.
+
+#include "photon_absorption.glsl"
 
 const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 
@@ -68,14 +71,14 @@ uint signature_of(uint path, int landed, uint owner) {
 // on with its slot; `entry` takes the shares of the light that go elsewhere. Light that leaves a
 // refractor meets none again.
 void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,
-           out float entry[5]) {
-  for (int k = 0; k < 5; k++) entry[k] = 0.0;
+           out Shares entry[5]) {
+  for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
   if (!reached) return;
   int r = front.refractor;
   vec2 spectrum = spectra[r * WAVELENGTHS + i].xy;
   float n = spectrum.x, cos_i = -dot(d, front.n);
   float reflected = fresnel(cos_i, 1.0 / n);
-  entry[REACHED] = 1.0;
+  entry[REACHED] = Shares(1.0);
   vec3 at, place;
   uint receiver;
   uint path = uint(r) * 131u + uint(front.facet);
@@ -85,14 +88,20 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
         land(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, at, place, receiver);
     if (landed >= LANDED)
       keep_landing(photon, EXITS, lane, place, reflected * flux,
-                   signature_of(path * 17u + receiver, landed, uint(r)));
+                   signature_of(path * 17u + receiver, landed, uint(r)), 0.0);
     else
-      entry[REFLECTED] = reflected;
+      entry[REFLECTED] = Shares(reflected);
   }
   float share = 1.0 - reflected;
   vec3 p = front.p, inner, wall_n;
   if (!refract_direction(d, front.n, 1.0 / n, inner)) return;
   int facet = front.facet;
+  float way = 0.0;
+#ifdef TINTING
+  vec2 left = vec2(1);
+#else
+  const float left = 1.0;
+#endif
   for (int order = 0; order < EXITS; order++) {
     vec3 wall;
     int next;
@@ -101,10 +110,15 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
               lights[light].near_view, light_layers, 2.0 * float(light),
 #endif
               wall, wall_n, next);
-#ifdef ABSORBING
-    float left = exp(-spectrum.y * distance(wall, p));
-    entry[ABSORBED] += share * (1.0 - left);
-    share *= left;
+#ifdef TINTING
+    vec2 before = left;
+    way += distance(wall, p);
+    left = left_after(way);
+    entry[ABSORBED] += share * (before - left);
+#elif defined(ABSORBING)
+    float passed = exp(-spectrum.y * distance(wall, p));
+    entry[ABSORBED] += share * (1.0 - passed);
+    share *= passed;
 #endif
     path = path * 31u + uint(next) + 1u;
     float kept = fresnel(dot(inner, wall_n), n);
@@ -114,19 +128,23 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
       int landed = land(wall, outer, -touch * refractor_bounds.w, 1e30, at, place, receiver);
       if (landed >= LANDED) {
         keep_landing(photon, order, lane, place, out_share * flux,
-                     signature_of(path * 31u + receiver, landed, uint(r)));
+                     signature_of(path * 31u + receiver, landed, uint(r)), way);
       } else {
-        entry[MISSED] += out_share;
+        entry[MISSED] += out_share * left;
       }
     } else {
       kept = 1.0;
     }
     share *= kept;
+#ifdef TINTING
+    if (share * exp(-spectrum.y * way) < share_limit) break;
+#else
     if (share < share_limit) break;
+#endif
     p = wall;
     facet = next;
     inner = reflect(inner, wall_n);
   }
-  entry[TRAPPED] += share;
+  entry[TRAPPED] += share * left;
 }
 #endif

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 enum { MOST_NODES = 9, LIST_HEADER = 16 };
-enum { FINE_BYTES = 16 + 4, MAX_FINE_BYTES = 64 << 20, LEAST_PAIRS = 256 };
+enum { PLACE_BYTES = 16, MAX_FINE_BYTES = 64 << 20, LEAST_PAIRS = 256 };
 
 size_t abbe_renderer_coarse_node(size_t wavelengths, size_t nodes, size_t k) {
   return nodes > 1 ? (k * (wavelengths - 1) + (nodes - 1) / 2) / (nodes - 1) : 0;
@@ -35,7 +35,7 @@ abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons,
   if (result != ABBE_OK || !abbe_renderer_refines(r)) return result;
   r->fine_nodes = widest_interval(r) + 1;
   size_t a_pair = r->plan.slots * r->fine_nodes, most = most_photons * (r->nodes - 1);
-  r->pair_room = MAX_FINE_BYTES / FINE_BYTES / a_pair;
+  r->pair_room = MAX_FINE_BYTES / (PLACE_BYTES + abbe_renderer_signature_bytes(r)) / a_pair;
   if (r->pair_room < LEAST_PAIRS) r->pair_room = LEAST_PAIRS;
   if (r->pair_room > most) r->pair_room = most;
   const struct {
@@ -43,7 +43,7 @@ abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons,
     size_t size;
   } made[] = {{&r->pair_list, LIST_HEADER + r->pair_room * 4},
               {&r->fine_landings, r->pair_room * a_pair * 16},
-              {&r->fine_signatures, r->pair_room * a_pair * 4},
+              {&r->fine_signatures, r->pair_room * a_pair * abbe_renderer_signature_bytes(r)},
               {&r->fine_marks, r->pair_room * r->plan.slots * 4},
               {&r->fine_paths, LIST_HEADER + r->pair_room * r->plan.slots * 4}};
   for (size_t i = 0; i < sizeof made / sizeof made[0] && result == ABBE_OK; i++)

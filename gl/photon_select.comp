@@ -18,7 +18,13 @@ layout(std430, binding = 6) readonly buffer Photons {
 layout(std430, binding = 7) buffer Wants { uint want[]; };  // a bit an interval
 layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
 layout(std430, binding = 9) readonly buffer Landings { vec4 landing[]; };
+#ifdef TINTING
+layout(std430, binding = 10) readonly buffer Signatures { uvec2 signature[]; };  // length inside in y
+#define SIGNATURE(i) signature[i].x
+#else
 layout(std430, binding = 10) readonly buffer Signatures { uint signature[]; };
+#define SIGNATURE(i) signature[i]
+#endif
 layout(std430, binding = 11) buffer PairList {
   uint pair_count, pair_groups[3];
   uint pair_at[];
@@ -47,7 +53,7 @@ float step_to(ivec2 c, uint order, uint lane, uint path, vec2 here) {
   uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
   uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
-  there = there && signature[index] == path;
+  there = there && SIGNATURE(index) == path;
   return there ? distance(map_position(landing[index].xyz, path), here) : 0.0;
 }
 
@@ -65,17 +71,25 @@ void main() {
   uint path[NODES];
   vec2 at[NODES];
   float flux[NODES], index[NODES];
+#ifdef TINTING
+  float way[NODES], per_m[NODES];
+#endif
   int reference = 0;
   for (int k = 0; k < NODES; k++) {
-    uint found = signature[first + uint(k)];
+    uint found = SIGNATURE(first + uint(k));
     vec4 to = landing[first + uint(k)];
     path[k] = found;
     flux[k] = found != 0u ? to.w : 0.0;
     at[k] = found != 0u ? map_position(to.xyz, found) : vec2(0);
-    index[k] = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].x;
+    vec2 spectrum = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].xy;
+    index[k] = spectrum.x;
+#ifdef TINTING
+    way[k] = uintBitsToFloat(signature[first + uint(k)].y);
+    per_m[k] = spectrum.y;
+#endif
     if (found != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
   }
-  uint path_here = signature[first + uint(reference)];
+  uint path_here = SIGNATURE(first + uint(reference));
   vec2 here = map_position(landing[first + uint(reference)].xyz, path_here);
   float a = path_here != 0u ? step_to(cell + ivec2(1, 0), order, uint(reference), path_here, here) : 0.0;
   float b = path_here != 0u ? step_to(cell + ivec2(0, 1), order, uint(reference), path_here, here) : 0.0;
@@ -94,7 +108,16 @@ void main() {
   }
   uint wanted = 0u;
   for (int k = 0; k + 1 < NODES; k++) {
-    float most = max(flux[k], flux[k + 1]) / from_cell.flux * interval_weight[k];
+    float flux_a = flux[k], flux_b = flux[k + 1];
+#ifdef TINTING
+    // What is left at both ends, and, to tell what changes, of the same glass.
+    float left = 0.5 * (exp(-per_m[k] * way[k]) + exp(-per_m[k + 1] * way[k + 1]));
+    float per_m_between = 0.5 * (per_m[k] + per_m[k + 1]);
+    float most = left * max(flux_a, flux_b) / from_cell.flux * interval_weight[k];
+    flux_b *= exp(-per_m_between * (way[k + 1] - way[k]));
+#else
+    float most = max(flux_a, flux_b) / from_cell.flux * interval_weight[k];
+#endif
     bool same = path[k] == path[k + 1];
     bool alone = bend[k] < 0.0 && bend[k + 1] < 0.0;
     // A line's distance from its curve is a quarter of how far the middle of both is off.
@@ -106,7 +129,7 @@ void main() {
     float moves_b = path[k + 1] == 0u ? 0.0 : known_b ? distance(at[after], at[k + 1]) : size;
     if (!same) wrong = 0.25 * max(moves_a, moves_b);
     // The light is taken to stay what it is at a node up to halfway to the next.
-    float changed = same ? 0.25 * abs(flux[k] - flux[k + 1]) / max(max(flux[k], flux[k + 1]), 1e-30) : 0.0;
+    float changed = same ? 0.25 * abs(flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30) : 0.0;
     if (most * max(min(wrong / size, 1.0), changed) > MOST_WRONG) wanted |= 1u << uint(k);
   }
   if (wanted == 0u) return;

@@ -9,8 +9,12 @@ layout(local_size_x = 256) in;
 // (landing_place.glsl); w: flux for unit weight, W.
 layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
 // Receiver, facets along the way and whether on a page, equal for paths that vary continuously;
-// refractor in the low eight bits; 0: no landing.
+// refractor in the low eight bits; 0: no landing. TINTING: and the length of its way inside, m.
+#ifdef TINTING
+layout(std430, binding = 10) writeonly buffer Signatures { uvec2 signature[]; };
+#else
 layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
+#endif
 // Y weight of the samples at [light * WAVELENGTHS + i]: of the parts of their bands below and above
 // the node, then those in the coarse set.
 layout(std430, binding = 11) readonly buffer SampleWeights { vec4 sample_weight[]; };
@@ -53,11 +57,15 @@ layout(std430, binding = 6) readonly buffer Photons {
 shared uint book[5], unbook[5];
 
 // A landing of the photon at lane's wavelength, in the path's slot.
-void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path) {
+void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path, float way) {
   uint listed = photon * SLOTS + order, index = listed * lane_stride + lane;
   landing[index] = vec4(at, flux);
   if (atomicExchange(path_mark[listed], 1u) == 0u) path_list[atomicAdd(path_count, 1u)] = listed;
+#ifdef TINTING
+  signature[index] = uvec2(path, floatBitsToUint(way));
+#else
   signature[index] = path;
+#endif
 }
 
 #include "photon_path.glsl"
@@ -76,9 +84,10 @@ void main() {
   bool there = item < (set == REFINED ? min(pair_count, most_pairs) : photon_count);
   int i = set == COARSE ? coarse_node(lane) : lane_first + lane;
   int low = -1, high = -1;  // ends of the interval
+  int interval = 0;
   if (set == REFINED && there) {
     uint pair = pair_at[item];
-    int interval = int(pair % PAIR_INTERVALS);
+    interval = int(pair % PAIR_INTERVALS);
     photon = pair / PAIR_INTERVALS;
     low = coarse_node(interval);
     high = coarse_node(interval + 1);
@@ -94,7 +103,14 @@ void main() {
     float flux;
     bool reached = photon_start(uv, o, d, front, flux);
     flux = from.flux;
-    float entry[5];
+#ifdef TINTING
+    int row = light * REFRACTORS + (reached ? front.refractor : 0);
+    int node = set == COARSE ? row * NODES + lane : all_bands(row) + i;
+    // A refined interval's ends give back halves of coarse bands; their own outer ones are not its.
+    int coarse_a = row * NODES + interval;
+    load_halves(i == low ? 2 * coarse_a + 1 : 2 * node, i == high ? 2 * (coarse_a + 1) : 2 * node + 1);
+#endif
+    Shares entry[5];
     trace(item, lane, i, flux, o, d, front, reached, entry);
     // A refined interval's ends give back what the coarse set entered for it.
     vec4 weight = sample_weight[light * WAVELENGTHS + i];
@@ -103,9 +119,10 @@ void main() {
     float back = i == low ? weight.w : i == high ? weight.z : 0.0;
     float scale = flux / ledger_unit;
     for (int k = 0; k < 5; k++) {
-      if (entry[k] <= 0.0 || i < ledger_first) continue;
-      atomicAdd(book[k], uint(entry[k] * (below * scale) + 0.5) + uint(entry[k] * (above * scale) + 0.5));
-      if (back > 0.0) atomicAdd(unbook[k], uint(entry[k] * (back * scale) + 0.5));
+      vec2 part = vec2(entry[k]);
+      if (max(part.x, part.y) <= 0.0 || i < ledger_first) continue;
+      atomicAdd(book[k], uint(part.x * (below * scale) + 0.5) + uint(part.y * (above * scale) + 0.5));
+      if (back > 0.0) atomicAdd(unbook[k], uint((i == low ? part.x : part.y) * (back * scale) + 0.5));
     }
   }
   barrier();

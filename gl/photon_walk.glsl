@@ -38,8 +38,8 @@ int take_slot(uint path, inout uint used) {
 }
 
 void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,
-           out float entry[5]) {
-  for (int k = 0; k < 5; k++) entry[k] = 0.0;
+           out Shares entry[5]) {
+  for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
   wavelength = i;
   Way pending[PENDING];
   Way w = Way(o, d, 1.0, 0u, 0u, -1, -1, -1);
@@ -50,7 +50,7 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   uint owner = uint(h.hit.refractor), used = 0u;
   float missed = 0.0, reflected = 0.0, absorbed = 0.0, trapped = 0.0;
   if (going) {
-    entry[REACHED] = 1.0;
+    entry[REACHED] = Shares(1.0);
     trapped = branch(w, h, pending);
   }
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
@@ -75,7 +75,7 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
       int slot = landed >= LANDED ? take_slot(w.path, used) : -1;
       if (slot >= 0)
         keep_landing(photon, slot, lane, place, w.share * flux,
-                     signature_of(w.path * 31u + receiver, landed, owner));
+                     signature_of(w.path * 31u + receiver, landed, owner), 0.0);
       else if (landed >= LANDED || (landed == NO_RECEIVER && w.inside != 0u))
         trapped += w.share;
       else if (w.walls == 0 && w.inside == 0u)
@@ -91,8 +91,8 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
     trapped += w.share;
     for (int k = 0; k < PENDING; k++) trapped += pending[k].share;
   }
-  entry[REFLECTED] = reflected;
-  entry[ABSORBED] = absorbed;
-  entry[TRAPPED] = trapped;
-  entry[MISSED] = missed;
+  entry[REFLECTED] = Shares(reflected);
+  entry[ABSORBED] = Shares(absorbed);
+  entry[TRAPPED] = Shares(trapped);
+  entry[MISSED] = Shares(missed);
 }

@@ -308,9 +308,9 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   /* Below so many, tracing some of them twice costs what leaving others out saves. */
   static const size_t coarse = 5, refined_from = 9;
   const size_t n = plan->desc.wavelengths;
-  /* Landings do not ask for what absorption changes between two wavelengths: it needs them all. */
+  /* Without lengths landings do not know what absorption changes between two wavelengths. */
   const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
-  return apart && !plan->tinting && n >= refined_from ? coarse : n;
+  return apart && plan->tinting == plan->lengths && n >= refined_from ? coarse : n;
 }
 
 static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
@@ -412,6 +412,7 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
                     : "no light meets a refractor");
   bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
+  plan->lengths = caustics && plan->tinting && !plan->walk && !thesis;
   size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
   if (caustics) {
     add(plan, true, "light: photon placement", "at most %zu a side, where light meets a refractor",
@@ -436,8 +437,9 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
     add(plan, false, "light: gap fill", apart ? "none, as asked" : "nothing lands apart");
   add(plan, plan->absorbing, "absorption", "%s",
       no_refraction(plan) != NULL ? no_refraction(plan)
-      : plan->absorbing           ? "a material attenuates; path lengths are kept"
-                                  : "every material is clear");
+      : plan->lengths   ? "a material attenuates by wavelength: landings keep the length inside"
+      : plan->absorbing ? "a material attenuates; path lengths are kept"
+                        : "every material is clear");
   add(plan, true, "eye: receivers", "light, shadow and spectral map");
   bool seen = plan->seen;
   const char *unseen = plan->refractor_count > 0 ? "the eye sees no refractor" : "nothing refracts";

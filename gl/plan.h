@@ -143,6 +143,7 @@ typedef struct abbe_plan {
   bool dispersive; /* some index varies over the range */
   bool absorbing;  /* some attenuation is above zero in the range */
   bool tinting;    /* some attenuation varies over the range */
+  bool lengths;    /* and landings keep the length of their way inside, which tells it anywhere */
   bool dense;      /* some index is above 2 in the range */
   bool textured;
   size_t slots; /* landings of a photon at the most: its exits, and the mirror on the outside */

@@ -178,6 +178,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   free(r->parallelogram);
   free(r->shadow_row);
   gl->DeleteBuffers(1, &r->table_bands);
+  gl->DeleteBuffers(1, &r->band_attenuation);
   const GLuint lists[] = {r->table_pages, r->table_warps, r->table_shadows, r->texel_sizes,
                           r->pixel_list,  r->refine_list, r->path_marks,    r->path_list,
                           r->splat_list,  r->map_sums};

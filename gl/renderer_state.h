@@ -7,6 +7,7 @@
 #include "gl/plan.h"
 #include "gl/receiver_pages.h"
 #include "gl/renderer.h"
+#include "spectral/wavelengths.h"
 
 /* Shader storage bindings, as the shaders name them. */
 enum {
@@ -96,7 +97,7 @@ struct abbe_renderer {
     float plane[4];
   } *shadow_row;        /* all ranges, then all planes */
   size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
-  GLuint table_bands, table_warps, table_shadows, texel_sizes;
+  GLuint table_bands, table_warps, table_shadows, texel_sizes, band_attenuation;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
   GLuint path_marks, path_list, splat_list, map_sums;
   GLuint wants, pair_list; /* intervals that ask for all their wavelengths */
@@ -107,7 +108,7 @@ struct abbe_renderer {
   size_t splat_room, chunks; /* pieces of light that are listed at a time */
   GLuint list[LEVELS];       /* cells that may show a refractor, last level last */
   GLuint texture_surface;
-  GLuint texels[5]; /* of buffers that are read as texels, one a unit */
+  GLuint texels[6]; /* of buffers that are read as texels, one a unit */
   GLuint light_layers, light_owner, light_depth;
   GLuint map; /* XYZ flux over window area, one layer a light, in levels; then those of pages */
   size_t map_levels, map_texels, map_layers;
@@ -219,9 +220,10 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
                                   abbe_error *error);
 abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledger *ledger,
                                       abbe_error *error);
-/* The batch's landings, zero where there is none, and their paths (may be NULL); malloc'd. */
-abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, float **data, GLuint **paths,
-                                     abbe_error *error);
+/* The batch's landings, from wavelength `first` on, zero where there is none, and their paths (may
+ * be NULL); malloc'd. */
+abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, size_t first, float **data,
+                                     GLuint **paths, abbe_error *error);
 void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
                                size_t ledger_first);
 
@@ -254,6 +256,17 @@ void abbe_renderer_page_place(const abbe_renderer *r, size_t light, const float 
 
 /* renderer.c: the map's texture, with a layer for each light that has pages. */
 abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error);
+
+/* band_attenuation.c: what is left of light in parts of its band, where landings keep lengths. */
+/* Of the coarse set and of all wavelengths, where it is not all of them. */
+abbe_result abbe_renderer_upload_attenuation(abbe_renderer *r, const abbe_wavelengths *coarse,
+                                             const abbe_wavelengths *all, abbe_error *error);
+/* Of a landing's signature, with the length of its way where it is kept. */
+size_t abbe_renderer_signature_bytes(const abbe_renderer *r);
+/* A batch's landings from wavelength `first` on, as read: takes off what is absorbed at their
+ * nodes, and leaves paths alone in `signature`. */
+void abbe_renderer_attenuate(const abbe_renderer *r, size_t first, size_t count, float *landing,
+                             GLuint *signature);
 
 /* photon_refine.c: which photons take which wavelengths. */
 typedef enum trace_set { TRACE_ALL, TRACE_COARSE, TRACE_REFINED } trace_set;

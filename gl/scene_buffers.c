@@ -350,6 +350,7 @@ static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
   if (result == ABBE_OK) {
     float(*rest)[4] = fill_intervals(r, &coarse, table);
     if (refines) fill_intervals(r, w, rest);
+    result = abbe_renderer_upload_attenuation(r, &coarse, w, error);
   }
   const size_t size = rows * (r->steps + 1) * sizeof *table;
   if (result == ABBE_OK && r->buffer[BINDING_INTERVALS] == 0) {

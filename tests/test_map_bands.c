@@ -2,7 +2,7 @@
 
 #include "colorimetry/weights.h"
 
-enum { BANDS = 12 };
+enum { BANDS = 48 };
 
 static void bands_add_up_to_the_colour(void **state) {
   (void)state;
@@ -14,8 +14,8 @@ static void bands_add_up_to_the_colour(void **state) {
   draw_frame(renderer);
   assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
   assert_int_equal(map.channels, 3 + BANDS);
-  assert_string_equal(map.channel[3], "S0.396,666667nm");
-  assert_string_equal(map.channel[3 + BANDS - 1], "S0.763,333333nm");
+  assert_string_equal(map.channel[3], "S0.384,166667nm");
+  assert_string_equal(map.channel[3 + BANDS - 1], "S0.775,833333nm");
   const abbe_illuminant *light = &scene.light[0].illuminant;
   const double width = 400.0 / BANDS;
   double sum[3] = {0};
@@ -23,8 +23,8 @@ static void bands_add_up_to_the_colour(void **state) {
     const double from = 380 + width * (double)i, to = from + width;
     double xyz[3], power = abbe_weights_band_power(light, 380, 780, from, to);
     abbe_weights_band_xyz(light, 380, 780, from, to, xyz);
-    /* Seven nodes make twelve halves of intervals, in each of which the flux is one node's: these
-     * bands. So a band's colour is that of the light's own. */
+    /* Seven nodes make twelve halves of intervals. In each the flux is one node's, and absorption
+     * takes the same of each quarter of it: these bands. So a band's colour is the light's own. */
     const double flux = width * image_sum(&map, 3 + i);
     for (int c = 0; c < 3; c++) sum[c] += flux / power * xyz[c];
   }

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Bits: spheres, convex, layers, exact receivers, absorbing (and caustics), shadows (and
- * textures), hierarchy, walk. */
+/* Bits: spheres, convex, layers, exact receivers, absorbing (and caustics), shadows (and textures,
+ * and lengths kept of ways inside), hierarchy, walk. */
 static void write_defines(unsigned bits, char *out, size_t size) {
   static const char *const names[] = {
       "SPHERES",
@@ -15,7 +15,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       "LAYERS\n#define FRONT_LAYER",
       "EXACT_RECEIVERS",
       "ABSORBING\n#define CAUSTICS",
-      "RECEIVER_SHADOWS\n#define TEXTURED\n#define SHADOW_PLANES 32",
+      "RECEIVER_SHADOWS\n#define TEXTURED\n#define SHADOW_PLANES 32\n#define TINTING",
       "HIERARCHY",
       "WALK"};
   int used = snprintf(out, size,

@@ -1,0 +1,34 @@
+// What is left of a photon's light after its way inside, in the parts of its wavelength's band below
+// and above the node. TINTING: what attenuates does so by wavelength, and landings keep the length of
+// their way, which has it at all wavelengths; else all shares are the node's own.
+
+#ifdef TINTING
+#define Shares vec2
+#else
+#define Shares float
+#endif
+
+#ifdef TINTING
+// Of the halves of a node's band, below it and above, at 2 * (2 * ((light * REFRACTORS + refractor) *
+// nodes + node) + (above ? 1 : 0)), the coarse set's before those of all wavelengths: attenuation of
+// four parts, 1/m, in order of wavelength, and what of the half's Y each is.
+uniform samplerBuffer band_attenuation;
+
+vec4 attenuation[2], part_of_half[2];
+
+// The first of all wavelengths'.
+int all_bands(int row) {
+  return (NODES < WAVELENGTHS ? LIGHTS * REFRACTORS * NODES : 0) + row * WAVELENGTHS;
+}
+
+void load_halves(int below, int above) {
+  attenuation = vec4[2](texelFetch(band_attenuation, 2 * below), texelFetch(band_attenuation, 2 * above));
+  part_of_half = vec4[2](texelFetch(band_attenuation, 2 * below + 1),
+                         texelFetch(band_attenuation, 2 * above + 1));
+}
+
+vec2 left_after(float way) {
+  return vec2(dot(part_of_half[0], exp(-way * attenuation[0])),
+              dot(part_of_half[1], exp(-way * attenuation[1])));
+}
+#endif
