@@ -6,7 +6,8 @@
 #include <stdio.h>
 
 /* Of a cell and of a sample. Normals between fewer vertices turn light aside by more than the faces
- * are moved: with twice these shares the ring's caustic is 5 % further off, with these 1 %. */
+ * are moved: 1/60 of a cell of 64 adds 1 % to the mean CIEDE2000 of the ring's caustic, 1/30
+ * adds 3. */
 static const double cell_share = 1.0 / 50, sample_share = 1.0 / 16;
 
 bool abbe_layer_detail_asks(const abbe_scene *scene, const abbe_plan *plan, size_t i) {
