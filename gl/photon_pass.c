@@ -426,8 +426,11 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t cells = r->plan.desc.photons * r->plan.desc.photons, rim = 8 * r->plan.desc.photons;
   most = most + rim < cells ? most + rim : cells;
   size_t a_lane = most * r->plan.slots, n = r->plan.desc.wavelengths;
+  /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
+  const size_t usual = ABBE_PLAN_EXITS + 1;
+  const size_t slots = !r->plan.walk && r->plan.slots > usual ? usual : r->plan.slots;
   const size_t a_landing = PLACE_BYTES + abbe_renderer_signature_bytes(r);
-  size_t lanes = MAX_LANDING_BYTES / a_landing / a_lane, room = most_landings(r);
+  size_t lanes = MAX_LANDING_BYTES / a_landing / (most * slots), room = most_landings(r);
   if (a_lane * 2 > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "

@@ -1,6 +1,7 @@
 #include "gl/plan.h"
 
 #include "gl/everything.h"
+#include "gl/inner_light.h"
 #include "gl/layer_detail.h"
 #include "gl/light_cube.h"
 #include "gl/precision.h"
@@ -16,13 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  MAX_PARALLELOGRAMS = 96,
-  RANGE_STEPS = 81,
-  MAX_MODEL_ENTRIES = 48,
-  MAX_WALK_REFRACTORS = 32,
-  WALK_SLOTS = 16
-};
+enum { MAX_PARALLELOGRAMS = 96, RANGE_STEPS = 81, MAX_MODEL_ENTRIES = 48, WALK_SLOTS = 16 };
 
 #if defined(__GNUC__)
 __attribute__((format(printf, 4, 5)))
@@ -69,7 +64,7 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
   if (d.map_size == 0) d.map_size = 1024;
   if (d.supersample == 0) d.supersample = thesis ? 1 : 2;
   if (d.fill == ABBE_FILL_AUTO) d.fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
-  if (d.energy_share == 0) d.energy_share = 0.01;
+  if (d.energy_share == 0) d.energy_share = ABBE_PLAN_SHARE;
   plan->desc = d;
   abbe_result result = check_limit("the width", d.width, ABBE_RENDER_MAX_SIDE, error);
   if (result == ABBE_OK) result = check_limit("the height", d.height, ABBE_RENDER_MAX_SIDE, error);
@@ -124,7 +119,6 @@ static abbe_result examine_material(const abbe_scene *scene, const abbe_material
     if (i == 0) first = n;
     if (i == 0) first_per_m = per_m;
     if (n != first) plan->dispersive = true;
-    if (n > 2) plan->dense = true;
     if (per_m != first_per_m) plan->tinting = true;
     if (per_m > 0) plan->absorbing = true;
   }
@@ -327,25 +321,27 @@ static void resolve_wavelengths(abbe_plan *plan) {
   if (no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
   add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
       plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
+}
+
+static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked, abbe_plan *plan) {
+  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  char inside[64] = "";
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
-  /* Between facets light of an index above 2 finds out at a wall from less than a seventh of all
-   * directions; in a sphere it leaves where it came in. */
-  bool kept = plan->dense && plan->convex && !plan->layers && !plan->walk;
-  if (plan->desc.orders == 0)
-    plan->desc.orders = plan->layers ? ABBE_PLAN_LAYER_EXITS : kept ? 16 : ABBE_PLAN_EXITS;
-  if (abbe_profile_is_thesis(plan->desc.profile)) plan->desc.orders = 1;
-  bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  if (thesis || plan->desc.orders == 0)
+    plan->desc.orders = thesis ? 1 : plan->layers ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
+  if (plan->convex && plan->refractor_count == 1 && !plan->walk && no_refraction(plan) == NULL)
+    snprintf(inside, sizeof inside, "; %.2g %% of it is still inside then",
+             100 * abbe_inner_light_plan(scene, asked, plan));
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
   if (no_refraction(plan) != NULL)
     add(plan, false, "inner reflections", "%s", no_refraction(plan));
   else if (plan->desc.orders == 1)
-    add(plan, false, "inner reflections", "two interfaces only, %s",
-        thesis ? "as in the thesis" : "as asked");
+    add(plan, false, "inner reflections", "two interfaces only, as %s%s",
+        thesis ? "in the thesis" : "asked", inside);
   else
     add(plan, true, "inner reflections",
         "followed until less than %g of the light is left, %zu exits at most%s",
-        plan->desc.energy_share, plan->desc.orders,
-        kept ? ": an index above 2 keeps it between facets" : "");
+        plan->desc.energy_share, plan->desc.orders, inside);
 }
 
 /* The scene's rule, that the later object wins, is not the renderer's. */
@@ -682,6 +678,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   }
   examine_shadows(scene, out);
   resolve_wavelengths(out);
+  resolve_exits(scene, desc, out);
   list_passes(scene, out);
   out->back = out->layers;
   if (out->desc.everything) abbe_everything_switch_on(scene, desc, out);

@@ -55,14 +55,19 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
 #define ABBE_RENDER_MAX_MAP 4096     /* a side */
 #define ABBE_RENDER_MAX_WAVELENGTHS 1000
-#define ABBE_RENDER_MAX_ORDERS 16
+#define ABBE_RENDER_MAX_ORDERS 32
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
 
-/* Exits that are followed at the most where the request leaves it open and no index is above 2. */
+/* Exits that are followed at the most, and the share of its light below which a path ends, where the
+ * request leaves them open. */
 #define ABBE_PLAN_EXITS 8
 #define ABBE_PLAN_LAYER_EXITS 4 /* where a refractor is known by its layers */
+#define ABBE_PLAN_SHARE 0.01
+/* As far as they go where a convex solid keeps light inside (gl/inner_light.h). */
+#define ABBE_PLAN_MOST_EXITS 24
+#define ABBE_PLAN_LOW_SHARE 0.005
 
 /* A request; zero means the default in every field. */
 typedef struct abbe_render_desc {
@@ -76,10 +81,12 @@ typedef struct abbe_render_desc {
   size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis: 1) */
   abbe_fill fill;
   abbe_model model;
-  double energy_share;  /* paths below this share of their light end; 0: 0.01 */
-  size_t orders;        /* exits followed at the most; 0: as many as carry energy, at most 8,
-                             16 where facets keep light inside
-                             (4 where a mesh is known by its layers) */
+  /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too much
+   * light inside a convex solid */
+  double energy_share;
+  /* exits followed at the most; 0: as many as carry energy, at most 8, or up to 24 where a convex
+   * solid keeps light inside (4 where a mesh is known by its layers) */
+  size_t orders;
   abbe_rgb_space space; /* of the picture */
   /* Layout of one light's map, and which light's; it lives as long as the plan. NULL: each map is
    * fitted to where its light lands. */
@@ -144,7 +151,6 @@ typedef struct abbe_plan {
   bool absorbing;  /* some attenuation is above zero in the range */
   bool tinting;    /* some attenuation varies over the range */
   bool lengths;    /* and landings keep the length of their way inside, which tells it anywhere */
-  bool dense;      /* some index is above 2 in the range */
   bool textured;
   size_t slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */

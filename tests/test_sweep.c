@@ -71,6 +71,31 @@ static void test_grids_hold_each_setting_once(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* Presets join the scenes of a class by setting, whatever exits their own plans take. */
+static void test_the_thin_grid_is_the_same_for_every_convex_solid(void **state) {
+  (void)state;
+  static const char *const names[] = {"prism", "gem", "diamond"};
+  abbe_sweep_setting *list[3];
+  size_t counts[3];
+  for (int i = 0; i < 3; i++) {
+    abbe_scene scene = {0};
+    abbe_sweep_grid parts[ABBE_SWEEP_MAX_GRIDS];
+    size_t refused;
+    load_shipped(names[i], &scene);
+    const size_t n = abbe_sweep_grid_make(ABBE_SWEEP_GRID_THIN, parts);
+    counts[i] = expand(&scene, parts, n, &list[i], &refused);
+    abbe_scene_free(&scene);
+    for (size_t k = 0; k < counts[0]; k++) {
+      bool found =
+          strcmp(list[0][k].profile, "default") != 0; /* its views do not hold every scene */
+      for (size_t j = 0; j < counts[i] && !found; j++)
+        found = abbe_sweep_setting_same(&list[i][j], &list[0][k]);
+      if (!found) fail_msg("%s: setting %zu", names[i], k);
+    }
+  }
+  for (int i = 0; i < 3; i++) free(list[i]);
+}
+
 static void test_what_a_profile_does_not_know_is_left_out(void **state) {
   (void)state;
   abbe_scene scene = {0};
@@ -343,6 +368,7 @@ static void test_a_scene_without_refractors_has_no_map(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_grids_hold_each_setting_once),
+      cmocka_unit_test(test_the_thin_grid_is_the_same_for_every_convex_solid),
       cmocka_unit_test(test_what_a_profile_does_not_know_is_left_out),
       cmocka_unit_test(test_the_same_picture_has_no_error),
       cmocka_unit_test(test_the_thesis_gets_its_best_brightness),

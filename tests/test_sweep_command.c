@@ -87,7 +87,7 @@ static void test_the_error_is_split(void **state) {
   run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --split");
   run_well("sha1sum -c --quiet sums && rm sums");
   run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --split");
-  assert_contains(run_output, "What is left: w3 p16 m64 s1 has ");
+  assert_contains(run_output, "What is left: w3 p16 m64 s1 share 0.005 has ");
   run_well("grep -c '^# model: caustic_de ' s.csv && ls s-matched.exr s-matched-map.exr");
   /* Rows of another split are not mixed. */
   assert_int_equal(run_line(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv"),

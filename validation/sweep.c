@@ -15,7 +15,6 @@ enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_FRAMES = 1000, PARTS = 4, INDE
 static const double enough_ms = 3000;
 
 /* Grids */
-
 #define VALUES(...)                                                                                \
   {                                                                                                \
     .count = sizeof((size_t[]){__VA_ARGS__}) / sizeof(size_t), .value = { __VA_ARGS__ }            \
@@ -176,6 +175,12 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
       [ABBE_SWEEP_GRID_THIN] = {thin, sizeof thin / sizeof *thin},
   };
   memcpy(out, grids[name].part, grids[name].count * sizeof *out);
+  /* Presets join scenes by setting, whatever exits and share their own plans take. */
+  for (size_t i = 0; name == ABBE_SWEEP_GRID_THIN && i < grids[name].count; i++) {
+    const size_t exits = out[i].models.count > 0 ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
+    if (out[i].exits.count == 0) out[i].exits = (abbe_sweep_values){1, {exits}};
+    if (out[i].share_count == 0) out[i].share[out[i].share_count++] = ABBE_PLAN_SHARE;
+  }
   return grids[name].count;
 }
 

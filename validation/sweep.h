@@ -40,7 +40,7 @@ typedef struct abbe_sweep_grid {
 } abbe_sweep_grid;
 
 /* X(code, name): quick shows the shape of the front in a few minutes; full has all axes; thin has
- * what many scenes in one run leave time for. */
+ * what many scenes in one run leave time for, with exits and shares that do not differ by scene. */
 #define ABBE_SWEEP_GRIDS(X) X(QUICK, "quick") X(FULL, "full") X(THIN, "thin")
 typedef enum abbe_sweep_grid_name {
 #define ABBE_SWEEP_ENUM(code, name) ABBE_SWEEP_GRID_##code,
