@@ -126,7 +126,7 @@ static void test_wrong_use(void **state) {
       {GEM " --photons 1e3" TO, "--photons '1e3'"},
       {GEM " --map 99999999999999999999" TO, "--map"},
       {GEM " --samples 5" TO, "--samples '5'"},
-      {GEM " --exits 17" TO, "--exits '17'"},
+      {GEM " --exits 33" TO, "--exits '33'"},
       {GEM " --frames 0" TO, "--frames '0'"},
       {GEM " --size 0x0" TO, "--size '0x0'"},
       {GEM " --size 512" TO, "--size '512'"},
