@@ -149,6 +149,8 @@ static void be_child(int fd, const char *path, size_t bytes) {
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
   limit_memory(bytes);
   setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds + 1});
+  /* a caller without standard streams may have got their numbers for the pipe */
+  if (fd <= STDERR_FILENO) fd = fcntl(fd, F_DUPFD, STDERR_FILENO + 1);
   const int nothing = open("/dev/null", O_RDWR);
   if (nothing >= 0) {
     dup2(nothing, STDOUT_FILENO);

@@ -1,6 +1,7 @@
 #include "scenes/mesh_import.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -100,6 +101,25 @@ static void no_file_is_left_open(void **state) {
   assert_int_equal(now, next);
 }
 
+static void a_caller_without_standard_streams_is_served(void **state) {
+  (void)state;
+  abbe_mesh m;
+  int kept[2];
+  fflush(stdout);
+  for (int fd = 0; fd < 2; fd++) {
+    kept[fd] = fcntl(fd, F_DUPFD, 10);
+    assert_true(kept[fd] >= 10);
+  }
+  for (int fd = 0; fd < 2; fd++) close(fd);
+  const abbe_result result = import(HEADER "0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n", &m);
+  for (int fd = 0; fd < 2; fd++) {
+    dup2(kept[fd], fd);
+    close(kept[fd]);
+  }
+  assert_int_equal(result, ABBE_OK);
+  abbe_mesh_free(&m);
+}
+
 static void without_a_pipe_it_says_so(void **state) {
   (void)state;
   abbe_mesh m;
@@ -121,6 +141,7 @@ int main(void) {
       cmocka_unit_test(a_file_that_assimp_finds_no_end_of_ends_a_child),
       cmocka_unit_test(a_caller_that_leaves_children_to_the_system_is_served),
       cmocka_unit_test(no_file_is_left_open),
+      cmocka_unit_test(a_caller_without_standard_streams_is_served),
       cmocka_unit_test(without_a_pipe_it_says_so),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
