@@ -134,6 +134,45 @@ static void without_a_pipe_it_says_so(void **state) {
   assert_non_null(strstr(error.text, "any.obj: there is no pipe"));
 }
 
+/* The fork that abbe_mesh_import calls (tests/scenes.cmake). */
+static bool no_process; /* the system has none to give */
+static int refused;
+pid_t __real_fork(void);
+pid_t __wrap_fork(void);
+pid_t __wrap_fork(void) {
+  if (!no_process) return __real_fork();
+  refused++;
+  errno = EAGAIN;
+  return -1;
+}
+
+static void without_a_process_it_says_so(void **state) {
+  (void)state;
+  abbe_mesh m;
+  const char *text = HEADER "0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n";
+  const int next = dup(STDIN_FILENO);
+  close(next);
+  no_process = true;
+  refused = 0;
+  for (int i = 1; i <= 3; i++) {
+    memset(&m, 0xff, sizeof m);
+    assert_int_equal(import(text, &m), ABBE_IO);
+    assert_int_equal(refused, i);
+    assert_string_equal(error.text, PATH ": there is no process to read the mesh in: "
+                                         "Resource temporarily unavailable");
+    assert_null(m.position);
+    assert_null(m.face);
+    assert_int_equal(m.vertex_count + m.face_count, 0);
+  }
+  no_process = false;
+  const int now = dup(STDIN_FILENO);
+  close(now);
+  assert_int_equal(now, next);
+  assert_no_child_is_left();
+  assert_int_equal(import(text, &m), ABBE_OK);
+  abbe_mesh_free(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(reads_triangles_and_polygons),
@@ -143,6 +182,7 @@ int main(void) {
       cmocka_unit_test(no_file_is_left_open),
       cmocka_unit_test(a_caller_without_standard_streams_is_served),
       cmocka_unit_test(without_a_pipe_it_says_so),
+      cmocka_unit_test(without_a_process_it_says_so),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
