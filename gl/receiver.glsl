@@ -201,8 +201,9 @@ const float MOST_TAPS = 4.0;
 
 // The mean of a layer over what lies between `at` and the neighbouring samples, `a` and `b` away: taps
 // along the longer way, in a level whose texels are half as wide as the shorter one; of nothing outside
-// rect: left, bottom, right, top. All in parts of the layer.
-vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect) {
+// rect: left, bottom, right, top, which the filter keeps to where that is the `whole` layer. All in parts
+// of the layer.
+vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect, const bool whole) {
   // Of a neighbour that the layer does not hold nothing is known.
   a = all(lessThan(abs(a), vec2(1))) ? a : vec2(0);
   b = all(lessThan(abs(b), vec2(1))) ? b : vec2(0);
@@ -211,12 +212,22 @@ vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect) {
   float wide = length(longer) * side, narrow = max(length(shorter) * side, wide / MOST_TAPS);
   float level = max(log2(max(narrow, 1e-6)) - 0.8, 0.0);
   float taps = clamp(ceil(wide / max(narrow, 1.0) - 0.2), 1.0, MOST_TAPS);
-  vec2 rim = vec2(0.5 * exp2(ceil(level)) / side), middle = 0.5 * (rect.xy + rect.zw);
-  vec2 low = min(rect.xy + rim, middle), high = max(rect.zw - rim, middle);
+  vec2 low = vec2(0), high = vec2(1);
+  if (!whole) {
+    vec2 rim = vec2(0.5 * exp2(ceil(level)) / side), middle = 0.5 * (rect.xy + rect.zw);
+    low = min(rect.xy + rim, middle);
+    high = max(rect.zw - rim, middle);
+  }
+  // No compiler can tell how often this turns, and so unroll it: a software rasteriser takes every tap of
+  // an unrolled loop for all lanes, and of this one only as many as some lane wants.
   vec3 sum = vec3(0);
-  for (float k = 0.5; k < taps; k += 1.0)
-    sum += textureLod(spectral_map, vec3(clamp(at + longer * (k / taps - 0.5), low, high), layer), level).xyz;
-  return sum / taps;
+  float tap = 1.0 / taps, k = 0.5 * tap;
+  do {
+    vec2 here = at + longer * (k - 0.5);
+    sum += textureLod(spectral_map, vec3(whole ? here : clamp(here, low, high), layer), level).xyz;
+    k += tap;
+  } while (k < 1.0);
+  return sum * tap;
 }
 
 #ifdef PAGES
@@ -283,7 +294,7 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
 #endif
   if (l.misc.w != 0.0 && on_page.x >= 0.0 && takes_refracted(n, facing, p))
     caustic = rgb_from_xyz * layer_mean(int(pages[light * MOST_PAGES].info.y), on_page, page_right,
-                                        page_above, rect / side);
+                                        page_above, rect / side, false);
 #endif
 #endif
   if (!receiver_lit(light, p, d, distance_m)) return;
@@ -303,7 +314,7 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   if (!takes_refracted(n, facing, p)) return;
 #endif
   if (!held) return;
-  vec3 flux = layer_mean(light, at, to_right, to_above, vec4(0, 0, 1, 1));
+  vec3 flux = layer_mean(light, at, to_right, to_above, vec4(0, 0, 1, 1), true);
   caustic += rgb_from_xyz * flux * (abs(facing) * falloff / window_measure(l.map_view, d));
 #endif
 }
