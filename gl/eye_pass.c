@@ -1,8 +1,10 @@
+#include "gl/lit_window.h"
 #include "gl/program.h"
 #include "gl/renderer_state.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Of a pixel, traced first; from FINE_FROM wavelengths on, where they are more. */
@@ -99,6 +101,71 @@ static abbe_result make_refraction(abbe_renderer *r, abbe_error *error) {
   return abbe_program_make_compute(r->gl, "refraction.comp", defines, &r->refraction_fine, error);
 }
 
+/* Views that hold all that the light may reach, straight and through refractors; 0: no such are
+ * known.
+ */
+static size_t views_of_light(const abbe_renderer *r, size_t light, abbe_view out[2]) {
+  if (r->plan.cubes || r->pages || !abbe_lit_window_cone(&r->scene->light[light], &out[0]))
+    return 0;
+  out[1] = r->light[light].map.view;
+  return r->plan.reaches[light] ? 2 : 1;
+}
+
+/* Around what the view holds of the object. */
+static bool bound_object(const abbe_renderer *r, const abbe_view *view, const abbe_exact *exact,
+                         int out[4]) {
+  const size_t w = r->plan.desc.width * r->plan.desc.supersample;
+  const size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  bool any = false;
+  for (size_t i = 0; i < exact->count; i++) {
+    int part[4];
+    if (!abbe_lit_window(view, &r->eye, exact->parallelogram[i], w, h, part)) continue;
+    for (int k = 0; k < 4; k++) {
+      const bool further = k < 2 ? part[k] < out[k] : part[k] > out[k];
+      if (!any || further) out[k] = part[k];
+    }
+    any = true;
+  }
+  return any;
+}
+
+/* Of the picture's samples, a half at least must be drawn without light for it to pay that the
+ * others are drawn once more. */
+static bool pays(const abbe_renderer *r) {
+  double area = 0, samples = (double)(r->plan.desc.supersample * r->plan.desc.supersample);
+  for (size_t i = 0; i < r->lit_count; i++) {
+    const int *rect = r->lit[i].rect;
+    area += (double)(rect[2] - rect[0]) * (double)(rect[3] - rect[1]);
+  }
+  return area < 0.5 * samples * (double)(r->plan.desc.width * r->plan.desc.height);
+}
+
+/* Where the picture is mostly dark, receivers are drawn without any light, and what a light may
+ * reach once more: a software rasteriser skips no part of a shader that nobody needs. */
+static abbe_result make_unlit(abbe_renderer *r, abbe_error *error) {
+  static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                              {GL_FRAGMENT_SHADER, "receivers.frag"}};
+  char defines[sizeof r->defines + 64];
+  if (r->plan.desc.everything || r->plan.receivers != ABBE_RECEIVER_EXACT) return ABBE_OK;
+  r->lit = calloc(2 * r->plan.light_count * r->plan.receiver_count + 1, sizeof *r->lit);
+  if (r->lit == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
+  for (size_t light = 0; light < r->plan.light_count; light++) {
+    abbe_view view[2];
+    const size_t views = views_of_light(r, light, view);
+    if (views == 0) return ABBE_OK;
+    for (size_t k = 0; k < views * r->plan.receiver_count; k++) {
+      lit_part *part = &r->lit[r->lit_count];
+      part->receiver = k / views;
+      const size_t object = r->plan.receiver_object[part->receiver];
+      if (bound_object(r, &view[k % views], &r->scene->object[object].exact, part->rect))
+        r->lit_count++;
+    }
+  }
+  if (!pays(r)) return ABBE_OK;
+  snprintf(defines, sizeof defines, "%s#define UNLIT\n", r->defines);
+  return abbe_program_make(r->gl, stages, 2, defines, &r->unlit, error);
+}
+
 abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   static const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
                                            {GL_FRAGMENT_SHADER, "receivers.frag"}};
@@ -106,6 +173,7 @@ abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_result result = make_targets(r, error);
   if (result == ABBE_OK)
     result = abbe_program_make(r->gl, lit, 2, r->defines, &r->receivers, error);
+  if (result == ABBE_OK) result = make_unlit(r, error);
   if (result == ABBE_OK && r->plan.seen) result = make_refraction(r, error);
   if (result == ABBE_OK && r->plan.seen)
     result =
@@ -150,6 +218,33 @@ static void set_eye(abbe_renderer *r, GLuint program) {
   if (origin >= 0) gl->Uniform4f(origin, packed[0], packed[1], packed[2], packed[3]);
 }
 
+static void draw_receiver(abbe_renderer *r, GLuint program, size_t receiver) {
+  abbe_renderer_set_int(r, program, "surface", (int)receiver);
+  abbe_renderer_draw(r, r->plan.receiver_object[receiver]);
+}
+
+static void use_for_receivers(abbe_renderer *r, GLuint program) {
+  r->gl->UseProgram(program);
+  abbe_renderer_set_lighting(r, program);
+  set_eye(r, program);
+}
+
+/* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here.
+ */
+static void draw_lit_parts(abbe_renderer *r) {
+  const abbe_gl *gl = r->gl;
+  use_for_receivers(r, r->receivers);
+  gl->Enable(GL_SCISSOR_TEST);
+  gl->DepthFunc(GL_EQUAL);
+  for (size_t i = r->lit_count; i-- > 0;) {
+    const int *rect = r->lit[i].rect;
+    gl->Scissor(rect[0], rect[1], rect[2] - rect[0], rect[3] - rect[1]);
+    draw_receiver(r, r->receivers, r->lit[i].receiver);
+  }
+  gl->DepthFunc(GL_LESS);
+  gl->Disable(GL_SCISSOR_TEST);
+}
+
 static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
   const abbe_gl *gl = r->gl;
   size_t w = r->plan.desc.width * r->plan.desc.supersample;
@@ -166,13 +261,10 @@ static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
   for (GLint k = 1; k < 3 && r->plan.desc.layers; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
-  gl->UseProgram(r->receivers);
-  abbe_renderer_set_lighting(r, r->receivers);
-  set_eye(r, r->receivers);
-  for (size_t i = 0; i < r->plan.receiver_count; i++) {
-    abbe_renderer_set_int(r, r->receivers, "surface", (int)i);
-    abbe_renderer_draw(r, r->plan.receiver_object[i]);
-  }
+  const GLuint whole = r->unlit != 0 ? r->unlit : r->receivers;
+  use_for_receivers(r, whole);
+  for (size_t i = 0; i < r->plan.receiver_count; i++) draw_receiver(r, whole, i);
+  if (r->unlit != 0) draw_lit_parts(r);
   abbe_renderer_end_pass(r, "eye: receivers");
   return ABBE_OK;
 }

@@ -337,12 +337,14 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv) {
   Shading s;
   s.direct = s.caustic = vec3(0);
   vec3 brdf = surface_reflectance(surface, uv) / PI;
+#ifndef UNLIT
   for (int i = 0; i < LIGHTS; i++) {
     vec3 direct, caustic;
     light_irradiance(i, p, n, direct, caustic);
     s.direct += brdf * direct;
     s.caustic += brdf * caustic;
   }
+#endif
   s.fill = brdf * ambient;
   return s;
 }

@@ -1,4 +1,5 @@
 // Receivers as the eye sees them: light, shadow and spectral map in one.
+// UNLIT: no light reaches what is drawn.
 #define SEEN_BY_PIXELS  // neighbouring fragments are neighbouring samples
 #include "refractor.glsl"
 #include "receiver.glsl"

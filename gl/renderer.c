@@ -177,6 +177,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   free(r->refractor_root);
   free(r->parallelogram);
   free(r->shadow_row);
+  free(r->lit);
   gl->DeleteBuffers(1, &r->table_bands);
   gl->DeleteBuffers(1, &r->band_attenuation);
   const GLuint lists[] = {r->table_pages, r->table_warps, r->table_shadows, r->texel_sizes,
@@ -190,7 +191,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
   const GLuint programs[] = {
       r->place,           r->cover,           r->groups,     r->trace, r->deposit,   r->splat,
-      r->list_groups,     r->resolve,         r->mip,        r->layer, r->receivers, r->refraction,
+      r->list_groups,     r->resolve,         r->mip,        r->layer, r->receivers, r->unlit, r->refraction,
       r->refraction_fine, r->refraction_list, r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
   gl->DeleteFramebuffers(1, &r->framebuffer);

@@ -67,6 +67,12 @@ typedef struct light_state {
 /* OpenGL promises uniform blocks of 16 KiB; every desktop driver, llvmpipe too, has 64. */
 enum { BLOCK_BYTES = 65536 };
 
+/* Of the picture: samples of a receiver that light may reach. */
+typedef struct lit_part {
+  size_t receiver;
+  int rect[4]; /* left, bottom, right, top; the ends excluded */
+} lit_part;
+
 typedef struct thesis_state thesis_state;
 
 struct abbe_renderer {
@@ -119,6 +125,8 @@ struct abbe_renderer {
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
       eye_layers_depth, eye_picture, eye_floor;
   GLuint eye_owner, pixel_list, refine_list;
+  lit_part *lit; /* where light may fall; all else is drawn unlit, where that is most */
+  size_t lit_count;
   GLuint framebuffer, empty_array;
   size_t layer_side;          /* of the light's layers */
   size_t lanes;               /* wavelengths traced in one batch */
@@ -130,7 +138,7 @@ struct abbe_renderer {
   size_t page_defines; /* where in them those of pages start */
 
   GLuint place, cover, groups, list_groups, trace, deposit, select, deposit_fine, splat, resolve,
-      mip, layer, receivers, refraction, refraction_fine, refraction_list, eye_resolve;
+      mip, layer, receivers, unlit, refraction, refraction_fine, refraction_list, eye_resolve;
   thesis_state *thesis;
 
   bool wide;                   /* the map's sums have 64 bits, else 32 */

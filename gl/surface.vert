@@ -6,6 +6,7 @@ uniform mat4 view_projection;
 out vec3 world;
 out vec3 world_normal;
 out vec2 surface_uv;
+invariant gl_Position;  // programs draw over each other where their depths are equal
 
 void main() {
   world = position;
