@@ -123,35 +123,52 @@ float wanted_bands(Hit front, vec3 d, int first, int last) {
 #ifdef WALK
 #include "refraction_walk.glsl"
 #else
-// Through the refractor alone, from wall to wall: the light of one band.
+// What lies behind a wall is looked up by all lanes of a software rasteriser, whether they show it or not,
+// so each goes on to its next wall that lets enough out first; but not where walls cost more than that.
+#ifdef LAYERS
+const bool GO_ON = false;
+#else
+const bool GO_ON = true;
+#endif
+
+// Through the refractor alone, from wall to wall: the light of one band. Its loops have two ways out, with
+// values of their own for what is used after them: of what the last turn alone has made, lanes that took
+// fewer turns may find another's (Mesa 22's llvmpipe).
 vec3 through(Hit front, vec3 d, int band) {
-  float n = bands[band].weight_n.w;
+  float n = bands[band].weight_n.w, attenuation = bands[band].attenuation.x;
   vec3 inner, p = front.p, light = vec3(0);
   if (!refract_direction(d, front.n, 1.0 / n, inner)) return light;
   float share = 1.0 - fresnel(-dot(d, front.n), 1.0 / n);
   int facet = front.facet;
   bool met;
-  for (int order = 0; order < EXITS; order++) {
-    vec3 wall, wall_n, outer;
-    int next;
-    inner_hit(refractor, facet, p, inner,
+  for (int order = 0; order < EXITS;) {
+    vec3 wall = p, outer = inner;
+    float out_share = 0.0;
+    bool shows = false;
+    while (order < EXITS) {
+      vec3 wall_n;
+      int next;
+      inner_hit(refractor, facet, p, inner,
 #ifdef LAYERS
-              eye_as_view(), eye_layers, 0.0,
+                eye_as_view(), eye_layers, 0.0,
 #endif
-              wall, wall_n, next);
+                wall, wall_n, next);
 #ifdef ABSORBING
-    share *= exp(-bands[band].attenuation.x * distance(wall, p));
+      share *= exp(-attenuation * distance(wall, p));
 #endif
-    float kept = fresnel(dot(inner, wall_n), n);
-    float out_share = share * (1.0 - kept);
-    bool leaves = refract_direction(inner, -wall_n, n, outer);
-    if (leaves && out_share > 0.5 * share_limit)
-      light += out_share * seen(wall, outer, -touch * refractor_bounds.w, 1e30, met);
-    share *= leaves ? kept : 1.0;
+      float kept = fresnel(dot(inner, wall_n), n);
+      bool leaves = refract_direction(inner, -wall_n, n, outer);
+      out_share = share * (1.0 - kept);
+      shows = leaves && out_share > 0.5 * share_limit;
+      share *= leaves ? kept : 1.0;
+      p = wall;
+      facet = next;
+      inner = reflect(inner, wall_n);
+      order++;
+      if (!GO_ON || shows || share < share_limit) break;
+    }
+    if (shows) light += out_share * seen(wall, outer, -touch * refractor_bounds.w, 1e30, met);
     if (share < share_limit) break;
-    p = wall;
-    facet = next;
-    inner = reflect(inner, wall_n);
   }
   return light;
 }
