@@ -58,7 +58,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
     say(plan, name);
   }
   plan->seen = plan->back = plan->absorbing = true;
-  plan->pages = plan->caustics && plan->parallelogram_count > 0;
+  plan->pages = plan->caustics && plan->receiver_count > 0;
   if (plan->desc.wavelengths < 7 && (asked == NULL || asked->wavelengths == 0)) {
     plan->desc.wavelengths = 7;
     rewrite(plan, "wavelengths", 7, "wavelengths");

@@ -220,6 +220,8 @@ static void set_eye(abbe_renderer *r, GLuint program) {
 
 static void draw_receiver(abbe_renderer *r, GLuint program, size_t receiver) {
   abbe_renderer_set_int(r, program, "surface", (int)receiver);
+  if (r->pages)
+    abbe_renderer_set_int(r, program, "face_first", (int)r->charts.face_first[receiver]);
   abbe_renderer_draw(r, r->plan.receiver_object[receiver]);
 }
 

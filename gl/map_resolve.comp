@@ -35,30 +35,16 @@ uint level_offset(int l) {
 }
 
 #ifdef PAGES
-// The page of the light that holds the texel, in the level's texels: left, bottom, right, top, all
-// empty where there is none; area: of a texel of the finest level, m2.
-vec4 page_at(ivec2 texel, out float area) {
-  vec4 found = vec4(-1);
-  area = 1.0;
-  for (int k = 0; k < MOST_PAGES; k++) {
-    vec4 rect = pages[light * MOST_PAGES + k].rect * exp2(-float(level)), info = pages[light * MOST_PAGES + k].info;
-    bool here = info.x >= 0.0 && is_within(rect, vec2(texel) + 0.5);
-    found = here ? rect : found;
-    area = here ? info.z : area;
-  }
-  return found;
-}
-
 void resolve_page(ivec2 texel, vec3 flux) {
-  float area;
-  vec4 rect = page_at(texel, area);
+  int page = page_of_block(light, (texel << level) / (map_size / PAGE_BLOCKS));
+  vec4 rect = page_rect(light, max(page, 0)) * exp2(-float(level));
   // At its edges a page's coarser texels have no neighbours but themselves.
   vec2 at = clamp(0.5 * (vec2(texel) + 0.5), 0.5 * rect.xy + 0.5, 0.5 * rect.zw - 0.5);
   if (level + 1 < levels)
     flux += 0.25 * textureLod(coarser_map, vec3(at / float(map_size >> (level + 1)), layer),
                               float(level + 1)).xyz;
-  if (level == 0) flux /= area;
-  imageStore(map, ivec3(texel, layer), rect.z < 0.0 ? vec4(0) : vec4(flux, 1));
+  if (level == 0) flux /= page_across(light, max(page, 0)).w;
+  imageStore(map, ivec3(texel, layer), page < 0 ? vec4(0) : vec4(flux, 1));
 }
 #endif
 

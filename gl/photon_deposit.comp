@@ -100,10 +100,10 @@ int page_of(vec4 landed, uint path) {
 // The first two words of a piece (splat_list.glsl).
 uvec2 packed_place(vec2 at, int page, int parts, int level) {
 #ifdef PAGES
-  vec4 rect = page == NO_PAGE ? vec4(0, 0, vec2(map_size)) : pages[light * MOST_PAGES + page].rect;
+  vec4 rect = page == NO_PAGE ? vec4(0, 0, vec2(map_size)) : page_rect(light, max(page, 0));
   at = clamp(at, rect.xy, rect.zw - 0.01);
   return uvec2(uint(at.x * 65536.0) << 4 | uint(parts),
-               uint(at.y * 8192.0) << 7 | uint(page + 1) << 3 | uint(level));
+               uint(at.y * 1024.0) << 10 | uint(page + 1) << 3 | uint(level));
 #else
   uvec2 fixed_point = uvec2(clamp(at, vec2(0), vec2(float(map_size) - 0.01)) * vec2(65536.0, 131072.0));
   return uvec2(fixed_point.x << 4 | uint(parts), fixed_point.y << 3 | uint(level));

@@ -524,7 +524,8 @@ abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, size_t firs
 
 static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
   double *histogram = calloc(2 * FIT_BINS, sizeof *histogram), total = 0, part = 0;
-  abbe_page_light *aside = calloc(r->pages ? r->plan.parallelogram_count : 1, sizeof *aside);
+  const size_t sides = r->pages ? 2 * r->charts.count : 0;
+  abbe_page_light **aside = calloc(sides + 1, sizeof *aside);
   if (histogram == NULL || aside == NULL) {
     free(histogram);
     free(aside);
@@ -549,7 +550,7 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     if (result == ABBE_OK && part == 0) part = abbe_renderer_part_of(landing, count);
     if (result == ABBE_OK && part > 0) {
       total += abbe_renderer_sort_landings(r, light, landing, path, count, part, histogram);
-      abbe_renderer_sort_pages(r, landing, path, count, part, aside);
+      result = abbe_renderer_sort_pages(r, landing, path, count, part, aside, error);
     }
     free(landing);
     free(path);
@@ -557,7 +558,8 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
   if (given) r->light[light].map = layout;
   if (result == ABBE_OK && total > 0 && !given)
     abbe_renderer_fit_axes(&r->light[light], histogram, total);
-  if (result == ABBE_OK) abbe_renderer_choose_pages(r, light, aside, total);
+  if (result == ABBE_OK) result = abbe_renderer_choose_pages(r, light, aside, total, error);
+  for (size_t i = 0; i < sides; i++) free(aside[i]);
   free(histogram);
   free(aside);
   return result;

@@ -10,23 +10,18 @@ const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 const int NO_RECEIVER = 0, NOT_HELD = 1, LANDED = 2, LANDED_ON_PAGE = 3;
 
 #ifdef PAGES
-uniform bool fits_pages;  // they are yet to be chosen: any parallelogram's coordinates will do
+uniform bool fits_pages;  // they are yet to be chosen: coordinates of any chart will do
+layout(binding = 12) uniform samplerBuffer chart_rows;  // two a chart: from a place to its u, and v
 
-// Where the light's map does not hold a place on receiver r: the place on its page, and which that
-// is; false where it has none.
-bool beside_map(int r, vec3 at, out vec3 place) {
-  int known = min(r, RECEIVERS - 1);  // the others are no parallelograms
-  vec3 from = at - receivers[known].corner.xyz;
-  place = vec3(dot(from, receivers[known].du.xyz), dot(from, receivers[known].dv.xyz), known);
-  bool found = fits_pages && r < RECEIVERS;
-  for (int k = 0; k < MOST_PAGES; k++) {
-    Page page = pages[light * MOST_PAGES + k];
-    vec2 texels = texels_on(page, at);
-    bool here = !fits_pages && int(page.info.x) == r && is_within(page.rect, texels);
-    place = here ? vec3(texels, k) : place;
-    found = found || here;
-  }
-  return found;
+// Where the light's map does not hold a place: that on the page of a chart's side, and which page that
+// is; false where there is none.
+bool beside_map(int side, vec3 at, out vec3 place) {
+  vec4 to_u = texelFetch(chart_rows, side >> 1 << 1), to_v = texelFetch(chart_rows, side | 1);
+  place = vec3(dot(to_u.xyz, at) + to_u.w, dot(to_v.xyz, at) + to_v.w, side);
+  if (fits_pages) return true;
+  int page = page_of_side(light, side);
+  place = vec3(place_on_page(light, max(page, 0), at), page);
+  return page >= 0 && is_within(page_rect(light, max(page, 0)), place.xy);
 }
 #endif
 
@@ -49,7 +44,11 @@ int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out vec3 place, 
   light_to(l, at, from, distance_m);
   bool held = project(l.map_view, at, uvz) && inside(uvz.xy) && receiver_lit(light, at, from, distance_m);
 #ifdef PAGES
-  if (!held && beside_map(r, at, place)) return LANDED_ON_PAGE;
+  int side = chart_side(r, d);
+  if (!held && beside_map(side, at, place)) {
+    receiver += 7919u * (uint(side) + 1u);  // parts of a mesh go on across its charts, places do not
+    return LANDED_ON_PAGE;
+  }
 #endif
   return held ? LANDED : NOT_HELD;
 }

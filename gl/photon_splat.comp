@@ -44,9 +44,9 @@ void main() {
   uint first = level_offset(level);
   vec2 low = vec2(0), high = vec2(float(map_size) - 0.01);
 #ifdef PAGES
-  vec2 centre = vec2(x_parts >> 4, y_level >> 7) * vec2(1.0 / 65536.0, 1.0 / 8192.0);
-  uint page = y_level >> 3 & 15u;  // and one more; 0: the map
-  vec4 rect = pages[light * MOST_PAGES + max(int(page), 1) - 1].rect;
+  vec2 centre = vec2(x_parts >> 4, y_level >> 10) * vec2(1.0 / 65536.0, 1.0 / 1024.0);
+  uint page = y_level >> 3 & 127u;  // and one more; 0: the map
+  vec4 rect = page_rect(light, max(int(page), 1) - 1);
   first += page > 0u ? map_texels : 0u;
   low = page > 0u ? rect.xy + 0.5 * size : low;
   high = page > 0u ? rect.zw - 0.5 * size : high;

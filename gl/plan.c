@@ -390,11 +390,10 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
       add(plan, plan->reaches[i], name, "%s",
           plan->reaches[i] ? "the light may meet a refractor" : "its cone misses every refractor");
   }
-  const bool exact = plan->parallelogram_count > 0;
-  plan->pages = caustics && exact && (plan->receiver_shadows || plan->aside);
+  plan->pages = caustics && !thesis && (plan->receiver_shadows || plan->aside);
   add(plan, plan->pages, "maps on receivers", "%s",
       !caustics                ? "no light meets a refractor"
-      : !exact                 ? "no receiver is a rectangle or a box"
+      : thesis                 ? "the thesis knows none"
       : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
       : plan->aside ? "a receiver lies more than 76 degrees off the view of a light's map"
                     : "the lights' maps hold all receivers");
@@ -457,15 +456,6 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->refractor_count > 1 && !plan->walk)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   if (!plan->walk) note_overlaps(scene, plan);
-  for (size_t k = 0; plan->caustics && k < plan->receiver_count; k++) {
-    if (plan->receiver_model[k] != ABBE_RECEIVER_HIERARCHY) continue;
-    note(plan,
-         "light through refractors is drawn on the mesh '%.60s' only where a light itself may "
-         "shine; "
-         "elsewhere on meshes it counts as missed",
-         scene->object[plan->receiver_object[k]].name);
-    break;
-  }
   if (scene->light_count > 1 && seen)
     note(plan, "through refractors, colours are split by the first light's illuminant");
 }
@@ -538,18 +528,13 @@ static abbe_result check_lights(const abbe_scene *scene, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Parallelograms outside the view have pages; meshes there get no light through refractors. */
-static bool holds_meshes(const abbe_scene *scene, abbe_plan *plan, abbe_view *view) {
-  bool meshes = true;
+/* Receivers outside the view have pages. */
+static void find_aside(const abbe_scene *scene, abbe_plan *plan, abbe_view *view) {
   for (size_t k = 0; k < plan->receiver_count; k++) {
-    const abbe_object *object = &scene->object[plan->receiver_object[k]];
-    const bool exact = plan->receiver_model[k] == ABBE_RECEIVER_EXACT;
-    const bool held =
-        abbe_view_fit(view, (const double(*)[3])object->mesh.position, object->mesh.vertex_count);
-    plan->aside = plan->aside || (exact && !held);
-    meshes = meshes && (exact || held);
+    const abbe_mesh *mesh = &scene->object[plan->receiver_object[k]].mesh;
+    if (!abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count))
+      plan->aside = true;
   }
-  return meshes;
 }
 
 /* What a mesh is inside is told by its layers, which no seam may cut. */
@@ -576,7 +561,7 @@ static abbe_result make_cube(const abbe_scene *scene, size_t light, abbe_plan *p
                              abbe_error *error) {
   const abbe_light *from = &scene->light[light];
   unsigned all = 0;
-  bool first = true, meshes = true;
+  bool first = true;
   for (size_t k = 0; k < plan->refractor_count; k++) {
     const unsigned faces = abbe_light_cube_reached(from, &scene->object[plan->refractor_object[k]]);
     for (int face = 0; face < ABBE_LIGHT_CUBE_FACES; face++) {
@@ -602,13 +587,8 @@ static abbe_result make_cube(const abbe_scene *scene, size_t light, abbe_plan *p
     plan->reaches[at] = plan->cubes = true;
     first = false;
     abbe_light_cube_look(from->position, face, &view);
-    meshes = holds_meshes(scene, plan, &view) && meshes;
+    find_aside(scene, plan, &view);
   }
-  if (!meshes)
-    note(plan,
-         "meshes more than 76 degrees off the axis of a face of the cube around '%.60s' get no "
-         "light through that face's refractors",
-         from->name);
   return ABBE_OK;
 }
 
@@ -637,11 +617,7 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
                           "away, or take the default profile",
                           from->name, object->name);
   }
-  if (!thesis && !holds_meshes(scene, plan, &view))
-    note(plan,
-         "meshes more than 76 degrees off the way from the light '%.60s' to the "
-         "refractors get no light through them",
-         from->name);
+  find_aside(scene, plan, &view);
   return ABBE_OK;
 }
 

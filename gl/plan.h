@@ -143,8 +143,8 @@ typedef struct abbe_plan {
   abbe_receiver_model receivers;           /* the most general of theirs */
   bool receiver_shadows;                   /* some receiver may hide another from a light */
   bool through; /* some receiver may lie where light goes on nearly straight through a refractor */
-  bool aside; /* some parallelogram lies beyond a light's map view */
-  bool pages; /* light may land where its light's map cannot hold it, and receivers have pages */
+  bool aside; /* some receiver lies beyond a light's map view */
+  bool pages; /* light may land where its light's map cannot hold it: receivers have pages */
   bool spheres, convex, layers, hierarchy; /* models in use */
   bool walk;       /* light that leaves a refractor may meet one again, and is followed */
   bool dispersive; /* some index varies over the range */

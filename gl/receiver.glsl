@@ -74,6 +74,23 @@ int receiver_part(int receiver) {
   return receiver;
 }
 
+#ifdef PAGES
+// The side of a receiver's chart at which light of direction d arrives, as pages are found by it.
+int chart_side(int receiver, vec3 d) {
+  int chart = receiver;
+  vec3 n = receivers[min(receiver, RECEIVER_ROOM - 1)].normal.xyz;
+#ifdef RECEIVER_HIERARCHY
+  if (receiver >= RECEIVERS) {
+    int i = 3 * (receiver - RECEIVERS);
+    vec4 e2 = hierarchy_triangle(i + 2);
+    n = cross(hierarchy_triangle(i + 1).xyz, e2.xyz);
+    chart = floatBitsToInt(e2.w);
+  }
+#endif
+  return 2 * chart + (dot(n, d) > 0.0 ? 1 : 0);
+}
+#endif
+
 #ifdef RECEIVER_HIERARCHY
 vec3 face_n;  // of the face that is shaded, towards the viewer
 
@@ -230,25 +247,6 @@ vec3 layer_mean(int layer, vec2 at, vec2 a, vec2 b, vec4 rect, const bool whole)
   return sum * tap;
 }
 
-#ifdef PAGES
-// Where p, on a receiver of normal n, lies on one of the light's pages, in texels; rect: the page's.
-// Outside of all texels where no page holds it. (Pages are read one by one and not by the one that is
-// found: a software rasteriser reads at places that differ from lane to lane ten times as slowly.)
-vec2 page_place(int light, vec3 p, vec3 n, out vec4 rect) {
-  vec2 at = vec2(-1e9);
-  rect = vec4(0);
-  for (int k = light * MOST_PAGES; k < light * MOST_PAGES + MOST_PAGES; k++) {
-    vec4 plane = pages[k].plane;
-    vec2 here = texels_on(pages[k], p);
-    bool holds = abs(dot(plane.xyz, p) - plane.w) < pages[k].info.w && abs(dot(plane.xyz, n)) > 0.99 &&
-                 is_within(pages[k].rect, here);
-    at = holds ? here : at;
-    rect = holds ? pages[k].rect : rect;
-  }
-  return at;
-}
-#endif
-
 // Whether the side of a receiver at p that n points from looks to the refractors. Where its plane cuts
 // their bounds, that is also the side that the light is on.
 bool is_before(vec3 n, float facing, vec3 p) {
@@ -265,8 +263,9 @@ bool takes_refracted(vec3 n, float facing, vec3 p) {
 #endif
 }
 
-// rgb irradiance from one light on p (n faces the viewer): straight, and through refractors.
-void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caustic) {
+// rgb irradiance from one light on p (n faces the viewer), on a side of a chart: straight, and through
+// refractors.
+void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out vec3 caustic) {
   Light l = lights[light];
   vec3 d;
   float distance_m;
@@ -284,17 +283,26 @@ void light_irradiance(int light, vec3 p, vec3 n, out vec3 direct, out vec3 caust
   const vec2 to_right = vec2(0), to_above = vec2(0);
 #endif
 #ifdef PAGES
-  vec4 rect;
-  float side = float(textureSize(spectral_map, 0).x);
-  vec2 on_page = page_place(light, p, n, rect) / side;
+  // Pages hold what reaches that side of the chart, whatever the light sees of it.
+  int page = page_of_side(light, side);
+  vec4 rect = page_rect(light, max(page, 0)), across = page_across(light, max(page, 0));
+  vec2 texels = place_on_page(light, max(page, 0), p);
+  float layer_side = float(textureSize(spectral_map, 0).x);
+  vec2 on_page = texels / layer_side;
 #ifdef SEEN_BY_PIXELS
   vec2 page_right = dFdx(on_page), page_above = dFdy(on_page);
 #else
   const vec2 page_right = vec2(0), page_above = vec2(0);
 #endif
-  if (l.misc.w != 0.0 && on_page.x >= 0.0 && takes_refracted(n, facing, p))
-    caustic = rgb_from_xyz * layer_mean(int(pages[light * MOST_PAGES].info.y), on_page, page_right,
-                                        page_above, rect / side, false);
+  if (l.misc.w != 0.0 && page >= 0 && is_within(rect, texels)) {
+#ifdef RECEIVER_HIERARCHY
+    float steep = abs(dot(face_n, across.xyz));
+#else
+    const float steep = 1.0;
+#endif
+    caustic = rgb_from_xyz * layer_mean(page_layer(light), on_page, page_right, page_above,
+                                        rect / layer_side, false) * steep;
+  }
 #endif
 #endif
   if (!receiver_lit(light, p, d, distance_m)) return;
@@ -333,14 +341,15 @@ struct Shading {
   vec3 direct, caustic, fill;  // radiance towards the viewer, by origin
 };
 
-Shading shade(vec3 p, vec3 n, int surface, vec2 uv) {
+// side: chart_side, where there are PAGES.
+Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   Shading s;
   s.direct = s.caustic = vec3(0);
   vec3 brdf = surface_reflectance(surface, uv) / PI;
 #ifndef UNLIT
   for (int i = 0; i < LIGHTS; i++) {
     vec3 direct, caustic;
-    light_irradiance(i, p, n, direct, caustic);
+    light_irradiance(i, p, n, side, direct, caustic);
     s.direct += brdf * direct;
     s.caustic += brdf * caustic;
   }

@@ -5,9 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-/* Shares of the light: on each side of a window, of one page, and of all of them. */
-static const double tail = 2e-4, least_page = 1e-3;
-/* Of the layer: a page gets four times the share that its light is of all, within these. */
+/* Shares of the light: on each side of a window, and of what may be left without a page. */
+static const double tail = 2e-4, least_rest = 1e-3;
+/* Of the layer: a page gets four times the share that its light is of all, within these; of many
+ * pages the least is half of an equal part. */
 static const double least_area = 1.0 / 16, most_area = 1;
 /* Below it all rectangles are as small as they may be. */
 static const double least_scale = 1e-8;
@@ -67,40 +68,50 @@ static bool place_pages(const size_t (*size)[2], size_t side, abbe_receiver_page
   return true;
 }
 
-static void place(const abbe_page_light *light, const double (*parallelogram)[9], double total,
+static void place(abbe_page_light *const *light, const double (*parallelogram)[9], double total,
                   size_t side, size_t align, abbe_receiver_pages *pages) {
   const double layer = (double)side * (double)side;
-  for (; pages->count > 0; pages->count--) /* the faintest goes where the least sizes do not fit */
+  for (; pages->count > 0;
+       pages->count--) { /* the faintest goes where the least sizes do not fit */
+    const double least = fmin(least_area, 0.5 / (double)pages->count);
     for (double scale = 1; scale > least_scale; scale *= 0.9) {
       size_t size[ABBE_RECEIVER_PAGES][2];
       for (size_t i = 0; i < pages->count; i++) {
         abbe_receiver_page *page = &pages->page[i];
-        const double share = 4 * light[page->parallelogram].flux / total;
-        const double area = layer * fmin(fmax(share, least_area), most_area);
-        size_page(parallelogram[page->parallelogram], scale * area, side, align, page, size[i]);
+        const double share = 4 * light[page->chart_side]->flux / total;
+        const double area = layer * fmin(fmax(share, least), most_area);
+        size_page(parallelogram[page->chart_side / 2], scale * area, side, align, page, size[i]);
       }
       if (place_pages((const size_t(*)[2])size, side, pages)) return;
     }
+  }
 }
 
-void abbe_receiver_pages_lay_out(const abbe_page_light *light, const double (*parallelogram)[9],
+void abbe_receiver_pages_lay_out(abbe_page_light *const *light, const double (*parallelogram)[9],
                                  size_t count, double total, size_t side, size_t align,
                                  abbe_receiver_pages *out) {
-  double sum = 0;
+  double rest = 0;
   memset(out, 0, sizeof *out);
-  for (size_t i = 0; i < count; i++) sum += light[i].flux;
-  if (!(sum >= least_page * total) || !(sum > 0)) return;
+  for (size_t i = 0; i < count; i++) rest += light[i] != NULL ? light[i]->flux : 0;
+  if (!(rest > 0)) return;
   for (size_t i = 0; i < count; i++) {
-    if (!(light[i].flux >= least_page * total)) continue;
+    if (light[i] == NULL) continue;
     size_t at = out->count;
-    while (at > 0 && light[out->page[at - 1].parallelogram].flux < light[i].flux) at--;
+    while (at > 0 && light[out->page[at - 1].chart_side]->flux < light[i]->flux) at--;
     if (at == ABBE_RECEIVER_PAGES) continue;
     if (out->count < ABBE_RECEIVER_PAGES) out->count++;
     memmove(&out->page[at + 1], &out->page[at], (out->count - 1 - at) * sizeof *out->page);
-    out->page[at] = (abbe_receiver_page){.parallelogram = i};
-    for (int axis = 0; axis < 2; axis++)
-      fit_window(light[i].bin[axis], light[i].flux, out->page[at].window + 2 * axis);
+    out->page[at] = (abbe_receiver_page){.chart_side = i};
   }
+  size_t wanted = 0;
+  for (; wanted < out->count && rest >= least_rest * total; wanted++) {
+    abbe_receiver_page *page = &out->page[wanted];
+    const abbe_page_light *on = light[page->chart_side];
+    for (int axis = 0; axis < 2; axis++)
+      fit_window(on->bin[axis], on->flux, page->window + 2 * axis);
+    rest -= on->flux;
+  }
+  out->count = wanted;
   place(light, parallelogram, total, side, align, out);
 }
 
@@ -124,28 +135,24 @@ void abbe_receiver_page_place(const abbe_receiver_page *page, const double p[9],
   for (int k = 0; k < 3; k++) out[k] = p[k] + uv[0] * p[3 + k] + uv[1] * p[6 + k];
 }
 
-void abbe_receiver_page_pack(const abbe_receiver_page *page, const double p[9], size_t layer,
-                             double thickness, float out[ABBE_PAGE_FLOATS]) {
+void abbe_receiver_page_pack(const abbe_receiver_page *page, const double p[9],
+                             float out[ABBE_PAGE_FLOATS]) {
   double n[3], dual[2][3], length;
   abbe_vector_cross(p + 3, p + 6, n);
   length = abbe_vector_length(n);
   for (int k = 0; k < 3; k++) n[k] /= length;
   abbe_vector_cross(p + 6, n, dual[0]);
   abbe_vector_cross(n, p + 3, dual[1]);
-  for (int k = 0; k < 3; k++) out[k] = (float)n[k];
-  out[3] = (float)abbe_vector_dot(n, p);
   for (int axis = 0; axis < 2; axis++) {
     const double low = (double)page->rect[2 * axis], high = (double)page->rect[2 * axis + 1];
     const double *window = page->window + 2 * axis;
     const double scale = (high - low) / (window[1] - window[0]) / length;
-    for (int k = 0; k < 3; k++) out[4 + 4 * axis + k] = (float)(scale * dual[axis][k]);
-    out[4 + 4 * axis + 3] =
+    for (int k = 0; k < 3; k++) out[4 * axis + k] = (float)(scale * dual[axis][k]);
+    out[4 * axis + 3] =
         (float)(low - scale * (abbe_vector_dot(dual[axis], p) + length * window[0]));
-    out[12 + axis] = (float)low;
-    out[14 + axis] = (float)high;
+    out[8 + axis] = (float)low;
+    out[10 + axis] = (float)high;
   }
-  out[16] = (float)page->parallelogram;
-  out[17] = (float)layer;
-  out[18] = (float)abbe_receiver_page_texel(page, p);
-  out[19] = (float)thickness;
+  for (int k = 0; k < 3; k++) out[12 + k] = (float)n[k];
+  out[15] = (float)abbe_receiver_page_texel(page, p);
 }

@@ -8,6 +8,10 @@ in vec3 world_normal;
 in vec2 surface_uv;
 uniform vec3 eye;
 uniform int surface;
+#ifdef PAGES
+layout(binding = 13) uniform isamplerBuffer side_of_face;  // chart's side that a face's normal points to
+uniform int face_first;                                    // of the object that is drawn
+#endif
 layout(location = 0) out vec4 radiance;  // w: distance from the eye
 #ifdef LIGHT_LAYERS_OUT
 layout(location = 1) out vec4 direct;
@@ -22,7 +26,11 @@ void main() {
 #else
   if (dot(n, eye - world) < 0.0) n = -n;
 #endif
-  Shading s = shade(world, n, surface, surface_uv);
+  int side = 0;
+#ifdef PAGES
+  side = texelFetch(side_of_face, face_first + gl_PrimitiveID).x ^ (gl_FrontFacing ? 0 : 1);
+#endif
+  Shading s = shade(world, n, surface, surface_uv, side);
   radiance = vec4(s.direct + s.caustic + s.fill, distance(eye, world));
 #ifdef LIGHT_LAYERS_OUT
   direct = vec4(s.direct, 1);

@@ -77,7 +77,11 @@ vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   face_n = n;
   if (r >= RECEIVERS) triangle_at(r - RECEIVERS, x, -d, n, surface, uv);
 #endif
-  Shading s = shade(x, n, surface, uv);
+#ifdef PAGES
+  Shading s = shade(x, n, surface, uv, chart_side(r, d));
+#else
+  Shading s = shade(x, n, surface, uv, 0);
+#endif
   return s.direct + s.caustic + s.fill;
 }
 

@@ -148,6 +148,8 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
     abbe_local_scene_from_world(&r->local, &r->given.view);
     r->plan.desc.map_layout = &r->given;
   }
+  if (result == ABBE_OK && r->plan.pages)
+    result = abbe_receiver_charts_make(r->scene, &r->plan, &r->charts, error);
   if (result == ABBE_OK) result = abbe_renderer_make_hierarchy(r, error);
   if (result == ABBE_OK) result = abbe_renderer_make_shadows(r, error);
   if (result == ABBE_OK) {
@@ -168,6 +170,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   abbe_renderer_free_thesis(r);
   abbe_renderer_free_scene(r);
   abbe_renderer_free_refinement(r);
+  abbe_renderer_free_pages(r);
   abbe_local_scene_free(&r->local);
   gl->DeleteBuffers(BINDING_COUNT, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
@@ -175,14 +178,13 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteBuffers(3, r->hierarchy);
   gl->DeleteTextures(sizeof r->texels / sizeof *r->texels, r->texels);
   free(r->refractor_root);
-  free(r->parallelogram);
   free(r->shadow_row);
   free(r->lit);
   gl->DeleteBuffers(1, &r->table_bands);
   gl->DeleteBuffers(1, &r->band_attenuation);
-  const GLuint lists[] = {r->table_pages, r->table_warps, r->table_shadows, r->texel_sizes,
-                          r->pixel_list,  r->refine_list, r->path_marks,    r->path_list,
-                          r->splat_list,  r->map_sums};
+  const GLuint lists[] = {r->table_warps, r->table_shadows, r->texel_sizes,
+                          r->pixel_list,  r->refine_list,   r->path_marks,
+                          r->path_list,   r->splat_list,    r->map_sums};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,     r->light_owner, r->light_depth, r->map,

@@ -5,6 +5,7 @@
 #include "gl/api.h"
 #include "gl/local_scene.h"
 #include "gl/plan.h"
+#include "gl/receiver_charts.h"
 #include "gl/receiver_pages.h"
 #include "gl/renderer.h"
 #include "spectral/wavelengths.h"
@@ -30,8 +31,13 @@ enum {
   BINDING_LIST = BINDING_COUNT /* pieces of light, pixels */
 };
 
-/* Texture units of the hierarchy's buffers, from the first; passes bind theirs below. */
-enum { HIERARCHY_UNIT = 7 };
+/* Texture units of the hierarchy's buffers and the pages', from the first; passes bind theirs
+ * below. */
+enum { HIERARCHY_UNIT = 7, PAGE_UNIT = 10 };
+
+/* What the shaders know of pages: rows of each, where they are found, and of charts: to their
+ * coordinates, and which side of one each face is. */
+enum { PAGE_ROWS, PAGE_INDEX, CHART_ROWS, SIDE_OF_FACE, PAGE_TABLES };
 
 enum {
   PHOTON_GROUP = 256,
@@ -118,8 +124,8 @@ struct abbe_renderer {
   GLuint light_layers, light_owner, light_depth;
   GLuint map; /* XYZ flux over window area, one layer a light, in levels; then those of pages */
   size_t map_levels, map_texels, map_layers;
-  double (*parallelogram)[9]; /* corner, U, V of each, as the shaders count them */
-  GLuint table_pages;
+  abbe_receiver_charts charts; /* where the plan has pages */
+  GLuint page_table[PAGE_TABLES], page_texture[PAGE_TABLES];
   bool pages;      /* shaders have PAGES: some light has any, or they are yet to be chosen */
   bool fits_pages; /* they are yet to be chosen */
   GLuint eye_receivers, eye_direct, eye_caustic, eye_depth, eye_refraction, eye_layers,
@@ -248,19 +254,24 @@ void abbe_renderer_fit_axes(light_state *state, const double *histogram, double 
 /* receiver_pages_pass.c: which lights have maps on receivers, and where. */
 /* Before the photons' shaders are made, where the plan asks for pages. */
 abbe_result abbe_renderer_expect_pages(abbe_renderer *r, abbe_error *error);
-/* Sorts one batch of landings in as long as the pages are yet to be chosen, fluxes in whole parts.
- */
-void abbe_renderer_sort_pages(const abbe_renderer *r, const float *landing, const GLuint *path,
-                              size_t count, double part, abbe_page_light *light);
-/* What landed on parallelograms, of `total` that landed: sets the light's pages. */
-void abbe_renderer_choose_pages(abbe_renderer *r, size_t light, const abbe_page_light *found,
-                                double total);
+/* Sorts one batch of landings in as long as the pages are yet to be chosen, fluxes in whole parts;
+ * light: of both sides of each chart, made where it is NULL. */
+abbe_result abbe_renderer_sort_pages(const abbe_renderer *r, const float *landing,
+                                     const GLuint *path, size_t count, double part,
+                                     abbe_page_light **light, abbe_error *error);
+/* What landed on charts beside `held`, what landed in the map: sets the light's pages.
+ * ABBE_UNSUPPORTED where they leave out more than --share allows, with the receiver's name. */
+abbe_result abbe_renderer_choose_pages(abbe_renderer *r, size_t light,
+                                       abbe_page_light *const *found, double held,
+                                       abbe_error *error);
 /* All lights' pages are chosen: their table, or shaders without. */
 abbe_result abbe_renderer_keep_pages(abbe_renderer *r, abbe_error *error);
 /* Whether a landing of that path lies on a page; its place is then texels and the page's number. */
 bool abbe_renderer_is_on_page(const abbe_renderer *r, GLuint path);
+/* Of a mesh, on the rectangle that bounds its chart. */
 void abbe_renderer_page_place(const abbe_renderer *r, size_t light, const float *landing,
                               double out[3]);
+void abbe_renderer_free_pages(abbe_renderer *r);
 
 /* renderer.c: the map's texture, with a layer for each light that has pages. */
 abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error);

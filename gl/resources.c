@@ -121,10 +121,13 @@ void abbe_renderer_bind_tables(abbe_renderer *r) {
     r->gl->ActiveTexture(GL_TEXTURE0 + HIERARCHY_UNIT + k);
     r->gl->BindTexture(GL_TEXTURE_BUFFER, r->hierarchy_texture[k]);
   }
+  for (GLenum k = 0; k < PAGE_TABLES; k++) {
+    if (r->page_texture[k] == 0) continue;
+    r->gl->ActiveTexture(GL_TEXTURE0 + PAGE_UNIT + k);
+    r->gl->BindTexture(GL_TEXTURE_BUFFER, r->page_texture[k]);
+  }
   if (r->table_warps != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 2, r->table_warps);
-  if (r->table_pages != 0)
-    r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 3, r->table_pages);
   if (r->table_shadows != 0)
     r->gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SPECTRA + 4, r->table_shadows);
   if (r->table_bands != 0)

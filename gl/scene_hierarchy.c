@@ -40,6 +40,7 @@ static bool make_room(forest *f, size_t texels, size_t triangles) {
 typedef struct grove {
   const abbe_mesh **mesh;
   uint32_t *surface, *face_first; /* of each mesh; face_first has one more */
+  const int32_t **side;           /* of each mesh's faces (receiver_charts.h), or NULL */
   size_t mesh_count;
   uint32_t *owner, *part; /* of each face: its mesh, and which part */
 } grove;
@@ -61,6 +62,8 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
   }
   store_bits(g->part[face], &t->corner[3]);
   store_bits(g->surface[m], &t->edge[0][3]);
+  if (g->side[m] != NULL)
+    store_bits((uint32_t)g->side[m][face - g->face_first[m]] / 2, &t->edge[1][3]);
   memset(c->v_part, 0, sizeof c->v_part);
   for (int k = 0; k < 3; k++) {
     store(mesh->normal[f[k]], mesh->uv != NULL ? (float)mesh->uv[f[k]][0] : 0, c->normal[k]);
@@ -127,12 +130,13 @@ static abbe_result grow(abbe_renderer *r, grove *g, forest *f, size_t *root, abb
 enum { MOST_TRIANGLES = INT32_MAX / 8 };
 
 static abbe_result add_mesh(grove *g, const forest *f, const abbe_mesh *mesh, size_t surface,
-                            abbe_error *error) {
+                            const int32_t *side, abbe_error *error) {
   const size_t first = g->face_first[g->mesh_count];
   if (f->triangle_count + first + mesh->face_count > MOST_TRIANGLES)
     return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than %d triangles",
                           MOST_TRIANGLES);
   g->mesh[g->mesh_count] = mesh;
+  g->side[g->mesh_count] = side;
   g->surface[g->mesh_count++] = (uint32_t)surface;
   g->face_first[g->mesh_count] = (uint32_t)(first + mesh->face_count);
   return ABBE_OK;
@@ -176,7 +180,7 @@ static abbe_result grow_refractors(abbe_renderer *r, grove *g, forest *f, abbe_e
   for (size_t i = 0; i < r->plan.refractor_count && result == ABBE_OK; i++) {
     if (r->plan.model[i] != ABBE_REFRACTOR_HIERARCHY) continue;
     g->mesh_count = 0;
-    result = add_mesh(g, f, &r->scene->object[r->plan.refractor_object[i]].mesh, 0, error);
+    result = add_mesh(g, f, &r->scene->object[r->plan.refractor_object[i]].mesh, 0, NULL, error);
     if (result == ABBE_OK) result = grow(r, g, f, &r->refractor_root[i], error);
   }
   return result;
@@ -187,9 +191,13 @@ static abbe_result grow_receivers(abbe_renderer *r, grove *g, forest *f, abbe_er
   abbe_result result = ABBE_OK;
   if (r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
   g->mesh_count = 0;
-  for (size_t i = 0; i < r->plan.receiver_count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < r->plan.receiver_count && result == ABBE_OK; i++) {
+    const abbe_mesh *mesh = &r->scene->object[r->plan.receiver_object[i]].mesh;
+    const int32_t *side =
+        r->charts.face_side != NULL ? r->charts.face_side + r->charts.face_first[i] : NULL;
     if (r->plan.receiver_model[i] == ABBE_RECEIVER_HIERARCHY)
-      result = add_mesh(g, f, &r->scene->object[r->plan.receiver_object[i]].mesh, i, error);
+      result = add_mesh(g, f, mesh, i, side, error);
+  }
   return result == ABBE_OK ? grow(r, g, f, &r->receiver_root, error) : result;
 }
 
@@ -200,15 +208,17 @@ abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error) {
   r->refractor_root = calloc(most, sizeof *r->refractor_root);
   grove g = {.mesh = calloc(most, sizeof *g.mesh),
              .surface = calloc(most, sizeof *g.surface),
+             .side = calloc(most, sizeof *g.side),
              .face_first = calloc(most, sizeof *g.face_first)};
-  abbe_result result =
-      r->refractor_root == NULL || g.mesh == NULL || g.surface == NULL || g.face_first == NULL
-          ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
-          : grow_refractors(r, &g, &f, error);
+  abbe_result result = r->refractor_root == NULL || g.mesh == NULL || g.surface == NULL ||
+                               g.side == NULL || g.face_first == NULL
+                           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
+                           : grow_refractors(r, &g, &f, error);
   if (result == ABBE_OK) result = grow_receivers(r, &g, &f, error);
   if (result == ABBE_OK) result = upload(r, &f, error);
   free(g.mesh);
   free(g.surface);
+  free(g.side);
   free(g.face_first);
   free(f.texel);
   free(f.triangle);

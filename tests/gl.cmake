@@ -1,5 +1,5 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral)
-foreach(name transport local_scene plan plan_scenes precision reach light_cube layer_detail)
+foreach(name transport local_scene plan plan_scenes precision reach receiver_charts light_cube layer_detail)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()
 abbe_test(context gl ${gl_rooms})

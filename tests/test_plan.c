@@ -464,28 +464,6 @@ static void test_refractors_that_overlap_are_noted(void **state) {
   }
 }
 
-/* A map holds what the light itself shines on, and only parallelograms have more. */
-static void test_meshes_that_a_light_may_not_reach_are_noted(void **state) {
-  (void)state;
-  static const struct {
-    const char *text;
-    bool noted;
-  } rows[] = {
-      {CAMERA POINT_LIGHT FLOOR BALL("flat"), false},
-      {CAMERA POINT_LIGHT FLOOR BALL("flat") WHITE_BALL, true},
-      {CAMERA POINT_LIGHT FLOOR WHITE_BALL, false},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_scene scene;
-    abbe_plan plan;
-    load_text(rows[i].text, &scene);
-    assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
-    assert_int_equal(notes(&plan, "the mesh 'white' only where a light"), rows[i].noted);
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
-  }
-}
-
 static void test_a_disk_is_refused_by_name(void **state) {
   (void)state;
   abbe_scene scene;
@@ -566,7 +544,6 @@ int main(void) {
       cmocka_unit_test(test_an_index_that_is_not_known_is_refused_or_noted),
       cmocka_unit_test(test_too_many_refractors_are_unsupported),
       cmocka_unit_test(test_refractors_that_overlap_are_noted),
-      cmocka_unit_test(test_meshes_that_a_light_may_not_reach_are_noted),
       cmocka_unit_test(test_a_disk_is_refused_by_name),
       cmocka_unit_test(test_a_map_layout_belongs_to_its_light),
       cmocka_unit_test(test_shipped_scenes),

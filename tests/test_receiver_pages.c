@@ -10,10 +10,20 @@ enum { SIDE = 256, ALIGN = 32 };
 static const double square[9] = {0, 0, 0, 2, 0, 0, 0, 1, 0};
 static const double slanted[9] = {1, 2, 3, 1, 1, 0, 0, 1, 2};
 
-static abbe_page_light *make_light(size_t count) {
-  abbe_page_light *light = calloc(count, sizeof *light);
+/* Of one side each of so many charts, the other one dark. */
+static abbe_page_light **make_light(size_t count) {
+  abbe_page_light **light = calloc(2 * count, sizeof *light);
   assert_non_null(light);
+  for (size_t i = 0; i < count; i++) {
+    light[2 * i] = calloc(1, sizeof **light);
+    assert_non_null(light[2 * i]);
+  }
   return light;
+}
+
+static void free_light(abbe_page_light **light, size_t count) {
+  for (size_t i = 0; i < count; i++) free(light[2 * i]);
+  free(light);
 }
 
 /* Evenly over a part of the parallelogram. */
@@ -26,60 +36,64 @@ static void shine(abbe_page_light *light, double low, double high, double flux) 
 
 static void test_windows_hold_the_light(void **state) {
   (void)state;
-  abbe_page_light *light = make_light(1);
+  abbe_page_light **light = make_light(1);
   abbe_receiver_pages pages;
-  shine(light, 0.25, 0.5, 1);
-  abbe_page_light_add(light, 0.9, 0.1, 1e-5); /* a stray photon */
-  abbe_receiver_pages_lay_out(light, &square, 1, 4, SIDE, ALIGN, &pages);
+  shine(light[0], 0.25, 0.5, 1);
+  abbe_page_light_add(light[0], 0.9, 0.1, 1e-5); /* a stray photon */
+  abbe_receiver_pages_lay_out(light, &square, 2, 4, SIDE, ALIGN, &pages);
   assert_int_equal(pages.count, 1);
   const double *window = pages.page[0].window;
   assert_true(window[0] < 0.25 && window[0] > 0.24 && window[1] > 0.4999 && window[1] < 0.51);
   assert_true(window[2] < 0.5001 && window[2] > 0.49 && window[3] > 0.75 && window[3] < 0.76);
-  free(light);
+  free_light(light, 1);
 }
 
+/* Brightest first, until a thousandth is left. */
 static void test_pages_of_what_is_worth_one(void **state) {
   (void)state;
-  enum { COUNT = 12 };
-  abbe_page_light *light = make_light(COUNT);
+  enum { COUNT = ABBE_RECEIVER_PAGES + 4 };
+  abbe_page_light **light = make_light(COUNT);
   double parallelogram[COUNT][9];
+  const double(*all)[9] = (const double(*)[9])parallelogram;
   abbe_receiver_pages pages;
+  double total = 0;
   for (size_t i = 0; i < COUNT; i++) {
+    const double flux = i == 5 ? 1e-4 : (double)(1 + (7 * i) % COUNT);
     memcpy(parallelogram[i], i % 2 ? square : slanted, sizeof square);
-    shine(&light[i], 0.1, 0.9, i == 5 ? 1e-4 : (double)(1 + (7 * i) % COUNT));
+    shine(light[2 * i], 0.1, 0.9, flux);
+    total += flux;
   }
-  abbe_receiver_pages_lay_out(light, (const double(*)[9])parallelogram, COUNT, 1e6, SIDE, ALIGN,
-                              &pages);
-  assert_int_equal(pages.count, 0); /* less than a thousandth of all */
-  abbe_receiver_pages_lay_out(light, (const double(*)[9])parallelogram, COUNT, 100, SIDE, ALIGN,
-                              &pages);
+  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, 1001 * total, 1024, ALIGN, &pages);
+  assert_int_equal(pages.count, 0);
+  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, total, 1024, ALIGN, &pages);
   assert_int_equal(pages.count, ABBE_RECEIVER_PAGES);
   for (size_t i = 0; i + 1 < pages.count; i++)
-    assert_true(light[pages.page[i].parallelogram].flux >=
-                light[pages.page[i + 1].parallelogram].flux);
-  for (size_t i = 0; i < COUNT; i++) light[i].flux = i == 3 ? 1 : i == 4 ? 1e-4 : 0;
-  abbe_receiver_pages_lay_out(light, (const double(*)[9])parallelogram, COUNT, 1, SIDE, ALIGN,
-                              &pages);
+    assert_true(light[pages.page[i].chart_side]->flux >= light[pages.page[i + 1].chart_side]->flux);
+  for (size_t i = 0; i < COUNT; i++) light[2 * i]->flux = i == 3 ? 1 : i == 4 ? 9e-4 : 0;
+  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, 1, SIDE, ALIGN, &pages);
   assert_int_equal(pages.count, 1);
-  assert_int_equal(pages.page[0].parallelogram, 3);
-  free(light);
+  assert_int_equal(pages.page[0].chart_side, 6);
+  light[8]->flux = 1.1e-3;
+  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, 1, SIDE, ALIGN, &pages);
+  assert_int_equal(pages.count, 2);
+  free_light(light, COUNT);
 }
 
 /* Whatever the receivers' shapes: aligned, within the layer, none over another. */
 static void test_rectangles_are_apart(void **state) {
   (void)state;
   enum { COUNT = ABBE_RECEIVER_PAGES };
-  abbe_page_light *light = make_light(COUNT);
+  abbe_page_light **light = make_light(COUNT);
   double parallelogram[COUNT][9] = {{0}};
   static const size_t sides[] = {32, 64, 128, 1024};
   for (size_t i = 0; i < COUNT; i++) {
-    shine(&light[i], 0, 1, (double)(i + 1));
+    shine(light[2 * i], 0, 1, (double)(i + 1));
     parallelogram[i][3] = pow(10, (double)(i % 3) - 1);
     parallelogram[i][7] = pow(10, 1 - (double)(i % 4));
   }
   for (size_t s = 0; s < sizeof sides / sizeof *sides; s++) {
     abbe_receiver_pages pages;
-    abbe_receiver_pages_lay_out(light, (const double(*)[9])parallelogram, COUNT, 36, sides[s],
+    abbe_receiver_pages_lay_out(light, (const double(*)[9])parallelogram, 2 * COUNT, 36, sides[s],
                                 ALIGN, &pages);
     const size_t blocks = (sides[s] / ALIGN) * (sides[s] / ALIGN);
     assert_int_equal(pages.count, blocks < COUNT ? blocks : COUNT);
@@ -94,7 +108,7 @@ static void test_rectangles_are_apart(void **state) {
     }
     assert_true(pages.rows <= sides[s]);
   }
-  free(light);
+  free_light(light, COUNT);
 }
 
 /* The shaders' affine map undoes the place of a texel, and texels fill the window's area. */
@@ -103,16 +117,16 @@ static void test_places_and_texels(void **state) {
   const abbe_receiver_page page = {.window = {0.25, 0.5, 0.1, 0.6}, .rect = {32, 96, 64, 128}};
   float packed[ABBE_PAGE_FLOATS];
   double place[3];
-  abbe_receiver_page_pack(&page, slanted, 3, 1e-3, packed);
-  assert_true(packed[17] == 3 && packed[12] == 32 && packed[13] == 64 && packed[14] == 96);
+  abbe_receiver_page_pack(&page, slanted, packed);
+  assert_true(packed[8] == 32 && packed[9] == 64 && packed[10] == 96 && packed[11] == 128);
   for (double x = 32; x <= 96; x += 16)
     for (double y = 64; y <= 128; y += 16) {
       abbe_receiver_page_place(&page, slanted, x, y, place);
-      double on[3] = {packed[7], packed[11], -(double)packed[3]};
+      double on[3] = {packed[3], packed[7], 0};
       for (int k = 0; k < 3; k++) {
-        on[0] += (double)packed[4 + k] * place[k];
-        on[1] += (double)packed[8 + k] * place[k];
-        on[2] += (double)packed[k] * place[k];
+        on[0] += (double)packed[k] * place[k];
+        on[1] += (double)packed[4 + k] * place[k];
+        on[2] += (double)packed[12 + k] * (place[k] - slanted[k]);
       }
       assert_true(fabs(on[0] - x) < 1e-3 && fabs(on[1] - y) < 1e-3 && fabs(on[2]) < 1e-6);
     }
@@ -198,6 +212,53 @@ static void test_what_the_lamp_does_not_see(void **state) {
   abbe_image_free(&hidden);
 }
 
+/* A rectangle of 2 x 2, and the upper face of a mesh: a prism upside down. */
+#define TILTED_RECTANGLE(angle)                                                                    \
+  "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5, "            \
+  "transform: [{rotate: {axis: [1, 0.3, 0], angle: " angle "}}]}\n"
+#define TILTED_PRISM(angle)                                                                        \
+  "objects:\n- {name: floor, shape: prism, side: 2, length: 2, reflectance: 0.5, transform: "      \
+  "[{rotate: {axis: [1, 0, 0], angle: 180}}, {translate: [0, 0, -0.5773502691896258]}, "           \
+  "{rotate: {axis: [1, 0.3, 0], angle: " angle "}}]}\n"
+
+/* Where a screen hides the lamp, a mesh shows the light that a rectangle in its place does, however
+ * it leans against the axes that its chart is seen along. */
+static void test_meshes_show_what_rectangles_do(void **state) {
+  (void)state;
+  static const char *const texts[][2] = {
+      {LOW_EYE LAMP TILTED_RECTANGLE("0") GREAT_BALL SCREEN,
+       LOW_EYE LAMP TILTED_PRISM("0") GREAT_BALL SCREEN},
+      {LOW_EYE LAMP TILTED_RECTANGLE("25") GREAT_BALL SCREEN,
+       LOW_EYE LAMP TILTED_PRISM("25") GREAT_BALL SCREEN},
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    abbe_image picture[2] = {{0}, {0}};
+    abbe_statistics s[2];
+    for (int k = 0; k < 2; k++) {
+      size_t pages = 0;
+      s[k] = draw(texts[i][k], &one_exit, &picture[k], &pages);
+      assert_int_equal(pages, 1);
+    }
+    assert_true(s[1].energy.on_pages > 0.05 * s[1].energy.reached);
+    assert_true(fabs(s[1].energy.on_pages - s[0].energy.on_pages) < 1e-3 * s[0].energy.reached);
+    const size_t y = channel_of(&picture[0], "caustic.Y");
+    double sum = 0, difference = 0;
+    for (size_t k = 0; k < picture[0].width * picture[0].height; k++) {
+      const double a = (double)picture[0].data[k * picture[0].channels + y];
+      const double b = (double)picture[1].data[k * picture[1].channels + y];
+      sum += a * a;
+      difference += (a - b) * (a - b);
+    }
+    print_message("leaning %zu: %.4f and %.4f on pages, RMS %.4f\n", i,
+                  s[0].energy.on_pages / s[0].energy.reached,
+                  s[1].energy.on_pages / s[1].energy.reached, sqrt(difference / sum));
+    assert_true(sum > 0);
+    assert_true(sqrt(difference / sum) < 0.03); /* their texels differ */
+    abbe_image_free(&picture[0]);
+    abbe_image_free(&picture[1]);
+  }
+}
+
 #define ROOM                                                                                       \
   "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"           \
   "- {name: ceiling, shape: rectangle, width: 2, height: 2, reflectance: 0.5, " FACING_DOWN(       \
@@ -211,6 +272,8 @@ static void test_what_the_lamp_does_not_see(void **state) {
   "[{rotate: {axis: [1, 0, 0], angle: 90}}, {translate: [0, 1, 0.6]}]}\n"                          \
   "- {name: south, shape: rectangle, width: 2, height: 1.2, reflectance: 0.5, transform: "         \
   "[{rotate: {axis: [1, 0, 0], angle: -90}}, {translate: [0, -1, 0.6]}]}\n"
+#define BUBBLE                                                                                     \
+  "objects:\n- {name: bubble, shape: sphere, radius: 1.5, levels: 5, reflectance: 0.5}\n"
 #define CEILING_EYE                                                                                \
   "materials: glass.yaml\ncamera: {eye: [0.5, -0.3, 0.2], target: [0, 0, 1.2], fov: 2}\n"
 #define BULB "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.9], intensity: 1}\n"
@@ -255,7 +318,7 @@ static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_rece
       for (size_t k = 0; k < pages->count; k++) {
         const abbe_receiver_page *page = &pages->page[k];
         if (x >= page->rect[0] && x < page->rect[1] && y >= page->rect[2] && y < page->rect[3])
-          area = abbe_receiver_page_texel(page, r->parallelogram[page->parallelogram]);
+          area = abbe_receiver_page_texel(page, r->charts.parallelogram[page->chart_side / 2]);
       }
       sum += value * area;
       *outside += area == 0 ? fabs(value) : 0;
@@ -273,6 +336,7 @@ static void test_a_closed_room(void **state) {
   } rooms[] = {
       {"one ball", CEILING_EYE BULB ROOM WALLS BALL("crown"), 0},
       {"more wavelengths than all photons take", CEILING_EYE BULB ROOM WALLS BALL("crown"), 13},
+      {"a round room", CEILING_EYE BULB BUBBLE BALL("crown"), 0},
       {"two refractors", CEILING_EYE BULB ROOM WALLS BALL("crown") BRICK("crown"), 0},
   };
   for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {
@@ -307,7 +371,7 @@ static void test_a_closed_room(void **state) {
   }
 }
 
-/* No page where none is worth it, whatever the plan expects; none on meshes, but beside them. */
+/* No page where none is worth it, whatever the plan expects. */
 static void test_no_pages(void **state) {
   (void)state;
   size_t pages = 9;
@@ -321,6 +385,23 @@ static void test_no_pages(void **state) {
   assert_int_equal(pages, 1);
 }
 
+/* More parts take light than there is room for maps: said, not left dark. */
+static void test_too_many_parts(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_renderer *renderer = NULL;
+  abbe_error error = {0};
+  abbe_render_desc desc = small_frame;
+  desc.map_size = 64; /* four rectangles */
+  desc.energy_share = 1e-3;
+  load_text(CEILING_EYE BULB BUBBLE BALL("crown"), &scene);
+  assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error), ABBE_UNSUPPORTED);
+  print_message("%s\n", error.text);
+  assert_non_null(strstr(error.text, "'bubble'"));
+  assert_non_null(strstr(error.text, "--map"));
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_windows_hold_the_light),
@@ -328,9 +409,11 @@ int main(void) {
       cmocka_unit_test(test_rectangles_are_apart),
       cmocka_unit_test(test_places_and_texels),
       cmocka_unit_test(test_what_the_lamp_does_not_see),
+      cmocka_unit_test(test_meshes_show_what_rectangles_do),
       cmocka_unit_test(test_behind_the_lamp),
       cmocka_unit_test(test_a_closed_room),
       cmocka_unit_test(test_no_pages),
+      cmocka_unit_test(test_too_many_parts),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
