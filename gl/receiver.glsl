@@ -204,7 +204,7 @@ float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
   for (int k = 0; k < 4; k++) {
     ivec2 o = ivec2(k & 1, k >> 1), texel = base + o;
     bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size));
-    float front = outside ? 0.0 : texelFetch(light_layers, ivec3(texel, 2 * light), 0).w;
+    float front = outside ? 0.0 : textureLod(light_layers, vec3((vec2(texel) + 0.5) / vec2(size), float(2 * light)), 0.0).w;
     float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
     lit += front <= 0.0 || front > uvz.z ? w : 0.0;
   }
