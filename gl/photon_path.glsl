@@ -66,9 +66,18 @@ uint signature_of(uint path, int landed, uint owner) {
 #include "photon_walk.glsl"
 #else
 
+// Where light lands is looked for by all lanes of a software rasteriser, whether theirs leaves or not, so
+// each goes on to its next wall that lets some out first. It pays in solids that keep light inside for long,
+// which have more exits than others; not where there are few, or where walls cost more than that.
+#ifdef LAYERS
+const bool GO_ON = false;
+#else
+const bool GO_ON = EXITS > 8;
+#endif
+
 // A photon's light at wavelength i, from the refractor that it meets first. Each landing is handed
 // on with its slot; `entry` takes the shares of the light that go elsewhere. Light that leaves a
-// refractor meets none again.
+// refractor meets none again. Loops have two ways out, as in refraction.comp.
 void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,
            out Shares entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
@@ -101,48 +110,53 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
 #else
   const float left = 1.0;
 #endif
-  for (int order = 0; order < EXITS; order++) {
-    vec3 wall;
-    int next;
-    inner_hit(r, facet, p, inner,
+  for (int order = 0; order < EXITS;) {
+    vec3 wall = p, outer = inner;
+    float out_share = 0.0;
+    bool leaves = false, ends = false;
+    while (order < EXITS) {
+      int next;
+      inner_hit(r, facet, p, inner,
 #ifdef LAYERS
-              lights[light].near_view, light_layers, 2.0 * float(light),
+                lights[light].near_view, light_layers, 2.0 * float(light),
 #endif
-              wall, wall_n, next);
+                wall, wall_n, next);
 #ifdef TINTING
-    vec2 before = left;
-    way += distance(wall, p);
-    left = left_after(way);
-    entry[ABSORBED] += share * (before - left);
+      vec2 before = left;
+      way += distance(wall, p);
+      left = left_after(way);
+      entry[ABSORBED] += share * (before - left);
 #elif defined(ABSORBING)
-    float passed = exp(-spectrum.y * distance(wall, p));
-    entry[ABSORBED] += share * (1.0 - passed);
-    share *= passed;
+      float passed = exp(-spectrum.y * distance(wall, p));
+      entry[ABSORBED] += share * (1.0 - passed);
+      share *= passed;
 #endif
-    path = path * 31u + uint(next) + 1u;
-    float kept = fresnel(dot(inner, wall_n), n);
-    float out_share = share * (1.0 - kept);
-    vec3 outer;
-    if (out_share > 0.0 && refract_direction(inner, -wall_n, n, outer)) {
+      path = path * 31u + uint(next) + 1u;
+      float kept = fresnel(dot(inner, wall_n), n);
+      out_share = share * (1.0 - kept);
+      leaves = out_share > 0.0 && refract_direction(inner, -wall_n, n, outer);
+      share *= leaves ? kept : 1.0;
+#ifdef TINTING
+      ends = share * exp(-spectrum.y * way) < share_limit;
+#else
+      ends = share < share_limit;
+#endif
+      p = wall;
+      facet = next;
+      inner = reflect(inner, wall_n);
+      order++;
+      if (!GO_ON || leaves || ends) break;
+    }
+    if (leaves) {
       int landed = land(wall, outer, -touch * refractor_bounds.w, 1e30, at, place, receiver);
       if (landed >= LANDED) {
-        keep_landing(photon, order, lane, place, out_share * flux,
+        keep_landing(photon, order - 1, lane, place, out_share * flux,
                      signature_of(path * 31u + receiver, landed, uint(r)), way);
       } else {
         entry[MISSED] += out_share * left;
       }
-    } else {
-      kept = 1.0;
     }
-    share *= kept;
-#ifdef TINTING
-    if (share * exp(-spectrum.y * way) < share_limit) break;
-#else
-    if (share < share_limit) break;
-#endif
-    p = wall;
-    facet = next;
-    inner = reflect(inner, wall_n);
+    if (ends) break;
   }
   entry[TRAPPED] += share * left;
 }
