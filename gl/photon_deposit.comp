@@ -1,7 +1,8 @@
 // From landings to pieces of light for the spectral map. Between two neighbouring wavelengths that
 // take the same way the light is laid along the line that joins their landings, each piece with
 // the colour of its own part of the band; where the ways differ each keeps its half of the band to
-// itself. Pieces that fall closer together than the photons do are added first. A piece is spread
+// itself. Pieces that fall closer together than the photons do are added first; X, Y and Z have each a
+// place of their own, or dispersion narrower than that would be lost. A piece is spread
 // over the parallelogram that the neighbouring photons' landings span: where that is wide, in a
 // coarser level of the map. REFINED: the intervals on the list, by all their wavelengths; else those
 // of the coarse set that are not on it. No branch saves time on a software rasteriser, so there are few.
@@ -39,7 +40,8 @@ uniform usamplerBuffer fine_signatures;
 layout(std430, binding = 7) readonly buffer Wants { uint want[]; };  // a bit a refined interval
 #endif
 // Interval i lies between nodes i - 1 and i. [table_first + (light * REFRACTORS + refractor) *
-// (nodes + 1) + i] * (STEPS + 1) + k: XYZ of the interval up to step k, and how far along (0 to 1) that is.
+// (nodes + 1) + i] * (STEPS + 1) + k, two each: XYZ of the interval up to step k, and how far along (0
+// to 1) that is; then those three times how far along their light is.
 uniform samplerBuffer interval_sums;
 #ifdef TINTING
 // As in photon_absorption.glsl; band_first: where the set of these landings begins.
@@ -187,7 +189,8 @@ void main() {
 
   uint packed_across = packHalf2x16(across);
   vec3 gathered = vec3(0);
-  vec2 gathered_at = vec2(0), gathered_from = vec2(0);
+  vec2 gathered_from = vec2(0);
+  vec3 gathered_x = vec3(0), gathered_y = vec3(0);  // X, Y and Z times how far they lie from there
   float gathered_weight = 0.0;
   float to_units = 1.0 / (lights[light].misc.y * float(across_pieces));
   uint path_a = 0u;
@@ -279,10 +282,13 @@ void main() {
 #endif
     pieces = last ? 1 : pieces;
     int intervals_row = (row + min(interval, nodes)) * (STEPS + 1);
-    vec3 middle = texelFetch(interval_sums, int(intervals_row + STEPS / 2)).xyz;
+    vec3 middle = texelFetch(interval_sums, 2 * (intervals_row + STEPS / 2)).xyz;
     vec4 before = vec4(0);
+    vec3 moment_before = vec3(0);
     for (int k = 1; k <= pieces; k++) {
-      vec4 upto = texelFetch(interval_sums, int(intervals_row + k * STEPS / pieces));
+      int upto_at = 2 * (intervals_row + k * STEPS / pieces);
+      vec4 upto = texelFetch(interval_sums, upto_at);
+      vec3 moment = texelFetch(interval_sums, upto_at + 1).xyz;
       vec3 lower = min(upto.xyz, middle) - min(before.xyz, middle);
 #ifdef TINTING
       int part = (k - 1) * 8 / pieces;
@@ -291,17 +297,23 @@ void main() {
 #else
       vec3 flux = share_a * lower + share_b * (upto.xyz - before.xyz - lower);
 #endif
+      float half_along = 0.5 * (before.w + upto.w);
       float half_way = share_b > 0.0 ? share_a > 0.0 ? (2 * k <= pieces ? 0.0 : 1.0) : 1.0 : 0.0;
       // What does not land has no place: no share of it may come into the sum.
-      vec2 at = bridge ? pa + 0.5 * (before.w + upto.w) * (pb - pa) : half_way > 0.0 ? pb : pa;
+      vec2 at = bridge ? pa + half_along * (pb - pa) : half_way > 0.0 ? pb : pa;
       int page = half_way > 0.0 ? page_b : page_a;
+      // Along the bridge X, Y and Z lie each where its own light is.
+      vec3 part_xyz = upto.xyz - before.xyz, part_moment = moment - moment_before;
+      vec3 along = clamp(part_moment / max(part_xyz, vec3(1e-20)), min(before.w, upto.w), max(before.w, upto.w));
       before = upto;
+      moment_before = moment;
       float weight = last ? 0.0 : flux.x + flux.y + flux.z;
       vec2 off = abs(at - gathered_from);
       bool elsewhere = max(off.x, off.y) > 0.75 * size || page != gathered_page;
       bool write = gathered_weight > 0.0 && (last || (weight > 0.0 && elsewhere));
       if (write) {
-        uvec2 place = packed_place(gathered_at / gathered_weight, gathered_page, across_pieces, level);
+        vec3 x = gathered_x / max(gathered, vec3(1e-30)), y = gathered_y / max(gathered, vec3(1e-30));
+        uvec2 place = packed_place(gathered_from + vec2(x.y, y.y), gathered_page, across_pieces, level);
         uvec3 units = uvec3(gathered * to_units + 0.5);
         uint word = min(atomicAdd(splat_count, 1u), most) * SPLAT_WORDS;
         splat[word] = place.x;
@@ -310,10 +322,13 @@ void main() {
         splat[word + 3u] = units.x;
         splat[word + 4u] = units.y;
         splat[word + 5u] = units.z;
+        splat[word + 6u] = packHalf2x16(vec2(x.x - x.y, y.x - y.y));
+        splat[word + 7u] = packHalf2x16(vec2(x.z - x.y, y.z - y.y));
       }
       if (write) {
         gathered = vec3(0);
-        gathered_at = vec2(0);
+        gathered_x = vec3(0);
+        gathered_y = vec3(0);
         gathered_weight = 0.0;
       }
       if (weight > 0.0) {
@@ -321,8 +336,10 @@ void main() {
           gathered_from = at;
           gathered_page = page;
         }
+        vec2 off_here = at - gathered_from, way_here = bridge ? pb - pa : vec2(0);
         gathered += flux;
-        gathered_at += weight * at;
+        gathered_x += flux * (off_here.x + (along - half_along) * way_here.x);
+        gathered_y += flux * (off_here.y + (along - half_along) * way_here.y);
         gathered_weight += weight;
       }
     }

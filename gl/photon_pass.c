@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LIST_HEADER = 16, SPLAT_BYTES = 24, MAX_SPLATS = 5 << 20 };
+enum { LIST_HEADER = 16, SPLAT_BYTES = 32, MAX_SPLATS = 4 << 20 };
 enum { MOST_LANDING_BYTES = 1 << 30, LEAST_LANES = 7 };
 enum { PHOTON_DEFINES = 2560 };
 enum { PLACE_BYTES = 16, MAX_LANDING_BYTES = 96 << 20 };

@@ -18,17 +18,12 @@ uint level_offset(int level) {
   return (texels - (texels >> (2 * level))) / 3u * 4u;
 }
 
-void add(uint texel, uvec3 v) {
+void add(uint texel, int channel, uint v) {
 #ifdef WIDE
-  uint at = texel * 6u;
-  WIDE_ADD(map_sum, at, at + 1u, v.x)
-  WIDE_ADD(map_sum, at + 2u, at + 3u, v.y)
-  WIDE_ADD(map_sum, at + 4u, at + 5u, v.z)
+  uint at = texel * 6u + 2u * uint(channel);
+  WIDE_ADD(map_sum, at, at + 1u, v)
 #else
-  uint at = texel * 3u;
-  atomicAdd(map_sum[at], v.x);
-  atomicAdd(map_sum[at + 1u], v.y);
-  atomicAdd(map_sum[at + 2u], v.z);
+  atomicAdd(map_sum[texel * 3u + uint(channel)], v);
 #endif
 }
 
@@ -39,6 +34,7 @@ void main() {
   uint word = i * SPLAT_WORDS, x_parts = splat[word], y_level = splat[word + 1u];
   vec2 across = unpackHalf2x16(splat[word + 2u]);
   uvec3 units = uvec3(splat[word + 3u], splat[word + 4u], splat[word + 5u]);
+  vec2 to_x = unpackHalf2x16(splat[word + 6u]), to_z = unpackHalf2x16(splat[word + 7u]);
   int level = int(y_level & 7u), side = map_size >> level, parts = int(x_parts & 15u);
   float size = exp2(float(level));
   uint first = level_offset(level);
@@ -53,24 +49,27 @@ void main() {
 #else
   vec2 centre = vec2(x_parts >> 4, y_level >> 3) * vec2(1.0 / 65536.0, 1.0 / 131072.0);
 #endif
-  vec3 whole = vec3(units);
   for (int n = 0; n < parts; n++) {
-    vec2 p = centre + across * ((float(n) + 0.5) / float(parts) - 0.5);
+    vec2 middle = centre + across * ((float(n) + 0.5) / float(parts) - 0.5);
+    for (int c = 0; c < 3; c++) {
+      vec2 p = middle + (c == 0 ? to_x : c == 1 ? vec2(0) : to_z);
 #ifdef PAGES
-    // What would lie beyond a page's edge, where the receiver ends, is folded back.
-    p = page > 0u ? min(max(p, 2.0 * rect.xy - p), max(2.0 * rect.zw - p, rect.xy)) : p;
+      // What would lie beyond a page's edge, where the receiver ends, is folded back.
+      p = page > 0u ? min(max(p, 2.0 * rect.xy - p), max(2.0 * rect.zw - p, rect.xy)) : p;
 #endif
-    vec2 at = clamp(p, low, high) / size - 0.5;
-    ivec2 base = ivec2(floor(at));
-    vec2 f = at - vec2(base);
-    ivec2 lo = clamp(base, ivec2(0), ivec2(side - 1)), hi = clamp(base + 1, ivec2(0), ivec2(side - 1));
-    uint row_lo = first + uint(lo.y * side), row_hi = first + uint(hi.y * side);
-    uvec3 part_0 = min(uvec3(whole * ((1.0 - f.x) * (1.0 - f.y))), units);
-    uvec3 part_1 = min(uvec3(whole * (f.x * (1.0 - f.y))), units - part_0);
-    uvec3 part_2 = min(uvec3(whole * ((1.0 - f.x) * f.y)), units - part_0 - part_1);
-    add(row_lo + uint(lo.x), part_0);
-    add(row_lo + uint(hi.x), part_1);
-    add(row_hi + uint(lo.x), part_2);
-    add(row_hi + uint(hi.x), units - part_0 - part_1 - part_2);
+      vec2 at = clamp(p, low, high) / size - 0.5;
+      ivec2 base = ivec2(floor(at));
+      vec2 f = at - vec2(base);
+      ivec2 lo = clamp(base, ivec2(0), ivec2(side - 1)), hi = clamp(base + 1, ivec2(0), ivec2(side - 1));
+      uint row_lo = first + uint(lo.y * side), row_hi = first + uint(hi.y * side);
+      float whole = float(units[c]);
+      uint part_0 = min(uint(whole * ((1.0 - f.x) * (1.0 - f.y))), units[c]);
+      uint part_1 = min(uint(whole * (f.x * (1.0 - f.y))), units[c] - part_0);
+      uint part_2 = min(uint(whole * ((1.0 - f.x) * f.y)), units[c] - part_0 - part_1);
+      add(row_lo + uint(lo.x), c, part_0);
+      add(row_lo + uint(hi.x), c, part_1);
+      add(row_hi + uint(lo.x), c, part_2);
+      add(row_hi + uint(hi.x), c, units[c] - part_0 - part_1 - part_2);
+    }
   }
 }

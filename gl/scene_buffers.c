@@ -278,7 +278,8 @@ static void weigh_part(const abbe_renderer *r, const abbe_illuminant *illuminant
 }
 
 /* One interval between nodes a = i - 1 and b = i: XYZ up to each step, and how far the index has
- * moved from one node's to the other's: landings follow it nearly linearly. */
+ * moved from one node's to the other's: landings follow it nearly linearly. Then, for where the
+ * light of a part lies, the sums of X, Y and Z times that. */
 static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, size_t light,
                           const abbe_material *material, size_t i, float (*out)[4]) {
   const abbe_illuminant *illuminant = &r->scene->light[light].illuminant;
@@ -290,7 +291,7 @@ static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, siz
     a = edge = i == 0 ? min : max;
     b = max;
   }
-  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, before = a;
+  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, before = a, t_before = 0;
   abbe_material_n(material, a, &n_a, NULL);
   abbe_material_n(material, b, &n_b, NULL);
   for (size_t k = 0; k <= r->steps; k++) {
@@ -301,9 +302,14 @@ static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, siz
     abbe_material_n(material, lambda_nm, &n, NULL);
     double t = n_a != n_b ? (n - n_a) / (n_b - n_a) : b > a ? (lambda_nm - a) / (b - a) : 0;
     weigh_part(r, illuminant, min, max, before, lambda_nm, xyz);
-    for (int c = 0; c < 3; c++) sum[c] += xyz[c];
-    store(sum, t, out[k]);
+    for (int c = 0; c < 3; c++) {
+      sum[c] += xyz[c];
+      moment[c] += xyz[c] * 0.5 * (t_before + t);
+    }
+    store(sum, t, out[2 * k]);
+    store(moment, 0, out[2 * k + 1]);
     before = lambda_nm;
+    t_before = t;
   }
 }
 
@@ -332,7 +338,7 @@ static float (*fill_intervals(const abbe_renderer *r, const abbe_wavelengths *w,
                               float (*out)[4]))[4] {
   for (size_t light = 0; light < r->plan.light_count; light++)
     for (size_t k = 0; k < r->plan.refractor_count; k++)
-      for (size_t i = 0; i <= w->count; i++, out += r->steps + 1)
+      for (size_t i = 0; i <= w->count; i++, out += 2 * (r->steps + 1))
         fill_interval(r, w, light, r->scene->object[r->plan.refractor_object[k]].material, i, out);
   return out;
 }
@@ -344,7 +350,8 @@ static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
   const size_t sets = r->nodes + 1 + (refines ? w->count + 1 : 0);
   const size_t rows = r->plan.light_count * r->plan.refractor_count * sets;
   abbe_wavelengths coarse = {0};
-  float(*table)[4] = calloc(rows * (r->steps + 1) + 1, sizeof *table);
+  const size_t texels = rows * 2 * (r->steps + 1);
+  float(*table)[4] = calloc(texels + 1, sizeof *table);
   if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
   abbe_result result = coarse_wavelengths(r, w, &coarse, error);
   if (result == ABBE_OK) {
@@ -352,7 +359,7 @@ static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
     if (refines) fill_intervals(r, w, rest);
     result = abbe_renderer_upload_attenuation(r, &coarse, w, error);
   }
-  const size_t size = rows * (r->steps + 1) * sizeof *table;
+  const size_t size = texels * sizeof *table;
   if (result == ABBE_OK && r->buffer[BINDING_INTERVALS] == 0) {
     result = abbe_renderer_make_buffer(r, size, table, &r->buffer[BINDING_INTERVALS], error);
   } else if (result == ABBE_OK) {
