@@ -13,6 +13,7 @@ enum {
   OPTION_PHOTONS,
   OPTION_MAP,
   OPTION_SAMPLES,
+  OPTION_UPSAMPLE,
   OPTION_MODEL,
   OPTION_FILL,
   OPTION_SHARE,
@@ -31,6 +32,8 @@ static const struct argp_option options[] = {
     {"photons", OPTION_PHOTONS, "N", 0, "side of the photon grid, 1 to 4096 (256)", 1},
     {"map", OPTION_MAP, "N", 0, "side of the spectral map, 1 to 4096 (1024)", 1},
     {"samples", OPTION_SAMPLES, "N", 0, "samples a pixel side, 1 to 4 (2; thesis 1)", 1},
+    {"upsample", OPTION_UPSAMPLE, "N", 0,
+     "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
     {"model", OPTION_MODEL, "NAME", 0,
      "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)", 1},
     {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
@@ -76,6 +79,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_SAMPLES:
     d->supersample = abbe_command_count(p, "--samples", text, 1, 4);
+    return 0;
+  case OPTION_UPSAMPLE:
+    d->upsample = abbe_command_count(p, "--upsample", text, 1, 4);
     return 0;
   case OPTION_MODEL:
     d->model = (abbe_model)abbe_command_choice(p, "--model", text, models, ABBE_MODEL_COUNT);

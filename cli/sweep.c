@@ -25,6 +25,7 @@ enum {
   OPTION_PHOTONS,
   OPTION_MAP,
   OPTION_SAMPLES,
+  OPTION_UPSAMPLE,
   OPTION_FILL,
   OPTION_EXITS,
   OPTION_MODEL,
@@ -79,6 +80,7 @@ static const struct argp_option options[] = {
     {"photons", OPTION_PHOTONS, "LIST", 0, "sides of the photon grid", 1},
     {"map", OPTION_MAP, "LIST", 0, "sides of the spectral map", 1},
     {"samples", OPTION_SAMPLES, "LIST", 0, "a pixel side", 1},
+    {"upsample", OPTION_UPSAMPLE, "LIST", 0, "pixels a sample side", 1},
     {"fill", OPTION_FILL, "LIST", 0, "auto,none", 1},
     {"model", OPTION_MODEL, "LIST", 0, "of transport: auto, layers, hierarchy, ...", 1},
     {"exits", OPTION_EXITS, "LIST", 0, "followed at the most", 1},
@@ -126,6 +128,7 @@ static void each_word(const request *q, const char *option, const char *text, si
 static void take_count(const request *q, const char *option, const char *word, size_t at,
                        void *out) {
   size_t most = strcmp(option, "--samples") == 0       ? 4
+                : strcmp(option, "--upsample") == 0    ? 4
                 : strcmp(option, "--exits") == 0       ? ABBE_RENDER_MAX_ORDERS
                 : strcmp(option, "--wavelengths") == 0 ? ABBE_RENDER_MAX_WAVELENGTHS
                                                        : ABBE_RENDER_MAX_PHOTONS;
@@ -184,6 +187,7 @@ static error_t parse_list(int key, const char *text, request *q) {
                {OPTION_PHOTONS, "--photons", &g->photons},
                {OPTION_MAP, "--map", &g->map},
                {OPTION_SAMPLES, "--samples", &g->samples},
+               {OPTION_UPSAMPLE, "--upsample", &g->upsample},
                {OPTION_EXITS, "--exits", &g->exits},
                {OPTION_PROFILES, "--profiles", &g->profiles},
                {OPTION_MODEL, "--model", &g->models},

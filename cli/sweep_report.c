@@ -177,6 +177,7 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
   cJSON_AddNumberToObject(o, "photons", (double)s->photons);
   cJSON_AddNumberToObject(o, "map", (double)s->map);
   cJSON_AddNumberToObject(o, "samples", (double)s->samples);
+  cJSON_AddNumberToObject(o, "upsample", (double)s->upsample);
   cJSON_AddStringToObject(o, "fill", s->fill);
   cJSON_AddNumberToObject(o, "exits", (double)s->exits);
   cJSON_AddNumberToObject(o, "share", s->share);

@@ -17,6 +17,16 @@ static bool resolves(const abbe_renderer *r) {
   return r->plan.desc.supersample > 1;
 }
 
+static bool enlarges(const abbe_renderer *r) {
+  return r->plan.desc.upsample > 1;
+}
+
+size_t abbe_renderer_samples(const abbe_renderer *r, int axis) {
+  const abbe_render_desc *d = &r->plan.desc;
+  const size_t pixels = axis == 0 ? d->width : d->height;
+  return (pixels * d->supersample + d->upsample - 1) / d->upsample;
+}
+
 static bool refines(const abbe_renderer *r) {
   return r->plan.desc.wavelengths >= FINE_FROM && !r->plan.desc.everything;
 }
@@ -36,17 +46,19 @@ void abbe_renderer_fit_eye(abbe_renderer *r) {
   abbe_view_pad(&r->eye, 0.01);
   double y = tan(0.5 * camera->fov_y_rad);
   double x = y * (double)r->plan.desc.width / (double)r->plan.desc.height;
-  double right = r->plan.desc.sample_shift[0] * 2 * x / (double)r->plan.desc.width;
-  double up = r->plan.desc.sample_shift[1] * 2 * y / (double)r->plan.desc.height;
-  right /= (double)r->plan.desc.supersample;
-  up /= (double)r->plan.desc.supersample;
-  double window[4] = {right - x, right + x, up - y, up + y};
+  /* Whole samples, the last of which may stand for pixels beyond the picture. */
+  const double side = (double)r->plan.desc.upsample / (double)r->plan.desc.supersample;
+  const double wide = side * 2 * x / (double)r->plan.desc.width;
+  const double high = side * 2 * y / (double)r->plan.desc.height;
+  const double left = wide * r->plan.desc.sample_shift[0] - x;
+  const double bottom = high * r->plan.desc.sample_shift[1] - y;
+  const double window[4] = {left, left + wide * (double)abbe_renderer_samples(r, 0), bottom,
+                            bottom + high * (double)abbe_renderer_samples(r, 1)};
   memcpy(r->eye.window, window, sizeof window);
 }
 
 static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
-  size_t w = r->plan.desc.width * r->plan.desc.supersample;
-  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   bool layers = r->plan.seen;
   GLint most = 0;
   r->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
@@ -82,7 +94,7 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
     size_t room = w * h < REFINE_ROOM ? w * h : REFINE_ROOM;
     result = abbe_renderer_make_buffer(r, LIST_HEADER + 8 * room, NULL, &r->refine_list, error);
   }
-  if (result == ABBE_OK && resolves(r))
+  if (result == ABBE_OK && (resolves(r) || enlarges(r)))
     result = abbe_renderer_make_texture(r, GL_RGBA32F, r->plan.desc.width, r->plan.desc.height, 0,
                                         false, &r->eye_picture, error);
   return result;
@@ -114,8 +126,7 @@ static size_t views_of_light(const abbe_renderer *r, size_t light, abbe_view out
 /* Around what the view holds of the object. */
 static bool bound_object(const abbe_renderer *r, const abbe_view *view, const abbe_exact *exact,
                          int out[4]) {
-  const size_t w = r->plan.desc.width * r->plan.desc.supersample;
-  const size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   bool any = false;
   for (size_t i = 0; i < exact->count; i++) {
     int part[4];
@@ -132,12 +143,13 @@ static bool bound_object(const abbe_renderer *r, const abbe_view *view, const ab
 /* Of the picture's samples, a half at least must be drawn without light for it to pay that the
  * others are drawn once more. */
 static bool pays(const abbe_renderer *r) {
-  double area = 0, samples = (double)(r->plan.desc.supersample * r->plan.desc.supersample);
+  double area = 0,
+         samples = (double)abbe_renderer_samples(r, 0) * (double)abbe_renderer_samples(r, 1);
   for (size_t i = 0; i < r->lit_count; i++) {
     const int *rect = r->lit[i].rect;
     area += (double)(rect[2] - rect[0]) * (double)(rect[3] - rect[1]);
   }
-  return area < 0.5 * samples * (double)(r->plan.desc.width * r->plan.desc.height);
+  return area < 0.5 * samples;
 }
 
 /* Where the picture is mostly dark, receivers are drawn without any light, and what a light may
@@ -178,8 +190,9 @@ abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK && r->plan.seen)
     result =
         abbe_program_make_compute(r->gl, "refraction_list.comp", NULL, &r->refraction_list, error);
-  if (result == ABBE_OK && resolves(r))
-    result = abbe_program_make_compute(r->gl, "eye_resolve.comp", NULL, &r->eye_resolve, error);
+  if (result == ABBE_OK && (resolves(r) || enlarges(r)))
+    result = abbe_program_make_compute(r->gl, enlarges(r) ? "eye_enlarge.comp" : "eye_resolve.comp",
+                                       NULL, &r->eye_resolve, error);
   return result;
 }
 
@@ -249,8 +262,7 @@ static void draw_lit_parts(abbe_renderer *r) {
 
 static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
   const abbe_gl *gl = r->gl;
-  size_t w = r->plan.desc.width * r->plan.desc.supersample;
-  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   GLuint target[3] = {r->eye_receivers, r->eye_direct, r->eye_caustic};
   static const int flat[3] = {0, -1, -1};
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
@@ -274,8 +286,7 @@ static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
 /* Front with its owner, and, where a mesh ends at its back layer, the back. */
 static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
   const abbe_gl *gl = r->gl;
-  size_t w = r->plan.desc.width * r->plan.desc.supersample;
-  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
   static const GLuint nobody[4] = {0, 0, 0, 0};
   abbe_renderer_begin_pass(r);
@@ -372,8 +383,7 @@ static void set_refraction(abbe_renderer *r, GLuint program, size_t rows) {
 static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progress, void *user,
                                    abbe_error *error) {
   const abbe_gl *gl = r->gl;
-  size_t w = r->plan.desc.width * r->plan.desc.supersample;
-  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   abbe_renderer_begin_pass(r);
@@ -400,9 +410,13 @@ static void resolve_picture(abbe_renderer *r) {
   abbe_renderer_begin_pass(r);
   gl->UseProgram(r->eye_resolve);
   abbe_renderer_bind_texture(r, r->eye_resolve, "receivers", 0, r->eye_receivers);
-  abbe_renderer_bind_texture_2d(r, r->eye_resolve, "refraction", 1, r->eye_refraction);
+  if (resolves(r)) {
+    abbe_renderer_bind_texture_2d(r, r->eye_resolve, "refraction", 1, r->eye_refraction);
+    abbe_renderer_set_int(r, r->eye_resolve, "samples", (int)r->plan.desc.supersample);
+  } else {
+    abbe_renderer_set_int(r, r->eye_resolve, "pixels", (int)r->plan.desc.upsample);
+  }
   gl->BindImageTexture(0, r->eye_picture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  abbe_renderer_set_int(r, r->eye_resolve, "samples", (int)r->plan.desc.supersample);
   gl->Uniform2i(gl->GetUniformLocation(r->eye_resolve, "size"), (GLint)r->plan.desc.width,
                 (GLint)r->plan.desc.height);
   abbe_renderer_dispatch_2d(r, r->plan.desc.width, r->plan.desc.height);
@@ -415,7 +429,7 @@ abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, v
   abbe_result result = draw_receivers(r, error);
   if (result == ABBE_OK && r->eye_layers != 0) result = draw_layers(r, error);
   if (result == ABBE_OK) result = draw_refraction(r, progress, user, error);
-  if (result == ABBE_OK && resolves(r)) resolve_picture(r);
+  if (result == ABBE_OK && r->eye_picture != 0) resolve_picture(r);
   return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the eye's passes", error);
 }
 
@@ -423,8 +437,7 @@ abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error)
   const abbe_gl *gl = r->gl;
   static const int first = 0;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  size_t w = r->plan.desc.width * r->plan.desc.supersample;
-  size_t h = r->plan.desc.height * r->plan.desc.supersample;
+  const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   if (r->eye_receivers == 0)
     return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no floor of its own");
   abbe_result result = ABBE_OK;

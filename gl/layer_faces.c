@@ -5,8 +5,7 @@
 #include <stdlib.h>
 
 static double keep_within(const abbe_renderer *r, const abbe_mesh *mesh) {
-  const abbe_render_desc *desc = &r->plan.desc;
-  const size_t samples[2] = {desc->width * desc->supersample, desc->height * desc->supersample};
+  const size_t samples[2] = {abbe_renderer_samples(r, 0), abbe_renderer_samples(r, 1)};
   double cell = INFINITY, sample = INFINITY;
   for (size_t i = 0; i < r->plan.light_count; i++)
     if (r->plan.reaches[i])

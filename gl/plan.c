@@ -62,7 +62,8 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
   if (d.max_nm == 0) d.max_nm = d.profile == ABBE_PROFILE_THESIS ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
   if (d.photons == 0) d.photons = thesis ? 512 : 256;
   if (d.map_size == 0) d.map_size = 1024;
-  if (d.supersample == 0) d.supersample = thesis ? 1 : 2;
+  if (d.upsample == 0) d.upsample = 1;
+  if (d.supersample == 0) d.supersample = thesis || d.upsample > 1 ? 1 : 2;
   if (d.fill == ABBE_FILL_AUTO) d.fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
   if (d.energy_share == 0) d.energy_share = ABBE_PLAN_SHARE;
   plan->desc = d;
@@ -73,6 +74,8 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
   if (result == ABBE_OK)
     result = check_limit("the spectral map", d.map_size, ABBE_RENDER_MAX_MAP, error);
   if (result == ABBE_OK) result = check_limit("the supersampling", d.supersample, 4, error);
+  if (result == ABBE_OK)
+    result = check_limit("the upsampling", d.upsample, thesis || d.supersample > 1 ? 1 : 4, error);
   if (result == ABBE_OK && d.wavelengths != 0)
     result = check_limit("the number of wavelengths", d.wavelengths,
                          thesis ? 64 : ABBE_RENDER_MAX_WAVELENGTHS, error);
@@ -450,6 +453,9 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->desc.supersample > 1)
     add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
         plan->desc.supersample);
+  else if (plan->desc.upsample > 1)
+    add(plan, true, "eye: picture", "a sample for %zu x %zu pixels", plan->desc.upsample,
+        plan->desc.upsample);
   else
     add(plan, false, "eye: picture", "one sample a pixel: nothing is averaged");
   add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");

@@ -78,7 +78,8 @@ typedef struct abbe_render_desc {
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
   size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
   size_t map_size;       /* side of the spectral map; 0: 1024 */
-  size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis: 1) */
+  size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
+  size_t upsample;       /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
   abbe_fill fill;
   abbe_model model;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too much

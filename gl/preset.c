@@ -57,10 +57,12 @@ static abbe_result get_counts(const reader *r, abbe_yaml_node node, abbe_render_
                 {"photons", ABBE_RENDER_MAX_PHOTONS, &d->photons},
                 {"map", ABBE_RENDER_MAX_MAP, &d->map_size},
                 {"samples", 4, &d->supersample},
+                {"upsample", 4, &d->upsample},
                 {"exits", ABBE_RENDER_MAX_ORDERS, &d->orders}};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     abbe_result result = abbe_yaml_get_count(r->yaml, node, counts[i].key, 1, counts[i].most,
                                              counts[i].out, r->error);
+    if (result == ABBE_OK && *counts[i].out == 0 && counts[i].out == &d->upsample) d->upsample = 1;
     if (result == ABBE_OK && *counts[i].out == 0)
       result =
           abbe_yaml_fail(r->yaml, node, r->error, "a point of a front has no '%s'", counts[i].key);
@@ -232,7 +234,10 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
   bool same = take(&d->wavelengths, p->wavelengths);
   same = take(&d->photons, p->photons) && same;
   same = take(&d->map_size, p->map_size) && same;
-  same = take(&d->supersample, p->supersample) && same;
+  if (d->supersample > 1) d->upsample = 1; /* asked for, and one excludes the other */
+  same = take(&d->upsample, p->upsample) && same;
+  same = take(&d->supersample, d->upsample > 1 ? 1 : p->supersample) && same;
+  same = d->supersample == p->supersample && same;
   same = take_exits(&d->orders, p) && same;
   if (d->fill == ABBE_FILL_AUTO) d->fill = p->fill;
   if (d->energy_share == 0) d->energy_share = p->energy_share;

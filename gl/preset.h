@@ -45,7 +45,7 @@ abbe_preset_class abbe_preset_class_of(const abbe_plan *plan);
 
 typedef struct abbe_preset_point {
   abbe_render_desc
-      desc; /* wavelengths, photons, map, samples, fill, share, exits, model; the rest 0 */
+      desc; /* wavelengths, photons, map, samples, upsampling, fill, share, exits, model; the rest 0 */
   double light_ms, eye_ms; /* on the run's machine, as promised: the worst of its scenes in ratio to
                               the first point, times the time's margin */
   double error;            /* that is promised: the worst times the front's margin */

@@ -191,10 +191,10 @@ void abbe_renderer_free(abbe_renderer *r) {
       r->eye_receivers,   r->eye_direct,       r->eye_caustic, r->eye_depth,   r->eye_refraction,
       r->eye_layers,      r->eye_layers_depth, r->eye_owner,   r->eye_picture, r->eye_floor};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  const GLuint programs[] = {
-      r->place,           r->cover,           r->groups,     r->trace, r->deposit,   r->splat,
-      r->list_groups,     r->resolve,         r->mip,        r->layer, r->receivers, r->unlit, r->refraction,
-      r->refraction_fine, r->refraction_list, r->eye_resolve};
+  const GLuint programs[] = {r->place,      r->cover,           r->groups,          r->trace,
+                             r->deposit,    r->splat,           r->list_groups,     r->resolve,
+                             r->mip,        r->layer,           r->receivers,       r->unlit,
+                             r->refraction, r->refraction_fine, r->refraction_list, r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
   gl->DeleteFramebuffers(1, &r->framebuffer);
   gl->DeleteVertexArrays(1, &r->empty_array);
@@ -249,8 +249,8 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
 }
 
 /* GL's rows run upwards. */
-static void copy_flipped(const float *from, size_t from_channels, size_t first, abbe_image *image,
-                         size_t to, size_t count, size_t samples) {
+static void copy_flipped(const float *from, size_t first, abbe_image *image, size_t to,
+                         size_t count, size_t samples) {
   double scale = 1.0 / (double)(samples * samples);
   for (size_t y = 0; y < image->height; y++)
     for (size_t x = 0; x < image->width; x++) {
@@ -260,9 +260,37 @@ static void copy_flipped(const float *from, size_t from_channels, size_t first, 
         for (size_t k = 0; k < samples * samples; k++) {
           size_t row = (image->height - 1 - y) * samples + k / samples;
           size_t column = x * samples + k % samples;
-          sum += from[(row * image->width * samples + column) * from_channels + first + c];
+          sum += (double)from[(row * image->width * samples + column) * 4 + first + c];
         }
         pixel[c] = (float)(sum * scale);
+      }
+    }
+}
+
+/* The two samples on whose sides pixel i lies, and how far it is from the first to the second. */
+static double between(size_t i, size_t pixels, size_t samples, size_t out[2]) {
+  const double at = fmax(((double)i + 0.5) / (double)pixels - 0.5, 0);
+  out[0] = (size_t)at;
+  out[1] = out[0] + 1 < samples ? out[0] + 1 : out[0];
+  return at - (double)out[0];
+}
+
+/* As eye_enlarge.comp does. */
+static void copy_enlarged(const abbe_renderer *r, const float *from, abbe_image *image, size_t to,
+                          size_t count) {
+  const size_t samples[2] = {abbe_renderer_samples(r, 0), abbe_renderer_samples(r, 1)};
+  for (size_t y = 0; y < image->height; y++)
+    for (size_t x = 0; x < image->width; x++) {
+      float *pixel = image->data + (y * image->width + x) * image->channels + to;
+      size_t column[2], row[2];
+      const double across = between(x, r->plan.desc.upsample, samples[0], column);
+      const double up = between(image->height - 1 - y, r->plan.desc.upsample, samples[1], row);
+      for (size_t c = 0; c < count; c++) {
+        double sum = 0;
+        for (size_t k = 0; k < 4; k++)
+          sum += (k % 2 == 0 ? 1 - across : across) * (k / 2 == 0 ? 1 - up : up) *
+                 (double)from[(row[k / 2] * samples[0] + column[k % 2]) * 4 + c];
+        pixel[c] = (float)sum;
       }
     }
 }
@@ -291,8 +319,8 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
   abbe_result result = abbe_image_make(r->plan.desc.width, r->plan.desc.height, layers ? 10 : 3,
                                        as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;
-  size_t s = layers ? r->plan.desc.supersample : 1;
-  float *data = malloc(out->width * out->height * s * s * 4 * sizeof *data);
+  const size_t side = layers ? r->plan.desc.supersample : 1;
+  float *data = malloc(out->width * out->height * side * side * 4 * sizeof *data);
   if (data == NULL) {
     abbe_image_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");
@@ -302,13 +330,16 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
   const GLenum target = resolved ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
   gl->BindTexture(target, resolved ? r->eye_picture : r->eye_receivers);
   gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
-  copy_flipped(data, 4, 0, out, 0, layers ? 4 : 3, 1);
+  copy_flipped(data, 0, out, 0, layers ? 4 : 3, 1);
   to_output_space(r, out, 0);
   const GLuint texture[2] = {r->eye_direct, r->eye_caustic};
   for (size_t k = 0; k < 2 && layers; k++) {
     gl->BindTexture(GL_TEXTURE_2D, texture[k]);
     gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
-    copy_flipped(data, 4, 0, out, 4 + 3 * k, 3, s);
+    if (r->plan.desc.upsample > 1)
+      copy_enlarged(r, data, out, 4 + 3 * k, 3);
+    else
+      copy_flipped(data, 0, out, 4 + 3 * k, 3, side);
     to_output_space(r, out, 4 + 3 * k);
   }
   free(data);
@@ -355,7 +386,7 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
     if (i == light || r->plan.lamp[i].light != light) continue;
     for (size_t k = 0; k < side * side * 4; k++) data[light * side * side * 4 + k] += layer[k];
   }
-  copy_flipped(data + light * side * side * 4, 4, 0, out, 0, 3, 1);
+  copy_flipped(data + light * side * side * 4, 0, out, 0, 3, 1);
   free(data);
   /* The thesis's passes sum the light of a lamp of unit power. */
   double power = flat ? r->scene->light[light].power : 1;

@@ -314,6 +314,8 @@ abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *
 
 /* eye_pass.c: the picture. */
 void abbe_renderer_fit_eye(abbe_renderer *r);
+/* Of the picture, across or up; they cover it, and less than one of them more. */
+size_t abbe_renderer_samples(const abbe_renderer *r, int axis);
 abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error);
 abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, void *user,
                               abbe_error *error);

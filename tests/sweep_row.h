@@ -12,6 +12,7 @@ static inline abbe_sweep_row sweep_row(const char *profile, size_t photons) {
                                     .photons = photons,
                                     .map = 512,
                                     .samples = 1,
+                                    .upsample = 1,
                                     .fill = "bridge",
                                     .share = 0.01,
                                     .exits = 8,

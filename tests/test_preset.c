@@ -156,6 +156,13 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   assert_int_equal(some.orders, 2);
   assert_false(abbe_preset_apply(&fewer, &other));
   assert_int_equal(other.orders, 3);
+  abbe_preset_point draft = *point;
+  abbe_render_desc coarse = {0}, fine = {.supersample = 2};
+  draft.desc.upsample = 2;
+  assert_true(abbe_preset_apply(&draft, &coarse));
+  assert_true(coarse.upsample == 2 && coarse.supersample == 1);
+  assert_false(abbe_preset_apply(&draft, &fine));
+  assert_true(fine.upsample == 1 && fine.supersample == 2);
   abbe_presets_free(&presets);
 }
 

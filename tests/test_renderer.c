@@ -331,6 +331,57 @@ static void test_the_floor_leaves_the_picture(void **state) {
   }
 }
 
+/* One sample for 2 x 2 pixels is a picture of half the size, and between its pixels what lies
+ * between them; where sides are odd the last sample stands for what is left. */
+static void test_fewer_samples_than_pixels(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0};
+  load_shipped("sphere", &scene);
+  abbe_render_desc desc = {.width = 64,
+                           .height = 48,
+                           .photons = 32,
+                           .map_size = 64,
+                           .wavelengths = 3,
+                           .layers = true,
+                           .upsample = 2};
+  abbe_image *const out[] = {&coarse, &half, &odd, &fine};
+  const size_t sizes[][2] = {{64, 48}, {32, 24}, {63, 47}, {63, 47}}, up[] = {2, 1, 2, 1};
+  for (size_t i = 0; i < 4; i++) {
+    desc.width = sizes[i][0];
+    desc.height = sizes[i][1];
+    desc.upsample = up[i];
+    desc.supersample = i == 3 ? 4 : 1;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, true, out[i]);
+    abbe_renderer_free(renderer);
+  }
+  double worst = 0;
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 64; x++)
+      for (size_t c = 0; c < coarse.channels; c++) {
+        double sum = 0;
+        for (int k = 0; k < 4 && c != 3; k++) { /* not between distances */
+          const size_t beside[2] = {x % 2 == 0 ? x / 2 - (x > 0) : x / 2 + (x < 63),
+                                    y % 2 == 0 ? y / 2 - (y > 0) : y / 2 + (y < 47)};
+          const size_t column = k % 2 == 0 ? x / 2 : beside[0],
+                       row = k / 2 == 0 ? y / 2 : beside[1];
+          sum += (k % 2 == 0 ? 0.75 : 0.25) * (k / 2 == 0 ? 0.75 : 0.25) *
+                 (double)half.data[(row * 32 + column) * half.channels + c];
+        }
+        if (c == 3) sum = (double)half.data[(y / 2 * 32 + x / 2) * half.channels + c];
+        worst = fmax(worst, fabs(sum - (double)coarse.data[(y * 64 + x) * coarse.channels + c]) /
+                                fmax(fabs(sum), 1e-3));
+      }
+  const double mean = image_sum(&odd, 1) / image_sum(&fine, 1);
+  print_message("off by %.2g at the most, odd sides %.4f of the light\n", worst, mean);
+  assert_true(worst < 1e-5);
+  assert_true(fabs(mean - 1) < 0.01);
+  for (size_t i = 0; i < 4; i++) abbe_image_free(out[i]);
+  abbe_scene_free(&scene);
+}
+
 static void test_a_map_takes_a_given_layout(void **state) {
   (void)state;
   abbe_scene scene;
@@ -415,6 +466,7 @@ int main(void) {
       cmocka_unit_test(test_dispersion_goes_to_the_map_without),
       cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
       cmocka_unit_test(test_the_floor_leaves_the_picture),
+      cmocka_unit_test(test_fewer_samples_than_pixels),
       cmocka_unit_test(test_a_map_takes_a_given_layout),
       cmocka_unit_test(test_what_is_not_there_is_refused),
   };

@@ -69,9 +69,9 @@ static void test_settings_are_told_apart(void **state) {
   assert_ptr_equal(abbe_sweep_table_find(&table, &row.setting), &table.row[0]);
   assert_int_equal(abbe_sweep_table_add(&table, &row, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "7 wavelengths, 128 photons, map 512");
-  size_t *const counts[] = {&row.setting.wavelengths, &row.setting.photons, &row.setting.map,
-                            &row.setting.samples, &row.setting.exits};
-  for (int i = 0; i < 5; i++) {
+  size_t *const counts[] = {&row.setting.wavelengths, &row.setting.photons,  &row.setting.map,
+                            &row.setting.samples,     &row.setting.upsample, &row.setting.exits};
+  for (int i = 0; i < 6; i++) {
     ++*counts[i];
     assert_null(abbe_sweep_table_find(&table, &row.setting));
     --*counts[i];
@@ -80,6 +80,12 @@ static void test_settings_are_told_apart(void **state) {
   assert_null(abbe_sweep_table_find(&table, &row.setting));
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
   assert_string_equal(text, "w7 p128 m512 s2 share 0.02");
+  row.setting.samples = 1;
+  row.setting.upsample = 3;
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s1/3 share 0.02");
+  row.setting.samples = 2;
+  row.setting.upsample = 1;
   row.setting.share = 0.01;
   row.setting.exits = 1;
   snprintf(row.setting.fill, sizeof row.setting.fill, "none");
@@ -145,11 +151,11 @@ static void test_broken_tables_are_named(void **state) {
       {"default,7,", "default,-7,", "is not a whole number"},
       {"default,7,", ",7,", "s.csv:3: profile '' is not a word"},
       {"default,7,", "a-profile-of-a-long-name,7,", "is not a word of 1 to 15 letters"},
-      {"auto,10,", "auto,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
-      {"auto,10,", "auto,1e999,", "is not a number"},
-      {"0.01,auto,10,", "0,auto,10,", "is not a share above 0"},
-      {"auto,10,", "auto,10,,", "the row has 44 cells, not 43"},
-      {"frame_ms", "frame_s", "column 10 is 'frame_s' where a sweep has 'frame_ms'"},
+      {"auto,1,10,", "auto,1,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
+      {"auto,1,10,", "auto,1,1e999,", "is not a number"},
+      {"0.01,auto,1,10,", "0,auto,1,10,", "is not a share above 0"},
+      {"auto,1,10,", "auto,1,10,,", "the row has 45 cells, not 44"},
+      {"frame_ms", "frame_s", "column 11 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };
   char *text = text_of_one_row(), changed[8300];

@@ -85,6 +85,13 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
   };
   static const abbe_sweep_grid thin[] = {
       {.wavelengths = VALUES(3, 5),
+       .photons = VALUES(24),
+       .map = VALUES(128),
+       .upsample = VALUES(2),
+       .share_count = 1,
+       .share = {0.1}},
+      {.wavelengths = VALUES(5), .photons = VALUES(48), .map = VALUES(128), .upsample = VALUES(2)},
+      {.wavelengths = VALUES(3, 5),
        .photons = VALUES(16),
        .map = VALUES(64),
        .samples = VALUES(1),
@@ -123,6 +130,21 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
        .map = VALUES(512),
        .samples = VALUES(1),
        .fills = VALUES(ABBE_FILL_NONE)},
+      {.wavelengths = VALUES(1, 3),
+       .photons = VALUES(24),
+       .map = VALUES(64),
+       .upsample = VALUES(2),
+       .exits = VALUES(2),
+       .share_count = 1,
+       .share = {0.1},
+       .models = VALUES(ABBE_MODEL_LAYERS),
+       .meshes = true},
+      {.wavelengths = VALUES(3),
+       .photons = VALUES(64),
+       .map = VALUES(256),
+       .upsample = VALUES(2),
+       .models = VALUES(ABBE_MODEL_LAYERS),
+       .meshes = true},
       {.wavelengths = VALUES(1, 3),
        .photons = VALUES(24),
        .map = VALUES(64),
@@ -193,6 +215,7 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
                               .map = d->map_size,
                               /* without effect there: one setting whatever was asked */
                               .samples = thesis ? 1 : d->supersample,
+                              .upsample = d->upsample,
                               .share = thesis ? 0.01 : d->energy_share,
                               .exits = d->orders};
   snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
@@ -221,6 +244,7 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
                             .photons = setting->photons,
                             .map_size = setting->map,
                             .supersample = setting->samples,
+                            .upsample = setting->upsample,
                             .fill = (abbe_fill)fill,
                             .model = (abbe_model)model,
                             .energy_share = setting->share,
@@ -277,8 +301,9 @@ static bool has_mesh(const abbe_scene *scene) {
 
 static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *error) {
   size_t shares = g->share_count > 0 ? g->share_count : 1, total = shares;
-  const abbe_sweep_values *const axes[] = {&g->profiles, &g->wavelengths, &g->photons, &g->map,
-                                           &g->samples,  &g->exits,       &g->fills,   &g->models};
+  const abbe_sweep_values *const axes[] = {&g->profiles, &g->wavelengths, &g->photons,
+                                           &g->map,      &g->samples,     &g->upsample,
+                                           &g->exits,    &g->fills,       &g->models};
   for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) total *= length_of(axes[i]);
   abbe_result result = ABBE_OK;
   if (g->meshes && !has_mesh(e->scene)) return ABBE_OK;
@@ -288,6 +313,7 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
     d.photons = take(&g->photons, &counter);
     d.map_size = take(&g->map, &counter);
     d.supersample = take(&g->samples, &counter);
+    d.upsample = take(&g->upsample, &counter);
     d.orders = take(&g->exits, &counter);
     d.fill = (abbe_fill)take(&g->fills, &counter);
     d.model = (abbe_model)take(&g->models, &counter);

@@ -31,7 +31,7 @@ typedef struct abbe_sweep_values {
 /* All combinations of its axes. A zeroed grid is the default profile's default. */
 typedef struct abbe_sweep_grid {
   abbe_sweep_values profiles; /* abbe_profile */
-  abbe_sweep_values wavelengths, photons, map, samples, exits;
+  abbe_sweep_values wavelengths, photons, map, samples, upsample, exits;
   abbe_sweep_values fills;    /* abbe_fill */
   abbe_sweep_values models;   /* abbe_model */
   bool meshes; /* only where a refractor is a general mesh */

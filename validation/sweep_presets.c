@@ -192,9 +192,10 @@ static void write_point(FILE *out, const point *p) {
   const abbe_sweep_setting *s = p->setting;
   char share[ABBE_NUMBER_TEXT_SIZE];
   fprintf(out,
-          "  - {wavelengths: %zu, photons: %zu, map: %zu, samples: %zu, fill: %s, exits: %zu, "
+          "  - {wavelengths: %zu, photons: %zu, map: %zu, samples: %zu, upsample: %zu, fill: %s, "
+          "exits: %zu, "
           "share: %s,\n     model: %s, light_ms: %.2f, eye_ms: %.2f, error: %.4g, least: %.4g}\n",
-          s->wavelengths, s->photons, s->map, s->samples, s->fill, s->exits,
+          s->wavelengths, s->photons, s->map, s->samples, s->upsample, s->fill, s->exits,
           abbe_number_text(s->share, share), s->model, p->light_ms, p->eye_ms, p->error, p->least);
 }
 

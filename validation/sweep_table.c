@@ -27,8 +27,9 @@ static const char *const fact_names[] = {
 #undef NAME
 };
 
-static const char *const setting_columns[] = {
-    "profile", "wavelengths", "photons", "map", "samples", "fill", "exits", "share", "model"};
+static const char *const setting_columns[] = {"profile", "wavelengths", "photons", "map",
+                                              "samples", "fill",        "exits",   "share",
+                                              "model",   "upsample"};
 enum {
   SETTING_COLUMNS = sizeof setting_columns / sizeof *setting_columns,
   COLUMNS = SETTING_COLUMNS + ABBE_SWEEP_NUMBER_COUNT + 1
@@ -64,28 +65,31 @@ bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setti
   return strcmp(a->profile, b->profile) == 0 && strcmp(a->fill, b->fill) == 0 &&
          strcmp(a->model, b->model) == 0 && a->wavelengths == b->wavelengths &&
          a->photons == b->photons && a->map == b->map && a->samples == b->samples &&
-         a->exits == b->exits && a->share == b->share;
+         a->upsample == b->upsample && a->exits == b->exits && a->share == b->share;
 }
 
 void abbe_sweep_setting_describe(const abbe_sweep_setting *s, char *out, size_t size) {
   bool plain = strcmp(s->profile, "default") == 0;
-  char share[ABBE_NUMBER_TEXT_SIZE];
+  char share[ABBE_NUMBER_TEXT_SIZE], upsample[32] = "";
+  if (s->upsample > 1) snprintf(upsample, sizeof upsample, ", upsample %zu", s->upsample);
   snprintf(out, size,
            "%s%s%zu wavelengths, %zu photons, map %zu, %zu samples, fill %s, %zu exits, share %s, "
-           "model %s",
+           "model %s%s",
            plain ? "" : s->profile, plain ? "" : ": ", s->wavelengths, s->photons, s->map,
-           s->samples, s->fill, s->exits, abbe_number_text(s->share, share), s->model);
+           s->samples, s->fill, s->exits, abbe_number_text(s->share, share), s->model, upsample);
 }
 
 void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t size) {
   bool plain = strcmp(s->profile, "default") == 0;
   char exits[24] = "", share[48] = "", model[24] = "", number[ABBE_NUMBER_TEXT_SIZE];
+  char upsample[24] = "";
+  if (s->upsample > 1) snprintf(upsample, sizeof upsample, "/%zu", s->upsample);
   if (plain && s->exits < 4) snprintf(exits, sizeof exits, " e%zu", s->exits);
   if (plain && s->share != 0.01)
     snprintf(share, sizeof share, " share %s", abbe_number_text(s->share, number));
   if (plain && strcmp(s->model, "auto") != 0) snprintf(model, sizeof model, " %s", s->model);
-  snprintf(out, size, "%s%sw%zu p%zu m%zu s%zu%s%s%s%s", plain ? "" : s->profile, plain ? "" : " ",
-           s->wavelengths, s->photons, s->map, s->samples,
+  snprintf(out, size, "%s%sw%zu p%zu m%zu s%zu%s%s%s%s%s", plain ? "" : s->profile,
+           plain ? "" : " ", s->wavelengths, s->photons, s->map, s->samples, upsample,
            strcmp(s->fill, "none") == 0 ? " no fill" : "", exits, share, model);
 }
 
@@ -197,8 +201,8 @@ bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out)
 static void write_row(FILE *to, const abbe_sweep_row *row) {
   const abbe_sweep_setting *s = &row->setting;
   char text[ABBE_NUMBER_TEXT_SIZE];
-  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s", s->profile, s->wavelengths, s->photons, s->map,
-          s->samples, s->fill, s->exits, abbe_number_text(s->share, text), s->model);
+  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s,%zu", s->profile, s->wavelengths, s->photons, s->map,
+          s->samples, s->fill, s->exits, abbe_number_text(s->share, text), s->model, s->upsample);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
     bool known = isfinite(row->number[i]);
     fprintf(to, ",%s", known ? abbe_number_text(row->number[i], text) : "");
@@ -297,7 +301,7 @@ static abbe_result read_row(const reader *r, abbe_sweep_row *row, abbe_error *er
     return abbe_error_set(error, ABBE_PARSE, "%s:%zu: the row has %zu cells, not %d", r->name,
                           r->line, r->cells, (int)COLUMNS);
   size_t *const counts[] = {NULL, &s->wavelengths, &s->photons, &s->map, &s->samples,
-                            NULL, &s->exits,       NULL,        NULL};
+                            NULL, &s->exits,       NULL,        NULL,    &s->upsample};
   abbe_result result = read_word(r, 0, s->profile, error);
   if (result == ABBE_OK) result = read_word(r, 5, s->fill, error);
   if (result == ABBE_OK) result = read_word(r, 8, s->model, error);

@@ -22,7 +22,7 @@ extern "C" {
 /* One renderer's setting, every field resolved. */
 typedef struct abbe_sweep_setting {
   char profile[ABBE_SWEEP_WORD];
-  size_t wavelengths, photons, map, samples;
+  size_t wavelengths, photons, map, samples, upsample;
   char fill[ABBE_SWEEP_WORD];
   char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */
   double share;
