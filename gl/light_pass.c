@@ -9,7 +9,8 @@
 
 static const double narrow_rad = 0.17; /* ten degrees */
 
-enum { MIN_LAYER_SIDE = 256, MAX_LAYER_SIDE = 2048 };
+/* Texels: few photons need no more than four a cell, whose shadows are as coarse. */
+enum { MIN_LAYER_SIDE = 128, USUAL_LAYER_SIDE = 256, MAX_LAYER_SIDE = 2048 };
 
 bool abbe_renderer_is_face(const abbe_renderer *r, size_t light) {
   return r->plan.lamp[light].face >= 0;
@@ -156,7 +157,10 @@ static void fit_views(abbe_renderer *r) {
 }
 
 static abbe_result make_layers(abbe_renderer *r, abbe_error *error) {
-  size_t side = r->plan.desc.photons, lights = r->plan.light_count;
+  const size_t photons = r->plan.desc.photons, lights = r->plan.light_count;
+  size_t side = 4 * photons < USUAL_LAYER_SIDE ? 4 * photons
+                : photons < USUAL_LAYER_SIDE   ? USUAL_LAYER_SIDE
+                                               : photons;
   side = side < MIN_LAYER_SIDE ? MIN_LAYER_SIDE : side > MAX_LAYER_SIDE ? MAX_LAYER_SIDE : side;
   r->layer_side = side;
   abbe_result result = abbe_renderer_make_texture(r, GL_RGBA32F, side, side, 2 * lights, false,
