@@ -74,8 +74,16 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
   if (result == ABBE_OK)
     result = check_limit("the spectral map", d.map_size, ABBE_RENDER_MAX_MAP, error);
   if (result == ABBE_OK) result = check_limit("the supersampling", d.supersample, 4, error);
-  if (result == ABBE_OK)
-    result = check_limit("the upsampling", d.upsample, thesis || d.supersample > 1 ? 1 : 4, error);
+  if (result == ABBE_OK) result = check_limit("the upsampling", d.upsample, 4, error);
+  if (result == ABBE_OK && d.upsample > 1 && (thesis || d.supersample > 1))
+    return thesis
+               ? abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                                "the thesis profile has a sample for every pixel; it cannot be "
+                                "upsampled")
+               : abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                                "a sample for %zu x %zu pixels and %zu samples a pixel side: ask "
+                                "for one of the two",
+                                d.upsample, d.upsample, d.supersample);
   if (result == ABBE_OK && d.wavelengths != 0)
     result = check_limit("the number of wavelengths", d.wavelengths,
                          thesis ? 64 : ABBE_RENDER_MAX_WAVELENGTHS, error);
