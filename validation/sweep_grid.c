@@ -1,6 +1,6 @@
 #include "validation/sweep_grid.h"
 
-#include "gl/plan.h"
+#include "validation/sweep.h"
 
 #include <string.h>
 
