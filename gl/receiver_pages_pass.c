@@ -22,23 +22,15 @@ static size_t block_side(const abbe_renderer *r) {
 
 static abbe_result upload(abbe_renderer *r, int table, GLenum format, size_t size, const void *data,
                           abbe_error *error) {
-  const abbe_gl *gl = r->gl;
   GLint most = 0;
-  gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (size / 4 > (size_t)most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the receivers' %zu faces and %zu flat parts are more than this OpenGL "
                           "reads in a buffer; use smaller meshes",
                           r->charts.face_count, r->charts.count);
-  gl->DeleteBuffers(1, &r->page_table[table]);
-  r->page_table[table] = 0;
-  abbe_result result = abbe_renderer_make_buffer(r, size, data, &r->page_table[table], error);
-  if (result != ABBE_OK) return result;
-  if (r->page_texture[table] == 0) gl->GenTextures(1, &r->page_texture[table]);
-  gl->ActiveTexture(GL_TEXTURE0 + PAGE_UNIT + (GLenum)table);
-  gl->BindTexture(GL_TEXTURE_BUFFER, r->page_texture[table]);
-  gl->TexBuffer(GL_TEXTURE_BUFFER, format, r->page_table[table]);
-  return abbe_gl_check(gl, "the upload of pages", error);
+  return abbe_renderer_make_texels(r, format, size, data, PAGE_UNIT + table, &r->page_table[table],
+                                   &r->page_texture[table], error);
 }
 
 /* Of one light, as receiver_pages.glsl reads it: its layer, blocks of texels, sides of charts. */

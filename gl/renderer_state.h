@@ -204,6 +204,11 @@ void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *na
                                 GLuint texture);
 void abbe_renderer_bind_texture_2d(abbe_renderer *r, GLuint program, const char *name, int unit,
                                    GLuint texture);
+/* A buffer of `size` bytes that shaders read as texels of `format`, and its texture, at a unit of its
+ * own; what *buffer was is deleted, *texture is made where it is 0. */
+abbe_result abbe_renderer_make_texels(abbe_renderer *r, GLenum format, size_t size,
+                                      const void *data, int unit, GLuint *buffer, GLuint *texture,
+                                      abbe_error *error);
 /* A buffer whose elements a shader reads as texels. */
 void abbe_renderer_bind_texels(abbe_renderer *r, GLuint program, const char *name, int unit,
                                GLenum format, GLuint buffer);

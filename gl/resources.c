@@ -75,6 +75,21 @@ abbe_result abbe_renderer_set_target(abbe_renderer *r, const GLuint *colour, con
                         width, height);
 }
 
+abbe_result abbe_renderer_make_texels(abbe_renderer *r, GLenum format, size_t size,
+                                      const void *data, int unit, GLuint *buffer, GLuint *texture,
+                                      abbe_error *error) {
+  const abbe_gl *gl = r->gl;
+  gl->DeleteBuffers(1, buffer);
+  *buffer = 0;
+  abbe_result result = abbe_renderer_make_buffer(r, size, data, buffer, error);
+  if (result != ABBE_OK) return result;
+  if (*texture == 0) gl->GenTextures(1, texture);
+  gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  gl->BindTexture(GL_TEXTURE_BUFFER, *texture);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, format, *buffer);
+  return abbe_gl_check(gl, "the upload of texels", error);
+}
+
 void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *name, int unit,
                                 GLuint texture) {
   GLint location = r->gl->GetUniformLocation(program, name);

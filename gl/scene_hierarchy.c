@@ -145,21 +145,16 @@ static abbe_result add_mesh(grove *g, const forest *f, const abbe_mesh *mesh, si
 /* A buffer that the shaders read as a texture of vec4. */
 static abbe_result upload_texels(abbe_renderer *r, int which, GLenum format, size_t size,
                                  const void *data, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
   GLint most = 0;
-  gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (size / 16 > (size_t)most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the meshes that light is traced through take %zu texels in a buffer; "
                           "this OpenGL reads at most %d: use smaller meshes, or "
                           "the model 'layers' for those that refract",
                           size / 16, most);
-  abbe_result result = abbe_renderer_make_buffer(r, size, data, &r->hierarchy[which], error);
-  if (result != ABBE_OK) return result;
-  gl->GenTextures(1, &r->hierarchy_texture[which]);
-  gl->BindTexture(GL_TEXTURE_BUFFER, r->hierarchy_texture[which]);
-  gl->TexBuffer(GL_TEXTURE_BUFFER, format, r->hierarchy[which]);
-  return abbe_gl_check(gl, "the upload of a hierarchy", error);
+  return abbe_renderer_make_texels(r, format, size, data, HIERARCHY_UNIT + which,
+                                   &r->hierarchy[which], &r->hierarchy_texture[which], error);
 }
 
 static abbe_result upload(abbe_renderer *r, const forest *f, abbe_error *error) {
