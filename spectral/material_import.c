@@ -31,20 +31,41 @@ static bool begins(const char *line, size_t length, const char *word) {
   return length >= count && memcmp(line, word, count) == 0;
 }
 
-static abbe_import_format kind_of_line(const char *line, size_t length) {
-  while (length > 0 && (*line == ' ' || *line == '\t')) line++, length--;
+/* What only one format has. */
+static abbe_import_format marked(const char *line, size_t length) {
   if (begins(line, length, "NM ") || begins(line, length, "NM\t")) return ABBE_IMPORT_AGF;
   if (begins(line, length, "DATA:")) return ABBE_IMPORT_RII;
   if (begins(line, length, "materials:")) return ABBE_IMPORT_YAML;
-  char start[80];
-  snprintf(start, sizeof start, "%.*s", (int)(length < 79 ? length : 79), line);
-  const char *end;
-  double value;
-  bool number = abbe_number_read(start, &end, &value);
-  return number && *end != '\0' && strchr(" \t,;", *end) != NULL ? ABBE_IMPORT_CSV
-                                                                 : ABBE_IMPORT_AUTO;
+  return ABBE_IMPORT_AUTO;
 }
 
+/* Two numbers: "20 C" is a remark. */
+static abbe_import_format numbered(const char *line, size_t length) {
+  static const char between[] = " \t,;\"";
+  char start[80];
+  double value;
+  snprintf(start, sizeof start, "%.*s", (int)(length < 79 ? length : 79), line);
+  const char *first = start + strspn(start, between), *end;
+  if (!abbe_number_read(first, &end, &value)) return ABBE_IMPORT_AUTO;
+  const char *second = end + strspn(end, between);
+  return second > end && abbe_number_read(second, &end, &value) ? ABBE_IMPORT_CSV
+                                                                : ABBE_IMPORT_AUTO;
+}
+
+/* The first line that says it, among all of them or among those that begin at the margin. */
+static abbe_import_format say(const char *text, bool at_margin,
+                              abbe_import_format (*kind)(const char *line, size_t length)) {
+  for (const char *line = text; *line != '\0';) {
+    size_t count = strcspn(line, "\n"), indent = at_margin ? 0 : strspn(line, " \t");
+    abbe_import_format found =
+        indent < count ? kind(line + indent, count - indent) : ABBE_IMPORT_AUTO;
+    if (found != ABBE_IMPORT_AUTO) return found;
+    line += count + (line[count] == '\n');
+  }
+  return ABBE_IMPORT_AUTO;
+}
+
+/* Remarks are indented or hold numbers, so that marks at the margin come first, numbers last. */
 static abbe_result detect(const char *text, size_t size, abbe_import_format *out,
                           abbe_error *error) {
   char *clean = NULL;
@@ -52,11 +73,9 @@ static abbe_result detect(const char *text, size_t size, abbe_import_format *out
   *out = ABBE_IMPORT_AUTO;
   abbe_result result = abbe_encoding_decode(text, size, &clean, &length, error);
   if (result != ABBE_OK) return result;
-  for (const char *line = clean; *out == ABBE_IMPORT_AUTO && *line != '\0';) {
-    size_t count = strcspn(line, "\n");
-    *out = kind_of_line(line, count);
-    line += count + (line[count] == '\n');
-  }
+  *out = say(clean, true, marked);
+  if (*out == ABBE_IMPORT_AUTO) *out = say(clean, false, marked);
+  if (*out == ABBE_IMPORT_AUTO) *out = say(clean, false, numbered);
   free(clean);
   return ABBE_OK;
 }

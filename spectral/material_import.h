@@ -42,8 +42,9 @@ typedef struct abbe_import_options {
 
 const char *abbe_import_format_name(abbe_import_format format);
 
-/* What the text is: AGF where a line begins with NM, RII with DATA:, YAML with materials:, CSV with a
- * number; the first such line decides. AUTO where none does. */
+/* What the text is: AGF where a line begins with NM, RII with DATA:, YAML with materials:. The
+ * first such line decides, one at the margin before one that is indented, as remarks are. Else CSV
+ * where a line begins with two numbers, else AUTO. */
 abbe_import_format abbe_import_detect(const char *text, size_t size);
 
 /* Adds the materials of size bytes to the table, which may be zeroed; path stands for the file.

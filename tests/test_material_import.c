@@ -15,15 +15,43 @@ static void the_text_says_what_it_is(void **state) {
   const struct {
     const char *text;
     abbe_import_format format;
-  } rows[] = {{AGF, ABBE_IMPORT_AGF},     {RII, ABBE_IMPORT_RII},
-              {CSV, ABBE_IMPORT_CSV},     {YAML, ABBE_IMPORT_YAML},
-              {"", ABBE_IMPORT_AUTO},     {"hello\nworld\n", ABBE_IMPORT_AUTO},
-              {"12\n", ABBE_IMPORT_AUTO}, {"  500\t1.5\n", ABBE_IMPORT_CSV}};
+  } rows[] = {{AGF, ABBE_IMPORT_AGF},
+              {RII, ABBE_IMPORT_RII},
+              {CSV, ABBE_IMPORT_CSV},
+              {YAML, ABBE_IMPORT_YAML},
+              {"", ABBE_IMPORT_AUTO},
+              {"hello\nworld\n", ABBE_IMPORT_AUTO},
+              {"12\n", ABBE_IMPORT_AUTO},
+              {"  500\t1.5\n", ABBE_IMPORT_CSV},
+              {"\"500\";\"1,5\"\n", ABBE_IMPORT_CSV},
+              {"20 C\nhello\n", ABBE_IMPORT_AUTO},
+              {"20 C, prism\n500,1.5\n", ABBE_IMPORT_CSV},
+              {"  DATA:\n", ABBE_IMPORT_RII}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
     assert_int_equal(abbe_import_detect(rows[i].text, strlen(rows[i].text)), rows[i].format);
   static const char wide[] = "\xff\xfeN\0M\0 \0A\0\n\0";
   assert_int_equal(abbe_import_detect(wide, sizeof wide - 1), ABBE_IMPORT_AGF);
   assert_string_equal(abbe_import_format_name(ABBE_IMPORT_RII), "rii");
+}
+
+/* What a remark says is not what the file is. */
+static void remarks_decide_nothing(void **state) {
+  (void)state;
+  const char *const remarks[] = {"20 \xc2\xb0"
+                                 "C",
+                                 "500 1.5", "materials: one", "NM is the unit", "0.5, 1.5, 0.1"};
+  for (size_t i = 0; i < sizeof remarks / sizeof remarks[0]; i++) {
+    char text[400];
+    snprintf(text, sizeof text, "COMMENTS: |\n  %s\n%s", remarks[i], RII);
+    assert_int_equal(abbe_import_detect(text, strlen(text)), ABBE_IMPORT_RII);
+    abbe_material_table table = {0};
+    assert_int_equal(abbe_import_parse(text, strlen(text), "A/nk/B.yml", NULL, &table, NULL, NULL),
+                     ABBE_OK);
+    assert_string_equal(table.material[0].comment, remarks[i]);
+    abbe_material_table_free(&table);
+  }
+  static const char dated[] = "2012 11 30, the maker's own\n" AGF;
+  assert_int_equal(abbe_import_detect(dated, strlen(dated)), ABBE_IMPORT_AGF);
 }
 
 static void all_kinds_go_into_one_table(void **state) {
@@ -100,6 +128,7 @@ static void what_cannot_be_read_is_named(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_text_says_what_it_is),
+      cmocka_unit_test(remarks_decide_nothing),
       cmocka_unit_test(all_kinds_go_into_one_table),
       cmocka_unit_test(options_name_what_the_file_does_not),
       cmocka_unit_test(what_cannot_be_read_is_named),
