@@ -127,20 +127,116 @@ static void write_lines(const abbe_material *m, const double *cd, double low_nm,
   fputc('\n', to);
 }
 
-/* At 10 mm, or so much less that the darkest share can still be written. */
+/* ---- transmittances ---- */
+
+/* The thicknesses, mm, at which catalogues measure, the usual one first. */
+static const double thicknesses_mm[] = {10, 25, 5, 1, 2, 3, 50, 20, 100};
+enum { THICKNESSES = sizeof thicknesses_mm / sizeof thicknesses_mm[0] };
+
+/* The attenuation that is read from such a line. */
+static bool reads_as(double share, double thickness_mm, double attenuation) {
+  return abbe_absorption_from_transmittance(share, thickness_mm / 1000) == attenuation;
+}
+
+/* The digits of the share at that thickness where ten decimals say the attenuation to its last bit,
+ * which a number that was not read from them does once in a million times; 0 where they do not. */
+static int printed_digits(double attenuation, double thickness_mm, double *share) {
+  double decimals = round(abbe_absorption_transmittance(attenuation, thickness_mm / 1000) * 1e10);
+  int digits = 0;
+  *share = decimals / 1e10;
+  if (*share == 0 || !reads_as(*share, thickness_mm, attenuation)) return 0;
+  while (fmod(decimals, 10) == 0) decimals /= 10;
+  for (; decimals >= 1; decimals /= 10) digits++;
+  return digits;
+}
+
+/* Where the share has the fewest digits: 0.9 through 1 mm is 0.3487 through 10 mm, and was printed
+ * so. The usual thickness is taken for two digits less than it has. */
+static int find_printed(double attenuation, double usual_mm, double *thickness_mm) {
+  double share;
+  int digits = printed_digits(attenuation, *thickness_mm = usual_mm, &share);
+  int fewest = digits > 2 ? digits - 2 : digits > 0;
+  for (int i = 0; i < THICKNESSES && fewest != 1; i++) {
+    digits = printed_digits(attenuation, thicknesses_mm[i], &share);
+    if (digits == 0 || (fewest > 0 && digits >= fewest)) continue;
+    fewest = digits;
+    *thickness_mm = thicknesses_mm[i];
+  }
+  for (int tenths = 1; tenths < 1000 && fewest == 0; tenths++)
+    fewest = printed_digits(attenuation, *thickness_mm = tenths / 10.0, &share);
+  return fewest;
+}
+
+/* Where most of the points were measured; 10 mm where none were. */
+static double usual_thickness(const double *attenuation, size_t count) {
+  double usual_mm = thicknesses_mm[0], found_mm, share;
+  size_t most = 0;
+  for (size_t i = 0; i < count; i++) {
+    size_t met = 0;
+    if (attenuation[i] == 0 || (most > 0 && printed_digits(attenuation[i], usual_mm, &share) > 0))
+      continue;
+    if (find_printed(attenuation[i], usual_mm, &found_mm) == 0) continue;
+    for (size_t k = 0; k < count; k++)
+      met += attenuation[k] != 0 && printed_digits(attenuation[k], found_mm, &share) > 0;
+    if (met > most) most = met, usual_mm = found_mm;
+  }
+  return usual_mm;
+}
+
+/* A share that says the attenuation to its last bit, among the neighbours of the rounded one. */
+static bool find_exact(double attenuation, double thickness_mm, double *share) {
+  double rounded = abbe_absorption_transmittance(attenuation, thickness_mm / 1000);
+  double up = rounded, down = rounded;
+  for (int i = 0; i < 4; i++) {
+    if (reads_as(*share = up, thickness_mm, attenuation)) return true;
+    if (reads_as(*share = down, thickness_mm, attenuation)) return true;
+    up = nextafter(up, 2);
+    down = nextafter(down, 0);
+  }
+  *share = rounded;
+  return false;
+}
+
+/* Through so much, or so little, that between 1e-6 and a half of the light remains: nearer to 1 a
+ * share has too few digits left. */
+static bool find_thickness(double attenuation, double *thickness_mm, double *share) {
+  double decade_mm = pow(10, floor(log10(1000 / attenuation)));
+  for (int digits = 1; digits < 140; digits++) {
+    *thickness_mm = abbe_number_tidy(digits * decade_mm);
+    double depth = attenuation * *thickness_mm / 1000;
+    if (*thickness_mm < 1e-5 || *thickness_mm > 1e11 || depth < 0.7 || depth > 13.8) continue;
+    if (find_exact(attenuation, *thickness_mm, share)) return true;
+  }
+  return false;
+}
+
+/* As it was printed; or at 10 mm, or another thickness, to the last bit; or as near as can be. */
+static void put_share(double attenuation, double usual_mm, FILE *to) {
+  double thickness_mm = usual_mm, share = 1;
+  bool found = attenuation == 0;
+  if (!found && find_printed(attenuation, usual_mm, &thickness_mm) > 0)
+    found = printed_digits(attenuation, thickness_mm, &share) > 0;
+  if (!found) found = find_exact(attenuation, thickness_mm = 10, &share);
+  if (!found) found = find_thickness(attenuation, &thickness_mm, &share);
+  if (!found)
+    for (thickness_mm = 10; attenuation * thickness_mm / 1000 > 13 && thickness_mm > 1e-5;)
+      share = abbe_absorption_transmittance(attenuation, (thickness_mm /= 10) / 1000);
+  put(to, share);
+  put(to, abbe_number_tidy(thickness_mm));
+}
+
 static void write_it(const abbe_material *m, abbe_tally *t, FILE *to) {
   if (m->attenuation == NULL) return;
   if (abbe_spectrum_interpolation(m->attenuation) != ABBE_INTERPOLATION_LINEAR)
     abbe_tally_add(t, INTERPOLATION, m->name);
   const double *lambda_nm = abbe_spectrum_lambda_nm(m->attenuation);
   const double *a = abbe_spectrum_value(m->attenuation);
-  for (size_t i = 0; i < abbe_spectrum_count(m->attenuation); i++) {
-    double thickness_mm = 10;
-    while (a[i] * thickness_mm / 1000 > 13 && thickness_mm > 1e-5) thickness_mm /= 10;
+  size_t count = abbe_spectrum_count(m->attenuation);
+  double usual_mm = usual_thickness(a, count);
+  for (size_t i = 0; i < count; i++) {
     fputs("IT", to);
     put(to, abbe_number_tidy(lambda_nm[i] / 1000));
-    put(to, abbe_number_tidy(abbe_absorption_transmittance(a[i], thickness_mm / 1000)));
-    put(to, abbe_number_tidy(thickness_mm));
+    put_share(a[i], usual_mm, to);
     fputc('\n', to);
   }
 }

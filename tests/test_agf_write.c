@@ -1,3 +1,4 @@
+#include "tests/random.h"
 #include "tests/random_material.h"
 #include "tests/same_material.h"
 
@@ -97,6 +98,77 @@ static void a_catalogue_survives_the_way_through_a_table(void **state) {
   abbe_material_table_free(&table);
 }
 
+/* The lines of `text` that begin with IT, each number in its shortest form. */
+static size_t transmittances(const char *text, char lines[][80], size_t most) {
+  size_t count = 0;
+  for (const char *at = text; (at = strstr(at, "IT ")) != NULL; at += 3) {
+    double lambda, share, thickness;
+    assert_int_equal(sscanf(at, "IT %lf %lf %lf", &lambda, &share, &thickness), 3);
+    assert_true(count < most);
+    snprintf(lines[count++], 80, "%.17g %.17g %.17g", lambda, share, thickness);
+  }
+  return count;
+}
+
+/* Printed transmittances come back as they were, at the thickness at which they were measured. */
+static void transmittances_come_back_to_the_last_digit(void **state) {
+  (void)state;
+  static const char text[] =
+      "CC maker\n"
+      "NM A 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
+      "IT 3.10000E-01 5.74000E-01 2.50000E+01\nIT 3.20000E-01 7.72000E-01 2.50000E+01\n"
+      "IT 3.34000E-01 9.05000E-01 2.50000E+01\nIT 0.35 0.967 25\nIT 0.5 1 25\nIT 0.7 0.9998 25\n"
+      "NM B 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
+      "IT 0.3 0.0001 3\nIT 0.31 0.17 3\nIT 0.32 0.5012345 10\nIT 0.33 0.77 10\nIT 0.4 1 10\n"
+      "IT 0.5 0.999 10\nIT 0.6 0.99 10\nIT 0.7 0.97 10\nIT 0.8 0.3 1\nIT 0.9 0.012 2\n"
+      "NM C 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
+      "IT 0.4 0.91 1.9\nIT 0.5 0.93 1.9\nIT 0.6 1 1.9\n";
+  abbe_material_table table;
+  assert_int_equal(abbe_agf_parse(text, strlen(text), "m.agf", &table, NULL, NULL), ABBE_OK);
+  assert_int_equal(table.count, 3);
+  char *written = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&written, &size);
+  assert_int_equal(abbe_agf_write(&table, to, NULL, NULL), ABBE_OK);
+  fclose(to);
+  static char before[24][80], after[24][80];
+  size_t count = transmittances(text, before, 24);
+  assert_int_equal(count, 19);
+  assert_int_equal(transmittances(written, after, 24), count);
+  for (size_t i = 0; i < count; i++) assert_string_equal(after[i], before[i]);
+  free(written);
+  abbe_material_table_free(&table);
+}
+
+/* Whatever absorbs, and however much: not a bit of it changes. */
+static void absorption_is_carried_to_the_last_bit(void **state) {
+  (void)state;
+  enum { COUNT = 4000 };
+  static double lambda_nm[COUNT], attenuation[COUNT];
+  uint64_t random = 7;
+  for (int i = 0; i < COUNT; i++) {
+    lambda_nm[i] = 400 + 0.05 * i;
+    attenuation[i] = i % 50 == 0 ? 0 : pow(10, random_between(&random, -5, 9));
+  }
+  abbe_material m = {.name = (char[]){"m"},
+                     .source = (char[]){"s"},
+                     .min_nm = 400,
+                     .max_nm = 700,
+                     .temperature_c = NAN,
+                     .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}};
+  assert_int_equal(abbe_spectrum_make(lambda_nm, attenuation, COUNT, ABBE_INTERPOLATION_LINEAR,
+                                      &m.attenuation, NULL),
+                   ABBE_OK);
+  const abbe_material_table table = {.count = 1, .material = &m};
+  abbe_material_table back = reread(&table, NULL);
+  const double *now = abbe_spectrum_value(back.material[0].attenuation);
+  size_t changed = 0;
+  for (int i = 0; i < COUNT; i++) changed += now[i] != attenuation[i];
+  assert_int_equal(changed, 0);
+  abbe_material_table_free(&back);
+  abbe_spectrum_free(m.attenuation);
+}
+
 static void names_and_failures_are_told(void **state) {
   (void)state;
   abbe_material list[2] = {
@@ -130,6 +202,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_shipped_table_becomes_a_catalogue),
       cmocka_unit_test(a_catalogue_survives_the_way_through_a_table),
+      cmocka_unit_test(transmittances_come_back_to_the_last_digit),
+      cmocka_unit_test(absorption_is_carried_to_the_last_bit),
       cmocka_unit_test(names_and_failures_are_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
