@@ -138,8 +138,7 @@ static abbe_result keep_text(reader *r, const char *text, char **out) {
 
 /* ---- a glass from what its lines said ---- */
 
-/* What of the catalogue's first remark goes with every glass; the table's description has it all.
- */
+/* What of the catalogue's first remark goes with every glass; the description has it all. */
 static void title_of(const char *remark, char title[MAX_TITLE + 8]) {
   size_t length = strlen(remark);
   snprintf(title, MAX_TITLE + 8, "; %.*s", MAX_TITLE, remark);
@@ -262,19 +261,23 @@ static abbe_result read_absorption(reader *r, abbe_material *m) {
                                                   &m->attenuation, r->error);
 }
 
+/* 1 to 13; 0 where the text is no formula's number. */
+static int formula_number(const char *text) {
+  const char *end = text;
+  double value = 0;
+  bool good = abbe_number_read(text, &end, &value) && *end == '\0' && value == floor(value);
+  return good && value >= 1 && value <= 13 ? (int)value : 0;
+}
+
 /* Why the glass cannot be used, into why; true where it can. */
 static bool read_dispersion(reader *r, abbe_material *m, abbe_error *why) {
   const glass *g = &r->glass;
-  abbe_agf_formula formula = {0};
-  const char *end = g->formula;
-  double number = 0;
-  if (!abbe_number_read(g->formula, &end, &number) || *end != '\0' ||
-      !(number >= 1 && number <= 13) || number != floor(number)) {
+  abbe_agf_formula formula = {.number = formula_number(g->formula)};
+  if (formula.number == 0) {
     abbe_error_set(why, ABBE_SCHEMA, "its formula is '%s'; a catalogue's are 1 to 13",
                    g->formula[0] != '\0' ? g->formula : "missing");
     return false;
   }
-  formula.number = (int)number;
   if (g->cd.count == 0 || g->cd.bad) {
     abbe_error_set(why, ABBE_SCHEMA,
                    g->cd.count == 0 ? "it has no CD line with coefficients"
@@ -342,12 +345,25 @@ static abbe_result close_glass(reader *r) {
 
 /* ---- records ---- */
 
+/* A name such as OCTANE-1,6 ends at a blank, where a formula follows; else commas part the fields.
+ */
+static const char *take_name(const char *c, glass *g) {
+  c = skip(c);
+  size_t length = strcspn(c, " \t"), kept = length;
+  while (kept > 0 && c[kept - 1] == ',') kept--;
+  const char *past = take_word(c + length, g->formula, sizeof g->formula);
+  bool whole = kept > 0 && kept < sizeof g->name && formula_number(g->formula) > 0;
+  if (whole) memcpy(g->name, c, kept); /* it is zeroed behind */
+  if (whole) return past;
+  c = take_word(c, g->name, sizeof g->name);
+  return take_word(c, g->formula, sizeof g->formula);
+}
+
 static void open_glass(reader *r, const char *c) {
   glass *g = &r->glass;
   g->open = true;
   g->line = r->line;
-  c = take_word(c, g->name, sizeof g->name);
-  c = take_word(c, g->formula, sizeof g->formula);
+  c = take_name(c, g);
   c = take_word(c, g->code, sizeof g->code);
   take_numbers(c, &g->nm);
 }

@@ -35,7 +35,7 @@ static const abbe_tally_row losses[LOSSES] = {
     [REWRITTEN] = {ABBE_NOTE_CHANGED, "the formula is written as another one with the same n"},
     [SOURCE] = {ABBE_NOTE_CHANGED, "the source stands in the GC line"},
     [COMPUTED] = {ABBE_NOTE_ASSUMED, "no published n_d and V_d; the formula's are written"},
-    [NAME] = {ABBE_NOTE_CHANGED, "blanks and commas in the name become '_'"},
+    [NAME] = {ABBE_NOTE_CHANGED, "blanks and a comma at the end of a name become '_'"},
 };
 
 static void put(FILE *to, double value) {
@@ -51,7 +51,7 @@ static void put_line(FILE *to, const char *text) {
 static void write_name(const abbe_material *m, abbe_tally *t, FILE *to) {
   bool changed = false;
   for (const char *c = m->name; *c != '\0'; c++) {
-    bool parts = *c == ' ' || *c == ',' || *c == '\t';
+    bool parts = *c == ' ' || *c == '\t' || (*c == ',' && c[1] == '\0');
     changed = changed || parts;
     fputc(parts ? '_' : *c, to);
   }

@@ -83,6 +83,24 @@ static void commas_part_numbers_or_begin_their_decimals(void **state) {
   abbe_material_table_free(&t);
 }
 
+/* Chemists number the places of a molecule so. */
+static void a_name_may_hold_commas(void **state) {
+  (void)state;
+#define CD "\nCD 1.03961212 0.00600069867\nLD 0.3 2.5\n"
+  abbe_material_table t =
+      parse("NM OCTANE-1,6 2 0 1.4 60" CD "NM DECANE-1,10,12 2 0.0 1.4 60" CD
+            "NM A, 2, 517642, 1.4, 60" CD "NM B,2,517642 1.4 60" CD "NM C,2 517642,1.4,60" CD);
+  const char *const names[] = {"OCTANE-1,6", "DECANE-1,10,12", "A", "B", "C"};
+  assert_int_equal(t.count, 5);
+  for (size_t i = 0; i < 5; i++) {
+    assert_string_equal(t.material[i].name, names[i]);
+    assert_int_equal(t.material[i].dispersion.model, ABBE_DISPERSION_SELLMEIER2);
+    assert_near(t.material[i].published_n_d, 1.4, 0);
+  }
+  abbe_material_table_free(&t);
+#undef CD
+}
+
 /* Catalogues begin with a page of text; a source is a line. */
 static void a_long_title_is_cut_at_a_word(void **state) {
   (void)state;
@@ -275,6 +293,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_glass_is_read_whole),
       cmocka_unit_test(commas_part_numbers_or_begin_their_decimals),
+      cmocka_unit_test(a_name_may_hold_commas),
       cmocka_unit_test(a_long_title_is_cut_at_a_word),
       cmocka_unit_test(wrapped_lines_are_joined),
       cmocka_unit_test(encodings_and_line_ends_do_not_matter),

@@ -186,7 +186,7 @@ static void names_and_failures_are_told(void **state) {
   abbe_report report = {0};
   abbe_material_table back = reread(&table, &report);
   assert_int_equal(back.count, 1);
-  assert_string_equal(back.material[0].name, "two_words__more");
+  assert_string_equal(back.material[0].name, "two_words,_more");
   assert_string_equal(back.material[0].source, "line break");
   assert_int_equal(back.material[0].dispersion.model, ABBE_DISPERSION_CONSTANT);
   assert_true(noted(&report, "become '_' (1 material: two words, more)"));
