@@ -9,7 +9,7 @@
 
 typedef struct request {
   const char *program, *table, *known, *name;
-  bool json, fix, dry_run;
+  bool json, fix, dry_run, all;
 } request;
 
 typedef struct counts {
@@ -33,13 +33,44 @@ static void print_finding(const abbe_material_table *table, const abbe_finding *
   if (f->certain) printf("    --fix: %s: %s\n", f->key, f->value);
 }
 
-static void print_text(const abbe_material_table *table, const abbe_findings *found,
-                       const abbe_report *unread) {
+/* Notes of one kind about more rows than this are one line. */
+enum { FEW_NOTES = 3 };
+
+static void print_notes(const abbe_material_table *table, const abbe_findings *found,
+                        abbe_finding_kind kind, size_t count) {
+  size_t named = 0;
+  printf("%zu rows (", count);
+  for (size_t i = 0; i < found->count && named < FEW_NOTES; i++) {
+    const abbe_finding *f = &found->finding[i];
+    if (f->kind != kind || f->weight != ABBE_FINDING_NOTE) continue;
+    printf("%s, ", table->material[f->row].name);
+    named++;
+  }
+  printf("…): %s, %s: %s; --all tells of each\n", abbe_finding_weight_name(ABBE_FINDING_NOTE),
+         abbe_finding_kind_name(kind), abbe_finding_kind_meaning(kind));
+}
+
+static void print_findings(const request *r, const abbe_material_table *table,
+                           const abbe_findings *found) {
+  size_t notes[ABBE_FINDING_KIND_COUNT] = {0};
+  for (size_t i = 0; i < found->count; i++)
+    notes[found->finding[i].kind] += found->finding[i].weight == ABBE_FINDING_NOTE;
+  for (size_t i = 0; i < found->count; i++) {
+    const abbe_finding *f = &found->finding[i];
+    bool many = f->weight == ABBE_FINDING_NOTE && notes[f->kind] > FEW_NOTES;
+    if (!many || r->all) print_finding(table, f);
+  }
+  for (int k = 0; k < ABBE_FINDING_KIND_COUNT && !r->all; k++)
+    if (notes[k] > FEW_NOTES) print_notes(table, found, (abbe_finding_kind)k, notes[k]);
+}
+
+static void print_text(const request *r, const abbe_material_table *table,
+                       const abbe_findings *found, const abbe_report *unread) {
   for (size_t i = 0; i < unread->count; i++)
     printf("%s (line %zu): wrong, unread: the record cannot be read\n    %s\n",
            unread->note[i].name[0] ? unread->note[i].name : "a record", unread->note[i].line,
            unread->note[i].text);
-  for (size_t i = 0; i < found->count; i++) print_finding(table, &found->finding[i]);
+  print_findings(r, table, found);
   counts c = count(found, unread);
   printf("%s%s: %zu rows, %zu wrong, %zu doubtful, %zu to note\n",
          found->count + unread->count > 0 ? "\n" : "", table->path, table->count + unread->count,
@@ -128,7 +159,7 @@ static abbe_result examine(const request *r, const abbe_material_table *known, a
   if (result == ABBE_OK && r->json)
     result = print_json(&table, &found, &unread, error);
   else if (result == ABBE_OK)
-    print_text(&table, &found, &unread);
+    print_text(r, &table, &found, &unread);
   counts c = count(&found, &unread);
   size_t bad = c.weight[ABBE_FINDING_WRONG] + c.weight[ABBE_FINDING_DOUBTFUL];
   if (result == ABBE_OK && bad > 0)
@@ -168,7 +199,7 @@ static abbe_result mend(const request *r, const abbe_material_table *known, abbe
 
 /* ---- arguments ---- */
 
-enum { KEY_KNOWN = ABBE_MATERIALS_KEY_OWN, KEY_FIX, KEY_DRY_RUN };
+enum { KEY_KNOWN = ABBE_MATERIALS_KEY_OWN, KEY_FIX, KEY_DRY_RUN, KEY_ALL };
 
 static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
@@ -177,6 +208,7 @@ static const struct argp_option options[] = {
     {"fix", KEY_FIX, NULL, 0,
      "put the mends that are certain into the file, and check what is left", 0},
     {"dry-run", KEY_DRY_RUN, NULL, 0, "with --fix: show the change as a diff, write nothing", 0},
+    {"all", KEY_ALL, NULL, 0, "show every note, not one line for many of a kind", 0},
     ABBE_MATERIALS_JSON_OPTION,
     {0}};
 
@@ -197,6 +229,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     return 0;
   case KEY_DRY_RUN:
     r->dry_run = true;
+    return 0;
+  case KEY_ALL:
+    r->all = true;
     return 0;
   case ARGP_KEY_ARG:
     if (r->name != NULL) argp_error(state, "'%s' is one argument too many", arg);

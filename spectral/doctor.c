@@ -84,6 +84,10 @@ static abbe_finding *no_memory(abbe_doctor *d) {
   return NULL;
 }
 
+bool abbe_doctor_has(const abbe_doctor *d, double lambda_nm) {
+  return lambda_nm >= d->low_nm && lambda_nm <= d->high_nm;
+}
+
 abbe_finding *abbe_doctor_find(abbe_doctor *d, abbe_finding_kind kind, abbe_finding_weight weight) {
   abbe_findings *f = d->findings;
   if (f->count == f->capacity) {
@@ -223,6 +227,7 @@ static abbe_result visit(const abbe_material *material, size_t row,
   d.namesake = abbe_doctor_namesake(known, material->name);
   abbe_material_published_make(material, &d.published);
   bool unit = material->max_nm < 100 && material->min_nm > 0;
+  if (unit) d.low_nm *= 1000, d.high_nm *= 1000;
   if (!abbe_doctor_read_anew(&d) && !unit) {
     abbe_doctor_follow_curve(&d);
     for (int i = 0; i < 2; i++) check_fit(&d, &material->fit[i]);

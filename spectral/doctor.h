@@ -2,8 +2,8 @@
  *
  * Each finding names its row, gives the evidence in numbers and a mend. It judges the numbers by
  * themselves, by what the record says that its source prints, and by known materials: the record's
- * namesake where there is one, else all of them. It changes nothing: a certain mend comes as a key
- * and a value for whoever edits the file.
+ * namesake where there is one, else all of them; all of it inside the record's own range alone. It
+ * changes nothing: a certain mend comes as a key and a value for whoever edits the file.
  */
 #ifndef ABBE_SPECTRAL_DOCTOR_H
 #define ABBE_SPECTRAL_DOCTOR_H
@@ -25,6 +25,7 @@ extern "C" {
   X(B_IN_NM2, "b-in-nm2", "Cauchy's B is in nm^2 instead of um^2")                                 \
   X(SWAPPED, "a-b-swapped", "Cauchy's A and B have changed places")                                \
   X(POLES, "poles", "Sellmeier poles are squared once too often, or once too seldom")              \
+  X(ORDER, "coefficients-swapped", "two coefficients have changed places")                         \
   X(NO_INDEX, "no-index", "the formula has no real index inside its own range")                    \
   X(BELOW_ONE, "below-one", "n is below 1")                                                        \
   X(RISING, "rising", "n rises with the wavelength in the visible")                                \

@@ -22,6 +22,12 @@ typedef struct abbe_doctor {
   abbe_result result; /* the first failure */
 } abbe_doctor;
 
+/* Whether the row's own range has data at lambda_nm: elsewhere nothing about it is judged. */
+bool abbe_doctor_has(const abbe_doctor *d, double lambda_nm);
+
+/* Whether coefficient k is the power of a wavelength, as the formula prints it. */
+bool abbe_doctor_is_exponent(const abbe_dispersion *dispersion, size_t k);
+
 /* A finding of this row, to be filled; a sink where there is no memory, noted in d->result. */
 abbe_finding *abbe_doctor_find(abbe_doctor *d, abbe_finding_kind kind, abbe_finding_weight weight);
 

@@ -15,38 +15,52 @@ static const double OTHER_ND = 5e-3;
 
 /* No transparent material that is known has an Abbe number outside; rutile has 9.9, air 89. */
 static const double LEAST_VD = 5, MOST_VD = 150;
+/* Nor a greater index in the infrared: lead telluride has 5.9. */
+static const double MOST_N = 8;
 
 typedef struct reading {
   abbe_dispersion dispersion;
-  double n_d, v_d;
+  double n_d, v_d; /* NaN where the row's range does not tell */
   bool plausible;
 } reading;
 
-/* As a transparent material: n between 1 and 5, falling over the visible, with a usual V_d. */
-static reading read_as(const abbe_dispersion *dispersion) {
-  abbe_dispersion_numbers d = abbe_dispersion_describe(dispersion);
-  reading r = {*dispersion, d.n_d, d.v_d, d.v_d >= LEAST_VD && d.v_d <= MOST_VD};
-  double before = 5;
-  for (double l = ABBE_WAVELENGTH_MIN_NM; l <= ABBE_WAVELENGTH_MAX_NM; l += 10) {
-    double n = abbe_dispersion_n(dispersion, l);
+/* As a transparent material: n above 1 and falling over what the row has of the visible, with a
+ * usual V_d; a row of another range is held against that. */
+static reading read_as(const abbe_doctor *d, const abbe_dispersion *dispersion) {
+  enum { STEPS = 40 };
+  double low = fmax(d->low_nm, ABBE_WAVELENGTH_MIN_NM);
+  double high = fmin(d->high_nm, ABBE_WAVELENGTH_MAX_NM), before = 5;
+  abbe_dispersion_numbers numbers = abbe_dispersion_describe(dispersion);
+  bool all = abbe_doctor_has(d, ABBE_LINE_F_NM) && abbe_doctor_has(d, ABBE_LINE_C_NM);
+  reading r = {.dispersion = *dispersion,
+               .n_d = abbe_doctor_has(d, ABBE_LINE_D_NM) ? numbers.n_d : NAN,
+               .v_d = all ? numbers.v_d : NAN};
+  r.plausible = !all || (r.v_d >= LEAST_VD && r.v_d <= MOST_VD);
+  if (low >= high) low = d->low_nm, high = d->high_nm, before = MOST_N;
+  for (int i = 0; i <= STEPS; i++) {
+    double n = abbe_dispersion_n(dispersion, low * pow(high / low, (double)i / STEPS));
     if (!(n > 1 && n <= before)) r.plausible = false;
     before = n;
   }
   return r;
 }
 
-/* What the row should have: from its own source, else from its namesake; NaN where unknown. */
+/* What the row should have, where its range tells: from its own source, else from its namesake; NaN
+ * where unknown. */
 typedef struct target {
   double n_d, v_d;
   const char *the, *whose; /* "the known " and its name, or "" and "its own source" */
 } target;
 
 static target target_of(const abbe_doctor *d) {
-  if (d->published.n_d > 1.0001)
-    return (target){d->published.n_d, d->published.v_d, "", "its own source"};
-  if (d->namesake != NULL && d->namesake != d->material) {
-    abbe_dispersion_numbers known = abbe_dispersion_describe(&d->namesake->dispersion);
-    return (target){known.n_d, known.v_d, "the known ", d->namesake->name};
+  bool spread = abbe_doctor_has(d, ABBE_LINE_F_NM) && abbe_doctor_has(d, ABBE_LINE_C_NM);
+  if (abbe_doctor_has(d, ABBE_LINE_D_NM) && d->published.n_d > 1.0001)
+    return (target){d->published.n_d, spread ? d->published.v_d : NAN, "", "its own source"};
+  if (abbe_doctor_has(d, ABBE_LINE_D_NM) && d->namesake != NULL && d->namesake != d->material) {
+    abbe_material_numbers known;
+    abbe_material_numbers_make(d->namesake, &known);
+    if (isfinite(known.n_d))
+      return (target){known.n_d, spread ? known.v_d : NAN, "the known ", d->namesake->name};
   }
   return (target){NAN, NAN, "", NULL};
 }
@@ -118,7 +132,7 @@ static bool check_units_and_order(abbe_doctor *d, const reading *now, const targ
        "exchange A and B, and give B in um^2", as->count == 2 && fabs(as->c[0]) > 1},
   };
   for (size_t i = 0; i < sizeof tries / sizeof tries[0]; i++) {
-    reading other = read_as(&tries[i].dispersion);
+    reading other = read_as(d, &tries[i].dispersion);
     if (!tries[i].usable || now->plausible || !other.plausible) continue;
     if (t->whose != NULL && is_far(&other, t) && i > 0) continue;
     abbe_finding *f = abbe_doctor_find(d, tries[i].kind, ABBE_FINDING_WRONG);
@@ -165,7 +179,7 @@ static bool known_alone(const abbe_doctor *d, const reading *now, const reading 
 static bool check_a(abbe_doctor *d, const reading *now, const target *t) {
   const abbe_dispersion *as = &d->material->dispersion;
   abbe_dispersion right = with_a_as_n_d(as);
-  reading other = read_as(&right);
+  reading other = read_as(d, &right);
   if (!(as->c[1] > 0) || !other.plausible) return false;
   target whose = *t;
   bool sure = t->whose != NULL && meets(&other, t) && is_far(now, t);
@@ -190,7 +204,7 @@ static bool check_model(abbe_doctor *d, const reading *now, const target *t) {
   bool squares = d->material->dispersion.model == ABBE_DISPERSION_SELLMEIER;
   abbe_dispersion right = d->material->dispersion;
   right.model = squares ? ABBE_DISPERSION_SELLMEIER2 : ABBE_DISPERSION_SELLMEIER;
-  reading other = read_as(&right);
+  reading other = read_as(d, &right);
   if (!prefers(now, &other, t)) return false;
   abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_POLES, ABBE_FINDING_WRONG);
   if (f == NULL) return true;
@@ -217,7 +231,7 @@ static bool check_one_pole(abbe_doctor *d, const reading *now, const target *t) 
     for (int root = 0; root < 2; root++) {
       abbe_dispersion right = *as;
       right.c[k] = root ? sqrt(fabs(as->c[k])) : as->c[k] * as->c[k];
-      reading other = read_as(&right);
+      reading other = read_as(d, &right);
       bool meets_all = fabs(other.n_d - t->n_d) < 5e-5 && fabs(other.v_d / t->v_d - 1) < 1e-3;
       if (!other.plausible || !meets_all) continue;
       abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_POLES, ABBE_FINDING_WRONG);
@@ -234,14 +248,54 @@ static bool check_one_pole(abbe_doctor *d, const reading *now, const target *t) 
   return false;
 }
 
+bool abbe_doctor_is_exponent(const abbe_dispersion *d, size_t k) {
+  bool powers = d->model == ABBE_DISPERSION_POLYNOMIAL || d->model == ABBE_DISPERSION_POWERS ||
+                d->model == ABBE_DISPERSION_RII4;
+  return powers && k > 0 && k % 2 == 0;
+}
+
+/* Two columns of a table that have changed places: told only by n_d and V_d that then come out. */
+static bool check_order(abbe_doctor *d, const reading *now, const target *t) {
+  const abbe_dispersion *as = &d->material->dispersion;
+  if (t->whose == NULL || isnan(t->v_d) || !is_far(now, t)) return false;
+  reading found = {0};
+  size_t first = 0, second = 0, ways = 0;
+  for (size_t i = 0; i < as->count; i++)
+    for (size_t k = i + 1; k < as->count; k++) {
+      abbe_dispersion right = *as;
+      right.c[i] = as->c[k];
+      right.c[k] = as->c[i];
+      if (abbe_doctor_is_exponent(as, i) || abbe_doctor_is_exponent(as, k)) continue;
+      reading other = read_as(d, &right);
+      if (!other.plausible || !meets(&other, t)) continue;
+      /* strengths of two terms or their poles: the same sum in another order */
+      if (ways > 0 && fabs(other.n_d - found.n_d) < 1e-12 && fabs(other.v_d / found.v_d - 1) < 1e-9)
+        continue;
+      if (ways++ > 0 && fabs(other.n_d - t->n_d) >= fabs(found.n_d - t->n_d)) continue;
+      found = other;
+      first = i, second = k;
+    }
+  if (ways == 0) return false;
+  abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_ORDER, ABBE_FINDING_WRONG);
+  if (f == NULL) return true;
+  char what[120];
+  snprintf(what, sizeof what, "c%zu and c%zu have changed places", first, second);
+  say_target(d, f, now, &found, t, what);
+  abbe_doctor_say(d, &f->mend, "exchange c%zu = %.9g and c%zu = %.9g", first, as->c[first], second,
+                  as->c[second]);
+  abbe_doctor_set_coefficients(d, f, &found.dispersion);
+  f->certain = ways == 1;
+  return true;
+}
+
 bool abbe_doctor_read_anew(abbe_doctor *d) {
   const abbe_dispersion *as = &d->material->dispersion;
-  reading now = read_as(as);
+  reading now = read_as(d, as);
   target t = target_of(d);
   if (as->model == ABBE_DISPERSION_CAUCHY && as->count >= 2)
     return check_units_and_order(d, &now, &t) || check_a(d, &now, &t);
   if ((as->model == ABBE_DISPERSION_SELLMEIER || as->model == ABBE_DISPERSION_SELLMEIER2) &&
-      as->count >= 3)
-    return check_model(d, &now, &t) || check_one_pole(d, &now, &t);
-  return false;
+      as->count >= 3 && (check_model(d, &now, &t) || check_one_pole(d, &now, &t)))
+    return true;
+  return as->count >= 3 && check_order(d, &now, &t);
 }

@@ -4,6 +4,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A number is told only where the record vouches for it. */
@@ -51,12 +52,19 @@ static bool stated(const char *text, const char *word, double *value, double *ha
   return false;
 }
 
-/* A number of the record's own key, whose file may have left out zeros at its end. */
-static void keyed(double value, double *out, double *half) {
+double abbe_material_half_digit(double value) {
   char text[ABBE_NUMBER_TEXT_SIZE];
+  abbe_number_text(value, text);
+  const char *end = text + strcspn(text, "e");
+  double scale = *end == 'e' ? pow(10, atoi(end + 1)) : 1;
+  return scale * half_digit(text, end);
+}
+
+/* A number of the record's own key. */
+static void keyed(double value, double *out, double *half) {
   if (!(value > 0)) return;
   *out = value;
-  *half = half_digit(text, text + strlen(abbe_number_text(value, text)));
+  *half = abbe_material_half_digit(value);
 }
 
 void abbe_material_published_make(const abbe_material *m, abbe_material_published *out) {

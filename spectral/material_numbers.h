@@ -39,6 +39,10 @@ typedef struct abbe_material_published {
 } abbe_material_published;
 void abbe_material_published_make(const abbe_material *material, abbe_material_published *out);
 
+/* Half of the last digit of a finite value that was read from a decimal: 5e-5 of 1.5168, 5e-13 of
+ * 1.2e-11. Zeros at its end, which a file may have had, are not known. */
+double abbe_material_half_digit(double value);
+
 /* A recorded fit against the record's own index over the fit's range. ABBE_INVALID_ARGUMENT where
  * there is no such fit, or no index in that range. */
 abbe_result abbe_material_fit_residual(const abbe_material *material, const abbe_material_fit *fit,

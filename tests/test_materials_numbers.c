@@ -140,6 +140,24 @@ static void fix_mends_a_copy_and_leaves_the_rest(void **state) {
   answers("$abbe materials check --table t.yaml --fix", 0, "0 wrong");
 }
 
+/* What is only to know stands in one line of each kind, however many rows it is about. */
+static void notes_of_many_rows_are_one_line(void **state) {
+  (void)state;
+  answers(
+      "{ echo materials:; for i in $(seq 200); do echo \"- {name: g$i, model: cauchy, "
+      "coefficients: [1.$((1000 + 7 * i)), 0.004], range_nm: [400, 700], source: book}\"; done; "
+      "} >n.yaml; $abbe materials check --table n.yaml",
+      0,
+      "200 rows (g1, g2, g3, \xe2\x80\xa6): note, not-visible: the data do not cover 380 to 780 "
+      "nm; --all tells of each\n\nn.yaml: 200 rows, 0 wrong, 0 doubtful, 200 to note\n");
+  assert_true(strlen(run_output) < 200);
+  answers("$abbe materials check --table n.yaml --all", 0, "g200 (line 201): note, not-visible");
+  answers("$abbe materials check g7 --table n.yaml", 0, "its data reach from 400 to 700 nm");
+  cJSON *json = json_of("$abbe materials check --table n.yaml --json; rm n.yaml", 0);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "findings")), 200);
+  cJSON_Delete(json);
+}
+
 static void unreadable_records_do_not_stop_a_check(void **state) {
   (void)state;
   answers("printf 'materials:\\n- {name: a, model: cachy, source: s}\\n"
@@ -328,6 +346,7 @@ int main(void) {
       cmocka_unit_test(nearest_finds_by_numbers_curve_and_points),
       cmocka_unit_test(check_finds_the_four_wrong_rows_of_the_thesis),
       cmocka_unit_test(fix_mends_a_copy_and_leaves_the_rest),
+      cmocka_unit_test(notes_of_many_rows_are_one_line),
       cmocka_unit_test(unreadable_records_do_not_stop_a_check),
       cmocka_unit_test(fits_come_with_their_errors),
       cmocka_unit_test(measured_points_are_fitted_and_drawn),
