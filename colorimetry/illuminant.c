@@ -1,15 +1,14 @@
 #include "colorimetry/illuminant.h"
 
-#include "spectral/file.h"
+#include "spectral/csv_points.h"
 #include "spectral/nearest.h"
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-enum { TABLE_COUNT = 107, MAX_FILE_SIZE = 16 << 20 };
+enum { TABLE_COUNT = 107 };
 static const double table_min_nm = 300, table_step_nm = 5;
 
 /* Relative power from 300 to 830 nm in steps of 5 nm, linear between [CIE15, table T.1]. */
@@ -96,114 +95,24 @@ void abbe_illuminant_free(abbe_illuminant *illuminant) {
   *illuminant = (abbe_illuminant){0};
 }
 
-typedef struct rows {
-  const char *path;
-  double *nm, *power;
-  size_t count, capacity;
-  bool light;
-} rows;
-
-static bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r';
-}
-
-static const char *skip_blanks(const char *s) {
-  while (is_blank(*s)) s++;
-  return s;
-}
-
-static abbe_result append_row(rows *r, double nm, double power, abbe_error *error) {
-  if (r->count == r->capacity) {
-    size_t capacity = r->capacity == 0 ? 128 : 2 * r->capacity;
-    double *grown_nm = realloc(r->nm, capacity * sizeof *grown_nm);
-    if (grown_nm != NULL) r->nm = grown_nm;
-    double *grown_power = realloc(r->power, capacity * sizeof *grown_power);
-    if (grown_power != NULL) r->power = grown_power;
-    if (grown_nm == NULL || grown_power == NULL)
-      return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its rows", r->path);
-    r->capacity = capacity;
-  }
-  r->nm[r->count] = nm;
-  r->power[r->count++] = power;
-  r->light = r->light || power > 0;
-  return ABBE_OK;
-}
-
-static abbe_result check_row(const rows *r, size_t line, double nm, double power,
-                             abbe_error *error) {
-  if (!isfinite(nm) || nm <= 0)
-    return abbe_error_set(error, ABBE_SCHEMA,
-                          "%s:%zu: the wavelength %g is not a positive number of nanometres",
-                          r->path, line, nm);
-  if (!isfinite(power) || power < 0)
-    return abbe_error_set(error, ABBE_SCHEMA,
-                          "%s:%zu: the power %g is not a finite number of 0 or more", r->path, line,
-                          power);
-  if (r->count > 0 && nm <= r->nm[r->count - 1])
-    return abbe_error_set(error, ABBE_SCHEMA,
-                          "%s:%zu: the wavelength %g nm does not lie above %g nm of the row "
-                          "before; wavelengths ascend",
-                          r->path, line, nm, r->nm[r->count - 1]);
-  if (r->count == ABBE_SPECTRUM_MAX_COUNT)
-    return abbe_error_set(error, ABBE_SCHEMA, "%s:%zu: there are more than %d rows", r->path, line,
-                          ABBE_SPECTRUM_MAX_COUNT);
-  return ABBE_OK;
-}
-
-/* One line of text without its end; blank and comment lines add nothing. */
-static abbe_result parse_line(rows *r, size_t line, char *text, abbe_error *error) {
-  text[strcspn(text, "#")] = '\0';
-  const char *at = skip_blanks(text);
-  if (*at == '\0') return ABBE_OK;
-  char *end = NULL;
-  double nm = strtod(at, &end);
-  const char *middle = skip_blanks(end);
-  bool separated = middle != end || *middle == ',' || *middle == ';';
-  if (*middle == ',' || *middle == ';') middle = skip_blanks(middle + 1);
-  char *last = NULL;
-  double power = strtod(middle, &last);
-  if (end == at || !separated || last == middle || *skip_blanks(last) != '\0')
-    return abbe_error_set(error, ABBE_PARSE,
-                          "%s:%zu: '%.60s' is not a row of two numbers, wavelength in nm and "
-                          "relative power, such as '380, 49.98'",
-                          r->path, line, text);
-  abbe_result result = check_row(r, line, nm, power, error);
-  return result == ABBE_OK ? append_row(r, nm, power, error) : result;
-}
-
-static abbe_result parse_text(rows *r, char *text, size_t size, abbe_error *error) {
-  if (memchr(text, '\0', size) != NULL)
-    return abbe_error_set(error, ABBE_PARSE, "%s: it is not a text file", r->path);
-  size_t line = 0;
-  for (char *at = text; at != NULL && *at != '\0';) {
-    char *next = strchr(at, '\n');
-    if (next != NULL) *next++ = '\0';
-    abbe_result result = parse_line(r, ++line, at, error);
-    if (result != ABBE_OK) return result;
-    at = next;
-  }
-  if (r->count < 2 || !r->light)
-    return abbe_error_set(error, ABBE_SCHEMA,
-                          "%s: a spectrum of a light needs at least two rows and a power above 0; "
-                          "there are %zu rows%s",
-                          r->path, r->count, r->light || r->count == 0 ? "" : ", all 0");
-  return ABBE_OK;
-}
-
 static abbe_result load(const char *path, abbe_illuminant *out, abbe_error *error) {
-  char *text = NULL;
-  size_t size = 0;
-  abbe_result result = abbe_file_read(path, MAX_FILE_SIZE, &text, &size, error);
+  abbe_csv_points points;
+  const abbe_csv_options options = {.quantity = ABBE_CSV_POWER};
+  abbe_result result = abbe_csv_points_load(path, &options, &points, NULL, error);
   if (result != ABBE_OK) return result;
-  rows r = {.path = path};
-  result = parse_text(&r, text, size, error);
+  const abbe_points *power = &points.power;
+  bool shines = false;
+  for (size_t i = 0; i < power->count; i++) shines = shines || power->point[i].value > 0;
+  if (power->count < 2 || !shines)
+    result = abbe_error_set(error, ABBE_SCHEMA,
+                            "%s: a spectrum of a light needs at least two rows and a power above "
+                            "0; there %s %zu row%s%s",
+                            path, power->count == 1 ? "is" : "are", power->count,
+                            power->count == 1 ? "" : "s", shines ? "" : ", all 0");
   if (result == ABBE_OK)
-    result = abbe_spectrum_make(r.nm, r.power, r.count, ABBE_INTERPOLATION_LINEAR, &out->spectrum,
-                                error);
+    result = abbe_points_spectrum(power, ABBE_INTERPOLATION_LINEAR, &out->spectrum, error);
   if (result == ABBE_OK) out->kind = ABBE_ILLUMINANT_TABULATED;
-  free(r.nm);
-  free(r.power);
-  free(text);
+  abbe_csv_points_free(&points);
   return result;
 }
 

@@ -31,8 +31,9 @@ typedef struct abbe_illuminant {
   abbe_spectrum *spectrum; /* TABULATED: relative power at nm, >= 0; owned; else NULL */
 } abbe_illuminant;
 
-/* "D65", "D50", "A", "E" (any case), or the path of a two-column file (nm, relative power;
- * comma, semicolon or blanks between, # comments; at least two rows, power >= 0 and not all 0). */
+/* "D65", "D50", "A", "E" (any case), or the path of a file of two columns, wavelength and relative
+ * power, as spectral/csv_points.h reads it: at least two rows, power >= 0 and not all 0. ABBE_PARSE
+ * or ABBE_SCHEMA, with line and text, for a row that cannot be used. */
 abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
                                  abbe_error *error);
 void abbe_illuminant_free(abbe_illuminant *illuminant);

@@ -8,16 +8,18 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MAX_BYTES = 16 << 20, MAX_FIELDS = 16, MAX_FIELD = 64 };
 
-typedef enum role { WAVELENGTH, INDEX, EXTINCTION, UNCERTAINTY, OTHER } role;
+typedef enum role { WAVELENGTH, INDEX, EXTINCTION, UNCERTAINTY, POWER, OTHER } role;
 
 typedef struct reader {
   const char *name;
   const abbe_csv_options *options;
+  bool light; /* two columns, and nothing is passed over */
   abbe_csv_points *out;
   abbe_report *report;
   abbe_error *error;
@@ -33,6 +35,7 @@ typedef struct reader {
 void abbe_csv_points_free(abbe_csv_points *points) {
   abbe_points_free(&points->n);
   abbe_points_free(&points->k);
+  abbe_points_free(&points->power);
   *points = (abbe_csv_points){0};
 }
 
@@ -135,11 +138,19 @@ static void join_units(reader *r) {
   r->fields = kept;
 }
 
+/* Of a light's two columns the first that is called so has the wavelengths: "S(lambda)" is power.
+ */
+static role role_of_two(const reader *r, size_t column) {
+  bool second = role_of(r->field[1], 1) == WAVELENGTH && role_of(r->field[0], 1) != WAVELENGTH;
+  return column == (size_t)second ? WAVELENGTH : POWER;
+}
+
 static void take_header(reader *r) {
   join_units(r);
+  if (r->light && r->fields != 2) return; /* a title */
   r->role_count = r->fields;
   for (size_t i = 0; i < r->fields; i++) {
-    r->roles[i] = role_of(r->field[i], i);
+    r->roles[i] = r->light ? role_of_two(r, i) : role_of(r->field[i], i);
     double unit_nm = r->roles[i] == WAVELENGTH ? unit_of(r->field[i]) : 0;
     if (unit_nm > 0) r->header_unit_nm = unit_nm;
   }
@@ -149,44 +160,68 @@ static void take_header(reader *r) {
 
 static role role_at(const reader *r, size_t column) {
   if (r->role_count > 0) return column < r->role_count ? r->roles[column] : OTHER;
-  if (column < 2) return column == 0 ? WAVELENGTH : INDEX;
+  if (column < 2) return column == 0 ? WAVELENGTH : r->light ? POWER : INDEX;
   if (column > 2) return OTHER;
   abbe_csv_third third = r->options != NULL ? r->options->third : ABBE_CSV_UNCERTAINTY;
   return third == ABBE_CSV_K ? EXTINCTION : third == ABBE_CSV_IGNORED ? OTHER : UNCERTAINTY;
 }
 
-static void pass_over(reader *r, const char *why, const char *field) {
+static abbe_result pass_over(reader *r, abbe_result code, const char *why, const char *field) {
+  if (r->light)
+    return abbe_error_set(r->error, code, "%s:%zu: %s: '%.40s'", r->name, r->line, why, field);
   abbe_report_add(r->report, ABBE_NOTE_SKIPPED, r->line, NULL, "%s: '%.40s'", why, field);
+  return ABBE_OK;
+}
+
+static abbe_result add(reader *r, abbe_points *to, double lambda_nm, double value, double error) {
+  if (r->out->first_line == 0) r->out->first_line = r->line;
+  abbe_point point = {.lambda_nm = lambda_nm, .value = value, .error = isnan(error) ? 0 : error};
+  return abbe_points_add(to, point, r->error);
+}
+
+static abbe_result take_power(reader *r, const double found[OTHER]) {
+  const abbe_points *before = &r->out->power;
+  for (size_t i = 0; i < r->fields; i++) {
+    role what = role_at(r, i);
+    if (what == WAVELENGTH && !(found[WAVELENGTH] > 0))
+      return pass_over(r, ABBE_SCHEMA, "a wavelength is above 0", r->field[i]);
+    if (what == POWER && !(found[POWER] >= 0))
+      return pass_over(r, ABBE_SCHEMA, "a power is 0 or more", r->field[i]);
+    if (what == WAVELENGTH && before->count > 0 &&
+        before->point[before->count - 1].lambda_nm == found[WAVELENGTH])
+      return pass_over(r, ABBE_SCHEMA, "a wavelength stands here again", r->field[i]);
+  }
+  return add(r, &r->out->power, found[WAVELENGTH], found[POWER], 0);
+}
+
+static abbe_result take_index(reader *r, const double found[OTHER]) {
+  const char *first = r->fields > 0 ? r->field[0] : "";
+  bool n = !isnan(found[INDEX]), k = !isnan(found[EXTINCTION]);
+  if (!(found[WAVELENGTH] > 0) || (!n && !k))
+    return pass_over(r, ABBE_SCHEMA, "a line wants a wavelength above 0 and an index", first);
+  if ((n && !(found[INDEX] >= 1e-3 && found[INDEX] <= 1e3)) ||
+      (k && !(found[EXTINCTION] >= 0 && found[EXTINCTION] <= 1e3)) || found[UNCERTAINTY] < 0)
+    return pass_over(r, ABBE_SCHEMA,
+                     "n lies from 0.001 to 1000, k from 0 to 1000, an uncertainty is not negative",
+                     first);
+  abbe_result result =
+      n ? add(r, &r->out->n, found[WAVELENGTH], found[INDEX], found[UNCERTAINTY]) : ABBE_OK;
+  if (k && result == ABBE_OK) result = add(r, &r->out->k, found[WAVELENGTH], found[EXTINCTION], 0);
+  return result;
 }
 
 static abbe_result take_point(reader *r) {
-  double found[OTHER] = {NAN, NAN, NAN, NAN};
+  double found[OTHER] = {NAN, NAN, NAN, NAN, NAN};
   for (size_t i = 0; i < r->fields; i++) {
     role what = role_at(r, i);
     if (what == OTHER || r->field[i][0] == '\0' || !isnan(found[what])) continue;
-    if (number(r, r->field[i], &found[what])) continue;
-    pass_over(r, "this is not a number", r->field[i]);
-    return ABBE_OK;
+    if (!number(r, r->field[i], &found[what]))
+      return pass_over(r, ABBE_PARSE, "this is not a number", r->field[i]);
   }
-  const char *first = r->fields > 0 ? r->field[0] : "";
-  bool n = !isnan(found[INDEX]), k = !isnan(found[EXTINCTION]);
-  if (!(found[WAVELENGTH] > 0) || (!n && !k)) {
-    pass_over(r, "a line wants a wavelength above 0 and an index", first);
-    return ABBE_OK;
-  }
-  if ((n && !(found[INDEX] >= 1e-3 && found[INDEX] <= 1e3)) ||
-      (k && !(found[EXTINCTION] >= 0 && found[EXTINCTION] <= 1e3)) || found[UNCERTAINTY] < 0) {
-    pass_over(r, "n lies from 0.001 to 1000, k from 0 to 1000, an uncertainty is not negative",
-              first);
-    return ABBE_OK;
-  }
-  if (r->out->first_line == 0) r->out->first_line = r->line;
-  abbe_point point = {.lambda_nm = found[WAVELENGTH], .value = found[INDEX]};
-  if (!isnan(found[UNCERTAINTY])) point.error = found[UNCERTAINTY];
-  abbe_result result = n ? abbe_points_add(&r->out->n, point, r->error) : ABBE_OK;
-  point = (abbe_point){.lambda_nm = found[WAVELENGTH], .value = found[EXTINCTION]};
-  if (k && result == ABBE_OK) result = abbe_points_add(&r->out->k, point, r->error);
-  return result;
+  if (r->light && r->fields != 2)
+    return pass_over(r, ABBE_PARSE, "a line wants two numbers, a wavelength and a power",
+                     r->fields > 0 ? r->field[0] : "");
+  return r->light ? take_power(r, found) : take_index(r, found);
 }
 
 /* A line whose first field begins no number, before which no header stood or behind which another
@@ -203,23 +238,23 @@ static bool is_header(const reader *r) {
 }
 
 static abbe_result take_line(reader *r, const char *line, size_t length) {
+  const char *remark = memchr(line, '#', length);
+  if (remark != NULL) length = (size_t)(remark - line);
   while (length > 0 && isspace((unsigned char)line[length - 1])) length--;
   while (length > 0 && isspace((unsigned char)*line)) line++, length--;
-  if (length == 0 || *line == '#' || *line == '%') return ABBE_OK;
+  if (length == 0 || *line == '%') return ABBE_OK;
   split(r, line, length);
-  if (is_header(r)) {
-    take_header(r);
-    return ABBE_OK;
-  }
-  return take_point(r);
+  if (!is_header(r) || (r->light && r->out->power.count > 0)) return take_point(r);
+  take_header(r);
+  return ABBE_OK;
 }
 
 /* ---- units and order ---- */
 
 static abbe_result find_unit(reader *r, double *unit_nm) {
-  const abbe_points *lists[] = {&r->out->n, &r->out->k};
+  const abbe_points *lists[] = {&r->out->n, &r->out->k, &r->out->power};
   double low = INFINITY, high = 0;
-  for (int l = 0; l < 2; l++)
+  for (int l = 0; l < 3; l++)
     for (size_t i = 0; i < lists[l]->count; i++) {
       low = fmin(low, lists[l]->point[i].lambda_nm);
       high = fmax(high, lists[l]->point[i].lambda_nm);
@@ -236,6 +271,18 @@ static abbe_result find_unit(reader *r, double *unit_nm) {
                         r->name, r->out->first_line, low, high);
 }
 
+/* Points that cannot be kept. */
+static abbe_result lose(reader *r, size_t count, const char *what, const char *where) {
+  const char *plural = count == 1 ? "" : "s";
+  if (count == 0) return ABBE_OK;
+  if (r->light)
+    return abbe_error_set(r->error, ABBE_SCHEMA, "%s: %zu point%s of %s %s", r->name, count, plural,
+                          what, where);
+  abbe_report_add(r->report, ABBE_NOTE_LOST, 0, NULL, "%zu point%s of %s %s", count, plural, what,
+                  where);
+  return ABBE_OK;
+}
+
 static abbe_result order(reader *r, abbe_points *list, double unit_nm, const char *what) {
   for (size_t i = 0; i < list->count && unit_nm != 1; i++)
     list->point[i].lambda_nm = abbe_number_tidy(list->point[i].lambda_nm * unit_nm);
@@ -246,29 +293,30 @@ static abbe_result order(reader *r, abbe_points *list, double unit_nm, const cha
     if (lambda_nm >= ABBE_MATERIAL_LOW_NM && lambda_nm <= ABBE_MATERIAL_HIGH_NM)
       list->point[kept++] = list->point[i];
   }
-  if (kept < list->count)
-    abbe_report_add(r->report, ABBE_NOTE_LOST, 0, NULL, "%zu points of %s lie outside %g to %g nm",
-                    list->count - kept, what, ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
+  char range[64];
+  snprintf(range, sizeof range, "outside %g to %g nm", ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
+  abbe_result result = lose(r, list->count - kept, what, range);
   list->count = kept;
-  abbe_result result = abbe_points_sort(list, repeats ? NULL : &dropped, r->error);
-  if (dropped > 0)
-    abbe_report_add(r->report, ABBE_NOTE_LOST, 0, NULL,
-                    "%zu point%s of %s at a wavelength that was there before", dropped,
-                    dropped == 1 ? "" : "s", what);
-  return result;
+  if (result == ABBE_OK) result = abbe_points_sort(list, repeats ? NULL : &dropped, r->error);
+  return result != ABBE_OK ? result
+                           : lose(r, dropped, what, "at a wavelength that was there before");
+}
+
+static size_t count_of(const abbe_csv_points *points) {
+  return points->n.count + points->k.count + points->power.count;
 }
 
 static abbe_result finish(reader *r) {
   double unit_nm = 0;
-  if (r->out->n.count == 0 && r->out->k.count == 0)
-    return abbe_error_set(r->error, ABBE_SCHEMA,
-                          "%s: holds no points; a line wants a wavelength and an index, such as "
-                          "587.6, 1.5168",
-                          r->name);
+  if (count_of(r->out) == 0)
+    return abbe_error_set(r->error, ABBE_SCHEMA, "%s: holds no points; a line wants %s", r->name,
+                          r->light ? "a wavelength and a power, such as 380, 49.98"
+                                   : "a wavelength and an index, such as 587.6, 1.5168");
   abbe_result result = find_unit(r, &unit_nm);
   if (result == ABBE_OK) result = order(r, &r->out->n, unit_nm, "n");
   if (result == ABBE_OK) result = order(r, &r->out->k, unit_nm, "k");
-  if (result == ABBE_OK && r->out->n.count == 0 && r->out->k.count == 0)
+  if (result == ABBE_OK) result = order(r, &r->out->power, unit_nm, "power");
+  if (result == ABBE_OK && count_of(r->out) == 0)
     result = abbe_error_set(r->error, ABBE_SCHEMA, "%s: no point lies from %g to %g nm", r->name,
                             ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
   return result;
@@ -283,6 +331,7 @@ abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *nam
   abbe_result result = abbe_encoding_decode(text, size, &clean, &length, error);
   if (result != ABBE_OK) return result;
   reader r = {.name = name, .options = options, .out = out, .report = report, .error = error};
+  r.light = options != NULL && options->quantity == ABBE_CSV_POWER;
   for (size_t at = 0; at < length && result == ABBE_OK;) {
     const char *end = memchr(clean + at, '\n', length - at);
     size_t count = end == NULL ? length - at : (size_t)(end - (clean + at));

@@ -110,6 +110,59 @@ static void what_cannot_be_told_is_asked_for(void **state) {
   assert_int_equal(abbe_csv_points_load("/nowhere/x.csv", NULL, &p, NULL, &error), ABBE_IO);
 }
 
+/* The same light in every dress. */
+static void a_lights_spectrum_is_read_by_the_same_rules(void **state) {
+  (void)state;
+  const char *const dresses[] = {
+      "400 1.5\n500 0\n600 2\n",
+      "\xef\xbb\xbf"
+      "400,1.5\r\n500,0\r\n600,2",
+      "# lamp\nwavelength_nm,power\n400,1.5 # a line\n500,0\n600,2\n",
+      "Wellenl\xe4nge [\xb5m];Leistung\n0,4;1,5\n0,5;0\n0,6;2,0\n",
+      "lambda (nm)\tS(lambda) (W/nm)\n600\t2\n400\t1.5\n500\t0\n",
+      "Spectrometer: number 7, dark 0.1\nnm,counts per nm\n400,1.5\n500,0\n600,2\n",
+      "power,\xce\xbb/um\n1.5,0.4\n0,0.5\n2,0.6\n",
+      "\"400\",\"1.5\"\n\"500\",\"0\"\n\"600\",\"2\"\n",
+  };
+  const abbe_csv_options light = {.quantity = ABBE_CSV_POWER};
+  for (size_t i = 0; i < sizeof dresses / sizeof dresses[0]; i++) {
+    abbe_csv_points p = parse(dresses[i], &light, NULL);
+    assert_int_equal(p.power.count, 3);
+    assert_int_equal(p.n.count + p.k.count, 0);
+    const double power[] = {1.5, 0, 2};
+    for (size_t k = 0; k < 3; k++) {
+      assert_near(p.power.point[k].lambda_nm, 400 + 100.0 * (double)k, 1e-9);
+      assert_near(p.power.point[k].value, power[k], 0);
+    }
+    abbe_csv_points_free(&p);
+  }
+}
+
+/* A light without one of its lines would be another light. */
+static void a_lights_spectrum_loses_no_line(void **state) {
+  (void)state;
+  const struct {
+    const char *text, *part;
+    abbe_result code;
+  } rows[] = {
+      {"", "m.csv: holds no points; a line wants a wavelength and a power, such as 380, 49.98",
+       ABBE_SCHEMA},
+      {"400 1\n500 x\n", "m.csv:2: this is not a number: 'x'", ABBE_PARSE},
+      {"400 1\n500\n", "m.csv:2: ", ABBE_PARSE},
+      {"400 1 2\n", "m.csv:1: a line wants two numbers, a wavelength and a power", ABBE_PARSE},
+      {"400 1\n500 -1\n", "m.csv:2: a power is 0 or more: '-1'", ABBE_SCHEMA},
+      {"400 1\n500 1e999\n", "m.csv:2: ", ABBE_PARSE},
+      {"400 1\n0 1\n", "m.csv:2: a wavelength is above 0: '0'", ABBE_SCHEMA},
+      {"400 1\n500 1\n500 2\n", "m.csv:3: a wavelength stands here again: '500'", ABBE_SCHEMA},
+      {"400 1\n500 1\n400 2\n", "m.csv: 1 point of power at a wavelength that was there before",
+       ABBE_SCHEMA},
+      {"400 1\nnm power\n500 1\n", "m.csv:2: this is not a number: 'nm'", ABBE_PARSE},
+      {"400 1\n2e6 1\n", "m.csv: 1 point of power outside 1 to 1e+06 nm", ABBE_SCHEMA}};
+  const abbe_csv_options light = {.quantity = ABBE_CSV_POWER};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+    refuses(rows[i].text, &light, rows[i].code, rows[i].part);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(many_dresses_hold_the_same_points),
@@ -117,6 +170,8 @@ int main(void) {
       cmocka_unit_test(a_second_header_begins_a_block_of_k),
       cmocka_unit_test(bad_lines_are_noted_and_passed_over),
       cmocka_unit_test(what_cannot_be_told_is_asked_for),
+      cmocka_unit_test(a_lights_spectrum_is_read_by_the_same_rules),
+      cmocka_unit_test(a_lights_spectrum_loses_no_line),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -88,17 +88,37 @@ static void test_a_file_of_ones_own(void **state) {
   unlink(path);
 }
 
+/* A spreadsheet's and a spectrometer's: what the reader of measured points takes, a light takes. */
+static void test_files_in_other_dresses(void **state) {
+  (void)state;
+  static const char *const dresses[] = {
+      "\xef\xbb\xbf"
+      "400 0\r\n500 10\r\n600 20\r\n",
+      "wavelength_nm,power\n400,0\n500,10\n600,20\n",
+      "Wellenlaenge [um];W/(m2 nm)\n0,4;0\n0,5;10,0\n0,6;20,0\n",
+      "nm\tcounts\n600\t20\n500\t10\n400\t0\n",
+  };
+  for (size_t i = 0; i < sizeof dresses / sizeof dresses[0]; i++) {
+    char *path = write_text(dresses[i]);
+    abbe_illuminant light = make(path);
+    assert_true(fabs(abbe_illuminant_power(&light, 550) - 15) < 1e-12);
+    assert_true(abbe_illuminant_power(&light, 399) == 0);
+    abbe_illuminant_free(&light);
+    unlink(path);
+  }
+}
+
 static void test_bad_files(void **state) {
   (void)state;
   static const struct {
     const char *text, *says;
     abbe_result result;
   } bad[] = {
-      {"", "at least two rows", ABBE_SCHEMA},   {"500 1\n", "at least two rows", ABBE_SCHEMA},
+      {"", "holds no points", ABBE_SCHEMA},     {"500 1\n", "at least two rows", ABBE_SCHEMA},
       {"400 0\n500 0\n", "all 0", ABBE_SCHEMA}, {"400 1\n400 2\n", ":2:", ABBE_SCHEMA},
-      {"500 1\n400 2\n", ":2:", ABBE_SCHEMA},   {"400 1\n500 -2\n", "-2", ABBE_SCHEMA},
-      {"400 nan\n500 1\n", ":1:", ABBE_SCHEMA}, {"400 1\n500 1e999\n", ":2:", ABBE_SCHEMA},
-      {"-400 1\n500 1\n", ":1:", ABBE_SCHEMA},  {"nm,power\n400,1\n", ":1:", ABBE_PARSE},
+      {"500 1\n400 -2\n", ":2:", ABBE_SCHEMA},  {"400 1\n500 -2\n", "-2", ABBE_SCHEMA},
+      {"400 nan\n500 1\n", ":1:", ABBE_PARSE},  {"400 1\n500 1e999\n", ":2:", ABBE_PARSE},
+      {"-400 1\n500 1\n", ":1:", ABBE_SCHEMA},  {"nm,power\n400,1\n", "two rows", ABBE_SCHEMA},
       {"400 1 2\n500 1\n", ":1:", ABBE_PARSE},  {"400\n500 1\n", ":1:", ABBE_PARSE},
       {"400,,1\n500 1\n", ":1:", ABBE_PARSE}};
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -125,13 +145,11 @@ static void test_unknown_names(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_d65_is_the_cies),
-                                     cmocka_unit_test(test_d50_is_the_cies),
-                                     cmocka_unit_test(test_a_is_the_cies),
-                                     cmocka_unit_test(test_e_is_flat),
-                                     cmocka_unit_test(test_interpolation_and_ends),
-                                     cmocka_unit_test(test_a_file_of_ones_own),
-                                     cmocka_unit_test(test_bad_files),
-                                     cmocka_unit_test(test_unknown_names)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_d65_is_the_cies),        cmocka_unit_test(test_d50_is_the_cies),
+      cmocka_unit_test(test_a_is_the_cies),          cmocka_unit_test(test_e_is_flat),
+      cmocka_unit_test(test_interpolation_and_ends), cmocka_unit_test(test_a_file_of_ones_own),
+      cmocka_unit_test(test_files_in_other_dresses), cmocka_unit_test(test_bad_files),
+      cmocka_unit_test(test_unknown_names)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
