@@ -157,8 +157,10 @@ static void check_range(abbe_doctor *d) {
   const abbe_material *m = d->material;
   bool missing = !(m->min_nm > 0);
   bool tabulated = m->dispersion.table != NULL;
-  /* nothing transparent is tabulated below 100 nm, but 0.1 to 100 um is where glass is */
+  /* nothing transparent is tabulated below 100 nm, but 0.1 to 100 um is where glass is; X-rays are
+   * refracted by no more than 1 */
   if (!missing && m->max_nm >= 100) return;
+  if (!missing && tabulated && abbe_dispersion_n(&m->dispersion, m->max_nm) < 1.1) return;
   abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_UNITS, ABBE_FINDING_WRONG);
   if (f == NULL) return;
   if (missing) {

@@ -1,4 +1,5 @@
 /* What a row's curve does over its range, and whether it is the one that is printed about it. */
+#include "spectral/absorption.h"
 #include "spectral/doctor_parts.h"
 #include "spectral/wavelengths.h"
 
@@ -11,10 +12,28 @@ static double n_at(const abbe_doctor *d, double lambda_nm) {
   return abbe_dispersion_n(&d->material->dispersion, lambda_nm);
 }
 
+static double k_at(const abbe_doctor *d, double lambda_nm) {
+  return abbe_absorption_k(abbe_material_attenuation(d->material, lambda_nm), lambda_nm);
+}
+
+/* The largest k of the row. */
+static double most_k(const abbe_doctor *d) {
+  const abbe_spectrum *a = d->material->attenuation;
+  double most = 0;
+  for (size_t i = 0; a != NULL && i < abbe_spectrum_count(a); i++)
+    most = fmax(most, k_at(d, abbe_spectrum_lambda_nm(a)[i]));
+  return most;
+}
+
+/* Thin gases and the vacuum are about 1 to air, and X-rays are refracted the other way. What has a
+ * band this strong is a metal, or opaque near it: n may rise there, and be below 1 beside it. */
+static const double THIN = 1e-3, XRAY_NM = 120, STRONG = 0.1;
+
 /* False where the formula fails inside its range: nothing else can be said of it then. */
 static bool check_index(abbe_doctor *d) {
   enum { STEPS = 2000 };
   double least = INFINITY, least_nm = 0;
+  bool bands = most_k(d) > STRONG;
   for (int i = 0; i <= STEPS; i++) {
     double l = d->low_nm + (d->high_nm - d->low_nm) * i / STEPS, n = n_at(d, l);
     if (isnan(n)) {
@@ -27,9 +46,9 @@ static bool check_index(abbe_doctor *d) {
                       "lie outside the range");
       return false;
     }
-    if (n < least) least = n, least_nm = l;
+    if (n < least && l >= XRAY_NM && 1 - n >= THIN) least = n, least_nm = l;
   }
-  if (least >= 1) return true;
+  if (least >= 1 || bands) return true;
   bool seen = least_nm >= LOW && least_nm <= HIGH;
   abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_BELOW_ONE,
                                      seen ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
@@ -42,16 +61,18 @@ static bool check_index(abbe_doctor *d) {
   return true;
 }
 
-/* The largest rise from a wavelength to a longer one. */
+/* The largest rise from a wavelength to a longer one that no absorption there accounts for. */
 static void check_falling(abbe_doctor *d) {
   double low = fmax(d->low_nm, LOW), high = fmin(d->high_nm, HIGH);
-  double least = INFINITY, least_nm = 0, rise = 0, from_nm = 0, to_nm = 0;
+  double least = INFINITY, least_nm = 0, rise = 0, from_nm = 0, to_nm = 0, k = 0;
   for (double l = low; l <= high; l += 1) {
     double n = n_at(d, l);
+    if (fabs(n - 1) < THIN) return;
+    k = fmax(k, k_at(d, l));
     if (n < least) least = n, least_nm = l;
     if (n - least > rise) rise = n - least, from_nm = least_nm, to_nm = l;
   }
-  if (rise < 1e-6) return;
+  if (rise < 1e-6 || rise < k || k > STRONG) return;
   abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_RISING, ABBE_FINDING_DOUBTFUL);
   if (f == NULL) return;
   abbe_doctor_say(d, &f->evidence, "n rises by %.2g from %g to %g nm, from %.6g to %.6g", rise,
@@ -79,6 +100,10 @@ static void blur_of(const abbe_doctor *d, double *n_d, double *v_d) {
   }
 }
 
+static const char *numbers_of(const abbe_doctor *d) {
+  return d->material->dispersion.table != NULL ? "points" : "coefficients";
+}
+
 static void check_n_d(abbe_doctor *d, const abbe_material_numbers *n, double blur) {
   double printed = d->published.n_d, off = fabs(n->n_d - printed);
   /* 1 stands in catalogues where n_d is not given */
@@ -86,9 +111,8 @@ static void check_n_d(abbe_doctor *d, const abbe_material_numbers *n, double blu
   abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_OFF_ND,
                                      off > 1e-3 ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
   if (f == NULL) return;
-  abbe_doctor_say(d, &f->evidence,
-                  "its source prints n_d %.7g, its coefficients give %.7g: %.2g %s", printed,
-                  n->n_d, off, n->n_d > printed ? "more" : "less");
+  abbe_doctor_say(d, &f->evidence, "its source prints n_d %.7g, its %s give %.7g: %.2g %s", printed,
+                  numbers_of(d), n->n_d, off, n->n_d > printed ? "more" : "less");
   abbe_doctor_say(d, &f->mend, "compare both with the source: a digit is wrong in one of them");
 }
 
@@ -100,8 +124,8 @@ static void check_v_d(abbe_doctor *d, const abbe_material_numbers *n, double blu
   abbe_finding *f = abbe_doctor_find(
       d, ABBE_FINDING_OFF_VD, off > 0.02 * printed ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
   if (f == NULL) return;
-  abbe_doctor_say(d, &f->evidence, "its source prints V_d %.5g, its coefficients give %.5g",
-                  printed, n->v_d);
+  abbe_doctor_say(d, &f->evidence, "its source prints V_d %.5g, its %s give %.5g", printed,
+                  numbers_of(d), n->v_d);
   abbe_doctor_say(d, &f->mend, "compare both with the source: a digit is wrong in one of them");
 }
 

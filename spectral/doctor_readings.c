@@ -21,11 +21,11 @@ static const double MOST_N = 8;
 typedef struct reading {
   abbe_dispersion dispersion;
   double n_d, v_d; /* NaN where the row's range does not tell */
-  bool plausible;
+  bool possible;   /* as a transparent material: n above 1, and falling */
+  bool plausible;  /* with a usual V_d too, which single materials have not */
 } reading;
 
-/* As a transparent material: n above 1 and falling over what the row has of the visible, with a
- * usual V_d; a row of another range is held against that. */
+/* Over what the row has of the visible; a row of another range is held against that. */
 static reading read_as(const abbe_doctor *d, const abbe_dispersion *dispersion) {
   enum { STEPS = 40 };
   double low = fmax(d->low_nm, ABBE_WAVELENGTH_MIN_NM);
@@ -35,13 +35,14 @@ static reading read_as(const abbe_doctor *d, const abbe_dispersion *dispersion) 
   reading r = {.dispersion = *dispersion,
                .n_d = abbe_doctor_has(d, ABBE_LINE_D_NM) ? numbers.n_d : NAN,
                .v_d = all ? numbers.v_d : NAN};
-  r.plausible = !all || (r.v_d >= LEAST_VD && r.v_d <= MOST_VD);
+  r.possible = true;
   if (low >= high) low = d->low_nm, high = d->high_nm, before = MOST_N;
   for (int i = 0; i <= STEPS; i++) {
     double n = abbe_dispersion_n(dispersion, low * pow(high / low, (double)i / STEPS));
-    if (!(n > 1 && n <= before)) r.plausible = false;
+    if (!(n > 1 && n <= before)) r.possible = false;
     before = n;
   }
+  r.plausible = r.possible && (!all || (r.v_d >= LEAST_VD && r.v_d <= MOST_VD));
   return r;
 }
 
@@ -81,6 +82,11 @@ static bool prefers(const reading *now, const reading *other, const target *t) {
   return !now->plausible;
 }
 
+/* Where nothing is known of the row an unusual V_d is a doubt: lithium chloride has one of 210. */
+static bool is_sure(const reading *now, const target *t) {
+  return t->whose != NULL || !now->possible;
+}
+
 static void say_target(abbe_doctor *d, abbe_finding *f, const reading *now, const reading *other,
                        const target *t, const char *what) {
   if (t->whose != NULL && isnan(t->v_d))
@@ -96,9 +102,11 @@ static void say_target(abbe_doctor *d, abbe_finding *f, const reading *now, cons
                     t->v_d);
   else
     abbe_doctor_say(d, &f->evidence,
-                    "%s; as it stands n_d is %.5g and V_d %.4g, which is no transparent material; "
+                    "%s; as it stands n_d is %.5g and V_d %.4g, which %s; "
                     "read so they are %.5g and %.4g",
-                    what, now->n_d, now->v_d, other->n_d, other->v_d);
+                    what, now->n_d, now->v_d,
+                    now->possible ? "hardly a material has" : "is no transparent material",
+                    other->n_d, other->v_d);
 }
 
 /* ---- Cauchy ---- */
@@ -135,12 +143,14 @@ static bool check_units_and_order(abbe_doctor *d, const reading *now, const targ
     reading other = read_as(d, &tries[i].dispersion);
     if (!tries[i].usable || now->plausible || !other.plausible) continue;
     if (t->whose != NULL && is_far(&other, t) && i > 0) continue;
-    abbe_finding *f = abbe_doctor_find(d, tries[i].kind, ABBE_FINDING_WRONG);
+    bool sure = is_sure(now, t);
+    abbe_finding *f =
+        abbe_doctor_find(d, tries[i].kind, sure ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
     if (f == NULL) return true;
     say_target(d, f, now, &other, t, tries[i].what);
     abbe_doctor_say(d, &f->mend, "%s", tries[i].mend);
     abbe_doctor_set_coefficients(d, f, &tries[i].dispersion);
-    f->certain = true;
+    f->certain = sure;
     return true;
   }
   return false;
@@ -206,7 +216,9 @@ static bool check_model(abbe_doctor *d, const reading *now, const target *t) {
   right.model = squares ? ABBE_DISPERSION_SELLMEIER2 : ABBE_DISPERSION_SELLMEIER;
   reading other = read_as(d, &right);
   if (!prefers(now, &other, t)) return false;
-  abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_POLES, ABBE_FINDING_WRONG);
+  bool sure = is_sure(now, t);
+  abbe_finding *f =
+      abbe_doctor_find(d, ABBE_FINDING_POLES, sure ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
   if (f == NULL) return true;
   char what[200];
   snprintf(what, sizeof what,
@@ -218,7 +230,7 @@ static bool check_model(abbe_doctor *d, const reading *now, const target *t) {
   abbe_doctor_say(d, &f->mend, "the model is %s", abbe_dispersion_model_name(right.model));
   abbe_doctor_say(d, &f->value, "%s", abbe_dispersion_model_name(right.model));
   f->key = "model";
-  f->certain = true;
+  f->certain = sure;
   return true;
 }
 
