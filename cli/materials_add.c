@@ -1,5 +1,7 @@
 #include "cli/materials_change.h"
 #include "spectral/file.h"
+#include "spectral/material_store.h"
+#include "spectral/material_write.h"
 #include "spectral/yaml_edit.h"
 #include "spectral/yaml_quote.h"
 
@@ -104,7 +106,24 @@ static abbe_result named(const char *name, const char *new_name, char **record, 
   return result;
 }
 
-static abbe_result copy_record(const request *r, char **out, abbe_error *error) {
+/* A store's record as it stands in YAML. */
+static abbe_result stored_record(const request *r, char **out, abbe_error *error) {
+  abbe_material_table table;
+  const abbe_material *m = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_material_table_load_named(r->from, &r->name, 1, &table, error);
+  if (result == ABBE_OK) result = abbe_material_table_find(&table, r->name, &m, error);
+  FILE *to = result == ABBE_OK ? open_memstream(out, &size) : NULL;
+  if (result == ABBE_OK && to == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a record");
+  if (result == ABBE_OK) result = abbe_material_write(m, to, error);
+  if (to != NULL && fclose(to) != 0 && result == ABBE_OK)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a record");
+  abbe_material_table_free(&table);
+  return result;
+}
+
+static abbe_result tables_record(const request *r, char **out, abbe_error *error) {
   size_t size = 0;
   const char *shipped = abbe_material_table_shipped(r->from, &size);
   abbe_table_edit *source = NULL;
@@ -113,6 +132,12 @@ static abbe_result copy_record(const request *r, char **out, abbe_error *error) 
                            : abbe_table_edit_open(r->from, &source, error);
   if (result == ABBE_OK) result = abbe_table_edit_record(source, r->name, out, error);
   abbe_table_edit_free(source);
+  return result;
+}
+
+static abbe_result copy_record(const request *r, char **out, abbe_error *error) {
+  abbe_result result =
+      abbe_material_store_is(r->from) ? stored_record(r, out, error) : tables_record(r, out, error);
   return result == ABBE_OK && r->as != NULL ? named(r->name, r->as, out, error) : result;
 }
 

@@ -106,7 +106,8 @@ int abbe_materials_edit(int argc, char **argv) {
   if (wrong(&r) != NULL) abbe_materials_wrong_use(argv[0], wrong(&r));
   abbe_material_table known = {0}, from = {0};
   abbe_result result = abbe_material_table_load(NULL, &known, &error);
-  if (result == ABBE_OK) result = abbe_material_table_load(r.from, &from, &error);
+  if (result == ABBE_OK && r.against != NULL)
+    result = abbe_material_table_load_named(r.from, &r.against, 1, &from, &error);
   if (result == ABBE_OK) result = edit(&r, &known, &from, &error);
   abbe_material_table_free(&known);
   abbe_material_table_free(&from);

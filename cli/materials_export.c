@@ -4,6 +4,7 @@
 #include "spectral/agf_write.h"
 #include "spectral/csv_write.h"
 #include "spectral/file.h"
+#include "spectral/material_store_write.h"
 #include "spectral/material_write.h"
 #include "spectral/rii_write.h"
 #include "spectral/shader_export.h"
@@ -17,10 +18,18 @@
 
 enum { MAX_NAMES = ABBE_MATERIAL_TABLE_MAX_COUNT };
 
-typedef enum format { YAML, AGF, RII, CSV, SHADERS, FORMATS = SHADERS + ABBE_SHADER_COUNT } format;
+typedef enum format {
+  YAML,
+  STORE,
+  AGF,
+  RII,
+  CSV,
+  SHADERS,
+  FORMATS = SHADERS + ABBE_SHADER_COUNT
+} format;
 
 /* The shaders follow in their own order. */
-static const char *const format_names[FORMATS] = {"yaml", "agf",    "rii", "csv",
+static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii", "csv",
                                                   "pbrt", "povray", "mdl", "gltf"};
 
 typedef struct request {
@@ -37,7 +46,7 @@ enum { KEY_TO = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_STEP, KEY_ALL, KEY_FORCE 
 static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
     {"to", KEY_TO, "FORMAT", 0,
-     "yaml, agf, rii, csv, pbrt, povray, mdl or gltf; without it, by the ending of -o", 0},
+     "yaml, sqlite, agf, rii, csv, pbrt, povray, mdl or gltf; without it, by the ending of -o", 0},
     {"output", 'o', "FILE", 0, "where to; without it, to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "nm, of the points (csv); 380:780 within the record's", 0},
@@ -107,6 +116,7 @@ static int format_of(const char *path) {
     const char *ending;
     int format;
   } endings[] = {{".yaml", YAML},
+                 {".sqlite", STORE},
                  {".yml", RII},
                  {".agf", AGF},
                  {".csv", CSV},
@@ -125,6 +135,8 @@ static void check(request *r) {
   if (r->format < 0)
     abbe_materials_wrong_use(r->program, "to what? --to yaml, agf, rii, csv, pbrt, povray, mdl or "
                                          "gltf, or -o with such an ending");
+  if (r->format == STORE && r->output == NULL)
+    abbe_materials_wrong_use(r->program, "a store is a file; name it with -o FILE.sqlite");
   if ((r->format == RII || r->format == CSV) && r->names != 1)
     abbe_materials_wrong_use(r->program, r->format == RII
                                              ? "a file of refractiveindex.info holds one material; "
@@ -162,6 +174,8 @@ static abbe_result write_to(const request *r, const abbe_material_table *chosen,
   switch (r->format) {
   case YAML:
     return abbe_material_table_write(chosen, to, error);
+  case STORE:
+    return abbe_material_store_write(chosen, to, error);
   case AGF:
     return abbe_agf_write(chosen, to, report, error);
   case RII:
@@ -231,7 +245,9 @@ int abbe_materials_export(int argc, char **argv) {
   abbe_error error = {0};
   abbe_report report = {0};
   abbe_material_table table = {0}, chosen = {0};
-  abbe_result result = abbe_material_table_load(r.table, &table, &error);
+  abbe_result result =
+      r.names > 0 ? abbe_material_table_load_named(r.table, r.name, r.names, &table, &error)
+                  : abbe_material_table_load(r.table, &table, &error);
   if (result == ABBE_OK) result = choose(&r, &table, &chosen, &error);
   if (result == ABBE_OK) result = save(&r, &chosen, &report, &error);
   if (result == ABBE_OK) result = tell(&r, chosen.count, &report, &error);

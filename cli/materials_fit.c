@@ -406,7 +406,7 @@ int abbe_materials_fit(int argc, char **argv) {
   check(&r);
   abbe_material_table table = {0};
   abbe_result result = ABBE_OK;
-  if (r.name != NULL) result = abbe_material_table_load(r.table, &table, &error);
+  if (r.name != NULL) result = abbe_material_table_load_named(r.table, &r.name, 1, &table, &error);
   if (result == ABBE_OK) result = answer(&r, &table, &error);
   abbe_material_table_free(&table);
   return abbe_command_end(r.program, result, &error);

@@ -2,7 +2,8 @@
 #include "cli/materials_report.h"
 
 #include "spectral/file.h"
-#include "spectral/material_import.h"
+#include "spectral/import_batch.h"
+#include "spectral/material_store_write.h"
 #include "spectral/material_write.h"
 
 #include <argp.h>
@@ -11,13 +12,9 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_FILES = 4096 };
-
 typedef struct request {
   const char *program, *output;
-  const char *file[MAX_FILES];
-  size_t files;
-  abbe_import_options import;
+  abbe_import_batch batch;
   bool json, all, force;
 } request;
 
@@ -25,6 +22,7 @@ enum {
   KEY_NAME = ABBE_MATERIALS_KEY_OWN,
   KEY_SOURCE,
   KEY_FORMAT,
+  KEY_PREFIX,
   KEY_UNIT,
   KEY_THIRD,
   KEY_ALL,
@@ -32,10 +30,13 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "TABLE.yaml", 0, "where to; without it, to standard output", 0},
+    {"output", 'o', "TABLE", 0,
+     "where to: YAML, or a store where it ends in .sqlite; without it, YAML to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
-    {"format", KEY_FORMAT, "FORMAT", 0, "agf, rii, csv or yaml; without it, what the text says", 0},
+    {"format", KEY_FORMAT, "FORMAT", 0,
+     "agf, rii, csv, yaml or sqlite; without it, what the text says", 0},
     {"name", KEY_NAME, "NAME", 0, "of the one material of a file (rii, csv); else the file's", 0},
+    {"prefix", KEY_PREFIX, "TEXT", 0, "before every name, such as schott-", 0},
     {"source", KEY_SOURCE, "TEXT", 0, "where measured points come from (csv)", 0},
     {"unit", KEY_UNIT, "UNIT", 0, "nm or um, of the wavelengths where no header says it (csv)", 0},
     {"third", KEY_THIRD, "WHAT", 0,
@@ -48,29 +49,32 @@ static void read_csv_option(request *r, int key, const char *arg) {
   static const char *const units[] = {"nm", "um"}, *const thirds[] = {"uncertainty", "k",
                                                                       "ignored"};
   if (key == KEY_UNIT)
-    r->import.csv.unit_nm =
+    r->batch.import.csv.unit_nm =
         abbe_command_choice(r->program, "--unit", arg, units, 2) == 0 ? 1 : 1000;
   else
-    r->import.csv.third =
+    r->batch.import.csv.third =
         (abbe_csv_third)abbe_command_choice(r->program, "--third", arg, thirds, 3);
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  static const char *const formats[] = {"auto", "agf", "rii", "csv", "yaml"};
+  static const char *const formats[] = {"auto", "agf", "rii", "csv", "yaml", "sqlite"};
   request *r = state->input;
   switch (key) {
   case 'o':
     r->output = arg;
     return 0;
   case KEY_NAME:
-    r->import.name = arg;
+    r->batch.import.name = arg;
+    return 0;
+  case KEY_PREFIX:
+    r->batch.prefix = arg;
     return 0;
   case KEY_SOURCE:
-    r->import.source = arg;
+    r->batch.import.source = arg;
     return 0;
   case KEY_FORMAT:
-    r->import.format =
-        (abbe_import_format)abbe_command_choice(r->program, "--format", arg, formats, 5);
+    r->batch.import.format =
+        (abbe_import_format)abbe_command_choice(r->program, "--format", arg, formats, 6);
     return 0;
   case KEY_UNIT:
   case KEY_THIRD:
@@ -85,9 +89,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case ABBE_MATERIALS_KEY_JSON:
     r->json = true;
     return 0;
-  case ARGP_KEY_ARG:
-    if (r->files == MAX_FILES) argp_error(state, "more than %d files", MAX_FILES);
-    r->file[r->files++] = arg;
+  case ARGP_KEY_ARGS:
+    r->batch.path = (const char *const *)&state->argv[state->next];
+    r->batch.count = (size_t)(state->argc - state->next);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -97,22 +101,25 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
 static const struct argp parser = {
     .options = options,
     .parser = parse,
-    .args_doc = "FILE…",
+    .args_doc = "FILE|FOLDER…",
     .doc = "Makes a material table of catalogues and data files: Zemax AGF, refractiveindex.info "
            "YAML, CSV of measured points, tables of ours.\v"
            "Examples:\n"
            "  abbe materials import schott.agf -o schott.yaml\n"
            "  abbe materials import SiO2/nk/Malitson.yml C/nk/Peter.yml -o gems.yaml\n"
            "  abbe materials import points.csv --name my-glass --source \"prism, 21 June\"\n"
-           "  abbe materials import schott.agf ohara.agf -o both.yaml --all\n\n"
-           "A record that cannot be used is reported with its line and the reason and does not "
-           "stop the rest. What the table does not carry, or what is assumed, is said as well.",
+           "  abbe materials import schott.agf ohara.agf -o both.yaml --all\n"
+           "  abbe materials import database/data -o rii.sqlite\n\n"
+           "A record or a file that cannot be used is reported with the reason and does not stop "
+           "the rest. What the table does not carry, or what is assumed, is said as well. Of "
+           "folders all files are read that hold materials. Materials of one name from several "
+           "files get the part of their path before it that tells them apart.",
 };
 
 static void check(const request *r) {
-  if (r->files == 0)
+  if (r->batch.count == 0)
     abbe_materials_wrong_use(r->program, "which file? Such as catalogue.agf or points.csv");
-  if (r->import.name != NULL && r->files > 1)
+  if (r->batch.import.name != NULL && r->batch.count > 1)
     abbe_materials_wrong_use(r->program, "--name names the material of one file, not of several");
   if (r->json && r->output == NULL)
     abbe_materials_wrong_use(r->program, "--json goes with -o TABLE.yaml");
@@ -124,18 +131,17 @@ static abbe_result load(const request *r, abbe_material_table *table, abbe_repor
     return abbe_error_set(error, ABBE_IO,
                           "%s: is there already; --force writes over it, or choose another name",
                           r->output);
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < r->files && result == ABBE_OK; i++)
-    result = abbe_import_load(r->file[i], &r->import, table, report, error);
-  if (result == ABBE_OK) result = abbe_material_table_unique(table, report, error);
-  return result;
+  return abbe_import_batch_run(&r->batch, table, report, error);
 }
 
 static abbe_result save(const request *r, const abbe_material_table *table, abbe_error *error) {
   if (r->output == NULL) return abbe_material_table_write(table, stdout, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, r->output, error);
-  if (result == ABBE_OK) result = abbe_material_table_write(table, writer.stream, error);
+  if (result == ABBE_OK)
+    result = abbe_material_store_is_name(r->output)
+                 ? abbe_material_store_write(table, writer.stream, error)
+                 : abbe_material_table_write(table, writer.stream, error);
   if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
   abbe_file_writer_discard(&writer);
   return result;
@@ -160,8 +166,7 @@ static abbe_result tell(const request *r, const abbe_material_table *table,
 }
 
 int abbe_materials_import(int argc, char **argv) {
-  static request r;
-  r = (request){.program = argv[0], .import.csv.third = ABBE_CSV_K};
+  request r = {.program = argv[0], .batch.import.csv.third = ABBE_CSV_K};
   abbe_materials_parse(&parser, argc, argv, &r);
   check(&r);
   abbe_error error = {0};

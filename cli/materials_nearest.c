@@ -79,7 +79,8 @@ static abbe_result like(const request *r, const abbe_material_table *table,
   const abbe_material *m = NULL;
   double n;
   abbe_result result = ABBE_OK;
-  if (r->like_table != NULL) result = abbe_material_table_load(r->like_table, &other, error);
+  if (r->like_table != NULL)
+    result = abbe_material_table_load_named(r->like_table, &r->like, 1, &other, error);
   if (result == ABBE_OK)
     result = abbe_material_table_find(r->like_table != NULL ? &other : table, r->like, &m, error);
   if (result == ABBE_OK) result = abbe_material_n(m, r->from_nm, &n, error);

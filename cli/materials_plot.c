@@ -159,7 +159,9 @@ int abbe_materials_plot(int argc, char **argv) {
   const abbe_material *named[MAX_NAMES];
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < r.table_count && result == ABBE_OK; i++)
-    result = abbe_material_table_load(r.table[i], &table[i], &error);
+    result =
+        r.map ? abbe_material_table_load(r.table[i], &table[i], &error)
+              : abbe_material_table_load_named(r.table[i], r.name, r.name_count, &table[i], &error);
   for (size_t i = 0; i < r.name_count && result == ABBE_OK; i++)
     result = find(table, r.table_count, r.name[i], &named[i], &error);
   if (result == ABBE_OK)

@@ -10,6 +10,7 @@ void abbe_materials_print_report(const char *program, const abbe_report *report,
     const abbe_note *n = &report->note[i];
     if (++shown[n->kind] > FIRST_FEW && !all) continue;
     fprintf(stderr, "%s: %s: ", program, abbe_note_kind_word(n->kind));
+    if (n->file[0] != '\0') fprintf(stderr, "%s: ", n->file);
     if (n->name[0] != '\0') fprintf(stderr, "%s: ", n->name);
     if (n->line > 0) fprintf(stderr, "line %zu: ", n->line);
     fprintf(stderr, "%s\n", n->text);
@@ -31,6 +32,7 @@ void abbe_materials_add_report(cJSON *to, const abbe_report *report) {
     cJSON *item = cJSON_CreateObject();
     if (item == NULL || !cJSON_AddItemToArray(list, item)) continue;
     cJSON_AddStringToObject(item, "kind", abbe_note_kind_word(n->kind));
+    if (n->file[0] != '\0') cJSON_AddStringToObject(item, "file", n->file);
     cJSON_AddNumberToObject(item, "line", (double)n->line);
     cJSON_AddStringToObject(item, "name", n->name);
     cJSON_AddStringToObject(item, "text", n->text);

@@ -325,7 +325,7 @@ int abbe_materials_show(int argc, char **argv) {
   abbe_materials_parse(&parser, argc, argv, &r);
   check(&r);
   abbe_material_table table;
-  abbe_result result = abbe_material_table_load(r.table, &table, &error);
+  abbe_result result = abbe_material_table_load_named(r.table, &r.name, 1, &table, &error);
   if (result == ABBE_OK) result = answer(&r, &table, &error);
   abbe_material_table_free(&table);
   return abbe_command_end(r.program, result, &error);

@@ -114,7 +114,7 @@ static const struct argp_option options[] = {
     {"count", KEY_COUNT, "N", 0, "wavelength samples, 1 to 4096; without it, 7", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "in nm; without it, 380:780", 0},
     {"illuminant", KEY_ILLUMINANT, "NAME|FILE", 0,
-     "D65, D50, A, E, or a file of two columns, nm and relative power; without it, D65", 0},
+     "D65, D50, A, E, or a file of two columns, wavelength and power; without it, D65", 0},
     {"space", KEY_SPACE, "SPACE", 0, "xyz, rec709 or acescg; without it, xyz", 0},
     {"set", KEY_SET, "SET", 0, "cie, or thesis: the thesis's seven RGB triples as printed", 0},
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},

@@ -264,22 +264,41 @@ static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char
 
 /* --- the scene --- */
 
+/* The materials that the objects name, so that of a store of many no others are read. */
+static size_t names_in(abbe_yaml *yaml, abbe_yaml_node root,
+                       const char *names[ABBE_SCENE_MAX_OBJECTS]) {
+  const abbe_yaml_node list = abbe_yaml_get(yaml, root, "objects");
+  const size_t count = abbe_yaml_is_sequence(yaml, list) ? abbe_yaml_count(yaml, list) : 0;
+  size_t found = 0;
+  for (size_t i = 0; i < count && found < ABBE_SCENE_MAX_OBJECTS; i++) {
+    const abbe_yaml_node object = abbe_yaml_item(yaml, list, i);
+    if (!abbe_yaml_is_mapping(yaml, object)) continue;
+    const char *name = abbe_yaml_text(yaml, abbe_yaml_get(yaml, object, "material"));
+    if (name) names[found++] = name;
+  }
+  return found;
+}
+
 static abbe_result read_table(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
                               const abbe_scene_options *options, abbe_scene *out,
                               abbe_error *error) {
-  char *name = NULL;
+  char *name = NULL, *path = NULL;
+  const char *names[ABBE_SCENE_MAX_OBJECTS];
+  const size_t count = names_in(yaml, root, names);
   abbe_result result = abbe_yaml_get_string(yaml, root, "materials", &name, error);
   if (result != ABBE_OK) return result;
-  if (options && options->materials) {
-    result = abbe_material_table_load(options->materials, &out->table, error);
-  } else if (!name || strcmp(name, "default") == 0 || strcmp(name, "thesis") == 0) {
-    result = abbe_material_table_load(name, &out->table, error);
-  } else {
-    char *path = abbe_object_path(folder, name);
-    result = path ? abbe_material_table_load(path, &out->table, error)
-                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-    free(path);
+  const bool given = options && options->materials;
+  const bool shipped = !name || strcmp(name, "default") == 0 || strcmp(name, "thesis") == 0;
+  if (!given && !shipped) {
+    path = abbe_object_path(folder, name);
+    if (!path) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
   }
+  if (result == ABBE_OK)
+    result = abbe_material_table_load_named(given     ? options->materials
+                                            : shipped ? name
+                                                      : path,
+                                            names, count, &out->table, error);
+  free(path);
   free(name);
   return result;
 }

@@ -88,7 +88,7 @@ static abbe_result check_index(const abbe_material *m, abbe_error *error) {
   return ABBE_OK;
 }
 
-abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
+abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error) {
   abbe_result result = abbe_material_check_name(material->name, error);
   if (result != ABBE_OK) return result;
   if (material->source == NULL || material->source[0] == '\0')
@@ -98,7 +98,11 @@ abbe_result abbe_material_check(const abbe_material *material, abbe_error *error
   abbe_error why;
   if (abbe_dispersion_check(&material->dispersion, &why) != ABBE_OK)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
-  result = check_range(material, error);
+  return check_range(material, error);
+}
+
+abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
+  abbe_result result = abbe_material_check_form(material, error);
   return result == ABBE_OK ? check_index(material, error) : result;
 }
 

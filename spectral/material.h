@@ -84,6 +84,8 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
  * the points of a tabulated model, and the formula has a real index at 1001 wavelengths over it.
  * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
+/* All of it but the last, which takes its time: what can be told without a value of the formula. */
+abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error);
 /* The part of it that is about the name alone. */
 abbe_result abbe_material_check_name(const char *name, abbe_error *error);
 

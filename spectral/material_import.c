@@ -4,6 +4,7 @@
 #include "spectral/agf.h"
 #include "spectral/encoding.h"
 #include "spectral/file.h"
+#include "spectral/material_store.h"
 #include "spectral/number.h"
 #include "spectral/rii.h"
 
@@ -68,9 +69,12 @@ static abbe_import_format say(const char *text, bool at_margin,
 /* Remarks are indented or hold numbers, so that marks at the margin come first, numbers last. */
 static abbe_result detect(const char *text, size_t size, abbe_import_format *out,
                           abbe_error *error) {
+  static const char store[16] = "SQLite format 3"; /* with its zero */
   char *clean = NULL;
   size_t length = 0;
-  *out = ABBE_IMPORT_AUTO;
+  bool is_store = size >= sizeof store && memcmp(text, store, sizeof store) == 0;
+  *out = is_store ? ABBE_IMPORT_STORE : ABBE_IMPORT_AUTO;
+  if (is_store) return ABBE_OK;
   abbe_result result = abbe_encoding_decode(text, size, &clean, &length, error);
   if (result != ABBE_OK) return result;
   *out = say(clean, true, marked);
@@ -172,6 +176,9 @@ static abbe_result parse_as(abbe_import_format format, const char *bytes, size_t
   case ABBE_IMPORT_YAML:
     result = abbe_material_table_parse(bytes, size, path, &table, error);
     break;
+  case ABBE_IMPORT_STORE:
+    result = abbe_error_set(error, ABBE_UNSUPPORTED, "%s: a store is read from its file", path);
+    break;
   case ABBE_IMPORT_RII:
     result = abbe_rii_parse(bytes, size, path, o->name, &one, report, error);
     break;
@@ -203,10 +210,19 @@ abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
   return parse_as(format, bytes, size, path, o, into, report, error);
 }
 
+static abbe_result load_store(const char *path, abbe_material_table *into, abbe_error *error) {
+  abbe_material_table table;
+  abbe_result result = abbe_material_store_read(path, NULL, 0, NULL, &table, error);
+  if (result == ABBE_OK) result = move_all(&table, into, error);
+  abbe_material_table_free(&table);
+  return result;
+}
+
 abbe_result abbe_import_load(const char *path, const abbe_import_options *options,
                              abbe_material_table *into, abbe_report *report, abbe_error *error) {
   char *bytes = NULL;
   size_t size = 0;
+  if (abbe_material_store_is(path)) return load_store(path, into, error);
   abbe_result result = abbe_file_read(path, MAX_BYTES, &bytes, &size, error);
   if (result == ABBE_OK)
     result = abbe_import_parse(bytes, size, path, options, into, report, error);

@@ -23,7 +23,8 @@ extern "C" {
   X(AGF, "agf", "a Zemax glass catalogue")                                                         \
   X(RII, "rii", "a file of refractiveindex.info")                                                  \
   X(CSV, "csv", "measured points: wavelength, n, and k or uncertainty")                            \
-  X(YAML, "yaml", "a table of ours")
+  X(YAML, "yaml", "a table of ours")                                                               \
+  X(STORE, "sqlite", "a store of ours")
 
 typedef enum abbe_import_format {
 #define ABBE_IMPORT_ENUM(code, name, text) ABBE_IMPORT_##code,
@@ -42,9 +43,9 @@ typedef struct abbe_import_options {
 
 const char *abbe_import_format_name(abbe_import_format format);
 
-/* What the text is: AGF where a line begins with NM, RII with DATA:, YAML with materials:. The
- * first such line decides, one at the margin before one that is indented, as remarks are. Else CSV
- * where a line begins with two numbers, else AUTO. */
+/* What the bytes are: STORE where they begin as SQLite's; AGF where a line begins with NM, RII with
+ * DATA:, YAML with materials:. The first such line decides, one at the margin before one that is
+ * indented, as remarks are. Else CSV where a line begins with two numbers, else AUTO. */
 abbe_import_format abbe_import_detect(const char *text, size_t size);
 
 /* Adds the materials of size bytes to the table, which may be zeroed; path stands for the file.
@@ -53,7 +54,7 @@ abbe_import_format abbe_import_detect(const char *text, size_t size);
 abbe_result abbe_import_parse(const char *bytes, size_t size, const char *path,
                               const abbe_import_options *options, abbe_material_table *into,
                               abbe_report *report, abbe_error *error);
-/* The same from a file of at most 64 MiB. */
+/* The same from a file of at most 64 MiB; a store is read from a file alone, of any size. */
 abbe_result abbe_import_load(const char *path, const abbe_import_options *options,
                              abbe_material_table *into, abbe_report *report, abbe_error *error);
 

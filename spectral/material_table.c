@@ -2,6 +2,7 @@
 
 #include "spectral/material_import.h"
 #include "spectral/material_record.h"
+#include "spectral/material_store.h"
 #include "spectral/nearest.h"
 #include "spectral/yaml.h"
 
@@ -191,6 +192,8 @@ static abbe_result load(const char *path, const mode *how, abbe_material_table *
   const char *shipped = abbe_material_table_shipped(path, &size);
   if (shipped != NULL)
     return parse(shipped, size, path == NULL ? "default" : path, how, out, error);
+  if (abbe_material_store_is(path))
+    return abbe_material_store_read(path, NULL, 0, how->lenient ? how->report : NULL, out, error);
   abbe_yaml *yaml = NULL;
   abbe_result result = abbe_yaml_load(path, &yaml, error);
   if (result == ABBE_OK) result = read_table(yaml, path, how, out, error);
@@ -207,6 +210,16 @@ abbe_result abbe_material_table_parse(const char *text, size_t size, const char 
 abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
                                      abbe_error *error) {
   return load(path, &(mode){false, NULL}, out, error);
+}
+
+abbe_result abbe_material_table_load_named(const char *path, const char *const *names, size_t count,
+                                           abbe_material_table *out, abbe_error *error) {
+  size_t size;
+  bool shipped = abbe_material_table_shipped(path, &size) != NULL;
+  if (shipped || !abbe_material_store_is(path)) return abbe_material_table_load(path, out, error);
+  abbe_result result = abbe_material_store_read(path, names, count, NULL, out, error);
+  out->part = result == ABBE_OK;
+  return result;
 }
 
 abbe_result abbe_material_table_parse_lenient(const char *text, size_t size, const char *name,
@@ -230,6 +243,13 @@ void abbe_material_table_free(abbe_material_table *table) {
 
 static abbe_result not_found(const abbe_material_table *table, const char *name,
                              abbe_error *error) {
+  if (table->part) { /* what else it has is not known yet */
+    abbe_material_table all;
+    abbe_result result = abbe_material_store_read_names(table->path, &all, error);
+    if (result == ABBE_OK) result = not_found(&all, name, error);
+    abbe_material_table_free(&all);
+    return result;
+  }
   const char **names = malloc((table->count + 1) * sizeof *names);
   if (names == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
   char list[700] = "";
@@ -261,5 +281,5 @@ abbe_result abbe_material_table_find(const abbe_material_table *table, const cha
     *out = &table->material[i];
     return ABBE_OK;
   }
-  return not_found(table, name, error);
+  return error != NULL ? not_found(table, name, error) : ABBE_NOT_FOUND;
 }

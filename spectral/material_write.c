@@ -6,12 +6,11 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 enum { WIDTH = 100 };
-
-static const char *const interpolations[] = {"linear", "monotone", "spline"};
 
 /* ---- text ---- */
 
@@ -80,7 +79,7 @@ static void write_dispersion(const abbe_material *m, FILE *to) {
   fprintf(to, "    model: %s\n", abbe_dispersion_model_name(d->model));
   if (d->model == ABBE_DISPERSION_TABULATED) {
     fprintf(to, "    interpolation: %s\n    points: ",
-            interpolations[abbe_spectrum_interpolation(d->table)]);
+            abbe_interpolation_name(abbe_spectrum_interpolation(d->table)));
     write_pairs(d->table, 6, to);
   } else {
     fputs("    coefficients: ", to);
@@ -100,7 +99,7 @@ static void write_absorption(const abbe_material *m, FILE *to) {
   fputs("    absorption:\n", to);
   abbe_interpolation interpolation = abbe_spectrum_interpolation(m->attenuation);
   if (interpolation != ABBE_INTERPOLATION_LINEAR)
-    fprintf(to, "      interpolation: %s\n", interpolations[interpolation]);
+    fprintf(to, "      interpolation: %s\n", abbe_interpolation_name(interpolation));
   fputs("      attenuation_per_m: ", to);
   write_pairs(m->attenuation, 8, to);
 }
@@ -175,8 +174,7 @@ abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_er
   return abbe_error_set(error, ABBE_IO, "%s: its record could not be written", m->name);
 }
 
-abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to,
-                                      abbe_error *error) {
+static abbe_result write_table(const abbe_material_table *table, FILE *to, abbe_error *error) {
   write_text("description", table->description, to);
   fputs(table->description != NULL ? "\nmaterials:\n" : "materials:\n", to);
   for (size_t i = 0; i < table->count; i++) {
@@ -184,6 +182,38 @@ abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to
     abbe_result result = abbe_material_write(&table->material[i], to, error);
     if (result != ABBE_OK) return result;
   }
-  if (fflush(to) == 0 && !ferror(to)) return ABBE_OK;
+  return ABBE_OK;
+}
+
+/* A value takes a byte at least, so that a short text has not too many of them. */
+static abbe_result check_readable(const char *text, size_t size, size_t count, abbe_error *error) {
+  enum { SURELY_READ = 1000000 };
+  abbe_material_table table;
+  abbe_error why = {0};
+  if (size <= SURELY_READ) return ABBE_OK;
+  abbe_result result = abbe_material_table_parse(text, size, "the table", &table, &why);
+  if (result == ABBE_OK) abbe_material_table_free(&table);
+  if (result == ABBE_OK || result == ABBE_NO_MEMORY)
+    return result == ABBE_OK ? result : abbe_error_set(error, result, "%s", why.text);
+  return abbe_error_set(
+      error, ABBE_INVALID_ARGUMENT,
+      "%zu materials are %.3g MB of YAML, which no command would read again (%s); "
+      "write a store of them, to a file that ends in .sqlite",
+      count, (double)size / 1e6, why.text);
+}
+
+abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to,
+                                      abbe_error *error) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *memory = open_memstream(&text, &size);
+  if (memory == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a table");
+  abbe_result result = write_table(table, memory, error);
+  if (fclose(memory) != 0 && result == ABBE_OK)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a table");
+  if (result == ABBE_OK) result = check_readable(text, size, table->count, error);
+  if (result == ABBE_OK) fwrite(text, 1, size, to);
+  free(text);
+  if (result != ABBE_OK || (fflush(to) == 0 && !ferror(to))) return result;
   return abbe_error_set(error, ABBE_IO, "the table could not be written");
 }

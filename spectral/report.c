@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void abbe_report_free(abbe_report *report) {
   free(report->note);
@@ -37,11 +38,15 @@ void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, cons
   report->count++;
   note->kind = kind;
   note->line = line;
+  const char *file = report->file != NULL ? report->file : "";
+  size_t length = strlen(file), most = sizeof note->file - 1;
+  snprintf(note->file, sizeof note->file, "%s", file + (length > most ? length - most : 0));
   snprintf(note->name, sizeof note->name, "%s", name == NULL ? "" : name);
   va_list args;
   va_start(args, format);
   vsnprintf(note->text, sizeof note->text, format, args);
   va_end(args);
+  defuse(note->file);
   defuse(note->name);
   defuse(note->text);
 }

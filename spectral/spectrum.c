@@ -16,6 +16,18 @@ struct abbe_spectrum {
   gsl_interp *interp; /* NULL for a single point */
 };
 
+const char *abbe_interpolation_name(abbe_interpolation interpolation) {
+  switch (interpolation) {
+  case ABBE_INTERPOLATION_LINEAR:
+    return "linear";
+  case ABBE_INTERPOLATION_MONOTONE:
+    return "monotone";
+  case ABBE_INTERPOLATION_SPLINE:
+    return "spline";
+  }
+  return "unknown";
+}
+
 static abbe_result check(const double *lambda_nm, const double *value, size_t count,
                          abbe_error *error) {
   if (count < 1 || count > ABBE_SPECTRUM_MAX_COUNT)

@@ -20,6 +20,9 @@ typedef enum abbe_interpolation {
   ABBE_INTERPOLATION_SPLINE    /* natural cubic */
 } abbe_interpolation;
 
+/* As files have it: "linear", "monotone", "spline"; "unknown" for any other. */
+const char *abbe_interpolation_name(abbe_interpolation interpolation);
+
 #define ABBE_SPECTRUM_MAX_COUNT 65536
 
 typedef struct abbe_spectrum abbe_spectrum;

@@ -2,6 +2,7 @@
 
 #include "spectral/file.h"
 #include "spectral/material_import.h"
+#include "spectral/material_store.h"
 #include "spectral/material_table.h"
 #include "spectral/nearest.h"
 #include "spectral/number.h"
@@ -77,6 +78,12 @@ abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_e
                           "the table '%s' is compiled in and cannot be edited; write a copy of it "
                           "to a file, and edit that",
                           path == NULL ? "default" : path);
+  if (abbe_material_store_is(path))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: a store is not edited; 'abbe materials add NAME --from %s --table "
+                          "FILE.yaml --create' copies a record to a table that can be, 'abbe "
+                          "materials export --table %s -o FILE.yaml' all of them",
+                          path, path, path);
   char *text = NULL;
   abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
   if (result == ABBE_OK) result = abbe_table_edit_parse(text, size, path, out, error);

@@ -19,9 +19,9 @@ extern "C" {
 
 typedef struct abbe_table_edit abbe_table_edit;
 
-/* Reads the file at path (at most 16 MiB). ABBE_UNSUPPORTED, with what to do instead, for NULL and
- * the tables that are compiled in; ABBE_PARSE where it is not YAML with a list 'materials'. A file
- * that is YAML but no table (a wrong record) can be edited: that is how it is mended. */
+/* Reads the file at path (at most 16 MiB). ABBE_UNSUPPORTED, with what to do instead, for NULL, the
+ * tables that are compiled in, and stores; ABBE_PARSE where it is not YAML with a list 'materials'.
+ * A file that is YAML but no table (a wrong record) can be edited: that is how it is mended. */
 abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_error *error);
 /* A table without a record yet, for a file that must not exist until it is saved. */
 abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_error *error);

@@ -2,9 +2,11 @@
 
 # Every allocation of Abbe's own objects, and what allocates for them (faults/memory.h).
 add_library(faults_memory OBJECT faults/memory.c)
-target_link_libraries(faults_memory PUBLIC abbe_build PkgConfig::GSL PkgConfig::YAML PNG::PNG)
+target_link_libraries(faults_memory PUBLIC abbe_build PkgConfig::GSL PkgConfig::SQLITE PkgConfig::YAML
+  PNG::PNG)
 foreach(name malloc calloc realloc aligned_alloc strdup strndup realpath fopen fdopen open_memstream
-    newlocale yaml_parser_initialize yaml_parser_parse png_create_write_struct
+    newlocale yaml_parser_initialize yaml_parser_parse sqlite3_open_v2 sqlite3_prepare_v2
+    sqlite3_step sqlite3_serialize png_create_write_struct
     png_create_read_struct png_create_info_struct gsl_vector_alloc gsl_matrix_alloc gsl_interp_alloc
     gsl_integration_workspace_alloc gsl_multifit_linear_alloc gsl_multifit_nlinear_alloc)
   target_link_options(faults_memory INTERFACE LINKER:--wrap=${name})

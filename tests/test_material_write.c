@@ -128,12 +128,51 @@ static void what_could_not_be_read_again_is_not_written(void **state) {
   fclose(full);
 }
 
+/* What is written can be read again: a table with more values than a reader takes is refused. */
+static void too_large_a_table_is_refused(void **state) {
+  (void)state;
+  enum { POINTS = 60000, COUNT = 6 };
+  static double lambda_nm[POINTS], value[POINTS];
+  static char names[COUNT][4], source[] = "s";
+  abbe_material list[COUNT] = {{0}};
+  for (int i = 0; i < POINTS; i++) {
+    lambda_nm[i] = 400 + 0.5 * i;
+    value[i] = 1.5;
+  }
+  for (int i = 0; i < COUNT; i++) {
+    snprintf(names[i], sizeof names[i], "m%d", i);
+    list[i] = (abbe_material){.name = names[i],
+                              .source = source,
+                              .min_nm = 400,
+                              .max_nm = 700,
+                              .temperature_c = NAN,
+                              .dispersion = {.model = ABBE_DISPERSION_TABULATED}};
+    assert_int_equal(abbe_spectrum_make(lambda_nm, value, POINTS, ABBE_INTERPOLATION_LINEAR,
+                                        &list[i].dispersion.table, NULL),
+                     ABBE_OK);
+  }
+  const abbe_material_table table = {.count = COUNT, .material = list};
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  abbe_error error = {0};
+  assert_int_equal(abbe_material_table_write(&table, to, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "6 materials are ");
+  assert_contains(error.text, "more than 1000000 values");
+  assert_contains(error.text, "a file that ends in .sqlite");
+  fclose(to);
+  assert_int_equal(size, 0);
+  free(text);
+  for (int i = 0; i < COUNT; i++) abbe_dispersion_free(&list[i].dispersion);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shipped_tables_come_back_the_same),
       cmocka_unit_test(random_records_come_back_the_same),
       cmocka_unit_test(odd_texts_come_back_the_same),
       cmocka_unit_test(what_could_not_be_read_again_is_not_written),
+      cmocka_unit_test(too_large_a_table_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

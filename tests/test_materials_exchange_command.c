@@ -50,6 +50,78 @@ static void notes_are_numbers_for_a_program(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* A folder in one command, into a store that every verb reads. */
+static void a_folder_becomes_a_store(void **state) {
+  (void)state;
+  runs("mkdir -p d/one/nk d/two/nk; for m in one two; do for f in Ann Zoe; do printf "
+       "'REFERENCES: r\\nCOMMENTS: 20 C\\nDATA:\\n- {type: formula 5, wavelength_range: 0.3 0.9, "
+       "coefficients: 1.5 0.004 -2}\\n' >d/$m/nk/$f.yml; done; done; cp "
+       "\"$house/docs/examples/maker.agf\" d; cp d/maker.agf d/two; echo DATA: >d/bad.yml; " M
+       "import d -o all.sqlite; rm -r d",
+       "14 materials in all.sqlite");
+  assert_contains(run_errors, "skipped: d/bad.yml");
+  assert_contains(run_errors, "N-BK7: line 2: several files have a material of this name; that of "
+                              "d/maker.agf is named d-N-BK7");
+#define T " --table all.sqlite"
+  runs(M "list --name '*zoe*' --columns name,n_d" T, "");
+  assert_string_equal(run_output, "name          n_d\none-Zoe  1.511587\ntwo-Zoe  1.511587\n");
+  runs(M "show two-n-bk7 --at 587.5618" T, "");
+  assert_contains(run_output, "1.516800");
+  runs(M "plot one-Ann two-SF10 -o p.svg" T " && " M "plot --map -o m.svg" T " && rm ?.svg", "");
+  runs(M "nearest --nd 1.62 --vd 36.4 --count 1" T, "");
+  assert_contains(run_output, "d-F2");
+  runs(M "nearest --like one-Ann --like-table all.sqlite --count 1", "");
+  runs(M "fit d-F2 --terms 3" T, "");
+  runs(M "diff all.sqlite all.sqlite", "");
+  assert_contains(run_output, "14 the same");
+  assert_int_equal(run_line(M "check" T), 3);
+  assert_contains(run_output, "all.sqlite: 14 rows, 2 wrong, 2 doubtful");
+  runs(M "import all.sqlite -o again.sqlite && cmp all.sqlite again.sqlite && rm again.sqlite", "");
+  runs(M "export -o all.yaml" T " && " M "diff all.yaml all.sqlite && rm all.yaml", "");
+  assert_contains(run_output, "14 the same");
+  runs(M "export one-ann --to yaml" T, "");
+  assert_contains(run_output, "name: one-Ann\n");
+  runs(M "add two-SF10 --from all.sqlite --as mine --table t.yaml --create temperature_c=21 && " M
+         "show mine --table t.yaml && rm t.yaml",
+       "");
+  assert_contains(run_output, "temperature   21 C");
+  runs("cp \"$house/scenes/wood.png\" . && sed 's/sf10/two-SF10/' \"$house/scenes/prism.yaml\" "
+       ">s.yaml && \"$abbe\" plan s.yaml --materials all.sqlite | grep -q 'the index varies'",
+       "");
+  bool right = true;
+  const struct {
+    const char *line;
+    const char *part;
+  } rows[] = {
+      {M "show zoe" T, "has no material 'zoe'"},
+      {M "show one-Zo" T, "did you mean 'one-Zoe'?"},
+      {M "set one-Zoe source=x" T, "all.sqlite: a store is not edited; 'abbe materials add"},
+      {M "add x --from default" T, "a store is not edited"},
+      {M "edit one-Zoe" T, "a store is not edited"},
+      {M "check --fix" T, "a store is not edited"},
+      {"\"$abbe\" plan \"$house/scenes/prism.yaml\" --materials all.sqlite",
+       "prism.yaml:32: the table 'all.sqlite' has no material 'sf10'; did you mean"}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    int code = run_line(rows[i].line);
+    bool good = code == 1 && strstr(run_errors, rows[i].part) != NULL;
+    if (!good) print_error("%s: %d: %s\n", rows[i].line, code, run_errors);
+    right = right && good;
+  }
+  assert_true(right);
+  runs("rm all.sqlite s.yaml wood.png", "");
+  assert_int_equal(run_left(), 0);
+#undef T
+}
+
+static void names_may_get_a_prefix(void **state) {
+  (void)state;
+  runs(M "import \"$house/docs/examples/maker.agf\" --prefix maker-", "5 materials");
+  assert_contains(run_output, "name: maker-N-BK7\n");
+  runs("printf 'nm,n\n500,1.5\n600,1.4\n' >a.csv; " M "import a.csv --name x --prefix 'my '", "");
+  assert_contains(run_output, "name: my x\n");
+  runs("rm a.csv", "");
+}
+
 static void wrong_requests_get_a_sentence(void **state) {
   (void)state;
   const struct {
@@ -63,6 +135,9 @@ static void wrong_requests_get_a_sentence(void **state) {
       {M "import a --format agff", 2, "did you mean 'agf'?"},
       {M "import a --unit feet", 2, "--unit 'feet' is not known"},
       {M "import missing.agf", 1, "missing.agf: cannot be opened"},
+      {M "import \"$house/docs/examples\" missing.agf", 1, "missing.agf: cannot be opened"},
+      {M "import \"$house/script\"", 1, "holds no file that ends in .agf"},
+      {M "export --to sqlite", 2, "a store is a file; name it with -o FILE.sqlite"},
       {"echo hello >x; " M "import x; c=$?; rm x; exit $c", 1, "is none of what can be read"},
       {"echo x >t.yaml; " M
        "import \"$house/spectral/thesis.yaml\" -o t.yaml; c=$?; rm t.yaml; exit $c",
@@ -90,6 +165,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_table_goes_out_and_comes_back),
       cmocka_unit_test(notes_are_numbers_for_a_program),
+      cmocka_unit_test(a_folder_becomes_a_store),
+      cmocka_unit_test(names_may_get_a_prefix),
       cmocka_unit_test(wrong_requests_get_a_sentence),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);

@@ -5,8 +5,10 @@
 #include "spectral/csv_write.h"
 #include "spectral/doctor.h"
 #include "spectral/fit.h"
+#include "spectral/import_batch.h"
 #include "spectral/material_import.h"
 #include "spectral/material_query.h"
+#include "spectral/material_store_write.h"
 #include "spectral/material_write.h"
 #include "spectral/record_draft.h"
 #include "spectral/rii_write.h"
@@ -116,6 +118,41 @@ static abbe_result write_tables(abbe_error *error) {
     free(text);
   }
   abbe_material_table_free(&table);
+  return result;
+}
+
+static abbe_result store_table(abbe_error *error) {
+  static const char *const names[] = {"b", "nobody"};
+  abbe_material_table table, back = {0};
+  const abbe_material *m = NULL;
+  abbe_file_writer writer = {0};
+  const char *path = operation_path("table.sqlite");
+  abbe_result result = parse(small, &table, error);
+  if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
+  if (result == ABBE_OK) result = abbe_material_store_write(&table, writer.stream, error);
+  if (result == ABBE_OK) result = abbe_file_writer_commit(&writer, error);
+  abbe_file_writer_discard(&writer);
+  abbe_material_table_free(&table);
+  if (result == ABBE_OK) result = abbe_material_table_load(path, &back, error);
+  if (result == ABBE_OK) digest_table(&back);
+  abbe_material_table_free(&back);
+  if (result == ABBE_OK) result = abbe_material_table_load_named(path, names, 2, &back, error);
+  if (result == ABBE_OK) digest_table(&back);
+  if (result == ABBE_OK) result = abbe_material_table_find(&back, names[1], &m, error);
+  if (result == ABBE_NOT_FOUND) result = ABBE_OK;
+  abbe_material_table_free(&back);
+  return result;
+}
+
+static abbe_result import_folder(abbe_error *error) {
+  static const char *const paths[] = {CORPUS "agf/maker.agf", CORPUS "rii", CORPUS "agf/wide.agf"};
+  const abbe_import_batch batch = {.path = paths, .count = 3, .prefix = "my-"};
+  abbe_material_table table = {0};
+  abbe_report report = {0};
+  const abbe_result result = abbe_import_batch_run(&batch, &table, &report, error);
+  if (result == ABBE_OK) digest_table(&table);
+  abbe_material_table_free(&table);
+  abbe_report_free(&report);
   return result;
 }
 
@@ -255,6 +292,8 @@ static void test_tables(void **state) {
       {"import AGF", import_agf, 400},
       {"import RII", import_rii, 400},
       {"import CSV", import_csv, 400},
+      {"import a folder", import_folder, 200},
+      {"store a table", store_table, 80},
       {"write tables", write_tables, 300},
       {"examine a table", examine, 0},
       {"edit a table", edit_table, 120},

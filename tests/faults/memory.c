@@ -8,6 +8,7 @@
 #include <gsl/gsl_multifit_nlinear.h>
 #include <locale.h>
 #include <png.h>
+#include <sqlite3.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,6 +73,16 @@ WRAP(locale_t, newlocale, (int mask, const char *name, locale_t base), (mask, na
 WRAP(int, yaml_parser_initialize, (yaml_parser_t * parser), (parser), 0)
 WRAP(int, yaml_parser_parse, (yaml_parser_t * parser, yaml_event_t *event), (parser, event),
      (memset(event, 0, sizeof *event), parser->error = YAML_MEMORY_ERROR, 0))
+
+WRAP(int, sqlite3_open_v2, (const char *path, sqlite3 **db, int flags, const char *vfs),
+     (path, db, flags, vfs), (*db = NULL, SQLITE_NOMEM))
+WRAP(int, sqlite3_prepare_v2,
+     (sqlite3 * db, const char *sql, int size, sqlite3_stmt **out, const char **rest),
+     (db, sql, size, out, rest), (*out = NULL, SQLITE_NOMEM))
+WRAP(int, sqlite3_step, (sqlite3_stmt * statement), (statement), SQLITE_NOMEM)
+WRAP(unsigned char *, sqlite3_serialize,
+     (sqlite3 * db, const char *schema, sqlite3_int64 *size, unsigned flags),
+     (db, schema, size, flags), NULL)
 
 WRAP(png_structp, png_create_write_struct,
      (png_const_charp version, png_voidp user, png_error_ptr error, png_error_ptr warn),

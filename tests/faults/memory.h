@@ -2,8 +2,8 @@
  *
  * A test program that links tests/faults/memory.c with the options of abbe_faults_memory has every
  * allocation of Abbe's own objects pass through here: malloc and its kin, and the functions of
- * libc, libyaml, libpng and GSL that allocate for their caller. What other libraries allocate
- * within themselves is not touched.
+ * libc, libyaml, SQLite, libpng and GSL that allocate for their caller. What other libraries
+ * allocate within themselves is not touched.
  */
 #ifndef ABBE_TESTS_FAULTS_MEMORY_H
 #define ABBE_TESTS_FAULTS_MEMORY_H
