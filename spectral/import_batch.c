@@ -204,8 +204,8 @@ static abbe_result rename_row(runner *r, const row *it, const char *before, bool
   if (made == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
   if (is_label)
     abbe_report_add(r->report, ABBE_NOTE_RENAMED, it->material->line, old,
-                    "several files have a material of this name; that of %.160s is named %s",
-                    it->path, made);
+                    "is named %s, since several files have a material of this name; it is of %s",
+                    made, it->path);
   else if (!whole)
     abbe_report_add(r->report, ABBE_NOTE_RENAMED, it->material->line, old,
                     "with the whole prefix its name would be too long; it is named %s", made);

@@ -1,5 +1,7 @@
 #include "spectral/report.h"
 
+#include "spectral/encoding.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,12 +42,16 @@ void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, cons
   note->line = line;
   const char *file = report->file != NULL ? report->file : "";
   size_t length = strlen(file), most = sizeof note->file - 1;
-  snprintf(note->file, sizeof note->file, "%s", file + (length > most ? length - most : 0));
+  file += length > most ? length - most : 0;
+  while (((unsigned char)*file & 0xc0) == 0x80) file++; /* to a whole letter */
+  snprintf(note->file, sizeof note->file, "%s", file);
   snprintf(note->name, sizeof note->name, "%s", name == NULL ? "" : name);
   va_list args;
   va_start(args, format);
   vsnprintf(note->text, sizeof note->text, format, args);
   va_end(args);
+  abbe_encoding_trim(note->name);
+  abbe_encoding_trim(note->text);
   defuse(note->file);
   defuse(note->name);
   defuse(note->text);

@@ -60,8 +60,8 @@ static void a_folder_becomes_a_store(void **state) {
        "import d -o all.sqlite; rm -r d",
        "14 materials in all.sqlite");
   assert_contains(run_errors, "skipped: d/bad.yml");
-  assert_contains(run_errors, "N-BK7: line 2: several files have a material of this name; that of "
-                              "d/maker.agf is named d-N-BK7");
+  assert_contains(run_errors, "N-BK7: line 2: is named d-N-BK7, since several files have a "
+                              "material of this name; it is of d/maker.agf");
 #define T " --table all.sqlite"
   runs(M "list --name '*zoe*' --columns name,n_d" T, "");
   assert_string_equal(run_output, "name          n_d\none-Zoe  1.511587\ntwo-Zoe  1.511587\n");

@@ -1,5 +1,6 @@
 #include "tests/check.h"
 
+#include "spectral/encoding.h"
 #include "spectral/report.h"
 
 static void notes_are_kept_in_order(void **state) {
@@ -23,6 +24,27 @@ static void notes_are_kept_in_order(void **state) {
   abbe_report_free(&report);
 }
 
+/* Of a long text whole letters are kept, of a long path its end. */
+static void texts_are_cut_between_letters(void **state) {
+  (void)state;
+  char text[800] = "", path[800] = "";
+  for (int i = 0; i < 390; i++) strcat(text, "\xc3\xa4");
+  snprintf(path, sizeof path, "%s%s", "x/", text);
+  memcpy(path + strlen(path) - 2, "/z", 2);
+  abbe_report report = {.file = path};
+  abbe_report_add(&report, ABBE_NOTE_LOST, 0, text, "x%s", text);
+  const abbe_note *n = &report.note[0];
+  assert_int_equal(strlen(n->text), 319);
+  assert_int_equal(strlen(n->name), 94);
+  assert_int_equal(strlen(n->file), 126);
+  const char *const cut[] = {n->text, n->name, n->file};
+  for (int i = 0; i < 3; i++)
+    for (const char *c = cut[i]; *c != '\0'; c += abbe_encoding_letter(c))
+      assert_true(abbe_encoding_letter(c) > 0);
+  assert_string_equal(n->file + 124, "/z");
+  abbe_report_free(&report);
+}
+
 static void there_is_an_end_to_what_is_kept(void **state) {
   (void)state;
   abbe_report report = {0};
@@ -37,6 +59,7 @@ static void there_is_an_end_to_what_is_kept(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(notes_are_kept_in_order),
+      cmocka_unit_test(texts_are_cut_between_letters),
       cmocka_unit_test(there_is_an_end_to_what_is_kept),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
