@@ -54,15 +54,18 @@ static abbe_result load_mask(const request *q, const abbe_field *reference, abbe
                              abbe_error *error) {
   abbe_image image = {0};
   abbe_error why = {0};
-  abbe_result result = ends_with_png(q->mask) ? abbe_png_read(q->mask, &image, error)
-                                              : abbe_exr_read(q->mask, &image, error);
+  const bool png = ends_with_png(q->mask);
+  abbe_result result =
+      png ? abbe_png_read(q->mask, &image, error) : abbe_exr_read(q->mask, &image, error);
   if (result != ABBE_OK) return result;
   if (image.width != reference->width || image.height != reference->height)
     result =
         abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                        "%s: the mask has %zu x %zu pixels; what is compared has %zu x %zu", q->mask,
                        image.width, image.height, reference->width, reference->height);
-  else if (abbe_mask_make_drawn(&image, mask, &why) != ABBE_OK)
+  else if (!png) /* a PNG says of no place where it lies */
+    result = abbe_image_check_place(&image, q->mask, &reference->header, q->path[0], error);
+  if (result == ABBE_OK && abbe_mask_make_drawn(&image, mask, &why) != ABBE_OK)
     result = abbe_error_set(error, why.code, "%s: %.400s", q->mask, why.text);
   abbe_image_free(&image);
   return result;
@@ -300,8 +303,9 @@ static const struct argp parser = {
         "by "
         "band, and whether the standard errors of the files explain it. Beside each value stands "
         "what the reference's own noise alone would make of it.\v"
-        "Pictures must have one size; of two maps of one layout the finer is summed down to the "
-        "coarser. A difference below the reference's noise is said to be so.\n\n"
+        "Pictures must have one size and lie in one place (display window); of two maps of one "
+        "layout the finer is summed down to the coarser. A difference below the reference's noise "
+        "is said to be so.\n\n"
         "Examples:\n"
         "  abbe compare reference.exr gem.exr\n"
         "  abbe compare map-ref.exr map.exr --mask caustic --difference map.png\n"

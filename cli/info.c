@@ -41,9 +41,34 @@ static bool has_chromaticities(const abbe_image *image) {
   return false;
 }
 
+static bool same_window(abbe_image_window a, abbe_image_window b) {
+  return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
+}
+
+/* Only what is not as in most pictures: data for all that is shown, from (0, 0). */
+static void print_windows(const abbe_image *image) {
+  const abbe_image_window shown = image->display_window, data = image->data_window;
+  if (shown.x0 != 0 || shown.y0 != 0 || !same_window(shown, data))
+    printf("display window  (%d, %d) to (%d, %d): what is shown and measured\n", (int)shown.x0,
+           (int)shown.y0, (int)shown.x1, (int)shown.y1);
+  if (same_window(shown, data)) return;
+  const bool apart =
+      data.x0 > shown.x1 || data.x1 < shown.x0 || data.y0 > shown.y1 || data.y1 < shown.y0;
+  const bool over =
+      data.x0 < shown.x0 || data.y0 < shown.y0 || data.x1 > shown.x1 || data.y1 > shown.y1;
+  const bool under =
+      data.x0 > shown.x0 || data.y0 > shown.y0 || data.x1 < shown.x1 || data.y1 < shown.y1;
+  printf("data window     (%d, %d) to (%d, %d): %s%s%s\n", (int)data.x0, (int)data.y0, (int)data.x1,
+         (int)data.y1, under ? "elsewhere the picture is 0" : "", under && over ? "; " : "",
+         apart  ? "nothing of it is shown"
+         : over ? "what lies outside the display window is left out"
+                : "");
+}
+
 static void print_text(const request *r, const abbe_image *image) {
   printf("%s: %zu x %zu pixels, %zu channels\n", r->path, image->width, image->height,
          image->channels);
+  print_windows(image);
   const double *xy = image->xy;
   if (has_chromaticities(image))
     printf("chromaticities  R (%.5g, %.5g)  G (%.5g, %.5g)  B (%.5g, %.5g)  white (%.5g, %.5g)\n",
@@ -71,12 +96,20 @@ static bool add_channel(cJSON *list, const abbe_image *image, size_t c) {
          cJSON_AddNumberToObject(item, "inf", (double)s.inf) != NULL;
 }
 
+/* Both ends are included. */
+static bool add_window(cJSON *root, const char *name, abbe_image_window w) {
+  const int corner[] = {w.x0, w.y0, w.x1, w.y1};
+  return cJSON_AddItemToObject(root, name, cJSON_CreateIntArray(corner, 4));
+}
+
 static bool add_header(cJSON *root, const request *r, const abbe_image *image) {
   cJSON *xy =
       has_chromaticities(image) ? cJSON_CreateDoubleArray(image->xy, 8) : cJSON_CreateNull();
   bool made = cJSON_AddStringToObject(root, "file", r->path) != NULL &&
               cJSON_AddNumberToObject(root, "width", (double)image->width) != NULL &&
               cJSON_AddNumberToObject(root, "height", (double)image->height) != NULL &&
+              add_window(root, "display_window", image->display_window) &&
+              add_window(root, "data_window", image->data_window) &&
               cJSON_AddItemToObject(root, "chromaticities", xy);
   cJSON *attributes = cJSON_AddObjectToObject(root, "attributes");
   for (size_t i = 0; made && i < image->attribute_count; i++)
@@ -123,8 +156,9 @@ static const struct argp parser = {
     .parser = parse,
     .args_doc = "FILE.exr",
     .doc =
-        "Says what an OpenEXR picture holds: size, chromaticities, text attributes, and for every "
-        "channel the least, greatest and mean of its finite samples and how many are none.\v"
+        "Says what an OpenEXR picture holds: size, windows, chromaticities, text attributes, and "
+        "for "
+        "every channel the least, greatest and mean of its finite samples and how many are none.\v"
         "Examples:\n"
         "  abbe info gem.exr\n"
         "  abbe info gem.exr --json\n",

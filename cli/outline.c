@@ -73,8 +73,9 @@ static abbe_result add_picture(const abbe_field *field, const char *name, double
   return ABBE_OK;
 }
 
+/* `place` gets the picture's display window, for the comparison. */
 static abbe_result load(const request *q, const char *path, const char *minus, abbe_outline *out,
-                        abbe_error *error) {
+                        abbe_image *place, abbe_error *error) {
   abbe_field field = {0}, dark = {0};
   double(*rgb)[3] = NULL;
   abbe_result result = abbe_field_load(path, &field, error);
@@ -84,6 +85,9 @@ static abbe_result load(const request *q, const char *path, const char *minus, a
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "%s has %zu x %zu pixels and %s %zu x %zu; they must be of one size",
                             path, field.width, field.height, minus, dark.width, dark.height);
+  if (result == ABBE_OK && minus != NULL)
+    result = abbe_image_check_place(&field.header, path, &dark.header, minus, error);
+  place->display_window = field.header.display_window;
   if (result == ABBE_OK) {
     rgb = calloc(field.width * field.height, sizeof *rgb);
     if (rgb == NULL)
@@ -188,9 +192,12 @@ int abbe_command_outline(int argc, char **argv) {
   abbe_error error = {0};
   abbe_outline outline[2] = {{0}};
   abbe_outline_agreement agreement = {0};
+  abbe_image place[2] = {{0}};
   abbe_result result = ABBE_OK;
   for (int i = 0; i < q.files && result == ABBE_OK; i++)
-    result = load(&q, q.file[i], i == q.files - 1 ? q.minus : NULL, &outline[i], &error);
+    result = load(&q, q.file[i], i == q.files - 1 ? q.minus : NULL, &outline[i], &place[i], &error);
+  if (result == ABBE_OK && q.files == 2)
+    result = abbe_image_check_place(&place[0], q.file[0], &place[1], q.file[1], &error);
   if (result == ABBE_OK && q.files == 2)
     result = abbe_outline_compare(&outline[0], &outline[1], &agreement, &error);
   if (result == ABBE_OK && q.json) result = print_json(&q, outline, &agreement, &error);

@@ -38,6 +38,9 @@ abbe_result abbe_image_make(size_t width, size_t height, size_t channels, const 
   if (result != ABBE_OK) return result;
 
   abbe_image image = {.width = width, .height = height, .channels = channels};
+  image.display_window.x1 = (int32_t)width - 1;
+  image.display_window.y1 = (int32_t)height - 1;
+  image.data_window = image.display_window;
   image.channel = calloc(channels, sizeof *image.channel);
   image.data = calloc(width * height * channels, sizeof *image.data);
   bool made = image.channel != NULL && image.data != NULL;
@@ -64,6 +67,31 @@ void abbe_image_free(abbe_image *image) {
   }
   free(image->attribute);
   *image = (abbe_image){0};
+}
+
+abbe_result abbe_image_check_expansion(const char *path, size_t width, size_t height,
+                                       size_t channels, size_t file_bytes, size_t free_bytes,
+                                       abbe_error *error) {
+  const double bytes = (double)width * (double)height * (double)channels * sizeof(float);
+  const double mebibyte = 1 << 20;
+  if (bytes <= (double)free_bytes || bytes <= ABBE_IMAGE_MAX_EXPANSION * (double)file_bytes)
+    return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: its %zu bytes would unfold into %zu x %zu pixels and %zu channels, "
+                        "%.0f MiB; above %.0f MiB a picture may take %d times its file's bytes",
+                        path, file_bytes, width, height, channels, bytes / mebibyte,
+                        (double)free_bytes / mebibyte, ABBE_IMAGE_MAX_EXPANSION);
+}
+
+abbe_result abbe_image_check_place(const abbe_image *a, const char *name_a, const abbe_image *b,
+                                   const char *name_b, abbe_error *error) {
+  const abbe_image_window v = a->display_window, w = b->display_window;
+  if (v.x0 == w.x0 && v.y0 == w.y0) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s shows (%d, %d) to (%d, %d) and %s (%d, %d) to (%d, %d), by their "
+                        "display windows; they must begin at one place to be compared",
+                        name_a, (int)v.x0, (int)v.y0, (int)v.x1, (int)v.y1, name_b, (int)w.x0,
+                        (int)w.y0, (int)w.x1, (int)w.y1);
 }
 
 static abbe_image_attribute *find_attribute(const abbe_image *image, const char *name) {

@@ -246,6 +246,9 @@ static void test_what_does_not_align(void **state) {
   assert_contains(error.text, "b.exr");
   abbe_field_free(&a);
   abbe_field_free(&b);
+  a = map_of(4, 4, &layout, NULL), b = map_of(4, 4, &layout, NULL);
+  b.header.display_window = (abbe_image_window){-1, 7, 2, 10};
+  refuse(&a, &b, "b.exr (-1, 7) to (2, 10)");
   a = map_of(4, 4, &layout, NULL), b = map_of(3, 4, &layout, NULL);
   refuse(&a, &b, "4 x 4");
   abbe_image image = image_of(4, 4, 3, rgb), small = image_of(2, 2, 3, rgb);

@@ -51,7 +51,7 @@ typedef struct abbe_field {
   double *lambda_nm;          /* [bands.channels] ascending */
   abbe_field_samples caustic; /* 0 or 3 channels, in the colour's space, without errors */
   size_t passes;              /* independent estimates behind the errors; 0: not told */
-  abbe_image header;          /* the file's attributes; no pixels */
+  abbe_image header;          /* the file's attributes and its display window; no pixels */
 } abbe_field;
 
 /* What image holds. ABBE_INVALID_ARGUMENT where it has neither colour nor bands, where only some
@@ -76,8 +76,8 @@ abbe_result abbe_field_sum_down(abbe_field *field, size_t width, size_t height, 
 /* Brings two fields together: of one kind, with colour or bands in common, one size and, for maps,
  * one layout (scenes/map_layout.h; none for both is the same) and one abbe:map_light. The finer of
  * two maps is summed down to the coarser; if the spaces of colour differ, both become XYZ; bands
- * stay only where both have the same. ABBE_INVALID_ARGUMENT with what differs, by the names that
- * are given. */
+ * stay only where both have the same. ABBE_INVALID_ARGUMENT with what differs (the places where
+ * they lie, too), by the names that are given. */
 abbe_result abbe_field_align(abbe_field *a, const char *name_a, abbe_field *b, const char *name_b,
                              abbe_error *error);
 

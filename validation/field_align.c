@@ -157,6 +157,8 @@ abbe_result abbe_field_align(abbe_field *a, const char *name_a, abbe_field *b, c
   abbe_result result = ABBE_OK;
   if (a->kind == ABBE_FIELD_RECEIVER_MAP) result = check_layout(a, name_a, b, name_b, error);
   if (result == ABBE_OK) result = align_sizes(a, name_a, b, name_b, error);
+  if (result == ABBE_OK)
+    result = abbe_image_check_place(&a->header, name_a, &b->header, name_b, error);
   if (result != ABBE_OK) return result;
   bool colour = a->colour.channels > 0 && b->colour.channels > 0;
   if (!colour && (a->bands.channels == 0 || !same_bands(a, b)))
