@@ -22,6 +22,24 @@ static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsi
                                                     : CAIRO_STATUS_WRITE_ERROR;
 }
 
+typedef struct png_stream {
+  FILE *file;
+  size_t left; /* of a PNG's signature and header, which are always its first 33 bytes */
+} png_stream;
+
+/* Cairo does not say that its colours are sRGB: the chunk that does comes behind the header. */
+static cairo_status_t write_png(void *closure, const unsigned char *data, unsigned int length) {
+  static const unsigned char srgb[] = {0, 0, 0, 1, 's', 'R', 'G', 'B', 1, 0xd9, 0xc9, 0x2c, 0x7f};
+  png_stream *stream = closure;
+  const unsigned head = length < stream->left ? length : (unsigned)stream->left;
+  cairo_status_t status = write_bytes(stream->file, data, head);
+  stream->left -= head;
+  if (status == CAIRO_STATUS_SUCCESS && head > 0 && stream->left == 0)
+    status = write_bytes(stream->file, srgb, sizeof srgb);
+  return status == CAIRO_STATUS_SUCCESS ? write_bytes(stream->file, data + head, length - head)
+                                        : status;
+}
+
 /* The panels one above the other; the labels of all decide where the plots begin and end. */
 static void draw(cairo_t *cr, abbe_chart_panel *panels, size_t count, double width, double height) {
   double total = 0, left = 0, right = 0, top = 0;
@@ -55,8 +73,9 @@ static abbe_result write_surface(cairo_surface_t *surface, abbe_chart_panel *pan
   draw(cr, panels, count, width, height);
   cairo_status_t status = cairo_status(cr);
   cairo_destroy(cr);
+  png_stream stream = {.file = png, .left = 33};
   if (status == CAIRO_STATUS_SUCCESS && png != NULL)
-    status = cairo_surface_write_to_png_stream(surface, write_bytes, png);
+    status = cairo_surface_write_to_png_stream(surface, write_png, &stream);
   cairo_surface_finish(surface); /* an SVG is written here */
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
   cairo_surface_destroy(surface);

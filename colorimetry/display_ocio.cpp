@@ -1,5 +1,7 @@
 #include "colorimetry/display_ocio.h"
 
+#include "colorimetry/rgb_encoding.h"
+
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <cmath>
@@ -19,6 +21,7 @@ extern const size_t abbe_embedded_config_ocio_size;
 
 struct abbe_display {
   OCIO::ConstCPUProcessorRcPtr processor;
+  double xy[8], curve[5];
 };
 
 namespace {
@@ -124,6 +127,46 @@ OCIO::GroupTransformRcPtr display_transform(const char *source, const char *disp
   return group;
 }
 
+/* From the view's colour space to CIE XYZ, by the roles that OCIO has for it. */
+OCIO::ConstProcessorRcPtr encoding_to_xyz(const OCIO::ConstConfigRcPtr &config,
+                                          const OCIO::ConstColorSpaceRcPtr &space) {
+  OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+  OCIO::ColorSpaceTransformRcPtr decode = OCIO::ColorSpaceTransform::Create();
+  const bool display = space->getReferenceSpaceType() == OCIO::REFERENCE_SPACE_DISPLAY;
+  decode->setSrc(space->getName());
+  decode->setDst(display ? "cie_xyz_d65_interchange" : "aces_interchange");
+  group->appendTransform(decode);
+  if (!display) {
+    OCIO::BuiltinTransformRcPtr to_xyz = OCIO::BuiltinTransform::Create();
+    to_xyz->setStyle("UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD");
+    group->appendTransform(to_xyz);
+  }
+  return config->getProcessor(group);
+}
+
+bool named(const std::string &display, const char *name) {
+  return display == name || display == std::string(name) + " - Display";
+}
+
+/* What the display's numbers mean; nothing where the configuration does not tell. */
+void find_encoding(const OCIO::ConstConfigRcPtr &config, const std::string &display,
+                   const char *view, abbe_display *out) {
+  const std::string word = config->getDisplayViewColorSpaceName(display.c_str(), view);
+  const std::string name = word == OCIO::OCIO_VIEW_USE_DISPLAY_NAME ? display : word;
+  OCIO::ConstColorSpaceRcPtr space = config->getColorSpace(name.c_str());
+  if (!space || space->isData()) return;
+  float probes[ABBE_RGB_ENCODING_PROBES][3];
+  abbe_rgb_encoding_probes(probes);
+  try {
+    OCIO::PackedImageDesc pixels(probes, ABBE_RGB_ENCODING_PROBES, 1, 3);
+    encoding_to_xyz(config, space)->getDefaultCPUProcessor()->apply(pixels);
+    if (abbe_rgb_encoding_of_probes(probes, out->xy, out->curve)) return;
+  } catch (const OCIO::Exception &) { /* no such role, or a transform of one way only */
+  }
+  if (named(display, "sRGB")) abbe_rgb_encoding_srgb(out->xy, out->curve);
+  if (named(display, "Display P3")) abbe_rgb_encoding_display_p3(out->xy, out->curve);
+}
+
 abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
   const char *name = config_name(desc->config);
   OCIO::ConstConfigRcPtr config = load(desc->config);
@@ -140,7 +183,9 @@ abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *
     return unknown(name, "colour space", source, known_spaces(config), error);
   OCIO::ConstProcessorRcPtr processor = config->getProcessor(
       display_transform(source, display.c_str(), view.c_str(), desc->exposure));
-  *out = new abbe_display{processor->getDefaultCPUProcessor()};
+  abbe_display made = {processor->getDefaultCPUProcessor(), {}, {}};
+  find_encoding(config, display, view.c_str(), &made);
+  *out = new abbe_display(made);
   return ABBE_OK;
 }
 
@@ -171,6 +216,8 @@ abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, a
                                  static_cast<long>(image->height), 3, OCIO::BIT_DEPTH_F32,
                                  sizeof(float), pixel, pixel * static_cast<long>(image->width));
     display->processor->apply(pixels);
+    std::memcpy(image->xy, display->xy, sizeof image->xy);
+    std::memcpy(image->curve, display->curve, sizeof image->curve);
     return ABBE_OK;
   });
 }

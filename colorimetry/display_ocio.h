@@ -34,7 +34,10 @@ abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
                               abbe_error *error);
 void abbe_display_free(abbe_display *display);
 
-/* Replaces the first three channels of the image by display-encoded values. */
+/* Replaces the first three channels of the image by display-encoded values, and the image's xy and
+ * curve by what they mean: found from the configuration where it says how the view's colour space
+ * relates to CIE XYZ (interchange roles), else by the name of a display "sRGB" or "Display P3";
+ * zeros where that is not known and where the view's numbers are no colours ("Raw"). */
 abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, abbe_error *error);
 
 /* One line a display and view, malloc'd, newline separated ("sRGB / Plain"); caller frees. */

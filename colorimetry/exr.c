@@ -132,9 +132,12 @@ static abbe_result check_layout(const stream *s, const layout *l, abbe_error *er
         s->path, (long long)width_of(l->data), (long long)height_of(l->data),
         (long long)width_of(l->display), (long long)height_of(l->display),
         l->channels->num_channels, (long long)s->size, ABBE_IMAGE_MAX_SIDE);
-  return abbe_image_check_expansion(
-      s->path, (size_t)width_of(l->display), (size_t)height_of(l->display),
-      (size_t)l->channels->num_channels, (size_t)s->size, ABBE_EXR_FREE_BYTES, error);
+  const exr_attr_box2i_t window[] = {l->data, l->display};
+  for (int i = 0; result == ABBE_OK && i < 2; i++)
+    result = abbe_image_check_expansion(
+        s->path, (size_t)width_of(window[i]), (size_t)height_of(window[i]),
+        (size_t)l->channels->num_channels, (size_t)s->size, ABBE_EXR_FREE_BYTES, error);
+  return result;
 }
 
 static abbe_result read_layout(exr_context_t context, const stream *s, layout *l,

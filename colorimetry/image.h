@@ -34,6 +34,8 @@ typedef struct abbe_image {
   char **channel;   /* [channels] names: "R", "G", "B", "A", "caustic.R", … */
   float *data;      /* [height][width][channels] */
   double xy[8];     /* chromaticities of R, G, B, white; all 0: not stated */
+  double curve[5];  /* of values encoded for a display (rgb_encoding.h); all 0: not encoded, or not
+                       stated */
   abbe_image_window display_window; /* where the pixels lie; (0, 0) is the first of one made here */
   abbe_image_window
       data_window; /* what the file it comes from had values for; elsewhere they are 0 */

@@ -1,5 +1,6 @@
 #include "colorimetry/png_file.h"
 
+#include "colorimetry/rgb_encoding.h"
 #include "spectral/file.h"
 
 #include <errno.h>
@@ -12,7 +13,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_SIDE = 16384, MAX_CHUNK_BYTES = 16 << 20, DEFLATE_RATIO = 1032 };
+enum { MAX_SIDE = 16384, MAX_CHUNK_BYTES = 4 << 20, DEFLATE_RATIO = 1032 };
 
 /* One file under way. libpng leaves by longjmp, so what must outlive that lives here. */
 typedef struct job {
@@ -24,6 +25,8 @@ typedef struct job {
   png_bytep *row;
   png_uint_32 width, height;
   int bits, samples; /* of a row's pixel in memory */
+  void *icc;         /* to be written; of three channels that are not in sRGB */
+  size_t icc_size;
   bool io_failed, no_memory;
   char message[256];
 } job;
@@ -74,6 +77,15 @@ static void fill_row(const abbe_image *image, size_t y, const job *j) {
     }
 }
 
+/* The chunks that say what the numbers mean. */
+static void write_encoding(const job *j, const abbe_image *image) {
+  if (abbe_rgb_encoding_is_srgb(image->xy, image->curve))
+    png_set_sRGB_gAMA_and_cHRM(j->png, j->info, PNG_sRGB_INTENT_RELATIVE);
+  else if (j->icc != NULL)
+    png_set_iCCP(j->png, j->info, "icc", PNG_COMPRESSION_TYPE_BASE, j->icc,
+                 (png_uint_32)j->icc_size);
+}
+
 static bool write_rows(job *j, const abbe_image *image) {
   if (setjmp(png_jmpbuf(j->png))) return false;
   png_set_write_fn(j->png, j, write_bytes, flush_bytes);
@@ -81,6 +93,7 @@ static bool write_rows(job *j, const abbe_image *image) {
   png_set_IHDR(j->png, j->info, (png_uint_32)image->width, (png_uint_32)image->height, j->bits,
                j->samples == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  write_encoding(j, image);
   png_write_info(j->png, j->info);
   for (size_t y = 0; y < image->height; y++) {
     fill_row(image, y, j);
@@ -107,13 +120,19 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
                           "%s: a PNG of %d bits cannot be written; 8 or 16 can", path, bits);
   if (image->data == NULL || image->channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the image to write is empty", path);
+  job j = {.path = path, .bits = bits, .samples = image->channels >= 3 ? 3 : 1};
   abbe_file_writer writer = {0};
-  abbe_result result = abbe_file_writer_open(&writer, path, error);
-  if (result != ABBE_OK) return result;
-  job j = {
-      .path = path, .file = writer.stream, .bits = bits, .samples = image->channels >= 3 ? 3 : 1};
-  if (write_image(&j, image)) return abbe_file_writer_commit(&writer, error);
+  abbe_result result = ABBE_OK;
+  if (j.samples == 3 && abbe_rgb_encoding_is_known(image->xy, image->curve) &&
+      !abbe_rgb_encoding_is_srgb(image->xy, image->curve))
+    result = abbe_rgb_encoding_profile(image->xy, image->curve, &j.icc, &j.icc_size, error);
+  if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
+  j.file = writer.stream;
+  const bool written = result == ABBE_OK && write_image(&j, image);
+  free(j.icc);
+  if (written) return abbe_file_writer_commit(&writer, error);
   abbe_file_writer_discard(&writer);
+  if (result != ABBE_OK) return result;
   return abbe_error_set(error, j.no_memory ? ABBE_NO_MEMORY : ABBE_IO,
                         "%s: it cannot be written: %s", path,
                         j.no_memory ? "there is no memory for a row" : j.message);
@@ -121,11 +140,24 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
 
 /* Reading */
 
+/* Of what is not pixels only what says their colour is read: no text, thumbnail or profile of
+ * whatever kind is unpacked in vain. */
+static void choose_chunks(const job *j) {
+  static const png_byte known[] = "bKGD\0eXIf\0hIST\0iTXt\0oFFs\0pCAL\0pHYs\0sBIT\0sCAL\0"
+                                  "sPLT\0sTER\0tEXt\0tIME\0tRNS\0zTXt";
+  static const png_byte cicp[] = "cICP"; /* younger than libpng 1.6.45 */
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_NEVER, NULL, 0);
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_NEVER, known, sizeof known / 5);
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_ALWAYS, cicp, 1);
+  png_set_chunk_cache_max(j->png, 8);
+  png_set_chunk_malloc_max(j->png, MAX_CHUNK_BYTES);
+}
+
 static bool read_header(job *j, double file_size) {
   if (setjmp(png_jmpbuf(j->png))) return false;
   png_set_read_fn(j->png, j, read_bytes);
   png_set_user_limits(j->png, MAX_SIDE, MAX_SIDE);
-  png_set_chunk_malloc_max(j->png, MAX_CHUNK_BYTES);
+  choose_chunks(j);
   png_read_info(j->png, j->info);
   j->width = png_get_image_width(j->png, j->info);
   j->height = png_get_image_height(j->png, j->info);
@@ -165,13 +197,92 @@ static void take_samples(const job *j, abbe_image *image) {
                                    : (float)j->rows[i] / 255.0f;
 }
 
+/* The code points of [H273] that are of a display's RGB; false for others. */
+static bool decode_cicp(const png_unknown_chunk *chunk, double xy[8], double curve[5]) {
+  static const struct {
+    int code;
+    double xy[8];
+  } primaries[] = {{1, {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}},
+                   {9, {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}},
+                   {12, {0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290}}};
+  static const struct {
+    int code;
+    double curve[5];
+  } transfers[] = {{1, {1 / 0.45, 1 / 1.099, 0.099 / 1.099, 1 / 4.5, 0.081}},
+                   {4, {2.2, 1, 0, 0, 0}},
+                   {5, {2.8, 1, 0, 0, 0}},
+                   {8, {1, 1, 0, 0, 0}},
+                   {13, {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}}};
+  const png_byte *code = chunk->data;
+  if (chunk->size != 4 || code[2] != 0 || code[3] != 1) return false;
+  const int transfer = code[1] == 6 || code[1] == 14 || code[1] == 15 ? 1 : code[1];
+  bool found[2] = {false, false};
+  for (size_t i = 0; i < sizeof primaries / sizeof *primaries; i++) {
+    if (primaries[i].code != code[0]) continue;
+    memcpy(xy, primaries[i].xy, sizeof primaries[i].xy);
+    found[0] = true;
+  }
+  for (size_t i = 0; i < sizeof transfers / sizeof *transfers; i++) {
+    if (transfers[i].code != transfer) continue;
+    memcpy(curve, transfers[i].curve, sizeof transfers[i].curve);
+    found[1] = true;
+  }
+  return found[0] && found[1];
+}
+
+/* By gAMA and cHRM, either of which may be missing; sRGB stands in for both. */
+static void decode_gamma(const job *j, double xy[8], double curve[5]) {
+  double gamma = 0, w[2], r[2], g[2], b[2], rec709[8];
+  abbe_rgb_encoding_srgb(xy, curve);
+  memcpy(rec709, xy, sizeof rec709);
+  if (png_get_cHRM(j->png, j->info, &w[0], &w[1], &r[0], &r[1], &g[0], &g[1], &b[0], &b[1]) != 0) {
+    const double stated[8] = {r[0], r[1], g[0], g[1], b[0], b[1], w[0], w[1]};
+    memcpy(xy, stated, sizeof stated);
+  }
+  if (png_get_gAMA(j->png, j->info, &gamma) == 0 || !(gamma > 0)) return;
+  /* 1/2.2 with sRGB's primaries is how sRGB is said to old readers */
+  const bool srgb = abbe_rgb_encoding_is_srgb(xy, curve) && fabs(gamma * 2.2 - 1) < 1e-3;
+  const double power[5] = {1 / gamma, 1, 0, 0, 0};
+  if (!srgb) memcpy(curve, power, sizeof power);
+}
+
+/* What the file says of its colour, in the order in which [PNG2025] ranks it. */
+static abbe_result become_srgb(const job *j, abbe_image *image, abbe_error *error) {
+  png_unknown_chunkp chunk = NULL;
+  png_charp name = NULL;
+  png_bytep icc = NULL;
+  png_uint_32 size = 0;
+  int method = 0;
+  abbe_rgb_encoding_srgb(image->xy, image->curve);
+  if (png_get_unknown_chunks(j->png, j->info, &chunk) > 0) {
+    if (!decode_cicp(chunk, image->xy, image->curve))
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s: its cICP chunk says an encoding that is not known here; primaries "
+                            "1, 9 or 12 with transfer 1, 4, 5, 6, 8, 13, 14 or 15, matrix 0 and "
+                            "full range are",
+                            j->path);
+  } else if (png_get_valid(j->png, j->info, PNG_INFO_sRGB) != 0) {
+    return ABBE_OK;
+  } else if (png_get_iCCP(j->png, j->info, &name, &method, &icc, &size) != 0) {
+    return abbe_rgb_encoding_profile_to_srgb(image, icc, size, j->path, error);
+  } else {
+    decode_gamma(j, image->xy, image->curve);
+  }
+  if (abbe_rgb_encoding_is_srgb(image->xy, image->curve)) return ABBE_OK;
+  return abbe_rgb_encoding_to_srgb(image, j->path, error);
+}
+
 static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
   j->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, j, on_error, on_warning);
   j->info = j->png == NULL ? NULL : png_create_info_struct(j->png);
   j->no_memory = j->info == NULL;
   abbe_result result = ABBE_OK;
-  if (j->no_memory || !read_header(j, file_size) || !read_rows(j)) {
+  bool read = !j->no_memory && read_header(j, file_size);
+  if (read)
+    result = abbe_image_check_expansion(j->path, j->width, j->height, 3, (size_t)file_size,
+                                        ABBE_PNG_FREE_BYTES, error);
+  if (result == ABBE_OK && !(read && read_rows(j))) {
     abbe_result code = j->no_memory ? ABBE_NO_MEMORY : j->io_failed ? ABBE_IO : ABBE_PARSE;
     result = abbe_error_set(error, code, "%s: %s%s", j->path,
                             j->no_memory ? "there is no memory for its pixels"
@@ -180,9 +291,12 @@ static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_er
   }
   if (result == ABBE_OK) result = abbe_image_make(j->width, j->height, 3, names, out, error);
   if (result == ABBE_OK) take_samples(j, out);
+  free(j->rows);
+  j->rows = NULL;
+  if (result == ABBE_OK) result = become_srgb(j, out, error);
+  if (result != ABBE_OK) abbe_image_free(out);
   png_destroy_read_struct(&j->png, &j->info, NULL);
   free(j->row);
-  free(j->rows);
   return result;
 }
 

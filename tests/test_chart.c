@@ -172,6 +172,22 @@ static void an_svg_is_whole_and_scales(void **state) {
   free(text);
 }
 
+/* Behind the header, where the PNG specification wants it, before the palette or the pixels. */
+static void a_png_says_that_it_is_srgb(void **state) {
+  (void)state;
+  const double x[] = {1, 2}, y[] = {1, 2};
+  abbe_chart_series series = {.count = 2, .x = x, .y = y};
+  abbe_chart chart = {.series_count = 1, .series = &series};
+  abbe_image image = draw(&chart, 1, 100, 80);
+  abbe_image_free(&image);
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(path[0], 1 << 22, &data, &size, NULL), ABBE_OK);
+  assert_memory_equal(data + 12, "IHDR", 4);
+  assert_memory_equal(data + 33, "\0\0\0\1sRGB\1\xd9\xc9\x2c\x7f", 13);
+  free(data);
+}
+
 /* Whatever it is asked to show, it shows something or says why not, and no file is left half done.
  */
 static void awkward_charts_are_drawn_or_refused(void **state) {
@@ -227,9 +243,9 @@ static void awkward_charts_are_drawn_or_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      in_folder(points_lie_where_their_axes_say),     in_folder(gaps_and_bars_are_drawn),
-      in_folder(a_field_has_its_colours_and_scale),   in_folder(an_svg_is_whole_and_scales),
-      in_folder(awkward_charts_are_drawn_or_refused),
+      in_folder(points_lie_where_their_axes_say),   in_folder(gaps_and_bars_are_drawn),
+      in_folder(a_field_has_its_colours_and_scale), in_folder(an_svg_is_whole_and_scales),
+      in_folder(a_png_says_that_it_is_srgb),        in_folder(awkward_charts_are_drawn_or_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

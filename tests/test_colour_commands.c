@@ -14,6 +14,7 @@
 
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -194,6 +195,30 @@ static void test_display_source(void **state) {
   must(1, "--source", arguments);
 }
 
+static bool holds(const char *word) {
+  char data[4096];
+  FILE *file = fopen(png, "rb");
+  assert_non_null(file);
+  const size_t size = fread(data, 1, sizeof data, file), length = strlen(word);
+  fclose(file);
+  for (size_t i = 0; i + length <= size; i++)
+    if (memcmp(data + i, word, length) == 0) return true;
+  return false;
+}
+
+/* By the display that was asked for. */
+static void test_display_says_its_colour(void **state) {
+  (void)state;
+  double rgb[3];
+  make_picture(NULL, NULL, rgbz);
+  show("", rgb);
+  assert_true(holds("sRGB") && !holds("iCCP"));
+  show("--display 'Display P3' --view Plain", rgb);
+  assert_true(holds("iCCP") && !holds("sRGB"));
+  show("--view Raw", rgb);
+  assert_true(!holds("iCCP") && !holds("sRGB"));
+}
+
 static void test_display_fails(void **state) {
   (void)state;
   make_picture(NULL, NULL, rgbz);
@@ -279,11 +304,15 @@ int main(void) {
   snprintf(png, sizeof png, "/tmp/abbe_test_command_%ld.png", id);
   snprintf(other, sizeof other, "/tmp/abbe_test_command_%ld.txt", id);
   unsetenv("OCIO");
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_weights_json),   cmocka_unit_test(test_weights_of_every_kind),
-      cmocka_unit_test(test_weights_thesis), cmocka_unit_test(test_weights_used_wrongly),
-      cmocka_unit_test(test_display),        cmocka_unit_test(test_display_source),
-      cmocka_unit_test(test_display_fails),  cmocka_unit_test(test_info),
-      cmocka_unit_test(test_a_full_disk)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_weights_json),
+                                     cmocka_unit_test(test_weights_of_every_kind),
+                                     cmocka_unit_test(test_weights_thesis),
+                                     cmocka_unit_test(test_weights_used_wrongly),
+                                     cmocka_unit_test(test_display),
+                                     cmocka_unit_test(test_display_source),
+                                     cmocka_unit_test(test_display_says_its_colour),
+                                     cmocka_unit_test(test_display_fails),
+                                     cmocka_unit_test(test_info),
+                                     cmocka_unit_test(test_a_full_disk)};
   return cmocka_run_group_tests(tests, NULL, leave);
 }

@@ -7,6 +7,7 @@
 
 #include "colorimetry/display_ocio.h"
 #include "colorimetry/observer.h"
+#include "colorimetry/rgb_encoding.h"
 #include "colorimetry/rgb_space.h"
 #include "spectral/file.h"
 
@@ -254,6 +255,90 @@ static void test_list(void **state) {
   assert_int_equal(unsetenv("OCIO"), 0);
 }
 
+/* What the display says of its numbers: 's' sRGB, 'p' Display P3, '4' a power of 2.4, '-' nothing.
+ */
+static char encoding_of(const abbe_display_desc *desc) {
+  abbe_display *display = make(desc);
+  abbe_image image = {0};
+  double p3[8], curve[5];
+  assert_int_equal(abbe_image_make(1, 1, 3, names, &image, NULL), ABBE_OK);
+  image.xy[0] = 0.7; /* of the scene-linear picture */
+  assert_int_equal(abbe_display_apply(display, &image, NULL), ABBE_OK);
+  abbe_rgb_encoding_display_p3(p3, curve);
+  char kind = '?';
+  if (!abbe_rgb_encoding_is_known(image.xy, image.curve)) kind = image.xy[0] == 0 ? '-' : '?';
+  if (abbe_rgb_encoding_is_srgb(image.xy, image.curve)) kind = 's';
+  if (fabs(image.curve[0] - 2.4) < 1e-3 && image.curve[4] == 0) kind = '4';
+  if (kind == '?' && fabs(image.xy[0] - p3[0]) < 1e-4 && image.curve[0] == curve[0]) kind = 'p';
+  abbe_image_free(&image);
+  abbe_display_free(display);
+  return kind;
+}
+
+static void test_what_the_numbers_mean(void **state) {
+  (void)state;
+  static const struct {
+    const char *display, *view;
+    char kind;
+  } shipped[] = {{"sRGB", "Looking", 's'},     {"sRGB", "Plain", 's'},
+                 {"sRGB", "Raw", '-'},         {"Display P3", "Looking", 'p'},
+                 {"Display P3", "Plain", 'p'}, {"Display P3", "Raw", '-'}};
+  for (int i = 0; i < 6; i++) {
+    const abbe_display_desc desc = {.display = shipped[i].display, .view = shipped[i].view};
+    assert_int_equal(encoding_of(&desc), shipped[i].kind);
+  }
+}
+
+/* A configuration of another maker: displays by formula, by name alone, and by neither. */
+static void test_what_other_configurations_tell(void **state) {
+  (void)state;
+  static const char path[] = "/tmp/abbe_test_other.ocio";
+  static const char text[] =
+      "ocio_profile_version: 2\n"
+      "roles: {scene_linear: ap0%s}\n"
+      "file_rules:\n  - !<Rule> {name: Default, colorspace: ap0}\n"
+      "displays:\n"
+      "  Monitor:\n    - !<View> {name: Film, colorspace: video}\n"
+      "    - !<View> {name: Toned, colorspace: toned}\n"
+      "  sRGB:\n    - !<View> {name: Toned, colorspace: toned}\n"
+      "  Display P3 - Display:\n    - !<View> {name: Toned, colorspace: toned}\n"
+      "colorspaces:\n"
+      "  - !<ColorSpace> {name: ap0}\n"
+      "  - !<ColorSpace>\n    name: video\n    from_scene_reference: !<GroupTransform>\n"
+      "      children:\n"
+      "        - !<BuiltinTransform> {style: UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD}\n"
+      "        - !<MatrixTransform> {matrix: [3.24096994190452, -1.53738317757009, "
+      "-0.498610760293004, 0, -0.96924363628088, 1.87596750150772, 0.0415550574071756, 0, "
+      "0.0556300796969936, -0.203976958888976, 1.05697151424288, 0, 0, 0, 0, 1]}\n"
+      "        - !<ExponentTransform> {value: 2.4, direction: inverse}\n"
+      "  - !<ColorSpace>\n    name: toned\n    from_scene_reference: !<GroupTransform>\n"
+      "      children:\n"
+      "        - !<MatrixTransform> {matrix: [0.9, 0.1, 0, 0, 0.2, 0.8, 0, 0, 0, 0.3, 0.7, 0, 0, "
+      "0, "
+      "0, 1]}\n"
+      "        - !<LogTransform> {base: 10}\n";
+  static const struct {
+    const char *display, *view;
+    char with_roles, without;
+  } cases[] = {{"Monitor", "Film", '4', '-'},
+               {"Monitor", "Toned", '-', '-'},
+               {"sRGB", "Toned", 's', 's'},
+               {"Display P3 - Display", "Toned", 'p', 'p'}};
+  for (int roles = 0; roles < 2; roles++) {
+    char config[4000];
+    snprintf(config, sizeof config, text, roles ? ", aces_interchange: ap0" : "");
+    assert_int_equal(abbe_file_write(path, config, strlen(config), NULL), ABBE_OK);
+    for (int i = 0; i < 4; i++) {
+      const abbe_display_desc desc = {
+          .config = path, .display = cases[i].display, .view = cases[i].view};
+      const char kind = encoding_of(&desc), right = roles ? cases[i].with_roles : cases[i].without;
+      if (kind != right)
+        fail_msg("%s, %s: '%c', not '%c'", cases[i].display, cases[i].view, kind, right);
+    }
+  }
+  unlink(path);
+}
+
 int main(void) {
   unsetenv("OCIO");
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain_is_the_encoding_alone),
@@ -264,6 +349,8 @@ int main(void) {
                                      cmocka_unit_test(test_other_channels_stay),
                                      cmocka_unit_test(test_unknown_names_list_the_known),
                                      cmocka_unit_test(test_broken_configurations),
+                                     cmocka_unit_test(test_what_the_numbers_mean),
+                                     cmocka_unit_test(test_what_other_configurations_tell),
                                      cmocka_unit_test(test_list)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -130,6 +130,23 @@ static void test_what_is_refused(void **state) {
   }
 }
 
+/* What a small file may unfold into is bounded, whichever window says it. */
+static void test_what_unfolds_is_refused(void **state) {
+  (void)state;
+  static const int wide[4] = {0, 0, 32767, 32767};
+  exr_library_file f = {.channels = 1, .type = {1}, .name = {"Y"}, .codec = EXR_COMPRESSION_ZIP};
+  char why[300];
+  memcpy(f.display_window, wide, sizeof wide);
+  if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "32768 x 32768");
+  assert_null(image.data);
+  f.display_window[3] = 0; /* one line of it, for which there is one pixel of data */
+  read_and_compare(&f);
+}
+
 /* Every half there is, by OpenEXR's own conversion. */
 static void test_every_half(void **state) {
   (void)state;
@@ -182,9 +199,12 @@ static int leave(void **state) {
 
 int main(void) {
   snprintf(path, sizeof path, "/tmp/abbe_test_exr_files_%ld.exr", (long)getpid());
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_scan_lines), cmocka_unit_test(test_windows),
-      cmocka_unit_test(test_tiles),      cmocka_unit_test(test_what_is_refused),
-      cmocka_unit_test(test_every_half), cmocka_unit_test(test_what_abbe_writes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_scan_lines),
+                                     cmocka_unit_test(test_windows),
+                                     cmocka_unit_test(test_tiles),
+                                     cmocka_unit_test(test_what_is_refused),
+                                     cmocka_unit_test(test_what_unfolds_is_refused),
+                                     cmocka_unit_test(test_every_half),
+                                     cmocka_unit_test(test_what_abbe_writes)};
   return cmocka_run_group_tests(tests, NULL, leave);
 }

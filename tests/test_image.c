@@ -40,6 +40,44 @@ static void test_sizes_are_checked_first(void **state) {
   }
 }
 
+static void test_what_unfolds(void **state) {
+  (void)state;
+  static const struct {
+    size_t width, height, channels, bytes;
+    abbe_result result;
+  } cases[] = {{1000, 1000, 3, 1, ABBE_OK}, /* 12 million bytes are free */
+               {1000, 1001, 3, 1, ABBE_UNSUPPORTED},
+               {1000, 1001, 3, 12012000 / ABBE_IMAGE_MAX_EXPANSION, ABBE_UNSUPPORTED},
+               {1000, 1001, 3, 12012000 / ABBE_IMAGE_MAX_EXPANSION + 1, ABBE_OK},
+               {SIZE_MAX, SIZE_MAX, SIZE_MAX, SIZE_MAX, ABBE_UNSUPPORTED}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_error error = {0};
+    assert_int_equal(abbe_image_check_expansion("a.png", cases[i].width, cases[i].height,
+                                                cases[i].channels, cases[i].bytes, 12000000,
+                                                &error),
+                     cases[i].result);
+    if (cases[i].result != ABBE_OK) assert_non_null(strstr(error.text, "a.png: "));
+  }
+}
+
+static void test_places(void **state) {
+  (void)state;
+  abbe_image a = {0}, b = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(3, 2, 3, rgb, &a, NULL), ABBE_OK);
+  assert_int_equal(abbe_image_make(3, 2, 3, rgb, &b, NULL), ABBE_OK);
+  assert_int_equal(a.display_window.x1, 2);
+  assert_int_equal(a.data_window.y1, 1);
+  assert_int_equal(abbe_image_check_place(&a, "a", &b, "b", &error), ABBE_OK);
+  b.data_window.x0 = 1; /* where there is data does not matter */
+  assert_int_equal(abbe_image_check_place(&a, "a", &b, "b", &error), ABBE_OK);
+  b.display_window = (abbe_image_window){-7, 0, -5, 1};
+  assert_int_equal(abbe_image_check_place(&a, "a", &b, "b", &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "a shows (0, 0) to (2, 1) and b (-7, 0) to (-5, 1)"));
+  abbe_image_free(&a);
+  abbe_image_free(&b);
+}
+
 static void test_names_are_needed(void **state) {
   (void)state;
   static const char *const bad[] = {"R", "", "B"};
@@ -69,6 +107,8 @@ static void test_attributes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_make_is_black_and_named),
                                      cmocka_unit_test(test_sizes_are_checked_first),
+                                     cmocka_unit_test(test_what_unfolds),
+                                     cmocka_unit_test(test_places),
                                      cmocka_unit_test(test_names_are_needed),
                                      cmocka_unit_test(test_attributes)};
   return cmocka_run_group_tests(tests, NULL, NULL);

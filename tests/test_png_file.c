@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "colorimetry/png_file.h"
+#include "colorimetry/rgb_encoding.h"
 #include "spectral/file.h"
 
 #include <math.h>
@@ -218,6 +219,175 @@ static void test_not_pictures(void **state) {
   read_must_fail("a text", 6, "text");
 }
 
+/* Which of the chunks that say a colour the file has: sRGB, gAMA, cHRM, iCCP. */
+static void chunks_are(const char *expected) {
+  static const char *const known[] = {"sRGB", "gAMA", "cHRM", "iCCP"};
+  char *data = NULL, found[40] = "";
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
+  for (int k = 0; k < 4; k++)
+    for (size_t i = 0; i + 4 <= size; i++)
+      if (memcmp(data + i, known[k], 4) == 0) strcat(strcat(found, " "), known[k]);
+  free(data);
+  assert_string_equal(found, expected);
+}
+
+static void test_the_colour_is_said(void **state) {
+  (void)state;
+  for (size_t channels = 1; channels <= 3; channels += 2) {
+    abbe_image image = gradient(4, 4, channels), back = {0};
+    assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+    chunks_are("");
+    abbe_rgb_encoding_srgb(image.xy, image.curve);
+    assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+    chunks_are(" sRGB gAMA cHRM");
+    abbe_rgb_encoding_display_p3(image.xy, image.curve);
+    assert_int_equal(abbe_png_write(path, &image, 16, NULL), ABBE_OK);
+    chunks_are(channels == 3 ? " iCCP" : "");
+    assert_int_equal(abbe_png_read(path, &back, NULL), ABBE_OK);
+    abbe_image_free(&back);
+    abbe_image_free(&image);
+  }
+}
+
+/* A file of one colour that says what `say` adds to it. */
+static void write_stating(const double rgb[3], void (*say)(png_structp png, png_infop info)) {
+  FILE *file = fopen(path, "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+  png_infop info = png_create_info_struct(png);
+  assert_true(file != NULL && png != NULL && info != NULL);
+  if (setjmp(png_jmpbuf(png))) fail();
+  png_init_io(png, file);
+  png_set_IHDR(png, info, 1, 1, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  say(png, info);
+  png_write_info(png, info);
+  png_byte row[6];
+  for (int c = 0; c < 3; c++) {
+    const unsigned v = (unsigned)lround(65535 * rgb[c]);
+    row[2 * c] = (png_byte)(v >> 8);
+    row[2 * c + 1] = (png_byte)(v & 255);
+  }
+  png_write_row(png, row);
+  png_write_end(png, NULL);
+  png_destroy_write_struct(&png, &info);
+  fclose(file);
+}
+
+static void say_nothing(png_structp png, png_infop info) {
+  (void)png, (void)info;
+}
+static void say_srgb(png_structp png, png_infop info) {
+  png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+}
+static void say_old_srgb(png_structp png, png_infop info) {
+  png_set_gAMA_fixed(png, info, 45455);
+  png_set_cHRM(png, info, 0.3127, 0.329, 0.64, 0.33, 0.3, 0.6, 0.15, 0.06);
+}
+static void say_linear(png_structp png, png_infop info) {
+  png_set_gAMA_fixed(png, info, 100000);
+}
+static void say_p3_by_chunks(png_structp png, png_infop info) {
+  png_set_cHRM(png, info, 0.3127, 0.329, 0.68, 0.32, 0.265, 0.69, 0.15, 0.06);
+}
+static void say_p3_by_profile(png_structp png, png_infop info) {
+  double xy[8], curve[5];
+  void *icc = NULL;
+  size_t size = 0;
+  abbe_rgb_encoding_display_p3(xy, curve);
+  assert_int_equal(abbe_rgb_encoding_profile(xy, curve, &icc, &size, NULL), ABBE_OK);
+  png_set_iCCP(png, info, "p3", 0, icc, (png_uint_32)size);
+  free(icc);
+}
+static void say_cicp(png_structp png, png_infop info, int primaries, int transfer) {
+  png_unknown_chunk chunk = {.name = "cICP", .size = 4, .location = PNG_HAVE_IHDR};
+  png_byte code[4] = {(png_byte)primaries, (png_byte)transfer, 0, 1};
+  chunk.data = code;
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, NULL, 0);
+  png_set_unknown_chunks(png, info, &chunk, 1);
+}
+static void say_p3_by_cicp(png_structp png, png_infop info) {
+  say_srgb(png, info); /* is outranked */
+  say_cicp(png, info, 12, 13);
+}
+static void say_rec709_by_cicp(png_structp png, png_infop info) {
+  say_cicp(png, info, 1, 1);
+}
+static void say_pq(png_structp png, png_infop info) {
+  say_cicp(png, info, 9, 16);
+}
+
+static void test_the_colour_is_heeded(void **state) {
+  (void)state;
+  /* Rec.709's red on a Display P3 screen, as published for CSS colours; (V + 0.099) / 1.099 of 0.5
+   * to the power 1/0.45 is 0.2597 */
+  static const struct {
+    void (*say)(png_structp png, png_infop info);
+    double in[3], out[3];
+  } cases[] = {{say_nothing, {0.2, 0.5, 0.7}, {0.2, 0.5, 0.7}},
+               {say_srgb, {0.2, 0.5, 0.7}, {0.2, 0.5, 0.7}},
+               {say_old_srgb, {0.2, 0.5, 0.7}, {0.2, 0.5, 0.7}},
+               {say_linear, {0.21404, 0.5, 1}, {0.5, 0.73536, 1}},
+               {say_p3_by_chunks, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
+               {say_p3_by_profile, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
+               {say_p3_by_cicp, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
+               {say_rec709_by_cicp, {0.5, 0.5, 0.5}, {0.54681, 0.54681, 0.54681}}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_image image = {0};
+    abbe_error error = {0};
+    write_stating(cases[i].in, cases[i].say);
+    if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("case %zu: %s", i, error.text);
+    for (int c = 0; c < 3; c++)
+      if (!(fabs((double)image.data[c] - cases[i].out[c]) < 4e-3))
+        fail_msg("case %zu: component %d is %g, not %g", i, c, (double)image.data[c],
+                 cases[i].out[c]);
+    assert_true(abbe_rgb_encoding_is_srgb(image.xy, image.curve));
+    abbe_image_free(&image);
+  }
+  abbe_image image = {0};
+  abbe_error error = {0};
+  write_stating(cases[0].in, say_pq);
+  assert_int_equal(abbe_png_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_non_null(strstr(error.text, "cICP"));
+  assert_null(image.data);
+}
+
+static long peak_kilobytes(void) {
+  struct rusage usage;
+  assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+  return usage.ru_maxrss;
+}
+
+/* 33 KB of one bit a pixel, and a text whose header promises 2 GB: refused before memory is taken.
+ */
+static void test_what_unfolds_is_refused(void **state) {
+  (void)state;
+  static const unsigned char text_bomb[] =
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\10\2\0\0\0\x90wS\xde\x7f\xff\xff\xffzTXtk";
+  abbe_image image = {0};
+  abbe_error error = {0};
+  const long before = peak_kilobytes();
+  read_must_fail((const char *)text_bomb, sizeof text_bomb, "text bomb");
+  FILE *file = fopen(path, "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+  png_infop info = png_create_info_struct(png);
+  assert_true(file != NULL && png != NULL && info != NULL);
+  if (setjmp(png_jmpbuf(png))) fail();
+  png_init_io(png, file);
+  png_set_IHDR(png, info, 16384, 16384, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  const png_byte row[2048] = {0};
+  for (int y = 0; y < 16384; y++) png_write_row(png, row);
+  png_write_end(png, NULL);
+  png_destroy_write_struct(&png, &info);
+  fclose(file);
+  assert_int_equal(abbe_png_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_non_null(strstr(error.text, "16384 x 16384"));
+  assert_null(image.data);
+  assert_true(peak_kilobytes() - before < 100000);
+}
+
 static int leave(void **state) {
   (void)state;
   unlink(path);
@@ -234,6 +404,9 @@ int main(void) {
                                      cmocka_unit_test(test_truncated_anywhere),
                                      cmocka_unit_test(test_flipped_bits_anywhere),
                                      cmocka_unit_test(test_a_huge_header),
-                                     cmocka_unit_test(test_not_pictures)};
+                                     cmocka_unit_test(test_not_pictures),
+                                     cmocka_unit_test(test_the_colour_is_said),
+                                     cmocka_unit_test(test_the_colour_is_heeded),
+                                     cmocka_unit_test(test_what_unfolds_is_refused)};
   return cmocka_run_group_tests(tests, NULL, leave);
 }
