@@ -1,7 +1,7 @@
 #include "cli/command.h"
 
+#include "spectral/encoding.h"
 #include "spectral/file.h"
-
 #include "spectral/nearest.h"
 
 #include <cjson/cJSON.h>
@@ -74,11 +74,21 @@ int abbe_command_choice(const char *program, const char *option, const char *tex
   wrong_use(program);
 }
 
+/* cJSON copies the bytes of strings as they are, but for those below U+0020. */
+char *abbe_command_json_text(const struct cJSON *json) {
+  char *raw = json == NULL ? NULL : cJSON_Print(json);
+  const size_t length = raw == NULL ? 0 : strlen(raw), size = 3 * length + 2;
+  char *text = raw == NULL ? NULL : malloc(size);
+  if (text != NULL) strcpy(text + abbe_encoding_printable(raw, length, true, text, size), "\n");
+  cJSON_free(raw);
+  return text;
+}
+
 abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error) {
-  char *text = json == NULL ? NULL : cJSON_Print(json);
+  char *text = abbe_command_json_text(json);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for the JSON");
-  puts(text);
-  cJSON_free(text);
+  fputs(text, stdout);
+  free(text);
   return ABBE_OK;
 }
 

@@ -67,6 +67,9 @@ void abbe_command_size(const char *program, const char *option, const char *text
  * found out before the work, not after it. */
 abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error);
 
+/* json as text that ends with a newline, always valid UTF-8 whatever strings it was given
+ * (malloc'd, the caller frees); NULL for want of memory or where json is NULL. */
+char *abbe_command_json_text(const struct cJSON *json);
 /* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
 abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);
 /* At the end of the program: true, and a sentence on stderr, where something did not reach stdout

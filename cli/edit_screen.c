@@ -4,6 +4,7 @@
 
 #include "colorimetry/text_plot.h"
 #include "spectral/doctor.h"
+#include "spectral/encoding.h"
 #include "spectral/material_numbers.h"
 #include "spectral/number.h"
 #include "spectral/wavelengths.h"
@@ -42,15 +43,13 @@ static const abbe_material *shown(const app *a) {
 
 /* text from column x, cut to width characters and filled up with blanks. */
 static void put(int y, int x, int width, const char *text) {
+  char shown[2048];
   int used = 0;
   move(y, x);
-  for (const char *c = text; *c != '\0' && used < width; used++) {
-    size_t size = 1;
-    while (((unsigned char)c[size] & 0xc0) == 0x80) size++;
-    if ((unsigned char)*c < 0x20)
-      addch('?');
-    else
-      addnstr(c, (int)size);
+  abbe_encoding_printable(text, strlen(text), false, shown, sizeof shown);
+  for (const char *c = shown; *c != '\0' && used < width; used++) {
+    const size_t size = abbe_encoding_letter(c);
+    addnstr(c, (int)size);
     c += size;
   }
   for (; used < width; used++) addch(' ');

@@ -1,5 +1,7 @@
 #include "cli/edit_terminal.h"
 
+#include "cli/output.h"
+
 #include <curses.h>
 #include <langinfo.h>
 #include <locale.h>
@@ -51,7 +53,7 @@ bool abbe_edit_terminal_take(void) {
   setlocale(LC_CTYPE, "");
   for (int i = 0; i < 4; i++)
     handle(ends[i], on_end); /* before curses, which keeps its hands off */
-  screen = newterm(NULL, stdout, stdin);
+  screen = newterm(NULL, abbe_output_raw(stdout), stdin);
   if (screen == NULL) return false;
   if (cursor_address == NULL) { /* a terminal of lines only, such as TERM=dumb */
     abbe_edit_terminal_give_back();

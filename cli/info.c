@@ -1,11 +1,13 @@
 #include "cli/command.h"
 
 #include "colorimetry/exr.h"
+#include "spectral/encoding.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 typedef struct request {
   const char *program, *path;
@@ -65,6 +67,18 @@ static void print_windows(const abbe_image *image) {
                 : "");
 }
 
+/* Lines after the first are set in: what a file says must not look like what the program says. */
+static void print_attribute(const abbe_image_attribute *attribute) {
+  char name[256];
+  abbe_encoding_printable(attribute->name, strlen(attribute->name), false, name, sizeof name);
+  printf("%s: ", name);
+  for (const char *c = attribute->text; *c != '\0'; c++) {
+    putchar(*c);
+    if (*c == '\n') printf("    ");
+  }
+  putchar('\n');
+}
+
 static void print_text(const request *r, const abbe_image *image) {
   printf("%s: %zu x %zu pixels, %zu channels\n", r->path, image->width, image->height,
          image->channels);
@@ -73,13 +87,13 @@ static void print_text(const request *r, const abbe_image *image) {
   if (has_chromaticities(image))
     printf("chromaticities  R (%.5g, %.5g)  G (%.5g, %.5g)  B (%.5g, %.5g)  white (%.5g, %.5g)\n",
            xy[0], xy[1], xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
-  for (size_t i = 0; i < image->attribute_count; i++)
-    printf("%s: %s\n", image->attribute[i].name, image->attribute[i].text);
+  for (size_t i = 0; i < image->attribute_count; i++) print_attribute(&image->attribute[i]);
   printf("\n%-20s %12s %12s %12s %8s %8s\n", "channel", "min", "max", "mean", "NaN", "inf");
   for (size_t c = 0; c < image->channels; c++) {
     statistics s = measure(image, c);
-    printf("%-20s %12.6g %12.6g %12.6g %8zu %8zu\n", image->channel[c], s.min, s.max, s.mean, s.nan,
-           s.inf);
+    char name[256];
+    abbe_encoding_printable(image->channel[c], strlen(image->channel[c]), false, name, sizeof name);
+    printf("%-20s %12.6g %12.6g %12.6g %8zu %8zu\n", name, s.min, s.max, s.mean, s.nan, s.inf);
   }
 }
 

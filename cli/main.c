@@ -1,5 +1,7 @@
 #include "cli/command.h"
+#include "cli/output.h"
 
+#include "colorimetry/display_ocio.h"
 #include "spectral/nearest.h"
 
 #include <argp.h>
@@ -54,8 +56,14 @@ static void hold_streams(void) {
     if (fcntl(fd, F_GETFD) < 0) (void)!open("/dev/null", flags[fd]);
 }
 
+static void say(const char *message) {
+  fputs(message, stderr);
+}
+
 int main(int argc, char **argv) {
   hold_streams();
+  abbe_output_begin();
+  abbe_display_set_log(say);
   atexit(check_output);
   argp_err_exit_status = ABBE_EXIT_USAGE;
   /* A closed pipe or a file-size limit is a write error with a sentence, not a sudden end. */

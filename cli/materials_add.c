@@ -143,8 +143,8 @@ static abbe_result copy_record(const request *r, char **out, abbe_error *error) 
 
 static abbe_result read_record(const char *path, char **out, abbe_error *error) {
   size_t size = 0;
-  return abbe_file_read(strcmp(path, "-") == 0 ? "/dev/stdin" : path, MAX_RECORD, out, &size,
-                        error);
+  return abbe_file_read_text(strcmp(path, "-") == 0 ? "/dev/stdin" : path, MAX_RECORD, out, &size,
+                             error);
 }
 
 static abbe_result bare_record(const char *name, char **out, abbe_error *error) {

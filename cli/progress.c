@@ -1,5 +1,7 @@
 #include "cli/progress.h"
 
+#include "cli/output.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -52,10 +54,11 @@ bool abbe_progress_update(void *user, double done) {
   /* Work that will be over within a second needs no bar. */
   if (!progress->silent && (spent > 0.3 && spent + left > 1.0) && now - progress->last_s > 0.1) {
     int filled = (int)(done * BAR_WIDTH);
-    fprintf(stderr, "\r%s [", progress->what);
-    for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', stderr);
-    fprintf(stderr, "] %3.0f %%, %.0f s left ", 100 * done, left);
-    fflush(stderr);
+    FILE *out = abbe_output_raw(stderr);
+    fprintf(out, "\r%s [", progress->what);
+    for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', out);
+    fprintf(out, "] %3.0f %%, %.0f s left ", 100 * done, left);
+    fflush(out);
     progress->shown = true;
     progress->last_s = now;
   }
@@ -71,5 +74,5 @@ double abbe_progress_seconds(const abbe_progress *progress) {
 }
 
 void abbe_progress_end(abbe_progress *progress) {
-  if (progress->shown) fprintf(stderr, "\r%*s\r", BAR_WIDTH + 60, "");
+  if (progress->shown) fprintf(abbe_output_raw(stderr), "\r%*s\r", BAR_WIDTH + 60, "");
 }

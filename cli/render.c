@@ -192,10 +192,10 @@ static abbe_result write_stats(const request *q, const abbe_statistics *s,
                                abbe_error *error) {
   if (q->stats == NULL && !q->json) return ABBE_OK;
   cJSON *root = describe(q, s, bars, context);
-  char *text = cJSON_Print(root);
+  char *text = abbe_command_json_text(root);
   cJSON_Delete(root);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
-  if (q->json) printf("%s\n", text);
+  if (q->json) fputs(text, stdout);
   abbe_result result = ABBE_OK;
   if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
   free(text);

@@ -1,5 +1,7 @@
 #include "colorimetry/chart_panel.h"
 
+#include "spectral/encoding.h"
+
 #include <cairo.h>
 #include <math.h>
 #include <stdint.h>
@@ -129,9 +131,18 @@ static void set_font(cairo_t *cr, double size, bool bold) {
   cairo_set_font_size(cr, size);
 }
 
+enum { MAX_TEXT = 512 };
+
+/* A label may be any file's name; cairo draws none of a chart in which one is no UTF-8. */
+static const char *drawable(const char *text, char out[MAX_TEXT]) {
+  abbe_encoding_printable(text, strlen(text), false, out, MAX_TEXT);
+  return out;
+}
+
 static double text_width(cairo_t *cr, const char *text) {
   cairo_text_extents_t e;
-  cairo_text_extents(cr, text, &e);
+  char shown[MAX_TEXT];
+  cairo_text_extents(cr, drawable(text, shown), &e);
   return e.x_advance;
 }
 
@@ -141,7 +152,8 @@ static void put_text(cairo_t *cr, const char *text, double x, double y, double a
   cairo_font_extents_t f;
   cairo_font_extents(cr, &f);
   cairo_move_to(cr, x - across * text_width(cr, text), y + (1 - down) * (f.ascent - f.descent));
-  cairo_show_text(cr, text);
+  char shown[MAX_TEXT];
+  cairo_show_text(cr, drawable(text, shown));
 }
 
 static void ink(cairo_t *cr, double grey) {

@@ -237,3 +237,7 @@ abbe_result abbe_display_list(const char *config_file, char **out, abbe_error *e
     return ABBE_OK;
   });
 }
+
+void abbe_display_set_log(void (*log)(const char *message)) {
+  OCIO::SetLoggingFunction(log);
+}

@@ -43,6 +43,11 @@ abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, a
 /* One line a display and view, malloc'd, newline separated ("sRGB / Plain"); caller frees. */
 abbe_result abbe_display_list(const char *config, char **out, abbe_error *error);
 
+/* Whom OpenColorIO tells, for the whole process, what is no error, such as keys of a configuration
+ * that it does not know; without this it writes to standard error. The message ends with a newline.
+ */
+void abbe_display_set_log(void (*log)(const char *message));
+
 #ifdef __cplusplus
 }
 #endif

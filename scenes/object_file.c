@@ -522,7 +522,7 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   out->line = abbe_yaml_line(yaml, node);
   if (!abbe_yaml_is_mapping(yaml, node))
     return abbe_yaml_fail(yaml, node, error, "an object must be a mapping (key: value)");
-  abbe_result result = abbe_yaml_get_string(yaml, node, "name", &out->name, error);
+  abbe_result result = abbe_yaml_get_name(yaml, node, "name", &out->name, error);
   if (result == ABBE_OK && !out->name) {
     char name[64];
     snprintf(name, sizeof name, "object on line %zu", out->line);

@@ -195,7 +195,7 @@ static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *
   if (result == ABBE_OK)
     result = abbe_yaml_get_choice(yaml, node, "kind", light_kinds, &kind, error);
   out->kind = (abbe_light_kind)kind;
-  if (result == ABBE_OK) result = abbe_yaml_get_string(yaml, node, "name", &out->name, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_name(yaml, node, "name", &out->name, error);
   if (result == ABBE_OK && !out->name) {
     char name[64];
     snprintf(name, sizeof name, "light on line %zu", abbe_yaml_line(yaml, node));

@@ -350,7 +350,7 @@ abbe_result abbe_csv_points_load(const char *path, const abbe_csv_options *optio
   *out = (abbe_csv_points){0};
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
   if (result != ABBE_OK) return result;
   result = abbe_csv_points_parse(text, size, path, options, out, report, error);
   free(text);

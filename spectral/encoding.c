@@ -133,6 +133,43 @@ abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, si
   return ABBE_OK;
 }
 
+bool abbe_encoding_is_binary(const char *bytes, size_t size) {
+  const unsigned char *c = (const unsigned char *)bytes;
+  size_t skip, looked = size < 4096 ? size : 4096, zeros = 0, controls = 0;
+  const form from = detect(c, size, &skip);
+  if (from == UTF16_LITTLE || from == UTF16_BIG) return false;
+  for (size_t i = 0; i < looked; i++) {
+    zeros += c[i] == 0;
+    controls += c[i] < 0x20 && strchr("\t\n\r\f\x1a", c[i]) == NULL; /* CP/M's end of a file too */
+  }
+  return zeros > 0 || controls > looked / 32;
+}
+
+static uint32_t shown(uint32_t code, bool before_newline, bool lines) {
+  if (code == '\n' || code == '\t') return lines ? code : ' ';
+  if (code == '\r' && before_newline) return lines ? code : ' ';
+  if (code < 0x20) return 0x2400 + code;
+  if (code == 0x7f) return 0x2421;
+  return code >= 0x80 && code < 0xa0 ? REPLACEMENT : code;
+}
+
+size_t abbe_encoding_printable(const char *text, size_t length, bool lines, char *out,
+                               size_t size) {
+  const unsigned char *c = (const unsigned char *)text;
+  size_t used = 0;
+  for (size_t i = 0; i < length;) {
+    uint32_t code = REPLACEMENT;
+    char letter[4];
+    i += take(c + i, length - i, UTF8, &code);
+    size_t count = put(letter, shown(code, i < length && c[i] == '\n', lines));
+    if (used + count >= size) break;
+    memcpy(out + used, letter, count);
+    used += count;
+  }
+  if (size > 0) out[used] = '\0';
+  return used;
+}
+
 size_t abbe_encoding_letter(const char *text) {
   uint32_t code;
   return text[0] == '\0' ? 0 : sequence((const unsigned char *)text, strnlen(text, 4), &code);

@@ -1,7 +1,9 @@
 #include "spectral/error.h"
 
-#include <stdarg.h>
+#include "spectral/encoding.h"
+
 #include <stdio.h>
+#include <string.h>
 
 const char *abbe_result_text(abbe_result result) {
   static const char *const texts[] = {
@@ -13,12 +15,22 @@ const char *abbe_result_text(abbe_result result) {
   return texts[result];
 }
 
-abbe_result abbe_error_set(abbe_error *error, abbe_result code, const char *format, ...) {
+abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,
+                                const char *format, va_list arguments) {
   if (error == NULL) return code;
+  char raw[sizeof error->text]; /* the arguments may be the error's own text */
+  int used = snprintf(raw, sizeof raw, "%s", prefix);
+  if (used >= 0 && (size_t)used < sizeof raw)
+    vsnprintf(raw + used, sizeof raw - (size_t)used, format, arguments);
   error->code = code;
-  va_list args;
-  va_start(args, format);
-  vsnprintf(error->text, sizeof error->text, format, args);
-  va_end(args);
+  abbe_encoding_printable(raw, strlen(raw), false, error->text, sizeof error->text);
+  return code;
+}
+
+abbe_result abbe_error_set(abbe_error *error, abbe_result code, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  abbe_error_set_list(error, code, "", format, arguments);
+  va_end(arguments);
   return code;
 }

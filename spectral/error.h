@@ -7,6 +7,8 @@
 #ifndef ABBE_SPECTRAL_ERROR_H
 #define ABBE_SPECTRAL_ERROR_H
 
+#include <stdarg.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -36,7 +38,8 @@ typedef enum abbe_result {
 } abbe_result;
 
 /* The last failure: its code and one sentence that names the file, line, key and value concerned
- * and says what would be right. text is always terminated; over-long sentences are cut. */
+ * and says what would be right. text is one printable line of UTF-8 (encoding.h), whatever names
+ * and values it quotes; over-long sentences are cut. */
 typedef struct abbe_error {
   abbe_result code;
   char text[1024];
@@ -51,6 +54,9 @@ const char *abbe_result_text(abbe_result result);
 __attribute__((format(printf, 3, 4)))
 #endif
 abbe_result abbe_error_set(abbe_error *error, abbe_result code, const char *format, ...);
+/* The same for a function with arguments of its own; prefix ("" for none) comes first. */
+abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,
+                                const char *format, va_list arguments);
 
 #ifdef __cplusplus
 }

@@ -2,6 +2,8 @@
 
 #include "spectral/file.h"
 
+#include "spectral/encoding.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdatomic.h>
@@ -75,6 +77,20 @@ abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_
   }
   close(fd);
   return result;
+}
+
+abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, size_t *size,
+                                abbe_error *error) {
+  abbe_result result = abbe_file_read(path, max_size, data, size, error);
+  if (result != ABBE_OK || !abbe_encoding_is_binary(*data, *size)) return result;
+  free(*data);
+  *data = NULL;
+  *size = 0;
+  return abbe_error_set(
+      error, ABBE_PARSE,
+      "%s: is not a text file; a spreadsheet can be saved as CSV, an archive must "
+      "be unpacked first",
+      path);
 }
 
 /* ---- writing ---- */

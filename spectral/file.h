@@ -23,6 +23,11 @@ extern "C" {
 abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_t *size,
                            abbe_error *error);
 
+/* The same for text in whatever encoding (encoding.h): ABBE_PARSE for a file that is none, such as
+ * a spreadsheet or an archive, before anything of it is quoted. */
+abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, size_t *size,
+                                abbe_error *error);
+
 /* A file being written. stream is open for writing and reading (binary); use it freely between
  * open and commit. Zero-initialise; after commit or discard it is zeroed again. */
 typedef struct abbe_file_writer {

@@ -119,7 +119,7 @@ abbe_result abbe_index_points_load(const char *path, abbe_index_points *out, abb
   *out = (abbe_index_points){0};
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
   if (result == ABBE_OK) result = abbe_index_points_parse(text, size, path, out, error);
   free(text);
   return result;

@@ -1,5 +1,7 @@
 #include "spectral/material.h"
 
+#include "spectral/encoding.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,8 +43,9 @@ abbe_result abbe_material_check_name(const char *name, abbe_error *error) {
   size_t length = name == NULL ? 0 : strlen(name);
   bool good =
       length > 0 && length <= ABBE_MATERIAL_MAX_NAME && name[0] != ' ' && name[length - 1] != ' ';
-  for (size_t i = 0; i < length; i++)
-    good = good && (unsigned char)name[i] >= 0x20 && name[i] != 0x7f;
+  char shown[ABBE_MATERIAL_MAX_NAME + 1];
+  if (good) abbe_encoding_printable(name, length, false, shown, sizeof shown);
+  good = good && strcmp(name, shown) == 0;
   if (good) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "'%.100s' is not a name; up to %d printable characters, no space at the "

@@ -223,7 +223,7 @@ abbe_result abbe_import_load(const char *path, const abbe_import_options *option
   char *bytes = NULL;
   size_t size = 0;
   if (abbe_material_store_is(path)) return load_store(path, into, error);
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &bytes, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &bytes, &size, error);
   if (result == ABBE_OK)
     result = abbe_import_parse(bytes, size, path, options, into, report, error);
   free(bytes);
@@ -238,7 +238,7 @@ abbe_result abbe_import_explain(const char *path, abbe_result result, abbe_error
   char *bytes = NULL;
   size_t size = 0;
   if (result != ABBE_PARSE && result != ABBE_SCHEMA) return result;
-  if (abbe_file_read(path, MAX_BYTES, &bytes, &size, NULL) != ABBE_OK) return result;
+  if (abbe_file_read_text(path, MAX_BYTES, &bytes, &size, NULL) != ABBE_OK) return result;
   const char *name = names[abbe_import_detect(bytes, size)];
   free(bytes);
   if (name == NULL) return result;

@@ -12,12 +12,6 @@ void abbe_report_free(abbe_report *report) {
   *report = (abbe_report){0};
 }
 
-/* Texts from files may hold escape sequences; a terminal must not obey them. */
-static void defuse(char *text) {
-  for (; *text != '\0'; text++)
-    if ((unsigned char)*text < 0x20 || *text == 0x7f) *text = '?';
-}
-
 /* Doubles the array at each power of two; NULL where it must not or cannot grow. */
 static abbe_note *room(abbe_report *report) {
   size_t count = report->count;
@@ -44,17 +38,15 @@ void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, cons
   size_t length = strlen(file), most = sizeof note->file - 1;
   file += length > most ? length - most : 0;
   while (((unsigned char)*file & 0xc0) == 0x80) file++; /* to a whole letter */
-  snprintf(note->file, sizeof note->file, "%s", file);
-  snprintf(note->name, sizeof note->name, "%s", name == NULL ? "" : name);
+  abbe_encoding_printable(file, strlen(file), false, note->file, sizeof note->file);
+  char raw[sizeof note->text];
   va_list args;
   va_start(args, format);
-  vsnprintf(note->text, sizeof note->text, format, args);
+  vsnprintf(raw, sizeof raw, format, args);
   va_end(args);
-  abbe_encoding_trim(note->name);
-  abbe_encoding_trim(note->text);
-  defuse(note->file);
-  defuse(note->name);
-  defuse(note->text);
+  abbe_encoding_printable(raw, strlen(raw), false, note->text, sizeof note->text);
+  if (name == NULL) name = "";
+  abbe_encoding_printable(name, strlen(name), false, note->name, sizeof note->name);
 }
 
 const char *abbe_note_kind_word(abbe_note_kind kind) {

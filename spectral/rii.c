@@ -463,7 +463,7 @@ abbe_result abbe_rii_load(const char *path, const char *name, abbe_material *out
   *out = (abbe_material){0};
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
   if (result == ABBE_OK) result = abbe_rii_parse(text, size, path, name, out, report, error);
   free(text);
   return result;

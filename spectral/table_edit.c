@@ -85,7 +85,7 @@ abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_e
                           "materials export --table %s -o FILE.yaml' all of them",
                           path, path, path);
   char *text = NULL;
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
   if (result == ABBE_OK) result = abbe_table_edit_parse(text, size, path, out, error);
   if (result == ABBE_OK) (*out)->in_memory = false;
   free(text);
@@ -492,7 +492,7 @@ static abbe_result check_unchanged(const abbe_table_edit *edit, abbe_error *erro
   }
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
   if (result != ABBE_OK) return result;
   bool same = size == edit->before_size && memcmp(text, edit->before, size) == 0;
   free(text);

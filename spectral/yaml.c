@@ -1,5 +1,6 @@
 #include "spectral/yaml.h"
 
+#include "spectral/encoding.h"
 #include "spectral/file.h"
 #include "spectral/nearest.h"
 #include "spectral/text_cursor.h"
@@ -57,22 +58,14 @@ static node *at(const abbe_yaml *yaml, abbe_yaml_node which) {
 
 /* ---- complaints ---- */
 
-/* Text from a file may hold escape sequences; a terminal must not obey them. */
-static void defuse(abbe_error *error) {
-  for (char *c = error->text; *c != '\0'; c++)
-    if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';
-}
-
 static abbe_result complain(const abbe_yaml *yaml, size_t line, abbe_result code, abbe_error *error,
                             const char *format, va_list args) {
-  if (error == NULL) return code;
-  error->code = code;
-  size_t room = sizeof error->text;
-  int used = line > 0 ? snprintf(error->text, room, "%.400s:%zu: ", yaml->name, line)
-                      : snprintf(error->text, room, "%.400s: ", yaml->name);
-  vsnprintf(error->text + used, room - (size_t)used, format, args);
-  defuse(error);
-  return code;
+  char place[440];
+  if (line > 0)
+    snprintf(place, sizeof place, "%.400s:%zu: ", yaml->name, line);
+  else
+    snprintf(place, sizeof place, "%.400s: ", yaml->name);
+  return abbe_error_set_list(error, code, place, format, args);
 }
 
 __attribute__((format(printf, 5, 6))) static abbe_result fail_at(const abbe_yaml *yaml, size_t line,
@@ -374,7 +367,7 @@ abbe_result abbe_yaml_load(const char *path, abbe_yaml **out, abbe_error *error)
   *out = NULL;
   char *text = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
   if (result == ABBE_OK) result = abbe_yaml_parse(text, size, path, out, error);
   free(text);
   return result;
@@ -612,6 +605,24 @@ abbe_result abbe_yaml_get_string(abbe_yaml *yaml, abbe_yaml_node mapping, const 
   if (copy == NULL) return no_memory(yaml, error);
   free(*out);
   *out = copy;
+  return ABBE_OK;
+}
+
+abbe_result abbe_yaml_get_name(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key, char **out,
+                               abbe_error *error) {
+  char *text = NULL;
+  abbe_result result = abbe_yaml_get_string(yaml, mapping, key, &text, error);
+  if (text == NULL) return result;
+  const size_t length = strlen(text), size = 3 * length + 1;
+  char *shown = malloc(size);
+  if (shown == NULL) {
+    free(text);
+    return no_memory(yaml, error);
+  }
+  abbe_encoding_printable(text, length, false, shown, size);
+  free(text);
+  free(*out);
+  *out = shown;
   return ABBE_OK;
 }
 

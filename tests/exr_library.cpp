@@ -1,4 +1,4 @@
-#include "exr_library.h"
+#include "tests/exr_library.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

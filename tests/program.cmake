@@ -18,6 +18,7 @@ foreach(name
     materials_plot_command
     materials_exchange_command
     outline_command
+    printable_output
     render_command
     trace_command
     validate_command

@@ -75,10 +75,74 @@ static void letters_are_told_and_cut_ones_trimmed(void **state) {
   }
 }
 
+static void what_a_terminal_obeys_becomes_pictures(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *lines, *line;
+  } rows[] = {{"", "", ""},
+              {"plain \xe2\x82\xac \xf0\x9f\x92\x8e", "plain \xe2\x82\xac \xf0\x9f\x92\x8e",
+               "plain \xe2\x82\xac \xf0\x9f\x92\x8e"},
+              {"a\nb\tc\r\nd\re",
+               "a\nb\tc\r\nd\xe2\x90\x8d"
+               "e",
+               "a b c  d\xe2\x90\x8d"
+               "e"},
+              {"\x1b[2J\x7f\x01", "\xe2\x90\x9b[2J\xe2\x90\xa1\xe2\x90\x81",
+               "\xe2\x90\x9b[2J\xe2\x90\xa1\xe2\x90\x81"},
+              {"\xc2\x9b"
+               "1m\xc2\xa0",
+               "\xef\xbf\xbd"
+               "1m\xc2\xa0",
+               "\xef\xbf\xbd"
+               "1m\xc2\xa0"},
+              {"\x9b\xc0\x80\xed\xa0\x80\xe2\x82", NULL, NULL}}; /* eight bytes that are no UTF-8 */
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char out[64], eight[25] = "";
+    for (int k = 0; k < 8; k++) strcat(eight, "\xef\xbf\xbd");
+    for (int lines = 0; lines < 2; lines++) {
+      const char *right = rows[i].lines == NULL ? eight : lines ? rows[i].lines : rows[i].line;
+      const size_t n =
+          abbe_encoding_printable(rows[i].text, strlen(rows[i].text), lines != 0, out, sizeof out);
+      assert_string_equal(out, right);
+      assert_int_equal(n, strlen(right));
+    }
+  }
+  char zero[16], small[4] = "xyz";
+  assert_int_equal(abbe_encoding_printable("a\0b", 3, false, zero, sizeof zero), 5);
+  assert_string_equal(zero, "a\xe2\x90\x80"
+                            "b");
+  assert_int_equal(abbe_encoding_printable("a\x1b"
+                                           "b",
+                                           3, false, small, 4),
+                   1); /* a letter is whole */
+  assert_string_equal(small, "a");
+  assert_int_equal(abbe_encoding_printable("ab", 2, false, small, 1), 0);
+  assert_string_equal(small, "");
+}
+
+static void texts_are_told_from_other_files(void **state) {
+  (void)state;
+  static const char latin[] = "NM F2 25\xb0\x43\r\n\x1a", marked[] = "\xff\xfeN\0M\0",
+                    unmarked[] = "N\0M\0 \0F\0002\0\n",
+                    xls[] = "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0\0",
+                    gzip[] = "\x1f\x8b\x08\x08\x01\x02\x03\x04\x05",
+                    elf[] = "\x7f"
+                            "ELF\2\1\1";
+  assert_false(abbe_encoding_is_binary("", 0));
+  assert_false(abbe_encoding_is_binary(latin, sizeof latin - 1));
+  assert_false(abbe_encoding_is_binary(marked, sizeof marked - 1));
+  assert_false(abbe_encoding_is_binary(unmarked, sizeof unmarked));
+  assert_true(abbe_encoding_is_binary(xls, sizeof xls - 1));
+  assert_true(abbe_encoding_is_binary(gzip, sizeof gzip - 1));
+  assert_true(abbe_encoding_is_binary(elf, sizeof elf - 1));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_encoding_becomes_utf8),
       cmocka_unit_test(letters_are_told_and_cut_ones_trimmed),
+      cmocka_unit_test(texts_are_told_from_other_files),
+      cmocka_unit_test(what_a_terminal_obeys_becomes_pictures),
       cmocka_unit_test(lines_end_in_one_way),
       cmocka_unit_test(what_cannot_be_decoded_is_replaced),
   };

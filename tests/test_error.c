@@ -24,10 +24,25 @@ static void the_sentence_is_kept_cut_and_optional(void **state) {
   assert_int_equal(strlen(error.text), sizeof error.text - 1);
 }
 
+static void the_sentence_is_printable(void **state) {
+  (void)state;
+  abbe_error error;
+  abbe_error_set(&error, ABBE_IO, "%s: no\n%s\xff", "a\x1b[31m", "b\xc2\x9b");
+  assert_string_equal(error.text, "a\xe2\x90\x9b[31m: no b\xef\xbf\xbd\xef\xbf\xbd");
+  abbe_error_set(&error, ABBE_IO, "%s, again", error.text); /* its own text in a larger sentence */
+  assert_string_equal(error.text, "a\xe2\x90\x9b[31m: no b\xef\xbf\xbd\xef\xbf\xbd, again");
+  char many[900];
+  memset(many, '\x1b', sizeof many - 1);
+  many[sizeof many - 1] = '\0';
+  abbe_error_set(&error, ABBE_IO, "%s", many); /* pictures take three bytes: cut between them */
+  assert_int_equal(strlen(error.text), (sizeof error.text - 1) / 3 * 3);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_code_has_its_own_text),
       cmocka_unit_test(the_sentence_is_kept_cut_and_optional),
+      cmocka_unit_test(the_sentence_is_printable),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

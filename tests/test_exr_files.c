@@ -1,6 +1,6 @@
 /* OpenEXR files of every make, read by Abbe and by OpenEXR's own C++ library, and the other way. */
-#include "check.h"
-#include "exr_library.h"
+#include "tests/check.h"
+#include "tests/exr_library.h"
 
 #include "colorimetry/exr.h"
 

@@ -1,5 +1,5 @@
 /* What every verb that reads a picture makes of its windows: the picture is the display window. */
-#include "exr_library.h"
+#include "tests/exr_library.h"
 #include "tests/run_program.h"
 
 #include "colorimetry/png_file.h"

@@ -1,4 +1,4 @@
-#include "check.h"
+#include "tests/check.h"
 #include "tests/random.h"
 
 #include "colorimetry/rgb_encoding.h"

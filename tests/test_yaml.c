@@ -218,7 +218,7 @@ static void complaints_hold_no_control_characters(void **state) {
   abbe_yaml *y = parse("\"\\e[31mred\\n\": 1\n");
   abbe_error e;
   assert_int_equal(abbe_yaml_check_keys(y, abbe_yaml_root(y), "it", &e), ABBE_SCHEMA);
-  assert_string_equal(e.text, "t.yaml:1: it has no key '?[31mred?'");
+  assert_string_equal(e.text, "t.yaml:1: it has no key '\xe2\x90\x9b[31mred '");
   abbe_yaml_free(y);
 }
 

@@ -374,7 +374,7 @@ abbe_result abbe_sweep_table_load(const char *path, abbe_sweep_table *out, abbe_
   char *text = NULL;
   size_t size = 0;
   *out = (abbe_sweep_table){0};
-  abbe_result result = abbe_file_read(path, MAX_BYTES, &text, &size, error);
+  abbe_result result = abbe_file_read_text(path, MAX_BYTES, &text, &size, error);
   if (result == ABBE_OK) result = abbe_sweep_table_parse(text, size, path, out, error);
   free(text);
   return result;
