@@ -1,5 +1,7 @@
 #include "colorimetry/axis.h"
 
+#include "spectral/number.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,7 +71,8 @@ static size_t linear_ticks(const abbe_axis *a, size_t wanted, abbe_axis_tick *ti
     double shown = i * step / unit;
     /* a hyphen is no minus sign, and there is no -0 */
     bool negative = shown < 0 && i != 0;
-    snprintf(t->label, sizeof t->label, "%s%.*f", negative ? "−" : "", decimals, fabs(shown));
+    abbe_number_format(t->label, sizeof t->label, "%s%.*f", negative ? "−" : "", decimals,
+                       fabs(shown));
   }
   return count;
 }
@@ -77,7 +80,7 @@ static size_t linear_ticks(const abbe_axis *a, size_t wanted, abbe_axis_tick *ti
 static void label_decade(int power, char *label, size_t size) {
   char text[40];
   if (power >= -3 && power <= 4)
-    snprintf(label, size, "%.*f", power < 0 ? -power : 0, pow(10, power));
+    abbe_number_format(label, size, "%.*f", power < 0 ? -power : 0, pow(10, power));
   else
     snprintf(label, size, "%s", abbe_axis_power(power, text));
 }

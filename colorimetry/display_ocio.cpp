@@ -1,6 +1,7 @@
 #include "colorimetry/display_ocio.h"
 
 #include "colorimetry/rgb_encoding.h"
+#include "spectral/number.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 
@@ -26,8 +27,18 @@ struct abbe_display {
 
 namespace {
 
+/* OpenColorIO reads the numbers of a configuration by the thread's locale. */
+struct plain_numbers {
+  locale_t host = abbe_number_enter();
+  plain_numbers() = default;
+  plain_numbers(const plain_numbers &) = delete;
+  plain_numbers &operator=(const plain_numbers &) = delete;
+  ~plain_numbers() { abbe_number_leave(host); }
+};
+
 /* Runs work and turns whatever it throws into a result: nothing leaves this file. */
 template <typename Work> abbe_result guarded(const char *what, abbe_error *error, Work work) {
+  const plain_numbers numbers;
   try {
     return work();
   } catch (const std::bad_alloc &) {

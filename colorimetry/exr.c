@@ -1,5 +1,6 @@
 #include "colorimetry/exr.h"
 #include "colorimetry/exr_parts.h"
+#include "spectral/number.h"
 
 #include <errno.h>
 #include <math.h>
@@ -155,10 +156,11 @@ static abbe_result read_layout(exr_context_t context, const stream *s, layout *l
 
 /* abbe:stored_unit, which whole files are in; *unit stays what it is where the text is none. */
 static bool read_unit(const char *text, double *unit) {
-  char *end;
+  const char *end;
   int exponent;
-  double value = strtod(text, &end);
-  if (end == text || *end != '\0' || !isfinite(value) || frexp(value, &exponent) != 0.5)
+  double value;
+  if (!abbe_number_read(text, &end, &value) || *end != '\0' || !isfinite(value) ||
+      frexp(value, &exponent) != 0.5)
     return false;
   *unit = value;
   return true;

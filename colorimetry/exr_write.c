@@ -2,6 +2,7 @@
 #include "colorimetry/exr_parts.h"
 
 #include "spectral/file.h"
+#include "spectral/number.h"
 
 #include <errno.h>
 #include <math.h>
@@ -61,7 +62,7 @@ typedef struct storage {
 static exr_result_t write_unit(exr_context_t context, double unit) {
   char text[32];
   if (unit == 1) return EXR_ERR_SUCCESS;
-  snprintf(text, sizeof text, "%.17g", unit);
+  abbe_number_format(text, sizeof text, "%.17g", unit);
   return exr_attr_set_string(context, 0, ABBE_EXR_UNIT_NAME, text);
 }
 

@@ -2,6 +2,7 @@
 
 #include "spectral/csv_points.h"
 #include "spectral/nearest.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,5 +1,7 @@
 #include "colorimetry/image.h"
 
+#include "spectral/number.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -145,7 +147,7 @@ size_t abbe_image_find_channel(const abbe_image *image, const char *name) {
 
 void abbe_image_band_name(double middle_nm, char *out, size_t size) {
   char number[64];
-  snprintf(number, sizeof number, "%.6f", middle_nm);
+  abbe_number_format(number, sizeof number, "%.6f", middle_nm);
   for (char *c = number; *c != '\0'; c++)
     if (*c == '.') *c = ',';
   snprintf(out, size, "S0.%snm", number);

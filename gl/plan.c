@@ -9,6 +9,7 @@
 #include "gl/transport.h"
 #include "scenes/vector.h"
 #include "scenes/view.h"
+#include "spectral/number.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -30,7 +31,7 @@ add(abbe_plan *plan, bool runs, const char *name, const char *format, ...) {
   entry->runs = runs;
   va_list args;
   va_start(args, format);
-  vsnprintf(entry->reason, sizeof entry->reason, format, args);
+  abbe_number_format_list(entry->reason, sizeof entry->reason, format, args);
   va_end(args);
 }
 
@@ -42,7 +43,7 @@ note(abbe_plan *plan, const char *format, ...) {
   if (plan->note_count == sizeof plan->note / sizeof *plan->note) return;
   va_list args;
   va_start(args, format);
-  vsnprintf(plan->note[plan->note_count++], sizeof plan->note[0], format, args);
+  abbe_number_format_list(plan->note[plan->note_count++], sizeof plan->note[0], format, args);
   va_end(args);
 }
 
@@ -341,8 +342,8 @@ static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked
   if (thesis || plan->desc.orders == 0)
     plan->desc.orders = thesis ? 1 : plan->layers ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
   if (plan->convex && plan->refractor_count == 1 && !plan->walk && no_refraction(plan) == NULL)
-    snprintf(inside, sizeof inside, "; %.2g %% of it is still inside then",
-             100 * abbe_inner_light_plan(scene, asked, plan));
+    abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
+                       100 * abbe_inner_light_plan(scene, asked, plan));
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
   if (no_refraction(plan) != NULL)
     add(plan, false, "inner reflections", "%s", no_refraction(plan));

@@ -1,6 +1,7 @@
 #include "scenes/map_layout.h"
 
-#include <locale.h>
+#include "spectral/number.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -190,8 +191,10 @@ static void list_entries(abbe_view *v, double range[2], entry out[ENTRIES]) {
 static size_t append_number(char *text, size_t used, double x) {
   int length = 0;
   for (int digits = 9; digits <= 17; digits++) {
-    length = snprintf(text + used, NUMBER, " %.*g", digits, x);
-    if (strtod(text + used, NULL) == x) break;
+    const char *end;
+    double back;
+    length = abbe_number_format(text + used, NUMBER, " %.*g", digits, x);
+    if (abbe_number_read(text + used, &end, &back) && back == x) break;
   }
   return used + (size_t)length;
 }
@@ -218,12 +221,8 @@ static abbe_result write_all(abbe_map_layout *layout, abbe_image *image, abbe_er
 
 /* Reads count numbers from *at on; false where one is missing. */
 static bool take_numbers(const char **at, double *out, int count) {
-  for (int i = 0; i < count; i++) {
-    char *end;
-    out[i] = strtod(*at, &end);
-    if (end == *at) return false;
-    *at = end;
-  }
+  for (int i = 0; i < count; i++)
+    if (!abbe_number_read(*at, at, &out[i])) return false;
   return true;
 }
 
@@ -274,28 +273,11 @@ static abbe_result read_all(const abbe_image *image, const char *name, abbe_map_
   return abbe_error_set(error, ABBE_PARSE, "%s: %s", name, why.text);
 }
 
-/* Numbers in files have a point, whatever the host program's language. */
-static abbe_result enter_c(locale_t *c, locale_t *host, abbe_error *error) {
-  *c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (*c == (locale_t)0) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a locale");
-  *host = uselocale(*c);
-  return ABBE_OK;
-}
-
-static void leave_c(locale_t c, locale_t host) {
-  uselocale(host);
-  freelocale(c);
-}
-
 abbe_result abbe_map_layout_write(const abbe_map_layout *layout, const char *light,
                                   abbe_image *image, abbe_error *error) {
-  locale_t c = (locale_t)0, host = (locale_t)0;
   abbe_map_layout copy = *layout;
   abbe_result result = abbe_map_layout_check(layout, error);
-  if (result == ABBE_OK) result = enter_c(&c, &host, error);
-  if (result != ABBE_OK) return result;
-  result = write_all(&copy, image, error);
-  leave_c(c, host);
+  if (result == ABBE_OK) result = write_all(&copy, image, error);
   if (result == ABBE_OK && light != NULL)
     result = abbe_image_set_attribute(image, light_name, light, error);
   return result;
@@ -303,12 +285,8 @@ abbe_result abbe_map_layout_write(const abbe_map_layout *layout, const char *lig
 
 abbe_result abbe_map_layout_read(const abbe_image *image, const char *name, abbe_map_layout *out,
                                  abbe_error *error) {
-  locale_t c = (locale_t)0, host = (locale_t)0;
   memset(out, 0, sizeof *out);
-  abbe_result result = enter_c(&c, &host, error);
-  if (result != ABBE_OK) return result;
-  result = read_all(image, name, out, error);
-  leave_c(c, host);
+  abbe_result result = read_all(image, name, out, error);
   if (result != ABBE_OK) memset(out, 0, sizeof *out);
   return result;
 }

@@ -1,5 +1,7 @@
 #include "scenes/mesh_import.h"
 
+#include "spectral/number.h"
+
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -156,6 +158,7 @@ static void be_child(int fd, const char *path, size_t bytes) {
     dup2(nothing, STDOUT_FILENO);
     dup2(nothing, STDERR_FILENO);
   }
+  abbe_number_enter(); /* some of assimp's readers go by the locale */
   _exit(send_scene(fd, path) ? 0 : 1);
 }
 

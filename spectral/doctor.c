@@ -107,7 +107,7 @@ void abbe_doctor_say(abbe_doctor *d, char **sentence, const char *format, ...) {
   char text[1200];
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
+  abbe_number_format_list(text, sizeof text, format, arguments);
   va_end(arguments);
   free(*sentence);
   *sentence = strdup(text);

@@ -3,6 +3,7 @@
  * other reading is near. */
 #include "spectral/doctor_parts.h"
 #include "spectral/glass_distance.h"
+#include "spectral/number.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -198,8 +199,9 @@ static bool check_a(abbe_doctor *d, const reading *now, const target *t) {
       abbe_doctor_find(d, ABBE_FINDING_A_IS_ND, sure ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
   if (f == NULL) return true;
   char what[200];
-  snprintf(what, sizeof what, "A %.6g is %.2g from the n_d of %s%s, and n_d is above A by B / L^2",
-           as->c[0], fabs(as->c[0] - whose.n_d), whose.the, whose.whose);
+  abbe_number_format(what, sizeof what,
+                     "A %.6g is %.2g from the n_d of %s%s, and n_d is above A by B / L^2", as->c[0],
+                     fabs(as->c[0] - whose.n_d), whose.the, whose.whose);
   say_target(d, f, now, &other, &whose, what);
   abbe_doctor_say(d, &f->mend, "A is n_d - B / (0.5875618 um)^2 = %.6g", right.c[0]);
   abbe_doctor_set_coefficients(d, f, &right);
@@ -221,11 +223,11 @@ static bool check_model(abbe_doctor *d, const reading *now, const target *t) {
       abbe_doctor_find(d, ABBE_FINDING_POLES, sure ? ABBE_FINDING_WRONG : ABBE_FINDING_DOUBTFUL);
   if (f == NULL) return true;
   char what[200];
-  snprintf(what, sizeof what,
-           squares
-               ? "its poles (the first is %.6g) are squares already, and the model squares them"
-               : "its poles (the first is %.6g um) are not squared, and the model wants squares",
-           right.c[2]);
+  abbe_number_format(
+      what, sizeof what,
+      squares ? "its poles (the first is %.6g) are squares already, and the model squares them"
+              : "its poles (the first is %.6g um) are not squared, and the model wants squares",
+      right.c[2]);
   say_target(d, f, now, &other, t, what);
   abbe_doctor_say(d, &f->mend, "the model is %s", abbe_dispersion_model_name(right.model));
   abbe_doctor_say(d, &f->value, "%s", abbe_dispersion_model_name(right.model));
@@ -249,8 +251,8 @@ static bool check_one_pole(abbe_doctor *d, const reading *now, const target *t) 
       abbe_finding *f = abbe_doctor_find(d, ABBE_FINDING_POLES, ABBE_FINDING_WRONG);
       if (f == NULL) return true;
       char what[120];
-      snprintf(what, sizeof what, "the pole c%zu = %.6g is %s", k, as->c[k],
-               root ? "a square already" : "not squared");
+      abbe_number_format(what, sizeof what, "the pole c%zu = %.6g is %s", k, as->c[k],
+                         root ? "a square already" : "not squared");
       say_target(d, f, now, &other, t, what);
       abbe_doctor_say(d, &f->mend, "c%zu is %.9g", k, right.c[k]);
       abbe_doctor_set_coefficients(d, f, &right);

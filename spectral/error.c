@@ -1,6 +1,7 @@
 #include "spectral/error.h"
 
 #include "spectral/encoding.h"
+#include "spectral/number.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +22,7 @@ abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char 
   char raw[sizeof error->text]; /* the arguments may be the error's own text */
   int used = snprintf(raw, sizeof raw, "%s", prefix);
   if (used >= 0 && (size_t)used < sizeof raw)
-    vsnprintf(raw + used, sizeof raw - (size_t)used, format, arguments);
+    abbe_number_format_list(raw + used, sizeof raw - (size_t)used, format, arguments);
   error->code = code;
   abbe_encoding_printable(raw, strlen(raw), false, error->text, sizeof error->text);
   return code;

@@ -1,12 +1,18 @@
 /* number.h: numbers as text and back, the same in every locale.
  *
- * Files write 1.5 with a point whatever the host program's locale says. Written numbers are the
- * shortest that read back as the same double. It knows no units.
+ * Files and messages write 1.5 with a point whatever the host program's locale says: whatever
+ * prints or reads numbers with a decimal point goes through here (tests/test_locale holds the
+ * library to it). Written numbers are the shortest that read back as the same double. It knows no
+ * units.
  */
 #ifndef ABBE_SPECTRAL_NUMBER_H
 #define ABBE_SPECTRAL_NUMBER_H
 
+#include <locale.h>
+#include <stdarg.h>
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -26,6 +32,22 @@ double abbe_number_tidy(double value);
  * into *value; *end points past it. False, and *end == text, where none begins there. Hexadecimal
  * numbers, infinities and NaN are not numbers here; one too large for a double is infinite. */
 bool abbe_number_read(const char *text, const char **end, double *value);
+
+/* snprintf, vsnprintf and fprintf with a decimal point. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+int abbe_number_format(char *out, size_t size, const char *format, ...);
+int abbe_number_format_list(char *out, size_t size, const char *format, va_list arguments);
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+int abbe_number_write(FILE *file, const char *format, ...);
+
+/* Between the two this thread reads and writes numbers as in the C locale: for libraries that go by
+ * the thread's own. leave takes what enter returned; pairs nest. */
+locale_t abbe_number_enter(void);
+void abbe_number_leave(locale_t host);
 
 #ifdef __cplusplus
 }

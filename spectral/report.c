@@ -1,6 +1,7 @@
 #include "spectral/report.h"
 
 #include "spectral/encoding.h"
+#include "spectral/number.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -42,7 +43,7 @@ void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, cons
   char raw[sizeof note->text];
   va_list args;
   va_start(args, format);
-  vsnprintf(raw, sizeof raw, format, args);
+  abbe_number_format_list(raw, sizeof raw, format, args);
   va_end(args);
   abbe_encoding_printable(raw, strlen(raw), false, note->text, sizeof note->text);
   if (name == NULL) name = "";

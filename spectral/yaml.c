@@ -3,10 +3,10 @@
 #include "spectral/encoding.h"
 #include "spectral/file.h"
 #include "spectral/nearest.h"
+#include "spectral/number.h"
 #include "spectral/text_cursor.h"
 
 #include <errno.h>
-#include <locale.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -48,7 +48,6 @@ struct abbe_yaml {
     int id;
   } anchors[MAX_ANCHORS];
   size_t anchor_count;
-  locale_t numbers; /* the C locale, whatever the host program has set */
 };
 
 static node *at(const abbe_yaml *yaml, abbe_yaml_node which) {
@@ -343,8 +342,7 @@ abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abb
   *out = NULL;
   abbe_yaml *yaml = calloc(1, sizeof *yaml);
   if (yaml != NULL) yaml->name = strdup(name);
-  if (yaml != NULL) yaml->numbers = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (yaml == NULL || yaml->name == NULL || yaml->numbers == (locale_t)0) {
+  if (yaml == NULL || yaml->name == NULL) {
     abbe_yaml_free(yaml);
     return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to read it", name);
   }
@@ -383,7 +381,6 @@ void abbe_yaml_free(abbe_yaml *yaml) {
     free(n->text);
   }
   for (size_t i = 0; i < yaml->anchor_count; i++) free(yaml->anchors[i].name);
-  if (yaml->numbers != (locale_t)0) freelocale(yaml->numbers);
   free(yaml->nodes);
   free(yaml->name);
   free(yaml);
@@ -526,13 +523,10 @@ static const char *kind_name(const abbe_yaml *yaml, abbe_yaml_node which) {
   return n->quoted ? "text in quotes" : "a word";
 }
 
-static bool parse_number(const abbe_yaml *yaml, const char *text, double *value) {
+static bool parse_number(const char *text, double *value) {
+  const char *end;
   if (*text == '\0' || text[strspn(text, "0123456789+-.eE")] != '\0') return false;
-  char *end = NULL;
-  locale_t host = uselocale(yaml->numbers);
-  *value = strtod(text, &end);
-  uselocale(host);
-  return *end == '\0' && end != text && isfinite(*value);
+  return abbe_number_read(text, &end, value) && *end == '\0' && isfinite(*value);
 }
 
 abbe_result abbe_yaml_number(const abbe_yaml *yaml, abbe_yaml_node which, const char *what,
@@ -542,7 +536,7 @@ abbe_result abbe_yaml_number(const abbe_yaml *yaml, abbe_yaml_node which, const 
     return abbe_yaml_fail(yaml, which, error, "'%s' wants a number, not %s", what,
                           kind_name(yaml, which));
   double value = 0;
-  if (!parse_number(yaml, n->text, &value))
+  if (!parse_number(n->text, &value))
     return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not a finite number", what, n->text);
   if (value < min || value > max)
     return abbe_yaml_fail(yaml, which, error, "'%s: %.60s' is not in the range from %g to %g", what,

@@ -1,5 +1,6 @@
 # The house as a whole: who may include whom, and each header by itself.
 abbe_test(directions cpu abbe_build)
+abbe_test(number_places cpu abbe_spectral)
 
 # Each header is included twice, first and alone, in a C17 and a C++17 file of its own.
 file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS

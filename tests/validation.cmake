@@ -39,6 +39,7 @@ foreach(name
     )
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
+abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
 abbe_test(sweep gl abbe_sweep abbe_gl ${validation_rooms})
 abbe_test(sweep_growth gl abbe_sweep abbe_gl ${validation_rooms})
 abbe_test(compare_command program ${validation_rooms} PkgConfig::CJSON)

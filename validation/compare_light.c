@@ -1,6 +1,8 @@
 /* The metrics of light: X, Y, Z, the bands, and the Z-test. */
 #include "validation/compare_state.h"
 
+#include "spectral/number.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -174,7 +176,7 @@ static void measure_bands(const abbe_compare_state *s, const abbe_mask *mask, do
     }
     abbe_compare_channel *channel = &region->channel[first + c];
     channel->lambda_nm = s->reference->lambda_nm[c];
-    snprintf(channel->name, sizeof channel->name, "%.6g nm", channel->lambda_nm);
+    abbe_number_format(channel->name, sizeof channel->name, "%.6g nm", channel->lambda_nm);
     describe(&of, k, channel);
     merge(&all, &of);
   }

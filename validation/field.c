@@ -2,6 +2,7 @@
 
 #include "colorimetry/exr.h"
 #include "colorimetry/rgb_space.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -196,7 +197,9 @@ static abbe_field_kind find_kind(const abbe_image *image) {
 
 static size_t find_passes(const abbe_image *image) {
   const char *word = abbe_image_attribute_text(image, "abbe:passes");
-  double passes = word == NULL ? 0 : strtod(word, NULL);
+  const char *end;
+  double passes = 0;
+  if (word != NULL) abbe_number_read(word, &end, &passes);
   return passes >= 1 && passes < 1e15 ? (size_t)passes : 0;
 }
 

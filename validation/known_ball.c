@@ -3,6 +3,7 @@
 #include "validation/known_group.h"
 
 #include "spectral/dispersion.h"
+#include "spectral/number.h"
 
 #include <stdio.h>
 
@@ -123,8 +124,8 @@ static abbe_result add_crossing(abbe_known_run *run, double radius, double share
       .tolerance = 4e-6,
       .reason = "a ray starts 2^-18 of the ball's radius off the surface that it leaves, 4e-6, and "
                 "may cross the axis so much earlier or later"};
-  snprintf(row.quantity, sizeof row.quantity,
-           "n-bk7, R = %g m, crossing of the ray at %g R, line d", radius, share);
+  abbe_number_format(row.quantity, sizeof row.quantity,
+                     "n-bk7, R = %g m, crossing of the ray at %g R, line d", radius, share);
   return abbe_known_add(run, row, error);
 }
 
@@ -179,8 +180,9 @@ static abbe_result add_bow(abbe_known_run *run, drop *d, abbe_error *error) {
       .tolerance = 6e-5,
       .reason = "1e-6 rad: up to four turns of single-precision directions; the water's "
                 "temperature matters a hundred times as much"};
-  snprintf(row.quantity, sizeof row.quantity, "water, %s bow at %g nm, from the antisolar point",
-           names[d->order - 1], d->lambda_nm);
+  abbe_number_format(row.quantity, sizeof row.quantity,
+                     "water, %s bow at %g nm, from the antisolar point", names[d->order - 1],
+                     d->lambda_nm);
   return abbe_known_add(run, row, error);
 }
 

@@ -4,6 +4,7 @@
 
 #include "scenes/vector.h"
 #include "spectral/dispersion.h"
+#include "spectral/number.h"
 
 #include <stdio.h>
 
@@ -36,8 +37,8 @@ static abbe_result add_shift(abbe_known_run *run, double thickness, double degre
       .tolerance = 4e-6,
       .reason = "a ray starts 2^-18 of the slab's size off the face that it leaves, 4e-6, and "
                 "positions are rounded to 1e-7 of its width, eight thicknesses"};
-  snprintf(row.quantity, sizeof row.quantity, "n-bk7, %g m thick, at %g degrees, sideways",
-           thickness, degrees);
+  abbe_number_format(row.quantity, sizeof row.quantity,
+                     "n-bk7, %g m thick, at %g degrees, sideways", thickness, degrees);
   return abbe_known_add(run, row, error);
 }
 
@@ -89,8 +90,8 @@ static abbe_result add_share(abbe_known_run *run, abbe_known_stage *stage, doubl
       .traced = there ? stage->vertex[inside ? 1 : 0].reflectance : NAN,
       .tolerance = 5e-7 + 5e-7 * slope,
       .reason = "single precision: 5e-7 of the light, and 5e-7 rad of the angle times the slope"};
-  snprintf(row.quantity, sizeof row.quantity, "n-bk7, reflected at %.4g degrees from %s", degrees,
-           inside ? "inside" : "outside");
+  abbe_number_format(row.quantity, sizeof row.quantity, "n-bk7, reflected at %.4g degrees from %s",
+                     degrees, inside ? "inside" : "outside");
   return abbe_known_add(run, row, error);
 }
 

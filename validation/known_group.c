@@ -2,6 +2,7 @@
 
 #include "scenes/scene_file.h"
 #include "scenes/vector.h"
+#include "spectral/number.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -21,7 +22,7 @@ static abbe_result parse(const char *head, const char *middle, va_list arguments
                          abbe_scene *out, abbe_error *error) {
   char filled[TEXT_SIZE], text[TEXT_SIZE + sizeof stage_head + sizeof stage_floor];
   *out = (abbe_scene){0};
-  int length = vsnprintf(filled, sizeof filled, middle, arguments);
+  int length = abbe_number_format_list(filled, sizeof filled, middle, arguments);
   if (length < 0 || length >= TEXT_SIZE)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a known answer's scene is too long");
   snprintf(text, sizeof text, "%s%s%s", head, filled, tail);

@@ -3,6 +3,7 @@
 #include "validation/known_group.h"
 
 #include "spectral/dispersion.h"
+#include "spectral/number.h"
 
 #include <stdio.h>
 
@@ -35,7 +36,8 @@ static abbe_result add_turn(abbe_known_run *run, const nest *it, abbe_known_stag
       .reason =
           "2e-5 rad: at each of four surfaces a ray starts up to 4e-6 of the ball's size off, "
           "which the steep curve of the core turns into an angle"};
-  snprintf(row.quantity, sizeof row.quantity, "%s, ray at %g R, turned", it->what, height);
+  abbe_number_format(row.quantity, sizeof row.quantity, "%s, ray at %g R, turned", it->what,
+                     height);
   return abbe_known_add(run, row, error);
 }
 

@@ -3,6 +3,8 @@
 #include "validation/closed_form.h"
 #include "validation/known_light.h"
 
+#include "spectral/number.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,10 +25,11 @@ static abbe_result load(const pane *p, abbe_scene *scene, abbe_error *error) {
   /* Straight light would not reach the pane past a plane above it. */
   char upper[200] = "";
   if (p->degrees >= 30)
-    snprintf(upper, sizeof upper,
-             "- {name: above, shape: rectangle, width: 1.2, height: 1.2, reflectance: 0.5,\n"
-             "   transform: [{translate: [%.17g, 0, %.17g]}]}\n",
-             aside, ABOVE);
+    abbe_number_format(
+        upper, sizeof upper,
+        "- {name: above, shape: rectangle, width: 1.2, height: 1.2, reflectance: 0.5,\n"
+        "   transform: [{translate: [%.17g, 0, %.17g]}]}\n",
+        aside, ABOVE);
   return abbe_known_scene(
       scene, error,
       "camera: {eye: [0, -9, 4], target: [0, 0, 0]}\n"
@@ -108,8 +111,9 @@ static abbe_result add_share(abbe_known_run *run, const pane *p, bool reflected,
                              .tolerance = abbe_known_sigmas(passes) * spread * scale + 1e-4,
                              .useful = 0.02 * (reflected ? r : t),
                              .reason = pane_reason};
-    snprintf(row.quantity, sizeof row.quantity, "%s, %g mm, %g nm, at %g degrees, %s", p->material,
-             1e3 * p->thickness, p->lambda_nm, p->degrees, reflected ? "reflected" : "passed");
+    abbe_number_format(row.quantity, sizeof row.quantity, "%s, %g mm, %g nm, at %g degrees, %s",
+                       p->material, 1e3 * p->thickness, p->lambda_nm, p->degrees,
+                       reflected ? "reflected" : "passed");
     result = abbe_known_add(run, row, error);
   }
   abbe_rings_free(&rings);

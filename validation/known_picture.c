@@ -6,6 +6,7 @@
 
 #include "scenes/vector.h"
 #include "spectral/dispersion.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,14 +44,15 @@ static abbe_result load(const view_of *v, abbe_scene *scene, abbe_error *error) 
   char lamp[160], pane[300] = "";
   const double light = v->light, q = 0.3; /* of the way to the plane's middle */
   if (v->through)
-    snprintf(pane, sizeof pane,
-             "- {name: pane, shape: box, size: [0.25, 0.25, %g], material: fused-silica,\n"
-             "   transform: [{look: {from: [%.17g, 0, %.17g], to: [%.17g, 0, %.17g]}}]}\n",
-             PANE_M, eye[0] + q * (centre[0] - eye[0]), eye[2] + q * (centre[2] - eye[2]), eye[0],
-             eye[2]);
+    abbe_number_format(
+        pane, sizeof pane,
+        "- {name: pane, shape: box, size: [0.25, 0.25, %g], material: fused-silica,\n"
+        "   transform: [{look: {from: [%.17g, 0, %.17g], to: [%.17g, 0, %.17g]}}]}\n",
+        PANE_M, eye[0] + q * (centre[0] - eye[0]), eye[2] + q * (centre[2] - eye[2]), eye[0],
+        eye[2]);
   if (light > 0)
-    snprintf(lamp, sizeof lamp, "kind: point, position: [0, 0, %.17g], intensity: 1",
-             light * RADIUS);
+    abbe_number_format(lamp, sizeof lamp, "kind: point, position: [0, 0, %.17g], intensity: 1",
+                       light * RADIUS);
   else
     snprintf(lamp, sizeof lamp, "kind: directional, direction: [0, 0, -1], irradiance: 1");
   return abbe_known_scene(
@@ -203,9 +205,9 @@ static abbe_result add_rows(abbe_known_run *run, const view_of *v, bool all,
         .useful = 0.05 * exact[i] * scale,
         .reason = v->through ? through_reason : picture_reason,
     };
-    snprintf(row.quantity, sizeof row.quantity, "fused-silica, %s, %s%s, ring %g-%g R",
-             v->light > 0 ? "point 3 R up" : "beam", all ? "all light" : "the caustic",
-             v->through ? " through a pane" : "", e[0] / RADIUS, e[1] / RADIUS);
+    abbe_number_format(row.quantity, sizeof row.quantity, "fused-silica, %s, %s%s, ring %g-%g R",
+                       v->light > 0 ? "point 3 R up" : "beam", all ? "all light" : "the caustic",
+                       v->through ? " through a pane" : "", e[0] / RADIUS, e[1] / RADIUS);
     result = abbe_known_add(run, row, error);
   }
   return result;

@@ -4,6 +4,7 @@
 
 #include "scenes/vector.h"
 #include "spectral/dispersion.h"
+#include "spectral/number.h"
 
 #include <stdio.h>
 
@@ -169,7 +170,8 @@ static abbe_result add_position(abbe_known_run *run, abbe_known_stage *stage, co
       .traced = lands ? 1e3 * on_wall(w, landed, w->d.direction) : NAN,
       .tolerance = 2e-3,
       .reason = "2 um: 1e-6 rad over the metre to the wall, and single-precision positions on it"};
-  snprintf(row.quantity, sizeof row.quantity, "sf10 at %g nm, from the place of d", lambda_nm);
+  abbe_number_format(row.quantity, sizeof row.quantity, "sf10 at %g nm, from the place of d",
+                     lambda_nm);
   return abbe_known_add(run, row, error);
 }
 

@@ -4,6 +4,7 @@
 #include "validation/sphere_quadrature.h"
 
 #include "spectral/dispersion.h"
+#include "spectral/number.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -52,8 +53,8 @@ static double incident(const setting *s) {
 static abbe_result load(const setting *s, double outer, abbe_scene *scene, abbe_error *error) {
   char light[160];
   if (s->light > 0)
-    snprintf(light, sizeof light, "kind: point, position: [0, 0, %.17g], intensity: 1",
-             s->light * RADIUS);
+    abbe_number_format(light, sizeof light, "kind: point, position: [0, 0, %.17g], intensity: 1",
+                       s->light * RADIUS);
   else
     snprintf(light, sizeof light, "kind: directional, direction: [0, 0, -1], irradiance: 1");
   return abbe_known_scene(
@@ -157,10 +158,10 @@ static abbe_result add_part(abbe_known_run *run, const setting *s, const char *w
       .reason = ring_reason,
   };
   char light[24] = "beam";
-  if (s->light > 0) snprintf(light, sizeof light, "point %g R up", s->light);
-  snprintf(row.quantity, sizeof row.quantity, "%s%s, %s, plane %g R, %s %s %.3g-%.3g R",
-           s->material, s->two_faces ? " matched" : "", light, s->plane, names[p.channel], what,
-           rings->edge[p.first] / RADIUS, rings->edge[p.end] / RADIUS);
+  if (s->light > 0) abbe_number_format(light, sizeof light, "point %g R up", s->light);
+  abbe_number_format(row.quantity, sizeof row.quantity, "%s%s, %s, plane %g R, %s %s %.3g-%.3g R",
+                     s->material, s->two_faces ? " matched" : "", light, s->plane, names[p.channel],
+                     what, rings->edge[p.first] / RADIUS, rings->edge[p.end] / RADIUS);
   return abbe_known_add(run, row, error);
 }
 

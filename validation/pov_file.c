@@ -4,10 +4,10 @@
 #include "colorimetry/weights.h"
 #include "scenes/vector.h"
 #include "spectral/file.h"
+#include "spectral/number.h"
 #include "spectral/wavelengths.h"
 
 #include <ctype.h>
-#include <locale.h>
 #include <math.h>
 #include <string.h>
 
@@ -73,36 +73,37 @@ static void comment(const writing *w, const char *what, const char *name) {
 }
 
 static void point(const writing *w, const char *before, const double p[3], const char *after) {
-  fprintf(w->file, "%s<%.12g, %.12g, %.12g>%s", before, w->scale * p[0], w->scale * p[1],
-          w->scale * p[2], after);
+  abbe_number_write(w->file, "%s<%.12g, %.12g, %.12g>%s", before, w->scale * p[0], w->scale * p[1],
+                    w->scale * p[2], after);
 }
 
 static void vector(const writing *w, const char *before, const double v[3], double length,
                    const char *after) {
-  fprintf(w->file, "%s<%.12g, %.12g, %.12g>%s", before, length * v[0], length * v[1], length * v[2],
-          after);
+  abbe_number_write(w->file, "%s<%.12g, %.12g, %.12g>%s", before, length * v[0], length * v[1],
+                    length * v[2], after);
 }
 
 static void write_head(const writing *w) {
   const abbe_scene *s = w->scene;
   comment(w, "Abbe's scene", s->path != NULL ? s->path : "scene");
-  fprintf(w->file,
-          "// %g units are a metre. The linear picture is radiance, W/(m2 sr), in Rec.709:\n"
-          "//   povray +Iscene.pov +Oscene.exr +FE +W%zu +H%zu -D\n"
-          "// Declare=Caustics=0 leaves the light out that refractors throw, not their shadows.\n"
-          "#version 3.7;\n"
-          "#ifndef (Caustics) #declare Caustics = 1; #end\n"
-          "#ifndef (Photons) #declare Photons = %zu; #end\n"
-          "#ifndef (Samples) #declare Samples = %zu; #end\n"
-          "#ifndef (Gather) #declare Gather = 100; #end\n"
-          "global_settings {\n"
-          "  assumed_gamma 1\n  ambient_light rgb 1\n  max_trace_level 24\n  adc_bailout 1e-3\n",
-          w->scale, s->camera.width, s->camera.height, w->options->photons, w->options->samples);
+  abbe_number_write(
+      w->file,
+      "// %g units are a metre. The linear picture is radiance, W/(m2 sr), in Rec.709:\n"
+      "//   povray +Iscene.pov +Oscene.exr +FE +W%zu +H%zu -D\n"
+      "// Declare=Caustics=0 leaves the light out that refractors throw, not their shadows.\n"
+      "#version 3.7;\n"
+      "#ifndef (Caustics) #declare Caustics = 1; #end\n"
+      "#ifndef (Photons) #declare Photons = %zu; #end\n"
+      "#ifndef (Samples) #declare Samples = %zu; #end\n"
+      "#ifndef (Gather) #declare Gather = 100; #end\n"
+      "global_settings {\n"
+      "  assumed_gamma 1\n  ambient_light rgb 1\n  max_trace_level 24\n  adc_bailout 1e-3\n",
+      w->scale, s->camera.width, s->camera.height, w->options->photons, w->options->samples);
   if (w->photons)
     fprintf(w->file, "  #if (Caustics)\n  photons {\n    count Photons autostop 0 "
                      "gather Gather, 5 * Gather\n    max_trace_level 16 adc_bailout 1e-3\n  }\n"
                      "  #end\n");
-  fprintf(w->file, "}\nbackground { rgb %.12g }\n", s->background);
+  abbe_number_write(w->file, "}\nbackground { rgb %.12g }\n", s->background);
 }
 
 /* The camera by its own axes: no handedness is left to choose. */
@@ -158,8 +159,9 @@ static void write_light(const writing *w, const abbe_light *light) {
   point(w, "light_source {\n  ", at, "\n");
   vector(w, "  color rgb ", rgb, power, "\n");
   if (light->kind == ABBE_LIGHT_SPOT)
-    fprintf(w->file, "  spotlight tightness 0 radius %.12g falloff %.12g\n",
-            fmax(light->cone_rad - light->soft_rad, 0) * DEGREES, light->cone_rad * DEGREES);
+    abbe_number_write(w->file, "  spotlight tightness 0 radius %.12g falloff %.12g\n",
+                      fmax(light->cone_rad - light->soft_rad, 0) * DEGREES,
+                      light->cone_rad * DEGREES);
   if (light->kind == ABBE_LIGHT_DISK) {
     double u[3], v[3];
     const int axis = fabs(light->direction[0]) < 0.6 ? 0 : 1;
@@ -176,8 +178,8 @@ static void write_light(const writing *w, const abbe_light *light) {
   if (parallel) fprintf(w->file, "  parallel\n");
   if (light->kind != ABBE_LIGHT_POINT) point(w, "  point_at ", aim, "\n");
   if (!parallel)
-    fprintf(w->file, "  fade_power 2 fade_distance %.12g\n",
-            w->scale * fade_length(w->scene, light));
+    abbe_number_write(w->file, "  fade_power 2 fade_distance %.12g\n",
+                      w->scale * fade_length(w->scene, light));
   if (w->photons)
     fprintf(w->file, "  photons { refraction on reflection on%s }\n",
             light->kind == ABBE_LIGHT_DISK ? " area_light" : "");
@@ -198,7 +200,7 @@ static void write_mesh(const writing *w, const abbe_mesh *mesh, bool solid) {
   if (mesh->uv != NULL) {
     fprintf(w->file, "  uv_vectors { %zu", mesh->vertex_count);
     for (size_t i = 0; i < mesh->vertex_count; i++)
-      fprintf(w->file, ", <%.12g, %.12g>", mesh->uv[i][0], mesh->uv[i][1]);
+      abbe_number_write(w->file, ", <%.12g, %.12g>", mesh->uv[i][0], mesh->uv[i][1]);
     fprintf(w->file, " }\n");
   }
   fprintf(w->file, "  face_indices { %zu", mesh->face_count);
@@ -214,7 +216,7 @@ static void write_surface(const writing *w, const abbe_object *object) {
     return;
   }
   point(w, "sphere {\n  ", object->exact.centre, "");
-  fprintf(w->file, ", %.12g\n", w->scale * object->exact.radius);
+  abbe_number_write(w->file, ", %.12g\n", w->scale * object->exact.radius);
 }
 
 /* exp(-(1 - fade_color) depth / fade_distance): three attenuations, each of its colour's third of
@@ -231,8 +233,9 @@ static void write_absorption(const writing *w, const abbe_material *material) {
     most = fmax(most, mean[c]);
   }
   if (!(most > 0)) return;
-  fprintf(w->file, "    fade_power 1001 fade_distance %.12g fade_color rgb <%.12g, %.12g, %.12g>\n",
-          w->scale / most, 1 - mean[0] / most, 1 - mean[1] / most, 1 - mean[2] / most);
+  abbe_number_write(
+      w->file, "    fade_power 1001 fade_distance %.12g fade_color rgb <%.12g, %.12g, %.12g>\n",
+      w->scale / most, 1 - mean[0] / most, 1 - mean[1] / most, 1 - mean[2] / most);
 }
 
 static abbe_result write_refractor(const writing *w, const abbe_object *object, abbe_error *error) {
@@ -241,18 +244,20 @@ static abbe_result write_refractor(const writing *w, const abbe_object *object, 
       abbe_pov_file_glass(object->material, &w->scene->light[0].illuminant, &glass, error);
   if (result != ABBE_OK) return result;
   comment(w, "refractor", object->name);
-  fprintf(w->file, "// %s: off by %.2g at the most (%g nm), by %.2g in the mean\n",
-          object->material->name, glass.worst, glass.worst_nm, glass.rms);
+  abbe_number_write(w->file, "// %s: off by %.2g at the most (%g nm), by %.2g in the mean\n",
+                    object->material->name, glass.worst, glass.worst_nm, glass.rms);
   fprintf(w->file, "#declare Surface = ");
   write_surface(w, object);
-  fprintf(w->file,
-          "}\n"
-          "object {\n  Surface\n  pigment { rgbt 1 }\n"
-          "  finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy }\n"
-          "  interior {\n    ior %.12g\n",
-          glass.index.ior);
+  abbe_number_write(
+      w->file,
+      "}\n"
+      "object {\n  Surface\n  pigment { rgbt 1 }\n"
+      "  finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } conserve_energy }\n"
+      "  interior {\n    ior %.12g\n",
+      glass.index.ior);
   if (glass.index.dispersion != 1)
-    fprintf(w->file, "    dispersion %.12g dispersion_samples Samples\n", glass.index.dispersion);
+    abbe_number_write(w->file, "    dispersion %.12g dispersion_samples Samples\n",
+                      glass.index.dispersion);
   write_absorption(w, object->material);
   fprintf(w->file, "  }\n  photons { target reflection on refraction on collect off }\n"
                    "  #if (!Caustics) no_shadow #end\n}\n"
@@ -277,15 +282,16 @@ static abbe_result write_receiver(const writing *w, const abbe_object *object, a
   if (textured) {
     if (r[0] != r[1] || r[1] != r[2])
       fprintf(w->file, "  // the mean of its reflectance over red, green and blue\n");
-    fprintf(w->file,
-            "  pigment { uv_mapping image_map { png \"%s\" gamma srgb interpolate 2 } "
-            "scale <%.12g, %.12g, 1> }\n",
-            object->texture_path, 1 / object->texture_repeat[0], 1 / object->texture_repeat[1]);
+    abbe_number_write(w->file,
+                      "  pigment { uv_mapping image_map { png \"%s\" gamma srgb interpolate 2 } "
+                      "scale <%.12g, %.12g, 1> }\n",
+                      object->texture_path, 1 / object->texture_repeat[0],
+                      1 / object->texture_repeat[1]);
   } else {
     vector(w, "  pigment { rgb ", r, 1, " }\n");
   }
-  fprintf(w->file, "  finish { ambient %.12g diffuse %.12g }\n}\n",
-          textured ? ambient * grey : ambient, textured ? grey : 1);
+  abbe_number_write(w->file, "  finish { ambient %.12g diffuse %.12g }\n}\n",
+                    textured ? ambient * grey : ambient, textured ? grey : 1);
   return ABBE_OK;
 }
 
@@ -327,16 +333,7 @@ abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
   double min[3], max[3];
   const writing w = {writer.stream, scene, &o, abbe_pov_file_scale(scene),
                      abbe_scene_bounds(scene, true, false, min, max)};
-  /* Numbers in the file have a point, whatever the host program's language. */
-  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  if (c == (locale_t)0) {
-    abbe_file_writer_discard(&writer);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a locale");
-  }
-  locale_t host = uselocale(c);
   result = write_scene(&w, error);
-  uselocale(host);
-  freelocale(c);
   if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
   abbe_file_writer_discard(&writer);
   return result;

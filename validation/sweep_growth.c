@@ -252,9 +252,9 @@ void abbe_sweep_growth_print(const abbe_sweep_growth *g, FILE *out) {
     const abbe_sweep_growth_point *p = &g->point[i];
     bool first = i == 0 || p[-1].axis != p->axis;
     fprintf(out, "| %s", first ? texts[p->axis] : "");
-    if (first) fprintf(out, " (slope %.2f)", abbe_sweep_growth_slope(g, p->axis));
-    fprintf(out, " | %.4g | %.1f | %.1f | %.1f | %.1f |\n", p->x, p->frame_ms, p->light_ms,
-            p->eye_ms, p->floor_ms);
+    if (first) abbe_number_write(out, " (slope %.2f)", abbe_sweep_growth_slope(g, p->axis));
+    abbe_number_write(out, " | %.4g | %.1f | %.1f | %.1f | %.1f |\n", p->x, p->frame_ms,
+                      p->light_ms, p->eye_ms, p->floor_ms);
   }
 }
 
@@ -275,8 +275,8 @@ abbe_result abbe_sweep_growth_plot(const abbe_sweep_growth *g, const char *path,
     line_x[1] = fmax(line_x[1], x[i]);
     if (p->axis == ABBE_SWEEP_GROWTH_PIXELS && x[i] == 1) base_ms = y[i];
     if (i == 0 || p[-1].axis != p->axis) {
-      snprintf(label[used], sizeof label[used], "%s (slope %.2f)", texts[p->axis],
-               abbe_sweep_growth_slope(g, p->axis));
+      abbe_number_format(label[used], sizeof label[used], "%s (slope %.2f)", texts[p->axis],
+                         abbe_sweep_growth_slope(g, p->axis));
       series[used] = (abbe_chart_series){
           .label = label[used], .style = ABBE_CHART_JOINED_POINTS, .x = &x[i], .y = &y[i]};
       used++;

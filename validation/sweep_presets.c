@@ -191,12 +191,13 @@ static void find_margins(const front *f, margins *out) {
 static void write_point(FILE *out, const point *p) {
   const abbe_sweep_setting *s = p->setting;
   char share[ABBE_NUMBER_TEXT_SIZE];
-  fprintf(out,
-          "  - {wavelengths: %zu, photons: %zu, map: %zu, samples: %zu, upsample: %zu, fill: %s, "
-          "exits: %zu, "
-          "share: %s,\n     model: %s, light_ms: %.2f, eye_ms: %.2f, error: %.4g, least: %.4g}\n",
-          s->wavelengths, s->photons, s->map, s->samples, s->upsample, s->fill, s->exits,
-          abbe_number_text(s->share, share), s->model, p->light_ms, p->eye_ms, p->error, p->least);
+  abbe_number_write(
+      out,
+      "  - {wavelengths: %zu, photons: %zu, map: %zu, samples: %zu, upsample: %zu, fill: %s, "
+      "exits: %zu, "
+      "share: %s,\n     model: %s, light_ms: %.2f, eye_ms: %.2f, error: %.4g, least: %.4g}\n",
+      s->wavelengths, s->photons, s->map, s->samples, s->upsample, s->fill, s->exits,
+      abbe_number_text(s->share, share), s->model, p->light_ms, p->eye_ms, p->error, p->least);
 }
 
 static const char *base_of(const char *path) {
@@ -220,8 +221,8 @@ static void write_class(FILE *out, const front *f, const margins *widest) {
   abbe_yaml_quote_write(scenes, out);
   find_margins(f, &own);
   if (own.scenes == 0) own = (margins){widest->error, widest->time, 0};
-  fprintf(out, "\n  margin: %.4g\n  time_margin: %.4g\n  margin_scenes: %zu", own.error, own.time,
-          own.scenes);
+  abbe_number_write(out, "\n  margin: %.4g\n  time_margin: %.4g\n  margin_scenes: %zu", own.error,
+                    own.time, own.scenes);
   size_t accurate = abbe_front_accurate(f->error, f->on_front, slack);
   fprintf(out, "\n  draft: 0\n  balanced: %zu\n  accurate: %zu\n  front:\n",
           abbe_front_knee(f->cost, f->error, accurate + 1), accurate);

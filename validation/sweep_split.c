@@ -1,5 +1,7 @@
 #include "validation/sweep_split.h"
 
+#include "spectral/number.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -101,7 +103,7 @@ say(text *t, const char *format, ...) {
   va_list args;
   if (t->used + 1 >= t->size) return;
   va_start(args, format);
-  int length = vsnprintf(t->out + t->used, t->size - t->used, format, args);
+  int length = abbe_number_format_list(t->out + t->used, t->size - t->used, format, args);
   va_end(args);
   if (length > 0) t->used += (size_t)length;
 }

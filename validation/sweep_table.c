@@ -189,9 +189,11 @@ void abbe_sweep_model_write(const abbe_sweep_model *m, abbe_sweep_table *table) 
 
 bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out) {
   abbe_sweep_model m;
-  if (sscanf(table->fact[ABBE_SWEEP_FACT_MODEL], model_form, &m.de, &m.de_noise, &m.map,
-             &m.map_noise, &m.energy) != 5)
-    return false;
+  locale_t host = abbe_number_enter();
+  const int read = sscanf(table->fact[ABBE_SWEEP_FACT_MODEL], model_form, &m.de, &m.de_noise,
+                          &m.map, &m.map_noise, &m.energy);
+  abbe_number_leave(host);
+  if (read != 5) return false;
   *out = m;
   return true;
 }
