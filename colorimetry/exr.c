@@ -186,6 +186,11 @@ static abbe_result read_attributes(exr_context_t context, const stream *s, abbe_
       return abbe_error_set(error, ABBE_PARSE, "%s: %s is '%.40s'; a power of two is right",
                             s->path, ABBE_EXR_UNIT_NAME, a->string->str);
     }
+    if (image->attribute_count == ABBE_IMAGE_MAX_ATTRIBUTES)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s: it has more than %d text attributes, which is as many as can be "
+                            "read",
+                            s->path, ABBE_IMAGE_MAX_ATTRIBUTES);
     abbe_result result = abbe_image_set_attribute(image, a->name, a->string->str, error);
     if (result != ABBE_OK) return result;
   }

@@ -122,8 +122,12 @@ abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const 
   if (name == NULL || name[0] == '\0' || text == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "an attribute of an image needs a name and a text");
-  char *copy = strdup(text);
   abbe_image_attribute *known = find_attribute(image, name);
+  if (known == NULL && image->attribute_count == ABBE_IMAGE_MAX_ATTRIBUTES)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "an image has at most %d text attributes; '%.100s' is one more",
+                          ABBE_IMAGE_MAX_ATTRIBUTES, name);
+  char *copy = strdup(text);
   if (copy != NULL && known != NULL) {
     free(known->text);
     known->text = copy;

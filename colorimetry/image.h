@@ -17,6 +17,7 @@ extern "C" {
 
 #define ABBE_IMAGE_MAX_SIDE 32768
 #define ABBE_IMAGE_MAX_CHANNELS 1024
+#define ABBE_IMAGE_MAX_ATTRIBUTES 4096
 
 typedef struct abbe_image_attribute {
   char *name;
@@ -62,7 +63,8 @@ abbe_result abbe_image_check_expansion(const char *path, size_t width, size_t he
 abbe_result abbe_image_check_place(const abbe_image *a, const char *name_a, const abbe_image *b,
                                    const char *name_b, abbe_error *error);
 
-/* Adds or replaces a text attribute. */
+/* Adds or replaces a text attribute. ABBE_INVALID_ARGUMENT without a name or text, and for one more
+ * than ABBE_IMAGE_MAX_ATTRIBUTES. */
 abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const char *text,
                                      abbe_error *error);
 /* The text of an attribute, or NULL. */

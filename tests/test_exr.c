@@ -356,6 +356,32 @@ static void test_not_pictures(void **state) {
   read_must_fail("not an OpenEXR file at all, but long enough to be one", 53, "text");
 }
 
+/* One more than can be read, put into a header of the C core's making. */
+static void test_too_many_attributes(void **state) {
+  (void)state;
+  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  exr_context_t f = NULL;
+  int part = 0;
+  assert_int_equal(exr_start_write(&f, path, EXR_WRITE_FILE_DIRECTLY, &setup), 0);
+  assert_int_equal(exr_add_part(f, "", EXR_STORAGE_SCANLINE, &part), 0);
+  assert_int_equal(exr_initialize_required_attr_simple(f, 0, 1, 1, EXR_COMPRESSION_NONE), 0);
+  assert_int_equal(exr_add_channel(f, 0, "Y", EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1), 0);
+  for (int i = 0; i <= ABBE_IMAGE_MAX_ATTRIBUTES; i++) {
+    char name[16];
+    snprintf(name, sizeof name, "a%05d", i);
+    assert_int_equal(exr_attr_set_string(f, 0, name, "x"), 0);
+  }
+  assert_int_equal(exr_write_header(f), 0);
+  const float y = 1;
+  assert_int_equal(exr_write_scanline_chunk(f, 0, 0, &y, 4), 0);
+  assert_int_equal(exr_finish(&f), 0);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_non_null(strstr(error.text, "attributes"));
+  assert_null(image.data);
+}
+
 static void test_deep_is_unsupported(void **state) {
   (void)state;
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
@@ -421,6 +447,7 @@ int main(void) {
                                      cmocka_unit_test(test_flipped_bits_anywhere),
                                      cmocka_unit_test(test_a_huge_data_window),
                                      cmocka_unit_test(test_not_pictures),
+                                     cmocka_unit_test(test_too_many_attributes),
                                      cmocka_unit_test(test_deep_is_unsupported),
                                      cmocka_unit_test(test_exrheader_agrees)};
   return cmocka_run_group_tests(tests, NULL, leave);

@@ -7,6 +7,7 @@
 
 #include "colorimetry/image.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const char *const rgb[] = {"R", "G", "B"};
@@ -38,6 +39,22 @@ static void test_sizes_are_checked_first(void **state) {
     assert_null(image.data);
     assert_true(strlen(error.text) > 20);
   }
+}
+
+static void test_attributes_have_a_limit(void **state) {
+  (void)state;
+  abbe_image image = {0};
+  abbe_error error = {0};
+  char name[16];
+  assert_int_equal(abbe_image_make(1, 1, 3, rgb, &image, NULL), ABBE_OK);
+  for (int i = 0; i < ABBE_IMAGE_MAX_ATTRIBUTES; i++) {
+    snprintf(name, sizeof name, "a%d", i);
+    assert_int_equal(abbe_image_set_attribute(&image, name, "", NULL), ABBE_OK);
+  }
+  assert_int_equal(abbe_image_set_attribute(&image, "a7", "other", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "more", "", &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "'more'"));
+  abbe_image_free(&image);
 }
 
 static void test_what_unfolds(void **state) {
@@ -108,6 +125,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_make_is_black_and_named),
                                      cmocka_unit_test(test_sizes_are_checked_first),
                                      cmocka_unit_test(test_what_unfolds),
+                                     cmocka_unit_test(test_attributes_have_a_limit),
                                      cmocka_unit_test(test_places),
                                      cmocka_unit_test(test_names_are_needed),
                                      cmocka_unit_test(test_attributes)};

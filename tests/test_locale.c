@@ -1,6 +1,7 @@
 /* The library in a program that sets its user's locale: what it reads, computes, writes and says is
  * the same to the byte where numbers are written with a comma. */
 #include "tests/decimal_comma.h"
+#include "tests/fontconfig.h"
 #include "tests/scene_text.h"
 #include "tests/sweep_row.h"
 
