@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MAX_CHANGES = 64, MAX_RECORD = 1 << 20 };
 enum { KEY_FROM = ABBE_CHANGE_KEY_OWN, KEY_AS, KEY_RECORD, KEY_CREATE };
@@ -143,8 +144,8 @@ static abbe_result copy_record(const request *r, char **out, abbe_error *error) 
 
 static abbe_result read_record(const char *path, char **out, abbe_error *error) {
   size_t size = 0;
-  return abbe_file_read_text(strcmp(path, "-") == 0 ? "/dev/stdin" : path, MAX_RECORD, out, &size,
-                             error);
+  return strcmp(path, "-") == 0 ? abbe_file_read_input(MAX_RECORD, out, &size, error)
+                                : abbe_file_read_text(path, MAX_RECORD, out, &size, error);
 }
 
 static abbe_result bare_record(const char *name, char **out, abbe_error *error) {
@@ -186,11 +187,10 @@ static abbe_result add(const request *r, abbe_error *error) {
 static abbe_result open_table(request *r, abbe_error *error) {
   abbe_error why = {0};
   abbe_result result = abbe_change_open(&r->change, &why);
-  FILE *there = result == ABBE_IO ? fopen(r->change.table, "rb") : NULL;
-  if (there != NULL) fclose(there);
-  if (result == ABBE_IO && there == NULL && r->create)
+  const bool there = access(r->change.table, F_OK) == 0;
+  if (result == ABBE_IO && !there && r->create)
     return abbe_table_edit_make(r->change.table, &r->change.edit, error);
-  if (result == ABBE_IO && there == NULL)
+  if (result == ABBE_IO && !there)
     return abbe_error_set(error, result, "%s; --create makes a new table", why.text);
   if (result != ABBE_OK) return abbe_error_set(error, result, "%s", why.text);
   return ABBE_OK;

@@ -2,11 +2,13 @@
 
 #include "colorimetry/rgb_encoding.h"
 #include "spectral/number.h"
+#include "spectral/file.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -60,9 +62,20 @@ const char *config_name(const char *path) {
   return config_path(path) != nullptr ? config_path(path) : "the shipped colour configuration";
 }
 
+/* OpenColorIO would wait at a pipe that has no writer. Its built-in configurations are no files. */
+void check_file(const char *path) {
+  abbe_error error = {};
+  std::FILE *file = nullptr;
+  if (std::strncmp(path, "ocio://", 7) == 0) return;
+  if (abbe_file_open(path, &file, nullptr, &error) != ABBE_OK)
+    throw OCIO::Exception(error.text + std::strlen(path) + 2); /* after "PATH: " */
+  std::fclose(file);
+}
+
 OCIO::ConstConfigRcPtr load(const char *path) {
   OCIO::ConstConfigRcPtr config;
   if (config_path(path) != nullptr) {
+    check_file(config_path(path));
     config = OCIO::Config::CreateFromFile(config_path(path));
   } else {
     std::istringstream text(std::string(reinterpret_cast<const char *>(abbe_embedded_config_ocio),

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* What a context reads from, and the first thing that the library complained of. */
@@ -368,15 +367,11 @@ static abbe_result read_image(exr_context_t context, const stream *s, abbe_image
 }
 
 static abbe_result open_stream(stream *s, FILE **file, abbe_error *error) {
-  struct stat status;
-  *file = fopen(s->path, "rb");
-  if (*file == NULL || fstat(fileno(*file), &status) != 0)
-    return abbe_error_set(error, ABBE_IO, "%s: it cannot be read: %s", s->path, strerror(errno));
-  if (!S_ISREG(status.st_mode))
-    return abbe_error_set(error, ABBE_IO, "%s: it is not a file that can be read as a picture",
-                          s->path);
+  size_t size = 0;
+  abbe_result result = abbe_file_open(s->path, file, &size, error);
+  if (result != ABBE_OK) return result;
   s->fd = fileno(*file);
-  s->size = status.st_size;
+  s->size = (off_t)size;
   return ABBE_OK;
 }
 

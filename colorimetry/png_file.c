@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { MAX_SIDE = 16384, MAX_CHUNK_BYTES = 4 << 20, DEFLATE_RATIO = 1032 };
 
@@ -302,19 +301,12 @@ static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_er
 
 abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) {
   *out = (abbe_image){0};
-  FILE *file = fopen(path, "rb");
-  struct stat status;
-  if (file == NULL || fstat(fileno(file), &status) != 0) {
-    int why = errno;
-    if (file != NULL) fclose(file);
-    return abbe_error_set(error, ABBE_IO, "%s: it cannot be read: %s", path, strerror(why));
-  }
-  abbe_result result = ABBE_OK;
-  if (!S_ISREG(status.st_mode))
-    result =
-        abbe_error_set(error, ABBE_IO, "%s: it is not a file that can be read as a picture", path);
+  FILE *file;
+  size_t size = 0;
+  abbe_result result = abbe_file_open(path, &file, &size, error);
+  if (result != ABBE_OK) return result;
   job j = {.path = path, .file = file};
-  if (result == ABBE_OK) result = read_image(&j, (double)status.st_size, out, error);
+  result = read_image(&j, (double)size, out, error);
   fclose(file);
   return result;
 }

@@ -1,5 +1,6 @@
 #include "scenes/mesh_import.h"
 
+#include "scenes/import_files.h"
 #include "spectral/number.h"
 
 #include <assimp/cimport.h>
@@ -14,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,11 +27,11 @@ typedef struct header {
   bool with_uv;
 } header;
 
-/* ---- the child: it allocates nothing of its own, and writes as it goes ---- */
+/* ---- the child: it allocates no copies of what was read, and writes as it goes ---- */
 
 enum { BATCH = 256 };
 
-static const struct aiScene *import(const char *path) {
+static const struct aiScene *import(const char *path, abbe_import_files *files) {
   struct aiPropertyStore *store = aiCreatePropertyStore();
   if (!store) return NULL;
   aiSetImportPropertyInteger(store, AI_CONFIG_PP_SBP_REMOVE,
@@ -45,7 +47,7 @@ static const struct aiScene *import(const char *path) {
       path,
       aiProcess_ValidateDataStructure | aiProcess_RemoveComponent | aiProcess_Triangulate |
           aiProcess_PreTransformVertices | aiProcess_SortByPType,
-      NULL, store);
+      &files->io, store);
   aiReleasePropertyStore(store);
   return scene;
 }
@@ -102,12 +104,21 @@ static bool send_faces(int fd, const struct aiMesh *part, size_t first_vertex) {
   return ok && send(fd, batch, n * sizeof *batch);
 }
 
+/* assimp's reason, and why a file was refused that it may have missed. */
+static void complain(const abbe_import_files *files, header *h) {
+  const char *reason = aiGetErrorString();
+  snprintf(h->complaint, sizeof h->complaint, "%.250s%s%.250s",
+           reason[0] != '\0' ? reason : "assimp gives no reason",
+           files->error.text[0] != '\0' ? "; " : "", files->error.text);
+}
+
 static bool send_scene(int fd, const char *path) {
   header h;
+  abbe_import_files files;
   memset(&h, 0, sizeof h); /* the gaps too: it is sent as it lies */
-  const struct aiScene *scene = import(path);
-  if (!scene) snprintf(h.complaint, sizeof h.complaint, "%.500s", aiGetErrorString());
-  if (!scene && h.complaint[0] == '\0') strcpy(h.complaint, "assimp gives no reason");
+  abbe_import_files_begin(&files);
+  const struct aiScene *scene = import(path, &files);
+  if (!scene) complain(&files, &h);
   for (unsigned m = 0; scene && m < scene->mNumMeshes; m++) {
     const struct aiMesh *part = scene->mMeshes[m];
     if (!usable(part)) continue;
@@ -131,26 +142,19 @@ static bool send_scene(int fd, const char *path) {
   return ok;
 }
 
-/* The process may grow by this much memory: a quarter of a GiB and 64 times the file. */
-static void limit_memory(size_t bytes) {
-  char text[32] = "";
-  const int fd = open("/proc/self/statm", O_RDONLY);
-  if (fd < 0) return;
-  const ssize_t got = read(fd, text, sizeof text - 1);
-  close(fd);
-  const rlim_t pages = got > 0 ? strtoul(text, NULL, 10) : 0;
-  const rlim_t size = pages * (rlim_t)sysconf(_SC_PAGESIZE) + ((rlim_t)1 << 28) + 64 * bytes;
-  if (pages > 0) setrlimit(RLIMIT_AS, &(struct rlimit){size, size});
-}
-
 /* Never returns. What assimp says as it stops belongs to nobody, nor do the caller's handlers. */
-static void be_child(int fd, const char *path, size_t bytes) {
-  static const int signals[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGPIPE};
+static void be_child(int fd, const char *path, pid_t caller) {
+  static const int signals[] = {SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,
+                                SIGILL,  SIGXCPU, SIGPIPE, SIGALRM};
+  sigset_t all;
+  sigfillset(&all);
   for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) signal(signals[i], SIG_DFL);
-  const rlim_t seconds = ABBE_MESH_IMPORT_SECONDS + bytes / (1 << 18);
+  sigprocmask(SIG_UNBLOCK, &all, NULL);
+  /* nobody reads on for a caller that was killed; one that was before this was asked is no parent
+   */
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != caller) _exit(1);
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-  limit_memory(bytes);
-  setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds + 1});
   /* a caller without standard streams may have got their numbers for the pipe */
   if (fd <= STDERR_FILENO) fd = fcntl(fd, F_DUPFD, STDERR_FILENO + 1);
   const int nothing = open("/dev/null", O_RDWR);
@@ -213,7 +217,8 @@ static abbe_result take(int fd, const char *path, abbe_mesh *out, bool *whole, a
 }
 
 static abbe_result stopped(const char *path, int status, abbe_error *error) {
-  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
+  const int ended_by = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (ended_by == SIGXCPU || ended_by == SIGALRM || ended_by == SIGKILL)
     return abbe_error_set(error, ABBE_PARSE,
                           "%s: the mesh cannot be read: assimp finds no end of it; the file is "
                           "probably damaged, or cut short",
@@ -224,16 +229,16 @@ static abbe_result stopped(const char *path, int status, abbe_error *error) {
                         path);
 }
 
-abbe_result abbe_mesh_import(const char *path, size_t bytes, abbe_mesh *out, abbe_error *error) {
+abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, abbe_error *error) {
   int end[2];
   memset(out, 0, sizeof *out);
   if (pipe(end) != 0)
     return abbe_error_set(error, ABBE_IO, "%s: there is no pipe to read the mesh through: %s", path,
                           strerror(errno));
-  const pid_t child = fork();
+  const pid_t self = getpid(), child = fork();
   if (child == 0) {
     close(end[0]);
-    be_child(end[1], path, bytes);
+    be_child(end[1], path, self);
   }
   const int why = errno;
   close(end[1]);

@@ -13,16 +13,13 @@
 extern "C" {
 #endif
 
-/* Reads path, of `bytes` bytes: all meshes in it as one, positions as in the file (its own unit),
- * uv where a mesh has them, normals zero. Forks, and waits for the child, which may use
- * ABBE_MESH_IMPORT_SECONDS of processor time and a second more for every quarter of a MiB, and
- * 256 MiB of memory and 64 times the file's size.
- * ABBE_PARSE with assimp's reason or where the child was stopped, ABBE_GEOMETRY for coordinates
- * that are not finite, faces that name vertices that are not there, or a file without triangles,
- * ABBE_IO where no process can be had, ABBE_NO_MEMORY. */
-abbe_result abbe_mesh_import(const char *path, size_t bytes, abbe_mesh *out, abbe_error *error);
-
-#define ABBE_MESH_IMPORT_SECONDS 2
+/* Reads path and the files that it names: all meshes in it as one, positions as in the file (its
+ * own unit), uv where a mesh has them, normals zero. Forks, and waits for the child, which dies
+ * with its caller and has the limits of import_files.h. ABBE_PARSE with assimp's reason or where
+ * the child was stopped, ABBE_GEOMETRY for coordinates that are not finite, faces that name
+ * vertices that are not there, or a file without triangles, ABBE_IO where no process can be had,
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, abbe_error *error);
 
 #ifdef __cplusplus
 }

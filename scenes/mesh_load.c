@@ -1,20 +1,18 @@
 /* Meshes from files. */
+#include "scenes/import_files.h"
 #include "scenes/mesh.h"
 #include "scenes/mesh_import.h"
 #include "scenes/topology.h"
+#include "spectral/file.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-
-#define MAX_FILE_BYTES ((off_t)1 << 30)
 
 /* assimp allocates what a PLY header announces, and looks for its end forever: each element must at
  * least have a byte in the file, and every line be one that the format knows. */
-static abbe_result check_ply_line(const char *path, const char *line, int number, off_t size,
+static abbe_result check_ply_line(const char *path, const char *line, int number, size_t size,
                                   abbe_error *error) {
   static const char *const known[] = {"ply",      "format ",   "comment",   "obj_info",
                                       "element ", "property ", "end_header"};
@@ -28,19 +26,15 @@ static abbe_result check_ply_line(const char *path, const char *line, int number
                           "%s: line %d is none of a PLY header; it begins with 'ply', then lines "
                           "of format, comment, obj_info, element or property, and end_header",
                           path, number);
-  if (sscanf(line, "element %63s %20llu", name, &count) == 2 && count > (unsigned long long)size)
+  if (sscanf(line, "element %63s %20llu", name, &count) == 2 && count > size)
     return abbe_error_set(error, ABBE_PARSE,
-                          "%s: line %d announces %llu elements '%s', more than the %lld bytes "
+                          "%s: line %d announces %llu elements '%s', more than the %zu bytes "
                           "of the file can hold",
-                          path, number, count, name, (long long)size);
+                          path, number, count, name, size);
   return ABBE_OK;
 }
 
-static abbe_result check_ply_header(const char *path, off_t size, abbe_error *error) {
-  FILE *file = fopen(path, "rb");
-  if (!file)
-    return abbe_error_set(error, ABBE_IO, "%s: the mesh file cannot be opened: %s", path,
-                          strerror(errno));
+static abbe_result check_ply_header(const char *path, FILE *file, size_t size, abbe_error *error) {
   char line[512] = "";
   abbe_result result = ABBE_OK;
   bool ended = false;
@@ -51,11 +45,10 @@ static abbe_result check_ply_header(const char *path, off_t size, abbe_error *er
   if (result == ABBE_OK && !ended)
     result = abbe_error_set(error, ABBE_PARSE,
                             "%s: the PLY header has no end_header in its first 256 lines", path);
-  fclose(file);
   return result;
 }
 
-static abbe_result check_file(const char *path, size_t *bytes, abbe_error *error) {
+static abbe_result check_file(const char *path, abbe_error *error) {
   static const char *const known[] = {".obj", ".ply", ".stl", ".gltf", ".glb"};
   const char *dot = strrchr(path, '.');
   bool ok = false;
@@ -64,15 +57,17 @@ static abbe_result check_file(const char *path, size_t *bytes, abbe_error *error
   if (!ok)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: meshes are read from .obj, .ply, .stl, .gltf and .glb files", path);
-  struct stat status;
-  if (stat(path, &status) != 0 || !S_ISREG(status.st_mode))
-    return abbe_error_set(error, ABBE_IO, "%s: there is no such mesh file", path);
-  if (status.st_size > MAX_FILE_BYTES)
-    return abbe_error_set(error, ABBE_IO, "%s: the mesh file has %lld bytes, the limit is %lld",
-                          path, (long long)status.st_size, (long long)MAX_FILE_BYTES);
-  *bytes = (size_t)status.st_size;
-  if (strcasecmp(dot, ".ply") == 0) return check_ply_header(path, status.st_size, error);
-  return ABBE_OK;
+  FILE *file;
+  size_t size = 0;
+  abbe_result result = abbe_file_open(path, &file, &size, error);
+  if (result != ABBE_OK) return result;
+  if (size > ABBE_IMPORT_FILES_MOST)
+    result = abbe_error_set(error, ABBE_IO, "%s: the mesh file has %zu bytes, the limit is %zu",
+                            path, size, ABBE_IMPORT_FILES_MOST);
+  else if (strcasecmp(dot, ".ply") == 0)
+    result = check_ply_header(path, file, size, error);
+  fclose(file);
+  return result;
 }
 
 /* One vertex a point, where no texture coordinates keep them apart. */
@@ -95,9 +90,8 @@ static abbe_result join_vertices(abbe_mesh *mesh, abbe_error *error) {
 
 abbe_result abbe_mesh_load(const char *path, bool smooth, abbe_mesh *out, abbe_error *error) {
   memset(out, 0, sizeof *out);
-  size_t bytes = 0;
-  abbe_result result = check_file(path, &bytes, error);
-  if (result == ABBE_OK) result = abbe_mesh_import(path, bytes, out, error);
+  abbe_result result = check_file(path, error);
+  if (result == ABBE_OK) result = abbe_mesh_import(path, out, error);
   if (result == ABBE_OK) result = join_vertices(out, error);
   if (result == ABBE_OK) result = abbe_mesh_compute_normals(out, smooth, error);
   if (result != ABBE_OK) abbe_mesh_free(out);

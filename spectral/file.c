@@ -6,19 +6,80 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/magic.h>
+#include <poll.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 static abbe_result fail_io(abbe_error *error, const char *path, const char *what, int number) {
   return abbe_error_set(error, ABBE_IO, "%s: %s: %s", path, what, strerror(number));
 }
 
+/* ---- opening ---- */
+
+static const char *kind_of(mode_t mode) {
+  return S_ISDIR(mode)    ? "a directory; name a file"
+         : S_ISFIFO(mode) ? "a named pipe, which may never end; name a regular file"
+         : S_ISSOCK(mode) ? "a socket; name a regular file"
+                          : "a device; name a regular file";
+}
+
+/* Its inner end is only with those who were given it, so whoever writes there will close it. */
+static bool is_nameless_pipe(int fd, mode_t mode) {
+  struct statfs system;
+  return S_ISFIFO(mode) && fstatfs(fd, &system) == 0 && system.f_type == PIPEFS_MAGIC;
+}
+
+/* The descriptor of a regular file, or of a pipe without a name where those will do; -1. */
+static int open_to_read(const char *path, bool pipes, struct stat *status, abbe_error *error) {
+  const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (fd < 0 &&
+      errno == ENXIO) /* what cannot be opened at all: a socket, a device with no driver */
+    abbe_error_set(error, ABBE_IO, "%s: is no regular file", path);
+  else if (fd < 0)
+    fail_io(error, path, "cannot be opened", errno);
+  if (fd < 0) return -1;
+  if (fstat(fd, status) != 0)
+    fail_io(error, path, "cannot be read", errno);
+  else if (S_ISREG(status->st_mode) || (pipes && is_nameless_pipe(fd, status->st_mode)))
+    return fd;
+  else
+    abbe_error_set(error, ABBE_IO, "%s: is %s", path, kind_of(status->st_mode));
+  close(fd);
+  return -1;
+}
+
+abbe_result abbe_file_open(const char *path, FILE **stream, size_t *size, abbe_error *error) {
+  struct stat status;
+  *stream = NULL;
+  const int fd = open_to_read(path, false, &status, error);
+  if (fd < 0) return ABBE_IO;
+  *stream = fdopen(fd, "rb");
+  if (*stream == NULL) {
+    const int number = errno;
+    close(fd);
+    return fail_io(error, path, "cannot be opened", number);
+  }
+  if (size != NULL) *size = (size_t)status.st_size;
+  return ABBE_OK;
+}
+
 /* ---- reading ---- */
+
+/* Whether something came, or the end, before the patience of a pipe's reader. */
+static bool waited(int fd) {
+  struct pollfd one = {.fd = fd, .events = POLLIN};
+  int ready;
+  do ready = poll(&one, 1, 1000 * ABBE_FILE_PATIENCE_SECONDS);
+  while (ready < 0 && errno == EINTR);
+  return ready > 0;
+}
 
 /* Grows the buffer as bytes arrive, so that pipes and files whose size lies are read too. */
 static abbe_result read_all(int fd, const char *path, size_t max_size, size_t hint, char **data,
@@ -28,10 +89,13 @@ static abbe_result read_all(int fd, const char *path, size_t max_size, size_t hi
   if (bytes == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to read it", path);
   for (;;) {
     ssize_t got = read(fd, bytes + used, capacity - used);
-    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && (errno == EINTR || (errno == EAGAIN && waited(fd)))) continue;
     if (got < 0) {
       int number = errno;
       free(bytes);
+      if (number == EAGAIN)
+        return abbe_error_set(error, ABBE_IO, "%s: nothing has come through this pipe for %d s",
+                              path, ABBE_FILE_PATIENCE_SECONDS);
       return fail_io(error, path, "cannot be read", number);
     }
     if (got == 0) break;
@@ -56,22 +120,21 @@ static abbe_result read_all(int fd, const char *path, size_t max_size, size_t hi
   return ABBE_OK;
 }
 
+static const size_t largest = SIZE_MAX - 2;
+static const size_t first_guess = 4096;
+
 abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_t *size,
                            abbe_error *error) {
-  if (max_size > SIZE_MAX - 2) max_size = SIZE_MAX - 2;
-  int fd = open(path, O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return fail_io(error, path, "cannot be opened", errno);
+  if (max_size > largest) max_size = largest;
   struct stat status;
+  const int fd = open_to_read(path, true, &status, error);
+  if (fd < 0) return ABBE_IO;
   abbe_result result = ABBE_OK;
-  if (fstat(fd, &status) != 0)
-    result = fail_io(error, path, "cannot be read", errno);
-  else if (S_ISDIR(status.st_mode))
-    result = abbe_error_set(error, ABBE_IO, "%s: is a directory; name a file", path);
-  else if (S_ISREG(status.st_mode) && (uintmax_t)status.st_size > max_size)
+  if ((uintmax_t)status.st_size > max_size)
     result = abbe_error_set(error, ABBE_IO, "%s: is %ju bytes long; at most %zu are allowed here",
                             path, (uintmax_t)status.st_size, max_size);
   if (result == ABBE_OK) {
-    size_t hint = S_ISREG(status.st_mode) ? (size_t)status.st_size : 4096;
+    size_t hint = S_ISREG(status.st_mode) ? (size_t)status.st_size : first_guess;
     if (hint > max_size) hint = max_size;
     result = read_all(fd, path, max_size, hint, data, size, error);
   }
@@ -91,6 +154,12 @@ abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, 
       "%s: is not a text file; a spreadsheet can be saved as CSV, an archive must "
       "be unpacked first",
       path);
+}
+
+abbe_result abbe_file_read_input(size_t max_size, char **data, size_t *size, abbe_error *error) {
+  if (max_size > largest) max_size = largest;
+  return read_all(STDIN_FILENO, "standard input", max_size,
+                  first_guess < max_size ? first_guess : max_size, data, size, error);
 }
 
 /* ---- writing ---- */

@@ -1,9 +1,11 @@
 /* file.h: whole files in, and files out that are never half written.
  *
- * Reading checks the size against a limit before it allocates. Writing goes to a temporary file
- * beside the target which is renamed over it on commit: a kill at any moment leaves the old file
- * or the new one, and where the file system has files without names (O_TMPFILE) nothing besides.
- * It does not stream, lock or watch files.
+ * A file is opened without waiting, and read only where it is a regular one: a pipe with a name, a
+ * device or a socket may have no end, or nobody at its other end. Every reader of a file that a
+ * user names opens it here. Reading checks the size against a limit before it allocates. Writing
+ * goes to a temporary file beside the target which is renamed over it on commit: a kill at any
+ * moment leaves the old file or the new one, and where the file system has files without names
+ * (O_TMPFILE) nothing besides. It does not stream, lock or watch files.
  */
 #ifndef ABBE_SPECTRAL_FILE_H
 #define ABBE_SPECTRAL_FILE_H
@@ -17,9 +19,16 @@
 extern "C" {
 #endif
 
+/* Opens a regular file to be read (binary); the caller closes *stream. *size (may be NULL): its
+ * bytes. ABBE_IO if it is missing, unreadable or of another kind, which is named. */
+abbe_result abbe_file_open(const char *path, FILE **stream, size_t *size, abbe_error *error);
+
+#define ABBE_FILE_PATIENCE_SECONDS 60
+
 /* Reads the file at path whole into *data (malloc'd, one zero byte past its end that *size does
- * not count; the caller frees). Fails with ABBE_IO if it is missing, unreadable, a directory, or
- * longer than max_size bytes. */
+ * not count; the caller frees). A pipe without a name, such as a shell's <(…), is read as well, as
+ * long as something comes every ABBE_FILE_PATIENCE_SECONDS. Fails with ABBE_IO if it is missing,
+ * unreadable, of another kind, or longer than max_size bytes. */
 abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_t *size,
                            abbe_error *error);
 
@@ -27,6 +36,9 @@ abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_
  * a spreadsheet or an archive, before anything of it is quoted. */
 abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, size_t *size,
                                 abbe_error *error);
+
+/* The same from standard input, of whatever kind, for which it waits. */
+abbe_result abbe_file_read_input(size_t max_size, char **data, size_t *size, abbe_error *error);
 
 /* A file being written. stream is open for writing and reading (binary); use it freely between
  * open and commit. Zero-initialise; after commit or discard it is zeroed again. */

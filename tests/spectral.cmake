@@ -1,6 +1,7 @@
 # spectral/: a test a header.
 abbe_test(error cpu abbe_spectral)
 abbe_test(file cpu abbe_spectral)
+target_link_options(test_file PRIVATE LINKER:--wrap=poll)
 abbe_test(nearest cpu abbe_spectral)
 abbe_test(text_cursor cpu abbe_spectral)
 abbe_test(text_diff cpu abbe_spectral)

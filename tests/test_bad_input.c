@@ -48,6 +48,52 @@ static void test_scenes_that_cannot_be_used(void **state) {
   refuse_all(rows, sizeof rows / sizeof *rows, 1);
 }
 
+/* A reader that opens it as any other file waits until somebody writes there: for ever. */
+#define FIFO "mkfifo fifo; "
+#define AFTER "; code=$?; rm -f fifo fifo.obj scene.yaml box.obj box.gltf; exit $code"
+#define SCENE(lamp, floor, thing)                                                                  \
+  FIFO "echo 'camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"                                 \
+       "lights: [{kind: point, position: [0, 0, 1], intensity: 1" lamp "}]\n"                      \
+       "objects: [{shape: rectangle, width: 2, height: 2, " floor "}" thing "]' >scene.yaml;"      \
+       "\"$abbe\" plan scene.yaml" AFTER
+
+static void test_pipes_are_not_waited_for(void **state) {
+  (void)state;
+  static const refusal rows[] = {
+      {FIFO "\"$abbe\" render fifo -o picture.exr" AFTER, "fifo: is a named pipe"},
+      {FIFO "\"$abbe\" info fifo" AFTER, "fifo: is a named pipe"},
+      {FIFO "\"$abbe\" display fifo -o picture.png" AFTER, "fifo: is a named pipe"},
+      {FIFO "\"$abbe\" weights --illuminant ./fifo" AFTER, "fifo: is a named pipe"},
+      {FIFO "\"$abbe\" materials import fifo -o table.yaml" AFTER, "fifo: is a named pipe"},
+      {FIFO "\"$abbe\" materials list --table fifo" AFTER, "fifo: is a named pipe"},
+      {FIFO "\"$abbe\" materials add --record fifo --table new.yaml --create" AFTER,
+       "fifo: is a named pipe"},
+      {FIFO GEM " --ocio fifo" TO AFTER, "fifo: is a named pipe"},
+      {FIFO GEM " --materials fifo" TO AFTER, "fifo: is a named pipe"},
+      {SCENE(", illuminant: ./fifo", "reflectance: 1", ""), "fifo: is a named pipe"},
+      {SCENE("", "texture: fifo", ""), "fifo: is a named pipe"},
+      {"mkfifo fifo.obj;" SCENE("", "reflectance: 1", ", {mesh: fifo.obj, material: f2}"),
+       "fifo.obj: is a named pipe"},
+      {"echo '{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+       "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+       "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+       "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+       "\"buffers\":[{\"byteLength\":36,\"uri\":\"fifo\"}]}' >box.gltf;" SCENE(
+           "", "reflectance: 1", ", {mesh: box.gltf, material: f2}"),
+       "fifo: is a named pipe"},
+  };
+  refuse_all(rows, sizeof rows / sizeof *rows, 1);
+  static const refusal comparison[] = {
+      {FIFO "\"$abbe\" compare fifo fifo" AFTER, "fifo: is a named pipe"}};
+  refuse_all(comparison, 1, 1);
+  /* what an OBJ says of its colours is not needed */
+  assert_int_equal(run_line("printf 'mtllib fifo\nv 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n"
+                            "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >box.obj;" SCENE(
+                                "", "reflectance: 1", ", {mesh: box.obj, material: f2}")),
+                   0);
+  assert_int_equal(run_left(), 0);
+}
+
 static void test_requests_that_cannot_be_met(void **state) {
   (void)state;
   static const refusal rows[] = {
@@ -167,6 +213,7 @@ static void test_an_inside_out_mesh_is_turned_and_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_scenes_that_cannot_be_used),
+      cmocka_unit_test(test_pipes_are_not_waited_for),
       cmocka_unit_test(test_requests_that_cannot_be_met),
       cmocka_unit_test(test_targets_that_cannot_be_written),
       cmocka_unit_test(test_a_full_disk),

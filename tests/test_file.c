@@ -4,7 +4,9 @@
 #include "spectral/file.h"
 
 #include <dirent.h>
+#include <poll.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -80,9 +82,84 @@ static void what_cannot_be_read_says_why(void **state) {
   assert_int_equal(abbe_file_write(in_folder("long"), "12345678901", 11, NULL), ABBE_OK);
   assert_int_equal(abbe_file_read(in_folder("long"), 10, &data, &size, &error), ABBE_IO);
   assert_contains(error.text, "at most 10");
-  assert_int_equal(abbe_file_read("/dev/zero", 100000, &data, &size, &error), ABBE_IO);
-  assert_contains(error.text, "100000");
   assert_null(data);
+}
+
+/* Whoever waits at one of these is ended by the test's limit alone. */
+static void only_a_regular_file_is_opened(void **state) {
+  (void)state;
+  abbe_error error;
+  char *data = NULL;
+  size_t size = 0;
+  FILE *stream = NULL;
+  const struct {
+    const char *path, *kind;
+  } others[] = {{in_folder("fifo"), "is a named pipe"},
+                {"/dev/zero", "is a device"},
+                {folder, "is a directory"}};
+  assert_int_equal(mkfifo(others[0].path, 0600), 0);
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    assert_int_equal(abbe_file_read(others[i].path, 100000, &data, &size, &error), ABBE_IO);
+    assert_contains(error.text, others[i].path);
+    assert_contains(error.text, others[i].kind);
+    assert_int_equal(abbe_file_open(others[i].path, &stream, &size, &error), ABBE_IO);
+    assert_contains(error.text, others[i].kind);
+    assert_null(stream);
+  }
+  assert_null(data);
+  assert_int_equal(abbe_file_write(in_folder("whole"), "12345", 5, NULL), ABBE_OK);
+  assert_int_equal(abbe_file_open(in_folder("whole"), &stream, &size, &error), ABBE_OK);
+  assert_int_equal(size, 5);
+  assert_int_equal(fgetc(stream), '1');
+  fclose(stream);
+}
+
+/* The poll that abbe_file_read calls (tests/spectral.cmake): time that passes without a byte. */
+static bool nothing_comes;
+int __real_poll(struct pollfd *one, nfds_t count, int milliseconds);
+int __wrap_poll(struct pollfd *one, nfds_t count, int milliseconds);
+int __wrap_poll(struct pollfd *one, nfds_t count, int milliseconds) {
+  if (!nothing_comes) return __real_poll(one, count, milliseconds);
+  assert_int_equal(milliseconds, 1000 * ABBE_FILE_PATIENCE_SECONDS);
+  return 0;
+}
+
+/* As a shell's <(...) is one. */
+static void a_nameless_pipe_is_read_while_it_brings_something(void **state) {
+  (void)state;
+  abbe_error error;
+  int end[2];
+  char path[64], *data = NULL;
+  size_t size = 0;
+  assert_int_equal(pipe(end), 0);
+  snprintf(path, sizeof path, "/dev/fd/%d", end[0]);
+  assert_int_equal(write(end[1], "text", 4), 4);
+  nothing_comes = true;
+  assert_int_equal(abbe_file_read(path, 100, &data, &size, &error), ABBE_IO);
+  nothing_comes = false;
+  assert_contains(error.text, "nothing has come through this pipe for 60 s");
+  assert_null(data);
+  assert_int_equal(write(end[1], "more", 4), 4);
+  close(end[1]);
+  assert_holds(path, "more");
+  close(end[0]);
+}
+
+static void standard_input_is_read(void **state) {
+  (void)state;
+  int end[2], kept = dup(STDIN_FILENO);
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(pipe(end), 0);
+  assert_int_equal(write(end[1], "text", 4), 4);
+  close(end[1]);
+  dup2(end[0], STDIN_FILENO);
+  assert_int_equal(abbe_file_read_input(100, &data, &size, NULL), ABBE_OK);
+  dup2(kept, STDIN_FILENO);
+  close(kept);
+  close(end[0]);
+  assert_string_equal(data, "text");
+  free(data);
 }
 
 static void a_file_without_a_size_is_read(void **state) {
@@ -185,6 +262,9 @@ int main(void) {
       cmocka_unit_test(what_is_written_is_read),
       cmocka_unit_test(what_cannot_be_read_says_why),
       cmocka_unit_test(a_file_without_a_size_is_read),
+      cmocka_unit_test(only_a_regular_file_is_opened),
+      cmocka_unit_test(a_nameless_pipe_is_read_while_it_brings_something),
+      cmocka_unit_test(standard_input_is_read),
       cmocka_unit_test(nothing_changes_before_commit_or_after_discard),
       cmocka_unit_test(a_link_is_written_through_and_a_mode_is_kept),
       cmocka_unit_test(an_unwritable_target_says_why),

@@ -1,5 +1,6 @@
 #include "scenes/mesh_import.h"
 
+#include <assimp/cimport.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <setjmp.h>
@@ -9,6 +10,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,7 +31,7 @@ static abbe_result import(const char *text, abbe_mesh *mesh) {
   assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
   assert_int_equal(fclose(f), 0);
   error.text[0] = '\0';
-  const abbe_result result = abbe_mesh_import(PATH, strlen(text), mesh, &error);
+  const abbe_result result = abbe_mesh_import(PATH, mesh, &error);
   unlink(PATH);
   return result;
 }
@@ -120,6 +122,76 @@ static void a_caller_without_standard_streams_is_served(void **state) {
   abbe_mesh_free(&m);
 }
 
+/* The import that the child calls (tests/scenes.cmake), where it is to hang: it waits, and takes no
+ * processor time. */
+static bool hangs;
+static int told[2]; /* the child's number goes through here */
+const struct aiScene *__real_aiImportFileExWithProperties(const char *path, unsigned flags,
+                                                          struct aiFileIO *io,
+                                                          const struct aiPropertyStore *store);
+const struct aiScene *__wrap_aiImportFileExWithProperties(const char *path, unsigned flags,
+                                                          struct aiFileIO *io,
+                                                          const struct aiPropertyStore *store);
+const struct aiScene *__wrap_aiImportFileExWithProperties(const char *path, unsigned flags,
+                                                          struct aiFileIO *io,
+                                                          const struct aiPropertyStore *store) {
+  const pid_t self = getpid();
+  if (hangs && write(told[1], &self, sizeof self) == sizeof self)
+    for (;;) pause();
+  return __real_aiImportFileExWithProperties(path, flags, io, store);
+}
+
+/* The alarm that it sets: a second for all that it has. */
+unsigned __real_alarm(unsigned seconds);
+unsigned __wrap_alarm(unsigned seconds);
+unsigned __wrap_alarm(unsigned seconds) {
+  return __real_alarm(hangs && seconds > 0 ? 1 : seconds);
+}
+
+static void a_child_that_waits_for_ever_is_ended(void **state) {
+  (void)state;
+  abbe_mesh m;
+  sigset_t blocked, before;
+  assert_int_equal(pipe(told), 0);
+  sigemptyset(&blocked);
+  sigaddset(&blocked, SIGALRM); /* as a caller may have */
+  sigprocmask(SIG_BLOCK, &blocked, &before);
+  hangs = true;
+  assert_int_equal(import(HEADER "0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n", &m), ABBE_PARSE);
+  hangs = false;
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  assert_non_null(strstr(error.text, "assimp finds no end of it"));
+  assert_no_child_is_left();
+  close(told[0]);
+  close(told[1]);
+}
+
+/* This process inherits the children of those that it started. */
+static void the_child_dies_with_its_caller(void **state) {
+  (void)state;
+  abbe_mesh m;
+  pid_t grandchild = 0;
+  int status = 0;
+  assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
+  assert_int_equal(pipe(told), 0);
+  const pid_t caller = fork();
+  if (caller == 0) {
+    hangs = true;
+    __real_alarm(0);
+    _exit(import(HEADER "0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n", &m) == ABBE_OK);
+  }
+  assert_int_equal(read(told[0], &grandchild, sizeof grandchild), sizeof grandchild);
+  assert_int_equal(kill(caller, SIGKILL), 0);
+  assert_int_equal(waitpid(caller, &status, 0), caller);
+  assert_int_equal(waitpid(grandchild, &status, 0), grandchild);
+  assert_true(WIFSIGNALED(status));
+  assert_int_equal(WTERMSIG(status), SIGKILL);
+  assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 0), 0);
+  close(told[0]);
+  close(told[1]);
+  unlink(PATH);
+}
+
 static void without_a_pipe_it_says_so(void **state) {
   (void)state;
   abbe_mesh m;
@@ -128,7 +200,7 @@ static void without_a_pipe_it_says_so(void **state) {
   close(next);
   assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
   assert_int_equal(setrlimit(RLIMIT_NOFILE, &(struct rlimit){(rlim_t)next, limit.rlim_max}), 0);
-  const abbe_result result = abbe_mesh_import("any.obj", 1, &m, &error);
+  const abbe_result result = abbe_mesh_import("any.obj", &m, &error);
   assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
   assert_int_equal(result, ABBE_IO);
   assert_non_null(strstr(error.text, "any.obj: there is no pipe"));
@@ -181,6 +253,8 @@ int main(void) {
       cmocka_unit_test(a_caller_that_leaves_children_to_the_system_is_served),
       cmocka_unit_test(no_file_is_left_open),
       cmocka_unit_test(a_caller_without_standard_streams_is_served),
+      cmocka_unit_test(a_child_that_waits_for_ever_is_ended),
+      cmocka_unit_test(the_child_dies_with_its_caller),
       cmocka_unit_test(without_a_pipe_it_says_so),
       cmocka_unit_test(without_a_process_it_says_so),
   };

@@ -200,8 +200,9 @@ static void take(const char **from, void *to, size_t size) {
  * larger than this one's. */
 static abbe_result check_head(const abbe_tracer *t, const char *path, abbe_error *error) {
   char head[HEAD + 1];
-  FILE *file = fopen(path, "rb");
-  if (file == NULL) return ABBE_OK; /* reading it whole says why */
+  FILE *file;
+  if (abbe_file_open(path, &file, NULL, NULL) != ABBE_OK)
+    return ABBE_OK; /* reading it whole says why */
   size_t numbers, size = fread(head, 1, HEAD, file);
   bool failed = ferror(file) != 0;
   fclose(file);
