@@ -1,5 +1,6 @@
 #include "cli/command.h"
 #include "cli/render_options.h"
+#include "cli/scene_notes.h"
 
 #include "scenes/scene_file.h"
 
@@ -39,7 +40,7 @@ static void print_text(const abbe_plan *plan) {
   for (size_t i = 0; i < plan->note_count; i++) printf("  %s\n", plan->note[i]);
 }
 
-static abbe_result print_json(const abbe_plan *plan, abbe_error *error) {
+static abbe_result print_json(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
   cJSON *root = cJSON_CreateObject(), *entries = cJSON_AddArrayToObject(root, "plan");
   for (size_t i = 0; i < plan->entry_count; i++) {
     cJSON *entry = cJSON_CreateObject();
@@ -51,6 +52,7 @@ static abbe_result print_json(const abbe_plan *plan, abbe_error *error) {
   cJSON *notes = cJSON_AddArrayToObject(root, "notes");
   for (size_t i = 0; i < plan->note_count; i++)
     cJSON_AddItemToArray(notes, cJSON_CreateString(plan->note[i]));
+  abbe_scene_list_json(scene, root);
   cJSON_AddNumberToObject(root, "wavelengths", (double)plan->desc.wavelengths);
   cJSON_AddNumberToObject(root, "exits", (double)plan->desc.orders);
   abbe_result result = abbe_command_print_json(root, error);
@@ -83,11 +85,12 @@ int abbe_command_plan(int argc, char **argv) {
   abbe_result result = abbe_scene_load(o.render.scene, &scene_options, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
-  for (size_t i = 0; i < scene.object_count && result == ABBE_OK; i++)
-    if (scene.object[i].mended != NULL)
-      fprintf(stderr, "note: object '%s': %s\n", scene.object[i].name, scene.object[i].mended);
-  if (result == ABBE_OK && o.json) result = print_json(&plan, &error);
-  if (result == ABBE_OK && !o.json) print_text(&plan);
+  if (loaded) abbe_scene_notes(&scene);
+  if (result == ABBE_OK && o.json) result = print_json(&scene, &plan, &error);
+  if (result == ABBE_OK && !o.json) {
+    abbe_scene_list(&scene);
+    print_text(&plan);
+  }
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
   return abbe_render_options_end(&o.render, loaded, result, &error);

@@ -4,6 +4,7 @@
 #include "cli/preset_options.h"
 #include "cli/progress.h"
 #include "cli/render_options.h"
+#include "cli/scene_notes.h"
 
 #include "colorimetry/display_ocio.h"
 #include "colorimetry/exr.h"
@@ -321,9 +322,7 @@ static void summarise(const request *q, const abbe_statistics *s, double prepare
 }
 
 static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
-  for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].mended != NULL)
-      fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].mended);
+  abbe_scene_notes(scene);
   for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
 }
 

@@ -1,6 +1,7 @@
 #include "cli/command.h"
 #include "cli/map_options.h"
 #include "cli/progress.h"
+#include "cli/scene_notes.h"
 
 #include "colorimetry/display_ocio.h"
 #include "colorimetry/exr.h"
@@ -504,6 +505,7 @@ int abbe_command_trace(int argc, char **argv) {
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = name_checkpoint(&q, &error);
   if (result == ABBE_OK) result = abbe_scene_load(q.scene, &scene_options, &scene, &error);
+  if (result == ABBE_OK && !q.quiet) abbe_scene_notes(&scene);
   if (result == ABBE_OK) result = run(&q, &scene, &error);
   free(q.checkpoint_path);
   abbe_scene_free(&scene);

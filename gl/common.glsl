@@ -17,7 +17,7 @@ struct Light {
 
 struct Refractor {
   vec4 sphere;  // centre, radius
-  ivec4 info;   // model, first plane or root of its hierarchy, planes
+  ivec4 info;   // model, first plane or root of its hierarchy, planes, first of the same material
 };
 
 struct Receiver {  // a parallelogram

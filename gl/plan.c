@@ -209,8 +209,9 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
     plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
     plan->hierarchy = plan->hierarchy || model == ABBE_REFRACTOR_HIERARCHY;
-    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model),
-        abbe_transport_reason(object, plan));
+    char reason[192];
+    abbe_transport_reason(object, plan, reason, sizeof reason);
+    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), reason);
   }
   if (plan->refractor_count > MAX_MODEL_ENTRIES)
     add(plan, true, "models", "and %zu refractors more", plan->refractor_count - MAX_MODEL_ENTRIES);

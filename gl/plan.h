@@ -118,7 +118,7 @@ typedef enum abbe_receiver_model {
 
 typedef struct abbe_plan_entry {
   char name[64];
-  char reason[192];
+  char reason[224];
   bool runs;
 } abbe_plan_entry;
 

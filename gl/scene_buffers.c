@@ -116,6 +116,10 @@ static abbe_result upload_refractors(abbe_renderer *r, abbe_error *error) {
     store(sphere ? object->exact.centre : centre, sphere ? object->exact.radius : sqrt(half),
           refractor[i].sphere);
     refractor[i].info[0] = (int)plan->model[i];
+    for (size_t k = 0; k <= i; k++) { /* the first of the same material */
+      refractor[i].info[3] = (int)k;
+      if (r->scene->object[plan->refractor_object[k]].material == object->material) break;
+    }
     refractor[i].info[1] = (int)next;
     if (plan->model[i] == ABBE_REFRACTOR_HIERARCHY)
       refractor[i].info[1] = (int)r->refractor_root[i];

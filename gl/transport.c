@@ -3,6 +3,7 @@
 #include "scenes/vector.h"
 
 #include <math.h>
+#include <stdio.h>
 
 enum { RANGE_STEPS = 81, MAX_WALK_REFRACTORS = 32 };
 
@@ -115,14 +116,16 @@ const char *abbe_transport_walk(const abbe_scene *scene, const abbe_plan *plan) 
 abbe_result abbe_transport_check(const abbe_object *object, const abbe_plan *plan,
                                  abbe_error *error) {
   abbe_model asked = plan->desc.model;
+  char why[128];
+  abbe_convex_reason(&object->exact.convex, why, sizeof why);
   if (asked == ABBE_MODEL_SPHERE && object->exact.kind != ABBE_EXACT_SPHERE)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the model 'sphere' cannot serve '%s', which is no sphere", object->name);
   if (asked == ABBE_MODEL_CONVEX && object->exact.kind != ABBE_EXACT_CONVEX)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the model 'convex' cannot serve '%s', which is no convex solid of at "
-                          "most %d faces",
-                          object->name, ABBE_SCENE_MAX_PLANES);
+                          "most %d faces%s%s",
+                          object->name, ABBE_SCENE_MAX_PLANES, why[0] != '\0' ? ": " : "", why);
   if (asked == ABBE_MODEL_HIERARCHY && !plan->walk)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the model 'hierarchy' follows light through at most %d refractors; the "
@@ -140,11 +143,24 @@ abbe_refractor_model abbe_transport_model(const abbe_object *object, const abbe_
   return plan->walk ? ABBE_REFRACTOR_HIERARCHY : ABBE_REFRACTOR_LAYERS;
 }
 
-const char *abbe_transport_reason(const abbe_object *object, const abbe_plan *plan) {
-  if (abbe_profile_is_thesis(plan->desc.profile)) return "the thesis profile knows no other model";
-  if (plan->desc.model != ABBE_MODEL_AUTO) return "as asked";
-  if (object->exact.kind == ABBE_EXACT_SPHERE) return "the object is a sphere";
-  if (object->exact.kind == ABBE_EXACT_CONVEX) return "the object is a convex faceted solid";
-  if (plan->walk) return "the object is a general mesh, and light may meet it more than twice";
-  return "the object is a convex mesh and stands alone: a view sees all of it, front and back";
+void abbe_transport_reason(const abbe_object *object, const abbe_plan *plan, char *text,
+                           size_t size) {
+  char why[128];
+  abbe_convex_reason(&object->exact.convex, why, sizeof why);
+  if (abbe_profile_is_thesis(plan->desc.profile))
+    snprintf(text, size, "the thesis profile knows no other model");
+  else if (plan->desc.model != ABBE_MODEL_AUTO)
+    snprintf(text, size, "as asked");
+  else if (object->exact.kind == ABBE_EXACT_SPHERE)
+    snprintf(text, size, "the object is a sphere");
+  else if (object->exact.kind == ABBE_EXACT_CONVEX)
+    snprintf(text, size, "the object is a convex faceted solid: %s", why);
+  else if (plan->walk)
+    snprintf(text, size, "the object is a general mesh, and light may meet it more than twice%s%s",
+             why[0] != '\0' ? ": " : "", why);
+  else
+    snprintf(text, size,
+             "the object is a convex mesh and stands alone: a view sees all of it, front and "
+             "back%s%s",
+             why[0] != '\0' ? "; " : "", why);
 }

@@ -32,9 +32,11 @@ const char *abbe_transport_walk(const abbe_scene *scene, const abbe_plan *plan);
 abbe_result abbe_transport_check(const abbe_object *object, const abbe_plan *plan,
                                  abbe_error *error);
 
-/* The object's model and why; plan->walk is known. */
+/* The object's model and why, as a sentence's part, and why it is no better one; plan->walk is
+ * known. */
 abbe_refractor_model abbe_transport_model(const abbe_object *object, const abbe_plan *plan);
-const char *abbe_transport_reason(const abbe_object *object, const abbe_plan *plan);
+void abbe_transport_reason(const abbe_object *object, const abbe_plan *plan, char *text,
+                           size_t size);
 
 #ifdef __cplusplus
 }

@@ -25,6 +25,11 @@ int medium_of(uint inside) {
   return findMSB(inside);
 }
 
+// Of refractors of one material the first; -1: air.
+int stuff_of(uint inside) {
+  return inside == 0u ? -1 : refractors[medium_of(inside)].info.w;
+}
+
 float medium_n(uint inside) {
   return inside == 0u ? 1.0 : refractor_spectrum(medium_of(inside)).x;
 }
@@ -150,7 +155,7 @@ bool split(inout Way w, Interface h, out Way mirrored) {
   w.facet = h.hit.facet;
   mirrored = w;
   w.inside = after;
-  if (medium_of(mirrored.inside) == medium_of(after)) return false;
+  if (stuff_of(mirrored.inside) == stuff_of(after)) return false;
   float eta = medium_n(mirrored.inside) / medium_n(after);
   vec3 n = entering ? h.hit.n : -h.hit.n, face_n = entering ? h.face_n : -h.face_n;
   if (dot(w.d, n) >= 0.0) n = face_n;

@@ -1,5 +1,7 @@
 #include "scenes/brilliant.h"
 
+#include "scenes/convex.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -109,19 +111,19 @@ abbe_result abbe_brilliant_make(const abbe_brilliant *cut, abbe_mesh *out, abbe_
   memset(out, 0, sizeof *out);
   abbe_brilliant c = *cut;
   double plane[PLANES][4];
-  size_t planes = 0;
+  abbe_convex found = {0};
   abbe_result result = resolve(&c, error);
   if (result == ABBE_OK) result = abbe_mesh_make(VERTICES, FACES, false, out, error);
   if (result != ABBE_OK) return result;
   place_all(&c, out);
   join_all(out);
-  result = abbe_mesh_convex_planes(out, PLANES, plane, &planes, error);
-  if (result == ABBE_OK && planes == 0)
+  result = abbe_mesh_compute_normals(out, ABBE_NORMALS_FLAT, error);
+  if (result == ABBE_OK) result = abbe_convex_find(out, PLANES, plane, NULL, &found, error);
+  if (result == ABBE_OK && found.verdict != ABBE_CONVEX_SOLID)
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "a brilliant with a star of %g and lower halves of %g is not convex; "
                             "0.5 and 0.77 are usual",
                             c.star, c.lower);
-  if (result == ABBE_OK) result = abbe_mesh_compute_normals(out, false, error);
   if (result != ABBE_OK) abbe_mesh_free(out);
   return result;
 }

@@ -102,6 +102,8 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
   if (abbe_file_open(path, &stream, &size, &files->error) != ABBE_OK) return NULL;
   struct aiFile *file = count(files, stream, path, size) ? malloc(sizeof *file) : NULL;
   if (file == NULL) {
+    if (files->error.text[0] == '\0')
+      abbe_error_set(&files->error, ABBE_NO_MEMORY, "%s: no memory to open it", path);
     fclose(stream);
     return NULL;
   }

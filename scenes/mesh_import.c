@@ -20,11 +20,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* What the child sends first; positions, texture coordinates and faces follow where it read any. */
+/* What the child sends first; positions, normals, texture coordinates and faces follow where it
+ * read any. */
 typedef struct header {
   char complaint[512]; /* empty: the file was read */
   size_t vertices, faces;
-  bool with_uv;
+  bool with_uv, with_normals;
+  bool no_memory; /* that is why it was not read */
 } header;
 
 /* ---- the child: it allocates no copies of what was read, and writes as it goes ---- */
@@ -37,10 +39,10 @@ static const struct aiScene *import(const char *path, abbe_import_files *files) 
   aiSetImportPropertyInteger(store, AI_CONFIG_PP_SBP_REMOVE,
                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   aiSetImportPropertyInteger(store, AI_CONFIG_PP_RVC_FLAGS,
-                             aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                 aiComponent_COLORS | aiComponent_BONEWEIGHTS |
-                                 aiComponent_ANIMATIONS | aiComponent_TEXTURES |
-                                 aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
+                             aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
+                                 aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+                                 aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS |
+                                 aiComponent_MATERIALS);
   /* assimp joins vertices nearer than 1e-5 units, too coarse for small stones; they are joined
    * by the caller, relative to the mesh's size */
   const struct aiScene *scene = aiImportFileExWithProperties(
@@ -110,6 +112,7 @@ static void complain(const abbe_import_files *files, header *h) {
   snprintf(h->complaint, sizeof h->complaint, "%.250s%s%.250s",
            reason[0] != '\0' ? reason : "assimp gives no reason",
            files->error.text[0] != '\0' ? "; " : "", files->error.text);
+  h->no_memory = files->error.code == ABBE_NO_MEMORY;
 }
 
 static bool send_scene(int fd, const char *path) {
@@ -119,23 +122,26 @@ static bool send_scene(int fd, const char *path) {
   abbe_import_files_begin(&files);
   const struct aiScene *scene = import(path, &files);
   if (!scene) complain(&files, &h);
+  h.with_normals = true;
   for (unsigned m = 0; scene && m < scene->mNumMeshes; m++) {
     const struct aiMesh *part = scene->mMeshes[m];
     if (!usable(part)) continue;
     h.vertices += part->mNumVertices;
     h.with_uv = h.with_uv || part->mTextureCoords[0];
+    h.with_normals = h.with_normals && part->mNormals;
     for (unsigned f = 0; f < part->mNumFaces; f++) h.faces += part->mFaces[f].mNumIndices == 3;
   }
   bool ok = send(fd, &h, sizeof h);
-  for (int what = 0; what < 3 && scene; what++) {
+  for (int what = 0; what < 4 && scene; what++) {
     size_t first_vertex = 0;
     for (unsigned m = 0; ok && m < scene->mNumMeshes; m++) {
       const struct aiMesh *part = scene->mMeshes[m];
       if (!usable(part)) continue;
       if (what == 0) ok = send_vectors(fd, part->mVertices, part->mNumVertices, 3);
-      if (what == 1 && h.with_uv)
+      if (what == 1 && h.with_normals) ok = send_vectors(fd, part->mNormals, part->mNumVertices, 3);
+      if (what == 2 && h.with_uv)
         ok = send_vectors(fd, part->mTextureCoords[0], part->mNumVertices, 2);
-      if (what == 2) ok = send_faces(fd, part, first_vertex);
+      if (what == 3) ok = send_faces(fd, part, first_vertex);
       first_vertex += part->mNumVertices;
     }
   }
@@ -186,6 +192,9 @@ static abbe_result check(const abbe_mesh *mesh, const char *path, abbe_error *er
       return abbe_error_set(error, ABBE_GEOMETRY,
                             "%s: vertex %zu is at (%g, %g, %g); coordinates must be finite", path,
                             v, p[0], p[1], p[2]);
+    const double *n = mesh->normal[v];
+    if (!isfinite(n[0]) || !isfinite(n[1]) || !isfinite(n[2]))
+      memset(mesh->normal[v], 0, sizeof mesh->normal[v]);
     if (mesh->uv && !(isfinite(mesh->uv[v][0]) && isfinite(mesh->uv[v][1])))
       mesh->uv[v][0] = mesh->uv[v][1] = 0;
   }
@@ -198,19 +207,38 @@ static abbe_result check(const abbe_mesh *mesh, const char *path, abbe_error *er
   return ABBE_OK;
 }
 
+/* What assimp says where it read the file and found nothing that has a surface. */
+static bool means_no_faces(const char *complaint) {
+  static const char *const parts[] = {
+      "contains no faces", "No meshes remaining",  "mNumMeshes is 0",
+      "has no faces",      "contains no vertices", "no facets",
+      "file is empty",     "File is empty",        "file is too small"};
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+    if (strstr(complaint, parts[i]) != NULL) return true;
+  return false;
+}
+
 /* *whole: whether all came that the child had to send. */
 static abbe_result take(int fd, const char *path, abbe_mesh *out, bool *whole, abbe_error *error) {
   header h;
   *whole = receive(fd, &h, sizeof h);
   if (!*whole) return ABBE_OK;
   h.complaint[sizeof h.complaint - 1] = '\0';
+  if (h.complaint[0] != '\0' && means_no_faces(h.complaint))
+    return abbe_error_set(error, ABBE_GEOMETRY,
+                          "%s: no faces were read from it: points and lines alone have no surface "
+                          "(assimp: %s)",
+                          path, h.complaint);
   if (h.complaint[0] != '\0')
-    return abbe_error_set(error, ABBE_PARSE, "%s: the mesh cannot be read: %s", path, h.complaint);
+    return abbe_error_set(error, h.no_memory ? ABBE_NO_MEMORY : ABBE_PARSE,
+                          "%s: the mesh cannot be read: %s", path, h.complaint);
   if (h.vertices == 0 || h.faces == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "%s: the file has no triangles", path);
   abbe_result result = abbe_mesh_make(h.vertices, h.faces, h.with_uv, out, error);
   if (result != ABBE_OK) return result;
+  out->given_normals = h.with_normals;
   *whole = receive(fd, out->position, h.vertices * sizeof *out->position) &&
+           (!h.with_normals || receive(fd, out->normal, h.vertices * sizeof *out->normal)) &&
            (!h.with_uv || receive(fd, out->uv, h.vertices * sizeof *out->uv)) &&
            receive(fd, out->face, h.faces * sizeof *out->face);
   return *whole ? check(out, path, error) : ABBE_OK;

@@ -14,7 +14,8 @@ extern "C" {
 #endif
 
 /* Reads path and the files that it names: all meshes in it as one, positions as in the file (its
- * own unit), uv where a mesh has them, normals zero. Forks, and waits for the child, which dies
+ * own unit), uv where a mesh has them, normals where all have them (given_normals), else zero: of
+ * any length, and zero where they are not finite. Forks, and waits for the child, which dies
  * with its caller and has the limits of import_files.h. ABBE_PARSE with assimp's reason or where
  * the child was stopped, ABBE_GEOMETRY for coordinates that are not finite, faces that name
  * vertices that are not there, or a file without triangles, ABBE_IO where no process can be had,

@@ -2,11 +2,14 @@
 #include "scenes/import_files.h"
 #include "scenes/mesh.h"
 #include "scenes/mesh_import.h"
+#include "scenes/mesh_parts.h"
+#include "scenes/ply_strips.h"
 #include "scenes/topology.h"
+#include "scenes/vector.h"
 #include "spectral/file.h"
 
-#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -34,13 +37,15 @@ static abbe_result check_ply_line(const char *path, const char *line, int number
   return ABBE_OK;
 }
 
-static abbe_result check_ply_header(const char *path, FILE *file, size_t size, abbe_error *error) {
+static abbe_result check_ply_header(const char *path, FILE *file, size_t size, bool *strips,
+                                    abbe_error *error) {
   char line[512] = "";
   abbe_result result = ABBE_OK;
   bool ended = false;
   for (int i = 1; i <= 256 && result == ABBE_OK && !ended && fgets(line, sizeof line, file); i++) {
     result = check_ply_line(path, line, i, size, error);
     ended = strncmp(line, "end_header", 10) == 0;
+    *strips = *strips || strncmp(line, "element tristrips", 17) == 0;
   }
   if (result == ABBE_OK && !ended)
     result = abbe_error_set(error, ABBE_PARSE,
@@ -48,7 +53,7 @@ static abbe_result check_ply_header(const char *path, FILE *file, size_t size, a
   return result;
 }
 
-static abbe_result check_file(const char *path, abbe_error *error) {
+static abbe_result check_file(const char *path, bool *strips, abbe_error *error) {
   static const char *const known[] = {".obj", ".ply", ".stl", ".gltf", ".glb"};
   const char *dot = strrchr(path, '.');
   bool ok = false;
@@ -65,35 +70,73 @@ static abbe_result check_file(const char *path, abbe_error *error) {
     result = abbe_error_set(error, ABBE_IO, "%s: the mesh file has %zu bytes, the limit is %zu",
                             path, size, ABBE_IMPORT_FILES_MOST);
   else if (strcasecmp(dot, ".ply") == 0)
-    result = check_ply_header(path, file, size, error);
+    result = check_ply_header(path, file, size, strips, error);
   fclose(file);
   return result;
 }
 
-/* One vertex a point, where no texture coordinates keep them apart. */
-static abbe_result join_vertices(abbe_mesh *mesh, abbe_error *error) {
-  if (mesh->uv) return ABBE_OK;
-  abbe_topology t;
+/* One vertex a point, in the file's order. */
+static abbe_result join_points(abbe_mesh *mesh, const abbe_topology *t, abbe_error *error) {
   abbe_mesh joined;
+  const abbe_result result = abbe_mesh_make(t->point_count, t->face_count, false, &joined, error);
+  if (result != ABBE_OK) return result;
+  memcpy(joined.position, t->position, t->point_count * sizeof *joined.position);
+  memcpy(joined.face, t->face, t->face_count * sizeof *joined.face);
+  abbe_mesh_free(mesh);
+  *mesh = joined;
+  return ABBE_OK;
+}
+
+/* One vertex for each point, normal and texture coordinate that corners have. */
+static abbe_result join_vertices(abbe_mesh *mesh, bool keep_normals, abbe_error *error) {
+  abbe_topology t;
   abbe_result result = abbe_topology_make(mesh, &t, error);
   if (result != ABBE_OK) return result;
-  result = abbe_mesh_make(t.point_count, t.face_count, false, &joined, error);
-  if (result == ABBE_OK) {
-    memcpy(joined.position, t.position, t.point_count * sizeof *joined.position);
-    memcpy(joined.face, t.face, t.face_count * sizeof *joined.face);
-    abbe_mesh_free(mesh);
-    *mesh = joined;
+  if (!keep_normals && !mesh->uv) {
+    result = join_points(mesh, &t, error);
+    abbe_topology_free(&t);
+    return result;
   }
+  double(*corner)[3] = calloc(3 * mesh->face_count + 1, sizeof *corner);
+  if (!corner) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a mesh");
+  for (size_t f = 0; result == ABBE_OK && keep_normals && f < mesh->face_count; f++) {
+    double n[3];
+    abbe_vector_triangle(t.position[t.face[f][0]], t.position[t.face[f][1]],
+                         t.position[t.face[f][2]], n);
+    for (int k = 0; k < 3; k++)
+      abbe_mesh_fair_normal(mesh->normal[mesh->face[f][k]], n, corner[3 * f + (size_t)k]);
+  }
+  mesh->given_normals = keep_normals;
+  /* vertices of one point stand at one place from here on */
+  for (size_t v = 0; result == ABBE_OK && v < mesh->vertex_count; v++)
+    memcpy(mesh->position[v], t.position[t.point[v]], sizeof mesh->position[v]);
+  if (result == ABBE_OK)
+    result = abbe_mesh_take_normals(mesh, t.point, (const double(*)[3])corner, error);
+  free(corner);
   abbe_topology_free(&t);
   return result;
 }
 
-abbe_result abbe_mesh_load(const char *path, bool smooth, abbe_mesh *out, abbe_error *error) {
+static abbe_result read_strips(const char *path, abbe_mesh *out, abbe_error *error) {
+  char *data = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_file_read(path, ABBE_IMPORT_FILES_MOST, &data, &size, error);
+  if (result == ABBE_OK) result = abbe_ply_read_strips(data, size, path, out, error);
+  free(data);
+  return result;
+}
+
+abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,
+                           abbe_error *error) {
+  bool strips = false;
   memset(out, 0, sizeof *out);
-  abbe_result result = check_file(path, error);
-  if (result == ABBE_OK) result = abbe_mesh_import(path, out, error);
-  if (result == ABBE_OK) result = join_vertices(out, error);
-  if (result == ABBE_OK) result = abbe_mesh_compute_normals(out, smooth, error);
+  abbe_result result = check_file(path, &strips, error);
+  if (result == ABBE_OK)
+    result = strips ? read_strips(path, out, error) : abbe_mesh_import(path, out, error);
+  const bool facets = strcasecmp(strrchr(path, '.') ? strrchr(path, '.') : "", ".stl") == 0;
+  const bool keep = normals == ABBE_NORMALS_AUTO && out->given_normals && !facets;
+  if (result == ABBE_OK) result = join_vertices(out, keep, error);
+  if (result == ABBE_OK && !keep) result = abbe_mesh_compute_normals(out, normals, error);
   if (result != ABBE_OK) abbe_mesh_free(out);
   return result;
 }

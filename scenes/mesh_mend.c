@@ -1,5 +1,7 @@
 /* Mending: a mesh as points and faces, on which the steps work until it is closed and outwards. */
 #include "scenes/mesh.h"
+#include "scenes/mesh_parts.h"
+#include "scenes/shells.h"
 #include "scenes/topology.h"
 #include "scenes/vector.h"
 
@@ -8,13 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Holes that bend are closed only where their rim is shorter than this share of the bounds'
- * diagonal, flat ones of any size where every point is this near the plane of the rim. */
-#define SMALL_HOLE 0.15
-#define FLAT_HOLE 0.01
-
 typedef struct mending {
-  size_t repeated, slivers, turned, holes, inverted;
+  size_t repeated, doubles, walls, sheets, slivers, turned, holes, inverted, crossings, solids;
+  double volume;      /* that is enclosed, m3 */
+  double widest;      /* hole, m */
+  double crossing[3]; /* where the surface crosses itself first */
 } mending;
 
 /* The mesh with one vertex a point, which later steps may change. */
@@ -43,15 +43,9 @@ static void drop_repeated(abbe_mesh *mesh, mending *done) {
 
 /* The corner opposite the longest side of a face without area; -1 for a sound face. */
 static int sliver_tip(const abbe_mesh *mesh, const uint32_t f[3]) {
-  double n[3], side[3], longest = 0.0;
-  int tip = 0;
-  abbe_vector_triangle(mesh->position[f[0]], mesh->position[f[1]], mesh->position[f[2]], n);
-  for (int k = 0; k < 3; k++) {
-    abbe_vector_subtract(mesh->position[f[(k + 1) % 3]], mesh->position[f[k]], side);
-    const double squared = abbe_vector_dot(side, side);
-    if (squared > longest) longest = squared, tip = (k + 2) % 3;
-  }
-  return abbe_vector_length(n) > 1e-9 * longest ? -1 : tip;
+  const double *corner[3] = {mesh->position[f[0]], mesh->position[f[1]], mesh->position[f[2]]};
+  int tip;
+  return abbe_mesh_is_sliver(corner, &tip) ? tip : -1;
 }
 
 /* Turns the longest side of the sliver f, which its neighbour g shares, into the edge between
@@ -158,221 +152,86 @@ static abbe_result make_consistent(abbe_mesh *mesh, mending *done, abbe_error *e
   return ok ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to mend a mesh");
 }
 
-/* next[p] is the point after p on the rim of a hole; ABBE_TOPOLOGY_NONE off every rim; points
- * where rims touch are marked with their own number, which no rim passes. */
-static uint32_t *find_rims(const abbe_topology *t) {
-  uint32_t *next = malloc((t->point_count + 1) * sizeof *next);
-  if (!next) return NULL;
-  memset(next, 0xff, (t->point_count + 1) * sizeof *next);
-  for (size_t e = 0; e < t->edge_count; e++) {
-    const abbe_edge *edge = &t->edge[e];
-    if (edge->along + edge->against != 1) continue;
-    const uint32_t from = edge->along ? edge->b : edge->a, to = edge->along ? edge->a : edge->b;
-    next[from] = next[from] == ABBE_TOPOLOGY_NONE ? to : from;
-  }
-  return next;
+static bool is_sound(const abbe_mesh_report *r) {
+  return !(r->open_edges || r->crowded_edges || r->flipped_edges || r->degenerate_faces);
 }
 
-/* Length of the rim through start, its points in rim[]; 0 where it does not return to start. */
-static size_t follow(const uint32_t *next, uint32_t start, size_t most, uint32_t *rim) {
-  size_t n = 0;
-  uint32_t p = start;
-  do {
-    if (p == ABBE_TOPOLOGY_NONE || next[p] == p || n == most) return 0;
-    rim[n++] = p;
-    p = next[p];
-  } while (p != start);
-  return n >= 3 ? n : 0;
-}
-
-/* The rim's centre; false where a fan from there would not be safe. */
-static bool fan_is_safe(const abbe_mesh *mesh, const uint32_t *rim, size_t n, double diagonal,
-                        double centre[3]) {
-  double normal[3] = {0}, length = 0.0, part[3], to[3];
-  memset(centre, 0, 3 * sizeof *centre);
-  for (size_t i = 0; i < n; i++)
-    for (int k = 0; k < 3; k++) centre[k] += mesh->position[rim[i]][k] / (double)n;
-  for (size_t i = 0; i < n; i++) {
-    const double *a = mesh->position[rim[i]], *b = mesh->position[rim[(i + 1) % n]];
-    abbe_vector_triangle(centre, a, b, part);
-    abbe_vector_subtract(b, a, to);
-    length += abbe_vector_length(to);
-    for (int k = 0; k < 3; k++) normal[k] += part[k];
-  }
-  if (!abbe_vector_normalise(normal)) return false;
-  const bool small = length <= SMALL_HOLE * diagonal;
-  for (size_t i = 0; i < n; i++) {
-    const double *a = mesh->position[rim[i]], *b = mesh->position[rim[(i + 1) % n]];
-    abbe_vector_triangle(centre, a, b, part);
-    abbe_vector_subtract(a, centre, to);
-    if (!small && !(abbe_vector_dot(part, normal) > 0.0)) return false;
-    if (!small && fabs(abbe_vector_dot(to, normal)) > FLAT_HOLE * length) return false;
-  }
-  return true;
-}
-
-/* Room for more vertices and faces; the mesh keeps its counts. */
-static bool grow(abbe_mesh *mesh, size_t vertices, size_t faces) {
-  if (vertices > ABBE_MESH_MAX_VERTICES || faces > ABBE_MESH_MAX_FACES) return false;
-  void *position = realloc(mesh->position, vertices * sizeof *mesh->position);
-  if (position) mesh->position = position;
-  void *normal = realloc(mesh->normal, vertices * sizeof *mesh->normal);
-  if (normal) mesh->normal = normal;
-  void *face = realloc(mesh->face, faces * sizeof *mesh->face);
-  if (face) mesh->face = face;
-  return position && normal && face;
-}
-
-static abbe_result close_hole(abbe_mesh *mesh, const uint32_t *rim, size_t n,
-                              const double centre[3], abbe_error *error) {
-  const bool triangle = n == 3;
-  const size_t vertices = mesh->vertex_count + !triangle;
-  const size_t faces = mesh->face_count + (triangle ? 1 : n);
-  if (!grow(mesh, vertices, faces))
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to close a hole of a mesh");
-  if (triangle) {
-    memcpy(mesh->face[mesh->face_count], rim, sizeof mesh->face[0]);
-  } else {
-    memcpy(mesh->position[mesh->vertex_count], centre, 3 * sizeof(double));
-    for (size_t i = 0; i < n; i++) {
-      const uint32_t f[3] = {(uint32_t)mesh->vertex_count, rim[i], rim[(i + 1) % n]};
-      memcpy(mesh->face[mesh->face_count + i], f, sizeof f);
-    }
-  }
-  mesh->vertex_count = vertices;
-  mesh->face_count = faces;
-  return ABBE_OK;
-}
-
-static abbe_result close_holes(abbe_mesh *mesh, mending *done, abbe_error *error) {
-  abbe_mesh_report report;
-  abbe_topology t;
-  abbe_result result = abbe_mesh_check(mesh, &report, error);
-  if (result != ABBE_OK || report.open_edges == 0) return result;
-  double extent[3];
-  abbe_vector_subtract(report.max, report.min, extent);
-  result = abbe_topology_make(mesh, &t, error);
+/* Turns shells so that bodies look outwards and hollows into themselves. What is not closed has no
+ * inside, and is left to be refused. */
+static abbe_result turn_outwards(abbe_mesh *mesh, const abbe_topology *t, mending *done,
+                                 size_t *turned, abbe_error *error) {
+  abbe_shells shells;
+  const abbe_result result = abbe_shells_find(mesh, t, &shells, error);
+  *turned = 0;
+  done->volume = 0;
   if (result != ABBE_OK) return result;
-  /* rims are in points; the mesh has one vertex a point, in another order perhaps */
-  uint32_t *next = find_rims(&t), *rim = malloc((t.point_count + 1) * sizeof *rim);
-  uint32_t *vertex = malloc((t.point_count + 1) * sizeof *vertex);
-  if (!next || !rim || !vertex)
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to close the holes of a mesh");
-  for (size_t v = 0; result == ABBE_OK && v < mesh->vertex_count; v++)
-    vertex[t.point[v]] = (uint32_t)v;
-  for (size_t p = 0; result == ABBE_OK && p < t.point_count; p++) {
-    if (next[p] == ABBE_TOPOLOGY_NONE) continue;
-    const size_t n = follow(next, (uint32_t)p, t.point_count, rim);
-    for (size_t i = 0; i < n; i++) next[rim[i]] = ABBE_TOPOLOGY_NONE;
-    for (size_t i = 0; i < n; i++) rim[i] = vertex[rim[i]];
-    double centre[3];
-    if (n == 0 || !fan_is_safe(mesh, rim, n, abbe_vector_length(extent), centre)) continue;
-    result = close_hole(mesh, rim, n, centre, error);
-    if (result == ABBE_OK) done->holes++;
+  for (size_t i = 0; i < shells.count; i++) {
+    const double volume = fabs(shells.shell[i].volume);
+    done->volume += shells.shell[i].depth % 2 != 0 ? -volume : volume;
+    shells.shell[i].solid = (shells.shell[i].volume < 0) != (shells.shell[i].depth % 2 != 0);
+    *turned += shells.shell[i].solid;
   }
-  free(next);
-  free(rim);
-  free(vertex);
-  abbe_topology_free(&t);
-  return result;
-}
-
-/* One shell as a mesh that borrows positions; its faces are malloc'd. */
-static bool shell_faces(const abbe_mesh *mesh, const abbe_topology *t, size_t shell, bool others,
-                        abbe_mesh *part) {
-  *part = *mesh;
-  part->face_count = 0;
-  part->face = malloc((mesh->face_count + 1) * sizeof *part->face);
-  if (!part->face) return false;
+  done->inverted += *turned;
   for (size_t f = 0; f < mesh->face_count; f++)
-    if ((t->shell[f] == shell) != others)
-      memcpy(part->face[part->face_count++], mesh->face[f], sizeof part->face[0]);
-  return true;
-}
-
-static double signed_volume(const abbe_mesh *mesh) {
-  double volume = 0.0;
-  for (size_t f = 0; f < mesh->face_count; f++) {
-    const uint32_t *c = mesh->face[f];
-    double n[3], from[3];
-    abbe_vector_triangle(mesh->position[c[0]], mesh->position[c[1]], mesh->position[c[2]], n);
-    abbe_vector_subtract(mesh->position[c[0]], mesh->position[mesh->face[0][0]], from);
-    volume += abbe_vector_dot(from, n) / 6.0;
-  }
-  return volume;
-}
-
-/* Whether the shell must turn: its volume is to be positive at an even depth among the others
- * (a body) and negative at an odd one (a bubble). */
-static abbe_result shell_is_inverted(const abbe_mesh *mesh, const abbe_topology *t, size_t shell,
-                                     bool *inverted, abbe_error *error) {
-  abbe_mesh self, rest;
-  if (!shell_faces(mesh, t, shell, false, &self))
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to mend a mesh");
-  if (!shell_faces(mesh, t, shell, true, &rest)) {
-    free(self.face);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to mend a mesh");
-  }
-  const bool bubble =
-      rest.face_count > 0 && abbe_mesh_contains(&rest, mesh->position[self.face[0][0]]);
-  *inverted = (signed_volume(&self) < 0.0) != bubble;
-  free(self.face);
-  free(rest.face);
+    if (shells.shell[t->shell[f]].solid) turn(mesh, f);
+  done->solids = shells.solid_count;
+  done->crossings = shells.self_count;
+  memcpy(done->crossing, shells.self_place, sizeof done->crossing);
+  abbe_shells_free(&shells);
   return ABBE_OK;
 }
 
-static abbe_result turn_outwards(abbe_mesh *mesh, mending *done, abbe_error *error) {
-  abbe_topology t;
-  abbe_result result = abbe_topology_make(mesh, &t, error);
-  if (result != ABBE_OK) return result;
-  if (t.shell_count > 64) {
-    /* too many parts to look at one by one: the sign of the whole decides */
-    if (signed_volume(mesh) < 0.0) {
-      for (size_t f = 0; f < mesh->face_count; f++) turn(mesh, f);
-      done->inverted++;
-    }
-    abbe_topology_free(&t);
-    return ABBE_OK;
-  }
-  bool inverted[64] = {false};
-  for (size_t s = 0; result == ABBE_OK && s < t.shell_count; s++)
-    result = shell_is_inverted(mesh, &t, s, &inverted[s], error);
-  for (size_t f = 0; result == ABBE_OK && f < mesh->face_count; f++)
-    if (inverted[t.shell[f]]) turn(mesh, f);
-  for (size_t s = 0; s < t.shell_count; s++) done->inverted += inverted[s];
-  abbe_topology_free(&t);
-  return result;
-}
-
-static abbe_result run_steps(abbe_mesh *mesh, mending *done, abbe_error *error) {
+static abbe_result run_steps(abbe_mesh *mesh, bool repair, mending *done, abbe_error *error) {
   drop_repeated(mesh, done);
   if (mesh->face_count == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "the mesh has no face with an area");
-  abbe_result result = make_consistent(mesh, done, error);
+  abbe_result result = abbe_mesh_drop_doubles(mesh, repair, &done->doubles, &done->walls, error);
+  if (result == ABBE_OK && mesh->face_count == 0)
+    return abbe_error_set(error, ABBE_GEOMETRY,
+                          "the mesh is nothing but pairs of faces back to back, with no volume");
+  if (result == ABBE_OK && repair) result = abbe_mesh_drop_sheets(mesh, &done->sheets, error);
+  if (result == ABBE_OK) result = make_consistent(mesh, done, error);
   if (result == ABBE_OK) result = flip_slivers(mesh, done, error);
-  if (result == ABBE_OK) result = close_holes(mesh, done, error);
-  if (result == ABBE_OK) result = turn_outwards(mesh, done, error);
+  if (result == ABBE_OK)
+    result = abbe_mesh_close_holes(mesh, repair, &done->holes, &done->widest, error);
+  /* a slit that is closed by faces without area is a point on another's edge */
+  if (result == ABBE_OK && repair) result = flip_slivers(mesh, done, error);
   return result;
 }
 
-static abbe_result demand_sound(const abbe_mesh *mesh, abbe_error *error) {
+static abbe_result refuse(const abbe_mesh_report *r, bool repair, abbe_error *error) {
+  char faults[640];
+  abbe_mesh_report_faults(r, faults, sizeof faults);
+  const bool helps = !repair && (r->open_edges || r->crowded_edges);
+  return abbe_error_set(error, ABBE_GEOMETRY,
+                        "the mesh is not a closed, consistently oriented surface%s: %s%s",
+                        repair ? ", and could not be made one" : "", faults,
+                        helps ? "; 'repair: true' closes holes and drops sheets within" : "");
+}
+
+/* After the steps, or at once where none is needed. */
+static abbe_result finish(abbe_mesh *mesh, const abbe_topology *t, bool repair, mending *done,
+                          abbe_error *error) {
   abbe_mesh_report r;
-  const abbe_result result = abbe_mesh_check(mesh, &r, error);
-  if (result != ABBE_OK) return result;
-  if (r.open_edges || r.crowded_edges || r.flipped_edges || r.degenerate_faces)
-    return abbe_error_set(error, ABBE_GEOMETRY,
-                          "the mesh is not a closed, consistently oriented surface and cannot be "
-                          "mended safely: %zu open edges, %zu edges with more than two faces, "
-                          "%zu edges with faces turned against each other, %zu faces without area",
-                          r.open_edges, r.crowded_edges, r.flipped_edges, r.degenerate_faces);
+  abbe_result result = abbe_mesh_check_known(mesh, t, &r, error);
+  if (result == ABBE_OK && !is_sound(&r)) result = refuse(&r, repair, error);
+  size_t turned = 0;
+  if (result == ABBE_OK) result = turn_outwards(mesh, t, done, &turned, error);
+  /* bodies that touch along edges are told apart by where they lie, so by which way they look */
+  for (int i = 0; i < 3 && result == ABBE_OK && turned > 0 && r.touching_edges > 0; i++) {
+    abbe_topology again;
+    result = abbe_topology_make(mesh, &again, error);
+    if (result == ABBE_OK) result = turn_outwards(mesh, &again, done, &turned, error);
+    abbe_topology_free(&again);
+  }
   double diagonal = 0.0;
   for (int k = 0; k < 3; k++) diagonal = hypot(diagonal, r.max[k] - r.min[k]);
   /* what rounding may make of nothing, and a thousandth of what points that are two may enclose */
-  if (!(r.volume > 1e-12 * r.area * diagonal))
+  if (result == ABBE_OK && !(done->volume > 1e-12 * r.area * diagonal))
     return abbe_error_set(error, ABBE_GEOMETRY,
-                          "the mesh encloses no volume (%g m3), so it has no inside to refract in",
-                          r.volume);
-  return ABBE_OK;
+                          "the mesh encloses no volume (%g), so it has no inside to refract in",
+                          done->volume);
+  return result;
 }
 
 static void say(char *text, size_t size, size_t count, const char *one, const char *many) {
@@ -381,17 +240,34 @@ static void say(char *text, size_t size, size_t count, const char *one, const ch
   snprintf(text + used, size - used, "%s%zu %s", used ? ", " : "", count, count == 1 ? one : many);
 }
 
-static abbe_result describe(const mending *done, char **what, abbe_error *error) {
-  char text[320] = "";
+static abbe_result describe(const mending *done, bool repair, char **what, abbe_error *error) {
+  char text[640] = "", one[64], many[64];
+  snprintf(one, sizeof one, "hole closed, %.3g across", done->widest);
+  snprintf(many, sizeof many, "holes closed, the widest %.3g across", done->widest);
   say(text, sizeof text, done->repeated, "face with repeated corners dropped",
       "faces with repeated corners dropped");
+  say(text, sizeof text, done->doubles, "face that was there twice dropped",
+      "faces that were there twice dropped");
+  if (repair)
+    say(text, sizeof text, done->walls, "pair of faces back to back dropped or made one",
+        "pairs of faces back to back dropped or made one");
+  say(text, sizeof text, done->sheets, "sheet that hung on the body or stood in it dropped",
+      "sheets that hung on the body or stood in it dropped");
   say(text, sizeof text, done->slivers, "face without area split away",
       "faces without area split away");
   say(text, sizeof text, done->turned, "face turned to agree with its neighbours",
       "faces turned to agree with their neighbours");
-  say(text, sizeof text, done->holes, "hole closed", "holes closed");
+  say(text, sizeof text, done->holes, one, many);
   say(text, sizeof text, done->inverted, "inside-out part turned outwards",
       "inside-out parts turned outwards");
+  if (done->crossings > 0) {
+    const size_t used = strlen(text);
+    snprintf(text + used, sizeof text - used,
+             "%sthe surface crosses itself, in %zu pairs of faces, at (%.4g, %.4g, %.4g) for one: "
+             "light may go wrong there",
+             used ? "; " : "", done->crossings, done->crossing[0], done->crossing[1],
+             done->crossing[2]);
+  }
   if (!what || !text[0]) return ABBE_OK;
   *what = malloc(strlen(text) + 1);
   if (!*what) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a sentence");
@@ -399,20 +275,109 @@ static abbe_result describe(const mending *done, char **what, abbe_error *error)
   return ABBE_OK;
 }
 
-abbe_result abbe_mesh_mend(abbe_mesh *mesh, bool smooth, char **what, abbe_error *error) {
+/* ---- normals ---- */
+
+typedef struct triple {
+  uint32_t point[3], face; /* points in ascending order */
+} triple;
+
+static triple triple_of(const uint32_t face[3], uint32_t number) {
+  triple out = {.face = number};
+  const uint32_t a = face[0] < face[1] ? face[0] : face[1],
+                 b = face[0] < face[1] ? face[1] : face[0];
+  out.point[0] = a < face[2] ? a : face[2];
+  out.point[2] = b > face[2] ? b : face[2];
+  out.point[1] = face[0] ^ face[1] ^ face[2] ^ out.point[0] ^ out.point[2];
+  return out;
+}
+
+static int by_points(const void *a, const void *b) {
+  return memcmp(((const triple *)a)->point, ((const triple *)b)->point,
+                sizeof((const triple *)a)->point);
+}
+
+/* The normals that the file gave to faces of the same three points; t is the topology of `from`,
+ * whose points are the first vertices of `to`. */
+static abbe_result carry_normals(const abbe_mesh *from, const abbe_topology *t, const abbe_mesh *to,
+                                 double (*corner)[3], abbe_error *error) {
+  triple *known = malloc((from->face_count + 1) * sizeof *known);
+  if (!known) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the normals of a mesh");
+  for (size_t f = 0; f < from->face_count; f++) known[f] = triple_of(t->face[f], (uint32_t)f);
+  qsort(known, from->face_count, sizeof *known, by_points);
+  for (size_t f = 0; f < to->face_count; f++) {
+    const uint32_t *face = to->face[f];
+    const triple wanted = triple_of(face, 0);
+    const triple *found = bsearch(&wanted, known, from->face_count, sizeof *known, by_points);
+    double n[3];
+    if (!found) continue;
+    abbe_vector_triangle(to->position[face[0]], to->position[face[1]], to->position[face[2]], n);
+    for (int k = 0; k < 3; k++)
+      for (int i = 0; i < 3; i++)
+        if (t->face[found->face][i] == face[k])
+          abbe_mesh_fair_normal(from->normal[from->face[found->face][i]], n,
+                                corner[3 * f + (size_t)k]);
+  }
+  free(known);
+  return ABBE_OK;
+}
+
+/* Of the mended mesh, by angles and where it is the file's face by its normals. */
+static abbe_result mended_normals(const abbe_mesh *from, const abbe_topology *t, abbe_mesh *mesh,
+                                  abbe_error *error) {
+  abbe_topology own;
+  abbe_result result = abbe_topology_make(mesh, &own, error);
+  if (result != ABBE_OK) return result;
+  double(*corner)[3] = malloc((3 * mesh->face_count + 1) * sizeof *corner);
+  result = corner ? abbe_mesh_crease_normals(mesh, &own, corner, error)
+                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the normals of a mesh");
+  if (result == ABBE_OK && from->given_normals)
+    result = carry_normals(from, t, mesh, corner, error);
+  mesh->given_normals = from->given_normals;
+  if (result == ABBE_OK)
+    result = abbe_mesh_take_normals(mesh, own.point, (const double(*)[3])corner, error);
+  free(corner);
+  abbe_topology_free(&own);
+  return result;
+}
+
+/* The steps over a mesh of one vertex a point, which it leaves in *work. */
+static abbe_result mend(const abbe_topology *t, bool repair, mending *done, abbe_mesh *work,
+                        abbe_error *error) {
+  abbe_topology own = {0};
+  abbe_result result = welded(t, work, error);
+  if (result == ABBE_OK) result = run_steps(work, repair, done, error);
+  if (result == ABBE_OK) result = abbe_topology_make(work, &own, error);
+  if (result == ABBE_OK) result = finish(work, &own, repair, done, error);
+  abbe_topology_free(&own);
+  return result;
+}
+
+abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
+                           char **what, abbe_error *error) {
   if (what) *what = NULL;
   abbe_topology t;
+  abbe_mesh_report report;
   abbe_mesh work = {0};
   mending done = {0};
   abbe_result result = abbe_topology_make(mesh, &t, error);
   if (result != ABBE_OK) return result;
-  result = welded(&t, &work, error);
+  result = abbe_mesh_check_known(mesh, &t, &report, error);
+  /* what is sound, and nowhere there twice, has faces turned at the most */
+  if (result == ABBE_OK && is_sound(&report) && report.touching_edges == 0) {
+    result = welded(&t, &work, error);
+    if (result == ABBE_OK) result = finish(&work, &t, repair, &done, error);
+  } else if (result == ABBE_OK) {
+    result = mend(&t, repair, &done, &work, error);
+  }
+  const bool changed = done.repeated + done.doubles + done.walls + done.sheets + done.slivers +
+                           done.turned + done.holes + done.inverted >
+                       0;
+  if (result == ABBE_OK && changed)
+    result = normals == ABBE_NORMALS_AUTO ? mended_normals(mesh, &t, &work, error)
+                                          : abbe_mesh_compute_normals(&work, normals, error);
+  if (result == ABBE_OK) result = describe(&done, repair, what, error);
   abbe_topology_free(&t);
-  if (result == ABBE_OK) result = run_steps(&work, &done, error);
-  if (result == ABBE_OK) result = demand_sound(&work, error);
-  const bool changed = done.repeated + done.slivers + done.turned + done.holes + done.inverted > 0;
-  if (result == ABBE_OK && changed) result = abbe_mesh_compute_normals(&work, smooth, error);
-  if (result == ABBE_OK) result = describe(&done, what, error);
+  if (result == ABBE_OK && solids) *solids = done.solids;
   if (result == ABBE_OK && changed) {
     abbe_mesh_free(mesh);
     *mesh = work;

@@ -134,6 +134,7 @@ abbe_result abbe_mesh_subdivide(abbe_mesh *mesh, size_t levels, abbe_error *erro
   }
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < levels && result == ABBE_OK; i++) result = subdivide_once(mesh, error);
-  if (result == ABBE_OK && levels > 0) result = abbe_mesh_compute_normals(mesh, true, error);
+  if (result == ABBE_OK && levels > 0)
+    result = abbe_mesh_compute_normals(mesh, ABBE_NORMALS_SMOOTH, error);
   return result;
 }

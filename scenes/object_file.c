@@ -2,6 +2,7 @@
 
 #include "colorimetry/png_file.h"
 #include "scenes/brilliant.h"
+#include "scenes/object_surface.h"
 #include "scenes/shape.h"
 #include "scenes/transform.h"
 #include "scenes/vector.h"
@@ -35,7 +36,7 @@ typedef struct reading {
   const char *folder;
   shape_kind kind;
   double radius;     /* of a sphere */
-  bool smooth;       /* of a mesh */
+  abbe_mesh_normals normals; /* of a mesh */
   double matrix[16]; /* to world */
 } reading;
 
@@ -190,19 +191,22 @@ static abbe_result read_lathe(const reading *r, abbe_mesh *out, abbe_error *erro
 }
 
 static abbe_result read_mesh(reading *r, abbe_mesh *out, abbe_error *error) {
+  const bool says = abbe_yaml_get(r->yaml, r->node, "smooth").id != 0;
   char *name = NULL;
   size_t levels = 0;
+  bool smooth = true;
   abbe_result result = abbe_yaml_get_string(r->yaml, r->node, "mesh", &name, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "smooth", &r->smooth, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "smooth", &smooth, error);
   if (result == ABBE_OK) result = read_count(r, "subdivide", 0, 8, &levels, error);
-  if (result == ABBE_OK && levels > 0 && !r->smooth)
+  if (result == ABBE_OK && levels > 0 && !smooth)
     result = abbe_yaml_fail(r->yaml, r->node, error,
                             "'subdivide' makes a smooth surface; leave it out or leave out "
                             "'smooth: false'");
+  if (says || levels > 0) r->normals = smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_FLAT;
   char *path = result == ABBE_OK ? abbe_object_path(r->folder, name) : NULL;
   if (result == ABBE_OK && !path)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  if (result == ABBE_OK) result = abbe_mesh_load(path, r->smooth, out, error);
+  if (result == ABBE_OK) result = abbe_mesh_load(path, r->normals, out, error);
   if (result == ABBE_OK && levels > 0) result = abbe_mesh_subdivide(out, levels, error);
   free(path);
   free(name);
@@ -419,106 +423,50 @@ static abbe_result read_substance(const reading *r, const abbe_material_table *t
 
 /* --- the surface in the world --- */
 
-/* The matrix scales all directions alike: by *scale. */
-static bool is_similarity(const double m[16], double *scale) {
-  double length[3];
-  for (int i = 0; i < 3; i++) length[i] = abbe_vector_length(m + 4 * i);
-  *scale = length[0];
-  for (int i = 0; i < 3; i++) {
-    const int j = (i + 1) % 3;
-    if (fabs(length[i] - length[0]) > 1e-9 * length[0] ||
-        fabs(abbe_vector_dot(m + 4 * i, m + 4 * j)) > 1e-9 * length[0] * length[0])
-      return false;
-  }
-  return true;
+/* Faceted shapes keep one normal a face where they are mended, rounded ones one a point; of others,
+ * and of files that do not say, normals go by what is there. */
+static abbe_mesh_normals normals_of(const reading *r) {
+  return r->kind == GEM || r->kind == BRILLIANT || r->kind == PRISM || r->kind == BOX
+             ? ABBE_NORMALS_FLAT
+         : r->kind == SPHERE || r->kind == RING ? ABBE_NORMALS_SMOOTH
+         : r->kind == MESH                      ? r->normals
+                                                : ABBE_NORMALS_AUTO;
 }
 
-static abbe_result parallelograms(abbe_object *out, abbe_error *error) {
-  const size_t count = out->mesh.vertex_count / 4;
-  out->exact.parallelogram = malloc(count * sizeof *out->exact.parallelogram);
-  if (!out->exact.parallelogram) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
-  for (size_t i = 0; i < count; i++) {
-    const double *corner = out->mesh.position[4 * i];
-    double edge[2][3], normal[3];
-    abbe_vector_subtract(out->mesh.position[4 * i + 1], corner, edge[0]);
-    abbe_vector_subtract(out->mesh.position[4 * i + 3], corner, edge[1]);
-    abbe_vector_cross(edge[0], edge[1], normal);
-    const int mirrored = abbe_vector_dot(normal, out->mesh.normal[4 * i]) < 0.0;
-    double *p = out->exact.parallelogram[i];
-    memcpy(p, corner, 3 * sizeof *p);
-    memcpy(p + 3, edge[mirrored], 3 * sizeof *p);
-    memcpy(p + 6, edge[!mirrored], 3 * sizeof *p);
-  }
-  out->exact.count = count;
-  out->exact.kind = ABBE_EXACT_PARALLELOGRAMS;
-  return ABBE_OK;
-}
-
-static abbe_result convex(abbe_object *out, abbe_error *error) {
-  double(*plane)[4] = malloc(ABBE_SCENE_MAX_PLANES * sizeof *plane);
-  if (!plane) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
-  const abbe_result result =
-      abbe_mesh_convex_planes(&out->mesh, ABBE_SCENE_MAX_PLANES, plane, &out->exact.count, error);
-  if (out->exact.count > 0) {
-    out->exact.kind = ABBE_EXACT_CONVEX;
-    out->exact.plane = plane;
-  } else {
-    free(plane);
-  }
+static abbe_result read_size_and_place(const reading *r, abbe_object_surface *s,
+                                       abbe_error *error) {
+  const abbe_yaml_node fit = abbe_yaml_get(r->yaml, r->node, "fit");
+  const abbe_yaml_node repair = abbe_yaml_get(r->yaml, r->node, "repair");
+  s->centred = abbe_yaml_get(r->yaml, r->node, "centre").id != 0;
+  abbe_result result = abbe_yaml_get_number(r->yaml, r->node, "fit", 0, FAR, &s->fit, error);
+  if (result == ABBE_OK && fit.id && !(s->fit > 0))
+    result = abbe_yaml_fail(r->yaml, fit, error,
+                            "'fit' is the longest side that the object is to have, in metres, "
+                            "above 0");
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_numbers(r->yaml, r->node, "centre", 3, -FAR, FAR, s->centre, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "repair", &s->repair, error);
+  if (result == ABBE_OK && repair.id && r->kind != MESH)
+    result = abbe_yaml_fail(r->yaml, repair, error, "'repair' is for the mesh of a file");
   return result;
 }
 
-static abbe_result find_exact(const reading *r, abbe_object *out, abbe_error *error) {
-  double scale;
-  if (r->kind == SPHERE && is_similarity(r->matrix, &scale)) {
-    out->exact.kind = ABBE_EXACT_SPHERE;
-    memcpy(out->exact.centre, r->matrix + 12, sizeof out->exact.centre);
-    out->exact.radius = scale * r->radius;
-    return ABBE_OK;
-  }
-  if (out->material) return convex(out, error);
-  if (r->kind == RECTANGLE || r->kind == BOX) return parallelograms(out, error);
-  return ABBE_OK;
-}
-
-static void find_bounds(abbe_object *out) {
-  for (int k = 0; k < 3; k++) {
-    out->min[k] = INFINITY;
-    out->max[k] = -INFINITY;
-    for (size_t v = 0; v < out->mesh.vertex_count; v++) {
-      out->min[k] = fmin(out->min[k], out->mesh.position[v][k]);
-      out->max[k] = fmax(out->max[k], out->mesh.position[v][k]);
-    }
-    if (out->exact.kind != ABBE_EXACT_SPHERE) continue;
-    out->min[k] = out->exact.centre[k] - out->exact.radius;
-    out->max[k] = out->exact.centre[k] + out->exact.radius;
-  }
-}
-
-static abbe_result place(const reading *r, abbe_object *out, abbe_error *error) {
-  abbe_result result = abbe_mesh_transform(&out->mesh, r->matrix, error);
-  if (result == ABBE_OK && out->material) {
-    const bool faceted =
-        r->kind == GEM || r->kind == PRISM || r->kind == BOX || (r->kind == MESH && !r->smooth);
-    result = abbe_mesh_mend(&out->mesh, !faceted, &out->mended, error);
-  }
-  if (result == ABBE_OK) result = find_exact(r, out, error);
-  if (result == ABBE_OK) find_bounds(out);
-  if (result == ABBE_OK && !(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))
-    result = abbe_error_set(error, ABBE_GEOMETRY, "the placed object has no finite size");
-  if (result != ABBE_OK) {
-    char sentence[512];
-    snprintf(sentence, sizeof sentence, "%.500s", error ? error->text : "");
-    abbe_error_set(error, result, "object '%.60s': %s", out->name, sentence);
-    abbe_object_locate(r->yaml, r->node, result, error);
-  }
-  return result;
+static abbe_result place(const reading *r, const abbe_object_surface *surface, abbe_object *out,
+                         size_t room, size_t *count, abbe_error *error) {
+  const abbe_result result = abbe_object_place(surface, out, room, count, error);
+  if (result == ABBE_OK) return ABBE_OK;
+  char sentence[900];
+  snprintf(sentence, sizeof sentence, "%.890s", error ? error->text : "");
+  abbe_error_set(error, result, "object '%.60s': %s", out->name, sentence);
+  return abbe_object_locate(r->yaml, r->node, result, error);
 }
 
 abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
-                             const abbe_material_table *table, abbe_object *out,
-                             abbe_error *error) {
-  reading r = {.yaml = yaml, .node = node, .folder = folder, .smooth = true};
+                             const abbe_material_table *table, abbe_object *out, size_t room,
+                             size_t *count, abbe_error *error) {
+  reading r = {.yaml = yaml, .node = node, .folder = folder, .normals = ABBE_NORMALS_AUTO};
+  abbe_object_surface surface = {0};
+  *count = 1;
   out->line = abbe_yaml_line(yaml, node);
   if (!abbe_yaml_is_mapping(yaml, node))
     return abbe_yaml_fail(yaml, node, error, "an object must be a mapping (key: value)");
@@ -531,7 +479,14 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   }
   if (result == ABBE_OK) result = read_surface(&r, &out->mesh, error);
   if (result == ABBE_OK) result = read_transform(&r, error);
+  if (result == ABBE_OK) result = read_size_and_place(&r, &surface, error);
   if (result == ABBE_OK) result = read_substance(&r, table, out, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "an object", error);
-  return result == ABBE_OK ? place(&r, out, error) : result;
+  if (result != ABBE_OK) return result;
+  memcpy(surface.matrix, r.matrix, sizeof surface.matrix);
+  surface.radius = r.kind == SPHERE ? r.radius : 0;
+  surface.rectangles = r.kind == RECTANGLE || r.kind == BOX;
+  surface.file = r.kind == MESH;
+  surface.normals = normals_of(&r);
+  return place(&r, &surface, out, room, count, error);
 }

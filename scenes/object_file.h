@@ -15,10 +15,12 @@
 extern "C" {
 #endif
 
-/* Reads the mapping at node into *out (zeroed before; freed with the scene, also on failure).
+/* Reads the mapping at node into out[0], and where shells of its mesh cross into further objects
+ * behind it, *count in all and at most room (zeroed before; freed with the scene, also on failure).
  * folder is the scene file's, with its slash, or "". Materials are found in table. */
 abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
-                             const abbe_material_table *table, abbe_object *out, abbe_error *error);
+                             const abbe_material_table *table, abbe_object *out, size_t room,
+                             size_t *count, abbe_error *error);
 
 /* Path relative to folder, or as it is where it is absolute; malloc'd, NULL without memory. */
 char *abbe_object_path(const char *folder, const char *path);

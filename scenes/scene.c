@@ -210,16 +210,45 @@ static const char *path_of(const abbe_scene *scene) {
   return scene->path ? scene->path : "scene";
 }
 
+/* The longest side of some bounds. */
+static double longest(const double min[3], const double max[3]) {
+  return fmax(fmax(max[0] - min[0], max[1] - min[1]), max[2] - min[2]);
+}
+
+/* How large a refractor is beside all else, where that is why something stands inside it: a file in
+ * millimetres makes a stone as large as a house. */
+static void compare_sizes(const abbe_scene *scene, const abbe_object *around, char *text,
+                          size_t size) {
+  double min[3], max[3];
+  bool any = false;
+  text[0] = '\0';
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->line == around->line) continue; /* itself, and other parts of its mesh */
+    for (int k = 0; k < 3; k++) {
+      min[k] = any ? fmin(min[k], o->min[k]) : o->min[k];
+      max[k] = any ? fmax(max[k], o->max[k]) : o->max[k];
+    }
+    any = true;
+  }
+  const double own = longest(around->min, around->max), rest = any ? longest(min, max) : 0;
+  snprintf(text, size, "; '%.60s' is %.3g m wide, all other objects together %.3g m%s",
+           around->name, own, rest,
+           own > rest ? ": if its file is in another unit, 'fit: METRES' gives it its size" : "");
+}
+
 static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
+  char sizes[256];
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
     if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;
     const abbe_object *around = refractor_around(scene, light->position);
+    if (around) compare_sizes(scene, around, sizes, sizeof sizes);
     if (around)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s: the light '%s' is inside the refractor '%s' (line %zu); lights "
-                            "are modelled in air only, so move it outside",
-                            path_of(scene), light->name, around->name, around->line);
+                            "are modelled in air only, so move it outside%s",
+                            path_of(scene), light->name, around->name, around->line, sizes);
     around = light->kind == ABBE_LIGHT_DISK ? refractor_in(scene, light) : NULL;
     if (around)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -229,11 +258,12 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
                             path_of(scene), light->name, around->name, around->line);
   }
   const abbe_object *around = refractor_around(scene, scene->camera.eye);
+  if (around) compare_sizes(scene, around, sizes, sizeof sizes);
   if (around)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: the camera's eye is inside the refractor '%s' (line %zu); it is "
-                          "modelled in air only, so move it outside",
-                          path_of(scene), around->name, around->line);
+                          "modelled in air only, so move it outside%s",
+                          path_of(scene), around->name, around->line, sizes);
   return ABBE_OK;
 }
 

@@ -10,6 +10,7 @@
 
 #include "colorimetry/illuminant.h"
 #include "colorimetry/image.h"
+#include "scenes/convex.h"
 #include "scenes/mesh.h"
 #include "spectral/error.h"
 #include "spectral/material_table.h"
@@ -66,6 +67,7 @@ typedef struct abbe_exact {
   size_t count;                      /* planes or parallelograms */
   double (*plane)[4];                /* CONVEX: n . x <= d, unit n */
   double (*parallelogram)[9];        /* corner, edge u, edge v; normal = u x v */
+  abbe_convex convex;                /* what was found, or why it is no convex solid */
 } abbe_exact;
 
 typedef struct abbe_object {
@@ -79,7 +81,7 @@ typedef struct abbe_object {
   char *texture_path;              /* receiver: NULL or the PNG that multiplies reflectance */
   abbe_image texture;              /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
-  char *mended;                    /* what the mesh check mended, or NULL */
+  char *mended; /* what was mended, and what is not whole still, or NULL */
 } abbe_object;
 
 typedef struct abbe_scene {

@@ -246,14 +246,18 @@ static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char
   abbe_result result =
       read_list(yaml, root, "objects", ABBE_SCENE_MAX_OBJECTS, &list, &count, error);
   if (result != ABBE_OK || count == 0) return result;
-  out->object = calloc(count, sizeof *out->object);
+  out->object = calloc(ABBE_SCENE_MAX_OBJECTS, sizeof *out->object);
   if (!out->object)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu objects", count);
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     const abbe_yaml_node item = abbe_yaml_item(yaml, list, i);
-    out->object_count = i + 1;
-    result = abbe_object_read(yaml, item, folder, &out->table, &out->object[i], error);
-    faces += out->object[i].mesh.face_count;
+    /* one for each entry that is to come stays free */
+    const size_t first = out->object_count, room = ABBE_SCENE_MAX_OBJECTS - first - (count - 1 - i);
+    size_t made = 0;
+    result =
+        abbe_object_read(yaml, item, folder, &out->table, &out->object[first], room, &made, error);
+    out->object_count += made;
+    for (size_t k = first; k < out->object_count; k++) faces += out->object[k].mesh.face_count;
     if (result == ABBE_OK && faces > ABBE_MESH_MAX_FACES)
       result = abbe_yaml_fail(yaml, item, error,
                               "with this object the scene has %zu faces; at most %u are possible",

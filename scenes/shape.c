@@ -165,7 +165,7 @@ abbe_result abbe_shape_gem(size_t sides, double girdle_radius, double table_radi
     set_face(out, &face, next, sides + i, sides + next);
     set_face(out, &face, culet, sides + next, sides + i);
   }
-  return abbe_mesh_compute_normals(out, false, error);
+  return abbe_mesh_compute_normals(out, ABBE_NORMALS_FLAT, error);
 }
 
 abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_mesh *out,
@@ -189,7 +189,7 @@ abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_m
     set3(out->position[3 * end + 2], half, y, -height / 3.0);
   }
   memcpy(out->face, face, sizeof face);
-  return abbe_mesh_compute_normals(out, false, error);
+  return abbe_mesh_compute_normals(out, ABBE_NORMALS_FLAT, error);
 }
 
 abbe_result abbe_shape_rectangle(double width, double height, abbe_mesh *out, abbe_error *error) {

@@ -1,5 +1,7 @@
 #include "scenes/topology.h"
 
+#include "scenes/vector.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -135,7 +137,8 @@ static void add_edge(abbe_topology *t, const slots *table, uint32_t face, int co
   }
   if (table->slot[i] == ABBE_TOPOLOGY_NONE) {
     table->slot[i] = (uint32_t)t->edge_count;
-    t->edge[t->edge_count++] = (abbe_edge){a, b, 0, 0, {ABBE_TOPOLOGY_NONE, ABBE_TOPOLOGY_NONE}};
+    t->edge[t->edge_count++] =
+        (abbe_edge){.a = a, .b = b, .face = {ABBE_TOPOLOGY_NONE, ABBE_TOPOLOGY_NONE}};
   }
   abbe_edge *edge = &t->edge[table->slot[i]];
   if (edge->along + edge->against < 2) edge->face[edge->along + edge->against] = face;
@@ -171,29 +174,153 @@ static uint32_t root_of(uint32_t *parent, uint32_t x) {
   return x;
 }
 
-static abbe_result find_shells(abbe_topology *t, abbe_error *error) {
-  uint32_t *parent = malloc((t->point_count + 1) * sizeof *parent);
-  uint32_t *number = malloc((t->point_count + 1) * sizeof *number);
-  if (!parent || !number) {
-    free(parent);
-    free(number);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
+static void unite(uint32_t *parent, uint32_t a, uint32_t b) {
+  parent[root_of(parent, a)] = root_of(parent, b);
+}
+
+/* A face at an edge of more than two. */
+typedef struct spoke {
+  uint32_t edge, face;
+  bool along;   /* it runs from the edge's a to its b: its body lies at lesser angles */
+  int64_t step; /* the angle around the edge, right-handed from a to b, in steps */
+} spoke;
+
+/* What lies on one another closes before it opens: bodies touch there and do not overlap. */
+static int by_edge_and_angle(const void *one, const void *other) {
+  const spoke *x = one, *y = other;
+  if (x->edge != y->edge) return x->edge < y->edge ? -1 : 1;
+  if (x->step != y->step) return x->step < y->step ? -1 : 1;
+  if (x->along != y->along) return x->along ? -1 : 1;
+  return (x->face > y->face) - (x->face < y->face);
+}
+
+/* Angles, rad, that are one. The steps are counted from a little off a direction of the axes, where
+ * so many models have faces. */
+#define ANGLE_STEP 1e-6
+#define ANGLE_START 0.0123456
+
+/* Right-handed around the edge, from a direction that is the same for all of its faces. */
+static int64_t angle_around(const abbe_topology *t, const abbe_edge *e, uint32_t face) {
+  double axis[3], u[3] = {0, 0, 0}, v[3], to[3];
+  uint32_t tip = e->a;
+  for (int k = 0; k < 3; k++)
+    if (t->face[face][k] != e->a && t->face[face][k] != e->b) tip = t->face[face][k];
+  abbe_vector_subtract(t->position[e->b], t->position[e->a], axis);
+  abbe_vector_subtract(t->position[tip], t->position[e->a], to);
+  abbe_vector_normalise(axis);
+  int least = 0;
+  for (int k = 1; k < 3; k++)
+    if (fabs(axis[k]) < fabs(axis[least])) least = k;
+  u[least] = 1;
+  abbe_vector_cross(axis, u, v);
+  abbe_vector_normalise(v);
+  abbe_vector_cross(v, axis, u);
+  const double turn = 2 * 3.14159265358979323846;
+  const double angle = atan2(abbe_vector_dot(to, v), abbe_vector_dot(to, u)) + ANGLE_START;
+  return (int64_t)floor((angle < 0 ? angle + turn : angle) / ANGLE_STEP);
+}
+
+/* Pairs the faces around one edge as brackets: a body opens at a face that runs against the edge
+ * and closes at one along it, of the same patch if there is one, else at the nearest that is free.
+ * False where they do not pair up. stack has room for them all. */
+static bool pair_up(const spoke *at, size_t count, uint32_t *parent, uint32_t *stack) {
+  long depth = 0, least = 0;
+  size_t first = 0, waiting = 0;
+  for (size_t i = 0; i < count; i++) {
+    depth += at[i].along ? -1 : 1;
+    if (depth >= least) continue;
+    least = depth;
+    first = i + 1;
   }
-  for (size_t p = 0; p < t->point_count; p++) {
-    parent[p] = (uint32_t)p;
-    number[p] = ABBE_TOPOLOGY_NONE;
+  if (depth != 0) return false;
+  for (size_t i = 0; i < count; i++) {
+    const spoke *s = &at[(first + i) % count];
+    if (!s->along) {
+      stack[waiting++] = s->face;
+      continue;
+    }
+    size_t k = waiting;
+    while (k > 0 && root_of(parent, stack[k - 1]) != root_of(parent, s->face)) k--;
+    const size_t taken = k > 0 ? k - 1 : waiting - 1;
+    unite(parent, s->face, stack[taken]);
+    memmove(stack + taken, stack + taken + 1, (waiting - taken - 1) * sizeof *stack);
+    waiting--;
+  }
+  return true;
+}
+
+/* What meets at edges of more than two faces: by pairs, or else all of it. */
+static abbe_result unite_crowds(abbe_topology *t, uint32_t *parent, abbe_error *error) {
+  size_t count = 0, next = 0;
+  for (size_t e = 0; e < t->edge_count; e++) {
+    const uint32_t faces = t->edge[e].along + t->edge[e].against;
+    if (faces > 2) count += faces;
+  }
+  if (count == 0) return ABBE_OK;
+  spoke *all = malloc(count * sizeof *all);
+  uint32_t *stack = malloc(count * sizeof *stack);
+  if (!all || !stack) {
+    free(all);
+    free(stack);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the edges of a mesh");
   }
   for (size_t f = 0; f < t->face_count; f++)
-    for (int k = 1; k < 3; k++)
-      parent[root_of(parent, t->face[f][k])] = root_of(parent, t->face[f][0]);
+    for (int k = 0; k < 3; k++) {
+      const uint32_t e = t->face_edge[f][k];
+      if (e == ABBE_TOPOLOGY_NONE || t->edge[e].along + t->edge[e].against <= 2) continue;
+      all[next++] = (spoke){e, (uint32_t)f, t->face[f][k] == t->edge[e].a,
+                            angle_around(t, &t->edge[e], (uint32_t)f)};
+    }
+  qsort(all, count, sizeof *all, by_edge_and_angle);
+  for (size_t from = 0, to; from < count; from = to) {
+    for (to = from; to < count && all[to].edge == all[from].edge;) to++;
+    t->edge[all[from].edge].touches = pair_up(all + from, to - from, parent, stack);
+    for (size_t i = from + 1; i < to && !t->edge[all[from].edge].touches; i++)
+      unite(parent, all[i].face, all[from].face);
+  }
+  free(all);
+  free(stack);
+  return ABBE_OK;
+}
+
+/* A face without edges, whose corners are one point, hangs on whatever stands there. */
+static void unite_points(const abbe_topology *t, uint32_t *parent, uint32_t *at_point) {
+  for (size_t f = 0; f < t->face_count; f++)
+    if (t->face_edge[f][0] != ABBE_TOPOLOGY_NONE)
+      for (int k = 0; k < 3; k++) at_point[t->face[f][k]] = (uint32_t)f;
   for (size_t f = 0; f < t->face_count; f++) {
-    const uint32_t root = root_of(parent, t->face[f][0]);
-    if (number[root] == ABBE_TOPOLOGY_NONE) number[root] = (uint32_t)t->shell_count++;
-    t->shell[f] = number[root];
+    if (t->face_edge[f][0] != ABBE_TOPOLOGY_NONE) continue;
+    uint32_t *there = &at_point[t->face[f][0]];
+    if (*there == ABBE_TOPOLOGY_NONE) *there = (uint32_t)f;
+    unite(parent, (uint32_t)f, *there);
+  }
+}
+
+static abbe_result find_shells(abbe_topology *t, abbe_error *error) {
+  const size_t most = (t->face_count > t->point_count ? t->face_count : t->point_count) + 1;
+  uint32_t *parent = malloc(most * sizeof *parent);
+  uint32_t *number = malloc(most * sizeof *number);
+  abbe_result result =
+      parent && number ? ABBE_OK
+                       : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
+  for (size_t f = 0; result == ABBE_OK && f < t->face_count; f++) parent[f] = (uint32_t)f;
+  for (size_t e = 0; result == ABBE_OK && e < t->edge_count; e++)
+    if (t->edge[e].along + t->edge[e].against == 2)
+      unite(parent, t->edge[e].face[0], t->edge[e].face[1]);
+  if (result == ABBE_OK) result = unite_crowds(t, parent, error);
+  if (result == ABBE_OK) {
+    memset(number, 0xff, most * sizeof *number);
+    unite_points(t, parent, number);
+    memset(number, 0xff, most * sizeof *number);
+    for (size_t f = 0; f < t->face_count; f++) {
+      const uint32_t root = root_of(parent, (uint32_t)f);
+      if (number[root] == ABBE_TOPOLOGY_NONE) number[root] = (uint32_t)t->shell_count++;
+      t->shell[f] = number[root];
+    }
   }
   free(parent);
   free(number);
-  return ABBE_OK;
+  return result;
 }
 
 static abbe_result check_input(const abbe_mesh *mesh, abbe_error *error) {

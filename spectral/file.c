@@ -64,6 +64,8 @@ abbe_result abbe_file_open(const char *path, FILE **stream, size_t *size, abbe_e
   if (*stream == NULL) {
     const int number = errno;
     close(fd);
+    if (number == ENOMEM)
+      return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to open it", path);
     return fail_io(error, path, "cannot be opened", number);
   }
   if (size != NULL) *size = (size_t)status.st_size;

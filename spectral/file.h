@@ -20,7 +20,8 @@ extern "C" {
 #endif
 
 /* Opens a regular file to be read (binary); the caller closes *stream. *size (may be NULL): its
- * bytes. ABBE_IO if it is missing, unreadable or of another kind, which is named. */
+ * bytes. ABBE_IO if it is missing, unreadable or of another kind, which is named, ABBE_NO_MEMORY.
+ */
 abbe_result abbe_file_open(const char *path, FILE **stream, size_t *size, abbe_error *error);
 
 #define ABBE_FILE_PATIENCE_SECONDS 60

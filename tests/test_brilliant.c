@@ -1,5 +1,7 @@
 #include "scenes/brilliant.h"
 
+#include "scenes/convex.h"
+
 #include "scenes/vector.h"
 
 #include <math.h>
@@ -32,8 +34,10 @@ static void has_the_faces_of_a_brilliant(void **state) {
   assert_int_equal(report.open_edges + report.crowded_edges + report.flipped_edges, 0);
   assert_int_equal(report.degenerate_faces, 0);
   assert_true(report.volume > 0);
-  assert_int_equal(abbe_mesh_convex_planes(&m, 80, plane, &count, NULL), ABBE_OK);
-  assert_true(count > 0);
+  abbe_convex found;
+  assert_int_equal(abbe_convex_find(&m, 80, plane, NULL, &found, NULL), ABBE_OK);
+  assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
+  count = found.planes;
   assert_int_equal(count, 73);
   assert_int_equal(count_planes((const double(*)[4])plane, count, 0.999999, 2), 1);
   assert_int_equal(count_planes((const double(*)[4])plane, count, 1e-6, 0.999999), 32);
@@ -50,8 +54,10 @@ static void bezels_and_mains_have_their_angles(void **state) {
   double plane[80][4];
   size_t count = 0, bezels = 0, mains = 0;
   assert_int_equal(abbe_brilliant_make(&cut, &m, NULL), ABBE_OK);
-  assert_int_equal(abbe_mesh_convex_planes(&m, 80, plane, &count, NULL), ABBE_OK);
-  assert_true(count > 0);
+  abbe_convex found;
+  assert_int_equal(abbe_convex_find(&m, 80, plane, NULL, &found, NULL), ABBE_OK);
+  assert_int_equal(found.verdict, ABBE_CONVEX_SOLID);
+  count = found.planes;
   for (size_t i = 0; i < count; i++) {
     bezels += fabs(acos(plane[i][2]) * DEGREES - 33) < 1e-9;
     mains += fabs(acos(-plane[i][2]) * DEGREES - 41.2) < 1e-9;

@@ -316,7 +316,7 @@ static void parts_end_where_normals_break(void **state) {
       const double *a = mesh.normal[mesh.face[i][0]], *b = mesh.normal[mesh.face[k][0]];
       assert_true((group[i] == group[k]) == (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]));
     }
-  assert_int_equal(abbe_mesh_compute_normals(&mesh, true, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_compute_normals(&mesh, ABBE_NORMALS_SMOOTH, NULL), ABBE_OK);
   assert_int_equal(abbe_hierarchy_parts(&mesh, group), 1);
   abbe_mesh_free(&mesh);
   assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);

@@ -65,11 +65,31 @@ static void refuses_what_the_record_does_not_know(void **state) {
   abbe_scene_free(&scene);
 }
 
+static void refractors_of_one_material_are_one_medium(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("dense") RING("crown"), &scene);
+  abbe_geometry g;
+  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+  abbe_media m;
+  const double lambda_nm[2] = {380, 780};
+  assert_int_equal(abbe_media_make(&g, lambda_nm, 1, &m, NULL), ABBE_OK);
+  assert_true(abbe_media_same(&m, 0, 2) && abbe_media_same(&m, 2, 0));
+  assert_true(abbe_media_same(&m, 1, 1) && abbe_media_same(&m, -1, -1));
+  assert_false(abbe_media_same(&m, 0, 1));
+  assert_false(abbe_media_same(&m, -1, 0));
+  assert_false(abbe_media_same(&m, 1, -1));
+  abbe_media_free(&m);
+  abbe_geometry_free(&g);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_last_refractor_is_there),
       cmocka_unit_test(crossing_and_crossing_back_change_nothing),
       cmocka_unit_test(tables_follow_the_formula),
+      cmocka_unit_test(refractors_of_one_material_are_one_medium),
       cmocka_unit_test(refuses_what_the_record_does_not_know),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

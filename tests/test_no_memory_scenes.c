@@ -180,11 +180,14 @@ static abbe_result meshes(abbe_error *error) {
     char *what = NULL;
     double plane[16][4];
     size_t count = 0;
-    result = abbe_mesh_load(paths[i], i == 0, &mesh, error);
-    if (result == ABBE_OK) result = abbe_mesh_mend(&mesh, i == 0, &what, error);
-    if (result == ABBE_OK) result = abbe_mesh_compute_normals(&mesh, i == 1, error);
-    if (result == ABBE_OK) result = abbe_mesh_convex_planes(&mesh, 16, plane, &count, error);
-    if (result == ABBE_OK) digest(plane, count * sizeof *plane);
+    abbe_convex found = {0};
+    result = abbe_mesh_load(paths[i], i == 0 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, error);
+    if (result == ABBE_OK)
+      result = abbe_mesh_mend(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
+    if (result == ABBE_OK) result = abbe_mesh_compute_normals(&mesh, (abbe_mesh_normals)i, error);
+    if (result == ABBE_OK) result = abbe_convex_find(&mesh, 16, plane, NULL, &found, error);
+    if (result == ABBE_OK && found.verdict == ABBE_CONVEX_SOLID)
+      digest(plane, found.planes * sizeof *plane);
     if (result == ABBE_OK) result = abbe_mesh_subdivide(&mesh, 1, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
     uint32_t(*few)[3] = NULL;
@@ -200,8 +203,8 @@ static abbe_result meshes(abbe_error *error) {
 
 /* A box with slivers, a hole and turned faces, so that all steps of mending have work. */
 static abbe_result mend(abbe_error *error) {
-  static const char *const names[] = {"box_open", "box_turned", "sliver", "two_shells",
-                                      "degenerate"};
+  static const char *const names[] = {"box_open",   "box_turned", "sliver",  "two_shells",
+                                      "degenerate", "crossing",   "doubled", "finned"};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof names / sizeof *names && result == ABBE_OK; i++) {
     static char path[512];
@@ -216,8 +219,17 @@ static abbe_result mend(abbe_error *error) {
       mesh.position[k / 3][k % 3] = (double)(signed char)data[4 + k];
     for (size_t k = 0; result == ABBE_OK && k < 3 * mesh.face_count; k++)
       mesh.face[k / 3][k % 3] = (uint32_t)(unsigned char)data[4 + 3 * mesh.vertex_count + k];
-    if (result == ABBE_OK) result = abbe_mesh_mend(&mesh, true, &what, error);
+    if (result == ABBE_OK)
+      result = abbe_mesh_mend(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
+    abbe_mesh *part = NULL;
+    size_t parts = 0;
+    if (result == ABBE_OK) result = abbe_mesh_split(&mesh, &part, &parts, error);
+    for (size_t k = 0; part != NULL && k < parts; k++) {
+      digest_mesh(&part[k]);
+      abbe_mesh_free(&part[k]);
+    }
+    free(part);
     if (result == ABBE_OK) digest_text(what);
     free(what);
     free(data);

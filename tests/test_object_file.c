@@ -5,8 +5,10 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,11 +31,12 @@ static int free_table(void **state) {
 static abbe_scene read(const char *text) {
   abbe_yaml *yaml;
   abbe_error error = {0};
-  abbe_scene scene = {.object_count = 1, .object = calloc(1, sizeof(abbe_object))};
+  enum { ROOM = 4 };
+  abbe_scene scene = {.object = calloc(ROOM, sizeof(abbe_object))};
   assert_non_null(scene.object);
   assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
   if (abbe_object_read(yaml, abbe_yaml_root(yaml), ABBE_SOURCE_DIR "/tests/bad/", &table,
-                       scene.object, &error) != ABBE_OK)
+                       scene.object, ROOM, &scene.object_count, &error) != ABBE_OK)
     fail_msg("%s", error.text);
   abbe_yaml_free(yaml);
   return scene;
@@ -111,6 +114,50 @@ static void an_inverted_mesh_is_mended_and_said(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* A cube without normals in its file is cut, unless the scene says otherwise; the same to whoever
+ * asks for its planes and to whoever asks for its normals. */
+static void a_die_is_what_the_scene_says(void **state) {
+  (void)state;
+  static const struct {
+    const char *key;
+    bool cut;
+  } dice[] = {{"", true}, {"smooth: true, ", false}, {"smooth: false, ", true}};
+  for (size_t i = 0; i < sizeof dice / sizeof *dice; i++) {
+    char text[256];
+    snprintf(text, sizeof text, "{mesh: ../meshes/die.obj, %sfit: 0.02, material: water}",
+             dice[i].key);
+    abbe_scene scene = read(text);
+    const abbe_object *o = &scene.object[0];
+    assert_int_equal(o->exact.kind, dice[i].cut ? ABBE_EXACT_CONVEX : ABBE_EXACT_NONE);
+    assert_int_equal(o->exact.convex.verdict,
+                     dice[i].cut ? ABBE_CONVEX_SOLID : ABBE_CONVEX_ROUNDED);
+    assert_true(fabs(o->max[0] - o->min[0] - 0.02) < 1e-15);
+    double own[3];
+    const uint32_t *f = o->mesh.face[0];
+    abbe_vector_triangle(o->mesh.position[f[0]], o->mesh.position[f[1]], o->mesh.position[f[2]],
+                         own);
+    assert_true(abbe_vector_normalise(own));
+    for (int k = 0; k < 3; k++)
+      assert_int_equal(abbe_vector_dot(own, o->mesh.normal[f[k]]) > 0.999, dice[i].cut);
+    abbe_scene_free(&scene);
+  }
+}
+
+static void parts_of_a_mesh_are_objects(void **state) {
+  (void)state;
+  abbe_scene scene = read("{name: boxes, mesh: ../meshes/crossing.obj, material: water}");
+  assert_int_equal(scene.object_count, 2);
+  assert_string_equal(scene.object[1].name, "boxes (part 2 of 2)");
+  assert_int_equal(scene.object[1].exact.count, 6);
+  assert_non_null(strstr(scene.object[0].mended, "2 solids"));
+  abbe_scene_free(&scene);
+  /* what receives light is not parted */
+  scene = read("{mesh: ../meshes/crossing.obj, reflectance: 1}");
+  assert_int_equal(scene.object_count, 1);
+  assert_null(scene.object[0].mended);
+  abbe_scene_free(&scene);
+}
+
 static void paths_follow_the_folder(void **state) {
   (void)state;
   char *path = abbe_object_path("scenes/", "a.png");
@@ -128,6 +175,8 @@ int main(void) {
       cmocka_unit_test(steps_apply_in_order),
       cmocka_unit_test(look_turns_z_to_the_target),
       cmocka_unit_test(an_inverted_mesh_is_mended_and_said),
+      cmocka_unit_test(a_die_is_what_the_scene_says),
+      cmocka_unit_test(parts_of_a_mesh_are_objects),
       cmocka_unit_test(paths_follow_the_folder),
   };
   return cmocka_run_group_tests(tests, load_table, free_table);

@@ -272,6 +272,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR STONE("dense"),
      {0},
      {"=7 wavelengths, 24 exits, 25 landings",
+      "+model: ball|convex planes: the object is a convex faceted solid: it has 19 planes",
       "+inner reflections|followed until less than 0.01 of the light is left, 24 exits at most; "
       "6.1 % of it is still inside then",
       NULL}},

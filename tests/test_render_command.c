@@ -64,9 +64,21 @@ static void test_the_plan_as_json(void **state) {
     assert_true(cJSON_IsString(cJSON_GetObjectItemCaseSensitive(entry, "reason")));
   }
   assert_near(number(json, "wavelengths"), 7, 0);
+  const cJSON *objects = cJSON_GetObjectItemCaseSensitive(json, "objects"), *gem = NULL, *one;
+  cJSON_ArrayForEach(one, objects) {
+    if (strcmp(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(one, "name")), "gem") == 0)
+      gem = one;
+  }
+  assert_non_null(gem);
+  const cJSON *max = cJSON_GetObjectItemCaseSensitive(gem, "max");
+  assert_int_equal(cJSON_GetArraySize(max), 3);
+  assert_true(cJSON_GetNumberValue(cJSON_GetArrayItem(max, 0)) > 0.01);
+  assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(gem, "material")),
+                      "n-sf11");
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" plan \"$house\"/scenes/gem.yaml"), 0);
   assert_contains(run_output, "What runs, and the fact that asks for it:");
+  assert_contains(run_output, "What is there, with its size and the middle of its bounds, m:");
   assert_contains(run_output, "What does not run:");
 }
 

@@ -1,5 +1,6 @@
 #include "scenes/shape.h"
 
+#include "scenes/convex.h"
 #include "scenes/vector.h"
 
 #include <math.h>
@@ -15,8 +16,10 @@
 #define PI 3.14159265358979323846
 
 static bool is_convex(const abbe_mesh *mesh, size_t most, double (*plane)[4], size_t *count) {
-  assert_int_equal(abbe_mesh_convex_planes(mesh, most, plane, count, NULL), ABBE_OK);
-  return *count > 0;
+  abbe_convex found;
+  assert_int_equal(abbe_convex_find(mesh, most, plane, NULL, &found, NULL), ABBE_OK);
+  *count = found.planes;
+  return found.verdict == ABBE_CONVEX_SOLID;
 }
 
 static abbe_mesh_report assert_closed(const abbe_mesh *mesh) {

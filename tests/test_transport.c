@@ -33,7 +33,9 @@ static void what_is_asked_for_is_checked_by_name(void **state) {
   assert_int_equal(abbe_transport_model(&scene.object[1], &plan), ABBE_REFRACTOR_SPHERE);
   plan.walk = true;
   assert_int_equal(abbe_transport_model(&scene.object[2], &plan), ABBE_REFRACTOR_HIERARCHY);
-  assert_contains(abbe_transport_reason(&scene.object[2], &plan), "general mesh");
+  char reason[192];
+  abbe_transport_reason(&scene.object[2], &plan, reason, sizeof reason);
+  assert_contains(reason, "general mesh");
   assert_false(abbe_transport_invisible(&scene, &scene.object[1], &plan));
   abbe_scene_free(&scene);
 }

@@ -289,7 +289,7 @@ static void follow(const context *c, eye_path p) {
     }
     crossing x;
     cross(&p, &hit, &x);
-    if (x.from == x.to) {
+    if (abbe_media_same(c->w->media, x.from, x.to)) {
       p.inside = x.after;
       abbe_geometry_leave(&hit, p.d, p.o);
       continue;
@@ -379,7 +379,7 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
   out->refractor = true;
   crossing at;
   cross(&p, &hit, &at);
-  if (at.from == at.to) {
+  if (abbe_media_same(c.w->media, at.from, at.to)) {
     p.id = 1;
     p.inside = at.after;
     abbe_geometry_leave(&hit, p.d, p.o);

@@ -47,8 +47,10 @@ static void face_normal(const abbe_mesh *mesh, size_t face, float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = (float)(known ? n[k] : mesh->normal[f[0]][k]);
 }
 
-/* Embree reads 16 bytes at the last vertex: one more than there are is kept. */
-static bool copy_mesh(const abbe_geometry *g, const abbe_mesh *mesh, abbe_surface *s) {
+/* Triangles of one plane of a convex solid have its normal, as thin ones may be off it. Embree
+ * reads 16 bytes at the last vertex: one more than there are is kept. */
+static bool copy_mesh(const abbe_geometry *g, const abbe_object *object, abbe_surface *s) {
+  const abbe_mesh *mesh = &object->mesh;
   s->flat = same_normals(mesh);
   size_t normals = s->flat ? mesh->face_count : mesh->vertex_count;
   s->position = calloc(mesh->vertex_count + 1, sizeof *s->position);
@@ -59,7 +61,9 @@ static bool copy_mesh(const abbe_geometry *g, const abbe_mesh *mesh, abbe_surfac
     abbe_geometry_to_frame(g, mesh->position[i], s->position[i]);
   memcpy(s->face, mesh->face, mesh->face_count * sizeof *s->face);
   for (size_t i = 0; i < normals; i++) {
-    if (s->flat)
+    if (s->flat && object->exact.kind == ABBE_EXACT_CONVEX)
+      for (int k = 0; k < 3; k++) s->normal[i][k] = (float)mesh->normal[mesh->face[i][0]][k];
+    else if (s->flat)
       face_normal(mesh, i, s->normal[i]);
     else
       for (int k = 0; k < 3; k++) s->normal[i][k] = (float)mesh->normal[i][k];
@@ -91,7 +95,7 @@ static bool add_sphere(abbe_geometry *g, const abbe_object *o, abbe_surface *s, 
 }
 
 static bool add_triangles(abbe_geometry *g, const abbe_object *o, abbe_surface *s, unsigned id) {
-  if (!copy_mesh(g, &o->mesh, s)) return false;
+  if (!copy_mesh(g, o, s)) return false;
   RTCGeometry geometry = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s->position, 0,
                              sizeof *s->position, o->mesh.vertex_count);

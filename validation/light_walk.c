@@ -352,7 +352,7 @@ static void meet(const abbe_light_walk *w, const path *s, const float d[3], lane
   }
   abbe_media_cross(s->inside, hit->surface->index, entering, &l->before[k], &l->after[k]);
   int from = abbe_media_of(l->before[k]), to = abbe_media_of(l->after[k]);
-  l->straight[k] = from == to;
+  l->straight[k] = abbe_media_same(w->media, from, to);
   l->eta[k] = l->straight[k] ? 1
                              : abbe_media_n(w->media, from, s->step, s->within) /
                                    abbe_media_n(w->media, to, s->step, s->within);

@@ -6,6 +6,8 @@ static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_me
                         bool *absorbs, abbe_error *error) {
   for (size_t i = 0; i < m->refractors; i++) {
     const abbe_material *material = g->scene->object[g->refractor_object[i]].material;
+    for (m->stuff[i] = 0; m->stuff[i] < i; m->stuff[i]++)
+      if (g->scene->object[g->refractor_object[m->stuff[i]]].material == material) break;
     for (size_t k = 0; k <= m->steps; k++) {
       double n = 0;
       abbe_result result = abbe_material_n(material, lambda_nm[k], &n, error);
@@ -28,9 +30,10 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   m.n = calloc(values, sizeof *m.n);
   m.attenuation = calloc(values, sizeof *m.attenuation);
   m.dispersive = calloc(m.refractors + 1, sizeof *m.dispersive);
+  m.stuff = calloc(m.refractors + 1, sizeof *m.stuff);
   bool absorbs = false;
   abbe_result result =
-      m.n == NULL || m.attenuation == NULL || m.dispersive == NULL
+      m.n == NULL || m.attenuation == NULL || m.dispersive == NULL || m.stuff == NULL
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tables of %zu media", m.refractors)
           : fill(geometry, lambda_nm, &m, &absorbs, error);
   if (!absorbs) {
@@ -47,5 +50,6 @@ void abbe_media_free(abbe_media *m) {
   free(m->n);
   free(m->attenuation);
   free(m->dispersive);
+  free(m->stuff);
   *m = (abbe_media){0};
 }

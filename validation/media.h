@@ -2,8 +2,9 @@
  *
  * Refractors may overlap: where they do, the one listed last in the scene file is there. So the
  * set of refractors around a point is enough to know its medium, and a surface that another,
- * later refractor covers is no interface. The tables hold index and attenuation of every refractor
- * at the sampler's wavelengths. Air (n = 1) is where no refractor is.
+ * later refractor covers is no interface, nor is one between two of the same material. The tables
+ * hold index and attenuation of every refractor at the sampler's wavelengths. Air (n = 1) is where
+ * no refractor is.
  */
 #ifndef ABBE_VALIDATION_MEDIA_H
 #define ABBE_VALIDATION_MEDIA_H
@@ -40,12 +41,18 @@ typedef struct abbe_media {
   float *n;           /* [refractors][steps + 1] at the steps' edges */
   float *attenuation; /* the same, a frame unit; NULL where all are clear */
   bool *dispersive;   /* [refractors] the index varies over the steps */
+  uint32_t *stuff;    /* [refractors] the first refractor of the same material */
 } abbe_media;
 
 /* Tables over the steps + 1 wavelengths lambda_nm, ascending. Errors as abbe_material_n. */
 abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
                             abbe_media *out, abbe_error *error);
 void abbe_media_free(abbe_media *media);
+
+/* Whether two media (-1: air) are one, so that there is no interface between them. */
+static inline bool abbe_media_same(const abbe_media *m, int a, int b) {
+  return a == b || (a >= 0 && b >= 0 && m->stuff[a] == m->stuff[b]);
+}
 
 /* Index of medium i (-1: air) within step k, at the share f of it. */
 static inline float abbe_media_n(const abbe_media *m, int i, uint32_t k, float f) {

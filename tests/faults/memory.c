@@ -1,3 +1,4 @@
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "tests/faults/memory.h"
 
 #include <errno.h>
@@ -13,38 +14,53 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <yaml.h>
 
-static atomic_bool on, every;
-static atomic_size_t seen, wanted, failed;
-static char what[160];
+/* Child processes, as the one that reads a mesh, count with their parent. */
+static struct shared {
+  atomic_bool on, every;
+  atomic_size_t seen, wanted, failed;
+  char what[160];
+} none, *shared = &none;
+
+static void share(void) {
+  if (shared != &none) return;
+  void *memory =
+      mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) abort();
+  shared = memory;
+}
 
 void faults_memory_begin(size_t n, bool all) {
-  seen = failed = 0;
-  wanted = n;
-  every = all;
-  what[0] = '\0';
-  on = true;
+  share();
+  shared->seen = shared->failed = 0;
+  shared->wanted = n;
+  shared->every = all;
+  shared->what[0] = '\0';
+  shared->on = true;
 }
 
 size_t faults_memory_end(void) {
-  on = false;
-  return seen;
+  shared->on = false;
+  return shared->seen;
 }
 
 size_t faults_memory_failed(void) {
-  return failed;
+  return shared->failed;
 }
 
 const char *faults_memory_what(void) {
-  return what;
+  return shared->what;
 }
 
 static bool fails(const char *name, const void *caller) {
-  if (!on) return false;
-  const size_t mine = ++seen;
-  if (wanted == 0 || mine < wanted || (mine > wanted && !every)) return false;
-  if (failed++ == 0) snprintf(what, sizeof what, "%s called at %p", name, caller);
+  if (!shared->on) return false;
+  const size_t mine = ++shared->seen;
+  if (shared->wanted == 0 || mine < shared->wanted || (mine > shared->wanted && !shared->every))
+    return false;
+  if (shared->failed++ == 0)
+    snprintf(shared->what, sizeof shared->what, "%s called at %p", name, caller);
   errno = ENOMEM;
   return true;
 }

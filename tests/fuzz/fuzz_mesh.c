@@ -2,14 +2,18 @@
  *
  * Input: a byte of choices, a byte each for the numbers of vertices and faces, a byte that scales,
  * then positions and faces. Choices: 1 smooth, 2 positions as eight raw bytes a coordinate (else
- * one signed byte), 4 subdivide, 8 texture coordinates; the upper half picks the transform.
+ * one signed byte), 4 subdivide, 8 texture coordinates and repair; the upper half picks the
+ * transform.
  */
 #include "tests/fuzz/fuzz.h"
 
+#include "scenes/convex.h"
 #include "scenes/mesh.h"
 #include "scenes/topology.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *const fuzz_words[] = {
@@ -90,12 +94,32 @@ static void topology_holds(const abbe_mesh *mesh) {
   abbe_topology_free(&t);
 }
 
-static void mend(abbe_mesh *mesh, int smooth, size_t levels) {
+static void split(const abbe_mesh *mesh, size_t solids) {
+  abbe_mesh *part = NULL;
+  abbe_error error = {0};
+  size_t count = 0, faces = 0;
+  if (abbe_mesh_split(mesh, &part, &count, &error) != ABBE_OK) {
+    FUZZ_PROMISE(error.text[0] != '\0' && part == NULL);
+    return;
+  }
+  FUZZ_PROMISE(count == solids && (part == NULL) == (count == 1));
+  for (size_t i = 0; part != NULL && i < count; i++) {
+    usable(&part[i]);
+    faces += part[i].face_count;
+    abbe_mesh_free(&part[i]);
+  }
+  FUZZ_PROMISE(part == NULL || faces == mesh->face_count);
+  free(part);
+}
+
+static void mend(abbe_mesh *mesh, int smooth, bool repair, size_t levels) {
   abbe_mesh before;
   abbe_error error = {0};
   char *what = NULL;
   copy_mesh(mesh, &before);
-  if (abbe_mesh_mend(mesh, smooth, &what, &error) != ABBE_OK) {
+  size_t solids = 0;
+  if (abbe_mesh_mend(mesh, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, repair, &solids, &what,
+                     &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && what == NULL && same_mesh(mesh, &before));
     abbe_mesh_free(&before);
     return;
@@ -104,10 +128,14 @@ static void mend(abbe_mesh *mesh, int smooth, size_t levels) {
   FUZZ_PROMISE(abbe_mesh_check(mesh, &r, &error) == ABBE_OK);
   FUZZ_PROMISE(r.open_edges == 0 && r.crowded_edges == 0 && r.flipped_edges == 0 && r.volume > 0);
   usable(mesh);
+  split(mesh, solids);
   double plane[64][4];
-  size_t count = 0;
-  FUZZ_PROMISE(abbe_mesh_convex_planes(mesh, 64, plane, &count, &error) == ABBE_OK);
-  FUZZ_PROMISE(count == 0 || (count >= 4 && count <= 64 && isfinite(plane[0][3])));
+  abbe_convex found;
+  char text[128];
+  FUZZ_PROMISE(abbe_convex_find(mesh, 64, plane, NULL, &found, &error) == ABBE_OK);
+  FUZZ_PROMISE(found.verdict != ABBE_CONVEX_SOLID ||
+               (found.planes >= 4 && found.planes <= 64 && isfinite(plane[0][3])));
+  abbe_convex_reason(&found, text, sizeof text);
   abbe_mesh_contains(mesh, (const double[3]){0.1, 0.2, 0.3});
   if (levels > 0 && abbe_mesh_subdivide(mesh, levels, &error) == ABBE_OK) usable(mesh);
   free(what);
@@ -123,15 +151,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   abbe_error error = {0};
   if (abbe_mesh_check(&mesh, &report, &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0');
-    FUZZ_PROMISE(abbe_mesh_mend(&mesh, choices & 1, NULL, &error) != ABBE_OK);
+    FUZZ_PROMISE(abbe_mesh_mend(&mesh, ABBE_NORMALS_AUTO, false, NULL, NULL, &error) != ABBE_OK);
   } else {
     topology_holds(&mesh);
     double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     matrix[0] = (double)(int)(choices >> 4) - 7;
-    FUZZ_PROMISE(abbe_mesh_compute_normals(&mesh, choices & 1, &error) == ABBE_OK);
+    FUZZ_PROMISE(abbe_mesh_compute_normals(&mesh, (abbe_mesh_normals)(choices % 3), &error) ==
+                 ABBE_OK);
     usable(&mesh);
     FUZZ_PROMISE((abbe_mesh_transform(&mesh, matrix, &error) == ABBE_OK) == (matrix[0] != 0));
-    mend(&mesh, choices & 1, (choices & 4) != 0);
+    mend(&mesh, choices & 1, (choices & 8) != 0, (choices & 4) != 0);
   }
   abbe_mesh_free(&mesh);
   return 0;
