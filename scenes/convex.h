@@ -53,6 +53,18 @@ typedef struct abbe_convex {
 abbe_result abbe_convex_find(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
                              uint32_t *plane_of, abbe_convex *out, abbe_error *error);
 
+/* The greatest share of its size that a mesh may be flattened by. */
+#define ABBE_CONVEX_MOST_FLATTENED 0.02
+
+/* Makes the mesh the convex solid of few planes that it nearly is: triangles within `share` of its
+ * size of one plane become one, by their mean, and the solid is what lies behind all planes. Its
+ * faces are new, with normals of their own. *moved: how far a corner of the mesh lies off the solid
+ * at the most, a share of its size. ABBE_GEOMETRY where more than max_planes are left, or a corner
+ * lies off by more than three times the share, with how far and where; the mesh is then as it was.
+ * ABBE_INVALID_ARGUMENT for a share of 0 or above ABBE_CONVEX_MOST_FLATTENED, ABBE_NO_MEMORY. */
+abbe_result abbe_convex_flatten(abbe_mesh *mesh, double share, size_t max_planes, double *moved,
+                                abbe_error *error);
+
 /* The verdict as a part of a sentence whose subject is "it". */
 void abbe_convex_reason(const abbe_convex *convex, char *text, size_t size);
 

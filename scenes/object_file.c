@@ -451,6 +451,21 @@ static abbe_result read_size_and_place(const reading *r, abbe_object_surface *s,
   return result;
 }
 
+static abbe_result read_flatten(const reading *r, double *out, abbe_error *error) {
+  const abbe_yaml_node flatten = abbe_yaml_get(r->yaml, r->node, "flatten");
+  const bool refracts = abbe_yaml_get(r->yaml, r->node, "material").id != 0;
+  abbe_result result =
+      abbe_yaml_get_number(r->yaml, r->node, "flatten", 0, ABBE_CONVEX_MOST_FLATTENED, out, error);
+  if (result == ABBE_OK && flatten.id && (r->kind != MESH || !refracts))
+    result = abbe_yaml_fail(r->yaml, flatten, error,
+                            "'flatten' is for the mesh of a file that refracts");
+  if (result == ABBE_OK && *out > 0 && r->normals == ABBE_NORMALS_SMOOTH)
+    result =
+        abbe_yaml_fail(r->yaml, flatten, error,
+                       "'flatten' makes a cut solid; leave out 'smooth: true' and 'subdivide'");
+  return result;
+}
+
 static abbe_result place(const reading *r, const abbe_object_surface *surface, abbe_object *out,
                          size_t room, size_t *count, abbe_error *error) {
   const abbe_result result = abbe_object_place(surface, out, room, count, error);
@@ -480,6 +495,7 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   if (result == ABBE_OK) result = read_surface(&r, &out->mesh, error);
   if (result == ABBE_OK) result = read_transform(&r, error);
   if (result == ABBE_OK) result = read_size_and_place(&r, &surface, error);
+  if (result == ABBE_OK) result = read_flatten(&r, &surface.flatten, error);
   if (result == ABBE_OK) result = read_substance(&r, table, out, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "an object", error);
   if (result != ABBE_OK) return result;

@@ -187,15 +187,21 @@ static abbe_result choose_facets(abbe_mesh *mesh, abbe_error *error) {
   return result;
 }
 
-static abbe_result note_parts(abbe_object *out, size_t parts, abbe_error *error) {
-  const size_t size = (out->mended ? strlen(out->mended) : 0) + 128;
-  char *text = malloc(size);
-  if (!text) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a sentence");
-  snprintf(text, size, "%s%sparts of the mesh cross, and are followed as %zu solids that overlap",
-           out->mended ? out->mended : "", out->mended ? "; " : "", parts);
+static abbe_result add_note(abbe_object *out, const char *text, abbe_error *error) {
+  const size_t size = (out->mended ? strlen(out->mended) : 0) + strlen(text) + 3;
+  char *all = malloc(size);
+  if (!all) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a sentence");
+  snprintf(all, size, "%s%s%s", out->mended ? out->mended : "", out->mended ? "; " : "", text);
   free(out->mended);
-  out->mended = text;
+  out->mended = all;
   return ABBE_OK;
+}
+
+static abbe_result note_parts(abbe_object *out, size_t parts, abbe_error *error) {
+  char text[96];
+  snprintf(text, sizeof text,
+           "parts of the mesh cross, and are followed as %zu solids that overlap", parts);
+  return add_note(out, text, error);
 }
 
 /* Part i of an object, as an object of its own. */
@@ -240,10 +246,27 @@ static abbe_result solidify(const abbe_object_surface *s, abbe_object *out, size
   return result == ABBE_OK ? note_parts(out, parts, error) : result;
 }
 
+/* Makes one part the convex solid of few planes that it nearly is, and says so. */
+static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_error *error) {
+  double moved = 0;
+  char text[128];
+  abbe_result result =
+      abbe_convex_flatten(&out->mesh, s->flatten, ABBE_SCENE_MAX_PLANES, &moved, error);
+  if (result == ABBE_OK)
+    result = abbe_mesh_mend(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
+  if (result != ABBE_OK) return result;
+  snprintf(text, sizeof text,
+           "made a convex solid of planes, of which its corners lie up to %.2g %% of its size off",
+           100 * moved);
+  return add_note(out, text, error);
+}
+
 static abbe_result place_one(const abbe_object_surface *s, const double matrix[16],
                              abbe_object *out, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (out->material && s->file && s->normals == ABBE_NORMALS_AUTO && !out->mesh.given_normals)
+  if (out->material && s->flatten > 0)
+    result = flatten(s, out, error);
+  else if (out->material && s->file && s->normals == ABBE_NORMALS_AUTO && !out->mesh.given_normals)
     result = choose_facets(&out->mesh, error);
   if (result == ABBE_OK) result = abbe_mesh_transform(&out->mesh, matrix, error);
   if (result == ABBE_OK) result = find_exact(s, matrix, out, error);

@@ -24,6 +24,7 @@ typedef struct abbe_object_surface {
   bool file;         /* its mesh is a file's */
   abbe_mesh_normals normals;
   bool repair;
+  double flatten; /* share of its size by which it is made a convex solid of planes, or 0 */
   double fit; /* the longest side of its bounds, m, or 0: as it is */
   bool centred;
   double centre[3]; /* where the middle of its bounds comes to stand */

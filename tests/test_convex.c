@@ -214,6 +214,74 @@ static void thin_faces_go_with_a_plane(void **state) {
   abbe_mesh_free(&m);
 }
 
+/* A stone drawn by hand: kites folded by a few degrees. Flattened it has the planes that it was to
+ * have, is closed, and its corners have hardly moved. */
+static void a_stone_of_folded_kites_is_flattened(void **state) {
+  (void)state;
+  abbe_mesh m = brilliant();
+  for (size_t v = 0; v < m.vertex_count;
+       v++) { /* the middle of the crown's kites and the culet's */
+    const double *p = m.position[v];
+    if (p[2] > 0.0004 && p[2] < 0.0015) m.position[v][2] += 3e-5;
+  }
+  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  const abbe_convex before = judge(&m);
+  assert_int_equal(before.verdict, ABBE_CONVEX_DENTED);
+  abbe_mesh_report was, is;
+  assert_int_equal(abbe_mesh_check(&m, &was, NULL), ABBE_OK);
+  double moved = 0;
+  abbe_error error = {0};
+  if (abbe_convex_flatten(&m, 0.005, 256, &moved, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(abbe_mesh_check(&m, &is, NULL), ABBE_OK);
+  assert_int_equal(is.open_edges + is.crowded_edges + is.flipped_edges, 0);
+  assert_int_equal(is.shells, 1);
+  assert_near(is.volume / was.volume, 1, 0.02);
+  assert_true(moved > 0 && moved < 0.01);
+  const abbe_convex after = judge(&m);
+  assert_int_equal(after.verdict, ABBE_CONVEX_SOLID);
+  assert_true(after.planes >= 49 && after.planes <= 73);
+  for (size_t v = 0; v < m.vertex_count; v++)
+    for (size_t i = 0; i < after.planes; i++)
+      assert_true(abbe_vector_dot(plane[i], m.position[v]) <= plane[i][3] + 1e-6 * after.size);
+  abbe_mesh_free(&m);
+}
+
+/* Planes that all meet in one point: only rounding says in which order. */
+static void points_of_many_planes_stay_closed(void **state) {
+  (void)state;
+  for (size_t sides = 3; sides < 40; sides++) {
+    abbe_mesh m;
+    abbe_mesh_report r;
+    double moved = 0;
+    abbe_error error = {0};
+    assert_int_equal(abbe_shape_gem(sides, 1, 0.6, 0.25, 0.5, &m, NULL), ABBE_OK);
+    if (abbe_convex_flatten(&m, 1e-4, 256, &moved, &error) != ABBE_OK) fail_msg("%s", error.text);
+    assert_true(moved < 1e-9);
+    assert_int_equal(abbe_mesh_check(&m, &r, NULL), ABBE_OK);
+    assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges, 0);
+    assert_int_equal(judge(&m).planes, 3 * sides + 1);
+    abbe_mesh_free(&m);
+  }
+}
+
+static void what_is_no_stone_is_not_flattened(void **state) {
+  (void)state;
+  abbe_mesh m;
+  abbe_error error = {0};
+  double moved;
+  assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
+  const double(*before)[3] = (const double(*)[3])m.position;
+  assert_int_equal(abbe_convex_flatten(&m, 0, 256, &moved, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_convex_flatten(&m, 0.021, 256, &moved, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_convex_flatten(&m, NAN, 256, &moved, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_convex_flatten(&m, 0.001, 256, &moved, &error), ABBE_GEOMETRY);
+  assert_contains(error.text, "more planes than can be followed");
+  assert_int_equal(abbe_convex_flatten(&m, 0.02, 4096, &moved, &error), ABBE_GEOMETRY);
+  assert_contains(error.text, "is no convex solid yet: (");
+  assert_ptr_equal(before, m.position);
+  abbe_mesh_free(&m);
+}
+
 static void nothing_is_judged_of_nothing(void **state) {
   (void)state;
   abbe_mesh none = {0};
@@ -235,6 +303,9 @@ int main(void) {
       cmocka_unit_test(rounded_normals_are_no_planes),
       cmocka_unit_test(a_gentle_curve_is_not_cut_into_planes),
       cmocka_unit_test(thin_faces_go_with_a_plane),
+      cmocka_unit_test(a_stone_of_folded_kites_is_flattened),
+      cmocka_unit_test(points_of_many_planes_stay_closed),
+      cmocka_unit_test(what_is_no_stone_is_not_flattened),
       cmocka_unit_test(nothing_is_judged_of_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -253,6 +253,10 @@ static void bad_scenes_are_explained(void **state) {
       {"light_inside_a_file_of_millimetres", ABBE_UNSUPPORTED,
        "so move it outside; 'stone' is 200 m wide, all other objects together 1 m: if its file is "
        "in another unit, 'fit: METRES' gives it its size"},
+      {"flattened_blob", ABBE_SCHEMA, "leave out 'smooth: true'"},
+      {"flattened_floor", ABBE_SCHEMA, "'flatten' is for the mesh of a file that refracts"},
+      {"flattened_too_far", ABBE_SCHEMA, "'flatten: 0.5'"},
+      {"flattened_dent", ABBE_GEOMETRY, "the mesh is no convex solid yet: ("},
       {"fit_to_nothing", ABBE_SCHEMA, "'fit' is the longest side"},
       {"repaired_shape", ABBE_SCHEMA, "'repair' is for the mesh of a file"},
       {"centre_of_two", ABBE_SCHEMA, "'centre'"},

@@ -137,6 +137,14 @@ static void mend(abbe_mesh *mesh, int smooth, bool repair, size_t levels) {
                (found.planes >= 4 && found.planes <= 64 && isfinite(plane[0][3])));
   abbe_convex_reason(&found, text, sizeof text);
   abbe_mesh_contains(mesh, (const double[3]){0.1, 0.2, 0.3});
+  abbe_mesh flat;
+  double moved = 0;
+  copy_mesh(mesh, &flat);
+  if (abbe_convex_flatten(&flat, 0.02, 64, &moved, &error) == ABBE_OK)
+    FUZZ_PROMISE(isfinite(moved) && flat.face_count > 0);
+  else
+    FUZZ_PROMISE(error.text[0] != '\0' && same_mesh(&flat, mesh));
+  abbe_mesh_free(&flat);
   if (levels > 0 && abbe_mesh_subdivide(mesh, levels, &error) == ABBE_OK) usable(mesh);
   free(what);
   abbe_mesh_free(&before);
