@@ -1,5 +1,6 @@
 #include "scenes/mesh.h"
 
+#include "scenes/mesh_parts.h"
 #include "scenes/transform.h"
 #include "scenes/vector.h"
 
@@ -36,6 +37,27 @@ abbe_result abbe_mesh_make(size_t vertices, size_t faces, bool with_uv, abbe_mes
   }
   out->vertex_count = vertices;
   out->face_count = faces;
+  return ABBE_OK;
+}
+
+abbe_result abbe_mesh_drop_unused(abbe_mesh *mesh, abbe_error *error) {
+  uint32_t *number = malloc((mesh->vertex_count + 1) * sizeof *number);
+  size_t kept = 0;
+  if (!number) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the vertices of a mesh");
+  memset(number, 0xff, (mesh->vertex_count + 1) * sizeof *number);
+  for (size_t c = 0; c < 3 * mesh->face_count; c++) number[mesh->face[c / 3][c % 3]] = 0;
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    if (number[v] != 0) continue;
+    number[v] = (uint32_t)kept;
+    memmove(mesh->position[kept], mesh->position[v], sizeof *mesh->position);
+    memmove(mesh->normal[kept], mesh->normal[v], sizeof *mesh->normal);
+    if (mesh->uv) memmove(mesh->uv[kept], mesh->uv[v], sizeof *mesh->uv);
+    kept++;
+  }
+  for (size_t c = 0; c < 3 * mesh->face_count; c++)
+    mesh->face[c / 3][c % 3] = number[mesh->face[c / 3][c % 3]];
+  mesh->vertex_count = kept;
+  free(number);
   return ABBE_OK;
 }
 

@@ -84,7 +84,7 @@ static abbe_result join_points(abbe_mesh *mesh, const abbe_topology *t, abbe_err
   memcpy(joined.face, t->face, t->face_count * sizeof *joined.face);
   abbe_mesh_free(mesh);
   *mesh = joined;
-  return ABBE_OK;
+  return abbe_mesh_drop_unused(mesh, error);
 }
 
 /* One vertex for each point, normal and texture coordinate that corners have. */

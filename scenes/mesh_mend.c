@@ -372,6 +372,8 @@ abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repa
   const bool changed = done.repeated + done.doubles + done.walls + done.sheets + done.slivers +
                            done.turned + done.holes + done.inverted >
                        0;
+  if (result == ABBE_OK && changed && normals != ABBE_NORMALS_AUTO)
+    result = abbe_mesh_drop_unused(&work, error);
   if (result == ABBE_OK && changed)
     result = normals == ABBE_NORMALS_AUTO ? mended_normals(mesh, &t, &work, error)
                                           : abbe_mesh_compute_normals(&work, normals, error);

@@ -28,6 +28,9 @@ bool abbe_mesh_is_sliver(const double *const corner[3], int *tip);
 abbe_result abbe_mesh_check_known(const abbe_mesh *mesh, const abbe_topology *topology,
                                   abbe_mesh_report *report, abbe_error *error);
 
+/* Drops vertices that no face names. */
+abbe_result abbe_mesh_drop_unused(abbe_mesh *mesh, abbe_error *error);
+
 /* Steps of mending, over a mesh of one vertex a point. */
 
 /* Drops faces that are there twice and counts them; in walls: that lie on one another back to back,

@@ -436,7 +436,6 @@ static abbe_mesh_normals normals_of(const reading *r) {
 static abbe_result read_size_and_place(const reading *r, abbe_object_surface *s,
                                        abbe_error *error) {
   const abbe_yaml_node fit = abbe_yaml_get(r->yaml, r->node, "fit");
-  const abbe_yaml_node repair = abbe_yaml_get(r->yaml, r->node, "repair");
   s->centred = abbe_yaml_get(r->yaml, r->node, "centre").id != 0;
   abbe_result result = abbe_yaml_get_number(r->yaml, r->node, "fit", 0, FAR, &s->fit, error);
   if (result == ABBE_OK && fit.id && !(s->fit > 0))
@@ -445,24 +444,29 @@ static abbe_result read_size_and_place(const reading *r, abbe_object_surface *s,
                             "above 0");
   if (result == ABBE_OK)
     result = abbe_yaml_get_numbers(r->yaml, r->node, "centre", 3, -FAR, FAR, s->centre, error);
-  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "repair", &s->repair, error);
-  if (result == ABBE_OK && repair.id && r->kind != MESH)
-    result = abbe_yaml_fail(r->yaml, repair, error, "'repair' is for the mesh of a file");
   return result;
 }
 
-static abbe_result read_flatten(const reading *r, double *out, abbe_error *error) {
-  const abbe_yaml_node flatten = abbe_yaml_get(r->yaml, r->node, "flatten");
+/* What changes a mesh into a solid says nothing of shapes, which are solids, or of what receives
+ * light, which need not be one. */
+static abbe_result refuse_elsewhere(const reading *r, const char *key, abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
   const bool refracts = abbe_yaml_get(r->yaml, r->node, "material").id != 0;
-  abbe_result result =
-      abbe_yaml_get_number(r->yaml, r->node, "flatten", 0, ABBE_CONVEX_MOST_FLATTENED, out, error);
-  if (result == ABBE_OK && flatten.id && (r->kind != MESH || !refracts))
-    result = abbe_yaml_fail(r->yaml, flatten, error,
-                            "'flatten' is for the mesh of a file that refracts");
-  if (result == ABBE_OK && *out > 0 && r->normals == ABBE_NORMALS_SMOOTH)
-    result =
-        abbe_yaml_fail(r->yaml, flatten, error,
-                       "'flatten' makes a cut solid; leave out 'smooth: true' and 'subdivide'");
+  if (!node.id || (r->kind == MESH && refracts)) return ABBE_OK;
+  return abbe_yaml_fail(r->yaml, node, error, "'%s' is for the mesh of a file that refracts", key);
+}
+
+static abbe_result read_solid(const reading *r, abbe_object_surface *s, abbe_error *error) {
+  abbe_result result = refuse_elsewhere(r, "repair", error);
+  if (result == ABBE_OK) result = refuse_elsewhere(r, "flatten", error);
+  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "repair", &s->repair, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(r->yaml, r->node, "flatten", 0, ABBE_CONVEX_MOST_FLATTENED,
+                                  &s->flatten, error);
+  if (result == ABBE_OK && s->flatten > 0 && r->normals == ABBE_NORMALS_SMOOTH)
+    result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "flatten"), error,
+                            "'flatten' makes a cut solid; leave out 'smooth: true' and "
+                            "'subdivide'");
   return result;
 }
 
@@ -495,7 +499,7 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   if (result == ABBE_OK) result = read_surface(&r, &out->mesh, error);
   if (result == ABBE_OK) result = read_transform(&r, error);
   if (result == ABBE_OK) result = read_size_and_place(&r, &surface, error);
-  if (result == ABBE_OK) result = read_flatten(&r, &surface.flatten, error);
+  if (result == ABBE_OK) result = read_solid(&r, &surface, error);
   if (result == ABBE_OK) result = read_substance(&r, table, out, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "an object", error);
   if (result != ABBE_OK) return result;

@@ -246,7 +246,14 @@ static void repair_drops_sheets(void **state) {
   char *what = repaired(&m);
   assert_contains(what, "1 sheet that hung on the body");
   assert_int_equal(m.face_count, 12);
+  assert_near(check(&m).max[0], 1, 0); /* the sheet's corner is gone as well */
   free(what);
+  abbe_mesh_free(&m);
+  m = test_boxes(box, 2);
+  m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
+  m.face_count = 13;
+  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_SMOOTH, true, NULL, NULL, NULL), ABBE_OK);
+  assert_int_equal(m.vertex_count, 8);
   abbe_mesh_free(&m);
   const test_box beside[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
   m = test_boxes(beside, 2);
@@ -667,6 +674,20 @@ static const char normals_obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                                   "f 1//1 3//2 2//3\nf 1//4 2//5 4//1\nf 1//1 4//1 3//1\n"
                                   "f 2//1 3//1 4//1\n";
 
+/* Scanners leave points that no face names: they are no part of its bounds. */
+static void points_without_faces_are_left_out(void **state) {
+  (void)state;
+  abbe_mesh m = load("t_far.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                     "property float y\nproperty float z\nelement face 1\n"
+                     "property list uchar int vertex_indices\nend_header\n"
+                     "0 0 0\n9 9 9\n1 0 0\n0 1 0\n3 0 2 3\n",
+                     ABBE_NORMALS_SMOOTH);
+  assert_int_equal(m.vertex_count, 3);
+  assert_near(check(&m).max[2], 0, 0);
+  abbe_mesh_free(&m);
+}
+
 static void a_file_s_normals_are_its_default(void **state) {
   (void)state;
   abbe_mesh m = load("t_normals.obj", normals_obj, ABBE_NORMALS_AUTO);
@@ -757,6 +778,7 @@ int main(void) {
       cmocka_unit_test(more_solids_than_are_followed_are_refused),
       cmocka_unit_test(a_surface_that_crosses_itself_is_said),
       cmocka_unit_test(normals_by_angles_keep_creases),
+      cmocka_unit_test(points_without_faces_are_left_out),
       cmocka_unit_test(a_file_s_normals_are_its_default),
       cmocka_unit_test(mending_keeps_given_normals),
       cmocka_unit_test(smooth_normals_are_shared_across_split_vertices),

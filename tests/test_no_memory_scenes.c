@@ -188,6 +188,9 @@ static abbe_result meshes(abbe_error *error) {
     if (result == ABBE_OK) result = abbe_convex_find(&mesh, 16, plane, NULL, &found, error);
     if (result == ABBE_OK && found.verdict == ABBE_CONVEX_SOLID)
       digest(plane, found.planes * sizeof *plane);
+    double moved = 0;
+    if (result == ABBE_OK && i == 0) result = abbe_convex_flatten(&mesh, 0.01, 16, &moved, error);
+    if (result == ABBE_OK) digest_mesh(&mesh);
     if (result == ABBE_OK) result = abbe_mesh_subdivide(&mesh, 1, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
     uint32_t(*few)[3] = NULL;
