@@ -34,8 +34,15 @@ static inline void abbe_vector_cross(const double a[3], const double b[3], doubl
 
 /* Scales a to length 1; false, a untouched, where its length is zero or not finite. */
 static inline bool abbe_vector_normalise(double a[3]) {
-  const double length = abbe_vector_length(a);
+  const double length = abbe_vector_length(a), whole = 1e-140; /* below, squares lose digits */
   if (!(length > 0.0) || !isfinite(length)) return false;
+  if (length < whole) {
+    const double most = fmax(fmax(fabs(a[0]), fabs(a[1])), fabs(a[2]));
+    double b[3];
+    for (int k = 0; k < 3; k++) b[k] = a[k] / most;
+    for (int k = 0; k < 3; k++) a[k] = b[k] / abbe_vector_length(b);
+    return true;
+  }
   for (int k = 0; k < 3; k++) a[k] /= length;
   return true;
 }

@@ -29,6 +29,17 @@ static void normalising_zero_or_infinity_is_refused(void **state) {
   assert_true(abbe_vector_normalise(good) && good[2] == -1);
 }
 
+/* Squares of these are subnormal numbers, of few digits. */
+static void what_is_next_to_nothing_has_a_direction(void **state) {
+  (void)state;
+  for (double size = 1e-120; size > 1e-161; size *= 0.1) {
+    double a[3] = {3 * size, -4 * size, 12 * size};
+    assert_true(abbe_vector_normalise(a));
+    assert_true(fabs(a[0] - 3.0 / 13) < 1e-15 && fabs(a[1] + 4.0 / 13) < 1e-15 &&
+                fabs(a[2] - 12.0 / 13) < 1e-15);
+  }
+}
+
 static void triangle_points_along_its_normal(void **state) {
   (void)state;
   const double a[3] = {1, 1, 5}, b[3] = {3, 1, 5}, c[3] = {1, 2, 5};
@@ -41,6 +52,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(products),
       cmocka_unit_test(normalising_zero_or_infinity_is_refused),
+      cmocka_unit_test(what_is_next_to_nothing_has_a_direction),
       cmocka_unit_test(triangle_points_along_its_normal),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
