@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/compare_report.h"
 
@@ -177,13 +178,13 @@ static abbe_result compare(const request *q, work *w, abbe_error *error) {
 /* The command line */
 
 static const struct argp_option options[] = {
-    {"mask", KEY_MASK, "caustic|FILE", 0,
+    {"mask", KEY_MASK, "caustic|FILE", ABBE_ARGUMENT_READS,
      "look at a region too: where REF's caustic is, or a picture's first channel is above 0.5", 0},
     {"mask-share", KEY_MASK_SHARE, "X", 0, "of the caustic's light that its mask holds (0.95)", 0},
     {"tolerance", KEY_TOLERANCE, "[mask.]METRIC=X", 0,
      "end with 3 where the metric is above X; of an energy ratio, its distance from 1; repeatable",
      0},
-    {"difference", KEY_DIFFERENCE, "FILE", 0,
+    {"difference", KEY_DIFFERENCE, "FILE", ABBE_ARGUMENT_WRITES,
      "where TEST is brighter or darker, in colours: a .png or .svg", 0},
     {"range", KEY_RANGE, "X", 0, "of the difference picture, -X to X (99 % of what there is)", 0},
     {"scale", KEY_SCALE, "best", 0, "multiply TEST by its best single factor first", 0},
@@ -315,7 +316,7 @@ static const struct argp parser = {
 
 int abbe_command_compare(int argc, char **argv) {
   request q = {.program = argv[0], .mask_share = ABBE_MASK_CAUSTIC_SHARE};
-  argp_parse(&parser, argc, argv, 0, NULL, &q);
+  abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   work w = {0};
   abbe_result result = compare(&q, &w, &error);

@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include "colorimetry/display_ocio.h"
@@ -151,8 +152,9 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "OUT.png", 0, "the PNG to write", 0},
-    {"ocio", KEY_OCIO, "FILE", 0, "the configuration; without it, $OCIO, else the shipped one", 0},
+    {"output", 'o', "OUT.png", ABBE_ARGUMENT_WRITES, "the PNG to write", 0},
+    {"ocio", KEY_OCIO, "FILE", ABBE_ARGUMENT_READS,
+     "the configuration; without it, $OCIO, else the shipped one", 0},
     {"display", KEY_DISPLAY, "NAME", 0, "the screen; without it, the configuration's first", 0},
     {"view", KEY_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
     {"exposure", KEY_EXPOSURE, "STOPS", 0, "brighten (or darken) before the view", 0},
@@ -222,7 +224,7 @@ static const struct argp parser = {
 
 int abbe_command_display(int argc, char **argv) {
   request r = {.program = argv[0], .bits = 8};
-  argp_parse(&parser, argc, argv, 0, NULL, &r);
+  abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_error error = {0};
   if (r.list) return abbe_command_end(r.program, list_views(&r, &error), &error);
   abbe_image image = {0};

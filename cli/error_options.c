@@ -1,5 +1,6 @@
 #include "cli/error_options.h"
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 #include "gl/error_picture.h"
@@ -16,7 +17,8 @@ static const struct argp_option options[] = {
      "the "
      "picture (4) and a coarse one: as many more frames",
      4},
-    {"error-png", OPTION_ERROR_PNG, "FILE.png", 0, "the errors in false colours", 4},
+    {"error-png", OPTION_ERROR_PNG, "FILE.png", ABBE_ARGUMENT_WRITES, "the errors in false colours",
+     4},
     {"mean", OPTION_MEAN, NULL, 0,
      "the picture is the variants' mean, with its errors: nearer to the truth", 4},
     {0}};

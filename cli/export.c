@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include "scenes/scene_file.h"
@@ -17,10 +18,10 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE.pov", 0, "where to", 0},
+    {"output", 'o', "FILE.pov", ABBE_ARGUMENT_WRITES, "where to", 0},
     {"photons", OPTION_PHOTONS, "N", 0, "that POV-Ray shoots at refractors (100000)", 0},
     {"samples", OPTION_SAMPLES, "N", 0, "of POV-Ray's spectrum, 2 to 100 (31)", 0},
-    {"materials", OPTION_MATERIALS, "TABLE", 0,
+    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 0},
     {"json", OPTION_JSON, NULL, 0, "what became of each material, on standard output", 0},
     {"quiet", 'q', NULL, 0, "no summary", 0},
@@ -114,11 +115,10 @@ int abbe_command_export(int argc, char **argv) {
       NULL,
       NULL};
   request q = {.program = argv[0]};
-  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
-  const abbe_scene_options scene_options = {.materials = q.materials};
-  abbe_result result = abbe_scene_load(q.scene, &scene_options, &scene, &error);
+  abbe_result result = abbe_command_load_scene(argv[0], q.scene, q.materials, &scene, &error);
   if (result == ABBE_OK) result = abbe_pov_file_write(q.output, &scene, &q.pov, &error);
   if (result == ABBE_OK && (q.json || !q.quiet)) result = report(&q, &scene, &error);
   abbe_scene_free(&scene);

@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include "colorimetry/exr.h"
@@ -180,7 +181,7 @@ static const struct argp parser = {
 
 int abbe_command_info(int argc, char **argv) {
   request r = {.program = argv[0]};
-  argp_parse(&parser, argc, argv, 0, NULL, &r);
+  abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_image image = {0};
   abbe_error error = {0};
   abbe_result result = abbe_exr_read(r.path, &image, &error);

@@ -66,7 +66,7 @@ int main(int argc, char **argv) {
   abbe_display_set_log(say);
   atexit(check_output);
   argp_err_exit_status = ABBE_EXIT_USAGE;
-  /* A closed pipe or a file-size limit is a write error with a sentence, not a sudden end. */
+  /* A closed pipe or a file-size limit is a write error, not a sudden end. */
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
 

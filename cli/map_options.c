@@ -1,5 +1,6 @@
 #include "cli/map_options.h"
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "colorimetry/exr.h"
 
@@ -9,9 +10,10 @@
 enum { OPTION_SAVE_MAP = 0x300, OPTION_MAP_LIGHT, OPTION_MAP_LIKE };
 
 static const struct argp_option options[] = {
-    {"save-map", OPTION_SAVE_MAP, "FILE.exr", 0, "where one light's flux lands, texel by texel", 3},
+    {"save-map", OPTION_SAVE_MAP, "FILE.exr", ABBE_ARGUMENT_WRITES,
+     "where one light's flux lands, texel by texel", 3},
     {"map-light", OPTION_MAP_LIGHT, "NAME|NUMBER", 0, "whose map that is (the first light's)", 3},
-    {"map-like", OPTION_MAP_LIKE, "FILE.exr", 0,
+    {"map-like", OPTION_MAP_LIKE, "FILE.exr", ABBE_ARGUMENT_READS,
      "texels that lie exactly as in that map, and as many", 3},
     {0}};
 

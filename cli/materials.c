@@ -78,9 +78,7 @@ int abbe_command_materials(int argc, char **argv) {
 /* ---- what the verbs share ---- */
 
 void abbe_materials_parse(const struct argp *parser, int argc, char **argv, void *request) {
-  if (argp_parse(parser, argc, argv, 0, NULL, request) == 0) return;
-  fprintf(stderr, "%s: no memory to read the arguments\n", argv[0]);
-  exit(ABBE_EXIT_FAILED);
+  abbe_arguments_parse(parser, 0, argc, argv, request);
 }
 
 _Noreturn void abbe_materials_wrong_use(const char *program, const char *sentence) {

@@ -7,6 +7,7 @@
 #ifndef ABBE_CLI_MATERIALS_H
 #define ABBE_CLI_MATERIALS_H
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "spectral/material_table.h"
 
@@ -39,14 +40,14 @@ ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)
 enum { ABBE_MATERIALS_KEY_TABLE = 256, ABBE_MATERIALS_KEY_JSON, ABBE_MATERIALS_KEY_OWN };
 #define ABBE_MATERIALS_TABLE_OPTION                                                                \
   {                                                                                                \
-    "table", ABBE_MATERIALS_KEY_TABLE, "FILE", 0,                                                  \
+    "table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS,                                \
         "a table file, or default or thesis; without it, default", 0                               \
   }
 #define ABBE_MATERIALS_JSON_OPTION                                                                 \
   { "json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "as JSON, numbers in full", 0 }
 
 struct argp;
-/* argp_parse; on want of memory says so and ends the program. */
+/* abbe_arguments_parse for verbs whose arguments are no files. */
 void abbe_materials_parse(const struct argp *parser, int argc, char **argv, void *request);
 /* Prints "PROGRAM: sentence" and where help is, and ends the program with ABBE_EXIT_USAGE. */
 _Noreturn void abbe_materials_wrong_use(const char *program, const char *sentence);

@@ -24,10 +24,10 @@ typedef struct request {
 
 static const struct argp_option options[] = {
     ABBE_CHANGE_OPTIONS,
-    {"from", KEY_FROM, "TABLE", 0,
+    {"from", KEY_FROM, "TABLE", ABBE_ARGUMENT_READS,
      "copy the record from this table file, or from default or thesis, comments and all", 0},
     {"as", KEY_AS, "NEW", 0, "under this name (with --from)", 0},
-    {"record", KEY_RECORD, "FILE", 0,
+    {"record", KEY_RECORD, "FILE", ABBE_ARGUMENT_READS,
      "the record itself as YAML, as other verbs print it; - reads it from the input", 0},
     {"create", KEY_CREATE, NULL, 0, "make the table's file, where there is none yet", 0},
     {0}};

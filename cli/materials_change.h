@@ -8,7 +8,8 @@
 /* The options that all of them have. */
 enum { ABBE_CHANGE_KEY_DRY_RUN = ABBE_MATERIALS_KEY_OWN, ABBE_CHANGE_KEY_OWN };
 #define ABBE_CHANGE_OPTIONS                                                                        \
-  {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", 0, "the table file to change", 0}, {                 \
+  {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS, "the table file to change", 0}, \
+  {                                                                                                \
     "dry-run", ABBE_CHANGE_KEY_DRY_RUN, NULL, 0,                                                   \
         "show the change as a unified diff, and write nothing", 0                                  \
   }

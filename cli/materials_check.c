@@ -203,7 +203,7 @@ enum { KEY_KNOWN = ABBE_MATERIALS_KEY_OWN, KEY_FIX, KEY_DRY_RUN, KEY_ALL };
 
 static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
-    {"known", KEY_KNOWN, "FILE", 0,
+    {"known", KEY_KNOWN, "FILE", ABBE_ARGUMENT_READS,
      "a table of materials that are known, to compare with; without it, default", 0},
     {"fix", KEY_FIX, NULL, 0,
      "put the mends that are certain into the file, and check what is left", 0},

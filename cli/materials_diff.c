@@ -200,7 +200,7 @@ static abbe_result compare(const request *r, const abbe_material_table *first,
 int abbe_materials_diff(int argc, char **argv) {
   request r = {.program = argv[0], .tolerance = NAN};
   abbe_error error = {0};
-  abbe_materials_parse(&parser, argc, argv, &r);
+  abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   if (r.second == NULL)
     abbe_materials_wrong_use(argv[0], "diff of what? Name two tables, such as thesis default");
   abbe_material_table first, second = {0};

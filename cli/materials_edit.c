@@ -11,11 +11,12 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", 0, "the table file to change", 0},
-    {"points", KEY_POINTS, "FILE.csv", 0,
+    {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS, "the table file to change", 0},
+    {"points", KEY_POINTS, "FILE.csv", ABBE_ARGUMENT_READS,
      "show the difference to these measured points (wavelength, n, uncertainty)", 0},
-    {"against", KEY_AGAINST, "NAME", 0, "show the difference to this material", 0},
-    {"from", KEY_FROM, "TABLE", 0, "which is in this table; without it, default", 0},
+    {"against", KEY_AGAINST, "NAME", ABBE_ARGUMENT_ONCE, "show the difference to this material", 0},
+    {"from", KEY_FROM, "TABLE", ABBE_ARGUMENT_READS, "which is in this table; without it, default",
+     0},
     {0}};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {

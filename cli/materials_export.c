@@ -47,7 +47,7 @@ static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
     {"to", KEY_TO, "FORMAT", 0,
      "yaml, sqlite, agf, rii, csv, pbrt, povray, mdl or gltf; without it, by the ending of -o", 0},
-    {"output", 'o', "FILE", 0, "where to; without it, to standard output", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to; without it, to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "nm, of the points (csv); 380:780 within the record's", 0},
     {"step", KEY_STEP, "NM", 0, "between the points (csv); 5", 0},

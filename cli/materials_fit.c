@@ -305,9 +305,10 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"points", KEY_POINTS, "FILE", 0,
+    {"points", KEY_POINTS, "FILE", ABBE_ARGUMENT_READS,
      "fit measured points: columns of wavelength, n and, if known, its uncertainty", 0},
-    {"formula", KEY_FORMULA, "TEXT", 0, "fit a formula: a model and its coefficients", 0},
+    {"formula", KEY_FORMULA, "TEXT", ABBE_ARGUMENT_ONCE,
+     "fit a formula: a model and its coefficients", 0},
     ABBE_MATERIALS_TABLE_OPTION,
     {"form", KEY_FORM, "FORM", 0, "cauchy or sellmeier; without it, cauchy", 1},
     {"terms", KEY_TERMS, "N", 0, "how many; without it, 2", 1},
@@ -315,7 +316,8 @@ static const struct argp_option options[] = {
      "fit from A to B nm; without it, 380:780, and all points of a file", 1},
     {"over", KEY_OVER, "A:B", 0, "also state the errors from A to B nm", 1},
     {"residuals", KEY_RESIDUALS, NULL, 0, "also the residual of every point", 2},
-    {"plot", KEY_PLOT, "FILE", 0, "draw the fit and its residuals: .png or .svg", 2},
+    {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "draw the fit and its residuals: .png or .svg",
+     2},
     {"record", KEY_RECORD, "NAME", 0, "the fit as a record of this name, for a table", 2},
     ABBE_MATERIALS_JSON_OPTION,
     {0}};

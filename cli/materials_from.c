@@ -131,7 +131,7 @@ static const struct argp_option options[] = {
     {"name", KEY_NAME, "NAME", 0, "of the record; without it, my-material", 1},
     {"source", KEY_SOURCE, "TEXT", 0, "where the numbers come from, for the record", 1},
     {"range", KEY_RANGE, "A:B", 0, "of the record, nm; without it, 380:780", 1},
-    {"known", KEY_KNOWN, "FILE", 0,
+    {"known", KEY_KNOWN, "FILE", ABBE_ARGUMENT_READS,
      "a table of known materials, which say how far two numbers lead; without it, default", 1},
     ABBE_MATERIALS_JSON_OPTION,
     {0}};

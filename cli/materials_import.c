@@ -30,7 +30,7 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "TABLE", 0,
+    {"output", 'o', "TABLE", ABBE_ARGUMENT_WRITES,
      "where to: YAML, or a store where it ends in .sqlite; without it, YAML to standard output", 0},
     {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
     {"format", KEY_FORMAT, "FORMAT", 0,
@@ -167,7 +167,7 @@ static abbe_result tell(const request *r, const abbe_material_table *table,
 
 int abbe_materials_import(int argc, char **argv) {
   request r = {.program = argv[0], .batch.import.csv.third = ABBE_CSV_K};
-  abbe_materials_parse(&parser, argc, argv, &r);
+  abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   check(&r);
   abbe_error error = {0};
   abbe_report report = {0};

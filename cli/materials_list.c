@@ -163,11 +163,11 @@ enum {
 
 static const struct argp_option options[] = {
     ABBE_MATERIALS_TABLE_OPTION,
-    {"name", KEY_NAME, "TEXT", 0, "only names with TEXT in them, or that match it where it has * ?",
-     1},
-    {"nd", KEY_ND, "A:B", 0, "only n_d from A to B", 1},
-    {"vd", KEY_VD, "A:B", 0, "only V_d from A to B", 1},
-    {"source", KEY_SOURCE, "TEXT", 0, "only sources with TEXT in them", 1},
+    {"name", KEY_NAME, "TEXT", ABBE_ARGUMENT_ONCE,
+     "only names with TEXT in them, or that match it where it has * ?", 1},
+    {"nd", KEY_ND, "A:B", ABBE_ARGUMENT_ONCE, "only n_d from A to B", 1},
+    {"vd", KEY_VD, "A:B", ABBE_ARGUMENT_ONCE, "only V_d from A to B", 1},
+    {"source", KEY_SOURCE, "TEXT", ABBE_ARGUMENT_ONCE, "only sources with TEXT in them", 1},
     {"sort", KEY_SORT, "KEY", 0, "by name, n_d, v_d, b_g, p_gF, from, to (of the range), source",
      2},
     {"reverse", KEY_REVERSE, NULL, 0, "the last first", 2},

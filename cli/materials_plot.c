@@ -18,15 +18,15 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE", 0, "the picture; .png or .svg", 0},
-    {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", 0,
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the picture; .png or .svg", 0},
+    {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS | ABBE_ARGUMENT_REPEATS,
      "a table file, or default or thesis; without it, default. May be repeated: names are looked "
      "up in all, the map shows each in a colour of its own",
      0},
     {"map", KEY_MAP, NULL, 0, "n_d over V_d of all materials; NAMEs are marked", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
     {"fits", KEY_FITS, NULL, 0, "the recorded fits too, and their residuals below", 0},
-    {"points", KEY_POINTS, "FILE.csv", 0,
+    {"points", KEY_POINTS, "FILE.csv", ABBE_ARGUMENT_READS,
      "measured points too (wavelength, n, uncertainty), and below them how far the first NAME is "
      "from them",
      0},

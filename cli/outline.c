@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include "colorimetry/rgb_space.h"
@@ -20,7 +21,8 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"minus", OPTION_MINUS, "DARK.exr", 0, "the last picture without its caustic, to take off", 0},
+    {"minus", OPTION_MINUS, "DARK.exr", ABBE_ARGUMENT_READS,
+     "the last picture without its caustic, to take off", 0},
     {"share", OPTION_SHARE, "X", 0, "of the light inside the outline (0.9)", 0},
     {"blur", OPTION_BLUR, "PIXELS", 0, "smoothing before all else, 0 to 64 (1)", 0},
     {"json", OPTION_JSON, NULL, 0, "as JSON", 0},
@@ -188,7 +190,7 @@ int abbe_command_outline(int argc, char **argv) {
       NULL,
       NULL};
   request q = {.program = argv[0]};
-  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_outline outline[2] = {{0}};
   abbe_outline_agreement agreement = {0};

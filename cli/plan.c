@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/render_options.h"
 #include "cli/scene_notes.h"
@@ -77,12 +78,12 @@ int abbe_command_plan(int argc, char **argv) {
       NULL,
       NULL};
   plan_options o = {.render.program = argv[0]};
-  argp_parse(&argp, argc, argv, 0, NULL, &o);
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
   abbe_error error = {0};
   abbe_scene scene = {0};
   abbe_plan plan = {0};
-  abbe_scene_options scene_options = {.materials = o.render.materials};
-  abbe_result result = abbe_scene_load(o.render.scene, &scene_options, &scene, &error);
+  abbe_result result =
+      abbe_command_load_scene(argv[0], o.render.scene, o.render.materials, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
   if (loaded) abbe_scene_notes(&scene);

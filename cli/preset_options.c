@@ -1,5 +1,6 @@
 #include "cli/preset_options.h"
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "validation/sweep.h"
 
@@ -16,7 +17,7 @@ static const struct argp_option options[] = {
      "the fastest settings whose mean CIEDE2000 in the caustic was at most E", 2},
     {"budget-ms", OPTION_BUDGET, "T", 0,
      "the most accurate settings that take at most T ms on this machine", 2},
-    {"presets", OPTION_PRESETS, "FILE", 0, "others than the shipped ones", 2},
+    {"presets", OPTION_PRESETS, "FILE", ABBE_ARGUMENT_READS, "others than the shipped ones", 2},
     {0}};
 
 #define ABBE_NAME_OF(code, name) name,

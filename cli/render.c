@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/error_options.h"
 #include "cli/map_options.h"
@@ -52,18 +53,21 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE.exr", 0, "the scene-linear picture", 0},
-    {"png", OPTION_PNG, "FILE.png", 0, "the picture for a display, through OpenColorIO", 0},
+    {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
+    {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
+     "the picture for a display, through OpenColorIO", 0},
     {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8)", 0},
     {"layers", OPTION_LAYERS, NULL, 0, "direct, caustic and distance layers in the EXR", 0},
     {"bands", OPTION_BANDS, "N", 0, "N bands of wavelengths in the saved map too, in W/nm", 0},
     {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
-    {"stats", OPTION_STATS, "FILE", 0, "times, photons and the energy ledger as JSON", 0},
+    {"stats", OPTION_STATS, "FILE", ABBE_ARGUMENT_WRITES,
+     "times, photons and the energy ledger as JSON", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
     {"frames", OPTION_FRAMES, "N", 0, "warm up, then report the median of N frames (1)", 0},
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
-    {"ocio", OPTION_OCIO, "FILE", 0, "OpenColorIO configuration ($OCIO, else the shipped one)", 2},
+    {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
+     "OpenColorIO configuration ($OCIO, else the shipped one)", 2},
     {"display", OPTION_DISPLAY, "NAME", 0, "of the configuration", 2},
     {"view", OPTION_VIEW, "NAME", 0, "of the display", 2},
     {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
@@ -398,17 +402,17 @@ int abbe_command_render(int argc, char **argv) {
       NULL};
   request q = {
       .render.program = argv[0], .preset.program = argv[0], .errors.program = argv[0], .bits = 8};
-  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
   abbe_context *context = NULL;
-  abbe_scene_options scene_options = {.materials = q.render.materials};
   /* The layers tell where the caustic is, whose error is summed up. */
   q.render.desc.layers = q.layers || q.errors.asked;
   const char *const targets[] = {q.exr, q.png, q.map.save, q.stats, q.errors.png};
   abbe_result result = abbe_command_check_targets(targets, 5, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);
-  if (result == ABBE_OK) result = abbe_scene_load(q.render.scene, &scene_options, &scene, &error);
+  if (result == ABBE_OK)
+    result = abbe_command_load_scene(argv[0], q.render.scene, q.render.materials, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)

@@ -1,5 +1,6 @@
 #include "cli/render_options.h"
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include <stdio.h>
@@ -24,7 +25,8 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"profile", OPTION_PROFILE, "NAME", 0, "default; baselines: thesis, and thesis-cie with CIE weights in W", 1},
+    {"profile", OPTION_PROFILE, "NAME", 0,
+     "default; baselines: thesis, and thesis-cie with CIE weights in W", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0,
      "samples of the spectrum that a photon takes at the most, 1 to 1000 (7)", 1},
@@ -35,14 +37,17 @@ static const struct argp_option options[] = {
     {"upsample", OPTION_UPSAMPLE, "N", 0,
      "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
     {"model", OPTION_MODEL, "NAME", 0,
-     "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)", 1},
+     "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)",
+     1},
     {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
-    {"share", OPTION_SHARE, "X", 0, "paths end below this share of their light (0.01; 0.005 in a gem)", 1},
-    {"exits", OPTION_EXITS, "N", 0, "exits followed at the most, 1 to 32 (8; to 24 in a gem; 4 by layers)", 1},
+    {"share", OPTION_SHARE, "X", 0,
+     "paths end below this share of their light (0.01; 0.005 in a gem)", 1},
+    {"exits", OPTION_EXITS, "N", 0,
+     "exits followed at the most, 1 to 32 (8; to 24 in a gem; 4 by layers)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
     {"everything", OPTION_EVERYTHING, NULL, 0,
      "switch on what no fact asks for, to measure what the plan saves", 1},
-    {"materials", OPTION_MATERIALS, "TABLE", 0,
+    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     {0}};
 

@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/sweep_report.h"
 #include "cli/sweep_work.h"
@@ -60,12 +61,15 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE.csv", 0, "the table; rows that it holds are not measured again", 0},
-    {"plot", OPTION_PLOT, "FILE", 0, "error against time, log-log: a .png or .svg", 0},
-    {"report", OPTION_REPORT, "FILE.md", 0, "a page with the front and pictures beside it", 0},
-    {"write-presets", OPTION_WRITE_PRESETS, "FILE.yaml", 0,
+    {"output", 'o', "FILE.csv", ABBE_ARGUMENT_WRITES,
+     "the table; rows that it holds are not measured again", 0},
+    {"plot", OPTION_PLOT, "FILE", ABBE_ARGUMENT_WRITES,
+     "error against time, log-log: a .png or .svg", 0},
+    {"report", OPTION_REPORT, "FILE.md", ABBE_ARGUMENT_WRITES,
+     "a page with the front and pictures beside it", 0},
+    {"write-presets", OPTION_WRITE_PRESETS, "FILE.yaml", ABBE_ARGUMENT_WRITES,
      "presets off the fronts of the given tables", 0},
-    {"presets", OPTION_PRESETS, "FILE.yaml", 0,
+    {"presets", OPTION_PRESETS, "FILE.yaml", ABBE_ARGUMENT_READS,
      "say what these promise beside what was met (the shipped ones)", 0},
     {"growth", OPTION_GROWTH, NULL, 0,
      "instead: how the time grows with photons, wavelengths, pixels, faces, share of the view", 0},
@@ -88,11 +92,13 @@ static const struct argp_option options[] = {
     {"frames", OPTION_FRAMES, "N", 0, "warm up, then the median of N (5)", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 1},
-    {"materials", OPTION_MATERIALS, "TABLE", 0, "a table instead of the scene's", 1},
+    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS, "a table instead of the scene's",
+     1},
     {"list", OPTION_LIST, NULL, 0, "only say which settings the grid has", 1},
-    {"reference", OPTION_REFERENCE, "FILE.exr", 0, "a traced picture (traced and kept beside it)",
-     2},
-    {"reference-map", OPTION_REFERENCE_MAP, "FILE.exr", 0, "a traced receiver map", 2},
+    {"reference", OPTION_REFERENCE, "FILE.exr", ABBE_ARGUMENT_READS,
+     "a traced picture (traced and kept beside it)", 2},
+    {"reference-map", OPTION_REFERENCE_MAP, "FILE.exr", ABBE_ARGUMENT_READS,
+     "a traced receiver map", 2},
     {"spp", OPTION_SPP, "N", 0, "passes of the reference (64)", 2},
     {"traced-photons", OPTION_TRACED_PHOTONS, "N", 0, "photons a pass (1048576)", 2},
     {"texels", OPTION_TEXELS, "N", 0, "side of the reference's map (256)", 2},
@@ -360,10 +366,20 @@ static void choose_grid(request *q) {
   w->grid_count = 1;
 }
 
+/* What a report draws again. */
+static void protect_sources(const request *q, const abbe_sweep_table *table) {
+  static const abbe_sweep_fact sources[] = {ABBE_SWEEP_FACT_SCENE, ABBE_SWEEP_FACT_REFERENCE,
+                                            ABBE_SWEEP_FACT_REFERENCE_MAP};
+  for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
+    abbe_arguments_add(q->work.program, ABBE_ARGUMENT_READS, "the table's source",
+                       table->fact[sources[i]]);
+}
+
 static abbe_result load_tables(const request *q, abbe_sweep_table *tables, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < q->argument_count && result == ABBE_OK; i++) {
     result = abbe_sweep_table_load(q->argument[i], &tables[i], error);
+    if (result == ABBE_OK) protect_sources(q, &tables[i]);
     if (result == ABBE_OK) result = abbe_sweep_table_mark(&tables[i], q->work.error, NULL, error);
   }
   return result;
@@ -439,7 +455,7 @@ int abbe_command_sweep(int argc, char **argv) {
   q.work.program = argv[0];
   q.work.frames = 5;
   q.work.error = ABBE_SWEEP_CAUSTIC_DE;
-  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   choose_grid(&q);
   abbe_error error = {0};
   abbe_result result = run(&q, &error);

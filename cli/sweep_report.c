@@ -1,5 +1,6 @@
 #include "cli/sweep_report.h"
 
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include "colorimetry/display_ocio.h"
@@ -301,6 +302,7 @@ typedef struct page {
   FILE *out;
   abbe_context *context;
   abbe_sweep_number number;
+  int turn; /* of the table, among those of scenes of one name; from 1 */
 } page;
 
 static const char *base_of(const char *path) {
@@ -308,13 +310,18 @@ static const char *base_of(const char *path) {
   return slash == NULL ? path : slash + 1;
 }
 
-/* "PAGE-SCENE-what.png", beside the page. */
+static const char *const names[SHOWN] = {"reference", "cheapest", "middle",
+                                         "accurate",  "thesis",   "thesis-cie"};
+
+/* "PAGE-SCENE-what.png", beside the page; "PAGE-SCENE-2-what.png" for a second one of that name. */
 static void name_shot(const page *p, const abbe_sweep_table *t, const char *what, shot *out) {
   const char *scene = base_of(t->fact[ABBE_SWEEP_FACT_SCENE]);
   const char *dot = strrchr(p->path, '.');
   int stem = dot != NULL && strchr(dot, '/') == NULL ? (int)(dot - p->path) : (int)strlen(p->path);
-  snprintf(out->file, sizeof out->file, "%.*s-%.*s-%s.png", stem, p->path, (int)strcspn(scene, "."),
-           scene, what);
+  char turn[16] = "";
+  if (p->turn > 1) snprintf(turn, sizeof turn, "-%d", p->turn);
+  snprintf(out->file, sizeof out->file, "%.*s-%.*s%s-%s.png", stem, p->path,
+           (int)strcspn(scene, "."), scene, turn, what);
 }
 
 static void say_row(const page *p, const abbe_sweep_row *row, const char *what, shot *out) {
@@ -346,8 +353,6 @@ static const abbe_sweep_row *find_baseline(const abbe_sweep_table *t, int which,
 /* The reference, three settings of the front, and the two baselines. */
 static void take_shots(const page *p, const abbe_sweep_table *t, const size_t *order, size_t count,
                        shot *shots) {
-  static const char *const names[] = {"reference", "cheapest", "middle",
-                                      "accurate",  "thesis",   "thesis-cie"};
   abbe_scene scene = {0};
   const abbe_sweep_row *rows[SHOWN] = {0};
   if (count > 0) {
@@ -500,6 +505,27 @@ static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_er
   return result;
 }
 
+/* Which table of its scene's name it is. */
+static int turn_of(const abbe_sweep_table *tables, size_t index) {
+  const char *scene = base_of(tables[index].fact[ABBE_SWEEP_FACT_SCENE]);
+  int turn = 1;
+  for (size_t i = 0; i < index; i++)
+    turn += strcmp(base_of(tables[i].fact[ABBE_SWEEP_FACT_SCENE]), scene) == 0;
+  return turn;
+}
+
+/* No picture beside the page may be a file that is read or written for something else. */
+static void claim_pictures(page *p, const abbe_sweep_table *tables, size_t count) {
+  shot own;
+  for (size_t i = 0; i < count; i++) {
+    p->turn = turn_of(tables, i);
+    for (int k = 0; k < SHOWN; k++) {
+      name_shot(p, &tables[i], names[k], &own);
+      abbe_arguments_add("abbe sweep", ABBE_ARGUMENT_WRITES, "the report's picture", own.file);
+    }
+  }
+}
+
 abbe_result abbe_sweep_report_write(const char *path, const abbe_sweep_table *tables, size_t count,
                                     abbe_sweep_number number, abbe_context_backend backend,
                                     abbe_error *error) {
@@ -507,6 +533,7 @@ abbe_result abbe_sweep_report_write(const char *path, const abbe_sweep_table *ta
   page p = {.path = path, .number = number};
   if (strlen(path) > PATH_SIZE / 2)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the path '%.80s…' is too long", path);
+  claim_pictures(&p, tables, count);
   abbe_result result = abbe_context_make(backend, &p.context, error);
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
   if (result == ABBE_OK) {
@@ -516,8 +543,10 @@ abbe_result abbe_sweep_report_write(const char *path, const abbe_sweep_table *ta
             "the reference's own noise makes of an error.\n\n",
             abbe_sweep_number_text(number));
   }
-  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    p.turn = turn_of(tables, i);
     result = write_sweep(&p, &tables[i], error);
+  }
   if (result == ABBE_OK)
     result = abbe_file_writer_commit(&writer, error);
   else

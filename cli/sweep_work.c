@@ -1,5 +1,7 @@
 #include "cli/sweep_work.h"
 
+#include "cli/arguments.h"
+#include "cli/command.h"
 #include "cli/progress.h"
 
 #include "colorimetry/exr.h"
@@ -69,6 +71,10 @@ static abbe_result name_files(work *w, abbe_error *error) {
     snprintf(t->picture_path, PATH_SIZE, "%.*s-%s.exr", stem, csv, kind);
     snprintf(t->map_path, PATH_SIZE, "%.*s-%s-map.exr", stem, csv, kind);
     snprintf(t->checkpoint_path, PATH_SIZE, "%.*s-%s.checkpoint", stem, csv, kind);
+    if (w->q->reference != NULL || w->q->reference_map != NULL || (i > 0 && !w->q->split)) continue;
+    const char *const kept[] = {t->picture_path, t->map_path, t->checkpoint_path};
+    for (int k = 0; k < 3; k++)
+      abbe_arguments_add(w->q->program, ABBE_ARGUMENT_WRITES, "the traced file", kept[k]);
   }
   return ABBE_OK;
 }
@@ -331,8 +337,8 @@ static abbe_result list(const work *w) {
 }
 
 static abbe_result work_on(work *w, abbe_error *error) {
-  abbe_scene_options options = {.materials = w->q->materials};
-  abbe_result result = abbe_scene_load(w->q->scene, &options, &w->scene, error);
+  abbe_result result =
+      abbe_command_load_scene(w->q->program, w->q->scene, w->q->materials, &w->scene, error);
   if (result == ABBE_OK) result = get_settings(w, error);
   if (result == ABBE_OK && w->q->list) return list(w);
   if (result == ABBE_OK) result = name_files(w, error);
@@ -364,8 +370,7 @@ abbe_result abbe_sweep_grow(const abbe_sweep_request *q, abbe_error *error) {
   abbe_context *context = NULL;
   abbe_sweep_growth growth;
   abbe_progress progress;
-  abbe_scene_options options = {.materials = q->materials};
-  abbe_result result = abbe_scene_load(q->scene, &options, &scene, error);
+  abbe_result result = abbe_command_load_scene(q->program, q->scene, q->materials, &scene, error);
   if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
   if (result == ABBE_OK) {
     const abbe_sweep sweep = {.context = context, .scene = &scene, .frames = q->frames};

@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/map_options.h"
 #include "cli/progress.h"
@@ -62,9 +63,12 @@ typedef struct request {
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE.exr", 0, "the scene-linear picture with its standard errors", 0},
-    {"png", OPTION_PNG, "FILE.png", 0, "the picture for a display, through OpenColorIO", 0},
-    {"stats", OPTION_STATS, "FILE", 0, "passes, rays, times and the energy ledger as JSON", 0},
+    {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES,
+     "the scene-linear picture with its standard errors", 0},
+    {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
+     "the picture for a display, through OpenColorIO", 0},
+    {"stats", OPTION_STATS, "FILE", ABBE_ARGUMENT_WRITES,
+     "passes, rays, times and the energy ledger as JSON", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
     {"spp", OPTION_SPP, "N", 0, "passes: samples a pixel, each with its photons (64)", 1},
@@ -82,10 +86,10 @@ static const struct argp_option options[] = {
     {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
     {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 1},
     {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 1},
-    {"materials", OPTION_MATERIALS, "TABLE", 0,
+    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     {"resume", OPTION_RESUME, NULL, 0, "go on from the checkpoint, where there is one", 2},
-    {"checkpoint", OPTION_CHECKPOINT, "FILE", 0,
+    {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
      "keep it there, also when all is done (OUTPUT.checkpoint, until all is done)", 2},
     {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
     {"view", OPTION_VIEW, "NAME", 0, "of the display, for the PNG", 2},
@@ -227,6 +231,8 @@ static abbe_result name_checkpoint(request *q, abbe_error *error) {
   if (q->checkpoint_path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
   snprintf(q->checkpoint_path, size, "%s%s", q->checkpoint ? q->checkpoint : beside,
            q->checkpoint ? "" : ".checkpoint");
+  if (q->checkpoint == NULL)
+    abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the checkpoint", q->checkpoint_path);
   return ABBE_OK;
 }
 
@@ -496,15 +502,15 @@ int abbe_command_trace(int argc, char **argv) {
       NULL,
       NULL};
   request q = {.program = argv[0], .every = 30};
-  argp_parse(&argp, argc, argv, 0, NULL, &q);
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   if (q.passes == 0 && !(q.seconds > 0) && !(q.until > 0)) q.passes = DEFAULT_PASSES;
   if (q.passes == 0) q.passes = MOST_PASSES;
   abbe_error error = {0};
   abbe_scene scene = {0};
-  abbe_scene_options scene_options = {.materials = q.materials};
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = name_checkpoint(&q, &error);
-  if (result == ABBE_OK) result = abbe_scene_load(q.scene, &scene_options, &scene, &error);
+  if (result == ABBE_OK)
+    result = abbe_command_load_scene(argv[0], q.scene, q.materials, &scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_notes(&scene);
   if (result == ABBE_OK) result = run(&q, &scene, &error);
   free(q.checkpoint_path);

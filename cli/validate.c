@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 #include "cli/progress.h"
 
@@ -119,11 +120,11 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"only", KEY_ONLY, "GROUP", 0, "one group of answers; see the list below", 0},
+    {"only", KEY_ONLY, "GROUP", ABBE_ARGUMENT_ONCE, "one group of answers; see the list below", 0},
     {"samples", KEY_SAMPLES, "N", 0, "paths of each traced light, instead of each group's own", 0},
     {"seed", KEY_SEED, "N", 0, "other random numbers; without it, 0", 0},
     {"threads", KEY_THREADS, "N", 0, "1 to 1024; without it, one a processor", 0},
-    {"chart", KEY_CHART, "FILE", 0, "draw the errors, as .png or .svg", 0},
+    {"chart", KEY_CHART, "FILE", ABBE_ARGUMENT_WRITES, "draw the errors, as .png or .svg", 0},
     {"quiet", KEY_QUIET, NULL, 0, "no progress bar", 0},
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
     {0}};
@@ -199,7 +200,7 @@ static const struct argp parser = {
 
 int abbe_command_validate(int argc, char **argv) {
   request r = {.program = argv[0]};
-  argp_parse(&parser, argc, argv, 0, NULL, &r);
+  abbe_arguments_parse(&parser, 0, argc, argv, &r);
   abbe_error error = {0};
   abbe_result result = validate(&r, &error);
   return abbe_command_end(r.program, result, &error);

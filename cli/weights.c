@@ -1,3 +1,4 @@
+#include "cli/arguments.h"
 #include "cli/command.h"
 
 #include "colorimetry/weights.h"
@@ -113,7 +114,7 @@ enum { KEY_COUNT = 256, KEY_RANGE, KEY_ILLUMINANT, KEY_SPACE, KEY_SET, KEY_JSON 
 static const struct argp_option options[] = {
     {"count", KEY_COUNT, "N", 0, "wavelength samples, 1 to 4096; without it, 7", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "in nm; without it, 380:780", 0},
-    {"illuminant", KEY_ILLUMINANT, "NAME|FILE", 0,
+    {"illuminant", KEY_ILLUMINANT, "NAME|FILE", ABBE_ARGUMENT_READS,
      "D65, D50, A, E, or a file of two columns, wavelength and power; without it, D65", 0},
     {"space", KEY_SPACE, "SPACE", 0, "xyz, rec709 or acescg; without it, xyz", 0},
     {"set", KEY_SET, "SET", 0, "cie, or thesis: the thesis's seven RGB triples as printed", 0},
@@ -184,7 +185,7 @@ int abbe_command_weights(int argc, char **argv) {
                .min_nm = ABBE_WAVELENGTH_MIN_NM,
                .max_nm = ABBE_WAVELENGTH_MAX_NM,
                .space = ABBE_RGB_SPACE_XYZ};
-  argp_parse(&parser, argc, argv, 0, NULL, &r);
+  abbe_arguments_parse(&parser, 0, argc, argv, &r);
   abbe_error error = {0};
   abbe_result result = r.thesis ? print_thesis(&r, &error) : print_weights(&r, &error);
   return abbe_command_end(r.program, result, &error);

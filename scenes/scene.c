@@ -15,6 +15,7 @@ static void object_free(abbe_object *object) {
   free(object->exact.parallelogram);
   free(object->texture_path);
   abbe_image_free(&object->texture);
+  free(object->mesh_path);
   free(object->mended);
 }
 
@@ -23,6 +24,7 @@ void abbe_scene_free(abbe_scene *scene) {
   for (size_t i = 0; i < scene->light_count; i++) {
     free(scene->light[i].name);
     abbe_illuminant_free(&scene->light[i].illuminant);
+    free(scene->light[i].illuminant_path);
   }
   for (size_t i = 0; i < scene->object_count; i++) object_free(&scene->object[i]);
   free(scene->light);
@@ -31,6 +33,23 @@ void abbe_scene_free(abbe_scene *scene) {
   free(scene->path);
   free(scene->description);
   memset(scene, 0, sizeof *scene);
+}
+
+size_t abbe_scene_file_count(const abbe_scene *scene) {
+  return 2 + scene->light_count + 2 * scene->object_count;
+}
+
+const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
+  size_t size;
+  if (index == 0) return scene->path;
+  if (index == 1)
+    return abbe_material_table_shipped(scene->table.path, &size) ? NULL : scene->table.path;
+  index -= 2;
+  if (index < scene->light_count) return scene->light[index].illuminant_path;
+  index -= scene->light_count;
+  if (index >= 2 * scene->object_count) return NULL;
+  const abbe_object *object = &scene->object[index / 2];
+  return index % 2 ? object->texture_path : object->mesh_path;
 }
 
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],

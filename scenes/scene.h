@@ -51,6 +51,7 @@ typedef struct abbe_light {
   double power; /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
                    wavelength by the illuminant */
   abbe_illuminant illuminant;
+  char *illuminant_path; /* the file that it is of, or NULL */
 } abbe_light;
 
 typedef enum abbe_exact_kind {
@@ -81,7 +82,8 @@ typedef struct abbe_object {
   char *texture_path;              /* receiver: NULL or the PNG that multiplies reflectance */
   abbe_image texture;              /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
-  char *mended; /* what was mended, and what is not whole still, or NULL */
+  char *mesh_path;                 /* NULL or the file that the mesh is of */
+  char *mended;                    /* what was mended, and what is not whole still, or NULL */
 } abbe_object;
 
 typedef struct abbe_scene {
@@ -98,6 +100,12 @@ typedef struct abbe_scene {
 } abbe_scene;
 
 void abbe_scene_free(abbe_scene *scene);
+
+/* The files that the scene was read from, each of index below the count: its own, the table of
+ * materials, illuminants, meshes and textures; NULL where there is none of that index. What a mesh
+ * file names in turn is not among them. */
+size_t abbe_scene_file_count(const abbe_scene *scene);
+const char *abbe_scene_file(const abbe_scene *scene, size_t index);
 
 /* Refuses what cannot be rendered, by name: no light, no receiver, a light (a disk: any part of it)
  * or the camera inside a refractor, no receiver in the camera's view. Called by the loader. */

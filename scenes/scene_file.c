@@ -181,6 +181,10 @@ static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const c
     }
     if (result != ABBE_OK)
       abbe_object_locate(yaml, abbe_yaml_get(yaml, node, "illuminant"), result, error);
+    if (result == ABBE_OK && out->illuminant.kind == ABBE_ILLUMINANT_TABULATED) {
+      out->illuminant_path = path;
+      path = NULL;
+    }
   }
   free(path);
   free(name);
@@ -239,6 +243,16 @@ static abbe_result read_lights(abbe_yaml *yaml, abbe_yaml_node root, const char 
   return result;
 }
 
+static abbe_result note_mesh_path(abbe_yaml *yaml, abbe_yaml_node item, const char *folder,
+                                  abbe_object *out, abbe_error *error) {
+  char *name = NULL;
+  abbe_result result = abbe_yaml_get_string(yaml, item, "mesh", &name, error);
+  if (result != ABBE_OK || name == NULL) return result;
+  out->mesh_path = abbe_object_path(folder, name);
+  free(name);
+  return out->mesh_path ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+}
+
 static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
                                 abbe_scene *out, abbe_error *error) {
   abbe_yaml_node list;
@@ -257,6 +271,8 @@ static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char
     result =
         abbe_object_read(yaml, item, folder, &out->table, &out->object[first], room, &made, error);
     out->object_count += made;
+    if (result == ABBE_OK)
+      result = note_mesh_path(yaml, item, folder, &out->object[first], error);
     for (size_t k = first; k < out->object_count; k++) faces += out->object[k].mesh.face_count;
     if (result == ABBE_OK && faces > ABBE_MESH_MAX_FACES)
       result = abbe_yaml_fail(yaml, item, error,

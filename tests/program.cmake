@@ -10,6 +10,7 @@ add_test(NAME slits
 set_tests_properties(install scripts measuring_scripts slits PROPERTIES LABELS program TIMEOUT 300)
 
 foreach(name
+    arguments
     bad_input
     export_command
     materials_change_command

@@ -178,6 +178,33 @@ static void test_what_is_refused(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* A page and its pictures stand beside what a table is of, and are written over none of it. */
+static void test_a_report_overwrites_nothing(void **state) {
+  (void)state;
+  abbe_sweep_table table = {0};
+  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "gem.yaml");
+  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_REFERENCE, "s-gem-reference.png");
+  for (int i = 0; i < 2; i++) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", run_folder, i == 0 ? "a.csv" : "b.csv");
+    assert_int_equal(abbe_sweep_table_save(&table, path, NULL), ABBE_OK);
+  }
+  run_well("touch gem.yaml s-gem-reference.png");
+  assert_int_equal(run_line("\"$abbe\" sweep a.csv --report gem.yaml"), 2);
+  assert_contains(run_errors, "--report 'gem.yaml' would be written over the table's source");
+  assert_int_equal(run_line("\"$abbe\" sweep a.csv --report s.md"), 2);
+  assert_contains(run_errors, "the report's picture 's-gem-reference.png' would be written");
+  assert_int_equal(run_line("\"$abbe\" sweep a.yaml -o s.csv --report s-reference.exr"), 1);
+  assert_int_equal(run_line("\"$abbe\" sweep \"$house\"/scenes/gem.yaml -o s.csv "
+                            "--report s-reference.exr"),
+                   2);
+  assert_contains(run_errors, "the traced file 's-reference.exr'");
+  run_well("test ! -s gem.yaml && test ! -s s-gem-reference.png && rm gem.yaml *.png");
+  /* Two tables of scenes of one name: each has pictures of its own. */
+  run_well("\"$abbe\" sweep a.csv b.csv --report r.md && rm a.csv b.csv r.md");
+  assert_int_equal(run_left(), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(test_rows_are_measured_once, run_setup, run_teardown),
@@ -186,6 +213,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_given_references, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_ctrl_c_keeps_what_is_done, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_a_report_overwrites_nothing, run_setup, run_teardown),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
