@@ -1,5 +1,6 @@
 #include "gl/plan.h"
 
+#include "colorimetry/weights.h"
 #include "gl/everything.h"
 #include "gl/inner_light.h"
 #include "gl/layer_detail.h"
@@ -17,6 +18,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Of a light's white: what is less is seen by nobody, as the diamond's 760 to 780 nm. */
+#define LEAST_EXTRAPOLATED 1e-3
 
 enum { MAX_PARALLELOGRAMS = 96, RANGE_STEPS = 81, MAX_MODEL_ENTRIES = 48, WALK_SLOTS = 16 };
 
@@ -117,12 +121,32 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
   return ABBE_OK;
 }
 
+/* The most that a material's wavelengths outside its valid range are of a light's white. */
+static double extrapolated_share(const abbe_scene *scene, const abbe_material *material, double min,
+                                 double max) {
+  double most = 0;
+  const double edges[2][2] = {{min, fmin(material->min_nm, max)},
+                              {fmax(material->max_nm, min), max}};
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_illuminant *light = &scene->light[i].illuminant;
+    double outside = 0, xyz[3], white[3];
+    abbe_weights_band_xyz(light, min, max, min, max, white);
+    for (int k = 0; k < 2; k++) {
+      if (!(edges[k][0] < edges[k][1])) continue;
+      abbe_weights_band_xyz(light, min, max, edges[k][0], edges[k][1], xyz);
+      outside += xyz[0] + xyz[1] + xyz[2];
+    }
+    const double all = white[0] + white[1] + white[2];
+    most = fmax(most, all > 0 ? outside / all : 1);
+  }
+  return most;
+}
+
 /* Whether n and the attenuation over the range ask for more than constants. */
 static abbe_result examine_material(const abbe_scene *scene, const abbe_material *material,
                                     abbe_plan *plan, abbe_error *error) {
   double min = plan->desc.min_nm, max = plan->desc.max_nm, first = 0, first_per_m = 0;
-  bool outside =
-      abbe_material_extrapolates(material, min) || abbe_material_extrapolates(material, max);
+  bool outside = extrapolated_share(scene, material, min, max) > LEAST_EXTRAPOLATED;
   for (int i = 0; i < RANGE_STEPS; i++) {
     double lambda_nm = min + (max - min) * i / (RANGE_STEPS - 1), n = 0;
     abbe_result result = abbe_material_n(material, lambda_nm, &n, error);
@@ -388,6 +412,19 @@ static int count_faces(const abbe_plan *plan, size_t light) {
   return faces;
 }
 
+/* Whether all lights are of one spectrum, up to a factor. */
+static bool shine_alike(const abbe_scene *scene, double min, double max) {
+  const abbe_illuminant *first = &scene->light[0].illuminant;
+  for (size_t k = 1; k < scene->light_count; k++)
+    for (int i = 0; i < RANGE_STEPS; i++) {
+      const double from = min + (max - min) * i / RANGE_STEPS,
+                   to = min + (max - min) * (i + 1) / RANGE_STEPS;
+      const double share = abbe_weights_band_power(&scene->light[k].illuminant, min, max, from, to);
+      if (fabs(share - abbe_weights_band_power(first, min, max, from, to)) > 1e-6) return false;
+    }
+  return true;
+}
+
 static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
   bool depth = plan->receivers == ABBE_RECEIVER_DEPTH;
@@ -472,7 +509,7 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->refractor_count > 1 && !plan->walk)
     note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   if (!plan->walk) note_overlaps(scene, plan);
-  if (scene->light_count > 1 && seen)
+  if (seen && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
     note(plan, "through refractors, colours are split by the first light's illuminant");
 }
 

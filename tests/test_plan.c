@@ -355,6 +355,11 @@ static void test_an_index_that_is_not_known_is_refused_or_noted(void **state) {
   make_text(CAMERA POINT_LIGHT FLOOR BALL("loose"), NULL, &plan);
   assert_true(noted(&plan, "loose: the index is extrapolated"));
   abbe_plan_free(&plan);
+  /* of a diamond's wavelengths 760 to 780 nm are not known, in which there is nothing to see */
+  make_text("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BALL("diamond"),
+            NULL, &plan);
+  assert_false(noted(&plan, "extrapolated"));
+  abbe_plan_free(&plan);
   const abbe_render_desc inside = {.min_nm = 420, .max_nm = 680};
   make_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &inside, &plan);
   assert_false(noted(&plan, "extrapolated"));

@@ -97,7 +97,10 @@ static void differ(const lines *from, const lines *to, lines *out) {
 #define SPOT(target)                                                                               \
   "lights:\n- {name: lamp, kind: spot, position: [0.05, 0.03, 0.6], target: " target               \
   ", cone: 10, intensity: 1}\n"
-#define LIGHT_ASIDE "- {name: second, kind: point, position: [-0.1, 0.03, 0.6], intensity: 1}\n"
+#define LIGHT_ASIDE_OF(illuminant)                                                                 \
+  "- {name: second, kind: point, position: [-0.1, 0.03, 0.6], intensity: 1, "                      \
+  "illuminant: " illuminant "}\n"
+#define LIGHT_ASIDE LIGHT_ASIDE_OF("D65")
 #define CARD                                                                                       \
   "- {name: card, shape: rectangle, width: 0.1, height: 0.1, transform: [{translate: [-0.4, 0, "   \
   "0.3]}], reflectance: 0.5}\n"
@@ -383,6 +386,11 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT LIGHT_ASIDE FLOOR BALL("crown"),
      {0},
+     {"+map: second|the light may meet a refractor", NULL}},
+    {"a second light of another spectrum",
+     ball,
+     CAMERA POINT_LIGHT LIGHT_ASIDE_OF("A") FLOOR BALL("crown"),
+     {0},
      {"+map: second|the light may meet a refractor",
       "!through refractors, colours are split by the first light's illuminant", NULL}},
     {"a receiver that may hide another",
@@ -560,9 +568,7 @@ static const struct {
       "2.9 % of it is still inside then",
       "-map: lamp of the left card|its cone misses every refractor",
       "-map: lamp of the high card|its cone misses every refractor",
-      "+maps on receivers|a receiver may hide from a light where its light lands",
-      "!diamond: the index is extrapolated outside its valid range, 226 to 760 nm",
-      "!through refractors, colours are split by the first light's illuminant", "no model: ball",
+      "+maps on receivers|a receiver may hide from a light where its light lands", "no model: ball",
       NULL}},
     {"ring",
      {"=7 wavelengths, 8 exits, 16 landings",
