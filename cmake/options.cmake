@@ -1,5 +1,7 @@
 option(ABBE_WERROR "Treat warnings as errors" OFF)
 option(ABBE_SANITIZE "Build with the address and undefined-behaviour sanitizers" OFF)
+option(ABBE_HARDEN "Fortified libc calls, stack protectors, and a program that is position-independent \
+and whose tables are read-only once it runs" ON)
 option(ABBE_TESTS "Build the tests" ON)
 option(ABBE_FUZZ "Link the fuzz targets with libFuzzer (clang only)" OFF)
 
@@ -34,6 +36,17 @@ endif()
 if(ABBE_FUZZ)
   target_compile_options(abbe_build INTERFACE -fsanitize=fuzzer-no-link)
   target_link_options(abbe_build INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+if(ABBE_HARDEN)
+  include(CheckPIESupported)
+  check_pie_supported(LANGUAGES C CXX)
+  target_compile_options(abbe_build INTERFACE -fstack-protector-strong)
+  target_link_options(abbe_build INTERFACE LINKER:-z,relro LINKER:-z,now)
+  if(NOT ABBE_SANITIZE) # whose own checks the fortified calls would hide
+    target_compile_options(abbe_build INTERFACE
+      $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=2>)
+  endif()
 endif()
 
 include(${CMAKE_CURRENT_LIST_DIR}/embed.cmake)

@@ -2,6 +2,11 @@
 add_test(NAME install
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/check ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR}
           ${CMAKE_C_COMPILER})
+if(ABBE_HARDEN AND NOT ABBE_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  add_test(NAME hardened COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/hardened $<TARGET_FILE:abbe>
+           $<TARGET_FILE:abbe_library>)
+  set_tests_properties(hardened PROPERTIES LABELS program TIMEOUT 60)
+endif()
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
 add_test(NAME measuring_scripts
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/measure $<TARGET_FILE:abbe>)
