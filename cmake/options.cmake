@@ -51,10 +51,17 @@ endif()
 
 include(${CMAKE_CURRENT_LIST_DIR}/embed.cmake)
 
+# A caller's thread may have a small stack. The sanitizers' frames are larger by what they watch.
+set(abbe_frames "")
+if(NOT ABBE_SANITIZE)
+  set(abbe_frames -Wframe-larger-than=49152)
+endif()
+
 # abbe_room(NAME SOURCES… LIBRARIES…): one room of the library, as objects.
 function(abbe_room name)
   cmake_parse_arguments(room "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_library(abbe_${name} OBJECT ${room_SOURCES})
   target_link_libraries(abbe_${name} PUBLIC abbe_build ${room_LIBRARIES})
+  target_compile_options(abbe_${name} PRIVATE ${abbe_frames})
   set_property(GLOBAL APPEND PROPERTY ABBE_ROOMS abbe_${name})
 endfunction()

@@ -25,7 +25,7 @@ static void run_well(const char *line) {
 static void test_rows_are_measured_once(void **state) {
   (void)state;
   abbe_sweep_table first = {0}, second = {0};
-  run_well(TWO);
+  run_well("ulimit -s 256 && " TWO);
   assert_contains(run_output, "2 settings");
   assert_contains(run_output, "w3 p"); /* which is on the front is the clock's affair */
   load("s.csv", &first);

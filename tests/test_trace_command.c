@@ -264,6 +264,15 @@ static void test_map_like(void **state) {
   abbe_image_free(&b);
 }
 
+/* Threads have the stack that the shell allows; a quarter of a megabyte does, also for two. */
+static void test_a_small_stack(void **state) {
+  (void)state;
+  check_run("ulimit -s 256 && " TRACE BALL SMALL "--spp 1 -o a.exr --save-map m.exr --rates", 0);
+  check_run("ulimit -s 256 && " TRACE "\"$house/scenes/bunny.yaml\" " SMALL
+            "--threads 2 --spp 1 -o b.exr",
+            0);
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, run_setup, run_teardown)
   const struct CMUnitTest tests[] = {
@@ -272,7 +281,7 @@ int main(void) {
       TEST(test_resume),       TEST(test_interrupt),
       TEST(test_kill),         TEST(test_stops),
       TEST(test_used_wrongly), TEST(test_bad_scenes),
-      TEST(test_map_like),
+      TEST(test_map_like),     TEST(test_a_small_stack),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

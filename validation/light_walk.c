@@ -65,6 +65,7 @@ struct abbe_light_walk {
   bool *hides;       /* [lights] some receiver may hide a place on another from the lamp */
   struct RTCRayHit16 *kept;
   size_t kept_count, kept_room;
+  abbe_light_walk_room room;
 };
 
 /* ---- what receivers may hide ---- */
@@ -134,7 +135,11 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
   abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
   size_t lights = geometry->scene->light_count;
   if (w != NULL) {
-    *w = (abbe_light_walk){.g = geometry, .media = media, .physics = *physics, .seed = seed};
+    memset(w, 0, sizeof *w);
+    w->g = geometry;
+    w->media = media;
+    w->physics = *physics;
+    w->seed = seed;
     w->now = aligned_alloc(64, (sizeof *w->now + 63) / 64 * 64);
     w->next = aligned_alloc(64, (sizeof *w->next + 63) / 64 * 64);
     w->hides = calloc(lights + 1, sizeof *w->hides);
@@ -162,6 +167,10 @@ void abbe_light_walk_free(abbe_light_walk *walk) {
   free(walk->kept);
   free(walk->hides);
   free(walk);
+}
+
+abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk) {
+  return &walk->room;
 }
 
 uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {

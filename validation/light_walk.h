@@ -68,6 +68,14 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
                                  abbe_error *error);
 void abbe_light_walk_free(abbe_light_walk *walk);
 
+/* Room for a batch and its landings, the walk's own and for its callers: a quarter of a megabyte,
+ * which a thread's stack may not have. */
+typedef struct abbe_light_walk_room {
+  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
+  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
+} abbe_light_walk_room;
+abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk);
+
 /* At which of its first interfaces (bit 0: the first) a photon of the next runs goes both ways, each
  * with its share of the light, where it else takes one of them by chance. Nothing is biased by
  * either: parting pays where the way that is rarely taken is the one that lands. */

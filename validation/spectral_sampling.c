@@ -13,12 +13,14 @@ static double fine_nm(double min_nm, double max_nm, size_t i) {
   return min_nm + (max_nm - min_nm) * (double)i / FINE;
 }
 
-/* What the eye sees of the lights, a share of 1 in all, over the fine bins. */
+/* What the eye sees of the lights, a share of 1 in all, over the fine bins; beyond them density has
+ * room for one light's. */
 static abbe_result visible_density(const abbe_scene *scene, double min_nm, double max_nm,
                                    double *density, abbe_error *error) {
+  double *one = density + FINE;
   for (size_t l = 0; l < scene->light_count; l++) {
     const abbe_illuminant *illuminant = &scene->light[l].illuminant;
-    double sum = 0, one[FINE];
+    double sum = 0;
     for (size_t i = 0; i < FINE; i++) {
       double lambda = 0.5 * (fine_nm(min_nm, max_nm, i) + fine_nm(min_nm, max_nm, i + 1)), xyz[3];
       abbe_observer_xyz(lambda, xyz);
@@ -83,7 +85,7 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, 
                           "a range of wavelengths rises from above 0, as 380:780 does: not %g:%g",
                           min_nm, max_nm);
   abbe_spectral_sampling s = {.steps = ABBE_SPECTRAL_SAMPLING_STEPS, .lights = scene->light_count};
-  double *density = calloc(FINE, sizeof *density);
+  double *density = calloc(2 * FINE, sizeof *density);
   s.lambda_nm = calloc(s.steps + 1, sizeof *s.lambda_nm);
   s.white = calloc(s.lights + 1, sizeof *s.white);
   s.xyz = calloc(s.lights * s.steps + 1, sizeof *s.xyz);

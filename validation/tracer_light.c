@@ -218,8 +218,9 @@ typedef struct task_result {
 static void run_task(const emission *e, uint32_t from, uint32_t to, size_t thread,
                      abbe_grid_photon *keep, task_result *out) {
   abbe_tracer *t = (abbe_tracer *)e->t;
-  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
-  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
+  abbe_light_walk_room *room = abbe_light_walk_get_room(t->walk[thread]);
+  abbe_photon *photon = room->photon;
+  abbe_landing *landing = room->landing;
   sink s = {.t = t, .thread = thread, .light = e->light};
   *out = (task_result){0};
   abbe_light_walk_part(t->walk[thread], t->parts[e->light]);
@@ -318,7 +319,7 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
 
 /* The trial's photons, followed without parting. */
 static size_t land_trial(const abbe_tracer *t, const emission *e, abbe_landing *landing) {
-  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
+  abbe_photon *photon = abbe_light_walk_get_room(t->walk[0])->photon;
   abbe_light_ledger ledger = {0};
   size_t landed = 0;
   abbe_light_walk_part(t->walk[0], 0);
@@ -358,8 +359,9 @@ static double now(void) {
 
 /* Photons emitted, followed, and sorted into texels, by one thread. */
 static double walk_seconds(abbe_tracer *t, const emission *e) {
-  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
-  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
+  abbe_light_walk_room *room = abbe_light_walk_get_room(t->walk[0]);
+  abbe_photon *photon = room->photon;
+  abbe_landing *landing = room->landing;
   abbe_light_ledger ledger = {0};
   sink s = {.t = t, .light = e->light};
   double start = now();
@@ -412,8 +414,9 @@ static int by_value(const void *a, const void *b) {
 /* Window coordinates of trial landings, along right (0) and up (1); their number. */
 static size_t try_landings(const abbe_tracer *t, abbe_light_walk *walk, const abbe_view *view,
                            const emission *e, double *at[2], double *near, double *far) {
-  abbe_photon photon[ABBE_LIGHT_WALK_BATCH];
-  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
+  abbe_light_walk_room *room = abbe_light_walk_get_room(walk);
+  abbe_photon *photon = room->photon;
+  abbe_landing *landing = room->landing;
   abbe_light_ledger ledger = {0};
   size_t found = 0;
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
