@@ -23,6 +23,10 @@ static const struct argp_option options[] = {
 #define ABBE_NAME_OF(code, name) name,
 static const char *const names[] = {ABBE_PRESETS(ABBE_NAME_OF)};
 
+static bool is_asked(const abbe_preset_options *o) {
+  return o->name != NULL || o->max_error > 0 || o->budget_ms > 0;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_preset_options *o = state->input;
   switch (key) {
@@ -39,6 +43,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     o->file = text;
     return 0;
   case ARGP_KEY_END:
+    if (o->file != NULL && !is_asked(o))
+      argp_error(state,
+                 "--presets '%s' is a file for --preset, --max-error or --budget-ms to read "
+                 "from, and none of them is given",
+                 o->file);
     if ((o->name != NULL) + (o->max_error > 0) + (o->budget_ms > 0) > 1)
       argp_error(state, "--preset, --max-error and --budget-ms: one of them");
     return 0;
@@ -49,14 +58,16 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 const struct argp abbe_preset_options_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
 
-static bool is_asked(const abbe_preset_options *o) {
-  return o->name != NULL || o->max_error > 0 || o->budget_ms > 0;
-}
-
-static size_t named_point(const abbe_preset_options *o) {
+static abbe_result find_named(abbe_preset_options *o, abbe_error *error) {
   int i = 0;
   while (names[i] != o->name) i++;
-  return o->front->named[i];
+  o->point = o->front->named[i];
+  if (o->point < o->front->count) return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_NOT_FOUND, "there is no '%s' for scenes of the class %s in %s%s", o->name,
+      abbe_preset_class_name(o->front->of), o->file != NULL ? o->file : "the shipped presets",
+      i == ABBE_PRESET_ACCURATE ? ": no sweep of one measured settings finer than the defaults"
+                                : "");
 }
 
 abbe_result abbe_preset_options_resolve(abbe_preset_options *o, abbe_context *context,
@@ -74,13 +85,15 @@ abbe_result abbe_preset_options_resolve(abbe_preset_options *o, abbe_context *co
   result = abbe_presets_find(&o->presets, &plan, &o->front, error);
   abbe_plan_free(&plan);
   o->timed = timed || o->budget_ms > 0;
+  if (result == ABBE_OK && o->name != NULL) result = find_named(o, error);
   if (result == ABBE_OK && o->timed)
     result = abbe_preset_calibrate(context, scene, o->front, desc, &speed, error);
   if (result != ABBE_OK) return result;
   o->chosen = o->kept = true;
-  o->point = o->name != NULL    ? named_point(o)
-             : o->budget_ms > 0 ? abbe_preset_for_time(o->front, &speed, o->budget_ms, &o->kept)
-                                : abbe_preset_for_error(o->front, o->max_error, &o->kept);
+  if (o->budget_ms > 0)
+    o->point = abbe_preset_for_time(o->front, &speed, o->budget_ms, &o->kept);
+  else if (o->max_error > 0)
+    o->point = abbe_preset_for_error(o->front, o->max_error, &o->kept);
   const abbe_preset_point *point = &o->front->point[o->point];
   o->promised_ms = abbe_preset_ms(point, &speed);
   o->overridden = !abbe_preset_apply(point, desc);

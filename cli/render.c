@@ -330,6 +330,23 @@ static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
   for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
 }
 
+/* The picture is there; but a bound that was asked for and is not kept is told by the exit code. */
+static abbe_result judge(const abbe_preset_options *o, const abbe_statistics *s,
+                         abbe_error *error) {
+  if (o->budget_ms > 0 && s->frame_ms > o->budget_ms)
+    return abbe_error_set(error, ABBE_TOLERANCE,
+                          "the frame took %.0f ms and %.0f were promised: the budget of %g ms is "
+                          "not kept%s; what was asked for is written all the same",
+                          s->frame_ms, o->promised_ms, o->budget_ms,
+                          o->kept ? "" : ", for no faster settings are known");
+  if (o->max_error > 0 && !o->kept)
+    return abbe_error_set(error, ABBE_TOLERANCE,
+                          "no settings are known to keep an error of %g; the most accurate ones "
+                          "were taken, and what was asked for is written all the same",
+                          o->max_error);
+  return ABBE_OK;
+}
+
 static abbe_result render(const request *q, const abbe_scene *scene, abbe_context *context,
                           abbe_error *error) {
   abbe_renderer *renderer = NULL;
@@ -370,6 +387,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   if (result == ABBE_OK) result = write_stats(q, &statistics, &bars, context, error);
   if (result == ABBE_OK) summarise(q, &statistics, prepared_s);
   if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
+  if (result == ABBE_OK && q->preset.chosen) result = judge(&q->preset, &statistics, error);
   abbe_error_bars_free(&bars);
   abbe_image_free(&image);
   abbe_renderer_free(renderer);

@@ -3,8 +3,10 @@
 #include "cli/sweep_report.h"
 #include "cli/sweep_work.h"
 
+#include "gl/preset.h"
 #include "spectral/file.h"
 #include "spectral/nearest.h"
+#include "validation/sweep.h"
 #include "validation/sweep_plot.h"
 #include "validation/sweep_presets.h"
 #include "validation/tracer.h"
@@ -385,6 +387,11 @@ static abbe_result load_tables(const request *q, abbe_sweep_table *tables, abbe_
   return result;
 }
 
+static bool is_fine(const abbe_sweep_setting *setting) {
+  abbe_render_desc desc;
+  return abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK && abbe_preset_is_fine(&desc);
+}
+
 static abbe_result show(const request *q, const abbe_sweep_table *tables, size_t count,
                         abbe_error *error) {
   const abbe_sweep_request *w = &q->work;
@@ -396,7 +403,8 @@ static abbe_result show(const request *q, const abbe_sweep_table *tables, size_t
   if (result == ABBE_OK && w->report != NULL)
     result = abbe_sweep_report_write(w->report, tables, count, w->error, w->backend, error);
   if (result == ABBE_OK && q->presets != NULL)
-    result = abbe_sweep_presets_write(q->presets, tables, q->argument, count, w->error, error);
+    result =
+        abbe_sweep_presets_write(q->presets, tables, q->argument, count, w->error, is_fine, error);
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     if (w->json)
       result = abbe_sweep_report_print_json(&tables[i], w->error, error);
@@ -451,7 +459,8 @@ int abbe_command_sweep(int argc, char **argv) {
       NULL,
       NULL,
       NULL};
-  request q = {.grid = -1};
+  static request q; /* its grids are large for a small stack */
+  q.grid = -1;
   q.work.program = argv[0];
   q.work.frames = 5;
   q.work.error = ABBE_SWEEP_CAUSTIC_DE;

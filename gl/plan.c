@@ -65,10 +65,10 @@ static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc 
   if (d.height == 0) d.height = scene->camera.height;
   if (d.min_nm == 0) d.min_nm = ABBE_WAVELENGTH_MIN_NM;
   if (d.max_nm == 0) d.max_nm = d.profile == ABBE_PROFILE_THESIS ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
-  if (d.photons == 0) d.photons = thesis ? 512 : 256;
-  if (d.map_size == 0) d.map_size = 1024;
+  if (d.photons == 0) d.photons = thesis ? 512 : ABBE_PLAN_PHOTONS;
+  if (d.map_size == 0) d.map_size = ABBE_PLAN_MAP;
   if (d.upsample == 0) d.upsample = 1;
-  if (d.supersample == 0) d.supersample = thesis || d.upsample > 1 ? 1 : 2;
+  if (d.supersample == 0) d.supersample = thesis || d.upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
   if (d.fill == ABBE_FILL_AUTO) d.fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
   if (d.energy_share == 0) d.energy_share = ABBE_PLAN_SHARE;
   plan->desc = d;
@@ -354,7 +354,8 @@ static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
 
 static void resolve_wavelengths(abbe_plan *plan) {
   bool asked = plan->desc.wavelengths != 0;
-  if (!asked) plan->desc.wavelengths = plan->dispersive || plan->tinting ? 7 : 1;
+  if (!asked)
+    plan->desc.wavelengths = plan->dispersive || plan->tinting ? ABBE_PLAN_WAVELENGTHS : 1;
   if (no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
   add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
       plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));

@@ -60,8 +60,13 @@ typedef enum abbe_model {
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
 
-/* Exits that are followed at the most, and the share of its light below which a path ends, where the
- * request leaves them open. */
+/* What a request of the default profile leaves open, where a scene disperses. */
+#define ABBE_PLAN_WAVELENGTHS 7
+#define ABBE_PLAN_PHOTONS 256
+#define ABBE_PLAN_MAP 1024
+#define ABBE_PLAN_SAMPLES 2
+/* Exits that are followed at the most, and the share of its light below which a path ends, where
+ * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
 #define ABBE_PLAN_LAYER_EXITS 4 /* where a refractor is known by its layers */
 #define ABBE_PLAN_SHARE 0.01

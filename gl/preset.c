@@ -157,6 +157,7 @@ static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_preset_
   if (result == ABBE_OK) result = copy_text(r, node, "scenes", out->scenes, sizeof out->scenes);
   if (result == ABBE_OK) result = read_margins(r, node, out);
   if (result == ABBE_OK) result = read_points(r, list, out);
+  for (int i = 0; i < ABBE_PRESET_COUNT; i++) out->named[i] = out->count;
   for (int i = 0; i < ABBE_PRESET_COUNT && result == ABBE_OK; i++)
     result = abbe_yaml_get_count(r->yaml, node, preset_names[i], 0, out->count - 1, &out->named[i],
                                  r->error);
@@ -224,6 +225,13 @@ static bool take_exits(size_t *mine, const abbe_render_desc *preset) {
   return same;
 }
 
+/* The share that plans have by themselves likewise: a gem has a lower one. */
+static bool take_share(double *mine, double preset) {
+  const bool same = *mine == 0 || *mine == preset;
+  if (*mine == 0 && preset != ABBE_PLAN_SHARE) *mine = preset;
+  return same;
+}
+
 static bool take(size_t *mine, size_t preset) {
   if (*mine == 0) *mine = preset;
   return *mine == preset;
@@ -240,10 +248,16 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
   same = d->supersample == p->supersample && same;
   same = take_exits(&d->orders, p) && same;
   if (d->fill == ABBE_FILL_AUTO) d->fill = p->fill;
-  if (d->energy_share == 0) d->energy_share = p->energy_share;
+  same = take_share(&d->energy_share, p->energy_share) && same;
   if (d->model == ABBE_MODEL_AUTO) d->model = p->model;
-  return same && d->fill == p->fill && d->energy_share == p->energy_share && d->model == p->model &&
-         d->profile == ABBE_PROFILE_DEFAULT;
+  return same && d->fill == p->fill && d->model == p->model && d->profile == ABBE_PROFILE_DEFAULT;
+}
+
+bool abbe_preset_is_fine(const abbe_render_desc *d) {
+  return d->wavelengths > ABBE_PLAN_WAVELENGTHS && d->photons > ABBE_PLAN_PHOTONS &&
+         d->map_size >= ABBE_PLAN_MAP && d->supersample >= ABBE_PLAN_SAMPLES && d->upsample == 1 &&
+         d->orders >= ABBE_PLAN_EXITS && d->energy_share <= ABBE_PLAN_SHARE &&
+         d->fill == ABBE_FILL_BRIDGE && d->model == ABBE_MODEL_AUTO;
 }
 
 static double passes_ms(const abbe_statistics *s, const char *prefix) {

@@ -58,7 +58,7 @@ typedef struct abbe_preset_front {
   /* The most by which one of the run's scenes was worse than the others had promised. */
   double margin, time_margin;
   size_t margin_scenes; /* behind them; 0: too few of this class, so another class's are taken */
-  size_t named[ABBE_PRESET_COUNT]; /* indices of points */
+  size_t named[ABBE_PRESET_COUNT]; /* indices of points; count where no point has the name */
   size_t count;                    /* at least 1 */
   abbe_preset_point *point;        /* [count] of rising cost and falling error */
 } abbe_preset_front;
@@ -71,6 +71,10 @@ typedef struct abbe_presets {
   abbe_preset_front front[ABBE_PRESET_CLASS_COUNT];
 } abbe_presets;
 
+/* Whether the settings are nowhere coarser than those that a plan takes by itself, and of more
+ * wavelengths and photons: what is called accurate is that. */
+bool abbe_preset_is_fine(const abbe_render_desc *desc);
+
 /* From a file, or with NULL the shipped ones. ABBE_SCHEMA, ABBE_PARSE and ABBE_IO name file, line
  * and key. */
 abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *error);
@@ -80,8 +84,9 @@ void abbe_presets_free(abbe_presets *presets);
 abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan,
                               const abbe_preset_front **out, abbe_error *error);
 
-/* Fills the fields of desc that are 0 with the point's. False where a field that was not 0 differs
- * from it: then what the point promises does not hold. */
+/* Fills the fields of desc that are 0 with the point's, but for exits and a share that plans have
+ * by themselves: those are left to the scene's own. False where a field that was not 0 differs from
+ * it: then what the point promises does not hold. */
 bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *desc);
 
 /* This machine's time for this scene and size over the run's, for the light's and the eye's

@@ -38,6 +38,8 @@ static void test_the_shipped_presets_are_whole(void **state) {
     assert_true(f->named[ABBE_PRESET_DRAFT] <= f->named[ABBE_PRESET_BALANCED]);
     assert_true(f->named[ABBE_PRESET_BALANCED] <= f->named[ABBE_PRESET_ACCURATE]);
     assert_true(f->named[ABBE_PRESET_ACCURATE] < f->count);
+    if (!abbe_preset_is_fine(&f->point[f->named[ABBE_PRESET_ACCURATE]].desc))
+      fail_msg("%s: accurate is not finer than the defaults", abbe_preset_class_name(f->of));
     for (size_t k = 0; k < f->count; k++) assert_true(f->point[k].least <= f->point[k].error);
   }
   assert_true(seen[ABBE_PRESET_CLASS_SPHERES]);
@@ -106,6 +108,36 @@ static void test_margins_widen_promises(void **state) {
   abbe_presets_free(&presets);
 }
 
+/* Presets off a sweep without fine settings have no accurate: the name promises more than the
+ * defaults. */
+static void test_a_name_may_be_missing(void **state) {
+  (void)state;
+  abbe_presets presets;
+  abbe_error error = {0};
+  assert_ok(load_presets(HEAD "- class: convex\n  scenes: \"gem\"\n  draft: 0\n  front:\n" THREE,
+                         &presets, &error),
+            &error);
+  assert_int_equal(presets.front[0].named[ABBE_PRESET_DRAFT], 0);
+  assert_int_equal(presets.front[0].named[ABBE_PRESET_ACCURATE], 3);
+  abbe_presets_free(&presets);
+  const abbe_render_desc own = {.wavelengths = 7,
+                                .photons = 256,
+                                .map_size = 1024,
+                                .supersample = 2,
+                                .upsample = 1,
+                                .orders = 8,
+                                .energy_share = 0.01,
+                                .fill = ABBE_FILL_BRIDGE};
+  abbe_render_desc fine = own;
+  assert_false(abbe_preset_is_fine(&own));
+  fine.photons = 512;
+  assert_false(abbe_preset_is_fine(&fine)); /* a wide spectrum asks for wavelengths */
+  fine.wavelengths = 21;
+  assert_true(abbe_preset_is_fine(&fine));
+  fine.supersample = 1;
+  assert_false(abbe_preset_is_fine(&fine));
+}
+
 static void test_choices(void **state) {
   (void)state;
   abbe_presets presets;
@@ -144,7 +176,7 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   assert_int_equal(empty.supersample, 1);
   assert_int_equal(empty.orders, 0); /* as many as a plan has by itself: left to it */
   assert_int_equal(empty.fill, ABBE_FILL_BRIDGE);
-  assert_near(empty.energy_share, 0.01, 0);
+  assert_near(empty.energy_share, 0, 0); /* likewise: a gem's own is lower */
   assert_false(abbe_preset_apply(point, &own));
   assert_int_equal(own.wavelengths, 21);
   assert_int_equal(own.photons, 64);
@@ -156,6 +188,13 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   assert_int_equal(some.orders, 2);
   assert_false(abbe_preset_apply(&fewer, &other));
   assert_int_equal(other.orders, 3);
+  abbe_preset_point faint = *point;
+  abbe_render_desc low = {0}, high = {.energy_share = 0.1};
+  faint.desc.energy_share = 0.003;
+  assert_true(abbe_preset_apply(&faint, &low));
+  assert_near(low.energy_share, 0.003, 0);
+  assert_false(abbe_preset_apply(&faint, &high));
+  assert_near(high.energy_share, 0.1, 0);
   abbe_preset_point draft = *point;
   abbe_render_desc coarse = {0}, fine = {.supersample = 2};
   draft.desc.upsample = 2;
@@ -210,6 +249,7 @@ int main(void) {
       cmocka_unit_test(test_the_shipped_presets_are_whole),
       cmocka_unit_test(test_broken_files_are_named),
       cmocka_unit_test(test_margins_widen_promises),
+      cmocka_unit_test(test_a_name_may_be_missing),
       cmocka_unit_test(test_choices),
       cmocka_unit_test(test_what_the_caller_asks_for_stays),
       cmocka_unit_test(test_classes_and_calibration),

@@ -15,12 +15,16 @@
   "  scenes: gem\\n  draft: 0\\n  balanced: 1\\n  accurate: 2\\n  front:\\n" POINT("16", "1", "8") \
       POINT("24", "10", "4") POINT("32", "1e7", "2") "' >p.yaml"
 
-static cJSON *promise_of(const char *line) {
+static cJSON *promise_that_ends(const char *line, int right) {
   int code = run_line(line);
-  if (code != 0) fail_msg("%s ends with %d: %s", line, code, run_errors);
+  if (code != right) fail_msg("%s ends with %d: %s", line, code, run_errors);
   cJSON *json = cJSON_Parse(run_output);
   assert_non_null(json);
   return json;
+}
+
+static cJSON *promise_of(const char *line) {
+  return promise_that_ends(line, 0);
 }
 
 static const cJSON *item(const cJSON *json, const char *key) {
@@ -70,10 +74,13 @@ static void test_by_error_and_by_time(void **state) {
   assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
   assert_true(cJSON_IsTrue(item(json, "possible")));
   cJSON_Delete(json);
-  json = promise_of(GEM "--presets p.yaml --max-error 1 --json");
+  json = promise_that_ends(GEM "--presets p.yaml --max-error 1 --json --png a.png", 3);
   assert_near(cJSON_GetNumberValue(item(json, "error")), 2, 0);
   assert_true(cJSON_IsFalse(item(json, "possible")));
   assert_contains(run_errors, "no settings are known to keep 1; these are the most accurate");
+  assert_contains(run_errors,
+                  "no settings are known to keep an error of 1; the most accurate ones");
+  assert_int_equal(run_line("test -s a.png && rm a.png"), 0);
   cJSON_Delete(json);
   /* The third would take ten million times the first's time. */
   json = promise_of(GEM "--presets p.yaml --budget-ms 100000 --json -q");
@@ -81,11 +88,15 @@ static void test_by_error_and_by_time(void **state) {
   assert_true(cJSON_IsTrue(item(json, "possible")));
   assert_true(cJSON_IsTrue(item(json, "budget_met")));
   cJSON_Delete(json);
-  json = promise_of(GEM "--presets p.yaml --budget-ms 0.001 --json");
+  json = promise_that_ends(GEM "--presets p.yaml --budget-ms 0.001 --json -q --png a.png", 3);
   assert_true(cJSON_IsFalse(item(json, "possible")));
   assert_true(cJSON_IsFalse(item(json, "budget_met")));
-  assert_contains(run_errors, "these are the fastest");
+  assert_contains(run_errors,
+                  "the budget of 0.001 ms is not kept, for no faster settings are known");
+  assert_int_equal(run_line("test -s a.png && rm a.png"), 0);
   cJSON_Delete(json);
+  assert_int_equal(run_line(GEM "--presets p.yaml --budget-ms 0.001 --png a.png && rm a.png"), 3);
+  assert_contains(run_errors, "these are the fastest");
 }
 
 static void test_what_is_refused(void **state) {
@@ -99,6 +110,7 @@ static void test_what_is_refused(void **state) {
       {GEM "--json --max-error 0", "--max-error '0' is not a number", 2},
       {GEM "--json --preset draft --profile thesis", "a thesis profile has none", 2},
       {GEM "--json --preset draft --presets no.yaml", "no.yaml", 1},
+      {GEM "--json --presets draft", "--presets 'draft' is a file for --preset,", 2},
   };
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
     assert_true(run_refuses(wrong[i].line, wrong[i].code, wrong[i].part));
@@ -119,6 +131,9 @@ static void test_presets_of_a_sweep(void **state) {
   cJSON *json = promise_of(GEM "--presets p.yaml --preset draft --json -q");
   assert_contains(cJSON_GetStringValue(item(json, "run")), "24x24; medians of 1 frames");
   cJSON_Delete(json);
+  /* None of its settings is finer than the defaults. */
+  assert_int_equal(run_line(GEM "--presets p.yaml --preset accurate --json"), 1);
+  assert_contains(run_errors, "there is no 'accurate' for scenes of the class convex in p.yaml");
   assert_true(run_line("rm s.csv s-reference*.exr p.yaml") == 0);
   assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --write-presets p.yaml", 2,
                           "--write-presets reads tables"));

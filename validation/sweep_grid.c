@@ -114,6 +114,7 @@ size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out) {
       {.wavelengths = VALUES(21), .photons = VALUES(128), .map = VALUES(512), .samples = VALUES(1)},
       {.wavelengths = VALUES(7), .photons = VALUES(192), .map = VALUES(512), .samples = VALUES(1)},
       {.wavelengths = VALUES(7), .photons = VALUES(256), .samples = VALUES(1, 2)},
+      {.wavelengths = VALUES(21), .photons = VALUES(512), .samples = VALUES(2)},
       {.wavelengths = VALUES(7),
        .photons = VALUES(128),
        .map = VALUES(512),

@@ -13,7 +13,7 @@ extern "C" {
 #endif
 
 #define ABBE_SWEEP_MAX_VALUES 16 /* of one axis */
-#define ABBE_SWEEP_MAX_GRIDS 24
+#define ABBE_SWEEP_MAX_GRIDS 28
 
 /* Values of one axis; none: the profile's default. */
 typedef struct abbe_sweep_values {

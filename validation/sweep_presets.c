@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How far above the least error the accurate preset may be: within it more time buys nothing that
- * one sees. */
+/* How far above the least error of its kind the accurate preset may be: within it more time buys
+ * nothing that one sees. */
 static const double slack = 0.02;
 
 /* An error that is not above the reference's own noise by this much tells nothing of settings. */
@@ -36,6 +36,7 @@ typedef struct front {
   size_t points, *order, on_front;
   double *cost, *error; /* of all points, then of the front's */
   size_t cheapest;      /* of the points: the one that costs are told by */
+  bool (*is_fine)(const abbe_sweep_setting *setting);
 } front;
 
 /* What a promise is widened by: the worst that leaving one scene out would have been wrong by. */
@@ -205,6 +206,19 @@ static const char *base_of(const char *path) {
   return slash == NULL ? path : slash + 1;
 }
 
+/* Of the front's points that are finer than the defaults, the cheapest that is as good as the best;
+ * on_front where there is none. */
+static size_t find_accurate(const front *f) {
+  double least = INFINITY;
+  for (size_t i = 0; i < f->on_front; i++)
+    if (f->is_fine(f->point[f->order[i]].setting)) least = fmin(least, f->error[i]);
+  size_t at = 0;
+  while (at < f->on_front &&
+         !(f->is_fine(f->point[f->order[at]].setting) && f->error[at] <= (1 + slack) * least))
+    at++;
+  return at;
+}
+
 static void write_class(FILE *out, const front *f, const margins *widest) {
   margins own;
   char scenes[512] = "";
@@ -223,9 +237,15 @@ static void write_class(FILE *out, const front *f, const margins *widest) {
   if (own.scenes == 0) own = (margins){widest->error, widest->time, 0};
   abbe_number_write(out, "\n  margin: %.4g\n  time_margin: %.4g\n  margin_scenes: %zu", own.error,
                     own.time, own.scenes);
-  size_t accurate = abbe_front_accurate(f->error, f->on_front, slack);
-  fprintf(out, "\n  draft: 0\n  balanced: %zu\n  accurate: %zu\n  front:\n",
-          abbe_front_knee(f->cost, f->error, accurate + 1), accurate);
+  size_t accurate = find_accurate(f);
+  bool has_one = accurate < f->on_front;
+  size_t last = has_one ? accurate : abbe_front_accurate(f->error, f->on_front, slack);
+  fprintf(out, "\n  draft: 0\n  balanced: %zu\n", abbe_front_knee(f->cost, f->error, last + 1));
+  if (has_one)
+    fprintf(out, "  accurate: %zu\n  front:\n", accurate);
+  else
+    fprintf(out, "  # accurate: no setting that is finer than the defaults is on the front\n"
+                 "  front:\n");
   for (size_t i = 0; i < f->on_front; i++) write_point(out, &f->point[f->order[i]]);
 }
 
@@ -320,7 +340,9 @@ static abbe_result find_widest(const abbe_sweep_table *tables, size_t count,
 }
 
 static abbe_result write_all(FILE *out, const abbe_sweep_table *tables, const char *const *names,
-                             size_t count, abbe_sweep_number number, abbe_error *error) {
+                             size_t count, abbe_sweep_number number,
+                             bool (*is_fine)(const abbe_sweep_setting *setting),
+                             abbe_error *error) {
   margins widest;
   abbe_result result = find_widest(tables, count, number, &widest, error);
   write_head(out, &tables[0], number);
@@ -335,6 +357,7 @@ static abbe_result write_all(FILE *out, const abbe_sweep_table *tables, const ch
                          "%s: its class, %s, has no setting of the default profile whose %s is "
                          "known in all its sweeps",
                          names[i], f.of, abbe_sweep_number_name(number));
+    f.is_fine = is_fine;
     if (result == ABBE_OK) write_class(out, &f, &widest);
     close_front(&f);
   }
@@ -343,11 +366,14 @@ static abbe_result write_all(FILE *out, const abbe_sweep_table *tables, const ch
 
 abbe_result abbe_sweep_presets_write(const char *path, const abbe_sweep_table *tables,
                                      const char *const *names, size_t count,
-                                     abbe_sweep_number number, abbe_error *error) {
+                                     abbe_sweep_number number,
+                                     bool (*is_fine)(const abbe_sweep_setting *setting),
+                                     abbe_error *error) {
   abbe_file_writer writer = {0};
   abbe_result result = check(tables, names, count, error);
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
-  if (result == ABBE_OK) result = write_all(writer.stream, tables, names, count, number, error);
+  if (result == ABBE_OK)
+    result = write_all(writer.stream, tables, names, count, number, is_fine, error);
   if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
   abbe_file_writer_discard(&writer);
   return result;

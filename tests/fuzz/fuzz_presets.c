@@ -20,7 +20,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const abbe_preset_speed speed = {1, 1};
     bool kept;
     FUZZ_PROMISE(f->count >= 1 && f->count <= ABBE_PRESET_MAX_POINTS);
-    for (int k = 0; k < ABBE_PRESET_COUNT; k++) FUZZ_PROMISE(f->named[k] < f->count);
+    for (int k = 0; k < ABBE_PRESET_COUNT; k++) FUZZ_PROMISE(f->named[k] <= f->count);
     FUZZ_PROMISE(abbe_preset_for_error(f, 0.01, &kept) < f->count);
     FUZZ_PROMISE(abbe_preset_for_time(f, &speed, 10, &kept) < f->count);
   }
