@@ -43,4 +43,4 @@ target_include_directories(test_headers PRIVATE
   $<TARGET_PROPERTY:abbe_gl,INTERFACE_INCLUDE_DIRECTORIES>)
 add_dependencies(cpu_tests test_headers)
 add_test(NAME headers COMMAND test_headers)
-set_tests_properties(headers PROPERTIES LABELS cpu TIMEOUT 60)
+set_tests_properties(headers PROPERTIES LABELS cpu TIMEOUT ${hang_s})

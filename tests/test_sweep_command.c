@@ -126,7 +126,7 @@ static void test_ctrl_c_keeps_what_is_done(void **state) {
   (void)state;
   abbe_sweep_table table = {0};
   int code =
-      run_line(SWEEP "--profiles default --wavelengths 3,5,7,9,11,13,15,17 --photons 64,72,80,88 "
+      run_line(SWEEP "--profiles default --wavelengths 3,5,7,9,11,13,15,17 --photons 64,72,80,800 "
                      "-o s.csv & pid=$!; while ! test -s s.csv; do sleep 0.02; done; "
                      "kill -INT $pid; wait $pid");
   assert_int_equal(code, 1);
