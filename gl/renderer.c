@@ -231,6 +231,7 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
   r->statistics = statistics;
   r->untimed_ms = 0;
+  r->drawn = false;
   double start_ms = abbe_renderer_now_ms();
   abbe_renderer_bind_tables(r);
   abbe_result result;
@@ -245,7 +246,15 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
   r->gl->Finish();
   if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
   r->statistics = NULL;
+  r->drawn = result == ABBE_OK;
   return result;
+}
+
+static abbe_result check_drawn(const abbe_renderer *r, abbe_error *error) {
+  if (r->drawn) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "no frame has been drawn, so there is nothing to read; "
+                        "abbe_renderer_frame comes first");
 }
 
 /* GL's rows run upwards. */
@@ -316,8 +325,11 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   bool as_xyz = r->plan.desc.space == ABBE_RGB_SPACE_XYZ && !thesis;
   layers = layers && r->plan.desc.layers && !abbe_profile_is_thesis(r->plan.desc.profile);
-  abbe_result result = abbe_image_make(r->plan.desc.width, r->plan.desc.height, layers ? 10 : 3,
-                                       as_xyz ? xyz : rgb, out, error);
+  *out = (abbe_image){0};
+  abbe_result result = check_drawn(r, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_image_make(r->plan.desc.width, r->plan.desc.height, layers ? 10 : 3,
+                           as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;
   const size_t side = layers ? r->plan.desc.supersample : 1;
   float *data = malloc(out->width * out->height * side * side * 4 * sizeof *data);
@@ -355,6 +367,8 @@ abbe_result abbe_renderer_check_map(const abbe_renderer *r, size_t light, abbe_e
   if (light >= r->plan.light_count || !r->plan.reaches[light] || r->plan.lamp[light].light != light)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the scene has no spectral map of light %zu", light);
+  abbe_result result = check_drawn(r, error);
+  if (result != ABBE_OK) return result;
   if (!abbe_renderer_is_face(r, light) || abbe_renderer_map_is_given(r, light)) return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "the light '%s' has a cube of maps, each with its own layout; give one "
@@ -368,6 +382,7 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   bool flat = abbe_profile_is_thesis(r->plan.desc.profile);
   size_t side = r->plan.desc.map_size;
+  *out = (abbe_image){0};
   abbe_result result = abbe_renderer_check_map(r, light, error);
   if (result != ABBE_OK) return result;
   result = abbe_image_make(side, side, 3, thesis ? rgb : xyz, out, error);

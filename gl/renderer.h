@@ -44,7 +44,8 @@ abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error 
 
 /* The picture: R, G, B (X, Y, Z in that space); with layers (which the request must have
  * asked for) also direct.*, caustic.* (radiance of
- * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing). */
+ * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing).
+ * ABBE_INVALID_ARGUMENT before a whole frame was drawn; so of maps. */
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image *out,
                                abbe_error *error);
 

@@ -148,6 +148,7 @@ struct abbe_renderer {
   thesis_state *thesis;
 
   bool wide;                   /* the map's sums have 64 bits, else 32 */
+  bool drawn;                  /* the last frame was, to its end */
   double untimed_ms;           /* of this frame, spent on its ledger */
   abbe_statistics *statistics; /* of the frame that runs, or NULL */
   double pass_start_ms;

@@ -455,6 +455,35 @@ static void test_what_is_not_there_is_refused(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* What was not drawn is not black. */
+static void test_nothing_is_read_before_a_frame(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image image = {0};
+  abbe_error error = {0};
+  int calls = 0;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  for (int turn = 0; turn < 2; turn++) {
+    assert_int_equal(abbe_renderer_read(renderer, false, &image, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "no frame has been drawn");
+    assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "no frame has been drawn");
+    assert_int_equal(abbe_renderer_read_map_bands(renderer, 0, 3, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_null(image.data);
+    if (turn > 0) continue;
+    draw_frame(renderer);
+    read_picture(renderer, false, &image);
+    abbe_image_free(&image);
+    /* Nor what a frame that was stopped has left. */
+    assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+  }
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_shipped_scenes_balance_and_repeat),
@@ -469,6 +498,7 @@ int main(void) {
       cmocka_unit_test(test_fewer_samples_than_pixels),
       cmocka_unit_test(test_a_map_takes_a_given_layout),
       cmocka_unit_test(test_what_is_not_there_is_refused),
+      cmocka_unit_test(test_nothing_is_read_before_a_frame),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
