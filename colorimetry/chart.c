@@ -107,6 +107,7 @@ static abbe_result write_panels(const char *path, abbe_chart_panel *panels, size
 
 abbe_result abbe_chart_write(const char *path, const abbe_chart *charts, size_t count, size_t width,
                              size_t height, abbe_error *error) {
+  ABBE_REQUIRE(path && charts, error);
   if (!ends_with(path, ".png") && !ends_with(path, ".svg"))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: a chart wants a name that ends with .png or .svg", path);

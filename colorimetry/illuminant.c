@@ -119,6 +119,7 @@ static abbe_result load(const char *path, abbe_illuminant *out, abbe_error *erro
 
 abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
                                  abbe_error *error) {
+  ABBE_REQUIRE(name_or_path && out, error);
   *out = (abbe_illuminant){0};
   for (int i = 0; i < ABBE_ILLUMINANT_TABULATED; i++)
     if (strcasecmp(name_or_path, names[i]) == 0) {

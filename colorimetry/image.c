@@ -35,6 +35,7 @@ static abbe_result check_size(size_t width, size_t height, size_t channels,
 
 abbe_result abbe_image_make(size_t width, size_t height, size_t channels, const char *const *names,
                             abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(names && out, error);
   *out = (abbe_image){0};
   abbe_result result = check_size(width, height, channels, names, error);
   if (result != ABBE_OK) return result;
@@ -119,6 +120,7 @@ static bool append_attribute(abbe_image *image, const char *name, char *text) {
 
 abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const char *text,
                                      abbe_error *error) {
+  ABBE_REQUIRE(image && name && text, error);
   if (name == NULL || name[0] == '\0' || text == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "an attribute of an image needs a name and a text");

@@ -114,6 +114,7 @@ static bool write_image(job *j, const abbe_image *image) {
 }
 
 abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, abbe_error *error) {
+  ABBE_REQUIRE(path && image, error);
   if (bits != 8 && bits != 16)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: a PNG of %d bits cannot be written; 8 or 16 can", path, bits);
@@ -300,6 +301,7 @@ static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_er
 }
 
 abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
   *out = (abbe_image){0};
   FILE *file;
   size_t size = 0;

@@ -128,6 +128,7 @@ static void sum_weights(abbe_weights *weights) {
 abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
                               const abbe_illuminant *illuminant, abbe_rgb_space space,
                               abbe_weights *out, abbe_error *error) {
+  ABBE_REQUIRE(wavelengths && wavelengths->count > 0 && illuminant && out, error);
   *out = (abbe_weights){0};
   abbe_weights weights = {.count = wavelengths->count};
   weights.weight = calloc(weights.count, sizeof *weights.weight);

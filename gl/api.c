@@ -4,6 +4,7 @@
 #include <string.h>
 
 abbe_result abbe_gl_load(abbe_gl_lookup lookup, abbe_gl *out, abbe_error *error) {
+  ABBE_REQUIRE(lookup && out, error);
   abbe_gl_function function;
   /* A pointer to a function travels as bytes: C has no cast between the two kinds that every
    * compiler accepts without a warning. */
@@ -37,6 +38,7 @@ static const char *error_name(GLenum code) {
 }
 
 abbe_result abbe_gl_check(const abbe_gl *gl, const char *where, abbe_error *error) {
+  ABBE_REQUIRE(gl && gl->GetError && where, error);
   GLenum first = gl->GetError();
   if (first == GL_NO_ERROR) return ABBE_OK;
   while (gl->GetError() != GL_NO_ERROR) continue;

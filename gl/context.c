@@ -69,6 +69,7 @@ static abbe_result check_limits(const abbe_context *context, abbe_context_backen
 }
 
 abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, abbe_error *error) {
+  ABBE_REQUIRE(out, error);
   *out = NULL;
   if ((int)backend < 0 || backend >= ABBE_CONTEXT_BACKEND_COUNT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no GL back end %d", (int)backend);

@@ -316,6 +316,7 @@ static abbe_result begin(work *w, abbe_renderer *renderer, size_t variants, abbe
 abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
                                  abbe_renderer *renderer, const abbe_error_bars_desc *desc,
                                  abbe_error_bars *out, abbe_error *error) {
+  ABBE_REQUIRE(context && scene && renderer && out, error);
   static const abbe_error_bars_desc defaults = {0};
   *out = (abbe_error_bars){0};
   if (desc == NULL) desc = &defaults;
@@ -348,6 +349,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
 }
 
 void abbe_error_bars_free(abbe_error_bars *bars) {
+  if (bars == NULL) return;
   abbe_image_free(&bars->error);
   abbe_image_free(&bars->mean);
   *bars = (abbe_error_bars){0};
@@ -355,6 +357,7 @@ void abbe_error_bars_free(abbe_error_bars *bars) {
 
 abbe_result abbe_error_bars_attach(const abbe_error_bars *bars, abbe_image *picture,
                                    abbe_error *error) {
+  ABBE_REQUIRE(bars && bars->error.data && picture && picture->data, error);
   const char *name[16];
   size_t first = picture->channels, pixels = picture->width * picture->height;
   if (first + 3 > sizeof name / sizeof *name || bars->error.width != picture->width ||

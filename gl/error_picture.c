@@ -46,6 +46,7 @@ static void errors_of_y(const abbe_error_bars *bars, float *out) {
 
 abbe_result abbe_error_picture_write(const char *path, const abbe_error_bars *bars,
                                      abbe_error *error) {
+  ABBE_REQUIRE(path && bars && bars->error.data, error);
   size_t width = bars->error.width, height = bars->error.height, pixels = width * height;
   float *value = malloc(2 * pixels * sizeof *value);
   if (value == NULL)

@@ -434,6 +434,7 @@ abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, v
 }
 
 abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error) {
+  ABBE_REQUIRE(r && ms, error);
   const abbe_gl *gl = r->gl;
   static const int first = 0;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;

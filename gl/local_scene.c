@@ -72,6 +72,7 @@ static abbe_result move_scene(const abbe_scene *scene, abbe_local_scene *out, ab
 
 abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out,
                                   abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
   double centre[3];
   memset(out, 0, sizeof *out);
   out->scene = scene;
@@ -89,6 +90,7 @@ abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out
 
 abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t *of, size_t count,
                                            abbe_error *error) {
+  ABBE_REQUIRE(local && local->scene && (of || count == 0), error);
   const abbe_scene *scene = local->scene;
   const size_t own = scene->light_count;
   abbe_light *light = calloc(own + count + 1, sizeof *light);
@@ -107,6 +109,7 @@ abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t
 }
 
 void abbe_local_scene_free(abbe_local_scene *local) {
+  if (local == NULL) return;
   if (local->repeated && !local->moved) free(local->copy.light);
   if (local->moved) {
     for (size_t i = 0; local->copy.object != NULL && i < local->copy.object_count; i++) {

@@ -52,6 +52,7 @@ static abbe_result sum_again(abbe_renderer *r, size_t bands, size_t first, abbe_
 
 abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t bands,
                                          abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
   *out = (abbe_image){0};
   if (bands < 1 || bands > ABBE_RENDER_MAX_BANDS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a map of %zu bands; it may have 1 to %d",

@@ -600,6 +600,7 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
 abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **data,
                                         unsigned **cells, size_t *count, size_t *orders,
                                         size_t *lanes, abbe_error *error) {
+  ABBE_REQUIRE(r && data && count && orders && lanes, error);
   *data = NULL;
   if (light >= r->plan.light_count || !r->plan.reaches[light] || r->trace == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);

@@ -693,6 +693,7 @@ static abbe_result examine_views(const abbe_scene *scene, abbe_plan *plan, abbe_
 
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                            abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
   memset(out, 0, sizeof *out);
   abbe_result result = resolve_desc(scene, desc, out, error);
   if (result == ABBE_OK) result = check_lights(scene, error);
@@ -716,6 +717,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
 }
 
 void abbe_plan_free(abbe_plan *plan) {
+  if (plan == NULL) return;
   free(plan->refractor_object);
   free(plan->receiver_object);
   free(plan->receiver_model);

@@ -182,6 +182,7 @@ static abbe_result read_all(const reader *r, abbe_presets *out) {
 }
 
 abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *error) {
+  ABBE_REQUIRE(out, error);
   reader r = {.error = error};
   *out = (abbe_presets){0};
   abbe_result result = path != NULL ? abbe_yaml_load(path, &r.yaml, error)
@@ -195,6 +196,7 @@ abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *e
 }
 
 void abbe_presets_free(abbe_presets *presets) {
+  if (presets == NULL) return;
   for (size_t i = 0; i < presets->count; i++) free(presets->front[i].point);
   *presets = (abbe_presets){0};
 }
@@ -203,6 +205,7 @@ void abbe_presets_free(abbe_presets *presets) {
 
 abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan,
                               const abbe_preset_front **out, abbe_error *error) {
+  ABBE_REQUIRE(presets && plan && out, error);
   abbe_preset_class of = abbe_preset_class_of(plan);
   for (size_t i = 0; i < presets->count; i++) {
     if (presets->front[i].of != of) continue;
@@ -270,6 +273,7 @@ static double passes_ms(const abbe_statistics *s, const char *prefix) {
 abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
                                   const abbe_preset_front *front, const abbe_render_desc *desc,
                                   abbe_preset_speed *out, abbe_error *error) {
+  ABBE_REQUIRE(context && scene && front && desc && out, error);
   static const double least_ms = 0.01; /* a part too short to tell a speed by */
   const abbe_preset_point *point = &front->point[0];
   abbe_renderer *renderer = NULL;

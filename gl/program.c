@@ -142,17 +142,20 @@ static abbe_result make(const abbe_gl *gl, const abbe_program_stage *stages, con
 
 abbe_result abbe_program_make(const abbe_gl *gl, const abbe_program_stage *stages, size_t count,
                               const char *defines, GLuint *out, abbe_error *error) {
+  ABBE_REQUIRE(gl && gl->CreateShader && stages && out, error);
   return make(gl, stages, NULL, count, defines, out, error);
 }
 
 abbe_result abbe_program_make_compute(const abbe_gl *gl, const char *file, const char *defines,
                                       GLuint *out, abbe_error *error) {
+  ABBE_REQUIRE(gl && gl->CreateShader && file && out, error);
   abbe_program_stage stage = {GL_COMPUTE_SHADER, file};
   return make(gl, &stage, NULL, 1, defines, out, error);
 }
 
 abbe_result abbe_program_make_compute_text(const abbe_gl *gl, const char *text, const char *defines,
                                            GLuint *out, abbe_error *error) {
+  ABBE_REQUIRE(gl && gl->CreateShader && text && out, error);
   abbe_program_stage stage = {GL_COMPUTE_SHADER, "text"};
   return make(gl, &stage, text, 1, defines, out, error);
 }

@@ -134,6 +134,7 @@ static abbe_result repeat_lights(abbe_renderer *r, const abbe_scene *scene, abbe
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                const abbe_render_desc *desc, abbe_renderer **out,
                                abbe_error *error) {
+  ABBE_REQUIRE(context && scene && out, error);
   *out = NULL;
   abbe_renderer *r = calloc(1, sizeof *r);
   if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
@@ -228,6 +229,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
 
 abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error) {
+  ABBE_REQUIRE(r, error);
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
   r->statistics = statistics;
   r->untimed_ms = 0;
@@ -318,6 +320,7 @@ static void to_output_space(const abbe_renderer *r, abbe_image *image, size_t fi
 }
 
 abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
   static const char *const rgb[] = {"R",        "G",        "B",         "Z",         "direct.R",
                                     "direct.G", "direct.B", "caustic.R", "caustic.G", "caustic.B"};
   static const char *const xyz[] = {"X",        "Y",        "Z",         "depth.Z",   "direct.X",
@@ -378,6 +381,7 @@ abbe_result abbe_renderer_check_map(const abbe_renderer *r, size_t light, abbe_e
 
 abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
                                    abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
   static const char *const xyz[] = {"X", "Y", "Z"}, *const rgb[] = {"R", "G", "B"};
   bool thesis = r->plan.desc.profile == ABBE_PROFILE_THESIS;
   bool flat = abbe_profile_is_thesis(r->plan.desc.profile);

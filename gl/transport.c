@@ -115,6 +115,7 @@ const char *abbe_transport_walk(const abbe_scene *scene, const abbe_plan *plan) 
 /* Whether a model that is asked for can serve the object. */
 abbe_result abbe_transport_check(const abbe_object *object, const abbe_plan *plan,
                                  abbe_error *error) {
+  ABBE_REQUIRE(object && plan, error);
   abbe_model asked = plan->desc.model;
   char why[128];
   abbe_convex_reason(&object->exact.convex, why, sizeof why);

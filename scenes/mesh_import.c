@@ -258,6 +258,7 @@ static abbe_result stopped(const char *path, int status, abbe_error *error) {
 }
 
 abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
   int end[2];
   memset(out, 0, sizeof *out);
   if (pipe(end) != 0)

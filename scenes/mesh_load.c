@@ -128,6 +128,7 @@ static abbe_result read_strips(const char *path, abbe_mesh *out, abbe_error *err
 
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,
                            abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
   bool strips = false;
   memset(out, 0, sizeof *out);
   abbe_result result = check_file(path, &strips, error);

@@ -354,6 +354,7 @@ static abbe_result mend(const abbe_topology *t, bool repair, mending *done, abbe
 
 abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
                            char **what, abbe_error *error) {
+  ABBE_REQUIRE(mesh, error);
   if (what) *what = NULL;
   abbe_topology t;
   abbe_mesh_report report;

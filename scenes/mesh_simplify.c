@@ -13,6 +13,7 @@ static void to_floats(const abbe_mesh *mesh, float (*out)[3]) {
 
 abbe_result abbe_mesh_simplify(const abbe_mesh *mesh, double distance_m, uint32_t (**face)[3],
                                size_t *count, abbe_error *error) {
+  ABBE_REQUIRE(mesh && face && count, error);
   *face = NULL;
   *count = 0;
   if (!(distance_m >= 0) || !isfinite(distance_m))

@@ -49,6 +49,7 @@ char *abbe_object_path(const char *folder, const char *path) {
 
 abbe_result abbe_object_locate(const abbe_yaml *yaml, abbe_yaml_node node, abbe_result code,
                                abbe_error *error) {
+  ABBE_REQUIRE(yaml, error);
   if (!error) return code;
   char sentence[sizeof error->text];
   memcpy(sentence, error->text, sizeof sentence);
@@ -59,6 +60,7 @@ abbe_result abbe_object_locate(const abbe_yaml *yaml, abbe_yaml_node node, abbe_
 
 abbe_result abbe_object_need_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                    double out[3], abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node ignored;
   const abbe_result result = abbe_yaml_require(yaml, mapping, key, &ignored, error);
   return result == ABBE_OK ? abbe_yaml_get_numbers(yaml, mapping, key, 3, -FAR, FAR, out, error)
@@ -483,6 +485,7 @@ static abbe_result place(const reading *r, const abbe_object_surface *surface, a
 abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                              const abbe_material_table *table, abbe_object *out, size_t room,
                              size_t *count, abbe_error *error) {
+  ABBE_REQUIRE(yaml && folder && table && out && count, error);
   reading r = {.yaml = yaml, .node = node, .folder = folder, .normals = ABBE_NORMALS_AUTO};
   abbe_object_surface surface = {0};
   *count = 1;

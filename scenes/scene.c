@@ -77,6 +77,7 @@ static void list_lights(const abbe_scene *scene, char *out, size_t size) {
 
 abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, size_t *index,
                                   abbe_error *error) {
+  ABBE_REQUIRE(scene && text && index, error);
   size_t found = 0;
   char names[512], *end;
   for (size_t i = 0; i < scene->light_count; i++)
@@ -287,6 +288,7 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
 }
 
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
+  ABBE_REQUIRE(scene, error);
   if (scene->light_count == 0)
     return abbe_error_set(error, ABBE_SCHEMA,
                           "%s: the scene has no light; give it at least one under 'lights'",

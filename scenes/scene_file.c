@@ -374,6 +374,7 @@ static abbe_result read_document(abbe_yaml *yaml, const char *path,
 
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
   abbe_result result = abbe_yaml_load(path, &yaml, error);
@@ -383,6 +384,7 @@ abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options,
 abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
                              const abbe_scene_options *options, abbe_scene *out,
                              abbe_error *error) {
+  ABBE_REQUIRE(text && name && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
   abbe_result result = abbe_yaml_parse(text, size, name, &yaml, error);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 void abbe_dispersion_free(abbe_dispersion *dispersion) {
+  if (dispersion == NULL) return;
   abbe_spectrum_free(dispersion->table);
   *dispersion = (abbe_dispersion){0};
 }
@@ -177,6 +178,7 @@ static const char *wanted_count(abbe_dispersion_model model, size_t count) {
 }
 
 abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error *error) {
+  ABBE_REQUIRE(dispersion, error);
   if (!known(dispersion->model))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no dispersion model %d",
                           (int)dispersion->model);
@@ -206,6 +208,7 @@ enum { MAX_FIT_TERMS = 8, MAX_FIT_POINTS = 100001 }; /* 1 nm steps up to 100 um 
 abbe_result abbe_dispersion_fit_cauchy(const abbe_dispersion *source, size_t terms, double min_nm,
                                        double max_nm, abbe_dispersion *out, double *max_error,
                                        abbe_error *error) {
+  ABBE_REQUIRE(source && out, error);
   *out = (abbe_dispersion){0};
   if (terms < 1 || terms > MAX_FIT_TERMS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -70,6 +70,7 @@ const abbe_material *abbe_doctor_namesake(const abbe_material_table *known, cons
 /* ---- findings ---- */
 
 void abbe_findings_free(abbe_findings *findings) {
+  if (findings == NULL) return;
   for (size_t i = 0; i < findings->count; i++) {
     free(findings->finding[i].evidence);
     free(findings->finding[i].mend);
@@ -242,6 +243,7 @@ static abbe_result visit(const abbe_material *material, size_t row,
 abbe_result abbe_doctor_check_material(const abbe_material *material,
                                        const abbe_material_table *known, abbe_findings *findings,
                                        abbe_error *error) {
+  ABBE_REQUIRE(material && material->name && findings, error);
   return visit(material, 0, known, findings, error);
 }
 
@@ -255,6 +257,7 @@ static int by_row_and_kind(const void *a, const void *b) {
 abbe_result abbe_doctor_check_table(const abbe_material_table *table,
                                     const abbe_material_table *known, abbe_findings *findings,
                                     abbe_error *error) {
+  ABBE_REQUIRE(table && findings, error);
   size_t before = findings->count;
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < table->count && result == ABBE_OK; i++)

@@ -1,4 +1,4 @@
-/* doctor_parts.h: the parts of spectral/doctor.c. For this room's own sources. */
+/* doctor_parts.h: the parts of spectral/doctor.c. Internal to spectral/. */
 #ifndef ABBE_SPECTRAL_DOCTOR_PARTS_H
 #define ABBE_SPECTRAL_DOCTOR_PARTS_H
 

@@ -127,6 +127,7 @@ static const size_t first_guess = 4096;
 
 abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_t *size,
                            abbe_error *error) {
+  ABBE_REQUIRE(path && data && size, error);
   if (max_size > largest) max_size = largest;
   struct stat status;
   const int fd = open_to_read(path, true, &status, error);
@@ -146,6 +147,7 @@ abbe_result abbe_file_read(const char *path, size_t max_size, char **data, size_
 
 abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, size_t *size,
                                 abbe_error *error) {
+  ABBE_REQUIRE(path && data && size, error);
   abbe_result result = abbe_file_read(path, max_size, data, size, error);
   if (result != ABBE_OK || !abbe_encoding_is_binary(*data, *size)) return result;
   free(*data);
@@ -159,6 +161,7 @@ abbe_result abbe_file_read_text(const char *path, size_t max_size, char **data, 
 }
 
 abbe_result abbe_file_read_input(size_t max_size, char **data, size_t *size, abbe_error *error) {
+  ABBE_REQUIRE(data && size, error);
   if (max_size > largest) max_size = largest;
   return read_all(STDIN_FILENO, "standard input", max_size,
                   first_guess < max_size ? first_guess : max_size, data, size, error);
@@ -259,6 +262,7 @@ static void writer_clear(abbe_file_writer *writer) {
 }
 
 abbe_result abbe_file_writer_open(abbe_file_writer *writer, const char *path, abbe_error *error) {
+  ABBE_REQUIRE(writer && path, error);
   *writer = (abbe_file_writer){0};
   struct stat status;
   bool exists = false;
@@ -329,6 +333,7 @@ static int finish_stream(abbe_file_writer *writer) {
 }
 
 abbe_result abbe_file_writer_commit(abbe_file_writer *writer, abbe_error *error) {
+  ABBE_REQUIRE(writer, error);
   if (writer->stream == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no open file to commit");
   int number = finish_stream(writer);
@@ -345,6 +350,7 @@ abbe_result abbe_file_writer_commit(abbe_file_writer *writer, abbe_error *error)
 }
 
 void abbe_file_writer_discard(abbe_file_writer *writer) {
+  if (writer == NULL) return;
   if (writer->stream != NULL) {
     fclose(writer->stream);
     if (writer->temporary != NULL) unlink(writer->temporary);
@@ -353,6 +359,7 @@ void abbe_file_writer_discard(abbe_file_writer *writer) {
 }
 
 abbe_result abbe_file_write(const char *path, const void *data, size_t size, abbe_error *error) {
+  ABBE_REQUIRE(path && (data || size == 0), error);
   abbe_file_writer writer;
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;

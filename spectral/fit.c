@@ -125,6 +125,7 @@ static abbe_result check_support(const abbe_fit_data *data, const abbe_fit_weake
 
 abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_request *request,
                           abbe_fit *out, abbe_error *error) {
+  ABBE_REQUIRE(points && request && out, error);
   *out = (abbe_fit){0};
   abbe_fit_data data;
   abbe_fit_weakest weakest = {0};

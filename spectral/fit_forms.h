@@ -1,4 +1,4 @@
-/* fit_forms.h: what spectral/fit.c asks of its two forms. For this room's own sources. */
+/* fit_forms.h: what spectral/fit.c asks of its two forms. Internal to spectral/. */
 #ifndef ABBE_SPECTRAL_FIT_FORMS_H
 #define ABBE_SPECTRAL_FIT_FORMS_H
 

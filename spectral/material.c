@@ -7,6 +7,7 @@
 #include <string.h>
 
 void abbe_material_free(abbe_material *material) {
+  if (material == NULL) return;
   free(material->name);
   free(material->description);
   free(material->source);
@@ -92,6 +93,7 @@ static abbe_result check_index(const abbe_material *m, abbe_error *error) {
 }
 
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error) {
+  ABBE_REQUIRE(material, error);
   abbe_result result = abbe_material_check_name(material->name, error);
   if (result != ABBE_OK) return result;
   if (material->source == NULL || material->source[0] == '\0')
@@ -105,6 +107,7 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
 }
 
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
+  ABBE_REQUIRE(material, error);
   abbe_result result = abbe_material_check_form(material, error);
   return result == ABBE_OK ? check_index(material, error) : result;
 }
@@ -117,6 +120,7 @@ bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm)
 
 abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
                             abbe_error *error) {
+  ABBE_REQUIRE(material && n, error);
   if (abbe_material_extrapolates(material, lambda_nm) && !material->extrapolate)
     return abbe_error_set(error, ABBE_OUT_OF_RANGE,
                           "%s has no index at %g nm: its data reach from %g to %g nm, and its "

@@ -9,6 +9,7 @@
 #include <string.h>
 
 void abbe_report_free(abbe_report *report) {
+  if (report == NULL) return;
   free(report->note);
   *report = (abbe_report){0};
 }

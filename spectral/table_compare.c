@@ -164,6 +164,7 @@ static void compare(const abbe_material_table *first, const abbe_material_table 
 
 abbe_result abbe_table_compare(const abbe_material_table *first, const abbe_material_table *second,
                                abbe_table_difference *out, abbe_error *error) {
+  ABBE_REQUIRE(first && second && out, error);
   *out =
       (abbe_table_difference){.row = malloc((first->count + second->count + 1) * sizeof *out->row)};
   const abbe_material **sorted = malloc((second->count + 1) * sizeof *sorted);
@@ -185,6 +186,7 @@ abbe_result abbe_table_compare(const abbe_material_table *first, const abbe_mate
 }
 
 void abbe_table_difference_free(abbe_table_difference *difference) {
+  if (difference == NULL) return;
   free(difference->row);
   *difference = (abbe_table_difference){0};
 }

@@ -25,6 +25,7 @@ static double node(size_t i, size_t count, double min_nm, double max_nm) {
 
 abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, abbe_wavelengths *out,
                                   abbe_error *error) {
+  ABBE_REQUIRE(out, error);
   *out = (abbe_wavelengths){0};
   abbe_result result = check(count, min_nm, max_nm, error);
   if (result != ABBE_OK) return result;
@@ -52,6 +53,7 @@ abbe_result abbe_wavelengths_make(size_t count, double min_nm, double max_nm, ab
 }
 
 void abbe_wavelengths_free(abbe_wavelengths *wavelengths) {
+  if (wavelengths == NULL) return;
   free(wavelengths->lambda_nm);
   free(wavelengths->edge_nm);
   *wavelengths = (abbe_wavelengths){0};

@@ -80,6 +80,7 @@ __attribute__((format(printf, 5, 6))) static abbe_result fail_at(const abbe_yaml
 
 abbe_result abbe_yaml_fail(const abbe_yaml *yaml, abbe_yaml_node where, abbe_error *error,
                            const char *format, ...) {
+  ABBE_REQUIRE(yaml && format, error);
   va_list args;
   va_start(args, format);
   complain(yaml, abbe_yaml_line(yaml, where), ABBE_SCHEMA, error, format, args);
@@ -339,6 +340,7 @@ static abbe_result build(builder *b, const char *text, size_t size) {
 
 abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abbe_yaml **out,
                             abbe_error *error) {
+  ABBE_REQUIRE(text && name && out, error);
   *out = NULL;
   abbe_yaml *yaml = calloc(1, sizeof *yaml);
   if (yaml != NULL) yaml->name = strdup(name);
@@ -362,6 +364,7 @@ abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abb
 }
 
 abbe_result abbe_yaml_load(const char *path, abbe_yaml **out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
   *out = NULL;
   char *text = NULL;
   size_t size = 0;
@@ -479,6 +482,7 @@ abbe_yaml_node abbe_yaml_get(abbe_yaml *yaml, abbe_yaml_node mapping, const char
 
 abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                               abbe_yaml_node *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
   if (!abbe_yaml_is_mapping(yaml, mapping))
     return abbe_yaml_fail(yaml, mapping, error, "a mapping with the key '%s' is wanted here", key);
   *out = abbe_yaml_get(yaml, mapping, key);
@@ -497,6 +501,7 @@ abbe_result abbe_yaml_require(abbe_yaml *yaml, abbe_yaml_node mapping, const cha
 
 abbe_result abbe_yaml_check_keys(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *what,
                                  abbe_error *error) {
+  ABBE_REQUIRE(yaml && what, error);
   const node *n = at(yaml, mapping);
   if (n == NULL || n->kind != MAPPING)
     return abbe_yaml_fail(yaml, mapping, error, "%s must be a mapping (key: value)", what);
@@ -531,6 +536,7 @@ static bool parse_number(const char *text, double *value) {
 
 abbe_result abbe_yaml_number(const abbe_yaml *yaml, abbe_yaml_node which, const char *what,
                              double min, double max, double *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && what && out, error);
   const node *n = at(yaml, which);
   if (n == NULL || n->kind != SCALAR || n->quoted)
     return abbe_yaml_fail(yaml, which, error, "'%s' wants a number, not %s", what,
@@ -547,12 +553,14 @@ abbe_result abbe_yaml_number(const abbe_yaml *yaml, abbe_yaml_node which, const 
 
 abbe_result abbe_yaml_get_number(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  double min, double max, double *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node value = abbe_yaml_get(yaml, mapping, key);
   return value.id == 0 ? ABBE_OK : abbe_yaml_number(yaml, value, key, min, max, out, error);
 }
 
 abbe_result abbe_yaml_get_count(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                 size_t min, size_t max, size_t *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const node *n = at(yaml, which);
@@ -571,6 +579,7 @@ abbe_result abbe_yaml_get_count(abbe_yaml *yaml, abbe_yaml_node mapping, const c
 
 abbe_result abbe_yaml_get_bool(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key, bool *out,
                                abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const node *n = at(yaml, which);
@@ -587,6 +596,7 @@ abbe_result abbe_yaml_get_bool(abbe_yaml *yaml, abbe_yaml_node mapping, const ch
 
 abbe_result abbe_yaml_get_string(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  char **out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const node *n = at(yaml, which);
@@ -622,6 +632,7 @@ abbe_result abbe_yaml_get_name(abbe_yaml *yaml, abbe_yaml_node mapping, const ch
 
 abbe_result abbe_yaml_get_choice(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  const char *const *names, int *out, abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && names && out, error);
   abbe_yaml_node which = abbe_yaml_get(yaml, mapping, key);
   if (which.id == 0) return ABBE_OK;
   const char *text = abbe_yaml_text(yaml, which);
@@ -648,6 +659,7 @@ abbe_result abbe_yaml_get_choice(abbe_yaml *yaml, abbe_yaml_node mapping, const 
 abbe_result abbe_yaml_get_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                   size_t count, double min, double max, double *out,
                                   abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
   abbe_yaml_node list = abbe_yaml_get(yaml, mapping, key);
   if (list.id == 0) return ABBE_OK;
   if (!abbe_yaml_is_sequence(yaml, list))
@@ -670,6 +682,7 @@ abbe_result abbe_yaml_get_numbers(abbe_yaml *yaml, abbe_yaml_node mapping, const
 
 abbe_result abbe_yaml_get_list(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                size_t max_count, double **out, size_t *count, abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out && count, error);
   *out = NULL;
   *count = 0;
   abbe_yaml_node list = abbe_yaml_get(yaml, mapping, key);

@@ -20,6 +20,7 @@ static abbe_result no_memory(const abbe_yaml_edit *e, abbe_error *error) {
 
 abbe_result abbe_yaml_edit_make(const char *text, size_t size, const char *name,
                                 abbe_yaml_edit *out, abbe_error *error) {
+  ABBE_REQUIRE(text && name && out, error);
   *out = (abbe_yaml_edit){0};
   if (size >= 2 && (memcmp(text, "\xFF\xFE", 2) == 0 || memcmp(text, "\xFE\xFF", 2) == 0))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -42,6 +43,7 @@ abbe_result abbe_yaml_edit_make(const char *text, size_t size, const char *name,
 }
 
 void abbe_yaml_edit_free(abbe_yaml_edit *edit) {
+  if (edit == NULL) return;
   abbe_yaml_free(edit->yaml);
   free(edit->name);
   free(edit->text);
@@ -262,6 +264,7 @@ static abbe_result check_line(const char *value, const char *what, abbe_error *e
 
 abbe_result abbe_yaml_edit_replace(abbe_yaml_edit *e, abbe_yaml_node parent, size_t index,
                                    const char *value, abbe_error *error) {
+  ABBE_REQUIRE(e && value, error);
   abbe_yaml_node old = child_of(e, parent, index);
   if (old.id == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: has no value number %zu here", e->name,
@@ -296,6 +299,7 @@ abbe_result abbe_yaml_edit_replace(abbe_yaml_edit *e, abbe_yaml_node parent, siz
 
 abbe_result abbe_yaml_edit_insert_pair(abbe_yaml_edit *e, abbe_yaml_node mapping, size_t after,
                                        const char *key, const char *value, abbe_error *error) {
+  ABBE_REQUIRE(e && key && value, error);
   abbe_result result = check_line(value, key, error);
   if (result != ABBE_OK) return result;
   size_t count = abbe_yaml_count(e->yaml, mapping);
@@ -400,6 +404,7 @@ static span pair_extent(const abbe_yaml_edit *e, abbe_yaml_node mapping, size_t 
 
 abbe_result abbe_yaml_edit_remove(abbe_yaml_edit *e, abbe_yaml_node parent, size_t index,
                                   abbe_error *error) {
+  ABBE_REQUIRE(e, error);
   size_t count = abbe_yaml_count(e->yaml, parent);
   if (count < 2 || index >= count)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -448,6 +453,7 @@ static char *moved(const char *text, size_t from, size_t to, size_t column, size
 
 abbe_result abbe_yaml_edit_item(const abbe_yaml_edit *e, abbe_yaml_node sequence, size_t index,
                                 char **out, abbe_error *error) {
+  ABBE_REQUIRE(e && out, error);
   abbe_yaml_node item = abbe_yaml_item(e->yaml, sequence, index);
   span own = span_of(e, item);
   size_t to = own.to, column = column_of(e, own.from);
@@ -524,6 +530,7 @@ static abbe_result append_block(abbe_yaml_edit *e, abbe_yaml_node mapping, size_
 
 abbe_result abbe_yaml_edit_append(abbe_yaml_edit *e, abbe_yaml_node mapping, size_t index,
                                   const char *item, abbe_error *error) {
+  ABBE_REQUIRE(e && item, error);
   abbe_yaml_edit given;
   abbe_result result = abbe_yaml_edit_make(item, strlen(item), "the new record", &given, error);
   if (result != ABBE_OK) return result;
@@ -545,6 +552,7 @@ abbe_result abbe_yaml_edit_append(abbe_yaml_edit *e, abbe_yaml_node mapping, siz
 /* ---- numbers ---- */
 
 abbe_result abbe_yaml_edit_list(const double *value, size_t count, char **out, abbe_error *error) {
+  ABBE_REQUIRE((value || count == 0) && out, error);
   size_t size = (ABBE_NUMBER_TEXT_SIZE + 2) * count + 3, used = 0;
   char *made = *out = malloc(size), number[ABBE_NUMBER_TEXT_SIZE];
   if (made == NULL)

@@ -44,3 +44,15 @@ target_include_directories(test_headers PRIVATE
 add_dependencies(cpu_tests test_headers)
 add_test(NAME headers COMMAND test_headers)
 set_tests_properties(headers PROPERTIES LABELS cpu TIMEOUT ${hang_s})
+
+# Every function of the headers that returns a result, called with NULL and with zeros.
+list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE header_files)
+set(calls ${CMAKE_CURRENT_BINARY_DIR}/null_calls.c)
+add_custom_command(OUTPUT ${calls}
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate ${calls} ${headers}
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+  DEPENDS ${header_files} ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate
+  VERBATIM)
+abbe_test(null_arguments cpu abbe_sweep abbe_gl abbe_validation abbe_scenes abbe_colorimetry
+  abbe_spectral)
+target_sources(test_null_arguments PRIVATE ${calls})

@@ -9,6 +9,7 @@ static const double range = 2305843009213693952.0;
 
 abbe_result abbe_accumulator_make(size_t values, size_t threads, double most, abbe_accumulator *out,
                                   abbe_error *error) {
+  ABBE_REQUIRE(out, error);
   *out = (abbe_accumulator){0};
   if (!(most > 0 && isfinite(most)) || values == 0 || threads == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

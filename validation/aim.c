@@ -337,6 +337,7 @@ static double versine_of(double angle) {
 
 abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim *out,
                           abbe_error *error) {
+  ABBE_REQUIRE(geometry && geometry->scene && light < geometry->scene->light_count && out, error);
   const abbe_light *l = &geometry->scene->light[light];
   abbe_aim a = {
       .light = l, .parallel = l->kind == ABBE_LIGHT_DIRECTIONAL, .power = (float)l->power};

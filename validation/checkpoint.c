@@ -125,6 +125,7 @@ static void put(hashed_stream *s, const void *data, size_t size) {
 }
 
 abbe_result abbe_checkpoint_save(const abbe_tracer *t, const char *path, abbe_error *error) {
+  ABBE_REQUIRE(t && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
@@ -211,6 +212,7 @@ static abbe_result check_head(const abbe_tracer *t, const char *path, abbe_error
 }
 
 abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *error) {
+  ABBE_REQUIRE(t && path, error);
   char *data = NULL;
   size_t size = 0, numbers = 0, most = numbers_size(t) + HEAD;
   abbe_result result = check_head(t, path, error);

@@ -50,6 +50,7 @@ abbe_result abbe_known_stage_make(abbe_known_stage *stage, abbe_error *error, co
 }
 
 void abbe_known_stage_free(abbe_known_stage *stage) {
+  if (stage == NULL) return;
   abbe_geometry_free(&stage->geometry);
   abbe_scene_free(&stage->scene);
 }

@@ -1,5 +1,5 @@
-/* known_group.h: what the groups of known answers share, inside this room: adding rows, small
- * scenes written as text, rays followed in them.
+/* known_group.h: what the groups of known answers share: adding rows, small scenes written as text,
+ * rays followed in them. Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_KNOWN_GROUP_H
 #define ABBE_VALIDATION_KNOWN_GROUP_H

@@ -1,5 +1,6 @@
-/* known_light.h: what the groups of known answers share that trace whole runs, inside this room:
+/* known_light.h: what the groups of known answers share that trace whole runs:
  * scenes as text, a run's receiver map ring by ring and pass by pass, and the tolerance of a mean.
+ * Internal to validation/.
  */
 #ifndef ABBE_VALIDATION_KNOWN_LIGHT_H
 #define ABBE_VALIDATION_KNOWN_LIGHT_H

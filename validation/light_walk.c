@@ -131,6 +131,7 @@ static bool receivers_hide(const abbe_geometry *g, const abbe_light *light) {
 abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
                                  const abbe_physics *physics, uint32_t seed, abbe_light_walk **out,
                                  abbe_error *error) {
+  ABBE_REQUIRE(geometry && geometry->scene && media && physics && out, error);
   *out = NULL;
   abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
   size_t lights = geometry->scene->light_count;

@@ -39,6 +39,7 @@ static abbe_result run(const abbe_reference_desc *desc, abbe_tracer *tracer, abb
 
 abbe_result abbe_reference_trace(const abbe_scene *scene, const abbe_reference_desc *desc,
                                  abbe_image *picture, abbe_image *map, abbe_error *error) {
+  ABBE_REQUIRE(scene && desc && picture && map, error);
   abbe_tracer *tracer = NULL;
   abbe_image shown = {0}, landed = {0};
   *picture = *map = (abbe_image){0};

@@ -79,6 +79,7 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
 abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, double max_nm,
                                         double uniform, abbe_spectral_sampling *out,
                                         abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
   *out = (abbe_spectral_sampling){0};
   if (!(min_nm > 0 && min_nm < max_nm && isfinite(max_nm)) || !(uniform >= 0.01 && uniform <= 1))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

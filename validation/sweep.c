@@ -33,6 +33,7 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
 
 abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
                                     abbe_error *error) {
+  ABBE_REQUIRE(setting && out, error);
   int profile = 0, fill = 0, model = 0;
   while (profile < ABBE_PROFILE_COUNT &&
          strcmp(abbe_profile_name((abbe_profile)profile), setting->profile) != 0)
@@ -135,6 +136,7 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
 abbe_result abbe_sweep_grid_expand(const abbe_scene *scene, const abbe_sweep_grid *grids,
                                    size_t count, abbe_sweep_setting **out, size_t *out_count,
                                    size_t *refused, abbe_error *why, abbe_error *error) {
+  ABBE_REQUIRE(scene && grids && out && out_count && refused, error);
   abbe_error first = {0};
   expansion e = {.scene = scene, .why = &first};
   *out = NULL;
@@ -389,6 +391,7 @@ static abbe_result make_desc(const abbe_sweep *s, const abbe_sweep_setting *sett
 abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *setting,
                                abbe_render_progress progress, void *user, abbe_sweep_row *out,
                                abbe_image *picture, abbe_error *error) {
+  ABBE_REQUIRE(s && setting && out, error);
   abbe_map_layout layout;
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
@@ -415,6 +418,7 @@ abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *se
 
 abbe_result abbe_sweep_time(const abbe_sweep *s, const abbe_sweep_setting *setting, size_t width,
                             size_t height, abbe_sweep_row *out, abbe_error *error) {
+  ABBE_REQUIRE(s && setting && out, error);
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
   *out = (abbe_sweep_row){.setting = *setting};
@@ -430,6 +434,7 @@ abbe_result abbe_sweep_time(const abbe_sweep *s, const abbe_sweep_setting *setti
 
 abbe_result abbe_sweep_model_measure(const abbe_sweep *s, abbe_sweep_model *out,
                                      abbe_error *error) {
+  ABBE_REQUIRE(s && out, error);
   abbe_comparison picture, map;
   *out = (abbe_sweep_model){NAN, NAN, NAN, NAN, NAN};
   abbe_result result = compare(s->picture, s->matched_picture, false, &picture, error);
@@ -452,6 +457,7 @@ abbe_result abbe_sweep_model_measure(const abbe_sweep *s, abbe_sweep_model *out,
 
 abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene, size_t light,
                                   abbe_map_layout *out, abbe_error *error) {
+  ABBE_REQUIRE(context && scene && out, error);
   abbe_renderer *renderer = NULL;
   abbe_render_desc desc = {.width = 16, .height = 16};
   abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);

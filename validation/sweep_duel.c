@@ -60,6 +60,7 @@ static void meet_front(const abbe_sweep_table *table, const double *cost, const 
 abbe_result abbe_sweep_duel_make(const abbe_sweep_table *table, const char *profile,
                                  abbe_sweep_number number, abbe_sweep_duel *out,
                                  abbe_error *error) {
+  ABBE_REQUIRE(table && profile && out, error);
   size_t count = table->count;
   double *cost = calloc(2 * count + 1, sizeof *cost);
   size_t *order = calloc(count + 1, sizeof *order);

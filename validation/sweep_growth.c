@@ -177,6 +177,7 @@ static abbe_result grow_faces(work *w) {
 abbe_result abbe_sweep_growth_measure(const abbe_sweep *sweep, abbe_scene *scene, size_t side,
                                       abbe_render_progress progress, void *user,
                                       abbe_sweep_growth *out, abbe_error *error) {
+  ABBE_REQUIRE(sweep && scene && out, error);
   work w = {sweep, scene, {.wavelengths = 0}, side, progress, user, out, error};
   abbe_sweep_setting *list = NULL;
   size_t count, refused;
@@ -225,6 +226,7 @@ double abbe_sweep_growth_slope(const abbe_sweep_growth *g, abbe_sweep_growth_axi
 
 abbe_result abbe_sweep_growth_save(const abbe_sweep_growth *g, const char *path,
                                    abbe_error *error) {
+  ABBE_REQUIRE(g && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
@@ -262,6 +264,7 @@ void abbe_sweep_growth_print(const abbe_sweep_growth *g, FILE *out) {
 
 abbe_result abbe_sweep_growth_plot(const abbe_sweep_growth *g, const char *path,
                                    abbe_error *error) {
+  ABBE_REQUIRE(g && path, error);
   double x[ABBE_SWEEP_GROWTH_MAX], y[ABBE_SWEEP_GROWTH_MAX], line_x[2] = {1, 1}, line_y[2];
   char label[ABBE_SWEEP_GROWTH_COUNT][96], title[320];
   abbe_chart_series series[ABBE_SWEEP_GROWTH_COUNT + 1];

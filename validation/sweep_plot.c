@@ -172,6 +172,7 @@ static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number n
 
 abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table,
                             const abbe_sweep_number *errors, size_t count, abbe_error *error) {
+  ABBE_REQUIRE(path && table && errors, error);
   figures f[MAX_CHARTS];
   abbe_chart charts[MAX_CHARTS];
   char title[600];

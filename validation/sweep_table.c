@@ -96,6 +96,7 @@ void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t siz
 /* The table */
 
 void abbe_sweep_table_free(abbe_sweep_table *table) {
+  if (table == NULL) return;
   free(table->row);
   *table = (abbe_sweep_table){0};
 }
@@ -116,6 +117,7 @@ const abbe_sweep_row *abbe_sweep_table_find(const abbe_sweep_table *table,
 
 abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *row,
                                  abbe_error *error) {
+  ABBE_REQUIRE(table && row, error);
   if (abbe_sweep_table_find(table, &row->setting) != NULL) {
     char text[160];
     abbe_sweep_setting_describe(&row->setting, text, sizeof text);
@@ -137,6 +139,7 @@ abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *
 
 abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number number,
                                   const char *profile, abbe_error *error) {
+  ABBE_REQUIRE(table, error);
   size_t count = table->count;
   double *cost = calloc(2 * count + 1, sizeof *cost);
   bool *on = calloc(count + 1, sizeof *on);
@@ -160,6 +163,7 @@ abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number num
 
 abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
                                    const abbe_sweep_table *b, abbe_error *error) {
+  ABBE_REQUIRE(a && name && b, error);
   static const abbe_sweep_fact must[] = {ABBE_SWEEP_FACT_PROGRAM, ABBE_SWEEP_FACT_SCENE_HASH,
                                          ABBE_SWEEP_FACT_SIZE,    ABBE_SWEEP_FACT_REFERENCE_HASH,
                                          ABBE_SWEEP_FACT_MODEL,   ABBE_SWEEP_FACT_DEVICE,
@@ -214,6 +218,7 @@ static void write_row(FILE *to, const abbe_sweep_row *row) {
 
 abbe_result abbe_sweep_table_save(const abbe_sweep_table *table, const char *path,
                                   abbe_error *error) {
+  ABBE_REQUIRE(table && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
@@ -348,6 +353,7 @@ static abbe_result read_line(reader *r, char *line, bool *header, abbe_sweep_tab
 
 abbe_result abbe_sweep_table_parse(const char *text, size_t size, const char *name,
                                    abbe_sweep_table *out, abbe_error *error) {
+  ABBE_REQUIRE(text && name && out, error);
   reader r = {.name = name};
   bool header = false;
   *out = (abbe_sweep_table){0};
@@ -373,6 +379,7 @@ abbe_result abbe_sweep_table_parse(const char *text, size_t size, const char *na
 }
 
 abbe_result abbe_sweep_table_load(const char *path, abbe_sweep_table *out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
   char *text = NULL;
   size_t size = 0;
   *out = (abbe_sweep_table){0};

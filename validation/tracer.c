@@ -198,6 +198,7 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
 
 abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *desc,
                              abbe_tracer **out, abbe_error *error) {
+  ABBE_REQUIRE(scene && desc && out, error);
   *out = NULL;
   abbe_tracer *t = calloc(1, sizeof *t);
   if (t == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a tracer");
@@ -316,6 +317,7 @@ static void restore_mode(unsigned mode) {
 }
 
 abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_error *error) {
+  ABBE_REQUIRE(t, error);
   unsigned mode = flush_tiny_numbers(t);
   abbe_trace_statistics before = t->statistics;
   size_t landed = 0;
@@ -450,6 +452,7 @@ static void add_bands(const abbe_tracer *t, size_t first, channel_list *list) {
 }
 
 abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(t && out, error);
   *out = (abbe_image){0};
   if (t->desc.no_picture)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no picture was traced");
@@ -471,6 +474,7 @@ abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_erro
 }
 
 abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(t && out, error);
   *out = (abbe_image){0};
   if (t->desc.no_map) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no map was traced");
   static const char *const xyz[3] = {"X", "Y", "Z"};
