@@ -46,7 +46,8 @@ static abbe_result read_file(runner *r, const abbe_import_file *file, bool *stra
   abbe_import_options options = r->batch->import;
   char *bytes = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read(file->path, MAX_BYTES, &bytes, &size, error);
+  abbe_result result = abbe_file_read_text(file->path, MAX_BYTES, &bytes, &size, error);
+  *strange = result == ABBE_PARSE;
   if (result != ABBE_OK) return result;
   if (options.format == ABBE_IMPORT_AUTO) options.format = abbe_import_detect(bytes, size);
   /* a text may hold a line of numbers */
@@ -87,7 +88,7 @@ static abbe_result take_file(runner *r, const abbe_import_file *file, abbe_error
     if (r->strange++ == 0) r->first_strange = file->path;
     return ABBE_OK;
   }
-  abbe_report_add(r->report, ABBE_NOTE_SKIPPED, 0, NULL, "%s", why.text);
+  if (many) abbe_report_add(r->report, ABBE_NOTE_SKIPPED, 0, NULL, "%s", why.text);
   return ABBE_OK;
 }
 
@@ -258,6 +259,9 @@ static abbe_result name_all(runner *r, abbe_error *error) {
 
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error) {
+  ABBE_REQUIRE(batch && into, error);
+  if (batch->count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no file or folder to import is named");
   runner r = {.batch = batch, .table = into, .report = report};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < batch->count && result == ABBE_OK; i++)

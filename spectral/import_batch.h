@@ -24,17 +24,17 @@ typedef struct abbe_import_batch {
   abbe_import_options import;
 } abbe_import_batch;
 
-/* Adds what the files hold to the table, which may be zeroed. Of a folder those files are taken, in
- * the order of their names and with the folders in it, that end in .agf, .yml, .yaml, .csv or
- * .sqlite and hold materials; hidden ones and links to folders are not.
+/* Adds what the files hold to the table, which may be zeroed; report may be NULL. Of a folder those
+ * files are taken, in the order of their names and with the folders in it, that end in .agf, .yml,
+ * .yaml, .csv or .sqlite and hold materials; hidden ones and links to folders are not.
  *
  * Where several files have a material of one name, each is called FOLDER-NAME or FILE-NAME, after
  * the part of its path that tells them apart, with a note of kind RENAMED; where nothing does, the
- * first stays. A file that cannot be read is a note of kind SKIPPED.
+ * first stays. One of several files that cannot be read is a note of kind SKIPPED.
  *
- * ABBE_INVALID_ARGUMENT for import.name with several files. ABBE_IO where a path is neither a file
- * nor a folder, before anything is read; the first file's own failure where no file could be used;
- * ABBE_NO_MEMORY. */
+ * ABBE_INVALID_ARGUMENT for no path, and for import.name with several files. ABBE_IO where a path
+ * is neither a file nor a folder, before anything is read; the first file's own failure where no
+ * file could be used; ABBE_NO_MEMORY. */
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error);
 

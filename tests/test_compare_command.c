@@ -261,7 +261,7 @@ static void test_bad_files(void **state) {
       {"head -c 300 ref.exr >cut.exr; " COMPARE "ref.exr cut.exr", "cut.exr"},
       {COMPARE "cut.exr ref.exr", "cut.exr"},
       {COMPARE "missing.exr ref.exr", "missing.exr"},
-      {COMPARE ". ref.exr", "not a file"},
+      {COMPARE ". ref.exr", "is a directory; name a file"},
       {COMPARE "ref.exr small.exr", "8 x 8 pixels and small.exr has 4 x 8"},
       {COMPARE "ref.exr depth.exr", "depth.exr: it has no channels R, G, B"},
       {COMPARE "dark.exr ref.exr", "the reference is black"},
