@@ -1,8 +1,8 @@
 #include "colorimetry/display_ocio.h"
 
 #include "colorimetry/rgb_encoding.h"
-#include "spectral/number.h"
 #include "spectral/file.h"
+#include "spectral/number.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 

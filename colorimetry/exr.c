@@ -1,5 +1,6 @@
 #include "colorimetry/exr.h"
 #include "colorimetry/exr_parts.h"
+#include "spectral/file.h"
 #include "spectral/number.h"
 
 #include <errno.h>

@@ -75,6 +75,7 @@ void abbe_image_free(abbe_image *image) {
 abbe_result abbe_image_check_expansion(const char *path, size_t width, size_t height,
                                        size_t channels, size_t file_bytes, size_t free_bytes,
                                        abbe_error *error) {
+  ABBE_REQUIRE(path, error);
   const double bytes = (double)width * (double)height * (double)channels * sizeof(float);
   const double mebibyte = 1 << 20;
   if (bytes <= (double)free_bytes || bytes <= ABBE_IMAGE_MAX_EXPANSION * (double)file_bytes)
@@ -88,6 +89,7 @@ abbe_result abbe_image_check_expansion(const char *path, size_t width, size_t he
 
 abbe_result abbe_image_check_place(const abbe_image *a, const char *name_a, const abbe_image *b,
                                    const char *name_b, abbe_error *error) {
+  ABBE_REQUIRE(a && name_a && b && name_b, error);
   const abbe_image_window v = a->display_window, w = b->display_window;
   if (v.x0 == w.x0 && v.y0 == w.y0) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

@@ -2,6 +2,7 @@
 
 #include "scenes/topology.h"
 #include "scenes/vector.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -252,6 +253,7 @@ static abbe_result judge(search *s, abbe_convex *out, abbe_error *error) {
 
 abbe_result abbe_convex_find(const abbe_mesh *mesh, size_t max_planes, double (*plane)[4],
                              uint32_t *plane_of, abbe_convex *out, abbe_error *error) {
+  ABBE_REQUIRE(mesh && plane && out, error);
   memset(out, 0, sizeof *out);
   if (mesh->face_count == 0 || max_planes == 0 || max_planes > 4096) return ABBE_OK;
   search s = {.mesh = mesh, .most = max_planes};
@@ -281,7 +283,7 @@ void abbe_convex_reason(const abbe_convex *c, char *text, size_t size) {
   case ABBE_CONVEX_UNASKED:
     break;
   case ABBE_CONVEX_SOLID:
-    snprintf(text, size, "it has %zu planes, to %g of its size", c->planes, c->tolerance);
+    abbe_number_format(text, size, "it has %zu planes, to %g of its size", c->planes, c->tolerance);
     break;
   case ABBE_CONVEX_PARTS:
     snprintf(text, size, "it is not one closed surface");
@@ -290,16 +292,19 @@ void abbe_convex_reason(const abbe_convex *c, char *text, size_t size) {
     snprintf(text, size, "it is curved, or has more than %zu planes", c->planes);
     break;
   case ABBE_CONVEX_CURVED:
-    snprintf(text, size, "it is curved, its faces %g of its size or less off one another's planes",
-             c->tolerance);
+    abbe_number_format(text, size,
+                       "it is curved, its faces %g of its size or less off one another's planes",
+                       c->tolerance);
     break;
   case ABBE_CONVEX_DENTED:
-    snprintf(text, size, "(%.3g, %.3g, %.3g) is %.2g m, %.2g %% of its size, in front of a face",
-             c->place[0], c->place[1], c->place[2], c->off, 100 * c->off / c->size);
+    abbe_number_format(text, size,
+                       "(%.3g, %.3g, %.3g) is %.2g m, %.2g %% of its size, in front of a face",
+                       c->place[0], c->place[1], c->place[2], c->off, 100 * c->off / c->size);
     break;
   case ABBE_CONVEX_ROUNDED:
-    snprintf(text, size, "its normals are rounded, by up to %.2g degrees at (%.3g, %.3g, %.3g)",
-             degrees * c->off, c->place[0], c->place[1], c->place[2]);
+    abbe_number_format(text, size,
+                       "its normals are rounded, by up to %.2g degrees at (%.3g, %.3g, %.3g)",
+                       degrees * c->off, c->place[0], c->place[1], c->place[2]);
     break;
   }
 }

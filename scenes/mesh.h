@@ -76,16 +76,15 @@ abbe_result abbe_mesh_check(const abbe_mesh *mesh, abbe_mesh_report *report, abb
  * part of a sentence; empty where nothing does. */
 void abbe_mesh_report_faults(const abbe_mesh_report *report, char *text, size_t size);
 
-/* *solids (may be NULL): of how many parts abbe_mesh_split makes it.
- *
- * Mends what is safe: drops degenerate faces and faces that are there twice, makes orientation
+/* Mends what is safe: drops degenerate faces and faces that are there twice, makes orientation
  * consistent, turns an inside-out mesh, closes flat or small holes. repair: closes holes of any
  * shape by the smallest surface, and drops what parts a body from itself: walls of faces back to
  * back (or one of them, where nothing is around), sheets that hang on it or stand in it. *what (may
  * be NULL) gets a malloc'd sentence that says what was done, and where the surface still crosses
  * itself, or NULL where there is nothing to say. A mended mesh has no uv; given normals stay where
  * faces do. Leaves the mesh closed and outwards or fails with ABBE_GEOMETRY, the mesh unchanged,
- * and a sentence that counts what is wrong and says where. */
+ * and a sentence that counts what is wrong and says where.
+ * *solids (may be NULL): of how many parts abbe_mesh_split makes it. */
 abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
                            char **what, abbe_error *error);
 

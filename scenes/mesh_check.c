@@ -3,6 +3,7 @@
 #include "scenes/mesh_parts.h"
 #include "scenes/topology.h"
 #include "scenes/vector.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -153,7 +154,7 @@ append(char *text, size_t size, const char *format, ...) {
   va_list arguments;
   if (used > 0 && used + 2 < size) memcpy(text + used, ", ", 3);
   va_start(arguments, format);
-  vsnprintf(text + strlen(text), size - strlen(text), format, arguments);
+  abbe_number_format_list(text + strlen(text), size - strlen(text), format, arguments);
   va_end(arguments);
 }
 

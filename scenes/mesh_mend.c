@@ -4,6 +4,7 @@
 #include "scenes/shells.h"
 #include "scenes/topology.h"
 #include "scenes/vector.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -242,8 +243,8 @@ static void say(char *text, size_t size, size_t count, const char *one, const ch
 
 static abbe_result describe(const mending *done, bool repair, char **what, abbe_error *error) {
   char text[640] = "", one[64], many[64];
-  snprintf(one, sizeof one, "hole closed, %.3g across", done->widest);
-  snprintf(many, sizeof many, "holes closed, the widest %.3g across", done->widest);
+  abbe_number_format(one, sizeof one, "hole closed, %.3g across", done->widest);
+  abbe_number_format(many, sizeof many, "holes closed, the widest %.3g across", done->widest);
   say(text, sizeof text, done->repeated, "face with repeated corners dropped",
       "faces with repeated corners dropped");
   say(text, sizeof text, done->doubles, "face that was there twice dropped",
@@ -262,11 +263,11 @@ static abbe_result describe(const mending *done, bool repair, char **what, abbe_
       "inside-out parts turned outwards");
   if (done->crossings > 0) {
     const size_t used = strlen(text);
-    snprintf(text + used, sizeof text - used,
-             "%sthe surface crosses itself, in %zu pairs of faces, at (%.4g, %.4g, %.4g) for one: "
-             "light may go wrong there",
-             used ? "; " : "", done->crossings, done->crossing[0], done->crossing[1],
-             done->crossing[2]);
+    abbe_number_format(
+        text + used, sizeof text - used,
+        "%sthe surface crosses itself, in %zu pairs of faces, at (%.4g, %.4g, %.4g) for one: "
+        "light may go wrong there",
+        used ? "; " : "", done->crossings, done->crossing[0], done->crossing[1], done->crossing[2]);
   }
   if (!what || !text[0]) return ABBE_OK;
   *what = malloc(strlen(text) + 1);

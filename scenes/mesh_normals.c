@@ -259,6 +259,7 @@ void abbe_mesh_fair_normal(const double normal[3], const double face[3], double 
 
 abbe_result abbe_mesh_compute_normals(abbe_mesh *mesh, abbe_mesh_normals normals,
                                       abbe_error *error) {
+  ABBE_REQUIRE(mesh, error);
   mesh->given_normals = false;
   return normals == ABBE_NORMALS_FLAT     ? face_normals(mesh, error)
          : normals == ABBE_NORMALS_SMOOTH ? smooth_normals(mesh, error)

@@ -1,4 +1,4 @@
-/* mesh_parts.h: what the sources behind mesh.h share; nobody else includes it. */
+/* mesh_parts.h: what the sources behind mesh.h share. Internal to scenes/. */
 #ifndef ABBE_SCENES_MESH_PARTS_H
 #define ABBE_SCENES_MESH_PARTS_H
 

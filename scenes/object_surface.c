@@ -3,6 +3,7 @@
 #include "scenes/topology.h"
 #include "scenes/transform.h"
 #include "scenes/vector.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -255,9 +256,10 @@ static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_
   if (result == ABBE_OK)
     result = abbe_mesh_mend(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
   if (result != ABBE_OK) return result;
-  snprintf(text, sizeof text,
-           "made a convex solid of planes, of which its corners lie up to %.2g %% of its size off",
-           100 * moved);
+  abbe_number_format(
+      text, sizeof text,
+      "made a convex solid of planes, of which its corners lie up to %.2g %% of its size off",
+      100 * moved);
   return add_note(out, text, error);
 }
 
@@ -278,6 +280,7 @@ static abbe_result place_one(const abbe_object_surface *s, const double matrix[1
 
 abbe_result abbe_object_place(const abbe_object_surface *s, abbe_object *out, size_t room,
                               size_t *count, abbe_error *error) {
+  ABBE_REQUIRE(s && out && count, error);
   double matrix[16];
   *count = 1;
   abbe_result result = fit_matrix(s, &out->mesh, matrix, error);

@@ -25,7 +25,7 @@ typedef struct abbe_object_surface {
   abbe_mesh_normals normals;
   bool repair;
   double flatten; /* share of its size by which it is made a convex solid of planes, or 0 */
-  double fit; /* the longest side of its bounds, m, or 0: as it is */
+  double fit;     /* the longest side of its bounds, m, or 0: as it is */
   bool centred;
   double centre[3]; /* where the middle of its bounds comes to stand */
 } abbe_object_surface;

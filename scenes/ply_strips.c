@@ -277,6 +277,7 @@ static abbe_result make(const reading *r, const body *b, abbe_mesh *out, abbe_er
 
 abbe_result abbe_ply_read_strips(const char *data, size_t size, const char *path, abbe_mesh *out,
                                  abbe_error *error) {
+  ABBE_REQUIRE(data && path && out, error);
   memset(out, 0, sizeof *out);
   reading *r = calloc(1, sizeof *r);
   body b = {0};

@@ -2,6 +2,7 @@
 
 #include "scenes/transform.h"
 #include "scenes/vector.h"
+#include "spectral/number.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -252,9 +253,10 @@ static void compare_sizes(const abbe_scene *scene, const abbe_object *around, ch
     any = true;
   }
   const double own = longest(around->min, around->max), rest = any ? longest(min, max) : 0;
-  snprintf(text, size, "; '%.60s' is %.3g m wide, all other objects together %.3g m%s",
-           around->name, own, rest,
-           own > rest ? ": if its file is in another unit, 'fit: METRES' gives it its size" : "");
+  abbe_number_format(
+      text, size, "; '%.60s' is %.3g m wide, all other objects together %.3g m%s", around->name,
+      own, rest,
+      own > rest ? ": if its file is in another unit, 'fit: METRES' gives it its size" : "");
 }
 
 static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {

@@ -82,8 +82,8 @@ typedef struct abbe_object {
   char *texture_path;              /* receiver: NULL or the PNG that multiplies reflectance */
   abbe_image texture;              /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
-  char *mesh_path;                 /* NULL or the file that the mesh is of */
-  char *mended;                    /* what was mended, and what is not whole still, or NULL */
+  char *mesh_path; /* NULL or the file that the mesh is of */
+  char *mended;    /* what was mended, and what is not whole still, or NULL */
 } abbe_object;
 
 typedef struct abbe_scene {

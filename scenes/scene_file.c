@@ -271,8 +271,7 @@ static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char
     result =
         abbe_object_read(yaml, item, folder, &out->table, &out->object[first], room, &made, error);
     out->object_count += made;
-    if (result == ABBE_OK)
-      result = note_mesh_path(yaml, item, folder, &out->object[first], error);
+    if (result == ABBE_OK) result = note_mesh_path(yaml, item, folder, &out->object[first], error);
     for (size_t k = first; k < out->object_count; k++) faces += out->object[k].mesh.face_count;
     if (result == ABBE_OK && faces > ABBE_MESH_MAX_FACES)
       result = abbe_yaml_fail(yaml, item, error,

@@ -457,6 +457,7 @@ static abbe_result prepare(search *s, const abbe_mesh *mesh, abbe_error *error) 
 
 abbe_result abbe_shells_find(const abbe_mesh *mesh, const abbe_topology *topology, abbe_shells *out,
                              abbe_error *error) {
+  ABBE_REQUIRE(mesh && topology && out, error);
   memset(out, 0, sizeof *out);
   out->count = topology->shell_count;
   search s = {.t = topology, .out = out};

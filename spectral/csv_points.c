@@ -295,7 +295,8 @@ static abbe_result order(reader *r, abbe_points *list, double unit_nm, const cha
       list->point[kept++] = list->point[i];
   }
   char range[64];
-  snprintf(range, sizeof range, "outside %g to %g nm", ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
+  abbe_number_format(range, sizeof range, "outside %g to %g nm", ABBE_MATERIAL_LOW_NM,
+                     ABBE_MATERIAL_HIGH_NM);
   abbe_result result = lose(r, list->count - kept, what, range);
   list->count = kept;
   if (result == ABBE_OK) result = abbe_points_sort(list, repeats ? NULL : &dropped, r->error);

@@ -56,6 +56,7 @@ static int open_to_read(const char *path, bool pipes, struct stat *status, abbe_
 }
 
 abbe_result abbe_file_open(const char *path, FILE **stream, size_t *size, abbe_error *error) {
+  ABBE_REQUIRE(path && stream, error);
   struct stat status;
   *stream = NULL;
   const int fd = open_to_read(path, false, &status, error);

@@ -218,6 +218,7 @@ abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
 
 abbe_result abbe_material_table_load_named(const char *path, const char *const *names, size_t count,
                                            abbe_material_table *out, abbe_error *error) {
+  ABBE_REQUIRE(names && out, error);
   size_t size;
   bool shipped = abbe_material_table_shipped(path, &size) != NULL;
   if (shipped || !abbe_material_store_is(path)) return abbe_material_table_load(path, out, error);

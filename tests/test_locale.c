@@ -282,6 +282,10 @@ static void with_answers(FILE *to) {
   }
 }
 
+static bool is_fine(const abbe_sweep_setting *setting) {
+  return setting->photons > 300;
+}
+
 static void with_sweeps(FILE *to) {
   abbe_sweep_table table = {0}, back = {0};
   abbe_sweep_model model = {1.5, 0.25, 0.125, 0.5, 1.25};
@@ -312,7 +316,7 @@ static void with_sweeps(FILE *to) {
   fprintf(to, "%s\n", text);
   const char *const name[] = {"sweep.csv"};
   in_folder("presets.yaml", path);
-  ok(abbe_sweep_presets_write(path, &back, name, 1, ABBE_SWEEP_CAUSTIC_DE, &error));
+  ok(abbe_sweep_presets_write(path, &back, name, 1, ABBE_SWEEP_CAUSTIC_DE, is_fine, &error));
   note_file(to, "presets.yaml");
   abbe_presets presets;
   ok(abbe_presets_load(path, &presets, &error));
