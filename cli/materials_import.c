@@ -61,7 +61,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   request *r = state->input;
   switch (key) {
   case 'o':
-    r->output = arg;
+    r->output = r->batch.target = arg;
     return 0;
   case KEY_NAME:
     r->batch.import.name = arg;

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 enum { MAX_BYTES = 64 << 20, MAX_PART = 160, MAX_LEVELS = 16 };
 
@@ -257,6 +258,19 @@ static abbe_result name_all(runner *r, abbe_error *error) {
   return result == ABBE_OK ? abbe_material_table_unique(r->table, r->report, error) : result;
 }
 
+/* By device and inode: a folder may hold the target, under another name too. */
+static abbe_result check_target(const runner *r, abbe_error *error) {
+  struct stat target, one;
+  if (r->batch->target == NULL || stat(r->batch->target, &target) != 0) return ABBE_OK;
+  for (size_t i = 0; i < r->files.count; i++)
+    if (stat(r->files.file[i].path, &one) == 0 && one.st_dev == target.st_dev &&
+        one.st_ino == target.st_ino)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "'%s' would be written over '%s', which is read; name another file",
+                            r->batch->target, r->files.file[i].path);
+  return ABBE_OK;
+}
+
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error) {
   ABBE_REQUIRE(batch && into, error);
@@ -269,6 +283,7 @@ abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_
   if (result == ABBE_OK && batch->import.name != NULL && r.files.count > 1)
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "one name does not go with %zu files; a prefix does", r.files.count);
+  if (result == ABBE_OK) result = check_target(&r, error);
   if (result == ABBE_OK) result = remember(&r, "", error); /* what the table had before */
   if (result == ABBE_OK) result = take_files(&r, error);
   if (result == ABBE_OK) result = name_all(&r, error);

@@ -21,6 +21,8 @@ typedef struct abbe_import_batch {
   const char *const *path; /* [count] files and folders */
   size_t count;
   const char *prefix; /* stands before every name; NULL: none */
+  const char
+      *target; /* what the table is to be written to, so none of the files; NULL: not known */
   abbe_import_options import;
 } abbe_import_batch;
 
@@ -32,9 +34,9 @@ typedef struct abbe_import_batch {
  * the part of its path that tells them apart, with a note of kind RENAMED; where nothing does, the
  * first stays. One of several files that cannot be read is a note of kind SKIPPED.
  *
- * ABBE_INVALID_ARGUMENT for no path, and for import.name with several files. ABBE_IO where a path
- * is neither a file nor a folder, before anything is read; the first file's own failure where no
- * file could be used; ABBE_NO_MEMORY. */
+ * ABBE_INVALID_ARGUMENT for no path, for import.name with several files, and where the target is
+ * one of them; ABBE_IO where a path is neither a file nor a folder: before anything is read. The
+ * first file's own failure where no file could be used; ABBE_NO_MEMORY. */
 abbe_result abbe_import_batch_run(const abbe_import_batch *batch, abbe_material_table *into,
                                   abbe_report *report, abbe_error *error);
 

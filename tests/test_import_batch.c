@@ -158,6 +158,35 @@ static void nothing_at_all_is_a_failure(void **state) {
   const abbe_import_batch named = {.path = two, .count = 2, .import.name = "x"};
   assert_int_equal(abbe_import_batch_run(&named, &table, NULL, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "one name does not go with 2 files");
+  const abbe_import_batch nothing = {.target = one[0]};
+  assert_int_equal(abbe_import_batch_run(&nothing, &table, NULL, &error), ABBE_INVALID_ARGUMENT);
+}
+
+static void the_target_is_none_of_the_files(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  folder("d");
+  file("d/a.yml", RII);
+  file("d/b.yml", RII);
+  assert_int_equal(symlink("d/b.yml", below("link")), 0);
+  snprintf(made[made_count++], sizeof made[0], "%s", below("link"));
+  const char *const all[] = {below("d")};
+  abbe_import_batch batch = {.path = all, .count = 1, .target = below("link")};
+  assert_int_equal(abbe_import_batch_run(&batch, &table, &report, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "d/b.yml', which is read");
+  assert_int_equal(table.count + report.count, 0);
+  batch.target = below("d/c.yml"); /* not there yet */
+  assert_int_equal(abbe_import_batch_run(&batch, &table, &report, &error), ABBE_OK);
+}
+
+static void a_binary_file_is_said_to_be_one(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  file("a.xls", "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1 \x01\x02\x03\x04\x05\x06\x0e\x0f");
+  const char *const one[] = {below("a.xls")};
+  assert_int_equal(run(one, 1, NULL, &error), ABBE_PARSE);
+  assert_contains(error.text, "a.xls: is not a text file");
+  assert_int_equal(report.count, 0); /* it is said once */
 }
 
 /* ---- names ---- */
@@ -246,6 +275,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(a_folder_is_read_whole_and_in_order, setup, done),
       cmocka_unit_test_setup_teardown(a_bad_file_stops_nothing, setup, done),
       cmocka_unit_test_setup_teardown(nothing_at_all_is_a_failure, setup, done),
+      cmocka_unit_test_setup_teardown(the_target_is_none_of_the_files, setup, done),
+      cmocka_unit_test_setup_teardown(a_binary_file_is_said_to_be_one, setup, done),
       cmocka_unit_test_setup_teardown(two_makers_glasses_are_kept_apart, setup, done),
       cmocka_unit_test_setup_teardown(two_catalogues_glasses_are_kept_apart, setup, done),
       cmocka_unit_test_setup_teardown(long_names_are_cut_before, setup, done),
