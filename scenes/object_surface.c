@@ -28,7 +28,6 @@ static bool is_similarity(const double m[16], double *scale) {
 
 static void bound_vertices(const abbe_mesh *mesh, const double matrix[16], double min[3],
                            double max[3]) {
-  for (int k = 0; k < 3; k++) min[k] = INFINITY, max[k] = -INFINITY;
   for (size_t v = 0; v < mesh->vertex_count; v++) {
     double p[3];
     abbe_transform_point(matrix, mesh->position[v], p);
@@ -39,13 +38,14 @@ static void bound_vertices(const abbe_mesh *mesh, const double matrix[16], doubl
   }
 }
 
-/* The matrix with the size and the place that are asked for. */
-static abbe_result fit_matrix(const abbe_object_surface *s, const abbe_mesh *mesh, double out[16],
-                              abbe_error *error) {
+/* The matrix with the size and the place that are asked for of all parts together. */
+static abbe_result fit_matrix(const abbe_object_surface *s, const abbe_object *part, size_t count,
+                              double out[16], abbe_error *error) {
   double min[3], max[3], step[16], scale;
   memcpy(out, s->matrix, 16 * sizeof *out);
   if (s->fit == 0 && !s->centred) return ABBE_OK;
-  bound_vertices(mesh, out, min, max);
+  for (int k = 0; k < 3; k++) min[k] = INFINITY, max[k] = -INFINITY;
+  for (size_t i = 0; i < count; i++) bound_vertices(&part[i].mesh, out, min, max);
   if (s->radius > 0 && is_similarity(out, &scale))
     for (int k = 0; k < 3; k++) {
       min[k] = out[12 + k] - scale * s->radius;
@@ -263,14 +263,18 @@ static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_
   return add_note(out, text, error);
 }
 
+/* Whether it is cut or rounded. */
+static abbe_result shape_one(const abbe_object_surface *s, abbe_object *out, abbe_error *error) {
+  if (!out->material) return ABBE_OK;
+  if (s->flatten > 0) return flatten(s, out, error);
+  return s->file && s->normals == ABBE_NORMALS_AUTO && !out->mesh.given_normals
+             ? choose_facets(&out->mesh, error)
+             : ABBE_OK;
+}
+
 static abbe_result place_one(const abbe_object_surface *s, const double matrix[16],
                              abbe_object *out, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  if (out->material && s->flatten > 0)
-    result = flatten(s, out, error);
-  else if (out->material && s->file && s->normals == ABBE_NORMALS_AUTO && !out->mesh.given_normals)
-    result = choose_facets(&out->mesh, error);
-  if (result == ABBE_OK) result = abbe_mesh_transform(&out->mesh, matrix, error);
+  abbe_result result = abbe_mesh_transform(&out->mesh, matrix, error);
   if (result == ABBE_OK) result = find_exact(s, matrix, out, error);
   if (result == ABBE_OK) find_bounds(out);
   if (result == ABBE_OK && !(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))
@@ -283,8 +287,10 @@ abbe_result abbe_object_place(const abbe_object_surface *s, abbe_object *out, si
   ABBE_REQUIRE(s && out && count, error);
   double matrix[16];
   *count = 1;
-  abbe_result result = fit_matrix(s, &out->mesh, matrix, error);
-  if (result == ABBE_OK && out->material) result = solidify(s, out, room, count, error);
+  abbe_result result = out->material ? solidify(s, out, room, count, error) : ABBE_OK;
+  for (size_t i = 0; i < *count && result == ABBE_OK; i++) result = shape_one(s, &out[i], error);
+  /* what was dropped has no part in its size */
+  if (result == ABBE_OK) result = fit_matrix(s, out, *count, matrix, error);
   for (size_t i = 0; i < *count && result == ABBE_OK; i++)
     result = place_one(s, matrix, &out[i], error);
   return result;

@@ -63,6 +63,31 @@ static void a_size_and_a_place_are_taken_from_the_bounds(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* The size that is asked for is the solid's, without the sheet that hangs on it. */
+static void what_is_dropped_has_no_size(void **state) {
+  (void)state;
+  const test_box box = {{0, 0, 0}, {4, 2, 1}, false};
+  abbe_mesh whole = test_boxes(&box, 1), m;
+  const size_t n = whole.vertex_count, f = whole.face_count;
+  assert_int_equal(abbe_mesh_make(n + 1, f + 1, false, &m, NULL), ABBE_OK);
+  memcpy(m.position, whole.position, n * sizeof *m.position);
+  memcpy(m.normal, whole.normal, n * sizeof *m.normal);
+  memcpy(m.face, whole.face, f * sizeof *m.face);
+  m.position[n][0] = 40;
+  for (uint32_t k = 0; k < 2; k++) m.face[f][k] = whole.face[0][k];
+  m.face[f][2] = (uint32_t)n;
+  abbe_mesh_free(&whole);
+  abbe_object_surface s = request();
+  s.repair = true;
+  s.fit = 0.02;
+  s.centred = true;
+  abbe_scene scene = place(m, &s, true);
+  assert_contains(scene.object[0].mended, "1 sheet that hung on the body");
+  assert_near(scene.object[0].max[0] - scene.object[0].min[0], 0.02, 1e-15);
+  assert_near(scene.object[0].max[0], 0.01, 1e-15);
+  abbe_scene_free(&scene);
+}
+
 /* Its vertices do not reach as far as the ball does. */
 static void a_ball_is_fitted_as_a_ball(void **state) {
   (void)state;
@@ -192,6 +217,7 @@ static void a_stone_is_cut_and_a_ball_is_round(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_size_and_a_place_are_taken_from_the_bounds),
+      cmocka_unit_test(what_is_dropped_has_no_size),
       cmocka_unit_test(a_ball_is_fitted_as_a_ball),
       cmocka_unit_test(what_has_no_size_cannot_be_fitted),
       cmocka_unit_test(shells_that_cross_become_objects),
