@@ -45,9 +45,11 @@ void abbe_mesh_free(abbe_mesh *mesh);
 
 /* Loads OBJ, PLY, STL or glTF; all its meshes as one. An STL's normals are those of its faces and
  * not taken. ABBE_PARSE with assimp's reason, ABBE_GEOMETRY for coordinates that are not finite or
- * a file without triangles. */
+ * a file without triangles. *others (may be NULL) gets the paths of the files that it names and
+ * that were read with it, such as a glTF's buffers: malloc'd, each ends with a zero, an empty one
+ * is behind the last; NULL where there are none. */
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,
-                           abbe_error *error);
+                           char **others, abbe_error *error);
 
 typedef struct abbe_mesh_report {
   size_t open_edges;       /* edges with one face */

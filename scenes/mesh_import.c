@@ -1,6 +1,6 @@
 #include "scenes/mesh_import.h"
 
-#include "scenes/import_files.h"
+#include "scenes/mesh_files.h"
 #include "spectral/number.h"
 
 #include <assimp/cimport.h>
@@ -27,13 +27,14 @@ typedef struct header {
   size_t vertices, faces;
   bool with_uv, with_normals;
   bool no_memory; /* that is why it was not read */
+  char others[ABBE_MESH_FILES_NAMES];
 } header;
 
 /* ---- the child: it allocates no copies of what was read, and writes as it goes ---- */
 
 enum { BATCH = 256 };
 
-static const struct aiScene *import(const char *path, abbe_import_files *files) {
+static const struct aiScene *import(const char *path, abbe_mesh_files *files) {
   struct aiPropertyStore *store = aiCreatePropertyStore();
   if (!store) return NULL;
   aiSetImportPropertyInteger(store, AI_CONFIG_PP_SBP_REMOVE,
@@ -107,7 +108,7 @@ static bool send_faces(int fd, const struct aiMesh *part, size_t first_vertex) {
 }
 
 /* assimp's reason, and why a file was refused that it may have missed. */
-static void complain(const abbe_import_files *files, header *h) {
+static void complain(const abbe_mesh_files *files, header *h) {
   const char *reason = aiGetErrorString();
   snprintf(h->complaint, sizeof h->complaint, "%.250s%s%.250s",
            reason[0] != '\0' ? reason : "assimp gives no reason",
@@ -117,11 +118,12 @@ static void complain(const abbe_import_files *files, header *h) {
 
 static bool send_scene(int fd, const char *path) {
   header h;
-  abbe_import_files files;
+  abbe_mesh_files files;
   memset(&h, 0, sizeof h); /* the gaps too: it is sent as it lies */
-  abbe_import_files_begin(&files);
+  abbe_mesh_files_begin(&files);
   const struct aiScene *scene = import(path, &files);
   if (!scene) complain(&files, &h);
+  memcpy(h.others, files.others, sizeof h.others);
   h.with_normals = true;
   for (unsigned m = 0; scene && m < scene->mNumMeshes; m++) {
     const struct aiMesh *part = scene->mMeshes[m];
@@ -218,12 +220,25 @@ static bool means_no_faces(const char *complaint) {
   return false;
 }
 
+/* The names up to the empty one. */
+static abbe_result take_others(const char *names, char **out, abbe_error *error) {
+  size_t used = 0;
+  while (names[used] != '\0') used += strlen(names + used) + 1;
+  if (!out || used == 0) return ABBE_OK;
+  *out = malloc(used + 1);
+  if (!*out) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the names of files");
+  memcpy(*out, names, used + 1);
+  return ABBE_OK;
+}
+
 /* *whole: whether all came that the child had to send. */
-static abbe_result take(int fd, const char *path, abbe_mesh *out, bool *whole, abbe_error *error) {
+static abbe_result take(int fd, const char *path, abbe_mesh *out, char **others, bool *whole,
+                        abbe_error *error) {
   header h;
   *whole = receive(fd, &h, sizeof h);
   if (!*whole) return ABBE_OK;
   h.complaint[sizeof h.complaint - 1] = '\0';
+  h.others[sizeof h.others - 2] = h.others[sizeof h.others - 1] = '\0';
   if (h.complaint[0] != '\0' && means_no_faces(h.complaint))
     return abbe_error_set(error, ABBE_GEOMETRY,
                           "%s: no faces were read from it: points and lines alone have no surface "
@@ -234,7 +249,8 @@ static abbe_result take(int fd, const char *path, abbe_mesh *out, bool *whole, a
                           "%s: the mesh cannot be read: %s", path, h.complaint);
   if (h.vertices == 0 || h.faces == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "%s: the file has no triangles", path);
-  abbe_result result = abbe_mesh_make(h.vertices, h.faces, h.with_uv, out, error);
+  abbe_result result = take_others(h.others, others, error);
+  if (result == ABBE_OK) result = abbe_mesh_make(h.vertices, h.faces, h.with_uv, out, error);
   if (result != ABBE_OK) return result;
   out->given_normals = h.with_normals;
   *whole = receive(fd, out->position, h.vertices * sizeof *out->position) &&
@@ -257,10 +273,11 @@ static abbe_result stopped(const char *path, int status, abbe_error *error) {
                         path);
 }
 
-abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, abbe_error *error) {
+abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, char **others, abbe_error *error) {
   ABBE_REQUIRE(path && out, error);
   int end[2];
   memset(out, 0, sizeof *out);
+  if (others) *others = NULL;
   if (pipe(end) != 0)
     return abbe_error_set(error, ABBE_IO, "%s: there is no pipe to read the mesh through: %s", path,
                           strerror(errno));
@@ -274,13 +291,18 @@ abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, abbe_error *error
   bool whole = false;
   int status = 0;
   abbe_result result =
-      child > 0 ? take(end[0], path, out, &whole, error)
+      child > 0 ? take(end[0], path, out, others, &whole, error)
                 : abbe_error_set(error, ABBE_IO, "%s: there is no process to read the mesh in: %s",
                                  path, strerror(why));
   close(end[0]);
   while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (result == ABBE_OK && !whole) result = stopped(path, status, error);
-  if (result != ABBE_OK) abbe_mesh_free(out);
+  if (result == ABBE_OK) return ABBE_OK;
+  abbe_mesh_free(out);
+  if (others) {
+    free(*others);
+    *others = NULL;
+  }
   return result;
 }

@@ -16,11 +16,11 @@ extern "C" {
 /* Reads path and the files that it names: all meshes in it as one, positions as in the file (its
  * own unit), uv where a mesh has them, normals where all have them (given_normals), else zero: of
  * any length, and zero where they are not finite. Forks, and waits for the child, which dies
- * with its caller and has the limits of import_files.h. ABBE_PARSE with assimp's reason or where
+ * with its caller and has the limits of mesh_files.h. ABBE_PARSE with assimp's reason or where
  * the child was stopped, ABBE_GEOMETRY for coordinates that are not finite, faces that name
  * vertices that are not there, or a file without triangles, ABBE_IO where no process can be had,
- * ABBE_NO_MEMORY. */
-abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, abbe_error *error);
+ * ABBE_NO_MEMORY. *others is as in abbe_mesh_load. */
+abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, char **others, abbe_error *error);
 
 #ifdef __cplusplus
 }

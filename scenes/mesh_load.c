@@ -1,6 +1,6 @@
 /* Meshes from files. */
-#include "scenes/import_files.h"
 #include "scenes/mesh.h"
+#include "scenes/mesh_files.h"
 #include "scenes/mesh_import.h"
 #include "scenes/mesh_parts.h"
 #include "scenes/ply_strips.h"
@@ -66,9 +66,9 @@ static abbe_result check_file(const char *path, bool *strips, abbe_error *error)
   size_t size = 0;
   abbe_result result = abbe_file_open(path, &file, &size, error);
   if (result != ABBE_OK) return result;
-  if (size > ABBE_IMPORT_FILES_MOST)
+  if (size > ABBE_MESH_FILES_MOST)
     result = abbe_error_set(error, ABBE_IO, "%s: the mesh file has %zu bytes, the limit is %zu",
-                            path, size, ABBE_IMPORT_FILES_MOST);
+                            path, size, ABBE_MESH_FILES_MOST);
   else if (strcasecmp(dot, ".ply") == 0)
     result = check_ply_header(path, file, size, strips, error);
   fclose(file);
@@ -120,24 +120,30 @@ static abbe_result join_vertices(abbe_mesh *mesh, bool keep_normals, abbe_error 
 static abbe_result read_strips(const char *path, abbe_mesh *out, abbe_error *error) {
   char *data = NULL;
   size_t size = 0;
-  abbe_result result = abbe_file_read(path, ABBE_IMPORT_FILES_MOST, &data, &size, error);
+  abbe_result result = abbe_file_read(path, ABBE_MESH_FILES_MOST, &data, &size, error);
   if (result == ABBE_OK) result = abbe_ply_read_strips(data, size, path, out, error);
   free(data);
   return result;
 }
 
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,
-                           abbe_error *error) {
+                           char **others, abbe_error *error) {
   ABBE_REQUIRE(path && out, error);
   bool strips = false;
+  char *named = NULL;
   memset(out, 0, sizeof *out);
   abbe_result result = check_file(path, &strips, error);
   if (result == ABBE_OK)
-    result = strips ? read_strips(path, out, error) : abbe_mesh_import(path, out, error);
+    result = strips ? read_strips(path, out, error) : abbe_mesh_import(path, out, &named, error);
   const bool facets = strcasecmp(strrchr(path, '.') ? strrchr(path, '.') : "", ".stl") == 0;
   const bool keep = normals == ABBE_NORMALS_AUTO && out->given_normals && !facets;
   if (result == ABBE_OK) result = join_vertices(out, keep, error);
   if (result == ABBE_OK && !keep) result = abbe_mesh_compute_normals(out, normals, error);
   if (result != ABBE_OK) abbe_mesh_free(out);
+  if (result != ABBE_OK || !others) {
+    free(named);
+    named = NULL;
+  }
+  if (others) *others = named;
   return result;
 }

@@ -192,7 +192,7 @@ static abbe_result read_lathe(const reading *r, abbe_mesh *out, abbe_error *erro
   return result;
 }
 
-static abbe_result read_mesh(reading *r, abbe_mesh *out, abbe_error *error) {
+static abbe_result read_mesh(reading *r, abbe_object *out, abbe_error *error) {
   const bool says = abbe_yaml_get(r->yaml, r->node, "smooth").id != 0;
   char *name = NULL;
   size_t levels = 0;
@@ -205,17 +205,18 @@ static abbe_result read_mesh(reading *r, abbe_mesh *out, abbe_error *error) {
                             "'subdivide' makes a smooth surface; leave it out or leave out "
                             "'smooth: false'");
   if (says || levels > 0) r->normals = smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_FLAT;
-  char *path = result == ABBE_OK ? abbe_object_path(r->folder, name) : NULL;
-  if (result == ABBE_OK && !path)
+  if (result == ABBE_OK) out->mesh_path = abbe_object_path(r->folder, name);
+  if (result == ABBE_OK && !out->mesh_path)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-  if (result == ABBE_OK) result = abbe_mesh_load(path, r->normals, out, error);
-  if (result == ABBE_OK && levels > 0) result = abbe_mesh_subdivide(out, levels, error);
-  free(path);
+  if (result == ABBE_OK)
+    result = abbe_mesh_load(out->mesh_path, r->normals, &out->mesh, &out->mesh_others, error);
+  if (result == ABBE_OK && levels > 0) result = abbe_mesh_subdivide(&out->mesh, levels, error);
   free(name);
   return result;
 }
 
-static abbe_result read_surface(reading *r, abbe_mesh *out, abbe_error *error) {
+static abbe_result read_surface(reading *r, abbe_object *object, abbe_error *error) {
+  abbe_mesh *out = &object->mesh;
   const abbe_yaml_node shape = abbe_yaml_get(r->yaml, r->node, "shape");
   const abbe_yaml_node mesh = abbe_yaml_get(r->yaml, r->node, "mesh");
   if ((shape.id != 0) == (mesh.id != 0))
@@ -252,7 +253,7 @@ static abbe_result read_surface(reading *r, abbe_mesh *out, abbe_error *error) {
     result = read_lathe(r, out, error);
     break;
   case MESH:
-    result = read_mesh(r, out, error);
+    result = read_mesh(r, object, error);
     break;
   }
   /* schema errors carry their line already; the geometry's own sentences do not */
@@ -499,7 +500,7 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
     out->name = strdup(name);
     if (!out->name) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
   }
-  if (result == ABBE_OK) result = read_surface(&r, &out->mesh, error);
+  if (result == ABBE_OK) result = read_surface(&r, out, error);
   if (result == ABBE_OK) result = read_transform(&r, error);
   if (result == ABBE_OK) result = read_size_and_place(&r, &surface, error);
   if (result == ABBE_OK) result = read_solid(&r, &surface, error);

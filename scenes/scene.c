@@ -17,6 +17,7 @@ static void object_free(abbe_object *object) {
   free(object->texture_path);
   abbe_image_free(&object->texture);
   free(object->mesh_path);
+  free(object->mesh_others);
   free(object->mended);
 }
 
@@ -36,8 +37,23 @@ void abbe_scene_free(abbe_scene *scene) {
   memset(scene, 0, sizeof *scene);
 }
 
+/* The path of that index in a list of them, or NULL. */
+static const char *other_file(const char *paths, size_t index) {
+  if (!paths) return NULL;
+  while (*paths != '\0' && index-- > 0) paths += strlen(paths) + 1;
+  return *paths != '\0' ? paths : NULL;
+}
+
+static size_t other_count(const abbe_object *object) {
+  size_t count = 0;
+  while (other_file(object->mesh_others, count)) count++;
+  return count;
+}
+
 size_t abbe_scene_file_count(const abbe_scene *scene) {
-  return 2 + scene->light_count + 2 * scene->object_count;
+  size_t count = 2 + scene->light_count + 2 * scene->object_count;
+  for (size_t i = 0; i < scene->object_count; i++) count += other_count(&scene->object[i]);
+  return count;
 }
 
 const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
@@ -48,9 +64,15 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
   index -= 2;
   if (index < scene->light_count) return scene->light[index].illuminant_path;
   index -= scene->light_count;
-  if (index >= 2 * scene->object_count) return NULL;
-  const abbe_object *object = &scene->object[index / 2];
-  return index % 2 ? object->texture_path : object->mesh_path;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    const size_t files = 2 + other_count(object);
+    if (index == 0) return object->mesh_path;
+    if (index == 1) return object->texture_path;
+    if (index < files) return other_file(object->mesh_others, index - 2);
+    index -= files;
+  }
+  return NULL;
 }
 
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],

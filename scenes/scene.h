@@ -82,8 +82,9 @@ typedef struct abbe_object {
   char *texture_path;              /* receiver: NULL or the PNG that multiplies reflectance */
   abbe_image texture;              /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
-  char *mesh_path; /* NULL or the file that the mesh is of */
-  char *mended;    /* what was mended, and what is not whole still, or NULL */
+  char *mesh_path;   /* NULL or the file that the mesh is of */
+  char *mesh_others; /* and those that it names, as abbe_mesh_load has them */
+  char *mended;      /* what was mended, and what is not whole still, or NULL */
 } abbe_object;
 
 typedef struct abbe_scene {
@@ -102,8 +103,8 @@ typedef struct abbe_scene {
 void abbe_scene_free(abbe_scene *scene);
 
 /* The files that the scene was read from, each of index below the count: its own, the table of
- * materials, illuminants, meshes and textures; NULL where there is none of that index. What a mesh
- * file names in turn is not among them. */
+ * materials, illuminants, textures, meshes and what those name in turn; NULL where there is none of
+ * that index. */
 size_t abbe_scene_file_count(const abbe_scene *scene);
 const char *abbe_scene_file(const abbe_scene *scene, size_t index);
 

@@ -243,16 +243,6 @@ static abbe_result read_lights(abbe_yaml *yaml, abbe_yaml_node root, const char 
   return result;
 }
 
-static abbe_result note_mesh_path(abbe_yaml *yaml, abbe_yaml_node item, const char *folder,
-                                  abbe_object *out, abbe_error *error) {
-  char *name = NULL;
-  abbe_result result = abbe_yaml_get_string(yaml, item, "mesh", &name, error);
-  if (result != ABBE_OK || name == NULL) return result;
-  out->mesh_path = abbe_object_path(folder, name);
-  free(name);
-  return out->mesh_path ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-}
-
 static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
                                 abbe_scene *out, abbe_error *error) {
   abbe_yaml_node list;
@@ -271,7 +261,6 @@ static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char
     result =
         abbe_object_read(yaml, item, folder, &out->table, &out->object[first], room, &made, error);
     out->object_count += made;
-    if (result == ABBE_OK) result = note_mesh_path(yaml, item, folder, &out->object[first], error);
     for (size_t k = first; k < out->object_count; k++) faces += out->object[k].mesh.face_count;
     if (result == ABBE_OK && faces > ABBE_MESH_MAX_FACES)
       result = abbe_yaml_fail(yaml, item, error,

@@ -187,7 +187,8 @@ static void test_files_of_a_scene(void **state) {
   (void)state;
   static const char make[] =
       "cp \"$house\"/scenes/wood.png wood.png; cp \"$house\"/spectral/thesis.yaml t.yaml;\n"
-      "cp \"$house\"/tests/bad/inverted.obj wedge.obj; printf '380 1\\n780 1\\n' >lamp.txt;\n"
+      "(echo mtllib wedge.mtl; cat \"$house\"/tests/bad/inverted.obj) >wedge.obj;\n"
+      "printf 'newmtl a\\n' >wedge.mtl; printf '380 1\\n780 1\\n' >lamp.txt;\n"
       "cat >scene.yaml <<END\n"
       "camera: {eye: [0, -1, 0.5], target: [0, 0, 0], size: [8, 8]}\n"
       "materials: t.yaml\n"
@@ -198,13 +199,14 @@ static void test_files_of_a_scene(void **state) {
       "- {name: wedge, mesh: wedge.obj, smooth: false, material: bk7,\n"
       "   transform: [{translate: [0, 0, 0.2]}]}\n"
       "END\n"
-      "sha256sum wood.png t.yaml wedge.obj lamp.txt scene.yaml >sums\n";
+      "sha256sum wood.png t.yaml wedge.obj wedge.mtl lamp.txt scene.yaml >sums\n";
   static const char *const lines[] = {
       "render scene.yaml -q --size 8x8 --photons 8 --map 8 --png wood.png",
       "render scene.yaml -q --size 8x8 --photons 8 --map 8 --stats wedge.obj",
       "render scene.yaml -q --size 8x8 --photons 8 --map 8 --stats ./lamp.txt",
       "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint wedge.obj",
       "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint t.yaml",
+      "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint wedge.mtl",
       "export scene.yaml -q -o wedge.obj",
       "sweep scene.yaml -q -o lamp.txt",
       "sweep scene.yaml -q -o s.csv --report t.yaml",
@@ -229,6 +231,11 @@ static void test_files_that_no_option_names(void **state) {
   assert_true(run_line("OCIO=o.txt; export OCIO; printf kept >o.txt; \"$abbe\" display a.exr "
                        "-o o.txt") == 2);
   assert_contains(run_errors, "$OCIO 'o.txt'");
+  assert_true(run_line("mkdir sub; cp \"$house\"/spectral/thesis.yaml sub/t.yaml;"
+                       "ln sub/t.yaml sub/hard.yaml; \"$abbe\" materials import sub --force "
+                       "-o sub/hard.yaml; code=$?; cmp sub/t.yaml \"$house\"/spectral/thesis.yaml "
+                       "|| exit 9; rm -r sub; exit $code") == 1);
+  assert_contains(run_errors, "'sub/hard.yaml' would be written over");
 }
 
 static void test_names_that_are_meant(void **state) {

@@ -227,7 +227,7 @@ static void with_meshes(FILE *to) {
     abbe_mesh mesh = {0};
     in_folder(files[i][0], path);
     make_file(files[i][0], files[i][1]);
-    ok(abbe_mesh_load(path, false, &mesh, &error));
+    ok(abbe_mesh_load(path, ABBE_NORMALS_FLAT, &mesh, NULL, &error));
     double most = 0;
     for (size_t v = 0; v < mesh.vertex_count; v++) most = fmax(most, mesh.position[v][2]);
     assert_near(most, i == 3 ? 0.5625 : 0.375, 1e-6);

@@ -598,7 +598,7 @@ static void loads_tetrahedra(void **state) {
     abbe_error error = {0};
     write_text(files[i].path, files[i].text);
     for (int smooth = 0; smooth < 2; smooth++) {
-      if (abbe_mesh_load(files[i].path, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_FLAT, &m,
+      if (abbe_mesh_load(files[i].path, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_FLAT, &m, NULL,
                          &error) != ABBE_OK)
         fail_msg("%s", error.text);
       assert_int_equal(m.face_count, 4);
@@ -646,7 +646,7 @@ static void bad_files_are_refused(void **state) {
     abbe_mesh m;
     abbe_error error = {0};
     write_text(files[i].path, files[i].text);
-    if (abbe_mesh_load(files[i].path, ABBE_NORMALS_AUTO, &m, &error) == ABBE_OK)
+    if (abbe_mesh_load(files[i].path, ABBE_NORMALS_AUTO, &m, NULL, &error) == ABBE_OK)
       fail_msg("file %zu (%s) was read", i, files[i].path);
     assert_contains(error.text, files[i].path);
     /* points and lines alone */
@@ -656,14 +656,15 @@ static void bad_files_are_refused(void **state) {
   }
   abbe_mesh m;
   abbe_error error;
-  assert_int_equal(abbe_mesh_load("no_such_file.obj", ABBE_NORMALS_AUTO, &m, &error), ABBE_IO);
+  assert_int_equal(abbe_mesh_load("no_such_file.obj", ABBE_NORMALS_AUTO, &m, NULL, &error),
+                   ABBE_IO);
 }
 
 static abbe_mesh load(const char *path, const char *text, abbe_mesh_normals normals) {
   abbe_mesh m;
   abbe_error error = {0};
   write_text(path, text);
-  if (abbe_mesh_load(path, normals, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
+  if (abbe_mesh_load(path, normals, &m, NULL, &error) != ABBE_OK) fail_msg("%s", error.text);
   unlink(path);
   return m;
 }

@@ -181,7 +181,8 @@ static abbe_result meshes(abbe_error *error) {
     double plane[16][4];
     size_t count = 0;
     abbe_convex found = {0};
-    result = abbe_mesh_load(paths[i], i == 0 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, error);
+    result = abbe_mesh_load(paths[i], i == 0 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
+                            error);
     if (result == ABBE_OK)
       result = abbe_mesh_mend(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
     if (result == ABBE_OK) result = abbe_mesh_compute_normals(&mesh, (abbe_mesh_normals)i, error);

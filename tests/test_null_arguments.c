@@ -50,6 +50,8 @@ static const struct {
     {"abbe_material_table_load_lenient", "path"},
     {"abbe_material_table_parse_lenient", "report"},
     {"abbe_material_table_unique", "report"},
+    {"abbe_mesh_import", "others"},
+    {"abbe_mesh_load", "others"},
     {"abbe_mesh_mend", "solids"},
     {"abbe_mesh_mend", "what"},
     {"abbe_outline_make", "options"},

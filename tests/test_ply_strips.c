@@ -167,7 +167,7 @@ static void a_mesh_is_loaded_from_them(void **state) {
   assert_non_null(f);
   assert_int_equal(fwrite(data, 1, size, f), size);
   fclose(f);
-  const abbe_result result = abbe_mesh_load("t_strips.ply", ABBE_NORMALS_FLAT, &m, &error);
+  const abbe_result result = abbe_mesh_load("t_strips.ply", ABBE_NORMALS_FLAT, &m, NULL, &error);
   unlink("t_strips.ply");
   if (result != ABBE_OK) fail_msg("%s", error.text);
   assert_int_equal(m.face_count, 4);

@@ -42,8 +42,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   abbe_error error = {0};
   if (size == 0) return 0;
   const char *path = link_named(memory_file(data + 1, size - 1), kinds[data[0] % 5]);
-  if (abbe_mesh_load(path, data[0] & 64 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, &error) !=
-      ABBE_OK)
+  if (abbe_mesh_load(path, data[0] & 64 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
+                     &error) != ABBE_OK)
     FUZZ_PROMISE(error.text[0] != '\0' && mesh.position == NULL && mesh.face == NULL);
   else
     for (size_t f = 0; f < mesh.face_count; f++)

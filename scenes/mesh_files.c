@@ -1,4 +1,4 @@
-#include "scenes/import_files.h"
+#include "scenes/mesh_files.h"
 
 #include "spectral/file.h"
 
@@ -28,33 +28,40 @@ static void set_limit(int which, rlim_t soft) {
   setrlimit(which, &limit);
 }
 
-static void set_limits(const abbe_import_files *files) {
-  const rlim_t seconds =
-      ABBE_IMPORT_FILES_SECONDS + files->bytes / ABBE_IMPORT_FILES_BYTES_A_SECOND;
+static void set_limits(const abbe_mesh_files *files) {
+  const rlim_t seconds = ABBE_MESH_FILES_SECONDS + files->bytes / ABBE_MESH_FILES_BYTES_A_SECOND;
   if (files->held > 0)
-    set_limit(RLIMIT_AS, files->held + ABBE_IMPORT_FILES_MEMORY +
-                             ABBE_IMPORT_FILES_MEMORY_A_BYTE * files->bytes);
+    set_limit(RLIMIT_AS,
+              files->held + ABBE_MESH_FILES_MEMORY + ABBE_MESH_FILES_MEMORY_A_BYTE * files->bytes);
   set_limit(RLIMIT_CPU, seconds);
-  alarm((unsigned)(ABBE_IMPORT_FILES_WALL + ABBE_IMPORT_FILES_WALL_A_SECOND * seconds));
+  alarm((unsigned)(ABBE_MESH_FILES_WALL + ABBE_MESH_FILES_WALL_A_SECOND * seconds));
+}
+
+static void note_other(abbe_mesh_files *files, const char *path) {
+  const size_t size = strlen(path) + 1;
+  if (size >= sizeof files->others - files->used) return;
+  memcpy(files->others + files->used, path, size);
+  files->used += size;
 }
 
 /* Counts a file that is new; false where there are too many bytes. What is opened after as many
  * files as are known brings no more room. */
-static bool count(abbe_import_files *files, FILE *stream, const char *path, size_t size) {
+static bool count(abbe_mesh_files *files, FILE *stream, const char *path, size_t size) {
   struct stat status;
   if (fstat(fileno(stream), &status) != 0) return false;
   for (size_t i = 0; i < files->count; i++)
     if (files->known[i].device == status.st_dev && files->known[i].number == status.st_ino)
       return true;
-  if (files->count == ABBE_IMPORT_FILES_KNOWN) return true;
-  if (size > ABBE_IMPORT_FILES_MOST - files->bytes) {
+  if (files->count == ABBE_MESH_FILES_KNOWN) return true;
+  if (size > ABBE_MESH_FILES_MOST - files->bytes) {
     abbe_error_set(&files->error, ABBE_IO,
                    "%s: the files of the mesh have %zu bytes with it, the limit is %zu", path,
-                   files->bytes + size, ABBE_IMPORT_FILES_MOST);
+                   files->bytes + size, ABBE_MESH_FILES_MOST);
     return false;
   }
   files->known[files->count].device = status.st_dev;
   files->known[files->count++].number = status.st_ino;
+  if (files->count > 1) note_other(files, path);
   files->bytes += size;
   set_limits(files);
   return true;
@@ -95,7 +102,7 @@ static void flush(struct aiFile *file) {
 }
 
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
-  abbe_import_files *files = (abbe_import_files *)(void *)io->UserData;
+  abbe_mesh_files *files = (abbe_mesh_files *)(void *)io->UserData;
   FILE *stream = NULL;
   size_t size = 0;
   if (mode[0] != 'r' || access(path, F_OK) != 0) return NULL;
@@ -124,7 +131,7 @@ static void close_file(struct aiFileIO *io, struct aiFile *file) {
   free(file);
 }
 
-void abbe_import_files_begin(abbe_import_files *files) {
+void abbe_mesh_files_begin(abbe_mesh_files *files) {
   memset(files, 0, sizeof *files);
   files->io = (struct aiFileIO){
       .OpenProc = open_file, .CloseProc = close_file, .UserData = (aiUserData)(void *)files};

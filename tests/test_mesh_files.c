@@ -1,7 +1,7 @@
 #define _GNU_SOURCE /* RLIMIT_AS of a child */
 #include "tests/check.h"
 
-#include "scenes/import_files.h"
+#include "scenes/mesh_files.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static int make_folder(void **state) {
   if (mkdtemp(folder) == NULL) return 1;
   write_file("mesh", 4);
   write_file("buffer", 8 << 20);
-  write_file("huge", ABBE_IMPORT_FILES_MOST);
+  write_file("huge", ABBE_MESH_FILES_MOST);
   return mkfifo(in_folder("fifo"), 0600);
 }
 
@@ -47,12 +47,12 @@ static int remove_folder(void **state) {
 }
 
 /* The limits hold for a process until its end, so each check has one of its own. */
-static void in_a_process(bool (*check)(abbe_import_files *files)) {
+static void in_a_process(bool (*check)(abbe_mesh_files *files)) {
   fflush(NULL);
   const pid_t child = fork();
   if (child == 0) {
-    abbe_import_files files;
-    abbe_import_files_begin(&files);
+    abbe_mesh_files files;
+    abbe_mesh_files_begin(&files);
     _exit(check(&files) ? 0 : 1);
   }
   int status = 0;
@@ -61,11 +61,11 @@ static void in_a_process(bool (*check)(abbe_import_files *files)) {
   assert_int_equal(WEXITSTATUS(status), 0);
 }
 
-static struct aiFile *open_one(abbe_import_files *files, const char *name) {
+static struct aiFile *open_one(abbe_mesh_files *files, const char *name) {
   return files->io.OpenProc(&files->io, in_folder(name), "rb");
 }
 
-static void close_one(abbe_import_files *files, struct aiFile *file) {
+static void close_one(abbe_mesh_files *files, struct aiFile *file) {
   files->io.CloseProc(&files->io, file);
 }
 
@@ -74,7 +74,7 @@ static rlim_t limit(int which) {
   return getrlimit(which, &now) == 0 ? now.rlim_cur : 0;
 }
 
-static bool reads(abbe_import_files *files) {
+static bool reads(abbe_mesh_files *files) {
   char text[8] = "";
   struct aiFile *f = open_one(files, "mesh");
   bool ok = f != NULL && f->FileSizeProc(f) == 4 && f->ReadProc(f, text, 1, 8) == 4 &&
@@ -88,29 +88,34 @@ static bool reads(abbe_import_files *files) {
          access(in_folder("new"), F_OK) != 0;
 }
 
-static bool refuses(abbe_import_files *files) {
+static bool refuses(abbe_mesh_files *files) {
   bool ok = open_one(files, "none") == NULL && files->error.text[0] == '\0';
   ok = ok && open_one(files, "fifo") == NULL;
   return ok && strstr(files->error.text, "fifo: is a named pipe") != NULL;
 }
 
-static bool counts(abbe_import_files *files) {
+static bool counts(abbe_mesh_files *files) {
   const rlim_t memory = limit(RLIMIT_AS), seconds = limit(RLIMIT_CPU);
   const rlim_t size = 8 << 20;
-  bool ok = seconds == ABBE_IMPORT_FILES_SECONDS && memory > ABBE_IMPORT_FILES_MEMORY;
+  bool ok = seconds == ABBE_MESH_FILES_SECONDS && memory > ABBE_MESH_FILES_MEMORY;
   for (int i = 0; i < 3; i++) { /* as often as it is opened, it brings its room once */
     struct aiFile *f = open_one(files, "buffer");
     ok = ok && f != NULL;
     close_one(files, f);
-    ok = ok && limit(RLIMIT_AS) == memory + ABBE_IMPORT_FILES_MEMORY_A_BYTE * size;
-    ok = ok && limit(RLIMIT_CPU) == seconds + size / ABBE_IMPORT_FILES_BYTES_A_SECOND;
+    ok = ok && limit(RLIMIT_AS) == memory + ABBE_MESH_FILES_MEMORY_A_BYTE * size;
+    ok = ok && limit(RLIMIT_CPU) == seconds + size / ABBE_MESH_FILES_BYTES_A_SECOND;
   }
+  /* the first is the mesh itself */
+  struct aiFile *f = open_one(files, "mesh");
+  ok = ok && f != NULL && strcmp(files->others, in_folder("mesh")) == 0 &&
+       files->others[files->used] == '\0';
+  close_one(files, f);
   const unsigned left = alarm(0);
   return ok && left > 0 &&
-         left <= ABBE_IMPORT_FILES_WALL + ABBE_IMPORT_FILES_WALL_A_SECOND * (seconds + 32);
+         left <= ABBE_MESH_FILES_WALL + ABBE_MESH_FILES_WALL_A_SECOND * (seconds + 32);
 }
 
-static bool has_enough(abbe_import_files *files) {
+static bool has_enough(abbe_mesh_files *files) {
   struct aiFile *f = open_one(files, "huge");
   bool ok = f != NULL;
   close_one(files, f);
