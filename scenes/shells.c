@@ -459,6 +459,7 @@ abbe_result abbe_shells_find(const abbe_mesh *mesh, const abbe_topology *topolog
                              abbe_error *error) {
   ABBE_REQUIRE(mesh && topology && out, error);
   memset(out, 0, sizeof *out);
+  if (topology->face_count == 0) return ABBE_OK;
   out->count = topology->shell_count;
   search s = {.t = topology, .out = out};
   abbe_hierarchy rays = {0};
