@@ -245,6 +245,8 @@ static abbe_result match_plan(const abbe_scene *scene, abbe_trace_desc *desc, ab
   if (result != ABBE_OK) return result;
   desc->physics.orders = plan.desc.orders;
   desc->physics.energy_share = plan.desc.energy_share;
+  desc->physics.eye_orders = plan.eye_exits;
+  desc->physics.eye_share = plan.eye_share;
   abbe_plan_free(&plan);
   return ABBE_OK;
 }

@@ -56,6 +56,7 @@ layout(std430, binding = 5) readonly buffer Spectra { vec4 spectra[]; };
 #else
 layout(std140, binding = 5) uniform Spectra { vec4 spectra[SPECTRUM_ROOM]; };
 #endif
+#include "copies.glsl"
 
 // The map's texels are finer where more light lands: each axis of its window is warped by a
 // monotone polygon. x and y at [light * (WARP_STEPS + 1) + k], from 0 to 1.

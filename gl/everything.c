@@ -68,6 +68,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
   if (!plan->walk && (asked == NULL || asked->orders == 0)) {
     plan->slots += ABBE_RENDER_MAX_ORDERS - plan->desc.orders;
     plan->desc.orders = ABBE_RENDER_MAX_ORDERS;
+    if (plan->eye_exits < plan->desc.orders) plan->eye_exits = plan->desc.orders;
     rewrite(plan, "inner reflections", plan->desc.orders, "exits at most");
   }
   for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)

@@ -100,17 +100,55 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
+/* A loop that the shader has unrolled, up to so many turns; more are no longer worth their code. */
+enum { MOST_COPIES = 256, MOST_COPIED_LIGHTS = 4, MOST_COPIED_RECEIVERS = 32 };
+
+static size_t write_each(char *text, size_t room, const char *name, size_t count, size_t most) {
+  if (count == 0 || count > most) return 0;
+  size_t used = (size_t)snprintf(text, room, "#define EACH_%s(DO)", name);
+  for (size_t i = 0; i < count; i++)
+    used += (size_t)snprintf(text + used, room - used, " DO(%zu)", i);
+  return used + (size_t)snprintf(text + used, room - used, "\n");
+}
+
+/* Of refraction.comp: those of all shaders, with the eye's own exits; what a software rasteriser
+ * copies (copies.glsl); and `more`. */
+static char *refraction_defines(const abbe_renderer *r, const char *more) {
+  const abbe_plan *p = &r->plan;
+  const bool software = strstr(abbe_context_description(r->context), "llvmpipe") != NULL;
+  const bool convex = p->convex && p->refractor_count == 1 && !p->walk;
+  const size_t planes = convex ? r->scene->object[p->refractor_object[0]].exact.count : 0;
+  const size_t shadows = p->light_count * p->refractor_count == 1 ? r->shadow_planes : 0;
+  const size_t room = sizeof r->defines + strlen(more) + 256 + 4 * (64 + 8 * MOST_COPIES);
+  char *text = malloc(room);
+  if (text == NULL) return NULL;
+  size_t used = (size_t)snprintf(text, room, "%s#undef EXITS\n#define EXITS %zu\n%s", r->defines,
+                                 p->eye_exits, more);
+  if (!software) return text;
+  used += write_each(text + used, room - used, "LIGHT", p->light_count, MOST_COPIED_LIGHTS);
+  used += write_each(text + used, room - used, "RECEIVER", p->parallelogram_count,
+                     MOST_COPIED_RECEIVERS);
+  used += write_each(text + used, room - used, "PLANE", planes, MOST_COPIES);
+  write_each(text + used, room - used, "SHADOW_PLANE", shadows, MOST_COPIES);
+  return text;
+}
+
+static abbe_result make_program(abbe_renderer *r, const char *more, GLuint *program,
+                                abbe_error *error) {
+  char *defines = refraction_defines(r, more);
+  if (defines == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
+  abbe_result result = abbe_program_make_compute(r->gl, "refraction.comp", defines, program, error);
+  free(defines);
+  return result;
+}
+
 static abbe_result make_refraction(abbe_renderer *r, abbe_error *error) {
-  char defines[sizeof r->defines + 64];
-  if (!refines(r))
-    return abbe_program_make_compute(r->gl, "refraction.comp", r->defines, &r->refraction, error);
-  snprintf(defines, sizeof defines, "%s#define REFINES\n#define COARSE_BANDS %d\n", r->defines,
-           COARSE_BANDS);
-  abbe_result result =
-      abbe_program_make_compute(r->gl, "refraction.comp", defines, &r->refraction, error);
-  if (result != ABBE_OK) return result;
-  snprintf(defines, sizeof defines, "%s#define REFINED\n", r->defines);
-  return abbe_program_make_compute(r->gl, "refraction.comp", defines, &r->refraction_fine, error);
+  char coarse[64];
+  if (!refines(r)) return make_program(r, "", &r->refraction, error);
+  snprintf(coarse, sizeof coarse, "#define REFINES\n#define COARSE_BANDS %d\n", COARSE_BANDS);
+  abbe_result result = make_program(r, coarse, &r->refraction, error);
+  return result != ABBE_OK ? result
+                           : make_program(r, "#define REFINED\n", &r->refraction_fine, error);
 }
 
 /* Views that hold all that the light may reach, straight and through refractors; 0: no such are
@@ -375,7 +413,7 @@ static void set_refraction(abbe_renderer *r, GLuint program, size_t rows) {
   abbe_renderer_bind_texture(r, program, "eye_layers", 4, r->eye_layers);
   abbe_renderer_bind_texture_2d(r, program, "eye_owner", 6, r->eye_owner);
   set_eye(r, program);
-  abbe_renderer_set_float(r, program, "share_limit", r->plan.desc.energy_share);
+  abbe_renderer_set_float(r, program, "share_limit", r->plan.eye_share);
   double angle = (r->eye.window[3] - r->eye.window[2]) / (double)rows;
   abbe_renderer_set_float(r, program, "pixel_angle", angle);
 }

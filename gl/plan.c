@@ -361,6 +361,13 @@ static void resolve_wavelengths(abbe_plan *plan) {
       plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
 }
 
+/* Mesa 22's llvmpipe ends every loop of a thread after 65535 turns of any loops, and a thread may
+ * follow all wavelengths. */
+static size_t eye_exits(const abbe_plan *plan) {
+  const size_t most = 32768 / plan->desc.wavelengths;
+  return most < ABBE_PLAN_EYE_EXITS ? most : ABBE_PLAN_EYE_EXITS;
+}
+
 static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked, abbe_plan *plan) {
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   char inside[64] = "";
@@ -370,6 +377,11 @@ static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked
   if (plan->convex && plan->refractor_count == 1 && !plan->walk && no_refraction(plan) == NULL)
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
+  /* Layers show less and less of what is inside; and who asks for few exits sees them. Shares are
+   * the photons' affair: no one asks for stones that are too dark. */
+  const bool eye_goes_on = !thesis && !plan->layers && (asked == NULL || asked->orders == 0);
+  plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.orders;
+  plan->eye_share = fmin(plan->desc.energy_share, ABBE_PLAN_EYE_SHARE);
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
   if (no_refraction(plan) != NULL)
     add(plan, false, "inner reflections", "%s", no_refraction(plan));
@@ -497,7 +509,12 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
   char fewer[160];
   if (plan->layers && !thesis)
     add(plan, abbe_layer_detail_reason(scene, plan, fewer), "simplified layers", "%s", fewer);
-  add(plan, seen, "eye: refraction", "%s", seen ? "one direction a wavelength" : unseen);
+  if (seen && plan->eye_exits > 1)
+    add(plan, true, "eye: refraction",
+        "one direction a wavelength, until less than %g of its light is left, %zu exits at most",
+        plan->eye_share, plan->eye_exits);
+  else
+    add(plan, seen, "eye: refraction", "%s", seen ? "one direction a wavelength" : unseen);
   if (plan->desc.supersample > 1)
     add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
         plan->desc.supersample);

@@ -73,6 +73,10 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 /* As far as they go where a convex solid keeps light inside (gl/inner_light.h). */
 #define ABBE_PLAN_MOST_EXITS 24
 #define ABBE_PLAN_LOW_SHARE 0.005
+/* Of the eye's rays through convex solids and from refractor to refractor; what light is left
+ * inside then is too little to show. */
+#define ABBE_PLAN_EYE_EXITS 256
+#define ABBE_PLAN_EYE_SHARE 0.001
 
 /* A request; zero means the default in every field. */
 typedef struct abbe_render_desc {
@@ -158,6 +162,8 @@ typedef struct abbe_plan {
   bool tinting;    /* some attenuation varies over the range */
   bool lengths;    /* and landings keep the length of their way inside, which tells it anywhere */
   bool textured;
+  size_t eye_exits; /* that the eye's rays are followed for, at the most */
+  double eye_share; /* and the share of their light at which they end */
   size_t slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may */

@@ -22,20 +22,22 @@ uniform float scene_size;
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
 
+void meet_parallelogram(int i, Receiver r, vec3 o, vec3 d, float t_min, inout float t, inout int found) {
+  float s = dot(r.normal.xyz, r.corner.xyz - o) / dot(r.normal.xyz, d);
+  vec3 x = o + s * d - r.corner.xyz;
+  vec2 uv = vec2(dot(x, r.du.xyz), dot(x, r.dv.xyz));
+  // A ray within the plane gives no number, and every comparison with it is false.
+  bool hit = s > t_min && s < t && min(uv.x, uv.y) >= 0.0 && max(uv.x, uv.y) <= 1.0;
+  t = hit ? s : t;
+  found = hit ? i : found;
+}
+
 // Nearest parallelogram on the ray; -1: none.
 int parallelogram_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
   int found = -1;
   t = t_max;
-  for (int i = 0; i < RECEIVERS; i++) {
-    vec3 corner = receivers[i].corner.xyz, normal = receivers[i].normal.xyz;
-    float s = dot(normal, corner - o) / dot(normal, d);
-    vec3 x = o + s * d - corner;
-    vec2 uv = vec2(dot(x, receivers[i].du.xyz), dot(x, receivers[i].dv.xyz));
-    // A ray within the plane gives no number, and every comparison with it is false.
-    bool hit = s > t_min && s < t && min(uv.x, uv.y) >= 0.0 && max(uv.x, uv.y) <= 1.0;
-    t = hit ? s : t;
-    found = hit ? i : found;
-  }
+#define MEET(i) meet_parallelogram(i, RECEIVER(i), o, d, t_min, t, found);
+  OF_RECEIVERS(MEET)
   return found;
 }
 
@@ -140,16 +142,9 @@ bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
 }
 
 #ifdef SHADOW_PLANES
-// The shadows of convex refractors (shadow_planes.h): where the planes of each light and refractor begin,
-// and how many they are. ONE_SHADOW: they are all of one, and the loop has a constant bound, for then it
-// is unrolled; others are real loops, which a software rasteriser ends where no lane takes part.
-layout(std140, binding = 9) uniform ShadowPlanes {
-  ivec4 shadow_range[LIGHT_ROOM * REFRACTOR_ROOM];
-  vec4 shadow_planes[SHADOW_PLANES];
-};
-
+// In the shadow of a convex refractor: within all its planes.
 bool convex_shadow(int light, int refractor, vec3 p) {
-  vec3 x = int(lights[light].position.w) == 2 ? p : p - lights[light].position.xyz;
+  vec3 x = int(LIGHT(light).position.w) == 2 ? p : p - LIGHT(light).position.xyz;
 #ifdef ONE_SHADOW
   const int first = 0, count = SHADOW_PLANES;
 #else
@@ -157,10 +152,8 @@ bool convex_shadow(int light, int refractor, vec3 p) {
   int first = range.x, count = range.y;
 #endif
   float most = -1e30;
-  for (int i = 0; i < count; i++) {
-    vec4 plane = shadow_planes[first + i];
-    most = max(most, dot(plane.xyz, x) - plane.w);
-  }
+#define CROSS(i) most = max(most, dot(SHADOW_PLANE(i).xyz, x) - SHADOW_PLANE(i).w);
+  OF_SHADOW_PLANES(CROSS)
   return count > 0 && most < 0.0;
 }
 #endif
@@ -186,17 +179,17 @@ bool exact_shadow(int light, vec3 p, vec3 d, float distance_m) {
 
 // Share of direct light that no refractor takes away on its way to p.
 float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
-  if (lights[light].misc.w == 0.0) return 1.0;
+  if (LIGHT(light).misc.w == 0.0) return 1.0;
   if (exact_shadow(light, p, d, distance_m)) return 0.0;
 #ifdef FRONT_LAYER
   vec3 uvz;
-  View v = lights[light].near_view;
+  View v = LIGHT(light).near_view;
   if (!project(v, p, uvz)) return 1.0;
   ivec2 size = textureSize(light_layers, 0).xy;
   vec2 at = uvz.xy * vec2(size) - 0.5;
 #ifdef CUBES
   // What a refractor shows beyond the seam of two faces is another face's.
-  if (int(lights[light].cube.x) != ALL_FACES && inside(uvz.xy)) at = clamp(at, vec2(0), vec2(size - 1));
+  if (int(LIGHT(light).cube.x) != ALL_FACES && inside(uvz.xy)) at = clamp(at, vec2(0), vec2(size - 1));
 #endif
   ivec2 base = ivec2(floor(at));
   vec2 f = at - vec2(base);
@@ -266,7 +259,7 @@ bool takes_refracted(vec3 n, float facing, vec3 p) {
 // rgb irradiance from one light on p (n faces the viewer), on a side of a chart: straight, and through
 // refractors.
 void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out vec3 caustic) {
-  Light l = lights[light];
+  Light l = LIGHT(light);
   vec3 d;
   float distance_m;
   direct = vec3(0);
@@ -347,12 +340,14 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   s.direct = s.caustic = vec3(0);
   vec3 brdf = surface_reflectance(surface, uv) / PI;
 #ifndef UNLIT
-  for (int i = 0; i < LIGHTS; i++) {
-    vec3 direct, caustic;
-    light_irradiance(i, p, n, side, direct, caustic);
-    s.direct += brdf * direct;
-    s.caustic += brdf * caustic;
+  vec3 direct, caustic;
+#define SHINE(i)                                             \
+  {                                                          \
+    light_irradiance(i, p, n, side, direct, caustic);        \
+    s.direct += brdf * direct;                               \
+    s.caustic += brdf * caustic;                             \
   }
+  OF_LIGHTS(SHINE)
 #endif
   s.fill = brdf * ambient;
   return s;

@@ -135,14 +135,15 @@ const bool GO_ON = false;
 const bool GO_ON = true;
 #endif
 
-// Through the refractor alone, from wall to wall: the light of one band. Its loops have two ways out, with
-// values of their own for what is used after them: of what the last turn alone has made, lanes that took
-// fewer turns may find another's (Mesa 22's llvmpipe).
+// Through the refractor alone, from wall to wall: the light of one band. What is left when the way ends
+// shows what the rest has shown. Its loops have two ways out, with values of their own for what is used
+// after them: of what the last turn alone has made, lanes that took fewer turns may find another's
+// (Mesa 22's llvmpipe).
 vec3 through(Hit front, vec3 d, int band) {
   float n = bands[band].weight_n.w, attenuation = bands[band].attenuation.x;
   vec3 inner, p = front.p, light = vec3(0);
   if (!refract_direction(d, front.n, 1.0 / n, inner)) return light;
-  float share = 1.0 - fresnel(-dot(d, front.n), 1.0 / n);
+  float share = 1.0 - fresnel(-dot(d, front.n), 1.0 / n), shown = 0.0, left = 0.0;
   int facet = front.facet;
   bool met;
   for (int order = 0; order < EXITS;) {
@@ -162,19 +163,24 @@ vec3 through(Hit front, vec3 d, int band) {
 #endif
       float kept = fresnel(dot(inner, wall_n), n);
       bool leaves = refract_direction(inner, -wall_n, n, outer);
-      out_share = share * (1.0 - kept);
-      shows = leaves && out_share > 0.5 * share_limit;
+      out_share = leaves ? share * (1.0 - kept) : 0.0;
+      shows = out_share > 0.5 * share_limit;
+      left += shows ? 0.0 : out_share;
       share *= leaves ? kept : 1.0;
       p = wall;
       facet = next;
       inner = reflect(inner, wall_n);
       order++;
+      left += share < share_limit || order == EXITS ? share : 0.0;
       if (!GO_ON || shows || share < share_limit) break;
     }
-    if (shows) light += out_share * seen(wall, outer, -touch * refractor_bounds.w, 1e30, met);
+    if (shows) {
+      light += out_share * seen(wall, outer, -touch * refractor_bounds.w, 1e30, met);
+      shown += out_share;
+    }
     if (share < share_limit) break;
   }
-  return light;
+  return light * (shown > 0.0 ? 1.0 + left / shown : 0.0);
 }
 #endif
 
@@ -234,6 +240,7 @@ void coarsen(bool coarser, inout int base, inout int count) {
 
 #ifdef REFINED
 void main() {
+  copy_tables();
   uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
   if (listed >= refine_count) return;
   uint where = refine[listed].x, what = refine[listed].y;
@@ -262,6 +269,7 @@ const float MOST_WRONG = 0.05;
 #endif
 
 void main() {
+  copy_tables();
   uint listed = pixel_first + gl_GlobalInvocationID.x;
   if (listed >= pixel_count) return;
   ivec2 at = ivec2(pixel[listed] & 0xffffu, pixel[listed] >> 16);

@@ -7,6 +7,7 @@
 const int MOST_SEGMENTS = max(8, 224 / (WAVELENGTHS + 1));
 
 int band_of_refractor;  // that is followed, among one refractor's
+float left;             // share of what is not followed
 
 vec2 refractor_spectrum(int r) {
   Band band = bands[r * BAND_COUNT + band_of_refractor];
@@ -17,17 +18,19 @@ vec2 refractor_spectrum(int r) {
 void branch(inout Way w, Interface h, inout Way pending[PENDING]) {
   Way mirrored;
   if (!split(w, h, mirrored)) return;
-  if (!reflects_on(mirrored)) mirrored.share = 0.0;
-  if (w.share < 0.5 * share_limit) w.share = 0.0;
+  bool reflects = reflects_on(mirrored), passes = w.share >= 0.5 * share_limit;
+  left += (reflects ? 0.0 : mirrored.share) + (passes ? 0.0 : w.share);
+  if (!reflects) mirrored.share = 0.0;
+  if (!passes) w.share = 0.0;
   Way weaker = mirrored;
   if (mirrored.share > w.share) {
     weaker = w;
     w = mirrored;
   }
-  keep_pending(weaker, pending);
+  left += keep_pending(weaker, pending);
 }
 
-// What w shows, times its share.
+// What w shows, times its share. What is not followed shows what the rest has shown.
 vec3 shown(Way w) {
   Way pending[PENDING];
   for (int k = 0; k < PENDING; k++) {
@@ -35,6 +38,8 @@ vec3 shown(Way w) {
     pending[k].share = 0.0;
   }
   vec3 light = vec3(0);
+  float seen_share = 0.0;
+  left = 0.0;
   bool going = w.share > 0.0;
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
     Interface h;
@@ -50,12 +55,16 @@ vec3 shown(Way w) {
       branch(w, h, pending);
     } else {
       light += w.share * radiance;
+      seen_share += w.share;
       w.share = 0.0;
     }
     if (w.share <= 0.0) w = take_pending(pending);
     going = w.share > 0.0;
+    bool last = segment == MOST_SEGMENTS - 1;
+    left += last ? w.share : 0.0;
+    for (int k = 0; k < PENDING; k++) left += last ? pending[k].share : 0.0;
   }
-  return light;
+  return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0);
 }
 
 // Through the first interface, in one band; the share that is mirrored there is left to others.

@@ -32,29 +32,30 @@ bool sphere_front(vec4 s, vec3 o, vec3 d, inout Hit h) {
 #endif
 
 #ifdef CONVEX
-// Loops over tables have constant bounds where they can and no early way out: only then does the
-// compiler unroll them and read the tables once for all lanes.
-#ifdef ONE_CONVEX
-#define PLANE_FIRST 0
-#define PLANE_COUNT PLANE_ROOM
-#else
-#define PLANE_FIRST info.y
-#define PLANE_COUNT info.z
-#endif
+void enter_plane(int i, vec4 plane, vec3 o, vec3 d, inout float enter, inout float leave, inout int facet) {
+  float slope = dot(plane.xyz, d), gap = plane.w - dot(plane.xyz, o);
+  float t = gap / slope;
+  bool in_ = slope < 0.0, out_ = slope > 0.0, beside = slope == 0.0 && gap < 0.0;
+  bool nearer = in_ && t > enter;
+  enter = nearer ? t : enter;
+  facet = nearer ? i : facet;
+  leave = beside ? -1.0 : out_ ? min(leave, t) : leave;
+}
+
+// From within the solid, on its facet `from`: how much of the way to the plane is done in a metre, and
+// the plane for which that is most. No way has that much of a plane that it goes away from.
+void leave_plane(int i, vec4 plane, int from, vec3 p, vec3 d, inout float most, inout int facet) {
+  float rate = dot(plane.xyz, d) / max(plane.w - dot(plane.xyz, p), 1e-30);
+  bool nearer = rate > most && i != from;
+  most = nearer ? rate : most;
+  facet = nearer ? i : facet;
+}
 
 bool convex_front(ivec4 info, vec3 o, vec3 d, inout Hit h) {
   float enter = 0.0, leave = h.t;
   int facet = -1;
-  for (int i = 0; i < PLANE_COUNT; i++) {
-    vec4 plane = planes[PLANE_FIRST + i];
-    float slope = dot(plane.xyz, d), gap = plane.w - dot(plane.xyz, o);
-    float t = gap / slope;
-    bool in_ = slope < 0.0, out_ = slope > 0.0, beside = slope == 0.0 && gap < 0.0;
-    bool nearer = in_ && t > enter;
-    enter = nearer ? t : enter;
-    facet = nearer ? i : facet;
-    leave = beside ? -1.0 : out_ ? min(leave, t) : leave;
-  }
+#define ENTER(i) enter_plane(i, PLANE(i), o, d, enter, leave, facet);
+  OF_PLANES(ENTER)
   if (facet < 0 || enter >= leave) return false;
   h.t = enter;
   h.p = o + enter * d;
@@ -186,18 +187,11 @@ void inner_hit(int r, int facet, vec3 p, vec3 d,
 #ifdef CONVEX
   if (refractors[r].info.x == MODEL_CONVEX) {
     ivec4 info = refractors[r].info;
-    float nearest = 1e30;
-    n = d;
-    for (int i = 0; i < PLANE_COUNT; i++) {
-      vec4 plane = planes[PLANE_FIRST + i];
-      float slope = dot(plane.xyz, d);
-      float t = max((plane.w - dot(plane.xyz, p)) / slope, 0.0);
-      bool nearer = slope > 0.0 && i != facet && t < nearest;
-      nearest = nearer ? t : nearest;
-      next = nearer ? i : next;
-      n = nearer ? plane.xyz : n;
-    }
-    q = p + (nearest < 1e30 ? nearest : 0.0) * d;
+    float most = 0.0;
+#define LEAVE(i) leave_plane(i, PLANE(i), facet, p, d, most, next);
+    OF_PLANES(LEAVE)
+    q = p + (most > 0.0 ? 1.0 / most : 0.0) * d;
+    n = planes[PLANE_FIRST + next].xyz;
     return;
   }
 #endif

@@ -174,8 +174,8 @@ typedef struct pair {
       "+eye: receivers|light, shadow and spectral map",                                            \
       "+eye: refractor front|the pixels that show a refractor",                                    \
       "-eye: refractor back|every refractor has an exact surface",                                 \
-      "+eye: refraction|one direction a wavelength", "+eye: picture|2 x 2 samples a pixel",        \
-      "-textures|none",
+      "+eye: refraction|until less than 0.001 of its light is left, 256 exits at most",            \
+      "+eye: picture|2 x 2 samples a pixel", "-textures|none",
 
 static const char *const ball_rows[] = {
     BALL_ROWS("-maps on receivers|the lights' maps hold all receivers") NULL};
@@ -294,7 +294,7 @@ static const pair pairs[] = {
      {"=7 wavelengths, 10 exits, 11 landings",
       "+inner reflections|followed until less than 0.01 of the light is left, 10 exits at most; 20 "
       "% of it is still inside then",
-      NULL}},
+      "+eye: refraction|until less than 0.001 of its light is left, 10 exits at most", NULL}},
     {"a share, asked for in a dense stone",
      stone,
      CAMERA POINT_LIGHT FLOOR STONE("dense"),
@@ -319,7 +319,8 @@ static const pair pairs[] = {
       "+inner reflections|followed until less than 0.01 of the light is left, 4 exits at most",
       "+light: refractor back|a mesh without an exact surface ends at its back layer",
       "+eye: refractor back|a mesh without an exact surface ends at its back layer",
-      "+simplified layers|'ball' has 5120 faces: fewer, where no cell or sample tells", NULL}},
+      "+simplified layers|'ball' has 5120 faces: fewer, where no cell or sample tells",
+      "+eye: refraction|until less than 0.001 of its light is left, 4 exits at most", NULL}},
     {"a mesh with a hole for the ball",
      ball,
      CAMERA POINT_LIGHT FLOOR TORUS("crown"),
@@ -513,7 +514,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
      {.orders = 1},
      {"=7 wavelengths, 1 exits, 2 landings", "-inner reflections|two interfaces only, as asked",
-      NULL}},
+      "+eye: refraction|one direction a wavelength", NULL}},
     {"the thesis profile, as asked",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
@@ -531,6 +532,7 @@ static const pair pairs[] = {
       "+light: photon placement|at most 512 a side, where light meets a refractor",
       "+light: gap fill|smear: wavelengths land apart",
       "+eye: refractor back|a mesh without an exact surface ends at its back layer",
+      "+eye: refraction|one direction a wavelength",
       "-eye: picture|one sample a pixel: nothing is averaged", NULL}},
 };
 

@@ -1,9 +1,10 @@
-/* Light through refractors that lie in one another, and from their outsides alone: the map of the
- * renderer against the reference tracer's, which shares no code with it. */
+/* Light through refractors that lie in one another, and from their outsides alone, and what the eye
+ * sees in a stone that keeps light inside: the renderer against the reference tracer, which shares
+ * no code with it. */
 #include "tests/frame.h"
 #include "tests/trace_scene.h"
 
-enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12 };
+enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12, LOOKS = 64 };
 
 /* Y of blocks of texels: finer than that the tracer's few photons are noise. */
 static void sum_blocks(const abbe_image *map, double block[BLOCKS * BLOCKS]) {
@@ -166,8 +167,61 @@ static void test_parts_of_one_stuff_have_no_wall(void **state) {
   assert_near(two.energy, one.energy, 0.01);
 }
 
+/* The whole frame shows a brilliant of diamond's index on paper that ambient light alone lights, so
+ * that each ray's ways out are all that counts. With eight exits it is a tenth too dark. */
+static void check_stone(const char *eye, const char *target, const char *fov) {
+  char text[1024];
+  abbe_scene scene;
+  abbe_image drawn, traced;
+  abbe_error error = {0};
+  snprintf(text, sizeof text,
+           "materials: glass.yaml\nambient: 3\n"
+           "camera: {eye: %s, target: %s, up: [0, 1, 0.3], fov: %s}\n"
+           "lights:\n- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5,"
+           " intensity: 1}\n"
+           "objects:\n- {name: stone, shape: brilliant, diameter: 0.1, transform: [{rotate: {axis: "
+           "[0, 0, 1], angle: 7}}, {translate: [0, 0, 0.046]}], material: dense}\n"
+           "- {name: paper, shape: rectangle, width: 2, height: 2, reflectance: 0.85}\n",
+           eye, target, fov);
+  load_text(text, &scene);
+  abbe_render_desc desc = small_frame;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &drawn);
+  abbe_renderer_free(renderer);
+  abbe_tracer *tracer = make_tracer(
+      &scene, &(abbe_trace_desc){.no_map = true, .width = 64, .height = 64, .photons = 1});
+  run_passes(tracer, LOOKS);
+  assert_ok(abbe_tracer_picture(tracer, &traced, &error), &error);
+  const double noise = abbe_tracer_error(tracer) / 64; /* of the mean of 64 x 64 pixels */
+  for (size_t k = 0; k < 3; k++) {
+    static const char *const names[] = {"R", "G", "B"};
+    const double ratio = image_sum(&drawn, abbe_image_find_channel(&drawn, names[k])) /
+                         channel_sum(&traced, names[k]);
+    print_message("%s: %.4f of the tracer's, which is known to %.4f\n", names[k], ratio, noise);
+    assert_true(noise < 0.004);
+    assert_near(ratio, 1, 0.02);
+  }
+  abbe_tracer_free(tracer);
+  abbe_image_free(&drawn);
+  abbe_image_free(&traced);
+  abbe_scene_free(&scene);
+}
+
+static void test_a_stone_face_up(void **state) {
+  (void)state;
+  check_stone("[0, -0.04, 0.8]", "[0, 0, 0.05]", "4");
+}
+
+static void test_a_stone_from_the_side(void **state) {
+  (void)state;
+  check_stone("[0.1, -0.75, 0.2]", "[0, 0, 0.04]", "2.5");
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_hollow_ball),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_stone_face_up),
+                                     cmocka_unit_test(test_a_stone_from_the_side),
+                                     cmocka_unit_test(test_a_hollow_ball),
                                      cmocka_unit_test(test_a_ball_in_another),
                                      cmocka_unit_test(test_a_cup_of_water),
                                      cmocka_unit_test(test_the_outside_alone),

@@ -21,6 +21,8 @@ typedef struct abbe_physics {
   bool matched;
   size_t orders;       /* matched: interfaces after the first that may reflect, and one */
   double energy_share; /* matched: what is reflected below this share of its light ends */
+  size_t eye_orders;   /* the same of the eye's paths; 0: as the light's */
+  double eye_share;
 } abbe_physics;
 
 #ifdef __cplusplus

@@ -181,6 +181,10 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
                            .white = (const float(*)[3])t->white,
                            .physics = t->desc.physics,
                            .seed = t->desc.seed};
+  if (t->desc.physics.eye_orders > 0) {
+    t->eye.physics.orders = t->desc.physics.eye_orders;
+    t->eye.physics.energy_share = t->desc.physics.eye_share;
+  }
   if (!t->eye_gathers) return ABBE_OK;
   for (size_t l = 0; l < t->scene->light_count; l++)
     t->landed_room += abbe_tracer_most_landings(t, l, t->photons[l]);
