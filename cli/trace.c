@@ -391,11 +391,14 @@ static void summarise(const request *q, const abbe_tracer *tracer) {
   abbe_trace_statistics s;
   abbe_tracer_statistics(tracer, &s);
   double seconds = s.light_seconds + s.eye_seconds;
-  fprintf(stderr, "%zu passes", s.passes);
+  fprintf(stderr, "%zu pass%s", s.passes, s.passes == 1 ? "" : "es");
   if (seconds > 0) fprintf(stderr, " in %.1f s", seconds);
-  fprintf(stderr, ", %.3g million photons, %.3g million rays; relative standard error %.2g",
-          1e-6 * (double)s.photons, 1e-6 * (double)(s.light_rays + s.eye_rays),
-          abbe_tracer_error(tracer));
+  fprintf(stderr, ", %.3g million photons, %.3g million rays; ", 1e-6 * (double)s.photons,
+          1e-6 * (double)(s.light_rays + s.eye_rays));
+  if (s.passes < 2)
+    fprintf(stderr, "no standard errors, which take two passes or more (--spp 2)");
+  else
+    fprintf(stderr, "relative standard error %.2g", abbe_tracer_error(tracer));
   if (s.ledger.reached > 0) {
     double whole = 100 / s.ledger.reached;
     fprintf(stderr,

@@ -33,9 +33,6 @@ bool abbe_light_cube_fit(abbe_view *view, const abbe_object *object);
  * looked at. A spot's cone leaves faces out that lie beside it. */
 unsigned abbe_light_cube_reached(const abbe_light *light, const abbe_object *object);
 
-/* From a point to the object's surface, m; to a sphere's exact one, negative inside it. */
-double abbe_light_cube_distance(const double point[3], const abbe_object *object);
-
 #ifdef __cplusplus
 }
 #endif

@@ -114,7 +114,7 @@ static void fit_face(const abbe_renderer *r, size_t light, abbe_view *view) {
     abbe_light_cube_fit(view, object);
     if (plan->model[i] == ABBE_REFRACTOR_LAYERS)
       abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count);
-    near = fmin(near, 0.5 * abbe_light_cube_distance(from->position, object));
+    near = fmin(near, 0.5 * abbe_object_distance(object, from->position));
     for (size_t k = 0; k < mesh->vertex_count; k++) {
       double to[3];
       abbe_vector_subtract(mesh->position[k], from->position, to);

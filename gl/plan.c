@@ -377,11 +377,12 @@ static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked
   if (plan->convex && plan->refractor_count == 1 && !plan->walk && no_refraction(plan) == NULL)
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
-  /* Layers show less and less of what is inside; and who asks for few exits sees them. Shares are
-   * the photons' affair: no one asks for stones that are too dark. */
+  /* Layers show less and less of what is inside; and who asks for few exits sees them. A smaller
+   * share brings a walk nothing that what is left does not show. */
   const bool eye_goes_on = !thesis && !plan->layers && (asked == NULL || asked->orders == 0);
   plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.orders;
-  plan->eye_share = fmin(plan->desc.energy_share, ABBE_PLAN_EYE_SHARE);
+  plan->eye_share = plan->desc.energy_share;
+  if (!plan->walk) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
   if (no_refraction(plan) != NULL)
     add(plan, false, "inner reflections", "%s", no_refraction(plan));

@@ -73,7 +73,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 /* As far as they go where a convex solid keeps light inside (gl/inner_light.h). */
 #define ABBE_PLAN_MOST_EXITS 24
 #define ABBE_PLAN_LOW_SHARE 0.005
-/* Of the eye's rays through convex solids and from refractor to refractor; what light is left
+/* Of the eye's rays through exact surfaces, the share of one solid alone; what light is left
  * inside then is too little to show. */
 #define ABBE_PLAN_EYE_EXITS 256
 #define ABBE_PLAN_EYE_SHARE 0.001

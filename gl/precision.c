@@ -6,20 +6,6 @@
 
 #include <math.h>
 
-/* The smallest width of the object, m: of a convex solid across its faces, else of its bounds. */
-static double thickness(const abbe_object *object) {
-  double least = INFINITY;
-  for (int k = 0; k < 3; k++) least = fmin(least, object->max[k] - object->min[k]);
-  for (size_t i = 0; object->exact.kind == ABBE_EXACT_CONVEX && i < object->exact.count; i++) {
-    const double *plane = object->exact.plane[i];
-    double low = plane[3];
-    for (size_t v = 0; v < object->mesh.vertex_count; v++)
-      low = fmin(low, abbe_vector_dot(plane, object->mesh.position[v]));
-    least = fmin(least, plane[3] - low);
-  }
-  return least;
-}
-
 /* A float keeps 2^-24 of a distance. A refractor's shape is safe at 2^16 times its radius, where
  * that is a part in 256 of it; its front and back are told apart at 2^20 times its thickness. */
 static const double most_radii = 65536, most_thicknesses = 1048576;
@@ -34,7 +20,7 @@ static abbe_result check_distance(const abbe_scene *scene, const abbe_light *lig
     half[k] = 0.5 * (object->max[k] - object->min[k]);
     size[k] = max[k] - min[k];
   }
-  double distance = abbe_vector_length(sun ? size : apart), thick = thickness(object);
+  double distance = abbe_vector_length(sun ? size : apart), thick = abbe_object_thickness(object);
   double radius =
       object->exact.kind == ABBE_EXACT_SPHERE ? object->exact.radius : abbe_vector_length(half);
   if (distance > most_radii * radius && sun)
@@ -114,7 +100,7 @@ static abbe_result check_gap(const abbe_light *light, const abbe_object *object,
   double half[3];
   for (int k = 0; k < 3; k++) half[k] = 0.5 * (object->max[k] - object->min[k]);
   const double least = least_gap * abbe_vector_length(half);
-  double gap = abbe_light_cube_distance(light->position, object);
+  double gap = abbe_object_distance(object, light->position);
   if (gap < 1e-9 * least) gap = 0; /* a double's rounding */
   if (gap >= least) return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,

@@ -132,6 +132,58 @@ double abbe_light_profile(const abbe_light *light, const double direction[3]) {
   return x * x * (3.0 - 2.0 * x);
 }
 
+/* The nearest place on a triangle is inside it where the plane's is, else on an edge. */
+static double from_triangle(const double p[3], const double *const corner[3]) {
+  double n[3], least = INFINITY;
+  bool inside = true;
+  abbe_vector_triangle(corner[0], corner[1], corner[2], n);
+  for (int k = 0; k < 3; k++) {
+    double edge[3], to[3], outward[3], apart[3];
+    abbe_vector_subtract(corner[(k + 1) % 3], corner[k], edge);
+    abbe_vector_subtract(p, corner[k], to);
+    abbe_vector_cross(edge, n, outward);
+    inside = inside && abbe_vector_dot(to, outward) <= 0;
+    const double length2 = abbe_vector_dot(edge, edge);
+    const double t = length2 > 0 ? abbe_vector_dot(to, edge) / length2 : 0;
+    for (int c = 0; c < 3; c++) apart[c] = to[c] - fmin(fmax(t, 0), 1) * edge[c];
+    least = fmin(least, abbe_vector_length(apart));
+  }
+  const double length = abbe_vector_length(n);
+  if (!inside || !(length > 0)) return least;
+  double to[3];
+  abbe_vector_subtract(p, corner[0], to);
+  return fabs(abbe_vector_dot(to, n)) / length;
+}
+
+double abbe_object_distance(const abbe_object *object, const double point[3]) {
+  double least = INFINITY;
+  if (object->exact.kind == ABBE_EXACT_SPHERE) {
+    double to[3];
+    abbe_vector_subtract(point, object->exact.centre, to);
+    return abbe_vector_length(to) - object->exact.radius;
+  }
+  for (size_t i = 0; i < object->mesh.face_count; i++) {
+    const uint32_t *face = object->mesh.face[i];
+    const double *corner[3] = {object->mesh.position[face[0]], object->mesh.position[face[1]],
+                               object->mesh.position[face[2]]};
+    least = fmin(least, from_triangle(point, corner));
+  }
+  return least;
+}
+
+double abbe_object_thickness(const abbe_object *object) {
+  double least = INFINITY;
+  for (int k = 0; k < 3; k++) least = fmin(least, object->max[k] - object->min[k]);
+  for (size_t i = 0; object->exact.kind == ABBE_EXACT_CONVEX && i < object->exact.count; i++) {
+    const double *plane = object->exact.plane[i];
+    double low = plane[3];
+    for (size_t v = 0; v < object->mesh.vertex_count; v++)
+      low = fmin(low, abbe_vector_dot(plane, object->mesh.position[v]));
+    least = fmin(least, plane[3] - low);
+  }
+  return least;
+}
+
 static bool inside(const abbe_object *object, const double p[3]) {
   for (int k = 0; k < 3; k++)
     if (!(p[k] >= object->min[k] && p[k] <= object->max[k])) return false;
@@ -219,6 +271,37 @@ static const abbe_object *refractor_around(const abbe_scene *scene, const double
   return NULL;
 }
 
+/* What is nearer to a refractor's surface than this, m, is on it. */
+static double least_gap(const abbe_scene *scene) {
+  double min[3], max[3], size[3];
+  if (!abbe_scene_bounds(scene, true, false, min, max)) return 0.0;
+  abbe_vector_subtract(max, min, size);
+  return ABBE_SCENE_LEAST_GAP * 0.5 * abbe_vector_length(size);
+}
+
+static const abbe_object *refractor_at(const abbe_scene *scene, const double p[3], double gap) {
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    bool near = object->material != NULL;
+    for (int k = 0; k < 3; k++)
+      near = near && p[k] > object->min[k] - gap && p[k] < object->max[k] + gap;
+    if (near && fabs(abbe_object_distance(object, p)) < gap) return object;
+  }
+  return NULL;
+}
+
+/* A disk that lies on a refractor's surface meets it when it is moved along its normal. */
+static const abbe_object *refractor_under(const abbe_scene *scene, const abbe_light *disk,
+                                          double gap) {
+  const abbe_object *under = NULL;
+  for (int side = -1; side <= 1 && under == NULL; side += 2) {
+    abbe_light moved = *disk;
+    for (int k = 0; k < 3; k++) moved.position[k] += side * gap * disk->direction[k];
+    under = refractor_in(scene, &moved);
+  }
+  return under;
+}
+
 /* Whether three points in camera space (looking along -z) lie all beyond one side of the view. */
 static bool outside_view(const double p[3][3], double tangent_x, double tangent_y) {
   int beyond[5] = {0};
@@ -283,25 +366,43 @@ static void compare_sizes(const abbe_scene *scene, const abbe_object *around, ch
 
 static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
   char sizes[256];
+  const double gap = least_gap(scene);
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
     if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;
-    const abbe_object *around = refractor_around(scene, light->position);
+    const bool disk = light->kind == ABBE_LIGHT_DISK;
+    const abbe_object *on = refractor_at(scene, light->position, gap);
+    const abbe_object *around = on ? NULL : refractor_around(scene, light->position);
     if (around) compare_sizes(scene, around, sizes, sizeof sizes);
     if (around)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s: the light '%s' is inside the refractor '%s' (line %zu); lights "
                             "are modelled in air only, so move it outside%s",
                             path_of(scene), light->name, around->name, around->line, sizes);
-    around = light->kind == ABBE_LIGHT_DISK ? refractor_in(scene, light) : NULL;
+    around = disk && !on ? refractor_in(scene, light) : NULL;
     if (around)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s: the disk of the light '%s' is partly inside the refractor '%s' "
                             "(line %zu); lights are modelled in air only, so move it or make it "
                             "smaller",
                             path_of(scene), light->name, around->name, around->line);
+    if (disk && !on) on = refractor_under(scene, light, gap);
+    if (on)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s: the light '%s' is on the surface of the refractor '%s' (line "
+                            "%zu), or less than %.2g m away, which single precision does not tell "
+                            "from it; move it farther off",
+                            path_of(scene), light->name, on->name, on->line, gap);
   }
-  const abbe_object *around = refractor_around(scene, scene->camera.eye);
+  const abbe_object *around = refractor_at(scene, scene->camera.eye, gap);
+  if (around)
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "%s: the camera's eye is on the surface of the refractor '%s' (line %zu), "
+        "or less than %.2g m away, which single precision does not tell from it; "
+        "move it farther off",
+        path_of(scene), around->name, around->line, gap);
+  around = refractor_around(scene, scene->camera.eye);
   if (around) compare_sizes(scene, around, sizes, sizeof sizes);
   if (around)
     return abbe_error_set(error, ABBE_UNSUPPORTED,

@@ -108,13 +108,23 @@ void abbe_scene_free(abbe_scene *scene);
 size_t abbe_scene_file_count(const abbe_scene *scene);
 const char *abbe_scene_file(const abbe_scene *scene, size_t index);
 
+/* A light or an eye nearer to a refractor's surface than this share of half the diagonal of all
+ * refractors' bounds is on it: single precision does not tell on which side. */
+#define ABBE_SCENE_LEAST_GAP 0x1p-20
+
 /* Refuses what cannot be rendered, by name: no light, no receiver, a light (a disk: any part of it)
- * or the camera inside a refractor, no receiver in the camera's view. Called by the loader. */
+ * or the camera inside a refractor or on its surface, no receiver in the camera's view. Called by
+ * the loader. */
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 
 /* Bounds of the objects chosen: refractors, receivers or both. False where there are none. */
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
                        double max[3]);
+
+/* From a point to the object's surface, m; to a sphere's exact one, negative inside it. */
+double abbe_object_distance(const abbe_object *object, const double point[3]);
+/* Its smallest width, m: of a convex solid across its faces, else of its bounds. */
+double abbe_object_thickness(const abbe_object *object);
 
 /* Index of the light of that name or, where none has it, of that number counted from 1.
  * ABBE_INVALID_ARGUMENT lists the names; also where several lights have it. */

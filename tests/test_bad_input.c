@@ -38,6 +38,7 @@ static void test_scenes_that_cannot_be_used(void **state) {
       {BAD "scene_open_mesh.yaml" TO, "5 open edges"},
       {BAD "scene_missing_mesh.yaml" TO, "scene_missing_mesh.yaml:"},
       {BAD "scene_light_inside.yaml" TO, "is inside the refractor 'ball'"},
+      {BAD "scene_light_on_a_box.yaml" TO, "is on the surface of the refractor 'ball'"},
       {BAD "scene_camera_inside.yaml" TO, "the camera's eye is inside the refractor 'ball'"},
       {BAD "scene_no_receiver.yaml" TO, "the scene has no receiver"},
       {BAD "scene_nothing_in_view.yaml" TO, "no receiver is in the camera's view"},

@@ -12,6 +12,29 @@ static void ray(const abbe_geometry *g, const double from[3], const double to[3]
   for (int k = 0; k < 3; k++) d[k] = (float)way[k];
 }
 
+/* A plate of half a diagonal of 0.1 m or so: eight steps off its faces are 2^-15 of that. */
+static void what_is_thinner_than_its_steps_is_refused(void **state) {
+  (void)state;
+  static const char *const thick[] = {"3e-6", "4e-6"};
+  for (int i = 0; i < 2; i++) {
+    char text[1024];
+    abbe_scene scene;
+    abbe_geometry g;
+    abbe_error error = {0};
+    snprintf(text, sizeof text,
+             CAMERA POINT_LIGHT FLOOR
+             "- {name: plate, shape: box, size: [0.2, 0.2, %s], transform: "
+             "[{translate: [0, 0, 0.2]}], material: crown}\n",
+             thick[i]);
+    load_text(text, &scene);
+    const abbe_result result = abbe_geometry_make(&scene, &g, &error);
+    assert_int_equal(result, i == 0 ? ABBE_UNSUPPORTED : ABBE_OK);
+    if (i == 0) assert_non_null(strstr(error.text, "'plate' is 3e-06 m thin"));
+    abbe_geometry_free(&g);
+    abbe_scene_free(&scene);
+  }
+}
+
 static void hits_a_sphere_from_outside_and_inside(void **state) {
   (void)state;
   abbe_scene scene;
@@ -111,6 +134,7 @@ static void size_and_place_do_not_matter(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_is_thinner_than_its_steps_is_refused),
       cmocka_unit_test(hits_a_sphere_from_outside_and_inside),
       cmocka_unit_test(no_ray_slips_between_faces),
       cmocka_unit_test(size_and_place_do_not_matter),

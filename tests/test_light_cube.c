@@ -125,7 +125,7 @@ static void a_ball_reaches_the_faces_that_it_crosses(void **state) {
     abbe_object ball = {.exact = {.kind = ABBE_EXACT_SPHERE, .radius = rows[i].radius}};
     for (int k = 0; k < 3; k++) ball.exact.centre[k] = origin[k] + rows[i].at[k];
     assert_int_equal(abbe_light_cube_reached(&lamp, &ball), rows[i].faces);
-    assert_near(abbe_light_cube_distance(origin, &ball),
+    assert_near(abbe_object_distance(&ball, origin),
                 abbe_vector_length(rows[i].at) - rows[i].radius, 1e-12);
   }
   /* A narrow cone around +x leaves out the faces beside it. */
@@ -147,7 +147,7 @@ static void the_way_to_a_box_is_the_nearest(void **state) {
   abbe_scene scene;
   load_text(CAMERA POINT_LIGHT FLOOR BRICK("flat"), &scene);
   for (size_t i = 0; i < 3; i++)
-    assert_near(abbe_light_cube_distance(rows[i].at, &scene.object[1]), rows[i].way, 1e-12);
+    assert_near(abbe_object_distance(&scene.object[1], rows[i].at), rows[i].way, 1e-12);
   abbe_scene_free(&scene);
 }
 

@@ -104,6 +104,46 @@ static void freeing_nothing_is_safe(void **state) {
   abbe_scene_free(NULL);
 }
 
+/* Nearer than single precision tells, 2^-20 of half the diagonal of a ball and a box of half side
+ * 1, a lamp is on them; twice as far it is not. */
+static void a_lamp_is_on_glass_or_off_it(void **state) {
+  (void)state;
+  static const double side[3] = {2, 2, 2};
+  const double gap = ABBE_SCENE_LEAST_GAP * sqrt(3);
+  const abbe_material glass = {0};
+  abbe_object object[2] = {{.name = "floor", .min = {-9, -9, -9}, .max = {9, 9, -9}},
+                           {.name = "solid", .min = {-1, -1, -1}, .max = {1, 1, 1}}};
+  assert_int_equal(abbe_shape_rectangle(18, 18, &object[0].mesh, NULL), ABBE_OK);
+  assert_int_equal(abbe_shape_box(side, &object[1].mesh, NULL), ABBE_OK);
+  object[1].material = &glass;
+  object[1].exact.radius = 1;
+  for (int ball = 0; ball < 2; ball++)
+    for (int k = 0; k < 8; k++) {
+      static const double away[4] = {0, 0.5, 0.99, 2};
+      abbe_light lamp = {.name = "lamp", .kind = ABBE_LIGHT_POINT};
+      abbe_camera camera = {.eye = {0, 0, 20}, .up = {0, 1, 0}, .fov_y_rad = 1, .width = 64};
+      double *at = k < 4 ? lamp.position : camera.eye, *other = k < 4 ? camera.eye : lamp.position;
+      camera.height = camera.width;
+      at[0] = at[1] = ball ? 0 : 0.3;
+      at[2] = 1 + gap * away[k % 4];
+      other[2] = 20;
+      camera.target[0] = camera.eye[0];
+      camera.target[1] = camera.eye[1] + 0.1;
+      object[1].exact.kind = ball ? ABBE_EXACT_SPHERE : ABBE_EXACT_NONE;
+      const abbe_scene scene = {
+          .camera = camera, .light_count = 1, .light = &lamp, .object_count = 2, .object = object};
+      abbe_error error = {0};
+      const abbe_result result = abbe_scene_check(&scene, &error);
+      if (result != (k % 4 < 3 ? ABBE_UNSUPPORTED : ABBE_OK))
+        fail_msg("%g gaps off the %s: '%s'", away[k % 4], ball ? "ball" : "box", error.text);
+      if (result == ABBE_OK) continue;
+      assert_non_null(strstr(error.text, "surface of the refractor 'solid'"));
+      assert_non_null(strstr(error.text, k < 4 ? "the light 'lamp'" : "the camera's eye"));
+    }
+  abbe_mesh_free(&object[0].mesh);
+  abbe_mesh_free(&object[1].mesh);
+}
+
 /* Disks beside, above, across, around and inside a ball and a box of half side 1; the rim's
  * distance is known. */
 static void no_part_of_a_disk_is_in_glass(void **state) {
@@ -118,6 +158,7 @@ static void no_part_of_a_disk_is_in_glass(void **state) {
       {{3, 0, 0.9}, {0, 0, -1}, 2.6, true, true},  {{1.01, 0, 0}, {1, 0, 0}, 9, false, false},
       {{2, 2, 0}, {0, 0, 1}, 1.4, false, false},   {{2, 2, 0}, {0, 0, 1}, 1.42, false, true},
       {{2, 2, 0}, {0, 0, 1}, 1.83, true, true},    {{0.5, 0.2, 0.1}, {0, 1, 0}, 0.01, true, true},
+      {{0, 0, 1}, {0, 0, 1}, 0.5, true, true},     {{1.2, 0, 1}, {0, 0, 1}, 0.5, false, true},
       {{9, 0.1, 0.1}, {0, 0, 1}, 1e5, true, true}, {{9, 0.1, 1.5}, {0, 0, 1}, 1e5, false, false},
   };
   abbe_object object[2] = {{.name = "floor", .min = {-9, -9, -9}, .max = {9, 9, -9}},
@@ -179,6 +220,7 @@ int main(void) {
       cmocka_unit_test(profile_of_a_hard_spot_is_a_step),
       cmocka_unit_test(other_lights_have_no_profile),
       cmocka_unit_test(a_disk_shines_by_the_cosine),
+      cmocka_unit_test(a_lamp_is_on_glass_or_off_it),
       cmocka_unit_test(no_part_of_a_disk_is_in_glass),
       cmocka_unit_test(bounds_choose_what_is_asked),
       cmocka_unit_test(lights_are_found_by_name_or_number),

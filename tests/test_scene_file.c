@@ -261,6 +261,9 @@ static void bad_scenes_are_explained(void **state) {
       {"repaired_shape", ABBE_SCHEMA, "'repair' is for the mesh of a file"},
       {"centre_of_two", ABBE_SCHEMA, "'centre'"},
       {"disk_in_part", ABBE_UNSUPPORTED, "partly inside the refractor 'ball'"},
+      {"light_on_a_ball", ABBE_UNSUPPORTED, "on the surface of the refractor 'ball'"},
+      {"light_on_a_box", ABBE_UNSUPPORTED, "on the surface of the refractor 'ball'"},
+      {"camera_on_a_ball", ABBE_UNSUPPORTED, "eye is on the surface of the refractor 'ball'"},
       {"camera_inside", ABBE_UNSUPPORTED, "camera's eye is inside"},
       {"nothing_in_view", ABBE_UNSUPPORTED, "in the camera's view"},
   };

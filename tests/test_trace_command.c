@@ -90,7 +90,7 @@ static void test_numbers(void **state) {
 /* Bands by the names of the spectral layout, which OpenEXR's own tool reads, where it is there. */
 static void test_bands(void **state) {
   (void)state;
-  check_run(TRACE BALL SMALL "--spp 1 --bands 4 -o a.exr --save-map m.exr", 0);
+  check_run(TRACE BALL SMALL "--spp 2 --bands 4 -o a.exr --save-map m.exr", 0);
   abbe_image image;
   for (int i = 0; i < 2; i++) {
     read_image(i ? "m.exr" : "a.exr", &image);

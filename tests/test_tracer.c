@@ -324,6 +324,33 @@ static void the_caustic_is_part_of_the_picture(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* One pass has no spread: its files say nothing of errors, and two passes' do. */
+static void one_pass_has_no_errors(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CLOSE POINT_LIGHT FLOOR BEADS("crown"), &scene);
+  abbe_trace_desc desc = small;
+  desc.bands = 4;
+  abbe_tracer *tracer = make_tracer(&scene, &desc);
+  for (size_t passes = 1; passes <= 2; passes++) {
+    run_passes(tracer, 1);
+    for (int map = 0; map < 2; map++) {
+      abbe_image image;
+      assert_int_equal((map ? abbe_tracer_map : abbe_tracer_picture)(tracer, &image, NULL),
+                       ABBE_OK);
+      size_t errors = 0;
+      for (size_t c = 0; c < image.channels; c++)
+        errors += strncmp(image.channel[c], "stderr.", 7) == 0;
+      assert_int_equal(errors, passes == 1 ? 0 : 3 + 4);
+      for (size_t i = 0; i < image.width * image.height * image.channels; i++)
+        assert_true(isfinite(image.data[i]));
+      abbe_image_free(&image);
+    }
+  }
+  abbe_tracer_free(tracer);
+  abbe_scene_free(&scene);
+}
+
 static void the_error_falls(void **state) {
   (void)state;
   abbe_scene scene;
@@ -435,6 +462,7 @@ int main(void) {
       cmocka_unit_test(bands_hold_the_maps_watts),
       cmocka_unit_test(a_scene_without_glass),
       cmocka_unit_test(the_caustic_is_part_of_the_picture),
+      cmocka_unit_test(one_pass_has_no_errors),
       cmocka_unit_test(the_error_falls),
       cmocka_unit_test(what_is_out_of_limits_is_refused),
       cmocka_unit_test(size_does_not_matter),

@@ -151,6 +151,29 @@ static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe
   return ABBE_OK;
 }
 
+/* A ray that starts beyond the face behind the one that it leaves is lost: at the rim of a lens of
+ * eight such steps it is half a percent of them. */
+static abbe_result check_thickness(const abbe_geometry *g, abbe_error *error) {
+  static const double least_steps = 8;
+  for (size_t i = 0; i < g->scene->object_count; i++) {
+    const abbe_object *o = &g->scene->object[i];
+    if (o->material == NULL) continue;
+    const double thick = abbe_object_thickness(o);
+    double far = 0;
+    for (int k = 0; k < 3; k++)
+      far = fmax(far, fmax(fabs(o->min[k] - g->origin[k]), fabs(o->max[k] - g->origin[k])));
+    const double least = least_steps * ABBE_GEOMETRY_OFFSET * far;
+    if (thick < least)
+      return abbe_error_set(
+          error, ABBE_UNSUPPORTED,
+          "the refractor '%s' is %.3g m thin and reaches %.3g m from the middle of "
+          "all refractors: the tracer's single precision does not tell its front "
+          "from its back; make it at least %.2g m thick, or leave it out",
+          o->name, thick, far, least);
+  }
+  return ABBE_OK;
+}
+
 static bool add_objects(abbe_geometry *g) {
   size_t refractors = 0, receivers = 0;
   bool added = true;
@@ -184,8 +207,9 @@ abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe
   abbe_geometry g = {.scene = scene};
   *out = g;
   abbe_result result = count_objects(scene, &g, error);
+  choose_frame(&g);
+  if (result == ABBE_OK) result = check_thickness(&g, error);
   if (result == ABBE_OK) {
-    choose_frame(&g);
     g.device = rtcNewDevice("threads=1,set_affinity=0");
     if (g.device != NULL) g.embree = rtcNewScene(g.device);
     bool made = g.embree != NULL;

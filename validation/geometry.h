@@ -51,7 +51,8 @@ typedef struct abbe_geometry {
   RTCScene embree;
 } abbe_geometry;
 
-/* ABBE_UNSUPPORTED for more than 64 refractors, ABBE_NO_MEMORY where Embree has none. */
+/* ABBE_UNSUPPORTED for more than 64 refractors, or for one thinner than eight times what a ray starts
+ * off the face that it leaves (2^-15 of its largest coordinate); ABBE_NO_MEMORY where Embree has none. */
 abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error);
 void abbe_geometry_free(abbe_geometry *geometry);
 

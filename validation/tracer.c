@@ -399,8 +399,10 @@ typedef struct channel_list {
   bool error[MAX_CHANNELS];
 } channel_list;
 
-static void add_channel(channel_list *list, const char *prefix, const char *name, size_t value,
-                        bool error) {
+/* Of one pass nothing tells how far off it is: then there is no channel for the errors. */
+static void add_channel(const abbe_tracer *t, channel_list *list, const char *prefix,
+                        const char *name, size_t value, bool error) {
+  if (error && t->pass < 2) return;
   snprintf(list->name[list->count], NAME, "%s%s", prefix, name);
   list->value[list->count] = value;
   list->error[list->count++] = error;
@@ -450,8 +452,8 @@ static void add_bands(const abbe_tracer *t, size_t first, channel_list *list) {
   char name[NAME / 2];
   for (size_t i = 0; i < t->bands.count; i++) {
     abbe_bands_name(&t->bands, i, name, sizeof name);
-    add_channel(list, "", name, first + i, false);
-    add_channel(list, "stderr.", name, first + i, true);
+    add_channel(t, list, "", name, first + i, false);
+    add_channel(t, list, "stderr.", name, first + i, true);
   }
 }
 
@@ -465,9 +467,9 @@ abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_erro
   channel_list *list = calloc(1, sizeof *list);
   if (list == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
   for (size_t k = 0; k < 3; k++) {
-    add_channel(list, "", name[k], ABBE_TRACER_RGB + k, false);
-    add_channel(list, "stderr.", name[k], ABBE_TRACER_RGB + k, true);
-    add_channel(list, "caustic.", name[k], ABBE_TRACER_CAUSTIC + k, false);
+    add_channel(t, list, "", name[k], ABBE_TRACER_RGB + k, false);
+    add_channel(t, list, "stderr.", name[k], ABBE_TRACER_RGB + k, true);
+    add_channel(t, list, "caustic.", name[k], ABBE_TRACER_CAUSTIC + k, false);
   }
   add_bands(t, ABBE_TRACER_BANDS, list);
   abbe_result result = read_sums(t, &t->picture, t->desc.width, t->desc.height, t->picture_channels,
@@ -485,8 +487,8 @@ abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *e
   channel_list *list = calloc(1, sizeof *list);
   if (list == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
   for (size_t k = 0; k < 3; k++) {
-    add_channel(list, "", xyz[k], k, false);
-    add_channel(list, "stderr.", xyz[k], k, true);
+    add_channel(t, list, "", xyz[k], k, false);
+    add_channel(t, list, "stderr.", xyz[k], k, true);
   }
   add_bands(t, 3, list);
   abbe_result result = read_sums(t, &t->map, t->desc.map_width, t->desc.map_height, t->map_channels,

@@ -76,7 +76,7 @@ size_t abbe_tracer_passes(const abbe_tracer *tracer);
  * over the brightest texels that hold 95 % of its light. */
 double abbe_tracer_error(const abbe_tracer *tracer);
 
-/* Means so far and their standard errors. Picture: R, G, B (X, Y, Z in that space), stderr.R …,
+/* Means so far and, after two passes and more, their standard errors. Picture: R, G, B (X, Y, Z in that space), stderr.R …,
  * caustic.R … (the part that came to its receiver through a refractor), then the bands S0.…nm and
  * stderr.S0.…nm. Map: X, Y, Z, flux a texel in W, stderr.X …, bands in W/nm. Both carry what the
  * run was as attributes. ABBE_INVALID_ARGUMENT where the request left it out. */
