@@ -2,6 +2,7 @@
 
 #include "scenes/vector.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -76,6 +77,7 @@ abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out
   double centre[3];
   memset(out, 0, sizeof *out);
   out->scene = scene;
+  out->unit = 1;
   if (!needs_move(scene, centre)) return ABBE_OK;
   out->moved = true;
   memcpy(out->origin, centre, sizeof centre);
@@ -105,6 +107,21 @@ abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t
   local->copy.light_count = own + count;
   local->repeated = true;
   local->scene = &local->copy;
+  return ABBE_OK;
+}
+
+abbe_result abbe_local_scene_scale_light(abbe_local_scene *local, abbe_error *error) {
+  static const double faint = 0x1p-40, bright = 0x1p40;
+  double most = fmax(local->scene->ambient, local->scene->background);
+  for (size_t i = 0; i < local->scene->light_count; i++)
+    most = fmax(most, local->scene->light[i].power);
+  if (!(most > 0) || (most >= faint && most <= bright)) return ABBE_OK;
+  const abbe_result result = abbe_local_scene_repeat_lights(local, NULL, 0, error);
+  if (result != ABBE_OK) return result;
+  local->unit = ldexp(1, ilogb(most));
+  for (size_t i = 0; i < local->copy.light_count; i++) local->copy.light[i].power /= local->unit;
+  local->copy.ambient /= local->unit;
+  local->copy.background /= local->unit;
   return ABBE_OK;
 }
 

@@ -142,6 +142,8 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
   r->gl = abbe_context_gl(context);
   abbe_result result = abbe_plan_make(scene, desc, &r->plan, error);
   if (result == ABBE_OK) result = abbe_local_scene_make(scene, &r->local, error);
+  if (result == ABBE_OK && !abbe_profile_is_thesis(r->plan.desc.profile))
+    result = abbe_local_scene_scale_light(&r->local, error);
   if (result == ABBE_OK && r->plan.cubes) result = repeat_lights(r, scene, error);
   r->scene = r->local.scene;
   if (result == ABBE_OK && r->local.moved && r->plan.desc.map_layout != NULL) {
@@ -225,6 +227,8 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
   double cells = (double)r->light[0].cells[0] * (double)r->light[0].cells[1];
   s->refractor_share = (double)r->light[0].photon_count / cells;
+  double *part = &s->energy.reached;
+  for (size_t i = 0; i < sizeof s->energy / sizeof *part; i++) part[i] *= r->local.unit;
 }
 
 abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
@@ -358,6 +362,8 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
     to_output_space(r, out, 4 + 3 * k);
   }
   free(data);
+  for (size_t i = 0; i < out->width * out->height * out->channels && r->local.unit != 1; i++)
+    if (i % out->channels != 3) out->data[i] = (float)((double)out->data[i] * r->local.unit);
   abbe_rgb_space space = thesis ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
   abbe_rgb_space_chromaticities(space, out->xy);
   result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
@@ -408,7 +414,7 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   copy_flipped(data + light * side * side * 4, 0, out, 0, 3, 1);
   free(data);
   /* The thesis's passes sum the light of a lamp of unit power. */
-  double power = flat ? r->scene->light[light].power : 1;
+  double power = r->local.unit * (flat ? r->scene->light[light].power : 1);
   for (size_t y = 0; y < side && !thesis; y++) {
     double height = power * abbe_renderer_texel_size(r, light, 1, side - 1 - y);
     for (size_t x = 0; x < side; x++)

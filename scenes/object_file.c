@@ -6,6 +6,8 @@
 #include "scenes/shape.h"
 #include "scenes/transform.h"
 #include "scenes/vector.h"
+#include "spectral/absorption.h"
+#include "spectral/wavelengths.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -419,6 +421,19 @@ static abbe_result read_substance(const reading *r, const abbe_material_table *t
   if (result == ABBE_OK) {
     result = abbe_material_table_find(table, name, &out->material, error);
     if (result != ABBE_OK) abbe_object_locate(r->yaml, material, result, error);
+  }
+  if (result == ABBE_OK &&
+      abbe_material_is_opaque(out->material, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM)) {
+    const double middle_nm = 0.5 * (ABBE_WAVELENGTH_MIN_NM + ABBE_WAVELENGTH_MAX_NM);
+    const double k =
+        abbe_absorption_k(abbe_material_attenuation(out->material, middle_nm), middle_nm);
+    result =
+        abbe_error_set(error, ABBE_UNSUPPORTED,
+                       "the material '%s' absorbs light within a wavelength, as metals do (k is "
+                       "%.2g at %g nm): no light comes through it, and its mirror is not "
+                       "modelled; take a material with k below 0.08, or a 'reflectance'",
+                       name, k, middle_nm);
+    abbe_object_locate(r->yaml, material, result, error);
   }
   free(name);
   return result;

@@ -11,6 +11,7 @@
 #define RADIANS (3.14159265358979323846 / 180.0)
 #define FAR 1e6       /* m */
 #define BRIGHTEST 1e9 /* W/sr, W/m2, W/(m2 sr) */
+#define FAINTEST 1e-30
 
 /* --- camera --- */
 
@@ -153,6 +154,12 @@ static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *
     result = abbe_yaml_get_number(yaml, node, key, 0, BRIGHTEST, &out->power, error);
   if (result == ABBE_OK && !(out->power > 0.0))
     result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a light must shine", key);
+  if (result == ABBE_OK && out->power < FAINTEST)
+    result =
+        abbe_yaml_fail(yaml, value, error,
+                       "'%s: %g' is too faint: pictures and maps are kept in single precision, "
+                       "which takes %g and more",
+                       key, out->power, FAINTEST);
   return result;
 }
 

@@ -140,3 +140,13 @@ double abbe_material_attenuation(const abbe_material *material, double lambda_nm
   double value = abbe_spectrum_at(material->attenuation, lambda_nm);
   return value > 0 ? value : 0; /* a spline may dip below its points */
 }
+
+bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm) {
+  enum { STEPS = 81 };
+  size_t opaque = 0;
+  for (size_t i = 0; i < STEPS; i++) {
+    const double lambda_nm = min_nm + (max_nm - min_nm) * (double)i / (STEPS - 1);
+    if (abbe_material_attenuation(material, lambda_nm) * lambda_nm * 1e-9 > 1) opaque++;
+  }
+  return 2 * opaque > STEPS;
+}

@@ -100,6 +100,10 @@ bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm)
 /* Natural attenuation coefficient at lambda_nm, 1/m, >= 0; 0 for a clear material. */
 double abbe_material_attenuation(const abbe_material *material, double lambda_nm);
 
+/* Whether it absorbs within a wavelength (down to 1/e: k above 0.08) in most of the range, as
+ * metals do, in which light does not get on. */
+bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,5 +1,6 @@
 #include "tests/check.h"
 
+#include "spectral/absorption.h"
 #include "spectral/material.h"
 
 #include <stdlib.h>
@@ -116,12 +117,40 @@ static void only_what_can_be_read_again_may_stand_in_a_table(void **state) {
   }
 }
 
+/* k of 0.0796 is a wavelength to 1/e. */
+static void metals_are_opaque(void **state) {
+  (void)state;
+  static const struct {
+    double k[4]; /* at 380, 580, 581 and 780 nm */
+    bool opaque;
+  } rows[] = {{{1.7, 2.9, 2.9, 4.9}, true},
+              {{0.081, 0.081, 0.081, 0.081}, true},
+              {{0.078, 0.078, 0.078, 0.078}, false},
+              {{2, 0.2, 0, 0}, true},
+              {{2, 0, 0, 0}, false},
+              {{1e-6, 1e-6, 1e-6, 1e-6}, false}};
+  static const double nm[4] = {380, 580, 581, 780};
+  abbe_material m = glass(NULL);
+  assert_false(abbe_material_is_opaque(&m, 380, 780));
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    double a[4];
+    for (int k = 0; k < 4; k++) a[k] = abbe_absorption_from_k(rows[i].k[k], nm[k]);
+    assert_int_equal(abbe_spectrum_make(nm, a, 4, ABBE_INTERPOLATION_LINEAR, &m.attenuation, NULL),
+                     ABBE_OK);
+    assert_int_equal(abbe_material_is_opaque(&m, 380, 780), rows[i].opaque);
+    abbe_spectrum_free(m.attenuation);
+    m.attenuation = NULL;
+  }
+  abbe_material_free(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_range_is_kept),
       cmocka_unit_test(extrapolation_is_allowed_and_told),
       cmocka_unit_test(no_real_index_is_an_error),
       cmocka_unit_test(attenuation_is_zero_or_more),
+      cmocka_unit_test(metals_are_opaque),
       cmocka_unit_test(only_what_can_be_read_again_may_stand_in_a_table),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

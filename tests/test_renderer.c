@@ -175,6 +175,44 @@ static void white_of(abbe_rgb_space space, double white[3]) {
   abbe_wavelengths_free(&w);
 }
 
+/* By 2^-93 and 2^93: light that floats could not sum is scaled inside, and back. */
+static void test_faint_light_is_the_same_light(void **state) {
+  (void)state;
+  static const int powers[] = {0, -93, 93};
+  abbe_image picture[3], map[3];
+  abbe_ledger energy[3];
+  abbe_render_desc desc = small_frame;
+  desc.layers = true;
+  for (int i = 0; i < 3; i++) {
+    abbe_scene scene;
+    load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene);
+    scene.light[0].power = ldexp(1, powers[i]);
+    scene.ambient = ldexp(0.25, powers[i]);
+    scene.background = ldexp(0.125, powers[i]);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    energy[i] = draw_frame(renderer).energy;
+    read_picture(renderer, true, &picture[i]);
+    read_map(renderer, 0, &map[i]);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+    assert_true(energy[i].reached > 0 && abbe_ledger_imbalance(&energy[i]) < 1e-4);
+    assert_near(ldexp(energy[i].reached, -powers[i]) / energy[0].reached, 1, 0);
+    assert_near(ldexp(energy[i].deposited, -powers[i]) / energy[0].deposited, 1, 0);
+    for (size_t k = 0; k < map[0].width * map[0].height * map[0].channels; k++)
+      assert_near(ldexp((double)map[i].data[k], -powers[i]), (double)map[0].data[k],
+                  1e-6 * (double)map[0].data[k] + 0x1p-50);
+    for (size_t k = 0; k < picture[0].width * picture[0].height * picture[0].channels; k++) {
+      const bool depth = k % picture[0].channels == 3;
+      assert_near(ldexp((double)picture[i].data[k], depth ? 0 : -powers[i]),
+                  (double)picture[0].data[k], 0);
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    abbe_image_free(&picture[i]);
+    abbe_image_free(&map[i]);
+  }
+}
+
 static void test_white_in_white_out(void **state) {
   (void)state;
   abbe_scene scene = {0};
@@ -490,6 +528,7 @@ int main(void) {
       cmocka_unit_test(test_the_thesis_profiles_render),
       cmocka_unit_test(test_mixed_scenes_balance),
       cmocka_unit_test(test_many_wavelengths_add_up),
+      cmocka_unit_test(test_faint_light_is_the_same_light),
       cmocka_unit_test(test_white_in_white_out),
       cmocka_unit_test(test_no_dispersion_no_colour),
       cmocka_unit_test(test_dispersion_goes_to_the_map_without),

@@ -261,6 +261,8 @@ static void bad_scenes_are_explained(void **state) {
       {"repaired_shape", ABBE_SCHEMA, "'repair' is for the mesh of a file"},
       {"centre_of_two", ABBE_SCHEMA, "'centre'"},
       {"disk_in_part", ABBE_UNSUPPORTED, "partly inside the refractor 'ball'"},
+      {"faint_light", ABBE_SCHEMA, "'intensity: 1e-40' is too faint"},
+      {"metal", ABBE_UNSUPPORTED, "the material 'foil' absorbs light within a wavelength"},
       {"light_on_a_ball", ABBE_UNSUPPORTED, "on the surface of the refractor 'ball'"},
       {"light_on_a_box", ABBE_UNSUPPORTED, "on the surface of the refractor 'ball'"},
       {"camera_on_a_ball", ABBE_UNSUPPORTED, "eye is on the surface of the refractor 'ball'"},
