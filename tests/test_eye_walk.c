@@ -248,6 +248,44 @@ static void a_slab_mirrors_the_sky(void **state) {
   }
 }
 
+/* Straight down through a block that lets 0.8 % through, on a floor in ambient light: paths end by
+ * roulette below 2 %, and their mean stays Beer-Lambert's. */
+static void dark_glass_keeps_its_mean(void **state) {
+  (void)state;
+  fixture f;
+  const double r = 0.04, left = exp(-0.4 * 12);
+  const double want = 0.5 / pi * (1 - r) * (1 - r) * left / (1 - r * r * left * left);
+  double mean[3], error[3];
+  load_text(
+      DOWN "ambient: 1\n" LIGHT(
+          "kind: point, position: [3, 3, 3], intensity: 1e-12") "objects:\n- {name: floor, shape: "
+                                                                "rectangle, width: 9, height: 9, "
+                                                                "reflectance: 0.5}\n"
+                                                                "- {name: block, shape: box, size: "
+                                                                "[0.4, 0.4, 0.4], transform: "
+                                                                "[{translate: [0.1, 0, 0.3]}],"
+                                                                " material: smoke}\n",
+      &f.scene);
+  f.objects = f.scene.object_count;
+  for (size_t i = 0; i < f.scene.table.count; i++) {
+    abbe_spectrum **a = &f.scene.table.material[i].attenuation;
+    if (*a == NULL) continue;
+    abbe_spectrum_free(*a);
+    assert_int_equal(abbe_spectrum_make((double[]){300, 900}, (double[]){12, 12}, 2,
+                                        ABBE_INTERPOLATION_LINEAR, a, NULL),
+                     ABBE_OK);
+  }
+  f.tracer = make_tracer(
+      &f.scene,
+      &(abbe_trace_desc){.width = 4, .height = 4, .no_map = true, .threads = 1, .photons = 1});
+  look(&f, 20000, mean, error);
+  for (int k = 0; k < 3; k++) {
+    assert_true(error[k] < 0.02 * want);
+    assert_near(mean[k], want, 4 * error[k]);
+  }
+  drop(&f);
+}
+
 /* Bands hold watts a nanometre: over all of them what a receiver of that reflectance returns. */
 static void bands_add_up(void **state) {
   (void)state;
@@ -309,6 +347,7 @@ int main(void) {
       cmocka_unit_test(shadows),
       cmocka_unit_test(a_white_furnace),
       cmocka_unit_test(absorbing_glass_shows),
+      cmocka_unit_test(dark_glass_keeps_its_mean),
       cmocka_unit_test(a_slab_mirrors_the_sky),
       cmocka_unit_test(bands_add_up),
       cmocka_unit_test(a_sample_repeats_itself),

@@ -61,8 +61,30 @@ static void directions_match_the_oracle(void **state) {
     }
 }
 
+/* On the right side nothing changes; from the wrong one a direction comes back to just beside the
+ * face. */
+static void light_stays_on_its_side(void **state) {
+  (void)state;
+  static const float up[3] = {0, 0, 1};
+  for (int i = 0; i <= 16; i++)
+    for (int side = -1; side <= 1; side += 2) {
+      const double angle = 3.1 * (i - 8) / 16; /* from the face */
+      float d[3] = {(float)cos(angle), 0, (float)sin(angle)};
+      const float before[3] = {d[0], d[1], d[2]};
+      abbe_interface_keep_side(up, (float)side, d);
+      const float along = (float)side * d[2];
+      assert_true(along > 0);
+      assert_near(d[0] * d[0] + d[2] * d[2], 1, 1e-6);
+      if ((float)side * before[2] > 0)
+        assert_memory_equal(d, before, sizeof d);
+      else
+        assert_near(along / sqrtf(d[0] * d[0] + 1e-12f), 1e-3f / fabsf(before[0]), 1e-4);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(light_stays_on_its_side),
       cmocka_unit_test(matches_the_oracle),
       cmocka_unit_test(nothing_happens_between_equal_media),
       cmocka_unit_test(all_is_reflected_beyond_the_critical_angle),
