@@ -111,6 +111,7 @@ abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t
 }
 
 abbe_result abbe_local_scene_scale_light(abbe_local_scene *local, abbe_error *error) {
+  ABBE_REQUIRE(local && local->scene, error);
   static const double faint = 0x1p-40, bright = 0x1p40;
   double most = fmax(local->scene->ambient, local->scene->background);
   for (size_t i = 0; i < local->scene->light_count; i++)

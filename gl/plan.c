@@ -379,7 +379,8 @@ static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked
                        100 * abbe_inner_light_plan(scene, asked, plan));
   /* Layers show less and less of what is inside; and who asks for few exits sees them. A smaller
    * share brings a walk nothing that what is left does not show. */
-  const bool eye_goes_on = !thesis && !plan->layers && (asked == NULL || asked->orders == 0);
+  const bool few = asked != NULL && asked->orders > 0 && asked->orders < ABBE_PLAN_EXITS;
+  const bool eye_goes_on = !thesis && !plan->layers && !few;
   plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.orders;
   plan->eye_share = plan->desc.energy_share;
   if (!plan->walk) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);

@@ -294,7 +294,7 @@ static const pair pairs[] = {
      {"=7 wavelengths, 10 exits, 11 landings",
       "+inner reflections|followed until less than 0.01 of the light is left, 10 exits at most; 20 "
       "% of it is still inside then",
-      "+eye: refraction|until less than 0.001 of its light is left, 10 exits at most", NULL}},
+      NULL}},
     {"a share, asked for in a dense stone",
      stone,
      CAMERA POINT_LIGHT FLOOR STONE("dense"),
