@@ -68,7 +68,9 @@ static void no_dispersion(abbe_context *context, extreme_row *row) {
   bool equal, all = true;
   double worst = 0;
   for (int i = 0; i < SHAPES; i++) {
-    extreme none = {.scene = {.objects = shapes[i]}, .desc = {.wavelengths = 7}}, tiny = none;
+    /* Few exits: what the eye sees after a hundred mirrors moves a hundred times as far. */
+    extreme none = {.scene = {.objects = shapes[i]}, .desc = {.wavelengths = 7, .orders = 7}},
+            tiny = none;
     tiny.scene.b = 1e-9;
     compare(context, &tiny, &none, true, &equal, row);
     all = all && equal;
