@@ -26,8 +26,20 @@ typedef struct search {
   double tolerance;
   abbe_shells *out;
   size_t room; /* for crossings */
+  uint64_t work, most_work;
+  bool within; /* crossings are looked for within shells, else between them */
   bool no_memory;
 } search;
+
+/* Shells that all cross or nest take the square of their number. What is done for them is counted,
+ * in steps through the tree, and ends after seconds. */
+#define MOST_WORK ((uint64_t)1 << 27)
+#define MOST_WORK_A_FACE 1024u
+enum { WORK_OF_A_PAIR = 4 };
+
+static bool gives_up(const search *s) {
+  return s->no_memory || s->work > s->most_work;
+}
 
 /* ---- a tree of boxes, each over half of the faces of the one above ---- */
 
@@ -38,9 +50,10 @@ typedef struct box {
 enum { LEAF = 4 }; /* faces */
 
 typedef struct tree {
-  uint32_t *face; /* [count] in the order of the leaves */
-  box *of_face;   /* [face_count] */
-  box *node;      /* node i is over the faces of 2 i + 1 and 2 i + 2 */
+  uint32_t *face;  /* [count] in the order of the leaves */
+  box *of_face;    /* [face_count] */
+  box *node;       /* node i is over the faces of 2 i + 1 and 2 i + 2 */
+  uint32_t *shell; /* of all faces of the node; NONE: of several */
 } tree;
 
 static bool boxes_meet(const box *a, const box *b) {
@@ -83,24 +96,30 @@ static void halve(const tree *t, size_t first, size_t last, size_t half, int axi
   }
 }
 
-static void grow(tree *t, size_t node, size_t first, size_t last) {
+/* shell: of each face */
+static void grow(tree *t, const uint32_t *shell, size_t node, size_t first, size_t last) {
   box *b = &t->node[node];
   *b = t->of_face[t->face[first]];
-  for (size_t i = first + 1; i < last; i++) widen(b, &t->of_face[t->face[i]]);
+  t->shell[node] = shell[t->face[first]];
+  for (size_t i = first + 1; i < last; i++) {
+    widen(b, &t->of_face[t->face[i]]);
+    if (shell[t->face[i]] != t->shell[node]) t->shell[node] = ABBE_TOPOLOGY_NONE;
+  }
   if (last - first <= LEAF) return;
   int axis = 0;
   for (int k = 1; k < 3; k++)
     if (b->high[k] - b->low[k] > b->high[axis] - b->low[axis]) axis = k;
   const size_t half = (first + last) / 2;
   halve(t, first, last, half, axis);
-  grow(t, 2 * node + 1, first, half);
-  grow(t, 2 * node + 2, half, last);
+  grow(t, shell, 2 * node + 1, first, half);
+  grow(t, shell, 2 * node + 2, half, last);
 }
 
 static void tree_free(tree *t) {
   free(t->face);
   free(t->of_face);
   free(t->node);
+  free(t->shell);
 }
 
 static bool tree_make(const search *s, tree *t) {
@@ -109,8 +128,9 @@ static bool tree_make(const search *s, tree *t) {
   for (size_t over = faces; over > LEAF; over = (over + 1) / 2) nodes = 2 * nodes + 1;
   *t = (tree){.face = malloc((faces + 1) * sizeof *t->face),
               .of_face = malloc((faces + 1) * sizeof *t->of_face),
-              .node = malloc(nodes * sizeof *t->node)};
-  if (!t->face || !t->of_face || !t->node) return false;
+              .node = malloc(nodes * sizeof *t->node),
+              .shell = malloc(nodes * sizeof *t->shell)};
+  if (!t->face || !t->of_face || !t->node || !t->shell) return false;
   for (size_t f = 0; f < faces; f++) {
     const double *at = s->triangle[f];
     box *b = &t->of_face[f];
@@ -120,7 +140,7 @@ static bool tree_make(const search *s, tree *t) {
       b->high[k] = fmax(fmax(at[k], at[3 + k]), at[6 + k]) + s->tolerance;
     }
   }
-  grow(t, 0, 0, faces);
+  grow(t, s->t->shell, 0, 0, faces);
   return true;
 }
 
@@ -160,6 +180,36 @@ static bool share_a_point(const uint32_t a[3], const uint32_t b[3]) {
   return false;
 }
 
+static int by_pair(const void *a, const void *b) {
+  const uint32_t *x = a, *y = b;
+  if (x[0] != y[0]) return x[0] < y[0] ? -1 : 1;
+  return (x[1] > y[1]) - (x[1] < y[1]);
+}
+
+/* In order, each pair once. */
+static void sort_crossings(abbe_shells *out) {
+  size_t kept = 0;
+  if (out->crossing_count > 0)
+    qsort(out->crossing, out->crossing_count, sizeof *out->crossing, by_pair);
+  for (size_t i = 0; i < out->crossing_count; i++)
+    if (i == 0 || by_pair(out->crossing[i], out->crossing[i - 1]) != 0)
+      memmove(out->crossing[kept++], out->crossing[i], sizeof *out->crossing);
+  out->crossing_count = kept;
+}
+
+/* Doubles the room unless a quarter of it is free. */
+static bool crossings_have_room(search *s) {
+  abbe_shells *out = s->out;
+  if (out->crossing_count < s->room - s->room / 4) return true;
+  const size_t room = s->room > 0 ? 2 * s->room : 64;
+  void *more = realloc(out->crossing, room * sizeof *out->crossing);
+  s->no_memory = s->no_memory || !more;
+  if (!more) return false;
+  out->crossing = more;
+  s->room = room;
+  return true;
+}
+
 static void add_crossing(search *s, uint32_t a, uint32_t b, const double place[3]) {
   abbe_shells *out = s->out;
   if (a == b) {
@@ -168,12 +218,8 @@ static void add_crossing(search *s, uint32_t a, uint32_t b, const double place[3
   }
   if (out->crossing_count == 0) memcpy(out->place, place, sizeof out->place);
   if (out->crossing_count == s->room) {
-    const size_t room = s->room > 0 ? 2 * s->room : 64;
-    void *more = realloc(out->crossing, room * sizeof *out->crossing);
-    s->no_memory = s->no_memory || !more;
-    if (!more) return;
-    out->crossing = more;
-    s->room = room;
+    sort_crossings(out);
+    if (!crossings_have_room(s)) return;
   }
   uint32_t *pair = out->crossing[out->crossing_count++];
   pair[0] = a < b ? a : b;
@@ -229,17 +275,28 @@ static part child_of(part p, int which) {
   return which == 0 ? (part){2 * p.node + 1, p.first, half} : (part){2 * p.node + 2, half, p.last};
 }
 
+/* Whether faces of the shells, NONE where there are several, may be such that are looked for. */
+static bool are_looked_for(const search *s, uint32_t a, uint32_t b) {
+  return a == ABBE_TOPOLOGY_NONE || b == ABBE_TOPOLOGY_NONE || (a == b) == s->within;
+}
+
 static void meet_leaves(search *s, const tree *t, part a, part b) {
   for (size_t i = a.first; i < a.last; i++)
     for (size_t k = a.node == b.node ? i + 1 : b.first; k < b.last; k++)
-      if (boxes_meet(&t->of_face[t->face[i]], &t->of_face[t->face[k]]))
+      if (are_looked_for(s, s->t->shell[t->face[i]], s->t->shell[t->face[k]]) &&
+          boxes_meet(&t->of_face[t->face[i]], &t->of_face[t->face[k]])) {
+        s->work += WORK_OF_A_PAIR;
         meet_faces(s, t->face[i], t->face[k]);
+      }
 }
 
 /* All pairs of faces of a and b whose boxes meet. */
 static void meet_parts(search *s, const tree *t, part a, part b) {
   const size_t faces_a = a.last - a.first, faces_b = b.last - b.first;
-  if (!boxes_meet(&t->node[a.node], &t->node[b.node])) return;
+  s->work++;
+  if (gives_up(s) || !are_looked_for(s, t->shell[a.node], t->shell[b.node]) ||
+      !boxes_meet(&t->node[a.node], &t->node[b.node]))
+    return;
   if (faces_a <= LEAF && faces_b <= LEAF) {
     meet_leaves(s, t, a, b);
   } else if (a.node == b.node) {
@@ -255,27 +312,11 @@ static void meet_parts(search *s, const tree *t, part a, part b) {
   }
 }
 
-static int by_pair(const void *a, const void *b) {
-  const uint32_t *x = a, *y = b;
-  if (x[0] != y[0]) return x[0] < y[0] ? -1 : 1;
-  return (x[1] > y[1]) - (x[1] < y[1]);
-}
-
-static bool find_crossings(search *s) {
-  abbe_shells *out = s->out;
-  tree t;
-  const bool made = tree_make(s, &t);
+static void find_crossings(search *s, const tree *t, bool within) {
   const part all = {0, 0, s->t->face_count};
-  if (made) meet_parts(s, &t, all, all);
-  tree_free(&t);
-  size_t kept = 0;
-  if (out->crossing_count > 0)
-    qsort(out->crossing, out->crossing_count, sizeof *out->crossing, by_pair);
-  for (size_t i = 0; i < out->crossing_count; i++)
-    if (i == 0 || by_pair(out->crossing[i], out->crossing[i - 1]) != 0)
-      memmove(out->crossing[kept++], out->crossing[i], sizeof *out->crossing);
-  out->crossing_count = kept;
-  return made && !s->no_memory;
+  s->work = 0;
+  s->within = within;
+  meet_parts(s, t, all, all);
 }
 
 static bool cross(const abbe_shells *shells, uint32_t a, uint32_t b) {
@@ -299,23 +340,62 @@ static void measure(search *s) {
 
 enum { FACES = 5, DIRECTIONS = 3 }; /* that vote, of which some may be where shells touch */
 
-/* Adds a vote for each shell that the point lies in: along the ray the first face of a shell tells
- * by the side that it shows. seen: marks of the rays before. */
-static void vote(const search *s, const abbe_hierarchy *above, uint32_t self, const double p[3],
-                 const double d[3], uint32_t ray, uint32_t *seen, unsigned char *votes) {
+/* Shells that a ray meets, each with its first face there. */
+typedef struct meetings {
+  uint32_t *shell;
+  size_t count;
+  double *nearest; /* of every shell; infinity: not met */
+  bool *leaves;    /* there the face shows its back */
+} meetings;
+
+static bool ray_enters(const box *b, const double p[3], const double inverse[3]) {
+  double from = 0, to = INFINITY;
+  for (int k = 0; k < 3; k++) {
+    const double low = (b->low[k] - p[k]) * inverse[k], high = (b->high[k] - p[k]) * inverse[k];
+    from = fmax(from, fmin(low, high));
+    to = fmin(to, fmax(low, high));
+  }
+  return from <= to;
+}
+
+static void meet_face_on_ray(const search *s, uint32_t face, const double p[3], const double d[3],
+                             meetings *met) {
+  const double *a = s->triangle[face];
+  const uint32_t shell = s->t->shell[face];
   abbe_hierarchy_hit hit;
-  double from = 0;
-  while (
-      abbe_hierarchy_trace(above, (const double(*)[9])s->triangle, p, d, 0, from, INFINITY, &hit)) {
-    const uint32_t other = s->t->shell[hit.index];
-    from = hit.t;
-    if (other == self || seen[other] == ray) continue;
-    seen[other] = ray;
-    double n[3];
-    const double *a = s->triangle[hit.index];
-    abbe_vector_triangle(a, a + 3, a + 6, n);
-    const bool leaves = abbe_vector_dot(n, d) > 0;
-    if (leaves == (s->out->shell[other].volume > 0)) votes[other]++;
+  double n[3];
+  if (!abbe_hierarchy_meet(a, p, d, 0, 0, met->nearest[shell], &hit)) return;
+  if (isinf(met->nearest[shell])) met->shell[met->count++] = shell;
+  met->nearest[shell] = hit.t;
+  abbe_vector_triangle(a, a + 3, a + 6, n);
+  met->leaves[shell] = abbe_vector_dot(n, d) > 0;
+}
+
+/* d has no zero among its components. */
+static void follow(search *s, const tree *t, part at, const double p[3], const double d[3],
+                   const double inverse[3], meetings *met) {
+  s->work++;
+  if (gives_up(s) || !ray_enters(&t->node[at.node], p, inverse)) return;
+  if (at.last - at.first <= LEAF) {
+    s->work += at.last - at.first;
+    for (size_t i = at.first; i < at.last; i++) meet_face_on_ray(s, t->face[i], p, d, met);
+  } else {
+    for (int i = 0; i < 2; i++) follow(s, t, child_of(at, i), p, d, inverse, met);
+  }
+}
+
+/* Adds a vote for each other shell that the point lies in: along the ray the first face of a shell
+ * tells by the side that it shows. */
+static void vote(search *s, const tree *t, uint32_t self, const double p[3], const double d[3],
+                 meetings *met, unsigned char *votes) {
+  const part all = {0, 0, s->t->face_count};
+  const double inverse[3] = {1 / d[0], 1 / d[1], 1 / d[2]};
+  met->count = 0;
+  follow(s, t, all, p, d, inverse, met);
+  for (size_t i = 0; i < met->count; i++) {
+    const uint32_t other = met->shell[i];
+    met->nearest[other] = INFINITY;
+    if (other != self && met->leaves[other] == (s->out->shell[other].volume > 0)) votes[other]++;
   }
 }
 
@@ -353,30 +433,35 @@ static bool add_around(abbe_shells *out, uint32_t shell, const unsigned char *vo
   return true;
 }
 
-static bool find_nesting(search *s, const abbe_hierarchy *above) {
+static bool find_nesting(search *s, const tree *t) {
   static const double direction[DIRECTIONS][3] = {
       {0.5391, 0.7283, 0.4231}, {-0.8127, 0.3119, 0.4921}, {0.2713, -0.5881, -0.7619}};
   abbe_shells *out = s->out;
   const size_t count = out->count, faces = s->t->face_count;
   uint32_t *first = calloc(count + 2, sizeof *first), *face = calloc(faces + 1, sizeof *face);
-  uint32_t *seen = calloc(count + 1, sizeof *seen), ray = 0;
+  meetings met = {.shell = malloc((count + 1) * sizeof *met.shell),
+                  .nearest = malloc((count + 1) * sizeof *met.nearest),
+                  .leaves = malloc((count + 1) * sizeof *met.leaves)};
   unsigned char *votes = calloc(count + 1, 1);
-  bool done = first && face && seen && votes;
+  bool done = first && face && met.shell && met.nearest && met.leaves && votes;
   size_t used = 0, room = 0;
+  for (size_t i = 0; done && i < count; i++) met.nearest[i] = INFINITY;
   if (done) sort_faces(s->t, first, face);
-  for (uint32_t i = 0; done && i < count; i++) {
+  for (uint32_t i = 0; done && !gives_up(s) && i < count; i++) {
     const uint32_t own = first[i + 1] - first[i];
     memset(votes, 0, count);
     for (uint32_t k = 0; k < FACES; k++) {
       double p[3];
       middle_of(s->triangle[face[first[i] + (uint32_t)((uint64_t)own * k / FACES)]], p);
-      for (int d = 0; d < DIRECTIONS; d++) vote(s, above, i, p, direction[d], ++ray, seen, votes);
+      for (int d = 0; d < DIRECTIONS; d++) vote(s, t, i, p, direction[d], &met, votes);
     }
     done = add_around(out, i, votes, &used, &room);
   }
   free(first);
   free(face);
-  free(seen);
+  free(met.shell);
+  free(met.nearest);
+  free(met.leaves);
   free(votes);
   return done;
 }
@@ -394,34 +479,71 @@ static int by_volume(const void *a, const void *b) {
   return (x->shell > y->shell) - (x->shell < y->shell);
 }
 
-/* Whether the shell may join a solid of shells that are placed already, all larger. */
-static bool fits(const abbe_shells *s, uint32_t shell, uint32_t solid) {
-  uint32_t around = 0;
-  for (size_t i = 0; i < s->crossing_count; i++) {
-    const uint32_t *pair = s->crossing[i];
-    if (pair[0] != shell && pair[1] != shell) continue;
-    if (s->shell[pair[0] == shell ? pair[1] : pair[0]].solid == solid) return false;
+/* What shells are shared out by. */
+typedef struct sharing {
+  ranked *rank;
+  uint32_t *first, *other; /* whom each shell crosses: from first[i] to first[i + 1] */
+  uint32_t *barred;        /* of each solid: the last shell, from 1, that may not join it */
+  uint32_t *around;        /* of each solid: its shells around the one at hand */
+} sharing;
+
+static void sharing_free(sharing *h) {
+  free(h->rank);
+  free(h->first);
+  free(h->other);
+  free(h->barred);
+  free(h->around);
+}
+
+static bool sharing_make(const abbe_shells *s, sharing *h) {
+  *h = (sharing){.rank = malloc((s->count + 1) * sizeof *h->rank),
+                 .first = calloc(s->count + 2, sizeof *h->first),
+                 .other = malloc((2 * s->crossing_count + 1) * sizeof *h->other),
+                 .barred = calloc(s->count + 1, sizeof *h->barred),
+                 .around = calloc(s->count + 1, sizeof *h->around)};
+  if (!(h->rank && h->first && h->other && h->barred && h->around)) return false;
+  for (uint32_t i = 0; i < s->count; i++) h->rank[i] = (ranked){fabs(s->shell[i].volume), i};
+  qsort(h->rank, s->count, sizeof *h->rank, by_volume);
+  for (size_t i = 0; i < 2 * s->crossing_count; i++) h->first[s->crossing[i / 2][i % 2] + 2]++;
+  for (size_t i = 2; i < s->count + 2; i++) h->first[i] += h->first[i - 1];
+  for (size_t i = 0; i < 2 * s->crossing_count; i++)
+    h->other[h->first[s->crossing[i / 2][i % 2] + 1]++] = s->crossing[i / 2][1 - i % 2];
+  return true;
+}
+
+/* The first solid that the shell may join, of shells that are placed already, all larger; or a new
+ * one. */
+static uint32_t solid_for(const abbe_shells *s, const sharing *h, uint32_t shell) {
+  const abbe_shell *self = &s->shell[shell];
+  uint32_t solid = 0;
+  for (uint32_t i = h->first[shell]; i < h->first[shell + 1]; i++) {
+    const uint32_t of = s->shell[h->other[i]].solid;
+    if (of != UNPLACED) h->barred[of] = shell + 1;
   }
-  for (uint32_t i = s->shell[shell].first; i < s->shell[shell].last; i++)
-    around += s->shell[s->around[i]].solid == solid;
-  return around % 2 == s->shell[shell].depth % 2;
+  for (uint32_t i = self->first; i < self->last; i++) {
+    const uint32_t of = s->shell[s->around[i]].solid;
+    if (of != UNPLACED) h->around[of]++;
+  }
+  while (solid < s->solid_count &&
+         (h->barred[solid] == shell + 1 || h->around[solid] % 2 != self->depth % 2))
+    solid++;
+  for (uint32_t i = self->first; i < self->last; i++) {
+    const uint32_t of = s->shell[s->around[i]].solid;
+    if (of != UNPLACED) h->around[of] = 0;
+  }
+  return solid;
 }
 
 static abbe_result share_out(abbe_shells *s, abbe_error *error) {
+  sharing h;
   s->solid_count = 1;
   if (s->crossing_count == 0) return ABBE_OK;
-  ranked *rank = malloc(s->count * sizeof *rank);
-  if (!rank) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
-  for (uint32_t i = 0; i < s->count; i++) {
-    rank[i] = (ranked){fabs(s->shell[i].volume), i};
-    s->shell[i].solid = UNPLACED;
-  }
-  qsort(rank, s->count, sizeof *rank, by_volume);
   abbe_result result = ABBE_OK;
+  if (!sharing_make(s, &h))
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
+  for (size_t i = 0; i < s->count; i++) s->shell[i].solid = UNPLACED;
   for (size_t k = 0; k < s->count && result == ABBE_OK; k++) {
-    const uint32_t shell = rank[k].shell;
-    uint32_t solid = 0;
-    while (solid < s->solid_count && !fits(s, shell, solid)) solid++;
+    const uint32_t shell = h.rank[k].shell, solid = solid_for(s, &h, shell);
     if (solid == s->solid_count && s->shell[shell].depth % 2 != 0)
       result = abbe_error_set(error, ABBE_GEOMETRY,
                               "hollows of the mesh cross one another or what is around them, at "
@@ -430,7 +552,7 @@ static abbe_result share_out(abbe_shells *s, abbe_error *error) {
     s->shell[shell].solid = solid;
     if (solid == s->solid_count) s->solid_count++;
   }
-  free(rank);
+  sharing_free(&h);
   return result;
 }
 
@@ -455,6 +577,28 @@ static abbe_result prepare(search *s, const abbe_mesh *mesh, abbe_error *error) 
   return ABBE_OK;
 }
 
+static abbe_result find_lie(search *s, abbe_error *error) {
+  tree t;
+  bool room = tree_make(s, &t);
+  s->most_work = MOST_WORK + MOST_WORK_A_FACE * (uint64_t)s->t->face_count;
+  /* a surface too intricate to be searched for crossings of its own is taken to have none more */
+  if (room) find_crossings(s, &t, true);
+  if (room && s->out->count > 1) {
+    find_crossings(s, &t, false);
+    sort_crossings(s->out);
+    if (!gives_up(s)) room = find_nesting(s, &t);
+  }
+  tree_free(&t);
+  if (!room || s->no_memory)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
+  if (s->out->count > 1 && gives_up(s))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the %zu parts of the mesh, of %zu faces, lie in and through one another "
+                          "in too many places to be told apart; unite them in a modeller",
+                          s->out->count, s->t->face_count);
+  return ABBE_OK;
+}
+
 abbe_result abbe_shells_find(const abbe_mesh *mesh, const abbe_topology *topology, abbe_shells *out,
                              abbe_error *error) {
   ABBE_REQUIRE(mesh && topology && out, error);
@@ -462,15 +606,9 @@ abbe_result abbe_shells_find(const abbe_mesh *mesh, const abbe_topology *topolog
   if (topology->face_count == 0) return ABBE_OK;
   out->count = topology->shell_count;
   search s = {.t = topology, .out = out};
-  abbe_hierarchy rays = {0};
   abbe_result result = prepare(&s, mesh, error);
-  if (result == ABBE_OK && out->count > 1)
-    result =
-        abbe_hierarchy_make((const double(*)[9])s.triangle, topology->face_count, &rays, error);
-  if (result == ABBE_OK && (!find_crossings(&s) || (out->count > 1 && !find_nesting(&s, &rays))))
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
+  if (result == ABBE_OK) result = find_lie(&s, error);
   if (result == ABBE_OK) result = share_out(out, error);
-  abbe_hierarchy_free(&rays);
   free(s.triangle);
   if (result != ABBE_OK) abbe_shells_free(out);
   return result;

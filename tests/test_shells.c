@@ -177,6 +177,62 @@ static void many_shells_are_told_apart(void **state) {
   free(box);
 }
 
+/* Boxes each in the next larger one. */
+static abbe_mesh nested_boxes(size_t count) {
+  test_box *box = calloc(count, sizeof *box);
+  assert_non_null(box);
+  for (size_t i = 0; i < count; i++)
+    for (int k = 0; k < 3; k++) {
+      box[i].max[k] = 1 + 0.01 * (double)i;
+      box[i].min[k] = -box[i].max[k];
+    }
+  abbe_mesh m = test_boxes(box, count);
+  free(box);
+  return m;
+}
+
+/* Every ray meets all of them: looking for one after another from the start would take minutes. */
+static void deep_nests_take_the_square_of_their_depth(void **state) {
+  (void)state;
+  enum { COUNT = 200 };
+  abbe_mesh m = nested_boxes(COUNT);
+  abbe_shells s;
+  assert_int_equal(find(&m, &s, NULL), ABBE_OK);
+  for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, COUNT - 1 - i);
+  abbe_shells_free(&s);
+  abbe_mesh_free(&m);
+}
+
+/* Bars along x, all through bars along y: each pair is found, and those alike are one solid. */
+static void all_through_all_is_two_solids(void **state) {
+  (void)state;
+  enum { COUNT = 60 };
+  test_box box[2 * COUNT];
+  for (int i = 0; i < 2 * COUNT; i++) {
+    const int along = i < COUNT ? 0 : 1;
+    box[i] = (test_box){{-1, -1, 0.01 * along}, {3 * COUNT, 3 * COUNT, 1 + 0.01 * along}, false};
+    box[i].min[1 - along] = 3.0 * (i % COUNT) + 0.1;
+    box[i].max[1 - along] = 3.0 * (i % COUNT) + 1;
+  }
+  abbe_shells s = shells_of(box, 2 * COUNT);
+  assert_int_equal(s.crossing_count, COUNT * COUNT);
+  assert_int_equal(s.solid_count, 2);
+  for (size_t i = 0; i < 2 * COUNT; i++)
+    assert_int_equal(s.shell[i].solid == s.shell[0].solid, i < COUNT);
+  abbe_shells_free(&s);
+}
+
+static void what_would_take_too_long_is_refused(void **state) {
+  (void)state;
+  abbe_mesh m = nested_boxes(1200);
+  abbe_shells s;
+  abbe_error error = {0};
+  assert_int_equal(find(&m, &s, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "the 1200 parts of the mesh, of 14400 faces, lie in and through");
+  assert_null(s.shell);
+  abbe_mesh_free(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(one_shell_is_one_solid),
@@ -188,6 +244,9 @@ int main(void) {
       cmocka_unit_test(faces_on_one_another_are_no_crossing_but_told),
       cmocka_unit_test(a_surface_that_crosses_itself_is_told),
       cmocka_unit_test(many_shells_are_told_apart),
+      cmocka_unit_test(deep_nests_take_the_square_of_their_depth),
+      cmocka_unit_test(all_through_all_is_two_solids),
+      cmocka_unit_test(what_would_take_too_long_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
