@@ -45,11 +45,14 @@ static number_kind kind_named(const char *name) {
 
 /* ---- the header ---- */
 
+/* A name says what an element is, so it stands once. */
 static bool take_element(reading *r, const char *line) {
   if (r->elements == MOST_ELEMENTS) return false;
   element *e = &r->element[r->elements];
   *e = (element){0};
   if (sscanf(line, "element %31s %20zu", e->name, &e->count) != 2) return false;
+  for (size_t i = 0; i < r->elements; i++)
+    if (strcmp(r->element[i].name, e->name) == 0) return false;
   r->elements++;
   return true;
 }
@@ -243,7 +246,8 @@ static bool read_property(reading *r, const element *e, const property *p, size_
 static bool read_body(reading *r, body *b) {
   for (size_t i = 0; i < r->elements; i++) {
     const element *e = &r->element[i];
-    /* a byte at the least for each of its values */
+    /* a byte at the least for each of its values; what has none says nothing */
+    if (e->properties == 0 && e->count > 0) return false;
     if (e->properties > 0 && e->count > (size_t)(r->end - r->at) / e->properties) return false;
     if (strcmp(e->name, "vertex") == 0 && b->position == NULL) {
       b->position = calloc(e->count + 1, sizeof *b->position);

@@ -149,6 +149,13 @@ static void what_is_wrong_is_said(void **state) {
       {"ply\nformat ascii 1.0\nelement tristrips 1\nproperty list float int i\nend_header\n",
        "line 4", ABBE_PARSE},
       {"plx\n", "line 1", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement vertex 5\n"
+       "property float x\nelement tristrips 1\nproperty list int int i\nend_header\n"
+       "0\n1\n2\n3\n4\n5\n3 0 1 2\n",
+       "line 5", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nelement tristrips 1\n"
+       "property list int int i\nend_header\n3 0 1 2\n",
+       "it ends", ABBE_PARSE},
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     abbe_mesh m;
