@@ -1,5 +1,6 @@
 #include "scenes/convex.h"
 
+#include "scenes/mesh_parts.h"
 #include "scenes/topology.h"
 #include "scenes/vector.h"
 #include "spectral/number.h"
@@ -164,21 +165,6 @@ static double most_rounded(const search *s, double *all, double place[3]) {
   return most;
 }
 
-static void measure(search *s) {
-  double low[3], high[3], diagonal[3];
-  const abbe_mesh *mesh = s->mesh;
-  memcpy(low, mesh->position[0], sizeof low);
-  memcpy(high, low, sizeof high);
-  for (size_t v = 0; v < mesh->vertex_count; v++)
-    for (int k = 0; k < 3; k++) {
-      low[k] = fmin(low[k], mesh->position[v][k]);
-      high[k] = fmax(high[k], mesh->position[v][k]);
-    }
-  for (int k = 0; k < 3; k++) s->centre[k] = 0.5 * (low[k] + high[k]);
-  abbe_vector_subtract(high, low, diagonal);
-  s->size = abbe_vector_length(diagonal);
-}
-
 /* One face of every so many, the largest first. */
 static void order_faces(search *s, size_t step) {
   const abbe_mesh *mesh = s->mesh;
@@ -221,7 +207,7 @@ static abbe_result judge(search *s, abbe_convex *out, abbe_error *error) {
   static const double tolerance[] = ABBE_CONVEX_TOLERANCES;
   const size_t tries = sizeof tolerance / sizeof *tolerance;
   abbe_result result = ABBE_OK;
-  measure(s);
+  s->size = abbe_mesh_diagonal(s->mesh, s->centre);
   out->size = s->size;
   order_faces(s, s->mesh->face_count / SAMPLE + 1);
   if (s->faces < s->mesh->face_count)

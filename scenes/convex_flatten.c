@@ -1,5 +1,6 @@
 /* Solids of few planes out of meshes that are nearly such. */
 #include "scenes/convex.h"
+#include "scenes/mesh_parts.h"
 #include "scenes/vector.h"
 
 #include <math.h>
@@ -36,20 +37,6 @@ static int by_area(const void *a, const void *b) {
 static void corners_of(const solid *s, size_t face, double corner[3][3]) {
   for (int k = 0; k < 3; k++)
     abbe_vector_subtract(s->mesh->position[s->mesh->face[face][k]], s->centre, corner[k]);
-}
-
-static void measure(solid *s) {
-  double low[3], high[3], diagonal[3];
-  memcpy(low, s->mesh->position[0], sizeof low);
-  memcpy(high, low, sizeof high);
-  for (size_t v = 0; v < s->mesh->vertex_count; v++)
-    for (int k = 0; k < 3; k++) {
-      low[k] = fmin(low[k], s->mesh->position[v][k]);
-      high[k] = fmax(high[k], s->mesh->position[v][k]);
-    }
-  for (int k = 0; k < 3; k++) s->centre[k] = 0.5 * (low[k] + high[k]);
-  abbe_vector_subtract(high, low, diagonal);
-  s->size = abbe_vector_length(diagonal);
 }
 
 /* A face joins the plane that it lies nearest to, of those within the tolerance whose normal is not
@@ -273,7 +260,7 @@ abbe_result abbe_convex_flatten(abbe_mesh *mesh, double share, size_t max_planes
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu planes", max_planes);
   abbe_mesh made = {0};
   double place[3] = {0, 0, 0};
-  measure(&s);
+  s.size = abbe_mesh_diagonal(mesh, s.centre);
   abbe_result result = find_planes(&s, share * s.size, error);
   if (result == ABBE_OK) {
     const double off = farthest(&s, place);

@@ -1,5 +1,6 @@
 #include "scenes/hierarchy.h"
 
+#include "scenes/disjoint_sets.h"
 #include "scenes/vector.h"
 
 #include <math.h>
@@ -277,11 +278,6 @@ static int by_key(const void *a, const void *b) {
   return 0;
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 size_t abbe_hierarchy_parts(const abbe_mesh *mesh, uint32_t *group) {
   size_t vertices = mesh->vertex_count, groups = 0;
   corner *sorted = malloc((vertices + 1) * sizeof *sorted);
@@ -297,14 +293,14 @@ size_t abbe_hierarchy_parts(const abbe_mesh *mesh, uint32_t *group) {
     qsort(sorted, vertices, sizeof *sorted, by_key);
     for (size_t i = 1; i < vertices; i++)
       if (by_key(&sorted[i - 1], &sorted[i]) == 0)
-        parent[root_of(parent, sorted[i].vertex)] = root_of(parent, sorted[i - 1].vertex);
+        abbe_disjoint_sets_unite(parent, sorted[i].vertex, sorted[i - 1].vertex);
     for (size_t i = 0; i < mesh->face_count; i++)
       for (int c = 1; c < 3; c++)
-        parent[root_of(parent, mesh->face[i][c])] = root_of(parent, mesh->face[i][0]);
+        abbe_disjoint_sets_unite(parent, mesh->face[i][c], mesh->face[i][0]);
     uint32_t *number = (uint32_t *)sorted; /* no longer wanted */
     memset(number, 0, vertices * sizeof *number);
     for (size_t i = 0; i < mesh->face_count; i++) {
-      uint32_t root = root_of(parent, mesh->face[i][0]);
+      uint32_t root = abbe_disjoint_sets_find(parent, mesh->face[i][0]);
       if (number[root] == 0) number[root] = (uint32_t)++groups;
       group[i] = number[root] - 1;
     }

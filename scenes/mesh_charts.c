@@ -1,5 +1,6 @@
 #include "scenes/mesh_charts.h"
 
+#include "scenes/disjoint_sets.h"
 #include "scenes/topology.h"
 #include "scenes/vector.h"
 
@@ -11,11 +12,6 @@
 static const double least_cosine = 0.5;
 
 enum { AXES = 6, NO_AXIS = AXES };
-
-static uint32_t root_of(uint32_t *parent, uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 /* +x, -x, +y and so on: the coordinate along it and the sign. */
 static int coordinate(int axis) {
@@ -48,7 +44,7 @@ static void choose_axes(const abbe_mesh *mesh, const abbe_topology *t, uint8_t *
     const uint32_t *face = t->edge[e].face;
     if (face[0] == ABBE_TOPOLOGY_NONE || face[1] == ABBE_TOPOLOGY_NONE) continue;
     if (axis_of[face[0]] == axis_of[face[1]] && axis_of[face[0]] != NO_AXIS)
-      parent[root_of(parent, face[1])] = root_of(parent, face[0]);
+      abbe_disjoint_sets_unite(parent, face[1], face[0]);
   }
 }
 
@@ -58,12 +54,12 @@ static size_t number_charts(size_t faces, const uint8_t *axis_of, uint32_t *pare
   size_t count = 0;
   for (size_t i = 0; i < faces; i++) {
     chart[i] = 0;
-    if (axis_of[i] == NO_AXIS || root_of(parent, (uint32_t)i) != i) continue;
+    if (axis_of[i] == NO_AXIS || abbe_disjoint_sets_find(parent, (uint32_t)i) != i) continue;
     chart_axis[count] = axis_of[i];
     chart[i] = (uint32_t)count++;
   }
   for (size_t i = 0; i < faces; i++)
-    if (axis_of[i] != NO_AXIS) chart[i] = chart[root_of(parent, (uint32_t)i)];
+    if (axis_of[i] != NO_AXIS) chart[i] = chart[abbe_disjoint_sets_find(parent, (uint32_t)i)];
   return count;
 }
 

@@ -1,4 +1,5 @@
 /* What is wrong with a mesh; mesh_mend.c does something about it. */
+#include "scenes/disjoint_sets.h"
 #include "scenes/mesh.h"
 #include "scenes/mesh_parts.h"
 #include "scenes/topology.h"
@@ -21,6 +22,20 @@ bool abbe_mesh_is_sliver(const double *const corner[3], int *tip) {
     if (squared > longest) longest = squared, *tip = (k + 2) % 3;
   }
   return !(abbe_vector_length(n) > 1e-9 * longest);
+}
+
+double abbe_mesh_diagonal(const abbe_mesh *mesh, double centre[3]) {
+  double low[3], high[3], size[3];
+  memcpy(low, mesh->position[0], sizeof low);
+  memcpy(high, low, sizeof high);
+  for (size_t v = 1; v < mesh->vertex_count; v++)
+    for (int k = 0; k < 3; k++) {
+      low[k] = fmin(low[k], mesh->position[v][k]);
+      high[k] = fmax(high[k], mesh->position[v][k]);
+    }
+  for (int k = 0; k < 3 && centre; k++) centre[k] = 0.5 * (low[k] + high[k]);
+  abbe_vector_subtract(high, low, size);
+  return abbe_vector_length(size);
 }
 
 static void measure_faces(const abbe_topology *t, abbe_mesh_report *report) {
@@ -70,11 +85,6 @@ typedef struct hole {
   double low[3], high[3];
 } hole;
 
-static uint32_t root_of(uint32_t *parent, uint32_t x) {
-  while (parent[x] != x) x = parent[x] = parent[parent[x]];
-  return x;
-}
-
 static void gather_holes(const abbe_topology *t, uint32_t *parent, hole *at) {
   for (size_t p = 0; p < t->point_count; p++) {
     parent[p] = (uint32_t)p;
@@ -83,10 +93,10 @@ static void gather_holes(const abbe_topology *t, uint32_t *parent, hole *at) {
   }
   for (size_t e = 0; e < t->edge_count; e++)
     if (t->edge[e].along + t->edge[e].against == 1)
-      parent[root_of(parent, t->edge[e].a)] = root_of(parent, t->edge[e].b);
+      abbe_disjoint_sets_unite(parent, t->edge[e].a, t->edge[e].b);
   for (size_t e = 0; e < t->edge_count; e++) {
     if (t->edge[e].along + t->edge[e].against != 1) continue;
-    hole *h = &at[root_of(parent, t->edge[e].a)];
+    hole *h = &at[abbe_disjoint_sets_find(parent, t->edge[e].a)];
     h->edges++;
     for (int end = 0; end < 2; end++)
       for (int k = 0; k < 3; k++) {

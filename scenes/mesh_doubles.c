@@ -1,4 +1,5 @@
 /* Faces that lie on one another, corner on corner. */
+#include "scenes/disjoint_sets.h"
 #include "scenes/mesh_parts.h"
 
 #include <stdbool.h>
@@ -61,11 +62,6 @@ static void mark(const triple *all, size_t count, bool walls_go, unsigned char *
   }
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t x) {
-  while (parent[x] != x) x = parent[x] = parent[parent[x]];
-  return x;
-}
-
 /* What is at an edge. */
 typedef struct meeting {
   uint32_t kept, last; /* faces that stay; the last face of a wall */
@@ -87,17 +83,18 @@ static void judge_walls(const abbe_topology *t, uint32_t *parent, int32_t *vote,
       const uint32_t e = t->face_edge[f][k];
       if (e == ABBE_TOPOLOGY_NONE || at_edge[e].kept > 0) continue;
       if (at_edge[e].last != ABBE_TOPOLOGY_NONE)
-        parent[root_of(parent, (uint32_t)f)] = root_of(parent, at_edge[e].last);
+        abbe_disjoint_sets_unite(parent, (uint32_t)f, at_edge[e].last);
       at_edge[e].last = (uint32_t)f;
     }
   for (size_t f = 0; f < t->face_count; f++)
     for (int k = 0; k < 3 && fate[f] == WALL; k++) {
       const uint32_t e = t->face_edge[f][k];
       if (e != ABBE_TOPOLOGY_NONE && at_edge[e].kept > 0)
-        vote[root_of(parent, (uint32_t)f)] += at_edge[e].kept % 2 == 0 ? 1 : -1;
+        vote[abbe_disjoint_sets_find(parent, (uint32_t)f)] += at_edge[e].kept % 2 == 0 ? 1 : -1;
     }
   for (size_t f = 0; f < t->face_count; f++)
-    if (fate[f] == WALL) fate[f] = vote[root_of(parent, (uint32_t)f)] > 0 ? DROPPED : KEPT;
+    if (fate[f] == WALL)
+      fate[f] = vote[abbe_disjoint_sets_find(parent, (uint32_t)f)] > 0 ? DROPPED : KEPT;
 }
 
 /* Faces that are there twice have edges of more than two, or of two that run alike. */

@@ -281,19 +281,6 @@ static abbe_result close_by_least(abbe_mesh *mesh, const abbe_topology *t, const
 
 /* ---- all of them ---- */
 
-static double diagonal_of(const abbe_mesh *mesh) {
-  double low[3], high[3], size[3];
-  memcpy(low, mesh->position[0], sizeof low);
-  memcpy(high, low, sizeof high);
-  for (size_t v = 1; v < mesh->vertex_count; v++)
-    for (int k = 0; k < 3; k++) {
-      low[k] = fmin(low[k], mesh->position[v][k]);
-      high[k] = fmax(high[k], mesh->position[v][k]);
-    }
-  abbe_vector_subtract(high, low, size);
-  return abbe_vector_length(size);
-}
-
 static abbe_result close_rim(abbe_mesh *mesh, const abbe_topology *t, const uint32_t *rim, size_t n,
                              double diagonal, bool any, uint32_t *place, bool *closed,
                              abbe_error *error) {
@@ -322,7 +309,7 @@ abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, bool any, size_t *count, doub
       t.edge[e].b = vertex[t.edge[e].b];
     }
   }
-  const double diagonal = result == ABBE_OK ? diagonal_of(mesh) : 0;
+  const double diagonal = result == ABBE_OK ? abbe_mesh_diagonal(mesh, NULL) : 0;
   for (size_t i = 0; result == ABBE_OK && i < r.count; i++) {
     uint32_t *rim = r.point + r.first[i];
     const size_t n = r.first[i + 1] - r.first[i];

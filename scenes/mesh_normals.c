@@ -1,4 +1,5 @@
 /* Normals: one a face, one a point, or one for each smooth part around a point. */
+#include "scenes/disjoint_sets.h"
 #include "scenes/mesh.h"
 #include "scenes/mesh_parts.h"
 #include "scenes/topology.h"
@@ -61,11 +62,6 @@ static abbe_result face_normals(abbe_mesh *mesh, abbe_error *error) {
 
 /* ---- by angles ---- */
 
-static uint32_t root_of(uint32_t *parent, uint32_t x) {
-  while (parent[x] != x) x = parent[x] = parent[parent[x]];
-  return x;
-}
-
 static uint32_t corner_at(const abbe_topology *t, uint32_t face, uint32_t point) {
   uint32_t k = 0;
   while (k < 2 && t->face[face][k] != point) k++;
@@ -84,8 +80,8 @@ static void unite_smooth(const abbe_topology *t, const double (*normal)[3], uint
     if (known && abbe_vector_dot(m, n) < least) continue;
     for (int end = 0; end < 2; end++) {
       const uint32_t point = end == 0 ? e->a : e->b;
-      parent[root_of(parent, corner_at(t, e->face[0], point))] =
-          root_of(parent, corner_at(t, e->face[1], point));
+      abbe_disjoint_sets_unite(parent, corner_at(t, e->face[0], point),
+                               corner_at(t, e->face[1], point));
     }
   }
 }
@@ -121,7 +117,7 @@ abbe_result abbe_mesh_crease_normals(const abbe_mesh *mesh, const abbe_topology 
   memset(corner, 0, 3 * faces * sizeof *corner);
   unite_smooth(t, (const double(*)[3])normal, parent);
   for (size_t c = 0; c < 3 * faces; c++) {
-    double *sum = corner[root_of(parent, (uint32_t)c)];
+    double *sum = corner[abbe_disjoint_sets_find(parent, (uint32_t)c)];
     const double angle = angle_at(t, c);
     for (int k = 0; k < 3; k++) sum[k] += angle * normal[c / 3][k];
   }
@@ -131,7 +127,7 @@ abbe_result abbe_mesh_crease_normals(const abbe_mesh *mesh, const abbe_topology 
       if (!abbe_vector_normalise(corner[c])) corner[c][0] = corner[c][1] = 0, corner[c][2] = 1;
     }
   for (size_t c = 0; c < 3 * faces; c++)
-    memcpy(corner[c], corner[root_of(parent, (uint32_t)c)], sizeof *corner);
+    memcpy(corner[c], corner[abbe_disjoint_sets_find(parent, (uint32_t)c)], sizeof *corner);
   free(normal);
   free(parent);
   return ABBE_OK;

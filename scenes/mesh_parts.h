@@ -28,6 +28,9 @@ bool abbe_mesh_is_sliver(const double *const corner[3], int *tip);
 abbe_result abbe_mesh_check_known(const abbe_mesh *mesh, const abbe_topology *topology,
                                   abbe_mesh_report *report, abbe_error *error);
 
+/* The diagonal of the bounds; centre: their middle, may be NULL. There is a vertex. */
+double abbe_mesh_diagonal(const abbe_mesh *mesh, double centre[3]);
+
 /* Drops vertices that no face names. */
 abbe_result abbe_mesh_drop_unused(abbe_mesh *mesh, abbe_error *error);
 

@@ -1,4 +1,5 @@
 /* Sheets of faces that hang on a body, or stand in it, and belong to no surface of it. */
+#include "scenes/disjoint_sets.h"
 #include "scenes/mesh_parts.h"
 #include "scenes/vector.h"
 
@@ -15,11 +16,6 @@ typedef struct patch {
   long mends;    /* edges that become sound without it, less those that no longer are */
   bool attached; /* to others, at an edge of an odd number of faces */
 } patch;
-
-static uint32_t root_of(uint32_t *parent, uint32_t x) {
-  while (parent[x] != x) x = parent[x] = parent[parent[x]];
-  return x;
-}
 
 static bool is_bad(uint32_t faces) {
   return faces % 2 != 0;
@@ -44,10 +40,10 @@ static void judge(const abbe_topology *t, uint32_t *parent, patch *at, visit *al
   }
   for (size_t e = 0; e < t->edge_count; e++)
     if (t->edge[e].along + t->edge[e].against == 2)
-      parent[root_of(parent, t->edge[e].face[0])] = root_of(parent, t->edge[e].face[1]);
+      abbe_disjoint_sets_unite(parent, t->edge[e].face[0], t->edge[e].face[1]);
   for (size_t f = 0; f < t->face_count; f++) {
     double n[3];
-    const uint32_t own = root_of(parent, (uint32_t)f);
+    const uint32_t own = abbe_disjoint_sets_find(parent, (uint32_t)f);
     abbe_vector_triangle(t->position[t->face[f][0]], t->position[t->face[f][1]],
                          t->position[t->face[f][2]], n);
     at[own].area += 0.5 * abbe_vector_length(n);
@@ -96,7 +92,7 @@ abbe_result abbe_mesh_drop_sheets(abbe_mesh *mesh, size_t *sheets, abbe_error *e
     more = sheet != ABBE_TOPOLOGY_NONE;
     size_t kept = 0;
     for (size_t f = 0; f < mesh->face_count && more; f++)
-      if (root_of(parent, (uint32_t)f) != sheet)
+      if (abbe_disjoint_sets_find(parent, (uint32_t)f) != sheet)
         memmove(mesh->face[kept++], mesh->face[f], sizeof mesh->face[0]);
     if (more) mesh->face_count = kept;
     *sheets += more;

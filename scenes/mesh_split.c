@@ -1,5 +1,6 @@
 /* A mesh whose shells cross, as several that do not. */
 #include "scenes/mesh.h"
+#include "scenes/mesh_parts.h"
 #include "scenes/shells.h"
 #include "scenes/topology.h"
 #include "scenes/vector.h"
@@ -84,19 +85,6 @@ static abbe_result grow(abbe_mesh *mesh, double by, abbe_error *error) {
   return result;
 }
 
-static double diagonal_of(const abbe_mesh *mesh) {
-  double low[3], high[3], size[3];
-  memcpy(low, mesh->position[0], sizeof low);
-  memcpy(high, low, sizeof high);
-  for (size_t v = 1; v < mesh->vertex_count; v++)
-    for (int k = 0; k < 3; k++) {
-      low[k] = fmin(low[k], mesh->position[v][k]);
-      high[k] = fmax(high[k], mesh->position[v][k]);
-    }
-  abbe_vector_subtract(high, low, size);
-  return abbe_vector_length(size);
-}
-
 static abbe_result take_all(const abbe_mesh *mesh, const abbe_topology *t, const abbe_shells *s,
                             abbe_mesh **part, size_t *count, abbe_error *error) {
   if (s->solid_count > ABBE_MESH_MAX_SOLIDS)
@@ -114,7 +102,7 @@ static abbe_result take_all(const abbe_mesh *mesh, const abbe_topology *t, const
     *count = i + 1;
     result = take_solid(mesh, t, s, i, number, &(*part)[i], error);
     if (result == ABBE_OK && s->flush_count > 0 && i > 0)
-      result = grow(&(*part)[i], GROWTH * i * diagonal_of(mesh), error);
+      result = grow(&(*part)[i], GROWTH * i * abbe_mesh_diagonal(mesh, NULL), error);
   }
   free(number);
   return result;

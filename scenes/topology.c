@@ -1,5 +1,6 @@
 #include "scenes/topology.h"
 
+#include "scenes/disjoint_sets.h"
 #include "scenes/vector.h"
 
 #include <float.h>
@@ -166,18 +167,6 @@ static abbe_result find_edges(abbe_topology *t, abbe_error *error) {
   return ABBE_OK;
 }
 
-static uint32_t root_of(uint32_t *parent, uint32_t x) {
-  while (parent[x] != x) {
-    parent[x] = parent[parent[x]];
-    x = parent[x];
-  }
-  return x;
-}
-
-static void unite(uint32_t *parent, uint32_t a, uint32_t b) {
-  parent[root_of(parent, a)] = root_of(parent, b);
-}
-
 /* A face at an edge of more than two. */
 typedef struct spoke {
   uint32_t edge, face;
@@ -240,9 +229,11 @@ static bool pair_up(const spoke *at, size_t count, uint32_t *parent, uint32_t *s
       continue;
     }
     size_t k = waiting;
-    while (k > 0 && root_of(parent, stack[k - 1]) != root_of(parent, s->face)) k--;
+    while (k > 0 && abbe_disjoint_sets_find(parent, stack[k - 1]) !=
+                        abbe_disjoint_sets_find(parent, s->face))
+      k--;
     const size_t taken = k > 0 ? k - 1 : waiting - 1;
-    unite(parent, s->face, stack[taken]);
+    abbe_disjoint_sets_unite(parent, s->face, stack[taken]);
     memmove(stack + taken, stack + taken + 1, (waiting - taken - 1) * sizeof *stack);
     waiting--;
   }
@@ -276,7 +267,7 @@ static abbe_result unite_crowds(abbe_topology *t, uint32_t *parent, abbe_error *
     for (to = from; to < count && all[to].edge == all[from].edge;) to++;
     t->edge[all[from].edge].touches = pair_up(all + from, to - from, parent, stack);
     for (size_t i = from + 1; i < to && !t->edge[all[from].edge].touches; i++)
-      unite(parent, all[i].face, all[from].face);
+      abbe_disjoint_sets_unite(parent, all[i].face, all[from].face);
   }
   free(all);
   free(stack);
@@ -292,7 +283,7 @@ static void unite_points(const abbe_topology *t, uint32_t *parent, uint32_t *at_
     if (t->face_edge[f][0] != ABBE_TOPOLOGY_NONE) continue;
     uint32_t *there = &at_point[t->face[f][0]];
     if (*there == ABBE_TOPOLOGY_NONE) *there = (uint32_t)f;
-    unite(parent, (uint32_t)f, *there);
+    abbe_disjoint_sets_unite(parent, (uint32_t)f, *there);
   }
 }
 
@@ -306,14 +297,14 @@ static abbe_result find_shells(abbe_topology *t, abbe_error *error) {
   for (size_t f = 0; result == ABBE_OK && f < t->face_count; f++) parent[f] = (uint32_t)f;
   for (size_t e = 0; result == ABBE_OK && e < t->edge_count; e++)
     if (t->edge[e].along + t->edge[e].against == 2)
-      unite(parent, t->edge[e].face[0], t->edge[e].face[1]);
+      abbe_disjoint_sets_unite(parent, t->edge[e].face[0], t->edge[e].face[1]);
   if (result == ABBE_OK) result = unite_crowds(t, parent, error);
   if (result == ABBE_OK) {
     memset(number, 0xff, most * sizeof *number);
     unite_points(t, parent, number);
     memset(number, 0xff, most * sizeof *number);
     for (size_t f = 0; f < t->face_count; f++) {
-      const uint32_t root = root_of(parent, (uint32_t)f);
+      const uint32_t root = abbe_disjoint_sets_find(parent, (uint32_t)f);
       if (number[root] == ABBE_TOPOLOGY_NONE) number[root] = (uint32_t)t->shell_count++;
       t->shell[f] = number[root];
     }
