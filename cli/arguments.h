@@ -26,8 +26,7 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
                           void *input);
 
 /* Holds a file to the third rule that no option names: `what` says what it is. Ends the program
- * likewise. A path that is NULL or
- * empty is none. */
+ * likewise. A path that is NULL or empty is none. */
 void abbe_arguments_add(const char *program, unsigned flags, const char *what, const char *path);
 
 #endif
