@@ -98,29 +98,50 @@ static void test_a_full_disk_leaves_the_old_file(void **state) {
   abbe_image_free(&image);
 }
 
+/* A file as libpng writes it for other programs: begun, its header not yet written, and ended. */
+typedef struct foreign {
+  FILE *file;
+  png_structp png;
+  png_infop info;
+} foreign;
+
+static void fail_writing(png_structp png, png_const_charp message) {
+  (void)png;
+  fail_msg("%s", message);
+  abort();
+}
+
+static foreign begin_foreign(png_uint_32 side, int bits, int colour, int interlace) {
+  foreign f = {.file = fopen(path, "wb"),
+               .png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, fail_writing, NULL)};
+  f.info = png_create_info_struct(f.png);
+  assert_true(f.file != NULL && f.png != NULL && f.info != NULL);
+  png_init_io(f.png, f.file);
+  png_set_IHDR(f.png, f.info, side, side, bits, colour, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  return f;
+}
+
+static void end_foreign(foreign *f) {
+  png_write_end(f->png, NULL);
+  png_destroy_write_struct(&f->png, &f->info);
+  fclose(f->file);
+}
+
 /* A palette, grey with alpha and interlaced rows, as other programs write them. */
 static void write_foreign(int colour, int bits, int interlace) {
-  FILE *file = fopen(path, "wb");
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
-  png_infop info = png_create_info_struct(png);
-  assert_true(file != NULL && png != NULL && info != NULL);
-  if (setjmp(png_jmpbuf(png))) fail();
-  png_init_io(png, file);
-  png_set_IHDR(png, info, 8, 8, bits, colour, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+  foreign f = begin_foreign(8, bits, colour, interlace);
   const png_color palette[2] = {{255, 0, 0}, {0, 0, 255}};
-  if (colour == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(png, info, palette, 2);
-  png_write_info(png, info);
+  if (colour == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(f.png, f.info, palette, 2);
+  png_write_info(f.png, f.info);
   png_byte rows[8][64];
   png_bytep row[8];
   for (int y = 0; y < 8; y++) {
     memset(rows[y], colour == PNG_COLOR_TYPE_PALETTE ? 0x0f : 0x80, sizeof rows[y]);
     row[y] = rows[y];
   }
-  png_write_image(png, row);
-  png_write_end(png, NULL);
-  png_destroy_write_struct(&png, &info);
-  fclose(file);
+  png_write_image(f.png, row);
+  end_foreign(&f);
 }
 
 static void test_foreign_files(void **state) {
@@ -252,26 +273,17 @@ static void test_the_colour_is_said(void **state) {
 
 /* A file of one colour that says what `say` adds to it. */
 static void write_stating(const double rgb[3], void (*say)(png_structp png, png_infop info)) {
-  FILE *file = fopen(path, "wb");
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
-  png_infop info = png_create_info_struct(png);
-  assert_true(file != NULL && png != NULL && info != NULL);
-  if (setjmp(png_jmpbuf(png))) fail();
-  png_init_io(png, file);
-  png_set_IHDR(png, info, 1, 1, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  say(png, info);
-  png_write_info(png, info);
+  foreign f = begin_foreign(1, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE);
+  say(f.png, f.info);
+  png_write_info(f.png, f.info);
   png_byte row[6];
   for (int c = 0; c < 3; c++) {
     const unsigned v = (unsigned)lround(65535 * rgb[c]);
     row[2 * c] = (png_byte)(v >> 8);
     row[2 * c + 1] = (png_byte)(v & 255);
   }
-  png_write_row(png, row);
-  png_write_end(png, NULL);
-  png_destroy_write_struct(&png, &info);
-  fclose(file);
+  png_write_row(f.png, row);
+  end_foreign(&f);
 }
 
 static void say_nothing(png_structp png, png_infop info) {
@@ -368,20 +380,11 @@ static void test_what_unfolds_is_refused(void **state) {
   abbe_error error = {0};
   const long before = peak_kilobytes();
   read_must_fail((const char *)text_bomb, sizeof text_bomb, "text bomb");
-  FILE *file = fopen(path, "wb");
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
-  png_infop info = png_create_info_struct(png);
-  assert_true(file != NULL && png != NULL && info != NULL);
-  if (setjmp(png_jmpbuf(png))) fail();
-  png_init_io(png, file);
-  png_set_IHDR(png, info, 16384, 16384, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_write_info(png, info);
+  foreign f = begin_foreign(16384, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE);
+  png_write_info(f.png, f.info);
   const png_byte row[2048] = {0};
-  for (int y = 0; y < 16384; y++) png_write_row(png, row);
-  png_write_end(png, NULL);
-  png_destroy_write_struct(&png, &info);
-  fclose(file);
+  for (int y = 0; y < 16384; y++) png_write_row(f.png, row);
+  end_foreign(&f);
   assert_int_equal(abbe_png_read(path, &image, &error), ABBE_UNSUPPORTED);
   assert_non_null(strstr(error.text, "16384 x 16384"));
   assert_null(image.data);
