@@ -171,16 +171,40 @@ double abbe_object_distance(const abbe_object *object, const double point[3]) {
   return least;
 }
 
-double abbe_object_thickness(const abbe_object *object) {
-  double least = INFINITY;
-  for (int k = 0; k < 3; k++) least = fmin(least, object->max[k] - object->min[k]);
-  for (size_t i = 0; object->exact.kind == ABBE_EXACT_CONVEX && i < object->exact.count; i++) {
-    const double *plane = object->exact.plane[i];
-    double low = plane[3];
-    for (size_t v = 0; v < object->mesh.vertex_count; v++)
-      low = fmin(low, abbe_vector_dot(plane, object->mesh.position[v]));
-    least = fmin(least, plane[3] - low);
+/* The normal of the largest face: of a plate, across it, however it is turned. */
+static bool normal_of_largest_face(const abbe_mesh *mesh, double out[3]) {
+  double most = 0;
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    const uint32_t *face = mesh->face[f];
+    double n[3];
+    abbe_vector_triangle(mesh->position[face[0]], mesh->position[face[1]], mesh->position[face[2]],
+                         n);
+    if (!(abbe_vector_length(n) > most)) continue;
+    most = abbe_vector_length(n);
+    memcpy(out, n, sizeof n);
   }
+  return most > 0 && abbe_vector_normalise(out);
+}
+
+/* Relative to a vertex: far from the origin nothing cancels. */
+static double width_along(const abbe_mesh *mesh, const double direction[3]) {
+  double low = 0, high = 0;
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    double from[3];
+    abbe_vector_subtract(mesh->position[v], mesh->position[0], from);
+    low = fmin(low, abbe_vector_dot(direction, from));
+    high = fmax(high, abbe_vector_dot(direction, from));
+  }
+  return high - low;
+}
+
+double abbe_object_thickness(const abbe_object *object) {
+  double least = INFINITY, n[3];
+  for (int k = 0; k < 3; k++) least = fmin(least, object->max[k] - object->min[k]);
+  if (object->exact.kind == ABBE_EXACT_SPHERE) return least;
+  for (size_t i = 0; object->exact.kind == ABBE_EXACT_CONVEX && i < object->exact.count; i++)
+    least = fmin(least, width_along(&object->mesh, object->exact.plane[i]));
+  if (normal_of_largest_face(&object->mesh, n)) least = fmin(least, width_along(&object->mesh, n));
   return least;
 }
 

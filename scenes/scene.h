@@ -123,7 +123,8 @@ bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers,
 
 /* From a point to the object's surface, m; to a sphere's exact one, negative inside it. */
 double abbe_object_distance(const abbe_object *object, const double point[3]);
-/* Its smallest width, m: of a convex solid across its faces, else of its bounds. */
+/* Its least width, m, among those of its bounds, across its largest face and, of a convex solid,
+ * across each face. */
 double abbe_object_thickness(const abbe_object *object);
 
 /* Index of the light of that name or, where none has it, of that number counted from 1.

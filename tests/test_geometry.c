@@ -35,6 +35,29 @@ static void what_is_thinner_than_its_steps_is_refused(void **state) {
   }
 }
 
+/* Solids of curved faces that are flat as foil, which no axis of the world tells once turned. */
+static void foil_is_refused_however_it_is_turned(void **state) {
+  (void)state;
+  static const char *const shape[] = {"sphere, radius: 0.04", "ring, major: 0.04, minor: 0.01"};
+  for (int i = 0; i < 8; i++) {
+    char text[1024];
+    abbe_scene scene;
+    abbe_geometry g;
+    abbe_error error = {0};
+    snprintf(text, sizeof text,
+             CAMERA POINT_LIGHT FLOOR
+             "- {name: foil, shape: %s, transform: [{scale: [1, 1, %s]}, {rotate: {axis: [1, 0.5, "
+             "0], angle: %d}}, {translate: [0, 0, 0.2]}], material: crown}\n",
+             shape[i % 2], i < 4 ? "1e-6" : "1e-2", i / 2 % 2 * 40);
+    load_text(text, &scene);
+    const abbe_result result = abbe_geometry_make(&scene, &g, &error);
+    assert_int_equal(result, i < 4 ? ABBE_UNSUPPORTED : ABBE_OK);
+    if (i < 4) assert_non_null(strstr(error.text, "does not tell its front from its back"));
+    abbe_geometry_free(&g);
+    abbe_scene_free(&scene);
+  }
+}
+
 static void hits_a_sphere_from_outside_and_inside(void **state) {
   (void)state;
   abbe_scene scene;
@@ -135,6 +158,7 @@ static void size_and_place_do_not_matter(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_is_thinner_than_its_steps_is_refused),
+      cmocka_unit_test(foil_is_refused_however_it_is_turned),
       cmocka_unit_test(hits_a_sphere_from_outside_and_inside),
       cmocka_unit_test(no_ray_slips_between_faces),
       cmocka_unit_test(size_and_place_do_not_matter),
