@@ -7,7 +7,7 @@
 
 /* What was found of one case: its worst figures and, where a law is broken, which one. */
 typedef struct extreme_row {
-  char figures[192];
+  char figures[512];
   char broken[512]; /* empty: all laws are kept */
 } extreme_row;
 
