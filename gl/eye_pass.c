@@ -383,8 +383,8 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progres
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
   GLuint strips = progress != NULL ? 16 : 1;
   GLuint step = (count / strips / PHOTON_GROUP + 1) * PHOTON_GROUP;
-  if (step > 65535u * PHOTON_GROUP)
-    step = 65535u * PHOTON_GROUP; /* the most groups of a dispatch */
+  if (step > 65535u * (PHOTON_GROUP / r->ways))
+    step = 65535u * (PHOTON_GROUP / r->ways); /* the most groups of a dispatch */
   if (refines(r) && step > REFINE_ROOM) step = REFINE_ROOM;
   for (GLuint first = 0; first < count; first += step) {
     GLuint size = count - first < step ? count - first : step;
@@ -392,10 +392,10 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progres
     gl->Uniform1ui(gl->GetUniformLocation(r->refraction, "pixel_first"), first);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, r->pixel_list);
     if (refines(r)) clear_refine_list(r);
-    gl->DispatchCompute((size + PHOTON_GROUP - 1) / PHOTON_GROUP, 1, 1);
+    gl->DispatchCompute((size * r->ways + PHOTON_GROUP - 1) / PHOTON_GROUP, 1, 1);
     if (refines(r)) {
       gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-      abbe_renderer_dispatch_list(r, r->refraction_fine, r->refine_list, REFINE_ROOM, 1);
+      abbe_renderer_dispatch_list(r, r->refraction_fine, r->refine_list, REFINE_ROOM, r->ways);
     }
     if (progress == NULL) continue;
     gl->Finish();

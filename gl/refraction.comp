@@ -1,6 +1,6 @@
 // Refractors as the eye sees them: one direction a wavelength, each exit that carries enough
 // energy followed to what it shows, and the reflection on the outside. Opaque things in front win
-// by the depth test. One thread a listed pixel: triangles smaller than a pixel cost nothing more.
+// by the depth test. Threads are of listed pixels: triangles smaller than a pixel cost nothing more.
 // REFINES: bands are joined first, and listed where what they show differs from what their neighbours
 // show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
@@ -51,6 +51,10 @@ uniform mat3 xyz_from_rgb;
 uniform float pixel_angle;  // rad
 
 int refractor;  // that this thread's pixel shows
+
+ivec2 pixel_of(uint listed) {
+  return ivec2(listed & 0xffffu, listed >> 16);
+}
 
 View eye_as_view() {
   return View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);
@@ -219,18 +223,13 @@ void look(ivec2 at) {
 #endif
 }
 
+#ifndef WALK
 // XYZ of what a band shows through the first interface; the share that is mirrored there.
 vec3 band_light(int band, out float mirrored) {
-#ifdef WALK
-  Way reflected;
-  vec3 light = through(start, first, band - refractor * BAND_COUNT, reflected);
-  mirrored = reflected.share;
-#else
-  vec3 light = through(front, sight, band);
   mirrored = fresnel(-dot(sight, front.n), 1.0 / bands[band].weight_n.w);
-#endif
-  return xyz_from_rgb * light;
+  return xyz_from_rgb * through(front, sight, band);
 }
+#endif
 
 // The first band of the next level, where each of `count` is two of this one's.
 void coarsen(bool coarser, inout int base, inout int count) {
@@ -239,26 +238,15 @@ void coarsen(bool coarser, inout int base, inout int count) {
 }
 
 #ifdef REFINED
-void main() {
-  copy_tables();
-  uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
-  if (listed >= refine_count) return;
-  uint where = refine[listed].x, what = refine[listed].y;
-  ivec2 at = ivec2(where & 0xffffu, where >> 16);
-  look(at);
-  int level = int(what >> 8 & 15u), joined = int(what >> 12 & 15u);
-  int base = refractor * BAND_COUNT, count = WAVELENGTHS;
+// Where the bands that a list entry wants begin, and how many there are on its level.
+void wanted_level(uint what, out int base, out int count) {
+  int level = int(what >> 8 & 15u);
+  base = refractor * BAND_COUNT;
+  count = WAVELENGTHS;
   for (int k = 0; k < BAND_LEVELS - 1; k++) coarsen(k < level, base, count);
-  vec3 sum = vec3(0);
-  uint wanted = what & 255u;
-  while (wanted != 0u) {
-    int band = findLSB(wanted), end = min((band + 1) << joined, count);
-    for (int i = band << joined; i < end; i++) {
-      float mirrored;
-      sum += band_light(base + i, mirrored) * bands[base + i].weight_n.xyz;
-    }
-    wanted &= wanted - 1u;
-  }
+}
+
+void add_to_picture(ivec2 at, vec3 sum) {
   vec4 others = imageLoad(picture, at);
   imageStore(picture, at, vec4(others.rgb + rgb_from_xyz * sum, others.w));
 }
@@ -266,20 +254,16 @@ void main() {
 #ifdef REFINES
 // Of a pixel's light, what a joined band may show wrong.
 const float MOST_WRONG = 0.05;
+
+int level = 0, joined = 0;
+vec3 shown_by[COARSE_BANDS];
 #endif
 
-void main() {
-  copy_tables();
-  uint listed = pixel_first + gl_GlobalInvocationID.x;
-  if (listed >= pixel_count) return;
-  ivec2 at = ivec2(pixel[listed] & 0xffffu, pixel[listed] >> 16);
-  look(at);
-  int base = refractor * BAND_COUNT, count = WAVELENGTHS;
+// Those that the pixel takes: `count` from `base` on.
+void choose_bands(out int base, out int count) {
+  base = refractor * BAND_COUNT;
+  count = WAVELENGTHS;
   float wanted = wanted_bands(front, sight, base, base + WAVELENGTHS - 1);
-#ifdef REFINES
-  int level = 0, joined = 0;
-  vec3 shown[COARSE_BANDS];
-#endif
   for (int k = 0; k < BAND_LEVELS - 1; k++) {
     bool coarser = float((count + 1) / 2) >= wanted;
     coarsen(coarser, base, count);
@@ -294,22 +278,10 @@ void main() {
     joined += coarser ? 1 : 0;
   }
 #endif
-  vec3 sum = vec3(0), mirror = vec3(0);
-  for (int i = 0; i < count; i++) {
-    float mirrored;
-    vec3 light = band_light(base + i, mirrored), weight = bands[base + i].weight_n.xyz;
-    mirror += mirrored * weight;
-    sum += light * weight;
-#ifdef REFINES
-    shown[i] = light;
-#endif
-  }
-#ifdef WALK
-  sum += mirror * (xyz_from_rgb * in_the_mirror(start, first, base + count / 2 - refractor * BAND_COUNT));
-#else
-  bool met;
-  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met));
-#endif
+}
+
+// XYZ that all of the pixel's bands show.
+void write_pixel(uint where, int base, int count, vec3 sum) {
 #ifdef REFINES
   // Within a band the light is taken to change by half of the way to its neighbours.
   uint asked = 0u;
@@ -317,18 +289,65 @@ void main() {
   vec3 left = sum;
   for (int i = 0; i < COARSE_BANDS; i++) {
     bool there = i < count && joined > 0 && found;
-    vec3 light = shown[i], weight = bands[base + min(i, count - 1)].weight_n.xyz;
-    vec3 before = abs(light - shown[max(i - 1, 0)]), after = abs(light - shown[min(i + 1, count - 1)]);
+    vec3 light = shown_by[i], weight = bands[base + min(i, count - 1)].weight_n.xyz;
+    vec3 before = abs(light - shown_by[max(i - 1, 0)]), after = abs(light - shown_by[min(i + 1, count - 1)]);
     bool wrong = there && dot(max(before, after), weight) > most;
     asked |= wrong ? 1u << uint(i) : 0u;
     left -= wrong ? light * weight : vec3(0);
   }
   sum = left;
   if (asked != 0u)
-    refine[atomicAdd(refine_count, 1u)] = uvec2(pixel[listed], asked | uint(level) << 8 | uint(joined) << 12);
+    refine[atomicAdd(refine_count, 1u)] = uvec2(where, asked | uint(level) << 8 | uint(joined) << 12);
 #endif
-  sum = rgb_from_xyz * sum;
   // At the rim an exact surface may miss the pixel that its triangles cover: what lies behind shows.
-  if (found) imageStore(picture, at, vec4(sum, front.t));
+  if (found) imageStore(picture, pixel_of(where), vec4(rgb_from_xyz * sum, front.t));
+}
+#endif
+
+#ifdef WALK
+#include "refraction_ways.glsl"
+#elif defined(REFINED)
+void main() {
+  copy_tables();
+  uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (listed >= refine_count) return;
+  uint what = refine[listed].y;
+  ivec2 at = pixel_of(refine[listed].x);
+  look(at);
+  int base, count, joined = int(what >> 12 & 15u);
+  wanted_level(what, base, count);
+  vec3 sum = vec3(0);
+  uint wanted = what & 255u;
+  while (wanted != 0u) {
+    int band = findLSB(wanted), end = min((band + 1) << joined, count);
+    for (int i = band << joined; i < end; i++) {
+      float mirrored;
+      sum += band_light(base + i, mirrored) * bands[base + i].weight_n.xyz;
+    }
+    wanted &= wanted - 1u;
+  }
+  add_to_picture(at, sum);
+}
+#else
+void main() {
+  copy_tables();
+  uint listed = pixel_first + gl_GlobalInvocationID.x;
+  if (listed >= pixel_count) return;
+  look(pixel_of(pixel[listed]));
+  int base, count;
+  choose_bands(base, count);
+  vec3 sum = vec3(0), mirror = vec3(0);
+  for (int i = 0; i < count; i++) {
+    float mirrored;
+    vec3 light = band_light(base + i, mirrored), weight = bands[base + i].weight_n.xyz;
+    mirror += mirrored * weight;
+    sum += light * weight;
+#ifdef REFINES
+    shown_by[i] = light;
+#endif
+  }
+  bool met;
+  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met));
+  write_pixel(pixel[listed], base, count, sum);
 }
 #endif

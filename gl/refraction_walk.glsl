@@ -2,9 +2,15 @@
 
 #include "walk.glsl"
 
-// Of one band. Mesa 22's llvmpipe ends every loop of a thread that has been through 65535 turns of any
-// loops, which a longer search through a large mesh would come near; the strongest ways come first.
-const int MOST_SEGMENTS = max(8, 224 / (WAVELENGTHS + 1));
+// Of one band: the strongest ways come first. Mesa 22's llvmpipe ends every loop of a thread that has
+// been through 65535 turns of any loops; a stretch takes one for each plane and some for the hierarchy,
+// and a thread takes every WAYS-th band (refraction_ways.glsl).
+#ifdef REFINES
+const int BANDS_OF_THREAD = (COARSE_BANDS + WAYS) / WAYS;
+#else
+const int BANDS_OF_THREAD = (WAVELENGTHS + WAYS) / WAYS;
+#endif
+const int MOST_SEGMENTS = max(8, min(224, 49152 / (PLANE_ROOM + 64)) / BANDS_OF_THREAD);
 
 int band_of_refractor;  // that is followed, among one refractor's
 float left;             // share of what is not followed
@@ -65,21 +71,4 @@ vec3 shown(Way w) {
     for (int k = 0; k < PENDING; k++) left += last ? pending[k].share : 0.0;
   }
   return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0);
-}
-
-// Through the first interface, in one band; the share that is mirrored there is left to others.
-vec3 through(Way start, Interface first, int band, out Way mirrored) {
-  band_of_refractor = band;
-  Way w = start;
-  mirrored = start;
-  if (!split(w, first, mirrored)) mirrored.share = 0.0;
-  return shown(w);
-}
-
-// In the mirror of the first interface, for all bands alike.
-vec3 in_the_mirror(Way start, Interface first, int band) {
-  band_of_refractor = band;
-  Way w = start, mirrored;
-  if (!split(w, first, mirrored) || mirrored.share <= 0.0) return vec3(0);
-  return shown(mirrored) / mirrored.share;
 }

@@ -31,6 +31,7 @@ static void write_defines(abbe_renderer *r) {
   for (size_t n = r->plan.desc.wavelengths; n > 1; r->band_levels++)
     r->band_count += n = (n + 1) / 2;
   const abbe_plan *p = &r->plan;
+  r->ways = !p->walk ? 1 : p->desc.wavelengths > 1 ? 8 : 2;
   size_t planes = 0, spectra = p->refractor_count * p->desc.wavelengths;
   for (size_t i = 0; i < p->refractor_count; i++)
     if (p->model[i] == ABBE_REFRACTOR_CONVEX)
@@ -42,7 +43,7 @@ static void write_defines(abbe_renderer *r) {
            "#define REFRACTOR_ROOM %zu\n#define PLANE_ROOM %zu\n#define RECEIVER_ROOM %zu\n"
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
            "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s"
-           "#define HIERARCHY_STACK %zu\n#define RECEIVER_ROOT %zu\n",
+           "#define HIERARCHY_STACK %zu\n#define RECEIVER_ROOT %zu\n#define WAYS %u\n",
            p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
            p->desc.orders, p->slots, room(p->light_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
@@ -61,7 +62,7 @@ static void write_defines(abbe_renderer *r) {
            p->receivers == ABBE_RECEIVER_HIERARCHY ? "#define RECEIVER_HIERARCHY\n" : "",
            p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
            p->caustics ? "#define CAUSTICS\n" : "", p->walk ? "#define WALK\n" : "",
-           p->cubes ? "#define CUBES\n" : "", r->hierarchy_depth + 1, r->receiver_root);
+           p->cubes ? "#define CUBES\n" : "", r->hierarchy_depth + 1, r->receiver_root, r->ways);
   const size_t used = strlen(r->defines);
   if (r->shadow_planes > 0)
     snprintf(r->defines + used, sizeof r->defines - used, "#define SHADOW_PLANES %zu\n%s",

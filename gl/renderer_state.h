@@ -111,6 +111,7 @@ struct abbe_renderer {
   size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
   GLuint table_bands, table_warps, table_shadows, texel_sizes, band_attenuation;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
+  GLuint ways;                    /* threads of a pixel as the eye sees it (refraction_ways.glsl) */
   GLuint path_marks, path_list, splat_list, map_sums;
   GLuint wants, pair_list; /* intervals that ask for all their wavelengths */
   GLuint fine_landings, fine_signatures, fine_marks, fine_paths;

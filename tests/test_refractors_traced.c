@@ -169,7 +169,10 @@ static void test_parts_of_one_stuff_have_no_wall(void **state) {
 
 /* The whole frame shows a brilliant of diamond's index on paper that ambient light alone lights, so
  * that each ray's ways out are all that counts. With eight exits it is a tenth too dark. */
-static void check_stone(const char *eye, const char *target, const char *fov) {
+#define STONE(name, at)                                                                            \
+  "- {name: " name ", shape: brilliant, diameter: 0.1, transform: [{rotate: {axis: [0, 0, 1], "    \
+  "angle: 7}}, {translate: [" at ", 0, 0.046]}], material: dense}\n"
+static void check_stones(const char *stones, const char *eye, const char *target, const char *fov) {
   char text[1024];
   abbe_scene scene;
   abbe_image drawn, traced;
@@ -179,10 +182,9 @@ static void check_stone(const char *eye, const char *target, const char *fov) {
            "camera: {eye: %s, target: %s, up: [0, 1, 0.3], fov: %s}\n"
            "lights:\n- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5,"
            " intensity: 1}\n"
-           "objects:\n- {name: stone, shape: brilliant, diameter: 0.1, transform: [{rotate: {axis: "
-           "[0, 0, 1], angle: 7}}, {translate: [0, 0, 0.046]}], material: dense}\n"
+           "objects:\n%s"
            "- {name: paper, shape: rectangle, width: 2, height: 2, reflectance: 0.85}\n",
-           eye, target, fov);
+           eye, target, fov, stones);
   load_text(text, &scene);
   abbe_render_desc desc = small_frame;
   abbe_renderer *renderer = make_renderer(&scene, &desc);
@@ -210,16 +212,24 @@ static void check_stone(const char *eye, const char *target, const char *fov) {
 
 static void test_a_stone_face_up(void **state) {
   (void)state;
-  check_stone("[0, -0.04, 0.8]", "[0, 0, 0.05]", "4");
+  check_stones(STONE("stone", "0"), "[0, -0.04, 0.8]", "[0, 0, 0.05]", "4");
 }
 
 static void test_a_stone_from_the_side(void **state) {
   (void)state;
-  check_stone("[0.1, -0.75, 0.2]", "[0, 0, 0.04]", "2.5");
+  check_stones(STONE("stone", "0"), "[0.1, -0.75, 0.2]", "[0, 0, 0.04]", "2.5");
+}
+
+/* Through one the eye sees the other, from refractor to refractor. */
+static void test_two_stones_from_the_side(void **state) {
+  (void)state;
+  check_stones(STONE("left", "-0.052") STONE("right", "0.052"), "[0.05, -0.75, 0.2]",
+               "[-0.052, 0, 0.04]", "2.5");
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_stone_face_up),
+                                     cmocka_unit_test(test_two_stones_from_the_side),
                                      cmocka_unit_test(test_a_stone_from_the_side),
                                      cmocka_unit_test(test_a_hollow_ball),
                                      cmocka_unit_test(test_a_ball_in_another),

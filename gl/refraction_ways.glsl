@@ -1,0 +1,143 @@
+// The eye's rays on the general way, by WAYS threads a pixel: so each band's are followed as far however
+// many bands there are.
+
+const int PIXELS = int(gl_WorkGroupSize.x) / WAYS;
+
+shared vec3 way_sum[PIXELS * WAYS];
+
+#ifdef HIERARCHY
+// A search is dear: a pixel's first thread finds out for all what its ray meets first. The first threads
+// of all pixels come first, then the second ones: where few bands are wanted, whole lanes are done early.
+int place = int(gl_LocalInvocationID.x) % PIXELS, way = int(gl_LocalInvocationID.x) / PIXELS;
+
+shared ivec4 task[PIXELS];  // refractor, first band, how many, and whether something is met
+shared Way task_start[PIXELS];
+shared Interface task_first[PIXELS];
+
+void give_task(int base, int count) {
+  task[place] = ivec4(refractor, base, count, found ? 1 : 0);
+  task_start[place] = start;
+  task_first[place] = first;
+}
+
+void take_task(out int base, out int count) {
+  refractor = task[place].x;
+  base = task[place].y;
+  count = task[place].z;
+  found = task[place].w != 0;
+  start = task_start[place];
+  first = task_first[place];
+  front = first.hit;
+}
+#else
+// Short loops are dear where what they change is kept in memory, as Mesa 22's llvmpipe does with what is
+// written before a barrier and read behind it: each thread looks for itself. Neighbouring lanes have a
+// pixel's bands, which take the same ways for longer than its neighbours do.
+int place = int(gl_LocalInvocationID.x) / WAYS, way = int(gl_LocalInvocationID.x) % WAYS;
+#endif
+
+// XYZ of what a band shows through the first interface, or in_mirror: of what it shows in the mirror
+// there; mirrored: the share that is.
+vec3 band_light(int band, bool in_mirror, out float mirrored) {
+  band_of_refractor = band - refractor * BAND_COUNT;
+  Way w = start, reflected = start;
+  if (!split(w, first, reflected)) reflected.share = 0.0;
+  mirrored = reflected.share;
+  reflected.share = mirrored > 0.0 ? 1.0 : 0.0;
+  if (in_mirror) w = reflected;
+  return xyz_from_rgb * shown(w);
+}
+
+#ifdef REFINED
+void main() {
+  copy_tables();
+  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  uint listed = group * uint(PIXELS) + uint(place);
+  bool there = listed < refine_count;
+  uvec2 entry = there ? refine[listed] : uvec2(0);
+  ivec2 at = pixel_of(entry.x);
+  int base, count;
+#ifdef HIERARCHY
+  if (way == 0) {
+    look(at);
+    wanted_level(entry.y, base, count);
+    give_task(base, count);
+  }
+  barrier();
+  take_task(base, count);
+#else
+  look(at);
+  wanted_level(entry.y, base, count);
+#endif
+  uint wanted = entry.y & 255u;
+  int joined = int(entry.y >> 12 & 15u), most = bitCount(wanted) << joined;
+  vec3 sum = vec3(0);
+  for (int k = way; k < most; k += WAYS) {
+    uint rest = wanted;
+    for (int before = k >> joined; before > 0; before--) rest &= rest - 1u;
+    int i = (findLSB(rest) << joined) + (k & ((1 << joined) - 1));
+    float mirrored;
+    vec3 light = band_light(base + min(i, count - 1), false, mirrored);
+    sum += i < count ? light * bands[base + i].weight_n.xyz : vec3(0);
+  }
+  way_sum[place * WAYS + way] = sum;
+  barrier();
+  if (way > 0 || !there) return;
+  vec3 all = vec3(0);
+  for (int k = 0; k < WAYS; k++) all += way_sum[place * WAYS + k];
+  add_to_picture(at, all);
+}
+#else
+shared vec3 way_mirror[PIXELS * WAYS], in_the_mirror[PIXELS];
+#ifdef REFINES
+shared vec3 way_shown[PIXELS * COARSE_BANDS];
+#endif
+
+void main() {
+  copy_tables();
+  uint listed = pixel_first + gl_WorkGroupID.x * uint(PIXELS) + uint(place);
+  bool there = listed < pixel_count;
+  uint where = there ? pixel[listed] : 0u;
+  int base, count;
+#ifdef HIERARCHY
+  if (way == 0) {
+    look(pixel_of(where));
+    choose_bands(base, count);
+    give_task(base, count);
+  }
+  barrier();
+  take_task(base, count);
+#else
+  look(pixel_of(where));
+  choose_bands(base, count);
+#endif
+  vec3 sum = vec3(0), mirror = vec3(0);
+  for (int i = there ? way : count + 1; i <= count; i += WAYS) {
+    bool in_mirror = i == count;
+    int band = base + (in_mirror ? count / 2 : i);
+    float mirrored;
+    vec3 light = band_light(band, in_mirror, mirrored);
+    vec3 weight = in_mirror ? vec3(0) : bands[band].weight_n.xyz;
+    mirror += mirrored * weight;
+    sum += light * weight;
+    if (in_mirror) in_the_mirror[place] = light;
+#ifdef REFINES
+    if (!in_mirror) way_shown[place * COARSE_BANDS + i] = light;
+#endif
+  }
+  way_sum[place * WAYS + way] = sum;
+  way_mirror[place * WAYS + way] = mirror;
+  barrier();
+  if (way > 0 || !there) return;
+  vec3 all = vec3(0), all_mirror = vec3(0);
+  for (int k = 0; k < WAYS; k++) {
+    all += way_sum[place * WAYS + k];
+    all_mirror += way_mirror[place * WAYS + k];
+  }
+#ifdef REFINES
+  for (int i = 0; i < COARSE_BANDS; i++)
+    shown_by[i] = i < count ? way_shown[place * COARSE_BANDS + i] : vec3(0);
+#endif
+  write_pixel(where, base, count, all + all_mirror * in_the_mirror[place]);
+}
+#endif
