@@ -4,6 +4,7 @@
 #include "validation/tracer.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const shapes[] = {EXTREME_FLOOR EXTREME_BALL, EXTREME_FLOOR EXTREME_BRICK,
@@ -62,23 +63,56 @@ static void want_same(const char *what, bool equal, extreme_row *row) {
   if (!equal) extreme_row_break(row, "%s: not the same to the last bit", what);
 }
 
+static int by_size(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Draws both and compares their pictures but for the hundredth of the pixels that differ most. */
+static double compare_calm(abbe_context *context, const extreme *a, const extreme *b,
+                           extreme_row *row) {
+  extreme_frame x, y;
+  double difference = INFINITY;
+  if (!draw(context, a, &x, row)) return difference;
+  if (draw(context, b, &y, row)) {
+    size_t count = x.picture.width * x.picture.height, kept = count - count / 100;
+    double *square = calloc(count, sizeof *square), squares = 0, sum = 0;
+    for (size_t i = 0; square != NULL && i < count; i++) {
+      double value = (double)y.picture.data[i * y.picture.channels + 1];
+      square[i] = pow((double)x.picture.data[i * x.picture.channels + 1] - value, 2);
+      sum += value;
+    }
+    if (square != NULL) qsort(square, count, sizeof *square, by_size);
+    for (size_t i = 0; square != NULL && i < kept; i++) squares += square[i];
+    if (sum > 0) difference = sqrt(squares / (double)kept) / (sum / (double)count);
+    free(square);
+    extreme_frame_free(&y);
+  }
+  extreme_frame_free(&x);
+  return difference;
+}
+
 /* Where n as a float is one number for all wavelengths, dispersion is gone to the last bit. At
- * B = 1e-6 n still moves by 40 of its last bits: the picture moves with the landings. */
+ * B = 1e-6 n still moves by 40 of its last bits: the picture moves with the landings. Light that a
+ * curved wall sends to the next one twenty times and more has no limit there: a ring doubles what
+ * two rays differ by from wall to wall, so that they show different things after forty even where n
+ * differs by 1e-12. Some ten pixels of the ring show such light. */
 static void no_dispersion(abbe_context *context, extreme_row *row) {
   bool equal, all = true;
-  double worst = 0;
+  double worst = 0, calm = 0;
   for (int i = 0; i < SHAPES; i++) {
-    /* Few exits: what the eye sees after a hundred mirrors moves a hundred times as far. */
-    extreme none = {.scene = {.objects = shapes[i]}, .desc = {.wavelengths = 7, .orders = 7}},
-            tiny = none;
+    extreme none = {.scene = {.objects = shapes[i]}, .desc = {.wavelengths = 7}}, tiny = none;
     tiny.scene.b = 1e-9;
     compare(context, &tiny, &none, true, &equal, row);
     all = all && equal;
     tiny.scene.b = 1e-6;
+    calm = fmax(calm, compare_calm(context, &tiny, &none, row));
+    none.desc.orders = tiny.desc.orders = 7;
     worst = fmax(worst, compare(context, &tiny, &none, false, &equal, row));
   }
   want_same("B = 1e-9", all, row);
-  want_below("B = 1e-6", worst, 1e-3, row);
+  want_below("B = 1e-6", calm, 1e-4, row);
+  want_below("with few exits", worst, 1e-3, row);
 }
 
 /* Seven wavelengths of one index, and one: what differs is the rounding of their weights. */
