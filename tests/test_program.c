@@ -21,7 +21,7 @@ static void write_defines(unsigned bits, char *out, size_t size) {
   int used = snprintf(out, size,
                       "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
                       "#define WAVELENGTHS 7\n#define EXITS 3\n#define SLOTS 4\n#define LANES 7\n"
-                      "#define NODES 5\n"
+                      "#define NODES 5\n#define WAYS 8\n"
                       "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
                       "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
                       "#define BAND_COUNT 14\n#define BAND_LEVELS 4\n#define BAND_ROOM 28\n"
