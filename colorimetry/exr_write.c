@@ -99,9 +99,34 @@ static bool point_channels(exr_coding_channel_info_t *channels, int count, const
   return true;
 }
 
+typedef struct codec {
+  exr_result_t (*compress)(exr_encode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
+} codec;
+
+/* A reader takes a chunk of its samples' size for samples as they are. 3.1.5's ZIP stores them so
+ * where packing makes them more, but not where it makes them just as much (mended in 3.4.8). */
+static exr_result_t compress(exr_encode_pipeline_t *pipe) {
+  const codec *library = pipe->encoding_user_data;
+  exr_result_t rv = library->compress(pipe);
+  if (rv == 0 && pipe->compressed_bytes == pipe->packed_bytes)
+    memcpy(pipe->compressed_buffer, pipe->packed_buffer, pipe->packed_bytes);
+  return rv;
+}
+
+static exr_result_t choose_routines(exr_context_t context, codec *library,
+                                    exr_encode_pipeline_t *pipe) {
+  exr_result_t rv = exr_encoding_choose_default_routines(context, 0, pipe);
+  library->compress = pipe->compress_fn;
+  if (library->compress == NULL) return rv;
+  pipe->encoding_user_data = library;
+  pipe->compress_fn = compress;
+  return rv;
+}
+
 static exr_result_t write_chunks(exr_context_t context, const abbe_image *image,
                                  exr_encode_pipeline_t *pipe) {
   int32_t lines = 0;
+  codec library = {0};
   exr_result_t rv = exr_get_scanlines_per_chunk(context, 0, &lines);
   for (size_t y = 0; rv == 0 && y < image->height; y += (size_t)lines) {
     exr_chunk_info_t chunk = {0};
@@ -111,7 +136,7 @@ static exr_result_t write_chunks(exr_context_t context, const abbe_image *image,
                 : exr_encoding_update(context, 0, &chunk, pipe);
     if (rv == 0 && !point_channels(pipe->channels, pipe->channel_count, image, y))
       rv = EXR_ERR_UNKNOWN;
-    if (rv == 0 && y == 0) rv = exr_encoding_choose_default_routines(context, 0, pipe);
+    if (rv == 0 && y == 0) rv = choose_routines(context, &library, pipe);
     if (rv == 0) rv = exr_encoding_run(context, 0, pipe);
   }
   return rv;

@@ -9,7 +9,7 @@ add_dependencies(test_colour_commands abbe)
 # OpenEXR's own C++ library, which shares no code with the C core that Abbe reads by.
 add_library(exr_library OBJECT exr_library.cpp)
 target_link_libraries(exr_library PUBLIC abbe_build OpenEXR::OpenEXR)
-abbe_test(exr_files cpu exr_library abbe_colorimetry abbe_spectral)
+abbe_test(exr_files cpu exr_library abbe_colorimetry abbe_spectral ZLIB::ZLIB)
 abbe_test(picture_windows program exr_library abbe_colorimetry abbe_spectral)
 target_compile_definitions(test_picture_windows PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
 add_dependencies(test_picture_windows abbe)
