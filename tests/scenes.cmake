@@ -1,4 +1,4 @@
-foreach(name transform disjoint_sets topology shells convex vector mesh object_surface mesh_charts mesh_import mesh_files ply_strips shape brilliant scene object_file scene_file view map_layout map_resample)
+foreach(name transform disjoint_sets topology shells convex vector mesh mesh_repair object_surface mesh_charts mesh_import mesh_files ply_strips shape brilliant scene object_file scene_file view map_layout map_resample)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral)
 endforeach()
 foreach(name fork alarm aiImportFileExWithProperties)
