@@ -146,12 +146,23 @@ bool abbe_encoding_is_binary(const char *bytes, size_t size) {
   return zeros > 0 || controls > looked / 32;
 }
 
+/* Letters that turn the direction of what follows, end a line, or cannot be seen: what is read is
+ * then not what stands there. Of Unicode's format characters (Cf) and separators (Zl, Zp). */
+static bool misleads(uint32_t code) {
+  static const uint32_t range[][2] = {{0x061c, 0x061c},  {0x200b, 0x200f}, {0x2028, 0x202e},
+                                      {0x2060, 0x206f},  {0xfeff, 0xfeff}, {0xfff9, 0xfffb},
+                                      {0xe0000, 0xe007f}};
+  for (size_t i = 0; i < sizeof range / sizeof *range; i++)
+    if (code >= range[i][0] && code <= range[i][1]) return true;
+  return false;
+}
+
 static uint32_t shown(uint32_t code, bool before_newline, bool lines) {
   if (code == '\n' || code == '\t') return lines ? code : ' ';
   if (code == '\r' && before_newline) return lines ? code : ' ';
   if (code < 0x20) return 0x2400 + code;
   if (code == 0x7f) return 0x2421;
-  return code >= 0x80 && code < 0xa0 ? REPLACEMENT : code;
+  return (code >= 0x80 && code < 0xa0) || misleads(code) ? REPLACEMENT : code;
 }
 
 size_t abbe_encoding_printable(const char *text, size_t length, bool lines, char *out,

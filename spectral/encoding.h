@@ -30,10 +30,11 @@ bool abbe_encoding_is_binary(const char *bytes, size_t size);
 
 /* Text from files and command lines may hold what a terminal obeys. Writes length bytes of text to
  * out[size] as valid UTF-8 without it, zero-terminated, cut between letters where it does not fit:
- * control characters become their pictures (ESC U+241B, DEL U+2421), what is no UTF-8 and the
- * controls U+0080 to U+009F become U+FFFD. Newline and tab, and a return before a newline, stay
- * where lines is true and become spaces where not. Returns the bytes written; 3 * length + 1 always
- * do. */
+ * control characters become their pictures (ESC U+241B, DEL U+2421); what is no UTF-8, the controls
+ * U+0080 to U+009F, and letters that turn the direction of writing, part lines or paragraphs, or
+ * have no width (U+202E, U+2028, U+200B, U+FEFF and their like) become U+FFFD. Newline and tab, and
+ * a return before a newline, stay where lines is true and become spaces where not. Returns the
+ * bytes written; 3 * length + 1 always do. */
 size_t abbe_encoding_printable(const char *text, size_t length, bool lines, char *out, size_t size);
 
 /* Bytes of the valid UTF-8 letter at text, which ends with a zero; 0 where none begins there. */

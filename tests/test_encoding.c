@@ -120,6 +120,30 @@ static void what_a_terminal_obeys_becomes_pictures(void **state) {
   assert_string_equal(small, "");
 }
 
+static void what_misleads_the_eye_is_shown(void **state) {
+  (void)state;
+  /* of each range its ends, and the letters beside them, which stay */
+  static const struct {
+    const char *first, *last, *before, *after;
+  } rows[] = {{"\u061c", "\u061c", "\u061b", "\u061d"},
+              {"\u200b", "\u200f", "\u200a", "\u2010"},
+              {"\u2028", "\u202e", "\u2027", "\u202f"},
+              {"\u2060", "\u206f", "\u205f", "\u2070"},
+              {"\ufeff", "\ufeff", "\ufefc", "\uff01"},
+              {"\ufff9", "\ufffb", "\uffee", "\ufffc"},
+              {"\U000e0001", "\U000e007f", "\u6c34", "\U000e0100"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    for (int lines = 0; lines < 2; lines++) {
+      char text[64], right[64], out[64];
+      snprintf(text, sizeof text, "%s a%sb%sc %s", rows[i].before, rows[i].first, rows[i].last,
+               rows[i].after);
+      snprintf(right, sizeof right, "%s a\ufffdb\ufffdc %s", rows[i].before, rows[i].after);
+      const size_t n = abbe_encoding_printable(text, strlen(text), lines != 0, out, sizeof out);
+      assert_string_equal(out, right);
+      assert_int_equal(n, strlen(right));
+    }
+}
+
 static void texts_are_told_from_other_files(void **state) {
   (void)state;
   static const char latin[] = "NM F2 25\xb0\x43\r\n\x1a", marked[] = "\xff\xfeN\0M\0",
@@ -143,6 +167,7 @@ int main(void) {
       cmocka_unit_test(letters_are_told_and_cut_ones_trimmed),
       cmocka_unit_test(texts_are_told_from_other_files),
       cmocka_unit_test(what_a_terminal_obeys_becomes_pictures),
+      cmocka_unit_test(what_misleads_the_eye_is_shown),
       cmocka_unit_test(lines_end_in_one_way),
       cmocka_unit_test(what_cannot_be_decoded_is_replaced),
   };
