@@ -45,6 +45,7 @@ typedef struct request {
   abbe_preset_options preset;
   abbe_error_options errors;
   const char *exr, *png, *stats;
+  const char *of_png; /* an option that the PNG alone has */
   bool layers, unfilled, quiet, json;
   int bits;
   size_t frames, bands;
@@ -91,6 +92,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->png = abbe_command_target(state->name, "--png", text, ".png");
     return 0;
   case OPTION_BITS:
+    q->of_png = "--bits";
     q->bits = abbe_command_choice(p, "--bits", text, bits, 2) == 0 ? 8 : 16;
     return 0;
   case OPTION_LAYERS:
@@ -118,21 +120,27 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->quiet = true;
     return 0;
   case OPTION_OCIO:
+    q->of_png = "--ocio";
     q->display.config = text;
     return 0;
   case OPTION_DISPLAY:
+    q->of_png = "--display";
     q->display.display = text;
     return 0;
   case OPTION_VIEW:
+    q->of_png = "--view";
     q->display.view = text;
     return 0;
   case OPTION_EXPOSURE:
+    q->of_png = "--exposure";
     q->display.exposure = abbe_command_number(p, "--exposure", text, -30, 30);
     return 0;
   case ARGP_KEY_END:
     if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
         q->errors.png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
+    if (q->of_png != NULL && q->png == NULL)
+      argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
     if (q->bands > 0 && q->map.save == NULL)
       argp_error(state, "--bands are those of a map: give --save-map FILE.exr too");
     if (q->errors.mean && q->layers)

@@ -53,6 +53,7 @@ enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
 typedef struct request {
   const char *program, *scene, *materials;
   const char *exr, *png, *stats, *checkpoint;
+  const char *of_png; /* an option that the PNG alone has */
   abbe_map_options map;
   abbe_trace_desc desc;
   size_t passes;
@@ -184,9 +185,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->every = abbe_command_number(q->program, "--checkpoint-every", text, 0, 1e9);
     return 0;
   case OPTION_VIEW:
+    q->of_png = "--view";
     q->display.view = text;
     return 0;
   case OPTION_EXPOSURE:
+    q->of_png = "--exposure";
     q->display.exposure = abbe_command_number(q->program, "--exposure", text, -30, 30);
     return 0;
   case OPTION_RATES:
@@ -201,6 +204,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->exr == NULL && q->png == NULL && q->map.save == NULL && q->stats == NULL && !q->json &&
         !q->rates)
       argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
+    if (q->of_png != NULL && q->png == NULL)
+      argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
     return 0;
   default:
     return parse_work(key, text, q);

@@ -46,7 +46,7 @@ abbe_result abbe_mesh_drop_doubles(abbe_mesh *mesh, bool walls_go, size_t *doubl
 abbe_result abbe_mesh_drop_sheets(abbe_mesh *mesh, size_t *sheets, abbe_error *error);
 
 /* Closes holes: by a fan where that is safe, else, if any, by the smallest surface. *widest: the
- * longest side of the widest one's bounds, m. */
+ * longest side of the widest one's bounds, in the mesh's own unit. */
 abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, bool any, size_t *closed, double *widest,
                                   abbe_error *error);
 

@@ -180,7 +180,7 @@ static void repair_closes_what_bends(void **state) {
   assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
   if (abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
     fail_msg("%s", error.text);
-  assert_contains(what, "1 hole closed, 1.98 across");
+  assert_contains(what, "1 hole closed, 1.98 across in the mesh's own unit");
   free(what);
   const abbe_mesh_report r = check(&m);
   assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
