@@ -243,8 +243,10 @@ static void say(char *text, size_t size, size_t count, const char *one, const ch
 
 static abbe_result describe(const mending *done, bool repair, char **what, abbe_error *error) {
   char text[640] = "", one[80], many[80];
-  abbe_number_format(one, sizeof one, "hole closed, %.3g across in the mesh's own unit", done->widest);
-  abbe_number_format(many, sizeof many, "holes closed, the widest %.3g across in the mesh's own unit", done->widest);
+  abbe_number_format(one, sizeof one, "hole closed, %.3g across in the mesh's own unit",
+                     done->widest);
+  abbe_number_format(many, sizeof many,
+                     "holes closed, the widest %.3g across in the mesh's own unit", done->widest);
   say(text, sizeof text, done->repeated, "face with repeated corners dropped",
       "faces with repeated corners dropped");
   say(text, sizeof text, done->doubles, "face that was there twice dropped",

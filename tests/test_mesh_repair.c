@@ -43,7 +43,7 @@ static void set_face(abbe_mesh *m, size_t f, size_t a, size_t b, size_t c) {
 /* Two fins on every one of many bodies. */
 static void as_many_sheets_as_there_are_go(void **state) {
   (void)state;
-  enum { BODIES = 400 };
+  enum { BODIES = 200 };
   static test_box box[BODIES + (2 * BODIES + 11) / 12]; /* whose last ones are made into fins */
   const size_t boxes = sizeof box / sizeof *box;
   for (size_t i = 0; i < boxes; i++)
@@ -54,7 +54,7 @@ static void as_many_sheets_as_there_are_go(void **state) {
     set_face(&m, m.face_count++, 8 * i + 4, 8 * i + 5, 8 * i + 12);
     set_face(&m, m.face_count++, 8 * i + 2, 8 * i + 3, 8 * i + 13);
   }
-  assert_repairs(&m, "800 sheets that hung on the body");
+  assert_repairs(&m, "400 sheets that hung on the body");
   assert_int_equal(m.face_count, 12 * BODIES);
   abbe_mesh_free(&m);
 }
@@ -107,8 +107,8 @@ static abbe_mesh strips(size_t count, size_t points) {
 
 static void many_short_rims_are_closed(void **state) {
   (void)state;
-  abbe_mesh m = strips(2000, 20);
-  assert_repairs(&m, "2000 holes closed");
+  abbe_mesh m = strips(500, 20);
+  assert_repairs(&m, "500 holes closed");
   abbe_mesh_free(&m);
 }
 
