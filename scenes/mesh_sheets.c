@@ -159,7 +159,7 @@ abbe_result abbe_mesh_drop_sheets(abbe_mesh *mesh, size_t *sheets, abbe_error *e
     result = pass >= LEAST_PASSES && work > MOST_WORK
                  ? abbe_error_set(error, ABBE_GEOMETRY,
                                   "sheets hang on sheets of the mesh, too many one on another for "
-                                  "'repair: true' to drop: %zu are dropped, and there are more; "
+                                  "'repair: true' to drop: %zu are dropped, and more may be left; "
                                   "drop them where the mesh was made",
                                   *sheets)
                  : drop_once(mesh, &d, &dropped, error);
