@@ -187,6 +187,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
   cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
   cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_pages);
+  cJSON_AddNumberToObject(energy, "interpolated", s->energy.interpolated);
   cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
   if (s->layer_faces > 0) cJSON_AddNumberToObject(root, "layer_faces", (double)s->layer_faces);
   cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);

@@ -3,30 +3,20 @@
 layout(local_size_x = 32, local_size_y = 16) in;
 uniform sampler2DArray map_levels;
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
-// Window width of the map's columns, then height of its rows, a light after another.
-layout(std430, binding = 9) readonly buffer TexelSizes { float texel_size[]; };
 uniform int light;
 uniform int layer;  // another than the light's: of its pages
 uniform int map_size;
 uniform int level;
-
-// Of a column (or row, from `first` on) of the finer level.
-float size_of(int first, int column) {
-  float sum = 0.0;
-  int texels = 1 << (level - 1);
-  for (int k = 0; k < texels; k++) sum += texel_size[first + column * texels + k];
-  return sum;
-}
+#include "texel_sizes.glsl"
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   if (max(texel.x, texel.y) >= map_size >> level) return;
-  int columns = light * 2 * map_size, rows = columns + map_size;
   vec4 sum = vec4(0);
   float area = 0.0;
   for (int k = 0; k < 4; k++) {
     ivec2 from = 2 * texel + ivec2(k & 1, k >> 1);
-    float part = layer == light ? size_of(columns, from.x) * size_of(rows, from.y) : 1.0;
+    float part = layer == light ? size_of(0, level - 1, from.x) * size_of(1, level - 1, from.y) : 1.0;
     sum += part * texelFetch(map_levels, ivec3(from, layer), level - 1);
     area += part;
   }

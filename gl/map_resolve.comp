@@ -1,12 +1,11 @@
-// Fixed-point sums to XYZ flux, and on the finest level to flux over window area: one level of the
-// map, with what the coarser levels hold laid over it bilinearly, which keeps their sum. A layer of
-// pages comes to irradiance, each page by itself.
+// Fixed-point sums to XYZ flux over window area: one level of the map, with what the coarser levels hold laid
+// over it. On those it is flux over the area that a texel lights through the bilinear filter, of finer texels
+// by their own areas: which keeps the sum, and shows no texel to be narrower than the next. A layer of pages
+// comes to irradiance, each page by itself.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "common.glsl"
 #include "receiver_pages.glsl"
 layout(std430, binding = 13) readonly buffer MapSums { uint map_sum[]; };
-// Window width of the map's columns, then height of its rows, a light after another.
-layout(std430, binding = 9) readonly buffer TexelSizes { float texel_size[]; };
 uniform sampler2DArray coarser_map;  // the same texture: its next level is done
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 uniform int light;
@@ -15,6 +14,7 @@ uniform uint map_texels;
 uniform int map_size;
 uniform int level;
 uniform int levels;
+#include "texel_sizes.glsl"
 
 #ifdef WIDE
 float wide(uint at) { return float(map_sum[at + 1u]) * 4294967296.0 + float(map_sum[at]); }
@@ -60,13 +60,10 @@ void main() {
   }
 #endif
   vec3 flux = units_at(at) * lights[light].misc.y;
-  // The filter's weights at a fine texel's centre are the 3/4 and 1/4 of bilinear subdivision; a
-  // coarse texel's flux goes to four.
+  float area = size_of(0, level, texel.x) * size_of(1, level, texel.y);
   vec2 uv = (vec2(texel) + 0.5) / float(side);
-  if (level + 1 < levels) flux += 0.25 * textureLod(coarser_map, vec3(uv, light), float(level + 1)).xyz;
-  if (level == 0) {
-    int row = light * 2 * map_size;
-    flux /= texel_size[row + texel.x] * texel_size[row + map_size + texel.y];
-  }
-  imageStore(map, ivec3(texel, light), vec4(flux, 1));
+  vec3 above =
+      level + 1 < levels ? textureLod(coarser_map, vec3(uv, light), float(level + 1)).xyz : vec3(0);
+  float per_area = level > 0 ? per_spread(0, level, texel.x) * per_spread(1, level, texel.y) : 1.0 / area;
+  imageStore(map, ivec3(texel, light), vec4((flux + area * above) * per_area, 1));
 }

@@ -6,13 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LIST_HEADER = 16, SPLAT_BYTES = 32, MAX_SPLATS = 4 << 20 };
+enum { LIST_HEADER = 16, SPLAT_BYTES = 48, MAX_SPLATS = 4 << 20 };
 enum { MOST_LANDING_BYTES = 1 << 30, LEAST_LANES = 7 };
 enum { PHOTON_DEFINES = 2560 };
-enum { PLACE_BYTES = 16, MAX_LANDING_BYTES = 96 << 20 };
+enum { MAX_LANDING_BYTES = 96 << 20 };
 
+/* What is taken back may come to a little more than what was entered, by what is known only between
+ * two wavelengths. */
 static double wide(const GLuint *lo_hi) {
-  return ldexp((double)lo_hi[1], 32) + lo_hi[0];
+  return ldexp((double)(GLint)lo_hi[1], 32) + lo_hi[0];
 }
 
 static double ledger_unit(const abbe_renderer *r, size_t light) {
@@ -83,14 +85,27 @@ void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, si
   const GLuint landings = fine ? r->fine_landings : r->buffer[BINDING_LANDINGS];
   const GLuint signatures = fine ? r->fine_signatures : r->buffer[BINDING_SIGNATURES];
   const GLuint marks = fine ? r->fine_marks : r->path_marks;
-  const GLuint paths = fine ? r->fine_paths : r->path_list;
   abbe_renderer_clear_buffer(r, signatures);
   abbe_renderer_clear_buffer(r, marks);
-  clear_count(r, paths);
+  clear_count(r, fine ? r->fine_paths : r->path_list);
   r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, landings);
   r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SIGNATURES, signatures);
   r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, marks);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, paths);
+}
+
+/* Lists the paths of so many photons or refined intervals. */
+void abbe_renderer_end_trace(abbe_renderer *r, trace_set set, size_t items) {
+  const bool fine = set == TRACE_REFINED;
+  const size_t groups = (items * r->plan.slots + PHOTON_GROUP - 1) / PHOTON_GROUP;
+  const size_t rows = (groups + 65534) / 65535;
+  if (groups == 0) return;
+  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  r->gl->UseProgram(r->paths);
+  r->gl->Uniform1ui(r->gl->GetUniformLocation(r->paths, "items"), (GLuint)items);
+  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED,
+                        fine ? r->fine_paths : r->path_list);
+  r->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
+  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /* Wavelengths first .. first + count - 1; those below ledger_first are in the ledger already. */
@@ -101,7 +116,7 @@ void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, siz
   abbe_renderer_set_int(r, r->trace, "ledger_first", (int)ledger_first);
   size_t groups = (r->light[light].photon_count + PHOTON_GROUP - 1) / PHOTON_GROUP;
   if (groups > 0) r->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
-  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  abbe_renderer_end_trace(r, TRACE_ALL, r->light[light].photon_count);
 }
 
 /* A batch of wavelengths of all photons, the coarse set, or a chunk of the refined intervals. */
@@ -131,6 +146,7 @@ static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t c
   abbe_renderer_set_int(r, deposit, "interval_end", (int)b->interval_end);
   abbe_renderer_set_int(r, deposit, "nodes", (int)(fine ? r->plan.desc.wavelengths : r->nodes));
   abbe_renderer_set_int(r, deposit, "table_first", fine ? (int)coarse_rows : 0);
+  abbe_renderer_set_float(r, deposit, "ledger_unit", ledger_unit(r, light));
   gl->Uniform1ui(gl->GetUniformLocation(deposit, "chunks"), (GLuint)r->chunks);
   gl->Uniform1ui(gl->GetUniformLocation(deposit, "chunk"), (GLuint)chunk);
   gl->Uniform1ui(gl->GetUniformLocation(deposit, "most"), (GLuint)r->splat_room);
@@ -226,14 +242,15 @@ static void finish_map(abbe_renderer *r, size_t light) {
 }
 
 /* All wavelengths in batches that overlap by one node, so that every interval between nodes lies
- * in exactly one of them. False after the last. */
+ * in exactly one of them. (A single node has its light in the one before it.) False after the last.
+ */
 static bool next_batch(const abbe_renderer *r, batch *b) {
   size_t n = r->plan.desc.wavelengths;
   if (b->count > 0 && b->first + b->count == n) return false;
   b->first = b->count == 0 ? 0 : b->first + b->count - 1;
   b->count = n - b->first < r->lanes ? n - b->first : r->lanes;
-  b->interval_first = b->first == 0 ? 0 : b->first + 1;
-  b->interval_end = b->first + b->count + (b->first + b->count == n ? 1 : 0);
+  b->interval_first = n > 1 ? b->first + 1 : 0;
+  b->interval_end = b->first + b->count;
   return true;
 }
 
@@ -255,7 +272,8 @@ static bool trace_next(abbe_renderer *r, size_t light, batch *b) {
     abbe_renderer_trace_refined(r, light, chunk);
     return true;
   }
-  *b = (batch){.set = TRACE_COARSE, .count = r->nodes, .interval_end = r->nodes + 1};
+  *b = (batch){
+      .set = TRACE_COARSE, .count = r->nodes, .interval_first = 1, .interval_end = r->nodes};
   return true;
 }
 
@@ -381,6 +399,7 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
   ledger->absorbed += wide(word + 4) * unit;
   ledger->trapped += wide(word + 6) * unit;
   ledger->missed += wide(word + 8) * unit;
+  ledger->interpolated += wide(word + 10) * unit;
   const size_t texels = r->map_texels * (r->pages ? 2 : 1);
   size_t words = abbe_renderer_map_words(r), size = texels * words * sizeof(GLuint);
   GLuint *sum = malloc(size);
@@ -414,7 +433,7 @@ static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
 static size_t most_landings(const abbe_renderer *r) {
   GLint texels = 0;
   r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-  const size_t most = MOST_LANDING_BYTES / (PLACE_BYTES + abbe_renderer_signature_bytes(r));
+  const size_t most = MOST_LANDING_BYTES / (LANDING_BYTES + abbe_renderer_signature_bytes(r));
   return most < (size_t)texels ? most : (size_t)texels;
 }
 
@@ -429,7 +448,7 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
   const size_t usual = ABBE_PLAN_EXITS + 1;
   const size_t slots = !r->plan.walk && r->plan.slots > usual ? usual : r->plan.slots;
-  const size_t a_landing = PLACE_BYTES + abbe_renderer_signature_bytes(r);
+  const size_t a_landing = LANDING_BYTES + abbe_renderer_signature_bytes(r);
   size_t lanes = MAX_LANDING_BYTES / a_landing / (most * slots), room = most_landings(r);
   if (a_lane * 2 > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -448,7 +467,7 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   if (r->lanes > enough) r->lanes = enough < n ? enough : n;
   if (r->lanes < r->nodes && abbe_renderer_refines(r)) r->lanes = r->nodes;
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * 16, NULL,
+    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * LANDING_BYTES, NULL,
                                        &r->buffer[BINDING_LANDINGS], error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, a_lane * r->lanes * abbe_renderer_signature_bytes(r),
@@ -475,7 +494,13 @@ static abbe_result make_trace(abbe_renderer *r, abbe_error *error) {
   char defines[PHOTON_DEFINES];
   write_photon_defines(r, defines);
   r->gl->DeleteProgram(r->trace);
-  return abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
+  r->gl->DeleteProgram(r->paths);
+  r->paths = 0;
+  abbe_result result =
+      abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
+  return result != ABBE_OK
+             ? result
+             : abbe_program_make_compute(r->gl, "photon_paths.comp", defines, &r->paths, error);
 }
 
 /* All that follow the trace. */
@@ -498,7 +523,7 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
 abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, size_t first, float **data,
                                      GLuint **paths, abbe_error *error) {
   size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
-  float *landing = malloc(count * 16 + 1);
+  float *landing = malloc(count * LANDING_BYTES + 1);
   const size_t signature_bytes = abbe_renderer_signature_bytes(r);
   GLuint *path = malloc(count * signature_bytes + 1);
   if (landing == NULL || path == NULL) {
@@ -508,9 +533,10 @@ abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, size_t firs
   }
   const abbe_gl *gl = r->gl;
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LANDINGS]);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * 16), landing);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * LANDING_BYTES), landing);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SIGNATURES]);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * signature_bytes), path);
+  abbe_renderer_place_landings(r, light, landing, path, signature_bytes / sizeof *path, count);
   abbe_renderer_attenuate(r, first, count, landing, path);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < 4 && path[i] == 0; k++) landing[4 * i + k] = 0;

@@ -1,6 +1,6 @@
 // The way of a photon's light of one wavelength: from the light through refractors to receivers.
 // Every exit that still carries energy is followed, one landing each. Who includes this gives
-// `light`, `share_limit` and keep_landing(photon, slot, lane, place, flux in W, signature, length), the
+// `light`, `share_limit` and keep_landing(photon, slot, lane, place, flux in W, signature, length, wall), the
 // flux without what is absorbed where landings keep the length of their way inside.
 
 #include "photon_absorption.glsl"
@@ -13,27 +13,31 @@ const int NO_RECEIVER = 0, NOT_HELD = 1, LANDED = 2, LANDED_ON_PAGE = 3;
 uniform bool fits_pages;  // they are yet to be chosen: coordinates of any chart will do
 layout(binding = 12) uniform samplerBuffer chart_rows;  // two a chart: from a place to its u, and v
 
-// Where the light's map does not hold a place: that on the page of a chart's side, and which page that
-// is; false where there is none.
-bool beside_map(int side, vec3 at, out vec3 place) {
-  vec4 to_u = texelFetch(chart_rows, side >> 1 << 1), to_v = texelFetch(chart_rows, side | 1);
-  place = vec3(dot(to_u.xyz, at) + to_u.w, dot(to_v.xyz, at) + to_v.w, side);
-  if (fits_pages) return true;
-  int page = page_of_side(light, side);
-  place = vec3(place_on_page(light, max(page, 0), at), page);
-  return page >= 0 && is_within(page_rect(light, max(page, 0)), place.xy);
+// Where the light's map does not hold a place: the page of a chart's side on which it lies; false where
+// there is none.
+bool beside_map(int side, inout vec3 place, out int page) {
+  vec3 at = place;
+  page = page_of_side(light, side);
+  if (fits_pages) {
+    vec4 to_u = texelFetch(chart_rows, side >> 1 << 1), to_v = texelFetch(chart_rows, side | 1);
+    place = vec3(dot(to_u.xyz, at) + to_u.w, dot(to_v.xyz, at) + to_v.w, side);
+    return true;
+  }
+  return page >= 0 && is_within(page_rect(light, max(page, 0)), place_on_page(light, max(page, 0), at));
 }
 #endif
 
 // The first receiver on the ray, and whether the light's map or a page can hold what lands there;
-// place: where its landing is kept (landing_place.glsl).
-int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out vec3 place, out uint receiver) {
+// place: what is kept of it.
+int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out vec3 place, out int page,
+         out uint receiver) {
   Light l = lights[light];
   vec3 uvz;
   float t;
   receiver = 1u;
   at = p;
   place = p;
+  page = -1;
   int r = receiver_hit(p, d, t_min, t_max, t);
   if (r < 0) return NO_RECEIVER;
   at = p + t * d;
@@ -45,10 +49,11 @@ int land(vec3 p, vec3 d, float t_min, float t_max, out vec3 at, out vec3 place, 
   bool held = project(l.map_view, at, uvz) && inside(uvz.xy) && receiver_lit(light, at, from, distance_m);
 #ifdef PAGES
   int side = chart_side(r, d);
-  if (!held && beside_map(side, at, place)) {
+  if (!held && beside_map(side, place, page)) {
     receiver += 7919u * (uint(side) + 1u);  // parts of a mesh go on across its charts, places do not
     return LANDED_ON_PAGE;
   }
+  page = -1;
 #endif
   return held ? LANDED : NOT_HELD;
 }
@@ -88,15 +93,17 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   float reflected = fresnel(cos_i, 1.0 / n);
   entry[REACHED] = Shares(1.0);
   vec3 at, place;
+  int page;
   uint receiver;
   uint path = uint(r) * 131u + uint(front.facet);
   if (reflected > 0.0) {
     // The mirror on the outside takes the slot behind the exits'; it is the same for all colours.
     int landed =
-        land(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, at, place, receiver);
+        land(front.p, reflect(d, front.n), -touch * refractor_bounds.w, 1e30, at, place, page, receiver);
     if (landed >= LANDED)
       keep_landing(photon, EXITS, lane, place, reflected * flux,
-                   signature_of(path * 17u + receiver, landed, uint(r)), 0.0);
+                   signature_of(path * 17u + receiver, landed, uint(r)), 0.0,
+                   vec4(front.p, wall_word(front.n, false, page)));
     else
       entry[REFLECTED] = Shares(reflected);
   }
@@ -148,10 +155,11 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
       if (!GO_ON || leaves || ends) break;
     }
     if (leaves) {
-      int landed = land(wall, outer, -touch * refractor_bounds.w, 1e30, at, place, receiver);
+      int landed = land(wall, outer, -touch * refractor_bounds.w, 1e30, at, place, page, receiver);
       if (landed >= LANDED) {
         keep_landing(photon, order - 1, lane, place, out_share * flux,
-                     signature_of(path * 31u + receiver, landed, uint(r)), way);
+                     signature_of(path * 31u + receiver, landed, uint(r)), way,
+                     vec4(wall, wall_word(wall_n, true, page)));
       } else {
         entry[MISSED] += out_share * left;
       }

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 enum { MOST_NODES = 9, LIST_HEADER = 16 };
-enum { PLACE_BYTES = 16, MAX_FINE_BYTES = 64 << 20, LEAST_PAIRS = 256 };
+enum { MAX_FINE_BYTES = 128 << 20, LEAST_PAIRS = 256 };
 
 size_t abbe_renderer_coarse_node(size_t wavelengths, size_t nodes, size_t k) {
   return nodes > 1 ? (k * (wavelengths - 1) + (nodes - 1) / 2) / (nodes - 1) : 0;
@@ -35,14 +35,14 @@ abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons,
   if (result != ABBE_OK || !abbe_renderer_refines(r)) return result;
   r->fine_nodes = widest_interval(r) + 1;
   size_t a_pair = r->plan.slots * r->fine_nodes, most = most_photons * (r->nodes - 1);
-  r->pair_room = MAX_FINE_BYTES / (PLACE_BYTES + abbe_renderer_signature_bytes(r)) / a_pair;
+  r->pair_room = MAX_FINE_BYTES / (LANDING_BYTES + abbe_renderer_signature_bytes(r)) / a_pair;
   if (r->pair_room < LEAST_PAIRS) r->pair_room = LEAST_PAIRS;
   if (r->pair_room > most) r->pair_room = most;
   const struct {
     GLuint *buffer;
     size_t size;
   } made[] = {{&r->pair_list, LIST_HEADER + r->pair_room * 4},
-              {&r->fine_landings, r->pair_room * a_pair * 16},
+              {&r->fine_landings, r->pair_room * a_pair * LANDING_BYTES},
               {&r->fine_signatures, r->pair_room * a_pair * abbe_renderer_signature_bytes(r)},
               {&r->fine_marks, r->pair_room * r->plan.slots * 4},
               {&r->fine_paths, LIST_HEADER + r->pair_room * r->plan.slots * 4}};
@@ -71,7 +71,7 @@ void abbe_renderer_trace_coarse(abbe_renderer *r, size_t light) {
   size_t threads = r->light[light].photon_count * r->nodes;
   size_t groups = (threads + PHOTON_GROUP - 1) / PHOTON_GROUP, rows = (groups + 65534) / 65535;
   if (groups > 0) r->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
-  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  abbe_renderer_end_trace(r, TRACE_COARSE, r->light[light].photon_count);
 }
 
 static void bind_storage(abbe_renderer *r, GLuint place, GLuint buffer) {
@@ -129,6 +129,7 @@ void abbe_renderer_trace_refined(abbe_renderer *r, size_t light, size_t chunk) {
   select_pairs(r, light, chunk);
   abbe_renderer_begin_trace(r, light, TRACE_REFINED, r->fine_nodes);
   abbe_renderer_dispatch_list(r, r->trace, r->pair_list, r->pair_room, r->fine_nodes);
+  abbe_renderer_end_trace(r, TRACE_REFINED, r->pair_room);
 }
 
 void abbe_renderer_free_refinement(abbe_renderer *r) {

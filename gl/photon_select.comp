@@ -1,6 +1,6 @@
-// Lists the intervals between coarse wavelengths that ask for all wavelengths in them: where the
-// landings bend or leave their path by more than what the map resolves of the photon, or where the
-// light that they carry changes.
+// Lists the intervals between coarse wavelengths that ask for all wavelengths in them: where light would
+// be laid wrong by more than what the map resolves of the photon, since its path ends between them or
+// bends more than the deposit follows, or where what it carries changes.
 layout(local_size_x = 256) in;
 #include "common.glsl"
 #include "photon_nodes.glsl"
@@ -45,16 +45,23 @@ uniform float interval_weight[NODES];  // of the light, by the intervals' mean
 // Of the photon's light in an interval: what may lie wrong by a footprint's width.
 const float MOST_WRONG = 0.05;
 
+// How far off the deposit's light is: of a node's distance from where its neighbours put it along a line,
+// with and without the node before; and of the way between two nodes of which no more is known.
+const float OFF_CURVE = 0.1, OFF_LINE = 0.25, OFF_ALONE = 2e-3;
+
+#include "optics.glsl"
+#define FOLLOWS_EXITS
+#include "exit_wall.glsl"
 #include "landing_place.glsl"
 
 // Texels to the landing of the next photon on the same path; 0 if there is none.
-float step_to(ivec2 c, uint order, uint lane, uint path, vec2 here) {
+float step_to(ivec2 c, uint order, uint lane, uint path, int page, vec2 here) {
   bool there = all(lessThan(c, grid));
   uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
   uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
   there = there && SIGNATURE(index) == path;
-  return there ? distance(map_position(landing[index].xyz, path), here) : 0.0;
+  return there ? distance(map_position(landing[LANDING_TEXELS * index].xyz, page), here) : 0.0;
 }
 
 void main() {
@@ -71,18 +78,23 @@ void main() {
   uint path[NODES];
   vec2 at[NODES];
   float flux[NODES], index[NODES];
+  int pages[NODES];
+  Exit left[NODES];
 #ifdef TINTING
   float way[NODES], per_m[NODES];
 #endif
   int reference = 0;
   for (int k = 0; k < NODES; k++) {
     uint found = SIGNATURE(first + uint(k));
-    vec4 to = landing[first + uint(k)];
-    path[k] = found;
-    flux[k] = found != 0u ? to.w : 0.0;
-    at[k] = found != 0u ? map_position(to.xyz, found) : vec2(0);
+    vec4 to = landing[LANDING_TEXELS * (first + uint(k))];
+    vec4 wall = landing[LANDING_TEXELS * (first + uint(k)) + 1u];
     vec2 spectrum = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].xy;
+    path[k] = found;
+    pages[k] = found != 0u ? wall_page(wall.w) : -1;
+    at[k] = found != 0u ? map_position(to.xyz, pages[k]) : vec2(0);
     index[k] = spectrum.x;
+    left[k] = exit_of(to, wall, spectrum.x);
+    flux[k] = found != 0u ? left[k].arrives : 0.0;
 #ifdef TINTING
     way[k] = uintBitsToFloat(signature[first + uint(k)].y);
     per_m[k] = spectrum.y;
@@ -90,13 +102,17 @@ void main() {
     if (found != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
   }
   uint path_here = SIGNATURE(first + uint(reference));
-  vec2 here = map_position(landing[first + uint(reference)].xyz, path_here);
-  float a = path_here != 0u ? step_to(cell + ivec2(1, 0), order, uint(reference), path_here, here) : 0.0;
-  float b = path_here != 0u ? step_to(cell + ivec2(0, 1), order, uint(reference), path_here, here) : 0.0;
+  uint reference_at = LANDING_TEXELS * (first + uint(reference));
+  int page = path_here != 0u ? wall_page(landing[reference_at + 1u].w) : -1;
+  vec2 here = map_position(landing[reference_at].xyz, page);
+  float a =
+      path_here != 0u ? step_to(cell + ivec2(1, 0), order, uint(reference), path_here, page, here) : 0.0;
+  float b =
+      path_here != 0u ? step_to(cell + ivec2(0, 1), order, uint(reference), path_here, page, here) : 0.0;
   // What the map resolves of this photon, in texels.
   float size = max(a > 0.0 && b > 0.0 ? min(a, b) : max(a, b), 1.0);
 
-  // How far node k lies from where its neighbours' landings would put it.
+  // How far node k lies from where its neighbours alone would put it.
   float bend[NODES];
   for (int k = 0; k < NODES; k++) {
     bool there = k > 0 && k + 1 < NODES;
@@ -104,7 +120,9 @@ void main() {
     bool on_path = there && path[k] != 0u && path[k] == path[before] && path[k] == path[after];
     float span = index[after] - index[before];
     float t = span != 0.0 ? (index[k] - index[before]) / span : 0.5;
-    bend[k] = on_path ? distance(at[k], mix(at[before], at[after], t)) : -1.0;
+    vec3 straight =
+        place_between(left[before], left[after], fan_between(left[before], left[after], vec3(0)), t);
+    bend[k] = on_path ? distance(at[k], map_position(straight, pages[k])) : -1.0;
   }
   uint wanted = 0u;
   for (int k = 0; k + 1 < NODES; k++) {
@@ -119,17 +137,18 @@ void main() {
     float most = max(flux_a, flux_b) / from_cell.flux * interval_weight[k];
 #endif
     bool same = path[k] == path[k + 1];
-    bool alone = bend[k] < 0.0 && bend[k + 1] < 0.0;
-    // A line's distance from its curve is a quarter of how far the middle of both is off.
-    float wrong = 0.25 * (alone ? distance(at[k], at[k + 1]) : max(bend[k], bend[k + 1]));
+    float wrong = bend[k + 1] >= 0.0 ? OFF_CURVE * bend[k + 1]
+                  : bend[k] >= 0.0   ? OFF_LINE * bend[k]
+                                     : OFF_ALONE * distance(at[k], at[k + 1]);
     // Where a path ends on the way, its landings would have moved on as before.
     int before = max(k - 1, 0), after = min(k + 2, NODES - 1);
-    bool known_a = k > 0 && path[before] == path[k], known_b = k + 2 < NODES && path[after] == path[k + 1];
+    bool known_a = k > 0 && path[before] == path[k],
+         known_b = k + 2 < NODES && path[after] == path[k + 1];
     float moves_a = path[k] == 0u ? 0.0 : known_a ? distance(at[before], at[k]) : size;
     float moves_b = path[k + 1] == 0u ? 0.0 : known_b ? distance(at[after], at[k + 1]) : size;
     if (!same) wrong = 0.25 * max(moves_a, moves_b);
-    // The light is taken to stay what it is at a node up to halfway to the next.
-    float changed = same ? 0.25 * abs(flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30) : 0.0;
+    float change = (flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30);
+    float changed = same ? 0.125 * change * change : 0.0;
     if (most * max(min(wrong / size, 1.0), changed) > MOST_WRONG) wanted |= 1u << uint(k);
   }
   if (wanted == 0u) return;

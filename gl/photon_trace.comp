@@ -4,9 +4,11 @@ layout(local_size_x = 256) in;
 #include "refractor.glsl"
 #include "wide_sum.glsl"
 #include "receiver.glsl"
+#include "exit_wall.glsl"
 
-// [(photon * SLOTS + order) * LANES + lane]: where it lands, in space or on a page
-// (landing_place.glsl); w: flux for unit weight, W.
+// [((photon * SLOTS + order) * LANES + lane) * LANDING_TEXELS]: where it lands, and w: flux for unit
+// weight, W; then where it left its last refractor, and w: wall_word(). While pages are chosen: chart
+// coordinates, and the chart's side.
 layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
 // Receiver, facets along the way and whether on a page, equal for paths that vary continuously;
 // refractor in the low eight bits; 0: no landing. TINTING: and the length of its way inside, m.
@@ -18,12 +20,8 @@ layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
 // Y weight of the samples at [light * WAVELENGTHS + i]: of the parts of their bands below and above
 // the node, then those in the coarse set.
 layout(std430, binding = 11) readonly buffer SampleWeights { vec4 sample_weight[]; };
-// Paths (photon * SLOTS + order) that land at some wavelength, each listed once.
-layout(std430, binding = 7) buffer PathMarks { uint path_mark[]; };
-layout(std430, binding = 13) buffer PathList {
-  uint path_count, path_groups[3];
-  uint path_list[];
-};
+// 1 where the path (photon * SLOTS + order) lands at some wavelength.
+layout(std430, binding = 7) writeonly buffer PathMarks { uint path_mark[]; };
 layout(std430, binding = 15) readonly buffer PairList {
   uint pair_count, pair_groups[3];
   uint pair_at[];
@@ -56,11 +54,12 @@ layout(std430, binding = 6) readonly buffer Photons {
 
 shared uint book[5], unbook[5];
 
-// A landing of the photon at lane's wavelength, in the path's slot.
-void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path, float way) {
+// A landing of the photon at lane's wavelength, in the path's slot; wall: as in exit_wall.glsl.
+void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path, float way, vec4 wall) {
   uint listed = photon * SLOTS + order, index = listed * lane_stride + lane;
-  landing[index] = vec4(at, flux);
-  if (atomicExchange(path_mark[listed], 1u) == 0u) path_list[atomicAdd(path_count, 1u)] = listed;
+  landing[LANDING_TEXELS * index] = vec4(at, flux);
+  landing[LANDING_TEXELS * index + 1u] = wall;
+  path_mark[listed] = 1u;
 #ifdef TINTING
   signature[index] = uvec2(path, floatBitsToUint(way));
 #else

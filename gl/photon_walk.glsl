@@ -2,6 +2,7 @@
 // branch goes on and the other waits. A landing's slot follows from its path, so that neighbouring
 // photons and wavelengths have the same path in the same slot.
 
+#define KEEPS_WALL
 #include "walk.glsl"
 
 const int MOST_SEGMENTS = 128;  // of one photon's light; fewer are met but in a hall of mirrors
@@ -42,8 +43,8 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
   wavelength = i;
   Way pending[PENDING];
-  Way w = Way(o, d, 1.0, 0u, 0u, -1, -1, -1);
-  for (int k = 0; k < PENDING; k++) pending[k] = Way(o, d, 0.0, 0u, 0u, 0, -1, -1);
+  Way w = Way(o, d, 1.0, 0u, 0u, -1, -1, -1, d, false);
+  for (int k = 0; k < PENDING; k++) pending[k] = Way(o, d, 0.0, 0u, 0u, 0, -1, -1, d, false);
   Interface h;
   h.hit.t = 1e30;
   bool going = reached && next_interface(w, h);
@@ -57,10 +58,11 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
     h.hit.t = 1e30;
     bool met = next_interface(w, h);
     vec3 at, place;
+    int page;
     uint receiver;
     // What leaves a refractor that touches a receiver lands there.
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
-    int landed = land(w.p, w.d, t_min, met ? h.hit.t : 1e30, at, place, receiver);
+    int landed = land(w.p, w.d, t_min, met ? h.hit.t : 1e30, at, place, page, receiver);
 #ifdef ABSORBING
     if (w.inside != 0u && (met || landed != NO_RECEIVER)) {
       float way = landed != NO_RECEIVER ? distance(at, w.p) : h.hit.t;
@@ -74,8 +76,11 @@ void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, 
     } else {
       int slot = landed >= LANDED ? take_slot(w.path, used) : -1;
       if (slot >= 0)
-        keep_landing(photon, slot, lane, place, w.share * flux,
-                     signature_of(w.path * 31u + receiver, landed, owner), 0.0);
+        keep_landing(
+            photon, slot, lane, place, w.share * flux,
+            signature_of(w.path * 31u + receiver, landed, owner), 0.0,
+            vec4(w.p, wall_word(dot(w.wall_n, w.d) < 0.0 ? -w.wall_n : w.wall_n,
+                                w.transmitted && w.inside == 0u && w.refractor == int(owner), page)));
       else if (landed >= LANDED || (landed == NO_RECEIVER && w.inside != 0u))
         trapped += w.share;
       else if (w.walls == 0 && w.inside == 0u)

@@ -154,7 +154,7 @@ static abbe_result examine_material(const abbe_scene *scene, const abbe_material
     double per_m = abbe_material_attenuation(material, lambda_nm);
     if (i == 0) first = n;
     if (i == 0) first_per_m = per_m;
-    if (n != first) plan->dispersive = true;
+    if ((float)n != (float)first) plan->dispersive = true; /* the shaders hold it so */
     if (per_m != first_per_m) plan->tinting = true;
     if (per_m > 0) plan->absorbing = true;
   }
@@ -336,12 +336,12 @@ static const char *no_refraction(const abbe_plan *plan) {
 }
 
 size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
-  /* Below so many, tracing some of them twice costs what leaving others out saves. */
-  static const size_t coarse = 5, refined_from = 9;
+  /* What lies between these is followed from the wall where light leaves (exit_wall.glsl). */
+  static const size_t coarse = 4;
   const size_t n = plan->desc.wavelengths;
   /* Without lengths landings do not know what absorption changes between two wavelengths. */
   const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
-  return apart && plan->tinting == plan->lengths && n >= refined_from ? coarse : n;
+  return apart && plan->tinting == plan->lengths && n > coarse ? coarse : n;
 }
 
 static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {

@@ -102,6 +102,34 @@ abbe_result abbe_renderer_expect_pages(abbe_renderer *r, abbe_error *error) {
   return result == ABBE_OK ? tell_shaders(r, 1, error) : result;
 }
 
+/* As exit_wall.glsl packs it. */
+static size_t page_of_wall(float word) {
+  GLuint bits = 0;
+  memcpy(&bits, &word, sizeof bits);
+  const GLuint exponent = bits >> 23 & 255u;
+  return exponent > 0 ? (exponent - 1) % 80 - 1 : SIZE_MAX;
+}
+
+void abbe_renderer_place_landings(const abbe_renderer *r, size_t light, float *landing,
+                                  const GLuint *signature, size_t words, size_t count) {
+  const abbe_receiver_pages *pages = &r->light[light].pages;
+  for (size_t i = 0; i < count; i++) {
+    const float *from = landing + LANDING_BYTES / sizeof *landing * i;
+    float at[4] = {from[0], from[1], from[2], from[3]}, packed[ABBE_PAGE_FLOATS];
+    const size_t k = page_of_wall(from[7]);
+    if (!r->fits_pages && abbe_renderer_is_on_page(r, signature[words * i]) && k < pages->count) {
+      const abbe_receiver_page *page = &pages->page[k];
+      abbe_receiver_page_pack(page, r->charts.parallelogram[page->chart_side / 2], packed);
+      for (int axis = 0; axis < 2; axis++) {
+        const float *to = packed + 4 * axis;
+        at[axis] = to[0] * from[0] + to[1] * from[1] + to[2] * from[2] + to[3];
+      }
+      at[2] = (float)k;
+    }
+    memcpy(landing + 4 * i, at, sizeof at);
+  }
+}
+
 bool abbe_renderer_is_on_page(const abbe_renderer *r, GLuint path) {
   return r->pages && (path & on_a_page) != 0;
 }

@@ -12,7 +12,7 @@ enum { MAX_MAP_LEVELS = 6 };
 double abbe_ledger_imbalance(const abbe_ledger *l) {
   if (!(l->reached > 0)) return 0;
   double parts = l->reflected + l->absorbed + l->trapped + l->missed + l->deposited;
-  return fabs(l->reached - parts) / l->reached;
+  return fabs(l->reached + l->interpolated - parts) / l->reached;
 }
 
 static size_t room(size_t count) {
@@ -195,10 +195,11 @@ void abbe_renderer_free(abbe_renderer *r) {
       r->eye_receivers,   r->eye_direct,       r->eye_caustic, r->eye_depth,   r->eye_refraction,
       r->eye_layers,      r->eye_layers_depth, r->eye_owner,   r->eye_picture, r->eye_floor};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  const GLuint programs[] = {r->place,      r->cover,           r->groups,          r->trace,
-                             r->deposit,    r->splat,           r->list_groups,     r->resolve,
-                             r->mip,        r->layer,           r->receivers,       r->unlit,
-                             r->refraction, r->refraction_fine, r->refraction_list, r->eye_resolve};
+  const GLuint programs[] = {r->place,      r->cover,      r->groups,          r->trace,
+                             r->paths,      r->deposit,    r->splat,           r->list_groups,
+                             r->resolve,    r->mip,        r->layer,           r->receivers,
+                             r->unlit,      r->refraction, r->refraction_fine, r->refraction_list,
+                             r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
   gl->DeleteFramebuffers(1, &r->framebuffer);
   gl->DeleteVertexArrays(1, &r->empty_array);

@@ -43,7 +43,8 @@ enum {
   PHOTON_GROUP = 256,
   PHOTON_HEADER = 8 * 4,
   PHOTON_BYTES = 16,
-  LEDGER_WORDS = 10,
+  LANDING_BYTES = 32, /* place and flux, the wall that the light left, as exit_wall.glsl packs it */
+  LEDGER_WORDS = 12,
   LEVELS = 3
 };
 
@@ -144,8 +145,9 @@ struct abbe_renderer {
   char defines[2048];
   size_t page_defines; /* where in them those of pages start */
 
-  GLuint place, cover, groups, list_groups, trace, deposit, select, deposit_fine, splat, resolve,
-      mip, layer, receivers, unlit, refraction, refraction_fine, refraction_list, eye_resolve;
+  GLuint place, cover, groups, list_groups, trace, paths, deposit, select, deposit_fine, splat,
+      resolve, mip, layer, receivers, unlit, refraction, refraction_fine, refraction_list,
+      eye_resolve;
   thesis_state *thesis;
 
   bool wide;                   /* the map's sums have 64 bits, else 32 */
@@ -175,6 +177,12 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error);
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_renderer_to_working(const abbe_renderer *r, const double rgb[3], double out[3]);
 void abbe_renderer_upload_lights(abbe_renderer *r);
+/* intervals.c. The nodes that every photon takes, as a sampling of their own. */
+abbe_result abbe_renderer_coarse_wavelengths(const abbe_renderer *r, const abbe_wavelengths *all,
+                                             abbe_wavelengths *out, abbe_error *error);
+/* intervals.c: between the coarse set's wavelengths, then where it is not all between all. */
+abbe_result abbe_renderer_upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
+                                           abbe_error *error);
 /* What the map sums: bands first to first + 2 of so many, or with 0 bands X, Y, Z. */
 abbe_result abbe_renderer_weigh_bands(abbe_renderer *r, size_t bands, size_t first,
                                       abbe_error *error);
@@ -273,7 +281,11 @@ abbe_result abbe_renderer_choose_pages(abbe_renderer *r, size_t light,
                                        abbe_error *error);
 /* All lights' pages are chosen: their table, or shaders without. */
 abbe_result abbe_renderer_keep_pages(abbe_renderer *r, abbe_error *error);
-/* Whether a landing of that path lies on a page; its place is then texels and the page's number. */
+/* Of landings as the device keeps them, LANDING_BYTES each, places and fluxes side by side; those
+ * on pages come to texels and the page's number. `words` of a signature. */
+void abbe_renderer_place_landings(const abbe_renderer *r, size_t light, float *landing,
+                                  const GLuint *signature, size_t words, size_t count);
+/* Whether a landing of that path lies on a page. */
 bool abbe_renderer_is_on_page(const abbe_renderer *r, GLuint path);
 /* Of a mesh, on the rectangle that bounds its chart. */
 void abbe_renderer_page_place(const abbe_renderer *r, size_t light, const float *landing,
@@ -312,6 +324,9 @@ void abbe_renderer_free_refinement(abbe_renderer *r);
 
 /* Sets the trace up, and clears what it lists. */
 void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, size_t count);
+/* Lists the paths of so many photons or refined intervals that the trace between the two has
+ * marked. */
+void abbe_renderer_end_trace(abbe_renderer *r, trace_set set, size_t items);
 void abbe_renderer_dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t most,
                                  size_t threads);
 void abbe_renderer_clear_buffer(abbe_renderer *r, GLuint buffer);

@@ -267,126 +267,6 @@ static abbe_result upload_spectra(abbe_renderer *r, abbe_error *error) {
   return result;
 }
 
-/* X, Y, Z of a part of the light's spectrum, or its share in each of three bands. */
-static void weigh_part(const abbe_renderer *r, const abbe_illuminant *illuminant, double min,
-                       double max, double from, double to, double out[3]) {
-  if (r->map_bands == 0) {
-    abbe_weights_band_xyz(illuminant, min, max, from, to, out);
-    return;
-  }
-  double width = (max - min) / (double)r->map_bands;
-  for (int c = 0; c < 3; c++) {
-    double low = min + width * (double)(r->map_band + (size_t)c);
-    out[c] = abbe_weights_band_power(illuminant, min, max, fmax(from, low), fmin(to, low + width));
-  }
-}
-
-/* One interval between nodes a = i - 1 and b = i: XYZ up to each step, and how far the index has
- * moved from one node's to the other's: landings follow it nearly linearly. Then, for where the
- * light of a part lies, the sums of X, Y and Z times that. */
-static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, size_t light,
-                          const abbe_material *material, size_t i, float (*out)[4]) {
-  const abbe_illuminant *illuminant = &r->scene->light[light].illuminant;
-  double min = w->edge_nm[0], max = w->edge_nm[w->count];
-  double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];
-  double b = i < w->count ? w->lambda_nm[i] : w->edge_nm[w->count];
-  double edge = i == 0 ? a : i == w->count ? b : w->edge_nm[i];
-  if (w->count == 1) { /* the one node keeps its whole band in the interval before it */
-    a = edge = i == 0 ? min : max;
-    b = max;
-  }
-  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, before = a, t_before = 0;
-  abbe_material_n(material, a, &n_a, NULL);
-  abbe_material_n(material, b, &n_b, NULL);
-  for (size_t k = 0; k <= r->steps; k++) {
-    size_t half = r->steps / 2;
-    double lambda_nm = k <= half ? a + (edge - a) * (double)k / (double)half
-                                 : edge + (b - edge) * (double)(k - half) / (double)half;
-    double n = n_a, xyz[3];
-    abbe_material_n(material, lambda_nm, &n, NULL);
-    double t = n_a != n_b ? (n - n_a) / (n_b - n_a) : b > a ? (lambda_nm - a) / (b - a) : 0;
-    weigh_part(r, illuminant, min, max, before, lambda_nm, xyz);
-    for (int c = 0; c < 3; c++) {
-      sum[c] += xyz[c];
-      moment[c] += xyz[c] * 0.5 * (t_before + t);
-    }
-    store(sum, t, out[2 * k]);
-    store(moment, 0, out[2 * k + 1]);
-    before = lambda_nm;
-    t_before = t;
-  }
-}
-
-/* The nodes that every photon takes, as a sampling of their own. */
-static abbe_result coarse_wavelengths(const abbe_renderer *r, const abbe_wavelengths *all,
-                                      abbe_wavelengths *out, abbe_error *error) {
-  const size_t n = all->count, last = r->nodes;
-  *out = (abbe_wavelengths){.count = last,
-                            .lambda_nm = calloc(last, sizeof *out->lambda_nm),
-                            .edge_nm = calloc(last + 1, sizeof *out->edge_nm)};
-  if (out->lambda_nm == NULL || out->edge_nm == NULL) {
-    abbe_wavelengths_free(out);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
-  }
-  for (size_t k = 0; k < last; k++)
-    out->lambda_nm[k] = all->lambda_nm[abbe_renderer_coarse_node(n, last, k)];
-  for (size_t k = 1; k < last; k++)
-    out->edge_nm[k] =
-        last == n ? all->edge_nm[k] : 0.5 * (out->lambda_nm[k - 1] + out->lambda_nm[k]);
-  out->edge_nm[0] = all->edge_nm[0];
-  out->edge_nm[last] = all->edge_nm[n];
-  return ABBE_OK;
-}
-
-static float (*fill_intervals(const abbe_renderer *r, const abbe_wavelengths *w,
-                              float (*out)[4]))[4] {
-  for (size_t light = 0; light < r->plan.light_count; light++)
-    for (size_t k = 0; k < r->plan.refractor_count; k++)
-      for (size_t i = 0; i <= w->count; i++, out += 2 * (r->steps + 1))
-        fill_interval(r, w, light, r->scene->object[r->plan.refractor_object[k]].material, i, out);
-  return out;
-}
-
-/* The coarse set's, then where it is not all those of all wavelengths. */
-static abbe_result upload_intervals(abbe_renderer *r, const abbe_wavelengths *w,
-                                    abbe_error *error) {
-  const bool refines = abbe_renderer_refines(r);
-  const size_t sets = r->nodes + 1 + (refines ? w->count + 1 : 0);
-  const size_t rows = r->plan.light_count * r->plan.refractor_count * sets;
-  abbe_wavelengths coarse = {0};
-  const size_t texels = rows * 2 * (r->steps + 1);
-  float(*table)[4] = calloc(texels + 1, sizeof *table);
-  if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
-  abbe_result result = coarse_wavelengths(r, w, &coarse, error);
-  if (result == ABBE_OK) {
-    float(*rest)[4] = fill_intervals(r, &coarse, table);
-    if (refines) fill_intervals(r, w, rest);
-    result = abbe_renderer_upload_attenuation(r, &coarse, w, error);
-  }
-  const size_t size = texels * sizeof *table;
-  if (result == ABBE_OK && r->buffer[BINDING_INTERVALS] == 0) {
-    result = abbe_renderer_make_buffer(r, size, table, &r->buffer[BINDING_INTERVALS], error);
-  } else if (result == ABBE_OK) {
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_INTERVALS]);
-    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
-  }
-  abbe_wavelengths_free(&coarse);
-  free(table);
-  return result;
-}
-
-abbe_result abbe_renderer_weigh_bands(abbe_renderer *r, size_t bands, size_t first,
-                                      abbe_error *error) {
-  abbe_wavelengths w = {0};
-  r->map_bands = bands;
-  r->map_band = first;
-  abbe_result result = abbe_wavelengths_make(r->plan.desc.wavelengths, r->plan.desc.min_nm,
-                                             r->plan.desc.max_nm, &w, error);
-  if (result == ABBE_OK) result = upload_intervals(r, &w, error);
-  abbe_wavelengths_free(&w);
-  return result;
-}
-
 /* Y of the light's band below and above each node, into `part` and the next of every sample. */
 static void weigh_halves(const abbe_renderer *r, const abbe_wavelengths *w, size_t light, int part,
                          float (*sample)[4]) {
@@ -409,7 +289,7 @@ static abbe_result upload_sample_weights(abbe_renderer *r, const abbe_wavelength
   abbe_wavelengths coarse = {0};
   float(*sample)[4] = calloc(r->plan.light_count * n + 1, sizeof *sample);
   if (sample == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
-  abbe_result result = coarse_wavelengths(r, w, &coarse, error);
+  abbe_result result = abbe_renderer_coarse_wavelengths(r, w, &coarse, error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     weigh_halves(r, w, light, 0, sample + light * n);
     weigh_halves(r, &coarse, light, 2, sample + light * n);
@@ -485,10 +365,10 @@ static abbe_result upload_wavelengths(abbe_renderer *r, abbe_error *error) {
   else
     memcpy(r->lambda_nm, w.lambda_nm, n * sizeof *r->lambda_nm);
   r->nodes = abbe_plan_least_wavelengths(&r->plan);
-  r->steps = 64;
+  r->steps = 128;
   while (r->steps > 2 && r->steps * r->nodes > 1024) r->steps /= 2;
   if (result == ABBE_OK) result = upload_spectra(r, error);
-  if (result == ABBE_OK) result = upload_intervals(r, &w, error);
+  if (result == ABBE_OK) result = abbe_renderer_upload_intervals(r, &w, error);
   if (result == ABBE_OK) result = upload_sample_weights(r, &w, error);
   if (result == ABBE_OK) result = upload_bands(r, &w, error);
   abbe_wavelengths_free(&w);
@@ -529,7 +409,7 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
     result = abbe_renderer_make_buffer(r, r->plan.light_count * (WARP_STEPS + 1) * 16, NULL,
                                        &r->table_warps, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * r->plan.desc.map_size * 2 * 4, NULL,
+    result = abbe_renderer_make_buffer(r, r->plan.light_count * r->plan.desc.map_size * 8 * 4, NULL,
                                        &r->texel_sizes, error);
   if (result == ABBE_OK)
     result = abbe_renderer_make_buffer(r, r->plan.light_count * sizeof(gpu_light), NULL,
@@ -554,22 +434,51 @@ double abbe_renderer_texel_size(const abbe_renderer *r, size_t light, int axis, 
   return abbe_map_layout_texel_size(&r->light[light].map, axis, r->plan.desc.map_size, texel);
 }
 
+static double texel_size(const abbe_renderer *r, size_t light, int axis, size_t side, size_t i) {
+  return abbe_map_layout_texel_size(&r->light[light].map, axis, side, i);
+}
+
+/* 1 / what a texel spreads its light over: by the weights of a bilinear filter, of the finer ones'
+ * sizes. */
+static double per_spread(const abbe_renderer *r, size_t light, int axis, size_t side, size_t i) {
+  const size_t finer = 2 * side, before = i > 0 ? 2 * i - 1 : 0;
+  const size_t after = 2 * i + 2 < finer ? 2 * i + 2 : 2 * i + 1;
+  return 1 / (0.75 * texel_size(r, light, axis, side, i) +
+              0.25 * (texel_size(r, light, axis, finer, before) +
+                      texel_size(r, light, axis, finer, after)));
+}
+
+/* Of one axis of a light, as texel_sizes.glsl reads them: of one level after another. */
+static void upload_texel_sizes(const abbe_renderer *r, size_t light, int axis) {
+  const size_t whole = r->plan.desc.map_size;
+  enum { CHUNK = 256 };
+  float size[CHUNK], spread[CHUNK];
+  for (size_t level = 0; level < r->map_levels; level++) {
+    const size_t side = whole >> level,
+                 first = 2 * (4 * light + (size_t)axis) * whole + 2 * (whole - side);
+    for (size_t i = 0; i < side; i += CHUNK) {
+      const size_t count = side - i < CHUNK ? side - i : CHUNK;
+      for (size_t k = 0; k < count; k++) {
+        size[k] = (float)texel_size(r, light, axis, side, i + k);
+        spread[k] = level > 0 ? (float)per_spread(r, light, axis, side, i + k) : 0;
+      }
+      r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)((first + i) * sizeof *size),
+                           (GLsizeiptr)(count * sizeof *size), size);
+      r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER,
+                           (GLintptr)((first + 4 * whole + i) * sizeof *size),
+                           (GLsizeiptr)(count * sizeof *size), spread);
+    }
+  }
+}
+
 static void upload_warps(abbe_renderer *r, size_t light) {
   float row[WARP_STEPS + 1][4] = {{0}};
   for (int k = 0; k <= WARP_STEPS; k++)
     for (int axis = 0; axis < 2; axis++) row[k][axis] = (float)r->light[light].map.knot[axis][k];
   r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->table_warps);
   r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row), sizeof row, row);
-  float size[256];
-  size_t side = r->plan.desc.map_size;
   r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->texel_sizes);
-  for (size_t i = 0; i < 2 * side; i += 256) {
-    size_t count = 2 * side - i < 256 ? 2 * side - i : 256;
-    for (size_t k = 0; k < count; k++)
-      size[k] = (float)abbe_renderer_texel_size(r, light, (i + k) / side > 0, (i + k) % side);
-    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)((light * 2 * side + i) * 4),
-                         (GLsizeiptr)(count * 4), size);
-  }
+  for (int axis = 0; axis < 2; axis++) upload_texel_sizes(r, light, axis);
 }
 
 /* Called again whenever a light's view changes. */

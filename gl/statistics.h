@@ -21,9 +21,12 @@ typedef struct abbe_ledger {
   double missed;    /* met no receiver, or one where neither map nor page holds it */
   double deposited; /* in the spectral map and on receivers' pages */
   double on_pages;  /* of what is deposited */
+  /* What leaves refractors between the wavelengths that are traced, by the index there, less what
+   * those would have for it by themselves: the error of interpolation. May be below 0. */
+  double interpolated;
 } abbe_ledger;
 
-/* |reached - the parts| / reached; 0 where nothing was reached. */
+/* |reached + interpolated - the parts| / reached; 0 where nothing was reached. */
 double abbe_ledger_imbalance(const abbe_ledger *ledger);
 
 typedef struct abbe_pass_time {

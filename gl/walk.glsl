@@ -10,6 +10,10 @@ struct Way {
   uint path;      // what it met and did on its way, as one number
   int walls;      // interfaces since the first; -1: none yet
   int refractor, facet;  // that p lies on
+#ifdef KEEPS_WALL
+  vec3 wall_n;           // the normal there, and whether it came through
+  bool transmitted;
+#endif
 };
 
 struct Interface {
@@ -167,6 +171,11 @@ bool split(inout Way w, Interface h, out Way mirrored) {
   mirrored.share *= reflected;
   w.share -= mirrored.share;
   w.walls = mirrored.walls = w.walls + 1;
+#ifdef KEEPS_WALL
+  w.wall_n = mirrored.wall_n = n;
+  w.transmitted = true;
+  mirrored.transmitted = false;
+#endif
   w.path = w.path * 31u + uint(r * 2) + uint(h.hit.facet) * 7u + 1u;
   mirrored.path = w.path + 1u;
   return true;

@@ -38,9 +38,9 @@ static void every_photon_is_entered_once(void **state) {
   static const char *const names[] = {"gem", "prism", "sphere"};
   for (size_t i = 0; i < 3; i++) {
     const abbe_ledger l = draw(names[i], 23, ABBE_FILL_BRIDGE, NULL);
-    const double ends = l.reflected + l.absorbed + l.trapped + l.missed + l.deposited;
     assert_true(l.reached > 0);
-    assert_true(fabs(ends / l.reached - 1) < 1e-4);
+    assert_true(abbe_ledger_imbalance(&l) < 1e-4);
+    assert_true(fabs(l.interpolated) < 1e-3 * l.reached);
   }
 }
 
@@ -108,8 +108,7 @@ static void a_pane_leaves_what_the_law_says(void **state) {
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     const abbe_ledger l = draw_frame(renderer).energy;
     assert_near(l.deposited / l.reached, sum[1] / white[1], 1e-3);
-    assert_near((l.reflected + l.absorbed + l.trapped + l.missed + l.deposited) / l.reached, 1,
-                1e-5);
+    assert_true(abbe_ledger_imbalance(&l) < 1e-5);
     assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
     const double reached = image_sum(&map, 1) / (l.deposited / l.reached);
     for (size_t c = 0; c < 3; c++)

@@ -168,7 +168,7 @@ typedef struct pair {
       "+light: refractor front|photons start where the light sees a refractor",                    \
       "-light: refractor back|every refractor has an exact surface",                               \
       "+light: photon placement|at most 256 a side, where light meets a refractor",                \
-      "+light: photons|7 wavelengths through the refractors",                                      \
+      "+light: photons|4 to 7 wavelengths, as each photon's landings ask",                         \
       "+light: spectral map|1024 x 1024 texels",                                                   \
       "+light: gap fill|bridge: wavelengths land apart", "-absorption|every material is clear",    \
       "+eye: receivers|light, shadow and spectral map",                                            \
@@ -491,7 +491,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {.wavelengths = 21},
      {"=21 wavelengths, 8 exits, 9 landings", "+wavelengths|21 from 380 to 780 nm: as asked",
-      "+light: photons|5 to 21 wavelengths, as each photon's landings ask",
+      "+light: photons|4 to 21 wavelengths, as each photon's landings ask",
       "+absorption|a material attenuates by wavelength: landings keep the length inside", NULL}},
     {"many wavelengths of a glass that tints, from wall to wall of a mesh",
      ball,
@@ -509,12 +509,13 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
      {.wavelengths = 21},
      {"=21 wavelengths, 8 exits, 9 landings", "+wavelengths|21 from 380 to 780 nm: as asked",
-      "+light: photons|5 to 21 wavelengths, as each photon's landings ask", NULL}},
+      "+light: photons|4 to 21 wavelengths, as each photon's landings ask", NULL}},
     {"no fill, as asked",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
      {.fill = ABBE_FILL_NONE},
-     {"-light: gap fill|none, as asked", NULL}},
+     {"+light: photons|7 wavelengths through the refractors", "-light: gap fill|none, as asked",
+      NULL}},
     {"one exit, as asked",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
@@ -536,6 +537,7 @@ static const pair pairs[] = {
       "+light: receiver depth|receivers are found by their depth from the light",
       "+light: refractor back|a mesh without an exact surface ends at its back layer",
       "+light: photon placement|at most 512 a side, where light meets a refractor",
+      "+light: photons|7 wavelengths through the refractors",
       "+light: gap fill|smear: wavelengths land apart",
       "+eye: refractor back|a mesh without an exact surface ends at its back layer",
       "+eye: refraction|one direction a wavelength",

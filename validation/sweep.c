@@ -184,7 +184,8 @@ static void note_times(const abbe_statistics *sorted, size_t count, abbe_sweep_r
 
 /* What is bridged while it is deposited is in the ledger, which sums the map itself. */
 static void note_balance(const abbe_ledger *e, abbe_sweep_row *out) {
-  double parts = e->reflected + e->absorbed + e->trapped + e->missed + e->deposited;
+  double parts =
+      e->reflected + e->absorbed + e->trapped + e->missed + e->deposited - e->interpolated;
   if (!(e->deposited > 0)) return;
   out->number[ABBE_SWEEP_FILL_INVENTED] = fmax(parts - e->reached, 0) / e->deposited;
   out->number[ABBE_SWEEP_FILL_LOST] = fmax(e->reached - parts, 0) / e->deposited;
