@@ -80,7 +80,8 @@ static const struct argp_option options[] = {
     {"physics", OPTION_PHYSICS, "NAME", 0,
      "full, or matched: what the renderer's plan models and no more", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
-    {"map", OPTION_MAP, "N", 0, "side of the receiver map (512)", 1},
+    {"map", OPTION_MAP, "N|WxH", 0, "texels a side of the receiver map, or across and down (512)",
+     1},
     {"bands", OPTION_BANDS, "N", 0, "spectral layers too, N bands over the range", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
@@ -125,7 +126,10 @@ static error_t parse_work(int key, char *text, request *q) {
     abbe_command_size(p, "--size", text, ABBE_TRACER_MAX_SIDE, &d->width, &d->height);
     return 0;
   case OPTION_MAP:
-    d->map_width = d->map_height = abbe_command_count(p, "--map", text, 1, ABBE_TRACER_MAX_SIDE);
+    if (strchr(text, 'x') != NULL)
+      abbe_command_size(p, "--map", text, ABBE_TRACER_MAX_SIDE, &d->map_width, &d->map_height);
+    else
+      d->map_width = d->map_height = abbe_command_count(p, "--map", text, 1, ABBE_TRACER_MAX_SIDE);
     return 0;
   case OPTION_BANDS:
     d->bands = abbe_command_count(p, "--bands", text, 1, 256);

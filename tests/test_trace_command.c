@@ -267,6 +267,25 @@ static void test_map_like(void **state) {
   abbe_image_free(&b);
 }
 
+/* A map need not be square: it holds the same light. */
+static void test_map_sides(void **state) {
+  (void)state;
+  check_run(TRACE BALL SMALL "--spp 1 --save-map a.exr", 0);
+  check_run(TRACE BALL SMALL "--spp 1 --save-map b.exr --map-like a.exr --map 4x16", 0);
+  abbe_image a, b;
+  read_image("a.exr", &a);
+  read_image("b.exr", &b);
+  assert_int_equal(b.width, 4);
+  assert_int_equal(b.height, 16);
+  double lights[2] = {0, 0};
+  for (size_t i = 0; i < 256; i++) lights[0] += (double)a.data[i * a.channels + 1];
+  for (size_t i = 0; i < 64; i++) lights[1] += (double)b.data[i * b.channels + 1];
+  assert_true(lights[0] > 0 && fabs(lights[1] / lights[0] - 1) < 1e-5);
+  abbe_image_free(&a);
+  abbe_image_free(&b);
+  check_run(TRACE BALL SMALL "--spp 1 --save-map c.exr --map 4x", 2);
+}
+
 /* Threads have the stack that the shell allows; a quarter of a megabyte does, also for two. */
 static void test_a_small_stack(void **state) {
   (void)state;
@@ -279,12 +298,13 @@ static void test_a_small_stack(void **state) {
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, run_setup, run_teardown)
   const struct CMUnitTest tests[] = {
-      TEST(test_outputs),      TEST(test_numbers),
-      TEST(test_bands),        TEST(test_seeds_and_threads),
-      TEST(test_resume),       TEST(test_interrupt),
-      TEST(test_kill),         TEST(test_stops),
-      TEST(test_used_wrongly), TEST(test_bad_scenes),
-      TEST(test_map_like),     TEST(test_a_small_stack),
+      TEST(test_outputs),       TEST(test_numbers),
+      TEST(test_bands),         TEST(test_seeds_and_threads),
+      TEST(test_resume),        TEST(test_interrupt),
+      TEST(test_kill),          TEST(test_stops),
+      TEST(test_used_wrongly),  TEST(test_bad_scenes),
+      TEST(test_map_like),      TEST(test_map_sides),
+      TEST(test_a_small_stack),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
