@@ -20,7 +20,7 @@ static const struct argp_option options[] = {
     {"error-png", OPTION_ERROR_PNG, "FILE.png", ABBE_ARGUMENT_WRITES, "the errors in false colours",
      4},
     {"mean", OPTION_MEAN, NULL, 0,
-     "the picture is the variants' mean, with its errors: nearer to the truth", 4},
+     "the picture is its mean with the variants, with that one's errors: nearer to the truth", 4},
     {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {

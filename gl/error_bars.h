@@ -5,10 +5,11 @@
  * axis (a Latin hypercube). One more, coarse picture has half the photons a side, half the texels a
  * side and half the wavelengths. From these
  *
- *     error^2 = (picture - mean)^2 + spread^2 / variants + (0.7 (mean - coarse))^2
+ *     error^2 = (picture - mean)^2 + spread^2 / (variants + 1) + (0.4 (mean - coarse))^2
  *
- * pixel by pixel and channel by channel: how far this picture is from the variants' mean, how far
- * that mean may be from that of many variants, and what it would gain by still finer settings.
+ * pixel by pixel and channel by channel, with mean and spread of the variants and the picture,
+ * which is one of them: how far this picture is from the mean, how far that may be from the mean of
+ * many, and what it would gain by still finer settings.
  *
  * It sees what sampling and reconstruction leave out. What the plan leaves out is in every variant
  * alike, and so is what two layers miss of a mesh: that it cannot see. Default profile only.
@@ -34,7 +35,7 @@ extern "C" {
 /* A request; zero means the default in every field. */
 typedef struct abbe_error_bars_desc {
   size_t variants; /* 2 to ABBE_ERROR_BARS_MAX_VARIANTS; 0: 4 */
-  bool of_mean;    /* the errors of the variants' mean, not of the picture */
+  bool of_mean;    /* the errors of the mean, not of the picture */
   abbe_render_progress progress;
   void *user;
 } abbe_error_bars_desc;
@@ -43,14 +44,15 @@ typedef struct abbe_error_bars_desc {
 typedef struct abbe_error_bars_summary {
   size_t pixels;
   double relative_rmse; /* root of the mean squared error over the mean */
-  double ciede2000;     /* mean CIEDE2000 [Sharma2005] between the picture and itself, off by its
-                           error towards the variants' mean (the mean's: the coarse picture) */
+  double ciede2000;     /* mean CIEDE2000 [Sharma2005] between the picture and itself, off by 0.8 of
+                           its error, a normal error's mean size, towards the mean (the mean's:
+                           towards the coarse picture) */
 } abbe_error_bars_summary;
 
 typedef struct abbe_error_bars {
   abbe_image error; /* "stderr.R", … or "stderr.X", …: one standard error, in the picture's unit */
-  abbe_image mean; /* of the variants: nearer to the truth than each of them; channels and
-                      attributes as the picture's R, G, B */
+  abbe_image mean;  /* with the picture: nearer to the truth than each of them; channels and
+                       attributes as the picture's R, G, B */
   abbe_error_bars_summary whole;
   abbe_error_bars_summary caustic; /* where 95 % of the caustic's light is; no pixels where the
                                       request keeps no layers or nothing refracts */
