@@ -434,7 +434,8 @@ static size_t most_landings(const abbe_renderer *r) {
   GLint texels = 0;
   r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   const size_t most = MOST_LANDING_BYTES / (LANDING_BYTES + abbe_renderer_signature_bytes(r));
-  return most < (size_t)texels ? most : (size_t)texels;
+  const size_t held = (size_t)texels * 16 / LANDING_BYTES; /* of four floats a texel */
+  return most < held ? most : held;
 }
 
 static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
@@ -450,7 +451,7 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   const size_t slots = !r->plan.walk && r->plan.slots > usual ? usual : r->plan.slots;
   const size_t a_landing = LANDING_BYTES + abbe_renderer_signature_bytes(r);
   size_t lanes = MAX_LANDING_BYTES / a_landing / (most * slots), room = most_landings(r);
-  if (a_lane * 2 > room)
+  if (a_lane * (n > 1 ? 2 : 1) > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "
                           "time; use a grid below %zu or fewer exits",
