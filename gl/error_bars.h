@@ -51,8 +51,8 @@ typedef struct abbe_error_bars_summary {
 
 typedef struct abbe_error_bars {
   abbe_image error; /* "stderr.R", … or "stderr.X", …: one standard error, in the picture's unit */
-  abbe_image mean;  /* with the picture: nearer to the truth than each of them; channels and
-                       attributes as the picture's R, G, B */
+  abbe_image mean; /* with the picture: nearer to the truth than each of them; channels and
+                      attributes as the picture's R, G, B */
   abbe_error_bars_summary whole;
   abbe_error_bars_summary caustic; /* where 95 % of the caustic's light is; no pixels where the
                                       request keeps no layers or nothing refracts */

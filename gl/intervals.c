@@ -54,7 +54,8 @@ static void fill_interval(const abbe_renderer *r, const abbe_wavelengths *w, siz
     a = edge = i == 0 ? min : max;
     b = max;
   }
-  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, taken[3] = {0, 0, 0}, before = b;
+  double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, taken[3] = {0, 0, 0},
+         before = b;
   abbe_material_n(material, a, &n_a, NULL);
   abbe_material_n(material, b, &n_b, NULL);
   for (size_t k = 0; k <= r->steps; k++, out += interval_texels(r)) {

@@ -22,7 +22,8 @@ typedef struct abbe_ledger {
   double deposited; /* in the spectral map and on receivers' pages */
   double on_pages;  /* of what is deposited */
   /* What leaves refractors between the wavelengths that are traced, by the index there, less what
-   * those would have for it by themselves: the error of interpolation. May be below 0. */
+   * those have for it by themselves: the quadrature error over wavelengths that this takes away.
+   * May be below 0. */
   double interpolated;
 } abbe_ledger;
 

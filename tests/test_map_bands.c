@@ -27,8 +27,9 @@ static void bands_add_up_to_the_colour(void **state) {
     for (int c = 0; c < 3; c++) sum[c] += flux / power * xyz[c];
   }
   for (size_t c = 0; c < 3; c++) {
-    /* What a wall lets through is told at the mean wavelength of a piece's X, Y or Z, or of its part
-     * of a band: of a piece as wide as an interval the first lacks what bends, 3e-4 at the most. */
+    /* What a wall lets through is told at the mean wavelength of a piece's X, Y or Z, or of its
+     * part of a band: of a piece as wide as an interval the first lacks what bends, 3e-4 at the
+     * most. */
     assert_true(fabs(sum[c] / image_sum(&map, c) - 1) < 5e-4);
   }
   abbe_image_free(&map);

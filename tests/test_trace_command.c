@@ -253,13 +253,21 @@ static void test_bad_scenes(void **state) {
   assert_true(right);
 }
 
+/* Two maps of one scene: the second like the first, and with `options`. */
+static void save_two_maps(const char *options, abbe_image *a, abbe_image *b) {
+  char line[512];
+  snprintf(line, sizeof line, "%s %s", TRACE BALL SMALL "--spp 1 --save-map b.exr --map-like a.exr",
+           options);
+  check_run(TRACE BALL SMALL "--spp 1 --save-map a.exr", 0);
+  check_run(line, 0);
+  read_image("a.exr", a);
+  read_image("b.exr", b);
+}
+
 static void test_map_like(void **state) {
   (void)state;
-  check_run(TRACE BALL SMALL "--spp 1 --save-map a.exr", 0);
-  check_run(TRACE BALL SMALL "--spp 1 --save-map b.exr --map-like a.exr --seed 4", 0);
   abbe_image a, b;
-  read_image("a.exr", &a);
-  read_image("b.exr", &b);
+  save_two_maps("--seed 4", &a, &b);
   assert_string_equal(abbe_image_attribute_text(&a, "abbe:map_view"),
                       abbe_image_attribute_text(&b, "abbe:map_view"));
   assert_int_equal(a.width, b.width);
@@ -270,11 +278,8 @@ static void test_map_like(void **state) {
 /* A map need not be square: it holds the same light. */
 static void test_map_sides(void **state) {
   (void)state;
-  check_run(TRACE BALL SMALL "--spp 1 --save-map a.exr", 0);
-  check_run(TRACE BALL SMALL "--spp 1 --save-map b.exr --map-like a.exr --map 4x16", 0);
   abbe_image a, b;
-  read_image("a.exr", &a);
-  read_image("b.exr", &b);
+  save_two_maps("--map 4x16", &a, &b);
   assert_int_equal(b.width, 4);
   assert_int_equal(b.height, 16);
   double lights[2] = {0, 0};

@@ -9,6 +9,10 @@
 /* What rounding to whole units may take from the ledger (docs/rendering.md), or from one of X, Y
  * and Z against the others. */
 static const double closed = 1e-4;
+/* What bridging may correct of the light that is reached, by the quadrature over wavelengths alone:
+ * 9e-4 is seen in stones of a thousand facets, 5e-3 where there are two wavelengths, or where the
+ * index is larger by a tenth or more in the blue than in the red. */
+static const double corrected = 1e-3, corrected_coarsely = 1e-2;
 /* A picture's X, Y and Z come from ACEScg by a matrix whose terms nearly cancel where a colour is
  * at the edge of the visible ones: some roundings of the brightest. */
 static const double rounding = 1e-6;
@@ -101,6 +105,10 @@ static void check_ledger(const extreme *e, const extreme_frame *f, extreme_row *
   double imbalance = abbe_ledger_imbalance(l);
   extreme_row_add(row, "ledger %.1e", imbalance);
   if (!(imbalance < closed)) extreme_row_break(row, "the ledger is open by %g", imbalance);
+  bool coarse = e->desc.wavelengths == 2 || e->scene.b >= 0.1;
+  if (!(fabs(l->interpolated) <= (coarse ? corrected_coarsely : corrected) * l->reached))
+    extreme_row_break(row, "%g W of the %g W that are reached are interpolated", l->interpolated,
+                      l->reached);
   if (e->dark != (l->deposited == 0))
     extreme_row_break(row, "%g W are in the map, of %g W that reached a refractor", l->deposited,
                       l->reached);
