@@ -1,8 +1,8 @@
 #include "cli/arguments.h"
 
+#include "base/nearest.h"
 #include "cli/command.h"
-#include "spectral/material_table.h"
-#include "spectral/nearest.h"
+#include "spectral/materials/material_table.h"
 
 #include <libgen.h>
 #include <stdio.h>

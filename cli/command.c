@@ -1,10 +1,10 @@
 #include "cli/command.h"
 
+#include "base/encoding.h"
+#include "base/file.h"
+#include "base/nearest.h"
 #include "cli/arguments.h"
-#include "scenes/scene_file.h"
-#include "spectral/encoding.h"
-#include "spectral/file.h"
-#include "spectral/nearest.h"
+#include "scenes/import/scene_file.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>

@@ -7,7 +7,7 @@
 #ifndef ABBE_CLI_COMMAND_H
 #define ABBE_CLI_COMMAND_H
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

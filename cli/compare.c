@@ -2,10 +2,10 @@
 #include "cli/command.h"
 #include "cli/compare_report.h"
 
-#include "colorimetry/exr.h"
-#include "colorimetry/png_file.h"
-#include "spectral/nearest.h"
-#include "validation/difference_picture.h"
+#include "base/nearest.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/png_file.h"
+#include "validation/compare/difference_picture.h"
 
 #include <argp.h>
 #include <ctype.h>

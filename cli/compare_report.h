@@ -2,7 +2,7 @@
 #ifndef ABBE_CLI_COMPARE_REPORT_H
 #define ABBE_CLI_COMPARE_REPORT_H
 
-#include "validation/compare.h"
+#include "validation/compare/compare.h"
 
 enum { ABBE_COMPARE_MAX_TOLERANCES = 64, ABBE_COMPARE_MAX_NOTES = 16 };
 

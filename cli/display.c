@@ -1,9 +1,9 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 
-#include "colorimetry/display_ocio.h"
-#include "colorimetry/exr.h"
-#include "colorimetry/png_file.h"
+#include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/png_file.h"
 #include "colorimetry/rgb_space.h"
 
 #include <argp.h>

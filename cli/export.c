@@ -1,8 +1,8 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 
-#include "scenes/scene_file.h"
-#include "validation/pov_file.h"
+#include "scenes/export/pov_file.h"
+#include "scenes/import/scene_file.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -1,8 +1,8 @@
 #include "cli/arguments.h"
 #include "cli/command.h"
 
-#include "colorimetry/exr.h"
-#include "spectral/encoding.h"
+#include "base/encoding.h"
+#include "colorimetry/image/exr.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

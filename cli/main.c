@@ -1,8 +1,8 @@
 #include "cli/command.h"
 #include "cli/output.h"
 
-#include "colorimetry/display_ocio.h"
-#include "spectral/nearest.h"
+#include "base/nearest.h"
+#include "colorimetry/image/display_ocio.h"
 
 #include <argp.h>
 #include <fcntl.h>

@@ -2,7 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/command.h"
-#include "colorimetry/exr.h"
+#include "colorimetry/image/exr.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,8 +3,8 @@
 #ifndef ABBE_CLI_MAP_OPTIONS_H
 #define ABBE_CLI_MAP_OPTIONS_H
 
-#include "scenes/map_layout.h"
 #include "scenes/scene.h"
+#include "scenes/view/map_layout.h"
 
 #include <argp.h>
 #include <stdbool.h>

@@ -2,8 +2,8 @@
 #include "cli/command.h"
 
 #include "colorimetry/rgb_space.h"
-#include "validation/field.h"
-#include "validation/outline.h"
+#include "validation/compare/field.h"
+#include "validation/compare/outline.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -2,7 +2,7 @@
 
 #include "cli/output.h"
 
-#include "spectral/encoding.h"
+#include "base/encoding.h"
 
 #include <string.h>
 #include <unistd.h>

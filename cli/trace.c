@@ -4,14 +4,14 @@
 #include "cli/progress.h"
 #include "cli/scene_notes.h"
 
-#include "colorimetry/display_ocio.h"
-#include "colorimetry/exr.h"
-#include "colorimetry/png_file.h"
-#include "gl/plan.h"
-#include "scenes/scene_file.h"
-#include "spectral/file.h"
-#include "validation/checkpoint.h"
-#include "validation/tracer.h"
+#include "base/file.h"
+#include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/png_file.h"
+#include "gl/plan/plan.h"
+#include "scenes/import/scene_file.h"
+#include "validation/tracer/checkpoint.h"
+#include "validation/tracer/tracer.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -2,8 +2,8 @@
 #include "cli/command.h"
 #include "cli/progress.h"
 
-#include "validation/known_answers.h"
-#include "validation/known_chart.h"
+#include "validation/known/known_answers.h"
+#include "validation/known/known_chart.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>

@@ -1,8 +1,8 @@
 #include "colorimetry/illuminant.h"
 
-#include "spectral/csv_points.h"
-#include "spectral/nearest.h"
-#include "spectral/number.h"
+#include "base/nearest.h"
+#include "base/number.h"
+#include "spectral/dispersion/csv_points.h"
 
 #include <math.h>
 #include <stdbool.h>

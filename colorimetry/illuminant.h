@@ -7,7 +7,7 @@
 #ifndef ABBE_COLORIMETRY_ILLUMINANT_H
 #define ABBE_COLORIMETRY_ILLUMINANT_H
 
-#include "spectral/error.h"
+#include "base/error.h"
 #include "spectral/spectrum.h"
 
 #include <stddef.h>
@@ -32,7 +32,7 @@ typedef struct abbe_illuminant {
 } abbe_illuminant;
 
 /* "D65", "D50", "A", "E" (any case), or the path of a file of two columns, wavelength and relative
- * power, as spectral/csv_points.h reads it: at least two rows, power >= 0 and not all 0. ABBE_PARSE
+ * power, as spectral/dispersion/csv_points.h reads it: at least two rows, power >= 0 and not all 0. ABBE_PARSE
  * or ABBE_SCHEMA, with line and text, for a row that cannot be used. */
 abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
                                  abbe_error *error);

@@ -8,7 +8,7 @@
 #ifndef ABBE_COLORIMETRY_RGB_ENCODING_H
 #define ABBE_COLORIMETRY_RGB_ENCODING_H
 
-#include "colorimetry/image.h"
+#include "colorimetry/image/image.h"
 
 #include <stdbool.h>
 

@@ -11,7 +11,7 @@
 #ifndef ABBE_COLORIMETRY_RGB_SPACE_H
 #define ABBE_COLORIMETRY_RGB_SPACE_H
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #ifdef __cplusplus
 extern "C" {

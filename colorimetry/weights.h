@@ -7,9 +7,9 @@
 #ifndef ABBE_COLORIMETRY_WEIGHTS_H
 #define ABBE_COLORIMETRY_WEIGHTS_H
 
+#include "base/error.h"
 #include "colorimetry/illuminant.h"
 #include "colorimetry/rgb_space.h"
-#include "spectral/error.h"
 #include "spectral/wavelengths.h"
 
 #include <stddef.h>

@@ -7,13 +7,13 @@
 #ifndef ABBE_GL_RENDERER_H
 #define ABBE_GL_RENDERER_H
 
-#include "colorimetry/image.h"
-#include "gl/context.h"
-#include "gl/plan.h"
+#include "base/error.h"
+#include "colorimetry/image/image.h"
+#include "gl/device/context.h"
+#include "gl/plan/plan.h"
 #include "gl/statistics.h"
-#include "scenes/map_layout.h"
 #include "scenes/scene.h"
-#include "spectral/error.h"
+#include "scenes/view/map_layout.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,12 +2,12 @@
 #ifndef ABBE_GL_RENDERER_STATE_H
 #define ABBE_GL_RENDERER_STATE_H
 
-#include "gl/api.h"
-#include "gl/local_scene.h"
-#include "gl/plan.h"
-#include "gl/receiver_charts.h"
-#include "gl/receiver_pages.h"
+#include "gl/device/api.h"
+#include "gl/plan/plan.h"
 #include "gl/renderer.h"
+#include "gl/scene/local_scene.h"
+#include "gl/scene/receiver_charts.h"
+#include "gl/scene/receiver_pages.h"
 #include "spectral/wavelengths.h"
 
 /* Shader storage bindings, as the shaders name them. */

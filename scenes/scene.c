@@ -1,8 +1,8 @@
 #include "scenes/scene.h"
 
-#include "scenes/transform.h"
-#include "scenes/vector.h"
-#include "spectral/number.h"
+#include "base/number.h"
+#include "scenes/geometry/transform.h"
+#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -8,12 +8,12 @@
 #ifndef ABBE_SCENES_SCENE_H
 #define ABBE_SCENES_SCENE_H
 
+#include "base/error.h"
 #include "colorimetry/illuminant.h"
-#include "colorimetry/image.h"
-#include "scenes/convex.h"
-#include "scenes/mesh.h"
-#include "spectral/error.h"
-#include "spectral/material_table.h"
+#include "colorimetry/image/image.h"
+#include "scenes/mesh/mesh.h"
+#include "scenes/shapes/convex.h"
+#include "spectral/materials/material_table.h"
 
 #include <stdbool.h>
 #include <stddef.h>

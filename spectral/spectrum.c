@@ -1,6 +1,6 @@
 #include "spectral/spectrum.h"
 
-#include "spectral/gsl_guard.h"
+#include "base/gsl_guard.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_interp.h>

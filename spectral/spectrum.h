@@ -6,7 +6,7 @@
 #ifndef ABBE_SPECTRAL_SPECTRUM_H
 #define ABBE_SPECTRAL_SPECTRUM_H
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <stddef.h>
 

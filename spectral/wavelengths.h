@@ -7,7 +7,7 @@
 #ifndef ABBE_SPECTRAL_WAVELENGTHS_H
 #define ABBE_SPECTRAL_WAVELENGTHS_H
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <stddef.h>
 

@@ -12,9 +12,9 @@ foreach(name malloc calloc realloc aligned_alloc strdup strndup realpath fopen f
   target_link_options(faults_memory INTERFACE LINKER:--wrap=${name})
 endforeach()
 
-abbe_test(no_memory_tables cpu faults_memory abbe_spectral)
-abbe_test(no_memory_scenes cpu faults_memory abbe_gl abbe_scenes abbe_colorimetry abbe_spectral)
-abbe_test(no_memory_trace cpu faults_memory abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
+abbe_test(no_memory_tables cpu faults_memory abbe_spectral abbe_base)
+abbe_test(no_memory_scenes cpu faults_memory abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_test(no_memory_trace cpu faults_memory abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 
 # The calls with which Abbe's own objects write files (faults/disk.h).
 add_library(faults_disk OBJECT faults/disk.c)
@@ -22,17 +22,17 @@ target_link_libraries(faults_disk PUBLIC abbe_build)
 foreach(name open linkat fdopen fchmod fsync fclose rename pwrite)
   target_link_options(faults_disk INTERFACE LINKER:--wrap=${name})
 endforeach()
-abbe_test(full_disk cpu faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
+abbe_test(full_disk cpu faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 
 # Kills the program, or starves it, at a chosen call (faults/preload.c).
 add_library(faults_preload MODULE faults/preload.c)
 target_link_libraries(faults_preload PRIVATE abbe_build ${CMAKE_DL_LIBS})
 foreach(name killed_command starved_command)
-  abbe_test(${name} program abbe_spectral)
+  abbe_test(${name} program abbe_spectral abbe_base)
   target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>"
     ABBE_PRELOAD="$<TARGET_FILE:faults_preload>")
   add_dependencies(test_${name} abbe faults_preload)
 endforeach()
 
-abbe_test(gl_faults gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral)
+abbe_test(gl_faults gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 target_link_options(test_gl_faults PRIVATE LINKER:--wrap=abbe_context_osmesa)

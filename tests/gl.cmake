@@ -1,4 +1,4 @@
-set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral)
+set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name transport local_scene plan plan_scenes precision reach receiver_charts light_cube layer_detail)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()

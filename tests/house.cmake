@@ -1,12 +1,12 @@
 # The house as a whole: who may include whom, and each header by itself.
 abbe_test(directions cpu abbe_build)
-abbe_test(number_places cpu abbe_spectral)
+abbe_test(number_places cpu abbe_base)
 
 # Each header is included twice, first and alone, in a C17 and a C++17 file of its own.
-file(GLOB headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-  ${PROJECT_SOURCE_DIR}/spectral/*.h ${PROJECT_SOURCE_DIR}/colorimetry/*.h
-  ${PROJECT_SOURCE_DIR}/scenes/*.h ${PROJECT_SOURCE_DIR}/gl/*.h
-  ${PROJECT_SOURCE_DIR}/validation/*.h)
+file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/base/*.h ${PROJECT_SOURCE_DIR}/spectral/*.h
+  ${PROJECT_SOURCE_DIR}/colorimetry/*.h ${PROJECT_SOURCE_DIR}/scenes/*.h
+  ${PROJECT_SOURCE_DIR}/gl/*.h ${PROJECT_SOURCE_DIR}/validation/*.h)
 set(sources "")
 set(declarations "")
 set(sum "0")
@@ -54,5 +54,5 @@ add_custom_command(OUTPUT ${calls}
   DEPENDS ${header_files} ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate
   VERBATIM)
 abbe_test(null_arguments cpu abbe_sweep abbe_gl abbe_validation abbe_scenes abbe_colorimetry
-  abbe_spectral)
+  abbe_spectral abbe_base)
 target_sources(test_null_arguments PRIVATE ${calls})

@@ -29,17 +29,17 @@ foreach(name
     trace_command
     validate_command
     )
-  abbe_test(${name} program abbe_colorimetry abbe_spectral PkgConfig::CJSON)
+  abbe_test(${name} program abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
   target_compile_definitions(test_${name} PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")
   add_dependencies(test_${name} abbe)
 endforeach()
 
 add_test(NAME readme_commands
-  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/readme_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/readme_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 set_tests_properties(readme_commands PROPERTIES LABELS program TIMEOUT ${hang_s})
 
 add_test(NAME materials_page
-  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           docs/materials.md)
 set_tests_properties(materials_page PROPERTIES LABELS program TIMEOUT ${hang_s})
 
@@ -48,15 +48,15 @@ add_test(NAME known_answers_whole COMMAND abbe validate --quiet)
 set_tests_properties(known_answers_whole PROPERTIES LABELS program TIMEOUT ${hang_s})
 foreach(scene sphere ring gem bunny glass prism rainbow)
   add_test(NAME reference_${scene}
-    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})
   set_tests_properties(reference_${scene} PROPERTIES LABELS program TIMEOUT ${hang_s})
 endforeach()
 # Tolerances that catch nothing are none.
 add_test(NAME reference_broken_exits
-  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           --broken gem --exits 1)
 add_test(NAME reference_broken_wavelengths
-  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           --broken prism --wavelengths 1)
 set_tests_properties(reference_broken_exits reference_broken_wavelengths
   PROPERTIES LABELS program TIMEOUT ${hang_s})

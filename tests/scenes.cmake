@@ -1,5 +1,9 @@
-foreach(name transform disjoint_sets topology shells convex vector mesh mesh_repair object_surface mesh_charts mesh_import mesh_files ply_strips shape brilliant scene object_file scene_file view map_layout map_resample)
-  abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral)
+foreach(name transform disjoint_sets vector
+        mesh mesh_repair mesh_charts topology shells
+        convex shape brilliant
+        scene object_file object_surface scene_file mesh_import mesh_files ply_strips
+        view map_layout map_resample pov_file)
+  abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 foreach(name fork alarm aiImportFileExWithProperties)
   target_link_options(test_mesh_import PRIVATE LINKER:--wrap=${name})

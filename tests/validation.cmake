@@ -1,4 +1,4 @@
-set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral)
+set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name
     accumulator
     aim
@@ -22,7 +22,6 @@ foreach(name
     rings
     outline
     photon_grid
-    pov_file
     random
     reflectance
     route

@@ -1,6 +1,6 @@
 #include "tests/extremes/extreme.h"
 
-#include "spectral/file.h"
+#include "base/file.h"
 
 #include <stdarg.h>
 #include <stdio.h>

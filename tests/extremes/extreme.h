@@ -7,8 +7,8 @@
 #ifndef ABBE_TESTS_EXTREMES_EXTREME_H
 #define ABBE_TESTS_EXTREMES_EXTREME_H
 
-#include "gl/plan.h"
-#include "scenes/scene_file.h"
+#include "gl/plan/plan.h"
+#include "scenes/import/scene_file.h"
 #include "tests/extremes/report.h"
 
 #include <stdbool.h>

@@ -3,7 +3,7 @@
 #ifndef ABBE_TESTS_EXTREMES_LIMITS_H
 #define ABBE_TESTS_EXTREMES_LIMITS_H
 
-#include "gl/context.h"
+#include "gl/device/context.h"
 #include "tests/extremes/report.h"
 
 #include <stddef.h>

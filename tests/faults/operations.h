@@ -11,7 +11,7 @@
 #include "tests/check.h"
 #include "tests/faults/memory.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <dirent.h>
 #include <stdlib.h>

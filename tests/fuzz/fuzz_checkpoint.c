@@ -5,9 +5,9 @@
  */
 #include "tests/fuzz/memory_file.h"
 
-#include "scenes/scene_file.h"
-#include "validation/checkpoint.h"
-#include "validation/tracer.h"
+#include "scenes/import/scene_file.h"
+#include "validation/tracer/checkpoint.h"
+#include "validation/tracer/tracer.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "tests/fuzz/keeps.h"
 
-#include "spectral/material_import.h"
+#include "spectral/formats/material_import.h"
 
 const char *const fuzz_words[] = {
     "wavelength_nm,n\n", "wl (um);n;k\n", "wl,k\n",      ",", ";", "\t",

@@ -1,8 +1,8 @@
 /* OpenEXR files, and the map layouts that may stand in them. What is read can be written again. */
 #include "tests/fuzz/memory_file.h"
 
-#include "colorimetry/exr.h"
-#include "scenes/map_layout.h"
+#include "colorimetry/image/exr.h"
+#include "scenes/view/map_layout.h"
 
 #include <string.h>
 

@@ -7,9 +7,9 @@
  */
 #include "tests/fuzz/fuzz.h"
 
-#include "scenes/convex.h"
-#include "scenes/mesh.h"
-#include "scenes/topology.h"
+#include "scenes/mesh/mesh.h"
+#include "scenes/mesh/topology.h"
+#include "scenes/shapes/convex.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 /* Mesh files: the first byte picks the kind, the rest is the file. */
 #include "tests/fuzz/memory_file.h"
 
-#include "scenes/mesh.h"
+#include "scenes/mesh/mesh.h"
 
 #include <errno.h>
 #include <string.h>

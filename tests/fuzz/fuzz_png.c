@@ -2,7 +2,7 @@
  * at, and ICC profiles by themselves: all that does not begin as a PNG. */
 #include "tests/fuzz/memory_file.h"
 
-#include "colorimetry/png_file.h"
+#include "colorimetry/image/png_file.h"
 #include "colorimetry/rgb_encoding.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Files of presets. */
 #include "tests/fuzz/memory_file.h"
 
-#include "gl/preset.h"
+#include "gl/accuracy/preset.h"
 
 const char *const fuzz_words[] = {"error: ",  "fronts:\n", "  - class: ", "points:\n",
                                   "named: {", "draft: ",   "scenes: ",    "spheres",

@@ -1,6 +1,6 @@
 #include "tests/fuzz/keeps.h"
 
-#include "spectral/rii.h"
+#include "spectral/formats/rii.h"
 
 const char *const fuzz_words[] = {"DATA:\n",
                                   "  - type: formula 2\n",

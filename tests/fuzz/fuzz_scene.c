@@ -1,8 +1,8 @@
 /* Scene files, with what they include: tables, meshes and textures beside tests/fuzz/parts. */
 #include "tests/fuzz/fuzz.h"
 
-#include "gl/plan.h"
-#include "scenes/scene_file.h"
+#include "gl/plan/plan.h"
+#include "scenes/import/scene_file.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "tests/fuzz/keeps.h"
 
-#include "spectral/material_table.h"
+#include "spectral/materials/material_table.h"
 
 const char *const fuzz_words[] = {"materials:\n",
                                   "  - name: x\n",

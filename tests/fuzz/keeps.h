@@ -4,11 +4,11 @@
 
 #include "tests/fuzz/fuzz.h"
 
-#include "spectral/agf_write.h"
-#include "spectral/csv_write.h"
-#include "spectral/material_write.h"
-#include "spectral/rii_write.h"
-#include "spectral/shader_export.h"
+#include "spectral/formats/agf_write.h"
+#include "spectral/formats/csv_write.h"
+#include "spectral/formats/material_write.h"
+#include "spectral/formats/rii_write.h"
+#include "spectral/formats/shader_export.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* A program outside the house: it knows the installed headers and library only. */
-#include "colorimetry/display_ocio.h"
+#include "colorimetry/image/display_ocio.h"
 #include "gl/renderer.h"
-#include "scenes/scene_file.h"
+#include "scenes/import/scene_file.h"
 #include <stdio.h>
 
 int main(int argc, char **argv) {

@@ -5,7 +5,7 @@
 #ifndef ABBE_TESTS_NULL_ARGUMENTS_H
 #define ABBE_TESTS_NULL_ARGUMENTS_H
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,0 +1,198 @@
+#include "base/encoding.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum form { UTF8, UTF16_LITTLE, UTF16_BIG, WINDOWS } form;
+
+enum { REPLACEMENT = 0xfffd };
+
+/* ---- which encoding ---- */
+
+/* Bytes of the UTF-8 sequence at c and its code point; 0 where it is malformed, overlong, a
+ * surrogate or beyond Unicode. */
+static size_t sequence(const unsigned char *c, size_t left, uint32_t *code) {
+  size_t count = c[0] < 0x80 ? 1 : c[0] < 0xc2 ? 0 : c[0] < 0xe0 ? 2 : c[0] < 0xf0 ? 3 : 4;
+  if (count == 0 || c[0] > 0xf4 || count > left) return 0;
+  static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+  *code = count == 1 ? c[0] : c[0] & (0xffu >> (count + 1));
+  for (size_t i = 1; i < count; i++) {
+    if ((c[i] & 0xc0) != 0x80) return 0;
+    *code = *code << 6 | (c[i] & 0x3fu);
+  }
+  bool wrong = *code < least[count] || *code > 0x10ffff || (*code >= 0xd800 && *code < 0xe000);
+  return wrong ? 0 : count;
+}
+
+static bool is_utf8(const unsigned char *c, size_t size) {
+  uint32_t code;
+  for (size_t i = 0, step; i < size; i += step) {
+    step = sequence(c + i, size - i, &code);
+    if (step == 0) return false;
+  }
+  return true;
+}
+
+static form detect(const unsigned char *c, size_t size, size_t *skip) {
+  *skip = 2;
+  if (size >= 2 && c[0] == 0xff && c[1] == 0xfe) return UTF16_LITTLE;
+  if (size >= 2 && c[0] == 0xfe && c[1] == 0xff) return UTF16_BIG;
+  *skip = 3;
+  if (size >= 3 && memcmp(c, "\xef\xbb\xbf", 3) == 0) return UTF8;
+  *skip = 0;
+  /* Latin text in UTF-16 is half zeros, all on one side */
+  size_t zeros[2] = {0, 0}, looked = size < 4096 ? size : 4096;
+  for (size_t i = 0; i < looked; i++) zeros[i & 1] += c[i] == 0;
+  if (looked >= 8 && zeros[1] > looked / 4 && zeros[0] <= looked / 64) return UTF16_LITTLE;
+  if (looked >= 8 && zeros[0] > looked / 4 && zeros[1] <= looked / 64) return UTF16_BIG;
+  return is_utf8(c, size) ? UTF8 : WINDOWS;
+}
+
+/* ---- one code point ---- */
+
+/* Windows-1252 where it differs from Latin-1. */
+static const uint16_t windows[32] = {
+    0x20ac, 0xfffd, 0x201a, 0x0192, 0x201e, 0x2026, 0x2020, 0x2021, 0x02c6, 0x2030, 0x0160,
+    0x2039, 0x0152, 0xfffd, 0x017d, 0xfffd, 0xfffd, 0x2018, 0x2019, 0x201c, 0x201d, 0x2022,
+    0x2013, 0x2014, 0x02dc, 0x2122, 0x0161, 0x203a, 0x0153, 0xfffd, 0x017e, 0x0178};
+
+static uint32_t unit(const unsigned char *c, bool big) {
+  return big ? (uint32_t)c[0] << 8 | c[1] : (uint32_t)c[1] << 8 | c[0];
+}
+
+static size_t utf16(const unsigned char *c, size_t left, bool big, uint32_t *code) {
+  *code = REPLACEMENT;
+  if (left < 2) return left;
+  uint32_t high = unit(c, big);
+  if (high < 0xd800 || high > 0xdfff) *code = high;
+  if (high < 0xd800 || high > 0xdbff || left < 4) return 2;
+  uint32_t low = unit(c + 2, big);
+  if (low < 0xdc00 || low > 0xdfff) return 2;
+  *code = 0x10000 + ((high - 0xd800) << 10) + (low - 0xdc00);
+  return 4;
+}
+
+/* Bytes consumed, at least 1. */
+static size_t take(const unsigned char *c, size_t left, form from, uint32_t *code) {
+  size_t step = 1;
+  switch (from) {
+  case UTF8:
+    step = sequence(c, left, code);
+    if (step == 0) *code = REPLACEMENT;
+    return step == 0 ? 1 : step;
+  case UTF16_LITTLE:
+  case UTF16_BIG:
+    return utf16(c, left, from == UTF16_BIG, code);
+  case WINDOWS:
+    *code = c[0] >= 0x80 && c[0] < 0xa0 ? windows[c[0] - 0x80] : c[0];
+    break;
+  }
+  return step;
+}
+
+static size_t put(char *to, uint32_t code) {
+  if (code < 0x80) {
+    to[0] = (char)code;
+    return 1;
+  }
+  size_t count = code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
+  for (size_t i = count; i-- > 1; code >>= 6) to[i] = (char)(0x80 | (code & 0x3f));
+  to[0] = (char)((0xf00u >> count & 0xf0u) | code);
+  return count;
+}
+
+/* Control characters, the C1 range, and the two that YAML does not allow. */
+static bool unwanted(uint32_t code) {
+  bool control = code < 0x20 || (code >= 0x7f && code < 0xa0);
+  return (control && code != '\n' && code != '\t') || code == 0xfeff || code == 0xfffe ||
+         code == 0xffff;
+}
+
+abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, size_t *length,
+                                 abbe_error *error) {
+  ABBE_REQUIRE(bytes && text && length, error);
+  const unsigned char *c = (const unsigned char *)bytes;
+  char *out = size < SIZE_MAX / 3 ? malloc(3 * size + 1) : NULL;
+  if (out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu bytes", size);
+  size_t i = 0, used = 0;
+  form from = detect(c, size, &i);
+  bool after_return = false;
+  while (i < size) {
+    uint32_t code = REPLACEMENT;
+    i += take(c + i, size - i, from, &code);
+    bool skip = after_return && code == '\n';
+    after_return = code == '\r';
+    if (skip) continue;
+    if (after_return) code = '\n';
+    used += put(out + used, unwanted(code) ? ' ' : code);
+  }
+  out[used] = '\0';
+  *text = out;
+  *length = used;
+  return ABBE_OK;
+}
+
+bool abbe_encoding_is_binary(const char *bytes, size_t size) {
+  const unsigned char *c = (const unsigned char *)bytes;
+  size_t skip, looked = size < 4096 ? size : 4096, zeros = 0, controls = 0;
+  const form from = detect(c, size, &skip);
+  if (from == UTF16_LITTLE || from == UTF16_BIG) return false;
+  for (size_t i = 0; i < looked; i++) {
+    zeros += c[i] == 0;
+    controls += c[i] < 0x20 && strchr("\t\n\r\f\x1a", c[i]) == NULL; /* CP/M's end of a file too */
+  }
+  return zeros > 0 || controls > looked / 32;
+}
+
+/* Letters that turn the direction of what follows, end a line, or cannot be seen: what is read is
+ * then not what stands there. Of Unicode's format characters (Cf) and separators (Zl, Zp). */
+static bool misleads(uint32_t code) {
+  static const uint32_t range[][2] = {{0x061c, 0x061c},  {0x200b, 0x200f}, {0x2028, 0x202e},
+                                      {0x2060, 0x206f},  {0xfeff, 0xfeff}, {0xfff9, 0xfffb},
+                                      {0xe0000, 0xe007f}};
+  for (size_t i = 0; i < sizeof range / sizeof *range; i++)
+    if (code >= range[i][0] && code <= range[i][1]) return true;
+  return false;
+}
+
+static uint32_t shown(uint32_t code, bool before_newline, bool lines) {
+  if (code == '\n' || code == '\t') return lines ? code : ' ';
+  if (code == '\r' && before_newline) return lines ? code : ' ';
+  if (code < 0x20) return 0x2400 + code;
+  if (code == 0x7f) return 0x2421;
+  return (code >= 0x80 && code < 0xa0) || misleads(code) ? REPLACEMENT : code;
+}
+
+size_t abbe_encoding_printable(const char *text, size_t length, bool lines, char *out,
+                               size_t size) {
+  const unsigned char *c = (const unsigned char *)text;
+  size_t used = 0;
+  for (size_t i = 0; i < length;) {
+    uint32_t code = REPLACEMENT;
+    char letter[4];
+    i += take(c + i, length - i, UTF8, &code);
+    size_t count = put(letter, shown(code, i < length && c[i] == '\n', lines));
+    if (used + count >= size) break;
+    memcpy(out + used, letter, count);
+    used += count;
+  }
+  if (size > 0) out[used] = '\0';
+  return used;
+}
+
+size_t abbe_encoding_letter(const char *text) {
+  uint32_t code;
+  return text[0] == '\0' ? 0 : sequence((const unsigned char *)text, strnlen(text, 4), &code);
+}
+
+void abbe_encoding_trim(char *text) {
+  size_t end = strlen(text), start = end;
+  while (start > 0 && end - start < 4) {
+    start--;
+    if (((unsigned char)text[start] & 0xc0) == 0x80) continue; /* inside a letter */
+    if (start + abbe_encoding_letter(text + start) != end) text[start] = '\0';
+    return;
+  }
+}

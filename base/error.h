@@ -1,0 +1,76 @@
+/* error.h: result codes and the sentence that explains one.
+ *
+ * Every Abbe function that can fail returns an abbe_result and, when it is not ABBE_OK, fills
+ * the abbe_error that its caller passed (which may be NULL). There is no hidden global error and
+ * no call of exit() in the library. Functions that compute plain maths return their value.
+ */
+#ifndef ABBE_BASE_ERROR_H
+#define ABBE_BASE_ERROR_H
+
+#include <assert.h>
+#include <stdarg.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One list makes the codes and their texts: X(code, text). */
+#define ABBE_RESULTS(X)                                                    \
+  X(OK, "done")                                                            \
+  X(INVALID_ARGUMENT, "a value is outside what the function accepts")      \
+  X(NO_MEMORY, "memory could not be allocated")                            \
+  X(IO, "a file could not be read or written")                             \
+  X(PARSE, "a file is not well formed")                                    \
+  X(SCHEMA, "a file is well formed but says something it may not say")     \
+  X(NOT_FOUND, "a name is not known")                                      \
+  X(OUT_OF_RANGE, "a wavelength is outside the range of its data")         \
+  X(GEOMETRY, "a shape cannot be used as it is")                           \
+  X(UNSUPPORTED, "the scene asks for something that is not modelled")      \
+  X(GL, "the graphics context failed")                                     \
+  X(COLOUR, "the colour configuration failed")                             \
+  X(CANCELLED, "the work was cancelled")                                   \
+  X(TOLERANCE, "a comparison was out of tolerance")
+
+typedef enum abbe_result {
+#define ABBE_RESULT_ENUM(code, text) ABBE_##code,
+  ABBE_RESULTS(ABBE_RESULT_ENUM)
+#undef ABBE_RESULT_ENUM
+  ABBE_RESULT_COUNT
+} abbe_result;
+
+/* The last failure: its code and one sentence that names the file, line, key and value concerned
+ * and says what would be right. text is one printable line of UTF-8 (encoding.h), whatever names
+ * and values it quotes; over-long sentences are cut. */
+typedef struct abbe_error {
+  abbe_result code;
+  char text[1024];
+} abbe_error;
+
+/* The general text of a code ("unknown result" for a value outside the list). */
+const char *abbe_result_text(abbe_result result);
+
+/* Fills error (NULL is allowed) with code and the printf-style sentence; returns code, so that
+ * `return abbe_error_set(error, ABBE_IO, "…")` both explains and fails. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+abbe_result abbe_error_set(abbe_error *error, abbe_result code, const char *format, ...);
+/* The same for a function with arguments of its own; prefix ("" for none) comes first. */
+abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char *prefix,
+                                const char *format, va_list arguments);
+
+/* What a function of the library wants of its caller, first of all: pointers that lead somewhere.
+ * Where the condition does not hold, a debug build stops at the assertion, and every other build
+ * returns ABBE_INVALID_ARGUMENT from the function. */
+#define ABBE_REQUIRE(condition, error)                                                             \
+  do {                                                                                             \
+    assert(condition);                                                                             \
+    if (!(condition))                                                                              \
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,                                          \
+                            "%s was called without what it needs: %s", __func__, #condition);      \
+  } while (0)
+
+#ifdef __cplusplus
+}
+#endif
+#endif

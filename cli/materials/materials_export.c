@@ -1,0 +1,258 @@
+#include "cli/materials/materials.h"
+#include "cli/materials/materials_report.h"
+
+#include "base/file.h"
+#include "spectral/formats/agf_write.h"
+#include "spectral/formats/csv_write.h"
+#include "spectral/formats/material_store_write.h"
+#include "spectral/formats/material_write.h"
+#include "spectral/formats/rii_write.h"
+#include "spectral/formats/shader_export.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+enum { MAX_NAMES = ABBE_MATERIAL_TABLE_MAX_COUNT };
+
+typedef enum format {
+  YAML,
+  STORE,
+  AGF,
+  RII,
+  CSV,
+  SHADERS,
+  FORMATS = SHADERS + ABBE_SHADER_COUNT
+} format;
+
+/* The shaders follow in their own order. */
+static const char *const format_names[FORMATS] = {"yaml", "sqlite", "agf", "rii", "csv",
+                                                  "pbrt", "povray", "mdl", "gltf"};
+
+typedef struct request {
+  const char *program, *table, *output;
+  const char *name[MAX_NAMES];
+  size_t names;
+  int format; /* -1: not said */
+  abbe_csv_sampling sampling;
+  bool sampled, json, all, force;
+} request;
+
+enum { KEY_TO = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_STEP, KEY_ALL, KEY_FORCE };
+
+static const struct argp_option options[] = {
+    ABBE_MATERIALS_TABLE_OPTION,
+    {"to", KEY_TO, "FORMAT", 0,
+     "yaml, sqlite, agf, rii, csv, pbrt, povray, mdl or gltf; without it, by the ending of -o", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to; without it, to standard output", 0},
+    {"force", KEY_FORCE, NULL, 0, "write over a file that is there", 0},
+    {"range", KEY_RANGE, "FROM:TO", 0, "nm, of the points (csv); 380:780 within the record's", 0},
+    {"step", KEY_STEP, "NM", 0, "between the points (csv); 5", 0},
+    {"all", KEY_ALL, NULL, 0, "show every note, not the first of each kind", 0},
+    {"json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "the notes as JSON, with -o", 0},
+    {0}};
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+  request *r = state->input;
+  switch (key) {
+  case ABBE_MATERIALS_KEY_TABLE:
+    r->table = arg;
+    return 0;
+  case KEY_TO:
+    r->format = abbe_command_choice(r->program, "--to", arg, format_names, FORMATS);
+    return 0;
+  case 'o':
+    r->output = arg;
+    return 0;
+  case KEY_RANGE:
+    abbe_command_range(r->program, "--range", arg, &r->sampling.min_nm, &r->sampling.max_nm);
+    r->sampled = true;
+    return 0;
+  case KEY_STEP:
+    r->sampling.step_nm = abbe_command_number(r->program, "--step", arg, 1e-3, 1e5);
+    r->sampled = true;
+    return 0;
+  case KEY_ALL:
+    r->all = true;
+    return 0;
+  case KEY_FORCE:
+    r->force = true;
+    return 0;
+  case ABBE_MATERIALS_KEY_JSON:
+    r->json = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (r->names == MAX_NAMES) argp_error(state, "more than %d names", MAX_NAMES);
+    r->name[r->names++] = arg;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "[NAME…]",
+    .doc = "Writes materials of a table in other forms: all of them, or those named.\v"
+           "Examples:\n"
+           "  abbe materials export --table mine.yaml -o mine.agf\n"
+           "  abbe materials export n-bk7 f2 --to pbrt -o glasses.pbrt\n"
+           "  abbe materials export diamond --to gltf\n"
+           "  abbe materials export water --to csv --range 400:700 --step 10\n"
+           "  abbe materials export sapphire --to rii -o sapphire.yml\n"
+           "  abbe materials export --to yaml -o my-copy.yaml\n\n"
+           "The last makes a copy of the compiled-in table that can be edited. What the form does "
+           "not carry, and the error of n that it implies, is said on standard error. rii and csv "
+           "hold one material a file.",
+};
+
+/* By the file's ending; -1 where it says nothing. */
+static int format_of(const char *path) {
+  static const struct {
+    const char *ending;
+    int format;
+  } endings[] = {{".yaml", YAML},
+                 {".sqlite", STORE},
+                 {".yml", RII},
+                 {".agf", AGF},
+                 {".csv", CSV},
+                 {".pbrt", SHADERS + ABBE_SHADER_PBRT},
+                 {".inc", SHADERS + ABBE_SHADER_POVRAY},
+                 {".mdl", SHADERS + ABBE_SHADER_MDL},
+                 {".gltf", SHADERS + ABBE_SHADER_GLTF}};
+  const char *dot = path != NULL ? strrchr(path, '.') : NULL;
+  for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof endings[0]; i++)
+    if (strcasecmp(dot, endings[i].ending) == 0) return endings[i].format;
+  return -1;
+}
+
+static void check(request *r) {
+  if (r->format < 0) r->format = format_of(r->output);
+  if (r->format < 0)
+    abbe_materials_wrong_use(r->program, "to what? --to yaml, agf, rii, csv, pbrt, povray, mdl or "
+                                         "gltf, or -o with such an ending");
+  if (r->format == STORE && r->output == NULL)
+    abbe_materials_wrong_use(r->program, "a store is a file; name it with -o FILE.sqlite");
+  if ((r->format == RII || r->format == CSV) && r->names != 1)
+    abbe_materials_wrong_use(r->program, r->format == RII
+                                             ? "a file of refractiveindex.info holds one material; "
+                                               "name one"
+                                             : "a CSV file holds one material; name one");
+  if (r->sampled && r->format != CSV)
+    abbe_materials_wrong_use(r->program, "--range and --step go with --to csv");
+  if (r->json && r->output == NULL)
+    abbe_materials_wrong_use(r->program, "--json goes with -o FILE");
+}
+
+/* The named materials, still owned by the table; `chosen` owns its array alone. */
+static abbe_result choose(const request *r, const abbe_material_table *table,
+                          abbe_material_table *chosen, abbe_error *error) {
+  *chosen = (abbe_material_table){.description = r->names == 0 ? table->description : NULL};
+  size_t count = r->names == 0 ? table->count : r->names;
+  chosen->material = calloc(count + 1, sizeof *chosen->material);
+  if (chosen->material == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu materials", count);
+  for (size_t i = 0; i < count; i++) {
+    const abbe_material *m = &table->material[i];
+    abbe_result result =
+        r->names == 0 ? ABBE_OK : abbe_material_table_find(table, r->name[i], &m, error);
+    if (result != ABBE_OK) return result;
+    for (size_t k = 0; k < i; k++)
+      if (r->names > 0 && strcasecmp(chosen->material[k].name, m->name) == 0)
+        return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "'%s' is named twice", m->name);
+    chosen->material[chosen->count++] = *m;
+  }
+  return ABBE_OK;
+}
+
+static abbe_result write_to(const request *r, const abbe_material_table *chosen, FILE *to,
+                            abbe_report *report, abbe_error *error) {
+  switch (r->format) {
+  case YAML:
+    return abbe_material_table_write(chosen, to, error);
+  case STORE:
+    return abbe_material_store_write(chosen, to, error);
+  case AGF:
+    return abbe_agf_write(chosen, to, report, error);
+  case RII:
+    return abbe_rii_write(&chosen->material[0], to, report, error);
+  case CSV:
+    return abbe_csv_write(&chosen->material[0], &r->sampling, to, report, error);
+  default:
+    return abbe_shader_write((abbe_shader)(r->format - SHADERS), chosen, to, report, error);
+  }
+}
+
+/* The whole answer, or nothing of it. */
+static abbe_result print(const request *r, const abbe_material_table *chosen, abbe_report *report,
+                         abbe_error *error) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  if (to == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the answer");
+  abbe_result result = write_to(r, chosen, to, report, error);
+  if (fclose(to) != 0 && result == ABBE_OK)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the answer");
+  if (result == ABBE_OK) fwrite(text, 1, size, stdout);
+  fflush(stdout); /* before the notes */
+  free(text);
+  return result;
+}
+
+static abbe_result save(const request *r, const abbe_material_table *chosen, abbe_report *report,
+                        abbe_error *error) {
+  if (r->output == NULL) return print(r, chosen, report, error);
+  if (!r->force && access(r->output, F_OK) == 0)
+    return abbe_error_set(error, ABBE_IO,
+                          "%s: is there already; --force writes over it, or choose another name",
+                          r->output);
+  abbe_file_writer writer = {0};
+  abbe_result result = abbe_file_writer_open(&writer, r->output, error);
+  if (result == ABBE_OK) result = write_to(r, chosen, writer.stream, report, error);
+  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
+  abbe_file_writer_discard(&writer);
+  return result;
+}
+
+static abbe_result tell(const request *r, size_t count, const abbe_report *report,
+                        abbe_error *error) {
+  if (!r->json) {
+    abbe_materials_print_report(r->program, report, r->all);
+    if (r->output != NULL)
+      fprintf(stderr, "%s: %zu material%s in %s\n", r->program,
+              count - report->kinds[ABBE_NOTE_SKIPPED], count == 1 ? "" : "s", r->output);
+    return ABBE_OK;
+  }
+  cJSON *root = abbe_materials_json();
+  cJSON_AddStringToObject(root, "file", r->output);
+  cJSON_AddStringToObject(root, "format", format_names[r->format]);
+  cJSON_AddNumberToObject(root, "materials", (double)(count - report->kinds[ABBE_NOTE_SKIPPED]));
+  abbe_materials_add_report(root, report);
+  abbe_result result = abbe_materials_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+int abbe_materials_export(int argc, char **argv) {
+  static request r;
+  r = (request){.program = argv[0], .format = -1};
+  abbe_materials_parse(&parser, argc, argv, &r);
+  check(&r);
+  abbe_error error = {0};
+  abbe_report report = {0};
+  abbe_material_table table = {0}, chosen = {0};
+  abbe_result result =
+      r.names > 0 ? abbe_material_table_load_named(r.table, r.name, r.names, &table, &error)
+                  : abbe_material_table_load(r.table, &table, &error);
+  if (result == ABBE_OK) result = choose(&r, &table, &chosen, &error);
+  if (result == ABBE_OK) result = save(&r, &chosen, &report, &error);
+  if (result == ABBE_OK) result = tell(&r, chosen.count, &report, &error);
+  free(chosen.material);
+  abbe_material_table_free(&table);
+  abbe_report_free(&report);
+  return abbe_command_end(r.program, result, &error);
+}

@@ -1,0 +1,172 @@
+#include "cli/materials/materials.h"
+
+#include "colorimetry/plot/material_chart.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_TABLES = ABBE_MATERIAL_MAP_MAX_TABLES, MAX_NAMES = ABBE_MATERIAL_CHART_MAX };
+enum { KEY_MAP = ABBE_MATERIALS_KEY_OWN, KEY_RANGE, KEY_FITS, KEY_POINTS, KEY_SIZE };
+
+typedef struct request {
+  const char *program, *out, *points;
+  const char *table[MAX_TABLES], *name[MAX_NAMES];
+  size_t table_count, name_count, width, height;
+  double from, to;
+  bool map, fits;
+} request;
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "the picture; .png or .svg", 0},
+    {"table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS | ABBE_ARGUMENT_REPEATS,
+     "a table file, or default or thesis; without it, default. May be repeated: names are looked "
+     "up in all, the map shows each in a colour of its own",
+     0},
+    {"map", KEY_MAP, NULL, 0, "n_d over V_d of all materials; NAMEs are marked", 0},
+    {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
+    {"fits", KEY_FITS, NULL, 0, "the recorded fits too, and their residuals below", 0},
+    {"points", KEY_POINTS, "FILE.csv", ABBE_ARGUMENT_READS,
+     "measured points too (wavelength, n, uncertainty), and below them how far the first NAME is "
+     "from them",
+     0},
+    {"size", KEY_SIZE, "WxH", 0, "of the picture; without it, 960x600", 0},
+    {0}};
+
+static void read_size(request *r, const char *text) {
+  char rest;
+  if (sscanf(text, "%5zux%5zu%c", &r->width, &r->height, &rest) == 2 && r->width > 0 &&
+      r->height > 0 && text[0] != '-' && strstr(text, "x-") == NULL)
+    return;
+  char sentence[120];
+  snprintf(sentence, sizeof sentence,
+           "--size '%.40s' is not WIDTHxHEIGHT in pixels, such as 960x600", text);
+  abbe_materials_wrong_use(r->program, sentence);
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+  request *r = state->input;
+  switch (key) {
+  case 'o':
+    r->out = arg;
+    return 0;
+  case ABBE_MATERIALS_KEY_TABLE:
+    if (r->table_count == MAX_TABLES) argp_error(state, "more than %d tables", MAX_TABLES);
+    r->table[r->table_count++] = arg;
+    return 0;
+  case KEY_MAP:
+    r->map = true;
+    return 0;
+  case KEY_RANGE:
+    abbe_command_range(r->program, "--range", arg, &r->from, &r->to);
+    return 0;
+  case KEY_FITS:
+    r->fits = true;
+    return 0;
+  case KEY_POINTS:
+    r->points = arg;
+    return 0;
+  case KEY_SIZE:
+    read_size(r, arg);
+    return 0;
+  case ARGP_KEY_ARG:
+    if (r->name_count == MAX_NAMES) argp_error(state, "more than %d materials", MAX_NAMES);
+    r->name[r->name_count++] = arg;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "NAME… -o FILE\n--map [NAME…] -o FILE",
+    .doc = "Draws the index of materials over wavelength, or the map of glasses.\v"
+           "Examples:\n"
+           "  abbe materials plot n-bk7 f2 sf11 -o glasses.png\n"
+           "  abbe materials plot diamond --range 230:1000 -o diamond.svg\n"
+           "  abbe materials plot n-bk7 --fits -o fits.png\n"
+           "  abbe materials plot k5 --table my.yaml --points measured.csv -o k5.png\n"
+           "  abbe materials plot --map n-bk7 --table default --table my.yaml -o map.png\n\n"
+           "A curve is drawn through where its data reach, dashed where its record allows it to be "
+           "continued, and not at all beyond.",
+};
+
+static const char *wrong(const request *r) {
+  if (!r->map && r->name_count == 0)
+    return "plot what? Name materials, or say --map; 'abbe materials list' has the names";
+  if (r->out == NULL) return "where to? Give the picture's name with -o FILE.png or FILE.svg";
+  if (r->map && (r->fits || r->points != NULL || r->to > 0))
+    return "--map goes without --fits, --points and --range";
+  return NULL;
+}
+
+/* ---- what is drawn ---- */
+
+/* The name in the first table that has it; the complaint is the first table's. */
+static abbe_result find(const abbe_material_table *table, size_t count, const char *name,
+                        const abbe_material **out, abbe_error *error) {
+  for (size_t i = 1; i < count; i++)
+    if (abbe_material_table_find(&table[0], name, out, NULL) != ABBE_OK &&
+        abbe_material_table_find(&table[i], name, out, NULL) == ABBE_OK)
+      return ABBE_OK;
+  return abbe_material_table_find(&table[0], name, out, error);
+}
+
+static abbe_result draw_map(const request *r, const abbe_material_table *table, size_t count,
+                            const abbe_material **named, abbe_error *error) {
+  const abbe_material_table *tables[MAX_TABLES];
+  for (size_t i = 0; i < count; i++) tables[i] = &table[i];
+  abbe_material_map map = {.table_count = count,
+                           .table = tables,
+                           .marked_count = r->name_count,
+                           .marked = named,
+                           .width = r->width,
+                           .height = r->height};
+  size_t left_out = 0;
+  abbe_result result = abbe_material_map_write(r->out, &map, &left_out, error);
+  if (result == ABBE_OK && left_out > 0)
+    fprintf(stderr, "%s: left out %zu without n_d and a finite V_d in their range\n", r->program,
+            left_out);
+  return result;
+}
+
+static abbe_result draw_curves(const request *r, const abbe_material **named, abbe_error *error) {
+  abbe_index_points points = {0};
+  abbe_result result = ABBE_OK;
+  if (r->points != NULL) result = abbe_index_points_load(r->points, &points, error);
+  abbe_material_chart chart = {.count = r->name_count,
+                               .material = named,
+                               .min_nm = r->from,
+                               .max_nm = r->to,
+                               .fits = r->fits,
+                               .points = r->points != NULL ? &points : NULL,
+                               .width = r->width,
+                               .height = r->height};
+  if (result == ABBE_OK) result = abbe_material_chart_write(r->out, &chart, error);
+  abbe_index_points_free(&points);
+  return result;
+}
+
+int abbe_materials_plot(int argc, char **argv) {
+  request r = {.program = argv[0]};
+  abbe_error error = {0};
+  abbe_materials_parse(&parser, argc, argv, &r);
+  if (wrong(&r) != NULL) abbe_materials_wrong_use(argv[0], wrong(&r));
+  if (r.table_count == 0) r.table[r.table_count++] = "default";
+  abbe_material_table table[MAX_TABLES] = {{0}};
+  const abbe_material *named[MAX_NAMES];
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < r.table_count && result == ABBE_OK; i++)
+    result =
+        r.map ? abbe_material_table_load(r.table[i], &table[i], &error)
+              : abbe_material_table_load_named(r.table[i], r.name, r.name_count, &table[i], &error);
+  for (size_t i = 0; i < r.name_count && result == ABBE_OK; i++)
+    result = find(table, r.table_count, r.name[i], &named[i], &error);
+  if (result == ABBE_OK)
+    result =
+        r.map ? draw_map(&r, table, r.table_count, named, &error) : draw_curves(&r, named, &error);
+  for (size_t i = 0; i < r.table_count; i++) abbe_material_table_free(&table[i]);
+  return abbe_command_end(r.program, result, &error);
+}

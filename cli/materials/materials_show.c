@@ -1,0 +1,332 @@
+#include "cli/materials/materials.h"
+
+#include "spectral/editing/doctor.h"
+#include "spectral/materials/absorption.h"
+#include "spectral/materials/material_numbers.h"
+#include "spectral/wavelengths.h"
+
+#include <argp.h>
+#include <math.h>
+#include <stdio.h>
+
+enum { MAX_AT = 4096 };
+
+typedef struct request {
+  const char *program, *name, *table;
+  double at[MAX_AT];
+  size_t at_count;
+  bool json, fit;
+} request;
+
+/* ---- text ---- */
+
+static void show_formula(const abbe_material *m) {
+  printf("  model         %s: %s\n", abbe_dispersion_model_name(m->dispersion.model),
+         abbe_dispersion_model_formula(m->dispersion.model));
+  if (m->dispersion.table != NULL)
+    printf("  points        %zu\n", abbe_spectrum_count(m->dispersion.table));
+  for (size_t i = 0; i < m->dispersion.count; i++)
+    printf("%s%.10g%s", i == 0 ? "  coefficients  " : "", m->dispersion.c[i],
+           i + 1 < m->dispersion.count ? ", " : "   (L in um)\n");
+  printf("  range         %g to %g nm%s\n", m->min_nm, m->max_nm,
+         m->extrapolate ? ", extrapolated outside" : "");
+  if (!isnan(m->temperature_c)) printf("  temperature   %g C\n", m->temperature_c);
+}
+
+static void show_absorption(const abbe_material *m) {
+  if (m->attenuation == NULL) {
+    printf("  absorption    none recorded\n");
+    return;
+  }
+  printf("  absorption    1/m, at nm:");
+  const double *l = abbe_spectrum_lambda_nm(m->attenuation);
+  const double *a = abbe_spectrum_value(m->attenuation);
+  size_t count = abbe_spectrum_count(m->attenuation);
+  for (size_t i = 0; i < count && i < 8; i++)
+    printf(" %.4g at %g%s", a[i], l[i], i + 1 < count ? "," : "");
+  printf(count > 8 ? " … (%zu points)\n" : "\n", count);
+  printf("                through 10 mm:");
+  for (int nm = 400; nm <= 700; nm += 100)
+    printf(" %.4g at %d%s", abbe_absorption_transmittance(abbe_material_attenuation(m, nm), 0.01),
+           nm, nm < 700 ? "," : " nm\n");
+}
+
+static void show_fits(const abbe_material *m) {
+  for (int i = 0; i < 2; i++) {
+    const abbe_material_fit *fit = &m->fit[i];
+    abbe_index_difference off;
+    if (fit->terms == 0) continue;
+    printf("  Cauchy, %zu     ", fit->terms);
+    for (size_t k = 0; k < fit->terms; k++)
+      printf("%.9g%s", fit->c[k], k + 1 < fit->terms ? ", " : "");
+    printf("   (%g to %g nm: ", fit->min_nm, fit->max_nm);
+    if (abbe_material_fit_residual(m, fit, &off, NULL) == ABBE_OK)
+      printf("rms error %.3g, largest %.3g at %g nm)\n", off.rms, off.max, off.max_nm);
+    else
+      printf("largest error %.3g)\n", fit->max_error);
+  }
+  bool none = m->fit[0].terms == 0 && m->fit[1].terms == 0;
+  if (none && m->dispersion.model != ABBE_DISPERSION_CONSTANT)
+    printf("  Cauchy        no fit recorded; --fit makes them, 'abbe materials fit' others\n");
+}
+
+static void show_numbers(const abbe_material *m) {
+  char text[7][32];
+  abbe_material_numbers n;
+  abbe_material_published p;
+  abbe_material_numbers_make(m, &n);
+  abbe_material_published_make(m, &p);
+  printf("  n_d %s   V_d %s   B-G %s   n_F - n_C %s\n",
+         abbe_materials_number(text[0], sizeof text[0], "%.6f", n.n_d),
+         abbe_materials_number(text[1], sizeof text[1], "%.3f", n.v_d),
+         abbe_materials_number(text[2], sizeof text[2], "%.6f", n.b_g),
+         abbe_materials_number(text[3], sizeof text[3], "%.6f", n.n_F - n.n_C));
+  printf("  n_e %s   P_gF %s   from the normal line %s\n",
+         abbe_materials_number(text[4], sizeof text[4], "%.6f", n.n_e),
+         abbe_materials_number(text[5], sizeof text[5], "%.4f", n.p_gF),
+         abbe_materials_number(text[6], sizeof text[6], "%+.4f", n.dp_gF));
+  if (p.n_d > 0 || p.v_d > 0) printf("  printed      ");
+  if (p.n_d > 0) printf(" n_d %.8g (here %+.1g)", p.n_d, n.n_d - p.n_d);
+  if (p.v_d > 0) printf(" V_d %.8g (here %+.1g)", p.v_d, n.v_d - p.v_d);
+  if (p.n_d > 0 || p.v_d > 0) printf("\n");
+}
+
+static void show_findings(const abbe_findings *found) {
+  for (size_t i = 0; i < found->count; i++) {
+    const abbe_finding *f = &found->finding[i];
+    printf("  %-13s %s: %s; %s\n", abbe_finding_weight_name(f->weight),
+           abbe_finding_kind_meaning(f->kind), f->evidence, f->mend);
+  }
+}
+
+static abbe_result show_text(const request *r, const abbe_material *m, const abbe_findings *found,
+                             abbe_error *error) {
+  printf("%s%s%s\n", m->name, m->description ? ": " : "", m->description ? m->description : "");
+  show_numbers(m);
+  show_formula(m);
+  show_absorption(m);
+  show_fits(m);
+  printf("  source        %s\n", m->source);
+  if (m->comment != NULL) printf("  comment       %s\n", m->comment);
+  if (m->warning != NULL) printf("  warning       %s\n", m->warning);
+  show_findings(found);
+  if (r->at_count > 0)
+    printf("\n  %10s  %12s%s\n", "nm", "n", m->attenuation != NULL ? "         1/m" : "");
+  for (size_t i = 0; i < r->at_count; i++) {
+    double n = 0;
+    abbe_result result = abbe_material_n(m, r->at[i], &n, error);
+    if (result != ABBE_OK) return result;
+    printf("  %10.6g  %12.9f", r->at[i], n);
+    if (m->attenuation != NULL) printf("  %10.4g", abbe_material_attenuation(m, r->at[i]));
+    printf("%s\n", abbe_material_extrapolates(m, r->at[i]) ? "  extrapolated" : "");
+  }
+  return ABBE_OK;
+}
+
+/* The `fit` key of a record, made anew from its model, as it is pasted into a table. */
+static abbe_result show_fit_yaml(const abbe_material *m, abbe_error *error) {
+  const double low = ABBE_WAVELENGTH_MIN_NM, high = ABBE_WAVELENGTH_MAX_NM;
+  double n = 0;
+  abbe_result result = abbe_material_n(m, low, &n, error);
+  if (result == ABBE_OK) result = abbe_material_n(m, high, &n, error);
+  if (result != ABBE_OK) return result;
+  abbe_dispersion fit[2];
+  double max_error[2];
+  for (int i = 0; i < 2; i++) {
+    result = abbe_dispersion_fit_cauchy(&m->dispersion, (size_t)i + 2, low, high, &fit[i],
+                                        &max_error[i], error);
+    if (result != ABBE_OK) return result;
+  }
+  printf("fit:\n");
+  for (int i = 0; i < 2; i++) {
+    printf("  cauchy%d: {coefficients: [", i + 2);
+    for (size_t k = 0; k < fit[i].count; k++) printf("%s%.9g", k ? ", " : "", fit[i].c[k]);
+    printf("], max_error: %.3g, range_nm: [%g, %g]}\n", max_error[i], low, high);
+  }
+  return ABBE_OK;
+}
+
+/* ---- JSON ---- */
+
+static void add_points(cJSON *to, const char *key, const abbe_spectrum *spectrum) {
+  cJSON *list = cJSON_AddArrayToObject(to, key);
+  for (size_t i = 0; list != NULL && i < abbe_spectrum_count(spectrum); i++) {
+    double pair[2] = {abbe_spectrum_lambda_nm(spectrum)[i], abbe_spectrum_value(spectrum)[i]};
+    cJSON_AddItemToArray(list, cJSON_CreateDoubleArray(pair, 2));
+  }
+}
+
+static void add_record(cJSON *to, const abbe_material *m) {
+  const abbe_dispersion *d = &m->dispersion;
+  cJSON_AddStringToObject(to, "model", abbe_dispersion_model_name(d->model));
+  cJSON_AddStringToObject(to, "formula", abbe_dispersion_model_formula(d->model));
+  if (d->table != NULL)
+    add_points(to, "points", d->table);
+  else
+    cJSON_AddItemToObject(to, "coefficients", cJSON_CreateDoubleArray(d->c, (int)d->count));
+  abbe_materials_add_pair(to, "range_nm", m->min_nm, m->max_nm);
+  cJSON_AddBoolToObject(to, "extrapolate", m->extrapolate);
+  cJSON_AddNumberToObject(to, "temperature_c", m->temperature_c);
+  if (m->attenuation != NULL)
+    add_points(to, "attenuation_per_m", m->attenuation);
+  else
+    cJSON_AddNullToObject(to, "attenuation_per_m");
+  abbe_materials_add_text(to, "source", m->source);
+  abbe_materials_add_text(to, "warning", m->warning);
+  cJSON *fits = cJSON_AddArrayToObject(to, "fits");
+  for (int i = 0; i < 2; i++) {
+    const abbe_material_fit *fit = &m->fit[i];
+    cJSON *item = fit->terms > 0 ? cJSON_CreateObject() : NULL;
+    if (item == NULL || !cJSON_AddItemToArray(fits, item)) continue;
+    cJSON_AddNumberToObject(item, "terms", (double)fit->terms);
+    cJSON_AddItemToObject(item, "coefficients", cJSON_CreateDoubleArray(fit->c, (int)fit->terms));
+    cJSON_AddNumberToObject(item, "max_error", fit->max_error);
+    abbe_index_difference off = {.rms = NAN, .max = NAN};
+    abbe_material_fit_residual(m, fit, &off, NULL);
+    cJSON_AddNumberToObject(item, "residual_rms", off.rms);
+    cJSON_AddNumberToObject(item, "residual_max", off.max);
+    abbe_materials_add_pair(item, "range_nm", fit->min_nm, fit->max_nm);
+  }
+}
+
+static void add_published(cJSON *to, const abbe_material *m) {
+  abbe_material_published p;
+  abbe_material_published_make(m, &p);
+  cJSON *item = cJSON_AddObjectToObject(to, "printed");
+  cJSON_AddNumberToObject(item, "n_d", p.n_d);
+  cJSON_AddNumberToObject(item, "v_d", p.v_d);
+}
+
+static void add_findings(cJSON *to, const abbe_findings *found) {
+  cJSON *list = cJSON_AddArrayToObject(to, "findings");
+  for (size_t i = 0; i < found->count; i++) {
+    const abbe_finding *f = &found->finding[i];
+    cJSON *item = cJSON_CreateObject();
+    if (item == NULL || !cJSON_AddItemToArray(list, item)) continue;
+    cJSON_AddStringToObject(item, "weight", abbe_finding_weight_name(f->weight));
+    cJSON_AddStringToObject(item, "kind", abbe_finding_kind_name(f->kind));
+    cJSON_AddStringToObject(item, "evidence", f->evidence);
+    cJSON_AddStringToObject(item, "mend", f->mend);
+  }
+}
+
+static abbe_result show_json(const request *r, const abbe_material_table *table,
+                             const abbe_material *m, const abbe_findings *found,
+                             abbe_error *error) {
+  cJSON *root = abbe_materials_json();
+  cJSON_AddStringToObject(root, "name", m->name);
+  abbe_materials_add_text(root, "description", m->description);
+  cJSON_AddStringToObject(root, "table", table->path);
+  cJSON *list = cJSON_AddArrayToObject(root, "n");
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < r->at_count && result == ABBE_OK; i++) {
+    double n = 0;
+    result = abbe_material_n(m, r->at[i], &n, error);
+    cJSON *item = cJSON_CreateObject();
+    cJSON_AddNumberToObject(item, "lambda_nm", r->at[i]);
+    cJSON_AddNumberToObject(item, "n", n);
+    cJSON_AddNumberToObject(item, "attenuation_per_m", abbe_material_attenuation(m, r->at[i]));
+    cJSON_AddBoolToObject(item, "extrapolated", abbe_material_extrapolates(m, r->at[i]));
+    cJSON_AddItemToArray(list, item);
+  }
+  abbe_materials_add_numbers(root, m);
+  add_record(root, m);
+  add_published(root, m);
+  add_findings(root, found);
+  if (result == ABBE_OK) result = abbe_materials_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+/* ---- arguments ---- */
+
+enum { KEY_AT = ABBE_MATERIALS_KEY_OWN, KEY_FIT };
+
+static const struct argp_option options[] = {
+    {"at", KEY_AT, "NM", 0, "also the index at this wavelength; may be repeated", 0},
+    ABBE_MATERIALS_TABLE_OPTION,
+    ABBE_MATERIALS_JSON_OPTION,
+    {"fit", KEY_FIT, NULL, 0,
+     "the two Cauchy fits over 380:780 nm made anew, as YAML for the record", 0},
+    {0}};
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+  request *r = state->input;
+  switch (key) {
+  case KEY_AT:
+    if (r->at_count == MAX_AT) argp_error(state, "more than %d --at", MAX_AT);
+    r->at[r->at_count++] = abbe_command_number(r->program, "--at", arg, 1, 1e6);
+    return 0;
+  case ABBE_MATERIALS_KEY_TABLE:
+    r->table = arg;
+    return 0;
+  case ABBE_MATERIALS_KEY_JSON:
+    r->json = true;
+    return 0;
+  case KEY_FIT:
+    r->fit = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (r->name != NULL) argp_error(state, "'%s' is one argument too many", arg);
+    r->name = arg;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "NAME",
+    .doc = "Shows one material of a table.\v"
+           "Examples:\n"
+           "  abbe materials show diamond --at 430.8 --at 686.7\n"
+           "  abbe materials show n-bk7 --at 587.5618 --json\n"
+           "  abbe materials show my-glass --table glasses.yaml --fit\n\n"
+           "A wavelength outside a record's range is an error, unless the record says "
+           "'extrapolate: true'; the answer then says so.",
+};
+
+/* What cannot go together is wrong use, said before anything is read. */
+static void check(const request *r) {
+  if (r->name == NULL)
+    abbe_materials_wrong_use(r->program,
+                             "show what? Name a material; 'abbe materials list' has them");
+  if (r->fit && (r->json || r->at_count > 0))
+    abbe_materials_wrong_use(r->program, "--fit goes without --json and --at");
+}
+
+static abbe_result answer(const request *r, const abbe_material_table *table, abbe_error *error) {
+  const abbe_material *m = NULL;
+  abbe_result result = abbe_material_table_find(table, r->name, &m, error);
+  /* asked first, so that a failure prints nothing else */
+  for (size_t i = 0; i < r->at_count && result == ABBE_OK; i++) {
+    double n;
+    result = abbe_material_n(m, r->at[i], &n, error);
+  }
+  if (result != ABBE_OK) return result;
+  if (r->fit) return show_fit_yaml(m, error);
+  abbe_material_table known;
+  abbe_findings found = {0};
+  result = abbe_material_table_load(NULL, &known, error);
+  if (result == ABBE_OK) result = abbe_doctor_check_material(m, &known, &found, error);
+  if (result == ABBE_OK)
+    result = r->json ? show_json(r, table, m, &found, error) : show_text(r, m, &found, error);
+  abbe_findings_free(&found);
+  abbe_material_table_free(&known);
+  return result;
+}
+
+int abbe_materials_show(int argc, char **argv) {
+  static request r;
+  r = (request){.program = argv[0]};
+  abbe_error error = {0};
+  abbe_materials_parse(&parser, argc, argv, &r);
+  check(&r);
+  abbe_material_table table;
+  abbe_result result = abbe_material_table_load_named(r.table, &r.name, 1, &table, &error);
+  if (result == ABBE_OK) result = answer(&r, &table, &error);
+  abbe_material_table_free(&table);
+  return abbe_command_end(r.program, result, &error);
+}

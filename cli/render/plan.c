@@ -1,0 +1,98 @@
+#include "cli/arguments.h"
+#include "cli/command.h"
+#include "cli/render/render_options.h"
+#include "cli/scene_notes.h"
+
+#include "scenes/import/scene_file.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct plan_options {
+  abbe_render_options render;
+  bool json;
+} plan_options;
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  plan_options *o = state->input;
+  (void)text;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &o->render;
+    return 0;
+  case 'j':
+    o->json = true;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static void print_text(const abbe_plan *plan) {
+  for (int runs = 1; runs >= 0; runs--) {
+    printf("%s\n", runs ? "What runs, and the fact that asks for it:" : "\nWhat does not run:");
+    for (size_t i = 0; i < plan->entry_count; i++)
+      if (plan->entry[i].runs == (bool)runs)
+        printf("  %-26s %s\n", plan->entry[i].name, plan->entry[i].reason);
+  }
+  if (plan->note_count > 0) printf("\nWhat to know:\n");
+  for (size_t i = 0; i < plan->note_count; i++) printf("  %s\n", plan->note[i]);
+}
+
+static abbe_result print_json(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  cJSON *root = cJSON_CreateObject(), *entries = cJSON_AddArrayToObject(root, "plan");
+  for (size_t i = 0; i < plan->entry_count; i++) {
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddStringToObject(entry, "name", plan->entry[i].name);
+    cJSON_AddBoolToObject(entry, "runs", plan->entry[i].runs);
+    cJSON_AddStringToObject(entry, "reason", plan->entry[i].reason);
+    cJSON_AddItemToArray(entries, entry);
+  }
+  cJSON *notes = cJSON_AddArrayToObject(root, "notes");
+  for (size_t i = 0; i < plan->note_count; i++)
+    cJSON_AddItemToArray(notes, cJSON_CreateString(plan->note[i]));
+  abbe_scene_list_json(scene, root);
+  cJSON_AddNumberToObject(root, "wavelengths", (double)plan->desc.wavelengths);
+  cJSON_AddNumberToObject(root, "exits", (double)plan->desc.orders);
+  abbe_result result = abbe_command_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+int abbe_command_plan(int argc, char **argv) {
+  static const struct argp_option options[] = {{"json", 'j', NULL, 0, "as JSON", 0}, {0}};
+  static const struct argp_child children[] = {{&abbe_render_options_argp, 0, "The request:", 1},
+                                               {0}};
+  static const struct argp argp = {
+      options,
+      parse,
+      NULL,
+      "Says which passes and models a scene asks for, and which fact asks for each. Needs no "
+      "graphics.\v"
+      "Examples:\n"
+      "  abbe plan scenes/gem.yaml\n"
+      "  abbe plan scenes/gem.yaml --profile thesis --json\n",
+      children,
+      NULL,
+      NULL};
+  plan_options o = {.render.program = argv[0]};
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
+  abbe_error error = {0};
+  abbe_scene scene = {0};
+  abbe_plan plan = {0};
+  abbe_result result =
+      abbe_command_load_scene(argv[0], o.render.scene, o.render.materials, &scene, &error);
+  bool loaded = result == ABBE_OK;
+  if (loaded) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
+  if (loaded) abbe_scene_notes(&scene);
+  if (result == ABBE_OK && o.json) result = print_json(&scene, &plan, &error);
+  if (result == ABBE_OK && !o.json) {
+    abbe_scene_list(&scene);
+    print_text(&plan);
+  }
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  return abbe_render_options_end(&o.render, loaded, result, &error);
+}

@@ -1,0 +1,131 @@
+#include "cli/render/render_options.h"
+
+#include "cli/arguments.h"
+#include "cli/command.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum {
+  OPTION_PROFILE = 0x100,
+  OPTION_SIZE,
+  OPTION_WAVELENGTHS,
+  OPTION_RANGE,
+  OPTION_PHOTONS,
+  OPTION_MAP,
+  OPTION_SAMPLES,
+  OPTION_UPSAMPLE,
+  OPTION_MODEL,
+  OPTION_FILL,
+  OPTION_SHARE,
+  OPTION_EXITS,
+  OPTION_SPACE,
+  OPTION_EVERYTHING,
+  OPTION_MATERIALS
+};
+
+static const struct argp_option options[] = {
+    {"profile", OPTION_PROFILE, "NAME", 0,
+     "default; baselines: thesis, and thesis-cie with CIE weights in W", 1},
+    {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
+    {"wavelengths", OPTION_WAVELENGTHS, "N", 0,
+     "samples of the spectrum that a photon takes at the most, 1 to 1000 (7)", 1},
+    {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
+    {"photons", OPTION_PHOTONS, "N", 0, "side of the photon grid, 1 to 4096 (256)", 1},
+    {"map", OPTION_MAP, "N", 0, "side of the spectral map, 1 to 4096 (1024)", 1},
+    {"samples", OPTION_SAMPLES, "N", 0, "samples a pixel side, 1 to 4 (2; thesis 1)", 1},
+    {"upsample", OPTION_UPSAMPLE, "N", 0,
+     "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
+    {"model", OPTION_MODEL, "NAME", 0,
+     "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)",
+     1},
+    {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
+    {"share", OPTION_SHARE, "X", 0,
+     "paths end below this share of their light (0.01; 0.005 in a gem)", 1},
+    {"exits", OPTION_EXITS, "N", 0,
+     "exits followed at the most, 1 to 32 (8; to 24 in a gem; 4 by layers)", 1},
+    {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
+    {"everything", OPTION_EVERYTHING, NULL, 0,
+     "switch on what no fact asks for, to measure what the plan saves", 1},
+    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1},
+    {0}};
+
+#define ABBE_NAME_OF_2(code, name) name,
+#define ABBE_NAME_OF_3(code, name, ocio) name,
+static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF_2)};
+static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF_2)};
+static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF_2)};
+static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  abbe_render_options *o = state->input;
+  abbe_render_desc *d = &o->desc;
+  const char *p = o->program;
+  switch (key) {
+  case OPTION_PROFILE:
+    d->profile =
+        (abbe_profile)abbe_command_choice(p, "--profile", text, profiles, ABBE_PROFILE_COUNT);
+    return 0;
+  case OPTION_SIZE:
+    abbe_command_size(p, "--size", text, ABBE_RENDER_MAX_SIDE, &d->width, &d->height);
+    return 0;
+  case OPTION_WAVELENGTHS:
+    d->wavelengths = abbe_command_count(p, "--wavelengths", text, 1, ABBE_RENDER_MAX_WAVELENGTHS);
+    return 0;
+  case OPTION_RANGE:
+    abbe_command_range(p, "--range", text, &d->min_nm, &d->max_nm);
+    return 0;
+  case OPTION_PHOTONS:
+    d->photons = abbe_command_count(p, "--photons", text, 1, ABBE_RENDER_MAX_PHOTONS);
+    return 0;
+  case OPTION_MAP:
+    d->map_size = abbe_command_count(p, "--map", text, 1, ABBE_RENDER_MAX_MAP);
+    return 0;
+  case OPTION_SAMPLES:
+    d->supersample = abbe_command_count(p, "--samples", text, 1, 4);
+    return 0;
+  case OPTION_UPSAMPLE:
+    d->upsample = abbe_command_count(p, "--upsample", text, 1, 4);
+    return 0;
+  case OPTION_MODEL:
+    d->model = (abbe_model)abbe_command_choice(p, "--model", text, models, ABBE_MODEL_COUNT);
+    return 0;
+  case OPTION_FILL:
+    d->fill = (abbe_fill)abbe_command_choice(p, "--fill", text, fills, ABBE_FILL_COUNT);
+    return 0;
+  case OPTION_SHARE:
+    d->energy_share = abbe_command_number(p, "--share", text, 1e-9, 1);
+    return 0;
+  case OPTION_EXITS:
+    d->orders = abbe_command_count(p, "--exits", text, 1, ABBE_RENDER_MAX_ORDERS);
+    return 0;
+  case OPTION_SPACE:
+    d->space =
+        (abbe_rgb_space)abbe_command_choice(p, "--space", text, spaces, ABBE_RGB_SPACE_COUNT);
+    return 0;
+  case OPTION_EVERYTHING:
+    d->everything = true;
+    return 0;
+  case OPTION_MATERIALS:
+    o->materials = text;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (o->scene != NULL) argp_error(state, "one scene at a time: '%s' and '%s'", o->scene, text);
+    o->scene = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (o->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+const struct argp abbe_render_options_argp = {options, parse, "SCENE.yaml", NULL, NULL, NULL, NULL};
+
+int abbe_render_options_end(const abbe_render_options *request, bool scene_loaded,
+                            abbe_result result, abbe_error *error) {
+  int code = abbe_command_end(request->program, result, error);
+  return scene_loaded && result == ABBE_INVALID_ARGUMENT ? ABBE_EXIT_USAGE : code;
+}

@@ -1,0 +1,26 @@
+/* render_options.h: what `abbe render` and `abbe plan` both ask: the scene and the request. */
+#ifndef ABBE_CLI_RENDER_RENDER_OPTIONS_H
+#define ABBE_CLI_RENDER_RENDER_OPTIONS_H
+
+#include "gl/plan/plan.h"
+
+#include <argp.h>
+#include <stdbool.h>
+
+typedef struct abbe_render_options {
+  const char *program;   /* "abbe render" */
+  const char *scene;     /* path */
+  const char *materials; /* table to use instead of the scene's */
+  abbe_render_desc desc;
+} abbe_render_options;
+
+/* An argp child: profile, size, wavelengths, photons …, and the scene as the one argument. Its
+ * input is an abbe_render_options with program set. */
+extern const struct argp abbe_render_options_argp;
+
+/* abbe_command_end for a request: once the scene is loaded, an invalid argument is the request's
+ * own and ends with ABBE_EXIT_USAGE. */
+int abbe_render_options_end(const abbe_render_options *request, bool scene_loaded,
+                            abbe_result result, abbe_error *error);
+
+#endif

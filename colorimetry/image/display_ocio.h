@@ -1,0 +1,54 @@
+/* display_ocio.h: from scene-linear pictures to a display, by an OpenColorIO configuration.
+ *
+ * The configuration is the file given, else $OCIO, else the one that ships with Abbe (compiled
+ * in). A broken configuration is an error, never a silent pass-through. The implementation is
+ * the C++ bridge display_ocio.cpp; no exception leaves it.
+ */
+#ifndef ABBE_COLORIMETRY_IMAGE_DISPLAY_OCIO_H
+#define ABBE_COLORIMETRY_IMAGE_DISPLAY_OCIO_H
+
+#include "base/error.h"
+#include "colorimetry/image/image.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_display abbe_display;
+
+#define ABBE_DISPLAY_MAX_EXPOSURE 60.0 /* stops, either way */
+
+/* Zeroed: the configuration as found, its default display and view, exposure 0. */
+typedef struct abbe_display_desc {
+  const char *config;       /* path of a configuration; NULL: $OCIO, else the shipped one */
+  const char *source_space; /* colour space of the pictures; NULL: role scene_linear */
+  const char *display;      /* NULL: the default */
+  const char *view;         /* NULL: the display's default view */
+  double exposure;          /* stops */
+} abbe_display_desc;
+
+/* ABBE_COLOUR with OCIO's reason and, for an unknown display, view or space, the known ones. */
+abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
+                              abbe_error *error);
+void abbe_display_free(abbe_display *display);
+
+/* Replaces the first three channels of the image by display-encoded values, and the image's xy and
+ * curve by what they mean: found from the configuration where it says how the view's colour space
+ * relates to CIE XYZ (interchange roles), else by the name of a display "sRGB" or "Display P3";
+ * zeros where that is not known and where the view's numbers are no colours ("Raw"). */
+abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, abbe_error *error);
+
+/* One line a display and view, malloc'd, newline separated ("sRGB / Plain"); caller frees. */
+abbe_result abbe_display_list(const char *config, char **out, abbe_error *error);
+
+/* Whom OpenColorIO tells, for the whole process, what is no error, such as keys of a configuration
+ * that it does not know; without this it writes to standard error. The message ends with a newline.
+ */
+void abbe_display_set_log(void (*log)(const char *message));
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,43 @@
+/* exr.h: images as OpenEXR files, through OpenEXR's C core API.
+ *
+ * Writes one scan-line part, float32 or half, ZIP compressed, named layers as channel-name
+ * prefixes, chromaticities and text attributes in the header. Reads any single-part scan-line or
+ * tiled flat file that the library can decode (the full-resolution level; float, half and whole
+ * numbers become float32). A picture is its display window: pixels for which the file has no data
+ * are 0, data outside it are left out. Sizes are checked before allocating.
+ */
+#ifndef ABBE_COLORIMETRY_IMAGE_EXR_H
+#define ABBE_COLORIMETRY_IMAGE_EXR_H
+
+#include "colorimetry/image/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes image to path (beside and renamed). ABBE_IO names the path and the reason;
+ * ABBE_INVALID_ARGUMENT for two channels of one name and for an attribute whose name OpenEXR keeps
+ * for itself ("channels", "compression", …). */
+abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error);
+
+/* The same in half precision: 11 bits, from 6e-5 to 65504, and fixed steps of 6e-8 below that.
+ * Nothing overflows: where the greatest finite magnitude is outside [1, 65504], all values are
+ * divided by the power of two that brings it into [2^14, 2^15), and the text attribute "abbe:stored_unit"
+ * holds that power; abbe_exr_read multiplies by it again. Other programs see the quotients.
+ * Infinities and NaN stay what they are. */
+abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_error *error);
+
+/* Pixels of so many bytes are read from however small a file; above, see
+ * abbe_image_check_expansion. */
+#define ABBE_EXR_FREE_BYTES ((size_t)1 << 30)
+
+/* Reads path. ABBE_PARSE for a broken or truncated file, and for an abbe:stored_unit that is no
+ * power of two; ABBE_UNSUPPORTED for deep data, several parts, subsampled channels, DWA
+ * compression, which OpenEXR 3.1's C core cannot decode, and pixels that are too many for the file.
+ */
+abbe_result abbe_exr_read(const char *path, abbe_image *out, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,229 @@
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/exr_parts.h"
+
+#include "base/file.h"
+#include "base/number.h"
+
+#include <errno.h>
+#include <math.h>
+#include <openexr.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct target {
+  const char *path;
+  int fd;
+  int io_errno; /* of a failed system call; 0: none */
+} target;
+
+/* While a header is written the library holds the lock that exr_get_user_data would take: a
+ * writing context is told nothing but its result. */
+static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message) {
+  (void)context;
+  (void)code;
+  (void)message;
+}
+
+static int64_t write_at(exr_const_context_t context, void *user, const void *buffer, uint64_t size,
+                        uint64_t offset, exr_stream_error_func_ptr_t fail) {
+  target *s = user;
+  const char *bytes = buffer;
+  for (uint64_t done = 0; done < size;) {
+    ssize_t n = pwrite(s->fd, bytes + done, size - done, (off_t)(offset + done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      s->io_errno = n < 0 ? errno : ENOSPC;
+      fail(context, EXR_ERR_WRITE_IO, "%s", strerror(s->io_errno));
+      return -1;
+    }
+    done += (uint64_t)n;
+  }
+  return (int64_t)size;
+}
+
+static exr_result_t write_chromaticities(exr_context_t context, const double xy[8]) {
+  bool stated = false;
+  for (int i = 0; i < 8; i++) stated = stated || xy[i] != 0;
+  if (!stated) return EXR_ERR_SUCCESS;
+  exr_attr_chromaticities_t c = {(float)xy[0], (float)xy[1], (float)xy[2], (float)xy[3],
+                                 (float)xy[4], (float)xy[5], (float)xy[6], (float)xy[7]};
+  return exr_attr_set_chromaticities(context, 0, "chromaticities", &c);
+}
+
+/* How samples are stored: their type, and what a stored 1 stands for. */
+typedef struct storage {
+  exr_pixel_type_t type;
+  double unit;
+} storage;
+
+static exr_result_t write_unit(exr_context_t context, double unit) {
+  char text[32];
+  if (unit == 1) return EXR_ERR_SUCCESS;
+  abbe_number_format(text, sizeof text, "%.17g", unit);
+  return exr_attr_set_string(context, 0, ABBE_EXR_UNIT_NAME, text);
+}
+
+static exr_result_t write_header(exr_context_t context, const abbe_image *image, storage as) {
+  int part = 0;
+  exr_result_t rv = exr_set_longname_support(context, 1);
+  if (rv == 0) rv = exr_add_part(context, "", EXR_STORAGE_SCANLINE, &part);
+  if (rv == 0)
+    rv = exr_initialize_required_attr_simple(context, 0, (int32_t)image->width,
+                                             (int32_t)image->height, EXR_COMPRESSION_ZIP);
+  for (size_t i = 0; rv == 0 && i < image->channels; i++)
+    rv =
+        exr_add_channel(context, 0, image->channel[i], as.type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+  if (rv == 0) rv = write_chromaticities(context, image->xy);
+  if (rv == 0) rv = write_unit(context, as.unit);
+  for (size_t i = 0; rv == 0 && i < image->attribute_count; i++)
+    rv = exr_attr_set_string(context, 0, image->attribute[i].name, image->attribute[i].text);
+  return rv == 0 ? exr_write_header(context) : rv;
+}
+
+/* Points every channel of the chunk at its samples, the first of which is in line y. */
+static bool point_channels(exr_coding_channel_info_t *channels, int count, const abbe_image *image,
+                           size_t y) {
+  for (int i = 0; i < count; i++) {
+    size_t c = abbe_image_find_channel(image, channels[i].channel_name);
+    if (c == (size_t)-1) return false;
+    const float *first = image->data + y * image->width * image->channels + c;
+    channels[i].user_bytes_per_element = sizeof(float);
+    channels[i].user_data_type = EXR_PIXEL_FLOAT;
+    channels[i].user_pixel_stride = (int32_t)(image->channels * sizeof(float));
+    channels[i].user_line_stride = (int32_t)(image->width * image->channels * sizeof(float));
+    channels[i].encode_from_ptr = (const uint8_t *)first;
+  }
+  return true;
+}
+
+typedef struct codec {
+  exr_result_t (*compress)(exr_encode_pipeline_t *pipe); /* the library's; NULL: nothing packs */
+} codec;
+
+/* A reader takes a chunk of its samples' size for samples as they are. 3.1.5's ZIP stores them so
+ * where packing makes them more, but not where it makes them just as much (mended in 3.4.8). */
+static exr_result_t compress(exr_encode_pipeline_t *pipe) {
+  const codec *library = pipe->encoding_user_data;
+  exr_result_t rv = library->compress(pipe);
+  if (rv == 0 && pipe->compressed_bytes == pipe->packed_bytes)
+    memcpy(pipe->compressed_buffer, pipe->packed_buffer, pipe->packed_bytes);
+  return rv;
+}
+
+static exr_result_t choose_routines(exr_context_t context, codec *library,
+                                    exr_encode_pipeline_t *pipe) {
+  exr_result_t rv = exr_encoding_choose_default_routines(context, 0, pipe);
+  library->compress = pipe->compress_fn;
+  if (library->compress == NULL) return rv;
+  pipe->encoding_user_data = library;
+  pipe->compress_fn = compress;
+  return rv;
+}
+
+static exr_result_t write_chunks(exr_context_t context, const abbe_image *image,
+                                 exr_encode_pipeline_t *pipe) {
+  int32_t lines = 0;
+  codec library = {0};
+  exr_result_t rv = exr_get_scanlines_per_chunk(context, 0, &lines);
+  for (size_t y = 0; rv == 0 && y < image->height; y += (size_t)lines) {
+    exr_chunk_info_t chunk = {0};
+    rv = exr_write_scanline_chunk_info(context, 0, (int)y, &chunk);
+    if (rv != 0) break;
+    rv = y == 0 ? exr_encoding_initialize(context, 0, &chunk, pipe)
+                : exr_encoding_update(context, 0, &chunk, pipe);
+    if (rv == 0 && !point_channels(pipe->channels, pipe->channel_count, image, y))
+      rv = EXR_ERR_UNKNOWN;
+    if (rv == 0 && y == 0) rv = choose_routines(context, &library, pipe);
+    if (rv == 0) rv = exr_encoding_run(context, 0, pipe);
+  }
+  return rv;
+}
+
+static exr_result_t write_image(target *s, const abbe_image *image, storage as) {
+  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  setup.error_handler_fn = ignore_error;
+  setup.user_data = s;
+  setup.write_fn = write_at;
+  exr_context_t context = NULL;
+  exr_result_t rv = exr_start_write(&context, s->path, EXR_WRITE_FILE_DIRECTLY, &setup);
+  if (rv != 0) return rv;
+  exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+  rv = write_header(context, image, as);
+  if (rv == 0) rv = write_chunks(context, image, &pipe);
+  exr_encoding_destroy(context, &pipe);
+  exr_result_t finished = exr_finish(&context); /* writes the table of chunks */
+  return rv == 0 ? finished : rv;
+}
+
+static abbe_result check_image(const char *path, const abbe_image *image, abbe_error *error) {
+  if (image->data == NULL || image->channels == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the image to write is empty", path);
+  for (size_t i = 0; i < image->channels; i++)
+    if (abbe_image_find_channel(image, image->channel[i]) != i)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: two channels are named '%s'; names differ in a file", path,
+                            image->channel[i]);
+  for (size_t i = 0; i < image->attribute_count; i++)
+    if (strcmp(image->attribute[i].name, ABBE_EXR_STORAGE_NAME) == 0 ||
+        strcmp(image->attribute[i].name, ABBE_EXR_UNIT_NAME) == 0)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: the attribute '%s' belongs to the file itself; another name can "
+                            "be written",
+                            path, image->attribute[i].name);
+  return ABBE_OK;
+}
+
+static abbe_result write_file(const char *path, const abbe_image *image, storage as,
+                              abbe_error *error) {
+  abbe_file_writer writer = {0};
+  abbe_result result = abbe_file_writer_open(&writer, path, error);
+  if (result != ABBE_OK) return result;
+  target t = {.path = path, .fd = fileno(writer.stream)};
+  exr_result_t rv = write_image(&t, image, as);
+  if (rv == EXR_ERR_SUCCESS && t.io_errno == 0) return abbe_file_writer_commit(&writer, error);
+  abbe_file_writer_discard(&writer);
+  abbe_result code = t.io_errno != 0               ? ABBE_IO
+                     : rv == EXR_ERR_OUT_OF_MEMORY ? ABBE_NO_MEMORY
+                                                   : ABBE_INVALID_ARGUMENT;
+  return abbe_error_set(error, code, "%s: it cannot be written: %s", path,
+                        t.io_errno != 0 ? strerror(t.io_errno) : exr_get_default_error_message(rv));
+}
+
+abbe_result abbe_exr_write(const char *path, const abbe_image *image, abbe_error *error) {
+  ABBE_REQUIRE(path && image, error);
+  abbe_result result = check_image(path, image, error);
+  if (result != ABBE_OK) return result;
+  return write_file(path, image, (storage){.type = EXR_PIXEL_FLOAT, .unit = 1}, error);
+}
+
+/* The power of two that half precision needs to hold count values. */
+static double half_unit(const float *value, size_t count) {
+  const double greatest_half = 65504;
+  double most = 0;
+  int exponent;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(value[i])) most = fmax(most, fabs((double)value[i]));
+  if (most == 0 || (most >= 1 && most <= greatest_half)) return 1;
+  frexp(most, &exponent); /* most is in [2^(exponent - 1), 2^exponent) */
+  return ldexp(1, exponent - 15);
+}
+
+abbe_result abbe_exr_write_half(const char *path, const abbe_image *image, abbe_error *error) {
+  ABBE_REQUIRE(path && image, error);
+  abbe_result result = check_image(path, image, error);
+  if (result != ABBE_OK) return result;
+  size_t count = image->width * image->height * image->channels;
+  storage as = {.type = EXR_PIXEL_HALF, .unit = half_unit(image->data, count)};
+  if (as.unit == 1) return write_file(path, image, as, error);
+  abbe_image scaled = *image;
+  scaled.data = malloc(count * sizeof *scaled.data);
+  if (scaled.data == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for %zu samples", path, count);
+  for (size_t i = 0; i < count; i++) scaled.data[i] = (float)((double)image->data[i] / as.unit);
+  result = write_file(path, &scaled, as, error);
+  free(scaled.data);
+  return result;
+}

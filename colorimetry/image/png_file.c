@@ -1,0 +1,314 @@
+#include "colorimetry/image/png_file.h"
+
+#include "base/file.h"
+#include "colorimetry/rgb_encoding.h"
+
+#include <errno.h>
+#include <math.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_SIDE = 16384, MAX_CHUNK_BYTES = 4 << 20, DEFLATE_RATIO = 1032 };
+
+/* One file under way. libpng leaves by longjmp, so what must outlive that lives here. */
+typedef struct job {
+  const char *path;
+  FILE *file;
+  png_structp png;
+  png_infop info;
+  png_bytep rows;
+  png_bytep *row;
+  png_uint_32 width, height;
+  int bits, samples; /* of a row's pixel in memory */
+  void *icc;         /* to be written; of three channels that are not in sRGB */
+  size_t icc_size;
+  bool io_failed, no_memory;
+  char message[256];
+} job;
+
+static void on_error(png_structp png, png_const_charp message) {
+  job *j = png_get_error_ptr(png);
+  if (j->message[0] == '\0') snprintf(j->message, sizeof j->message, "%s", message);
+  longjmp(png_jmpbuf(png), 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message) {
+  (void)png, (void)message;
+}
+
+static void write_bytes(png_structp png, png_bytep bytes, size_t size) {
+  job *j = png_get_io_ptr(png);
+  if (fwrite(bytes, 1, size, j->file) == size) return;
+  j->io_failed = true;
+  png_error(png, strerror(errno));
+}
+
+static void flush_bytes(png_structp png) {
+  (void)png;
+}
+
+static void read_bytes(png_structp png, png_bytep bytes, size_t size) {
+  job *j = png_get_io_ptr(png);
+  if (fread(bytes, 1, size, j->file) == size) return;
+  j->io_failed = ferror(j->file) != 0;
+  png_error(png, j->io_failed ? strerror(errno) : "it ends too early");
+}
+
+/* Writing */
+
+static unsigned quantize(float value, unsigned top) {
+  if (!(value > 0)) return 0; /* not-a-number too */
+  return value >= 1 ? top : (unsigned)lround((double)value * top);
+}
+
+static void fill_row(const abbe_image *image, size_t y, const job *j) {
+  const unsigned top = j->bits == 16 ? 65535 : 255;
+  png_bytep out = j->rows;
+  for (size_t x = 0; x < image->width; x++)
+    for (int k = 0; k < j->samples; k++) {
+      unsigned v = quantize(image->data[(y * image->width + x) * image->channels + (size_t)k], top);
+      if (j->bits == 16) *out++ = (png_byte)(v >> 8);
+      *out++ = (png_byte)(v & 255);
+    }
+}
+
+/* The chunks that say what the numbers mean. */
+static void write_encoding(const job *j, const abbe_image *image) {
+  if (abbe_rgb_encoding_is_srgb(image->xy, image->curve))
+    png_set_sRGB_gAMA_and_cHRM(j->png, j->info, PNG_sRGB_INTENT_RELATIVE);
+  else if (j->icc != NULL)
+    png_set_iCCP(j->png, j->info, "icc", PNG_COMPRESSION_TYPE_BASE, j->icc,
+                 (png_uint_32)j->icc_size);
+}
+
+static bool write_rows(job *j, const abbe_image *image) {
+  if (setjmp(png_jmpbuf(j->png))) return false;
+  png_set_write_fn(j->png, j, write_bytes, flush_bytes);
+  png_set_user_limits(j->png, ABBE_IMAGE_MAX_SIDE, ABBE_IMAGE_MAX_SIDE);
+  png_set_IHDR(j->png, j->info, (png_uint_32)image->width, (png_uint_32)image->height, j->bits,
+               j->samples == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  write_encoding(j, image);
+  png_write_info(j->png, j->info);
+  for (size_t y = 0; y < image->height; y++) {
+    fill_row(image, y, j);
+    png_write_row(j->png, j->rows);
+  }
+  png_write_end(j->png, NULL);
+  return true;
+}
+
+static bool write_image(job *j, const abbe_image *image) {
+  j->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, j, on_error, on_warning);
+  j->info = j->png == NULL ? NULL : png_create_info_struct(j->png);
+  j->rows = malloc(image->width * (size_t)j->samples * (size_t)(j->bits / 8));
+  j->no_memory = j->info == NULL || j->rows == NULL;
+  bool written = !j->no_memory && write_rows(j, image);
+  png_destroy_write_struct(&j->png, &j->info);
+  free(j->rows);
+  return written;
+}
+
+abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, abbe_error *error) {
+  ABBE_REQUIRE(path && image, error);
+  if (bits != 8 && bits != 16)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: a PNG of %d bits cannot be written; 8 or 16 can", path, bits);
+  if (image->data == NULL || image->channels == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the image to write is empty", path);
+  job j = {.path = path, .bits = bits, .samples = image->channels >= 3 ? 3 : 1};
+  abbe_file_writer writer = {0};
+  abbe_result result = ABBE_OK;
+  if (j.samples == 3 && abbe_rgb_encoding_is_known(image->xy, image->curve) &&
+      !abbe_rgb_encoding_is_srgb(image->xy, image->curve))
+    result = abbe_rgb_encoding_profile(image->xy, image->curve, &j.icc, &j.icc_size, error);
+  if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
+  j.file = writer.stream;
+  const bool written = result == ABBE_OK && write_image(&j, image);
+  free(j.icc);
+  if (written) return abbe_file_writer_commit(&writer, error);
+  abbe_file_writer_discard(&writer);
+  if (result != ABBE_OK) return result;
+  return abbe_error_set(error, j.no_memory ? ABBE_NO_MEMORY : ABBE_IO,
+                        "%s: it cannot be written: %s", path,
+                        j.no_memory ? "there is no memory for a row" : j.message);
+}
+
+/* Reading */
+
+/* Of what is not pixels only what says their colour is read: no text, thumbnail or profile of
+ * whatever kind is unpacked in vain. */
+static void choose_chunks(const job *j) {
+  static const png_byte known[] = "bKGD\0eXIf\0hIST\0iTXt\0oFFs\0pCAL\0pHYs\0sBIT\0sCAL\0"
+                                  "sPLT\0sTER\0tEXt\0tIME\0tRNS\0zTXt";
+  static const png_byte cicp[] = "cICP"; /* younger than libpng 1.6.45 */
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_NEVER, NULL, 0);
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_NEVER, known, sizeof known / 5);
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_ALWAYS, cicp, 1);
+  png_set_chunk_cache_max(j->png, 8);
+  png_set_chunk_malloc_max(j->png, MAX_CHUNK_BYTES);
+}
+
+static bool read_header(job *j, double file_size) {
+  if (setjmp(png_jmpbuf(j->png))) return false;
+  png_set_read_fn(j->png, j, read_bytes);
+  png_set_user_limits(j->png, MAX_SIDE, MAX_SIDE);
+  choose_chunks(j);
+  png_read_info(j->png, j->info);
+  j->width = png_get_image_width(j->png, j->info);
+  j->height = png_get_image_height(j->png, j->info);
+  double stored = (double)png_get_rowbytes(j->png, j->info) * j->height;
+  if (stored > DEFLATE_RATIO * file_size)
+    png_error(j->png, "its header promises more pixels than its bytes can hold");
+
+  png_set_palette_to_rgb(j->png);
+  png_set_expand_gray_1_2_4_to_8(j->png);
+  png_set_gray_to_rgb(j->png);
+  png_set_strip_alpha(j->png);
+  png_set_interlace_handling(j->png);
+  png_read_update_info(j->png, j->info);
+  j->bits = png_get_bit_depth(j->png, j->info);
+  j->samples = png_get_channels(j->png, j->info);
+  if (j->samples != 3) png_error(j->png, "its pixels cannot be expanded to red, green and blue");
+  return true;
+}
+
+static bool read_rows(job *j) {
+  size_t stride = (size_t)j->width * 3 * (size_t)(j->bits / 8);
+  j->rows = malloc(stride * j->height);
+  j->row = malloc(j->height * sizeof *j->row);
+  j->no_memory = j->rows == NULL || j->row == NULL;
+  if (j->no_memory) return false;
+  for (size_t y = 0; y < j->height; y++) j->row[y] = j->rows + y * stride;
+  if (setjmp(png_jmpbuf(j->png))) return false;
+  png_read_image(j->png, j->row);
+  png_read_end(j->png, NULL);
+  return true;
+}
+
+static void take_samples(const job *j, abbe_image *image) {
+  size_t count = image->width * image->height * 3;
+  for (size_t i = 0; i < count; i++)
+    image->data[i] = j->bits == 16 ? (float)(256 * j->rows[2 * i] + j->rows[2 * i + 1]) / 65535.0f
+                                   : (float)j->rows[i] / 255.0f;
+}
+
+/* The code points of [H273] that are of a display's RGB; false for others. */
+static bool decode_cicp(const png_unknown_chunk *chunk, double xy[8], double curve[5]) {
+  static const struct {
+    int code;
+    double xy[8];
+  } primaries[] = {{1, {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}},
+                   {9, {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}},
+                   {12, {0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290}}};
+  static const struct {
+    int code;
+    double curve[5];
+  } transfers[] = {{1, {1 / 0.45, 1 / 1.099, 0.099 / 1.099, 1 / 4.5, 0.081}},
+                   {4, {2.2, 1, 0, 0, 0}},
+                   {5, {2.8, 1, 0, 0, 0}},
+                   {8, {1, 1, 0, 0, 0}},
+                   {13, {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}}};
+  const png_byte *code = chunk->data;
+  if (chunk->size != 4 || code[2] != 0 || code[3] != 1) return false;
+  const int transfer = code[1] == 6 || code[1] == 14 || code[1] == 15 ? 1 : code[1];
+  bool found[2] = {false, false};
+  for (size_t i = 0; i < sizeof primaries / sizeof *primaries; i++) {
+    if (primaries[i].code != code[0]) continue;
+    memcpy(xy, primaries[i].xy, sizeof primaries[i].xy);
+    found[0] = true;
+  }
+  for (size_t i = 0; i < sizeof transfers / sizeof *transfers; i++) {
+    if (transfers[i].code != transfer) continue;
+    memcpy(curve, transfers[i].curve, sizeof transfers[i].curve);
+    found[1] = true;
+  }
+  return found[0] && found[1];
+}
+
+/* By gAMA and cHRM, either of which may be missing; sRGB stands in for both. */
+static void decode_gamma(const job *j, double xy[8], double curve[5]) {
+  double gamma = 0, w[2], r[2], g[2], b[2], rec709[8];
+  abbe_rgb_encoding_srgb(xy, curve);
+  memcpy(rec709, xy, sizeof rec709);
+  if (png_get_cHRM(j->png, j->info, &w[0], &w[1], &r[0], &r[1], &g[0], &g[1], &b[0], &b[1]) != 0) {
+    const double stated[8] = {r[0], r[1], g[0], g[1], b[0], b[1], w[0], w[1]};
+    memcpy(xy, stated, sizeof stated);
+  }
+  if (png_get_gAMA(j->png, j->info, &gamma) == 0 || !(gamma > 0)) return;
+  /* 1/2.2 with sRGB's primaries is how sRGB is said to old readers */
+  const bool srgb = abbe_rgb_encoding_is_srgb(xy, curve) && fabs(gamma * 2.2 - 1) < 1e-3;
+  const double power[5] = {1 / gamma, 1, 0, 0, 0};
+  if (!srgb) memcpy(curve, power, sizeof power);
+}
+
+/* What the file says of its colour, in the order in which [PNG2025] ranks it. */
+static abbe_result become_srgb(const job *j, abbe_image *image, abbe_error *error) {
+  png_unknown_chunkp chunk = NULL;
+  png_charp name = NULL;
+  png_bytep icc = NULL;
+  png_uint_32 size = 0;
+  int method = 0;
+  abbe_rgb_encoding_srgb(image->xy, image->curve);
+  if (png_get_unknown_chunks(j->png, j->info, &chunk) > 0) {
+    if (!decode_cicp(chunk, image->xy, image->curve))
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s: its cICP chunk says an encoding that is not known here; primaries "
+                            "1, 9 or 12 with transfer 1, 4, 5, 6, 8, 13, 14 or 15, matrix 0 and "
+                            "full range are",
+                            j->path);
+  } else if (png_get_valid(j->png, j->info, PNG_INFO_sRGB) != 0) {
+    return ABBE_OK;
+  } else if (png_get_iCCP(j->png, j->info, &name, &method, &icc, &size) != 0) {
+    return abbe_rgb_encoding_profile_to_srgb(image, icc, size, j->path, error);
+  } else {
+    decode_gamma(j, image->xy, image->curve);
+  }
+  if (abbe_rgb_encoding_is_srgb(image->xy, image->curve)) return ABBE_OK;
+  return abbe_rgb_encoding_to_srgb(image, j->path, error);
+}
+
+static abbe_result read_image(job *j, double file_size, abbe_image *out, abbe_error *error) {
+  static const char *const names[] = {"R", "G", "B"};
+  j->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, j, on_error, on_warning);
+  j->info = j->png == NULL ? NULL : png_create_info_struct(j->png);
+  j->no_memory = j->info == NULL;
+  abbe_result result = ABBE_OK;
+  bool read = !j->no_memory && read_header(j, file_size);
+  if (read)
+    result = abbe_image_check_expansion(j->path, j->width, j->height, 3, (size_t)file_size,
+                                        ABBE_PNG_FREE_BYTES, error);
+  if (result == ABBE_OK && !(read && read_rows(j))) {
+    abbe_result code = j->no_memory ? ABBE_NO_MEMORY : j->io_failed ? ABBE_IO : ABBE_PARSE;
+    result = abbe_error_set(error, code, "%s: %s%s", j->path,
+                            j->no_memory ? "there is no memory for its pixels"
+                                         : "it is not a whole PNG file: ",
+                            j->message);
+  }
+  if (result == ABBE_OK) result = abbe_image_make(j->width, j->height, 3, names, out, error);
+  if (result == ABBE_OK) take_samples(j, out);
+  free(j->rows);
+  j->rows = NULL;
+  if (result == ABBE_OK) result = become_srgb(j, out, error);
+  if (result != ABBE_OK) abbe_image_free(out);
+  png_destroy_read_struct(&j->png, &j->info, NULL);
+  free(j->row);
+  return result;
+}
+
+abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
+  *out = (abbe_image){0};
+  FILE *file;
+  size_t size = 0;
+  abbe_result result = abbe_file_open(path, &file, &size, error);
+  if (result != ABBE_OK) return result;
+  job j = {.path = path, .file = file};
+  result = read_image(&j, (double)size, out, error);
+  fclose(file);
+  return result;
+}

@@ -1,0 +1,32 @@
+/* png_file.h: display-encoded PNG out, textures in, through libpng; both say their colour. */
+#ifndef ABBE_COLORIMETRY_IMAGE_PNG_FILE_H
+#define ABBE_COLORIMETRY_IMAGE_PNG_FILE_H
+
+#include "colorimetry/image/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes the first three channels (or one, as grey), values clamped to [0, 1] and already
+ * encoded for the display, with bits = 8 or 16. Not-a-number is written as 0. Beside and renamed.
+ * The file says what image->xy and image->curve say of them: sRGB by its chunk (with gAMA and cHRM
+ * for old readers), another encoding by an ICC profile, nothing where they are not known. */
+abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits,
+                           abbe_error *error);
+/* Pixels of so many bytes are read from however small a file; above, see
+ * abbe_image_check_expansion. */
+#define ABBE_PNG_FREE_BYTES ((size_t)256 << 20)
+
+/* Reads a PNG as sRGB-encoded values in [0, 1]: channels "R", "G", "B" (grey and palettes expanded,
+ * alpha dropped). At most 16384 a side. A file that says by cICP, iCCP, or gAMA and cHRM that it is
+ * in another encoding is converted, relative to white; what sRGB cannot hold is clipped. One that
+ * says nothing, or a gAMA of 1/2.2 alone, is in sRGB. ABBE_PARSE for a broken file,
+ * ABBE_UNSUPPORTED for pixels that are too many for the file and for a cICP that is none of an SDR
+ * display's RGB, ABBE_COLOUR for a profile that cannot be used. */
+abbe_result abbe_png_read(const char *path, abbe_image *out, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

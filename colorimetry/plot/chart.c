@@ -1,0 +1,131 @@
+#include "colorimetry/plot/chart.h"
+
+#include "base/file.h"
+#include "colorimetry/plot/chart_panel.h"
+
+#include <cairo-svg.h>
+#include <cairo.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { MAX_CHARTS = 64 };
+
+static bool ends_with(const char *path, const char *ending) {
+  size_t length = strlen(path), tail = strlen(ending);
+  return length > tail && strcasecmp(path + length - tail, ending) == 0;
+}
+
+static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsigned int length) {
+  return fwrite(data, 1, length, closure) == length ? CAIRO_STATUS_SUCCESS
+                                                    : CAIRO_STATUS_WRITE_ERROR;
+}
+
+typedef struct png_stream {
+  FILE *file;
+  size_t left; /* of a PNG's signature and header, which are always its first 33 bytes */
+} png_stream;
+
+/* Cairo does not say that its colours are sRGB: the chunk that does comes behind the header. */
+static cairo_status_t write_png(void *closure, const unsigned char *data, unsigned int length) {
+  static const unsigned char srgb[] = {0, 0, 0, 1, 's', 'R', 'G', 'B', 1, 0xd9, 0xc9, 0x2c, 0x7f};
+  png_stream *stream = closure;
+  const unsigned head = length < stream->left ? length : (unsigned)stream->left;
+  cairo_status_t status = write_bytes(stream->file, data, head);
+  stream->left -= head;
+  if (status == CAIRO_STATUS_SUCCESS && head > 0 && stream->left == 0)
+    status = write_bytes(stream->file, srgb, sizeof srgb);
+  return status == CAIRO_STATUS_SUCCESS ? write_bytes(stream->file, data + head, length - head)
+                                        : status;
+}
+
+/* The panels one above the other; the labels of all decide where the plots begin and end. */
+static void draw(cairo_t *cr, abbe_chart_panel *panels, size_t count, double width, double height) {
+  double total = 0, left = 0, right = 0, top = 0;
+  for (size_t i = 0; i < count; i++)
+    total += panels[i].chart->share > 0 ? panels[i].chart->share : 1;
+  cairo_set_source_rgb(cr, 1, 1, 1);
+  cairo_paint(cr);
+  for (size_t i = 0; i < count; i++) {
+    abbe_chart_panel *p = &panels[i];
+    double share = p->chart->share > 0 ? p->chart->share : 1, own[2];
+    p->cr = cr;
+    p->top = top;
+    p->bottom = top += height * share / total;
+    p->left = 0;
+    p->right = width;
+    abbe_chart_panel_measure(p, &own[0], &own[1]);
+    if (own[0] > left) left = own[0];
+    if (own[1] > right) right = own[1];
+  }
+  for (size_t i = 0; i < count; i++) {
+    panels[i].left = left;
+    panels[i].right = width - right;
+    abbe_chart_panel_draw(&panels[i]);
+  }
+}
+
+static abbe_result write_surface(cairo_surface_t *surface, abbe_chart_panel *panels, size_t count,
+                                 double width, double height, FILE *png, const char *path,
+                                 abbe_error *error) {
+  cairo_t *cr = cairo_create(surface);
+  draw(cr, panels, count, width, height);
+  cairo_status_t status = cairo_status(cr);
+  cairo_destroy(cr);
+  png_stream stream = {.file = png, .left = 33};
+  if (status == CAIRO_STATUS_SUCCESS && png != NULL)
+    status = cairo_surface_write_to_png_stream(surface, write_png, &stream);
+  cairo_surface_finish(surface); /* an SVG is written here */
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
+  cairo_surface_destroy(surface);
+  if (status == CAIRO_STATUS_SUCCESS) return ABBE_OK;
+  return abbe_error_set(error,
+                        status == CAIRO_STATUS_NO_MEMORY     ? ABBE_NO_MEMORY
+                        : status == CAIRO_STATUS_WRITE_ERROR ? ABBE_IO
+                                                             : ABBE_INVALID_ARGUMENT,
+                        "%s: the chart could not be drawn: %s", path,
+                        cairo_status_to_string(status));
+}
+
+static abbe_result write_panels(const char *path, abbe_chart_panel *panels, size_t count,
+                                size_t width, size_t height, abbe_error *error) {
+  abbe_file_writer writer;
+  abbe_result result = abbe_file_writer_open(&writer, path, error);
+  if (result != ABBE_OK) return result;
+  bool svg = ends_with(path, ".svg");
+  cairo_surface_t *surface =
+      svg ? cairo_svg_surface_create_for_stream(write_bytes, writer.stream, (double)width,
+                                                (double)height)
+          : cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+  result = write_surface(surface, panels, count, (double)width, (double)height,
+                         svg ? NULL : writer.stream, path, error);
+  if (result == ABBE_OK) return abbe_file_writer_commit(&writer, error);
+  abbe_file_writer_discard(&writer);
+  return result;
+}
+
+abbe_result abbe_chart_write(const char *path, const abbe_chart *charts, size_t count, size_t width,
+                             size_t height, abbe_error *error) {
+  ABBE_REQUIRE(path && charts, error);
+  if (!ends_with(path, ".png") && !ends_with(path, ".svg"))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: a chart wants a name that ends with .png or .svg", path);
+  if (width == 0) width = 960;
+  if (height == 0) height = 600;
+  if (width < 64 || height < 64 || width > ABBE_CHART_MAX_SIDE || height > ABBE_CHART_MAX_SIDE)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: a chart of %zu x %zu pixels; the sides may be 64 to %d", path, width,
+                          height, ABBE_CHART_MAX_SIDE);
+  if (count < 1 || count > MAX_CHARTS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %zu charts in a picture of 1 to %d",
+                          path, count, MAX_CHARTS);
+  abbe_chart_panel *panels = calloc(count, sizeof *panels);
+  abbe_result result = ABBE_OK;
+  if (panels == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory", path);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    result = abbe_chart_panel_make(&charts[i], &panels[i], error);
+  if (result == ABBE_OK) result = write_panels(path, panels, count, width, height, error);
+  free(panels);
+  return result;
+}

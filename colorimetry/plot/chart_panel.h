@@ -1,0 +1,41 @@
+/* chart_panel.h: one chart of a picture, laid out and drawn. Internal to colorimetry/: chart.h is
+ * what others use.
+ */
+#ifndef ABBE_COLORIMETRY_PLOT_CHART_PANEL_H
+#define ABBE_COLORIMETRY_PLOT_CHART_PANEL_H
+
+#include "colorimetry/plot/axis.h"
+#include "colorimetry/plot/chart.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct _cairo;
+
+typedef struct abbe_chart_panel {
+  struct _cairo *cr;
+  const abbe_chart *chart;
+  abbe_axis x, y, scale; /* scale: of the field's colours */
+  double top, bottom;    /* of the panel in the picture */
+  double left, right;    /* of the plot, shared by all panels of a picture */
+  double plot_top, plot_bottom;
+  size_t x_count, y_count, scale_count;
+  abbe_axis_tick x_tick[ABBE_AXIS_MAX_TICKS], y_tick[ABBE_AXIS_MAX_TICKS];
+  abbe_axis_tick scale_tick[ABBE_AXIS_MAX_TICKS];
+  int x_exponent, y_exponent, scale_exponent;
+} abbe_chart_panel;
+
+/* The axes, from the chart or its data. ABBE_INVALID_ARGUMENT as abbe_chart_write has it. */
+abbe_result abbe_chart_panel_make(const abbe_chart *chart, abbe_chart_panel *out,
+                                  abbe_error *error);
+/* The room that the labels want to the left and to the right of the plot, for a panel of this
+ * height; fills the ticks. */
+void abbe_chart_panel_measure(abbe_chart_panel *panel, double *left, double *right);
+/* Draws it between top and bottom, left and right. */
+void abbe_chart_panel_draw(abbe_chart_panel *panel);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

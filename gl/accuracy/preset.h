@@ -1,0 +1,115 @@
+/* preset.h: settings that were measured to be worth their time, and which of them to take.
+ *
+ * For every class of scenes a front: settings of rising cost and falling error, read off sweeps
+ * (abbe sweep --write-presets) and kept in gl/accuracy/presets.yaml with the run that made them. Three of
+ * them have names. Others are chosen by an error or by a time; for a time, one quick frame on this
+ * machine tells how fast it is. An error is a promise and no measurement: the worst of the front's
+ * own scenes, times the margin by which leaving one of them out would have been wrong.
+ */
+#ifndef ABBE_GL_ACCURACY_PRESET_H
+#define ABBE_GL_ACCURACY_PRESET_H
+
+#include "gl/device/context.h"
+#include "gl/plan/plan.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_PRESETS(X) X(DRAFT, "draft") X(BALANCED, "balanced") X(ACCURATE, "accurate")
+typedef enum abbe_preset_name {
+#define ABBE_PRESET_ENUM(code, name) ABBE_PRESET_##code,
+  ABBE_PRESETS(ABBE_PRESET_ENUM)
+#undef ABBE_PRESET_ENUM
+      ABBE_PRESET_COUNT
+} abbe_preset_name;
+
+const char *abbe_preset_name_text(abbe_preset_name name);
+
+/* X(code, name): of a scene, its hardest refractor as the plan models it. Bows are of spheres that
+ * no receiver stands behind, so that only what they reflect lands: little light, from many photons.
+ */
+#define ABBE_PRESET_CLASSES(X)                                                                     \
+  X(NONE, "none") X(SPHERES, "spheres") X(BOWS, "bows") X(CONVEX, "convex") X(MESHES, "meshes")
+typedef enum abbe_preset_class {
+#define ABBE_PRESET_ENUM(code, name) ABBE_PRESET_CLASS_##code,
+  ABBE_PRESET_CLASSES(ABBE_PRESET_ENUM)
+#undef ABBE_PRESET_ENUM
+      ABBE_PRESET_CLASS_COUNT
+} abbe_preset_class;
+
+const char *abbe_preset_class_name(abbe_preset_class which);
+abbe_preset_class abbe_preset_class_of(const abbe_plan *plan);
+
+#define ABBE_PRESET_MAX_POINTS 128
+
+typedef struct abbe_preset_point {
+  abbe_render_desc
+      desc; /* wavelengths, photons, map, samples, upsampling, fill, share, exits, model; the rest 0 */
+  double light_ms, eye_ms; /* on the run's machine, as promised: the worst of its scenes in ratio to
+                              the first point, times the time's margin */
+  double error;            /* that is promised: the worst times the front's margin */
+  double worst, least;     /* as measured, of the run's scenes */
+} abbe_preset_point;
+
+typedef struct abbe_preset_front {
+  abbe_preset_class of;
+  char scenes[256];
+  /* The most by which one of the run's scenes was worse than the others had promised. */
+  double margin, time_margin;
+  size_t margin_scenes; /* behind them; 0: too few of this class, so another class's are taken */
+  size_t named[ABBE_PRESET_COUNT]; /* indices of points; count where no point has the name */
+  size_t count;                    /* at least 1 */
+  abbe_preset_point *point;        /* [count] of rising cost and falling error */
+} abbe_preset_front;
+
+typedef struct abbe_presets {
+  char error[32];      /* the name of the error: a column of abbe sweep */
+  char error_text[64]; /* what it is, for people */
+  char run[640];       /* date, machine, device, size, frames: what made them */
+  size_t count;
+  abbe_preset_front front[ABBE_PRESET_CLASS_COUNT];
+} abbe_presets;
+
+/* Whether the settings are nowhere coarser than those that a plan takes by itself, and of more
+ * wavelengths and photons: what is called accurate is that. */
+bool abbe_preset_is_fine(const abbe_render_desc *desc);
+
+/* From a file, or with NULL the shipped ones. ABBE_SCHEMA, ABBE_PARSE and ABBE_IO name file, line
+ * and key. */
+abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *error);
+void abbe_presets_free(abbe_presets *presets);
+
+/* The front for the plan's scene. ABBE_UNSUPPORTED where no run had such a scene. */
+abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan,
+                              const abbe_preset_front **out, abbe_error *error);
+
+/* Fills the fields of desc that are 0 with the point's, but for exits and a share that plans have
+ * by themselves: those are left to the scene's own. False where a field that was not 0 differs from
+ * it: then what the point promises does not hold. */
+bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *desc);
+
+/* This machine's time for this scene and size over the run's, for the light's and the eye's
+ * passes. */
+typedef struct abbe_preset_speed {
+  double light, eye;
+} abbe_preset_speed;
+
+/* Draws the front's cheapest point once to warm up and once for the clock. size and space are
+ * desc's. Errors of abbe_renderer_make. */
+abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
+                                  const abbe_preset_front *front, const abbe_render_desc *desc,
+                                  abbe_preset_speed *out, abbe_error *error);
+double abbe_preset_ms(const abbe_preset_point *point, const abbe_preset_speed *speed);
+
+/* The cheapest point whose error is at most max_error; where there is none the most accurate, and
+ * *kept is false. */
+size_t abbe_preset_for_error(const abbe_preset_front *front, double max_error, bool *kept);
+/* The most accurate point that takes at most ms; where there is none the fastest, likewise. */
+size_t abbe_preset_for_time(const abbe_preset_front *front, const abbe_preset_speed *speed,
+                            double ms, bool *kept);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,101 @@
+/* api.h: the OpenGL 4.5 functions that Abbe calls, loaded through a context's own look-up.
+ *
+ * No global state: the table belongs to its context and is passed along. Only what is used is
+ * listed; a missing function is an error that names it.
+ */
+#ifndef ABBE_GL_DEVICE_API_H
+#define ABBE_GL_DEVICE_API_H
+
+#include "base/error.h"
+
+#include <GL/glcorearb.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(pointer type's middle, name without gl) */
+#define ABBE_GL_FUNCTIONS(X)                                                                       \
+  X(ACTIVETEXTURE, ActiveTexture)                                                                  \
+  X(ATTACHSHADER, AttachShader)                                                                    \
+  X(BINDBUFFER, BindBuffer)                                                                        \
+  X(BINDBUFFERBASE, BindBufferBase)                                                                \
+  X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \
+  X(BINDIMAGETEXTURE, BindImageTexture)                                                            \
+  X(BINDTEXTURE, BindTexture)                                                                      \
+  X(BINDVERTEXARRAY, BindVertexArray)                                                              \
+  X(BLENDFUNC, BlendFunc)                                                                          \
+  X(BUFFERDATA, BufferData)                                                                        \
+  X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(             \
+      CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV,                                              \
+                                      ClearBufferuiv) X(CLEARBUFFERDATA,                           \
+                                                        ClearBufferData) X(COMPILESHADER,          \
+                                                                           CompileShader)          \
+      X(CREATEPROGRAM, CreateProgram) X(CREATESHADER, CreateShader) X(CULLFACE, CullFace) X(       \
+          DELETEBUFFERS, DeleteBuffers) X(DELETEFRAMEBUFFERS,                                      \
+                                          DeleteFramebuffers) X(DELETEPROGRAM,                     \
+                                                                DeleteProgram) X(DELETESHADER,     \
+                                                                                 DeleteShader)     \
+          X(DELETETEXTURES, DeleteTextures) X(DELETEVERTEXARRAYS, DeleteVertexArrays) X(           \
+              DEPTHFUNC, DepthFunc) X(DEPTHMASK, DepthMask) X(DISABLE, Disable) X(DISPATCHCOMPUTE, \
+                                                                                  DispatchCompute) \
+              X(DISPATCHCOMPUTEINDIRECT, DispatchComputeIndirect) X(DRAWARRAYS, DrawArrays) X(     \
+                  DRAWARRAYSINDIRECT,                                                              \
+                  DrawArraysIndirect) X(DRAWBUFFERS, DrawBuffers) X(DRAWELEMENTS, DrawElements)    \
+                  X(ENABLE, Enable) X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) X(         \
+                      FINISH, Finish) X(FRAMEBUFFERTEXTURE,                                        \
+                                        FramebufferTexture) X(FRAMEBUFFERTEXTURELAYER,             \
+                                                              FramebufferTextureLayer)             \
+                      X(GENBUFFERS, GenBuffers) X(GENFRAMEBUFFERS, GenFramebuffers) X(             \
+                          GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays)            \
+                          X(GETBUFFERSUBDATA, GetBufferSubData) X(GETERROR, GetError) X(           \
+                              GETINTEGERV, GetIntegerv) X(GETPROGRAMIV,                            \
+                                                          GetProgramiv) X(GETPROGRAMINFOLOG,       \
+                                                                          GetProgramInfoLog)       \
+                              X(GETSHADERIV, GetShaderiv) X(GETSHADERINFOLOG, GetShaderInfoLog) X( \
+                                  GETSTRING, GetString) X(GETTEXIMAGE,                             \
+                                                          GetTexImage) X(GETUNIFORMLOCATION,       \
+                                                                         GetUniformLocation)       \
+                                  X(LINKPROGRAM, LinkProgram) X(MEMORYBARRIER, MemoryBarrier) X(   \
+                                      PIXELSTOREI,                                                 \
+                                      PixelStorei) X(SHADERSOURCE,                                 \
+                                                     ShaderSource) X(TEXBUFFER, TexBuffer)         \
+                                      X(TEXPARAMETERI, TexParameteri)                              \
+                                      X(TEXSTORAGE2D, TexStorage2D) X(                             \
+                                          TEXSTORAGE3D,                                            \
+                                          TexStorage3D) X(TEXSUBIMAGE3D, TexSubImage3D)            \
+                                          X(UNIFORM1F,                                             \
+                                            Uniform1f) X(UNIFORM1FV,                               \
+                                                         Uniform1fv) X(UNIFORM1I, Uniform1i)       \
+                                              X(UNIFORM1UI, Uniform1ui) X(UNIFORM2I, Uniform2i) X( \
+                                                  UNIFORM2F, Uniform2f) X(UNIFORM3FV, Uniform3fv)  \
+                                                  X(UNIFORM3F,                                     \
+                                                    Uniform3f) X(UNIFORM4F, Uniform4f)             \
+                                                      X(UNIFORM4FV, Uniform4fv) X(                 \
+                                                          UNIFORMMATRIX3FV,                        \
+                                                          UniformMatrix3fv) X(SCISSOR, Scissor)    \
+                                                          X(UNIFORMMATRIX4FV, UniformMatrix4fv)    \
+                                                              X(USEPROGRAM, UseProgram)            \
+                                                                  X(VERTEXATTRIBPOINTER,           \
+                                                                    VertexAttribPointer)           \
+                                                                      X(VIEWPORT, Viewport)
+
+typedef struct abbe_gl {
+#define ABBE_GL_FIELD(type, name) PFNGL##type##PROC name;
+  ABBE_GL_FUNCTIONS(ABBE_GL_FIELD)
+#undef ABBE_GL_FIELD
+} abbe_gl;
+
+typedef void (*abbe_gl_function)(void);
+typedef abbe_gl_function (*abbe_gl_lookup)(const char *name);
+
+/* Fills the table by the context's look-up. ABBE_GL names the first function that is missing. */
+abbe_result abbe_gl_load(abbe_gl_lookup lookup, abbe_gl *out, abbe_error *error);
+
+/* ABBE_GL with `where` and the error's name if the context holds an error; clears it. */
+abbe_result abbe_gl_check(const abbe_gl *gl, const char *where, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,150 @@
+#include "gl/scene/local_scene.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* 2^-24 of that is 1/65536 of the radius. */
+static const double most_radii = 256;
+
+static void move(const double origin[3], double point[3]) {
+  for (int k = 0; k < 3; k++) point[k] -= origin[k];
+}
+
+static void *copy_of(const void *from, size_t size) {
+  void *to = malloc(size > 0 ? size : 1);
+  if (to != NULL && size > 0) memcpy(to, from, size);
+  return to;
+}
+
+/* The arrays that are moved become the copy's own; on failure what is left NULL is not. */
+static bool move_object(const double origin[3], abbe_object *o) {
+  const abbe_object from = *o;
+  o->mesh.position =
+      copy_of(from.mesh.position, from.mesh.vertex_count * sizeof *from.mesh.position);
+  o->exact.plane = copy_of(
+      from.exact.plane, from.exact.plane != NULL ? from.exact.count * sizeof *from.exact.plane : 0);
+  o->exact.parallelogram = copy_of(
+      from.exact.parallelogram,
+      from.exact.parallelogram != NULL ? from.exact.count * sizeof *from.exact.parallelogram : 0);
+  if (o->mesh.position == NULL || o->exact.plane == NULL || o->exact.parallelogram == NULL)
+    return false;
+  for (size_t i = 0; i < o->mesh.vertex_count; i++) move(origin, o->mesh.position[i]);
+  for (size_t i = 0; i < o->exact.count && from.exact.plane != NULL; i++)
+    o->exact.plane[i][3] -= abbe_vector_dot(o->exact.plane[i], origin);
+  for (size_t i = 0; i < o->exact.count && from.exact.parallelogram != NULL; i++)
+    move(origin, o->exact.parallelogram[i]);
+  move(origin, o->exact.centre);
+  move(origin, o->min);
+  move(origin, o->max);
+  return true;
+}
+
+static bool needs_move(const abbe_scene *scene, double centre[3]) {
+  double min[3], max[3], half[3];
+  if (!abbe_scene_bounds(scene, true, false, min, max) &&
+      !abbe_scene_bounds(scene, true, true, min, max))
+    return false;
+  for (int k = 0; k < 3; k++) {
+    centre[k] = 0.5 * (min[k] + max[k]);
+    half[k] = 0.5 * (max[k] - min[k]);
+  }
+  return abbe_vector_length(centre) > most_radii * abbe_vector_length(half);
+}
+
+static abbe_result move_scene(const abbe_scene *scene, abbe_local_scene *out, abbe_error *error) {
+  abbe_scene *copy = &out->copy;
+  *copy = *scene;
+  copy->light = copy_of(scene->light, scene->light_count * sizeof *scene->light);
+  copy->object = calloc(scene->object_count + 1, sizeof *scene->object);
+  bool whole = copy->light != NULL && copy->object != NULL;
+  for (size_t i = 0; i < scene->object_count && whole; i++) {
+    copy->object[i] = scene->object[i];
+    whole = move_object(out->origin, &copy->object[i]);
+  }
+  if (!whole) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to move the scene");
+  for (size_t i = 0; i < scene->light_count; i++) move(out->origin, copy->light[i].position);
+  move(out->origin, copy->camera.eye);
+  move(out->origin, copy->camera.target);
+  return ABBE_OK;
+}
+
+abbe_result abbe_local_scene_make(const abbe_scene *scene, abbe_local_scene *out,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
+  double centre[3];
+  memset(out, 0, sizeof *out);
+  out->scene = scene;
+  out->unit = 1;
+  if (!needs_move(scene, centre)) return ABBE_OK;
+  out->moved = true;
+  memcpy(out->origin, centre, sizeof centre);
+  abbe_result result = move_scene(scene, out, error);
+  if (result != ABBE_OK) {
+    abbe_local_scene_free(out);
+    return result;
+  }
+  out->scene = &out->copy;
+  return ABBE_OK;
+}
+
+abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t *of, size_t count,
+                                           abbe_error *error) {
+  ABBE_REQUIRE(local && local->scene && (of || count == 0), error);
+  const abbe_scene *scene = local->scene;
+  const size_t own = scene->light_count;
+  abbe_light *light = calloc(own + count + 1, sizeof *light);
+  if (light == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for lights");
+  memcpy(light, scene->light, own * sizeof *light);
+  for (size_t i = 0; i < count; i++) light[own + i] = scene->light[of[i]];
+  if (local->moved || local->repeated)
+    free(local->copy.light);
+  else
+    local->copy = *scene;
+  local->copy.light = light;
+  local->copy.light_count = own + count;
+  local->repeated = true;
+  local->scene = &local->copy;
+  return ABBE_OK;
+}
+
+abbe_result abbe_local_scene_scale_light(abbe_local_scene *local, abbe_error *error) {
+  ABBE_REQUIRE(local && local->scene, error);
+  static const double faint = 0x1p-40, bright = 0x1p40;
+  double most = fmax(local->scene->ambient, local->scene->background);
+  for (size_t i = 0; i < local->scene->light_count; i++)
+    most = fmax(most, local->scene->light[i].power);
+  if (!(most > 0) || (most >= faint && most <= bright)) return ABBE_OK;
+  const abbe_result result = abbe_local_scene_repeat_lights(local, NULL, 0, error);
+  if (result != ABBE_OK) return result;
+  local->unit = ldexp(1, ilogb(most));
+  for (size_t i = 0; i < local->copy.light_count; i++) local->copy.light[i].power /= local->unit;
+  local->copy.ambient /= local->unit;
+  local->copy.background /= local->unit;
+  return ABBE_OK;
+}
+
+void abbe_local_scene_free(abbe_local_scene *local) {
+  if (local == NULL) return;
+  if (local->repeated && !local->moved) free(local->copy.light);
+  if (local->moved) {
+    for (size_t i = 0; local->copy.object != NULL && i < local->copy.object_count; i++) {
+      free(local->copy.object[i].mesh.position);
+      free(local->copy.object[i].exact.plane);
+      free(local->copy.object[i].exact.parallelogram);
+    }
+    free(local->copy.light);
+    free(local->copy.object);
+  }
+  memset(local, 0, sizeof *local);
+}
+
+void abbe_local_scene_from_world(const abbe_local_scene *local, abbe_view *view) {
+  move(local->origin, view->origin);
+}
+
+void abbe_local_scene_to_world(const abbe_local_scene *local, abbe_view *view) {
+  for (int k = 0; k < 3; k++) view->origin[k] += local->origin[k];
+}

@@ -1,0 +1,222 @@
+#include "gl/renderer_state.h"
+#include "gl/scene/hierarchy_nodes.h"
+#include "scenes/mesh/hierarchy.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What the shaders read of one triangle (hierarchy.glsl). Whole numbers stand as bits. */
+typedef struct gpu_triangle {
+  float corner[4], edge[2][4];
+} gpu_triangle;
+
+typedef struct gpu_corners {
+  float normal[3][4], v_part[4];
+} gpu_corners;
+
+typedef struct forest {
+  uint32_t (*texel)[4]; /* hierarchy_nodes.h */
+  gpu_triangle *triangle;
+  gpu_corners *corners;
+  size_t texel_count, triangle_count;
+} forest;
+
+static void store(const double v[3], float w, float out[4]) {
+  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
+  out[3] = w;
+}
+
+static bool make_room(forest *f, size_t texels, size_t triangles) {
+  void *texel = realloc(f->texel, (f->texel_count + texels) * sizeof *f->texel);
+  if (texel != NULL) f->texel = texel;
+  void *triangle = realloc(f->triangle, (f->triangle_count + triangles) * sizeof *f->triangle);
+  if (triangle != NULL) f->triangle = triangle;
+  void *corners = realloc(f->corners, (f->triangle_count + triangles) * sizeof *f->corners);
+  if (corners != NULL) f->corners = corners;
+  return texel != NULL && triangle != NULL && corners != NULL;
+}
+
+/* One tree's triangles: meshes one after another, their faces and smooth parts numbered through. */
+typedef struct grove {
+  const abbe_mesh **mesh;
+  uint32_t *surface, *face_first; /* of each mesh; face_first has one more */
+  const int32_t **side;           /* of each mesh's faces (receiver_charts.h), or NULL */
+  size_t mesh_count;
+  uint32_t *owner, *part; /* of each face: its mesh, and which part */
+} grove;
+
+static void store_bits(uint32_t bits, float *out) {
+  memcpy(out, &bits, sizeof bits);
+}
+
+static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_corners *c) {
+  const uint32_t m = g->owner[face];
+  const abbe_mesh *mesh = g->mesh[m];
+  const uint32_t *f = mesh->face[face - g->face_first[m]];
+  const double *a = mesh->position[f[0]];
+  store(a, 0, t->corner);
+  for (int e = 0; e < 2; e++) {
+    double edge[3];
+    for (int k = 0; k < 3; k++) edge[k] = mesh->position[f[e + 1]][k] - a[k];
+    store(edge, 0, t->edge[e]);
+  }
+  store_bits(g->part[face], &t->corner[3]);
+  store_bits(g->surface[m], &t->edge[0][3]);
+  if (g->side[m] != NULL)
+    store_bits((uint32_t)g->side[m][face - g->face_first[m]] / 2, &t->edge[1][3]);
+  memset(c->v_part, 0, sizeof c->v_part);
+  for (int k = 0; k < 3; k++) {
+    store(mesh->normal[f[k]], mesh->uv != NULL ? (float)mesh->uv[f[k]][0] : 0, c->normal[k]);
+    if (mesh->uv != NULL) c->v_part[k] = (float)mesh->uv[f[k]][1];
+  }
+}
+
+/* The tree behind the others; its root's texel. */
+static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_hierarchy *h,
+                         forest *f, size_t *root, abbe_error *error) {
+  const size_t texels = abbe_hierarchy_nodes_count(h);
+  if (!make_room(f, texels, h->triangle_count))
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
+  *root = f->texel_count;
+  abbe_hierarchy_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
+                            f->texel + f->texel_count);
+  for (size_t i = 0; i < h->triangle_count; i++)
+    store_triangle(g, h->triangle[i], &f->triangle[f->triangle_count + i],
+                   &f->corners[f->triangle_count + i]);
+  f->texel_count += texels;
+  f->triangle_count += h->triangle_count;
+  return ABBE_OK;
+}
+
+/* Corners and parts of all meshes; false: no memory. */
+static bool gather(grove *g, double (*triangle)[9]) {
+  size_t parts = 0;
+  for (size_t m = 0; m < g->mesh_count; m++) {
+    const size_t first = g->face_first[m], count = g->mesh[m]->face_count;
+    double(*corners)[9] = abbe_hierarchy_triangles(g->mesh[m]);
+    const size_t own = abbe_hierarchy_parts(g->mesh[m], g->part + first);
+    if (corners != NULL) memcpy(triangle + first, corners, count * sizeof *triangle);
+    free(corners);
+    if (corners == NULL || own == 0) return false;
+    for (size_t i = 0; i < count; i++) {
+      g->part[first + i] += (uint32_t)parts;
+      g->owner[first + i] = (uint32_t)m;
+    }
+    parts += own;
+  }
+  return true;
+}
+
+static abbe_result grow(abbe_renderer *r, grove *g, forest *f, size_t *root, abbe_error *error) {
+  const size_t faces = g->face_first[g->mesh_count];
+  abbe_hierarchy h = {0};
+  double(*triangle)[9] = calloc(faces + 1, sizeof *triangle);
+  g->part = calloc(faces + 1, sizeof *g->part);
+  g->owner = calloc(faces + 1, sizeof *g->owner);
+  abbe_result result =
+      triangle == NULL || g->part == NULL || g->owner == NULL || !gather(g, triangle)
+          ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
+          : abbe_hierarchy_make((const double(*)[9])triangle, faces, &h, error);
+  if (result == ABBE_OK) result = plant(g, (const double(*)[9])triangle, &h, f, root, error);
+  if (h.depth > r->hierarchy_depth) r->hierarchy_depth = h.depth;
+  abbe_hierarchy_free(&h);
+  free(triangle);
+  free(g->part);
+  free(g->owner);
+  return result;
+}
+
+/* Shaders have a leaf's first triangle and how many there are, below eight, in one number. */
+enum { MOST_TRIANGLES = INT32_MAX / 8 };
+
+static abbe_result add_mesh(grove *g, const forest *f, const abbe_mesh *mesh, size_t surface,
+                            const int32_t *side, abbe_error *error) {
+  const size_t first = g->face_first[g->mesh_count];
+  if (f->triangle_count + first + mesh->face_count > MOST_TRIANGLES)
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than %d triangles",
+                          MOST_TRIANGLES);
+  g->mesh[g->mesh_count] = mesh;
+  g->side[g->mesh_count] = side;
+  g->surface[g->mesh_count++] = (uint32_t)surface;
+  g->face_first[g->mesh_count] = (uint32_t)(first + mesh->face_count);
+  return ABBE_OK;
+}
+
+/* A buffer that the shaders read as a texture of vec4. */
+static abbe_result upload_texels(abbe_renderer *r, int which, GLenum format, size_t size,
+                                 const void *data, abbe_error *error) {
+  GLint most = 0;
+  r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (size / 16 > (size_t)most)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the meshes that light is traced through take %zu texels in a buffer; "
+                          "this OpenGL reads at most %d: use smaller meshes, or "
+                          "the model 'layers' for those that refract",
+                          size / 16, most);
+  return abbe_renderer_make_texels(r, format, size, data, HIERARCHY_UNIT + which,
+                                   &r->hierarchy[which], &r->hierarchy_texture[which], error);
+}
+
+static abbe_result upload(abbe_renderer *r, const forest *f, abbe_error *error) {
+  abbe_result result =
+      upload_texels(r, 0, GL_RGBA32UI, f->texel_count * sizeof *f->texel, f->texel, error);
+  if (result == ABBE_OK)
+    result = upload_texels(r, 1, GL_RGBA32F, f->triangle_count * sizeof *f->triangle, f->triangle,
+                           error);
+  if (result == ABBE_OK)
+    result =
+        upload_texels(r, 2, GL_RGBA32F, f->triangle_count * sizeof *f->corners, f->corners, error);
+  return result;
+}
+
+/* A tree for each mesh that refracts. */
+static abbe_result grow_refractors(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < r->plan.refractor_count && result == ABBE_OK; i++) {
+    if (r->plan.model[i] != ABBE_REFRACTOR_HIERARCHY) continue;
+    g->mesh_count = 0;
+    result = add_mesh(g, f, &r->scene->object[r->plan.refractor_object[i]].mesh, 0, NULL, error);
+    if (result == ABBE_OK) result = grow(r, g, f, &r->refractor_root[i], error);
+  }
+  return result;
+}
+
+/* One tree for all receivers that are traversed. */
+static abbe_result grow_receivers(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  g->mesh_count = 0;
+  for (size_t i = 0; i < r->plan.receiver_count && result == ABBE_OK; i++) {
+    const abbe_mesh *mesh = &r->scene->object[r->plan.receiver_object[i]].mesh;
+    const int32_t *side =
+        r->charts.face_side != NULL ? r->charts.face_side + r->charts.face_first[i] : NULL;
+    if (r->plan.receiver_model[i] == ABBE_RECEIVER_HIERARCHY)
+      result = add_mesh(g, f, mesh, i, side, error);
+  }
+  return result == ABBE_OK ? grow(r, g, f, &r->receiver_root, error) : result;
+}
+
+abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error) {
+  const size_t most = r->scene->object_count + 1;
+  forest f = {0};
+  if (!r->plan.hierarchy && r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  r->refractor_root = calloc(most, sizeof *r->refractor_root);
+  grove g = {.mesh = calloc(most, sizeof *g.mesh),
+             .surface = calloc(most, sizeof *g.surface),
+             .side = calloc(most, sizeof *g.side),
+             .face_first = calloc(most, sizeof *g.face_first)};
+  abbe_result result = r->refractor_root == NULL || g.mesh == NULL || g.surface == NULL ||
+                               g.side == NULL || g.face_first == NULL
+                           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
+                           : grow_refractors(r, &g, &f, error);
+  if (result == ABBE_OK) result = grow_receivers(r, &g, &f, error);
+  if (result == ABBE_OK) result = upload(r, &f, error);
+  free(g.mesh);
+  free(g.surface);
+  free(g.side);
+  free(g.face_first);
+  free(f.texel);
+  free(f.triangle);
+  free(f.corners);
+  return result;
+}

@@ -1,0 +1,66 @@
+/* vector.h: three-component vectors in double precision, for the geometry of the scenes.
+ *
+ * Small inline functions over double[3]; it has no matrices (transform.h) and no physics.
+ */
+#ifndef ABBE_SCENES_GEOMETRY_VECTOR_H
+#define ABBE_SCENES_GEOMETRY_VECTOR_H
+
+#include <math.h>
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+static inline double abbe_vector_dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline double abbe_vector_length(const double a[3]) {
+  return sqrt(abbe_vector_dot(a, a));
+}
+
+/* out = a - b; out may be a or b. */
+static inline void abbe_vector_subtract(const double a[3], const double b[3], double out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
+}
+
+/* out = a x b; out is neither a nor b. */
+static inline void abbe_vector_cross(const double a[3], const double b[3], double out[3]) {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Scales a to length 1; false, a untouched, where its length is zero or not finite. */
+static inline bool abbe_vector_normalise(double a[3]) {
+  const double length = abbe_vector_length(a), whole = 1e-140; /* below, squares lose digits */
+  if (!(length > 0.0) || !isfinite(length)) return false;
+  if (length < whole) {
+    const double most = fmax(fmax(fabs(a[0]), fabs(a[1])), fabs(a[2]));
+    double b[3];
+    for (int k = 0; k < 3; k++) b[k] = a[k] / most;
+    for (int k = 0; k < 3; k++) a[k] = b[k] / abbe_vector_length(b);
+    return true;
+  }
+  for (int k = 0; k < 3; k++) a[k] /= length;
+  return true;
+}
+
+static inline bool abbe_vector_finite(const double a[3]) {
+  return isfinite(a[0]) && isfinite(a[1]) && isfinite(a[2]);
+}
+
+/* (b - a) x (c - a): twice the triangle's area along its normal. */
+static inline void abbe_vector_triangle(const double a[3], const double b[3], const double c[3],
+                                        double out[3]) {
+  double u[3], v[3];
+  abbe_vector_subtract(b, a, u);
+  abbe_vector_subtract(c, a, v);
+  abbe_vector_cross(u, v, out);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,297 @@
+#include "scenes/import/object_surface.h"
+
+#include "base/number.h"
+#include "scenes/geometry/transform.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/mesh/topology.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the place ---- */
+
+/* The matrix scales all directions alike: by *scale. */
+static bool is_similarity(const double m[16], double *scale) {
+  double length[3];
+  for (int i = 0; i < 3; i++) length[i] = abbe_vector_length(m + 4 * i);
+  *scale = length[0];
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3;
+    if (fabs(length[i] - length[0]) > 1e-9 * length[0] ||
+        fabs(abbe_vector_dot(m + 4 * i, m + 4 * j)) > 1e-9 * length[0] * length[0])
+      return false;
+  }
+  return true;
+}
+
+static void bound_vertices(const abbe_mesh *mesh, const double matrix[16], double min[3],
+                           double max[3]) {
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    double p[3];
+    abbe_transform_point(matrix, mesh->position[v], p);
+    for (int k = 0; k < 3; k++) {
+      min[k] = fmin(min[k], p[k]);
+      max[k] = fmax(max[k], p[k]);
+    }
+  }
+}
+
+/* The matrix with the size and the place that are asked for of all parts together. */
+static abbe_result fit_matrix(const abbe_object_surface *s, const abbe_object *part, size_t count,
+                              double out[16], abbe_error *error) {
+  double min[3], max[3], step[16], scale;
+  memcpy(out, s->matrix, 16 * sizeof *out);
+  if (s->fit == 0 && !s->centred) return ABBE_OK;
+  for (int k = 0; k < 3; k++) min[k] = INFINITY, max[k] = -INFINITY;
+  for (size_t i = 0; i < count; i++) bound_vertices(&part[i].mesh, out, min, max);
+  if (s->radius > 0 && is_similarity(out, &scale))
+    for (int k = 0; k < 3; k++) {
+      min[k] = out[12 + k] - scale * s->radius;
+      max[k] = out[12 + k] + scale * s->radius;
+    }
+  const double longest = fmax(fmax(max[0] - min[0], max[1] - min[1]), max[2] - min[2]);
+  if (s->fit > 0) {
+    if (!(longest > 0) || !isfinite(longest))
+      return abbe_error_set(error, ABBE_GEOMETRY, "an object of no size cannot be fitted to one");
+    const double factor = s->fit / longest, factors[3] = {factor, factor, factor};
+    abbe_transform_scale(factors, step);
+    abbe_transform_multiply(step, out, out);
+    for (int k = 0; k < 3; k++) min[k] *= factor, max[k] *= factor;
+  }
+  if (s->centred) {
+    double offset[3];
+    for (int k = 0; k < 3; k++) offset[k] = s->centre[k] - 0.5 * (min[k] + max[k]);
+    abbe_transform_translate(offset, step);
+    abbe_transform_multiply(step, out, out);
+  }
+  return ABBE_OK;
+}
+
+/* ---- what is known exactly ---- */
+
+static abbe_result parallelograms(abbe_object *out, abbe_error *error) {
+  const size_t count = out->mesh.vertex_count / 4;
+  out->exact.parallelogram = malloc(count * sizeof *out->exact.parallelogram);
+  if (!out->exact.parallelogram) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  for (size_t i = 0; i < count; i++) {
+    const double *corner = out->mesh.position[4 * i];
+    double edge[2][3], normal[3];
+    abbe_vector_subtract(out->mesh.position[4 * i + 1], corner, edge[0]);
+    abbe_vector_subtract(out->mesh.position[4 * i + 3], corner, edge[1]);
+    abbe_vector_cross(edge[0], edge[1], normal);
+    const int mirrored = abbe_vector_dot(normal, out->mesh.normal[4 * i]) < 0.0;
+    double *p = out->exact.parallelogram[i];
+    memcpy(p, corner, 3 * sizeof *p);
+    memcpy(p + 3, edge[mirrored], 3 * sizeof *p);
+    memcpy(p + 6, edge[!mirrored], 3 * sizeof *p);
+  }
+  out->exact.count = count;
+  out->exact.kind = ABBE_EXACT_PARALLELOGRAMS;
+  return ABBE_OK;
+}
+
+/* Triangles of one plane have its normal, whatever their own is: so thin ones bend no light. */
+static abbe_result take_plane_normals(abbe_mesh *mesh, const double (*plane)[4],
+                                      const uint32_t *plane_of, abbe_error *error) {
+  const abbe_result result = abbe_mesh_compute_normals(mesh, ABBE_NORMALS_FLAT, error);
+  for (size_t c = 0; result == ABBE_OK && c < 3 * mesh->face_count; c++)
+    memcpy(mesh->normal[mesh->face[c / 3][c % 3]], plane[plane_of[c / 3]], sizeof *mesh->normal);
+  return result;
+}
+
+static abbe_result convex(abbe_object *out, abbe_error *error) {
+  const double alike = 1e-9; /* rad */
+  double(*plane)[4] = malloc(ABBE_SCENE_MAX_PLANES * sizeof *plane);
+  uint32_t *plane_of = malloc((out->mesh.face_count + 1) * sizeof *plane_of);
+  abbe_result result = plane && plane_of
+                           ? abbe_convex_find(&out->mesh, ABBE_SCENE_MAX_PLANES, plane, plane_of,
+                                              &out->exact.convex, error)
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
+  const bool found = result == ABBE_OK && out->exact.convex.verdict == ABBE_CONVEX_SOLID;
+  if (found && out->exact.convex.off > alike)
+    result = take_plane_normals(&out->mesh, (const double(*)[4])plane, plane_of, error);
+  if (found) {
+    out->exact.kind = ABBE_EXACT_CONVEX;
+    out->exact.count = out->exact.convex.planes;
+    out->exact.plane = plane;
+  } else {
+    free(plane);
+  }
+  free(plane_of);
+  return result;
+}
+
+static abbe_result find_exact(const abbe_object_surface *s, const double matrix[16],
+                              abbe_object *out, abbe_error *error) {
+  double scale;
+  if (s->radius > 0 && is_similarity(matrix, &scale)) {
+    out->exact.kind = ABBE_EXACT_SPHERE;
+    memcpy(out->exact.centre, matrix + 12, sizeof out->exact.centre);
+    out->exact.radius = scale * s->radius;
+    return ABBE_OK;
+  }
+  if (out->material) return convex(out, error);
+  return s->rectangles ? parallelograms(out, error) : ABBE_OK;
+}
+
+static void find_bounds(abbe_object *out) {
+  for (int k = 0; k < 3; k++) {
+    out->min[k] = INFINITY;
+    out->max[k] = -INFINITY;
+    for (size_t v = 0; v < out->mesh.vertex_count; v++) {
+      out->min[k] = fmin(out->min[k], out->mesh.position[v][k]);
+      out->max[k] = fmax(out->max[k], out->mesh.position[v][k]);
+    }
+    if (out->exact.kind != ABBE_EXACT_SPHERE) continue;
+    out->min[k] = out->exact.centre[k] - out->exact.radius;
+    out->max[k] = out->exact.centre[k] + out->exact.radius;
+  }
+}
+
+/* ---- one object, or several ---- */
+
+static abbe_result has_crease(const abbe_mesh *mesh, bool *creased, abbe_error *error) {
+  const double least = cos(ABBE_MESH_CREASE_RAD);
+  abbe_topology t;
+  const abbe_result result = abbe_topology_make(mesh, &t, error);
+  *creased = false;
+  if (result != ABBE_OK) return result;
+  for (size_t i = 0; i < t.edge_count && !*creased; i++) {
+    double n[2][3];
+    const uint32_t *pair = t.edge[i].face;
+    for (int k = 0; k < 2 && pair[1] != ABBE_TOPOLOGY_NONE; k++)
+      abbe_vector_triangle(t.position[t.face[pair[k]][0]], t.position[t.face[pair[k]][1]],
+                           t.position[t.face[pair[k]][2]], n[k]);
+    if (pair[1] != ABBE_TOPOLOGY_NONE && abbe_vector_normalise(n[0]) && abbe_vector_normalise(n[1]))
+      *creased = abbe_vector_dot(n[0], n[1]) < least;
+  }
+  abbe_topology_free(&t);
+  return ABBE_OK;
+}
+
+/* A file without normals does not say whether its solid is cut or rounded, and a stone's facets
+ * meet at small angles too. A convex solid of a few planes that has an edge as sharp as a crease is
+ * cut. */
+static abbe_result choose_facets(abbe_mesh *mesh, abbe_error *error) {
+  double(*plane)[4] = malloc(ABBE_SCENE_MAX_PLANES * sizeof *plane);
+  abbe_convex found = {0};
+  bool creased = false;
+  abbe_result result =
+      plane ? abbe_convex_find(mesh, ABBE_SCENE_MAX_PLANES, plane, NULL, &found, error)
+            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
+  if (result == ABBE_OK && found.verdict == ABBE_CONVEX_ROUNDED)
+    result = has_crease(mesh, &creased, error);
+  if (creased) result = abbe_mesh_compute_normals(mesh, ABBE_NORMALS_FLAT, error);
+  free(plane);
+  return result;
+}
+
+static abbe_result add_note(abbe_object *out, const char *text, abbe_error *error) {
+  const size_t size = (out->mended ? strlen(out->mended) : 0) + strlen(text) + 3;
+  char *all = malloc(size);
+  if (!all) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a sentence");
+  snprintf(all, size, "%s%s%s", out->mended ? out->mended : "", out->mended ? "; " : "", text);
+  free(out->mended);
+  out->mended = all;
+  return ABBE_OK;
+}
+
+static abbe_result note_parts(abbe_object *out, size_t parts, abbe_error *error) {
+  char text[96];
+  snprintf(text, sizeof text,
+           "parts of the mesh cross, and are followed as %zu solids that overlap", parts);
+  return add_note(out, text, error);
+}
+
+/* Part i of an object, as an object of its own. */
+static abbe_result make_part(const abbe_object *whole, size_t i, size_t count, abbe_mesh *mesh,
+                             abbe_object *out, abbe_error *error) {
+  const size_t size = strlen(whole->name) + 64;
+  out->mesh = *mesh;
+  memset(mesh, 0, sizeof *mesh);
+  out->material = whole->material;
+  out->line = whole->line;
+  out->name = malloc(size);
+  if (!out->name) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
+  snprintf(out->name, size, "%s (part %zu of %zu)", whole->name, i + 1, count);
+  return ABBE_OK;
+}
+
+/* A refractor's mesh, closed; where shells cross, as several solids. */
+static abbe_result solidify(const abbe_object_surface *s, abbe_object *out, size_t room,
+                            size_t *count, abbe_error *error) {
+  abbe_mesh *part = NULL;
+  size_t parts = 1;
+  abbe_result result =
+      abbe_mesh_mend(&out->mesh, s->normals, s->repair, &parts, &out->mended, error);
+  if (result == ABBE_OK && parts > 1) result = abbe_mesh_split(&out->mesh, &part, &parts, error);
+  if (result != ABBE_OK || parts < 2) return result;
+  if (parts > room)
+    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%zu parts of the mesh cross, and the scene has room for %zu objects "
+                            "more, of %d",
+                            parts, room, ABBE_SCENE_MAX_OBJECTS);
+  if (result == ABBE_OK) {
+    abbe_mesh_free(&out->mesh);
+    out->mesh = part[0];
+    memset(&part[0], 0, sizeof part[0]);
+  }
+  for (size_t i = 1; i < parts && result == ABBE_OK; i++) {
+    *count = i + 1;
+    result = make_part(out, i, parts, &part[i], &out[i], error);
+  }
+  for (size_t i = 0; i < parts; i++) abbe_mesh_free(&part[i]);
+  free(part);
+  return result == ABBE_OK ? note_parts(out, parts, error) : result;
+}
+
+/* Makes one part the convex solid of few planes that it nearly is, and says so. */
+static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_error *error) {
+  double moved = 0;
+  char text[128];
+  abbe_result result =
+      abbe_convex_flatten(&out->mesh, s->flatten, ABBE_SCENE_MAX_PLANES, &moved, error);
+  if (result == ABBE_OK)
+    result = abbe_mesh_mend(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
+  if (result != ABBE_OK) return result;
+  abbe_number_format(
+      text, sizeof text,
+      "made a convex solid of planes, of which its corners lie up to %.2g %% of its size off",
+      100 * moved);
+  return add_note(out, text, error);
+}
+
+/* Whether it is cut or rounded. */
+static abbe_result shape_one(const abbe_object_surface *s, abbe_object *out, abbe_error *error) {
+  if (!out->material) return ABBE_OK;
+  if (s->flatten > 0) return flatten(s, out, error);
+  return s->file && s->normals == ABBE_NORMALS_AUTO && !out->mesh.given_normals
+             ? choose_facets(&out->mesh, error)
+             : ABBE_OK;
+}
+
+static abbe_result place_one(const abbe_object_surface *s, const double matrix[16],
+                             abbe_object *out, abbe_error *error) {
+  abbe_result result = abbe_mesh_transform(&out->mesh, matrix, error);
+  if (result == ABBE_OK) result = find_exact(s, matrix, out, error);
+  if (result == ABBE_OK) find_bounds(out);
+  if (result == ABBE_OK && !(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))
+    result = abbe_error_set(error, ABBE_GEOMETRY, "the placed object has no finite size");
+  return result;
+}
+
+abbe_result abbe_object_place(const abbe_object_surface *s, abbe_object *out, size_t room,
+                              size_t *count, abbe_error *error) {
+  ABBE_REQUIRE(s && out && count, error);
+  double matrix[16];
+  *count = 1;
+  abbe_result result = out->material ? solidify(s, out, room, count, error) : ABBE_OK;
+  for (size_t i = 0; i < *count && result == ABBE_OK; i++) result = shape_one(s, &out[i], error);
+  /* what was dropped has no part in its size */
+  if (result == ABBE_OK) result = fit_matrix(s, out, *count, matrix, error);
+  for (size_t i = 0; i < *count && result == ABBE_OK; i++)
+    result = place_one(s, matrix, &out[i], error);
+  return result;
+}

@@ -1,0 +1,387 @@
+#include "scenes/import/scene_file.h"
+
+#include "base/yaml/yaml.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/import/object_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define RADIANS (3.14159265358979323846 / 180.0)
+#define FAR 1e6       /* m */
+#define BRIGHTEST 1e9 /* W/sr, W/m2, W/(m2 sr) */
+#define FAINTEST 1e-30
+
+/* --- camera --- */
+
+static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera *out,
+                               abbe_error *error) {
+  abbe_yaml_node node;
+  double fov = 45.0, size[2] = {512, 512}, view[3], side[3];
+  memcpy(out->up, (const double[3]){0.0, 0.0, 1.0}, sizeof out->up);
+  abbe_result result = abbe_yaml_require(yaml, root, "camera", &node, error);
+  if (result == ABBE_OK) result = abbe_object_need_point(yaml, node, "eye", out->eye, error);
+  if (result == ABBE_OK) result = abbe_object_need_point(yaml, node, "target", out->target, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_numbers(yaml, node, "up", 3, -FAR, FAR, out->up, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error);
+  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "the camera", error);
+  if (result != ABBE_OK) return result;
+  out->fov_y_rad = fov * RADIANS;
+  out->width = (size_t)size[0];
+  out->height = (size_t)size[1];
+  if ((double)out->width != size[0] || (double)out->height != size[1])
+    return abbe_yaml_fail(yaml, node, error, "'size' wants two whole numbers of pixels");
+  abbe_vector_subtract(out->target, out->eye, view);
+  if (!(abbe_vector_length(view) > 0.0))
+    return abbe_yaml_fail(yaml, node, error, "the camera's 'eye' and 'target' are the same point");
+  abbe_vector_cross(view, out->up, side);
+  if (!(abbe_vector_length(side) > 1e-9 * abbe_vector_length(view) * abbe_vector_length(out->up)))
+    return abbe_yaml_fail(yaml, node, error,
+                          "the camera's 'up' points along its view (or is zero); any other "
+                          "direction will do");
+  return ABBE_OK;
+}
+
+/* --- lights --- */
+
+static const char *const light_kinds[] = {"point", "spot", "directional", "disk", NULL};
+
+/* The key belongs to other kinds of light. */
+static abbe_result refuse_key(abbe_yaml *yaml, abbe_yaml_node node, const char *key, int kind,
+                              const char *instead, abbe_error *error) {
+  const abbe_yaml_node found = abbe_yaml_get(yaml, node, key);
+  if (found.id == 0) return ABBE_OK;
+  return abbe_yaml_fail(yaml, found, error, "a %s light has no '%s'; %s", light_kinds[kind], key,
+                        instead);
+}
+
+static abbe_result read_direction(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                                  abbe_error *error) {
+  const abbe_yaml_node direction = abbe_yaml_get(yaml, node, "direction");
+  const abbe_yaml_node target = abbe_yaml_get(yaml, node, "target");
+  if ((direction.id != 0) == (target.id != 0))
+    return abbe_yaml_fail(yaml, node, error,
+                          "a %s light has either a 'direction' (the way the light travels) or a "
+                          "'target' point; this one has %s",
+                          light_kinds[out->kind], direction.id ? "both" : "neither");
+  abbe_result result = ABBE_OK;
+  if (direction.id) {
+    result = abbe_object_need_point(yaml, node, "direction", out->direction, error);
+  } else {
+    if (out->kind == ABBE_LIGHT_DIRECTIONAL)
+      result = abbe_object_need_point(yaml, node, "position", out->position, error);
+    if (result == ABBE_OK)
+      result = abbe_object_need_point(yaml, node, "target", out->direction, error);
+    abbe_vector_subtract(out->direction, out->position, out->direction);
+  }
+  if (result == ABBE_OK && !abbe_vector_normalise(out->direction))
+    result = abbe_yaml_fail(yaml, direction.id ? direction : target, error,
+                            "the light's direction is zero; it must point somewhere");
+  return result;
+}
+
+static abbe_result read_cone(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                             abbe_error *error) {
+  double cone = 0.0, soft = 0.0;
+  abbe_yaml_node ignored;
+  abbe_result result = abbe_yaml_require(yaml, node, "cone", &ignored, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "cone", 0.001, 85, &cone, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "soft", 0, cone, &soft, error);
+  out->cone_rad = cone * RADIANS;
+  out->soft_rad = soft * RADIANS;
+  return result;
+}
+
+static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                               abbe_error *error) {
+  abbe_yaml_node value;
+  abbe_result result = abbe_yaml_require(yaml, node, "radius", &value, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, "radius", 0, FAR, &out->radius, error);
+  if (result == ABBE_OK && !(out->radius > 0.0))
+    result =
+        abbe_yaml_fail(yaml, value, error,
+                       "'radius' is zero; a disk has an area (a light without one is a point)");
+  return result;
+}
+
+static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                                       abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (out->kind != ABBE_LIGHT_DIRECTIONAL)
+    result = abbe_object_need_point(yaml, node, "position", out->position, error);
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_POINT) {
+    result = refuse_key(yaml, node, "direction", 0, "it shines in every direction", error);
+    if (result == ABBE_OK)
+      result = refuse_key(yaml, node, "target", 0, "it shines in every direction", error);
+  } else if (result == ABBE_OK) {
+    result = read_direction(yaml, node, out, error);
+  }
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_DISK)
+    result = read_radius(yaml, node, out, error);
+  else if (result == ABBE_OK)
+    result = refuse_key(yaml, node, "radius", (int)out->kind, "a disk light has", error);
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_SPOT) return read_cone(yaml, node, out, error);
+  if (result == ABBE_OK)
+    result = refuse_key(yaml, node, "cone", (int)out->kind, "a spot light has", error);
+  if (result == ABBE_OK)
+    result = refuse_key(yaml, node, "soft", (int)out->kind, "a spot light has", error);
+  return result;
+}
+
+/* What each kind of light is bright in. */
+static const struct {
+  const char *key, *said;
+} powers[] = {[ABBE_LIGHT_POINT] = {"intensity", "it has an 'intensity' (W/sr)"},
+              [ABBE_LIGHT_SPOT] = {"intensity", "it has an 'intensity' (W/sr)"},
+              [ABBE_LIGHT_DIRECTIONAL] = {"irradiance", "it has an 'irradiance' (W/m2)"},
+              [ABBE_LIGHT_DISK] = {"radiance", "it has a 'radiance' (W/(m2 sr))"}};
+
+static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                              abbe_error *error) {
+  const char *key = powers[out->kind].key;
+  abbe_yaml_node value;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof powers / sizeof *powers && result == ABBE_OK; i++)
+    if (strcmp(powers[i].key, key) != 0)
+      result = refuse_key(yaml, node, powers[i].key, (int)out->kind, powers[out->kind].said, error);
+  if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, key, &value, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, key, 0, BRIGHTEST, &out->power, error);
+  if (result == ABBE_OK && !(out->power > 0.0))
+    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a light must shine", key);
+  if (result == ABBE_OK && out->power < FAINTEST)
+    result =
+        abbe_yaml_fail(yaml, value, error,
+                       "'%s: %g' is too faint: pictures and maps are kept in single precision, "
+                       "which takes %g and more",
+                       key, out->power, FAINTEST);
+  return result;
+}
+
+static bool is_standard(const char *name) {
+  static const char *const standard[] = {"D65", "d65", "D50", "d50", "A", "a", "E", "e"};
+  for (size_t i = 0; i < sizeof standard / sizeof *standard; i++)
+    if (strcmp(name, standard[i]) == 0) return true;
+  return false;
+}
+
+static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                                   abbe_light *out, abbe_error *error) {
+  char *name = NULL, *path = NULL;
+  abbe_result result = abbe_yaml_get_string(yaml, node, "illuminant", &name, error);
+  if (result == ABBE_OK && name) {
+    path = abbe_object_path(is_standard(name) ? "" : folder, name);
+    result = path ? abbe_illuminant_make(path, &out->illuminant, error)
+                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+    if (result == ABBE_IO) {
+      char sentence[512];
+      snprintf(sentence, sizeof sentence, "%.500s", error ? error->text : "");
+      abbe_error_set(error, result,
+                     "the illuminant '%.60s' is neither D65, D50, A or E nor a file that can be "
+                     "read: %s",
+                     name, sentence);
+    }
+    if (result != ABBE_OK)
+      abbe_object_locate(yaml, abbe_yaml_get(yaml, node, "illuminant"), result, error);
+    if (result == ABBE_OK && out->illuminant.kind == ABBE_ILLUMINANT_TABULATED) {
+      out->illuminant_path = path;
+      path = NULL;
+    }
+  }
+  free(path);
+  free(name);
+  return result;
+}
+
+static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                              abbe_light *out, abbe_error *error) {
+  int kind = 0;
+  abbe_yaml_node ignored;
+  abbe_result result = abbe_yaml_require(yaml, node, "kind", &ignored, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_choice(yaml, node, "kind", light_kinds, &kind, error);
+  out->kind = (abbe_light_kind)kind;
+  if (result == ABBE_OK) result = abbe_yaml_get_name(yaml, node, "name", &out->name, error);
+  if (result == ABBE_OK && !out->name) {
+    char name[64];
+    snprintf(name, sizeof name, "light on line %zu", abbe_yaml_line(yaml, node));
+    out->name = strdup(name);
+    if (!out->name) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
+  }
+  if (result == ABBE_OK) result = read_shape_of_light(yaml, node, out, error);
+  if (result == ABBE_OK) result = read_power(yaml, node, out, error);
+  if (result == ABBE_OK) result = read_illuminant(yaml, node, folder, out, error);
+  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a light", error);
+  return result;
+}
+
+/* --- lists --- */
+
+/* The list under key, of at most `most` entries; an absent one has none. */
+static abbe_result read_list(abbe_yaml *yaml, abbe_yaml_node root, const char *key, size_t most,
+                             abbe_yaml_node *list, size_t *count, abbe_error *error) {
+  *list = abbe_yaml_get(yaml, root, key);
+  *count = abbe_yaml_count(yaml, *list);
+  if (list->id != 0 && !abbe_yaml_is_sequence(yaml, *list))
+    return abbe_yaml_fail(yaml, *list, error, "'%s' wants a list", key);
+  if (*count > most)
+    return abbe_yaml_fail(yaml, *list, error, "'%s' has %zu entries; at most %zu are possible", key,
+                          *count, most);
+  return ABBE_OK;
+}
+
+static abbe_result read_lights(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
+                               abbe_scene *out, abbe_error *error) {
+  abbe_yaml_node list;
+  size_t count;
+  abbe_result result = read_list(yaml, root, "lights", ABBE_SCENE_MAX_LIGHTS, &list, &count, error);
+  if (result != ABBE_OK || count == 0) return result;
+  out->light = calloc(count, sizeof *out->light);
+  if (!out->light) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu lights", count);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    out->light_count = i + 1;
+    result = read_light(yaml, abbe_yaml_item(yaml, list, i), folder, &out->light[i], error);
+  }
+  return result;
+}
+
+static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
+                                abbe_scene *out, abbe_error *error) {
+  abbe_yaml_node list;
+  size_t count, faces = 0;
+  abbe_result result =
+      read_list(yaml, root, "objects", ABBE_SCENE_MAX_OBJECTS, &list, &count, error);
+  if (result != ABBE_OK || count == 0) return result;
+  out->object = calloc(ABBE_SCENE_MAX_OBJECTS, sizeof *out->object);
+  if (!out->object)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu objects", count);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    const abbe_yaml_node item = abbe_yaml_item(yaml, list, i);
+    /* one for each entry that is to come stays free */
+    const size_t first = out->object_count, room = ABBE_SCENE_MAX_OBJECTS - first - (count - 1 - i);
+    size_t made = 0;
+    result =
+        abbe_object_read(yaml, item, folder, &out->table, &out->object[first], room, &made, error);
+    out->object_count += made;
+    for (size_t k = first; k < out->object_count; k++) faces += out->object[k].mesh.face_count;
+    if (result == ABBE_OK && faces > ABBE_MESH_MAX_FACES)
+      result = abbe_yaml_fail(yaml, item, error,
+                              "with this object the scene has %zu faces; at most %u are possible",
+                              faces, ABBE_MESH_MAX_FACES);
+  }
+  return result;
+}
+
+/* --- the scene --- */
+
+/* The materials that the objects name, so that of a store of many no others are read. */
+static size_t names_in(abbe_yaml *yaml, abbe_yaml_node root,
+                       const char *names[ABBE_SCENE_MAX_OBJECTS]) {
+  const abbe_yaml_node list = abbe_yaml_get(yaml, root, "objects");
+  const size_t count = abbe_yaml_is_sequence(yaml, list) ? abbe_yaml_count(yaml, list) : 0;
+  size_t found = 0;
+  for (size_t i = 0; i < count && found < ABBE_SCENE_MAX_OBJECTS; i++) {
+    const abbe_yaml_node object = abbe_yaml_item(yaml, list, i);
+    if (!abbe_yaml_is_mapping(yaml, object)) continue;
+    const char *name = abbe_yaml_text(yaml, abbe_yaml_get(yaml, object, "material"));
+    if (name) names[found++] = name;
+  }
+  return found;
+}
+
+static abbe_result read_table(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
+                              const abbe_scene_options *options, abbe_scene *out,
+                              abbe_error *error) {
+  char *name = NULL, *path = NULL;
+  const char *names[ABBE_SCENE_MAX_OBJECTS];
+  const size_t count = names_in(yaml, root, names);
+  abbe_result result = abbe_yaml_get_string(yaml, root, "materials", &name, error);
+  if (result != ABBE_OK) return result;
+  const bool given = options && options->materials;
+  const bool shipped = !name || strcmp(name, "default") == 0 || strcmp(name, "thesis") == 0;
+  if (!given && !shipped) {
+    path = abbe_object_path(folder, name);
+    if (!path) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  }
+  if (result == ABBE_OK)
+    result = abbe_material_table_load_named(given     ? options->materials
+                                            : shipped ? name
+                                                      : path,
+                                            names, count, &out->table, error);
+  free(path);
+  free(name);
+  return result;
+}
+
+static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
+                              const abbe_scene_options *options, abbe_scene *out,
+                              abbe_error *error) {
+  const abbe_yaml_node root = abbe_yaml_root(yaml);
+  if (!abbe_yaml_is_mapping(yaml, root))
+    return abbe_yaml_fail(yaml, root, error, "a scene must be a mapping (key: value)");
+  abbe_result result = abbe_yaml_get_string(yaml, root, "description", &out->description, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, root, "ambient", 0, BRIGHTEST, &out->ambient, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, root, "background", 0, BRIGHTEST, &out->background, error);
+  if (result == ABBE_OK) result = read_camera(yaml, root, &out->camera, error);
+  if (result == ABBE_OK) result = read_lights(yaml, root, folder, out, error);
+  /* all keys are known before the costly part begins */
+  abbe_yaml_get(yaml, root, "materials");
+  abbe_yaml_get(yaml, root, "objects");
+  if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, root, "a scene", error);
+  if (result == ABBE_OK) result = read_table(yaml, root, folder, options, out, error);
+  if (result == ABBE_OK) result = read_objects(yaml, root, folder, out, error);
+  return result == ABBE_OK ? abbe_scene_check(out, error) : result;
+}
+
+/* The folder of a path with its slash, "" for a plain name; malloc'd. */
+static char *folder_of(const char *path) {
+  char *folder = strdup(path);
+  if (!folder) return NULL;
+  char *slash = strrchr(folder, '/');
+  if (slash)
+    slash[1] = '\0';
+  else
+    folder[0] = '\0';
+  return folder;
+}
+
+/* Reads and frees the document; path stands in messages and says where relative paths start. */
+static abbe_result read_document(abbe_yaml *yaml, const char *path,
+                                 const abbe_scene_options *options, abbe_scene *out,
+                                 abbe_error *error) {
+  char *folder = folder_of(path);
+  out->path = strdup(path);
+  abbe_result result =
+      folder && out->path ? read_scene(yaml, folder, options, out, error)
+                          : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its path", path);
+  free(folder);
+  abbe_yaml_free(yaml);
+  if (result != ABBE_OK) abbe_scene_free(out);
+  return result;
+}
+
+abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
+                            abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
+  memset(out, 0, sizeof *out);
+  abbe_yaml *yaml = NULL;
+  abbe_result result = abbe_yaml_load(path, &yaml, error);
+  return result == ABBE_OK ? read_document(yaml, path, options, out, error) : result;
+}
+
+abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
+                             const abbe_scene_options *options, abbe_scene *out,
+                             abbe_error *error) {
+  ABBE_REQUIRE(text && name && out, error);
+  memset(out, 0, sizeof *out);
+  abbe_yaml *yaml = NULL;
+  abbe_result result = abbe_yaml_parse(text, size, name, &yaml, error);
+  return result == ABBE_OK ? read_document(yaml, name, options, out, error) : result;
+}

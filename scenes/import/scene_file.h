@@ -1,0 +1,28 @@
+/* scene_file.h: scenes from YAML files. docs/scene-files.md documents the format. */
+#ifndef ABBE_SCENES_IMPORT_SCENE_FILE_H
+#define ABBE_SCENES_IMPORT_SCENE_FILE_H
+
+#include "scenes/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Zeroed: as the file says. */
+typedef struct abbe_scene_options {
+  const char *materials; /* table to use instead of the file's: a path, "default" or "thesis" */
+} abbe_scene_options;
+
+/* Loads, tessellates, checks and mends. Paths in the file are relative to it. Errors name file,
+ * line, key and value. On failure *out is zeroed. options may be NULL. */
+abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
+                            abbe_error *error);
+/* The same from text; name stands for the path, in messages and for relative paths. */
+abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
+                             const abbe_scene_options *options, abbe_scene *out,
+                             abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,225 @@
+/* What is wrong with a mesh; mesh_mend.c does something about it. */
+#include "base/number.h"
+#include "scenes/geometry/disjoint_sets.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/mesh/mesh.h"
+#include "scenes/mesh/mesh_parts.h"
+#include "scenes/mesh/topology.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool abbe_mesh_is_sliver(const double *const corner[3], int *tip) {
+  double n[3], side[3], longest = 0.0;
+  *tip = 0;
+  abbe_vector_triangle(corner[0], corner[1], corner[2], n);
+  for (int k = 0; k < 3; k++) {
+    abbe_vector_subtract(corner[(k + 1) % 3], corner[k], side);
+    const double squared = abbe_vector_dot(side, side);
+    if (squared > longest) longest = squared, *tip = (k + 2) % 3;
+  }
+  return !(abbe_vector_length(n) > 1e-9 * longest);
+}
+
+double abbe_mesh_diagonal(const abbe_mesh *mesh, double centre[3]) {
+  double low[3], high[3], size[3];
+  memcpy(low, mesh->position[0], sizeof low);
+  memcpy(high, low, sizeof high);
+  for (size_t v = 1; v < mesh->vertex_count; v++)
+    for (int k = 0; k < 3; k++) {
+      low[k] = fmin(low[k], mesh->position[v][k]);
+      high[k] = fmax(high[k], mesh->position[v][k]);
+    }
+  for (int k = 0; k < 3 && centre; k++) centre[k] = 0.5 * (low[k] + high[k]);
+  abbe_vector_subtract(high, low, size);
+  return abbe_vector_length(size);
+}
+
+static void measure_faces(const abbe_topology *t, abbe_mesh_report *report) {
+  for (size_t f = 0; f < t->face_count; f++) {
+    const double *corner[3] = {t->position[t->face[f][0]], t->position[t->face[f][1]],
+                               t->position[t->face[f][2]]};
+    double n[3], from_corner[3];
+    int tip;
+    abbe_vector_triangle(corner[0], corner[1], corner[2], n);
+    /* relative to a corner of the bounds: far from the origin nothing cancels */
+    abbe_vector_subtract(corner[0], report->min, from_corner);
+    report->area += 0.5 * abbe_vector_length(n);
+    report->volume += abbe_vector_dot(from_corner, n) / 6.0;
+    if (t->face_edge[f][0] != ABBE_TOPOLOGY_NONE && !abbe_mesh_is_sliver(corner, &tip)) continue;
+    if (report->degenerate_faces++ == 0)
+      memcpy(report->degenerate, corner[0], sizeof report->degenerate);
+  }
+}
+
+static void ends_of(const abbe_topology *t, const abbe_edge *edge, double ends[2][3]) {
+  memcpy(ends[0], t->position[edge->a], sizeof ends[0]);
+  memcpy(ends[1], t->position[edge->b], sizeof ends[1]);
+}
+
+static void count_edges(const abbe_topology *t, abbe_mesh_report *report) {
+  for (size_t e = 0; e < t->edge_count; e++) {
+    const abbe_edge *edge = &t->edge[e];
+    const uint32_t faces = edge->along + edge->against;
+    if (faces == 1) {
+      report->open_edges++;
+    } else if (faces > 2 && edge->touches) {
+      report->touching_edges++;
+    } else if (faces > 2) {
+      if (report->crowded_edges++ == 0) {
+        ends_of(t, edge, report->crowded);
+        report->crowded_faces = faces;
+      }
+    } else if (edge->along != edge->against) {
+      if (report->flipped_edges++ == 0) ends_of(t, edge, report->flipped);
+    }
+  }
+}
+
+/* A hole is what open edges make that hang together. */
+typedef struct hole {
+  size_t edges;
+  double low[3], high[3];
+} hole;
+
+static void gather_holes(const abbe_topology *t, uint32_t *parent, hole *at) {
+  for (size_t p = 0; p < t->point_count; p++) {
+    parent[p] = (uint32_t)p;
+    at[p].edges = 0;
+    for (int k = 0; k < 3; k++) at[p].low[k] = INFINITY, at[p].high[k] = -INFINITY;
+  }
+  for (size_t e = 0; e < t->edge_count; e++)
+    if (t->edge[e].along + t->edge[e].against == 1)
+      abbe_disjoint_sets_unite(parent, t->edge[e].a, t->edge[e].b);
+  for (size_t e = 0; e < t->edge_count; e++) {
+    if (t->edge[e].along + t->edge[e].against != 1) continue;
+    hole *h = &at[abbe_disjoint_sets_find(parent, t->edge[e].a)];
+    h->edges++;
+    for (int end = 0; end < 2; end++)
+      for (int k = 0; k < 3; k++) {
+        const double x = t->position[end ? t->edge[e].a : t->edge[e].b][k];
+        h->low[k] = fmin(h->low[k], x);
+        h->high[k] = fmax(h->high[k], x);
+      }
+  }
+}
+
+static abbe_result find_holes(const abbe_topology *t, abbe_mesh_report *report, abbe_error *error) {
+  if (report->open_edges == 0) return ABBE_OK;
+  uint32_t *parent = malloc((t->point_count + 1) * sizeof *parent);
+  hole *at = malloc((t->point_count + 1) * sizeof *at);
+  if (parent && at) {
+    gather_holes(t, parent, at);
+    for (size_t p = 0; p < t->point_count; p++) {
+      double across = 0;
+      if (at[p].edges == 0) continue;
+      for (int k = 0; k < 3; k++) across = fmax(across, at[p].high[k] - at[p].low[k]);
+      if (report->holes++ > 0 && across <= report->hole_size) continue;
+      report->hole_size = across;
+      report->hole_edges = at[p].edges;
+      for (int k = 0; k < 3; k++) report->hole[k] = 0.5 * (at[p].low[k] + at[p].high[k]);
+    }
+  }
+  const bool room = parent && at;
+  free(parent);
+  free(at);
+  return room ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for holes of a mesh");
+}
+
+abbe_result abbe_mesh_check_known(const abbe_mesh *mesh, const abbe_topology *t,
+                                  abbe_mesh_report *report, abbe_error *error) {
+  ABBE_REQUIRE(mesh && t && report, error);
+  memset(report, 0, sizeof *report);
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    for (int k = 0; k < 3; k++) {
+      const double x = mesh->position[v][k];
+      if (v == 0 || x < report->min[k]) report->min[k] = x;
+      if (v == 0 || x > report->max[k]) report->max[k] = x;
+    }
+  count_edges(t, report);
+  report->shells = t->shell_count;
+  measure_faces(t, report);
+  return find_holes(t, report, error);
+}
+
+abbe_result abbe_mesh_check(const abbe_mesh *mesh, abbe_mesh_report *report, abbe_error *error) {
+  ABBE_REQUIRE(mesh && report, error);
+  abbe_topology t;
+  abbe_result result = abbe_topology_make(mesh, &t, error);
+  memset(report, 0, sizeof *report);
+  if (result == ABBE_OK) result = abbe_mesh_check_known(mesh, &t, report, error);
+  abbe_topology_free(&t);
+  return result;
+}
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+static void
+append(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list arguments;
+  if (used > 0 && used + 2 < size) memcpy(text + used, ", ", 3);
+  va_start(arguments, format);
+  abbe_number_format_list(text + strlen(text), size - strlen(text), format, arguments);
+  va_end(arguments);
+}
+
+#define PLACE "(%.4g, %.4g, %.4g)"
+#define XYZ(p) (p)[0], (p)[1], (p)[2]
+
+void abbe_mesh_report_faults(const abbe_mesh_report *r, char *text, size_t size) {
+  text[0] = '\0';
+  if (r->open_edges > 0)
+    append(text, size,
+           "%zu open edges make %zu hole%s, the widest of %zu edges, %.3g across, around " PLACE,
+           r->open_edges, r->holes, r->holes == 1 ? "" : "s", r->hole_edges, r->hole_size,
+           XYZ(r->hole));
+  if (r->crowded_edges > 0)
+    append(text, size, "%zu edge%s with more than two faces, one of %zu from " PLACE " to " PLACE,
+           r->crowded_edges, r->crowded_edges == 1 ? "" : "s", r->crowded_faces, XYZ(r->crowded[0]),
+           XYZ(r->crowded[1]));
+  if (r->flipped_edges > 0)
+    append(
+        text, size, "%zu edge%s with faces turned against each other, one from " PLACE " to " PLACE,
+        r->flipped_edges, r->flipped_edges == 1 ? "" : "s", XYZ(r->flipped[0]), XYZ(r->flipped[1]));
+  if (r->degenerate_faces > 0)
+    append(text, size, "%zu face%s without area, one at " PLACE, r->degenerate_faces,
+           r->degenerate_faces == 1 ? "" : "s", XYZ(r->degenerate));
+}
+
+/* The test of [MollerTrumbore1997], with the ray from p along d; counts a hit in front of p. */
+static bool ray_hits(const double p[3], const double d[3], const double a[3], const double b[3],
+                     const double c[3]) {
+  double u[3], v[3], s[3], h[3], q[3];
+  abbe_vector_subtract(b, a, u);
+  abbe_vector_subtract(c, a, v);
+  abbe_vector_cross(d, v, h);
+  const double determinant = abbe_vector_dot(u, h);
+  if (determinant == 0.0) return false;
+  abbe_vector_subtract(p, a, s);
+  const double first = abbe_vector_dot(s, h) / determinant;
+  if (!(first >= 0.0 && first <= 1.0)) return false;
+  abbe_vector_cross(s, u, q);
+  const double second = abbe_vector_dot(d, q) / determinant;
+  if (!(second >= 0.0 && first + second <= 1.0)) return false;
+  return abbe_vector_dot(v, q) / determinant > 0.0;
+}
+
+bool abbe_mesh_contains(const abbe_mesh *mesh, const double point[3]) {
+  /* three odd directions vote, so that a ray through an edge cannot decide alone */
+  static const double direction[3][3] = {
+      {0.5391, 0.7283, 0.4231}, {-0.8127, 0.3119, 0.4921}, {0.2713, -0.5881, -0.7619}};
+  int votes = 0;
+  for (int i = 0; i < 3; i++) {
+    size_t hits = 0;
+    for (size_t f = 0; f < mesh->face_count; f++)
+      hits += ray_hits(point, direction[i], mesh->position[mesh->face[f][0]],
+                       mesh->position[mesh->face[f][1]], mesh->position[mesh->face[f][2]]);
+    votes += hits % 2;
+  }
+  return votes >= 2;
+}

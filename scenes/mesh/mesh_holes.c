@@ -1,0 +1,377 @@
+/* Holes: their rims, and surfaces that close them. */
+#include "scenes/geometry/vector.h"
+#include "scenes/mesh/mesh_parts.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Without being asked to, holes that bend are closed only where their rim is shorter than this
+ * share of the bounds' diagonal, flat ones of any size where every point is this near the plane of
+ * the rim. */
+#define SMALL_HOLE 0.15
+#define FLAT_HOLE 0.01
+
+/* Points of a rim that is closed by its smallest surface: the search takes the cube of them. */
+enum { MOST_POINTS = 600 };
+
+/* ---- rims ---- */
+
+/* An open edge in the direction of a face that would close it. */
+typedef struct step {
+  uint32_t from, to;
+} step;
+
+static int by_start(const void *a, const void *b) {
+  const step *x = a, *y = b;
+  if (x->from != y->from) return x->from < y->from ? -1 : 1;
+  return (x->to > y->to) - (x->to < y->to);
+}
+
+/* Rims as closed ways that pass no point twice: those of rim i from first[i] to first[i + 1] in
+ * point[]. Both arrays are malloc'd. */
+typedef struct rims {
+  size_t count;
+  uint32_t *point;
+  size_t *first;
+} rims;
+
+static void rims_free(rims *r) {
+  free(r->point);
+  free(r->first);
+  *r = (rims){0};
+}
+
+static void add_rim(rims *r, const uint32_t *way, size_t length) {
+  const size_t at = r->first[r->count];
+  if (length < 3) return;
+  memcpy(r->point + at, way, length * sizeof *way);
+  r->first[++r->count] = at + length;
+}
+
+static size_t step_from(const step *all, size_t count, uint32_t from) {
+  size_t low = 0, high = count;
+  while (low < high) {
+    const size_t middle = (low + high) / 2;
+    if (all[middle].from < from)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* Walks along open edges; where the way comes to a point of its own, what it has gone since is a
+ * rim. A way that leads nowhere is forgotten. place: of each point on the way, or NONE. */
+static void walk_rims(const step *all, size_t count, bool *used, uint32_t *way, uint32_t *place,
+                      rims *out) {
+  for (size_t start = 0; start < count; start++) {
+    size_t length = 0, at = start;
+    if (used[start]) continue;
+    while (at < count) {
+      used[at] = true;
+      if (length == 0) {
+        way[length++] = all[at].from;
+        place[all[at].from] = 0;
+      }
+      const uint32_t to = all[at].to;
+      if (place[to] != ABBE_TOPOLOGY_NONE) {
+        const size_t back = place[to];
+        add_rim(out, way + back, length - back);
+        while (length > back + 1) place[way[--length]] = ABBE_TOPOLOGY_NONE;
+      } else {
+        place[to] = (uint32_t)length;
+        way[length++] = to;
+      }
+      at = step_from(all, count, to);
+      while (at < count && all[at].from == to && used[at]) at++;
+      if (at < count && all[at].from != to) at = count;
+    }
+    while (length > 0) place[way[--length]] = ABBE_TOPOLOGY_NONE;
+  }
+}
+
+static abbe_result find_rims(const abbe_topology *t, rims *out, abbe_error *error) {
+  size_t open = 0, n = 0;
+  for (size_t e = 0; e < t->edge_count; e++) open += t->edge[e].along + t->edge[e].against == 1;
+  step *all = malloc((open + 1) * sizeof *all);
+  bool *used = calloc(open + 1, sizeof *used);
+  uint32_t *way = malloc((open + 2) * sizeof *way);
+  uint32_t *place = malloc((t->point_count + 1) * sizeof *place);
+  *out = (rims){.point = malloc((open + 1) * sizeof *out->point),
+                .first = calloc(open + 2, sizeof *out->first)};
+  const bool room = all && used && way && place && out->point && out->first;
+  if (room) {
+    for (size_t e = 0; e < t->edge_count; e++) {
+      const abbe_edge *edge = &t->edge[e];
+      if (edge->along + edge->against != 1) continue;
+      all[n++] = edge->along ? (step){edge->b, edge->a} : (step){edge->a, edge->b};
+    }
+    if (n > 0) qsort(all, n, sizeof *all, by_start);
+    memset(place, 0xff, (t->point_count + 1) * sizeof *place);
+    walk_rims(all, n, used, way, place, out);
+  } else {
+    rims_free(out);
+  }
+  free(all);
+  free(used);
+  free(way);
+  free(place);
+  return room ? ABBE_OK
+              : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to close the holes of a mesh");
+}
+
+/* ---- a fan ---- */
+
+/* The longest side of its bounds. */
+static double across(const abbe_mesh *mesh, const uint32_t *rim, size_t n) {
+  double longest = 0;
+  for (int k = 0; k < 3; k++) {
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < n; i++) {
+      low = fmin(low, mesh->position[rim[i]][k]);
+      high = fmax(high, mesh->position[rim[i]][k]);
+    }
+    longest = fmax(longest, high - low);
+  }
+  return longest;
+}
+
+/* The rim's centre; false where a fan from there would not be safe. */
+static bool fan_is_safe(const abbe_mesh *mesh, const uint32_t *rim, size_t n, double diagonal,
+                        double centre[3]) {
+  double normal[3] = {0}, length = 0.0, part[3], to[3];
+  memset(centre, 0, 3 * sizeof *centre);
+  for (size_t i = 0; i < n; i++)
+    for (int k = 0; k < 3; k++) centre[k] += mesh->position[rim[i]][k] / (double)n;
+  for (size_t i = 0; i < n; i++) {
+    const double *a = mesh->position[rim[i]], *b = mesh->position[rim[(i + 1) % n]];
+    abbe_vector_triangle(centre, a, b, part);
+    abbe_vector_subtract(b, a, to);
+    length += abbe_vector_length(to);
+    for (int k = 0; k < 3; k++) normal[k] += part[k];
+  }
+  if (!abbe_vector_normalise(normal)) return false;
+  const bool small = length <= SMALL_HOLE * diagonal;
+  for (size_t i = 0; i < n; i++) {
+    const double *a = mesh->position[rim[i]], *b = mesh->position[rim[(i + 1) % n]];
+    abbe_vector_triangle(centre, a, b, part);
+    abbe_vector_subtract(a, centre, to);
+    if (!small && !(abbe_vector_dot(part, normal) > 0.0)) return false;
+    if (!small && fabs(abbe_vector_dot(to, normal)) > FLAT_HOLE * length) return false;
+  }
+  return true;
+}
+
+/* Room for more vertices and faces; the mesh keeps its counts. */
+static bool grow(abbe_mesh *mesh, size_t vertices, size_t faces) {
+  if (vertices > ABBE_MESH_MAX_VERTICES || faces > ABBE_MESH_MAX_FACES) return false;
+  void *position = realloc(mesh->position, vertices * sizeof *mesh->position);
+  if (position) mesh->position = position;
+  void *normal = realloc(mesh->normal, vertices * sizeof *mesh->normal);
+  if (normal) mesh->normal = normal;
+  void *face = realloc(mesh->face, faces * sizeof *mesh->face);
+  if (face) mesh->face = face;
+  return position && normal && face;
+}
+
+static abbe_result no_room(abbe_error *error) {
+  return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to close a hole of a mesh");
+}
+
+static abbe_result close_by_fan(abbe_mesh *mesh, const uint32_t *rim, size_t n,
+                                const double centre[3], abbe_error *error) {
+  const bool triangle = n == 3;
+  const size_t vertices = mesh->vertex_count + !triangle;
+  const size_t faces = mesh->face_count + (triangle ? 1 : n);
+  if (!grow(mesh, vertices, faces)) return no_room(error);
+  if (triangle) {
+    memcpy(mesh->face[mesh->face_count], rim, sizeof mesh->face[0]);
+  } else {
+    memcpy(mesh->position[mesh->vertex_count], centre, 3 * sizeof(double));
+    for (size_t i = 0; i < n; i++) {
+      const uint32_t f[3] = {(uint32_t)mesh->vertex_count, rim[i], rim[(i + 1) % n]};
+      memcpy(mesh->face[mesh->face_count + i], f, sizeof f);
+    }
+  }
+  mesh->vertex_count = vertices;
+  mesh->face_count = faces;
+  return ABBE_OK;
+}
+
+/* ---- the smallest surface ---- */
+
+/* Between points i and k of a rim, at i n + k and at k n + i: the least weight of triangles over
+ * that part, and the third corner of the one at the chord. [BarequetSharir1995] */
+typedef struct chord {
+  float weight;
+  uint16_t third;
+  bool taken; /* an edge that the mesh has elsewhere */
+} chord;
+
+/* Area, and so much of the squared sides that thin triangles are not as good as others. */
+static double weight_of(const abbe_mesh *mesh, uint32_t a, uint32_t b, uint32_t c) {
+  const double *p = mesh->position[a], *q = mesh->position[b], *r = mesh->position[c];
+  double u[3], v[3], w[3], n[3];
+  abbe_vector_subtract(q, p, u);
+  abbe_vector_subtract(r, p, v);
+  abbe_vector_subtract(r, q, w);
+  abbe_vector_cross(u, v, n);
+  const double uu = abbe_vector_dot(u, u), vv = abbe_vector_dot(v, v), ww = abbe_vector_dot(w, w);
+  const double sides = uu + vv + ww, twice = abbe_vector_length(n);
+  const double longest = uu > vv ? (uu > ww ? uu : ww) : (vv > ww ? vv : ww);
+  /* as abbe_mesh_is_sliver says; where nothing else is left */
+  if (!(twice > 1e-9 * longest)) return 1e3 * sides;
+  return 0.5 * twice + 1e-3 * sides;
+}
+
+static void weigh_chords(const abbe_mesh *mesh, const uint32_t *rim, size_t n, chord *at) {
+  for (size_t span = 2; span < n; span++)
+    for (size_t i = 0; i + span < n; i++) {
+      const size_t last = i + span;
+      const chord *from = &at[i * n], *to = &at[last * n]; /* both along memory */
+      chord c = {.weight = INFINITY, .taken = from[last].taken};
+      for (size_t k = i + 1; k < last && !c.taken; k++) {
+        const float parts = from[k].weight + to[k].weight;
+        if (!(parts < c.weight)) continue;
+        const float all = parts + (float)weight_of(mesh, rim[i], rim[k], rim[last]);
+        if (!(all < c.weight)) continue;
+        c.weight = all;
+        c.third = (uint16_t)k;
+      }
+      at[i * n + last] = at[last * n + i] = c;
+    }
+}
+
+/* Edges that the mesh has, from the lesser vertex to the greater, in order. */
+typedef struct edges {
+  size_t count;
+  step *edge;
+} edges;
+
+static step edge_between(uint32_t a, uint32_t b) {
+  return a < b ? (step){a, b} : (step){b, a};
+}
+
+/* Marks chords that are edges of the mesh already: of them a third face would hang. */
+static void mark_taken(const edges *known, const uint32_t *rim, size_t n, chord *at) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = i + 2; k < n && k - i < n - 1; k++) {
+      const step wanted = edge_between(rim[i], rim[k]);
+      at[i * n + k].taken =
+          bsearch(&wanted, known->edge, known->count, sizeof wanted, by_start) != NULL;
+    }
+}
+
+static void lay(abbe_mesh *mesh, const uint32_t *rim, size_t n, const chord *at, size_t i,
+                size_t k) {
+  while (k - i >= 2) {
+    const size_t third = at[i * n + k].third;
+    const uint32_t f[3] = {rim[i], rim[third], rim[k]};
+    memcpy(mesh->face[mesh->face_count++], f, sizeof f);
+    lay(mesh, rim, n, at, i, third);
+    i = third;
+  }
+}
+
+/* Where there is none, of triangles with an area and new edges, *closed stays false. */
+static abbe_result close_by_least(abbe_mesh *mesh, const edges *known, const uint32_t *rim,
+                                  size_t n, bool *closed, abbe_error *error) {
+  chord *at = calloc(n * n, sizeof *at);
+  if (!at) return no_room(error);
+  mark_taken(known, rim, n, at);
+  weigh_chords(mesh, rim, n, at);
+  *closed = isfinite(at[n - 1].weight);
+  const bool room = !*closed || grow(mesh, mesh->vertex_count, mesh->face_count + n - 2);
+  if (*closed && room) lay(mesh, rim, n, at, 0, n - 1);
+  free(at);
+  return room ? ABBE_OK : no_room(error);
+}
+
+/* ---- all of them ---- */
+
+/* Cubes of rims' points, as the search takes them: twenty of the longest rims, some seconds. */
+#define MOST_WORK (20.0 * MOST_POINTS * MOST_POINTS * MOST_POINTS)
+
+typedef struct closing {
+  bool any;
+  double diagonal;
+  edges known;
+} closing;
+
+static abbe_result check_work(const abbe_mesh *mesh, const rims *r, const closing *how,
+                              abbe_error *error) {
+  double work = 0, centre[3];
+  size_t bent = 0, longest = 0;
+  for (size_t i = 0; how->any && i < r->count; i++) {
+    const size_t n = r->first[i + 1] - r->first[i];
+    if (n > MOST_POINTS || fan_is_safe(mesh, r->point + r->first[i], n, how->diagonal, centre))
+      continue;
+    bent++;
+    work += (double)n * (double)n * (double)n;
+    if (n > longest) longest = n;
+  }
+  if (work <= MOST_WORK) return ABBE_OK;
+  return abbe_error_set(error, ABBE_GEOMETRY,
+                        "the mesh has %zu holes that bend, of up to %zu edges: too much work for "
+                        "'repair: true', which closes each by its smallest surface; close the "
+                        "longest where the mesh was made",
+                        bent, longest);
+}
+
+static abbe_result close_rim(abbe_mesh *mesh, const uint32_t *rim, size_t n, const closing *how,
+                             bool *closed, abbe_error *error) {
+  double centre[3];
+  *closed = fan_is_safe(mesh, rim, n, how->diagonal, centre);
+  if (*closed) return close_by_fan(mesh, rim, n, centre, error);
+  return how->any && n <= MOST_POINTS ? close_by_least(mesh, &how->known, rim, n, closed, error)
+                                      : ABBE_OK;
+}
+
+/* Rims and edges are in points; the mesh has one vertex a point, in another order perhaps. */
+static abbe_result name_vertices(const abbe_mesh *mesh, const abbe_topology *t, rims *r,
+                                 edges *known, abbe_error *error) {
+  uint32_t *vertex = malloc((t->point_count + 1) * sizeof *vertex);
+  known->edge = malloc((t->edge_count + 1) * sizeof *known->edge);
+  const bool room = vertex && known->edge;
+  if (room) {
+    for (size_t v = 0; v < mesh->vertex_count; v++) vertex[t->point[v]] = (uint32_t)v;
+    for (size_t i = 0; i < r->first[r->count]; i++) r->point[i] = vertex[r->point[i]];
+    for (known->count = 0; known->count < t->edge_count; known->count++) {
+      const abbe_edge *e = &t->edge[known->count];
+      known->edge[known->count] = edge_between(vertex[e->a], vertex[e->b]);
+    }
+    if (known->count > 0) qsort(known->edge, known->count, sizeof *known->edge, by_start);
+  }
+  free(vertex);
+  return room ? ABBE_OK : no_room(error);
+}
+
+abbe_result abbe_mesh_close_holes(abbe_mesh *mesh, bool any, size_t *count, double *widest,
+                                  abbe_error *error) {
+  abbe_topology t;
+  rims r = {0};
+  closing how = {.any = any};
+  abbe_result result = abbe_topology_make(mesh, &t, error);
+  if (result != ABBE_OK) return result;
+  result = find_rims(&t, &r, error);
+  if (result == ABBE_OK && r.count > 0) {
+    result = name_vertices(mesh, &t, &r, &how.known, error);
+    how.diagonal = abbe_mesh_diagonal(mesh, NULL);
+    if (result == ABBE_OK) result = check_work(mesh, &r, &how, error);
+  }
+  for (size_t i = 0; result == ABBE_OK && i < r.count; i++) {
+    const uint32_t *rim = r.point + r.first[i];
+    const size_t n = r.first[i + 1] - r.first[i];
+    bool closed = false;
+    result = close_rim(mesh, rim, n, &how, &closed, error);
+    if (!closed) continue;
+    ++*count;
+    *widest = fmax(*widest, across(mesh, rim, n));
+  }
+  rims_free(&r);
+  free(how.known.edge);
+  abbe_topology_free(&t);
+  return result;
+}

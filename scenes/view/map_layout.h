@@ -1,0 +1,82 @@
+/* map_layout.h: where the texels of a receiver map lie: a light's view, and its warped axes.
+ *
+ * A receiver map is a picture that a light projects onto the scene: each texel holds the flux that
+ * landed in it. The layout says which texel holds which place, so that two maps can be compared
+ * texel by texel. It holds no light and knows no optics. Texture coordinates run from 0 to 1, x to
+ * the right and y upwards; an image's row 0 is at the top.
+ */
+#ifndef ABBE_SCENES_VIEW_MAP_LAYOUT_H
+#define ABBE_SCENES_VIEW_MAP_LAYOUT_H
+
+#include "base/error.h"
+#include "colorimetry/image/image.h"
+#include "scenes/view/view.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_MAP_LAYOUT_STEPS 128
+
+typedef struct abbe_map_layout {
+  abbe_view view; /* perspective from a point; parallel for a directional light */
+  /* Of each axis (x, y): window coordinate k / STEPS falls on texture coordinate knot[axis][k];
+   * from 0 to 1, ascending, linear in between. */
+  double knot[2][ABBE_MAP_LAYOUT_STEPS + 1];
+} abbe_map_layout;
+
+/* The view with texels of one size. */
+void abbe_map_layout_make(const abbe_view *view, abbe_map_layout *out);
+
+/* ABBE_INVALID_ARGUMENT says what is wrong: numbers that are not finite, axes that are not unit,
+ * right-angled and right-handed, an empty window or range, knots that do not rise from 0 to 1. */
+abbe_result abbe_map_layout_check(const abbe_map_layout *layout, abbe_error *error);
+
+/* Whether both put every place into the same texel, up to a share of 1e-9 of a side. The ranges
+ * near to far are not compared: they move no texel. */
+bool abbe_map_layout_same(const abbe_map_layout *a, const abbe_map_layout *b);
+
+/* Column-major world-to-clip matrix of the view; clip x and y are the unwarped window. */
+void abbe_map_layout_matrix(const abbe_map_layout *layout, double out[16]);
+
+/* Window coordinate to texture coordinate along an axis (0: x, 1: y), and back; both 0 to 1, what
+ * lies outside is moved to the nearest end. */
+double abbe_map_layout_warp(const abbe_map_layout *layout, int axis, double window);
+double abbe_map_layout_unwarp(const abbe_map_layout *layout, int axis, double texture);
+
+/* Texture coordinates of a world point. False (uv untouched) where the map does not hold it: behind
+ * the light, or outside the window. */
+bool abbe_map_layout_project(const abbe_map_layout *layout, const double p[3], double uv[2]);
+/* Column and row (0 at the top) of the point in a map of that size; false as above. */
+bool abbe_map_layout_texel(const abbe_map_layout *layout, size_t width, size_t height,
+                           const double p[3], size_t *column, size_t *row);
+/* The ray of light through texture coordinates: origin and unit direction. */
+void abbe_map_layout_ray(const abbe_map_layout *layout, const double uv[2], double origin[3],
+                         double direction[3]);
+
+/* Window width (axis 0) or height (axis 1) of texel `index` of `side` texels, counted along the
+ * texture coordinate: a difference of tangents (perspective) or metres (parallel). */
+double abbe_map_layout_texel_size(const abbe_map_layout *layout, int axis, size_t side,
+                                  size_t index);
+/* Window area of a texel of an image of that size, row 0 at the top: tangents squared, or m2. A
+ * perspective window area dA holds the solid angle cos^3(t) dA, t the angle to the view's axis. */
+double abbe_map_layout_texel_area(const abbe_map_layout *layout, size_t width, size_t height,
+                                  size_t column, size_t row);
+
+/* Writes the layout into the image's text attributes abbe:map_view, abbe:map_warp_x and
+ * abbe:map_warp_y, every number with the digits that give it back exactly; and abbe:map_light, the
+ * name of the light (NULL: none). */
+abbe_result abbe_map_layout_write(const abbe_map_layout *layout, const char *light,
+                                  abbe_image *image, abbe_error *error);
+/* Reads them; `name` (a path) stands in the sentences. ABBE_NOT_FOUND where the image is no map,
+ * ABBE_PARSE where an attribute is broken; then out is zeroed. */
+abbe_result abbe_map_layout_read(const abbe_image *image, const char *name, abbe_map_layout *out,
+                                 abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,136 @@
+#include "scenes/view/view.h"
+
+#include "scenes/geometry/transform.h"
+
+#include <math.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+  double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  memcpy(out, c, sizeof c);
+}
+
+static void normalise(double v[3]) {
+  double length = sqrt(dot(v, v));
+  for (int i = 0; i < 3; i++) v[i] /= length;
+}
+
+void abbe_view_look(const double origin[3], const double forward[3], const double up[3],
+                    bool orthographic, abbe_view *out) {
+  static const double hints[3][3] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
+  memset(out, 0, sizeof *out);
+  out->orthographic = orthographic;
+  memcpy(out->origin, origin, sizeof out->origin);
+  memcpy(out->forward, forward, sizeof out->forward);
+  normalise(out->forward);
+  cross(out->forward, up, out->right);
+  for (int i = 0; i < 3 && dot(out->right, out->right) < 1e-12; i++)
+    cross(out->forward, hints[i], out->right);
+  normalise(out->right);
+  cross(out->right, out->forward, out->up);
+  out->window[0] = out->window[2] = out->near = INFINITY;
+  out->window[1] = out->window[3] = out->far = -INFINITY;
+}
+
+static double clamp(double x, double low, double high) {
+  return fmin(fmax(x, low), high);
+}
+
+bool abbe_view_fit(abbe_view *view, const double (*points)[3], size_t count) {
+  bool fits = true;
+  for (size_t i = 0; i < count; i++) {
+    double d[3];
+    for (int k = 0; k < 3; k++) d[k] = points[i][k] - view->origin[k];
+    double x = dot(d, view->right), y = dot(d, view->up), z = dot(d, view->forward);
+    if (!view->orthographic) {
+      double limit = ABBE_VIEW_MAX_TANGENT;
+      if (z <= 0 || fabs(x) > limit * z || fabs(y) > limit * z) fits = false;
+      /* A point behind still widens the window, towards its own side. */
+      double depth = fmax(z, fmax(fabs(x), fabs(y)) / limit);
+      if (depth <= 0) continue;
+      x = clamp(x / depth, -limit, limit);
+      y = clamp(y / depth, -limit, limit);
+      z = fmax(z, depth * 1e-3);
+    }
+    view->window[0] = fmin(view->window[0], x);
+    view->window[1] = fmax(view->window[1], x);
+    view->window[2] = fmin(view->window[2], y);
+    view->window[3] = fmax(view->window[3], y);
+    view->near = fmin(view->near, z);
+    view->far = fmax(view->far, z);
+  }
+  return fits;
+}
+
+void abbe_view_pad(abbe_view *view, double share) {
+  double size = fmax(view->window[1] - view->window[0], view->window[3] - view->window[2]);
+  double least = fmax(size, 1e-9) * 1e-3;
+  for (int axis = 0; axis < 2; axis++) {
+    double *low = &view->window[2 * axis], *high = &view->window[2 * axis + 1];
+    double grow = fmax((*high - *low) * share, least);
+    *low -= grow;
+    *high += grow;
+  }
+  double depth = fmax(view->far - view->near, 1e-3 * fabs(view->far));
+  view->far += share * depth;
+  view->near -= share * depth;
+  if (!view->orthographic) view->near = fmax(view->near, 1e-3 * view->far);
+}
+
+void abbe_view_matrix(const abbe_view *view, double out[16]) {
+  double look[16], clip[16], target[3];
+  for (int k = 0; k < 3; k++) target[k] = view->origin[k] + view->forward[k];
+  abbe_transform_look_at(view->origin, target, view->up, look);
+  const double *w = view->window;
+  if (view->orthographic)
+    abbe_transform_orthographic(w[0], w[1], w[2], w[3], view->near, view->far, clip);
+  else
+    abbe_transform_perspective(w[0], w[1], w[2], w[3], view->near, view->far, clip);
+  abbe_transform_multiply(clip, look, out);
+}
+
+bool abbe_view_project(const abbe_view *view, const double p[3], double uvz[3]) {
+  double d[3];
+  for (int k = 0; k < 3; k++) d[k] = p[k] - view->origin[k];
+  double x = dot(d, view->right), y = dot(d, view->up), z = dot(d, view->forward);
+  uvz[2] = z;
+  if (!view->orthographic) {
+    x /= z;
+    y /= z;
+    uvz[2] = sqrt(dot(d, d));
+  }
+  uvz[0] = (x - view->window[0]) / (view->window[1] - view->window[0]);
+  uvz[1] = (y - view->window[2]) / (view->window[3] - view->window[2]);
+  return view->orthographic || z > 0;
+}
+
+void abbe_view_ray(const abbe_view *view, const double uv[2], double origin[3],
+                   double direction[3]) {
+  double x = view->window[0] + uv[0] * (view->window[1] - view->window[0]);
+  double y = view->window[2] + uv[1] * (view->window[3] - view->window[2]);
+  for (int k = 0; k < 3; k++) {
+    double side = view->right[k] * x + view->up[k] * y;
+    origin[k] = view->origin[k] + (view->orthographic ? side : 0);
+    direction[k] = view->forward[k] + (view->orthographic ? 0 : side);
+  }
+  normalise(direction);
+}
+
+double abbe_view_area(const abbe_view *view) {
+  return (view->window[1] - view->window[0]) * (view->window[3] - view->window[2]);
+}
+
+void abbe_view_pack(const abbe_view *view, float out[24]) {
+  const double *rows[4] = {view->origin, view->right, view->up, view->forward};
+  memset(out, 0, 24 * sizeof *out);
+  for (int row = 0; row < 4; row++)
+    for (int k = 0; k < 3; k++) out[4 * row + k] = (float)rows[row][k];
+  out[3] = view->orthographic ? 0.0f : 1.0f;
+  for (int k = 0; k < 4; k++) out[16 + k] = (float)view->window[k];
+  out[20] = (float)view->near;
+  out[21] = (float)view->far;
+}

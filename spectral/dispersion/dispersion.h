@@ -1,0 +1,93 @@
+/* dispersion.h: refractive index as a function of wavelength, n(lambda).
+ *
+ * The models are the published formulas with their own coefficients; lambda is in nm in this
+ * interface and in micrometres inside the formulas. Indices are relative to air at the source's
+ * conditions, wavelengths in air, unless the material's record says otherwise. It knows nothing
+ * of names, tables or files.
+ */
+#ifndef ABBE_SPECTRAL_DISPERSION_DISPERSION_H
+#define ABBE_SPECTRAL_DISPERSION_DISPERSION_H
+
+#include "base/error.h"
+#include "spectral/spectrum.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(code, name in files, formula); c[0], c[1], … are the coefficients, L is lambda in um. */
+#define ABBE_DISPERSION_MODELS(X)                                                             \
+  X(CONSTANT, "constant", "n = c0")                                                           \
+  X(CAUCHY, "cauchy", "n = c0 + c1 L^-2 + c2 L^-4 + ...")                                     \
+  X(SELLMEIER, "sellmeier", "n^2 - 1 = c0 + sum_k c(2k-1) L^2 / (L^2 - c(2k)^2)")             \
+  X(SELLMEIER2, "sellmeier2", "n^2 - 1 = c0 + sum_k c(2k-1) L^2 / (L^2 - c(2k))")             \
+  X(POLYNOMIAL, "polynomial", "n^2 = c0 + sum_k c(2k-1) L^c(2k)")                             \
+  X(RII4, "rii4",                                                                             \
+    "n^2 = c0 + c1 L^c2/(L^2 - c3^c4) + c5 L^c6/(L^2 - c7^c8) + c9 L^c10 + c11 L^c12 + ...")  \
+  X(POWERS, "powers", "n = c0 + sum_k c(2k-1) L^c(2k)")                                       \
+  X(HERZBERGER, "herzberger",                                                                 \
+    "n = c0 + c1 K + c2 K^2 + c3 L^2 + c4 L^4 + c5 L^6, K = 1 / (L^2 - 0.028)")               \
+  X(RII6, "rii6", "n - 1 = c0 + sum_k c(2k-1) / (c(2k) - L^-2)")                              \
+  X(RII8, "rii8", "(n^2 - 1) / (n^2 + 2) = c0 + c1 L^2 / (L^2 - c2) + c3 L^2")                \
+  X(RII9, "rii9", "n^2 = c0 + c1 / (L^2 - c2) + c3 (L - c4) / ((L - c4)^2 + c5)")             \
+  X(TABULATED, "tabulated", "n through tabulated points")
+
+typedef enum abbe_dispersion_model {
+#define ABBE_DISPERSION_ENUM(code, name, formula) ABBE_DISPERSION_##code,
+  ABBE_DISPERSION_MODELS(ABBE_DISPERSION_ENUM)
+#undef ABBE_DISPERSION_ENUM
+  ABBE_DISPERSION_MODEL_COUNT
+} abbe_dispersion_model;
+
+#define ABBE_DISPERSION_MAX_COEFFICIENTS 32
+
+typedef struct abbe_dispersion {
+  abbe_dispersion_model model;
+  size_t count;                                 /* coefficients used */
+  double c[ABBE_DISPERSION_MAX_COEFFICIENTS];
+  abbe_spectrum *table;                         /* TABULATED: n at nm; owned; else NULL */
+} abbe_dispersion;
+
+void abbe_dispersion_free(abbe_dispersion *dispersion);
+
+/* ABBE_INVALID_ARGUMENT, with what would be right, where the coefficients are not finite or their
+ * count does not fit the model, or a tabulated model has no table. */
+abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error *error);
+
+/* n at lambda_nm (> 0). No range is checked here: that is the material's. Returns NaN where the
+ * formula has no real, positive, finite value (a pole, n^2 <= 0). */
+double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm);
+
+/* Fraunhofer lines, nm in air [Schott2014]; B and G are the gem trade's. */
+#define ABBE_LINE_C_NM 656.2725
+#define ABBE_LINE_D_NM 587.5618
+#define ABBE_LINE_F_NM 486.1327
+#define ABBE_LINE_B_NM 686.7
+#define ABBE_LINE_G_NM 430.8
+
+typedef struct abbe_dispersion_numbers {
+  double n_d, n_F, n_C; /* indices at the lines d, F, C */
+  double v_d;           /* Abbe number (n_d - 1) / (n_F - n_C); infinite where n_F == n_C */
+  double b_g;           /* gem trade's dispersion n(G) - n(B), Fraunhofer G 430.8, B 686.7 nm */
+} abbe_dispersion_numbers;
+
+abbe_dispersion_numbers abbe_dispersion_describe(const abbe_dispersion *dispersion);
+
+const char *abbe_dispersion_model_name(abbe_dispersion_model model);
+/* The formula as one line of text, for people. */
+const char *abbe_dispersion_model_formula(abbe_dispersion_model model);
+
+/* Least-squares Cauchy form with `terms` coefficients over [min_nm, max_nm], fitted to n of
+ * `source` at 1 nm steps (or at least 8 points a term on narrower ranges); largest absolute
+ * residual over those points in *max_error (may be NULL). GSL does the linear algebra.
+ * ABBE_INVALID_ARGUMENT for terms outside [1, 8] or an empty range. */
+abbe_result abbe_dispersion_fit_cauchy(const abbe_dispersion *source, size_t terms, double min_nm,
+                                       double max_nm, abbe_dispersion *out, double *max_error,
+                                       abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,148 @@
+#include "spectral/dispersion/fit.h"
+
+#include "base/gsl_guard.h"
+#include "spectral/dispersion/fit_forms.h"
+
+#include <math.h>
+
+const char *abbe_fit_form_name(abbe_fit_form form) {
+  return form == ABBE_FIT_CAUCHY ? "cauchy" : form == ABBE_FIT_SELLMEIER ? "sellmeier" : "unknown";
+}
+
+double abbe_fit_standard_error(const abbe_fit *fit, size_t i) {
+  return i < ABBE_DISPERSION_MAX_COEFFICIENTS ? sqrt(fit->covariance[i][i]) : NAN;
+}
+
+/* The wavelengths that are different from each other: no more can be told from the points. */
+static size_t different(const abbe_fit_data *data) {
+  size_t count = data->count > 0;
+  for (size_t i = 1; i < data->count; i++) count += data->lambda_nm[i] > data->lambda_nm[i - 1];
+  return count;
+}
+
+static abbe_result check_terms(const abbe_fit_request *request, size_t terms, abbe_error *error) {
+  bool cauchy = request->form == ABBE_FIT_CAUCHY;
+  size_t most = cauchy ? ABBE_FIT_MAX_CAUCHY_TERMS : ABBE_FIT_MAX_SELLMEIER_TERMS;
+  if ((int)request->form < 0 || request->form >= ABBE_FIT_FORM_COUNT)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no form %d to fit",
+                          (int)request->form);
+  if (terms <= most) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "a %s fit of %zu terms is asked for; 1 to %zu are possible",
+                        abbe_fit_form_name(request->form), terms, most);
+}
+
+/* The points of the range, which is everything where it is not given. */
+static abbe_result choose(const abbe_index_points *points, const abbe_fit_request *request,
+                          abbe_fit_data *out, abbe_error *error) {
+  double low = request->min_nm, high = request->max_nm;
+  bool all = low == 0 && high == 0;
+  if (!all && !(low > 0 && low < high && isfinite(high)))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the range %g:%g nm of a fit is not one, such as 380:780", low, high);
+  size_t from = 0, to = points->count;
+  while (!all && from < to && points->lambda_nm[from] < low) from++;
+  while (!all && to > from && points->lambda_nm[to - 1] > high) to--;
+  *out = (abbe_fit_data){.count = to - from,
+                         .terms = request->terms > 0 ? request->terms : 2,
+                         .lambda_nm = points->lambda_nm + from,
+                         .n = points->n + from,
+                         .uncertainty = points->uncertainty ? points->uncertainty + from : NULL,
+                         .exact = points->exact};
+  return check_terms(request, out->terms, error);
+}
+
+static abbe_result check_data(const abbe_fit_data *data, size_t free_count, const char *form,
+                              abbe_error *error) {
+  size_t wavelengths = different(data);
+  if (data->count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no point lies in the range of the fit");
+  double low = data->lambda_nm[0], high = data->lambda_nm[data->count - 1];
+  if (wavelengths < free_count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a %s fit of %zu term%s has %zu coefficients, and there are points at "
+                          "only %zu wavelength%s (%g to %g nm); ask for fewer terms or measure at "
+                          "more wavelengths",
+                          form, data->terms, data->terms == 1 ? "" : "s", free_count, wavelengths,
+                          wavelengths == 1 ? "" : "s", low, high);
+  double x_low = 1 / (high * high), x_high = 1 / (low * low);
+  if (free_count == 1 || (isfinite(x_high) && x_high - x_low > 2e-9 * x_high && x_low > 0))
+    return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the range %.17g:%.17g nm is too narrow or too wide for a %s fit of %zu "
+                        "terms",
+                        low, high, form, data->terms);
+}
+
+static void measure(const abbe_fit_data *data, abbe_fit *fit) {
+  double sum = 0, weighted = 0;
+  fit->max_error = -1;
+  for (size_t i = 0; i < data->count; i++) {
+    double off = data->n[i] - abbe_dispersion_n(&fit->dispersion, data->lambda_nm[i]);
+    double unit = data->uncertainty != NULL ? data->uncertainty[i] : 1;
+    sum += off * off;
+    weighted += (off / unit) * (off / unit);
+    if (!(fabs(off) <= fit->max_error)) {
+      fit->max_error = fabs(off);
+      fit->max_nm_of_error = data->lambda_nm[i];
+    }
+  }
+  fit->points = data->count;
+  fit->weighted = data->uncertainty != NULL;
+  fit->min_nm = data->lambda_nm[0];
+  fit->max_nm = data->lambda_nm[data->count - 1];
+  fit->rms = sqrt(sum / (double)data->count);
+  fit->reduced_chi_squared =
+      data->count > fit->free ? weighted / (double)(data->count - fit->free) : NAN;
+}
+
+/* Without uncertainties the residuals say how large they are. */
+static double scale_covariance(abbe_fit *fit) {
+  double scale = fit->weighted ? 1 : fit->reduced_chi_squared;
+  size_t count = fit->dispersion.count;
+  for (size_t i = 0; i < count; i++)
+    for (size_t j = 0; j < count; j++)
+      if (j < i)
+        fit->covariance[i][j] = fit->covariance[j][i]; /* to the last bit */
+      else if (fit->covariance[i][j] != 0)
+        fit->covariance[i][j] *= scale;
+  return sqrt(scale);
+}
+
+static abbe_result check_support(const abbe_fit_data *data, const abbe_fit_weakest *weakest,
+                                 double scale, const char *form, abbe_error *error) {
+  double standard_error = weakest->standard_error * scale;
+  if (data->exact || !(fabs(weakest->value) < weakest->least_ratio * standard_error))
+    return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the points do not support a %s fit of %zu term%s over %g to %g nm: %s is "
+                        "%.3g with a standard error of %.2g; ask for fewer terms, or measure over "
+                        "a wider range or more exactly",
+                        form, data->terms, data->terms == 1 ? "" : "s", data->lambda_nm[0],
+                        data->lambda_nm[data->count - 1], weakest->what, weakest->value,
+                        standard_error);
+}
+
+abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_request *request,
+                          abbe_fit *out, abbe_error *error) {
+  ABBE_REQUIRE(points && request && out, error);
+  *out = (abbe_fit){0};
+  abbe_fit_data data;
+  abbe_fit_weakest weakest = {0};
+  abbe_result result = choose(points, request, &data, error);
+  if (result != ABBE_OK) return result;
+  bool cauchy = request->form == ABBE_FIT_CAUCHY;
+  const char *form = cauchy ? "Cauchy" : "Sellmeier";
+  abbe_fit fit = {.free = cauchy ? data.terms : 2 * data.terms};
+  result = check_data(&data, fit.free, form, error);
+  if (result != ABBE_OK) return result;
+  abbe_gsl_guard_enter();
+  result = cauchy ? abbe_fit_cauchy(&data, &fit, &weakest, error)
+                  : abbe_fit_sellmeier(&data, &fit, &weakest, error);
+  abbe_gsl_guard_leave();
+  if (result != ABBE_OK) return result;
+  measure(&data, &fit);
+  result = check_support(&data, &weakest, scale_covariance(&fit), form, error);
+  if (result == ABBE_OK) *out = fit;
+  return result;
+}

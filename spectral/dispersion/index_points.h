@@ -1,0 +1,52 @@
+/* index_points.h: refractive indices at wavelengths: measured ones from a file, or a formula's.
+ *
+ * The file is CSV: a wavelength, an index and, if known, the index's standard uncertainty a line.
+ * It is what fits start from and what distances between glasses are taken to; it makes no
+ * material, and no curve through its points.
+ */
+#ifndef ABBE_SPECTRAL_DISPERSION_INDEX_POINTS_H
+#define ABBE_SPECTRAL_DISPERSION_INDEX_POINTS_H
+
+#include "base/error.h"
+#include "spectral/dispersion/dispersion.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_INDEX_POINTS_MAX_COUNT 200000
+
+typedef struct abbe_index_points {
+  size_t count;
+  double *lambda_nm;   /* [count] ascending, nm; measurements may repeat a wavelength */
+  double *n;           /* [count] */
+  double *uncertainty; /* [count] standard uncertainty of n, > 0; NULL: not known */
+  bool exact;          /* n of a formula, so that residuals are the form's and not noise */
+} abbe_index_points;
+
+/* Reads a file of columns as spectral/dispersion/csv_points.h has it, strictly: a line that is not a point is
+ * an error, since a measurement with holes is another one. Lines may come in any order.
+ * ABBE_IO for the file; ABBE_PARSE for a line, or a unit that cannot be told; ABBE_SCHEMA for no
+ * points, points outside 1 nm to 1 mm, and uncertainties on some lines only. */
+abbe_result abbe_index_points_load(const char *path, abbe_index_points *out, abbe_error *error);
+/* The same from text; name stands for the path in messages. */
+abbe_result abbe_index_points_parse(const char *text, size_t size, const char *name,
+                                    abbe_index_points *out, abbe_error *error);
+
+/* n of a formula over [min_nm, max_nm], ends included, at steps of 1 nm or, where those are fewer
+ * than at_least or more than at_most, at steps that give as many. ABBE_INVALID_ARGUMENT for a
+ * range that is not one, counts outside [2, ABBE_INDEX_POINTS_MAX_COUNT], or where the formula
+ * has no real index. */
+abbe_result abbe_index_points_sample(const abbe_dispersion *dispersion, double min_nm,
+                                     double max_nm, size_t at_least, size_t at_most,
+                                     abbe_index_points *out, abbe_error *error);
+
+void abbe_index_points_free(abbe_index_points *points);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,95 @@
+/* table_edit.h: changes to the file of a material table, a record at a time.
+ *
+ * An edit changes the record that it names and leaves every other byte of the file as it was,
+ * comments and order included (base/yaml/yaml_edit.h). Several changes may follow one another; the
+ * result must be a table before it is written. It is written beside and renamed, and not over a
+ * file that has changed since it was read. It judges no values beyond what a table must be: for
+ * that see the checks of materials.
+ */
+#ifndef ABBE_SPECTRAL_EDITING_TABLE_EDIT_H
+#define ABBE_SPECTRAL_EDITING_TABLE_EDIT_H
+
+#include "base/error.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_table_edit abbe_table_edit;
+
+/* Reads the file at path (at most 16 MiB). ABBE_UNSUPPORTED, with what to do instead, for NULL, the
+ * tables that are compiled in, and stores; ABBE_PARSE where it is not YAML with a list 'materials'.
+ * A file that is YAML but no table (a wrong record) can be edited: that is how it is mended. */
+abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_error *error);
+/* A table without a record yet, for a file that must not exist until it is saved. */
+abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_error *error);
+/* From memory; it can be changed and read, not saved. */
+abbe_result abbe_table_edit_parse(const char *text, size_t size, const char *name,
+                                  abbe_table_edit **out, abbe_error *error);
+void abbe_table_edit_free(abbe_table_edit *edit);
+
+/* The file's text with the changes, owned by the edit, until the next change. */
+const char *abbe_table_edit_text(const abbe_table_edit *edit, size_t *size);
+
+/* The text as it was read or last saved; "" for a new file. */
+const char *abbe_table_edit_original(const abbe_table_edit *edit, size_t *size);
+
+/* The changes. `name` is a record's, whatever the case: ABBE_NOT_FOUND names the nearest. `key` is
+ * a key of a record or a path in it: "source", "absorption.distance_m", "coefficients.0". On
+ * failure nothing is changed. */
+
+/* The value of key becomes `value`, one line of YAML; a key that is not there is put where the
+ * format has it, with the mapping that it stands in. */
+abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const char *key,
+                                const char *value, abbe_error *error);
+/* The same for a text, put in quotes where it must be. */
+abbe_result abbe_table_edit_set_text(abbe_table_edit *edit, const char *name, const char *key,
+                                     const char *text, abbe_error *error);
+/* The same for one number, and for a list: of a list as long as the new one, only the numbers that
+ * differ change their bytes. */
+abbe_result abbe_table_edit_set_number(abbe_table_edit *edit, const char *name, const char *key,
+                                       double value, abbe_error *error);
+abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name, const char *key,
+                                        const double *value, size_t count, abbe_error *error);
+/* Takes key and its value out. */
+abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const char *key,
+                                  abbe_error *error);
+/* A new record at the end; record is its YAML, one mapping, in any indentation. */
+abbe_result abbe_table_edit_add(abbe_table_edit *edit, const char *record, abbe_error *error);
+/* The last record of a table stays: ABBE_INVALID_ARGUMENT. */
+abbe_result abbe_table_edit_remove(abbe_table_edit *edit, const char *name, abbe_error *error);
+abbe_result abbe_table_edit_rename(abbe_table_edit *edit, const char *name, const char *new_name,
+                                   abbe_error *error);
+
+/* The record's own text, with the comments inside it, at the left margin; malloc'd. */
+abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char **out,
+                                   abbe_error *error);
+
+/* The value of key: a scalar's text without its quotes, brackets and blocks as they stand; *out is
+ * malloc'd, NULL where the record has no such key. */
+abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, const char *key,
+                                char **out, abbe_error *error);
+
+/* The name of the table's first record as it is written, malloc'd; NULL where there is none. */
+char *abbe_table_edit_first_name(const abbe_table_edit *edit);
+
+/* Takes all changes back: the text is as it was read or last saved. */
+abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error);
+
+/* ABBE_OK where the changed text is a table, else what abbe_material_table_parse says of it. */
+abbe_result abbe_table_edit_check(const abbe_table_edit *edit, abbe_error *error);
+/* What abbe_table_edit_save would say, but for the disk: ABBE_SCHEMA where the text was a table and
+ * would be none after the changes. */
+abbe_result abbe_table_edit_allow(const abbe_table_edit *edit, abbe_error *error);
+/* The changes so far as a unified diff, malloc'd; "" where there are none. */
+abbe_result abbe_table_edit_diff(const abbe_table_edit *edit, char **out, abbe_error *error);
+/* Writes the file. ABBE_SCHEMA as above; ABBE_IO where the file is not as it was read. Without
+ * changes nothing is written. */
+abbe_result abbe_table_edit_save(abbe_table_edit *edit, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,49 @@
+/* agf_formula.h: the thirteen dispersion formulas of Zemax glass catalogues, to our models and back.
+ *
+ * Coefficients are in the catalogue's order and for micrometres in air, as Zemax has them [ZemaxAGF]. It reads
+ * no files: see spectral/formats/agf.h and spectral/formats/agf_write.h.
+ */
+#ifndef ABBE_SPECTRAL_FORMATS_AGF_FORMULA_H
+#define ABBE_SPECTRAL_FORMATS_AGF_FORMULA_H
+
+#include "base/error.h"
+#include "spectral/dispersion/dispersion.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_AGF_COEFFICIENTS 10
+
+typedef struct abbe_agf_formula {
+  int number;                       /* 1 to 13 */
+  double c[ABBE_AGF_COEFFICIENTS];  /* the CD line; 0 where the formula has no more */
+} abbe_agf_formula;
+
+/* The formula's name in Zemax (Schott, Sellmeier 1, …); NULL outside 1 to 13. */
+const char *abbe_agf_formula_name(int number);
+
+/* The model that computes the same n. ABBE_INVALID_ARGUMENT where there is no such formula, or all
+ * coefficients are 0 or one is not finite. *out needs no freeing. */
+abbe_result abbe_agf_formula_read(const abbe_agf_formula *formula, abbe_dispersion *out,
+                                  abbe_error *error);
+
+typedef enum abbe_agf_fidelity {
+  ABBE_AGF_SAME,      /* reading it again gives the same model and coefficients */
+  ABBE_AGF_REWRITTEN, /* the same n to rounding, through another formula */
+  ABBE_AGF_FITTED     /* no formula of Zemax computes it: only near */
+} abbe_agf_fidelity;
+
+/* The Zemax formula that computes the dispersion. Where none does, the square of a Cauchy form of
+ * four terms (formula 10), fitted over [min_nm, max_nm], with its largest error there in *max_error
+ * (else 0). ABBE_INVALID_ARGUMENT where it cannot be fitted. */
+abbe_result abbe_agf_formula_write(const abbe_dispersion *dispersion, double min_nm, double max_nm,
+                                   abbe_agf_formula *out, abbe_agf_fidelity *fidelity,
+                                   double *max_error, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,221 @@
+#include "spectral/formats/material_write.h"
+
+#include "base/number.h"
+#include "base/yaml/yaml_quote.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { WIDTH = 100 };
+
+/* ---- text ---- */
+
+static void write_text(const char *key, const char *text, FILE *to) {
+  if (text == NULL || text[0] == '\0') return;
+  fprintf(to, "%s: ", key);
+  abbe_yaml_quote_write(text, to);
+  fputc('\n', to);
+}
+
+/* ---- numbers ---- */
+
+static void write_number(const char *key, double value, FILE *to) {
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  fprintf(to, "%s: %s\n", key, abbe_number_text(value, text));
+}
+
+/* [a, b, …], folded to the width; column is where it begins, indent where its next lines do. */
+static void write_list(const double *value, size_t count, int column, int indent, FILE *to) {
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  fputc('[', to);
+  column++;
+  for (size_t i = 0; i < count; i++) {
+    const char *number = abbe_number_text(value[i], text);
+    int length = (int)strlen(number) + 2;
+    if (i > 0 && column + length > WIDTH) {
+      fprintf(to, ",\n%*s", indent, "");
+      column = indent;
+    } else if (i > 0) {
+      fputs(", ", to);
+    }
+    fputs(number, to);
+    column += length;
+  }
+  fputc(']', to);
+}
+
+static void write_pairs(const abbe_spectrum *spectrum, int indent, FILE *to) {
+  const double *lambda_nm = abbe_spectrum_lambda_nm(spectrum);
+  const double *value = abbe_spectrum_value(spectrum);
+  char a[ABBE_NUMBER_TEXT_SIZE], b[ABBE_NUMBER_TEXT_SIZE];
+  int column = WIDTH;
+  fputc('[', to);
+  for (size_t i = 0; i < abbe_spectrum_count(spectrum); i++) {
+    abbe_number_text(lambda_nm[i], a);
+    abbe_number_text(value[i], b);
+    int length = (int)(strlen(a) + strlen(b)) + 6;
+    if (i > 0) fputc(',', to);
+    if (column + length > WIDTH) {
+      fprintf(to, "\n%*s", indent, "");
+      column = indent;
+    } else {
+      fputc(' ', to);
+    }
+    fprintf(to, "[%s, %s]", a, b);
+    column += length;
+  }
+  fprintf(to, "\n%*s]\n", indent - 2, "");
+}
+
+/* ---- parts of a record ---- */
+
+static void write_dispersion(const abbe_material *m, FILE *to) {
+  const abbe_dispersion *d = &m->dispersion;
+  char low[ABBE_NUMBER_TEXT_SIZE], high[ABBE_NUMBER_TEXT_SIZE];
+  fprintf(to, "    model: %s\n", abbe_dispersion_model_name(d->model));
+  if (d->model == ABBE_DISPERSION_TABULATED) {
+    fprintf(to, "    interpolation: %s\n    points: ",
+            abbe_interpolation_name(abbe_spectrum_interpolation(d->table)));
+    write_pairs(d->table, 6, to);
+  } else {
+    fputs("    coefficients: ", to);
+    write_list(d->c, d->count, 18, 6, to);
+    fputc('\n', to);
+  }
+  bool all = m->min_nm == ABBE_MATERIAL_LOW_NM && m->max_nm == ABBE_MATERIAL_HIGH_NM;
+  if (d->model != ABBE_DISPERSION_CONSTANT || !all)
+    fprintf(to, "    range_nm: [%s, %s]\n", abbe_number_text(m->min_nm, low),
+            abbe_number_text(m->max_nm, high));
+  if (m->extrapolate) fputs("    extrapolate: true\n", to);
+  if (!isnan(m->temperature_c)) write_number("    temperature_c", m->temperature_c, to);
+}
+
+static void write_absorption(const abbe_material *m, FILE *to) {
+  if (m->attenuation == NULL) return;
+  fputs("    absorption:\n", to);
+  abbe_interpolation interpolation = abbe_spectrum_interpolation(m->attenuation);
+  if (interpolation != ABBE_INTERPOLATION_LINEAR)
+    fprintf(to, "      interpolation: %s\n", abbe_interpolation_name(interpolation));
+  fputs("      attenuation_per_m: ", to);
+  write_pairs(m->attenuation, 8, to);
+}
+
+static bool any(const double *value, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (value[i] != 0) return true;
+  return false;
+}
+
+static void write_numbers(const char *key, const double *value, size_t count, FILE *to) {
+  fprintf(to, "      %s: ", key);
+  write_list(value, count, (int)strlen(key) + 8, 8, to);
+  fputc('\n', to);
+}
+
+static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
+  bool something = c->code != NULL || c->status != NULL || c->melt_frequency != 0 ||
+                   c->density_g_cm3 != 0 || any(c->expansion_per_k, 2) || c->dpgf != 0 ||
+                   any(c->thermal, 6) || c->rating_count > 0;
+  if (!something) return;
+  fputs("    catalogue:\n", to);
+  if (c->code != NULL) {
+    /* in quotes: digits are text here */
+    fputs("      code: '", to);
+    for (const char *d = c->code; *d != '\0'; d++)
+      if (isalnum((unsigned char)*d) || strchr(" .-/", *d) != NULL) fputc(*d, to);
+    fputs("'\n", to);
+  }
+  write_text("      status", c->status, to);
+  if (c->melt_frequency != 0) write_number("      melt_frequency", c->melt_frequency, to);
+  if (c->density_g_cm3 != 0) write_number("      density_g_cm3", c->density_g_cm3, to);
+  if (any(c->expansion_per_k, 2)) write_numbers("expansion_per_k", c->expansion_per_k, 2, to);
+  if (c->dpgf != 0) write_number("      dpgf", c->dpgf, to);
+  if (any(c->thermal, 6)) write_numbers("thermal", c->thermal, 6, to);
+  if (c->rating_count == 6) write_numbers("ratings", c->ratings, 6, to);
+}
+
+static void write_fits(const abbe_material *m, FILE *to) {
+  static const char *const keys[] = {"cauchy2", "cauchy3"};
+  if (m->fit[0].terms == 0 && m->fit[1].terms == 0) return;
+  fputs("    fit:\n", to);
+  for (int i = 0; i < 2; i++) {
+    const abbe_material_fit *fit = &m->fit[i];
+    char error[ABBE_NUMBER_TEXT_SIZE], low[ABBE_NUMBER_TEXT_SIZE], high[ABBE_NUMBER_TEXT_SIZE];
+    if (fit->terms == 0) continue;
+    fprintf(to, "      %s: {coefficients: ", keys[i]);
+    write_list(fit->c, fit->terms, 0, 8, to);
+    fprintf(to, ", max_error: %s, range_nm: [%s, %s]}\n", abbe_number_text(fit->max_error, error),
+            abbe_number_text(fit->min_nm, low), abbe_number_text(fit->max_nm, high));
+  }
+}
+
+/* ---- records and tables ---- */
+
+abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_error *error) {
+  ABBE_REQUIRE(material && to, error);
+  const abbe_material *m = material;
+  abbe_result result = abbe_material_check(m, error);
+  if (result != ABBE_OK) return result;
+  write_text("  - name", m->name, to);
+  write_text("    description", m->description, to);
+  write_dispersion(m, to);
+  if (m->published_n_d != 0) write_number("    n_d", m->published_n_d, to);
+  if (m->published_v_d != 0) write_number("    v_d", m->published_v_d, to);
+  write_text("    source", m->source, to);
+  write_text("    comment", m->comment, to);
+  write_text("    warning", m->warning, to);
+  write_absorption(m, to);
+  write_catalogue(&m->catalogue, to);
+  write_fits(m, to);
+  if (!ferror(to)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_IO, "%s: its record could not be written", m->name);
+}
+
+static abbe_result write_table(const abbe_material_table *table, FILE *to, abbe_error *error) {
+  write_text("description", table->description, to);
+  fputs(table->description != NULL ? "\nmaterials:\n" : "materials:\n", to);
+  for (size_t i = 0; i < table->count; i++) {
+    if (i > 0) fputc('\n', to);
+    abbe_result result = abbe_material_write(&table->material[i], to, error);
+    if (result != ABBE_OK) return result;
+  }
+  return ABBE_OK;
+}
+
+/* A value takes a byte at least, so that a short text has not too many of them. */
+static abbe_result check_readable(const char *text, size_t size, size_t count, abbe_error *error) {
+  enum { SURELY_READ = 1000000 };
+  abbe_material_table table;
+  abbe_error why = {0};
+  if (size <= SURELY_READ) return ABBE_OK;
+  abbe_result result = abbe_material_table_parse(text, size, "the table", &table, &why);
+  if (result == ABBE_OK) abbe_material_table_free(&table);
+  if (result == ABBE_OK || result == ABBE_NO_MEMORY)
+    return result == ABBE_OK ? result : abbe_error_set(error, result, "%s", why.text);
+  return abbe_error_set(
+      error, ABBE_INVALID_ARGUMENT,
+      "%zu materials are %.3g MB of YAML, which no command would read again (%s); "
+      "write a store of them, to a file that ends in .sqlite",
+      count, (double)size / 1e6, why.text);
+}
+
+abbe_result abbe_material_table_write(const abbe_material_table *table, FILE *to,
+                                      abbe_error *error) {
+  ABBE_REQUIRE(table && to, error);
+  char *text = NULL;
+  size_t size = 0;
+  FILE *memory = open_memstream(&text, &size);
+  if (memory == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a table");
+  abbe_result result = write_table(table, memory, error);
+  if (fclose(memory) != 0 && result == ABBE_OK)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a table");
+  if (result == ABBE_OK) result = check_readable(text, size, table->count, error);
+  if (result == ABBE_OK) fwrite(text, 1, size, to);
+  free(text);
+  if (result != ABBE_OK || (fflush(to) == 0 && !ferror(to))) return result;
+  return abbe_error_set(error, ABBE_IO, "the table could not be written");
+}

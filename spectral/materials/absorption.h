@@ -1,0 +1,52 @@
+/* absorption.h: what absorbs light inside a material, from what people have: internal
+ * transmittance, extinction coefficient k, or a colour at a distance; and back.
+ *
+ * All become the natural attenuation coefficient a, in 1/m: the share exp(-a d) of the light is
+ * left after d metres. Reflection at surfaces is not absorption and is not in it.
+ */
+#ifndef ABBE_SPECTRAL_MATERIALS_ABSORPTION_H
+#define ABBE_SPECTRAL_MATERIALS_ABSORPTION_H
+
+#include "base/error.h"
+#include "spectral/dispersion/points.h"
+#include "spectral/spectrum.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A table prints a transmittance of 0 where it is too small to measure: it is taken as this. */
+#define ABBE_ABSORPTION_LEAST_TRANSMITTANCE 1e-6
+
+/* -ln(T) / d for an internal transmittance T in [0, 1] of thickness_m > 0 metres; T below
+ * ABBE_ABSORPTION_LEAST_TRANSMITTANCE is raised to it, and T above 1 has none (0). */
+double abbe_absorption_from_transmittance(double transmittance, double thickness_m);
+/* exp(-a d), in [0, 1]. */
+double abbe_absorption_transmittance(double attenuation_per_m, double thickness_m);
+/* 4 pi k / lambda [BornWolf1999]. */
+double abbe_absorption_from_k(double k, double lambda_nm);
+double abbe_absorption_k(double attenuation_per_m, double lambda_nm);
+
+/* Attenuation spectra, linear between the points; their range is that of the points, which must be
+ * in order. ABBE_INVALID_ARGUMENT, with what would be right, for a transmittance outside [0, 1], a
+ * thickness that is not positive, a negative k, or no points at all. */
+abbe_result abbe_absorption_spectrum_of_transmittance(const abbe_points *transmittance,
+                                                      double thickness_m, abbe_spectrum **out,
+                                                      abbe_error *error);
+abbe_result abbe_absorption_spectrum_of_k(const abbe_points *k, abbe_spectrum **out,
+                                          abbe_error *error);
+
+/* The simplest spectrum that goes with a colour: linear Rec.709 shares of red, green and blue,
+ * each in [1e-6, 1], that are left after distance_m metres. -ln(share) / distance holds at the
+ * dominant wavelengths of the primaries (611.4, 549.1, 464.2 nm) and runs straight between them. */
+abbe_result abbe_absorption_spectrum_of_colour(const double colour[3], double distance_m,
+                                               abbe_spectrum **out, abbe_error *error);
+/* The three shares that are left after distance_m metres at those wavelengths: its inverse. */
+void abbe_absorption_colour(const abbe_spectrum *attenuation, double distance_m, double colour[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

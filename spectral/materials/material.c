@@ -1,0 +1,152 @@
+#include "spectral/materials/material.h"
+
+#include "base/encoding.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void abbe_material_free(abbe_material *material) {
+  if (material == NULL) return;
+  free(material->name);
+  free(material->description);
+  free(material->source);
+  free(material->warning);
+  free(material->comment);
+  free(material->catalogue.code);
+  free(material->catalogue.status);
+  abbe_dispersion_free(&material->dispersion);
+  abbe_spectrum_free(material->attenuation);
+  *material = (abbe_material){0};
+}
+
+/* ---- whether a table may hold it ---- */
+
+/* 1 where the value was none from low to high, and is now `otherwise`. */
+static size_t bound(double *value, double low, double high, double otherwise) {
+  if (*value >= low && *value <= high) return 0;
+  *value = otherwise;
+  return 1;
+}
+
+size_t abbe_material_catalogue_bound(abbe_material_catalogue *c) {
+  const double most = ABBE_MATERIAL_CATALOGUE_MOST;
+  size_t count = bound(&c->melt_frequency, 0, ABBE_MATERIAL_MELT_MOST, 0) +
+                 bound(&c->density_g_cm3, 0, ABBE_MATERIAL_DENSITY_MOST, 0) +
+                 bound(&c->dpgf, -ABBE_MATERIAL_DPGF_MOST, ABBE_MATERIAL_DPGF_MOST, 0);
+  for (int i = 0; i < 2; i++) count += bound(&c->expansion_per_k[i], -most, most, 0);
+  for (int i = 0; i < 6; i++) count += bound(&c->thermal[i], -most, most, 0);
+  for (int i = 0; i < 6; i++) count += bound(&c->ratings[i], -most, most, -1);
+  return count;
+}
+
+abbe_result abbe_material_check_name(const char *name, abbe_error *error) {
+  size_t length = name == NULL ? 0 : strlen(name);
+  bool good =
+      length > 0 && length <= ABBE_MATERIAL_MAX_NAME && name[0] != ' ' && name[length - 1] != ' ';
+  char shown[ABBE_MATERIAL_MAX_NAME + 1];
+  if (good) abbe_encoding_printable(name, length, false, shown, sizeof shown);
+  good = good && strcmp(name, shown) == 0;
+  if (good) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "'%.100s' is not a name; up to %d printable characters, no space at the "
+                        "ends",
+                        name == NULL ? "" : name, ABBE_MATERIAL_MAX_NAME);
+}
+
+static abbe_result check_range(const abbe_material *m, abbe_error *error) {
+  bool ascends = m->min_nm >= ABBE_MATERIAL_LOW_NM && m->max_nm <= ABBE_MATERIAL_HIGH_NM &&
+                 m->min_nm < m->max_nm;
+  const abbe_spectrum *table = m->dispersion.table;
+  if (table != NULL && abbe_spectrum_count(table) < 2)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: it has an index at a single wavelength; give it two points or more, "
+                          "or the model constant",
+                          m->name);
+  if (!ascends)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
+                          m->min_nm, m->max_nm, ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
+  if (table == NULL) return ABBE_OK;
+  const double *lambda_nm = abbe_spectrum_lambda_nm(table);
+  double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(table) - 1];
+  if (m->min_nm >= low && m->max_nm <= high) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s: its range of %g to %g nm is wider than its points, which reach from "
+                        "%g to %g nm",
+                        m->name, m->min_nm, m->max_nm, low, high);
+}
+
+/* A formula that has a pole or no root inside its own range was copied wrongly, most often with
+ * coefficients in another unit. */
+static abbe_result check_index(const abbe_material *m, abbe_error *error) {
+  enum { STEPS = 1000 };
+  for (int i = 0; i <= STEPS; i++) {
+    double lambda_nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS;
+    if (!isnan(abbe_dispersion_n(&m->dispersion, lambda_nm))) continue;
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its %s formula has no real index at %g nm, inside its range; check "
+                          "the coefficients (wavelengths in micrometres)",
+                          m->name, abbe_dispersion_model_name(m->dispersion.model), lambda_nm);
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error) {
+  ABBE_REQUIRE(material, error);
+  abbe_result result = abbe_material_check_name(material->name, error);
+  if (result != ABBE_OK) return result;
+  if (material->source == NULL || material->source[0] == '\0')
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: it names no source; say where the numbers come from",
+                          material->name);
+  abbe_error why;
+  if (abbe_dispersion_check(&material->dispersion, &why) != ABBE_OK)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
+  return check_range(material, error);
+}
+
+abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
+  ABBE_REQUIRE(material, error);
+  abbe_result result = abbe_material_check_form(material, error);
+  return result == ABBE_OK ? check_index(material, error) : result;
+}
+
+/* ---- what it does to light ---- */
+
+bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm) {
+  return lambda_nm < material->min_nm || lambda_nm > material->max_nm;
+}
+
+abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
+                            abbe_error *error) {
+  ABBE_REQUIRE(material && n, error);
+  if (abbe_material_extrapolates(material, lambda_nm) && !material->extrapolate)
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
+                          "%s has no index at %g nm: its data reach from %g to %g nm, and its "
+                          "record does not say 'extrapolate: true'",
+                          material->name, lambda_nm, material->min_nm, material->max_nm);
+  double value = abbe_dispersion_n(&material->dispersion, lambda_nm);
+  if (isnan(value))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its %s formula has no real index at %g nm", material->name,
+                          abbe_dispersion_model_name(material->dispersion.model), lambda_nm);
+  *n = value;
+  return ABBE_OK;
+}
+
+double abbe_material_attenuation(const abbe_material *material, double lambda_nm) {
+  if (material->attenuation == NULL) return 0;
+  double value = abbe_spectrum_at(material->attenuation, lambda_nm);
+  return value > 0 ? value : 0; /* a spline may dip below its points */
+}
+
+bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm) {
+  enum { STEPS = 81 };
+  size_t opaque = 0;
+  for (size_t i = 0; i < STEPS; i++) {
+    const double lambda_nm = min_nm + (max_nm - min_nm) * (double)i / (STEPS - 1);
+    if (abbe_material_attenuation(material, lambda_nm) * lambda_nm * 1e-9 > 1) opaque++;
+  }
+  return 2 * opaque > STEPS;
+}

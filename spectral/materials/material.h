@@ -1,0 +1,110 @@
+/* material.h: a transparent material: dispersion, absorption, and where its numbers come from.
+ *
+ * A zeroed record with a name, a source and a dispersion is a valid one, but for temperature_c: 0
+ * means 0 Celsius, NaN that the source is silent.
+ */
+#ifndef ABBE_SPECTRAL_MATERIALS_MATERIAL_H
+#define ABBE_SPECTRAL_MATERIALS_MATERIAL_H
+
+#include "base/error.h"
+#include "spectral/dispersion/dispersion.h"
+#include "spectral/spectrum.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A Cauchy form fitted to the material, as the table records it. */
+typedef struct abbe_material_fit {
+  size_t terms;        /* 0 where the table has none */
+  double c[8];         /* um^(2k) */
+  double max_error;    /* largest |n - fit| over [min_nm, max_nm] */
+  double min_nm, max_nm;
+} abbe_material_fit;
+
+enum { ABBE_MATERIAL_MAX_NAME = 80 };
+
+/* The wavelengths, nm, that a record may speak of: wide enough for any optical data, and narrow
+ * enough that no formula overflows. */
+#define ABBE_MATERIAL_LOW_NM 1.0
+#define ABBE_MATERIAL_HIGH_NM 1e6
+
+/* What a maker's catalogue says about a glass besides its index. It is carried, not used. 0 (NULL)
+ * means that the catalogue is silent, as it does in the catalogues themselves. */
+typedef struct abbe_material_catalogue {
+  char *code;              /* the six-digit code of n_d and V_d, as printed: 517642.251 */
+  char *status;            /* standard, preferred, obsolete, special or melt */
+  double melt_frequency;   /* 1 (most often molten) to 5 */
+  double density_g_cm3;
+  double expansion_per_k[2]; /* linear, -30 to 70 C and 100 to 300 C, 1/K */
+  double dpgf;             /* deviation of the partial dispersion P_gF from the normal line */
+  double thermal[6];       /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
+  size_t rating_count;     /* 0 or 6 */
+  double ratings[6];       /* relative cost, then resistance: climate, stain, acid, alkali,
+                              phosphate; -1 where it is not known */
+} abbe_material_catalogue;
+
+typedef struct abbe_material {
+  char *name;                /* unique in its table, as on the command line */
+  char *description;         /* one line for people; may be NULL */
+  abbe_dispersion dispersion;
+  double min_nm, max_nm;     /* valid range of the dispersion, from its source */
+  bool extrapolate;          /* the record allows use outside that range; reported when used */
+  abbe_spectrum *attenuation;/* natural attenuation coefficient, 1/m, at nm; NULL: clear */
+  double temperature_c;      /* of the measurement, Celsius; NaN where the source is silent */
+  char *source;              /* key into BIBLIOGRAPHY.md, then details */
+  char *warning;             /* what a user of this row must know (thesis rows); may be NULL */
+  abbe_material_fit fit[2];  /* two and three terms */
+  double published_n_d;      /* n_d and V_d as the source prints them, for the doctor; */
+  double published_v_d;      /* 0 where it prints none */
+  char *comment;             /* the source's own remark; may be NULL */
+  abbe_material_catalogue catalogue;
+  size_t line;               /* of the record in its file, for messages */
+} abbe_material;
+
+void abbe_material_free(abbe_material *material);
+
+/* What a table holds of a catalogue's numbers: no other is larger. */
+#define ABBE_MATERIAL_CATALOGUE_MOST 1e12
+#define ABBE_MATERIAL_MELT_MOST 1e6
+#define ABBE_MATERIAL_DENSITY_MOST 1e3
+#define ABBE_MATERIAL_DPGF_MOST 1e3
+
+/* Makes a table able to hold what a file says, which may be anything: a number that is not finite
+ * or beyond those bounds, or a density or melt frequency below 0, becomes 0 (a rating -1). How many
+ * did. */
+size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
+
+/* Whether a table may hold the record, that is: what is written of it can be read again. The name
+ * has 1 to 80 printable characters and no space at its ends, there is a source, the coefficients go
+ * with the model, the range ascends inside [ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM] and inside
+ * the points of a tabulated model, and the formula has a real index at 1001 wavelengths over it.
+ * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
+abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
+/* All of it but the last, which takes its time: what can be told without a value of the formula. */
+abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error);
+/* The part of it that is about the name alone. */
+abbe_result abbe_material_check_name(const char *name, abbe_error *error);
+
+/* n at lambda_nm into *n. ABBE_OUT_OF_RANGE outside [min_nm, max_nm] unless extrapolate;
+ * ABBE_INVALID_ARGUMENT where the formula has no real value there. */
+abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
+                            abbe_error *error);
+
+/* Whether lambda_nm lies outside the valid range (so that n there is extrapolated). */
+bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm);
+
+/* Natural attenuation coefficient at lambda_nm, 1/m, >= 0; 0 for a clear material. */
+double abbe_material_attenuation(const abbe_material *material, double lambda_nm);
+
+/* Whether it absorbs within a wavelength (down to 1/e: k above 0.08) in most of the range, as
+ * metals do, in which light does not get on. */
+bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

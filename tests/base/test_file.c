@@ -1,0 +1,275 @@
+#define _XOPEN_SOURCE 700
+#include "tests/check.h"
+
+#include "base/file.h"
+
+#include <dirent.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char folder[256];
+
+static const char *in_folder(const char *name) {
+  static char path[2][1024];
+  static int turn;
+  turn = !turn;
+  snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+  return path[turn];
+}
+
+static int make_folder(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/abbe-test-file-XXXXXX");
+  return mkdtemp(folder) == NULL;
+}
+
+static int entries(void) {
+  DIR *dir = opendir(folder);
+  assert_non_null(dir);
+  int count = 0;
+  for (struct dirent *entry; (entry = readdir(dir)) != NULL;)
+    count += strcmp(entry->d_name, ".") && strcmp(entry->d_name, "..");
+  closedir(dir);
+  return count;
+}
+
+static int empty_folder(void **state) {
+  (void)state;
+  DIR *dir = opendir(folder);
+  for (struct dirent *entry; (entry = readdir(dir)) != NULL;)
+    if (strcmp(entry->d_name, ".") && strcmp(entry->d_name, "..")) remove(in_folder(entry->d_name));
+  closedir(dir);
+  return rmdir(folder);
+}
+
+static void assert_holds(const char *path, const char *text) {
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(path, 1000, &data, &size, NULL), ABBE_OK);
+  assert_int_equal(size, strlen(text));
+  assert_string_equal(data, text);
+  free(data);
+}
+
+static void what_is_written_is_read(void **state) {
+  (void)state;
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_write(in_folder("a"), "x\0y", 3, NULL), ABBE_OK);
+  assert_int_equal(abbe_file_read(in_folder("a"), 3, &data, &size, NULL), ABBE_OK);
+  assert_int_equal(size, 3);
+  assert_memory_equal(data, "x\0y", 4);
+  free(data);
+  assert_int_equal(abbe_file_write(in_folder("a"), "", 0, NULL), ABBE_OK);
+  assert_holds(in_folder("a"), "");
+  assert_int_equal(entries(), 1);
+}
+
+static void what_cannot_be_read_says_why(void **state) {
+  (void)state;
+  abbe_error error;
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(in_folder("none"), 10, &data, &size, &error), ABBE_IO);
+  assert_contains(error.text, "/none: ");
+  assert_int_equal(abbe_file_read(folder, 10, &data, &size, &error), ABBE_IO);
+  assert_contains(error.text, "is a directory");
+  assert_int_equal(abbe_file_write(in_folder("long"), "12345678901", 11, NULL), ABBE_OK);
+  assert_int_equal(abbe_file_read(in_folder("long"), 10, &data, &size, &error), ABBE_IO);
+  assert_contains(error.text, "at most 10");
+  assert_null(data);
+}
+
+/* Whoever waits at one of these is ended by the test's limit alone. */
+static void only_a_regular_file_is_opened(void **state) {
+  (void)state;
+  abbe_error error;
+  char *data = NULL;
+  size_t size = 0;
+  FILE *stream = NULL;
+  const struct {
+    const char *path, *kind;
+  } others[] = {{in_folder("fifo"), "is a named pipe"},
+                {"/dev/zero", "is a device"},
+                {folder, "is a directory"}};
+  assert_int_equal(mkfifo(others[0].path, 0600), 0);
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    assert_int_equal(abbe_file_read(others[i].path, 100000, &data, &size, &error), ABBE_IO);
+    assert_contains(error.text, others[i].path);
+    assert_contains(error.text, others[i].kind);
+    assert_int_equal(abbe_file_open(others[i].path, &stream, &size, &error), ABBE_IO);
+    assert_contains(error.text, others[i].kind);
+    assert_null(stream);
+  }
+  assert_null(data);
+  assert_int_equal(abbe_file_write(in_folder("whole"), "12345", 5, NULL), ABBE_OK);
+  assert_int_equal(abbe_file_open(in_folder("whole"), &stream, &size, &error), ABBE_OK);
+  assert_int_equal(size, 5);
+  assert_int_equal(fgetc(stream), '1');
+  fclose(stream);
+}
+
+/* The poll that abbe_file_read calls (tests/spectral.cmake): time that passes without a byte. */
+static bool nothing_comes;
+int __real_poll(struct pollfd *one, nfds_t count, int milliseconds);
+int __wrap_poll(struct pollfd *one, nfds_t count, int milliseconds);
+int __wrap_poll(struct pollfd *one, nfds_t count, int milliseconds) {
+  if (!nothing_comes) return __real_poll(one, count, milliseconds);
+  assert_int_equal(milliseconds, 1000 * ABBE_FILE_PATIENCE_SECONDS);
+  return 0;
+}
+
+/* As a shell's <(...) is one. */
+static void a_nameless_pipe_is_read_while_it_brings_something(void **state) {
+  (void)state;
+  abbe_error error;
+  int end[2];
+  char path[64], *data = NULL;
+  size_t size = 0;
+  assert_int_equal(pipe(end), 0);
+  snprintf(path, sizeof path, "/dev/fd/%d", end[0]);
+  assert_int_equal(write(end[1], "text", 4), 4);
+  nothing_comes = true;
+  assert_int_equal(abbe_file_read(path, 100, &data, &size, &error), ABBE_IO);
+  nothing_comes = false;
+  assert_contains(error.text, "nothing has come through this pipe for 60 s");
+  assert_null(data);
+  assert_int_equal(write(end[1], "more", 4), 4);
+  close(end[1]);
+  assert_holds(path, "more");
+  close(end[0]);
+}
+
+static void standard_input_is_read(void **state) {
+  (void)state;
+  int end[2], kept = dup(STDIN_FILENO);
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(pipe(end), 0);
+  assert_int_equal(write(end[1], "text", 4), 4);
+  close(end[1]);
+  dup2(end[0], STDIN_FILENO);
+  assert_int_equal(abbe_file_read_input(100, &data, &size, NULL), ABBE_OK);
+  dup2(kept, STDIN_FILENO);
+  close(kept);
+  close(end[0]);
+  assert_string_equal(data, "text");
+  free(data);
+}
+
+static void a_file_without_a_size_is_read(void **state) {
+  (void)state;
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read("/proc/self/status", 1 << 20, &data, &size, NULL), ABBE_OK);
+  assert_contains(data, "Name:");
+  assert_int_equal(size, strlen(data));
+  free(data);
+}
+
+static void nothing_changes_before_commit_or_after_discard(void **state) {
+  (void)state;
+  abbe_file_writer writer;
+  assert_int_equal(abbe_file_write(in_folder("t"), "old", 3, NULL), ABBE_OK);
+  int before = entries();
+  assert_int_equal(abbe_file_writer_open(&writer, in_folder("t"), NULL), ABBE_OK);
+  fputs("new", writer.stream);
+  fflush(writer.stream);
+  assert_holds(in_folder("t"), "old");
+  assert_int_equal(entries(), before + (writer.temporary != NULL));
+  abbe_file_writer_discard(&writer);
+  assert_null(writer.stream);
+  assert_holds(in_folder("t"), "old");
+  assert_int_equal(entries(), before);
+  abbe_file_writer_discard(&writer);
+  assert_int_equal(abbe_file_writer_commit(&writer, NULL), ABBE_INVALID_ARGUMENT);
+}
+
+static void a_link_is_written_through_and_a_mode_is_kept(void **state) {
+  (void)state;
+  struct stat status;
+  assert_int_equal(abbe_file_write(in_folder("target"), "old", 3, NULL), ABBE_OK);
+  assert_int_equal(chmod(in_folder("target"), 0640), 0);
+  assert_int_equal(symlink("target", in_folder("link")), 0);
+  assert_int_equal(abbe_file_write(in_folder("link"), "new", 3, NULL), ABBE_OK);
+  assert_int_equal(lstat(in_folder("link"), &status), 0);
+  assert_true(S_ISLNK(status.st_mode));
+  assert_holds(in_folder("target"), "new");
+  assert_int_equal(stat(in_folder("target"), &status), 0);
+  assert_int_equal(status.st_mode & 0777, 0640);
+  assert_int_equal(symlink("nowhere", in_folder("dangling")), 0);
+  assert_int_equal(abbe_file_write(in_folder("dangling"), "new", 3, NULL), ABBE_IO);
+}
+
+static void an_unwritable_target_says_why(void **state) {
+  (void)state;
+  abbe_error error;
+  int before = entries();
+  assert_int_equal(abbe_file_write(in_folder("no/such/folder"), "x", 1, &error), ABBE_IO);
+  assert_contains(error.text, "no/such/folder");
+  assert_int_equal(abbe_file_write(folder, "x", 1, &error), ABBE_IO);
+  assert_contains(error.text, "directory");
+  assert_int_equal(abbe_file_write("/dev/null", "x", 1, &error), ABBE_IO);
+  assert_contains(error.text, "not a regular file");
+  assert_int_equal(abbe_file_write("", "x", 1, &error), ABBE_IO);
+  assert_int_equal(entries(), before);
+}
+
+static void a_name_as_long_as_names_can_be_works(void **state) {
+  (void)state;
+  char name[256];
+  memset(name, 'n', 255);
+  name[255] = '\0';
+  assert_int_equal(abbe_file_write(in_folder(name), "x", 1, NULL), ABBE_OK);
+  assert_holds(in_folder(name), "x");
+}
+
+/* A file-size limit fails a write as a full disk does. */
+static void a_full_disk_leaves_the_old_file(void **state) {
+  (void)state;
+  enum { SIZE = 1 << 20 };
+  char *big = calloc(1, SIZE);
+  assert_non_null(big);
+  assert_int_equal(abbe_file_write(in_folder("kept"), "old", 3, NULL), ABBE_OK);
+  int before = entries();
+  struct rlimit limit, small;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  small = limit;
+  small.rlim_cur = 4096;
+  signal(SIGXFSZ, SIG_IGN);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+  abbe_error error = {0};
+  abbe_result result = abbe_file_write(in_folder("kept"), big, SIZE, &error);
+  /* small enough for the stream's buffer: the failure shows at commit only */
+  abbe_result buffered = abbe_file_write(in_folder("kept"), big, 4097, NULL);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  free(big);
+  assert_int_equal(result, ABBE_IO);
+  assert_int_equal(buffered, ABBE_IO);
+  assert_contains(error.text, "kept");
+  assert_contains(error.text, "File too large");
+  assert_holds(in_folder("kept"), "old");
+  assert_int_equal(entries(), before);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_is_written_is_read),
+      cmocka_unit_test(what_cannot_be_read_says_why),
+      cmocka_unit_test(a_file_without_a_size_is_read),
+      cmocka_unit_test(only_a_regular_file_is_opened),
+      cmocka_unit_test(a_nameless_pipe_is_read_while_it_brings_something),
+      cmocka_unit_test(standard_input_is_read),
+      cmocka_unit_test(nothing_changes_before_commit_or_after_discard),
+      cmocka_unit_test(a_link_is_written_through_and_a_mode_is_kept),
+      cmocka_unit_test(an_unwritable_target_says_why),
+      cmocka_unit_test(a_name_as_long_as_names_can_be_works),
+      cmocka_unit_test(a_full_disk_leaves_the_old_file),
+  };
+  return cmocka_run_group_tests(tests, make_folder, empty_folder);
+}

@@ -1,0 +1,70 @@
+#include "tests/check.h"
+
+#include "base/html_text.h"
+
+#include <stdlib.h>
+
+static void becomes(const char *html, const char *wanted) {
+  char *text = abbe_html_text(html, 1000);
+  assert_string_equal(text, wanted);
+  free(text);
+}
+
+static void tags_and_entities_become_text(void **state) {
+  (void)state;
+  becomes("", "");
+  becomes("  plain\n  text ", "plain text");
+  becomes("<a href=\"https://x\"><i>Appl. Opt.</i> <b>46</b>, 3811-3820 (2007)</a>",
+          "Appl. Opt. 46, 3811-3820 (2007)");
+  becomes("one<br>two<br/>three", "one two three");
+  becomes("H<sub>2</sub>O", "H2O");
+  becomes("a &lt; b &amp;&nbsp;c 20&deg;C &unknown;", "a < b & c 20\xc2\xb0\x43 &unknown;");
+  becomes("n < 2 and k > 0", "n < 2 and k > 0");
+  becomes("open <a end", "open <a end");
+  becomes("<b></b>", "");
+}
+
+static void long_texts_are_cut_between_letters(void **state) {
+  (void)state;
+  char *text = abbe_html_text("ab\xc3\xa4\xc3\xa4", 3);
+  assert_string_equal(text, "ab");
+  free(text);
+  text = abbe_html_text("ab\xc3\xa4\xc3\xa4", 4);
+  assert_string_equal(text, "ab\xc3\xa4");
+  free(text);
+}
+
+/* A quarter of a million openings, none of which ends. */
+static void unending_tags_take_no_time(void **state) {
+  (void)state;
+  enum { COUNT = 1 << 18 };
+  char *html = malloc(2 * COUNT + 1);
+  assert_non_null(html);
+  for (size_t i = 0; i < COUNT; i++) memcpy(html + 2 * i, "<a", 2);
+  html[2 * COUNT] = '\0';
+  char *text = abbe_html_text(html, 10);
+  assert_string_equal(text, "<a<a<a<a<a");
+  free(text);
+  free(html);
+}
+
+static void escaped_text_comes_back(void **state) {
+  (void)state;
+  const char *const texts[] = {"a < b > c & d", "<b>", "&amp;", "", "\xc3\xa4"};
+  for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+    char *html = abbe_html_escape(texts[i]);
+    becomes(html, texts[i]);
+    assert_null(strchr(html, '<'));
+    free(html);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(tags_and_entities_become_text),
+      cmocka_unit_test(long_texts_are_cut_between_letters),
+      cmocka_unit_test(unending_tags_take_no_time),
+      cmocka_unit_test(escaped_text_comes_back),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

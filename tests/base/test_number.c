@@ -1,0 +1,69 @@
+#include "tests/check.h"
+
+#include "base/number.h"
+
+#include <locale.h>
+#include <stdlib.h>
+
+static void written_numbers_are_short_and_read_back(void **state) {
+  (void)state;
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  assert_string_equal(abbe_number_text(1.5168, text), "1.5168");
+  assert_string_equal(abbe_number_text(0.1 + 0.2, text), "0.30000000000000004");
+  assert_string_equal(abbe_number_text(0, text), "0");
+  assert_string_equal(abbe_number_text(NAN, text), "nan");
+  assert_string_equal(abbe_number_text(-INFINITY, text), "-inf");
+  srand(1);
+  for (int i = 0; i < 20000; i++) {
+    double value = ldexp((double)rand() / RAND_MAX - 0.5, rand() % 600 - 300), back = 0;
+    const char *end;
+    assert_true(abbe_number_read(abbe_number_text(value, text), &end, &back));
+    assert_int_equal(*end, '\0');
+    assert_true(back == value);
+  }
+}
+
+static void only_decimal_numbers_are_read(void **state) {
+  (void)state;
+  const char *end;
+  double value = 7;
+  const char *const none[] = {"", "-", ".", "x1", "nan", "inf", "0x10", "+", "-.", "e5"};
+  for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+    assert_false(abbe_number_read(none[i], &end, &value));
+    assert_ptr_equal(end, none[i]);
+  }
+  const char *text = " \t-1.5E-003 rest";
+  assert_true(abbe_number_read(text, &end, &value));
+  assert_near(value, -0.0015, 0);
+  assert_string_equal(end, " rest");
+  assert_true(abbe_number_read(".5,", &end, &value));
+  assert_near(value, 0.5, 0);
+  assert_true(abbe_number_read("1e999", &end, &value) && isinf(value));
+}
+
+/* Where the host has a locale with a decimal comma, it is without effect, and left as it was. */
+static void the_hosts_locale_is_without_effect(void **state) {
+  (void)state;
+  const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "C.UTF-8"};
+  for (int i = 0; i < 4 && setlocale(LC_ALL, names[i]) == NULL; i++)
+    ;
+  char before[16], after[16], text[ABBE_NUMBER_TEXT_SIZE];
+  snprintf(before, sizeof before, "%.1f", 0.5);
+  double value = 0;
+  const char *end;
+  assert_string_equal(abbe_number_text(0.5, text), "0.5");
+  assert_true(abbe_number_read("2.5", &end, &value));
+  assert_near(value, 2.5, 0);
+  snprintf(after, sizeof after, "%.1f", 0.5);
+  assert_string_equal(before, after);
+  setlocale(LC_ALL, "C");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(written_numbers_are_short_and_read_back),
+      cmocka_unit_test(only_decimal_numbers_are_read),
+      cmocka_unit_test(the_hosts_locale_is_without_effect),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,66 @@
+#include "tests/check.h"
+
+#include "base/encoding.h"
+#include "base/report.h"
+
+static void notes_are_kept_in_order(void **state) {
+  (void)state;
+  abbe_report report = {0};
+  abbe_report_add(&report, ABBE_NOTE_SKIPPED, 12, "N-BK7", "no formula %d", 99);
+  abbe_report_add(&report, ABBE_NOTE_LOST, 0, NULL, "a \x1b[2J");
+  abbe_report_add(NULL, ABBE_NOTE_LOST, 0, NULL, "unheard");
+  abbe_report_add(&report, (abbe_note_kind)77, 0, NULL, "no such kind");
+  assert_int_equal(report.count, 2);
+  assert_int_equal(report.note[0].kind, ABBE_NOTE_SKIPPED);
+  assert_int_equal(report.note[0].line, 12);
+  assert_string_equal(report.note[0].name, "N-BK7");
+  assert_string_equal(report.note[0].text, "no formula 99");
+  assert_string_equal(report.note[1].name, "");
+  assert_string_equal(report.note[1].text, "a \xe2\x90\x9b[2J");
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
+  assert_string_equal(abbe_note_kind_word(ABBE_NOTE_ASSUMED), "assumed");
+  assert_string_equal(abbe_note_kind_word((abbe_note_kind)-1), "unknown");
+  abbe_report_free(&report);
+  abbe_report_free(&report);
+}
+
+/* Of a long text whole letters are kept, of a long path its end. */
+static void texts_are_cut_between_letters(void **state) {
+  (void)state;
+  char text[800] = "", path[800] = "";
+  for (int i = 0; i < 390; i++) strcat(text, "\xc3\xa4");
+  snprintf(path, sizeof path, "%s%s", "x/", text);
+  memcpy(path + strlen(path) - 2, "/z", 2);
+  abbe_report report = {.file = path};
+  abbe_report_add(&report, ABBE_NOTE_LOST, 0, text, "x%s", text);
+  const abbe_note *n = &report.note[0];
+  assert_int_equal(strlen(n->text), 319);
+  assert_int_equal(strlen(n->name), 94);
+  assert_int_equal(strlen(n->file), 126);
+  const char *const cut[] = {n->text, n->name, n->file};
+  for (int i = 0; i < 3; i++)
+    for (const char *c = cut[i]; *c != '\0'; c += abbe_encoding_letter(c))
+      assert_true(abbe_encoding_letter(c) > 0);
+  assert_string_equal(n->file + 124, "/z");
+  abbe_report_free(&report);
+}
+
+static void there_is_an_end_to_what_is_kept(void **state) {
+  (void)state;
+  abbe_report report = {0};
+  for (int i = 0; i < ABBE_REPORT_MAX_NOTES + 5; i++)
+    abbe_report_add(&report, ABBE_NOTE_CHANGED, (size_t)i, "x", "%d", i);
+  assert_int_equal(report.count, ABBE_REPORT_MAX_NOTES);
+  assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], ABBE_REPORT_MAX_NOTES + 5);
+  assert_string_equal(report.note[ABBE_REPORT_MAX_NOTES - 1].text, "9999");
+  abbe_report_free(&report);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(notes_are_kept_in_order),
+      cmocka_unit_test(texts_are_cut_between_letters),
+      cmocka_unit_test(there_is_an_end_to_what_is_kept),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,182 @@
+/* The verbs of `abbe materials` that change a table, as people meet them. */
+#include "tests/cli/run_program.h"
+
+#include <cjson/cJSON.h>
+
+#define TABLE " --table t.yaml"
+#define MATERIALS "\"$abbe\" materials "
+#define RENEW "cp \"$house\"/spectral/materials/thesis.yaml t.yaml && "
+
+static int done(const char *line) {
+  int code = run_line(line);
+  if (code != 0) print_error("%s\n%s%s", line, run_output, run_errors);
+  return code;
+}
+
+static void a_row_is_mended(void **state) {
+  (void)state;
+  assert_int_equal(done(RENEW MATERIALS
+                        "set k5 coefficients.0=1.5090 --unset warning --dry-run" TABLE
+                        " && cmp t.yaml \"$house\"/spectral/materials/thesis.yaml"),
+                   0);
+  assert_string_equal(run_output,
+                      "--- t.yaml\n+++ t.yaml\n@@ -24,12 +24,9 @@\n   - name: k5\n"
+                      "     description: Hard crown K5, as the thesis has it\n"
+                      "     model: cauchy\n-    coefficients: [1.5220, 0.00459]\n"
+                      "+    coefficients: [1.5090, 0.00459]\n     range_nm: [380, 780]\n"
+                      "     source: \"[Blanchette2012] Table 1\"\n-    warning: >-\n"
+                      "-      Historical. The column A holds n_d (1.5220), not the Cauchy A. Every "
+                      "index is too high by\n-      about 0.013.\n   - name: bak4\n"
+                      "     description: Barium crown BaK4, as the thesis has it\n"
+                      "     model: cauchy\n");
+  assert_int_equal(done(MATERIALS "set k5 coefficients.0=1.5090 source='own: 3 May' note=1" TABLE),
+                   1);
+  assert_contains(run_errors, "nothing was written: t.yaml:33: a material has no key 'note'");
+  assert_int_equal(done(MATERIALS "set k5 coefficients.0=1.5090 source='own: 3 May'" TABLE), 0);
+  assert_contains(run_output, "t.yaml: the record 'k5' is changed\n"
+                              "  n_d 1.535296 -> 1.522296, V_d 61.071 -> 59.588\n");
+  assert_int_equal(done("diff t.yaml \"$house\"/spectral/materials/thesis.yaml | grep -c '^[<>]'"), 0);
+  assert_string_equal(run_output, "4\n");
+  assert_int_equal(done(MATERIALS "show k5 --at 587.5618" TABLE), 0);
+  assert_contains(run_output, "own: 3 May");
+  assert_int_equal(done("rm t.yaml"), 0);
+}
+
+static void what_is_so_already_is_not_changed(void **state) {
+  (void)state;
+  assert_int_equal(run_line(RENEW MATERIALS "set k5 coefficients.1=0.00459" TABLE), 0);
+  assert_contains(run_output, "it says so already; nothing is changed");
+  assert_int_equal(run_line("cmp t.yaml \"$house\"/spectral/materials/thesis.yaml"), 0);
+}
+
+static void records_come_and_go(void **state) {
+  (void)state;
+  assert_int_equal(done(MATERIALS "add n-bk7 --from default --create" TABLE), 0);
+  assert_int_equal(done(MATERIALS "add f2 --from default --as my-f2 source='melt 7'" TABLE), 0);
+  assert_int_equal(done(MATERIALS "add mine model=cauchy 'coefficients=[1.509, 0.0046]' "
+                                  "'range_nm=[400, 700]' source='own: 3 May'" TABLE),
+                   0);
+  assert_int_equal(done("printf 'name: x\\nmodel: constant\\ncoefficients: [2]\\nsource: s\\n' | "
+                        "\"$abbe\" materials add --record -" TABLE),
+                   0);
+  assert_int_equal(done(MATERIALS "rename x 'x, the last'" TABLE), 0);
+  assert_int_equal(done(MATERIALS "remove n-bk7 MY-F2" TABLE), 0);
+  assert_int_equal(done("cat t.yaml && rm t.yaml"), 0);
+  assert_string_equal(run_output, "materials:\n  - name: mine\n    model: cauchy\n"
+                                  "    coefficients: [1.509, 0.0046]\n    range_nm: [400, 700]\n"
+                                  "    source: \"own: 3 May\"\n\n  - name: \"x, the last\"\n"
+                                  "    model: constant\n    coefficients: [2]\n    source: s\n");
+}
+
+static void tables_are_compared(void **state) {
+  (void)state;
+  assert_int_equal(done(RENEW MATERIALS "diff thesis t.yaml --tolerance 0"), 0);
+  assert_string_equal(run_output, "thesis -> t.yaml: 0 changed, 0 renamed, 0 only in the first, 0 "
+                                  "only in the second, 5 the same\n");
+  assert_int_equal(
+      done(MATERIALS "set k5 coefficients.0=1.5090" TABLE " && " MATERIALS "diff thesis t.yaml"),
+      0);
+  assert_contains(run_output, "~ k5: coefficients\n    n_d 1.535296 -> 1.522296, V_d 61.071 -> "
+                              "59.588\n    largest change of n 0.013, at ");
+  assert_int_equal(run_line(MATERIALS "diff thesis t.yaml --tolerance 0.01"), 3);
+  assert_contains(run_errors, "the index of 'k5' changes by 0.013");
+  assert_int_equal(done(MATERIALS "diff thesis t.yaml --tolerance 0.02"), 0);
+  assert_int_equal(done(MATERIALS "diff thesis t.yaml --json"), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  const cJSON *row = cJSON_GetArrayItem(cJSON_GetObjectItem(json, "rows"), 2);
+  assert_string_equal(cJSON_GetObjectItem(row, "kind")->valuestring, "changed");
+  assert_near(cJSON_GetObjectItem(row, "largest")->valuedouble, 0.013, 1e-12);
+  assert_near(cJSON_GetObjectItem(row, "mean")->valuedouble, -0.013, 1e-12);
+  cJSON_Delete(json);
+  assert_int_equal(done("rm t.yaml"), 0);
+}
+
+/* A copied record is the shipped one, comments and all. */
+static void a_copy_is_whole(void **state) {
+  (void)state;
+  assert_int_equal(done(MATERIALS "add f2 --from default --create" TABLE " && grep -c '# 4 pi k' "
+                                  "t.yaml && " MATERIALS "show f2" TABLE " > a && " MATERIALS
+                                  "show f2 > b && cmp a b && rm a b t.yaml"),
+                   0);
+}
+
+static void wrong_use_gets_a_sentence(void **state) {
+  (void)state;
+  const struct {
+    const char *line, *part;
+    int code;
+  } cases[] = {
+      {MATERIALS "set k5 a=1", "--table FILE", 2},
+      {MATERIALS "set" TABLE, "set what?", 2},
+      {MATERIALS "set k5" TABLE, "Write KEY=VALUE", 2},
+      {MATERIALS "set k5 red" TABLE, "'red' sets nothing", 2},
+      {MATERIALS "set k5 source=" TABLE, "--unset source", 1},
+      {MATERIALS "set k5 name=x" TABLE, "abbe materials rename k5 NEW", 1},
+      {MATERIALS "set k6 source=x" TABLE, "did you mean 'k5'?", 1},
+      {MATERIALS "set k5 range_nm=380:780" TABLE, "'range_nm' wants a list of 2 numbers", 1},
+      {MATERIALS "set k5 'range_nm=[380'" TABLE, "break the file", 1},
+      {MATERIALS "set k5 coefficients.2=1" TABLE, "has no 'coefficients.2'; the list has 2 items", 1},
+      {MATERIALS "set k5 coefficients.1=0,0046" TABLE, "with a decimal point, 0.0046", 1},
+      {MATERIALS "set k5 --unset fit" TABLE, "has no 'fit'", 1},
+      {MATERIALS "set k5 --unset source" TABLE, "the key 'source' is missing", 1},
+      {MATERIALS "set k5 source=x --table thesis", "is compiled in", 1},
+      {MATERIALS "set k5 source=x --table no.yaml", "no.yaml: cannot be opened", 1},
+      {MATERIALS "add k5" TABLE, "--from TABLE", 2},
+      {MATERIALS "add" TABLE, "add what?", 2},
+      {MATERIALS "add k5 --from default" TABLE, "has a material 'k5' already", 1},
+      {MATERIALS "add k9 --from default" TABLE, "no material 'k9'", 1},
+      {MATERIALS "add k9 --from default --table no.yaml", "--create makes a new table", 1},
+      {MATERIALS "add --record no.yaml" TABLE, "no.yaml: cannot be opened", 1},
+      {MATERIALS "add --record t.yaml k5" TABLE, "--record goes without", 2},
+      {MATERIALS "add --record t.yaml" TABLE, "nothing was written", 1},
+      {MATERIALS "add x model=cauchy" TABLE, "the key 'source' is missing", 1},
+      {MATERIALS "add x --as y model=cauchy" TABLE, "--as goes with --from", 2},
+      {MATERIALS "remove" TABLE, "remove what?", 2},
+      {MATERIALS "remove k5 k5" TABLE, "no material 'k5'", 1},
+      {MATERIALS "remove fused-silica bk7 k5 bak4 baf10" TABLE, "at least one", 1},
+      {MATERIALS "rename k5" TABLE, "to what?", 2},
+      {MATERIALS "rename k5 BK7" TABLE, "is taken", 1},
+      {MATERIALS "rename k5 ' x'" TABLE, "'name'", 1},
+      {MATERIALS "diff t.yaml", "Name two tables", 2},
+      {MATERIALS "diff t.yaml no.yaml", "no.yaml: cannot be opened", 1},
+      {MATERIALS "diff a b c", "one argument too many", 2},
+      {MATERIALS "rename a b c" TABLE, "one argument too many", 2},
+  };
+  assert_int_equal(run_line(RENEW "true"), 0);
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    int code = run_line(cases[i].line);
+    if (code != cases[i].code || run_output[0] != '\0')
+      fail_msg("%s: %d\n%s%s", cases[i].line, code, run_output, run_errors);
+    assert_contains(run_errors, cases[i].part);
+  }
+  assert_int_equal(run_line("cmp t.yaml \"$house\"/spectral/materials/thesis.yaml && rm t.yaml"), 0);
+}
+
+/* Each line of the examples is a command or its next line: none was broken to fit the page. */
+static void help_shows_examples(void **state) {
+  (void)state;
+  const char *const verbs[] = {"list", "show",   "plot",   "nearest", "check", "fit",    "from",
+                               "diff", "edit",   "set",    "add",     "remove", "rename", "import",
+                               "export"};
+  for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
+    char line[96], example[64];
+    snprintf(line, sizeof line, MATERIALS "%s --help", verbs[i]);
+    snprintf(example, sizeof example, "  abbe materials %s ", verbs[i]);
+    assert_int_equal(run_line(line), 0);
+    assert_contains(run_output, "Examples:");
+    assert_contains(run_output, example);
+    const char *c = strstr(run_output, "Examples:\n") + 10;
+    for (; *c != '\n' && *c != '\0'; c += strcspn(c, "\n") + 1)
+      if (c[0] != ' ') fail_msg("%s: a broken example: %.40s", verbs[i], c);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_row_is_mended),           cmocka_unit_test(records_come_and_go),
+      cmocka_unit_test(a_copy_is_whole),           cmocka_unit_test(tables_are_compared),
+      cmocka_unit_test(what_is_so_already_is_not_changed),
+      cmocka_unit_test(wrong_use_gets_a_sentence), cmocka_unit_test(help_shows_examples),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

@@ -1,0 +1,358 @@
+/* The verbs of `abbe materials` that are about numbers: list, show, nearest, check, fit, from. */
+#include "tests/cli/run_program.h"
+
+#include "spectral/materials/material_table.h"
+
+#include <cjson/cJSON.h>
+
+static void answers(const char *line, int code, const char *part) {
+  int actual = run_line(line);
+  if (actual != code || strstr(run_output, part) == NULL)
+    fail_msg("%s\nends with %d, not %d; '%s' is expected in:\n%s%s", line, actual, code, part,
+             run_output, run_errors);
+}
+
+static cJSON *json_of(const char *line, int code) {
+  int actual = run_line(line);
+  if (actual != code) fail_msg("%s\nends with %d: %s", line, actual, run_errors);
+  cJSON *json = cJSON_Parse(run_output);
+  if (json == NULL) fail_msg("%s\nno JSON:\n%s", line, run_output);
+  return json;
+}
+
+static double number(const cJSON *json, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, key);
+  return cJSON_IsNumber(item) ? item->valuedouble : NAN;
+}
+
+static const char *text(const cJSON *json, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, key);
+  return cJSON_IsString(item) ? item->valuestring : "";
+}
+
+static const cJSON *first(const cJSON *json, const char *list) {
+  return cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(json, list), 0);
+}
+
+/* What a verb prints as a record is read as one. */
+static abbe_material_table record_of(const char *line) {
+  char table_text[4096];
+  abbe_material_table table;
+  abbe_error error = {0};
+  assert_int_equal(run_line(line), 0);
+  snprintf(table_text, sizeof table_text, "materials:\n%.4000s", run_output);
+  if (abbe_material_table_parse(table_text, strlen(table_text), "printed", &table, &error) !=
+      ABBE_OK)
+    fail_msg("%s\n%s", error.text, table_text);
+  assert_int_equal(table.count, 1);
+  return table;
+}
+
+/* ---- list and show ---- */
+
+static void lists_are_filtered_sorted_and_cut_into_columns(void **state) {
+  (void)state;
+  answers("$abbe materials list --nd 1.5:1.6 --vd 60:70 --sort n_d --columns name,v_d", 0,
+          "name      V_d\nn-bk7   64.17\nquartz  69.69\n");
+  answers("$abbe materials list --name 'N-*' --sort n_d --reverse --columns name", 0,
+          "name\nn-sf11\nn-baf10\nn-bak4\nn-bk7\n");
+  answers("$abbe materials list --source peter1923 --columns name,p_gF,dp_gF", 0,
+          "diamond  0.5629  +0.0121");
+  answers("$abbe materials list --name nothing", 0, "none of");
+  cJSON *json = json_of("$abbe materials list --name diamond --json", 0);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "materials")), 1);
+  assert_near(number(first(json, "materials"), "p_gF"), 0.5629, 5e-5);
+  cJSON_Delete(json);
+}
+
+static void show_tells_all_that_is_known(void **state) {
+  (void)state;
+  answers("$abbe materials show f2 --at 400", 0, "P_gF 0.5828");
+  assert_contains(run_output, "printed       n_d 1.62004 (here +1e-07) V_d 36.37");
+  assert_contains(run_output, "rms error 0.000468, largest 0.00184 at 380 nm");
+  assert_contains(run_output, "through 10 mm: 0.994 at 400");
+  assert_contains(run_output, "0.6045\n"); /* 1/m at 400 nm */
+  answers("$abbe materials show bak4 --table thesis", 0,
+          "wrong         the column A holds n_d instead of Cauchy's A");
+  cJSON *json = json_of("$abbe materials show bak4 --table thesis --json", 0);
+  assert_string_equal(text(first(json, "findings"), "kind"), "a-is-n_d");
+  cJSON_Delete(json);
+  json = json_of("$abbe materials show n-bk7 --json", 0);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "findings")), 0);
+  assert_near(number(cJSON_GetObjectItem(json, "printed"), "n_d"), 1.5168, 0);
+  assert_near(number(json, "n_e"), 1.51872, 5e-6);
+  assert_near(number(first(json, "fits"), "residual_max"), number(first(json, "fits"), "max_error"),
+              1e-6);
+  cJSON_Delete(json);
+}
+
+/* ---- nearest ---- */
+
+static void nearest_finds_by_numbers_curve_and_points(void **state) {
+  (void)state;
+  cJSON *json = json_of("$abbe materials nearest --nd 1.517 --vd 64.2 --count 2 --json", 0);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "nearest")), 2);
+  assert_string_equal(text(first(json, "nearest"), "name"), "n-bk7");
+  cJSON_Delete(json);
+  json = json_of("$abbe materials nearest --like bk7 --like-table thesis --json", 0);
+  assert_string_equal(text(first(json, "nearest"), "name"), "n-bk7");
+  cJSON_Delete(json);
+  json = json_of("$abbe materials nearest --like sf11 --json", 0); /* not itself */
+  assert_string_equal(text(first(json, "nearest"), "name"), "n-sf11");
+  cJSON_Delete(json);
+  json = json_of("printf '0.4861,1.6321\\n0.5876,1.62\\n0.6563,1.6150\\n' >p.csv\n"
+                 "$abbe materials nearest --points p.csv --json",
+                 0);
+  assert_string_equal(text(first(json, "nearest"), "name"), "f2");
+  assert_true(number(first(json, "nearest"), "rms") < 1e-4);
+  cJSON_Delete(json);
+  answers("$abbe materials nearest --like n-bk7 --range 500:2000", 0, "were skipped");
+}
+
+/* ---- check ---- */
+
+static void check_finds_the_four_wrong_rows_of_the_thesis(void **state) {
+  (void)state;
+  cJSON *json = json_of("$abbe materials check --table thesis --json", 3);
+  assert_near(number(json, "wrong"), 4, 0);
+  assert_near(number(json, "doubtful"), 0, 0);
+  const cJSON *f;
+  cJSON_ArrayForEach(f, cJSON_GetObjectItem(json, "findings")) {
+    assert_string_equal(text(f, "kind"), "a-is-n_d");
+    assert_string_not_equal(text(f, "name"), "bk7");
+  }
+  cJSON_Delete(json);
+  answers("$abbe materials check --table thesis", 3, "5 rows, 4 wrong, 0 doubtful, 0 to note");
+  assert_contains(run_errors, "4 findings in 'thesis' want a look");
+  answers("$abbe materials check bk7 --table thesis", 0, "5 rows, 0 wrong");
+  answers("$abbe materials check", 0, "0 wrong, 0 doubtful");
+}
+
+static void fix_mends_a_copy_and_leaves_the_rest(void **state) {
+  (void)state;
+  answers("cp $house/spectral/materials/thesis.yaml t.yaml\n"
+          "$abbe materials check --table t.yaml --fix --dry-run && cmp t.yaml "
+          "$house/spectral/materials/thesis.yaml",
+          0, "+    coefficients: [1.447746, 0.00354]\n");
+  answers("$abbe materials check --table t.yaml --fix", 0, "5 rows, 0 wrong, 0 doubtful");
+  assert_contains(run_errors, "fused-silica, k5, bak4, baf10: the row's own warning stays as it was");
+  answers("diff $house/spectral/materials/thesis.yaml t.yaml | grep -c '^[<>]'", 0, "8\n");
+  answers("$abbe materials check --table t.yaml --fix", 0, "0 wrong");
+}
+
+/* What is only to know stands in one line of each kind, however many rows it is about. */
+static void notes_of_many_rows_are_one_line(void **state) {
+  (void)state;
+  answers(
+      "{ echo materials:; for i in $(seq 200); do echo \"- {name: g$i, model: cauchy, "
+      "coefficients: [1.$((1000 + 7 * i)), 0.004], range_nm: [400, 700], source: book}\"; done; "
+      "} >n.yaml; $abbe materials check --table n.yaml",
+      0,
+      "200 rows (g1, g2, g3, \xe2\x80\xa6): note, not-visible: the data do not cover 380 to 780 "
+      "nm; --all tells of each\n\nn.yaml: 200 rows, 0 wrong, 0 doubtful, 200 to note\n");
+  assert_true(strlen(run_output) < 200);
+  answers("$abbe materials check --table n.yaml --all", 0, "g200 (line 201): note, not-visible");
+  answers("$abbe materials check g7 --table n.yaml", 0, "its data reach from 400 to 700 nm");
+  cJSON *json = json_of("$abbe materials check --table n.yaml --json; rm n.yaml", 0);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "findings")), 200);
+  cJSON_Delete(json);
+}
+
+static void unreadable_records_do_not_stop_a_check(void **state) {
+  (void)state;
+  answers("printf 'materials:\\n- {name: a, model: cachy, source: s}\\n"
+          "- {name: b, model: cauchy, coefficients: [1.5046, 4200], range_nm: [380, 780], "
+          "source: book}\\n' >s.yaml; $abbe materials check --table s.yaml",
+          3, "a (line 2): wrong, unread: the record cannot be read");
+  assert_contains(run_output, "did you mean 'cauchy'?");
+  assert_contains(run_output, "--fix: coefficients: [1.5046, 0.0042]");
+  assert_contains(run_output, "2 rows, 2 wrong");
+}
+
+/* ---- fit ---- */
+
+static void fits_come_with_their_errors(void **state) {
+  (void)state;
+  answers("$abbe materials fit n-bk7 --terms 3", 0, "largest error  0.000157 at 380 nm");
+  assert_contains(run_output, "401 points from 380 to 780 nm");
+  assert_contains(run_output, "covariance");
+  cJSON *json = json_of("$abbe materials fit n-sf11 --form sellmeier --range 400:700 --over "
+                        "380:780 --json",
+                        0);
+  assert_string_equal(text(json, "model"), "sellmeier2");
+  assert_true(number(json, "max_error") < 5e-5);
+  assert_true(number(cJSON_GetObjectItem(json, "over"), "max_error") > number(json, "max_error"));
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "covariance")), 5);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "residuals")), 301);
+  cJSON_Delete(json);
+  json = json_of("$abbe materials fit --formula 'sellmeier2 0 1.3, 0.01' --form sellmeier "
+                 "--terms 1 --json",
+                 0);
+  const cJSON *c = cJSON_GetObjectItem(json, "coefficients");
+  assert_near(cJSON_GetArrayItem(c, 1)->valuedouble, 1.3, 1e-9);
+  assert_near(cJSON_GetArrayItem(c, 2)->valuedouble, 0.01, 1e-9);
+  cJSON_Delete(json);
+  answers("$abbe materials fit diamond --range 500:900", 0,
+          "its data reach from 226 to 760 nm; the rest is continued");
+}
+
+#define POINTS                                                                                     \
+  "printf 'wavelength_nm,n,uncertainty\\n404.66,1.53023,2e-5\\n435.83,1.52669,2e-5\\n"             \
+  "486.13,1.52238,2e-5\\n546.07,1.51871,2e-5\\n587.56,1.51681,2e-5\\n656.27,1.51431,2e-5\\n"       \
+  "706.52,1.51289,2e-5\\n' >m.csv\n"
+
+static void measured_points_are_fitted_and_drawn(void **state) {
+  (void)state;
+  answers(POINTS "$abbe materials fit --points m.csv --terms 3 --residuals --plot m.png && "
+                 "head -c 4 m.png | tail -c 3",
+          0, "in uncertainties");
+  assert_contains(run_output, "from the uncertainties");
+  assert_contains(run_output, "reduced chi^2");
+  assert_contains(run_output, "PNG");
+  answers(POINTS "$abbe materials fit --points m.csv --over 300:600", 0,
+          "(at the 5 points there, 404.66 to 587.56 nm)");
+  answers("$abbe materials fit --points m.csv --plot m.svg >/dev/null && cat m.svg", 0, "<svg");
+  abbe_material_table t =
+      record_of(POINTS "$abbe materials fit --points m.csv --terms 3 --record my-glass");
+  assert_string_equal(t.material[0].name, "my-glass");
+  assert_near(t.material[0].min_nm, 404.66, 0);
+  assert_contains(t.material[0].warning, "over 7 points from 404.66 to 706.52 nm");
+  double n = 0;
+  assert_int_equal(abbe_material_n(&t.material[0], 587.56, &n, NULL), ABBE_OK);
+  assert_near(n, 1.51681, 1e-4);
+  abbe_material_table_free(&t);
+}
+
+/* ---- from ---- */
+
+static void two_numbers_make_a_record(void **state) {
+  (void)state;
+  const struct {
+    const char *arguments;
+    double n_d, v_d;
+  } cases[] = {
+      {"--nd 1.5168 --vd 64.17", 1.5168, 64.17},
+      {"--nd 1.5168 --vd 64.17 --form sellmeier", 1.5168, 64.17},
+      {"--ior 1.5 --dispersion 0.4", 1.5, 50},
+      {"--a 1.5046 --b 0.0042", 1.5046 + 0.0042 / 0.34522887, 64.43},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char line[200];
+    snprintf(line, sizeof line, "$abbe materials from %s --name x --source 'a book'",
+             cases[i].arguments);
+    abbe_material_table t = record_of(line);
+    abbe_dispersion_numbers d = abbe_dispersion_describe(&t.material[0].dispersion);
+    assert_near(d.n_d, cases[i].n_d, 1e-7);
+    assert_near(d.v_d, cases[i].v_d, 5e-3);
+    assert_contains(t.material[0].warning, "known materials of like V_d errs by");
+    assert_contains(t.material[0].source, "a book; ");
+    abbe_material_table_free(&t);
+  }
+  cJSON *json = json_of("$abbe materials from --nd 2.417 --bg 0.044 --json", 0);
+  assert_near(number(json, "b_g"), 0.044, 1e-9);
+  assert_near(number(json, "rounding_error"), 1e-3, 5e-4);
+  assert_true(number(json, "largest_error") > number(json, "typical_error"));
+  cJSON_Delete(json);
+  /* what the doctor doubts is said, on the side */
+  assert_int_equal(run_line("$abbe materials from --a 1.5690 --b 0.00531"), 0);
+  assert_contains(run_errors, "the column A holds n_d");
+}
+
+/* ---- wrong use ---- */
+
+static void wrong_input_gets_a_sentence(void **state) {
+  (void)state;
+  static const struct {
+    const char *line;
+    int code;
+    const char *part;
+  } cases[] = {
+      {"$abbe materials list --sort nd", 2, "did you mean 'n_d'?"},
+      {"$abbe materials list --columns name,vd", 2, "did you mean 'v_d'?"},
+      {"$abbe materials list --columns ,", 2, "names no column"},
+      {"$abbe materials list --nd 1.5", 2, "--nd '1.5' is not a range: two numbers above 0, the "
+                                           "smaller first, such as 1.5:1.6"},
+      {"$abbe materials from --nd 1.5 --bg 5", 1, "1.5 and 5 go with no material"},
+      {"$abbe materials nearest", 2, "nearest to what?"},
+      {"$abbe materials nearest --nd 1.5", 2, "--nd and --vd go together"},
+      {"$abbe materials nearest --nd 1.5 --vd 60 --like diamond", 2, "exclude each other"},
+      {"$abbe materials nearest --like dimond", 1, "did you mean 'diamond'?"},
+      {"$abbe materials nearest --like water --range 500:2000", 1, "water has no index at 2000 nm"},
+      {"$abbe materials nearest diamond", 2, "--like diamond compares"},
+      {"$abbe materials nearest --points /no/such.csv", 1, "/no/such.csv"},
+      {"$abbe materials nearest --nd 1.5 --vd sixty", 2, "--vd 'sixty' is not a number"},
+      {"$abbe materials check --dry-run", 2, "--dry-run goes with --fix"},
+      {"$abbe materials check --fix --json --table t", 2, "mends the whole table"},
+      {"$abbe materials check --fix", 2, "--table FILE"},
+      {"$abbe materials check --fix --table thesis", 1, "--to yaml -o FILE' makes a copy"},
+      {"$abbe materials check --table $house/docs/examples/maker.agf", 1,
+       "is a Zemax catalogue, not a table of materials; 'abbe materials import "},
+      {"$abbe materials list --table $house/docs/examples/measured.csv", 1, "is a list of points"},
+      {"$abbe materials set a b=1 --table $house/docs/examples/maker.agf", 1, "Zemax catalogue"},
+      {"$abbe materials export n-bk7 --to csv --range 100:200", 1, "no index at 100 nm"},
+      {"$abbe materials check --table /no/such.yaml", 1, "/no/such.yaml"},
+      {"$abbe materials check dimond", 1, "did you mean 'diamond'?"},
+      {"$abbe materials fit", 2, "fit what?"},
+      {"$abbe materials fit n-bk7 --points x.csv", 2, "exclude each other"},
+      {"$abbe materials fit n-bk7 --form couchy", 2, "did you mean 'cauchy'?"},
+      {"$abbe materials fit n-bk7 --terms 33", 2, "--terms '33'"},
+      {"$abbe materials fit n-bk7 --terms 32", 1, "cancel beyond double precision"},
+      {"$abbe materials fit n-bk7 --form sellmeier --terms 5", 1, "1 to 4 are possible"},
+      {"$abbe materials fit n-bk7 --range 200:700", 1, "its data reach from 300 to 2500 nm"},
+      {"$abbe materials fit n-bk7 --record ' x'", 1, "is not a name"},
+      {"$abbe materials fit n-bk7 --record x --json", 2, "--record prints the record alone"},
+      {"$abbe materials fit n-bk7 --plot /tmp/x.jpg", 1, "/tmp/x.jpg"},
+      {"$abbe materials fit --formula 'cachy 1'", 1, "is not a model"},
+      {"$abbe materials fit --formula 'cauchy 1.5x'", 1, "does not begin with a number"},
+      {"$abbe materials fit --formula 'sellmeier 1 2'", 1, "an odd number"},
+      {"$abbe materials fit --formula 'cauchy 1.5' --table thesis", 2, "--table goes with"},
+      {"printf '500,1.5\\n600,x\\n' >p.csv; $abbe materials fit --points p.csv; c=$?; rm p.csv; "
+       "exit $c",
+       1, "p.csv:2: this is not a number"},
+      {"printf '500,1.5\\n600,1.4\\n' >p.csv; $abbe materials fit --points p.csv --terms 3; c=$?; "
+       "rm p.csv; exit $c",
+       1, "3 coefficients, and there are points at only 2 wavelengths"},
+      {"$abbe materials from --nd 1.5", 2, "two numbers are wanted"},
+      {"$abbe materials from --nd 1.5 --vd 60 --bg 0.01", 2, "two numbers are wanted"},
+      {"$abbe materials from --nd 0.9 --vd 60", 1, "n_d 0.9 is not an index"},
+      {"$abbe materials from 1.5 60", 2, "numbers go with options"},
+      {"$abbe materials from --nd 1.5 --vd 60 --name ''", 1, "is not a name"},
+  };
+  bool good = true;
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    run_each(run_remove, NULL);
+    good = run_refuses(cases[i].line, cases[i].code, cases[i].part) && good;
+  }
+  assert_true(good);
+}
+
+static void every_verb_helps_by_example(void **state) {
+  (void)state;
+  const char *const verbs[] = {"list", "show", "nearest", "check", "fit", "from"};
+  for (size_t i = 0; i < sizeof verbs / sizeof verbs[0]; i++) {
+    char line[100], part[100];
+    snprintf(line, sizeof line, "$abbe materials %s --help", verbs[i]);
+    snprintf(part, sizeof part, "Examples:\n  abbe materials %s", verbs[i]);
+    answers(line, 0, part);
+  }
+  answers("$abbe materials --help", 0, verbs[0]);
+  for (size_t i = 1; i < sizeof verbs / sizeof verbs[0]; i++) assert_contains(run_output, verbs[i]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(lists_are_filtered_sorted_and_cut_into_columns),
+      cmocka_unit_test(show_tells_all_that_is_known),
+      cmocka_unit_test(nearest_finds_by_numbers_curve_and_points),
+      cmocka_unit_test(check_finds_the_four_wrong_rows_of_the_thesis),
+      cmocka_unit_test(fix_mends_a_copy_and_leaves_the_rest),
+      cmocka_unit_test(notes_of_many_rows_are_one_line),
+      cmocka_unit_test(unreadable_records_do_not_stop_a_check),
+      cmocka_unit_test(fits_come_with_their_errors),
+      cmocka_unit_test(measured_points_are_fitted_and_drawn),
+      cmocka_unit_test(two_numbers_make_a_record),
+      cmocka_unit_test(wrong_input_gets_a_sentence),
+      cmocka_unit_test(every_verb_helps_by_example),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

@@ -1,0 +1,150 @@
+/* Settings by name, by error and by time, as people ask for them: what is promised and what is met.
+ */
+#include "tests/cli/run_program.h"
+
+#include <cjson/cJSON.h>
+
+#define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml --size 24x24 "
+#define POINT(photons, light, error)                                                               \
+  "  - {wavelengths: 3, photons: " photons                                                         \
+  ", map: 64, samples: 1, fill: bridge, exits: 2, share: 0.1, light_ms: " light                    \
+  ", eye_ms: 1, error: " error ", least: 0.5}\\n"
+/* Times that no machine is as slow as: what matters is their ratio. */
+#define PRESETS                                                                                    \
+  "printf 'error: caustic_de\\nwhat: mean error\\nrun: a run\\nclasses:\\n- class: convex\\n"      \
+  "  scenes: gem\\n  draft: 0\\n  balanced: 1\\n  accurate: 2\\n  front:\\n" POINT("16", "1", "8") \
+      POINT("24", "10", "4") POINT("32", "1e7", "2") "' >p.yaml"
+
+static cJSON *promise_that_ends(const char *line, int right) {
+  int code = run_line(line);
+  if (code != right) fail_msg("%s ends with %d: %s", line, code, run_errors);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_non_null(json);
+  return json;
+}
+
+static cJSON *promise_of(const char *line) {
+  return promise_that_ends(line, 0);
+}
+
+static const cJSON *item(const cJSON *json, const char *key) {
+  const cJSON *promise = cJSON_GetObjectItemCaseSensitive(json, "promise");
+  const cJSON *found = cJSON_GetObjectItemCaseSensitive(promise, key);
+  if (found == NULL) fail_msg("no '%s' in the promise", key);
+  return found;
+}
+
+static void test_by_name(void **state) {
+  (void)state;
+  assert_int_equal(run_line(PRESETS), 0);
+  cJSON *json = promise_of(GEM "--presets p.yaml --preset balanced --json -q");
+  assert_string_equal(cJSON_GetStringValue(item(json, "preset")), "balanced");
+  assert_contains(cJSON_GetStringValue(item(json, "settings")), "24 photons, map 64");
+  assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
+  assert_true(cJSON_GetNumberValue(item(json, "ms")) > 0);
+  assert_true(cJSON_GetNumberValue(item(json, "ms_met")) > 0);
+  assert_true(cJSON_IsNull(item(json, "error_met")));
+  assert_true(cJSON_IsTrue(item(json, "possible")));
+  assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(json, "wavelengths")), 3, 0);
+  cJSON_Delete(json);
+  /* Error bars tell it by an estimate, and say so. */
+  json = promise_of(GEM "--presets p.yaml --preset balanced --json -q --error-bars=2");
+  assert_true(cJSON_GetNumberValue(item(json, "error_met")) > 0);
+  assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "estimate");
+  cJSON_Delete(json);
+  /* One's own option stays, and the promise is void. */
+  json = promise_of(GEM "--presets p.yaml --preset draft --wavelengths 5 --json");
+  assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(json, "wavelengths")), 5, 0);
+  assert_true(cJSON_IsTrue(item(json, "overridden")));
+  assert_contains(run_errors, "what it promises is void");
+  cJSON_Delete(json);
+  /* The shipped ones, and none at all. */
+  json = promise_of(GEM "--preset draft --json -q");
+  assert_string_equal(cJSON_GetStringValue(item(json, "class")), "convex");
+  cJSON_Delete(json);
+  json = promise_of(GEM "--photons 16 --map 64 --json -q");
+  assert_null(cJSON_GetObjectItemCaseSensitive(json, "promise"));
+  cJSON_Delete(json);
+}
+
+static void test_by_error_and_by_time(void **state) {
+  (void)state;
+  assert_int_equal(run_line(PRESETS), 0);
+  cJSON *json = promise_of(GEM "--presets p.yaml --max-error 5 --json -q");
+  assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
+  assert_true(cJSON_IsTrue(item(json, "possible")));
+  cJSON_Delete(json);
+  json = promise_that_ends(GEM "--presets p.yaml --max-error 1 --json --png a.png", 3);
+  assert_near(cJSON_GetNumberValue(item(json, "error")), 2, 0);
+  assert_true(cJSON_IsFalse(item(json, "possible")));
+  assert_contains(run_errors, "no settings are known to keep 1; these are the most accurate");
+  assert_contains(run_errors,
+                  "no settings are known to keep an error of 1; the most accurate ones");
+  assert_int_equal(run_line("test -s a.png && rm a.png"), 0);
+  cJSON_Delete(json);
+  /* The third would take ten million times the first's time. */
+  json = promise_of(GEM "--presets p.yaml --budget-ms 100000 --json -q");
+  assert_near(cJSON_GetNumberValue(item(json, "error")), 4, 0);
+  assert_true(cJSON_IsTrue(item(json, "possible")));
+  assert_true(cJSON_IsTrue(item(json, "budget_met")));
+  cJSON_Delete(json);
+  json = promise_that_ends(GEM "--presets p.yaml --budget-ms 0.001 --json -q --png a.png", 3);
+  assert_true(cJSON_IsFalse(item(json, "possible")));
+  assert_true(cJSON_IsFalse(item(json, "budget_met")));
+  assert_contains(run_errors,
+                  "the budget of 0.001 ms is not kept, for no faster settings are known");
+  assert_int_equal(run_line("test -s a.png && rm a.png"), 0);
+  cJSON_Delete(json);
+  assert_int_equal(run_line(GEM "--presets p.yaml --budget-ms 0.001 --png a.png && rm a.png"), 3);
+  assert_contains(run_errors, "these are the fastest");
+}
+
+static void test_what_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *line, *part;
+    int code;
+  } wrong[] = {
+      {GEM "--json --preset drift", "did you mean 'draft'?", 2},
+      {GEM "--json --preset draft --budget-ms 9", "one of them", 2},
+      {GEM "--json --max-error 0", "--max-error '0' is not a number", 2},
+      {GEM "--json --preset draft --profile thesis", "a thesis profile has none", 2},
+      {GEM "--json --preset draft --presets no.yaml", "no.yaml", 1},
+      {GEM "--json --presets draft", "--presets 'draft' is a file for --preset,", 2},
+  };
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+    assert_true(run_refuses(wrong[i].line, wrong[i].code, wrong[i].part));
+}
+
+/* Presets of a small sweep of its own, and a sweep that holds the shipped ones to their word. */
+static void test_presets_of_a_sweep(void **state) {
+  (void)state;
+  int code =
+      run_line("\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --size 24x24 --frames 1 --spp 2 "
+               "--traced-photons 20000 --texels 16 --map 64 --samples 1 --wavelengths 3 "
+               "--photons 16,32 --profiles default -o s.csv && "
+               "\"$abbe\" sweep s.csv --write-presets p.yaml && cat p.yaml");
+  if (code != 0) fail_msg("%s", run_errors);
+  assert_contains(
+      run_output,
+      "- class: convex\n  scenes: gem\n  margin: 1\n  time_margin: 1\n  margin_scenes: 0\n");
+  cJSON *json = promise_of(GEM "--presets p.yaml --preset draft --json -q");
+  assert_contains(cJSON_GetStringValue(item(json, "run")), "24x24; medians of 1 frames");
+  cJSON_Delete(json);
+  /* None of its settings is finer than the defaults. */
+  assert_int_equal(run_line(GEM "--presets p.yaml --preset accurate --json"), 1);
+  assert_contains(run_errors, "there is no 'accurate' for scenes of the class convex in p.yaml");
+  assert_true(run_line("rm s.csv s-reference*.exr p.yaml") == 0);
+  assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --write-presets p.yaml", 2,
+                          "--write-presets reads tables"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_by_name, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_by_error_and_by_time, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_presets_of_a_sweep, run_setup, run_teardown),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

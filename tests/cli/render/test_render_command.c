@@ -1,0 +1,252 @@
+/* `abbe render` and `abbe plan` as people and programs meet them: files, JSON, Ctrl-C. */
+#include "tests/cli/run_program.h"
+
+#include "colorimetry/image/exr.h"
+
+#include <cjson/cJSON.h>
+#include <fcntl.h>
+#include <signal.h>
+
+#define SMALL " --size 32x24 --photons 32 --map 64"
+#define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml" SMALL
+
+static double number(const cJSON *object, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+  return cJSON_IsNumber(item) ? item->valuedouble : NAN;
+}
+
+static void assert_statistics(const char *text) {
+  cJSON *json = cJSON_Parse(text);
+  assert_non_null(json);
+  assert_true(number(json, "frame_ms") > 0);
+  assert_near(number(json, "wavelengths"), 7, 0);
+  double photons = number(json, "photons");
+  assert_true(photons > 0 && photons <= 32 * 32);
+  const cJSON *passes = cJSON_GetObjectItemCaseSensitive(json, "passes"), *pass;
+  assert_true(cJSON_GetArraySize(passes) >= 4);
+  cJSON_ArrayForEach(pass, passes) {
+    assert_true(cJSON_IsString(cJSON_GetObjectItemCaseSensitive(pass, "name")));
+    assert_true(number(pass, "ms") >= 0);
+  }
+  const cJSON *energy = cJSON_GetObjectItemCaseSensitive(json, "energy");
+  static const char *const parts[] = {"reflected", "absorbed", "trapped", "missed", "deposited"};
+  double sum = 0, reached = number(energy, "reached");
+  for (size_t i = 0; i < 5; i++) sum += number(energy, parts[i]);
+  sum -= number(energy, "interpolated");
+  assert_true(reached > 0);
+  /* The balance that is promised, from the numbers as they are told. */
+  assert_near(sum / reached, 1, 1e-4);
+  assert_true(number(energy, "imbalance") < 1e-4);
+  cJSON_Delete(json);
+}
+
+static void test_statistics_as_json(void **state) {
+  (void)state;
+  assert_int_equal(run_line(GEM " --stats stats.json && cat stats.json && rm stats.json"), 0);
+  assert_statistics(run_output);
+  assert_int_equal(run_line(GEM " --json"), 0);
+  assert_statistics(run_output);
+  assert_int_equal(run_line(GEM " --json --frames 3"), 0);
+  assert_statistics(run_output);
+  assert_int_equal(run_left(), 0);
+}
+
+static void test_the_plan_as_json(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" plan \"$house\"/scenes/gem.yaml --json"), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_non_null(json);
+  const cJSON *plan = cJSON_GetObjectItemCaseSensitive(json, "plan"), *entry;
+  assert_true(cJSON_GetArraySize(plan) > 10);
+  cJSON_ArrayForEach(entry, plan) {
+    assert_true(cJSON_IsString(cJSON_GetObjectItemCaseSensitive(entry, "name")));
+    assert_true(cJSON_IsBool(cJSON_GetObjectItemCaseSensitive(entry, "runs")));
+    assert_true(cJSON_IsString(cJSON_GetObjectItemCaseSensitive(entry, "reason")));
+  }
+  assert_near(number(json, "wavelengths"), 7, 0);
+  const cJSON *objects = cJSON_GetObjectItemCaseSensitive(json, "objects"), *gem = NULL, *one;
+  cJSON_ArrayForEach(one, objects) {
+    if (strcmp(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(one, "name")), "gem") == 0)
+      gem = one;
+  }
+  assert_non_null(gem);
+  const cJSON *max = cJSON_GetObjectItemCaseSensitive(gem, "max");
+  assert_int_equal(cJSON_GetArraySize(max), 3);
+  assert_true(cJSON_GetNumberValue(cJSON_GetArrayItem(max, 0)) > 0.01);
+  assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(gem, "material")),
+                      "n-sf11");
+  cJSON_Delete(json);
+  assert_int_equal(run_line("\"$abbe\" plan \"$house\"/scenes/gem.yaml"), 0);
+  assert_contains(run_output, "What runs, and the fact that asks for it:");
+  assert_contains(run_output, "What is there, with its size and the middle of its bounds, m:");
+  assert_contains(run_output, "What does not run:");
+}
+
+static void test_pictures_are_written(void **state) {
+  (void)state;
+  char path[128];
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(run_line(GEM " -o a.exr --png a.png --save-map map.exr --bits 16"), 0);
+  assert_string_equal(run_output, "");
+  snprintf(path, sizeof path, "%s/a.exr", run_folder);
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);
+  assert_int_equal(image.width, 32);
+  assert_int_equal(image.height, 24);
+  assert_string_equal(abbe_image_attribute_text(&image, "abbe:space"), "acescg");
+  assert_contains(abbe_image_attribute_text(&image, "abbe:settings"), "7 wavelengths 380:780 nm");
+  assert_contains(abbe_image_attribute_text(&image, "abbe:scene"), "gem.yaml");
+  abbe_image_free(&image);
+  snprintf(path, sizeof path, "%s/map.exr", run_folder);
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);
+  assert_int_equal(image.width, 64);
+  assert_true(abbe_image_find_channel(&image, "Y") != (size_t)-1);
+  abbe_image_free(&image);
+  /* The same request gives the same bytes. */
+  assert_int_equal(run_line(GEM " -q -o b.exr --png b.png --bits 16 && cmp a.png b.png && "
+                                "cmp a.exr b.exr && rm a.exr a.png b.exr b.png map.exr"),
+                   0);
+  assert_string_equal(run_errors, "");
+  assert_int_equal(run_left(), 0);
+}
+
+static void test_a_map_like_another(void **state) {
+  (void)state;
+  assert_int_equal(run_line(GEM
+                            " -q --save-map a.exr && \"$abbe\" render \"$house\"/scenes/gem.yaml "
+                            "--size 32x24 --photons 32 -q --map-like a.exr --save-map b.exr && "
+                            "cmp a.exr b.exr"),
+                   0);
+  /* Finer, in the same window; and the light by its name or number. */
+  assert_int_equal(run_line(GEM "0 -q --map-like a.exr --map-light 1 --save-map b.exr && "
+                                "\"$abbe\" info b.exr && rm b.exr"),
+                   0);
+  assert_contains(run_output, "640 x 640 pixels");
+  assert_contains(run_output, "abbe:map_light: lamp");
+  assert_int_equal(run_line(GEM " --map-like a.exr --map-light moon --save-map b.exr"), 2);
+  assert_contains(run_errors, "no light is called 'moon'; its lights are 1 'lamp'");
+  assert_int_equal(run_line("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
+                            " --map-like a.exr --save-map b.exr"),
+                   2);
+  assert_contains(run_errors, "for a light in another place than 'lamp'");
+  assert_int_equal(run_line("\"$abbe\" render \"$house\"/scenes/sphere.yaml" SMALL
+                            " --profile thesis --map-like a.exr --save-map b.exr"),
+                   2);
+  assert_contains(run_errors, "thesis");
+  assert_int_equal(
+      run_line("rm a.exr; " GEM " -q -o a.exr && " GEM " --map-like a.exr --save-map b.exr"), 1);
+  assert_contains(run_errors, "a.exr: there is no attribute abbe:map_view");
+  assert_int_equal(run_line("rm a.exr; " GEM " --map-like a.exr --save-map b.exr"), 1);
+  assert_contains(run_errors, "a.exr");
+  assert_int_equal(run_left(), 0);
+}
+
+static void test_error_bars(void **state) {
+  (void)state;
+  char path[128];
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(
+      run_line(GEM " -o a.exr --error-bars=2 --error-png e.png --json && test -s e.png"), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  const cJSON *bars = cJSON_GetObjectItemCaseSensitive(json, "error_bars");
+  const cJSON *caustic = cJSON_GetObjectItemCaseSensitive(bars, "caustic");
+  assert_near(number(bars, "variants"), 2, 0);
+  assert_near(number(bars, "frames"), 3, 0);
+  assert_true(number(bars, "ms") > 0);
+  assert_true(number(caustic, "relative_rmse") > 0);
+  assert_true(number(caustic, "ciede2000_mean") > 0);
+  cJSON_Delete(json);
+  snprintf(path, sizeof path, "%s/a.exr", run_folder);
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_OK);
+  assert_int_equal(image.channels, 6);
+  assert_true(abbe_image_find_channel(&image, "stderr.G") != (size_t)-1);
+  assert_contains(abbe_image_attribute_text(&image, "abbe:stderr"), "what is not modelled");
+  abbe_image_free(&image);
+  /* The errors leave the picture alone; the mean is another. */
+  assert_int_equal(run_line(GEM " -q --png b.png && " GEM " -q --png c.png --error-bars=2 && "
+                                "cmp b.png c.png"),
+                   0);
+  assert_int_equal(run_line(GEM " -q --png c.png --error-bars=2 --mean && ! cmp -s b.png c.png"),
+                   0);
+  assert_int_equal(run_line("rm a.exr e.png b.png c.png"), 0);
+  static const struct {
+    const char *line, *says;
+  } refused[] = {
+      {GEM " -o a.exr --mean", "--mean goes with --error-bars"},
+      {GEM " --error-png e.png", "--error-png goes with --error-bars"},
+      {GEM " -o a.exr --error-bars=1", "--error-bars"},
+      {GEM " -o a.exr --error-bars --mean --layers", "--mean has no --layers"},
+      {GEM " -o a.exr --error-bars --profile thesis", "'thesis' has no error bars"},
+  };
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    assert_int_equal(run_line(refused[i].line), 2);
+    assert_contains(run_errors, refused[i].says);
+  }
+  assert_int_equal(run_left(), 0);
+}
+
+static void test_every_command_has_help(void **state) {
+  (void)state;
+  static const char *const commands[] = {"render",  "plan", "weights", "materials",
+                                         "display", "info", "compare"};
+  assert_int_equal(run_line("\"$abbe\" help"), 0);
+  for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+    char line[128];
+    assert_int_equal(run_line("\"$abbe\" help"), 0);
+    assert_contains(run_output, commands[i]);
+    snprintf(line, sizeof line, "\"$abbe\" help %s", commands[i]);
+    assert_int_equal(run_line(line), 0);
+    assert_contains(run_output, "Examples:");
+    snprintf(line, sizeof line, "\"$abbe\" %s --help", commands[i]);
+    assert_int_equal(run_line(line), 0);
+    assert_contains(run_output, "Examples:");
+  }
+  assert_int_equal(run_line("\"$abbe\" --version"), 0);
+  assert_contains(run_output, "abbe ");
+}
+
+/* A render whose picture takes many seconds, its stderr on fd. */
+static pid_t start_long_render(int fd) {
+  pid_t child = fork();
+  assert_true(child >= 0);
+  if (child > 0) return child;
+  if (chdir(run_folder) != 0 || dup2(fd, STDERR_FILENO) < 0) _exit(99);
+  execl(ABBE_PROGRAM, "abbe", "render", ABBE_SOURCE_DIR "/scenes/diamond.yaml", "--photons", "64",
+        "--wavelengths", "100", "--size", "2048x2048", "--preset", "accurate", "-o", "picture.exr",
+        "--png", "picture.png", (char *)NULL);
+  _exit(99);
+}
+
+/* The note on the preset is printed when the frame is about to begin. */
+static void test_ctrl_c_stops_cleanly(void **state) {
+  (void)state;
+  int pipes[2], status = 0;
+  assert_int_equal(pipe(pipes), 0);
+  pid_t child = start_long_render(pipes[1]);
+  close(pipes[1]);
+  size_t used = 0;
+  ssize_t got = read(pipes[0], run_errors, sizeof run_errors - 1);
+  assert_true(got > 0);
+  used = (size_t)got;
+  assert_int_equal(kill(child, SIGINT), 0);
+  while ((got = read(pipes[0], run_errors + used, sizeof run_errors - 1 - used)) > 0)
+    used += (size_t)got;
+  run_errors[used] = '\0';
+  close(pipes[0]);
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_true(WIFEXITED(status));
+  assert_int_equal(WEXITSTATUS(status), 1);
+  assert_contains(run_errors, "cancelled");
+  assert_int_equal(run_left(), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_statistics_as_json),     cmocka_unit_test(test_the_plan_as_json),
+      cmocka_unit_test(test_pictures_are_written),   cmocka_unit_test(test_a_map_like_another),
+      cmocka_unit_test(test_every_command_has_help), cmocka_unit_test(test_error_bars),
+      cmocka_unit_test(test_ctrl_c_stops_cleanly),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

@@ -1,0 +1,95 @@
+/* run_program.h: runs the program in a folder of its own and looks at what it says and leaves. */
+#ifndef ABBE_TESTS_CLI_RUN_PROGRAM_H
+#define ABBE_TESTS_CLI_RUN_PROGRAM_H
+
+#include "tests/check.h"
+
+#include <dirent.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char run_folder[64];
+static char run_errors[1 << 14], run_output[1 << 17];
+
+static int run_setup(void **state) {
+  (void)state;
+  snprintf(run_folder, sizeof run_folder, "/tmp/abbe-test-run-XXXXXX");
+  return mkdtemp(run_folder) == NULL;
+}
+
+/* Calls visit for every entry of the folder. */
+static inline void run_each(void (*visit)(const char *path, const char *name, void *user),
+                            void *user) {
+  DIR *dir = opendir(run_folder);
+  assert_non_null(dir);
+  for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+    char path[400];
+    if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
+    snprintf(path, sizeof path, "%s/%s", run_folder, entry->d_name);
+    visit(path, entry->d_name, user);
+  }
+  closedir(dir);
+}
+
+static inline void run_remove(const char *path, const char *name, void *user) {
+  (void)name;
+  (void)user;
+  unlink(path);
+}
+
+static inline void run_complain(const char *path, const char *name, void *user) {
+  (void)path;
+  print_error("left behind: %s\n", name);
+  ++*(int *)user;
+}
+
+static inline int run_left(void) {
+  int count = 0;
+  run_each(run_complain, &count);
+  return count;
+}
+
+static int run_teardown(void **state) {
+  (void)state;
+  run_each(run_remove, NULL);
+  return rmdir(run_folder);
+}
+
+static inline void run_read(const char *name, char *text, size_t size) {
+  char path[128];
+  snprintf(path, sizeof path, "%s.%s", run_folder, name);
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  text[fread(text, 1, size - 1, file)] = '\0';
+  fclose(file);
+  unlink(path);
+}
+
+/* A shell line in the folder, with $abbe the program and $house the sources; its exit code. What
+ * it writes to its streams is in run_output and run_errors. */
+static inline int run_line(const char *line) {
+  char command[4096];
+  int n = snprintf(command, sizeof command,
+                   "cd '%s' && abbe='%s' && house='%s' && { %s\n} >'%s.output' 2>'%s.errors'",
+                   run_folder, ABBE_PROGRAM, ABBE_SOURCE_DIR, line, run_folder, run_folder);
+  assert_true(n > 0 && (size_t)n < sizeof command);
+  int status = system(command);
+  run_read("output", run_output, sizeof run_output);
+  run_read("errors", run_errors, sizeof run_errors);
+  assert_true(WIFEXITED(status));
+  return WEXITSTATUS(status);
+}
+
+/* Exit code `code`, a sentence on stderr that holds part, nothing on stdout, nothing left. */
+static inline bool run_refuses(const char *line, int code, const char *part) {
+  int actual = run_line(line);
+  bool right = actual == code && strstr(run_errors, part) != NULL && run_output[0] == '\0';
+  if (!right)
+    print_error("%s\n  ends with %d, not %d; '%s' is expected in:\n%s%s\n", line, actual, code,
+                part, run_errors, run_output);
+  return (run_left() == 0) && right;
+}
+
+#endif

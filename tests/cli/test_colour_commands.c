@@ -1,0 +1,318 @@
+/* The subcommands weights, display and info, as a person or a program runs them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/file.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/png_file.h"
+#include "colorimetry/rgb_space.h"
+#include "colorimetry/weights.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char exr[64], png[64], other[64];
+static char output[1 << 22];
+
+/* Runs the program with stderr joined to stdout; its exit code. */
+static int run(const char *arguments) {
+  char command[1024];
+  snprintf(command, sizeof command, "%s %s 2>&1", ABBE_PROGRAM, arguments);
+  FILE *pipe = popen(command, "r");
+  assert_non_null(pipe);
+  output[fread(output, 1, sizeof output - 1, pipe)] = '\0';
+  int status = pclose(pipe);
+  assert_true(WIFEXITED(status));
+  return WEXITSTATUS(status);
+}
+
+static void must(int code, const char *says, const char *arguments) {
+  int got = run(arguments);
+  if (got != code || strstr(output, says) == NULL)
+    fail_msg("abbe %s: %d, not %d, with '%s': %s", arguments, got, code, says, output);
+}
+
+static cJSON *run_json(const char *arguments) {
+  if (run(arguments) != 0) fail_msg("abbe %s: %s", arguments, output);
+  cJSON *json = cJSON_Parse(output);
+  if (json == NULL) fail_msg("abbe %s: no JSON: %s", arguments, output);
+  return json;
+}
+
+static double number(const cJSON *object, const char *key, int index) {
+  const cJSON *item = cJSON_GetObjectItem(object, key);
+  return cJSON_GetNumberValue(index < 0 ? item : cJSON_GetArrayItem(item, index));
+}
+
+static void test_weights_json(void **state) {
+  (void)state;
+  cJSON *json = run_json("weights --count 7 --range 380:780 --illuminant D65 --space xyz --json");
+  const cJSON *samples = cJSON_GetObjectItem(json, "samples");
+  assert_int_equal(cJSON_GetArraySize(samples), 7);
+  abbe_wavelengths nodes = {0};
+  abbe_weights weights = {0};
+  const abbe_illuminant light = {0};
+  assert_int_equal(abbe_wavelengths_make(7, 380, 780, &nodes, NULL), ABBE_OK);
+  assert_int_equal(abbe_weights_make(&nodes, &light, ABBE_RGB_SPACE_XYZ, &weights, NULL), ABBE_OK);
+  for (int i = 0; i < 7; i++) {
+    const cJSON *sample = cJSON_GetArrayItem(samples, i);
+    assert_true(number(sample, "lambda_nm", -1) == nodes.lambda_nm[i]);
+    /* cJSON leaves out a seventeenth digit worth less than an epsilon */
+    for (int k = 0; k < 3; k++) {
+      double w = weights.weight[i][k];
+      assert_true(fabs(number(sample, "weight", k) - w) <= 3e-16 * w);
+    }
+  }
+  assert_true(fabs(number(json, "sum", 1) - 1) < 1e-15);
+  abbe_weights_free(&weights);
+  abbe_wavelengths_free(&nodes);
+  cJSON_Delete(json);
+}
+
+static void test_weights_of_every_kind(void **state) {
+  (void)state;
+  static const char *const spaces[] = {"xyz", "rec709", "acescg"};
+  static const char *const lights[] = {"D65", "D50", "a", "E"};
+  for (int s = 0; s < 3; s++)
+    for (int l = 0; l < 4; l++) {
+      char arguments[128];
+      snprintf(arguments, sizeof arguments, "weights --count 333 --space %s --illuminant %s --json",
+               spaces[s], lights[l]);
+      cJSON *json = run_json(arguments);
+      double sum[3] = {0}, matrix[9];
+      const cJSON *sample = NULL;
+      cJSON_ArrayForEach(sample, cJSON_GetObjectItem(json, "samples")) for (int k = 0; k < 3; k++)
+          sum[k] += number(sample, "weight", k);
+      abbe_rgb_space_to_xyz(s == 0   ? ABBE_RGB_SPACE_XYZ
+                            : s == 1 ? ABBE_RGB_SPACE_REC709
+                                     : ABBE_RGB_SPACE_ACESCG,
+                            matrix);
+      abbe_rgb_space_apply(matrix, sum, sum);
+      assert_true(fabs(sum[1] - 1) < 1e-13);
+      cJSON_Delete(json);
+    }
+}
+
+static void test_weights_thesis(void **state) {
+  (void)state;
+  cJSON *json = run_json("weights --set thesis --json");
+  for (int k = 0; k < 3; k++) assert_true(fabs(number(json, "sum", k) - 3.5) < 1e-12);
+  cJSON_Delete(json);
+  must(0, "680", "weights --set thesis");
+}
+
+static void test_weights_used_wrongly(void **state) {
+  (void)state;
+  must(2, "--count '0'", "weights --count 0");
+  must(2, "--count '4097'", "weights --count 4097");
+  must(2, "--range '780:380'", "weights --range 780:380");
+  must(2, "--range '-5:380'", "weights --range=-5:380");
+  must(2, "did you mean 'acescg'", "weights --space acecsg");
+  must(2, "did you mean 'thesis'", "weights --set theses");
+  must(2, "--set thesis fixes", "weights --set thesis --count 3");
+  must(2, "too many", "weights more");
+  must(2, "--unknown", "weights --unknown");
+  must(1, "did you mean", "weights --illuminant D56");
+  must(1, "/no/such.csv", "weights --illuminant /no/such.csv");
+  must(1, "900", "weights --range 900:1000");
+  must(0, "abbe weights --set thesis", "weights --help");
+  must(1, "", "weights > /dev/full");
+}
+
+static void make_picture(const double *xy, const char *space, const char *const names[4]) {
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(4, 3, 4, names, &image, NULL), ABBE_OK);
+  for (int i = 0; i < 48; i++) image.data[i] = i % 4 == 3 ? (float)i : 0.18f;
+  if (xy != NULL) memcpy(image.xy, xy, sizeof image.xy);
+  if (space != NULL)
+    assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", space, NULL), ABBE_OK);
+  image.data[3] = NAN;
+  image.data[7] = -INFINITY;
+  assert_int_equal(abbe_exr_write(exr, &image, NULL), ABBE_OK);
+  abbe_image_free(&image);
+}
+
+static const char *const rgbz[4] = {"R", "G", "B", "Z"};
+
+static void show(const char *options, double rgb[3]) {
+  char arguments[512];
+  snprintf(arguments, sizeof arguments, "display %s -o %s --bits 16 %s", exr, png, options);
+  if (run(arguments) != 0) fail_msg("abbe %s: %s", arguments, output);
+  abbe_image image = {0};
+  assert_int_equal(abbe_png_read(png, &image, NULL), ABBE_OK);
+  for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
+  abbe_image_free(&image);
+}
+
+static void test_display(void **state) {
+  (void)state;
+  double xy[8], rgb[3];
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
+  make_picture(xy, NULL, rgbz);
+  show("--view Plain", rgb);
+  for (int k = 0; k < 3; k++) assert_true(fabs(rgb[k] - 0.46135) < 1e-4);
+  show("--view Plain --exposure 1", rgb);
+  for (int k = 0; k < 3; k++) assert_true(fabs(rgb[k] - 0.63424) < 2e-4);
+  show("", rgb);
+  for (int k = 0; k < 3; k++) assert_true(fabs(rgb[k] - 0.4614) < 2e-3);
+}
+
+/* Equal numbers mean another colour in another space; who says so is ranked. */
+static void test_display_source(void **state) {
+  (void)state;
+  double rgb[3], xy[8];
+  make_picture(NULL, "xyz", rgbz);
+  show("--view Plain", rgb);
+  assert_true(rgb[0] > rgb[1] + 0.01);
+  show("--view Plain --source ACEScg", rgb);
+  assert_true(fabs(rgb[0] - rgb[1]) < 1e-3);
+  static const char *const xyz[4] = {"X", "Y", "Z", "W"};
+  make_picture(NULL, NULL, xyz);
+  show("--view Plain", rgb);
+  assert_true(rgb[0] > rgb[1] + 0.01);
+  static const char *const layer[4] = {"caustic.R", "caustic.G", "caustic.B", "Z"};
+  make_picture(NULL, NULL, layer);
+  show("--view Plain --layer caustic", rgb);
+  assert_true(fabs(rgb[0] - rgb[1]) < 1e-3);
+  char arguments[300];
+  snprintf(arguments, sizeof arguments, "display %s -o %s", exr, png);
+  must(1, "caustic.G", arguments);
+  make_picture(NULL, "rgb", rgbz);
+  must(1, "'rgb'", arguments);
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
+  xy[0] = 0.7;
+  make_picture(xy, NULL, rgbz);
+  must(1, "--source", arguments);
+}
+
+static bool holds(const char *word) {
+  char data[4096];
+  FILE *file = fopen(png, "rb");
+  assert_non_null(file);
+  const size_t size = fread(data, 1, sizeof data, file), length = strlen(word);
+  fclose(file);
+  for (size_t i = 0; i + length <= size; i++)
+    if (memcmp(data + i, word, length) == 0) return true;
+  return false;
+}
+
+/* By the display that was asked for. */
+static void test_display_says_its_colour(void **state) {
+  (void)state;
+  double rgb[3];
+  make_picture(NULL, NULL, rgbz);
+  show("", rgb);
+  assert_true(holds("sRGB") && !holds("iCCP"));
+  show("--display 'Display P3' --view Plain", rgb);
+  assert_true(holds("iCCP") && !holds("sRGB"));
+  show("--view Raw", rgb);
+  assert_true(!holds("iCCP") && !holds("sRGB"));
+}
+
+static void test_display_fails(void **state) {
+  (void)state;
+  make_picture(NULL, NULL, rgbz);
+  char a[512];
+  unlink(png);
+  must(2, "which file", "display -o a.png");
+  must(2, "--bits '12'", "display a.exr -o a.png --bits 12");
+  must(2, "--exposure 'bright'", "display a.exr -o a.png --exposure bright");
+  snprintf(a, sizeof a, "display %s", exr);
+  must(2, "-o names", a);
+  must(1, "/no/such.exr", "display /no/such.exr -o a.png");
+  snprintf(a, sizeof a, "display %s -o %s --view Plane", exr, png);
+  must(1, "Looking, Plain, Raw", a);
+  snprintf(a, sizeof a, "display %s -o %s --ocio /no/such.ocio", exr, png);
+  must(1, "/no/such.ocio", a);
+  assert_int_equal(abbe_file_write(other, "broken: [", 9, NULL), ABBE_OK);
+  snprintf(a, sizeof a, "display %s -o %s --ocio %s", exr, png, other);
+  must(1, other, a);
+  assert_int_not_equal(access(png, F_OK), 0);
+  snprintf(a, sizeof a, "display %s -o /no/such/folder/a.png", exr);
+  must(1, "/no/such/folder/a.png", a);
+  snprintf(a, sizeof a, "display %s -o %s", other, png);
+  must(1, other, a);
+  must(0, "Display P3 / Plain", "display --list");
+}
+
+static void test_info(void **state) {
+  (void)state;
+  double xy[8];
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, xy);
+  make_picture(xy, "acescg", rgbz);
+  char a[256];
+  snprintf(a, sizeof a, "info %s --json", exr);
+  cJSON *json = run_json(a);
+  assert_true(number(json, "width", -1) == 4 && number(json, "height", -1) == 3);
+  assert_true(fabs(number(json, "chromaticities", 0) - 0.713) < 1e-6);
+  assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(
+                          cJSON_GetObjectItem(json, "attributes"), "abbe:space")),
+                      "acescg");
+  const cJSON *z = cJSON_GetArrayItem(cJSON_GetObjectItem(json, "channels"), 3);
+  assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(z, "name")), "Z");
+  assert_true(number(z, "nan", -1) == 1 && number(z, "inf", -1) == 1);
+  assert_true(number(z, "min", -1) == 11 && number(z, "max", -1) == 47);
+  assert_true(number(z, "mean", -1) == 29);
+  cJSON_Delete(json);
+  snprintf(a, sizeof a, "info %s", exr);
+  must(0, "4 x 3 pixels, 4 channels", a);
+  must(2, "which file", "info");
+  must(1, "/no/such.exr", "info /no/such.exr");
+  assert_int_equal(abbe_file_write(other, "broken", 6, NULL), ABBE_OK);
+  snprintf(a, sizeof a, "info %s", other);
+  must(1, other, a);
+}
+
+/* A full disk, by a limit on the size of files: the sentence, the code, the old file. */
+static void test_a_full_disk(void **state) {
+  (void)state;
+  make_picture(NULL, NULL, rgbz);
+  assert_int_equal(abbe_file_write(png, "old", 3, NULL), ABBE_OK);
+  char command[512];
+  snprintf(command, sizeof command, "sh -c 'ulimit -f 0; %s display %s -o %s' > %s 2>/dev/null",
+           ABBE_PROGRAM, exr, png, "/dev/null");
+  int status = system(command);
+  assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 1);
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(png, 100, &data, &size, NULL), ABBE_OK);
+  assert_string_equal(data, "old");
+  free(data);
+}
+
+static int leave(void **state) {
+  (void)state;
+  unlink(exr);
+  unlink(png);
+  unlink(other);
+  return 0;
+}
+
+int main(void) {
+  long id = (long)getpid();
+  snprintf(exr, sizeof exr, "/tmp/abbe_test_command_%ld.exr", id);
+  snprintf(png, sizeof png, "/tmp/abbe_test_command_%ld.png", id);
+  snprintf(other, sizeof other, "/tmp/abbe_test_command_%ld.txt", id);
+  unsetenv("OCIO");
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_weights_json),
+                                     cmocka_unit_test(test_weights_of_every_kind),
+                                     cmocka_unit_test(test_weights_thesis),
+                                     cmocka_unit_test(test_weights_used_wrongly),
+                                     cmocka_unit_test(test_display),
+                                     cmocka_unit_test(test_display_source),
+                                     cmocka_unit_test(test_display_says_its_colour),
+                                     cmocka_unit_test(test_display_fails),
+                                     cmocka_unit_test(test_info),
+                                     cmocka_unit_test(test_a_full_disk)};
+  return cmocka_run_group_tests(tests, NULL, leave);
+}

@@ -1,0 +1,69 @@
+/* `abbe export` as people and programs meet it: the file, what is said of materials, refusals. */
+#include "tests/cli/run_program.h"
+
+#include <cjson/cJSON.h>
+
+static void test_a_scene_is_exported(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" export \"$house\"/scenes/prism.yaml -o p.pov && "
+                            "grep -c 'mesh2 {' p.pov"),
+                   0);
+  assert_string_equal(run_output, "7\n"); /* the prism, four jaws, floor and wall */
+  assert_contains(run_errors, "sf10: ior 1.73");
+  assert_int_equal(run_line("\"$abbe\" export \"$house\"/scenes/prism.yaml -o q.pov -q && "
+                            "cmp p.pov q.pov && rm p.pov q.pov"),
+                   0);
+  assert_string_equal(run_errors, "");
+  assert_int_equal(run_left(), 0);
+}
+
+static void test_materials_as_json(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" export \"$house\"/scenes/sphere.yaml -o s.pov --json "
+                            "--photons 5000 --samples 15 && grep -q 'Photons = 5000' s.pov && "
+                            "grep -q 'Samples = 15' s.pov && rm s.pov"),
+                   0);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_non_null(json);
+  const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "materials");
+  assert_int_equal(cJSON_GetArraySize(list), 1);
+  const cJSON *glass = cJSON_GetArrayItem(list, 0);
+  assert_string_equal(cJSON_GetObjectItemCaseSensitive(glass, "name")->valuestring, "fused-silica");
+  /* n is 1.4599 at 555 nm and 1.4725 at 380, 1.4546 at 730 [Malitson1965]; the fit is between */
+  assert_near(cJSON_GetObjectItemCaseSensitive(glass, "ior")->valuedouble, 1.4599, 5e-4);
+  const double dispersion = cJSON_GetObjectItemCaseSensitive(glass, "dispersion")->valuedouble;
+  assert_true(dispersion > 1.008 && dispersion < 1.4725 / 1.4546 + 0.001);
+  assert_near(cJSON_GetObjectItemCaseSensitive(json, "units_per_metre")->valuedouble, 100, 0);
+  cJSON_Delete(json);
+  assert_int_equal(run_left(), 0);
+}
+
+static void test_wrong_use_ends_with_2(void **state) {
+  (void)state;
+  static const struct {
+    const char *line;
+    int code;
+    const char *part;
+  } rows[] = {
+      {"\"$abbe\" export", 2, "which scene?"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml", 2, "-o FILE.pov"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pov --samples 1", 2, "--samples"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pov --photons 0", 2, "--photons"},
+      {"\"$abbe\" export \"$house\"/tests/bad/scene_no_light.yaml -o x.pov", 1, "has no light"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o missing/x.pov", 1, "missing/x.pov"},
+      {"\"$abbe\" export missing.yaml -o x.pov", 1, "missing.yaml"},
+  };
+  int wrong = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    wrong += !run_refuses(rows[i].line, rows[i].code, rows[i].part);
+  assert_int_equal(wrong, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_scene_is_exported),
+      cmocka_unit_test(test_materials_as_json),
+      cmocka_unit_test(test_wrong_use_ends_with_2),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

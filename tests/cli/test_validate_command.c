@@ -1,0 +1,96 @@
+/* The program's `validate`, as a person and as a program meet it. */
+#include "tests/cli/run_program.h"
+
+#include <cjson/cJSON.h>
+
+static void a_group_as_text(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only rainbow"), 0);
+  assert_contains(run_output, "secondary bow at 700 nm");
+  assert_contains(run_output, "6 of 6 known answers are within tolerance");
+  assert_contains(run_output, "tolerance (degrees): ");
+  assert_null(strstr(run_output, "FAILS"));
+  assert_string_equal(run_errors, "");
+}
+
+static void a_group_as_json(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only prism --json"), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_non_null(json);
+  const cJSON *list = cJSON_GetObjectItem(json, "answers"), *row = cJSON_GetArrayItem(list, 1);
+  assert_int_equal(cJSON_GetArraySize(list), 13);
+  assert_int_equal(cJSON_GetObjectItem(json, "passed")->valueint, 13);
+  assert_int_equal(cJSON_GetObjectItem(json, "failed")->valueint, 0);
+  assert_string_equal(cJSON_GetObjectItem(row, "group")->valuestring, "prism");
+  double exact = cJSON_GetObjectItem(row, "exact")->valuedouble;
+  double traced = cJSON_GetObjectItem(row, "traced")->valuedouble;
+  assert_near(cJSON_GetObjectItem(row, "error")->valuedouble, traced - exact, 1e-12);
+  assert_true(cJSON_IsTrue(cJSON_GetObjectItem(row, "passed")));
+  assert_true(strlen(cJSON_GetObjectItem(row, "reason")->valuestring) > 0);
+  cJSON_Delete(json);
+}
+
+/* Whole runs, small: their tolerances widen with their noise, and would fail where it tells
+ * nothing.
+ */
+static void runs_meet_a_furnace_and_converge(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only furnace --samples 65536 --threads 1"), 0);
+  assert_contains(run_output, "4 of 4 known answers are within tolerance");
+  assert_int_equal(run_line("\"$abbe\" validate --only convergence --samples 65536 --threads 1"),
+                   0);
+  assert_contains(run_output, "slope of the error over the photons");
+}
+
+static void pictures_show_the_caustic(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only picture --samples 524288 --threads 1"), 0);
+  assert_contains(run_output, "the caustic through a pane");
+}
+
+static void noise_is_no_agreement(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --only absorption --samples 1000 --threads 1"), 3);
+  assert_contains(run_output, "TOO NOISY");
+  assert_contains(run_errors, "of 5 known answers are out of tolerance");
+}
+
+static void errors_are_drawn(void **state) {
+  (void)state;
+  assert_int_equal(
+      run_line("\"$abbe\" validate --only slab --chart c.svg && grep -c '<svg' c.svg && "
+               "rm c.svg"),
+      0);
+  assert_true(run_refuses("\"$abbe\" validate --chart c.gif", 2, "'c.gif' wants a name"));
+}
+
+static void help_lists_the_groups(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" validate --help"), 0);
+  assert_contains(run_output, "rainbow: primary");
+  assert_contains(run_output, "Examples:");
+}
+
+static void wrong_use_is_explained(void **state) {
+  (void)state;
+  bool right = run_refuses("\"$abbe\" validate --only rainbov", 2, "did you mean 'rainbow'");
+  right = run_refuses("\"$abbe\" validate extra", 2, "'extra' is one argument too many") && right;
+  right = run_refuses("\"$abbe\" validate --samples 0", 2, "--samples '0'") && right;
+  right = run_refuses("\"$abbe\" validate --threads 0", 2, "--threads '0'") && right;
+  assert_true(right);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_group_as_text),
+      cmocka_unit_test(a_group_as_json),
+      cmocka_unit_test(runs_meet_a_furnace_and_converge),
+      cmocka_unit_test(pictures_show_the_caustic),
+      cmocka_unit_test(noise_is_no_agreement),
+      cmocka_unit_test(errors_are_drawn),
+      cmocka_unit_test(help_lists_the_groups),
+      cmocka_unit_test(wrong_use_is_explained),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

@@ -1,0 +1,356 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/file.h"
+#include "colorimetry/image/display_ocio.h"
+#include "colorimetry/observer.h"
+#include "colorimetry/rgb_encoding.h"
+#include "colorimetry/rgb_space.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *const names[] = {"R", "G", "B", "caustic.R", "A"};
+
+static abbe_display *make(const abbe_display_desc *desc) {
+  abbe_display *display = NULL;
+  abbe_error error = {0};
+  if (abbe_display_make(desc, &display, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return display;
+}
+
+/* One colour through one display; rgb is replaced. */
+static void show(const abbe_display_desc *desc, double rgb[3]) {
+  abbe_display *display = make(desc);
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(1, 1, 3, names, &image, NULL), ABBE_OK);
+  for (int k = 0; k < 3; k++) image.data[k] = (float)rgb[k];
+  assert_int_equal(abbe_display_apply(display, &image, NULL), ABBE_OK);
+  for (int k = 0; k < 3; k++) rgb[k] = (double)image.data[k];
+  abbe_image_free(&image);
+  abbe_display_free(display);
+}
+
+static double srgb_encode(double x) {
+  if (x <= 0) return 0;
+  if (x >= 1) return 1;
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+}
+
+static double srgb_decode(double x) {
+  return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+}
+
+static void near(const double got[3], const double expected[3], double tolerance,
+                 const char *what) {
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(got[k] - expected[k]) <= tolerance))
+      fail_msg("%s: component %d is %.7f, not %.7f", what, k, got[k], expected[k]);
+}
+
+/* Each space of the toolkit goes through its name in the configuration by the same matrices. */
+static void test_plain_is_the_encoding_alone(void **state) {
+  (void)state;
+  static const double colours[][3] = {{0, 0, 0},        {1, 1, 1},         {0.18, 0.18, 0.18},
+                                      {0.9, 0.1, 0.02}, {0.001, 0.3, 0.7}, {0.4, 1.3, -0.2},
+                                      {2, 3, 4}};
+  double to_709[9];
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, to_709);
+  for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++)
+    for (size_t i = 0; i < sizeof colours / sizeof colours[0]; i++) {
+      double to_xyz[9], expected[3], got[3];
+      memcpy(got, colours[i], sizeof got);
+      abbe_rgb_space_to_xyz((abbe_rgb_space)s, to_xyz);
+      abbe_rgb_space_apply(to_xyz, colours[i], expected);
+      abbe_rgb_space_apply(to_709, expected, expected);
+      for (int k = 0; k < 3; k++) expected[k] = srgb_encode(expected[k]);
+      const abbe_display_desc desc = {.source_space = abbe_rgb_space_ocio_name((abbe_rgb_space)s),
+                                      .display = "sRGB",
+                                      .view = "Plain"};
+      show(&desc, got);
+      near(got, expected, 3e-5, desc.source_space);
+    }
+}
+
+static void test_display_p3(void **state) {
+  (void)state;
+  /* Rec.709 red on a Display P3 screen, as published for CSS colours */
+  double red[3] = {1, 0, 0};
+  const double expected[3] = {0.91749, 0.20029, 0.13856};
+  const abbe_display_desc desc = {
+      .source_space = "Linear Rec.709 (sRGB)", .display = "Display P3", .view = "Plain"};
+  show(&desc, red);
+  near(red, expected, 2e-5, "Rec.709 red in P3");
+}
+
+static void test_exposure_is_in_stops(void **state) {
+  (void)state;
+  double plain[3] = {0.4, 0.2, 0.1}, exposed[3] = {0.1, 0.05, 0.025};
+  abbe_display_desc desc = {.view = "Plain"};
+  show(&desc, plain);
+  desc.exposure = 2;
+  show(&desc, exposed);
+  near(exposed, plain, 1e-6, "two stops");
+  double raw[3] = {-1, 0.5, 7};
+  const double same[3] = {-1, 0.5, 7};
+  const abbe_display_desc none = {.view = "Raw"};
+  show(&none, raw);
+  near(raw, same, 0, "raw");
+}
+
+/* Greys stay grey and follow the curve that the view states; 0.18 is kept. */
+static void test_looking_greys(void **state) {
+  (void)state;
+  static const char *const displays[] = {"sRGB", "Display P3"};
+  for (int d = 0; d < 2; d++) {
+    double before = -1;
+    for (double stops = -9; stops <= 6.5; stops += 0.25) {
+      double x = 0.18 * exp2(stops), u = pow(x, 1.25), grey[3] = {x, x, x};
+      const abbe_display_desc desc = {.display = displays[d]};
+      show(&desc, grey);
+      double y = srgb_decode(grey[1]), curve = 1.0166495 * u / (u + 0.5449563);
+      if (fabs(y - curve) > 0.01 * curve + 2e-4)
+        fail_msg("%s: %g stops come out as %.5f, not %.5f", displays[d], stops, y, curve);
+      assert_true(fabs(grey[0] - grey[1]) < 2e-4 && fabs(grey[2] - grey[1]) < 2e-4);
+      assert_true(grey[1] > before);
+      before = grey[1];
+    }
+    double black[3] = {0, 0, 0}, mid[3] = {0.18, 0.18, 0.18}, zero[3] = {0};
+    const abbe_display_desc desc = {.display = displays[d]};
+    show(&desc, black);
+    near(black, zero, 1e-4, "black");
+    show(&desc, mid);
+    assert_true(fabs(srgb_decode(mid[1]) - 0.18) < 0.002);
+  }
+}
+
+static double luminance(const double encoded[3]) {
+  return 0.2126 * srgb_decode(encoded[0]) + 0.7152 * srgb_decode(encoded[1]) +
+         0.0722 * srgb_decode(encoded[2]);
+}
+
+/* The spectrum at any exposure: in the cube, brighter with more light, never a patch that clips
+ * to a corner, never a jump between wavelengths a nanometre apart. */
+static void test_looking_at_the_spectrum(void **state) {
+  (void)state;
+  enum { FIRST = 400, LAST = 700, COUNT = LAST - FIRST + 1, STEPS = 24 };
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(COUNT, STEPS, 3, names, &image, NULL), ABBE_OK);
+  double matrix[9];
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  for (int i = 0; i < COUNT * STEPS; i++) {
+    double xyz[3];
+    abbe_observer_xyz(FIRST + i % COUNT, xyz);
+    abbe_rgb_space_apply(matrix, xyz, xyz);
+    double scale = exp2(-8 + i / COUNT * 0.75);
+    for (int k = 0; k < 3; k++) image.data[3 * i + k] = (float)(scale * xyz[k]);
+  }
+  abbe_display *display = make(&(abbe_display_desc){0});
+  assert_int_equal(abbe_display_apply(display, &image, NULL), ABBE_OK);
+  for (int i = 0; i < COUNT * STEPS; i++) {
+    const float *p = image.data + 3 * i;
+    double c[3] = {(double)p[0], (double)p[1], (double)p[2]};
+    double least = fmin(c[0], fmin(c[1], c[2])), most = fmax(c[0], fmax(c[1], c[2]));
+    int nm = FIRST + i % COUNT, step = i / COUNT;
+    if (!(least >= 0 && most <= 1)) fail_msg("%d nm, step %d: outside the cube", nm, step);
+    if (most > 0.995 && least < 0.3) fail_msg("%d nm, step %d: neon", nm, step);
+    if (step > 0) {
+      const float *q = p - 3 * COUNT;
+      const double darker[3] = {(double)q[0], (double)q[1], (double)q[2]};
+      if (luminance(c) < luminance(darker) - 1e-6) fail_msg("%d nm, step %d: darker", nm, step);
+    }
+    for (int k = 0; k < 3 && nm < LAST; k++)
+      if (fabs((double)p[3 + k] - c[k]) > 0.05) fail_msg("%d nm, step %d: a jump", nm, step);
+  }
+  abbe_display_free(display);
+  abbe_image_free(&image);
+}
+
+static void test_other_channels_stay(void **state) {
+  (void)state;
+  abbe_display *display = make(&(abbe_display_desc){0});
+  abbe_image image = {0}, two = {0};
+  assert_int_equal(abbe_image_make(3, 2, 5, names, &image, NULL), ABBE_OK);
+  for (int i = 0; i < 30; i++) image.data[i] = 0.18f;
+  assert_int_equal(abbe_display_apply(display, &image, NULL), ABBE_OK);
+  for (int i = 0; i < 30; i++)
+    assert_true(i % 5 < 3 ? image.data[i] > 0.4f : image.data[i] == 0.18f);
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(1, 1, 2, names, &two, NULL), ABBE_OK);
+  assert_int_equal(abbe_display_apply(display, &two, &error), ABBE_INVALID_ARGUMENT);
+  abbe_image_free(&image);
+  abbe_image_free(&two);
+  abbe_display_free(display);
+}
+
+static void must_fail(const abbe_display_desc *desc, abbe_result expected, const char *says) {
+  abbe_display *display = NULL;
+  abbe_error error = {0};
+  abbe_result result = abbe_display_make(desc, &display, &error);
+  if (result != expected || display != NULL || strstr(error.text, says) == NULL)
+    fail_msg("%d: '%s' says nothing of '%s'", (int)result, error.text, says);
+}
+
+static void test_unknown_names_list_the_known(void **state) {
+  (void)state;
+  must_fail(&(abbe_display_desc){.display = "sRBG"}, ABBE_COLOUR, "sRGB, Display P3");
+  must_fail(&(abbe_display_desc){.view = "Plane"}, ABBE_COLOUR, "Looking, Plain, Raw");
+  must_fail(&(abbe_display_desc){.source_space = "acescgg"}, ABBE_COLOUR, "ACEScg");
+  must_fail(&(abbe_display_desc){.exposure = NAN}, ABBE_INVALID_ARGUMENT, "nan");
+  must_fail(&(abbe_display_desc){.exposure = 1e9}, ABBE_INVALID_ARGUMENT, "1e+09");
+}
+
+static void test_broken_configurations(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      "",
+      "not: [a, config",
+      "ocio_profile_version: 99\n",
+      "\x89PNG\r\n",
+      "ocio_profile_version: 2\nroles: {default: Missing}\ncolorspaces: []\n",
+      "ocio_profile_version: 2\nroles: {default: a, scene_linear: a}\ndisplays:\n  d:\n"
+      "    - !<View> {name: v, colorspace: nowhere}\ncolorspaces:\n"
+      "  - !<ColorSpace> {name: a}\n"};
+  char path[128];
+  snprintf(path, sizeof path, "/tmp/abbe_test_config_%ld.ocio", (long)getpid());
+  for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+    assert_int_equal(abbe_file_write(path, texts[i], strlen(texts[i]), NULL), ABBE_OK);
+    must_fail(&(abbe_display_desc){.config = path}, ABBE_COLOUR, path);
+    char *list = NULL;
+    assert_int_equal(abbe_display_list(path, &list, NULL), ABBE_COLOUR);
+    assert_null(list);
+  }
+  assert_int_equal(setenv("OCIO", path, 1), 0);
+  must_fail(&(abbe_display_desc){0}, ABBE_COLOUR, path);
+  assert_int_equal(setenv("OCIO", "/no/such.ocio", 1), 0);
+  must_fail(&(abbe_display_desc){0}, ABBE_COLOUR, "/no/such.ocio");
+  assert_int_equal(setenv("OCIO", "", 1), 0);
+  abbe_display_free(make(&(abbe_display_desc){0}));
+  assert_int_equal(unsetenv("OCIO"), 0);
+  must_fail(&(abbe_display_desc){.config = "/no/such.ocio"}, ABBE_COLOUR, "/no/such.ocio");
+  unlink(path);
+}
+
+/* The shipped file also loads by its path, with $OCIO pointing at it. */
+static void test_list(void **state) {
+  (void)state;
+  static const char *const expected = "sRGB / Looking\nsRGB / Plain\nsRGB / Raw\n"
+                                      "Display P3 / Looking\nDisplay P3 / Plain\n"
+                                      "Display P3 / Raw\n";
+  char *list = NULL;
+  assert_int_equal(abbe_display_list(NULL, &list, NULL), ABBE_OK);
+  assert_string_equal(list, expected);
+  free(list);
+  assert_int_equal(setenv("OCIO", ABBE_SOURCE_DIR "/colorimetry/image/config.ocio", 1), 0);
+  assert_int_equal(abbe_display_list(NULL, &list, NULL), ABBE_OK);
+  assert_string_equal(list, expected);
+  free(list);
+  assert_int_equal(unsetenv("OCIO"), 0);
+}
+
+/* What the display says of its numbers: 's' sRGB, 'p' Display P3, '4' a power of 2.4, '-' nothing.
+ */
+static char encoding_of(const abbe_display_desc *desc) {
+  abbe_display *display = make(desc);
+  abbe_image image = {0};
+  double p3[8], curve[5];
+  assert_int_equal(abbe_image_make(1, 1, 3, names, &image, NULL), ABBE_OK);
+  image.xy[0] = 0.7; /* of the scene-linear picture */
+  assert_int_equal(abbe_display_apply(display, &image, NULL), ABBE_OK);
+  abbe_rgb_encoding_display_p3(p3, curve);
+  char kind = '?';
+  if (!abbe_rgb_encoding_is_known(image.xy, image.curve)) kind = image.xy[0] == 0 ? '-' : '?';
+  if (abbe_rgb_encoding_is_srgb(image.xy, image.curve)) kind = 's';
+  if (fabs(image.curve[0] - 2.4) < 1e-3 && image.curve[4] == 0) kind = '4';
+  if (kind == '?' && fabs(image.xy[0] - p3[0]) < 1e-4 && image.curve[0] == curve[0]) kind = 'p';
+  abbe_image_free(&image);
+  abbe_display_free(display);
+  return kind;
+}
+
+static void test_what_the_numbers_mean(void **state) {
+  (void)state;
+  static const struct {
+    const char *display, *view;
+    char kind;
+  } shipped[] = {{"sRGB", "Looking", 's'},     {"sRGB", "Plain", 's'},
+                 {"sRGB", "Raw", '-'},         {"Display P3", "Looking", 'p'},
+                 {"Display P3", "Plain", 'p'}, {"Display P3", "Raw", '-'}};
+  for (int i = 0; i < 6; i++) {
+    const abbe_display_desc desc = {.display = shipped[i].display, .view = shipped[i].view};
+    assert_int_equal(encoding_of(&desc), shipped[i].kind);
+  }
+}
+
+/* A configuration of another maker: displays by formula, by name alone, and by neither. */
+static void test_what_other_configurations_tell(void **state) {
+  (void)state;
+  static const char path[] = "/tmp/abbe_test_other.ocio";
+  static const char text[] =
+      "ocio_profile_version: 2\n"
+      "roles: {scene_linear: ap0%s}\n"
+      "file_rules:\n  - !<Rule> {name: Default, colorspace: ap0}\n"
+      "displays:\n"
+      "  Monitor:\n    - !<View> {name: Film, colorspace: video}\n"
+      "    - !<View> {name: Toned, colorspace: toned}\n"
+      "  sRGB:\n    - !<View> {name: Toned, colorspace: toned}\n"
+      "  Display P3 - Display:\n    - !<View> {name: Toned, colorspace: toned}\n"
+      "colorspaces:\n"
+      "  - !<ColorSpace> {name: ap0}\n"
+      "  - !<ColorSpace>\n    name: video\n    from_scene_reference: !<GroupTransform>\n"
+      "      children:\n"
+      "        - !<BuiltinTransform> {style: UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD}\n"
+      "        - !<MatrixTransform> {matrix: [3.24096994190452, -1.53738317757009, "
+      "-0.498610760293004, 0, -0.96924363628088, 1.87596750150772, 0.0415550574071756, 0, "
+      "0.0556300796969936, -0.203976958888976, 1.05697151424288, 0, 0, 0, 0, 1]}\n"
+      "        - !<ExponentTransform> {value: 2.4, direction: inverse}\n"
+      "  - !<ColorSpace>\n    name: toned\n    from_scene_reference: !<GroupTransform>\n"
+      "      children:\n"
+      "        - !<MatrixTransform> {matrix: [0.9, 0.1, 0, 0, 0.2, 0.8, 0, 0, 0, 0.3, 0.7, 0, 0, "
+      "0, "
+      "0, 1]}\n"
+      "        - !<LogTransform> {base: 10}\n";
+  static const struct {
+    const char *display, *view;
+    char with_roles, without;
+  } cases[] = {{"Monitor", "Film", '4', '-'},
+               {"Monitor", "Toned", '-', '-'},
+               {"sRGB", "Toned", 's', 's'},
+               {"Display P3 - Display", "Toned", 'p', 'p'}};
+  for (int roles = 0; roles < 2; roles++) {
+    char config[4000];
+    snprintf(config, sizeof config, text, roles ? ", aces_interchange: ap0" : "");
+    assert_int_equal(abbe_file_write(path, config, strlen(config), NULL), ABBE_OK);
+    for (int i = 0; i < 4; i++) {
+      const abbe_display_desc desc = {
+          .config = path, .display = cases[i].display, .view = cases[i].view};
+      const char kind = encoding_of(&desc), right = roles ? cases[i].with_roles : cases[i].without;
+      if (kind != right)
+        fail_msg("%s, %s: '%c', not '%c'", cases[i].display, cases[i].view, kind, right);
+    }
+  }
+  unlink(path);
+}
+
+int main(void) {
+  unsetenv("OCIO");
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain_is_the_encoding_alone),
+                                     cmocka_unit_test(test_display_p3),
+                                     cmocka_unit_test(test_exposure_is_in_stops),
+                                     cmocka_unit_test(test_looking_greys),
+                                     cmocka_unit_test(test_looking_at_the_spectrum),
+                                     cmocka_unit_test(test_other_channels_stay),
+                                     cmocka_unit_test(test_unknown_names_list_the_known),
+                                     cmocka_unit_test(test_broken_configurations),
+                                     cmocka_unit_test(test_what_the_numbers_mean),
+                                     cmocka_unit_test(test_what_other_configurations_tell),
+                                     cmocka_unit_test(test_list)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

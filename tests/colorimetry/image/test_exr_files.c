@@ -1,0 +1,291 @@
+/* OpenEXR files of every make, read by Abbe and by OpenEXR's own C++ library, and the other way. */
+#include "tests/check.h"
+#include "tests/colorimetry/image/exr_library.h"
+#include "tests/random.h"
+
+#include "colorimetry/image/exr.h"
+
+#include <openexr.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <zlib.h>
+
+static char path[128];
+
+static const char *const names[] = {"A", "B", "G", "R", "Z", "caustic.R"};
+static const int sizes[][2] = {{37, 41}, {3, 2}, {1, 1}, {1, 70}, {129, 1}};
+enum { SIZES = sizeof sizes / sizeof *sizes, TILED_SIZES = 2 };
+
+static void say(char *text, size_t size, const exr_library_file *f) {
+  snprintf(text, size, "%d channels of types %d %d, codec %d, %d x %d, tiles of %d, order %d",
+           f->channels, f->type[0], f->type[1], f->codec, f->data_window[2] - f->data_window[0] + 1,
+           f->data_window[3] - f->data_window[1] + 1, f->tile[0], f->line_order);
+}
+
+static bool same(float a, float b) {
+  return (isnan(a) && isnan(b)) || memcmp(&a, &b, sizeof a) == 0;
+}
+
+/* Every pixel of the picture, by place: what the file's data hold there, else 0. */
+static void compare(const abbe_image *image, const char *const *name, int count, const char *what) {
+  int data[4], shown[4];
+  float *value = NULL;
+  char why[300];
+  if (!exr_library_read(path, name, count, data, shown, &value, why, sizeof why))
+    fail_msg("%s: %s", what, why);
+  const int width = shown[2] - shown[0] + 1, height = shown[3] - shown[1] + 1;
+  const int line = data[2] - data[0] + 1, lines = data[3] - data[1] + 1;
+  if (image->width != (size_t)width || image->height != (size_t)height)
+    fail_msg("%s: %zu x %zu pixels, not %d x %d", what, image->width, image->height, width, height);
+  for (int k = 0; k < count; k++) {
+    const size_t c = abbe_image_find_channel(image, name[k]);
+    assert_true(c != (size_t)-1);
+    for (int i = 0; i < width * height; i++) {
+      const int x = i % width + shown[0] - data[0], y = i / width + shown[1] - data[1];
+      const bool inside = x >= 0 && x < line && y >= 0 && y < lines;
+      const float right = inside ? value[(k * lines + y) * line + x] : 0;
+      const float is = image->data[(size_t)i * image->channels + c];
+      if (!same(right, is))
+        fail_msg("%s: %s of pixel %d is %g, not %g", what, name[k], i, (double)is, (double)right);
+    }
+  }
+  free(value);
+}
+
+static void read_and_compare(const exr_library_file *f) {
+  char what[200], why[300];
+  say(what, sizeof what, f);
+  if (!exr_library_write(path, f, why, sizeof why)) fail_msg("%s: %s", what, why);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  if (abbe_exr_read(path, &image, &error) != ABBE_OK) fail_msg("%s: %s", what, error.text);
+  assert_int_equal(image.channels, f->channels);
+  compare(&image, f->name, f->channels, what);
+  abbe_image_free(&image);
+}
+
+/* All counts of channels to six, of one type or of two, at all sizes. */
+static void read_all(exr_library_file f) {
+  static const int types[][2] = {{1, 1}, {2, 2}, {0, 0}, {1, 2}};
+  for (f.channels = 1; f.channels <= 6; f.channels++)
+    for (int t = 0; t < 4; t++)
+      for (int s = 0; s < (f.tile[0] > 0 ? TILED_SIZES : SIZES); s++) {
+        for (int c = 0; c < f.channels; c++) {
+          f.name[c] = names[c];
+          f.type[c] = types[t][c % 2];
+        }
+        f.data_window[2] = f.display_window[2] = sizes[s][0] - 1;
+        f.data_window[3] = f.display_window[3] = sizes[s][1] - 1;
+        read_and_compare(&f);
+      }
+}
+
+static void test_scan_lines(void **state) {
+  (void)state;
+  for (int codec = EXR_COMPRESSION_NONE; codec <= EXR_COMPRESSION_B44A; codec++)
+    read_all((exr_library_file){.codec = codec, .line_order = codec % 2});
+}
+
+/* The picture is the display window, wherever the data lie. */
+static void test_windows(void **state) {
+  (void)state;
+  static const int display[][4] = {
+      {0, 0, 29, 19}, {-7, 11, 22, 30}, {-1000000000, 3, -999999973, 9}};
+  static const int data[][4] = {{3, 4, 12, 9},   {-5, -6, 40, 33}, {20, -9, 44, 7},
+                                {-4, 15, 3, 40}, {60, 0, 70, 9},   {-9, -9, -1, -1}};
+  for (int d = 0; d < 3; d++)
+    for (int w = 0; w < 6; w++)
+      for (int i = 0; i < 6; i++) {
+        exr_library_file f = {.channels = 3, .name = {"B", "G", "R"}, .type = {1, 2, 0}};
+        f.codec = i % 3 == 0   ? EXR_COMPRESSION_ZIP
+                  : i % 3 == 1 ? EXR_COMPRESSION_NONE
+                               : EXR_COMPRESSION_B44A;
+        f.tile[0] = f.tile[1] = i < 3 ? 0 : 7;
+        memcpy(f.display_window, display[d], sizeof f.display_window);
+        for (int k = 0; k < 4; k++) f.data_window[k] = display[d][k % 2] + data[w][k];
+        read_and_compare(&f);
+      }
+}
+
+static void test_tiles(void **state) {
+  (void)state;
+  for (int codec = EXR_COMPRESSION_NONE; codec <= EXR_COMPRESSION_B44A; codec++)
+    read_all((exr_library_file){.codec = codec, .tile = {16, 10}, .levels = codec % 2 == 0});
+}
+
+/* What OpenEXR's C core cannot decode is refused, not guessed. */
+static void test_what_is_refused(void **state) {
+  (void)state;
+  exr_library_file f = {.channels = 3, .type = {1, 1, 1}, .name = {"B", "G", "R"}};
+  f.data_window[2] = f.display_window[2] = f.data_window[3] = f.display_window[3] = 63;
+  static const char *const word[] = {"DWA", "DWA", "subsampled"};
+  char why[300];
+  for (int i = 0; i < 3; i++) {
+    f.codec = i == 2 ? EXR_COMPRESSION_ZIP : EXR_COMPRESSION_DWAA + i;
+    f.sampling = i == 2 ? 2 : 1;
+    if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
+    abbe_image image = {0};
+    abbe_error error = {0};
+    assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+    assert_contains(error.text, word[i]);
+    assert_null(image.data);
+  }
+}
+
+/* What a small file may unfold into is bounded, whichever window says it. */
+static void test_what_unfolds_is_refused(void **state) {
+  (void)state;
+  static const int wide[4] = {0, 0, 32767, 32767};
+  exr_library_file f = {.channels = 1, .type = {1}, .name = {"Y"}, .codec = EXR_COMPRESSION_ZIP};
+  char why[300];
+  memcpy(f.display_window, wide, sizeof wide);
+  if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s", why);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_exr_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "32768 x 32768");
+  assert_null(image.data);
+  f.display_window[3] = 0; /* one line of it, for which there is one pixel of data */
+  read_and_compare(&f);
+}
+
+/* Every half there is, by OpenEXR's own conversion. */
+static void test_every_half(void **state) {
+  (void)state;
+  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  exr_context_t f = NULL;
+  int part = 0;
+  static uint16_t row[65536];
+  enum { WIDE = 32768 };
+  for (int i = 0; i < 65536; i++) row[i] = (uint16_t)i;
+  assert_int_equal(exr_start_write(&f, path, EXR_WRITE_FILE_DIRECTLY, &setup), 0);
+  assert_int_equal(exr_add_part(f, "", EXR_STORAGE_SCANLINE, &part), 0);
+  assert_int_equal(
+      exr_initialize_required_attr_simple(f, 0, WIDE, 65536 / WIDE, EXR_COMPRESSION_NONE), 0);
+  assert_int_equal(exr_add_channel(f, 0, "Y", EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LINEAR, 1, 1), 0);
+  assert_int_equal(exr_write_header(f), 0);
+  for (int y = 0; y < 65536 / WIDE; y++)
+    assert_int_equal(exr_write_scanline_chunk(f, 0, y, row + WIDE * y, WIDE * sizeof *row), 0);
+  assert_int_equal(exr_finish(&f), 0);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  if (abbe_exr_read(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  compare(&image, (const char *const[]){"Y"}, 1, "every half");
+  abbe_image_free(&image);
+}
+
+static void test_what_abbe_writes(void **state) {
+  (void)state;
+  for (size_t channels = 1; channels <= 6; channels++)
+    for (int s = 0; s < SIZES; s++)
+      for (int half = 0; half < 2; half++) {
+        abbe_image image = {0};
+        abbe_error error = {0};
+        assert_int_equal(abbe_image_make((size_t)sizes[s][0], (size_t)sizes[s][1], channels, names,
+                                         &image, NULL),
+                         ABBE_OK);
+        for (size_t i = 0; i < image.width * image.height * channels; i++)
+          image.data[i] = (float)(i % 1000) * 0.25f + 1; /* a half can hold it */
+        if ((half ? abbe_exr_write_half : abbe_exr_write)(path, &image, &error) != ABBE_OK)
+          fail_msg("%s", error.text);
+        compare(&image, names, (int)channels, "written by Abbe");
+        abbe_image_free(&image);
+      }
+}
+
+/* A float or a half: of all bits even, but no NaN and no infinity. */
+static uint32_t noise(uint64_t *seed, bool half, float *value) {
+  const uint32_t bits = (uint32_t)random_bits(seed) & (half ? 0xbfff : 0xbfffffff);
+  if (!half)
+    memcpy(value, &bits, sizeof *value);
+  else if ((bits & 0x7c00) == 0) /* below the least normal one */
+    *value = (float)ldexp((double)(bits & 0x3ff), -24);
+  else
+    *value = (float)ldexp((double)(0x400 | (bits & 0x3ff)), (int)(bits >> 10 & 31) - 25);
+  if (half && bits & 0x8000) *value = -*value;
+  return bits;
+}
+
+enum { CHUNK_LINES = 16, MOST_BYTES = 4096 };
+
+/* Of count bytes, as OpenEXR's ZIP orders them before it deflates. */
+static size_t deflated_size(const uint8_t *raw, size_t count) {
+  static uint8_t ordered[MOST_BYTES], packed[2 * MOST_BYTES];
+  for (size_t i = 0; i < count; i++) ordered[i / 2 + (i % 2) * ((count + 1) / 2)] = raw[i];
+  for (size_t i = count - 1; i > 0; i--) ordered[i] = (uint8_t)(ordered[i] - ordered[i - 1] + 128);
+  uLongf size = sizeof packed;
+  int level = 0;
+  exr_get_default_zip_compression_level(&level);
+  assert_int_equal(compress2(packed, &size, ordered, (uLong)count, level), Z_OK);
+  return size;
+}
+
+/* Two equal chunks of noise that begin with a 1 and zeros; the size that one deflates to, less its
+ * own. */
+static long fill_chunks(abbe_image *image, bool half, uint64_t seed, size_t zeros) {
+  uint8_t raw[MOST_BYTES];
+  size_t at = 0;
+  const size_t bytes = half ? 2 : 4, row = image->width * image->channels;
+  for (size_t y = 0; y < CHUNK_LINES; y++)
+    for (size_t c = 0; c < image->channels; c++)
+      for (size_t x = 0; x < image->width; x++) {
+        float *value = &image->data[y * row + x * image->channels + c];
+        uint32_t bits = noise(&seed, half, value);
+        if (at / bytes <= zeros) *value = 0, bits = 0;
+        if (at == 0) *value = 1, bits = half ? 0x3c00 : 0x3f800000; /* stored in units of 1 */
+        for (size_t k = 0; k < bytes; k++) raw[at++] = (uint8_t)(bits >> 8 * k);
+      }
+  memcpy(image->data + CHUNK_LINES * row, image->data, CHUNK_LINES * row * sizeof *image->data);
+  return (long)deflated_size(raw, at) - (long)at;
+}
+
+/* What deflates to its own size, to a byte more or less, is read as it was: at 3.1.5 OpenEXR's C
+ * core keeps the deflated bytes of the first, which readers take for samples. */
+static void test_chunks_that_deflate_to_their_own_size(void **state) {
+  (void)state;
+  for (size_t channels = 1; channels <= 3; channels++)
+    for (int half = 0; half < 2; half++) {
+      abbe_image image = {0};
+      size_t met[3] = {0};
+      assert_int_equal(abbe_image_make(16, 2 * CHUNK_LINES, channels, names, &image, NULL),
+                       ABBE_OK);
+      for (uint64_t seed = 0; seed < 64 && met[1] < 4; seed++)
+        for (size_t zeros = 0; zeros < 64 && met[1] < 4; zeros++) {
+          const long more = fill_chunks(&image, half, seed, zeros);
+          if (labs(more) > 1) continue;
+          met[more + 1]++;
+          abbe_image back = {0};
+          abbe_error error = {0};
+          char what[100];
+          snprintf(what, sizeof what, "seed %d, %zu zeros, %zu channels, half %d, %ld bytes more",
+                   (int)seed, zeros, channels, half, more);
+          if ((half ? abbe_exr_write_half : abbe_exr_write)(path, &image, &error) != ABBE_OK)
+            fail_msg("%s", error.text);
+          compare(&image, names, (int)channels, what);
+          if (abbe_exr_read(path, &back, &error) != ABBE_OK) fail_msg("%s", error.text);
+          compare(&back, names, (int)channels, what);
+          abbe_image_free(&back);
+        }
+      if (met[1] == 0) fail_msg("%zu channels, half %d: no such chunk", channels, half);
+      abbe_image_free(&image);
+    }
+}
+
+static int leave(void **state) {
+  (void)state;
+  unlink(path);
+  return 0;
+}
+
+int main(void) {
+  snprintf(path, sizeof path, "/tmp/abbe_test_exr_files_%ld.exr", (long)getpid());
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_scan_lines),
+                                     cmocka_unit_test(test_windows),
+                                     cmocka_unit_test(test_tiles),
+                                     cmocka_unit_test(test_what_is_refused),
+                                     cmocka_unit_test(test_what_unfolds_is_refused),
+                                     cmocka_unit_test(test_every_half),
+                                     cmocka_unit_test(test_what_abbe_writes),
+                                     cmocka_unit_test(test_chunks_that_deflate_to_their_own_size)};
+  return cmocka_run_group_tests(tests, NULL, leave);
+}

@@ -1,0 +1,133 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "colorimetry/image/image.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const rgb[] = {"R", "G", "B"};
+
+static void test_make_is_black_and_named(void **state) {
+  (void)state;
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(3, 2, 3, rgb, &image, &error), ABBE_OK);
+  for (int i = 0; i < 18; i++) assert_true(image.data[i] == 0);
+  assert_int_equal(abbe_image_find_channel(&image, "B"), 2);
+  assert_true(abbe_image_find_channel(&image, "A") == (size_t)-1);
+  abbe_image_free(&image);
+  assert_null(image.data);
+  abbe_image_free(&image);
+  abbe_image_free(NULL);
+}
+
+static void test_sizes_are_checked_first(void **state) {
+  (void)state;
+  static const size_t bad[][3] = {{0, 1, 1},        {1, 0, 1},
+                                  {1, 1, 0},        {ABBE_IMAGE_MAX_SIDE + 1, 1, 1},
+                                  {1, SIZE_MAX, 1}, {1, 1, ABBE_IMAGE_MAX_CHANNELS + 1}};
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    abbe_image image = {0};
+    abbe_error error = {0};
+    assert_int_equal(abbe_image_make(bad[i][0], bad[i][1], bad[i][2], rgb, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_null(image.data);
+    assert_true(strlen(error.text) > 20);
+  }
+}
+
+static void test_attributes_have_a_limit(void **state) {
+  (void)state;
+  abbe_image image = {0};
+  abbe_error error = {0};
+  char name[16];
+  assert_int_equal(abbe_image_make(1, 1, 3, rgb, &image, NULL), ABBE_OK);
+  for (int i = 0; i < ABBE_IMAGE_MAX_ATTRIBUTES; i++) {
+    snprintf(name, sizeof name, "a%d", i);
+    assert_int_equal(abbe_image_set_attribute(&image, name, "", NULL), ABBE_OK);
+  }
+  assert_int_equal(abbe_image_set_attribute(&image, "a7", "other", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "more", "", &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "'more'"));
+  abbe_image_free(&image);
+}
+
+static void test_what_unfolds(void **state) {
+  (void)state;
+  static const struct {
+    size_t width, height, channels, bytes;
+    abbe_result result;
+  } cases[] = {{1000, 1000, 3, 1, ABBE_OK}, /* 12 million bytes are free */
+               {1000, 1001, 3, 1, ABBE_UNSUPPORTED},
+               {1000, 1001, 3, 12012000 / ABBE_IMAGE_MAX_EXPANSION, ABBE_UNSUPPORTED},
+               {1000, 1001, 3, 12012000 / ABBE_IMAGE_MAX_EXPANSION + 1, ABBE_OK},
+               {SIZE_MAX, SIZE_MAX, SIZE_MAX, SIZE_MAX, ABBE_UNSUPPORTED}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_error error = {0};
+    assert_int_equal(abbe_image_check_expansion("a.png", cases[i].width, cases[i].height,
+                                                cases[i].channels, cases[i].bytes, 12000000,
+                                                &error),
+                     cases[i].result);
+    if (cases[i].result != ABBE_OK) assert_non_null(strstr(error.text, "a.png: "));
+  }
+}
+
+static void test_places(void **state) {
+  (void)state;
+  abbe_image a = {0}, b = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(3, 2, 3, rgb, &a, NULL), ABBE_OK);
+  assert_int_equal(abbe_image_make(3, 2, 3, rgb, &b, NULL), ABBE_OK);
+  assert_int_equal(a.display_window.x1, 2);
+  assert_int_equal(a.data_window.y1, 1);
+  assert_int_equal(abbe_image_check_place(&a, "a", &b, "b", &error), ABBE_OK);
+  b.data_window.x0 = 1; /* where there is data does not matter */
+  assert_int_equal(abbe_image_check_place(&a, "a", &b, "b", &error), ABBE_OK);
+  b.display_window = (abbe_image_window){-7, 0, -5, 1};
+  assert_int_equal(abbe_image_check_place(&a, "a", &b, "b", &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "a shows (0, 0) to (2, 1) and b (-7, 0) to (-5, 1)"));
+  abbe_image_free(&a);
+  abbe_image_free(&b);
+}
+
+static void test_names_are_needed(void **state) {
+  (void)state;
+  static const char *const bad[] = {"R", "", "B"};
+  static const char *const none[] = {"R", NULL, "B"};
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(1, 1, 3, bad, &image, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_make(1, 1, 3, none, &image, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_make(1, 1, 3, NULL, &image, NULL), ABBE_INVALID_ARGUMENT);
+}
+
+static void test_attributes(void **state) {
+  (void)state;
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(1, 1, 3, rgb, &image, NULL), ABBE_OK);
+  assert_null(abbe_image_attribute_text(&image, "abbe:space"));
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", "xyz", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "comment", "", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", "acescg", NULL), ABBE_OK);
+  assert_int_equal(image.attribute_count, 2);
+  assert_string_equal(abbe_image_attribute_text(&image, "abbe:space"), "acescg");
+  assert_string_equal(abbe_image_attribute_text(&image, "comment"), "");
+  assert_int_equal(abbe_image_set_attribute(&image, "", "x", NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_image_set_attribute(&image, "x", NULL, NULL), ABBE_INVALID_ARGUMENT);
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_make_is_black_and_named),
+                                     cmocka_unit_test(test_sizes_are_checked_first),
+                                     cmocka_unit_test(test_what_unfolds),
+                                     cmocka_unit_test(test_attributes_have_a_limit),
+                                     cmocka_unit_test(test_places),
+                                     cmocka_unit_test(test_names_are_needed),
+                                     cmocka_unit_test(test_attributes)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

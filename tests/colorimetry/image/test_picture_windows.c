@@ -1,0 +1,95 @@
+/* What every verb that reads a picture makes of its windows: the picture is the display window. */
+#include "tests/cli/run_program.h"
+#include "tests/colorimetry/image/exr_library.h"
+
+#include "colorimetry/image/png_file.h"
+
+/* A picture in the program's folder; all have the same values from their data window's corner on.
+ */
+static void write_picture(const char *name, const int display[4], const int data[4]) {
+  exr_library_file f = {.channels = 3, .name = {"B", "G", "R"}, .type = {2, 2, 2}};
+  char path[128], why[300];
+  snprintf(path, sizeof path, "%s/%s", run_folder, name);
+  memcpy(f.display_window, display, sizeof f.display_window);
+  memcpy(f.data_window, data, sizeof f.data_window);
+  if (!exr_library_write(path, &f, why, sizeof why)) fail_msg("%s: %s", name, why);
+}
+
+static void ends_with(int code, const char *line) {
+  const int actual = run_line(line);
+  if (actual != code) fail_msg("%s ends with %d:\n%s%s", line, actual, run_output, run_errors);
+}
+
+static void write_pictures(void) {
+  write_picture("plain.exr", (const int[]){0, 0, 31, 23}, (const int[]){0, 0, 31, 23});
+  write_picture("apart.exr", (const int[]){100, 50, 131, 73}, (const int[]){100, 50, 131, 73});
+  write_picture("left.exr", (const int[]){0, 0, 31, 23}, (const int[]){2, 3, 9, 8});
+  write_picture("right.exr", (const int[]){0, 0, 31, 23}, (const int[]){22, 3, 29, 8});
+  write_picture("over.exr", (const int[]){0, 0, 31, 23}, (const int[]){-8, -6, 39, 29});
+  write_picture("nothing.exr", (const int[]){0, 0, 31, 23}, (const int[]){40, 3, 49, 8});
+}
+
+static void test_info(void **state) {
+  (void)state;
+  write_pictures();
+  ends_with(0, "$abbe info plain.exr");
+  assert_contains(run_output, "32 x 24 pixels");
+  assert_null(strstr(run_output, "window"));
+  ends_with(0, "$abbe info apart.exr");
+  assert_contains(run_output, "display window  (100, 50) to (131, 73)");
+  assert_null(strstr(run_output, "data window"));
+  ends_with(0, "$abbe info left.exr");
+  assert_contains(run_output, "32 x 24 pixels");
+  assert_contains(run_output, "data window     (2, 3) to (9, 8): elsewhere the picture is 0\n");
+  assert_contains(run_output, "\nB                               0 ");
+  ends_with(0, "$abbe info over.exr");
+  assert_contains(run_output, "(-8, -6) to (39, 29): what lies outside the display window is left");
+  ends_with(0, "$abbe info nothing.exr");
+  assert_contains(run_output, "elsewhere the picture is 0; nothing of it is shown");
+  ends_with(0, "$abbe info --json left.exr | tr -d ' \\n\\t'");
+  assert_contains(run_output, "\"display_window\":[0,0,31,23],\"data_window\":[2,3,9,8]");
+}
+
+/* One block of light in two places is not one picture. */
+static void test_compare(void **state) {
+  (void)state;
+  write_pictures();
+  ends_with(0, "$abbe compare left.exr left.exr --tolerance relative_rmse=0");
+  ends_with(3, "$abbe compare left.exr right.exr --tolerance relative_rmse=0.5");
+  ends_with(0, "$abbe compare apart.exr apart.exr --tolerance relative_rmse=0");
+  ends_with(1, "$abbe compare plain.exr apart.exr");
+  assert_contains(run_errors, "plain.exr shows (0, 0) to (31, 23) and apart.exr (100, 50) to "
+                              "(131, 73)");
+  ends_with(1, "$abbe compare plain.exr plain.exr --mask apart.exr");
+  assert_contains(run_errors, "apart.exr shows (100, 50)");
+  ends_with(1, "$abbe outline plain.exr apart.exr");
+  assert_contains(run_errors, "apart.exr (100, 50)");
+  ends_with(1, "$abbe outline plain.exr --minus apart.exr");
+  assert_contains(run_errors, "apart.exr (100, 50)");
+  ends_with(0, "$abbe outline left.exr left.exr");
+}
+
+static void test_display(void **state) {
+  (void)state;
+  write_pictures();
+  ends_with(0, "$abbe display left.exr -o left.png --view Raw");
+  abbe_image image = {0};
+  abbe_error error = {0};
+  char path[128];
+  snprintf(path, sizeof path, "%s/left.png", run_folder);
+  if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(image.width, 32);
+  assert_int_equal(image.height, 24);
+  for (size_t y = 0; y < 24; y++)
+    for (size_t x = 0; x < 32; x++) {
+      const bool inside = x >= 2 && x <= 9 && y >= 3 && y <= 8;
+      assert_int_equal(image.data[3 * (y * 32 + x)] > 0, inside);
+    }
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_info), cmocka_unit_test(test_compare),
+                                     cmocka_unit_test(test_display)};
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

@@ -1,0 +1,415 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/file.h"
+#include "colorimetry/image/png_file.h"
+#include "colorimetry/rgb_encoding.h"
+
+#include <math.h>
+#include <png.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+static char path[128];
+static const char *const names[] = {"R", "G", "B", "A"};
+
+static abbe_image gradient(size_t width, size_t height, size_t channels) {
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(width, height, channels, names, &image, NULL), ABBE_OK);
+  size_t count = width * height * channels;
+  for (size_t i = 0; i < count; i++) image.data[i] = (float)i / (float)(count - 1);
+  return image;
+}
+
+static void test_round_trip(void **state) {
+  (void)state;
+  static const size_t channels[] = {1, 3, 4};
+  for (int bits = 8; bits <= 16; bits += 8)
+    for (int c = 0; c < 3; c++) {
+      abbe_image image = gradient(13, 9, channels[c]), back = {0};
+      abbe_error error = {0};
+      assert_int_equal(abbe_png_write(path, &image, bits, &error), ABBE_OK);
+      if (abbe_png_read(path, &back, &error) != ABBE_OK) fail_msg("%s", error.text);
+      assert_true(back.width == 13 && back.height == 9 && back.channels == 3);
+      double step = bits == 8 ? 0.5 / 255 : 0.5 / 65535;
+      for (size_t p = 0; p < 13 * 9; p++)
+        for (size_t k = 0; k < 3; k++) {
+          float in = image.data[p * image.channels + (image.channels < 3 ? 0 : k)];
+          assert_true(fabs((double)in - (double)back.data[3 * p + k]) <= step + 1e-7);
+        }
+      abbe_image_free(&image);
+      abbe_image_free(&back);
+    }
+}
+
+static void test_what_lies_outside_is_clamped(void **state) {
+  (void)state;
+  abbe_image image = gradient(2, 1, 3), back = {0};
+  const float in[6] = {-1, NAN, INFINITY, 2, -INFINITY, 0.5f};
+  const float out[6] = {0, 0, 1, 1, 0, 128.0f / 255};
+  memcpy(image.data, in, sizeof in);
+  assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+  assert_int_equal(abbe_png_read(path, &back, NULL), ABBE_OK);
+  for (int i = 0; i < 6; i++) assert_true(back.data[i] == out[i]);
+  abbe_image_free(&image);
+  abbe_image_free(&back);
+}
+
+static void test_what_cannot_be_written(void **state) {
+  (void)state;
+  abbe_image image = gradient(2, 2, 3), empty = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_png_write(path, &image, 12, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "12"));
+  assert_int_equal(abbe_png_write(path, &empty, 8, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_png_write("/no/such/folder/a.png", &image, 8, &error), ABBE_IO);
+  abbe_image_free(&image);
+}
+
+static void test_a_full_disk_leaves_the_old_file(void **state) {
+  (void)state;
+  assert_int_equal(abbe_file_write(path, "old", 3, NULL), ABBE_OK);
+  abbe_image image = gradient(300, 300, 3);
+  for (int i = 0; i < 270000; i++) image.data[i] = (float)rand() / (float)RAND_MAX;
+  signal(SIGXFSZ, SIG_IGN);
+  struct rlimit old, small;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
+  small = old;
+  small.rlim_cur = 4096;
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+  abbe_error error = {0};
+  abbe_result result = abbe_png_write(path, &image, 8, &error);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
+  assert_int_equal(result, ABBE_IO);
+  assert_non_null(strstr(error.text, path));
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(path, 100, &data, &size, NULL), ABBE_OK);
+  assert_string_equal(data, "old");
+  free(data);
+  abbe_image_free(&image);
+}
+
+/* A file as libpng writes it for other programs: begun, its header not yet written, and ended. */
+typedef struct foreign {
+  FILE *file;
+  png_structp png;
+  png_infop info;
+} foreign;
+
+static void fail_writing(png_structp png, png_const_charp message) {
+  (void)png;
+  fail_msg("%s", message);
+  abort();
+}
+
+static foreign begin_foreign(png_uint_32 side, int bits, int colour, int interlace) {
+  foreign f = {.file = fopen(path, "wb"),
+               .png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, fail_writing, NULL)};
+  f.info = png_create_info_struct(f.png);
+  assert_true(f.file != NULL && f.png != NULL && f.info != NULL);
+  png_init_io(f.png, f.file);
+  png_set_IHDR(f.png, f.info, side, side, bits, colour, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  return f;
+}
+
+static void end_foreign(foreign *f) {
+  png_write_end(f->png, NULL);
+  png_destroy_write_struct(&f->png, &f->info);
+  fclose(f->file);
+}
+
+/* A palette, grey with alpha and interlaced rows, as other programs write them. */
+static void write_foreign(int colour, int bits, int interlace) {
+  foreign f = begin_foreign(8, bits, colour, interlace);
+  const png_color palette[2] = {{255, 0, 0}, {0, 0, 255}};
+  if (colour == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(f.png, f.info, palette, 2);
+  png_write_info(f.png, f.info);
+  png_byte rows[8][64];
+  png_bytep row[8];
+  for (int y = 0; y < 8; y++) {
+    memset(rows[y], colour == PNG_COLOR_TYPE_PALETTE ? 0x0f : 0x80, sizeof rows[y]);
+    row[y] = rows[y];
+  }
+  png_write_image(f.png, row);
+  end_foreign(&f);
+}
+
+static void test_foreign_files(void **state) {
+  (void)state;
+  static const struct {
+    int colour, bits;
+    float first[3];
+  } cases[] = {
+      {PNG_COLOR_TYPE_PALETTE, 1, {1, 0, 0}},
+      {PNG_COLOR_TYPE_GRAY, 1, {1, 1, 1}},
+      {PNG_COLOR_TYPE_GRAY, 4, {8 / 15.0f, 8 / 15.0f, 8 / 15.0f}},
+      {PNG_COLOR_TYPE_GRAY_ALPHA, 8, {128 / 255.0f, 128 / 255.0f, 128 / 255.0f}},
+      {PNG_COLOR_TYPE_RGB_ALPHA, 16, {32896 / 65535.0f, 32896 / 65535.0f, 32896 / 65535.0f}}};
+  for (int i = 0; i < 10; i++) {
+    write_foreign(cases[i / 2].colour, cases[i / 2].bits,
+                  i % 2 ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE);
+    abbe_image image = {0};
+    abbe_error error = {0};
+    if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("case %d: %s", i, error.text);
+    assert_true(image.width == 8 && image.height == 8 && image.channels == 3);
+    for (int k = 0; k < 3; k++) assert_true(fabsf(image.data[k] - cases[i / 2].first[k]) < 1e-6f);
+    abbe_image_free(&image);
+  }
+}
+
+static void read_must_fail(const char *data, size_t size, const char *what) {
+  assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+  abbe_image image = {0};
+  abbe_error error = {0};
+  abbe_result result = abbe_png_read(path, &image, &error);
+  if (result != ABBE_PARSE || image.data != NULL || strstr(error.text, path) == NULL)
+    fail_msg("%s: %d %s", what, (int)result, error.text);
+}
+
+static char *written(size_t *size) {
+  abbe_image image = gradient(20, 20, 3);
+  assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  char *data = NULL;
+  assert_int_equal(abbe_file_read(path, 1 << 20, &data, size, NULL), ABBE_OK);
+  return data;
+}
+
+static void test_truncated_anywhere(void **state) {
+  (void)state;
+  size_t size = 0;
+  char *data = written(&size);
+  for (size_t cut = 0; cut < size; cut++) read_must_fail(data, cut, "truncated");
+  free(data);
+}
+
+static void test_flipped_bits_anywhere(void **state) {
+  (void)state;
+  size_t size = 0;
+  char *data = written(&size);
+  for (size_t at = 0; at < size; at++) {
+    data[at] ^= (char)(1 << at % 8);
+    assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+    data[at] ^= (char)(1 << at % 8);
+    abbe_image back = {0};
+    abbe_error error = {0};
+    if (abbe_png_read(path, &back, &error) != ABBE_OK) assert_true(error.text[0] != '\0');
+    abbe_image_free(&back);
+  }
+  free(data);
+}
+
+/* A header that promises too much, with its checksum right. */
+static void test_a_huge_header(void **state) {
+  (void)state;
+  static const unsigned sides[] = {15000, 16384, 16385, 0x7fffffff};
+  for (int i = 0; i < 4; i++) {
+    size_t size = 0;
+    char *data = written(&size);
+    for (int b = 0; b < 4; b++)
+      data[16 + b] = data[20 + b] = (char)(sides[i] >> (24 - 8 * b) & 255);
+    unsigned crc = 0xffffffff;
+    for (int b = 12; b < 29; b++) {
+      crc ^= (unsigned char)data[b];
+      for (int k = 0; k < 8; k++) crc = crc & 1 ? 0xedb88320u ^ crc >> 1 : crc >> 1;
+    }
+    for (int b = 0; b < 4; b++) data[29 + b] = (char)(~crc >> (24 - 8 * b) & 255);
+    read_must_fail(data, size, "huge header");
+    free(data);
+  }
+}
+
+static void test_not_pictures(void **state) {
+  (void)state;
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_png_read("/no/such.png", &image, &error), ABBE_IO);
+  assert_int_equal(abbe_png_read("/tmp", &image, &error), ABBE_IO);
+  assert_int_equal(abbe_png_read("/dev/zero", &image, &error), ABBE_IO);
+  read_must_fail("", 0, "empty");
+  read_must_fail("a text", 6, "text");
+}
+
+/* Which of the chunks that say a colour the file has: sRGB, gAMA, cHRM, iCCP. */
+static void chunks_are(const char *expected) {
+  static const char *const known[] = {"sRGB", "gAMA", "cHRM", "iCCP"};
+  char *data = NULL, found[40] = "";
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
+  for (int k = 0; k < 4; k++)
+    for (size_t i = 0; i + 4 <= size; i++)
+      if (memcmp(data + i, known[k], 4) == 0) strcat(strcat(found, " "), known[k]);
+  free(data);
+  assert_string_equal(found, expected);
+}
+
+static void test_the_colour_is_said(void **state) {
+  (void)state;
+  for (size_t channels = 1; channels <= 3; channels += 2) {
+    abbe_image image = gradient(4, 4, channels), back = {0};
+    assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+    chunks_are("");
+    abbe_rgb_encoding_srgb(image.xy, image.curve);
+    assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+    chunks_are(" sRGB gAMA cHRM");
+    abbe_rgb_encoding_display_p3(image.xy, image.curve);
+    assert_int_equal(abbe_png_write(path, &image, 16, NULL), ABBE_OK);
+    chunks_are(channels == 3 ? " iCCP" : "");
+    assert_int_equal(abbe_png_read(path, &back, NULL), ABBE_OK);
+    abbe_image_free(&back);
+    abbe_image_free(&image);
+  }
+}
+
+/* A file of one colour that says what `say` adds to it. */
+static void write_stating(const double rgb[3], void (*say)(png_structp png, png_infop info)) {
+  foreign f = begin_foreign(1, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE);
+  say(f.png, f.info);
+  png_write_info(f.png, f.info);
+  png_byte row[6];
+  for (int c = 0; c < 3; c++) {
+    const unsigned v = (unsigned)lround(65535 * rgb[c]);
+    row[2 * c] = (png_byte)(v >> 8);
+    row[2 * c + 1] = (png_byte)(v & 255);
+  }
+  png_write_row(f.png, row);
+  end_foreign(&f);
+}
+
+static void say_nothing(png_structp png, png_infop info) {
+  (void)png, (void)info;
+}
+static void say_srgb(png_structp png, png_infop info) {
+  png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+}
+static void say_old_srgb(png_structp png, png_infop info) {
+  png_set_gAMA_fixed(png, info, 45455);
+  png_set_cHRM(png, info, 0.3127, 0.329, 0.64, 0.33, 0.3, 0.6, 0.15, 0.06);
+}
+static void say_linear(png_structp png, png_infop info) {
+  png_set_gAMA_fixed(png, info, 100000);
+}
+static void say_p3_by_chunks(png_structp png, png_infop info) {
+  png_set_cHRM(png, info, 0.3127, 0.329, 0.68, 0.32, 0.265, 0.69, 0.15, 0.06);
+}
+static void say_p3_by_profile(png_structp png, png_infop info) {
+  double xy[8], curve[5];
+  void *icc = NULL;
+  size_t size = 0;
+  abbe_rgb_encoding_display_p3(xy, curve);
+  assert_int_equal(abbe_rgb_encoding_profile(xy, curve, &icc, &size, NULL), ABBE_OK);
+  png_set_iCCP(png, info, "p3", 0, icc, (png_uint_32)size);
+  free(icc);
+}
+static void say_cicp(png_structp png, png_infop info, int primaries, int transfer) {
+  png_unknown_chunk chunk = {.name = "cICP", .size = 4, .location = PNG_HAVE_IHDR};
+  png_byte code[4] = {(png_byte)primaries, (png_byte)transfer, 0, 1};
+  chunk.data = code;
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, NULL, 0);
+  png_set_unknown_chunks(png, info, &chunk, 1);
+}
+static void say_p3_by_cicp(png_structp png, png_infop info) {
+  say_srgb(png, info); /* is outranked */
+  say_cicp(png, info, 12, 13);
+}
+static void say_rec709_by_cicp(png_structp png, png_infop info) {
+  say_cicp(png, info, 1, 1);
+}
+static void say_pq(png_structp png, png_infop info) {
+  say_cicp(png, info, 9, 16);
+}
+
+static void test_the_colour_is_heeded(void **state) {
+  (void)state;
+  /* Rec.709's red on a Display P3 screen, as published for CSS colours; (V + 0.099) / 1.099 of 0.5
+   * to the power 1/0.45 is 0.2597 */
+  static const struct {
+    void (*say)(png_structp png, png_infop info);
+    double in[3], out[3];
+  } cases[] = {{say_nothing, {0.2, 0.5, 0.7}, {0.2, 0.5, 0.7}},
+               {say_srgb, {0.2, 0.5, 0.7}, {0.2, 0.5, 0.7}},
+               {say_old_srgb, {0.2, 0.5, 0.7}, {0.2, 0.5, 0.7}},
+               {say_linear, {0.21404, 0.5, 1}, {0.5, 0.73536, 1}},
+               {say_p3_by_chunks, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
+               {say_p3_by_profile, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
+               {say_p3_by_cicp, {0.91749, 0.20029, 0.13856}, {1, 0, 0}},
+               {say_rec709_by_cicp, {0.5, 0.5, 0.5}, {0.54681, 0.54681, 0.54681}}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_image image = {0};
+    abbe_error error = {0};
+    write_stating(cases[i].in, cases[i].say);
+    if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("case %zu: %s", i, error.text);
+    for (int c = 0; c < 3; c++)
+      if (!(fabs((double)image.data[c] - cases[i].out[c]) < 4e-3))
+        fail_msg("case %zu: component %d is %g, not %g", i, c, (double)image.data[c],
+                 cases[i].out[c]);
+    assert_true(abbe_rgb_encoding_is_srgb(image.xy, image.curve));
+    abbe_image_free(&image);
+  }
+  abbe_image image = {0};
+  abbe_error error = {0};
+  write_stating(cases[0].in, say_pq);
+  assert_int_equal(abbe_png_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_non_null(strstr(error.text, "cICP"));
+  assert_null(image.data);
+}
+
+static long peak_kilobytes(void) {
+  struct rusage usage;
+  assert_int_equal(getrusage(RUSAGE_SELF, &usage), 0);
+  return usage.ru_maxrss;
+}
+
+/* 33 KB of one bit a pixel, and a text whose header promises 2 GB: refused before memory is taken.
+ */
+static void test_what_unfolds_is_refused(void **state) {
+  (void)state;
+  static const unsigned char text_bomb[] =
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\10\2\0\0\0\x90wS\xde\x7f\xff\xff\xffzTXtk";
+  abbe_image image = {0};
+  abbe_error error = {0};
+  const long before = peak_kilobytes();
+  read_must_fail((const char *)text_bomb, sizeof text_bomb, "text bomb");
+  foreign f = begin_foreign(16384, 1, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE);
+  png_write_info(f.png, f.info);
+  const png_byte row[2048] = {0};
+  for (int y = 0; y < 16384; y++) png_write_row(f.png, row);
+  end_foreign(&f);
+  assert_int_equal(abbe_png_read(path, &image, &error), ABBE_UNSUPPORTED);
+  assert_non_null(strstr(error.text, "16384 x 16384"));
+  assert_null(image.data);
+  assert_true(peak_kilobytes() - before < 100000);
+}
+
+static int leave(void **state) {
+  (void)state;
+  unlink(path);
+  return 0;
+}
+
+int main(void) {
+  snprintf(path, sizeof path, "/tmp/abbe_test_png_%ld.png", (long)getpid());
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip),
+                                     cmocka_unit_test(test_what_lies_outside_is_clamped),
+                                     cmocka_unit_test(test_what_cannot_be_written),
+                                     cmocka_unit_test(test_a_full_disk_leaves_the_old_file),
+                                     cmocka_unit_test(test_foreign_files),
+                                     cmocka_unit_test(test_truncated_anywhere),
+                                     cmocka_unit_test(test_flipped_bits_anywhere),
+                                     cmocka_unit_test(test_a_huge_header),
+                                     cmocka_unit_test(test_not_pictures),
+                                     cmocka_unit_test(test_the_colour_is_said),
+                                     cmocka_unit_test(test_the_colour_is_heeded),
+                                     cmocka_unit_test(test_what_unfolds_is_refused)};
+  return cmocka_run_group_tests(tests, NULL, leave);
+}

@@ -1,0 +1,166 @@
+#define _XOPEN_SOURCE 700
+#include "tests/check.h"
+#include "tests/fontconfig.h"
+
+#include "colorimetry/image/png_file.h"
+#include "colorimetry/plot/material_chart.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static char folder[64], path[96];
+static abbe_material_table table;
+static abbe_error error;
+
+static int set_up(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/abbe-test-material-chart-XXXXXX");
+  if (mkdtemp(folder) == NULL) return 1;
+  snprintf(path, sizeof path, "%s/c.png", folder);
+  return abbe_material_table_load("default", &table, NULL) != ABBE_OK;
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  abbe_material_table_free(&table);
+  unlink(path);
+  return rmdir(folder);
+}
+
+static const abbe_material *find(const char *name) {
+  const abbe_material *m = NULL;
+  if (abbe_material_table_find(&table, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return m;
+}
+
+/* Columns of the picture that hold at least so many pixels of that colour. */
+static size_t columns_within(double r, double g, double b, double within, size_t least) {
+  abbe_image image;
+  size_t count = 0;
+  if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  for (size_t x = 0; x < image.width; x++) {
+    size_t hits = 0;
+    for (size_t y = 0; y < image.height; y++) {
+      const float *p = image.data + 3 * (y * image.width + x);
+      hits += fabs((double)p[0] - r) < within && fabs((double)p[1] - g) < within &&
+              fabs((double)p[2] - b) < within;
+    }
+    count += hits >= least;
+  }
+  abbe_image_free(&image);
+  return count;
+}
+
+static size_t columns(double r, double g, double b) {
+  return columns_within(r, g, b, 0.1, 1);
+}
+static size_t blue(void) {
+  return columns(0, 0.447, 0.698);
+}
+static size_t shaded(void) {
+  return columns_within(0.92, 0.92, 0.92, 0.01, 200);
+}
+
+static void draw(const abbe_material_chart *chart) {
+  if (abbe_material_chart_write(path, chart, &error) != ABBE_OK) fail_msg("%s", error.text);
+}
+
+/* A curve takes up as much of the picture's width as its data do of the wavelengths. */
+static void curves_reach_as_far_as_their_data(void **state) {
+  (void)state;
+  const abbe_material *bk7 = find("n-bk7"), *water = find("water"); /* from 182 to 1129 nm */
+  abbe_material_chart chart = {.count = 1, .material = &bk7};
+  draw(&chart);
+  double whole = (double)blue();
+  assert_true(whole > 800);
+  chart = (abbe_material_chart){.count = 1, .material = &water, .min_nm = 629, .max_nm = 1629};
+  draw(&chart);
+  assert_near((double)blue() / whole, 0.5, 0.05); /* and the legend's sample */
+  assert_near((double)shaded() / whole, 0.5, 0.01);
+}
+
+/* A record that allows it is continued in dashes, over a shaded ground. */
+static void continued_curves_are_dashed(void **state) {
+  (void)state;
+  const abbe_material *k5 = find("k5"); /* from 400 to 700 nm */
+  abbe_material_chart chart = {.count = 1, .material = &k5, .min_nm = 400, .max_nm = 700};
+  draw(&chart);
+  double whole = (double)blue();
+  chart = (abbe_material_chart){.count = 1, .material = &k5, .min_nm = 100, .max_nm = 700};
+  draw(&chart);
+  /* half is solid; of the other half the part within reach is dashed, six on and four off */
+  assert_true((double)blue() / whole > 0.5 && (double)blue() / whole < 0.85);
+  chart = (abbe_material_chart){.count = 1, .material = &k5, .min_nm = 300, .max_nm = 800};
+  draw(&chart);
+  assert_near((double)shaded() / whole, 0.4, 0.02); /* both ends in one grey */
+}
+
+static void fits_and_measurements_are_drawn(void **state) {
+  (void)state;
+  const abbe_material *m[2] = {find("n-bk7"), find("f2")};
+  abbe_index_points points;
+  const char *csv = "435.8,1.5267,3e-4\n546.1,1.5187,2e-4\n656.3,1.5143,2e-4\n";
+  assert_int_equal(abbe_index_points_parse(csv, strlen(csv), "p", &points, &error), ABBE_OK);
+  abbe_material_chart chart = {.count = 1, .material = m};
+  draw(&chart);
+  assert_int_equal(columns(0.835, 0.369, 0), 0); /* the first fit's colour */
+  chart.fits = true;
+  draw(&chart);
+  assert_true(columns(0.835, 0.369, 0) > 800);
+  chart = (abbe_material_chart){.count = 2, .material = m, .fits = true, .points = &points};
+  draw(&chart);
+  chart = (abbe_material_chart){
+      .count = 1, .material = m, .points = &points, .min_nm = 300, .max_nm = 310};
+  draw(&chart); /* no point in the range */
+  abbe_index_points_free(&points);
+}
+
+static void the_map_shows_all_that_have_numbers(void **state) {
+  (void)state;
+  const abbe_material_table *tables[] = {&table};
+  const abbe_material *marked = find("n-bk7");
+  abbe_material_map map = {.table_count = 1, .table = tables, .marked_count = 1, .marked = &marked};
+  size_t left_out = 0, constant = 0;
+  for (size_t i = 0; i < table.count; i++)
+    constant += table.material[i].dispersion.model == ABBE_DISPERSION_CONSTANT;
+  if (abbe_material_map_write(path, &map, &left_out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(left_out, constant);
+  assert_true(columns(0.835, 0.369, 0) >= 5); /* the marked one */
+  assert_true(blue() >= 40);
+}
+
+static void what_cannot_be_drawn_is_refused(void **state) {
+  (void)state;
+  const abbe_material *m = find("n-bk7");
+  abbe_material_chart chart = {.count = 1, .material = &m, .min_nm = 5000, .max_nm = 6000};
+  assert_int_equal(abbe_material_chart_write(path, &chart, &error), ABBE_OUT_OF_RANGE);
+  assert_contains(error.text, "n-bk7 has no index from 5000 to 6000 nm");
+  chart = (abbe_material_chart){.count = 0};
+  assert_int_equal(abbe_material_chart_write(path, &chart, &error), ABBE_INVALID_ARGUMENT);
+  chart = (abbe_material_chart){.count = 1, .material = &m};
+  assert_int_equal(abbe_material_chart_write("c.jpg", &chart, &error), ABBE_INVALID_ARGUMENT);
+  const char *text = "materials: [{name: a, model: constant, coefficients: [1.5], source: s}]";
+  abbe_material_table flat;
+  const abbe_material_table *tables[] = {&flat};
+  assert_int_equal(abbe_material_table_parse(text, strlen(text), "t", &flat, &error), ABBE_OK);
+  abbe_material_map map = {.table_count = 1, .table = tables};
+  assert_int_equal(abbe_material_map_write(path, &map, NULL, &error), ABBE_NOT_FOUND);
+  map.table_count = 0;
+  assert_int_equal(abbe_material_map_write(path, &map, NULL, &error), ABBE_INVALID_ARGUMENT);
+  m = &flat.material[0];
+  draw(&chart); /* a flat line */
+  abbe_material_table_free(&flat);
+}
+
+#define with_table(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      with_table(curves_reach_as_far_as_their_data),
+      with_table(continued_curves_are_dashed),
+      with_table(fits_and_measurements_are_drawn),
+      with_table(the_map_shows_all_that_have_numbers),
+      with_table(what_cannot_be_drawn_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,130 @@
+#include "tests/gl/frame.h"
+
+#include "colorimetry/weights.h"
+
+enum { BANDS = 48 };
+
+static void bands_add_up_to_the_colour(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image map;
+  abbe_error error = {0};
+  load_shipped("gem", &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
+  assert_int_equal(map.channels, 3 + BANDS);
+  assert_string_equal(map.channel[3], "S0.384,166667nm");
+  assert_string_equal(map.channel[3 + BANDS - 1], "S0.775,833333nm");
+  const abbe_illuminant *light = &scene.light[0].illuminant;
+  const double width = 400.0 / BANDS;
+  double sum[3] = {0};
+  for (size_t i = 0; i < BANDS; i++) {
+    const double from = 380 + width * (double)i, to = from + width;
+    double xyz[3], power = abbe_weights_band_power(light, 380, 780, from, to);
+    abbe_weights_band_xyz(light, 380, 780, from, to, xyz);
+    const double flux = width * image_sum(&map, 3 + i);
+    for (int c = 0; c < 3; c++) sum[c] += flux / power * xyz[c];
+  }
+  for (size_t c = 0; c < 3; c++) {
+    /* What a wall lets through is told at the mean wavelength of a piece's X, Y or Z, or of its
+     * part of a band: of a piece as wide as an interval the first lacks what bends, 3e-4 at the
+     * most. */
+    assert_true(fabs(sum[c] / image_sum(&map, c) - 1) < 5e-4);
+  }
+  abbe_image_free(&map);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* Where the light of a channel lies on the map, along its column (axis 0) or row (1). */
+static double middle_of(const abbe_image *map, size_t channel, int axis) {
+  double sum = 0, weighted = 0;
+  for (size_t y = 0; y < map->height; y++)
+    for (size_t x = 0; x < map->width; x++) {
+      const double v = (double)map->data[(y * map->width + x) * map->channels + channel];
+      sum += v;
+      weighted += v * (double)(axis == 0 ? x : y);
+    }
+  return weighted / sum;
+}
+
+static void a_prism_sorts_the_bands(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image map;
+  abbe_error error = {0};
+  load_shipped("prism", &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  assert_ok(abbe_renderer_read_map_bands(renderer, 0, 8, &map, &error), &error);
+  const double across = middle_of(&map, 10, 0) - middle_of(&map, 3, 0);
+  const double along = middle_of(&map, 10, 1) - middle_of(&map, 3, 1);
+  const int axis = fabs(along) > fabs(across);
+  const double way = axis ? along : across;
+  assert_true(fabs(way) > 10);
+  for (size_t i = 4; i < 11; i++)
+    assert_true((middle_of(&map, i, axis) - middle_of(&map, i - 1, axis)) * way > 0);
+  abbe_image_free(&map);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+static void the_renderer_is_as_it_was(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image before, bands, after;
+  abbe_error error = {0};
+  load_shipped("gem", &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  read_map(renderer, 0, &before);
+  assert_ok(abbe_renderer_read_map_bands(renderer, 0, 5, &bands, &error), &error);
+  read_map(renderer, 0, &after);
+  assert_same_pixels(&before, &after);
+  for (size_t i = 0; i < before.width * before.height; i++)
+    assert_memory_equal(before.data + 3 * i, bands.data + 8 * i, 3 * sizeof(float));
+  abbe_image_free(&after);
+  abbe_image_free(&bands);
+  abbe_image_free(&before);
+  draw_frame(renderer);
+  read_map(renderer, 0, &after);
+  assert_true(image_sum(&after, 1) > 0);
+  abbe_image_free(&after);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+static void refuses_what_has_no_bands(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image map;
+  abbe_error error = {0};
+  load_shipped("gem", &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  const size_t bad[] = {0, ABBE_RENDER_MAX_BANDS + 1};
+  for (size_t i = 0; i < 2; i++)
+    assert_int_equal(abbe_renderer_read_map_bands(renderer, 0, bad[i], &map, &error),
+                     ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_renderer_read_map_bands(renderer, 7, 3, &map, &error),
+                   ABBE_INVALID_ARGUMENT);
+  abbe_renderer_free(renderer);
+  abbe_render_desc desc = small_frame;
+  desc.profile = ABBE_PROFILE_THESIS;
+  renderer = make_renderer(&scene, &desc);
+  assert_int_equal(abbe_renderer_read_map_bands(renderer, 0, 3, &map, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "thesis"));
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bands_add_up_to_the_colour),
+      cmocka_unit_test(a_prism_sorts_the_bands),
+      cmocka_unit_test(the_renderer_is_as_it_was),
+      cmocka_unit_test(refuses_what_has_no_bands),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

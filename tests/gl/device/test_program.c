@@ -1,0 +1,127 @@
+/* Every shader compiles, in every combination of models that a plan can ask for. */
+#include "tests/gl/gl_context.h"
+
+#include "gl/device/program.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Bits: spheres, convex, layers, exact receivers, absorbing (and caustics), shadows (and textures,
+ * and lengths kept of ways inside), hierarchy, walk. */
+static void write_defines(unsigned bits, char *out, size_t size) {
+  static const char *const names[] = {
+      "SPHERES",
+      "CONVEX",
+      "LAYERS\n#define FRONT_LAYER",
+      "EXACT_RECEIVERS",
+      "ABSORBING\n#define CAUSTICS",
+      "RECEIVER_SHADOWS\n#define TEXTURED\n#define SHADOW_PLANES 32\n#define TINTING",
+      "HIERARCHY",
+      "WALK"};
+  int used = snprintf(out, size,
+                      "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
+                      "#define WAVELENGTHS 7\n#define EXITS 3\n#define SLOTS 4\n#define LANES 7\n"
+                      "#define NODES 5\n#define WAYS 8\n"
+                      "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
+                      "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
+                      "#define BAND_COUNT 14\n#define BAND_LEVELS 4\n#define BAND_ROOM 28\n"
+                      "#define HIERARCHY_STACK 20\n#define STEPS 64\n#define MAP_LEVELS 6\n#define "
+                      "BRIDGE\n#define DOUBTS_BRIDGES\n");
+  for (int i = 0; i < 8; i++)
+    if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
+}
+
+static void compiles(const abbe_program_stage *stages, size_t count, const char *defines) {
+  abbe_error error = {0};
+  GLuint program = 0;
+  abbe_result result =
+      abbe_program_make(abbe_context_gl(context), stages, count, defines, &program, &error);
+  if (result != ABBE_OK) print_error("%s\n", error.text);
+  assert_int_equal(result, ABBE_OK);
+  abbe_context_gl(context)->DeleteProgram(program);
+}
+
+static void test_all_combinations(void **state) {
+  (void)state;
+  char defines[1024];
+  for (unsigned bits = 0; bits < 256; bits++) {
+    /* triangles are walked, and layers are not */
+    if ((bits >> 6 & 1) > (bits >> 7) || (bits >> 7 & bits >> 2 & 1)) continue;
+    /* what those two add is tried with and without the rest */
+    if ((bits >> 7 & 1) && (bits >> 4 & 1) != (bits >> 5 & 1)) continue;
+    write_defines(bits, defines, sizeof defines);
+    const abbe_program_stage trace = {GL_COMPUTE_SHADER, "photon_trace.comp"};
+    const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                      {GL_FRAGMENT_SHADER, "receivers.frag"}};
+    const abbe_program_stage refracted = {GL_COMPUTE_SHADER, "refraction.comp"};
+    compiles(&trace, 1, defines);
+    compiles(lit, 2, defines);
+    compiles(&refracted, 1, defines);
+  }
+}
+
+static void test_every_compute_shader(void **state) {
+  (void)state;
+  char defines[1024];
+  size_t seen = 0;
+  write_defines(63, defines, sizeof defines);
+  for (const char *const *file = abbe_program_files(); *file != NULL; file++) {
+    const char *dot = strrchr(*file, '.');
+    if (dot == NULL || strcmp(dot, ".comp") != 0) continue;
+    const abbe_program_stage stage = {GL_COMPUTE_SHADER, *file};
+    compiles(&stage, 1, defines);
+    seen++;
+  }
+  assert_true(seen >= 5);
+}
+
+static void test_thesis_programs(void **state) {
+  (void)state;
+  static const char *const fragments[] = {"thesis_fill.frag", "thesis_refraction.frag"};
+  char defines[1024];
+  write_defines(0, defines, sizeof defines);
+  for (size_t i = 0; i < 2; i++) {
+    const abbe_program_stage screen[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                         {GL_FRAGMENT_SHADER, fragments[i]}};
+    compiles(screen, 2, defines);
+  }
+  const abbe_program_stage layers[] = {{GL_VERTEX_SHADER, "thesis_layers.vert"},
+                                       {GL_GEOMETRY_SHADER, "thesis_layers.geom"},
+                                       {GL_FRAGMENT_SHADER, "thesis_layers.frag"}};
+  const abbe_program_stage splat[] = {{GL_VERTEX_SHADER, "thesis_splat.vert"},
+                                      {GL_GEOMETRY_SHADER, "thesis_splat.geom"},
+                                      {GL_FRAGMENT_SHADER, "thesis_splat.frag"}};
+  const abbe_program_stage lit[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                    {GL_FRAGMENT_SHADER, "thesis_receivers.frag"}};
+  const abbe_program_stage layer[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                      {GL_FRAGMENT_SHADER, "layer.frag"}};
+  const abbe_program_stage depth[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                      {GL_FRAGMENT_SHADER, "depth.frag"}};
+  compiles(layers, 3, defines);
+  compiles(splat, 3, defines);
+  compiles(lit, 2, defines);
+  compiles(layer, 2, defines);
+  compiles(depth, 2, defines);
+}
+
+static void test_complaints_name_the_file(void **state) {
+  (void)state;
+  const abbe_gl *gl = abbe_context_gl(context);
+  abbe_error error = {0};
+  GLuint program = 1;
+  assert_int_equal(abbe_program_make_compute(gl, "no_such.comp", NULL, &program, &error),
+                   ABBE_NOT_FOUND);
+  assert_non_null(strstr(error.text, "no_such.comp"));
+  assert_int_equal(program, 0);
+  assert_int_equal(
+      abbe_program_make_compute_text(gl, "void main() { nonsense; }\n", NULL, &program, &error),
+      ABBE_GL);
+  assert_non_null(strstr(error.text, "nonsense"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_all_combinations), cmocka_unit_test(test_every_compute_shader),
+      cmocka_unit_test(test_thesis_programs), cmocka_unit_test(test_complaints_name_the_file)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

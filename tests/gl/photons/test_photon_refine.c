@@ -1,0 +1,190 @@
+/* Photons that take more wavelengths only where their landings ask for them. */
+#include "tests/gl/frame.h"
+
+#include "colorimetry/weights.h"
+#include "gl/renderer_state.h"
+#include "spectral/optics.h"
+
+static void coarse_nodes_reach_both_ends_in_order(void **state) {
+  (void)state;
+  for (size_t n = 5; n <= ABBE_RENDER_MAX_WAVELENGTHS; n++) {
+    assert_int_equal(abbe_renderer_coarse_node(n, 5, 0), 0);
+    assert_int_equal(abbe_renderer_coarse_node(n, 5, 4), n - 1);
+    for (size_t k = 0; k < 4; k++)
+      assert_true(abbe_renderer_coarse_node(n, 5, k) < abbe_renderer_coarse_node(n, 5, k + 1));
+  }
+}
+
+static abbe_ledger draw(const char *name, size_t wavelengths, abbe_fill fill, abbe_image *map) {
+  abbe_scene scene = {0};
+  load_shipped(name, &scene);
+  const abbe_render_desc desc = {.width = 16,
+                                 .height = 16,
+                                 .photons = 64,
+                                 .map_size = 64,
+                                 .fill = fill,
+                                 .wavelengths = wavelengths};
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  const abbe_statistics statistics = draw_frame(renderer);
+  if (map != NULL) read_map(renderer, 0, map);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+  return statistics.energy;
+}
+
+/* All of the light is entered once, by the set that it was laid with. */
+static void every_photon_is_entered_once(void **state) {
+  (void)state;
+  static const char *const names[] = {"gem", "prism", "sphere"};
+  for (size_t i = 0; i < 3; i++) {
+    const abbe_ledger l = draw(names[i], 23, ABBE_FILL_BRIDGE, NULL);
+    assert_true(l.reached > 0);
+    assert_true(abbe_ledger_imbalance(&l) < 1e-4);
+    assert_true(fabs(l.interpolated) < 1e-3 * l.reached);
+  }
+}
+
+/* N-SF11 absorbs violet by tens in a metre and green by ones. What few wavelengths leave of it, and
+ * 21 that are traced only where landings ask, is what 61 of all photons do, to one in a thousand of
+ * the light: attenuation at the seven nodes alone would take three more. */
+static void absorption_is_that_of_all_wavelengths(void **state) {
+  (void)state;
+  static const size_t counts[] = {7, 21};
+  const abbe_ledger all = draw("gem", 61, ABBE_FILL_NONE, NULL);
+  assert_true(all.absorbed > 0.05 * all.reached);
+  for (size_t i = 0; i < 2; i++) {
+    const abbe_ledger some = draw("gem", counts[i], ABBE_FILL_BRIDGE, NULL);
+    print_message("absorbed: %.4f %% of 61, %.4f %% of %zu\n", 100 * all.absorbed / all.reached,
+                  100 * some.absorbed / some.reached, counts[i]);
+    assert_near(some.absorbed / some.reached, all.absorbed / all.reached, 0.001);
+    /* So is what lies in the map, but for the long paths that are given up or not: what the ledger
+     * keeps as interpolated corrects the few wavelengths' own sum, and adds no light. */
+    const double lies = (some.deposited + some.trapped) / some.reached,
+                 should = (all.deposited + all.trapped) / all.reached;
+    print_message("deposited or trapped: %.4f %% of 61, %.4f %% of %zu, %.4f interpolated\n",
+                  100 * should, 100 * lies, counts[i], 100 * some.interpolated / some.reached);
+    assert_near(lies, should, 4e-4);
+  }
+}
+
+enum { BANDS = 16, FINE_STEPS = 64 };
+
+/* What a pane passes of light that meets it straight, with all reflections inside. */
+static double passed(const abbe_material *material, double lambda_nm, double thickness) {
+  double n = 1;
+  abbe_material_n(material, lambda_nm, &n, NULL);
+  const double r = abbe_optics_fresnel(1, 1 / n);
+  const double left = exp(-abbe_material_attenuation(material, lambda_nm) * thickness);
+  return (1 - r) * (1 - r) * left / (1 - r * r * left * left);
+}
+
+/* Beer and Lambert's law in a pane that lets a third of the violet through, in XYZ and in bands. A
+ * part of a wavelength's band, 12.5 nm at the most, has one attenuation for all its light, X + Y +
+ * Z. What one of these or a band of even power would take for its own is that of a place some 3 nm
+ * off, of 0.6 more or less a metre, which makes up to 2 % of a band's light where most is taken in
+ * 0.06 m; in a colour's sum both signs are left, and a tenth of it. */
+static void a_pane_leaves_what_the_law_says(void **state) {
+  (void)state;
+  static const size_t counts[] = {7, 21, 64};
+  const double thickness = 0.06;
+  abbe_scene scene = {0};
+  load_text(
+      "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
+      "lights:\n- {name: sun, kind: directional, direction: [0, 0, -1], irradiance: 1}\n" FLOOR
+      "- {name: pane, shape: box, size: [0.2, 0.2, 0.06], material: murk,\n"
+      "   transform: [{translate: [0, 0, 0.2]}]}\n",
+      &scene);
+  const abbe_illuminant *light = &scene.light[0].illuminant;
+  double sum[3] = {0}, white[3] = {0}, band[BANDS] = {0};
+  for (size_t k = 0; k < BANDS * FINE_STEPS; k++) {
+    const double width = 400.0 / (BANDS * FINE_STEPS), from = 380 + width * (double)k;
+    const double left = passed(scene.object[1].material, from + 0.5 * width, thickness);
+    double xyz[3];
+    abbe_weights_band_xyz(light, 380, 780, from, from + width, xyz);
+    band[k / FINE_STEPS] +=
+        left * abbe_weights_band_power(light, 380, 780, from, from + width) / (400.0 / BANDS);
+    for (int c = 0; c < 3; c++) white[c] += xyz[c];
+    for (int c = 0; c < 3; c++) sum[c] += left * xyz[c];
+  }
+  for (size_t i = 0; i < 3; i++) {
+    abbe_render_desc desc = small_frame;
+    abbe_error error = {0};
+    abbe_image map = {0};
+    desc.wavelengths = counts[i];
+    desc.energy_share = 1e-6;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    const abbe_ledger l = draw_frame(renderer).energy;
+    assert_near(l.deposited / l.reached, sum[1] / white[1], 1e-3);
+    assert_true(abbe_ledger_imbalance(&l) < 1e-5);
+    assert_ok(abbe_renderer_read_map_bands(renderer, 0, BANDS, &map, &error), &error);
+    const double reached = image_sum(&map, 1) / (l.deposited / l.reached);
+    for (size_t c = 0; c < 3; c++)
+      assert_near(image_sum(&map, c) / reached, sum[c] / white[1], 2e-3);
+    for (size_t k = 0; k < BANDS; k++)
+      assert_near(image_sum(&map, 3 + k) / reached, band[k] / white[1], 0.02 * band[k] / white[1]);
+    abbe_image_free(&map);
+    abbe_renderer_free(renderer);
+  }
+  abbe_scene_free(&scene);
+}
+
+static double difference(const abbe_image *a, const abbe_image *b) {
+  double sum = 0, square = 0;
+  for (size_t i = 0; i < a->width * a->height * a->channels; i++) {
+    sum += pow((double)a->data[i] - (double)b->data[i], 2);
+    square += pow((double)b->data[i], 2);
+  }
+  return sqrt(sum / square);
+}
+
+/* 200 wavelengths, each on its own, are as good as all. The prism's spectrum is some forty texels
+ * long: five wavelengths bend it off by a few of them, which those between set right. */
+static void refined_maps_are_those_of_all_wavelengths(void **state) {
+  (void)state;
+  static const char *const names[] = {"gem", "prism"};
+  for (size_t i = 0; i < 2; i++) {
+    abbe_image all = {0}, few = {0}, refined = {0}, again = {0};
+    draw(names[i], 200, ABBE_FILL_NONE, &all);
+    draw(names[i], 5, ABBE_FILL_BRIDGE, &few);
+    draw(names[i], 25, ABBE_FILL_BRIDGE, &refined);
+    draw(names[i], 25, ABBE_FILL_BRIDGE, &again);
+    print_message("%s: %g with five, %g refined\n", names[i], difference(&few, &all),
+                  difference(&refined, &all));
+    assert_true(difference(&refined, &all) < 0.6 * difference(&few, &all));
+    assert_memory_equal(refined.data, again.data,
+                        refined.width * refined.height * refined.channels * sizeof *refined.data);
+    abbe_image_free(&all);
+    abbe_image_free(&few);
+    abbe_image_free(&refined);
+    abbe_image_free(&again);
+  }
+}
+
+/* More wavelengths in an interval than in the coarse set, and paths that few of them take: what is
+ * read of the coarse landings is the photon's own, in whatever order photons stand. */
+static void a_mesh_is_refined_alike_every_time(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map[2] = {{0}, {0}};
+  abbe_render_desc desc = small_frame;
+  desc.width = desc.height = 16;
+  desc.photons = 128;
+  desc.wavelengths = 28;
+  load_shipped("bunny", &scene);
+  for (int i = 0; i < 2; i++) make_map(&scene, &desc, &map[i]);
+  assert_same_pixels(&map[0], &map[1]);
+  for (int i = 0; i < 2; i++) abbe_image_free(&map[i]);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(coarse_nodes_reach_both_ends_in_order),
+      cmocka_unit_test(every_photon_is_entered_once),
+      cmocka_unit_test(absorption_is_that_of_all_wavelengths),
+      cmocka_unit_test(a_pane_leaves_what_the_law_says),
+      cmocka_unit_test(refined_maps_are_those_of_all_wavelengths),
+      cmocka_unit_test(a_mesh_is_refined_alike_every_time),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

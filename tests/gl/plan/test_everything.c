@@ -1,0 +1,105 @@
+/* What the plan leaves out does not show: with everything switched on the picture is the same. */
+#include "tests/gl/frame.h"
+
+#include "gl/plan/everything.h"
+
+#define ASIDE                                                                                      \
+  "- {name: aside, kind: spot, position: [-0.3, 0.03, 0.6], target: [-0.5, 0, 0], cone: 10, "      \
+  "intensity: 1}\n"
+#define EYE_ASIDE "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [-0.6, 0, 0.05]}\n"
+
+static void draw(const abbe_scene *scene, const abbe_render_desc *desc, abbe_image *out) {
+  abbe_renderer *renderer = make_renderer(scene, desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, out);
+  abbe_renderer_free(renderer);
+}
+
+/* Root of the mean square, relative to the first picture's mean. */
+static double difference(const abbe_image *a, const abbe_image *b) {
+  double squares = 0, sum = 0;
+  size_t count = a->width * a->height * a->channels;
+  for (size_t i = 0; i < count; i++) {
+    squares += pow((double)a->data[i] - (double)b->data[i], 2);
+    sum += (double)a->data[i];
+  }
+  return sqrt(squares * (double)count) / sum;
+}
+
+static double with_everything(const abbe_scene *scene, size_t exits) {
+  abbe_render_desc desc = small_frame;
+  abbe_image planned = {0}, all = {0};
+  draw(scene, &desc, &planned);
+  desc.everything = true;
+  desc.orders = exits;
+  draw(scene, &desc, &all);
+  double found = difference(&planned, &all);
+  abbe_image_free(&planned);
+  abbe_image_free(&all);
+  return found;
+}
+
+/* Only rounding is left: floats in another order, and the map's whole units. */
+static void test_what_no_fact_asks_for_changes_nothing(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"),
+      CAMERA POINT_LIGHT ASIDE FLOOR BRICK("crown"),
+      EYE_ASIDE POINT_LIGHT FLOOR BALL("crown"),
+      CAMERA POINT_LIGHT FLOOR,
+      CAMERA POINT_LIGHT ASIDE FLOOR BALL("smoke"),
+      CAMERA POINT_LIGHT ASIDE FLOOR HILL BALL("flat"),
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    abbe_scene scene = {0};
+    load_text(texts[i], &scene);
+    double found = with_everything(&scene, 8);
+    if (!(found < 1e-3)) fail_msg("scene %zu: %g", i, found);
+    abbe_scene_free(&scene);
+  }
+}
+
+static void test_every_switch_is_on(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  const abbe_render_desc all = {.everything = true};
+  load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
+  assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
+  for (size_t i = 0; i < plan.entry_count; i++) {
+    const char *name = plan.entry[i].name;
+    bool model = strcmp(name, "light: receiver depth") == 0 || /* other models, other pictures */
+                 strcmp(name, "refractors in turn") == 0;
+    if (plan.entry[i].runs == model) fail_msg("%s: %s", name, plan.entry[i].reason);
+  }
+  assert_true(plan.reaches[1] && plan.receiver_shadows && plan.absorbing && plan.textured);
+  assert_true(plan.back && plan.fills && plan.seen);
+  assert_int_equal(plan.desc.wavelengths, 7);
+  assert_int_equal(plan.desc.orders, ABBE_RENDER_MAX_ORDERS);
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+}
+
+static void test_what_is_asked_for_stays(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  const abbe_render_desc all = {
+      .everything = true, .wavelengths = 3, .orders = 2, .fill = ABBE_FILL_NONE};
+  load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
+  assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
+  assert_int_equal(plan.desc.wavelengths, 3);
+  assert_int_equal(plan.desc.orders, 2);
+  assert_false(plan.fills || abbe_plan_find(&plan, "light: gap fill")->runs);
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_no_fact_asks_for_changes_nothing),
+      cmocka_unit_test(test_every_switch_is_on),
+      cmocka_unit_test(test_what_is_asked_for_stays),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

@@ -1,0 +1,413 @@
+/* Rays and views in GLSL against double precision, from 1e-4 to 1e5 m, grazing and straight.
+ *
+ * A float knows a coordinate to 2^-24 of it, and an intersection multiplies that by 1 / cosine. So
+ * errors are counted in units of eps times the distance over the cosine; each bound says how many
+ * roundings the function's own operations may add up to.
+ */
+#include "tests/gl/glsl.h"
+#include "tests/random.h"
+
+#include "scenes/scene.h"
+#include "scenes/view/view.h"
+
+#include <float.h>
+
+enum { RAYS = 8192 };
+static const double eps = FLT_EPSILON;
+static const double sizes[] = {1e-4, 1, 1e5};
+
+static const abbe_gl *gl;
+static float inputs[RAYS][8], outputs[RAYS][4];
+
+static const char rooms[] =
+    "#define LIGHTS 1\n#define LIGHT_ROOM 1\n#define REFRACTORS 2\n#define REFRACTOR_ROOM 2\n"
+    "#define PLANE_ROOM 6\n#define RECEIVERS 1\n#define RECEIVER_ROOM 1\n#define SURFACE_ROOM 1\n"
+    "#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define SPHERES\n#define CONVEX\n"
+    "#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n";
+
+static int make_gl(void **state) {
+  if (make_context(state) != 0) return 1;
+  gl = abbe_context_gl(context);
+  return 0;
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void unit_vector(uint64_t *random, double out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = random_normal(random);
+  double length = sqrt(dot(out, out));
+  for (int k = 0; k < 3; k++) out[k] /= length;
+}
+
+/* Rays that meet a ball of that radius around the origin, from 1.01 to 1000 radii away; every
+ * fourth one grazes it. */
+static void aim(double radius) {
+  uint64_t random = 7;
+  for (int i = 0; i < RAYS; i++) {
+    double from[3], to[3], d[3], along = 0;
+    unit_vector(&random, from);
+    unit_vector(&random, to);
+    double far = radius * (i % 2 ? random_between(&random, 1.01, 3) : pow(1000, i / (double)RAYS));
+    far = fmax(far, 1.01 * radius);
+    double miss = i % 4 == 0 ? 1 - pow(10, -random_between(&random, 0, 7)) : sqrt(i % 97 / 97.0);
+    for (int k = 0; k < 3; k++) along += to[k] * from[k];
+    for (int k = 0; k < 3; k++) to[k] -= along * from[k]; /* across the way to the middle */
+    double length = sqrt(dot(to, to)), sine = miss * radius / far;
+    for (int k = 0; k < 3; k++) d[k] = sine * to[k] / length - sqrt(1 - sine * sine) * from[k];
+    for (int k = 0; k < 3; k++) {
+      inputs[i][k] = (float)(far * from[k]);
+      inputs[i][4 + k] = (float)d[k];
+    }
+    inputs[i][3] = (float)radius;
+    inputs[i][7] = 0;
+  }
+}
+
+static void ray_of(int i, double o[3], double d[3]) {
+  for (int k = 0; k < 3; k++) {
+    o[k] = inputs[i][k];
+    d[k] = inputs[i][4 + k];
+  }
+}
+
+static void run(const char *body) {
+  char text[3072];
+  snprintf(text, sizeof text, "%s%s", rooms, body);
+  GLuint program = glsl_make(gl, text);
+  glsl_run(gl, program, (const float(*)[8])inputs, RAYS, outputs);
+  gl->DeleteProgram(program);
+}
+
+/* A ball and a cube of that radius, turned so that no face lies along an axis. */
+static void upload_refractors(double radius, double plane[6][4], GLuint buffer[2]) {
+  const double n[3][3] = {{0.48, 0.6, 0.64}, {-0.8, 0.6, 0}, {-0.384, -0.512, 0.768}};
+  float f[6][4];
+  struct {
+    float sphere[4];
+    int info[4];
+  } r[2] = {{{0, 0, 0, (float)radius}, {0, 0, 0, 0}}, {{0, 0, 0, 0}, {1, 0, 6, 0}}};
+  for (int i = 0; i < 6; i++) {
+    for (int k = 0; k < 3; k++) f[i][k] = (float)(i % 2 ? -n[i / 2][k] : n[i / 2][k]);
+    f[i][3] = (float)(0.5 * radius);
+    for (int k = 0; k < 4; k++) plane[i][k] = f[i][k];
+  }
+  buffer[0] = glsl_block(gl, 1, sizeof r, r);
+  buffer[1] = glsl_block(gl, 2, sizeof f, f);
+}
+
+/* Distance to the sphere, its entry and exit; false where the ray misses. */
+static bool meet_sphere(const double o[3], const double d[3], double radius, double t[2]) {
+  double a = dot(d, d), b = dot(o, d), c = dot(o, o) - radius * radius, disc = b * b - a * c;
+  if (disc <= 0) return false;
+  t[0] = (-b - sqrt(disc)) / a;
+  t[1] = (-b + sqrt(disc)) / a;
+  return true;
+}
+
+static void spheres_are_met(void **state) {
+  (void)state;
+  double worst = 0, worst_inner = 0;
+  size_t met = 0;
+  for (int s = 0; s < 3; s++) {
+    double plane[6][4];
+    GLuint buffer[2];
+    aim(sizes[s]);
+    upload_refractors(sizes[s], plane, buffer);
+    run("vec4 f(vec4 a, vec4 b) {\n"
+        "  Hit h; h.t = 1e30;\n"
+        "  if (!sphere_front(vec4(0, 0, 0, a.w), a.xyz, b.xyz, h)) return vec4(0, 0, 0, -1);\n"
+        "  return vec4(h.p, h.t);\n"
+        "}\n");
+    for (int i = 0; i < RAYS; i++) {
+      double o[3], d[3], t[2], apart = 0;
+      ray_of(i, o, d);
+      bool hit = meet_sphere(o, d, sizes[s], t);
+      double far = sqrt(dot(o, o)), sine2 = 1 - pow(dot(o, d), 2) / dot(o, o) / dot(d, d);
+      double cosine = sqrt(fmax(1 - sine2 * pow(far / sizes[s], 2), 0));
+      /* Which rays just miss is a matter of the last digits. */
+      double known = cosine * cosine;
+      if (outputs[i][3] < 0 || !hit) {
+        assert_true(known < 16 * eps * far / sizes[s] || hit == (outputs[i][3] > 0));
+        continue;
+      }
+      for (int k = 0; k < 3; k++)
+        apart = fmax(apart, fabs((double)outputs[i][k] - (o[k] + t[0] * d[k])));
+      /* the distance is known to eps far; so is the place, over the cosine */
+      met++;
+      if (known > 64 * eps * far / sizes[s]) worst = fmax(worst, apart * cosine / (eps * far));
+      assert_true(isfinite(outputs[i][0]));
+    }
+    run("vec4 f(vec4 a, vec4 b) {\n"
+        "  vec3 n = -normalize(a.xyz), q, m; int next;\n"
+        "  inner_hit(0, 0, -a.w * n, normalize(b.xyz + n), q, m, next);\n"
+        "  return vec4(q, dot(m, m));\n"
+        "}\n");
+    for (int i = 0; i < RAYS; i++) {
+      double length = 0;
+      for (int k = 0; k < 3; k++) length += pow((double)outputs[i][k], 2);
+      worst_inner = fmax(worst_inner, fabs(sqrt(length) / sizes[s] - 1) / eps);
+      worst_inner = fmax(worst_inner, fabs((double)outputs[i][3] - 1) / eps);
+    }
+    gl->DeleteBuffers(2, buffer);
+  }
+  print_message("sphere_front: %.2g eps distance / cosine; inner_hit: %.2g eps off the sphere\n",
+                worst, worst_inner);
+  assert_true(met > 2 * RAYS);
+  /* Three vectors of three terms: a dozen roundings. */
+  assert_true(worst < 12);
+  assert_true(worst_inner < 8);
+}
+
+/* Where the ray enters or leaves the cube by the planes, and the cosine there. */
+static bool meet_planes(const double plane[6][4], const double o[3], const double d[3], double t[2],
+                        double *cosine) {
+  t[0] = -INFINITY;
+  t[1] = INFINITY;
+  for (int i = 0; i < 6; i++) {
+    double slope = dot(plane[i], d), at = (plane[i][3] - dot(plane[i], o)) / slope;
+    if (slope < 0 && at > t[0]) {
+      t[0] = at;
+      *cosine = -slope;
+    }
+    if (slope > 0) t[1] = fmin(t[1], at);
+  }
+  return t[0] < t[1];
+}
+
+static void solids_are_met(void **state) {
+  (void)state;
+  double worst = 0, worst_inner = 0;
+  size_t met = 0;
+  for (int s = 0; s < 3; s++) {
+    double plane[6][4];
+    GLuint buffer[2];
+    aim(sizes[s]);
+    upload_refractors(sizes[s], plane, buffer);
+    run("vec4 f(vec4 a, vec4 b) {\n"
+        "  Hit h; h.t = 1e30;\n"
+        "  if (!convex_front(refractors[1].info, a.xyz, b.xyz, h)) return vec4(-1, 0, 0, 0);\n"
+        "  vec3 q, n; int next;\n"
+        "  inner_hit(1, h.facet, h.p, b.xyz, q, n, next);\n"
+        "  return vec4(h.t, distance(q, h.p), h.facet, next);\n"
+        "}\n");
+    for (int i = 0; i < RAYS; i++) {
+      double o[3], d[3], t[2], cosine = 1;
+      ray_of(i, o, d);
+      double far = sqrt(dot(o, o));
+      bool hit = meet_planes((const double(*)[4])plane, o, d, t, &cosine);
+      double unit = eps * far / cosine;
+      if (hit != (outputs[i][0] > 0)) {
+        assert_true(fabs(t[1] - t[0]) < 16 * unit); /* along an edge */
+        continue;
+      }
+      if (!hit) continue;
+      met++;
+      worst = fmax(worst, fabs((double)outputs[i][0] - t[0]) / unit);
+      double chord = (t[1] - t[0]) * sqrt(dot(d, d));
+      worst_inner = fmax(worst_inner, fabs((double)outputs[i][1] - chord) / unit *
+                                          fmin(cosine, fabs(dot(plane[(int)outputs[i][3]], d))));
+    }
+    gl->DeleteBuffers(2, buffer);
+  }
+  print_message("convex_front: %.2g eps distance / cosine; inner_hit: %.2g\n", worst, worst_inner);
+  assert_true(met > RAYS);
+  assert_true(worst < 12);
+  assert_true(worst_inner < 12);
+}
+
+static void receivers_are_met(void **state) {
+  (void)state;
+  double worst = 0;
+  size_t met = 0;
+  for (int s = 0; s < 3; s++) {
+    /* A rectangle of two radii a side, across (0.48, 0.6, 0.64). */
+    const double n[3] = {0.48, 0.6, 0.64}, u[3] = {-0.78087, 0.62470, 0}, r = sizes[s];
+    float block[6][4] = {{0}};
+    double v[3] = {n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]};
+    for (int k = 0; k < 3; k++) {
+      block[0][k] = (float)(r * (0.1 * n[k] - u[k] - v[k]));
+      block[1][k] = (float)(2 * r * u[k]);
+      block[2][k] = (float)(2 * r * v[k]);
+      block[3][k] = (float)n[k];
+      block[4][k] = (float)(u[k] / (2 * r));
+      block[5][k] = (float)(v[k] / (2 * r));
+    }
+    aim(r);
+    GLuint buffer = glsl_block(gl, 3, sizeof block, block);
+    run("vec4 f(vec4 a, vec4 b) {\n"
+        "  float t; int r = receiver_hit(a.xyz, b.xyz, 0.0, 1e30, t);\n"
+        "  return vec4(t, r, 0, 0);\n"
+        "}\n");
+    for (int i = 0; i < RAYS; i++) {
+      double o[3], d[3], m[3], from[3], x[3], edge = INFINITY;
+      ray_of(i, o, d);
+      for (int k = 0; k < 3; k++) {
+        m[k] = block[3][k];
+        from[k] = block[0][k] - o[k];
+      }
+      double slope = dot(m, d), t = dot(m, from) / slope;
+      double unit = eps * sqrt(dot(o, o)) / fabs(slope);
+      for (int k = 0; k < 3; k++) x[k] = t * d[k] - from[k];
+      for (int axis = 0; axis < 2; axis++) {
+        double dual[3] = {block[4 + axis][0], block[4 + axis][1], block[4 + axis][2]};
+        double at = dot(x, dual);
+        edge = fmin(edge, fmin(at, 1 - at));
+      }
+      bool hit = t > 0 && edge >= 0;
+      if (hit != (outputs[i][1] >= 0)) {
+        assert_true(fabs(edge) * 2 * r < 16 * unit || fabs(t) < 16 * unit);
+        continue;
+      }
+      met += hit;
+      if (hit) worst = fmax(worst, fabs((double)outputs[i][0] - t) / unit);
+    }
+    gl->DeleteBuffers(1, &buffer);
+  }
+  print_message("receiver_hit: %.2g eps distance / cosine\n", worst);
+  assert_true(met > RAYS);
+  assert_true(worst < 8);
+}
+
+/* Window coordinates of places in the view, and the ray back through them. */
+static void views_project(void **state) {
+  (void)state;
+  double worst = 0, worst_ray = 0, worst_measure = 0;
+  for (int s = 0; s < 6; s++) {
+    const double r = sizes[s / 2], origin[3] = {0.3 * r, -0.2 * r, 2 * r};
+    const double forward[3] = {0.1, 0.2, -1}, up[3] = {0, 1, 0};
+    abbe_view view;
+    float packed[24];
+    char body[1024];
+    uint64_t random = 3;
+    abbe_view_look(origin, forward, up, s % 2, &view);
+    const double half = s % 2 ? r : 0.5, window[4] = {-half, half, -half, 2 * half};
+    memcpy(view.window, window, sizeof window);
+    view.near = r;
+    view.far = 4 * r;
+    abbe_view_pack(&view, packed);
+    for (int i = 0; i < RAYS; i++) {
+      double uv[2] = {random_between(&random, 0, 1), random_between(&random, 0, 1)}, o[3], d[3];
+      double t = r * random_between(&random, 0.5, 4);
+      abbe_view_ray(&view, uv, o, d);
+      for (int k = 0; k < 3; k++) inputs[i][k] = (float)(o[k] + t * d[k]);
+      inputs[i][4] = (float)uv[0];
+      inputs[i][5] = (float)uv[1];
+    }
+    snprintf(body, sizeof body, "%s",
+             "uniform vec4 harness_view[6];\n"
+             "View v() { return View(harness_view[0], harness_view[1], harness_view[2],\n"
+             "                       harness_view[3], harness_view[4], harness_view[5]); }\n"
+             "vec4 f(vec4 a, vec4 b) {\n"
+             "  if (b.z < 0.5) { vec3 q; bool seen = project(v(), a.xyz, q);\n"
+             "    return vec4(q, seen ? 1 : 0); }\n"
+             "  vec3 o, d; view_ray(v(), b.xy, o, d);\n"
+             "  return vec4(d, window_measure(v(), d));\n"
+             "}\n");
+    char text[3072];
+    snprintf(text, sizeof text, "%s%s", rooms, body);
+    GLuint program = glsl_make(gl, text);
+    gl->Uniform4fv(gl->GetUniformLocation(program, "harness_view"), 6, packed);
+    for (int way = 0; way < 2; way++) {
+      for (int i = 0; i < RAYS; i++) inputs[i][6] = (float)way;
+      glsl_run(gl, program, (const float(*)[8])inputs, RAYS, outputs);
+      for (int i = 0; i < RAYS; i++) {
+        double p[3] = {inputs[i][0], inputs[i][1], inputs[i][2]}, exact[3], o[3], d[3];
+        double uv[2] = {inputs[i][4], inputs[i][5]};
+        if (way == 0) {
+          assert_true(abbe_view_project(&view, p, exact) && outputs[i][3] > 0);
+          for (int k = 0; k < 2; k++)
+            worst = fmax(worst, fabs((double)outputs[i][k] - exact[k]) / eps);
+          worst = fmax(worst, fabs((double)outputs[i][2] / exact[2] - 1) / eps);
+        } else {
+          abbe_view_ray(&view, uv, o, d);
+          for (int k = 0; k < 3; k++)
+            worst_ray = fmax(worst_ray, fabs((double)outputs[i][k] - d[k]) / eps);
+          double c = s % 2 ? 1 : dot(d, view.forward);
+          worst_measure = fmax(worst_measure, fabs((double)outputs[i][3] / (c * c * c) - 1) / eps);
+        }
+      }
+    }
+    gl->DeleteProgram(program);
+  }
+  print_message("project: %.2g eps; view_ray: %.2g eps; window_measure: %.2g eps\n", worst,
+                worst_ray, worst_measure);
+  /* A place is known to eps of its coordinates, up to 6 windows away from the origin. */
+  assert_true(worst < 24);
+  assert_true(worst_ray < 4);
+  assert_true(worst_measure < 16); /* a cosine of three products, cubed, down to 0.6 */
+}
+
+static void maps_are_warped(void **state) {
+  (void)state;
+  static float knot[129][4];
+  double worst = 0;
+  uint64_t random = 5;
+  for (int k = 1; k <= 128; k++)
+    for (int axis = 0; axis < 2; axis++)
+      knot[k][axis] = knot[k - 1][axis] + (float)random_between(&random, 1e-6, axis ? 1 : 1e-2);
+  for (int k = 0; k <= 128; k++)
+    for (int axis = 0; axis < 2; axis++) knot[k][axis] /= knot[128][axis];
+  for (int i = 0; i < RAYS; i++)
+    for (int k = 0; k < 2; k++)
+      inputs[i][k] = (float)(i < 129 ? i / 128.0 : random_between(&random, -0.1, 1.1));
+  GLuint buffer = glsl_block(gl, 7, sizeof knot, knot);
+  run("vec4 f(vec4 a, vec4 b) { return vec4(warp(0, a.xy), 0, 0); }\n");
+  for (int i = 0; i < RAYS; i++)
+    for (int axis = 0; axis < 2; axis++) {
+      double at = fmin(fmax((double)inputs[i][axis], 0), 1) * 128, k = fmin(floor(at), 127);
+      double low = knot[(int)k][axis], high = knot[(int)k + 1][axis];
+      worst = fmax(worst, fabs((double)outputs[i][axis] - (low + (at - k) * (high - low))) / eps);
+    }
+  gl->DeleteBuffers(1, &buffer);
+  print_message("warp: %.2g eps\n", worst);
+  assert_true(worst < 2);
+}
+
+/* A spot's soft edge, and the hard one that softness 0 leaves. */
+static void spots_fade(void **state) {
+  (void)state;
+  static const double cone[] = {0.001, 30, 85}, soft[] = {0, 1e-4, 20};
+  double worst = 0;
+  const double rad = acos(-1) / 180;
+  for (int s = 0; s < 9; s++) {
+    abbe_light spot = {.kind = ABBE_LIGHT_SPOT, .direction = {0, 0, -1}};
+    float block[17][4] = {{0}};
+    spot.cone_rad = cone[s / 3] * rad;
+    spot.soft_rad = fmin(soft[s % 3], cone[s / 3]) * rad;
+    block[12][3] = ABBE_LIGHT_SPOT;
+    block[13][2] = -1;
+    block[13][3] = (float)cos(spot.cone_rad);
+    block[15][0] = (float)cos(fmax(spot.cone_rad - spot.soft_rad, 0));
+    for (int i = 0; i < RAYS; i++) {
+      double angle = fmax(spot.cone_rad - 2 * spot.soft_rad * i / RAYS, 0) * (1 + (i % 3) * 1e-3);
+      inputs[i][0] = (float)sin(angle);
+      inputs[i][1] = 0;
+      inputs[i][2] = -(float)cos(angle);
+    }
+    GLuint buffer = glsl_block(gl, 0, sizeof block, block);
+    run("vec4 f(vec4 a, vec4 b) { return vec4(light_profile(lights[0], a.xyz), 0, 0, 0); }\n");
+    double width = cos(spot.cone_rad - spot.soft_rad) - cos(spot.cone_rad);
+    for (int i = 0; i < RAYS; i++) {
+      double d[3] = {inputs[i][0], inputs[i][1], inputs[i][2]}, value = outputs[i][0];
+      assert_true(value >= 0 && value <= 1);
+      /* The edge is known to eps in its cosine; the fade is 3/2 / width steep. */
+      double unit = eps / fmax(width, eps);
+      double apart = fabs(value - abbe_light_profile(&spot, d));
+      if (unit < 0.1) worst = fmax(worst, apart / unit);
+    }
+    gl->DeleteBuffers(1, &buffer);
+  }
+  print_message("light_profile: %.2g eps / width of the fade in cosines\n", worst);
+  assert_true(worst < 4);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(spheres_are_met),   cmocka_unit_test(solids_are_met),
+      cmocka_unit_test(receivers_are_met), cmocka_unit_test(views_project),
+      cmocka_unit_test(maps_are_warped),   cmocka_unit_test(spots_fade),
+  };
+  return cmocka_run_group_tests(tests, make_gl, free_context);
+}

@@ -1,0 +1,122 @@
+/* Scenes far from the origin, moved to where floats resolve them. */
+#include "tests/scenes/scene_text.h"
+
+#include "gl/scene/local_scene.h"
+
+static void make(const abbe_scene *scene, abbe_local_scene *local) {
+  abbe_error error = {0};
+  abbe_result result = abbe_local_scene_make(scene, local, &error);
+  if (result != ABBE_OK) print_error("%s\n", error.text);
+  assert_int_equal(result, ABBE_OK);
+}
+
+static void a_scene_around_the_origin_stays(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_local_scene local;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  make(&scene, &local);
+  assert_false(local.moved);
+  assert_ptr_equal(local.scene, &scene);
+  assert_true(local.origin[0] == 0 && local.origin[1] == 0 && local.origin[2] == 0);
+  abbe_local_scene_free(&local);
+  abbe_scene_free(&scene);
+}
+
+/* 1e5 m from there: to a double's last digit that is what it was at the origin. */
+static const double last_digit = 1e5 * 0x1p-50;
+
+static void check_point(const double moved[3], const double origin[3], const double world[3]) {
+  for (int k = 0; k < 3; k++) assert_near(moved[k] + origin[k], world[k], last_digit);
+}
+
+static void everything_moves_together(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_local_scene local;
+  load_text("materials: glass.yaml\n"
+            "camera: {eye: [100000, 99999, 0.5], target: [100000, 100000, 0.05]}\n"
+            "lights:\n- {name: lamp, kind: point, position: [100000, 100000, 0.6], intensity: 1}\n"
+            "objects:\n"
+            "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5,\n"
+            "   transform: [{translate: [100000, 100000, 0]}]}\n"
+            "- {name: ball, shape: sphere, radius: 0.08, material: crown,\n"
+            "   transform: [{translate: [100000, 100000, 0.2]}]}\n"
+            "- {name: brick, shape: box, size: [0.1, 0.1, 0.1], material: crown,\n"
+            "   transform: [{translate: [100000.3, 100000, 0.2]}]}\n",
+            &scene);
+  make(&scene, &local);
+  assert_true(local.moved);
+  assert_near(local.origin[0], 1e5 + 0.135, 1e-9);
+  const abbe_scene *moved = local.scene;
+  check_point(moved->camera.eye, local.origin, scene.camera.eye);
+  check_point(moved->camera.target, local.origin, scene.camera.target);
+  check_point(moved->light[0].position, local.origin, scene.light[0].position);
+  check_point(moved->object[1].exact.centre, local.origin, scene.object[1].exact.centre);
+  check_point(moved->object[0].exact.parallelogram[0], local.origin,
+              scene.object[0].exact.parallelogram[0]);
+  for (size_t i = 0; i < 3; i++) {
+    const abbe_mesh *mesh = &moved->object[i].mesh;
+    check_point(moved->object[i].min, local.origin, scene.object[i].min);
+    check_point(moved->object[i].max, local.origin, scene.object[i].max);
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+      check_point(mesh->position[v], local.origin, scene.object[i].mesh.position[v]);
+  }
+  /* A plane's offset is that of its own corners. */
+  const abbe_object *brick = &moved->object[2];
+  for (size_t i = 0; i < brick->exact.count; i++) {
+    double most = -INFINITY;
+    for (size_t v = 0; v < brick->mesh.vertex_count; v++) {
+      double along = 0;
+      for (int k = 0; k < 3; k++) along += brick->exact.plane[i][k] * brick->mesh.position[v][k];
+      most = fmax(most, along);
+    }
+    assert_near(brick->exact.plane[i][3], most, 1e-9);
+  }
+  abbe_view view = {.origin = {1e5, 2e5, 3e5}}, back = view;
+  abbe_local_scene_from_world(&local, &back);
+  assert_near(back.origin[0], 1e5 - local.origin[0], last_digit);
+  abbe_local_scene_to_world(&local, &back);
+  check_point(back.origin, (const double[3]){0, 0, 0}, view.origin);
+  abbe_local_scene_free(&local);
+  abbe_local_scene_free(&local);
+  abbe_scene_free(&scene);
+}
+
+static void lights_repeat_where_the_scene_is(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      CAMERA POINT_LIGHT FLOOR BALL("crown"), CAMERA POINT_LIGHT FLOOR
+      "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: [{translate: [1000, 0, "
+      "0.2]}], material: crown}\n"};
+  for (int i = 0; i < 2; i++) {
+    abbe_scene scene;
+    abbe_local_scene local;
+    abbe_error error = {0};
+    load_text(texts[i], &scene);
+    make(&scene, &local);
+    assert_true(local.moved == (i == 1));
+    double at[3];
+    memcpy(at, local.scene->light[0].position, sizeof at);
+    assert_int_equal(abbe_local_scene_repeat_lights(&local, (const size_t[3]){0, 0, 0}, 3, &error),
+                     ABBE_OK);
+    assert_int_equal(local.scene->light_count, 4);
+    assert_int_equal(scene.light_count, 1);
+    for (size_t k = 0; k < 4; k++) {
+      assert_memory_equal(local.scene->light[k].position, at, sizeof at);
+      assert_string_equal(local.scene->light[k].name, "lamp");
+    }
+    assert_int_equal(local.scene->object_count, scene.object_count);
+    abbe_local_scene_free(&local);
+    abbe_scene_free(&scene);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_scene_around_the_origin_stays),
+      cmocka_unit_test(everything_moves_together),
+      cmocka_unit_test(lights_repeat_where_the_scene_is),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,159 @@
+/* A GL context that cannot be had or lacks something: a back end that is real but for what is
+ * hidden, lowered or broken. Every time: ABBE_GL, a sentence with a way out, and nothing left
+ * behind. */
+#include "tests/check.h"
+
+#include "gl/device/context.h"
+#include "gl/device/context_backend.h"
+#include "gl/renderer.h"
+#include "scenes/import/scene_file.h"
+
+#include <stdlib.h>
+
+static const char *hidden; /* a function that is not there */
+static GLenum lowered;     /* a limit that is `low` */
+static GLint low;
+static bool refused, mute, breaks; /* no context; no strings; shaders do not compile */
+static abbe_gl_lookup real_lookup;
+static PFNGLGETINTEGERVPROC real_integer;
+static PFNGLGETSHADERIVPROC real_shader;
+
+static void integer(GLenum name, GLint *out) {
+  if (name == lowered && lowered != 0)
+    *out = low;
+  else
+    real_integer(name, out);
+}
+
+static const GLubyte *no_string(GLenum name) {
+  (void)name;
+  return NULL;
+}
+
+static void broken_shader(GLuint shader, GLenum name, GLint *out) {
+  real_shader(shader, name, out);
+  if (name == GL_COMPILE_STATUS) *out = GL_FALSE;
+}
+
+static abbe_gl_function lookup(const char *name) {
+  abbe_gl_function found = real_lookup(name);
+  if (hidden != NULL && strcmp(name, hidden) == 0) return NULL;
+  if (strcmp(name, "glGetIntegerv") == 0) {
+    real_integer = (PFNGLGETINTEGERVPROC)found;
+    return (abbe_gl_function)integer;
+  }
+  if (mute && strcmp(name, "glGetString") == 0) return (abbe_gl_function)no_string;
+  if (breaks && strcmp(name, "glGetShaderiv") == 0) {
+    real_shader = (PFNGLGETSHADERIVPROC)found;
+    return (abbe_gl_function)broken_shader;
+  }
+  return found;
+}
+
+abbe_result __real_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
+abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
+abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
+  if (refused) return abbe_error_set(error, ABBE_GL, "OSMesa gives no context; try --gl egl");
+  const abbe_result result = __real_abbe_context_osmesa(out, error);
+  real_lookup = out->lookup;
+  out->lookup = lookup;
+  return result;
+}
+
+static int reset(void **state) {
+  (void)state;
+  hidden = NULL;
+  lowered = 0;
+  refused = mute = breaks = false;
+  return 0;
+}
+
+static void assert_refused(const char *part) {
+  abbe_context *context = NULL;
+  abbe_error error = {0};
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error), ABBE_GL);
+  assert_null(context);
+  assert_contains(error.text, part);
+  assert_contains(error.text, "egl");
+}
+
+static void test_no_context(void **state) {
+  (void)state;
+  refused = true;
+  assert_refused("no context");
+}
+
+static void test_every_function_missing(void **state) {
+  (void)state;
+  static const char *const names[] = {
+#define NAME(type, name) "gl" #name,
+      ABBE_GL_FUNCTIONS(NAME)
+#undef NAME
+  };
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    char part[64];
+    hidden = names[i];
+    snprintf(part, sizeof part, "has no %s;", names[i]);
+    assert_refused(part);
+  }
+}
+
+static void test_versions_and_limits(void **state) {
+  (void)state;
+  static const struct {
+    GLenum limit;
+    GLint value;
+    const char *part;
+  } rows[] = {
+      {GL_MAJOR_VERSION, 3, "OpenGL 3.5; Abbe needs 4.5"},
+      {GL_MINOR_VERSION, 4, "OpenGL 4.4; Abbe needs 4.5"},
+      {GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, 8, "8 storage buffers in a compute shader"},
+      {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, 8, "8 places for storage buffers"},
+      {GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, 256, "256 invocations in a compute group"},
+      {GL_MAX_COLOR_ATTACHMENTS, 4, "4 colour attachments"},
+      {GL_MAX_TEXTURE_SIZE, 1024, "1024 texels a side"},
+      {GL_MAX_TEXTURE_SIZE, -1, "-1 texels a side"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    lowered = rows[i].limit;
+    low = rows[i].value;
+    assert_refused(rows[i].part);
+  }
+}
+
+static void test_a_driver_without_a_name(void **state) {
+  (void)state;
+  abbe_context *context = NULL;
+  mute = true;
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL), ABBE_OK);
+  assert_contains(abbe_context_description(context), "unnamed");
+  abbe_context_free(context);
+}
+
+static void test_shaders_that_do_not_compile(void **state) {
+  (void)state;
+  abbe_context *context = NULL;
+  abbe_renderer *renderer = NULL;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  const abbe_render_desc desc = {.width = 8, .height = 8, .photons = 8, .map_size = 32};
+  breaks = true;
+  assert_int_equal(abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL), ABBE_OK);
+  assert_int_equal(abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", NULL, &scene, NULL),
+                   ABBE_OK);
+  assert_int_equal(abbe_renderer_make(context, &scene, &desc, &renderer, &error), ABBE_GL);
+  assert_null(renderer);
+  assert_contains(error.text, "does not compile");
+  abbe_scene_free(&scene);
+  abbe_context_free(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup(test_no_context, reset),
+      cmocka_unit_test_setup(test_every_function_missing, reset),
+      cmocka_unit_test_setup(test_versions_and_limits, reset),
+      cmocka_unit_test_setup(test_a_driver_without_a_name, reset),
+      cmocka_unit_test_setup(test_shaders_that_do_not_compile, reset)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,312 @@
+/* Photons' landings against optics in double precision: a sphere, a prism, a slit. */
+#include "tests/gl/frame.h"
+
+#include "spectral/optics.h"
+
+typedef struct landings {
+  float *at; /* [count][orders][lanes][4] */
+  unsigned *cell;
+  size_t count, orders, lanes, grid;
+  abbe_view view;
+} landings;
+
+static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc, landings *l) {
+  abbe_renderer *renderer = make_renderer(scene, desc);
+  abbe_error error = {0};
+  draw_frame(renderer);
+  assert_ok(abbe_renderer_read_landings(renderer, 0, &l->at, &l->cell, &l->count, &l->orders,
+                                        &l->lanes, &error),
+            &error);
+  abbe_renderer_photon_view(renderer, 0, &l->view);
+  l->grid = abbe_renderer_plan(renderer)->desc.photons;
+  abbe_renderer_free(renderer);
+  assert_true(l->count > 0);
+}
+
+static void landings_free(landings *l) {
+  free(l->at);
+  free(l->cell);
+}
+
+static const float *landing(const landings *l, size_t photon, size_t order, size_t lane) {
+  return l->at + 4 * ((photon * l->orders + order) * l->lanes + lane);
+}
+
+static void photon_ray(const landings *l, size_t photon, double o[3], double d[3]) {
+  unsigned cell = l->cell[photon];
+  double uv[2] = {((cell & 0xffffu) + 0.5) / (double)l->grid,
+                  ((cell >> 16) + 0.5) / (double)l->grid};
+  abbe_view_ray(&l->view, uv, o, d);
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The ray in the sphere, from wall to wall: the double twin of the shaders' path. */
+typedef struct sphere_path {
+  const double *centre;
+  double radius, n;
+  double p[3], d[3], normal[3]; /* where it is inside, and its way */
+  double share;                 /* of the light */
+} sphere_path;
+
+static bool enter(sphere_path *path, const double o[3], const double d[3]) {
+  double oc[3], wi[3];
+  for (int k = 0; k < 3; k++) oc[k] = o[k] - path->centre[k];
+  double b = dot(oc, d), inside = b * b - dot(oc, oc) + path->radius * path->radius;
+  if (inside <= 0) return false;
+  for (int k = 0; k < 3; k++) {
+    path->p[k] = o[k] + (-b - sqrt(inside)) * d[k];
+    path->normal[k] = (path->p[k] - path->centre[k]) / path->radius;
+    wi[k] = -d[k];
+  }
+  path->share = 1 - abbe_optics_fresnel(dot(wi, path->normal), 1 / path->n);
+  return abbe_optics_refract(wi, path->normal, 1 / path->n, path->d);
+}
+
+/* To the next wall: the direction and share that leave there; what stays goes on. */
+static void step(sphere_path *path, double out[3], double *out_share) {
+  double chord = -2 * path->radius * dot(path->normal, path->d), wi[3], inward[3];
+  for (int k = 0; k < 3; k++) {
+    path->p[k] += chord * path->d[k];
+    path->normal[k] = (path->p[k] - path->centre[k]) / path->radius;
+    inward[k] = -path->normal[k];
+    wi[k] = -path->d[k];
+  }
+  double kept = abbe_optics_fresnel(dot(wi, inward), path->n);
+  *out_share = path->share * (1 - kept);
+  abbe_optics_refract(wi, inward, path->n, out);
+  abbe_optics_reflect(wi, inward, path->d);
+  path->share *= kept;
+}
+
+/* Floats of about 1 carry 6e-8; each passage of the sphere stretches small differences by up to
+ * its radius over its focal length, and 1 / cosine at the floor: a hundredfold in all, for rays
+ * that do not graze. */
+static void compare_path(const landings *l, size_t photon, sphere_path path, size_t *compared) {
+  double o[3], d[3], out[3], share, power = 1;
+  photon_ray(l, photon, o, d);
+  if (!enter(&path, o, d) || -dot(d, path.normal) < 0.3) return;
+  double c = dot(d, l->view.forward);
+  double flux = power * c * c * c * abbe_view_area(&l->view) / (double)(l->grid * l->grid);
+  for (size_t order = 0; order < 3; order++) {
+    step(&path, out, &share);
+    double t = -path.p[2] / out[2];
+    const float *at = landing(l, photon, order, 0);
+    if (out[2] > -0.3 || fabs(path.p[0] + t * out[0]) > 0.99 || fabs(path.p[1] + t * out[1]) > 0.99)
+      continue;
+    if (share < 0.02) continue; /* the path may have ended */
+    assert_true(at[3] > 0);
+    assert_near(at[0], path.p[0] + t * out[0], 1e-5);
+    assert_near(at[1], path.p[1] + t * out[1], 1e-5);
+    assert_near(at[2], 0, 1e-6);
+    assert_near(at[3] / (share * flux), 1, 1e-4);
+    ++*compared;
+  }
+}
+
+static void test_a_sphere_lands_as_double_precision_says(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  landings l = {0};
+  abbe_error error = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_render_desc desc = small_frame;
+  desc.wavelengths = 1; /* one sample stands in the middle, at 580 nm */
+  trace_photons(&scene, &desc, &l);
+  sphere_path path = {.centre = scene.object[1].exact.centre,
+                      .radius = scene.object[1].exact.radius};
+  assert_ok(abbe_material_n(scene.object[1].material, 580, &path.n, &error), &error);
+  path.n = (float)path.n; /* as the shaders have it */
+  size_t compared = 0;
+  for (size_t i = 0; i < l.count; i++) compare_path(&l, i, path, &compared);
+  assert_true(compared > l.count / 2);
+  landings_free(&l);
+  abbe_scene_free(&scene);
+}
+
+/* A 60-degree prism of n = 1.5 in parallel light that passes it symmetrically. */
+#define PRISM_SCENE                                                                                \
+  "materials: glass.yaml\n"                                                                        \
+  "camera: {eye: [-1, -3, 1], target: [2, 0, 0.5]}\n"                                              \
+  "lights:\n- {name: beam, kind: directional, irradiance: 1,\n"                                    \
+  "   direction: [%.15g, 0, %.15g]}\n"                                                             \
+  "objects:\n"                                                                                     \
+  "- {name: wall, shape: rectangle, width: 4, height: 4, reflectance: 0.5,\n"                      \
+  "   transform: [{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [%g, 0, 0]}]}\n"            \
+  "- {name: prism, shape: prism, apex: 60, side: 0.2, length: 0.2, material: %s,\n"                \
+  "   transform: [{translate: [0, 0, 1]}]}\n"
+
+static void trace_prism(const char *glass, double wall_x, landings *l) {
+  char text[1024];
+  double pi = acos(-1), up = asin(1.5 * sin(pi / 6)) - pi / 6;
+  abbe_scene scene = {0};
+  snprintf(text, sizeof text, PRISM_SCENE, cos(up), sin(up), wall_x, glass);
+  load_text(text, &scene);
+  trace_photons(&scene, &small_frame, l);
+  abbe_scene_free(&scene);
+}
+
+/* Whether the photon meets the entrance face well above the prism's middle: then it leaves through
+ * the other face, and not through the base. */
+static bool enters_high(const landings *l, size_t photon) {
+  double o[3], d[3], normal[3] = {-cos(acos(-1) / 6), 0, 0.5};
+  photon_ray(l, photon, o, d);
+  double inradius = 0.2 / (2 * sqrt(3)), apex_z = 1 + 0.2 / sqrt(3);
+  double offset = inradius + normal[2]; /* of the face: the middle is at z = 1 */
+  double t = (offset - dot(normal, o)) / dot(normal, d);
+  double y = o[1] + t * d[1], z = o[2] + t * d[2];
+  return z > 1.01 && z < apex_z - 0.01 && fabs(y) < 0.09;
+}
+
+static void test_a_prism_deviates_least_as_the_formula_says(void **state) {
+  (void)state;
+  landings near = {0}, far = {0};
+  double expected;
+  trace_prism("flat", 1, &near);
+  trace_prism("flat", 1.5, &far);
+  assert_int_equal(near.count, far.count);
+  assert_true(abbe_optics_minimum_deviation(acos(-1) / 3, 1.5, &expected));
+  assert_near(expected * 180 / acos(-1), 37.18, 0.01);
+  size_t compared = 0;
+  for (size_t i = 0; i < near.count; i++) {
+    double o[3], d[3], way[3];
+    size_t k = 0;
+    while (k < far.count && far.cell[k] != near.cell[i]) k++;
+    assert_true(k < far.count);
+    if (!enters_high(&near, i)) continue;
+    photon_ray(&near, i, o, d);
+    for (int c = 0; c < 3; c++)
+      way[c] = (double)landing(&far, k, 0, 0)[c] - (double)landing(&near, i, 0, 0)[c];
+    /* Two landings half a metre apart, each a float's few 1e-7 m off. */
+    double cosine = dot(way, d) / sqrt(dot(way, way));
+    assert_near(acos(cosine), expected, 4e-6);
+    compared++;
+  }
+  assert_true(compared > 100);
+  landings_free(&near);
+  landings_free(&far);
+}
+
+static double mean_height(const landings *l, size_t lane) {
+  double sum = 0, flux = 0;
+  for (size_t i = 0; i < l->count; i++) {
+    const float *at = landing(l, i, 0, lane);
+    if (!enters_high(l, i)) continue;
+    assert_true(at[3] > 0);
+    sum += (double)at[3] * (double)at[2];
+    flux += (double)at[3];
+  }
+  assert_true(flux > 0);
+  return sum / flux;
+}
+
+/* The beam comes from below and is bent down: the more, the lower on the wall. */
+static void test_violet_is_bent_more_than_red(void **state) {
+  (void)state;
+  landings l = {0};
+  trace_prism("crown", 1, &l);
+  assert_int_equal(l.lanes, 7);
+  for (size_t lane = 1; lane < 7; lane++)
+    assert_true(mean_height(&l, lane) > mean_height(&l, lane - 1) + 1e-3);
+  landings_free(&l);
+}
+
+/* The shipped prism's spectrum on its wall runs from violet, deviated most, to red. */
+static void test_the_shipped_prism_makes_a_spectrum(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  landings l = {0};
+  load_shipped("prism", &scene);
+  trace_photons(&scene, &small_frame, &l);
+  double before = 0;
+  for (size_t lane = 0; lane < l.lanes; lane++) {
+    double sum = 0, flux = 0;
+    for (size_t i = 0; i < l.count; i++) {
+      const float *at = landing(&l, i, 0, lane);
+      if (at[3] <= 0 || at[1] < 0.2f) continue; /* not on the wall, which stands behind */
+      sum += (double)at[3] * atan2((double)at[1], (double)at[0]);
+      flux += (double)at[3];
+    }
+    assert_true(flux > 0);
+    if (lane > 0) assert_true(sum / flux < before);
+    before = sum / flux;
+  }
+  landings_free(&l);
+  abbe_scene_free(&scene);
+}
+
+/* A hill far away is traversed; what lands on the floor beside it lands in the same place. */
+static void test_a_hill_moves_no_landing_on_the_floor(void **state) {
+  (void)state;
+  static const char *const balls[] = {BALL("flat"), RING("flat")};
+  size_t on_hill = 0;
+  for (int k = 0; k < 2; k++) {
+    char text[1024];
+    landings alone = {0}, beside = {0};
+    abbe_scene scene = {0};
+    snprintf(text, sizeof text, "%s%s", CAMERA POINT_LIGHT FLOOR, balls[k]);
+    load_text(text, &scene);
+    trace_photons(&scene, &small_frame, &alone);
+    abbe_scene_free(&scene);
+    snprintf(text, sizeof text, "%s%s", CAMERA POINT_LIGHT FLOOR HILL, balls[k]);
+    load_text(text, &scene);
+    trace_photons(&scene, &small_frame, &beside);
+    abbe_scene_free(&scene);
+    assert_int_equal(alone.count, beside.count);
+    assert_int_equal(alone.orders, beside.orders);
+    size_t on_floor = 0;
+    for (size_t i = 0; i < alone.count; i++) {
+      size_t j = 0;
+      while (j < beside.count && beside.cell[j] != alone.cell[i]) j++;
+      assert_true(j < beside.count);
+      for (size_t slot = 0; slot < alone.orders; slot++) {
+        const float *a = landing(&alone, i, slot, 0), *b = landing(&beside, j, slot, 0);
+        if (b[3] <= 0) continue; /* nothing, or in the hill's shadow */
+        on_hill += b[2] > 1e-4f;
+        if (b[2] > 1e-4f) continue;
+        assert_memory_equal(a, b, 3 * sizeof *a);
+        assert_near(b[3] / a[3], 1, 1e-6); /* another program may multiply in another order */
+        on_floor++;
+      }
+    }
+    assert_true(on_floor > alone.count);
+    landings_free(&alone);
+    landings_free(&beside);
+  }
+  assert_true(on_hill > 0);
+}
+
+/* The prism's slit is 2 by 30 mm, 0.6 m before the lamp of 40 W/sr and within its cone. Its light
+ * does not depend on how many cells there are, nor on where they lie: 2 in 1024 rays of the view's
+ * fit, and what 8 x 8 rays tell of cells that the jaws cut. */
+static void test_a_slit_lets_its_light_through_whatever_the_grid(void **state) {
+  (void)state;
+  static const size_t grids[] = {20, 33, 64, 150};
+  double expected = 40 * 0.002 * 0.03 / (0.6 * 0.6) * (1 - 1.5 * (0.03 * 0.03 / 12) / (0.6 * 0.6));
+  abbe_scene scene = {0};
+  load_shipped("prism", &scene);
+  for (size_t i = 0; i < 8; i++) {
+    abbe_render_desc desc = small_frame;
+    desc.photons = grids[i % 4];
+    desc.photon_shift[0] = i < 4 ? 0 : 0.4;
+    desc.photon_shift[1] = i < 4 ? 0 : -0.3;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    assert_near(draw_frame(renderer).energy.reached / expected, 1, i < 4 ? 2e-3 : 8e-3);
+    abbe_renderer_free(renderer);
+  }
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_sphere_lands_as_double_precision_says),
+      cmocka_unit_test(test_a_prism_deviates_least_as_the_formula_says),
+      cmocka_unit_test(test_violet_is_bent_more_than_red),
+      cmocka_unit_test(test_the_shipped_prism_makes_a_spectrum),
+      cmocka_unit_test(test_a_hill_moves_no_landing_on_the_floor),
+      cmocka_unit_test(test_a_slit_lets_its_light_through_whatever_the_grid),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

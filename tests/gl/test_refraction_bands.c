@@ -1,0 +1,90 @@
+/* What the eye sees through facets by more wavelengths than every pixel takes: joined bands come
+ * back by all their samples where they show different things. */
+#include "tests/gl/frame.h"
+
+enum { BARS = 12 };
+
+/* A cut stone high over black bars on white: their edges are drawn out into spectra. */
+static void load_bars(abbe_scene *scene) {
+  char text[4096];
+  int used = snprintf(
+      text, sizeof text,
+      "materials: glass.yaml\n"
+      "camera: {eye: [0, -0.6, 0.5], target: [0, 0, 0.1], up: [0, 0, 1], fov: 16}\nambient: 1\n"
+      "lights:\n"
+      "- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5, intensity: 1}\n"
+      "objects:\n"
+      "- {name: stone, shape: gem, sides: 6, girdle: 0.1, table: 0.06, crown: 0.03,\n"
+      "   pavilion: 0.05, transform: [{translate: [0, 0, 0.1]}], material: crown}\n"
+      "- {name: white, shape: rectangle, width: 9, height: 9, reflectance: 0.9,\n"
+      "   transform: [{translate: [0, 1, -1]}]}\n");
+  for (int i = 0; i < BARS; i++)
+    used += snprintf(text + used, sizeof text - (size_t)used,
+                     "- {name: bar %d, shape: rectangle, width: 0.2, height: 9, reflectance: 0.02,"
+                     " transform: [{translate: [%g, 1, -0.99]}]}\n",
+                     i, 0.4 * i - 2.3);
+  load_text(text, scene);
+}
+
+/* everything: every pixel takes all wavelengths. */
+static abbe_image picture(const abbe_scene *scene, size_t wavelengths, bool everything) {
+  abbe_render_desc desc = small_frame;
+  desc.wavelengths = wavelengths;
+  desc.everything = everything;
+  desc.orders = 8;
+  desc.supersample = 1;
+  desc.width = desc.height = 96;
+  abbe_image image;
+  abbe_renderer *renderer = make_renderer(scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &image);
+  abbe_renderer_free(renderer);
+  return image;
+}
+
+/* Sum of absolute differences of R, G and B, over that of the second. */
+static double apart(const abbe_image *a, const abbe_image *b) {
+  double sum = 0, whole = 0;
+  for (size_t i = 0; i < a->width * a->height; i++)
+    for (size_t k = 0; k < 3; k++) {
+      double x = (double)a->data[i * a->channels + k], y = (double)b->data[i * b->channels + k];
+      sum += fabs(x - y);
+      whole += fabs(y);
+    }
+  return sum / whole;
+}
+
+static void test_joined_bands_come_back(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_bars(&scene);
+  abbe_image seven = picture(&scene, 7, true), all = picture(&scene, 21, true);
+  abbe_image asked = picture(&scene, 21, false);
+  double from_seven = apart(&seven, &all), from_asked = apart(&asked, &all);
+  print_message("7 wavelengths are %.5f off all of 21, those that are asked for %.5f\n", from_seven,
+                from_asked);
+  assert_true(from_seven > 1e-3);
+  assert_true(from_asked < 0.25 * from_seven);
+  abbe_image_free(&seven);
+  abbe_image_free(&all);
+  abbe_image_free(&asked);
+  abbe_scene_free(&scene);
+}
+
+/* Up to eight wavelengths every pixel takes all of them. */
+static void test_few_wavelengths_are_all_taken(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_bars(&scene);
+  abbe_image planned = picture(&scene, 8, false), all = picture(&scene, 8, true);
+  assert_true(apart(&planned, &all) < 1e-6);
+  abbe_image_free(&planned);
+  abbe_image_free(&all);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_joined_bands_come_back),
+                                     cmocka_unit_test(test_few_wavelengths_are_all_taken)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

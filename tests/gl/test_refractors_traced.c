@@ -1,0 +1,242 @@
+/* Light through refractors that lie in one another, and from their outsides alone, and what the eye
+ * sees in a stone that keeps light inside: the renderer against the reference tracer, which shares
+ * no code with it. */
+#include "tests/gl/frame.h"
+#include "tests/validation/trace_scene.h"
+
+enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12, LOOKS = 64 };
+
+/* Y of blocks of texels: finer than that the tracer's few photons are noise. */
+static void sum_blocks(const abbe_image *map, double block[BLOCKS * BLOCKS]) {
+  const size_t y = abbe_image_find_channel(map, "Y");
+  memset(block, 0, BLOCKS * BLOCKS * sizeof *block);
+  for (size_t i = 0; i < SIDE * SIDE; i++)
+    block[i / SIDE / BLOCK * BLOCKS + i % SIDE / BLOCK] += (double)map->data[i * map->channels + y];
+}
+
+typedef struct agreement {
+  double energy;  /* the renderer's light over the tracer's */
+  double trapped; /* what its ledger gives up within refractors, over the same */
+  double apart;   /* sum of the blocks' absolute differences, over the light */
+  double light;   /* W */
+} agreement;
+
+static agreement compare(const char *text) {
+  abbe_scene scene;
+  abbe_image drawn, traced;
+  abbe_error error = {0};
+  abbe_render_desc desc = small_frame;
+  desc.photons = 128;
+  desc.map_size = SIDE;
+  load_text(text, &scene);
+  desc.orders = 16;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  const abbe_statistics statistics = draw_frame(renderer);
+  read_map(renderer, 0, &drawn);
+  abbe_renderer_free(renderer);
+  abbe_map_layout layout;
+  assert_ok(abbe_map_layout_read(&drawn, "drawn", &layout, &error), &error);
+  abbe_tracer *tracer = make_tracer(&scene, &(abbe_trace_desc){.no_picture = true,
+                                                               .map_width = SIDE,
+                                                               .map_height = SIDE,
+                                                               .layout = &layout,
+                                                               .photons = 1 << 17,
+                                                               .space = ABBE_RGB_SPACE_XYZ});
+  run_passes(tracer, PASSES);
+  assert_ok(abbe_tracer_map(tracer, &traced, &error), &error);
+  double a[BLOCKS * BLOCKS], b[BLOCKS * BLOCKS];
+  sum_blocks(&drawn, a);
+  sum_blocks(&traced, b);
+  agreement found = {0};
+  double light = 0;
+  for (size_t i = 0; i < BLOCKS * BLOCKS; i++) {
+    found.apart += fabs(a[i] - b[i]);
+    light += a[i];
+    found.light += b[i];
+  }
+  assert_true(found.light > 0);
+  found.energy = light / found.light;
+  found.apart /= found.light;
+  found.trapped = statistics.energy.trapped / found.light;
+  print_message("%.4f of the tracer's light, %.4f given up, %.4f of it elsewhere\n", found.energy,
+                found.trapped, found.apart);
+  abbe_tracer_free(tracer);
+  abbe_image_free(&drawn);
+  abbe_image_free(&traced);
+  abbe_scene_free(&scene);
+  return found;
+}
+
+#define INNER(material)                                                                            \
+  "- {name: core, shape: sphere, radius: 0.06, levels: 4, transform: [{translate: [0.005, 0, "     \
+  "0.2]}], material: " material "}\n"
+
+/* What the map lacks is what the ledger says that was given up; of that some would not have landed.
+ */
+static void check(const char *text, double least_light) {
+  const agreement found = compare(text);
+  assert_true(found.light > least_light);
+  assert_true(found.energy < 1.01);
+  assert_true(found.energy + found.trapped > 0.995);
+  assert_true(found.apart < found.trapped + 0.03);
+}
+
+static void test_a_hollow_ball(void **state) {
+  (void)state;
+  check(CAMERA POINT_LIGHT FLOOR BALL("crown") INNER("air"), 1e-3);
+}
+
+static void test_a_ball_in_another(void **state) {
+  (void)state;
+  check(CAMERA POINT_LIGHT FLOOR BALL("crown") INNER("dense"), 1e-3);
+}
+
+/* A cup of glass with water up to its inner wall: the water is listed last and reaches into the
+ * glass. */
+static void test_a_cup_of_water(void **state) {
+  (void)state;
+  check(CAMERA POINT_LIGHT FLOOR
+        "- {name: cup, shape: lathe, around: 48, profile: [[0, 0], [0.06, 0], [0.06, 0.12],"
+        " [0.05, 0.12], [0.05, 0.01], [0, 0.01]],"
+        " transform: [{translate: [0, 0, 0.1]}], material: crown}\n"
+        "- {name: water, shape: lathe, around: 48, profile: [[0, 0], [0.055, 0], [0.055, 0.08],"
+        " [0, 0.08]], transform: [{translate: [0, 0, 0.105]}], material: flat}\n",
+        1e-3);
+}
+
+/* Light comes to the wall from the pane's mirror alone. */
+static void test_the_outside_alone(void **state) {
+  (void)state;
+  check("materials: glass.yaml\ncamera: {eye: [-1, -1, 0.5], target: [0, 0, 0.05]}\n"
+        "lights:\n- {name: lamp, kind: spot, position: [-0.5, 0, 0.6], target: [0, 0, 0.1],"
+        " cone: 12, intensity: 1}\n"
+        "objects:\n- {name: brick, shape: box, size: [0.3, 0.3, 0.1], transform: [{translate: "
+        "[0, 0, 0.05]}], material: smoke}\n"
+        "- {name: wall, shape: rectangle, width: 2, height: 2, reflectance: 0.5, transform: "
+        "[{rotate: {axis: [0, 1, 0], angle: -90}}, {translate: [0.6, 0, 1.12]}]}\n",
+        1e-4);
+}
+
+#define PARTS(file)                                                                                \
+  "- {name: parts, mesh: " ABBE_SOURCE_DIR "/tests/meshes/" file                                   \
+  ", transform: [{rotate: {axis: [0, 1, 0], angle: 25}}, {translate: [0, 0, 0.2]}], "              \
+  "material: crown}\n"
+
+#define ONE_BY_ONE(name, size, at)                                                                 \
+  "- {name: " name ", shape: box, size: [" size "], transform: [{translate: [" at                  \
+  "]}, {rotate: {axis: [0, 1, 0], angle: 25}}, {translate: [0, 0, 0.2]}], material: crown}\n"
+
+/* A mesh of boxes shows what the same boxes show that are listed one by one. Their edges part so
+ * much light that the tracer's noise alone is more than check() allows. */
+static void check_parts(const char *parts, const char *listed) {
+  const agreement mesh = compare(parts), boxes = compare(listed);
+  assert_near(mesh.light / boxes.light, 1, 0.003);
+  assert_near(mesh.energy, boxes.energy, 0.003);
+  assert_true(mesh.energy < 1.01 && mesh.energy + mesh.trapped > 0.995);
+  assert_near(mesh.apart, boxes.apart, 0.01);
+}
+
+static void test_parts_of_a_mesh_that_cross(void **state) {
+  (void)state;
+  check_parts(CAMERA POINT_LIGHT FLOOR PARTS("crossing.obj"),
+              CAMERA POINT_LIGHT FLOOR ONE_BY_ONE("a", "0.12, 0.12, 0.1", "0, 0, 0")
+                  ONE_BY_ONE("b", "0.13, 0.07, 0.07", "0.045, 0.005, 0.005"));
+}
+
+/* Faces lie on one another, back to back and side by side; of the boxes listed one by one those
+ * that come later reach into the first, by a tenth of a millimetre. */
+static void test_parts_of_a_mesh_that_touch(void **state) {
+  (void)state;
+  check_parts(CAMERA POINT_LIGHT FLOOR PARTS("flush.obj"),
+              CAMERA POINT_LIGHT FLOOR ONE_BY_ONE("a", "0.12, 0.12, 0.08", "0, 0, -0.01")
+                  ONE_BY_ONE("b", "0.09, 0.07, 0.0601", "0.065, 0.005, -0.02005")
+                      ONE_BY_ONE("c", "0.06, 0.07, 0.0301", "-0.01, -0.005, 0.04495"));
+}
+
+/* The tracer's picture of it all is that of one block: the wall within is none. */
+static void test_parts_of_one_stuff_have_no_wall(void **state) {
+  (void)state;
+#define HALF(name, x)                                                                              \
+  "- {name: " name ", shape: box, size: [0.081, 0.08, 0.06], transform: [{translate: [" x          \
+  ", 0, 0.2]}], material: dense}\n"
+  const agreement two = compare(CAMERA POINT_LIGHT FLOOR HALF("a", "-0.04") HALF("b", "0.04"));
+  const agreement one = compare(CAMERA POINT_LIGHT FLOOR
+                                "- {name: one, shape: box, size: [0.161, 0.08, 0.06], transform: "
+                                "[{translate: [0, 0, 0.2]}], material: dense}\n");
+  assert_near(two.light / one.light, 1, 0.005);
+  assert_near(two.energy, one.energy, 0.01);
+}
+
+/* The whole frame shows a brilliant of diamond's index on paper that ambient light alone lights, so
+ * that each ray's ways out are all that counts. With eight exits it is a tenth too dark. */
+#define STONE(name, at)                                                                            \
+  "- {name: " name ", shape: brilliant, diameter: 0.1, transform: [{rotate: {axis: [0, 0, 1], "    \
+  "angle: 7}}, {translate: [" at ", 0, 0.046]}], material: dense}\n"
+static void check_stones(const char *stones, const char *eye, const char *target, const char *fov) {
+  char text[1024];
+  abbe_scene scene;
+  abbe_image drawn, traced;
+  abbe_error error = {0};
+  snprintf(text, sizeof text,
+           "materials: glass.yaml\nambient: 3\n"
+           "camera: {eye: %s, target: %s, up: [0, 1, 0.3], fov: %s}\n"
+           "lights:\n- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5,"
+           " intensity: 1}\n"
+           "objects:\n%s"
+           "- {name: paper, shape: rectangle, width: 2, height: 2, reflectance: 0.85}\n",
+           eye, target, fov, stones);
+  load_text(text, &scene);
+  abbe_render_desc desc = small_frame;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &drawn);
+  abbe_renderer_free(renderer);
+  abbe_tracer *tracer = make_tracer(
+      &scene, &(abbe_trace_desc){.no_map = true, .width = 64, .height = 64, .photons = 1});
+  run_passes(tracer, LOOKS);
+  assert_ok(abbe_tracer_picture(tracer, &traced, &error), &error);
+  const double noise = abbe_tracer_error(tracer) / 64; /* of the mean of 64 x 64 pixels */
+  for (size_t k = 0; k < 3; k++) {
+    static const char *const names[] = {"R", "G", "B"};
+    const double ratio = image_sum(&drawn, abbe_image_find_channel(&drawn, names[k])) /
+                         channel_sum(&traced, names[k]);
+    print_message("%s: %.4f of the tracer's, which is known to %.4f\n", names[k], ratio, noise);
+    assert_true(noise < 0.004);
+    assert_near(ratio, 1, 0.02);
+  }
+  abbe_tracer_free(tracer);
+  abbe_image_free(&drawn);
+  abbe_image_free(&traced);
+  abbe_scene_free(&scene);
+}
+
+static void test_a_stone_face_up(void **state) {
+  (void)state;
+  check_stones(STONE("stone", "0"), "[0, -0.04, 0.8]", "[0, 0, 0.05]", "4");
+}
+
+static void test_a_stone_from_the_side(void **state) {
+  (void)state;
+  check_stones(STONE("stone", "0"), "[0.1, -0.75, 0.2]", "[0, 0, 0.04]", "2.5");
+}
+
+/* Through one the eye sees the other, from refractor to refractor. */
+static void test_two_stones_from_the_side(void **state) {
+  (void)state;
+  check_stones(STONE("left", "-0.052") STONE("right", "0.052"), "[0.05, -0.75, 0.2]",
+               "[-0.052, 0, 0.04]", "2.5");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_stone_face_up),
+                                     cmocka_unit_test(test_two_stones_from_the_side),
+                                     cmocka_unit_test(test_a_stone_from_the_side),
+                                     cmocka_unit_test(test_a_hollow_ball),
+                                     cmocka_unit_test(test_a_ball_in_another),
+                                     cmocka_unit_test(test_a_cup_of_water),
+                                     cmocka_unit_test(test_the_outside_alone),
+                                     cmocka_unit_test(test_parts_of_a_mesh_that_cross),
+                                     cmocka_unit_test(test_parts_of_a_mesh_that_touch),
+                                     cmocka_unit_test(test_parts_of_one_stuff_have_no_wall)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

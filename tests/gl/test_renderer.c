@@ -1,0 +1,543 @@
+/* The renderer's laws: energy is kept, frames repeat, white stays white without dispersion. */
+#include "tests/gl/frame.h"
+
+#include "colorimetry/weights.h"
+
+static const char *const shipped[] = {"sphere", "ring",  "gem",    "bunny",
+                                      "glass",  "prism", "rainbow"};
+enum { SHIPPED = sizeof shipped / sizeof *shipped };
+
+/* The ledger's parts and the map are whole multiples of 2^-24 and 2^-28 of a cell's flux: what is
+ * left of the balance is rounding, far below the 1e-4 that is promised. */
+static void assert_balance(const abbe_statistics *s, const char *name) {
+  double imbalance = abbe_ledger_imbalance(&s->energy);
+  if (!(imbalance < 1e-4)) print_error("%s: imbalance %g\n", name, imbalance);
+  assert_true(imbalance < 1e-4);
+  assert_true(s->energy.reached > 0);
+  assert_true(s->energy.deposited > 0);
+  assert_true(s->energy.deposited < s->energy.reached);
+  assert_true(s->energy.reflected > 0);
+}
+
+/* The map read as a picture holds what the ledger says was deposited, but on receivers' pages. */
+static void assert_map_holds(abbe_renderer *renderer, const abbe_ledger *l) {
+  const double deposited = l->deposited - l->on_pages;
+  abbe_image map = {0};
+  read_map(renderer, 0, &map);
+  assert_finite(&map);
+  /* A texel is a float: 6e-8 of it, and all of them together no more. */
+  assert_near(image_sum(&map, 1) / deposited, 1, 1e-6);
+  abbe_image_free(&map);
+}
+
+static void assert_repeats(abbe_renderer *renderer) {
+  abbe_image first = {0}, second = {0}, map[2] = {{0}, {0}};
+  read_picture(renderer, false, &first);
+  read_map(renderer, 0, &map[0]);
+  draw_frame(renderer);
+  read_picture(renderer, false, &second);
+  read_map(renderer, 0, &map[1]);
+  assert_finite(&first);
+  assert_true(image_max(&first, 1) > 0);
+  assert_same_pixels(&first, &second);
+  assert_same_pixels(&map[0], &map[1]);
+  abbe_image_free(&first);
+  abbe_image_free(&second);
+  abbe_image_free(&map[0]);
+  abbe_image_free(&map[1]);
+}
+
+/* What ran is what the plan says. */
+static void assert_as_planned(const abbe_renderer *renderer, const abbe_statistics *s) {
+  for (size_t i = 0; i < s->pass_count; i++) {
+    const abbe_plan_entry *entry = abbe_plan_find(abbe_renderer_plan(renderer), s->pass[i].name);
+    if (entry == NULL || !entry->runs) print_error("'%s' ran unplanned\n", s->pass[i].name);
+    assert_true(entry != NULL && entry->runs);
+  }
+}
+
+static void test_shipped_scenes_balance_and_repeat(void **state) {
+  (void)state;
+  for (int i = 0; i < SHIPPED; i++) {
+    abbe_scene scene = {0};
+    load_shipped(shipped[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+    abbe_statistics s = draw_frame(renderer);
+    assert_balance(&s, shipped[i]);
+    assert_true(s.photons > 0 && s.photons <= 64 * 64);
+    assert_int_equal(s.wavelengths, 7);
+    assert_as_planned(renderer, &s);
+    assert_map_holds(renderer, &s.energy);
+    assert_repeats(renderer);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* The thesis's map is the light's own frustum, so that it holds nothing of the prism's light. */
+static void the_thesis_renders(abbe_profile profile) {
+  for (int i = 0; i < SHIPPED; i++) {
+    abbe_scene scene = {0};
+    abbe_image image = {0}, map = {0};
+    abbe_render_desc desc = small_frame;
+    desc.profile = profile;
+    load_shipped(shipped[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    abbe_statistics s = draw_frame(renderer);
+    assert_int_equal(s.wavelengths, 7);
+    assert_true(s.photons > 0);
+    read_picture(renderer, false, &image);
+    read_map(renderer, 0, &map);
+    assert_finite(&image);
+    assert_finite(&map);
+    assert_true(image_max(&image, 0) > 0);
+    if (strcmp(shipped[i], "prism") != 0) assert_true(image_max(&map, 0) > 0);
+    abbe_image_free(&image);
+    abbe_image_free(&map);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+static void test_the_thesis_profiles_render(void **state) {
+  (void)state;
+  the_thesis_renders(ABBE_PROFILE_THESIS);
+  the_thesis_renders(ABBE_PROFILE_THESIS_CIE);
+}
+
+/* Every model, light and material at once, at sizes that divide nothing. */
+static void test_mixed_scenes_balance(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      CAMERA POINT_LIGHT FLOOR BALL("smoke"),
+      CAMERA POINT_LIGHT FLOOR BRICK("crown"),
+      CAMERA POINT_LIGHT FLOOR RING("smoke"),
+      CAMERA SUN FLOOR BALL("crown"),
+      CAMERA SUN FLOOR HILL RING("crown"),
+      CAMERA POINT_LIGHT
+      "- {name: sun, kind: directional, direction: [1, 0, -2], irradiance: 2}\n" FLOOR HILL BALL(
+          "smoke") BRICK("crown"),
+  };
+  static const size_t photons[] = {1, 3, 30, 100}, maps[] = {1, 7, 100};
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    abbe_scene scene = {0};
+    abbe_render_desc desc = small_frame;
+    desc.photons = photons[2 + i % 2];
+    desc.map_size = maps[2];
+    load_text(texts[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    abbe_statistics s = draw_frame(renderer);
+    assert_balance(&s, texts[i]);
+    assert_int_equal(s.energy.absorbed > 0, abbe_renderer_plan(renderer)->absorbing);
+    abbe_renderer_free(renderer);
+    for (size_t k = 0; k < 4; k++) {
+      desc.photons = photons[k % 2];
+      desc.map_size = maps[k / 2];
+      renderer = make_renderer(&scene, &desc);
+      s = draw_frame(renderer);
+      assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
+      abbe_renderer_free(renderer);
+    }
+    abbe_scene_free(&scene);
+  }
+}
+
+/* Samples go to the device in batches; their number changes neither balance nor total. */
+static void test_many_wavelengths_add_up(void **state) {
+  (void)state;
+  static const size_t counts[] = {1, 2, 64, 65, 200};
+  abbe_scene scene = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  double first = 0;
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+    abbe_render_desc desc = small_frame;
+    desc.wavelengths = counts[i];
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    abbe_statistics s = draw_frame(renderer);
+    assert_balance(&s, "flat ball");
+    if (i == 0) first = s.energy.deposited;
+    /* One constant index: the same light, whole multiples of 2^-28 apart for each sample. */
+    assert_near(s.energy.deposited / first, 1, 1e-4);
+    abbe_renderer_free(renderer);
+  }
+  abbe_scene_free(&scene);
+}
+
+/* D65's white over the range, in the space asked for. */
+static void white_of(abbe_rgb_space space, double white[3]) {
+  abbe_wavelengths w = {0};
+  abbe_weights weights = {0};
+  const abbe_illuminant d65 = {0};
+  assert_int_equal(abbe_wavelengths_make(7, 380, 780, &w, NULL), ABBE_OK);
+  assert_int_equal(abbe_weights_make(&w, &d65, space, &weights, NULL), ABBE_OK);
+  memcpy(white, weights.sum, sizeof weights.sum);
+  abbe_weights_free(&weights);
+  abbe_wavelengths_free(&w);
+}
+
+/* By 2^-93 and 2^93: light that floats could not sum is scaled inside, and back. */
+static void test_faint_light_is_the_same_light(void **state) {
+  (void)state;
+  static const int powers[] = {0, -93, 93};
+  abbe_image picture[3], map[3];
+  abbe_ledger energy[3];
+  abbe_render_desc desc = small_frame;
+  desc.layers = true;
+  for (int i = 0; i < 3; i++) {
+    abbe_scene scene;
+    load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene);
+    scene.light[0].power = ldexp(1, powers[i]);
+    scene.ambient = ldexp(0.25, powers[i]);
+    scene.background = ldexp(0.125, powers[i]);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    energy[i] = draw_frame(renderer).energy;
+    read_picture(renderer, true, &picture[i]);
+    read_map(renderer, 0, &map[i]);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+    assert_true(energy[i].reached > 0 && abbe_ledger_imbalance(&energy[i]) < 1e-4);
+    assert_near(ldexp(energy[i].reached, -powers[i]) / energy[0].reached, 1, 0);
+    assert_near(ldexp(energy[i].deposited, -powers[i]) / energy[0].deposited, 1, 0);
+    for (size_t k = 0; k < map[0].width * map[0].height * map[0].channels; k++)
+      assert_near(ldexp((double)map[i].data[k], -powers[i]), (double)map[0].data[k],
+                  1e-6 * (double)map[0].data[k] + 0x1p-50);
+    for (size_t k = 0; k < picture[0].width * picture[0].height * picture[0].channels; k++) {
+      const bool depth = k % picture[0].channels == 3;
+      assert_near(ldexp((double)picture[i].data[k], depth ? 0 : -powers[i]),
+                  (double)picture[0].data[k], 0);
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    abbe_image_free(&picture[i]);
+    abbe_image_free(&map[i]);
+  }
+}
+
+static void test_white_in_white_out(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map = {0};
+  abbe_render_desc desc = small_frame;
+  desc.wavelengths = 7;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  make_map(&scene, &desc, &map);
+  double white[3], sum[3], total = 0, white_total = 0;
+  white_of(ABBE_RGB_SPACE_XYZ, white);
+  for (int c = 0; c < 3; c++) {
+    total += sum[c] = image_sum(&map, (size_t)c);
+    white_total += white[c];
+  }
+  assert_near(sum[0] / total, white[0] / white_total, 1e-4);
+  assert_near(sum[1] / total, white[1] / white_total, 1e-4);
+  abbe_image_free(&map);
+  abbe_scene_free(&scene);
+}
+
+/* Grey things, a constant index and 7 wavelengths: every pixel has the light's own chromaticity,
+ * whether it is seen straight or through glass. */
+static void test_no_dispersion_no_colour(void **state) {
+  (void)state;
+  static const char *const texts[] = {CAMERA POINT_LIGHT FLOOR BALL("flat"),
+                                      CAMERA POINT_LIGHT FLOOR BRICK("flat"),
+                                      CAMERA POINT_LIGHT FLOOR RING("flat")};
+  double white[3];
+  white_of(ABBE_RGB_SPACE_ACESCG, white);
+  for (size_t i = 0; i < 3; i++) {
+    abbe_scene scene = {0};
+    abbe_image image = {0};
+    abbe_render_desc desc = small_frame;
+    desc.wavelengths = 7;
+    load_text(texts[i], &scene);
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, false, &image);
+    double tolerance = 1e-4 * image_max(&image, 1);
+    assert_true(tolerance > 0);
+    for (size_t k = 0; k < image.width * image.height; k++) {
+      const float *rgb = image.data + 3 * k;
+      assert_near(rgb[0] / white[0], rgb[1] / white[1], tolerance);
+      assert_near(rgb[2] / white[2], rgb[1] / white[1], tolerance);
+    }
+    abbe_image_free(&image);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* The largest difference of two maps' Y as a share of their largest. */
+static double difference(const abbe_image *a, const abbe_image *b) {
+  double most = 0;
+  for (size_t i = 0; i < a->width * a->height; i++)
+    most = fmax(most, fabs((double)a->data[3 * i + 1] - (double)b->data[3 * i + 1]));
+  return most / image_max(a, 1);
+}
+
+static void map_of_dispersion(const char *text, double factor, size_t wavelengths,
+                              abbe_image *map) {
+  abbe_scene scene = {0};
+  abbe_render_desc desc = small_frame;
+  desc.wavelengths = wavelengths;
+  load_text(text, &scene);
+  for (size_t i = 0; i < scene.table.count; i++) scene.table.material[i].dispersion.c[1] *= factor;
+  make_map(&scene, &desc, map);
+  abbe_scene_free(&scene);
+}
+
+static void test_dispersion_goes_to_the_map_without(void **state) {
+  (void)state;
+  static const char *const texts[] = {CAMERA POINT_LIGHT FLOOR BALL("crown"),
+                                      CAMERA POINT_LIGHT FLOOR BRICK("crown")};
+  for (size_t i = 0; i < 2; i++) {
+    abbe_image none = {0}, tiny = {0}, one = {0}, full = {0};
+    map_of_dispersion(texts[i], 0, 7, &none);
+    map_of_dispersion(texts[i], 1e-6, 7, &tiny);
+    map_of_dispersion(texts[i], 0, 1, &one);
+    map_of_dispersion(texts[i], 1, 7, &full);
+    /* n differs by 4e-8, less than a float resolves: what is left is rounding. */
+    assert_true(difference(&none, &tiny) < 1e-3);
+    assert_true(difference(&none, &one) < 1e-3);
+    assert_true(difference(&none, &full) > 1e-2);
+    abbe_image_free(&none);
+    abbe_image_free(&tiny);
+    abbe_image_free(&one);
+    abbe_image_free(&full);
+  }
+}
+
+static bool stop(void *user, double done) {
+  assert_true(done >= 0 && done <= 1);
+  ++*(int *)user;
+  return false;
+}
+
+static bool count_calls(void *user, double done) {
+  double *last = user;
+  assert_true(done >= *last && done <= 1);
+  *last = done;
+  return true;
+}
+
+static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  abbe_image before = {0}, after = {0};
+  int calls = 0;
+  double last = 0;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  read_picture(renderer, false, &before);
+  assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+  assert_int_equal(calls, 1);
+  assert_ok(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error), &error);
+  assert_near(last, 1, 0);
+  read_picture(renderer, false, &after);
+  assert_same_pixels(&before, &after);
+  abbe_image_free(&before);
+  abbe_image_free(&after);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
+ * its energy is the same, and each light has a map of its own. */
+static void test_the_floor_leaves_the_picture(void **state) {
+  (void)state;
+  for (size_t samples = 1; samples <= 2; samples++) {
+    abbe_scene scene = {0};
+    abbe_image before = {0}, after = {0};
+    double ms = 0;
+    load_shipped("sphere", &scene);
+    const abbe_render_desc desc = {.width = 32,
+                                   .height = 32,
+                                   .photons = 32,
+                                   .map_size = 64,
+                                   .wavelengths = 3,
+                                   .supersample = samples};
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, false, &before);
+    assert_int_equal(abbe_renderer_floor(renderer, &ms, NULL), ABBE_OK);
+    assert_true(ms > 0);
+    read_picture(renderer, false, &after);
+    assert_same_pixels(&before, &after);
+    abbe_image_free(&before);
+    abbe_image_free(&after);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* One sample for 2 x 2 pixels is a picture of half the size, and between its pixels what lies
+ * between them; where sides are odd the last sample stands for what is left. */
+static void test_fewer_samples_than_pixels(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0};
+  load_shipped("sphere", &scene);
+  abbe_render_desc desc = {.width = 64,
+                           .height = 48,
+                           .photons = 32,
+                           .map_size = 64,
+                           .wavelengths = 3,
+                           .layers = true,
+                           .upsample = 2};
+  abbe_image *const out[] = {&coarse, &half, &odd, &fine};
+  const size_t sizes[][2] = {{64, 48}, {32, 24}, {63, 47}, {63, 47}}, up[] = {2, 1, 2, 1};
+  for (size_t i = 0; i < 4; i++) {
+    desc.width = sizes[i][0];
+    desc.height = sizes[i][1];
+    desc.upsample = up[i];
+    desc.supersample = i == 3 ? 4 : 1;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, true, out[i]);
+    abbe_renderer_free(renderer);
+  }
+  double worst = 0;
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 64; x++)
+      for (size_t c = 0; c < coarse.channels; c++) {
+        double sum = 0;
+        for (int k = 0; k < 4 && c != 3; k++) { /* not between distances */
+          const size_t beside[2] = {x % 2 == 0 ? x / 2 - (x > 0) : x / 2 + (x < 63),
+                                    y % 2 == 0 ? y / 2 - (y > 0) : y / 2 + (y < 47)};
+          const size_t column = k % 2 == 0 ? x / 2 : beside[0],
+                       row = k / 2 == 0 ? y / 2 : beside[1];
+          sum += (k % 2 == 0 ? 0.75 : 0.25) * (k / 2 == 0 ? 0.75 : 0.25) *
+                 (double)half.data[(row * 32 + column) * half.channels + c];
+        }
+        if (c == 3) sum = (double)half.data[(y / 2 * 32 + x / 2) * half.channels + c];
+        worst = fmax(worst, fabs(sum - (double)coarse.data[(y * 64 + x) * coarse.channels + c]) /
+                                fmax(fabs(sum), 1e-3));
+      }
+  const double mean = image_sum(&odd, 1) / image_sum(&fine, 1);
+  print_message("off by %.2g at the most, odd sides %.4f of the light\n", worst, mean);
+  assert_true(worst < 1e-5);
+  assert_true(fabs(mean - 1) < 0.01);
+  for (size_t i = 0; i < 4; i++) abbe_image_free(out[i]);
+  abbe_scene_free(&scene);
+}
+
+static void test_a_map_takes_a_given_layout(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image fitted, again, half;
+  abbe_map_layout first, layout, given;
+  abbe_error error = {0};
+  load_text(
+      CAMERA POINT_LIGHT
+      "- {name: sun, kind: directional, direction: [0.1, 0.2, -1], irradiance: 1}\n" FLOOR BALL(
+          "crown") HILL,
+      &scene);
+  abbe_render_desc desc = small_frame;
+  for (size_t light = 0; light < 2; light++) {
+    desc.map_layout = NULL;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_map(renderer, light, &fitted);
+    abbe_renderer_map_layout(renderer, light, &layout);
+    abbe_renderer_map_layout(renderer, 1 - light, &first);
+    abbe_renderer_free(renderer);
+    assert_false(abbe_map_layout_same(&first, &layout));
+    assert_string_equal(abbe_image_attribute_text(&fitted, "abbe:map_light"),
+                        scene.light[light].name);
+    assert_ok(abbe_map_layout_read(&fitted, "map", &given, &error), &error);
+    assert_true(abbe_map_layout_same(&layout, &given));
+
+    desc.map_layout = &given;
+    desc.map_layout_light = light;
+    renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_map(renderer, light, &again);
+    assert_same_pixels(&fitted, &again);
+    abbe_renderer_map_layout(renderer, 1 - light, &given);
+    assert_true(abbe_map_layout_same(&first, &given)); /* the other light's is fitted */
+    abbe_renderer_free(renderer);
+
+    desc.map_size /= 2;
+    given = layout;
+    renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_map(renderer, light, &half);
+    /* Light at the rim is spread bilinearly past it from coarser texels: under a thousandth. */
+    assert_near(image_sum(&half, 1) / image_sum(&fitted, 1), 1, 1e-3);
+    abbe_renderer_free(renderer);
+    desc.map_size *= 2;
+    abbe_image_free(&fitted);
+    abbe_image_free(&again);
+    abbe_image_free(&half);
+  }
+  abbe_scene_free(&scene);
+}
+
+static void test_what_is_not_there_is_refused(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map = {0};
+  abbe_error error = {0};
+  abbe_renderer *renderer = NULL;
+  const abbe_render_desc huge = {.photons = ABBE_RENDER_MAX_PHOTONS + 1};
+  load_text(CAMERA POINT_LIGHT FLOOR, &scene);
+  assert_int_equal(abbe_renderer_make(context, &scene, &huge, &renderer, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_null(renderer);
+  renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &map, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no spectral map");
+  assert_null(map.data);
+  abbe_renderer_free(renderer);
+  abbe_renderer_free(NULL);
+  abbe_scene_free(&scene);
+}
+
+/* What was not drawn is not black. */
+static void test_nothing_is_read_before_a_frame(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image image = {0};
+  abbe_error error = {0};
+  int calls = 0;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  for (int turn = 0; turn < 2; turn++) {
+    assert_int_equal(abbe_renderer_read(renderer, false, &image, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "no frame has been drawn");
+    assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "no frame has been drawn");
+    assert_int_equal(abbe_renderer_read_map_bands(renderer, 0, 3, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_null(image.data);
+    if (turn > 0) continue;
+    draw_frame(renderer);
+    read_picture(renderer, false, &image);
+    abbe_image_free(&image);
+    /* Nor what a frame that was stopped has left. */
+    assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+  }
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_shipped_scenes_balance_and_repeat),
+      cmocka_unit_test(test_the_thesis_profiles_render),
+      cmocka_unit_test(test_mixed_scenes_balance),
+      cmocka_unit_test(test_many_wavelengths_add_up),
+      cmocka_unit_test(test_faint_light_is_the_same_light),
+      cmocka_unit_test(test_white_in_white_out),
+      cmocka_unit_test(test_no_dispersion_no_colour),
+      cmocka_unit_test(test_dispersion_goes_to_the_map_without),
+      cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
+      cmocka_unit_test(test_the_floor_leaves_the_picture),
+      cmocka_unit_test(test_fewer_samples_than_pixels),
+      cmocka_unit_test(test_a_map_takes_a_given_layout),
+      cmocka_unit_test(test_what_is_not_there_is_refused),
+      cmocka_unit_test(test_nothing_is_read_before_a_frame),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

@@ -1,0 +1,243 @@
+/* Every allocation failing in turn: the tracer and its checkpoints, comparisons, sweeps, outlines.
+ */
+#include "tests/faults/operations.h"
+#include "tests/fontconfig.h"
+#include "tests/validation/sweep/sweep_row.h"
+
+#include "base/file.h"
+#include "scenes/export/pov_file.h"
+#include "scenes/import/scene_file.h"
+#include "validation/compare/compare.h"
+#include "validation/compare/difference_picture.h"
+#include "validation/compare/outline.h"
+#include "validation/known/known_answers.h"
+#include "validation/known/known_chart.h"
+#include "validation/known/rings.h"
+#include "validation/sweep/sweep_plot.h"
+#include "validation/sweep/sweep_presets.h"
+#include "validation/sweep/sweep_table.h"
+#include "validation/tracer/checkpoint.h"
+#include "validation/tracer/reference.h"
+
+#define FUZZ ABBE_SOURCE_DIR "/tests/fuzz/"
+
+static const char scene_text[] =
+    "materials: table.yaml\n"
+    "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05], size: [3, 2]}\n"
+    "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
+    "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, texture: dot.png}\n"
+    "- {name: ball, shape: sphere, radius: 0.05, levels: 1, transform: [{translate: [0.2, 0, "
+    "0.2]}],\n   material: smoke}\n"
+    "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0, 0, 0.2]}],\n"
+    "   material: crown}\n";
+
+static abbe_result parse_scene(abbe_scene *scene, abbe_error *error) {
+  return abbe_scene_parse(scene_text, sizeof scene_text - 1, FUZZ "parts/f.yaml", NULL, scene,
+                          error);
+}
+
+static const abbe_trace_desc tiny = {.width = 3,
+                                     .height = 2,
+                                     .map_width = 4,
+                                     .map_height = 4,
+                                     .photons = 64,
+                                     .bands = 2,
+                                     .threads = 1};
+
+static void digest_image(const abbe_image *image) {
+  digest(image->data, image->width * image->height * image->channels * sizeof *image->data);
+  for (size_t i = 0; i < image->channels; i++) digest_text(image->channel[i]);
+  for (size_t i = 0; i < image->attribute_count; i++) digest_text(image->attribute[i].text);
+}
+
+/* Made once: what is under test begins after it. */
+static abbe_scene shared;
+
+static abbe_result trace(abbe_error *error) {
+  abbe_tracer *tracer = NULL;
+  abbe_image picture = {0}, map = {0};
+  abbe_result result = abbe_tracer_make(&shared, &tiny, &tracer, error);
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) result = abbe_tracer_pass(tracer, NULL, error);
+  if (result == ABBE_OK) result = abbe_tracer_picture(tracer, &picture, error);
+  if (result == ABBE_OK) result = abbe_tracer_map(tracer, &map, error);
+  if (result == ABBE_OK) digest_image(&picture);
+  if (result == ABBE_OK) digest_image(&map);
+  abbe_image_free(&map);
+  abbe_image_free(&picture);
+  abbe_tracer_free(tracer);
+  return result;
+}
+
+static abbe_result reference(abbe_error *error) {
+  const abbe_reference_desc desc = {
+      .trace = tiny, .passes = 2, .checkpoint = operation_path("reference.checkpoint")};
+  abbe_image picture = {0}, map = {0};
+  const abbe_result result = abbe_reference_trace(&shared, &desc, &picture, &map, error);
+  if (result == ABBE_OK) digest_image(&picture);
+  abbe_image_free(&map);
+  abbe_image_free(&picture);
+  return result;
+}
+
+static abbe_tracer *traced;
+
+static abbe_result checkpoint(abbe_error *error) {
+  const char *path = operation_path("trace.checkpoint");
+  abbe_result result = abbe_checkpoint_save(traced, path, error);
+  if (result == ABBE_OK) result = abbe_checkpoint_load(traced, path, error);
+  return result;
+}
+
+/* ---- comparisons ---- */
+
+static abbe_result make_picture(int which, abbe_image *out, abbe_error *error) {
+  static const char *const names[] = {"R",        "G",         "B",         "stderr.R", "stderr.G",
+                                      "stderr.B", "caustic.R", "caustic.G", "caustic.B"};
+  abbe_result result = abbe_image_make(8, 8, 9, names, out, error);
+  for (size_t i = 0; i < 8 * 8 * 9 && result == ABBE_OK; i++)
+    out->data[i] = (float)((i * 7 + (size_t)which) % 11 + 1) * 0.125f;
+  return result == ABBE_OK ? abbe_image_set_attribute(out, "abbe:space", "acescg", error) : result;
+}
+
+static abbe_result compare(abbe_error *error) {
+  abbe_image image[2] = {{0}, {0}};
+  abbe_field field[2] = {{0}, {0}};
+  abbe_mask mask = {0};
+  abbe_comparison comparison = {0};
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < 2 && result == ABBE_OK; i++) {
+    result = make_picture(i, &image[i], error);
+    if (result == ABBE_OK) result = abbe_field_make(&image[i], "it", &field[i], error);
+  }
+  if (result == ABBE_OK) result = abbe_field_align(&field[0], "a", &field[1], "b", error);
+  if (result == ABBE_OK) result = abbe_mask_make_caustic(&field[0], "a", 0.9, &mask, error);
+  const abbe_compare_options options = {.mask = &mask};
+  if (result == ABBE_OK) result = abbe_compare(&field[0], &field[1], &options, &comparison, error);
+  for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT && result == ABBE_OK; m++)
+    digest(&comparison.mask.metric[m].value, sizeof(double));
+  if (result == ABBE_OK)
+    result = abbe_difference_picture_write(operation_path("difference.png"), &field[0], &field[1],
+                                           1, 1, "it", error);
+  abbe_comparison_free(&comparison);
+  abbe_mask_free(&mask);
+  for (int i = 0; i < 2; i++) {
+    abbe_field_free(&field[i]);
+    abbe_image_free(&image[i]);
+  }
+  return result;
+}
+
+static abbe_result outlines(abbe_error *error) {
+  static double rgb[64][3];
+  abbe_outline a = {0}, b = {0};
+  abbe_outline_agreement agreement;
+  for (size_t i = 0; i < 64; i++)
+    for (size_t c = 0; c < 3; c++) rgb[i][c] = (double)((i * (c + 3)) % 5);
+  abbe_result result = abbe_outline_make((const double(*)[3])rgb, 8, 8, NULL, &a, error);
+  if (result == ABBE_OK) result = abbe_outline_make((const double(*)[3])rgb, 8, 8, NULL, &b, error);
+  if (result == ABBE_OK) result = abbe_outline_compare(&a, &b, &agreement, error);
+  if (result == ABBE_OK) digest(&agreement.overlap, sizeof agreement.overlap);
+  abbe_outline_free(&b);
+  abbe_outline_free(&a);
+  return result;
+}
+
+static abbe_result pov(abbe_error *error) {
+  const char *path = operation_path("scene.pov");
+  char *text = NULL;
+  size_t size = 0;
+  abbe_scene plain = shared; /* a scene for POV-Ray has no textures */
+  abbe_object objects[3];
+  memcpy(objects, shared.object, sizeof objects);
+  memset(&objects[0].texture, 0, sizeof objects[0].texture);
+  plain.object = objects;
+  abbe_result result = abbe_pov_file_write(path, &plain, NULL, error);
+  if (result == ABBE_OK) result = abbe_file_read(path, 1 << 20, &text, &size, error);
+  if (result == ABBE_OK) digest(text, size);
+  free(text);
+  return result;
+}
+
+/* ---- sweeps ---- */
+
+static abbe_result fill_table(abbe_sweep_table *table, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  abbe_sweep_table_set(table, ABBE_SWEEP_FACT_SCENE, "scenes/gem.yaml");
+  for (size_t i = 0; i < 20 && result == ABBE_OK; i++) {
+    abbe_sweep_row row = sweep_row("default", 64);
+    row.setting.wavelengths = i + 1;
+    for (int k = 0; k < ABBE_SWEEP_NUMBER_COUNT; k++)
+      row.number[k] = (double)(k == ABBE_SWEEP_CAUSTIC_DE ? 40 - i : 10 + i);
+    result = abbe_sweep_table_add(table, &row, error);
+  }
+  return result;
+}
+
+static abbe_result sweep(abbe_error *error) {
+  static const abbe_sweep_number numbers[] = {ABBE_SWEEP_CAUSTIC_DE};
+  abbe_sweep_table table = {0}, back = {0};
+  const char *path = operation_path("sweep.csv");
+  abbe_result result = fill_table(&table, error);
+  if (result == ABBE_OK)
+    result = abbe_sweep_table_mark(&table, ABBE_SWEEP_CAUSTIC_DE, "default", error);
+  if (result == ABBE_OK) result = abbe_sweep_table_save(&table, path, error);
+  if (result == ABBE_OK) result = abbe_sweep_table_load(path, &back, error);
+  if (result == ABBE_OK) result = abbe_sweep_table_agree(&table, "it", &back, error);
+  if (result == ABBE_OK) digest(&back.count, sizeof back.count);
+  if (result == ABBE_OK)
+    result = abbe_sweep_plot(operation_path("sweep.svg"), &table, numbers, 1, error);
+  abbe_sweep_table_free(&back);
+  abbe_sweep_table_free(&table);
+  return result;
+}
+
+static abbe_result known(abbe_error *error) {
+  const abbe_known_options options = {.only = "slab", .threads = 1};
+  abbe_known_answers answers = {0};
+  abbe_result result = abbe_known_answers_make(&options, &answers, error);
+  if (result == ABBE_OK) digest(&answers.count, sizeof answers.count);
+  if (result == ABBE_OK)
+    result = abbe_known_chart_write(operation_path("known.svg"), &answers, error);
+  abbe_known_answers_free(&answers);
+  return result;
+}
+
+static int setup(void **state) {
+  abbe_error error = {0};
+  if (operation_setup(state) != 0) return 1;
+  if (parse_scene(&shared, &error) == ABBE_OK &&
+      abbe_tracer_make(&shared, &tiny, &traced, &error) == ABBE_OK &&
+      abbe_tracer_pass(traced, NULL, &error) == ABBE_OK)
+    return 0;
+  fprintf(stderr, "%s\n", error.text);
+  return 1;
+}
+
+static int teardown(void **state) {
+  abbe_tracer_free(traced);
+  abbe_scene_free(&shared);
+  return operation_teardown(state);
+}
+
+static void test_traces(void **state) {
+  (void)state;
+  static const operation list[] = {
+      {"trace", trace, 40}, {"reference", reference, 8}, {"checkpoint", checkpoint, 0}};
+  operation_check_all(list, sizeof list / sizeof *list);
+}
+
+static void test_comparisons(void **state) {
+  (void)state;
+  static const operation list[] = {{"compare", compare, 0},
+                                   {"outlines", outlines, 0},
+                                   {"POV-Ray scene", pov, 0},
+                                   {"sweep", sweep, 200},
+                                   {"known answers", known, 6}};
+  operation_check_all(list, sizeof list / sizeof *list);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_traces),
+                                     cmocka_unit_test(test_comparisons)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

@@ -1,0 +1,59 @@
+#include "scenes/geometry/vector.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static void products(void **state) {
+  (void)state;
+  const double x[3] = {1, 0, 0}, y[3] = {0, 2, 0};
+  double z[3];
+  abbe_vector_cross(x, y, z);
+  assert_true(z[0] == 0 && z[1] == 0 && z[2] == 2);
+  assert_true(abbe_vector_dot(x, y) == 0);
+  assert_true(abbe_vector_length(y) == 2);
+  abbe_vector_subtract(z, y, z);
+  assert_true(z[1] == -2 && z[2] == 2);
+}
+
+static void normalising_zero_or_infinity_is_refused(void **state) {
+  (void)state;
+  double zero[3] = {0, 0, 0}, infinite[3] = {INFINITY, 0, 0}, good[3] = {0, 0, -4};
+  assert_false(abbe_vector_normalise(zero));
+  assert_true(zero[0] == 0 && zero[2] == 0);
+  assert_false(abbe_vector_normalise(infinite));
+  assert_false(abbe_vector_finite(infinite));
+  assert_true(abbe_vector_normalise(good) && good[2] == -1);
+}
+
+/* Squares of these are subnormal numbers, of few digits. */
+static void what_is_next_to_nothing_has_a_direction(void **state) {
+  (void)state;
+  for (double size = 1e-120; size > 1e-161; size *= 0.1) {
+    double a[3] = {3 * size, -4 * size, 12 * size};
+    assert_true(abbe_vector_normalise(a));
+    assert_true(fabs(a[0] - 3.0 / 13) < 1e-15 && fabs(a[1] + 4.0 / 13) < 1e-15 &&
+                fabs(a[2] - 12.0 / 13) < 1e-15);
+  }
+}
+
+static void triangle_points_along_its_normal(void **state) {
+  (void)state;
+  const double a[3] = {1, 1, 5}, b[3] = {3, 1, 5}, c[3] = {1, 2, 5};
+  double n[3];
+  abbe_vector_triangle(a, b, c, n);
+  assert_true(n[0] == 0 && n[1] == 0 && n[2] == 2);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(products),
+      cmocka_unit_test(normalising_zero_or_infinity_is_refused),
+      cmocka_unit_test(what_is_next_to_nothing_has_a_direction),
+      cmocka_unit_test(triangle_points_along_its_normal),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,183 @@
+#include "scenes/import/object_file.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static abbe_material_table table;
+
+static int load_table(void **state) {
+  (void)state;
+  return abbe_material_table_load(NULL, &table, NULL) == ABBE_OK ? 0 : -1;
+}
+
+static int free_table(void **state) {
+  (void)state;
+  abbe_material_table_free(&table);
+  return 0;
+}
+
+/* The object as a scene of its own, which frees it. */
+static abbe_scene read(const char *text) {
+  abbe_yaml *yaml;
+  abbe_error error = {0};
+  enum { ROOM = 4 };
+  abbe_scene scene = {.object = calloc(ROOM, sizeof(abbe_object))};
+  assert_non_null(scene.object);
+  assert_int_equal(abbe_yaml_parse(text, strlen(text), "text", &yaml, &error), ABBE_OK);
+  if (abbe_object_read(yaml, abbe_yaml_root(yaml), ABBE_SOURCE_DIR "/tests/bad/", &table,
+                       scene.object, ROOM, &scene.object_count, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  abbe_yaml_free(yaml);
+  return scene;
+}
+
+static void a_sphere_stays_one_under_similarities_only(void **state) {
+  (void)state;
+  abbe_scene scene = read("{shape: sphere, radius: 2, material: water, transform: [{scale: 0.5}, "
+                          "{rotate: {axis: [1, 2, 3], angle: 40}}, {translate: [1, 2, 3]}]}");
+  const abbe_exact *exact = &scene.object[0].exact;
+  assert_int_equal(exact->kind, ABBE_EXACT_SPHERE);
+  assert_true(fabs(exact->radius - 1) < 1e-12);
+  assert_true(fabs(exact->centre[2] - 3) < 1e-12);
+  assert_true(fabs(scene.object[0].max[0] - 2) < 1e-12);
+  abbe_scene_free(&scene);
+  scene = read("{shape: sphere, radius: 1, material: water, transform: [{scale: [-2, 2, 2]}]}");
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_SPHERE);
+  assert_true(fabs(scene.object[0].exact.radius - 2) < 1e-12);
+  assert_null(scene.object[0].mended);
+  abbe_scene_free(&scene);
+  scene = read("{shape: sphere, radius: 1, material: water, transform: [{scale: [1, 1, 2]}]}");
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_NONE);
+  abbe_scene_free(&scene);
+}
+
+static void boxes_are_planes_or_parallelograms(void **state) {
+  (void)state;
+  abbe_scene scene = read("{shape: box, size: [1, 2, 3], material: diamond}");
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
+  assert_int_equal(scene.object[0].exact.count, 6);
+  abbe_scene_free(&scene);
+  scene = read("{shape: box, size: [1, 2, 3], reflectance: [0.1, 0.2, 0.3], transform: "
+               "[{scale: [-1, 1, 1]}, {rotate: {axis: [0, 0, 1], angle: 30}}]}");
+  const abbe_object *box = &scene.object[0];
+  assert_int_equal(box->exact.kind, ABBE_EXACT_PARALLELOGRAMS);
+  assert_int_equal(box->exact.count, 6);
+  assert_true(box->reflectance[2] == 0.3);
+  for (size_t i = 0; i < 6; i++) {
+    const double *p = box->exact.parallelogram[i];
+    double n[3], middle[3];
+    abbe_vector_cross(p + 3, p + 6, n);
+    for (int k = 0; k < 3; k++) middle[k] = p[k] + 0.5 * (p[3 + k] + p[6 + k]);
+    assert_true(abbe_vector_dot(n, middle) > 0);
+  }
+  abbe_scene_free(&scene);
+}
+
+static void steps_apply_in_order(void **state) {
+  (void)state;
+  abbe_scene scene = read("{shape: rectangle, width: 1, height: 1, reflectance: 1, transform: "
+                          "[{translate: [1, 0, 0]}, {rotate: {axis: [0, 0, 1], angle: 90}}]}");
+  assert_true(fabs(scene.object[0].min[1] - 0.5) < 1e-12);
+  assert_true(fabs(scene.object[0].max[1] - 1.5) < 1e-12);
+  abbe_scene_free(&scene);
+}
+
+static void look_turns_z_to_the_target(void **state) {
+  (void)state;
+  abbe_scene scene = read("{shape: rectangle, width: 2, height: 1, reflectance: 1, transform: "
+                          "[{look: {from: [1, 2, 3], to: [1, -7, 3]}}]}");
+  const abbe_object *o = &scene.object[0];
+  assert_true(fabs(o->mesh.normal[0][1] + 1) < 1e-12);
+  assert_true(fabs(o->max[0] - 2) < 1e-12 && fabs(o->max[2] - 3.5) < 1e-12);
+  assert_true(fabs(o->min[1] - 2) < 1e-12 && fabs(o->max[1] - 2) < 1e-12);
+  abbe_scene_free(&scene);
+}
+
+static void an_inverted_mesh_is_mended_and_said(void **state) {
+  (void)state;
+  abbe_scene scene = read("{mesh: inverted.obj, smooth: false, material: n-sf11}");
+  assert_non_null(scene.object[0].mended);
+  assert_non_null(strstr(scene.object[0].mended, "inside-out"));
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
+  assert_int_equal(scene.object[0].exact.count, 4);
+  abbe_scene_free(&scene);
+}
+
+/* A cube without normals in its file is cut, unless the scene says otherwise; the same to whoever
+ * asks for its planes and to whoever asks for its normals. */
+static void a_die_is_what_the_scene_says(void **state) {
+  (void)state;
+  static const struct {
+    const char *key;
+    bool cut;
+  } dice[] = {{"", true}, {"smooth: true, ", false}, {"smooth: false, ", true}};
+  for (size_t i = 0; i < sizeof dice / sizeof *dice; i++) {
+    char text[256];
+    snprintf(text, sizeof text, "{mesh: ../meshes/die.obj, %sfit: 0.02, material: water}",
+             dice[i].key);
+    abbe_scene scene = read(text);
+    const abbe_object *o = &scene.object[0];
+    assert_int_equal(o->exact.kind, dice[i].cut ? ABBE_EXACT_CONVEX : ABBE_EXACT_NONE);
+    assert_int_equal(o->exact.convex.verdict,
+                     dice[i].cut ? ABBE_CONVEX_SOLID : ABBE_CONVEX_ROUNDED);
+    assert_true(fabs(o->max[0] - o->min[0] - 0.02) < 1e-15);
+    double own[3];
+    const uint32_t *f = o->mesh.face[0];
+    abbe_vector_triangle(o->mesh.position[f[0]], o->mesh.position[f[1]], o->mesh.position[f[2]],
+                         own);
+    assert_true(abbe_vector_normalise(own));
+    for (int k = 0; k < 3; k++)
+      assert_int_equal(abbe_vector_dot(own, o->mesh.normal[f[k]]) > 0.999, dice[i].cut);
+    abbe_scene_free(&scene);
+  }
+}
+
+static void parts_of_a_mesh_are_objects(void **state) {
+  (void)state;
+  abbe_scene scene = read("{name: boxes, mesh: ../meshes/crossing.obj, material: water}");
+  assert_int_equal(scene.object_count, 2);
+  assert_string_equal(scene.object[1].name, "boxes (part 2 of 2)");
+  assert_int_equal(scene.object[1].exact.count, 6);
+  assert_non_null(strstr(scene.object[0].mended, "2 solids"));
+  abbe_scene_free(&scene);
+  /* what receives light is not parted */
+  scene = read("{mesh: ../meshes/crossing.obj, reflectance: 1}");
+  assert_int_equal(scene.object_count, 1);
+  assert_null(scene.object[0].mended);
+  abbe_scene_free(&scene);
+}
+
+static void paths_follow_the_folder(void **state) {
+  (void)state;
+  char *path = abbe_object_path("scenes/", "a.png");
+  assert_string_equal(path, "scenes/a.png");
+  free(path);
+  path = abbe_object_path("scenes/", "/a.png");
+  assert_string_equal(path, "/a.png");
+  free(path);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
+      cmocka_unit_test(boxes_are_planes_or_parallelograms),
+      cmocka_unit_test(steps_apply_in_order),
+      cmocka_unit_test(look_turns_z_to_the_target),
+      cmocka_unit_test(an_inverted_mesh_is_mended_and_said),
+      cmocka_unit_test(a_die_is_what_the_scene_says),
+      cmocka_unit_test(parts_of_a_mesh_are_objects),
+      cmocka_unit_test(paths_follow_the_folder),
+  };
+  return cmocka_run_group_tests(tests, load_table, free_table);
+}

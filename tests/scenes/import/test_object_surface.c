@@ -1,0 +1,229 @@
+#include "tests/scenes/solids.h"
+
+#include "scenes/geometry/transform.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/import/object_surface.h"
+#include "scenes/shapes/shape.h"
+
+#include <stdlib.h>
+
+enum { ROOM = 4 };
+
+static const abbe_material glass = {.name = (char *)"glass"};
+
+static abbe_object_surface request(void) {
+  abbe_object_surface s = {.normals = ABBE_NORMALS_AUTO, .file = true};
+  abbe_transform_identity(s.matrix);
+  return s;
+}
+
+static abbe_scene scene_of(abbe_mesh mesh, const abbe_material *material) {
+  abbe_scene scene = {.object = calloc(ROOM, sizeof(abbe_object))};
+  assert_non_null(scene.object);
+  scene.object[0].mesh = mesh;
+  scene.object[0].material = material;
+  scene.object[0].name = strdup("thing");
+  scene.object[0].line = 7;
+  return scene;
+}
+
+static abbe_scene place(abbe_mesh mesh, const abbe_object_surface *s, bool refracts) {
+  abbe_scene scene = scene_of(mesh, refracts ? &glass : NULL);
+  abbe_error error = {0};
+  if (abbe_object_place(s, scene.object, ROOM, &scene.object_count, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return scene;
+}
+
+static abbe_mesh sphere(double radius, size_t levels) {
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_sphere(radius, levels, &m, NULL), ABBE_OK);
+  return m;
+}
+
+static void a_size_and_a_place_are_taken_from_the_bounds(void **state) {
+  (void)state;
+  const test_box box = {{10, 20, 30}, {14, 22, 31}, false};
+  const double turn[3] = {0, 0, 1}, half_pi = 1.57079632679489662;
+  abbe_object_surface s = request();
+  s.fit = 0.02;
+  abbe_scene scene = place(test_boxes(&box, 1), &s, true);
+  assert_near(scene.object[0].max[0] - scene.object[0].min[0], 0.02, 1e-15);
+  assert_near(scene.object[0].max[1] - scene.object[0].min[1], 0.01, 1e-15);
+  assert_near(scene.object[0].min[0], 0.05, 1e-15); /* about the origin, as scale is */
+  abbe_scene_free(&scene);
+  abbe_transform_rotate(half_pi, turn, s.matrix);
+  s.centred = true;
+  s.centre[2] = 0.5;
+  scene = place(test_boxes(&box, 1), &s, true);
+  const abbe_object *o = &scene.object[0];
+  assert_near(o->max[1] - o->min[1], 0.02, 1e-15);
+  for (int k = 0; k < 3; k++) assert_near(0.5 * (o->min[k] + o->max[k]), s.centre[k], 1e-15);
+  assert_int_equal(o->exact.kind, ABBE_EXACT_CONVEX);
+  abbe_scene_free(&scene);
+}
+
+/* The size that is asked for is the solid's, without the sheet that hangs on it. */
+static void what_is_dropped_has_no_size(void **state) {
+  (void)state;
+  const test_box box = {{0, 0, 0}, {4, 2, 1}, false};
+  abbe_mesh whole = test_boxes(&box, 1), m;
+  const size_t n = whole.vertex_count, f = whole.face_count;
+  assert_int_equal(abbe_mesh_make(n + 1, f + 1, false, &m, NULL), ABBE_OK);
+  memcpy(m.position, whole.position, n * sizeof *m.position);
+  memcpy(m.normal, whole.normal, n * sizeof *m.normal);
+  memcpy(m.face, whole.face, f * sizeof *m.face);
+  m.position[n][0] = 40;
+  for (uint32_t k = 0; k < 2; k++) m.face[f][k] = whole.face[0][k];
+  m.face[f][2] = (uint32_t)n;
+  abbe_mesh_free(&whole);
+  abbe_object_surface s = request();
+  s.repair = true;
+  s.fit = 0.02;
+  s.centred = true;
+  abbe_scene scene = place(m, &s, true);
+  assert_contains(scene.object[0].mended, "1 sheet that hung on the body");
+  assert_near(scene.object[0].max[0] - scene.object[0].min[0], 0.02, 1e-15);
+  assert_near(scene.object[0].max[0], 0.01, 1e-15);
+  abbe_scene_free(&scene);
+}
+
+/* Its vertices do not reach as far as the ball does. */
+static void a_ball_is_fitted_as_a_ball(void **state) {
+  (void)state;
+  abbe_object_surface s = request();
+  s.radius = 3;
+  s.fit = 0.1;
+  s.centred = true;
+  abbe_scene scene = place(sphere(3, 1), &s, true);
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_SPHERE);
+  assert_near(scene.object[0].exact.radius, 0.05, 1e-15);
+  assert_near(scene.object[0].exact.centre[1], 0, 1e-15);
+  abbe_scene_free(&scene);
+}
+
+static void what_has_no_size_cannot_be_fitted(void **state) {
+  (void)state;
+  abbe_mesh m;
+  assert_int_equal(abbe_mesh_make(3, 1, false, &m, NULL), ABBE_OK);
+  m.face[0][1] = 1, m.face[0][2] = 2;
+  abbe_object_surface s = request();
+  abbe_error error = {0};
+  s.fit = 1;
+  abbe_scene scene = scene_of(m, NULL);
+  assert_int_equal(abbe_object_place(&s, scene.object, ROOM, &scene.object_count, &error),
+                   ABBE_GEOMETRY);
+  assert_contains(error.text, "no size");
+  abbe_scene_free(&scene);
+}
+
+/* A body with a hollow, and a second body that crosses it, turned and made smaller with it. */
+static void shells_that_cross_become_objects(void **state) {
+  (void)state;
+  const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
+                           {{2, 2, 2}, {7, 7, 7}, true},
+                           {{8, 3, 3.5}, {12, 6, 6}, false}};
+  abbe_object_surface s = request();
+  s.fit = 0.12;
+  s.centred = true;
+  abbe_scene scene = place(test_boxes(box, 3), &s, true);
+  assert_int_equal(scene.object_count, 2);
+  assert_string_equal(scene.object[0].name, "thing");
+  assert_string_equal(scene.object[1].name, "thing (part 2 of 2)");
+  assert_contains(scene.object[0].mended, "followed as 2 solids that overlap");
+  assert_null(scene.object[1].mended);
+  assert_int_equal(scene.object[0].mesh.face_count, 24);
+  assert_int_equal(scene.object[1].mesh.face_count, 12);
+  assert_true(scene.object[1].material == &glass && scene.object[1].line == 7);
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_NONE);
+  assert_int_equal(scene.object[1].exact.kind, ABBE_EXACT_CONVEX);
+  assert_near(scene.object[0].min[0], -0.06, 1e-12);
+  assert_near(scene.object[1].max[0], 0.06, 1e-12);
+  assert_near(scene.object[1].min[0], 0.02, 1e-12);
+  const double in_hollow[3] = {-0.02, 0.0, 0.0}, in_glass[3] = {-0.055, 0, 0};
+  assert_false(abbe_mesh_contains(&scene.object[0].mesh, in_hollow));
+  assert_true(abbe_mesh_contains(&scene.object[0].mesh, in_glass));
+  abbe_scene_free(&scene);
+}
+
+/* Flush below and back to back: the second reaches into the first and past it below, a little. */
+static void solids_that_lie_on_one_another_overlap(void **state) {
+  (void)state;
+  const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0.2, 0}, {2, 0.8, 0.5}, false}};
+  abbe_object_surface s = request();
+  abbe_scene scene = place(test_boxes(box, 2), &s, true);
+  assert_int_equal(scene.object_count, 2);
+  const double *a = scene.object[0].min, *b = scene.object[1].min;
+  assert_true(b[0] < scene.object[0].max[0] - 1e-5 && b[0] > scene.object[0].max[0] - 1e-4);
+  assert_true(b[2] < a[2] - 1e-5 && b[2] > a[2] - 1e-4);
+  assert_int_equal(scene.object[1].exact.count, 6);
+  abbe_scene_free(&scene);
+}
+
+static void more_parts_than_there_is_room_for_are_refused(void **state) {
+  (void)state;
+  const test_box box[2] = {{{0, 0, 0}, {2, 2, 2}, false}, {{1, 0.5, 0.7}, {4, 1.5, 1.5}, false}};
+  const abbe_object_surface s = request();
+  abbe_error error = {0};
+  abbe_scene scene = scene_of(test_boxes(box, 2), &glass);
+  assert_int_equal(abbe_object_place(&s, scene.object, 1, &scene.object_count, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "room for 1 object");
+  assert_int_equal(scene.object_count, 1);
+  abbe_scene_free(&scene);
+}
+
+static bool is_flat(const abbe_mesh *m) {
+  for (size_t f = 0; f < m->face_count; f++)
+    for (int k = 1; k < 3; k++)
+      if (abbe_vector_dot(m->normal[m->face[f][0]], m->normal[m->face[f][k]]) < 1 - 1e-9)
+        return false;
+  return true;
+}
+
+/* Without a word of its own, and without normals in its file. */
+static abbe_scene chosen(abbe_mesh m, bool given) {
+  abbe_object_surface s = request();
+  assert_int_equal(
+      abbe_mesh_compute_normals(&m, given ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, NULL),
+      ABBE_OK);
+  m.given_normals = given;
+  return place(m, &s, true);
+}
+
+static void a_stone_is_cut_and_a_ball_is_round(void **state) {
+  (void)state;
+  abbe_mesh m;
+  /* a stone: its facets meet at less than a crease, but at its girdle */
+  assert_int_equal(abbe_shape_gem(16, 1, 0.6, 0.25, 0.5, &m, NULL), ABBE_OK);
+  abbe_scene scene = chosen(m, false);
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
+  assert_true(is_flat(&scene.object[0].mesh));
+  abbe_scene_free(&scene);
+  /* a coarse ball: all its edges are less than a crease */
+  scene = chosen(sphere(1, 1), false);
+  assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_NONE);
+  assert_int_equal(scene.object[0].exact.convex.verdict, ABBE_CONVEX_ROUNDED);
+  assert_false(is_flat(&scene.object[0].mesh));
+  abbe_scene_free(&scene);
+  /* whose file says that its cube is rounded is believed */
+  const double size[3] = {1, 1, 1};
+  assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
+  scene = chosen(m, true);
+  assert_int_equal(scene.object[0].exact.convex.verdict, ABBE_CONVEX_ROUNDED);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_size_and_a_place_are_taken_from_the_bounds),
+      cmocka_unit_test(what_is_dropped_has_no_size),
+      cmocka_unit_test(a_ball_is_fitted_as_a_ball),
+      cmocka_unit_test(what_has_no_size_cannot_be_fitted),
+      cmocka_unit_test(shells_that_cross_become_objects),
+      cmocka_unit_test(solids_that_lie_on_one_another_overlap),
+      cmocka_unit_test(more_parts_than_there_is_room_for_are_refused),
+      cmocka_unit_test(a_stone_is_cut_and_a_ball_is_round),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

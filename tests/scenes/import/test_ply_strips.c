@@ -1,0 +1,194 @@
+#include "tests/check.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/import/ply_strips.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define HEADER(format)                                                                             \
+  "ply\nformat " format " 1.0\ncomment a tetrahedron\nelement vertex 4\nproperty uchar red\n"      \
+  "property float x\nproperty double y\nproperty short z\nelement other 1\n"                       \
+  "property list uchar uint what\nelement tristrips 1\nproperty list int int vertex_indices\n"     \
+  "end_header\n"
+
+/* Round its four faces in two strips. */
+static const int strip[] = {0, 2, 1, 3, 0, 2, -1, 1, 0, 0, 0};
+enum { LENGTH = 6, CORNERS = 4 };
+static const double corner[CORNERS][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+static abbe_error error;
+
+static abbe_result parse(const char *data, size_t size, abbe_mesh *out) {
+  char *whole = malloc(size + 1); /* so that a sanitizer sees what is read past the end */
+  assert_non_null(whole);
+  memcpy(whole, data, size);
+  whole[size] = '\0';
+  error.text[0] = '\0';
+  const abbe_result result = abbe_ply_read_strips(whole, size, "t.ply", out, &error);
+  free(whole);
+  return result;
+}
+
+static void assert_is_the_tetrahedron(abbe_mesh *m) {
+  abbe_mesh_report r;
+  assert_int_equal(m->vertex_count, 4);
+  assert_int_equal(m->face_count, 4);
+  for (int v = 0; v < CORNERS; v++)
+    for (int k = 0; k < 3; k++) assert_near(m->position[v][k], corner[v][k], 0);
+  assert_int_equal(abbe_mesh_check(m, &r, NULL), ABBE_OK);
+  assert_int_equal(r.open_edges + r.flipped_edges + r.crowded_edges, 0);
+  assert_near(r.volume, 1.0 / 6, 1e-15);
+  abbe_mesh_free(m);
+}
+
+static void text_is_read(void **state) {
+  (void)state;
+  abbe_mesh m;
+  char text[1024];
+  snprintf(text, sizeof text, "%s", HEADER("ascii"));
+  for (int v = 0; v < CORNERS; v++)
+    snprintf(text + strlen(text), sizeof text - strlen(text), "%d %g %g %g\n", 200 + v,
+             corner[v][0], corner[v][1], corner[v][2]);
+  strcat(text, "3 7 8\r\n9\n6");
+  for (int i = 0; i < LENGTH; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text), " %d", strip[i]);
+  if (parse(text, strlen(text), &m) != ABBE_OK) fail_msg("%s", error.text);
+  assert_is_the_tetrahedron(&m);
+}
+
+/* Bytes in the file's order, this machine's or the other. */
+static void put(char **to, const void *value, size_t size, bool turned) {
+  const char *from = value;
+  for (size_t i = 0; i < size; i++) *(*to)++ = from[turned ? size - 1 - i : i];
+}
+
+static size_t binary(bool big, char *out) {
+  const uint16_t one = 1;
+  const bool turned = big == (*(const unsigned char *)&one == 1);
+  strcpy(out, big ? HEADER("binary_big_endian") : HEADER("binary_little_endian"));
+  char *at = out + strlen(out);
+  for (int v = 0; v < CORNERS; v++) {
+    const float x = (float)corner[v][0];
+    const int16_t z = (int16_t)corner[v][2];
+    *at++ = (char)v;
+    put(&at, &x, sizeof x, turned);
+    put(&at, &corner[v][1], sizeof(double), turned);
+    put(&at, &z, sizeof z, turned);
+  }
+  const uint32_t what[2] = {7, 4000000000u};
+  *at++ = 2;
+  put(&at, &what[0], 4, turned);
+  put(&at, &what[1], 4, turned);
+  const int32_t length = LENGTH;
+  put(&at, &length, 4, turned);
+  for (int i = 0; i < LENGTH; i++) put(&at, &strip[i], 4, turned);
+  return (size_t)(at - out);
+}
+
+static void both_orders_are_read_and_no_part_of_them(void **state) {
+  (void)state;
+  for (int big = 0; big < 2; big++) {
+    char data[1024];
+    abbe_mesh m;
+    const size_t size = binary(big, data);
+    if (parse(data, size, &m) != ABBE_OK) fail_msg("%s", error.text);
+    assert_is_the_tetrahedron(&m);
+    for (size_t cut = 0; cut < size; cut++) {
+      assert_int_equal(parse(data, cut, &m), ABBE_PARSE);
+      assert_contains(error.text, "t.ply: ");
+      assert_null(m.face);
+    }
+  }
+}
+
+#define PLAIN                                                                                      \
+  "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"                  \
+  "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"      \
+  "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n"
+
+/* Every second triangle runs the other way; -1 begins anew; a point twice turns a corner. */
+static void strips_alternate_and_begin_anew(void **state) {
+  (void)state;
+  static const char *const strips[] = {"5 0 1 2 3 4\n", "9 0 1 2 -1 2 1 3 -1 0\n",
+                                       "6 0 1 2 2 3 4\n"};
+  static const size_t count[] = {3, 2, 2};
+  for (int i = 0; i < 3; i++) {
+    abbe_mesh m;
+    char text[512];
+    snprintf(text, sizeof text, PLAIN "%s", strips[i]);
+    if (parse(text, strlen(text), &m) != ABBE_OK) fail_msg("%s", error.text);
+    assert_int_equal(m.face_count, count[i]);
+    for (size_t f = 0; f < (i < 2 ? m.face_count : 1); f++) {
+      double n[3];
+      abbe_vector_triangle(m.position[m.face[f][0]], m.position[m.face[f][1]],
+                           m.position[m.face[f][2]], n);
+      assert_true(n[2] > 0);
+    }
+    abbe_mesh_free(&m);
+  }
+}
+
+static void what_is_wrong_is_said(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *part;
+    abbe_result result;
+  } files[] = {
+      {PLAIN "3 0 1 5\n", "none of the file's 5", ABBE_GEOMETRY},
+      {PLAIN "3 0 1 -2\n", "none of the file's 5", ABBE_GEOMETRY},
+      {PLAIN "3 0 0 1\n", "have no triangles", ABBE_GEOMETRY},
+      {PLAIN "4 0 1 2\n", "it ends", ABBE_PARSE},
+      {PLAIN "-1 0 1 2\n", "it ends", ABBE_PARSE},
+      {PLAIN "3 0 1 x\n", "something else than a number", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 9000000000\nproperty float x\nend_header\n0\n",
+       "it ends", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nproperty float x\nend_header\n", "line 3", ABBE_PARSE},
+      {"ply\nformat ebcdic 1.0\nend_header\n", "line 2", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement tristrips 1\nproperty list float int i\nend_header\n",
+       "line 4", ABBE_PARSE},
+      {"plx\n", "line 1", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement vertex 5\n"
+       "property float x\nelement tristrips 1\nproperty list int int i\nend_header\n"
+       "0\n1\n2\n3\n4\n5\n3 0 1 2\n",
+       "line 5", ABBE_PARSE},
+      {"ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nelement tristrips 1\n"
+       "property list int int i\nend_header\n3 0 1 2\n",
+       "it ends", ABBE_PARSE},
+  };
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    abbe_mesh m;
+    assert_int_equal(parse(files[i].text, strlen(files[i].text), &m), files[i].result);
+    assert_contains(error.text, files[i].part);
+    assert_null(m.position);
+  }
+}
+
+static void a_mesh_is_loaded_from_them(void **state) {
+  (void)state;
+  char data[1024];
+  abbe_mesh m;
+  const size_t size = binary(false, data);
+  FILE *f = fopen("t_strips.ply", "wb");
+  assert_non_null(f);
+  assert_int_equal(fwrite(data, 1, size, f), size);
+  fclose(f);
+  const abbe_result result = abbe_mesh_load("t_strips.ply", ABBE_NORMALS_FLAT, &m, NULL, &error);
+  unlink("t_strips.ply");
+  if (result != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(m.face_count, 4);
+  assert_int_equal(m.vertex_count, 12);
+  abbe_mesh_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(text_is_read),
+      cmocka_unit_test(both_orders_are_read_and_no_part_of_them),
+      cmocka_unit_test(strips_alternate_and_begin_anew),
+      cmocka_unit_test(what_is_wrong_is_said),
+      cmocka_unit_test(a_mesh_is_loaded_from_them),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,355 @@
+#include "scenes/import/scene_file.h"
+
+#include "base/file.h"
+#include "scenes/geometry/vector.h"
+#include "spectral/optics.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define PI 3.14159265358979323846
+
+static abbe_scene load(const char *name) {
+  char path[512];
+  abbe_scene scene;
+  abbe_error error = {0};
+  snprintf(path, sizeof path, "%s/scenes/%s.yaml", ABBE_SOURCE_DIR, name);
+  if (abbe_scene_load(path, NULL, &scene, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return scene;
+}
+
+static const abbe_object *find(const abbe_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (strcmp(scene->object[i].name, name) == 0) return &scene->object[i];
+  fail_msg("no object '%s'", name);
+  return NULL;
+}
+
+static const abbe_object *refractor(const abbe_scene *scene) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].material) return &scene->object[i];
+  fail_msg("no refractor");
+  return NULL;
+}
+
+static void every_shipped_scene_loads(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    size_t faces;
+    abbe_exact_kind exact;
+    size_t count;
+  } scenes[] = {
+      {"sphere", 5120, ABBE_EXACT_SPHERE, 0},   {"ring", 65536, ABBE_EXACT_NONE, 0},
+      {"gem", 24, ABBE_EXACT_CONVEX, 19},       {"bunny", 235136, ABBE_EXACT_NONE, 0},
+      {"glass", 12160, ABBE_EXACT_NONE, 0},     {"prism", 8, ABBE_EXACT_CONVEX, 5},
+      {"rainbow", 20480, ABBE_EXACT_SPHERE, 0}, {"diamond", 110, ABBE_EXACT_CONVEX, 73},
+  };
+  for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+    abbe_scene scene = load(scenes[i].name);
+    const abbe_object *glass = refractor(&scene);
+    assert_int_equal(glass->mesh.face_count, scenes[i].faces);
+    assert_int_equal(glass->exact.kind, scenes[i].exact);
+    assert_int_equal(glass->exact.count, scenes[i].count);
+    assert_null(glass->mended);
+    assert_int_equal(scene.camera.width, 512);
+    assert_int_equal(scene.camera.height, 512);
+    assert_non_null(scene.description);
+    abbe_scene_free(&scene);
+    assert_null(scene.object);
+  }
+}
+
+static void cornell_boxes_face_inwards_and_are_red_on_the_left(void **state) {
+  (void)state;
+  static const char *const names[] = {"sphere", "ring", "gem", "bunny"};
+  static const char *const walls[] = {"floor", "back wall", "left wall", "right wall", "ceiling"};
+  const double inside[3] = {0, 0, 0.15};
+  for (size_t i = 0; i < 4; i++) {
+    abbe_scene scene = load(names[i]);
+    for (size_t w = 0; w < 5; w++) {
+      const abbe_object *wall = find(&scene, walls[w]);
+      assert_int_equal(wall->exact.kind, ABBE_EXACT_PARALLELOGRAMS);
+      assert_int_equal(wall->exact.count, 1);
+      const double *p = wall->exact.parallelogram[0];
+      double normal[3], to[3];
+      abbe_vector_cross(p + 3, p + 6, normal);
+      abbe_vector_subtract(inside, p, to);
+      assert_true(abbe_vector_dot(normal, to) > 0);
+      assert_true(abbe_vector_dot(normal, wall->mesh.normal[0]) > 0);
+    }
+    const abbe_object *left = find(&scene, "left wall");
+    assert_true(left->max[0] < -0.14 && left->reflectance[0] > 5 * left->reflectance[1]);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* A prism's ray in the plane of its base: [BornWolf1999]. */
+static void the_spectrum_of_the_prism_falls_on_the_wall(void **state) {
+  (void)state;
+  abbe_scene scene = load("prism");
+  const abbe_object *prism = refractor(&scene), *wall = find(&scene, "wall");
+  const double wavelengths[3] = {400, 588, 700};
+  double at[3] = {0};
+  for (int i = 0; i < 3; i++) {
+    double p[3] = {-0.7, 0, 0.03}, d[3] = {1, 0, 0}, n;
+    assert_int_equal(abbe_material_n(prism->material, wavelengths[i], &n, NULL), ABBE_OK);
+    for (int face = 0; face < 2; face++) {
+      /* into the solid: the last plane entered; out of it: the first one left */
+      double best = face ? INFINITY : -INFINITY, normal[3] = {0};
+      for (size_t k = 0; k < prism->exact.count; k++) {
+        const double *plane = prism->exact.plane[k], cosine = abbe_vector_dot(plane, d);
+        const double t = (plane[3] - abbe_vector_dot(plane, p)) / cosine;
+        if (fabs(cosine) < 1e-9 || (face ? cosine < 0 || t > best : cosine > 0 || t < best))
+          continue;
+        best = t;
+        for (int a = 0; a < 3; a++) normal[a] = face ? -plane[a] : plane[a];
+      }
+      for (int a = 0; a < 3; a++) p[a] += best * d[a];
+      const double wi[3] = {-d[0], -d[1], -d[2]};
+      assert_true(abbe_optics_refract(wi, normal, face ? n : 1 / n, d));
+    }
+    if (i == 1) assert_true(fabs(acos(d[0]) * 180 / PI - 59.6) < 0.2);
+    const double t = (wall->min[1] - p[1]) / d[1];
+    at[i] = p[0] + t * d[0];
+    assert_true(at[i] > wall->min[0] && at[i] < wall->max[0]);
+  }
+  /* violet is bent more: it lands nearer to the slit; the spectrum is centimetres wide */
+  assert_true(at[0] < at[1] && at[1] < at[2] && at[2] - at[0] > 0.03);
+  abbe_scene_free(&scene);
+}
+
+/* The outermost ray of order one: b from 0 to 1, exit angle 4 asin(b/n) - 2 asin(b). */
+static void the_rainbow_falls_on_the_screen(void **state) {
+  (void)state;
+  abbe_scene scene = load("rainbow");
+  const abbe_object *drop = refractor(&scene), *above = find(&scene, "screen, above the hole");
+  const double distance = above->min[0] - drop->exact.centre[0], r = drop->exact.radius;
+  double angle[2] = {0};
+  for (int i = 0; i < 2; i++) {
+    double n;
+    assert_int_equal(abbe_material_n(drop->material, i ? 700 : 400, &n, NULL), ABBE_OK);
+    for (double b = 0; b < 1; b += 1e-4) angle[i] = fmax(angle[i], 4 * asin(b / n) - 2 * asin(b));
+    const double rise = distance * tan(angle[i]) + r;
+    assert_true(drop->exact.centre[2] + rise < above->max[2]);
+    assert_true(drop->exact.centre[2] + distance * tan(angle[i]) > above->min[2]);
+  }
+  assert_true(angle[1] > 42.1 * PI / 180 && angle[1] < 42.7 * PI / 180);
+  assert_true(angle[0] > 40.2 * PI / 180 && angle[0] < 40.9 * PI / 180);
+  /* the beam passes the hole and covers the drop */
+  const double to_drop = scene.light[0].position[0] - drop->exact.centre[0];
+  assert_true(to_drop * sin(scene.light[0].cone_rad) > r);
+  assert_true((to_drop - distance) * tan(scene.light[0].cone_rad) < above->min[2] - 0.4);
+  abbe_scene_free(&scene);
+}
+
+static void the_glass_stands_on_textured_wood(void **state) {
+  (void)state;
+  abbe_scene scene = load("glass");
+  const abbe_object *table = find(&scene, "table");
+  assert_int_equal(table->texture.width, 256);
+  assert_true(table->texture_repeat[0] == 3);
+  for (size_t i = 0; i < 256 * 256 * 3; i++)
+    assert_true(table->texture.data[i] >= 0 && table->texture.data[i] < 0.7f);
+  assert_true(refractor(&scene)->min[2] > 0);
+  abbe_scene_free(&scene);
+}
+
+static void options_choose_another_table(void **state) {
+  (void)state;
+  const abbe_scene_options options = {.materials = "thesis"};
+  abbe_scene scene;
+  abbe_error error;
+  assert_int_equal(abbe_scene_load(ABBE_SOURCE_DIR "/scenes/sphere.yaml", &options, &scene, &error),
+                   ABBE_OK);
+  assert_string_equal(scene.table.path, "thesis");
+  abbe_scene_free(&scene);
+  assert_int_equal(abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", &options, &scene, &error),
+                   ABBE_NOT_FOUND);
+  assert_non_null(strstr(error.text, "gem.yaml:"));
+}
+
+static void bad_scenes_are_explained(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    abbe_result result;
+    const char *says;
+  } bad[] = {
+      {"malformed", ABBE_PARSE, "scene_malformed.yaml:"},
+      {"not_a_mapping", ABBE_SCHEMA, "mapping"},
+      {"unknown_key", ABBE_SCHEMA, ":5: a scene has no key 'lihgts'; did you mean 'lights'"},
+      {"unknown_camera_key", ABBE_SCHEMA, "did you mean 'target'"},
+      {"unknown_object_key", ABBE_SCHEMA,
+       ":17: an object has no key 'radus'; did you mean 'radius'"},
+      {"foreign_shape_key", ABBE_SCHEMA, "no key 'levels'"},
+      {"unknown_shape", ABBE_SCHEMA, "did you mean 'sphere'"},
+      {"unknown_material", ABBE_NOT_FOUND, "n-bk7"},
+      {"unknown_light_kind", ABBE_SCHEMA, "did you mean 'spot'"},
+      {"unknown_illuminant", ABBE_IO, ":7: the illuminant 'D6' is neither"},
+      {"unknown_table", ABBE_IO, "no_such_table.yaml"},
+      {"missing_camera", ABBE_SCHEMA, "'camera'"},
+      {"missing_eye", ABBE_SCHEMA, "'eye'"},
+      {"missing_radius", ABBE_SCHEMA, "'radius'"},
+      {"missing_kind", ABBE_SCHEMA, "'kind'"},
+      {"missing_intensity", ABBE_SCHEMA, "'intensity'"},
+      {"nan_radius", ABBE_SCHEMA, ".nan"},
+      {"nan_position", ABBE_SCHEMA, "nan"},
+      {"infinite_width", ABBE_SCHEMA, "width"},
+      {"zero_radius", ABBE_INVALID_ARGUMENT, "radius 0"},
+      {"negative_height", ABBE_INVALID_ARGUMENT, "height -1"},
+      {"zero_scale", ABBE_SCHEMA, "'scale'"},
+      {"zero_axis", ABBE_SCHEMA, "'axis'"},
+      {"two_steps_in_one", ABBE_SCHEMA, "one of translate, rotate, scale, look"},
+      {"wrong_kind_of_value", ABBE_SCHEMA, "'width: wide'"},
+      {"list_for_number", ABBE_SCHEMA, "'radius'"},
+      {"short_vector", ABBE_SCHEMA, "3 numbers"},
+      {"zero_size", ABBE_SCHEMA, "'size"},
+      {"fractional_size", ABBE_SCHEMA, "whole numbers"},
+      {"huge_size", ABBE_SCHEMA, "'size"},
+      {"eye_is_target", ABBE_SCHEMA, "same point"},
+      {"up_along_view", ABBE_SCHEMA, "'up'"},
+      {"material_and_reflectance", ABBE_SCHEMA, "has both"},
+      {"no_substance", ABBE_SCHEMA, "has neither"},
+      {"shape_and_mesh", ABBE_SCHEMA, "has both"},
+      {"reflectance_above_one", ABBE_SCHEMA, "'reflectance"},
+      {"irradiance_of_a_point", ABBE_SCHEMA, "'intensity' (W/sr)"},
+      {"cone_of_a_point", ABBE_SCHEMA, "a spot light has"},
+      {"spot_without_cone", ABBE_SCHEMA, "'cone'"},
+      {"spot_without_direction", ABBE_SCHEMA, "'direction'"},
+      {"zero_direction", ABBE_SCHEMA, "direction is zero"},
+      {"soft_beyond_cone", ABBE_SCHEMA, "'soft"},
+      {"dark_light", ABBE_SCHEMA, "must shine"},
+      {"disk_without_radius", ABBE_SCHEMA, "'radius'"},
+      {"disk_of_no_size", ABBE_SCHEMA, "'radius' is zero"},
+      {"disk_without_direction", ABBE_SCHEMA, "'direction'"},
+      {"intensity_of_a_disk", ABBE_SCHEMA, "'radiance' (W/(m2 sr))"},
+      {"cone_of_a_disk", ABBE_SCHEMA, "a disk light has no 'cone'"},
+      {"radiance_of_a_spot", ABBE_SCHEMA, "'intensity' (W/sr)"},
+      {"radius_of_a_point", ABBE_SCHEMA, "a disk light has"},
+      {"missing_mesh", ABBE_IO, "no_such_mesh.obj"},
+      {"mesh_of_unknown_kind", ABBE_UNSUPPORTED, ".obj"},
+      {"open_mesh", ABBE_GEOMETRY, "5 open edges make 1 hole, the widest of 5 edges, "},
+      {"flat_refractor", ABBE_GEOMETRY, "no volume"},
+      {"subdivided_facets", ABBE_SCHEMA, "smooth"},
+      {"missing_texture", ABBE_IO, "no_such_wood.png"},
+      {"texture_without_uv", ABBE_SCHEMA, "texture coordinates"},
+      {"repeat_without_texture", ABBE_SCHEMA, "'repeat'"},
+      {"open_profile", ABBE_INVALID_ARGUMENT, "profile"},
+      {"profile_of_triples", ABBE_SCHEMA, "[r, z]"},
+      {"no_light", ABBE_SCHEMA, "has no light"},
+      {"no_receiver", ABBE_SCHEMA, "has no receiver"},
+      {"light_inside", ABBE_UNSUPPORTED, "inside the refractor 'ball'"},
+      {"light_inside_a_prism", ABBE_UNSUPPORTED, "inside the refractor"},
+      {"light_inside_a_mesh", ABBE_UNSUPPORTED, "inside the refractor"},
+      {"light_inside_a_file_of_millimetres", ABBE_UNSUPPORTED,
+       "so move it outside; 'stone' is 200 m wide, all other objects together 1 m: if its file is "
+       "in another unit, 'fit: METRES' gives it its size"},
+      {"flattened_blob", ABBE_SCHEMA, "leave out 'smooth: true'"},
+      {"flattened_floor", ABBE_SCHEMA, "'flatten' is for the mesh of a file that refracts"},
+      {"flattened_too_far", ABBE_SCHEMA, "'flatten: 0.5'"},
+      {"flattened_dent", ABBE_GEOMETRY, "the mesh is no convex solid yet: ("},
+      {"fit_to_nothing", ABBE_SCHEMA, "'fit' is the longest side"},
+      {"repaired_shape", ABBE_SCHEMA, "'repair' is for the mesh of a file"},
+      {"centre_of_two", ABBE_SCHEMA, "'centre'"},
+      {"disk_in_part", ABBE_UNSUPPORTED, "partly inside the refractor 'ball'"},
+      {"faint_light", ABBE_SCHEMA, "'intensity: 1e-40' is too faint"},
+      {"metal", ABBE_UNSUPPORTED, "the material 'foil' absorbs light within a wavelength"},
+      {"light_on_a_ball", ABBE_UNSUPPORTED, "on the surface of the refractor 'ball'"},
+      {"light_on_a_box", ABBE_UNSUPPORTED, "on the surface of the refractor 'ball'"},
+      {"camera_on_a_ball", ABBE_UNSUPPORTED, "eye is on the surface of the refractor 'ball'"},
+      {"camera_inside", ABBE_UNSUPPORTED, "camera's eye is inside"},
+      {"nothing_in_view", ABBE_UNSUPPORTED, "in the camera's view"},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    char path[512];
+    abbe_scene scene;
+    abbe_error error = {0};
+    snprintf(path, sizeof path, "%s/tests/bad/scene_%s.yaml", ABBE_SOURCE_DIR, bad[i].name);
+    const abbe_result result = abbe_scene_load(path, NULL, &scene, &error);
+    if (result != bad[i].result || error.code != result || !strstr(error.text, bad[i].says) ||
+        (!strstr(error.text, "scene_") && !strstr(error.text, "no_such")))
+      fail_msg("%s: code %d (not %d), '%s' (wants '%s')", bad[i].name, result, bad[i].result,
+               error.text, bad[i].says);
+    assert_null(scene.object);
+    assert_int_equal(abbe_scene_load(path, NULL, &scene, NULL), result);
+  }
+}
+
+/* The example of docs/scene-files.md, between its first pair of fences. */
+static void the_documented_scene_loads(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size;
+  assert_int_equal(
+      abbe_file_read(ABBE_SOURCE_DIR "/docs/scene-files.md", 1 << 20, &text, &size, NULL), ABBE_OK);
+  char *begin = strstr(text, "```yaml\n");
+  assert_non_null(begin);
+  begin += strlen("```yaml\n");
+  char *end = strstr(begin, "```");
+  assert_non_null(end);
+  assert_int_equal(abbe_file_write("t_documented.yaml", begin, (size_t)(end - begin), NULL),
+                   ABBE_OK);
+  free(text);
+  abbe_scene scene;
+  abbe_error error = {0};
+  if (abbe_scene_load("t_documented.yaml", NULL, &scene, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_string_equal(scene.object[0].material->name, "sapphire");
+  abbe_scene_free(&scene);
+  remove("t_documented.yaml");
+}
+
+static void a_missing_file_is_named(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_error error;
+  assert_int_equal(abbe_scene_load("no_such_scene.yaml", NULL, &scene, &error), ABBE_IO);
+  assert_non_null(strstr(error.text, "no_such_scene.yaml"));
+}
+
+/* Text says what its file says; without a file the name stands in the messages. */
+static void text_is_read_like_a_file(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  abbe_error error = {0};
+  abbe_scene parsed, loaded = load("prism");
+  const char *path = ABBE_SOURCE_DIR "/scenes/prism.yaml";
+  assert_int_equal(abbe_file_read(path, 1 << 20, &text, &size, NULL), ABBE_OK);
+  assert_int_equal(abbe_scene_parse(text, size, path, NULL, &parsed, &error), ABBE_OK);
+  assert_int_equal(parsed.object_count, loaded.object_count);
+  assert_string_equal(parsed.path, loaded.path);
+  assert_memory_equal(parsed.object[0].max, loaded.object[0].max, sizeof loaded.object[0].max);
+  abbe_scene_free(&parsed);
+  abbe_scene_free(&loaded);
+  free(text);
+  assert_int_equal(abbe_scene_parse("camera: 7\n", 10, "words", NULL, &parsed, &error),
+                   ABBE_SCHEMA);
+  assert_non_null(strstr(error.text, "words:1:"));
+  assert_null(parsed.object);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_shipped_scene_loads),
+      cmocka_unit_test(cornell_boxes_face_inwards_and_are_red_on_the_left),
+      cmocka_unit_test(the_spectrum_of_the_prism_falls_on_the_wall),
+      cmocka_unit_test(the_rainbow_falls_on_the_screen),
+      cmocka_unit_test(the_glass_stands_on_textured_wood),
+      cmocka_unit_test(options_choose_another_table),
+      cmocka_unit_test(bad_scenes_are_explained),
+      cmocka_unit_test(the_documented_scene_loads),
+      cmocka_unit_test(a_missing_file_is_named),
+      cmocka_unit_test(text_is_read_like_a_file),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

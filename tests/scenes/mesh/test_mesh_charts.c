@@ -1,0 +1,111 @@
+#include "scenes/mesh/mesh_charts.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/shapes/shape.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* Laws of every mesh: a face's corners lie in its chart's rectangle, and its normal within 60
+ * degrees of the rectangle's. */
+static void check_laws(const abbe_mesh *mesh, const abbe_mesh_charts *charts) {
+  for (size_t i = 0; i < mesh->face_count; i++) {
+    double n[3], across[3];
+    assert_true(charts->face[i] < charts->count);
+    const double *p = charts->parallelogram[charts->face[i]];
+    abbe_vector_cross(p + 3, p + 6, across);
+    assert_true(abbe_vector_normalise(across));
+    for (int c = 0; c < 3; c++) {
+      double from[3];
+      abbe_vector_subtract(mesh->position[mesh->face[i][c]], p, from);
+      for (int edge = 3; edge < 9; edge += 3) {
+        const double at = abbe_vector_dot(from, p + edge) / abbe_vector_dot(p + edge, p + edge);
+        assert_true(at > -1e-12 && at < 1 + 1e-12);
+      }
+    }
+    abbe_vector_triangle(mesh->position[mesh->face[i][0]], mesh->position[mesh->face[i][1]],
+                         mesh->position[mesh->face[i][2]], n);
+    assert_true(!abbe_vector_normalise(n) || abbe_vector_dot(n, across) > 0.5 - 1e-12);
+  }
+}
+
+static void a_box_has_a_chart_a_side(void **state) {
+  (void)state;
+  const double size[3] = {1, 2, 3};
+  abbe_mesh box;
+  abbe_mesh_charts charts;
+  assert_int_equal(abbe_shape_box(size, &box, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_charts_make(&box, &charts, NULL), ABBE_OK);
+  assert_int_equal(charts.count, 6);
+  double area = 0;
+  for (size_t c = 0; c < charts.count; c++) {
+    double across[3];
+    abbe_vector_cross(charts.parallelogram[c] + 3, charts.parallelogram[c] + 6, across);
+    area += abbe_vector_length(across);
+  }
+  assert_true(fabs(area - 2 * (1 * 2 + 2 * 3 + 3 * 1)) < 1e-12);
+  check_laws(&box, &charts);
+  abbe_mesh_charts_free(&charts);
+  abbe_mesh_free(&box);
+}
+
+/* Caps of 60 degrees around x leave bands around y, and those nothing around z but four corners. */
+static void curved_meshes_have_few(void **state) {
+  (void)state;
+  abbe_mesh mesh;
+  abbe_mesh_charts charts;
+  assert_int_equal(abbe_shape_sphere(1, 5, &mesh, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_charts_make(&mesh, &charts, NULL), ABBE_OK);
+  print_message("sphere: %zu charts\n", charts.count);
+  assert_in_range(charts.count, 6, 6);
+  check_laws(&mesh, &charts);
+  abbe_mesh_charts_free(&charts);
+  abbe_mesh_free(&mesh);
+  assert_int_equal(abbe_shape_ring(1, 0.3, 128, 64, &mesh, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_charts_make(&mesh, &charts, NULL), ABBE_OK);
+  print_message("ring: %zu charts\n", charts.count);
+  assert_in_range(charts.count, 8, 16);
+  check_laws(&mesh, &charts);
+  abbe_mesh_charts_free(&charts);
+  abbe_mesh_free(&mesh);
+}
+
+/* Split vertices hang together, what only lies side by side does not, and slivers are no charts. */
+static void what_hangs_together(void **state) {
+  (void)state;
+  static const double at[11][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                   {5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {7, 0, 0}, {8, 0, 0}};
+  static const uint32_t face[4][3] = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 9}};
+  abbe_mesh mesh;
+  abbe_mesh_charts charts;
+  assert_int_equal(abbe_mesh_make(11, 4, false, &mesh, NULL), ABBE_OK);
+  memcpy(mesh.position, at, sizeof at);
+  memcpy(mesh.face, face, sizeof face);
+  assert_int_equal(abbe_mesh_charts_make(&mesh, &charts, NULL), ABBE_OK);
+  assert_int_equal(charts.count, 2);
+  assert_int_equal(charts.face[0], charts.face[1]);
+  assert_int_not_equal(charts.face[0], charts.face[2]);
+  assert_true(charts.parallelogram[charts.face[2]][0] == 5);
+  abbe_mesh_charts_free(&charts);
+  mesh.face_count = 1;
+  mesh.face[0][1] = mesh.face[0][0];
+  assert_int_equal(abbe_mesh_charts_make(&mesh, &charts, NULL), ABBE_OK);
+  assert_int_equal(charts.count, 0);
+  abbe_mesh_charts_free(&charts);
+  abbe_mesh_free(&mesh);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_box_has_a_chart_a_side),
+      cmocka_unit_test(curved_meshes_have_few),
+      cmocka_unit_test(what_hangs_together),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,252 @@
+#include "tests/scenes/solids.h"
+
+#include "scenes/mesh/shells.h"
+#include "scenes/shapes/shape.h"
+
+#include <stdlib.h>
+
+static abbe_result find(const abbe_mesh *m, abbe_shells *out, abbe_error *error) {
+  abbe_topology t;
+  assert_int_equal(abbe_topology_make(m, &t, NULL), ABBE_OK);
+  const abbe_result result = abbe_shells_find(m, &t, out, error);
+  abbe_topology_free(&t);
+  return result;
+}
+
+static abbe_shells shells_of(const test_box *box, size_t count) {
+  abbe_shells s;
+  abbe_error error = {0};
+  abbe_mesh m = test_boxes(box, count);
+  if (find(&m, &s, &error) != ABBE_OK) fail_msg("%s", error.text);
+  abbe_mesh_free(&m);
+  return s;
+}
+
+static void one_shell_is_one_solid(void **state) {
+  (void)state;
+  const test_box box = {{0, 0, 0}, {1, 2, 3}, false};
+  abbe_shells s = shells_of(&box, 1);
+  assert_int_equal(s.count, 1);
+  assert_int_equal(s.solid_count, 1);
+  assert_int_equal(s.crossing_count + s.self_count + s.shell[0].depth, 0);
+  assert_near(s.shell[0].volume, 6, 1e-12);
+  abbe_shells_free(&s);
+  abbe_shells_free(&s);
+}
+
+/* A box, a hollow in it, a body in the hollow, and one beside them all. */
+static void shells_nest(void **state) {
+  (void)state;
+  const test_box box[4] = {{{0, 0, 0}, {9, 9, 9}, false},
+                           {{1, 1, 1}, {8, 8, 8}, true},
+                           {{2, 2, 2}, {3, 3, 3}, false},
+                           {{20, 0, 0}, {21, 1, 1}, false}};
+  abbe_shells s = shells_of(box, 4);
+  assert_int_equal(s.count, 4);
+  assert_int_equal(s.crossing_count, 0);
+  assert_int_equal(s.solid_count, 1);
+  for (uint32_t i = 0; i < 4; i++) assert_int_equal(s.shell[i].depth, i == 3 ? 0 : i);
+  assert_near(s.shell[1].volume, -343, 1e-9);
+  assert_int_equal(s.around[s.shell[1].first], 0);
+  abbe_shells_free(&s);
+}
+
+/* Whichever way round the shells are: that is what depths are asked for. */
+static void nesting_does_not_hang_on_orientation(void **state) {
+  (void)state;
+  for (int turned = 0; turned < 4; turned++) {
+    const test_box box[2] = {{{0, 0, 0}, {9, 9, 9}, turned & 1},
+                             {{1, 1, 1}, {8, 8, 8}, turned & 2}};
+    abbe_shells s = shells_of(box, 2);
+    assert_int_equal(s.shell[0].depth, 0);
+    assert_int_equal(s.shell[1].depth, 1);
+    abbe_shells_free(&s);
+  }
+}
+
+static void what_crosses_is_told_apart_and_where(void **state) {
+  (void)state;
+  const test_box box[3] = {{{0, 0, 0}, {2, 2, 2}, false},
+                           {{1, 0.5, 0.7}, {4, 1.5, 1.5}, false},
+                           {{3, 0.1, 0.2}, {6, 1.9, 1.8}, false}};
+  abbe_shells s = shells_of(box, 3);
+  assert_int_equal(s.crossing_count, 2);
+  assert_int_equal(s.flush_count, 0);
+  assert_int_equal(s.crossing[0][0], 0);
+  assert_int_equal(s.crossing[0][1], 1);
+  assert_int_equal(s.crossing[1][1], 2);
+  /* a chain needs two solids: the ends are one */
+  assert_int_equal(s.solid_count, 2);
+  assert_int_equal(s.shell[0].solid, s.shell[2].solid);
+  assert_true(s.shell[0].solid != s.shell[1].solid);
+  assert_near(s.place[0], fabs(s.place[0] - 2) < fabs(s.place[0] - 3) ? 2 : 3, 1e-9);
+  abbe_shells_free(&s);
+}
+
+/* The hollow belongs to the body around it; another body that reaches into it has none. */
+static void a_hollow_stays_with_its_body(void **state) {
+  (void)state;
+  const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
+                           {{2, 2, 2}, {7, 7, 7}, true},
+                           {{5, 3, 3.5}, {12, 6, 6}, false}};
+  abbe_shells s = shells_of(box, 3);
+  assert_int_equal(s.crossing_count, 2);
+  assert_int_equal(s.solid_count, 2);
+  assert_int_equal(s.shell[0].solid, s.shell[1].solid);
+  assert_true(s.shell[2].solid != s.shell[0].solid);
+  abbe_shells_free(&s);
+}
+
+static void hollows_that_cross_are_refused_with_the_place(void **state) {
+  (void)state;
+  const test_box box[3] = {{{0, 0, 0}, {9, 9, 9}, false},
+                           {{1, 1, 1}, {5, 5, 5}, true},
+                           {{4, 2, 2.5}, {8, 4, 4.5}, true}};
+  abbe_mesh m = test_boxes(box, 3);
+  abbe_shells s;
+  abbe_error error = {0};
+  assert_int_equal(find(&m, &s, &error), ABBE_GEOMETRY);
+  assert_contains(error.text, "hollows of the mesh cross");
+  assert_contains(error.text, "at (5, ");
+  assert_null(s.shell);
+  abbe_mesh_free(&m);
+}
+
+static void faces_on_one_another_are_no_crossing_but_told(void **state) {
+  (void)state;
+  /* back to back, cut into other triangles; and flush below */
+  const test_box stacked[2] = {{{0, 0, 0}, {2, 2, 1}, false},
+                               {{0.5, 0.6, 1}, {1.4, 1.5, 2}, false}};
+  abbe_shells s = shells_of(stacked, 2);
+  assert_true(s.flush_count > 0);
+  assert_int_equal(s.solid_count, 2);
+  abbe_shells_free(&s);
+  /* beside one another in one plane, a gap between them */
+  const test_box apart[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1.1, 0, 0}, {2, 1, 1}, false}};
+  s = shells_of(apart, 2);
+  assert_int_equal(s.flush_count + s.crossing_count, 0);
+  assert_int_equal(s.solid_count, 1);
+  abbe_shells_free(&s);
+  /* along an edge only */
+  const test_box edge[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 1, 0}, {2, 2, 1}, false}};
+  s = shells_of(edge, 2);
+  assert_int_equal(s.count, 2);
+  assert_int_equal(s.flush_count + s.crossing_count, 0);
+  assert_int_equal(s.solid_count, 1);
+  abbe_shells_free(&s);
+}
+
+static void a_surface_that_crosses_itself_is_told(void **state) {
+  (void)state;
+  abbe_mesh m;
+  abbe_shells s;
+  assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
+  assert_int_equal(find(&m, &s, NULL), ABBE_OK);
+  assert_int_equal(s.self_count, 0);
+  abbe_shells_free(&s);
+  /* the tube is pulled through the other side of the ring */
+  for (size_t v = 0; v < m.vertex_count; v++)
+    if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
+  assert_int_equal(find(&m, &s, NULL), ABBE_OK);
+  assert_true(s.self_count > 0);
+  assert_true(s.self_place[0] < -0.5);
+  abbe_shells_free(&s);
+  abbe_mesh_free(&m);
+}
+
+/* A grid of balls, of which each ninth crosses the next: as many rays and pairs as a tree saves. */
+static void many_shells_are_told_apart(void **state) {
+  (void)state;
+  enum { COUNT = 300 };
+  test_box *box = calloc(COUNT, sizeof *box);
+  assert_non_null(box);
+  for (int i = 0; i < COUNT; i++) {
+    const double at[3] = {3.0 * (i % 10), 3.0 * (i / 10 % 10), 3.0 * (i / 100)};
+    for (int k = 0; k < 3; k++) {
+      box[i].min[k] = at[k];
+      box[i].max[k] = at[k] + 1 + 0.01 * k;
+    }
+    if (i % 100 == 9) box[i].min[0] -= 2.5, box[i].min[1] += 0.1, box[i].min[2] += 0.1;
+  }
+  abbe_shells s = shells_of(box, COUNT);
+  assert_int_equal(s.count, COUNT);
+  assert_int_equal(s.crossing_count, 3);
+  assert_int_equal(s.solid_count, 2);
+  for (size_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, 0);
+  abbe_shells_free(&s);
+  free(box);
+}
+
+/* Boxes each in the next larger one. */
+static abbe_mesh nested_boxes(size_t count) {
+  test_box *box = calloc(count, sizeof *box);
+  assert_non_null(box);
+  for (size_t i = 0; i < count; i++)
+    for (int k = 0; k < 3; k++) {
+      box[i].max[k] = 1 + 0.01 * (double)i;
+      box[i].min[k] = -box[i].max[k];
+    }
+  abbe_mesh m = test_boxes(box, count);
+  free(box);
+  return m;
+}
+
+/* Every ray meets all of them: looking for one after another from the start would take minutes. */
+static void deep_nests_take_the_square_of_their_depth(void **state) {
+  (void)state;
+  enum { COUNT = 200 };
+  abbe_mesh m = nested_boxes(COUNT);
+  abbe_shells s;
+  assert_int_equal(find(&m, &s, NULL), ABBE_OK);
+  for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(s.shell[i].depth, COUNT - 1 - i);
+  abbe_shells_free(&s);
+  abbe_mesh_free(&m);
+}
+
+/* Bars along x, all through bars along y: each pair is found, and those alike are one solid. */
+static void all_through_all_is_two_solids(void **state) {
+  (void)state;
+  enum { COUNT = 60 };
+  test_box box[2 * COUNT];
+  for (int i = 0; i < 2 * COUNT; i++) {
+    const int along = i < COUNT ? 0 : 1;
+    box[i] = (test_box){{-1, -1, 0.01 * along}, {3 * COUNT, 3 * COUNT, 1 + 0.01 * along}, false};
+    box[i].min[1 - along] = 3.0 * (i % COUNT) + 0.1;
+    box[i].max[1 - along] = 3.0 * (i % COUNT) + 1;
+  }
+  abbe_shells s = shells_of(box, 2 * COUNT);
+  assert_int_equal(s.crossing_count, COUNT * COUNT);
+  assert_int_equal(s.solid_count, 2);
+  for (size_t i = 0; i < 2 * COUNT; i++)
+    assert_int_equal(s.shell[i].solid == s.shell[0].solid, i < COUNT);
+  abbe_shells_free(&s);
+}
+
+static void what_would_take_too_long_is_refused(void **state) {
+  (void)state;
+  abbe_mesh m = nested_boxes(1200);
+  abbe_shells s;
+  abbe_error error = {0};
+  assert_int_equal(find(&m, &s, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "the 1200 parts of the mesh, of 14400 faces, lie in and through");
+  assert_null(s.shell);
+  abbe_mesh_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(one_shell_is_one_solid),
+      cmocka_unit_test(shells_nest),
+      cmocka_unit_test(nesting_does_not_hang_on_orientation),
+      cmocka_unit_test(what_crosses_is_told_apart_and_where),
+      cmocka_unit_test(a_hollow_stays_with_its_body),
+      cmocka_unit_test(hollows_that_cross_are_refused_with_the_place),
+      cmocka_unit_test(faces_on_one_another_are_no_crossing_but_told),
+      cmocka_unit_test(a_surface_that_crosses_itself_is_told),
+      cmocka_unit_test(many_shells_are_told_apart),
+      cmocka_unit_test(deep_nests_take_the_square_of_their_depth),
+      cmocka_unit_test(all_through_all_is_two_solids),
+      cmocka_unit_test(what_would_take_too_long_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

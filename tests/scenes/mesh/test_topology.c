@@ -1,0 +1,145 @@
+#include "tests/scenes/solids.h"
+
+#include "scenes/geometry/transform.h"
+#include "scenes/mesh/topology.h"
+#include "scenes/shapes/shape.h"
+
+static void a_split_box_has_eight_points_and_eighteen_edges(void **state) {
+  (void)state;
+  const double size[3] = {1, 2, 3};
+  abbe_mesh box;
+  abbe_topology t;
+  assert_int_equal(abbe_shape_box(size, &box, NULL), ABBE_OK);
+  assert_int_equal(abbe_topology_make(&box, &t, NULL), ABBE_OK);
+  assert_int_equal(box.vertex_count, 24);
+  assert_int_equal(t.point_count, 8);
+  assert_int_equal(t.edge_count, 18);
+  assert_int_equal(t.shell_count, 1);
+  for (size_t e = 0; e < t.edge_count; e++)
+    assert_true(t.edge[e].along == 1 && t.edge[e].against == 1);
+  abbe_topology_free(&t);
+  abbe_topology_free(&t);
+  abbe_mesh_free(&box);
+}
+
+static void points_join_within_the_tolerance_only(void **state) {
+  (void)state;
+  abbe_mesh m;
+  abbe_topology t;
+  assert_int_equal(abbe_mesh_make(6, 2, false, &m, NULL), ABBE_OK);
+  const double at[6][3] = {{0, 0, 0},     {1, 0, 0},      {0, 1, 0},
+                           {0, 0, 3e-10}, {1, 0, -3e-10}, {0, 1, 1e-7}};
+  for (size_t v = 0; v < 6; v++)
+    for (int k = 0; k < 3; k++) m.position[v][k] = at[v][k];
+  for (uint32_t v = 0; v < 6; v++) m.face[v / 3][v % 3] = v;
+  assert_int_equal(abbe_topology_make(&m, &t, NULL), ABBE_OK);
+  assert_int_equal(t.point_count, 4);
+  assert_int_equal(t.edge_count, 5);
+  abbe_topology_free(&t);
+  abbe_mesh_free(&m);
+}
+
+static void a_large_mesh_is_whole(void **state) {
+  (void)state;
+  abbe_mesh m;
+  abbe_topology t;
+  assert_int_equal(abbe_shape_ring(1, 0.3, 256, 128, &m, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  assert_int_equal(abbe_topology_make(&m, &t, NULL), ABBE_OK);
+  assert_int_equal(t.point_count, 256 * 128);
+  assert_int_equal(t.edge_count, 3 * 256 * 128);
+  abbe_topology_free(&t);
+  abbe_mesh_free(&m);
+}
+
+static void bad_indices_and_positions_are_refused(void **state) {
+  (void)state;
+  abbe_mesh m;
+  abbe_topology t;
+  abbe_error error;
+  assert_int_equal(abbe_shape_rectangle(1, 1, &m, NULL), ABBE_OK);
+  m.face[1][2] = 4;
+  assert_int_equal(abbe_topology_make(&m, &t, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "vertex 4 of 4"));
+  m.face[1][2] = 3;
+  m.position[2][1] = NAN;
+  assert_int_equal(abbe_topology_make(&m, &t, &error), ABBE_INVALID_ARGUMENT);
+  m.position[2][1] = 1e300;
+  assert_int_equal(abbe_topology_make(&m, &t, &error), ABBE_INVALID_ARGUMENT);
+  abbe_mesh_free(&m);
+}
+
+static size_t count_touching(const abbe_topology *t) {
+  size_t count = 0;
+  for (size_t e = 0; e < t->edge_count; e++) count += t->edge[e].touches;
+  return count;
+}
+
+/* Two boxes along an edge, in any orientation: the edge's four faces pair up around the bodies. */
+static void bodies_that_touch_along_an_edge_are_two(void **state) {
+  (void)state;
+  const double turn[3] = {0.3, -0.8, 0.5};
+  for (int i = 0; i < 8; i++) {
+    const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false},
+                             {{1, i & 1 ? -1 : 1, 0}, {2, i & 1 ? 0 : 2, 1}, false}};
+    double matrix[16];
+    abbe_topology t;
+    abbe_mesh m = test_boxes(box, 2);
+    abbe_transform_rotate(0.8 * i, turn, matrix);
+    assert_int_equal(abbe_mesh_transform(&m, matrix, NULL), ABBE_OK);
+    assert_int_equal(abbe_topology_make(&m, &t, NULL), ABBE_OK);
+    assert_int_equal(count_touching(&t), 1);
+    assert_int_equal(t.shell_count, 2);
+    for (size_t f = 0; f < 24; f++) assert_int_equal(t.shell[f], f / 12);
+    abbe_topology_free(&t);
+    abbe_mesh_free(&m);
+  }
+}
+
+/* Back to back, by a whole side; and one corner on another. */
+static void what_touches_otherwise_is_two_as_well(void **state) {
+  (void)state;
+  abbe_topology t;
+  const test_box side[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
+  abbe_mesh m = test_boxes(side, 2);
+  assert_int_equal(abbe_topology_make(&m, &t, NULL), ABBE_OK);
+  assert_int_equal(t.shell_count, 2);
+  assert_int_equal(count_touching(&t), 4 + 1); /* and the diagonal, which both cut alike */
+  abbe_topology_free(&t);
+  abbe_mesh_free(&m);
+  const test_box corner[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 1, 1}, {2, 2, 2}, false}};
+  m = test_boxes(corner, 2);
+  assert_int_equal(abbe_topology_make(&m, &t, NULL), ABBE_OK);
+  assert_int_equal(t.point_count, 15);
+  assert_int_equal(t.shell_count, 2);
+  abbe_topology_free(&t);
+  abbe_mesh_free(&m);
+}
+
+/* A fin on an edge; and one of two boxes inside out: nothing pairs up. */
+static void what_does_not_pair_up_hangs_together(void **state) {
+  (void)state;
+  abbe_topology t;
+  const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 1, 0}, {2, 2, 1}, true}};
+  abbe_mesh m = test_boxes(box, 2);
+  m.face[12][0] = 6, m.face[12][1] = 7; /* from the edge x = y = 1 to a corner */
+  m.face_count = 13;
+  assert_int_equal(abbe_topology_make(&m, &t, NULL), ABBE_OK);
+  assert_int_equal(count_touching(&t), 0);
+  assert_int_equal(t.shell_count, 1);
+  abbe_topology_free(&t);
+  abbe_mesh_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_split_box_has_eight_points_and_eighteen_edges),
+      cmocka_unit_test(points_join_within_the_tolerance_only),
+      cmocka_unit_test(a_large_mesh_is_whole),
+      cmocka_unit_test(bodies_that_touch_along_an_edge_are_two),
+      cmocka_unit_test(what_touches_otherwise_is_two_as_well),
+      cmocka_unit_test(what_does_not_pair_up_hangs_together),
+      cmocka_unit_test(bad_indices_and_positions_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,82 @@
+/* scene_text.h: scenes for tests: from a few lines of text with a table of made-up glasses beside
+ * them, or shipped ones by name. What is loaded is plain data that a test may change.
+ */
+#ifndef ABBE_TESTS_SCENES_SCENE_TEXT_H
+#define ABBE_TESTS_SCENES_SCENE_TEXT_H
+
+#include "tests/check.h"
+
+#include "base/file.h"
+#include "scenes/import/scene_file.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+/* Clear and constant, dispersive, also of a high index, air's, dispersive and absorbing below
+ * 500 nm, constant and absorbing, and two known over a part of the range only. */
+#define GLASSES                                                                                    \
+  "materials:\n"                                                                                   \
+  "- {name: flat, model: constant, coefficients: [1.5], source: made up}\n"                        \
+  "- {name: crown, model: cauchy, coefficients: [1.5, 0.006], range_nm: [300, 2500],\n"            \
+  "   source: made up}\n"                                                                          \
+  "- {name: dense, model: cauchy, coefficients: [2.4, 0.006], range_nm: [300, 2500],\n"            \
+  "   source: made up}\n"                                                                          \
+  "- {name: air, model: constant, coefficients: [1], source: made up}\n"                           \
+  "- {name: murk, model: cauchy, coefficients: [1.5, 0.006], range_nm: [300, 2500], source: "      \
+  "made up,\n   absorption: {attenuation_per_m: [[400, 20], [500, 0], [700, 0]]}}\n"               \
+  "- {name: smoke, model: constant, coefficients: [1.5], source: made up,\n"                       \
+  "   absorption: {attenuation_per_m: [[400, 20], [700, 5]]}}\n"                                   \
+  "- {name: narrow, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 700],\n"            \
+  "   source: made up}\n"                                                                          \
+  "- {name: loose, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 700],\n"             \
+  "   extrapolate: true, source: made up}\n"
+
+#define CAMERA "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
+#define POINT_LIGHT                                                                                \
+  "lights:\n- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
+#define SUN "lights:\n- {name: sun, kind: directional, direction: [0.1, 0.2, -1], irradiance: 1}\n"
+#define FLOOR "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
+#define BALL(material)                                                                             \
+  "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0, 0, 0.2]}], " \
+  "material: " material "}\n"
+#define BRICK(material)                                                                            \
+  "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0.2, 0, "         \
+  "0.2]}], material: " material "}\n"
+#define RING(material)                                                                             \
+  "- {name: ring, shape: ring, major: 0.08, minor: 0.02, transform: [{translate: [0, 0, 0.2]}], "  \
+  "material: " material "}\n"
+/* A receiver that is no rectangle. */
+#define HILL                                                                                       \
+  "- {name: hill, shape: sphere, radius: 0.05, transform: [{translate: [0.5, 0.5, 0]}], "          \
+  "reflectance: 0.5}\n"
+
+static inline void load_file(const char *path, abbe_scene *scene) {
+  abbe_error error = {0};
+  abbe_result result = abbe_scene_load(path, NULL, scene, &error);
+  if (result != ABBE_OK) print_error("%s\n", error.text);
+  assert_int_equal(result, ABBE_OK);
+}
+
+static inline void load_shipped(const char *name, abbe_scene *scene) {
+  char path[512];
+  snprintf(path, sizeof path, ABBE_SOURCE_DIR "/scenes/%s.yaml", name);
+  load_file(path, scene);
+}
+
+static inline void load_text(const char *text, abbe_scene *scene) {
+  char folder[] = "/tmp/abbe-test-scene-XXXXXX", table[64], path[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(table, sizeof table, "%s/glass.yaml", folder);
+  snprintf(path, sizeof path, "%s/scene.yaml", folder);
+  assert_int_equal(abbe_file_write(table, GLASSES, strlen(GLASSES), NULL), ABBE_OK);
+  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  abbe_error error = {0};
+  abbe_result result = abbe_scene_load(path, NULL, scene, &error);
+  unlink(table);
+  unlink(path);
+  rmdir(folder);
+  if (result != ABBE_OK) print_error("%s\n", error.text);
+  assert_int_equal(result, ABBE_OK);
+}
+
+#endif

@@ -1,0 +1,202 @@
+#include "scenes/shapes/shape.h"
+
+#include "scenes/geometry/vector.h"
+#include "scenes/shapes/convex.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define PI 3.14159265358979323846
+
+static bool is_convex(const abbe_mesh *mesh, size_t most, double (*plane)[4], size_t *count) {
+  abbe_convex found;
+  assert_int_equal(abbe_convex_find(mesh, most, plane, NULL, &found, NULL), ABBE_OK);
+  *count = found.planes;
+  return found.verdict == ABBE_CONVEX_SOLID;
+}
+
+static abbe_mesh_report assert_closed(const abbe_mesh *mesh) {
+  abbe_mesh_report report;
+  assert_int_equal(abbe_mesh_check(mesh, &report, NULL), ABBE_OK);
+  assert_int_equal(report.open_edges, 0);
+  assert_int_equal(report.crowded_edges, 0);
+  assert_int_equal(report.flipped_edges, 0);
+  assert_int_equal(report.degenerate_faces, 0);
+  assert_int_equal(report.shells, 1);
+  assert_true(report.volume > 0);
+  for (size_t f = 0; f < mesh->face_count; f++) {
+    double n[3];
+    abbe_vector_triangle(mesh->position[mesh->face[f][0]], mesh->position[mesh->face[f][1]],
+                         mesh->position[mesh->face[f][2]], n);
+    abbe_vector_normalise(n);
+    for (int k = 0; k < 3; k++) {
+      const double *normal = mesh->normal[mesh->face[f][k]];
+      assert_true(fabs(abbe_vector_length(normal) - 1) < 1e-12);
+      assert_true(abbe_vector_dot(n, normal) > 0.7);
+    }
+  }
+  return report;
+}
+
+static void sphere_has_the_faces_and_nearly_the_volume(void **state) {
+  (void)state;
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_sphere(0.05, 4, &m, NULL), ABBE_OK);
+  assert_int_equal(m.face_count, 5120);
+  const abbe_mesh_report r = assert_closed(&m);
+  assert_true(fabs(r.volume / (4.0 / 3.0 * PI * 0.05 * 0.05 * 0.05) - 1) < 0.005);
+  for (size_t v = 0; v < m.vertex_count; v++) {
+    assert_true(fabs(abbe_vector_length(m.position[v]) - 0.05) < 1e-15);
+    assert_true(fabs(abbe_vector_dot(m.position[v], m.normal[v]) - 0.05) < 1e-15);
+  }
+  abbe_mesh_free(&m);
+}
+
+static void ring_is_the_thesis_ring(void **state) {
+  (void)state;
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_ring(0.04, 0.01, 256, 128, &m, NULL), ABBE_OK);
+  assert_int_equal(m.face_count, 65536);
+  const abbe_mesh_report r = assert_closed(&m);
+  assert_true(fabs(r.volume / (2 * PI * PI * 0.04 * 0.01 * 0.01) - 1) < 0.002);
+  abbe_mesh_free(&m);
+}
+
+static void gem_is_convex_with_nineteen_planes(void **state) {
+  (void)state;
+  abbe_mesh m;
+  double plane[32][4];
+  size_t count = 0;
+  assert_int_equal(abbe_shape_gem(6, 0.05, 0.028, 0.016, 0.043, &m, NULL), ABBE_OK);
+  assert_int_equal(m.face_count, 24);
+  assert_closed(&m);
+  assert_true(is_convex(&m, 32, plane, &count));
+  assert_int_equal(count, 19);
+  abbe_mesh_free(&m);
+}
+
+static void prism_has_its_apex_angle(void **state) {
+  (void)state;
+  abbe_mesh m;
+  double plane[8][4];
+  size_t count = 0;
+  assert_int_equal(abbe_shape_prism(PI / 3, 0.05, 0.1, &m, NULL), ABBE_OK);
+  const abbe_mesh_report r = assert_closed(&m);
+  assert_true(fabs(r.volume - 0.05 * 0.05 * sqrt(3) / 4 * 0.1) < 1e-12);
+  assert_true(fabs(r.max[2] - 0.05 * sqrt(3) / 3) < 1e-12);
+  assert_true(is_convex(&m, 8, plane, &count));
+  assert_int_equal(count, 5);
+  double apex = 0;
+  for (size_t i = 0; i < count; i++)
+    for (size_t j = 0; j < i; j++)
+      if (plane[i][2] > 0.1 && plane[j][2] > 0.1)
+        apex = PI - acos(abbe_vector_dot(plane[i], plane[j]));
+  assert_true(fabs(apex - PI / 3) < 1e-9);
+  abbe_mesh_free(&m);
+}
+
+static void box_and_rectangle_face_outwards(void **state) {
+  (void)state;
+  const double size[3] = {1, 2, 3};
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
+  assert_true(fabs(assert_closed(&m).volume - 6) < 1e-12);
+  assert_non_null(m.uv);
+  abbe_mesh_free(&m);
+  assert_int_equal(abbe_shape_rectangle(2, 3, &m, NULL), ABBE_OK);
+  double n[3];
+  abbe_vector_triangle(m.position[0], m.position[1], m.position[2], n);
+  assert_true(n[2] > 0 && m.normal[3][2] == 1 && m.uv[2][0] == 1 && m.uv[2][1] == 1);
+  abbe_mesh_free(&m);
+}
+
+static void lathe_of_a_cylinder_keeps_its_rims_sharp(void **state) {
+  (void)state;
+  const double profile[4][2] = {{0, 0}, {0.1, 0}, {0.1, 0.3}, {0, 0.3}};
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_lathe(profile, 4, 64, &m, NULL), ABBE_OK);
+  assert_int_equal(m.face_count, 2 * 64 * 2);
+  const abbe_mesh_report r = assert_closed(&m);
+  assert_true(fabs(r.volume / (PI * 0.01 * 0.3) - 1) < 0.002);
+  for (size_t v = 0; v < m.vertex_count; v++)
+    assert_true(fabs(m.normal[v][2]) < 1e-12 || fabs(fabs(m.normal[v][2]) - 1) < 1e-12);
+  abbe_mesh_free(&m);
+}
+
+static void lathe_of_an_arc_is_smooth(void **state) {
+  (void)state;
+  double profile[33][2];
+  for (int i = 0; i < 33; i++) {
+    profile[i][0] = i == 0 || i == 32 ? 0 : sin(PI * i / 32);
+    profile[i][1] = -cos(PI * i / 32);
+  }
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_lathe((const double(*)[2])profile, 33, 48, &m, NULL), ABBE_OK);
+  assert_closed(&m);
+  for (size_t v = 0; v < m.vertex_count; v++)
+    assert_true(abbe_vector_dot(m.normal[v], m.position[v]) > 0.9999);
+  abbe_mesh_free(&m);
+}
+
+static void rounding_a_profile_cuts_corners_and_keeps_ends(void **state) {
+  (void)state;
+  const double profile[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  double(*out)[2];
+  size_t count;
+  assert_int_equal(abbe_shape_round_profile(profile, 4, 2, &out, &count, NULL), ABBE_OK);
+  assert_int_equal(count, 10);
+  assert_true(out[0][0] == 0 && out[0][1] == 0 && out[9][0] == 0 && out[9][1] == 1);
+  for (size_t i = 1; i + 1 < count; i++) assert_true(out[i][0] > 0 && out[i][0] <= 1);
+  free(out);
+  assert_int_equal(abbe_shape_round_profile(profile, 4, 12, &out, &count, NULL),
+                   ABBE_INVALID_ARGUMENT);
+  assert_null(out);
+}
+
+static void impossible_parameters_are_refused(void **state) {
+  (void)state;
+  abbe_mesh m;
+  abbe_error error;
+  const double flat[3] = {1, 0, 1}, cut[3][2] = {{0, 0}, {-1, 0}, {0, 1}};
+  const double open[3][2] = {{0, 0}, {1, 0}, {1, 1}},
+               twice[4][2] = {{0, 0}, {1, 0}, {1, 0}, {0, 1}};
+  assert_int_equal(abbe_shape_sphere(0, 2, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_sphere(NAN, 2, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_sphere(1, 10, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_ring(1, 1, 8, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_ring(1, 0.5, 2, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_ring(1, INFINITY, 8, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_gem(2, 1, 0.5, 1, 1, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_gem(6, 1, 1.5, 1, 1, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_gem(6, 1, 0.5, 1, -1, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_prism(PI, 1, 1, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_prism(1, 1, 0, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_box(flat, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_rectangle(1, -1, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_lathe(cut, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_lathe(open, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_lathe(twice, 4, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_null(m.face);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sphere_has_the_faces_and_nearly_the_volume),
+      cmocka_unit_test(ring_is_the_thesis_ring),
+      cmocka_unit_test(gem_is_convex_with_nineteen_planes),
+      cmocka_unit_test(prism_has_its_apex_angle),
+      cmocka_unit_test(box_and_rectangle_face_outwards),
+      cmocka_unit_test(lathe_of_a_cylinder_keeps_its_rims_sharp),
+      cmocka_unit_test(lathe_of_an_arc_is_smooth),
+      cmocka_unit_test(rounding_a_profile_cuts_corners_and_keeps_ends),
+      cmocka_unit_test(impossible_parameters_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

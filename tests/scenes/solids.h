@@ -1,0 +1,37 @@
+/* solids.h: meshes for tests: boxes in one mesh, one vertex a corner, and whatever is done to them.
+ */
+#ifndef ABBE_TESTS_SCENES_SOLIDS_H
+#define ABBE_TESTS_SCENES_SOLIDS_H
+
+#include "tests/check.h"
+
+#include "scenes/mesh/mesh.h"
+
+#include <stdbool.h>
+
+typedef struct test_box {
+  double min[3], max[3];
+  bool inwards;
+} test_box;
+
+/* Faces of a box with corners numbered by the bits of their number: x 4, y 2, z 1. */
+static const uint32_t test_box_face[12][3] = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5},
+                                              {0, 4, 5}, {0, 5, 1}, {2, 3, 7}, {2, 7, 6},
+                                              {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+
+static inline abbe_mesh test_boxes(const test_box *box, size_t count) {
+  abbe_mesh m;
+  assert_int_equal(abbe_mesh_make(8 * count, 12 * count, false, &m, NULL), ABBE_OK);
+  for (size_t i = 0; i < count; i++) {
+    for (size_t v = 0; v < 8; v++)
+      for (size_t k = 0; k < 3; k++)
+        m.position[8 * i + v][k] = v >> (2 - k) & 1 ? box[i].max[k] : box[i].min[k];
+    for (size_t f = 0; f < 12; f++)
+      for (size_t k = 0; k < 3; k++)
+        m.face[12 * i + f][k] = (uint32_t)(8 * i) + test_box_face[f][box[i].inwards ? 2 - k : k];
+  }
+  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_SMOOTH, NULL), ABBE_OK);
+  return m;
+}
+
+#endif

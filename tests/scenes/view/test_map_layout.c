@@ -1,0 +1,290 @@
+/* Map layouts: places to texels and back, areas that add up, attributes that give back every bit.
+ */
+#include "tests/check.h"
+
+#include "scenes/geometry/transform.h"
+#include "scenes/view/map_layout.h"
+
+#include <locale.h>
+#include <stdlib.h>
+
+static const double tolerance = 1e-12;
+
+/* A slanted view, its axes warped by known smooth curves: x squared-ish, y the other way. */
+static abbe_map_layout slanted(bool orthographic) {
+  static const double origin[3] = {1, 2, 3}, forward[3] = {0.3, -0.5, -0.8}, up[3] = {0.1, 0.2, 1};
+  static const double window[4] = {-0.7, 0.4, -0.2, 0.9};
+  abbe_view view;
+  abbe_map_layout layout;
+  abbe_view_look(origin, forward, up, orthographic, &view);
+  memcpy(view.window, window, sizeof window);
+  view.near = 0.5;
+  view.far = 9;
+  abbe_map_layout_make(&view, &layout);
+  for (int k = 0; k <= ABBE_MAP_LAYOUT_STEPS; k++) {
+    double s = (double)k / ABBE_MAP_LAYOUT_STEPS;
+    layout.knot[0][k] = 0.3 * s + 0.7 * s * s;
+    layout.knot[1][k] = 1.5 * s - 0.5 * s * s;
+  }
+  layout.knot[0][ABBE_MAP_LAYOUT_STEPS] = layout.knot[1][ABBE_MAP_LAYOUT_STEPS] = 1;
+  return layout;
+}
+
+static void test_warp_and_unwarp_are_inverse(void **state) {
+  (void)state;
+  abbe_map_layout layout = slanted(false);
+  for (int i = 0; i <= 1000; i++)
+    for (int axis = 0; axis < 2; axis++) {
+      double window = i / 1000.0, texture = abbe_map_layout_warp(&layout, axis, window);
+      assert_near(abbe_map_layout_unwarp(&layout, axis, texture), window, tolerance);
+      /* Linear interpolation of a parabola misses it by h^2 / 8 times its curvature, at most. */
+      double s = window, curve = axis == 0 ? 0.3 * s + 0.7 * s * s : 1.5 * s - 0.5 * s * s;
+      assert_near(texture, curve, 1.4 / 8 / (128.0 * 128.0) + tolerance);
+    }
+  assert_near(abbe_map_layout_warp(&layout, 0, 2), 1, 0);
+  assert_near(abbe_map_layout_warp(&layout, 0, -1), 0, 0);
+  assert_near(abbe_map_layout_unwarp(&layout, 1, 2), 1, 0);
+  assert_near(abbe_map_layout_unwarp(&layout, 1, -1), 0, 0);
+}
+
+/* Window coordinates by the matrix, then by hand through the knots: the same as the projection. */
+static void test_a_place_projects_as_the_matrix_and_the_knots_say(void **state) {
+  (void)state;
+  for (int orthographic = 0; orthographic < 2; orthographic++) {
+    abbe_map_layout layout = slanted(orthographic);
+    double matrix[16], clip[3], uv[2];
+    abbe_map_layout_matrix(&layout, matrix);
+    int held = 0;
+    for (int i = 0; i < 8 * 8 * 8; i++) {
+      double p[3] = {0.4 + 0.4 * (i % 8), -0.8 + 0.5 * (i / 8 % 8), -2.5 + 0.6 * (i / 64)};
+      abbe_transform_point(matrix, p, clip);
+      bool in = fabs(clip[0]) <= 1 && fabs(clip[1]) <= 1;
+      assert_int_equal(abbe_map_layout_project(&layout, p, uv), in);
+      if (!in) continue;
+      held++;
+      for (int axis = 0; axis < 2; axis++) {
+        double s = (clip[axis] + 1) / 2 * ABBE_MAP_LAYOUT_STEPS;
+        int k = (int)s;
+        const double *knot = layout.knot[axis];
+        assert_near(uv[axis], knot[k] + (s - k) * (knot[k + 1] - knot[k]), 1e-9);
+      }
+    }
+    assert_true(held > 10);
+  }
+}
+
+static void test_rays_land_where_they_came_from(void **state) {
+  (void)state;
+  for (int orthographic = 0; orthographic < 2; orthographic++) {
+    abbe_map_layout layout = slanted(orthographic);
+    for (int i = 0; i < 81; i++) {
+      double uv[2] = {(i % 9 + 0.5) / 9, (i / 9 + 0.5) / 9}, back[2], o[3], d[3], p[3];
+      abbe_map_layout_ray(&layout, uv, o, d);
+      for (int k = 0; k < 3; k++) p[k] = o[k] + 1.7 * d[k];
+      assert_true(abbe_map_layout_project(&layout, p, back));
+      assert_near(back[0], uv[0], tolerance);
+      assert_near(back[1], uv[1], tolerance);
+      size_t column = 99, row = 99;
+      assert_true(abbe_map_layout_texel(&layout, 9, 9, p, &column, &row));
+      assert_int_equal(column, i % 9);
+      assert_int_equal(row, 8 - i / 9); /* rows count from the top */
+    }
+  }
+}
+
+static void test_what_the_map_does_not_hold(void **state) {
+  (void)state;
+  abbe_map_layout layout = slanted(false);
+  const abbe_view *v = &layout.view;
+  double p[3], uv[2] = {7, 7};
+  for (int k = 0; k < 3; k++) p[k] = v->origin[k] - v->forward[k];
+  assert_false(abbe_map_layout_project(&layout, p, uv)); /* behind */
+  for (int k = 0; k < 3; k++) p[k] = v->origin[k] + v->forward[k] + 0.41 * v->right[k];
+  assert_false(abbe_map_layout_project(&layout, p, uv)); /* right of the window */
+  assert_false(abbe_map_layout_project(&layout, v->origin, uv));
+  p[0] = NAN;
+  assert_false(abbe_map_layout_project(&layout, p, uv));
+  assert_near(uv[0], 7, 0);
+  /* The very corner is the last texel's. */
+  size_t column, row;
+  for (int k = 0; k < 3; k++)
+    p[k] = v->origin[k] + v->forward[k] + (0.4 - 1e-15) * v->right[k] + (0.9 - 1e-15) * v->up[k];
+  assert_true(abbe_map_layout_texel(&layout, 16, 8, p, &column, &row));
+  assert_int_equal(column, 15);
+  assert_int_equal(row, 0);
+}
+
+static void test_texel_areas_add_up_to_the_window(void **state) {
+  (void)state;
+  abbe_map_layout layout = slanted(true);
+  static const size_t sizes[3][2] = {{1, 1}, {37, 64}, {512, 3}};
+  for (int i = 0; i < 3; i++) {
+    double sum = 0;
+    for (size_t y = 0; y < sizes[i][1]; y++)
+      for (size_t x = 0; x < sizes[i][0]; x++) {
+        double area = abbe_map_layout_texel_area(&layout, sizes[i][0], sizes[i][1], x, y);
+        assert_true(area > 0);
+        sum += area;
+      }
+    assert_near(sum, 1.1 * 1.1, tolerance);
+  }
+  /* The x axis is finer to the right, the y axis to the bottom. */
+  assert_true(abbe_map_layout_texel_size(&layout, 0, 64, 0) >
+              abbe_map_layout_texel_size(&layout, 0, 64, 63));
+  assert_true(abbe_map_layout_texel_area(&layout, 64, 64, 0, 0) >
+              abbe_map_layout_texel_area(&layout, 64, 64, 0, 63));
+}
+
+static void make_image(abbe_image *out) {
+  static const char *const names[] = {"X", "Y", "Z"};
+  assert_int_equal(abbe_image_make(4, 4, 3, names, out, NULL), ABBE_OK);
+}
+
+/* Every bit comes back, whatever the host program's language writes for a decimal point. */
+static void test_attributes_give_back_every_bit(void **state) {
+  (void)state;
+  const char *host = setlocale(LC_ALL, "de_DE.UTF-8");
+  for (int orthographic = 0; orthographic < 2; orthographic++) {
+    abbe_image image;
+    abbe_map_layout layout = slanted(orthographic), back;
+    abbe_error error = {0};
+    make_image(&image);
+    layout.view.origin[0] = -1.0 / 3e-300;
+    assert_int_equal(abbe_map_layout_write(&layout, "lamp", &image, &error), ABBE_OK);
+    assert_string_equal(abbe_image_attribute_text(&image, "abbe:map_light"), "lamp");
+    assert_int_equal(abbe_map_layout_read(&image, "map.exr", &back, &error), ABBE_OK);
+    assert_int_equal(back.view.orthographic, orthographic);
+    assert_memory_equal(back.view.origin, layout.view.origin, sizeof back.view.origin);
+    assert_memory_equal(back.view.right, layout.view.right, sizeof back.view.right);
+    assert_memory_equal(back.view.up, layout.view.up, sizeof back.view.up);
+    assert_memory_equal(back.view.forward, layout.view.forward, sizeof back.view.forward);
+    assert_memory_equal(back.view.window, layout.view.window, sizeof back.view.window);
+    assert_true(back.view.near == 0.5 && back.view.far == 9);
+    assert_memory_equal(back.knot, layout.knot, sizeof back.knot);
+    abbe_image_free(&image);
+  }
+  if (host != NULL) setlocale(LC_ALL, "C");
+}
+
+static void test_sameness_is_of_texels(void **state) {
+  (void)state;
+  abbe_map_layout a = slanted(false), b = a;
+  assert_true(abbe_map_layout_same(&a, &b));
+  b.view.far *= 2; /* moves no texel */
+  assert_true(abbe_map_layout_same(&a, &b));
+  b.view.window[1] += 1e-12;
+  assert_true(abbe_map_layout_same(&a, &b));
+  b.view.window[1] += 1e-6;
+  assert_false(abbe_map_layout_same(&a, &b));
+  b = a;
+  b.knot[1][64] += 1e-6;
+  assert_false(abbe_map_layout_same(&a, &b));
+  b = a;
+  b.view.origin[2] += 1e-6;
+  assert_false(abbe_map_layout_same(&a, &b));
+  b = slanted(true);
+  assert_false(abbe_map_layout_same(&a, &b));
+}
+
+static void test_impossible_layouts_are_refused(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  for (int fault = 0; fault < 8; fault++) {
+    abbe_map_layout l = slanted(false);
+    const char *part = NULL;
+    switch (fault) {
+    case 0:
+      l.view.origin[1] = NAN;
+      part = "not finite";
+      break;
+    case 1:
+      l.view.up[0] += 0.1;
+      part = "right-angled";
+      break;
+    case 2:
+      for (int k = 0; k < 3; k++) l.view.right[k] *= -1;
+      part = "right-handed";
+      break;
+    case 3:
+      l.view.window[0] = l.view.window[1];
+      part = "empty window";
+      break;
+    case 4:
+      l.view.near = 0;
+      part = "empty range";
+      break;
+    case 5:
+      l.knot[0][5] = l.knot[0][6];
+      part = "along x";
+      break;
+    case 6:
+      l.knot[1][128] = 0.999999;
+      part = "along y";
+      break;
+    default:
+      l.knot[1][7] = NAN;
+      part = "along y";
+      break;
+    }
+    assert_int_equal(abbe_map_layout_check(&l, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, part);
+    abbe_image image;
+    make_image(&image);
+    assert_int_equal(abbe_map_layout_write(&l, NULL, &image, NULL), ABBE_INVALID_ARGUMENT);
+    assert_int_equal(image.attribute_count, 0);
+    abbe_image_free(&image);
+  }
+}
+
+static void refuse(const char *name, const char *text, abbe_result code, const char *part) {
+  abbe_image image;
+  abbe_error error = {0};
+  abbe_map_layout layout = slanted(false), none = {0};
+  make_image(&image);
+  assert_int_equal(abbe_map_layout_write(&layout, NULL, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, name, text, NULL), ABBE_OK);
+  assert_int_equal(abbe_map_layout_read(&image, "that.exr", &layout, &error), code);
+  assert_contains(error.text, part);
+  assert_contains(error.text, "that.exr");
+  assert_memory_equal(&layout, &none, sizeof none);
+  abbe_image_free(&image);
+}
+
+static void test_broken_attributes_are_refused(void **state) {
+  (void)state;
+  static const char *const views[] = {
+      "",
+      "perspective",
+      "oblique origin 0 0 0",
+      "perspective origin 0 0 zero",
+      "perspective origin 0 0 0 right 1 0 0 up 0 1 0 forward 0 0 -1 window 0 1 0 1",
+      "perspective origin 0 0 0 right 1 0 0 up 0 1 0 forward 0 0 -1 window 0 1 0 1 range 1 2 3",
+      "perspective origin 0 0 0 right 1 0 0 up 0 1 0 forward 0 0 -1 window 1 0 0 1 range 1 2",
+      "perspective origin 0 0 inf right 1 0 0 up 0 1 0 forward 0 0 -1 window 0 1 0 1 range 1 2"};
+  for (size_t i = 0; i < sizeof views / sizeof *views; i++)
+    refuse("abbe:map_view", views[i], ABBE_PARSE, "view");
+  refuse("abbe:map_warp_x", "0 1", ABBE_PARSE, "abbe:map_warp_x");
+  refuse("abbe:map_warp_y", "", ABBE_PARSE, "abbe:map_warp_y");
+  abbe_image image;
+  abbe_error error = {0};
+  abbe_map_layout layout;
+  make_image(&image);
+  assert_int_equal(abbe_map_layout_read(&image, "picture.exr", &layout, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "no receiver map");
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_warp_and_unwarp_are_inverse),
+      cmocka_unit_test(test_a_place_projects_as_the_matrix_and_the_knots_say),
+      cmocka_unit_test(test_rays_land_where_they_came_from),
+      cmocka_unit_test(test_what_the_map_does_not_hold),
+      cmocka_unit_test(test_texel_areas_add_up_to_the_window),
+      cmocka_unit_test(test_attributes_give_back_every_bit),
+      cmocka_unit_test(test_sameness_is_of_texels),
+      cmocka_unit_test(test_impossible_layouts_are_refused),
+      cmocka_unit_test(test_broken_attributes_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

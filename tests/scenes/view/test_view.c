@@ -1,0 +1,196 @@
+/* Views: known windows, the way there and back, and their matrices. */
+#include "tests/check.h"
+
+#include "scenes/geometry/transform.h"
+#include "scenes/view/view.h"
+
+/* Doubles of order one, a dozen operations: 1e-12 leaves four digits for rounding. */
+static const double tolerance = 1e-12;
+
+static const double eye[3] = {1, 2, 3}, along_y[3] = {0, 2, 0}, up_z[3] = {0, 0, 1};
+
+static void assert_vector(const double v[3], double x, double y, double z) {
+  assert_near(v[0], x, tolerance);
+  assert_near(v[1], y, tolerance);
+  assert_near(v[2], z, tolerance);
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void test_look_makes_a_right_handed_frame(void **state) {
+  (void)state;
+  abbe_view v;
+  abbe_view_look(eye, along_y, up_z, false, &v);
+  assert_vector(v.origin, 1, 2, 3);
+  assert_vector(v.forward, 0, 1, 0);
+  assert_vector(v.right, 1, 0, 0);
+  assert_vector(v.up, 0, 0, 1);
+}
+
+static void test_up_along_the_view_is_replaced(void **state) {
+  (void)state;
+  static const double axes[3][3] = {{1, 0, 0}, {0, -3, 0}, {0, 0, 1e-3}};
+  for (int i = 0; i < 3; i++) {
+    abbe_view v;
+    abbe_view_look(eye, axes[i], axes[i], false, &v);
+    assert_near(dot(v.right, v.right), 1, tolerance);
+    assert_near(dot(v.up, v.up), 1, tolerance);
+    assert_near(dot(v.right, v.forward), 0, tolerance);
+    assert_near(dot(v.up, v.forward), 0, tolerance);
+    assert_near(dot(v.right, v.up), 0, tolerance);
+  }
+}
+
+static void test_fit_finds_known_windows(void **state) {
+  (void)state;
+  static const double points[3][3] = {{2, 4, 2}, {0, 4, 4}, {1, 6, 3}};
+  abbe_view v;
+  abbe_view_look(eye, along_y, up_z, false, &v);
+  assert_true(abbe_view_fit(&v, points, 3));
+  assert_near(v.window[0], -0.5, tolerance); /* 1 m left at 2 m */
+  assert_near(v.window[1], 0.5, tolerance);
+  assert_near(v.window[2], -0.5, tolerance);
+  assert_near(v.window[3], 0.5, tolerance);
+  assert_near(v.near, 2, tolerance);
+  assert_near(v.far, 4, tolerance);
+  assert_near(abbe_view_area(&v), 1, tolerance);
+  abbe_view_look(eye, along_y, up_z, true, &v);
+  assert_true(abbe_view_fit(&v, points, 3));
+  assert_near(v.window[0], -1, tolerance); /* metres */
+  assert_near(v.window[3], 1, tolerance);
+  assert_near(abbe_view_area(&v), 4, tolerance);
+}
+
+static void test_fit_says_what_does_not_fit(void **state) {
+  (void)state;
+  static const double ahead[1][3] = {{1, 4, 3}}, behind[1][3] = {{2, 1, 3}};
+  static const double aside[1][3] = {{1 + 2 * (ABBE_VIEW_MAX_TANGENT + 1), 4, 3}};
+  abbe_view v;
+  abbe_view_look(eye, along_y, up_z, false, &v);
+  assert_true(abbe_view_fit(&v, ahead, 1));
+  assert_false(abbe_view_fit(&v, behind, 1));
+  assert_near(v.window[1], ABBE_VIEW_MAX_TANGENT, tolerance);
+  assert_near(v.window[0], 0, tolerance);
+  assert_true(v.near > 0);
+  abbe_view_look(eye, along_y, up_z, false, &v);
+  assert_false(abbe_view_fit(&v, aside, 1));
+  assert_near(v.window[1], ABBE_VIEW_MAX_TANGENT, tolerance);
+  /* Parallel light has no such limit. */
+  abbe_view_look(eye, along_y, up_z, true, &v);
+  assert_true(abbe_view_fit(&v, behind, 1));
+  assert_true(abbe_view_fit(&v, aside, 1));
+}
+
+static void test_pad_widens_and_never_leaves_nothing(void **state) {
+  (void)state;
+  static const double points[2][3] = {{0, 4, 2}, {2, 8, 4}}, one[1][3] = {{1, 4, 3}};
+  abbe_view v;
+  abbe_view_look(eye, along_y, up_z, true, &v);
+  abbe_view_fit(&v, points, 2);
+  abbe_view_pad(&v, 0.1);
+  assert_near(v.window[0], -1.2, tolerance); /* 10 % of 2 m on each side */
+  assert_near(v.window[1], 1.2, tolerance);
+  assert_near(v.near, 1.6, tolerance);
+  assert_near(v.far, 6.4, tolerance);
+  for (int orthographic = 0; orthographic < 2; orthographic++) {
+    abbe_view_look(eye, along_y, up_z, orthographic, &v);
+    abbe_view_fit(&v, one, 1);
+    abbe_view_pad(&v, 0.02);
+    assert_true(abbe_view_area(&v) > 0);
+    assert_true(v.near > 0);
+    assert_true(v.far > v.near);
+  }
+}
+
+static abbe_view slanted(bool orthographic) {
+  static const double forward[3] = {0.3, -0.5, -0.8}, up[3] = {0.1, 0.2, 1};
+  static const double window[4] = {-0.7, 0.4, -0.2, 0.9};
+  abbe_view v;
+  abbe_view_look(eye, forward, up, orthographic, &v);
+  memcpy(v.window, window, sizeof window);
+  v.near = 0.5;
+  v.far = 9;
+  return v;
+}
+
+static void test_rays_project_back_to_where_they_start(void **state) {
+  (void)state;
+  for (int i = 0; i < 2 * 7 * 7; i++) {
+    abbe_view v = slanted(i % 2);
+    double uv[2] = {(i / 2 % 7) / 6.0, (i / 14) / 6.0}, o[3], d[3], p[3], uvz[3], t = 0.6 + i;
+    abbe_view_ray(&v, uv, o, d);
+    assert_near(dot(d, d), 1, tolerance);
+    for (int k = 0; k < 3; k++) p[k] = o[k] + t * d[k];
+    assert_true(abbe_view_project(&v, p, uvz));
+    /* p lies up to 100 m away: its rounding, 1e-14 m, is seen over a window of 1. */
+    assert_near(uvz[0], uv[0], tolerance);
+    assert_near(uvz[1], uv[1], tolerance);
+    assert_near(uvz[2], t, 100 * tolerance);
+  }
+}
+
+static void test_projection_fails_behind_the_origin_only(void **state) {
+  (void)state;
+  double behind[3], uvz[3];
+  for (int orthographic = 0; orthographic < 2; orthographic++) {
+    abbe_view v = slanted(orthographic);
+    for (int k = 0; k < 3; k++) behind[k] = v.origin[k] - v.forward[k];
+    assert_int_equal(abbe_view_project(&v, behind, uvz), orthographic);
+  }
+}
+
+/* Clip space is the window, from -1 to 1, and near to far. */
+static void test_the_matrix_agrees_with_the_projection(void **state) {
+  (void)state;
+  for (int orthographic = 0; orthographic < 2; orthographic++) {
+    abbe_view v = slanted(orthographic);
+    double matrix[16], uv[2] = {0.2, 0.7}, o[3], d[3], p[3], clip[3];
+    abbe_view_matrix(&v, matrix);
+    abbe_view_ray(&v, uv, o, d);
+    double depth[3] = {v.near, 2, v.far}, z[3];
+    for (int i = 0; i < 3; i++) {
+      double t = depth[i] / dot(d, v.forward);
+      for (int k = 0; k < 3; k++) p[k] = o[k] + t * d[k];
+      abbe_transform_point(matrix, p, clip);
+      assert_near(clip[0], 2 * uv[0] - 1, tolerance);
+      assert_near(clip[1], 2 * uv[1] - 1, tolerance);
+      z[i] = clip[2];
+    }
+    assert_near(z[0], -1, tolerance);
+    assert_near(z[2], 1, tolerance);
+    assert_true(z[1] > -1 && z[1] < 1);
+  }
+}
+
+static void test_pack_is_the_float_copy(void **state) {
+  (void)state;
+  abbe_view v = slanted(false);
+  float packed[24];
+  abbe_view_pack(&v, packed);
+  const double *rows[4] = {v.origin, v.right, v.up, v.forward};
+  for (int i = 0; i < 12; i++)
+    assert_true(packed[4 * (i / 3) + i % 3] == (float)rows[i / 3][i % 3]);
+  for (int k = 0; k < 4; k++) assert_true(packed[16 + k] == (float)v.window[k]);
+  assert_true(packed[20] == 0.5f && packed[21] == 9.0f);
+  assert_true(packed[3] == 1.0f); /* perspective */
+  v = slanted(true);
+  abbe_view_pack(&v, packed);
+  assert_true(packed[3] == 0.0f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_look_makes_a_right_handed_frame),
+      cmocka_unit_test(test_up_along_the_view_is_replaced),
+      cmocka_unit_test(test_fit_finds_known_windows),
+      cmocka_unit_test(test_fit_says_what_does_not_fit),
+      cmocka_unit_test(test_pad_widens_and_never_leaves_nothing),
+      cmocka_unit_test(test_rays_project_back_to_where_they_start),
+      cmocka_unit_test(test_projection_fails_behind_the_origin_only),
+      cmocka_unit_test(test_the_matrix_agrees_with_the_projection),
+      cmocka_unit_test(test_pack_is_the_float_copy),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,54 @@
+#include "tests/check.h"
+
+#include "spectral/dispersion/points.h"
+
+#include <stdlib.h>
+
+static void points_are_put_in_order_and_the_first_of_equals_stays(void **state) {
+  (void)state;
+  abbe_points points = {0};
+  const double lambda_nm[] = {600, 500, 600, 400, 500, 600};
+  for (int i = 0; i < 6; i++)
+    assert_int_equal(abbe_points_add(&points, (abbe_point){lambda_nm[i], i, 0}, NULL), ABBE_OK);
+  size_t dropped = 9;
+  assert_int_equal(abbe_points_sort(&points, &dropped, NULL), ABBE_OK);
+  assert_int_equal(dropped, 3);
+  assert_int_equal(points.count, 3);
+  const double wanted[3][2] = {{400, 3}, {500, 1}, {600, 0}};
+  for (int i = 0; i < 3; i++) {
+    assert_near(points.point[i].lambda_nm, wanted[i][0], 0);
+    assert_near(points.point[i].value, wanted[i][1], 0);
+  }
+  abbe_spectrum *spectrum = NULL;
+  assert_int_equal(abbe_points_spectrum(&points, ABBE_INTERPOLATION_LINEAR, &spectrum, NULL),
+                   ABBE_OK);
+  assert_near(abbe_spectrum_at(spectrum, 450), 2, 1e-14);
+  abbe_spectrum_free(spectrum);
+  abbe_points_free(&points);
+  assert_int_equal(abbe_points_spectrum(&points, ABBE_INTERPOLATION_LINEAR, &spectrum, NULL),
+                   ABBE_INVALID_ARGUMENT);
+}
+
+static void a_long_list_ends_where_a_spectrum_does(void **state) {
+  (void)state;
+  abbe_points points = {0};
+  for (int i = 0; i < ABBE_SPECTRUM_MAX_COUNT; i++)
+    assert_int_equal(abbe_points_add(&points, (abbe_point){70000 - i, i, 0}, NULL), ABBE_OK);
+  abbe_error error;
+  assert_int_equal(abbe_points_add(&points, (abbe_point){1, 1, 0}, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "more than 65536 points");
+  size_t dropped = 1;
+  assert_int_equal(abbe_points_sort(&points, &dropped, NULL), ABBE_OK);
+  assert_int_equal(dropped, 0);
+  for (size_t i = 1; i < points.count; i++)
+    assert_true(points.point[i - 1].lambda_nm < points.point[i].lambda_nm);
+  abbe_points_free(&points);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(points_are_put_in_order_and_the_first_of_equals_stays),
+      cmocka_unit_test(a_long_list_ends_where_a_spectrum_does),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

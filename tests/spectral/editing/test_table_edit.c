@@ -1,0 +1,504 @@
+#define _XOPEN_SOURCE 700
+#include "tests/check.h"
+
+#include "base/file.h"
+#include "spectral/editing/table_edit.h"
+#include "spectral/materials/material_table.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char two[] = "# Two glasses\n"
+                          "description: two\n"
+                          "\n"
+                          "materials:\n"
+                          "  # the first\n"
+                          "  - name: crown # a crown\n"
+                          "    model: cauchy\n"
+                          "    coefficients: [1.5220, # high\n"
+                          "                   0.00459]\n"
+                          "    range_nm: [380, 780]\n"
+                          "    source: \"[Somebody] p. 3\"\n"
+                          "    # of the crown\n"
+                          "\n"
+                          "  - {name: flint, model: constant, coefficients: [1.6], source: x}\n"
+                          "# the end\n";
+
+static abbe_error error;
+
+static abbe_table_edit *parse(const char *text) {
+  abbe_table_edit *edit = NULL;
+  if (abbe_table_edit_parse(text, strlen(text), "t.yaml", &edit, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return edit;
+}
+
+static const char *text_of(const abbe_table_edit *edit) {
+  size_t size = 0;
+  const char *text = abbe_table_edit_text(edit, &size);
+  assert_int_equal(strlen(text), size);
+  return text;
+}
+
+#define must(call)                                                                                 \
+  do {                                                                                             \
+    if ((call) != ABBE_OK) fail_msg("%s: %s", #call, error.text);                                  \
+  } while (0)
+
+/* The diff of the edit, without its head. */
+static void check_diff(abbe_table_edit *edit, const char *wanted) {
+  char *diff = NULL;
+  must(abbe_table_edit_check(edit, &error));
+  must(abbe_table_edit_diff(edit, &diff, &error));
+  if (strstr(diff, wanted) == NULL) fail_msg("%s\nis not\n%s", diff, wanted);
+  free(diff);
+  abbe_table_edit_free(edit);
+}
+
+static void values_are_set(void **state) {
+  (void)state;
+  abbe_table_edit *edit = parse(two);
+  must(abbe_table_edit_set(edit, "CROWN", "coefficients.0", "1.5090", &error));
+  check_diff(edit, "@@ -5,7 +5,7 @@\n   # the first\n   - name: crown # a crown\n"
+                   "     model: cauchy\n-    coefficients: [1.5220, # high\n"
+                   "+    coefficients: [1.5090, # high\n                    0.00459]\n");
+  edit = parse(two);
+  must(abbe_table_edit_set_numbers(edit, "crown", "coefficients", (double[]){1.522, 0.005}, 2,
+                                   &error));
+  check_diff(edit, "     coefficients: [1.5220, # high\n-                   0.00459]\n"
+                   "+                   0.005]\n");
+  edit = parse(two);
+  must(abbe_table_edit_set_text(edit, "flint", "source", "me: 3 May", &error));
+  must(abbe_table_edit_set_number(edit, "flint", "temperature_c", 20, &error));
+  check_diff(edit, "+  - {name: flint, model: constant, coefficients: [1.6], temperature_c: 20, "
+                   "source: \"me: 3 May\"}\n");
+}
+
+static void check_value(const abbe_table_edit *edit, const char *key, const char *wanted) {
+  char *text = NULL;
+  must(abbe_table_edit_get(edit, "Crown", key, &text, &error));
+  if (wanted == NULL)
+    assert_null(text);
+  else
+    assert_string_equal(text, wanted);
+  free(text);
+}
+
+static void values_are_told_and_taken_back(void **state) {
+  (void)state;
+  abbe_table_edit *edit = parse(two);
+  check_value(edit, "source", "[Somebody] p. 3");
+  check_value(edit, "coefficients.0", "1.5220");
+  check_value(edit, "coefficients.2", NULL);
+  check_value(edit, "range_nm", "[380, 780]");
+  check_value(edit, "source.more", NULL);
+  check_value(edit, "warning", NULL);
+  char *text = NULL;
+  assert_int_equal(abbe_table_edit_get(edit, "no", "source", &text, &error), ABBE_NOT_FOUND);
+  must(abbe_table_edit_set(edit, "crown", "source", "x", &error));
+  check_value(edit, "source", "x");
+  must(abbe_table_edit_revert(edit, &error));
+  assert_string_equal(text_of(edit), two);
+  abbe_table_edit_free(edit);
+}
+
+static void new_keys_go_where_the_format_has_them(void **state) {
+  (void)state;
+  abbe_table_edit *edit = parse(two);
+  must(abbe_table_edit_set_text(edit, "crown", "warning", "Old.", &error));
+  must(abbe_table_edit_set_text(edit, "crown", "description", "A crown", &error));
+  must(abbe_table_edit_set(edit, "crown", "absorption.colour", "[0.9, 0.8, 0.7]", &error));
+  must(abbe_table_edit_set(edit, "crown", "absorption.distance_m", "0.01", &error));
+  check_diff(edit, "+    description: A crown\n     model: cauchy\n");
+  edit = parse(two);
+  must(abbe_table_edit_set(edit, "crown", "fit.cauchy2.coefficients", "[1, 2]", &error));
+  must(abbe_table_edit_set(edit, "crown", "fit.cauchy2.max_error", "0.1", &error));
+  check_diff(edit, "     source: \"[Somebody] p. 3\"\n"
+                   "+    fit: {cauchy2: {coefficients: [1, 2], max_error: 0.1}}\n"
+                   "     # of the crown\n");
+}
+
+static void keys_and_records_come_and_go(void **state) {
+  (void)state;
+  abbe_table_edit *edit = parse(two);
+  must(abbe_table_edit_set(edit, "flint", "warning", "x", &error));
+  must(abbe_table_edit_unset(edit, "flint", "warning", &error));
+  assert_string_equal(text_of(edit), two);
+  must(abbe_table_edit_add(edit, "name: third\nmodel: constant\ncoefficients: [2]\nsource: s\n",
+                           &error));
+  must(abbe_table_edit_rename(edit, "third", "Third: a", &error));
+  must(abbe_table_edit_remove(edit, "flint", &error));
+  check_diff(edit, "     # of the crown\n \n"
+                   "-  - {name: flint, model: constant, coefficients: [1.6], source: x}\n"
+                   "+  - name: \"Third: a\"\n+    model: constant\n+    coefficients: [2]\n"
+                   "+    source: s\n # the end\n");
+  edit = parse(two);
+  must(abbe_table_edit_remove(edit, "crown", &error));
+  check_diff(edit, "   # the first\n-  - name: crown # a crown\n-    model: cauchy\n"
+                   "-    coefficients: [1.5220, # high\n-                   0.00459]\n"
+                   "-    range_nm: [380, 780]\n-    source: \"[Somebody] p. 3\"\n"
+                   "-    # of the crown\n \n");
+}
+
+/* Whatever is done to a record of a shipped table, the others stay byte by byte. */
+static void each_edit_stays_inside_its_record(void **state) {
+  (void)state;
+  const char *const paths[] = {ABBE_SOURCE_DIR "/spectral/materials/materials.yaml",
+                               ABBE_SOURCE_DIR "/spectral/materials/thesis.yaml"};
+  for (int file = 0; file < 2; file++) {
+    char *before = NULL;
+    size_t size = 0;
+    abbe_material_table table;
+    must(abbe_file_read(paths[file], 1 << 20, &before, &size, &error));
+    must(abbe_material_table_parse(before, size, "t", &table, &error));
+    for (size_t i = 0; i < table.count; i++)
+      for (int action = 0; action < 5; action++) {
+        const abbe_material *m = &table.material[i];
+        abbe_table_edit *edit = parse(before);
+        if (action == 0) must(abbe_table_edit_set(edit, m->name, "warning", "\"# x\"", &error));
+        if (action == 1) must(abbe_table_edit_set(edit, m->name, "coefficients", "[1.75]", &error));
+        if (action == 2) must(abbe_table_edit_rename(edit, m->name, "Zzz", &error));
+        if (action == 3) must(abbe_table_edit_unset(edit, m->name, "source", &error));
+        if (action == 4) must(abbe_table_edit_remove(edit, m->name, &error));
+        const char *after = text_of(edit);
+        char own[128], next[128] = "";
+        snprintf(own, sizeof own, "  - name: %s\n", m->name);
+        if (i + 1 < table.count) snprintf(next, sizeof next, "  - name: %s\n", m[1].name);
+        size_t head = (size_t)(strstr(before, own) - before);
+        if (action == 4 && !*next) head--; /* the blank line that set it off goes with it */
+        assert_memory_equal(before, after, head);
+        const char *tail[2] = {*next ? strstr(before, next) : "", *next ? strstr(after, next) : ""};
+        assert_string_equal(tail[0], tail[1]);
+        assert_string_not_equal(before, after);
+        abbe_table_edit_free(edit);
+      }
+    abbe_material_table_free(&table);
+    free(before);
+  }
+}
+
+/* ---- laws, over random tables in every style ---- */
+
+static unsigned long long state_of_chance;
+
+static unsigned chance(unsigned below) { /* [Steele2014] */
+  unsigned long long z = (state_of_chance += 0x9e3779b97f4a7c15ull);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return (unsigned)((z ^ (z >> 31)) >> 33) % below;
+}
+
+/* A value of a record, in one of the ways that YAML has to write it. */
+static void add_values(char *out, const char *end, const char *indent, bool flow) {
+  const char *between = flow ? ", " : end;
+  const char *lead = flow ? "" : indent;
+  const char *note = !flow && chance(3) == 0 ? " # \u00b5, in" : "";
+  out += strlen(out);
+  out += sprintf(out, "%s%smodel: cauchy%s", between, lead, note);
+  if (!flow && chance(3) == 0)
+    out += sprintf(out, "%s%scoefficients:%s%s- 1.5 # A%s%s- 4e-3", between, lead, end, lead, end,
+                   lead);
+  else if (!flow && chance(2) == 0)
+    out += sprintf(out, "%s%scoefficients: [1.5, # A%s%s  4e-3 ]", between, lead, end, lead);
+  else
+    out += sprintf(out, "%s%scoefficients: [1.5, 4e-3]", between, lead);
+  if (!flow && chance(2) == 0) out += sprintf(out, "%s%s# inside", end, lead);
+  out += sprintf(out, "%s%srange_nm: [380, 780]", between, lead);
+  if (chance(2) == 0) out += sprintf(out, "%s%stemperature_c: 20", between, lead);
+  if (!flow && chance(2) == 0)
+    out += sprintf(out, "%s%swarning: >-%s%s  two%s%s  lines", end, lead, end, lead, end, lead);
+  sprintf(out, "%s%ssource: 's: it''s'", between, lead);
+}
+
+/* count records m0, m1, … in block style, in brackets, or some so and some so. */
+static void make_table(char *out, int count) {
+  const char *end = chance(4) == 0 ? "\r\n" : "\n";
+  bool brackets = chance(4) == 0, blank = chance(2) == 0;
+  const char *dash = chance(2) == 0 ? "" : "  ";
+  char indent[8];
+  snprintf(indent, sizeof indent, "%s  ", dash);
+  *out = '\0';
+  if (chance(3) == 0) strcpy(out, "\xEF\xBB\xBF");
+  sprintf(out + strlen(out), "# out%sdescription: a \u2026 table%smaterials:%s", end, end,
+          brackets ? " [" : "");
+  for (int i = 0; i < count; i++) {
+    bool flow = brackets || chance(4) == 0;
+    if (!brackets && i > 0 && blank) strcat(out, end);
+    if (!brackets && chance(3) == 0) sprintf(out + strlen(out), "%s# out", end);
+    sprintf(out + strlen(out), "%s%s%s%sname: m%d", brackets ? (i > 0 ? ", " : "") : end,
+            brackets ? "" : dash, brackets ? "" : "- ", flow ? "{" : "", i);
+    add_values(out, end, indent, flow);
+    if (flow) strcat(out, "}");
+  }
+  if (brackets) strcat(out, "]");
+  if (chance(3) == 0) sprintf(out + strlen(out), "%s# out", end);
+  if (chance(4) > 0) strcat(out, end);
+}
+
+static int count_of(const char *text, const char *part) {
+  int count = 0;
+  for (const char *at = text; (at = strstr(at, part)) != NULL; at++) count++;
+  return count;
+}
+
+/* One random change to the record `name`; true where it is gone after. */
+static bool change(abbe_table_edit *edit, const char *name) {
+  switch (chance(7)) {
+  case 0:
+    must(abbe_table_edit_set(edit, name, "coefficients.1", "5e-3", &error));
+    return false;
+  case 1:
+    must(abbe_table_edit_set_numbers(edit, name, "coefficients", (double[]){1.6, 0, 1e-6}, 3,
+                                     &error));
+    return false;
+  case 2:
+    must(abbe_table_edit_set_text(edit, name, "warning", "a: b # c", &error));
+    return false;
+  case 3:
+    must(abbe_table_edit_set(edit, name, "absorption.colour", "[1, 1, 1]", &error));
+    must(abbe_table_edit_set(edit, name, "absorption.distance_m", "1", &error));
+    return false;
+  case 4:
+    must(abbe_table_edit_set(edit, name, "temperature_c", "21", &error));
+    must(abbe_table_edit_unset(edit, name, "temperature_c", &error));
+    return false;
+  case 5:
+    must(abbe_table_edit_rename(edit, name, "another", &error));
+    return true;
+  default:
+    must(abbe_table_edit_remove(edit, name, &error));
+    return true;
+  }
+}
+
+static void check_random_table(int round) {
+  static char text[1 << 14];
+  enum { COUNT = 4 };
+  char *before[COUNT], name[8];
+  state_of_chance = (unsigned long long)round;
+  make_table(text, COUNT);
+  abbe_table_edit *edit = parse(text);
+  must(abbe_table_edit_check(edit, &error));
+  for (int i = 0; i < COUNT; i++) {
+    snprintf(name, sizeof name, "m%d", i);
+    must(abbe_table_edit_record(edit, name, &before[i], &error));
+  }
+  int chosen = (int)chance(COUNT);
+  snprintf(name, sizeof name, "m%d", chosen);
+  bool gone = change(edit, name);
+  if (abbe_table_edit_check(edit, &error) != ABBE_OK)
+    fail_msg("%d: %s\n%s\n---\n%s", round, error.text, text, text_of(edit));
+  char *after = NULL;
+  bool found = abbe_table_edit_record(edit, name, &after, &error) == ABBE_OK;
+  if (found == gone) fail_msg("%d: %s is %s", round, name, gone ? "there" : "gone");
+  free(after);
+  if (count_of(text, "# out") != count_of(text_of(edit), "# out"))
+    fail_msg("%d: a comment is lost\n%s\n---\n%s", round, text, text_of(edit));
+  for (int i = 0; i < COUNT; i++) {
+    snprintf(name, sizeof name, "m%d", i);
+    if (i != chosen) {
+      must(abbe_table_edit_record(edit, name, &after, &error));
+      assert_string_equal(after, before[i]);
+      free(after);
+    }
+    free(before[i]);
+  }
+  must(abbe_table_edit_revert(edit, &error));
+  assert_string_equal(text_of(edit), text);
+  abbe_table_edit_free(edit);
+}
+
+static void random_tables_keep_their_other_records(void **state) {
+  (void)state;
+  for (int round = 0; round < 1000; round++) check_random_table(round);
+}
+
+static void refuses(const char *text, abbe_result code, const char *part,
+                    abbe_result (*act)(abbe_table_edit *, abbe_error *)) {
+  abbe_table_edit *edit = parse(text);
+  if (act(edit, &error) != code) fail_msg("not '%s': %s", part, error.text);
+  assert_contains(error.text, part);
+  assert_string_equal(text_of(edit), text);
+  abbe_table_edit_free(edit);
+}
+
+static abbe_result set_unknown(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_set(e, "crwon", "source", "x", why);
+}
+static abbe_result set_deep(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_set(e, "crown", "source.more", "x", why);
+}
+static abbe_result set_index(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_set(e, "crown", "coefficients.2", "1", why);
+}
+static abbe_result set_empty_step(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_set(e, "crown", "fit..cauchy2", "1", why);
+}
+static abbe_result unset_absent(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_unset(e, "crown", "warning", why);
+}
+static abbe_result rename_taken(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_rename(e, "crown", "FLINT", why);
+}
+static abbe_result remove_flint(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_remove(e, "flint", why);
+}
+static abbe_result set_flint(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_set(e, "flint", "coefficients.0", "2", why);
+}
+static abbe_result save(abbe_table_edit *e, abbe_error *why) {
+  return abbe_table_edit_save(e, why);
+}
+
+static void what_cannot_be_is_refused(void **state) {
+  (void)state;
+  refuses(two, ABBE_NOT_FOUND, "did you mean 'crown'?", set_unknown);
+  refuses(two, ABBE_NOT_FOUND, "has no 'source.more'", set_deep);
+  refuses(two, ABBE_NOT_FOUND, "has no 'coefficients.2'", set_index);
+  refuses(two, ABBE_INVALID_ARGUMENT, "'fit..cauchy2' is no key", set_empty_step);
+  refuses(two, ABBE_NOT_FOUND, "has no 'warning'", unset_absent);
+  refuses(two, ABBE_INVALID_ARGUMENT, "t.yaml:14: the name 'FLINT' is taken", rename_taken);
+  refuses(two, ABBE_INVALID_ARGUMENT, "from memory", save);
+  refuses("materials: [{name: flint}]", ABBE_INVALID_ARGUMENT, "only record", remove_flint);
+  refuses("materials: [{name: flint}, {name: Flint}]", ABBE_INVALID_ARGUMENT, "lines 1 and 1",
+          remove_flint);
+  refuses("materials: [{name: a, coefficients: &c [1]}, {name: flint, coefficients: *c}]",
+          ABBE_UNSUPPORTED, "alias", set_flint);
+  abbe_table_edit *edit = NULL;
+  assert_int_equal(abbe_table_edit_open(NULL, &edit, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'default' is compiled in");
+  assert_int_equal(abbe_table_edit_open("/no/such.yaml", &edit, &error), ABBE_IO);
+  assert_int_equal(abbe_table_edit_parse("a: 1", 4, "t", &edit, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "no list 'materials'");
+  assert_int_equal(abbe_table_edit_parse("- 1", 3, "t", &edit, &error), ABBE_SCHEMA);
+}
+
+/* ---- files ---- */
+
+static char path[] = "/tmp/abbe-test-table-edit-XXXXXX";
+
+static int make_file(void **state) {
+  (void)state;
+  strcpy(path + strlen(path) - 6, "XXXXXX");
+  int fd = mkstemp(path);
+  return fd < 0 || close(fd) != 0 || abbe_file_write(path, two, strlen(two), NULL) != ABBE_OK;
+}
+
+static int drop_file(void **state) {
+  (void)state;
+  unlink(path);
+  return 0;
+}
+
+static void check_file(const char *wanted) {
+  char *text = NULL;
+  size_t size = 0;
+  must(abbe_file_read(path, 1 << 20, &text, &size, &error));
+  assert_string_equal(text, wanted);
+  free(text);
+}
+
+static void a_saved_edit_is_on_the_disk(void **state) {
+  (void)state;
+  abbe_table_edit *edit = NULL;
+  struct stat status;
+  assert_int_equal(chmod(path, 0640), 0);
+  must(abbe_table_edit_open(path, &edit, &error));
+  must(abbe_table_edit_set(edit, "flint", "coefficients.0", "1.7", &error));
+  check_file(two);
+  must(abbe_table_edit_save(edit, &error));
+  check_file(text_of(edit));
+  assert_int_equal(stat(path, &status), 0);
+  assert_int_equal(status.st_mode & 0777, 0640);
+  must(abbe_table_edit_set(edit, "flint", "coefficients.0", "1.6", &error));
+  must(abbe_table_edit_save(edit, &error));
+  check_file(two);
+  abbe_table_edit_free(edit);
+}
+
+static void a_file_that_changed_is_not_overwritten(void **state) {
+  (void)state;
+  abbe_table_edit *edit = NULL;
+  must(abbe_table_edit_open(path, &edit, &error));
+  must(abbe_table_edit_set(edit, "flint", "coefficients.0", "1.7", &error));
+  must(abbe_file_write(path, "materials: []\n", 14, &error));
+  assert_int_equal(abbe_table_edit_save(edit, &error), ABBE_IO);
+  assert_contains(error.text, "changed by someone else");
+  check_file("materials: []\n");
+  abbe_table_edit_free(edit);
+}
+
+static void a_table_is_not_broken_but_may_be_mended(void **state) {
+  (void)state;
+  abbe_table_edit *edit = NULL;
+  must(abbe_table_edit_open(path, &edit, &error));
+  must(abbe_table_edit_set(edit, "flint", "model", "cauhcy", &error));
+  assert_int_equal(abbe_table_edit_save(edit, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "nothing was written: ");
+  assert_contains(error.text, ":14: 'model: cauhcy' is not known; did you mean 'cauchy'?");
+  check_file(two);
+  abbe_table_edit_free(edit);
+  const char broken[] = "materials:\n- {name: a, model: x, source: s}\n- {name: b, model: y}\n";
+  must(abbe_file_write(path, broken, strlen(broken), &error));
+  must(abbe_table_edit_open(path, &edit, &error));
+  must(abbe_table_edit_set(edit, "a", "model", "constant", &error));
+  must(abbe_table_edit_set(edit, "a", "coefficients", "[1.5]", &error));
+  must(abbe_table_edit_save(edit, &error)); /* b is still wrong: one mend at a time */
+  assert_int_equal(abbe_table_edit_check(edit, &error), ABBE_SCHEMA);
+  abbe_table_edit_free(edit);
+}
+
+static void a_new_table_begins_with_a_record(void **state) {
+  (void)state;
+  abbe_table_edit *edit = NULL;
+  assert_int_equal(abbe_table_edit_make(path, &edit, &error), ABBE_IO);
+  assert_contains(error.text, "is there already");
+  unlink(path);
+  must(abbe_table_edit_make(path, &edit, &error));
+  assert_int_equal(abbe_table_edit_save(edit, &error), ABBE_SCHEMA); /* no record yet */
+  assert_int_not_equal(access(path, F_OK), 0);
+  must(abbe_table_edit_add(edit, "{name: a, model: constant, coefficients: [1.5], source: s}",
+                           &error));
+  must(abbe_table_edit_save(edit, &error));
+  check_file("materials:\n  - {name: a, model: constant, coefficients: [1.5], source: s}\n");
+  abbe_table_edit_free(edit);
+}
+
+static void a_record_moves_from_table_to_table(void **state) {
+  (void)state;
+  abbe_table_edit *from = parse(two), *to = parse("materials: [{name: a}]\n");
+  char *text = NULL;
+  must(abbe_table_edit_record(from, "crown", &text, &error));
+  assert_string_equal(text, "name: crown # a crown\nmodel: cauchy\n"
+                            "coefficients: [1.5220, # high\n               0.00459]\n"
+                            "range_nm: [380, 780]\nsource: \"[Somebody] p. 3\"\n# of the crown");
+  must(abbe_table_edit_add(to, text, &error));
+  assert_string_equal(text_of(to),
+                      "materials: [{name: a}, {name: crown, model: cauchy, coefficients: [1.5220, "
+                      "0.00459], range_nm: [380, 780], source: \"[Somebody] p. 3\"}]\n");
+  free(text);
+  abbe_table_edit_free(from);
+  abbe_table_edit_free(to);
+}
+
+#define with_file(test) cmocka_unit_test_setup_teardown(test, make_file, drop_file)
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(values_are_set),
+      cmocka_unit_test(values_are_told_and_taken_back),
+      cmocka_unit_test(new_keys_go_where_the_format_has_them),
+      cmocka_unit_test(keys_and_records_come_and_go),
+      cmocka_unit_test(each_edit_stays_inside_its_record),
+      cmocka_unit_test(random_tables_keep_their_other_records),
+      cmocka_unit_test(what_cannot_be_is_refused),
+      with_file(a_saved_edit_is_on_the_disk),
+      with_file(a_file_that_changed_is_not_overwritten),
+      with_file(a_table_is_not_broken_but_may_be_mended),
+      with_file(a_new_table_begins_with_a_record),
+      cmocka_unit_test(a_record_moves_from_table_to_table),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

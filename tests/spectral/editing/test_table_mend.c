@@ -1,0 +1,108 @@
+#include "tests/check.h"
+
+#include "spectral/editing/table_mend.h"
+
+#include <stdlib.h>
+
+static abbe_material_table known;
+
+static int setup(void **state) {
+  (void)state;
+  return abbe_material_table_load(NULL, &known, NULL) != ABBE_OK;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  abbe_material_table_free(&known);
+  return 0;
+}
+
+static abbe_table_edit *open_edit(const char *text) {
+  abbe_table_edit *edit = NULL;
+  abbe_error error = {0};
+  if (abbe_table_edit_parse(text, strlen(text), "t.yaml", &edit, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return edit;
+}
+
+static abbe_table_mend mended(abbe_table_edit *edit) {
+  abbe_table_mend mend;
+  abbe_error error = {0};
+  if (abbe_table_mend_make(edit, &known, &mend, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return mend;
+}
+
+/* Only the bytes of the wrong values change. */
+static void wrong_values_change_and_nothing_else(void **state) {
+  (void)state;
+  abbe_table_edit *edit = open_edit("# my glasses\n"
+                                    "materials:\n"
+                                    "  - name: bak4   # from a book\n"
+                                    "    model: cauchy\n"
+                                    "    coefficients: [1.5690, 0.00531]\n"
+                                    "    range_nm: [0.38, 0.78] # um?\n"
+                                    "    source: a book\n"
+                                    "  - {name: good, model: cauchy, coefficients: [1.50, 0.0040], "
+                                    "range_nm: [380, 780], source: s1}\n");
+  abbe_table_mend mend = mended(edit);
+  assert_int_equal(mend.mended, 2);
+  assert_int_equal(mend.refused, 0);
+  size_t size = 0;
+  assert_string_equal(abbe_table_edit_text(edit, &size),
+                      "# my glasses\n"
+                      "materials:\n"
+                      "  - name: bak4   # from a book\n"
+                      "    model: cauchy\n"
+                      "    coefficients: [1.553619, 0.00531]\n"
+                      "    range_nm: [380, 780] # um?\n"
+                      "    source: a book\n"
+                      "  - {name: good, model: cauchy, coefficients: [1.50, 0.0040], "
+                      "range_nm: [380, 780], source: s1}\n");
+  mend = mended(edit);
+  assert_int_equal(mend.mended, 0);
+  abbe_table_edit_free(edit);
+}
+
+/* New coefficients make a recorded fit stale, which is the next to mend. */
+static void a_mend_brings_out_the_next(void **state) {
+  (void)state;
+  abbe_table_edit *edit = open_edit(
+      "materials:\n- name: a\n  model: cauchy\n  coefficients: [1.5046, 4200]\n"
+      "  range_nm: [380, 780]\n  source: s1\n  fit:\n"
+      "    cauchy2: {coefficients: [1.5046, 0.0052], max_error: 1.0e-6, range_nm: [380, 780]}\n");
+  abbe_table_mend mend = mended(edit);
+  assert_int_equal(mend.mended, 2);
+  size_t size = 0;
+  assert_contains(abbe_table_edit_text(edit, &size), "coefficients: [1.5046, 0.0042]\n");
+  assert_contains(abbe_table_edit_text(edit, &size), "cauchy2: {coefficients: [1.5046, 0.0042], ");
+  abbe_table_edit_free(edit);
+}
+
+static void doubt_and_shared_names_are_left_alone(void **state) {
+  (void)state;
+  const char *const text =
+      "materials:\n"
+      "- {name: mystery, model: cauchy, coefficients: [1.5690, 0.00531], range_nm: [380, 780], "
+      "source: s1}\n"
+      "- {name: twin, model: cauchy, coefficients: [1.5046, 4200], range_nm: [380, 780], source: "
+      "s1}\n"
+      "- {name: TWIN, model: cauchy, coefficients: [1.6046, 6200], range_nm: [380, 780], source: "
+      "s1}\n";
+  abbe_table_edit *edit = open_edit(text);
+  abbe_table_mend mend = mended(edit);
+  size_t size = 0;
+  assert_int_equal(mend.mended, 0);
+  assert_int_equal(mend.refused, 2);
+  assert_contains(mend.why, "twin: the name stands twice");
+  assert_string_equal(abbe_table_edit_text(edit, &size), text);
+  abbe_table_edit_free(edit);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(wrong_values_change_and_nothing_else),
+      cmocka_unit_test(a_mend_brings_out_the_next),
+      cmocka_unit_test(doubt_and_shared_names_are_left_alone),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

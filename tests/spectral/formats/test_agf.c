@@ -1,0 +1,307 @@
+#include "tests/check.h"
+
+#include "spectral/formats/agf.h"
+
+#include <stdlib.h>
+#include <time.h>
+
+static abbe_report report;
+
+static abbe_material_table parse_bytes(const char *bytes, size_t size) {
+  abbe_material_table table;
+  abbe_error error = {0};
+  abbe_report_free(&report);
+  if (abbe_agf_parse(bytes, size, "glass/maker.agf", &table, &report, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return table;
+}
+
+static abbe_material_table parse(const char *text) {
+  return parse_bytes(text, strlen(text));
+}
+
+#define BK7_CD                                                                                     \
+  "CD 1.03961212E+00 6.00069867E-03 2.31792344E-01 2.00179144E-02 1.01046945E+00 "                 \
+  "1.03560653E+02\n"
+#define BK7                                                                                        \
+  "NM N-BK7 2 517642.251 1.5168 64.17 0 1 1\nGC step 0.5 available\nED 7.1 8.3 2.51 -0.0009 "      \
+  "0\n" BK7_CD "TD 1.86E-06 1.31E-08 -1.37E-11 4.34E-07 6.27E-10 0.17 2.0E+01\n"                   \
+  "OD 1.0000 - 0.0000 1.0000 2.3000 2.3000\nLD 3.00000E-01 2.50000E+00\n"                          \
+  "IT 3.34000E-01 7.80000E-01 2.50000E+01\nIT 4.00000E-01 9.92000E-01 2.50000E+01\n"
+
+static void a_glass_is_read_whole(void **state) {
+  (void)state;
+  abbe_material_table t = parse("free text of the maker\nCC Maker, spring\n" BK7);
+  assert_int_equal(t.count, 1);
+  assert_string_equal(t.description, "Maker, spring");
+  assert_string_equal(t.path, "glass/maker.agf");
+  const abbe_material *m = &t.material[0];
+  assert_string_equal(m->name, "N-BK7");
+  assert_int_equal(m->line, 3);
+  assert_int_equal(m->dispersion.model, ABBE_DISPERSION_SELLMEIER2);
+  assert_near(abbe_dispersion_describe(&m->dispersion).n_d, 1.5168, 5e-6);
+  assert_near(abbe_dispersion_describe(&m->dispersion).v_d, 64.17, 5e-3);
+  assert_near(m->min_nm, 300, 0);
+  assert_near(m->max_nm, 2500, 0);
+  assert_near(m->temperature_c, 20, 0);
+  assert_near(m->published_n_d, 1.5168, 0);
+  assert_near(m->published_v_d, 64.17, 0);
+  assert_string_equal(m->source, "Zemax catalogue maker.agf, N-BK7; Maker, spring");
+  assert_string_equal(m->comment, "step 0.5 available");
+  assert_string_equal(m->catalogue.code, "517642.251");
+  assert_string_equal(m->catalogue.status, "preferred");
+  assert_near(m->catalogue.melt_frequency, 1, 0);
+  assert_near(m->catalogue.density_g_cm3, 2.51, 0);
+  assert_near(m->catalogue.expansion_per_k[0], 7.1e-6, 0);
+  assert_near(m->catalogue.dpgf, -0.0009, 0);
+  assert_near(m->catalogue.thermal[5], 0.17, 0);
+  assert_near(m->catalogue.ratings[0], 1, 0);
+  assert_near(m->catalogue.ratings[1], -1, 0);
+  assert_near(exp(-0.025 * abbe_material_attenuation(m, 400)), 0.992, 1e-15);
+  assert_int_equal(report.count, 0);
+  abbe_material_table_free(&t);
+}
+
+static void commas_part_numbers_or_begin_their_decimals(void **state) {
+  (void)state;
+  abbe_material_table t =
+      parse("NM A 2 517642 1,5168 64,17\nCD 1,03961212E+00 6,00069867E-03 "
+            "2,31792344e-1 0,0200179144\n1,01046945 103,560653\nLD 0,3 2,5\n"
+            "IT 0,4 0,992 25\n"
+            "NM B 2 517642,1.5168,64.17\nCD 1.03961212,0.00600069867,"
+            "0.231792344, 0.0200179144,1.01046945,103.560653,0,0\nLD 0.3,2.5\n");
+  assert_int_equal(t.count, 2);
+  for (size_t i = 0; i < 2; i++) {
+    assert_near(abbe_dispersion_describe(&t.material[i].dispersion).n_d, 1.5168, 5e-6);
+    assert_near(t.material[i].min_nm, 300, 0);
+    assert_near(t.material[i].max_nm, 2500, 0);
+  }
+  assert_near(t.material[0].published_v_d, 64.17, 0);
+  assert_near(exp(-0.025 * abbe_material_attenuation(&t.material[0], 400)), 0.992, 1e-15);
+  assert_int_equal(report.count, 1);
+  assert_contains(report.note[0].text, "decimal commas");
+  abbe_material_table_free(&t);
+}
+
+/* Chemists number the places of a molecule so. */
+static void a_name_may_hold_commas(void **state) {
+  (void)state;
+#define CD "\nCD 1.03961212 0.00600069867\nLD 0.3 2.5\n"
+  abbe_material_table t =
+      parse("NM OCTANE-1,6 2 0 1.4 60" CD "NM DECANE-1,10,12 2 0.0 1.4 60" CD
+            "NM A, 2, 517642, 1.4, 60" CD "NM B,2,517642 1.4 60" CD "NM C,2 517642,1.4,60" CD);
+  const char *const names[] = {"OCTANE-1,6", "DECANE-1,10,12", "A", "B", "C"};
+  assert_int_equal(t.count, 5);
+  for (size_t i = 0; i < 5; i++) {
+    assert_string_equal(t.material[i].name, names[i]);
+    assert_int_equal(t.material[i].dispersion.model, ABBE_DISPERSION_SELLMEIER2);
+    assert_near(t.material[i].published_n_d, 1.4, 0);
+  }
+  abbe_material_table_free(&t);
+#undef CD
+}
+
+/* Catalogues begin with a page of text; a source is a line. */
+static void a_long_title_is_cut_at_a_word(void **state) {
+  (void)state;
+  abbe_material_table t = parse("CC Maker, all glasses of spring 2017 with melt data, for "
+                                "designers only, see our terms of use\n" BK7);
+  assert_string_equal(t.material[0].source,
+                      "Zemax catalogue maker.agf, N-BK7; Maker, all glasses of "
+                      "spring 2017 with melt data, for…");
+  assert_contains(t.description, "see our terms of use");
+  abbe_material_table_free(&t);
+}
+
+/* As one maker prints them. */
+static void wrapped_lines_are_joined(void **state) {
+  (void)state;
+  abbe_material_table t =
+      parse("CC  Updated\nNM J-FK5 13 1 1.487490 70.318793 0 0 1\nGC \n"
+            "ED 8.900000000E+000 0.000000000E+000 2.450000000E+000 2.700000000E-003 0 0\n"
+            "CD 2.188268550E+000 -9.190447240E-003 -1.116210710E-004 9.263728150E-003 \n"
+            "7.349007330E-005 4.197242420E-006 -1.154122030E-007 0.000000000E+000 \n"
+            "0.000000000E+000 0.000000000E+000\n"
+            "TD -8.080000000E-006 1.810000000E-008 -1.840000000E-012 3.750000000E-007 \n"
+            "3.020000000E-010 1.690000000E-001 2.300000000E+001\n"
+            "OD -1.00000 -1.00000 -1.00000 -1.00000 -1.00000 3.00000\n"
+            "LD 3.65015000E-001 2.05809000E+000\nIT 2.80000E-001 1.90000E-001 1.00000E+001\n");
+  const abbe_material *m = &t.material[0];
+  assert_near(abbe_dispersion_describe(&m->dispersion).n_d, 1.48749, 5e-7);
+  assert_near(abbe_dispersion_describe(&m->dispersion).v_d, 70.318793, 5e-4);
+  assert_near(m->temperature_c, 23, 0);
+  assert_near(m->catalogue.thermal[4], 3.02e-10, 0);
+  assert_near(m->min_nm, 365.015, 0);
+  assert_null(m->catalogue.code);
+  assert_null(m->comment);
+  abbe_material_table_free(&t);
+}
+
+static void encodings_and_line_ends_do_not_matter(void **state) {
+  (void)state;
+  static const char text[] = "CC maker\n" BK7;
+  char wide[2 * sizeof text + 2], returns[2 * sizeof text];
+  size_t w = 0, r = 0;
+  wide[w++] = '\xff';
+  wide[w++] = '\xfe';
+  for (size_t i = 0; i < sizeof text - 1; i++) {
+    wide[w++] = text[i];
+    wide[w++] = 0;
+    if (text[i] == '\n') returns[r++] = '\r';
+    returns[r++] = text[i];
+  }
+  const struct {
+    const char *bytes;
+    size_t size;
+  } forms[] = {{text, sizeof text - 1}, {wide, w}, {wide + 2, w - 2}, {returns, r}};
+  for (int i = 0; i < 4; i++) {
+    abbe_material_table t = parse_bytes(forms[i].bytes, forms[i].size);
+    assert_int_equal(t.count, 1);
+    assert_string_equal(t.material[0].name, "N-BK7");
+    assert_near(t.material[0].dispersion.c[6], 103.560653, 0);
+    assert_int_equal(t.material[0].line, 2);
+    abbe_material_table_free(&t);
+  }
+}
+
+static void placeholders_and_missing_fields_are_no_values(void **state) {
+  (void)state;
+  abbe_material_table t =
+      parse("NM CDS 2 1 1.000000 0.000000 0 0 0\nGC source:  Handbook of Optics\n"
+            "CD 3.96582820 5.58036869E-02 1.811387400E-001 2.33146066E-01 0 0\n"
+            "TD\nLD 5.1E-001 1.4\nIT 3.34E-001 1.0 25\nIT 5.0E-001 1.0 25\n"
+            "NM BARE 2\n" BK7_CD "NM DASHES 2 - - - - - -\n" BK7_CD
+            "LD 2.5 0.3\nIT 0.4 0.0 10\nIT 0.5 99 10\nIT 0.5 0.9 10\n"
+            "IT 0.5 0.8 10\nIT 0.45 0.95\n");
+  assert_int_equal(t.count, 3);
+  const abbe_material *cds = &t.material[0], *bare = &t.material[1], *dashes = &t.material[2];
+  assert_near(cds->published_n_d, 0, 0);
+  assert_string_equal(cds->source, "Handbook of Optics");
+  assert_null(cds->comment);
+  assert_true(isnan(cds->temperature_c));
+  assert_null(cds->attenuation); /* nothing but ones: nothing was measured */
+  assert_int_equal(cds->dispersion.count, 5);
+  assert_near(bare->min_nm, 404.66, 0);
+  assert_null(bare->catalogue.status);
+  assert_near(dashes->min_nm, 300, 0);
+  assert_int_equal(abbe_spectrum_count(dashes->attenuation), 2);
+  assert_near(abbe_material_attenuation(dashes, 400), -log(1e-6) / 0.01, 1e-9);
+  assert_near(abbe_material_attenuation(dashes, 500), -log(0.9) / 0.01, 1e-12);
+  assert_int_equal(report.kinds[ABBE_NOTE_ASSUMED], 2); /* a range, a transmittance of 0 */
+  assert_int_equal(report.kinds[ABBE_NOTE_LOST], 2);    /* odd lines, a line twice */
+  assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], 1); /* the range was the wrong way round */
+  abbe_material_table_free(&t);
+}
+
+/* Numbers that nothing uses may be anything, and must not make a table that cannot be read. */
+static void numbers_beyond_a_table_are_left_out(void **state) {
+  (void)state;
+  abbe_material_table t = parse("NM A 2 0 1.5168 64.17 0 1 1e9\nED 1e300 8.3 1e4 1e5 0\n" BK7_CD
+                                "TD 1e-6 1e200 0 0 0 0.17 20\nOD 1 2 3 4 5 1e13\n"
+                                "LD 0.3 2.5\n");
+  const abbe_material_catalogue *c = &t.material[0].catalogue;
+  assert_true(c->melt_frequency == 0 && c->density_g_cm3 == 0 && c->dpgf == 0);
+  assert_true(c->expansion_per_k[0] == 0 && c->thermal[1] == 0 && c->ratings[5] == -1);
+  assert_near(c->expansion_per_k[1], 8.3e-6, 1e-20);
+  assert_near(c->thermal[0], 1e-6, 0);
+  assert_near(c->ratings[4], 5, 0);
+  assert_int_equal(report.count, 1);
+  assert_contains(report.note[0].text, "6 of its numbers");
+  abbe_material_table_free(&t);
+}
+
+static void one_bad_glass_does_not_stop_the_rest(void **state) {
+  (void)state;
+  abbe_material_table t =
+      parse("NM A 99 0 1.5 60\n" BK7_CD "NM B 2 0 1.5 60\nLD 0.3 2\n"
+            "NM C 2 0 1.5 60\nCD 1 what 2\nLD 0.3 2\n"
+            "NM D 2 0 1.5 60\nCD 0 0 0\nLD 0.3 2\n"
+            "NM E 2 0 1.5 60\nCD 1 0.16\nLD 0.3 2\n" BK7 "NM n-bk7 2 0 1.5 60\n" BK7_CD "LD 0.3 2\n"
+            "NM F\n" BK7_CD "NM\n" BK7_CD);
+  assert_int_equal(t.count, 1);
+  const struct {
+    size_t line;
+    const char *name, *part;
+  } notes[] = {{1, "A", "its formula is '99'; a catalogue's are 1 to 13"},
+               {3, "B", "no CD line"},
+               {5, "C", "no number"},
+               {8, "D", "coefficients are 0"},
+               {11, "E", "no real index at 300 nm, inside its range"},
+               {0, NULL, NULL}};
+  for (size_t i = 0; notes[i].name != NULL; i++) {
+    assert_int_equal(report.note[i].kind, ABBE_NOTE_SKIPPED);
+    assert_int_equal(report.note[i].line, notes[i].line);
+    assert_string_equal(report.note[i].name, notes[i].name);
+    assert_contains(report.note[i].text, notes[i].part);
+  }
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 8);
+  assert_contains(report.note[report.count - 1].text, "was there before, on line 14");
+  abbe_material_table_free(&t);
+}
+
+static void refuses(const char *text, abbe_result code, const char *part) {
+  abbe_material_table table;
+  abbe_error error = {0};
+  abbe_report mine = {0};
+  assert_int_equal(abbe_agf_parse(text, strlen(text), "x.agf", &table, &mine, &error), code);
+  assert_contains(error.text, part);
+  assert_null(table.material);
+  abbe_report_free(&mine);
+}
+
+static void what_is_no_catalogue_is_refused(void **state) {
+  (void)state;
+  refuses("", ABBE_PARSE, "x.agf: has no NM line");
+  refuses("materials:\n- name: x\n", ABBE_PARSE, "no Zemax glass catalogue");
+  refuses("NM A 99\n", ABBE_SCHEMA, "none of its 1 glasses can be used; the first: its formula");
+  abbe_material_table table;
+  abbe_error error;
+  assert_int_equal(abbe_agf_load("/nowhere/x.agf", &table, NULL, &error), ABBE_IO);
+}
+
+/* A thousand glasses with 33 transmittances each, as a maker's catalogue has. */
+static void a_catalogue_is_read_fast(void **state) {
+  (void)state;
+  enum { GLASSES = 1000, EACH = 2200 };
+  char *text = malloc(GLASSES * EACH);
+  assert_non_null(text);
+  size_t used = (size_t)sprintf(text, "CC big\n");
+  for (int i = 0; i < GLASSES; i++) {
+    used += (size_t)sprintf(text + used, "NM G%d 2 517642.251 1.5168 64.17 0 1 1\n" BK7_CD, i);
+    used += (size_t)sprintf(text + used, "LD 0.3 2.5\n");
+    for (int k = 0; k < 33; k++)
+      used += (size_t)sprintf(text + used, "IT %.5E 9.95000E-001 1.00000E+001\n", 0.3 + 0.05 * k);
+  }
+  clock_t start = clock();
+  abbe_material_table t = parse(text);
+  double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+  assert_int_equal(t.count, GLASSES);
+  assert_int_equal(report.count, 0);
+  print_message("%d glasses, %zu bytes, in %.3f s\n", GLASSES, used, seconds);
+  assert_true(seconds < 5); /* 0.1 in release; sanitizers and a busy machine take longer */
+  abbe_material_table_free(&t);
+  free(text);
+}
+
+static int end(void **state) {
+  (void)state;
+  abbe_report_free(&report);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_glass_is_read_whole),
+      cmocka_unit_test(commas_part_numbers_or_begin_their_decimals),
+      cmocka_unit_test(a_name_may_hold_commas),
+      cmocka_unit_test(a_long_title_is_cut_at_a_word),
+      cmocka_unit_test(wrapped_lines_are_joined),
+      cmocka_unit_test(encodings_and_line_ends_do_not_matter),
+      cmocka_unit_test(placeholders_and_missing_fields_are_no_values),
+      cmocka_unit_test(numbers_beyond_a_table_are_left_out),
+      cmocka_unit_test(one_bad_glass_does_not_stop_the_rest),
+      cmocka_unit_test(what_is_no_catalogue_is_refused),
+      cmocka_unit_test(a_catalogue_is_read_fast),
+  };
+  return cmocka_run_group_tests(tests, NULL, end);
+}

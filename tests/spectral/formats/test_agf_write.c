@@ -1,0 +1,210 @@
+#include "tests/random.h"
+#include "tests/spectral/random_material.h"
+#include "tests/spectral/same_material.h"
+
+#include "spectral/formats/agf.h"
+#include "spectral/formats/agf_write.h"
+
+static abbe_material_table reread(const abbe_material_table *table, abbe_report *report) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  abbe_error error = {0};
+  if (abbe_agf_write(table, to, report, &error) != ABBE_OK) fail_msg("%s", error.text);
+  fclose(to);
+  abbe_material_table back;
+  abbe_report notes = {0};
+  if (abbe_agf_parse(text, size, "back.agf", &back, &notes, &error) != ABBE_OK)
+    fail_msg("%s\n%s", error.text, text);
+  assert_int_equal(notes.kinds[ABBE_NOTE_SKIPPED], 0);
+  abbe_report_free(&notes);
+  free(text);
+  return back;
+}
+
+static bool noted(const abbe_report *report, const char *part) {
+  for (size_t i = 0; i < report->count; i++)
+    if (strstr(report->note[i].text, part) != NULL) return true;
+  return false;
+}
+
+/* n and the attenuation of every shipped row are those of the row, and what is lost is said. */
+static void the_shipped_table_becomes_a_catalogue(void **state) {
+  (void)state;
+  abbe_material_table table;
+  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  abbe_report report = {0};
+  abbe_material_table back = reread(&table, &report);
+  assert_int_equal(back.count, table.count);
+  for (size_t i = 0; i < back.count; i++) {
+    const abbe_material *a = &table.material[i], *b = &back.material[i];
+    assert_string_equal(a->name, b->name);
+    assert_string_equal(a->source, b->source);
+    assert_near(a->min_nm, b->min_nm, 0);
+    assert_near(a->max_nm, b->max_nm, 0);
+    for (double l = a->min_nm; l < a->max_nm; l *= 1.05) {
+      double n = abbe_dispersion_n(&a->dispersion, l);
+      assert_near(abbe_dispersion_n(&b->dispersion, l), n, 2e-15 * n);
+      assert_near(abbe_material_attenuation(b, l), abbe_material_attenuation(a, l),
+                  1e-10 * abbe_material_attenuation(a, l) + 1e-12);
+    }
+    double n_d = abbe_dispersion_describe(&a->dispersion).n_d;
+    assert_near(b->published_n_d, n_d > 1 ? n_d : 0, 5e-6); /* 1 is how catalogues say nothing */
+  }
+  char count[80];
+  snprintf(count, sizeof count, "no place for a description (%zu materials: ", table.count);
+  assert_true(noted(&report, count));
+  assert_true(noted(&report, "no place for a warning"));
+  assert_true(noted(&report, "no place for recorded fits"));
+  assert_true(noted(&report, "cannot allow use outside"));
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 0);
+  abbe_report_free(&report);
+  abbe_material_table_free(&back);
+  abbe_material_table_free(&table);
+}
+
+/* A table that came from a catalogue goes back to one and comes again, the same in all that both
+ * can say. */
+static void a_catalogue_survives_the_way_through_a_table(void **state) {
+  (void)state;
+  srand(5);
+  abbe_material_table table = {0};
+  for (size_t i = 0; i < 400; i++) {
+    abbe_material m = random_material(i);
+    free(m.comment);
+    m.comment = rand() % 2 ? strdup("a remark, 25 C") : NULL;
+    assert_int_equal(abbe_material_table_append(&table, &m, NULL), ABBE_OK);
+  }
+  abbe_report report = {0};
+  abbe_material_table once = reread(&table, &report), twice = reread(&once, NULL);
+  assert_int_equal(once.count + report.kinds[ABBE_NOTE_SKIPPED], table.count);
+  assert_int_equal(twice.count, once.count);
+  for (size_t i = 0; i < once.count; i++) {
+    assert_carried(&once.material[i], &twice.material[i], 1e-9);
+    assert_near(once.material[i].published_n_d, twice.material[i].published_n_d, 0);
+  }
+  /* what the first step carries, of those that it did not leave out */
+  for (size_t i = 0, j = 0; i < once.count; i++, j++) {
+    while (strcmp(table.material[j].name, once.material[i].name) != 0) j++;
+    const abbe_material *a = &table.material[j], *b = &once.material[i];
+    assert_string_equal(a->source, b->source);
+    assert_true(same_text(a->comment, b->comment));
+    assert_true(same_catalogue(&a->catalogue, &b->catalogue));
+    assert_true(same_number(a->temperature_c, b->temperature_c, 0));
+  }
+  abbe_report_free(&report);
+  abbe_material_table_free(&twice);
+  abbe_material_table_free(&once);
+  abbe_material_table_free(&table);
+}
+
+/* The lines of `text` that begin with IT, each number in its shortest form. */
+static size_t transmittances(const char *text, char lines[][80], size_t most) {
+  size_t count = 0;
+  for (const char *at = text; (at = strstr(at, "IT ")) != NULL; at += 3) {
+    double lambda, share, thickness;
+    assert_int_equal(sscanf(at, "IT %lf %lf %lf", &lambda, &share, &thickness), 3);
+    assert_true(count < most);
+    snprintf(lines[count++], 80, "%.17g %.17g %.17g", lambda, share, thickness);
+  }
+  return count;
+}
+
+/* Printed transmittances come back as they were, at the thickness at which they were measured. */
+static void transmittances_come_back_to_the_last_digit(void **state) {
+  (void)state;
+  static const char text[] =
+      "CC maker\n"
+      "NM A 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
+      "IT 3.10000E-01 5.74000E-01 2.50000E+01\nIT 3.20000E-01 7.72000E-01 2.50000E+01\n"
+      "IT 3.34000E-01 9.05000E-01 2.50000E+01\nIT 0.35 0.967 25\nIT 0.5 1 25\nIT 0.7 0.9998 25\n"
+      "NM B 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
+      "IT 0.3 0.0001 3\nIT 0.31 0.17 3\nIT 0.32 0.5012345 10\nIT 0.33 0.77 10\nIT 0.4 1 10\n"
+      "IT 0.5 0.999 10\nIT 0.6 0.99 10\nIT 0.7 0.97 10\nIT 0.8 0.3 1\nIT 0.9 0.012 2\n"
+      "NM C 2 0 1.5168 64.17\nCD 1.03961212 0.00600069867 0 0 0 0\nLD 0.3 2.5\n"
+      "IT 0.4 0.91 1.9\nIT 0.5 0.93 1.9\nIT 0.6 1 1.9\n";
+  abbe_material_table table;
+  assert_int_equal(abbe_agf_parse(text, strlen(text), "m.agf", &table, NULL, NULL), ABBE_OK);
+  assert_int_equal(table.count, 3);
+  char *written = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&written, &size);
+  assert_int_equal(abbe_agf_write(&table, to, NULL, NULL), ABBE_OK);
+  fclose(to);
+  static char before[24][80], after[24][80];
+  size_t count = transmittances(text, before, 24);
+  assert_int_equal(count, 19);
+  assert_int_equal(transmittances(written, after, 24), count);
+  for (size_t i = 0; i < count; i++) assert_string_equal(after[i], before[i]);
+  free(written);
+  abbe_material_table_free(&table);
+}
+
+/* Whatever absorbs, and however much: not a bit of it changes. */
+static void absorption_is_carried_to_the_last_bit(void **state) {
+  (void)state;
+  enum { COUNT = 4000 };
+  static double lambda_nm[COUNT], attenuation[COUNT];
+  uint64_t random = 7;
+  for (int i = 0; i < COUNT; i++) {
+    lambda_nm[i] = 400 + 0.05 * i;
+    attenuation[i] = i % 50 == 0 ? 0 : pow(10, random_between(&random, -5, 9));
+  }
+  abbe_material m = {.name = (char[]){"m"},
+                     .source = (char[]){"s"},
+                     .min_nm = 400,
+                     .max_nm = 700,
+                     .temperature_c = NAN,
+                     .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}};
+  assert_int_equal(abbe_spectrum_make(lambda_nm, attenuation, COUNT, ABBE_INTERPOLATION_LINEAR,
+                                      &m.attenuation, NULL),
+                   ABBE_OK);
+  const abbe_material_table table = {.count = 1, .material = &m};
+  abbe_material_table back = reread(&table, NULL);
+  const double *now = abbe_spectrum_value(back.material[0].attenuation);
+  size_t changed = 0;
+  for (int i = 0; i < COUNT; i++) changed += now[i] != attenuation[i];
+  assert_int_equal(changed, 0);
+  abbe_material_table_free(&back);
+  abbe_spectrum_free(m.attenuation);
+}
+
+static void names_and_failures_are_told(void **state) {
+  (void)state;
+  abbe_material list[2] = {
+      {.name = (char[]){"two words, more"},
+       .source = (char[]){"line\nbreak"},
+       .min_nm = 400,
+       .max_nm = 700,
+       .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}},
+      {.name = (char[]){"bad"},
+       .source = (char[]){"s"},
+       .min_nm = 400,
+       .max_nm = 700,
+       .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}}}};
+  abbe_material_table table = {.count = 2, .material = list};
+  abbe_report report = {0};
+  abbe_material_table back = reread(&table, &report);
+  assert_int_equal(back.count, 1);
+  assert_string_equal(back.material[0].name, "two_words,_more");
+  assert_string_equal(back.material[0].source, "line break");
+  assert_int_equal(back.material[0].dispersion.model, ABBE_DISPERSION_CONSTANT);
+  assert_true(noted(&report, "become '_' (1 material: two words, more)"));
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 1);
+  abbe_report_free(&report);
+  abbe_material_table_free(&back);
+  FILE *full = fopen("/dev/full", "w");
+  assert_int_equal(abbe_agf_write(&table, full, NULL, NULL), ABBE_IO);
+  fclose(full);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_shipped_table_becomes_a_catalogue),
+      cmocka_unit_test(a_catalogue_survives_the_way_through_a_table),
+      cmocka_unit_test(transmittances_come_back_to_the_last_digit),
+      cmocka_unit_test(absorption_is_carried_to_the_last_bit),
+      cmocka_unit_test(names_and_failures_are_told),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

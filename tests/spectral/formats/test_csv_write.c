@@ -1,0 +1,102 @@
+#include "tests/spectral/random_material.h"
+#include "tests/spectral/same_material.h"
+
+#include "spectral/dispersion/csv_points.h"
+#include "spectral/formats/csv_write.h"
+
+static abbe_csv_points reread(const abbe_material *m, const abbe_csv_sampling *sampling,
+                              abbe_report *report) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  abbe_error error = {0};
+  if (abbe_csv_write(m, sampling, to, report, &error) != ABBE_OK) fail_msg("%s", error.text);
+  fclose(to);
+  abbe_csv_points points;
+  if (abbe_csv_points_parse(text, size, "x.csv", NULL, &points, NULL, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  free(text);
+  return points;
+}
+
+static void written_points_are_the_materials(void **state) {
+  (void)state;
+  srand(4);
+  for (size_t i = 0; i < 200; i++) {
+    abbe_material m = random_material(i);
+    abbe_report report = {0};
+    abbe_csv_points p = reread(&m, NULL, &report);
+    for (size_t k = 0; k < p.n.count; k++) {
+      double n = 0;
+      assert_int_equal(abbe_material_n(&m, p.n.point[k].lambda_nm, &n, NULL), ABBE_OK);
+      assert_near(p.n.point[k].value, n, 1e-14);
+    }
+    if (m.dispersion.table != NULL)
+      assert_int_equal(p.n.count, abbe_spectrum_count(m.dispersion.table));
+    else
+      assert_int_equal(p.n.count, 81); /* 380 to 780 */
+    assert_int_equal(p.k.count, m.attenuation != NULL ? p.n.count : 0);
+    assert_true(report.kinds[ABBE_NOTE_LOST] > 0);
+    abbe_report_free(&report);
+    abbe_csv_points_free(&p);
+    abbe_material_free(&m);
+  }
+}
+
+static char name[] = "glass", source[] = "s";
+
+static abbe_material glass(void) {
+  return (abbe_material){.name = name,
+                         .source = source,
+                         .min_nm = 400,
+                         .max_nm = 700,
+                         .dispersion = {ABBE_DISPERSION_CAUCHY, 2, {1.5, 0.004}, NULL}};
+}
+
+/* The error that is told is that of straight lines through the points. */
+static void sampling_is_asked_for_and_its_error_told(void **state) {
+  (void)state;
+  abbe_material m = glass();
+  abbe_report report = {0};
+  abbe_csv_points p = reread(&m, &(abbe_csv_sampling){450, 525, 50}, &report);
+  assert_int_equal(p.n.count, 3);
+  assert_near(p.n.point[1].lambda_nm, 500, 0);
+  assert_near(p.n.point[2].lambda_nm, 525, 0);
+  double worst = 0.004 * ((1 / 0.45 / 0.45 + 1 / 0.5 / 0.5) / 2 - 1 / 0.475 / 0.475);
+  char told[64];
+  snprintf(told, sizeof told, "off by up to %.2g", worst);
+  assert_contains(report.note[0].text, told);
+  abbe_report_free(&report);
+  abbe_csv_points_free(&p);
+}
+
+static void what_cannot_be_sampled_is_refused(void **state) {
+  (void)state;
+  abbe_material m = glass();
+  abbe_error error;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  assert_int_equal(abbe_csv_write(&m, &(abbe_csv_sampling){380, 780, 5}, to, NULL, &error),
+                   ABBE_OUT_OF_RANGE);
+  assert_contains(error.text, "glass has no index at 380 nm");
+  assert_int_equal(abbe_csv_write(&m, &(abbe_csv_sampling){400, 700, -1}, to, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_csv_write(&m, &(abbe_csv_sampling){400, 700, 1e-4}, to, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "at most 65536 points");
+  fclose(to);
+  free(text);
+  FILE *full = fopen("/dev/full", "w");
+  assert_int_equal(abbe_csv_write(&m, NULL, full, NULL, &error), ABBE_IO);
+  fclose(full);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(written_points_are_the_materials),
+      cmocka_unit_test(sampling_is_asked_for_and_its_error_told),
+      cmocka_unit_test(what_cannot_be_sampled_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,178 @@
+#include "tests/spectral/random_material.h"
+#include "tests/spectral/same_material.h"
+
+#include "spectral/formats/material_write.h"
+
+static abbe_material_table reread(const abbe_material_table *table, char **text) {
+  size_t size = 0;
+  FILE *to = open_memstream(text, &size);
+  assert_non_null(to);
+  abbe_error error = {0};
+  if (abbe_material_table_write(table, to, &error) != ABBE_OK) fail_msg("%s", error.text);
+  fclose(to);
+  abbe_material_table back;
+  if (abbe_material_table_parse(*text, size, "t.yaml", &back, &error) != ABBE_OK)
+    fail_msg("%s\n%s", error.text, *text);
+  return back;
+}
+
+static void shipped_tables_come_back_the_same(void **state) {
+  (void)state;
+  const char *const names[] = {"default", "thesis"};
+  for (int t = 0; t < 2; t++) {
+    abbe_material_table table;
+    assert_int_equal(abbe_material_table_load(names[t], &table, NULL), ABBE_OK);
+    char *text = NULL;
+    abbe_material_table back = reread(&table, &text);
+    assert_int_equal(back.count, table.count);
+    assert_string_equal(back.description, table.description);
+    for (size_t i = 0; i < back.count; i++)
+      assert_same_record(&table.material[i], &back.material[i]);
+    free(text);
+    abbe_material_table_free(&back);
+    abbe_material_table_free(&table);
+  }
+}
+
+static void random_records_come_back_the_same(void **state) {
+  (void)state;
+  srand(11);
+  for (int round = 0; round < 20; round++) {
+    abbe_material_table table = {0};
+    for (size_t i = 0; i < 25; i++) {
+      abbe_material m = random_material(i);
+      abbe_error error = {0};
+      if (abbe_material_check(&m, &error) != ABBE_OK) fail_msg("%s", error.text);
+      assert_int_equal(abbe_material_table_append(&table, &m, NULL), ABBE_OK);
+    }
+    char *text = NULL;
+    abbe_material_table back = reread(&table, &text);
+    assert_int_equal(back.count, 25);
+    for (size_t i = 0; i < back.count; i++)
+      assert_same_record(&table.material[i], &back.material[i]);
+    free(text);
+    abbe_material_table_free(&back);
+    abbe_material_table_free(&table);
+  }
+}
+
+/* Names and texts that YAML would take for something else. */
+static void odd_texts_come_back_the_same(void **state) {
+  (void)state;
+  const char *const odd[] = {"true",
+                             "null",
+                             "1.5",
+                             "-",
+                             "a: b",
+                             "# c",
+                             "\"q\"",
+                             "'q'",
+                             "[x]",
+                             "{y: 1}",
+                             "*a",
+                             "&a",
+                             "!t",
+                             "a\\b",
+                             "%x",
+                             "@",
+                             "yes",
+                             " lead",
+                             "trail ",
+                             "a\nb\tc",
+                             "\x7f",
+                             "\x1b[2J",
+                             "\xc2\x85 \xc2\x9f",
+                             "\xe2\x80\xa8",
+                             "\xef\xbb\xbf bom",
+                             "\xef\xbf\xbe",
+                             "Schott\xc2\xae"};
+  for (size_t i = 0; i < sizeof odd / sizeof odd[0]; i++) {
+    abbe_material m = {.name = strdup("x"),
+                       .source = strdup("s"),
+                       .comment = strdup(odd[i]),
+                       .min_nm = 1,
+                       .max_nm = 1e6,
+                       .temperature_c = NAN,
+                       .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}}};
+    abbe_material_table table = {0};
+    assert_int_equal(abbe_material_table_append(&table, &m, NULL), ABBE_OK);
+    char *text = NULL;
+    abbe_material_table back = reread(&table, &text);
+    assert_string_equal(back.material[0].comment, odd[i]);
+    free(text);
+    abbe_material_table_free(&back);
+    abbe_material_table_free(&table);
+  }
+}
+
+static void what_could_not_be_read_again_is_not_written(void **state) {
+  (void)state;
+  abbe_material m = {.name = (char[]){"x"},
+                     .source = (char[]){"s"},
+                     .min_nm = 400,
+                     .max_nm = 700,
+                     .dispersion = {.model = ABBE_DISPERSION_CAUCHY, .count = 1, .c = {-1}}};
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  abbe_error error;
+  assert_int_equal(abbe_material_write(&m, to, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "x: its cauchy formula has no real index");
+  fclose(to);
+  assert_int_equal(size, 0);
+  free(text);
+  FILE *full = fopen("/dev/full", "w");
+  m.dispersion.c[0] = 1.5;
+  abbe_material_table table = {.count = 1, .material = &m};
+  assert_int_equal(abbe_material_table_write(&table, full, &error), ABBE_IO);
+  fclose(full);
+}
+
+/* What is written can be read again: a table with more values than a reader takes is refused. */
+static void too_large_a_table_is_refused(void **state) {
+  (void)state;
+  enum { POINTS = 60000, COUNT = 6 };
+  static double lambda_nm[POINTS], value[POINTS];
+  static char names[COUNT][4], source[] = "s";
+  abbe_material list[COUNT] = {{0}};
+  for (int i = 0; i < POINTS; i++) {
+    lambda_nm[i] = 400 + 0.5 * i;
+    value[i] = 1.5;
+  }
+  for (int i = 0; i < COUNT; i++) {
+    snprintf(names[i], sizeof names[i], "m%d", i);
+    list[i] = (abbe_material){.name = names[i],
+                              .source = source,
+                              .min_nm = 400,
+                              .max_nm = 700,
+                              .temperature_c = NAN,
+                              .dispersion = {.model = ABBE_DISPERSION_TABULATED}};
+    assert_int_equal(abbe_spectrum_make(lambda_nm, value, POINTS, ABBE_INTERPOLATION_LINEAR,
+                                        &list[i].dispersion.table, NULL),
+                     ABBE_OK);
+  }
+  const abbe_material_table table = {.count = COUNT, .material = list};
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  abbe_error error = {0};
+  assert_int_equal(abbe_material_table_write(&table, to, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "6 materials are ");
+  assert_contains(error.text, "more than 1000000 values");
+  assert_contains(error.text, "a file that ends in .sqlite");
+  fclose(to);
+  assert_int_equal(size, 0);
+  free(text);
+  for (int i = 0; i < COUNT; i++) abbe_dispersion_free(&list[i].dispersion);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(shipped_tables_come_back_the_same),
+      cmocka_unit_test(random_records_come_back_the_same),
+      cmocka_unit_test(odd_texts_come_back_the_same),
+      cmocka_unit_test(what_could_not_be_read_again_is_not_written),
+      cmocka_unit_test(too_large_a_table_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

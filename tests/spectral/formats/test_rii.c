@@ -1,0 +1,239 @@
+#include "tests/check.h"
+
+#include "spectral/formats/rii.h"
+
+#include <stdlib.h>
+
+static abbe_report report;
+
+static abbe_material parse_as(const char *text, const char *path, const char *name) {
+  abbe_material m;
+  abbe_error error = {0};
+  abbe_report_free(&report);
+  if (abbe_rii_parse(text, strlen(text), path, name, &m, &report, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return m;
+}
+
+/* As the database has a maker's glass [RefractiveIndexInfo]. */
+static const char bk7[] =
+    "# this file is part of refractiveindex.info database\n\n"
+    "REFERENCES: |\n"
+    "    <a href=\"https://x/schott_2017-01-20b.agf\">SCHOTT Zemax catalog 2017-01-20b</a>\n"
+    "    (obtained from <a href=\"https://www.schott.com\">http://www.schott.com</a>)<br>\n"
+    "    See also <a href=\"https://x.pdf\">SCHOTT glass data sheets</a>\n"
+    "COMMENTS: |\n    step 0.5 available\n"
+    "DATA:\n"
+    "  - type: formula 2\n"
+    "    wavelength_range: 0.3 2.5\n"
+    "    coefficients: 0 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653\n"
+    "  - type: tabulated k\n"
+    "    data: |\n"
+    "        0.300 2.8607E-06\n        0.400 1.0227E-08\n        0.500 9.5781E-09\n"
+    "        2.500 8.1300E-06\n"
+    "CONDITIONS:\n    temperature: 293\n"
+    "PROPERTIES:\n"
+    "    thermal_dispersion:\n      - type: formula A\n"
+    "        coefficients: 1.86e-06 1.31e-08 -1.37e-11 4.34e-07 6.27e-10 0.17\n"
+    "    nd: 1.5168\n    Vd: 64.17\n    glass_code: 517642.251\n    glass_status: standard\n"
+    "    density:\n      - value: 2510\n"
+    "    thermal_expansion:\n      - temperature_range: 243 343\n        value: 7.1e-06\n"
+    "      - temperature_range: 293 573\n        value: 8.3e-06\n"
+    "    dPgF: -0.0009\n"
+    "    resistance:\n        climatic: 1.0\n        stain: 0.0\n        acid: 1.0\n"
+    "        alkali: 2.3\n        phosphate: 2.3\n";
+
+static void a_makers_glass_is_read_whole(void **state) {
+  (void)state;
+  abbe_material m = parse_as(bk7, "database/data/specs/schott/optical/N-BK7.yml", NULL);
+  assert_string_equal(m.name, "N-BK7");
+  assert_string_equal(m.source, "SCHOTT Zemax catalog 2017-01-20b (obtained from "
+                                "http://www.schott.com) See also SCHOTT glass data sheets");
+  assert_string_equal(m.comment, "step 0.5 available");
+  assert_int_equal(m.dispersion.model, ABBE_DISPERSION_SELLMEIER2);
+  assert_near(abbe_dispersion_describe(&m.dispersion).n_d, 1.5168, 5e-6);
+  assert_near(m.min_nm, 300, 0);
+  assert_near(m.max_nm, 2500, 0);
+  assert_near(m.temperature_c, 19.85, 1e-12);
+  assert_near(m.published_n_d, 1.5168, 0);
+  assert_near(m.published_v_d, 64.17, 0);
+  assert_near(abbe_material_attenuation(&m, 400), 4 * acos(-1) * 1.0227e-8 / 400e-9, 1e-12);
+  assert_string_equal(m.catalogue.code, "517642.251");
+  assert_string_equal(m.catalogue.status, "standard");
+  assert_near(m.catalogue.density_g_cm3, 2.51, 0);
+  assert_near(m.catalogue.expansion_per_k[1], 8.3e-6, 0);
+  assert_near(m.catalogue.thermal[0], 1.86e-6, 0);
+  assert_near(m.catalogue.dpgf, -0.0009, 0);
+  assert_near(m.catalogue.ratings[5], 2.3, 0);
+  assert_near(m.catalogue.ratings[0], -1, 0);
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED] + report.kinds[ABBE_NOTE_LOST], 0);
+  abbe_material_free(&m);
+}
+
+static void names_come_from_the_path(void **state) {
+  (void)state;
+  static const char text[] =
+      "DATA:\n- {type: formula 5, wavelength_range: 0.4 0.7, coefficients: 2}\n";
+  const struct {
+    const char *path, *name;
+  } rows[] = {{"a/main/SiO2/nk/Malitson.yml", "SiO2-Malitson"},
+              {"nk/Malitson.yml", "Malitson"},
+              {"Daimon-20.0C.yml", "Daimon-20.0C"},
+              {"/x/optical/N-BK7.yml", "N-BK7"},
+              {"bare", "bare"}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    abbe_material m = parse_as(text, rows[i].path, NULL);
+    assert_string_equal(m.name, rows[i].name);
+    abbe_material_free(&m);
+  }
+  abbe_material m = parse_as(text, "x.yml", "mine");
+  assert_string_equal(m.name, "mine");
+  assert_int_equal(m.dispersion.model, ABBE_DISPERSION_CONSTANT);
+  assert_contains(m.source, "without references, x.yml");
+  abbe_material_free(&m);
+}
+
+/* Formula by formula: published n, of the material that the database has for it. */
+static void every_formula_is_read(void **state) {
+  (void)state;
+  const struct {
+    const char *type, *range, *c;
+    abbe_dispersion_model model;
+    double lambda_nm, n, within;
+  } rows[] = {
+      {"formula 1", "0.21 6.7", "0 0.6961663 0.0684043 0.4079426 0.1162414 0.8974794 9.896161",
+       ABBE_DISPERSION_SELLMEIER, 587.5618, 1.458464, 5e-7},
+      {"formula 3", "0.4 0.7",
+       "2.259379 0.009090504 2 0.02633942 -2 -0.003777418 -4 0.0005228702 -6 -2.629182e-05 -8",
+       ABBE_DISPERSION_POLYNOMIAL, 587.5618, 1.52249, 5e-7},
+      {"formula 4", "0.43 1.53", "5.913 0.2441 0 0.0803 1 0 0 0 1", ABBE_DISPERSION_RII4, 587.5618,
+       2.614265, 5e-7},
+      {"formula 4", "0.43 1.53", "5.913 0.2441 0 0.0803 1", ABBE_DISPERSION_RII4, 587.5618,
+       2.614265, 5e-7},
+      {"formula 5", "0.4 0.7", "1.5046 0.0042 -2", ABBE_DISPERSION_CAUCHY, 500, 1.5214, 1e-15},
+      {"formula 5", "0.4 0.7", "1.5 0.01 -1", ABBE_DISPERSION_POWERS, 500, 1.52, 1e-15},
+      {"formula 6", "0.23 1.69", "0 0.05792105 238.0185 0.00167917 57.362", ABBE_DISPERSION_RII6,
+       589.3, 1.000277, 5e-7},
+      {"formula 7", "2.4373 25", "3.41983 0.159906 -0.123109 1.26878e-6 -1.95104e-9",
+       ABBE_DISPERSION_HERZBERGER, 5000, 3.4261, 5e-5},
+      {"formula 8", "0.495 0.67", "0.452505 0.09939 0.070537 -0.00015", ABBE_DISPERSION_RII8, 589.3,
+       2.253, 5e-3},
+      {"formula 9", "0.3 1.06", "2.51527 0.0240 0.0300 0.0202 1.52 0.8771", ABBE_DISPERSION_RII9,
+       1050, 1.59, 1e-2},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "REFERENCES: r\nDATA:\n  - type: %s \n    wavelength_range: %s\n"
+             "    coefficients: %s\n",
+             rows[i].type, rows[i].range, rows[i].c);
+    abbe_material m = parse_as(text, "x.yml", NULL);
+    assert_int_equal(m.dispersion.model, rows[i].model);
+    assert_near(abbe_dispersion_n(&m.dispersion, rows[i].lambda_nm), rows[i].n, rows[i].within);
+    assert_int_equal(report.count, 0);
+    abbe_material_free(&m);
+  }
+}
+
+static void tables_are_read_and_put_in_order(void **state) {
+  (void)state;
+  abbe_material m = parse_as("REFERENCES: r\nDATA:\n  - type: tabulated nk\n    data: |\n"
+                             "        0.6 1.45 0.02\n        0.5 1.5 0.01\n        0.7 1.4 0\n"
+                             "        0.7 1.3 0\n        oops\n        0.8 -1 0\n",
+                             "x.yml", NULL);
+  double n = 0;
+  assert_int_equal(abbe_spectrum_count(m.dispersion.table), 3);
+  assert_int_equal(abbe_material_n(&m, 600, &n, NULL), ABBE_OK);
+  assert_near(n, 1.45, 1e-15);
+  assert_near(m.min_nm, 500, 0);
+  assert_near(m.max_nm, 700, 0);
+  assert_near(abbe_material_attenuation(&m, 500), 4 * acos(-1) * 0.01 / 500e-9, 1e-6);
+  assert_int_equal(report.kinds[ABBE_NOTE_LOST], 2);
+  abbe_material_free(&m);
+  m = parse_as("REFERENCES: r\nDATA:\n  - type: tabulated n\n    data: |\n        0.5 1.5\n"
+               "        0.6 1.4\n  - type: tabulated k\n    data: |\n        0.5 0\n        0.6 0\n"
+               "  - type: tabulated n2\n    data: 0.5 1\n  - type: formula 2\n",
+               "x.yml", NULL);
+  assert_null(m.attenuation); /* k of 0 throughout is clear */
+  assert_int_equal(report.kinds[ABBE_NOTE_LOST], 2);
+  abbe_material_free(&m);
+}
+
+static void properties_beyond_a_table_are_left_out(void **state) {
+  (void)state;
+  abbe_material m =
+      parse_as("REFERENCES: r\nDATA:\n  - type: formula 5\n    wavelength_range: 0.4 0.7\n"
+               "    coefficients: 1.5 0.004 -2\nPROPERTIES:\n    nd: 1e-9\n    dPgF: 1e9\n"
+               "    density:\n      - value: 1e12\n    thermal_expansion:\n"
+               "      - value: 7.1e+206\n      - value: 8.3e-06\n",
+               "a.yml", NULL);
+  assert_true(m.published_n_d == 0 && m.catalogue.dpgf == 0 && m.catalogue.density_g_cm3 == 0);
+  assert_true(m.catalogue.expansion_per_k[0] == 0);
+  assert_near(m.catalogue.expansion_per_k[1], 8.3e-6, 0);
+  assert_int_equal(report.count, 1);
+  assert_contains(report.note[0].text, "too large");
+  abbe_material_free(&m);
+}
+
+static void absolute_indices_get_a_warning(void **state) {
+  (void)state;
+  abbe_material m = parse_as("REFERENCES: r\nDATA:\n- {type: formula 5, wavelength_range: 0.4 0.7,"
+                             " coefficients: 1.5}\nCONDITIONS: {n_absolute: true,"
+                             " wavelength_vacuum: true, temperature: 293.15}\n",
+                             "x.yml", NULL);
+  assert_contains(m.warning, "relative to vacuum");
+  assert_contains(m.warning, "Wavelengths are those in vacuum");
+  assert_near(m.temperature_c, 20, 0);
+  abbe_material_free(&m);
+}
+
+static void refuses(const char *text, abbe_result code, const char *part) {
+  abbe_material m;
+  abbe_error error = {0};
+  assert_int_equal(abbe_rii_parse(text, strlen(text), "x.yml", NULL, &m, NULL, &error), code);
+  assert_contains(error.text, part);
+  assert_null(m.name);
+}
+
+static void what_holds_no_index_is_refused(void **state) {
+  (void)state;
+  refuses("", ABBE_PARSE, "x.yml");
+  refuses("materials: []\n", ABBE_SCHEMA, "x.yml:1: has no list 'DATA'");
+  refuses("DATA: []\n", ABBE_SCHEMA, "holds no index");
+  refuses("DATA:\n- {type: tabulated n2, data: 0.5 1}\n", ABBE_SCHEMA, "only a nonlinear one");
+  refuses("DATA:\n- {type: tabulated k, data: 0.5 1}\n", ABBE_SCHEMA, "a material needs n as well");
+  refuses("DATA:\n- {type: formula 12}\n", ABBE_SCHEMA, "x.yml:2: there is no formula 12");
+  refuses("DATA:\n- {type: formula 99999999999999999999}\n", ABBE_SCHEMA, "no formula 9999");
+  refuses("DATA:\n- {type: formula 2}\n", ABBE_SCHEMA, "wants its 'coefficients'");
+  refuses("DATA:\n- {type: formula 2, coefficients: 0 1 2}\n", ABBE_SCHEMA, "'wavelength_range'");
+  refuses("DATA:\n- {type: formula 2, coefficients: 0 1, wavelength_range: 1 2}\n", ABBE_SCHEMA,
+          "odd number");
+  refuses("DATA:\n- {type: formula 2, coefficients: 0 1 x, wavelength_range: 1 2}\n", ABBE_SCHEMA,
+          "1 to 32 numbers");
+  refuses("DATA:\n- {type: formula 2, coefficients: 0 1 0.16, wavelength_range: 0.3 2}\n",
+          ABBE_SCHEMA, "no real index at 300 nm");
+  refuses("DATA:\n- {type: tabulated n}\n", ABBE_SCHEMA, "wants its 'data', 2 numbers a line");
+  refuses("DATA:\n- {type: tabulated n, data: nothing}\n", ABBE_SCHEMA, "no usable line");
+  refuses("DATA:\n- 3\n", ABBE_SCHEMA, "wants a 'type'");
+  abbe_material m;
+  assert_int_equal(abbe_rii_load("/nowhere.yml", NULL, &m, NULL, NULL), ABBE_IO);
+}
+
+static int end(void **state) {
+  (void)state;
+  abbe_report_free(&report);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_makers_glass_is_read_whole),
+      cmocka_unit_test(names_come_from_the_path),
+      cmocka_unit_test(every_formula_is_read),
+      cmocka_unit_test(tables_are_read_and_put_in_order),
+      cmocka_unit_test(properties_beyond_a_table_are_left_out),
+      cmocka_unit_test(absolute_indices_get_a_warning),
+      cmocka_unit_test(what_holds_no_index_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, end);
+}

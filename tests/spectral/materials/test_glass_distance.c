@@ -1,0 +1,143 @@
+#include "tests/check.h"
+#include "tests/random.h"
+
+#include "spectral/dispersion/index_difference.h"
+#include "spectral/materials/glass_distance.h"
+
+static abbe_material_table table;
+
+static int setup(void **state) {
+  (void)state;
+  return abbe_material_table_load(NULL, &table, NULL) != ABBE_OK;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  abbe_material_table_free(&table);
+  return 0;
+}
+
+static const char *name_of(const abbe_glass_distances *d, size_t i) {
+  return table.material[d->nearest[i].index].name;
+}
+
+static void numbers_find_their_own_glass(void **state) {
+  (void)state;
+  for (size_t i = 0; i < table.count; i++) {
+    abbe_dispersion_numbers own = abbe_dispersion_describe(&table.material[i].dispersion);
+    if (own.n_d <= 1) continue; /* air */
+    abbe_glass_distances d;
+    assert_int_equal(abbe_glass_distance_to_numbers(&table, own.n_d, own.v_d, 3, &d, NULL),
+                     ABBE_OK);
+    assert_int_equal(d.count, 3);
+    assert_int_equal(d.nearest[0].index, i);
+    assert_true(d.nearest[0].rms < 1e-9);
+    assert_near(d.nearest[0].n_d, own.n_d, 0);
+    for (size_t k = 1; k < d.count; k++) assert_true(d.nearest[k].rms >= d.nearest[k - 1].rms);
+    abbe_glass_distances_free(&d);
+    abbe_glass_distances_free(&d);
+  }
+}
+
+/* The distance is that of two Cauchy curves written out. */
+static void the_distance_is_a_difference_of_index(void **state) {
+  (void)state;
+  abbe_dispersion bk7 = table.material[1].dispersion, pair[2];
+  abbe_dispersion_numbers own = abbe_dispersion_describe(&bk7);
+  const double n_d[] = {1.52, own.n_d}, v_d[] = {60, own.v_d};
+  for (int i = 0; i < 2; i++) {
+    double x_d = 1e6 / (ABBE_LINE_D_NM * ABBE_LINE_D_NM);
+    double unit = 1e6 / (ABBE_LINE_F_NM * ABBE_LINE_F_NM) - 1e6 / (ABBE_LINE_C_NM * ABBE_LINE_C_NM);
+    double B = (n_d[i] - 1) / v_d[i] / unit;
+    pair[i] =
+        (abbe_dispersion){.model = ABBE_DISPERSION_CAUCHY, .count = 2, .c = {n_d[i] - B * x_d, B}};
+  }
+  abbe_index_difference direct;
+  assert_int_equal(abbe_index_difference_of_curves(&pair[0], &pair[1], 380, 780, &direct, NULL),
+                   ABBE_OK);
+  abbe_glass_distances d;
+  assert_int_equal(abbe_glass_distance_to_numbers(&table, 1.52, 60, 0, &d, NULL), ABBE_OK);
+  assert_int_equal(d.count + d.skipped, table.count);
+  for (size_t i = 0; i < d.count; i++)
+    if (d.nearest[i].index == 1) assert_near(d.nearest[i].rms, direct.rms, 1e-9);
+  abbe_glass_distances_free(&d);
+}
+
+/* SF11 and N-SF11 have the same n_d; the curve tells them apart, and so do a few exact points. */
+static void curves_and_points_find_their_own_glass(void **state) {
+  (void)state;
+  const char *const names[] = {"sf11", "n-sf11", "n-bk7", "cubic-zirconia"};
+  for (int i = 0; i < 4; i++) {
+    const abbe_material *m = NULL;
+    abbe_glass_distances d;
+    assert_int_equal(abbe_material_table_find(&table, names[i], &m, NULL), ABBE_OK);
+    assert_int_equal(abbe_glass_distance_to_curve(&table, &m->dispersion, 400, 700, 2, &d, NULL),
+                     ABBE_OK);
+    assert_string_equal(name_of(&d, 0), names[i]);
+    assert_near(d.nearest[0].max, 0, 0);
+    assert_true(d.nearest[1].rms > 1e-6);
+    assert_true(d.nearest[1].max >= d.nearest[1].rms);
+    abbe_glass_distances_free(&d);
+
+    double lambda_nm[] = {435.8, 546.1, 656.3}, n[3];
+    for (int k = 0; k < 3; k++)
+      n[k] = round(abbe_dispersion_n(&m->dispersion, lambda_nm[k]) * 1e5) / 1e5;
+    const abbe_index_points points = {.count = 3, .lambda_nm = lambda_nm, .n = n};
+    assert_int_equal(abbe_glass_distance_to_points(&table, &points, 1, &d, NULL), ABBE_OK);
+    assert_string_equal(name_of(&d, 0), names[i]);
+    assert_true(d.nearest[0].rms < 5.1e-6);
+    abbe_glass_distances_free(&d);
+  }
+}
+
+static void materials_without_data_there_are_skipped(void **state) {
+  (void)state;
+  abbe_glass_distances d;
+  /* beyond 1129 nm water has no data and does not extrapolate */
+  assert_int_equal(
+      abbe_glass_distance_to_curve(&table, &table.material[1].dispersion, 500, 2000, 0, &d, NULL),
+      ABBE_OK);
+  assert_true(d.skipped > 0);
+  assert_int_equal(d.count + d.skipped, table.count);
+  for (size_t i = 0; i < d.count; i++) assert_string_not_equal(name_of(&d, i), "water");
+  abbe_glass_distances_free(&d);
+  const abbe_material_table empty = {0};
+  assert_int_equal(abbe_glass_distance_to_numbers(&empty, 1.5, 60, 0, &d, NULL), ABBE_OK);
+  assert_int_equal(d.count, 0);
+  abbe_glass_distances_free(&d);
+}
+
+static void what_is_no_glass_is_refused(void **state) {
+  (void)state;
+  const double cases[][2] = {{1, 60},   {0.5, 60},  {NAN, 60},     {1.5, 0},
+                             {1.5, -3}, {1.5, NAN}, {INFINITY, 60}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    abbe_glass_distances d;
+    abbe_error error;
+    assert_int_equal(
+        abbe_glass_distance_to_numbers(&table, cases[i][0], cases[i][1], 0, &d, &error),
+        ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "such as 1.5168 and 64.17");
+    assert_null(d.nearest);
+  }
+  abbe_glass_distances d;
+  abbe_error error;
+  const abbe_index_points none = {0};
+  assert_int_equal(abbe_glass_distance_to_points(&table, &none, 0, &d, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(
+      abbe_glass_distance_to_curve(&table, &table.material[0].dispersion, 780, 380, 0, &d, &error),
+      ABBE_INVALID_ARGUMENT);
+  assert_null(d.nearest);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(numbers_find_their_own_glass),
+      cmocka_unit_test(the_distance_is_a_difference_of_index),
+      cmocka_unit_test(curves_and_points_find_their_own_glass),
+      cmocka_unit_test(materials_without_data_there_are_skipped),
+      cmocka_unit_test(what_is_no_glass_is_refused),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

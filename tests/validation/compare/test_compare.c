@@ -1,0 +1,535 @@
+/* Metrics against values worked out by hand, laws, and noise that is known because it is made. */
+#include "validation/compare/compare.h"
+
+#include "colorimetry/difference.h"
+#include "colorimetry/rgb_space.h"
+#include "tests/check.h"
+
+#include <stdlib.h>
+
+enum { XYZ = 1, ERRORS = 2, BANDS = 4 };
+
+static const double d65[3] = {0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
+
+/* A black field of width x height: X, Y, Z, or R, G, B in ACEScg; two bands on request. */
+static abbe_field field_of(size_t width, size_t height, int what) {
+  static const char *const names[2][6] = {{"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"},
+                                          {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z"}};
+  static const char *const bands[] = {"S0.450nm", "S0.650nm", "stderr.S0.450nm", "stderr.S0.650nm"};
+  const char *const *of = what & BANDS ? bands : names[what & XYZ];
+  size_t channels = (what & BANDS ? 2 : 3) * (size_t)(what & ERRORS ? 2 : 1);
+  abbe_image image = {0};
+  abbe_field field = {0};
+  assert_int_equal(abbe_image_make(width, height, channels, of, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:space", "acescg", NULL), ABBE_OK);
+  assert_int_equal(abbe_field_make(&image, "it", &field, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  return field;
+}
+
+/* Deterministic numbers, uniform in (0, 1) and normal by twelve of them. */
+static double uniform(unsigned *state) {
+  *state = *state * 1664525u + 1013904223u;
+  return ((*state >> 8) + 0.5) / 16777216.0;
+}
+
+static double normal(unsigned *state) {
+  double sum = -6;
+  for (int i = 0; i < 12; i++) sum += uniform(state);
+  return sum;
+}
+
+/* Bright and dark coloured light, positive. */
+static void paint(abbe_field *field) {
+  for (size_t i = 0; i < field->width * field->height; i++)
+    for (size_t c = 0; c < 3; c++)
+      field->colour.value[3 * i + c] =
+          (float)(exp(2 * sin(0.37 * (double)i + (double)c)) * (c == 2 ? 0.5 : 1));
+}
+
+static abbe_comparison compare(const abbe_field *reference, const abbe_field *test,
+                               const abbe_compare_options *options) {
+  abbe_comparison out = {0};
+  abbe_error error = {0};
+  if (abbe_compare(reference, test, options, &out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return out;
+}
+
+static double value(const abbe_compare_region *region, abbe_compare_metric metric) {
+  return region->metric[metric].value;
+}
+
+static void test_equal_fields(void **state) {
+  (void)state;
+  for (int what = 0; what < 2; what++) {
+    abbe_field a = field_of(13, 7, what);
+    paint(&a);
+    abbe_comparison c = compare(&a, &a, NULL);
+    for (int m = 0; m <= ABBE_COMPARE_UV_MEAN; m++)
+      assert_near(abbe_compare_deviation((abbe_compare_metric)m, c.whole.metric[m].value), 0, 0);
+    assert_true(isnan(value(&c.whole, ABBE_COMPARE_Z_EXCESS)));
+    assert_true(isnan(value(&c.whole, ABBE_COMPARE_BANDS_RELATIVE_RMSE)));
+    assert_true(isnan(c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE].noise));
+    assert_int_equal(c.whole.pixels, 91);
+    assert_int_equal(c.whole.channels, 3);
+    assert_false(c.masked);
+    assert_near(c.whole.uv_share, 1, 1e-12);
+    abbe_comparison_free(&c);
+    abbe_comparison_free(&c);
+    abbe_field_free(&a);
+  }
+}
+
+/* Two pixels, Y only of note: b = 1, 3; a = 2, 3. Mean of b 4/3 over X, Y, Z of (1, 1, 1), (1, 3,
+ * 1). */
+static void test_by_hand(void **state) {
+  (void)state;
+  abbe_field b = field_of(2, 1, XYZ), a = field_of(2, 1, XYZ);
+  const float reference[6] = {1, 1, 1, 1, 3, 1}, other[6] = {1, 2, 1, 1, 3, 1};
+  memcpy(b.colour.value, reference, sizeof reference);
+  memcpy(a.colour.value, other, sizeof other);
+  abbe_comparison c = compare(&b, &a, NULL);
+  assert_near(c.unit, 2, 1e-12);
+  assert_near(value(&c.whole, ABBE_COMPARE_RELATIVE_RMSE), sqrt(1.0 / 6) / (8.0 / 6), 1e-12);
+  /* in units of 2: a - b = 0.5, b = 0.5 */
+  assert_near(value(&c.whole, ABBE_COMPARE_SQUARED_RELATIVE), 0.25 / (0.51 * 0.51) / 6, 1e-12);
+  assert_near(value(&c.whole, ABBE_COMPARE_ENERGY_RATIO), 5.0 / 4, 1e-12);
+  assert_string_equal(c.whole.channel[1].name, "Y");
+  assert_near(c.whole.channel[1].mean_test, 2.5, 1e-12);
+  assert_near(c.whole.channel[1].relative_rmse.value, sqrt(0.5) / 2, 1e-12);
+  assert_near(c.whole.channel[0].relative_rmse.value, 0, 0);
+  /* u', v' of (1, 1, 1) and (1, 2, 1), weighted 1 of 1 + 3 */
+  double d = hypot(4.0 / 19 - 4.0 / 34, 9.0 / 19 - 18.0 / 34);
+  assert_near(value(&c.whole, ABBE_COMPARE_UV_MEAN), d / 4, 1e-7);
+  assert_near(c.white[1], 3, 1e-6);
+  assert_true(c.white_found);
+  abbe_comparison_free(&c);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+static void test_brighter_by_a_factor(void **state) {
+  (void)state;
+  abbe_field b = field_of(16, 16, XYZ), a = field_of(16, 16, XYZ);
+  paint(&b);
+  double mean = 0, square = 0;
+  for (size_t i = 0; i < 768; i++) {
+    double v = (double)b.colour.value[i];
+    a.colour.value[i] = 2 * b.colour.value[i];
+    mean += v / 768;
+    square += v * v / 768;
+  }
+  abbe_comparison c = compare(&b, &a, NULL);
+  assert_near(value(&c.whole, ABBE_COMPARE_RELATIVE_RMSE), sqrt(square) / mean, 1e-9);
+  assert_near(value(&c.whole, ABBE_COMPARE_ENERGY_RATIO), 2, 1e-12);
+  assert_near(value(&c.whole, ABBE_COMPARE_UV_MEAN), 0, 1e-7);
+  assert_true(value(&c.whole, ABBE_COMPARE_CIEDE2000_MEAN) > 5);
+  abbe_comparison_free(&c);
+  const abbe_compare_options best = {.best_scale = true};
+  c = compare(&b, &a, &best);
+  assert_near(c.scale, 0.5, 1e-12);
+  for (int m = 0; m <= ABBE_COMPARE_UV_MEAN; m++)
+    assert_near(abbe_compare_deviation((abbe_compare_metric)m, c.whole.metric[m].value), 0, 1e-9);
+  abbe_comparison_free(&c);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* Three pairs of [Sharma2005] as pixels, under a white that is given. */
+static void test_published_colour_differences(void **state) {
+  (void)state;
+  static const double pairs[3][7] = {{50, 2.5, 0, 50, 0, -2.5, 4.3065},
+                                     {50, 2.5, 0, 73, 25, -18, 27.1492},
+                                     {2.0776, 0.0795, -1.1350, 0.9033, -0.0636, -0.5514, 0.9082}};
+  abbe_field side[2] = {field_of(3, 1, XYZ), field_of(3, 1, XYZ)};
+  for (int p = 0; p < 3; p++)
+    for (int k = 0; k < 2; k++) {
+      const double *lab = pairs[p] + 3 * k;
+      double f[3] = {(lab[0] + 16) / 116 + lab[1] / 500, (lab[0] + 16) / 116,
+                     (lab[0] + 16) / 116 - lab[2] / 200};
+      for (int c = 0; c < 3; c++) {
+        double t = f[c] > 6.0 / 29 ? f[c] * f[c] * f[c] : 3 * 36.0 / 841 * (f[c] - 4.0 / 29);
+        side[k].colour.value[3 * p + c] = (float)(5 * d65[c] * t);
+      }
+    }
+  const abbe_compare_options options = {.white = {5 * d65[0], 5 * d65[1], 5 * d65[2]}};
+  abbe_comparison c = compare(&side[0], &side[1], &options);
+  assert_false(c.white_found);
+  double mean = (4.3065 + 27.1492 + 0.9082) / 3;
+  assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_MEAN), mean, 2e-4);
+  assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_MAX), 27.1492, 2e-4);
+  assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_P95), 27.1492, 2e-4);
+  abbe_comparison_free(&c);
+  abbe_field_free(&side[0]);
+  abbe_field_free(&side[1]);
+}
+
+/* Of 1 to 100, 95 % are at most 95: the percentile is an element, not in between. */
+static void test_percentile(void **state) {
+  (void)state;
+  abbe_field b = field_of(10, 10, XYZ), a = field_of(10, 10, XYZ);
+  const abbe_compare_options options = {.white = {d65[0], 1, d65[2]}};
+  double expected = 0;
+  for (size_t i = 0; i < 100; i++) {
+    double at = (double)((i * 37) % 100), dark[3], lab[2][3];
+    for (size_t c = 0; c < 3; c++) {
+      b.colour.value[3 * i + c] = (float)(0.2 * d65[c]);
+      a.colour.value[3 * i + c] = (float)((0.2 + 0.001 * at) * d65[c]);
+      dark[c] = (double)a.colour.value[3 * i + c];
+    }
+    const double base[3] = {0.2 * d65[0], 0.2, 0.2 * d65[2]};
+    abbe_difference_lab(base, options.white, lab[0]);
+    abbe_difference_lab(dark, options.white, lab[1]);
+    if (at == 94) expected = abbe_difference_ciede2000(lab[0], lab[1]);
+  }
+  abbe_comparison c = compare(&b, &a, &options);
+  assert_near(value(&c.whole, ABBE_COMPARE_CIEDE2000_P95), expected, 1e-4);
+  abbe_comparison_free(&c);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* What is measured does not depend on the space that the file is kept in. */
+static void test_any_space_gives_the_same(void **state) {
+  (void)state;
+  abbe_field b = field_of(12, 12, XYZ), a = field_of(12, 12, XYZ);
+  abbe_field rgb_b = field_of(12, 12, 0), rgb_a = field_of(12, 12, 0);
+  paint(&b);
+  paint(&a);
+  for (size_t i = 0; i < 432; i++) a.colour.value[i] *= 1 + 0.1f * (float)sin(0.11 * (double)i);
+  double from[9];
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, from);
+  abbe_field *pairs[2][2] = {{&b, &rgb_b}, {&a, &rgb_a}};
+  for (int k = 0; k < 2; k++)
+    for (size_t i = 0; i < 144; i++) {
+      double xyz[3];
+      abbe_field_xyz(pairs[k][0], i, xyz, NULL);
+      abbe_rgb_space_apply(from, xyz, xyz);
+      for (size_t c = 0; c < 3; c++) pairs[k][1]->colour.value[3 * i + c] = (float)xyz[c];
+    }
+  abbe_comparison x = compare(&b, &a, NULL), y = compare(&rgb_b, &rgb_a, NULL);
+  for (int m = 0; m <= ABBE_COMPARE_UV_MEAN; m++)
+    assert_near(y.whole.metric[m].value, x.whole.metric[m].value,
+                1e-5 * (0.01 + x.whole.metric[m].value));
+  abbe_comparison_free(&x);
+  abbe_comparison_free(&y);
+  for (int k = 0; k < 4; k++) abbe_field_free(pairs[k % 2][k / 2]);
+}
+
+/* REF is TEST and noise of a known size on top. */
+static void make_noisy(abbe_field *reference, const abbe_field *exact, double share, double bias,
+                       unsigned seed) {
+  for (size_t i = 0; i < 3 * exact->width * exact->height; i++) {
+    double v = (double)exact->colour.value[i], error = share * v;
+    reference->colour.value[i] = (float)(v + error * (bias + normal(&seed)));
+    reference->colour.error[i] = (float)error;
+  }
+}
+
+static void test_an_exact_field_lies_in_the_noise(void **state) {
+  (void)state;
+  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  paint(&a);
+  int above[ABBE_COMPARE_METRIC_COUNT] = {0}, rounds = 20;
+  double ratio[ABBE_COMPARE_METRIC_COUNT] = {0};
+  for (int i = 0; i < rounds; i++) {
+    make_noisy(&b, &a, 0.1, 0, 77u + (unsigned)i);
+    abbe_comparison c = compare(&b, &a, NULL);
+    for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++) {
+      const abbe_compare_value *v = &c.whole.metric[m];
+      abbe_compare_verdict verdict = abbe_compare_judge((abbe_compare_metric)m, v);
+      bool band = m >= ABBE_COMPARE_BANDS_RELATIVE_RMSE && m <= ABBE_COMPARE_BANDS_ENERGY_RATIO;
+      assert_true((verdict == ABBE_COMPARE_UNKNOWN) == (band || m == ABBE_COMPARE_CIEDE2000_MAX));
+      above[m] += verdict == ABBE_COMPARE_ABOVE;
+      ratio[m] += v->value / v->noise / rounds;
+    }
+    const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
+    assert_true(rmse->net < 0.4 * rmse->value);
+    assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 1, 0.08);
+    assert_near(value(&c.whole, ABBE_COMPARE_Z_OVER_2), 0.0455, 0.012);
+    abbe_comparison_free(&c);
+  }
+  static const abbe_compare_metric told[] = {ABBE_COMPARE_RELATIVE_RMSE,
+                                             ABBE_COMPARE_SQUARED_RELATIVE,
+                                             ABBE_COMPARE_CIEDE2000_MEAN, ABBE_COMPARE_UV_MEAN};
+  for (int i = 0; i < 4; i++) assert_near(ratio[told[i]], 1, i < 2 ? 0.02 : 0.05);
+  /* Two standard deviations: one in forty may lie above. */
+  for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++) {
+    if (above[m] > 4)
+      fail_msg("%s: %d of %d above", abbe_compare_metric_name((abbe_compare_metric)m), above[m],
+               rounds);
+  }
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* Errors that only brighten and darken change no hue: the noise that is told of hues is far less
+ * than that of independent errors of the same size. */
+static void test_errors_that_go_together(void **state) {
+  (void)state;
+  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  for (size_t i = 0; i < 3 * 48 * 48; i++)
+    a.colour.value[i] = (float)(i % 3 == 2 ? 1.5 : 1) * (1 + 0.3f * (float)sin(0.01 * (double)i));
+  double noise[2];
+  for (int together = 0; together < 2; together++) {
+    unsigned seed = 3;
+    for (size_t i = 0; i < 48 * 48; i++) {
+      double common = normal(&seed);
+      for (size_t c = 0; c < 3; c++) {
+        double v = (double)a.colour.value[3 * i + c];
+        b.colour.value[3 * i + c] = (float)(v * (1 + 0.1 * (together ? common : normal(&seed))));
+        b.colour.error[3 * i + c] = (float)(0.1 * v);
+      }
+    }
+    abbe_comparison c = compare(&b, &a, NULL);
+    noise[together] = c.whole.metric[ABBE_COMPARE_UV_MEAN].noise;
+    for (int m = ABBE_COMPARE_CIEDE2000_MEAN; m <= ABBE_COMPARE_UV_MEAN; m++)
+      if (m != ABBE_COMPARE_CIEDE2000_MAX)
+        assert_int_equal(abbe_compare_judge((abbe_compare_metric)m, &c.whole.metric[m]),
+                         ABBE_COMPARE_BELOW_REFERENCE);
+    abbe_comparison_free(&c);
+  }
+  assert_true(noise[1] < 0.02 * noise[0]);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* A tenth off everywhere, in noise of a twentieth: told apart, and its size is found again. */
+static void test_a_true_difference_is_found(void **state) {
+  (void)state;
+  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  paint(&a);
+  make_noisy(&b, &a, 0.05, 2, 5);
+  double mean = 0, square = 0;
+  for (size_t i = 0; i < 3 * 48 * 48; i++) {
+    double v = 1.1 * (double)a.colour.value[i];
+    mean += v;
+    square += v * v / 121;
+  }
+  abbe_comparison c = compare(&b, &a, NULL);
+  const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
+  assert_int_equal(abbe_compare_judge(ABBE_COMPARE_RELATIVE_RMSE, rmse), ABBE_COMPARE_ABOVE);
+  assert_near(rmse->net, sqrt(square * 3 * 48 * 48) / mean, 0.05 * rmse->net);
+  assert_true(value(&c.whole, ABBE_COMPARE_Z_EXCESS) > 1);
+  assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 5, 0.3);
+  assert_int_equal(
+      abbe_compare_judge(ABBE_COMPARE_ENERGY_RATIO, &c.whole.metric[ABBE_COMPARE_ENERGY_RATIO]),
+      ABBE_COMPARE_ABOVE);
+  abbe_comparison_free(&c);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+static void test_the_noise_of_both(void **state) {
+  (void)state;
+  abbe_field exact = field_of(48, 48, XYZ), b = field_of(48, 48, XYZ | ERRORS),
+             a = field_of(48, 48, XYZ | ERRORS);
+  paint(&exact);
+  make_noisy(&b, &exact, 0.05, 0, 5);
+  make_noisy(&a, &exact, 0.15, 0, 6);
+  b.passes = 16;
+  a.passes = 100;
+  abbe_comparison c = compare(&b, &a, NULL);
+  const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
+  assert_int_equal(abbe_compare_judge(ABBE_COMPARE_RELATIVE_RMSE, rmse), ABBE_COMPARE_BELOW_BOTH);
+  assert_near(rmse->both_noise / rmse->noise, sqrt(1 + 9), 0.1);
+  assert_near(c.freedom, 15, 0);
+  assert_near(c.whole.metric[ABBE_COMPARE_Z_MEAN_SQUARE].noise, 15.0 / 13, 1e-12);
+  assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 1, 0.08);
+  assert_true(c.whole.metric[ABBE_COMPARE_CIEDE2000_MEAN].both_noise >
+              c.whole.metric[ABBE_COMPARE_CIEDE2000_MEAN].noise);
+  abbe_comparison again = compare(&b, &a, NULL);
+  for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++)
+    assert_memory_equal(&again.whole.metric[m], &c.whole.metric[m], sizeof c.whole.metric[m]);
+  abbe_comparison_free(&again);
+  abbe_comparison_free(&c);
+  abbe_field_free(&exact);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* Errors that are themselves estimated, from 16 passes, as a tracer's are: Student's t holds. */
+static void make_passes(abbe_field *reference, const abbe_field *exact, unsigned seed) {
+  enum { PASSES = 16 };
+  for (size_t i = 0; i < 3 * exact->width * exact->height; i++) {
+    double sum = 0, square = 0, v = (double)exact->colour.value[i];
+    for (int k = 0; k < PASSES; k++) {
+      double sample = v * (1 + 0.3 * normal(&seed));
+      sum += sample;
+      square += sample * sample;
+    }
+    double mean = sum / PASSES;
+    reference->colour.value[i] = (float)mean;
+    reference->colour.error[i] = (float)sqrt((square / PASSES - mean * mean) / (PASSES - 1));
+  }
+  reference->passes = PASSES;
+}
+
+static void test_errors_from_passes(void **state) {
+  (void)state;
+  abbe_field b = field_of(48, 48, XYZ | ERRORS), a = field_of(48, 48, XYZ);
+  paint(&a);
+  int above = 0;
+  for (unsigned i = 0; i < 8; i++) {
+    make_passes(&b, &a, 31 + i);
+    abbe_comparison c = compare(&b, &a, NULL);
+    const abbe_compare_value *rmse = &c.whole.metric[ABBE_COMPARE_RELATIVE_RMSE];
+    assert_near(rmse->value / rmse->noise, 1, 0.08);
+    assert_near(value(&c.whole, ABBE_COMPARE_Z_OVER_2), 0.0639, 0.015); /* t, 15 degrees */
+    assert_near(value(&c.whole, ABBE_COMPARE_Z_MEAN_SQUARE), 15.0 / 13, 0.1);
+    above += value(&c.whole, ABBE_COMPARE_Z_EXCESS) > 1;
+    abbe_comparison_free(&c);
+  }
+  assert_true(above <= 1);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* A mask measures what a field of its pixels alone does. */
+static void test_a_mask_is_a_field_of_its_pixels(void **state) {
+  (void)state;
+  abbe_field b = field_of(8, 8, XYZ | ERRORS), a = field_of(8, 8, XYZ);
+  abbe_field part_b = field_of(8, 2, XYZ | ERRORS), part_a = field_of(8, 2, XYZ);
+  paint(&a);
+  make_noisy(&b, &a, 0.1, 1, 9);
+  unsigned char in[64] = {0};
+  abbe_mask mask = {.count = 64, .inside = 16, .in = in};
+  for (size_t i = 0, n = 0; i < 64; i += 4, n++) {
+    in[i] = 1;
+    memcpy(part_a.colour.value + 3 * n, a.colour.value + 3 * i, 3 * sizeof(float));
+    memcpy(part_b.colour.value + 3 * n, b.colour.value + 3 * i, 3 * sizeof(float));
+    memcpy(part_b.colour.error + 3 * n, b.colour.error + 3 * i, 3 * sizeof(float));
+  }
+  const abbe_compare_options options = {.mask = &mask, .white = {d65[0], 1, d65[2]}};
+  const abbe_compare_options alone = {.white = {d65[0], 1, d65[2]}};
+  abbe_comparison c = compare(&b, &a, &options), p = compare(&part_b, &part_a, &alone);
+  assert_true(c.masked);
+  assert_int_equal(c.mask.pixels, 16);
+  assert_int_equal(c.whole.pixels, 64);
+  for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++) {
+    if (m == ABBE_COMPARE_SQUARED_RELATIVE) continue; /* its unit is the whole field's */
+    if (isnan(p.whole.metric[m].value)) continue;
+    assert_near(c.mask.metric[m].value, p.whole.metric[m].value, 1e-12);
+  }
+  assert_near(c.mask.metric[ABBE_COMPARE_RELATIVE_RMSE].limit,
+              p.whole.metric[ABBE_COMPARE_RELATIVE_RMSE].limit, 1e-12);
+  abbe_comparison_free(&c);
+  abbe_comparison_free(&p);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+  abbe_field_free(&part_a);
+  abbe_field_free(&part_b);
+}
+
+static void test_bands(void **state) {
+  (void)state;
+  abbe_field b = field_of(2, 1, BANDS | ERRORS), a = field_of(2, 1, BANDS);
+  const float reference[4] = {1, 2, 1, 4}, other[4] = {1, 2, 2, 4}, error[4] = {0.5f, 0, 0.5f, 0};
+  memcpy(b.bands.value, reference, sizeof reference);
+  memcpy(b.bands.error, error, sizeof error);
+  memcpy(a.bands.value, other, sizeof other);
+  abbe_comparison c = compare(&b, &a, NULL);
+  assert_near(c.unit, 2, 1e-12);
+  assert_int_equal(c.whole.channels, 2);
+  assert_string_equal(c.whole.channel[0].name, "450 nm");
+  assert_near(c.whole.channel[0].relative_rmse.value, sqrt(0.5), 1e-12);
+  assert_near(c.whole.channel[0].relative_rmse.noise, 0.5, 1e-12);
+  assert_near(c.whole.channel[1].relative_rmse.value, 0, 0);
+  assert_near(value(&c.whole, ABBE_COMPARE_BANDS_RELATIVE_RMSE), sqrt(0.25) / 2, 1e-12);
+  assert_near(value(&c.whole, ABBE_COMPARE_BANDS_SQUARED_RELATIVE), 0.25 / (0.51 * 0.51) / 4,
+              1e-12);
+  assert_near(value(&c.whole, ABBE_COMPARE_BANDS_ENERGY_RATIO), 9.0 / 8, 1e-12);
+  assert_true(isnan(value(&c.whole, ABBE_COMPARE_RELATIVE_RMSE)));
+  assert_true(isnan(value(&c.whole, ABBE_COMPARE_CIEDE2000_MEAN)));
+  assert_int_equal(c.whole.z.count, 2);
+  assert_int_equal(c.whole.z.untested, 2);
+  assert_near(c.whole.z.max, 2, 1e-6);
+  abbe_comparison_free(&c);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+static void test_pixels_that_are_not_finite(void **state) {
+  (void)state;
+  abbe_field b = field_of(4, 1, XYZ | ERRORS), a = field_of(4, 1, XYZ);
+  paint(&a);
+  make_noisy(&b, &a, 0, 0, 1);
+  a.colour.value[4] = NAN;
+  a.colour.value[7] = INFINITY;
+  b.colour.error[3 * 3] = NAN;
+  abbe_comparison c = compare(&b, &a, NULL);
+  assert_int_equal(c.whole.pixels, 1);
+  assert_int_equal(c.whole.invalid_test, 2);
+  assert_int_equal(c.whole.invalid_reference, 1);
+  assert_near(value(&c.whole, ABBE_COMPARE_RELATIVE_RMSE), 0, 0);
+  abbe_comparison_free(&c);
+  a.colour.value[0] = NAN;
+  abbe_error error = {0};
+  assert_int_equal(abbe_compare(&b, &a, NULL, &c, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no pixel is finite");
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+static void refuse(const abbe_field *b, const abbe_field *a, const abbe_compare_options *options,
+                   const char *says) {
+  abbe_comparison c = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_compare(b, a, options, &c, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, says);
+  assert_null(c.whole.channel);
+}
+
+static void test_what_cannot_be_compared(void **state) {
+  (void)state;
+  abbe_field lit = field_of(4, 4, XYZ), dark = field_of(4, 4, XYZ), small = field_of(4, 2, XYZ),
+             bands = field_of(4, 4, BANDS), empty = {0};
+  paint(&lit);
+  unsigned char in[4] = {1};
+  abbe_mask mask = {.count = 4, .inside = 1, .in = in};
+  const abbe_compare_options best = {.best_scale = true}, masked = {.mask = &mask};
+  refuse(&dark, &lit, NULL, "the reference is black");
+  refuse(&lit, &dark, &best, "no scale");
+  refuse(&lit, &small, NULL, "aligned");
+  refuse(&lit, &bands, NULL, "aligned");
+  refuse(&empty, &empty, NULL, "aligned");
+  refuse(&lit, &lit, &masked, "mask has 4 pixels");
+  abbe_comparison c = compare(&lit, &dark, NULL); /* a black picture is a bad one, not an error */
+  assert_near(value(&c.whole, ABBE_COMPARE_ENERGY_RATIO), 0, 0);
+  assert_near(c.whole.uv_share, 0, 0);
+  assert_true(isnan(value(&c.whole, ABBE_COMPARE_UV_MEAN)));
+  abbe_comparison_free(&c);
+  abbe_field_free(&lit);
+  abbe_field_free(&dark);
+  abbe_field_free(&small);
+  abbe_field_free(&bands);
+}
+
+static void test_names(void **state) {
+  (void)state;
+  for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++)
+    assert_int_equal(abbe_compare_metric_find(abbe_compare_metric_name((abbe_compare_metric)m)), m);
+  assert_int_equal(abbe_compare_metric_find("rmse"), ABBE_COMPARE_METRIC_COUNT);
+  assert_near(abbe_compare_deviation(ABBE_COMPARE_ENERGY_RATIO, 0.75), 0.25, 1e-15);
+  assert_near(abbe_compare_deviation(ABBE_COMPARE_UV_MEAN, 0.75), 0.75, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_equal_fields),
+                                     cmocka_unit_test(test_by_hand),
+                                     cmocka_unit_test(test_brighter_by_a_factor),
+                                     cmocka_unit_test(test_published_colour_differences),
+                                     cmocka_unit_test(test_percentile),
+                                     cmocka_unit_test(test_any_space_gives_the_same),
+                                     cmocka_unit_test(test_an_exact_field_lies_in_the_noise),
+                                     cmocka_unit_test(test_errors_that_go_together),
+                                     cmocka_unit_test(test_a_true_difference_is_found),
+                                     cmocka_unit_test(test_the_noise_of_both),
+                                     cmocka_unit_test(test_errors_from_passes),
+                                     cmocka_unit_test(test_a_mask_is_a_field_of_its_pixels),
+                                     cmocka_unit_test(test_bands),
+                                     cmocka_unit_test(test_pixels_that_are_not_finite),
+                                     cmocka_unit_test(test_what_cannot_be_compared),
+                                     cmocka_unit_test(test_names)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

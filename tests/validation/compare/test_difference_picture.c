@@ -1,0 +1,117 @@
+#include "validation/compare/difference_picture.h"
+
+#include "colorimetry/image/colour_map.h"
+#include "colorimetry/image/png_file.h"
+#include "tests/check.h"
+#include "tests/fontconfig.h"
+
+#include <unistd.h>
+
+static abbe_field field_of(size_t width, size_t height, double y) {
+  static const char *const names[] = {"X", "Y", "Z"};
+  abbe_image image = {0};
+  abbe_field field = {0};
+  assert_int_equal(abbe_image_make(width, height, 3, names, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_field_make(&image, "it", &field, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  for (size_t i = 0; i < width * height; i++) field.colour.value[3 * i + 1] = (float)y;
+  return field;
+}
+
+static double range_of(const abbe_field *b, const abbe_field *a, double scale) {
+  double range = -1;
+  assert_int_equal(abbe_difference_picture_range(b, a, scale, &range, NULL), ABBE_OK);
+  return range;
+}
+
+static void test_range(void **state) {
+  (void)state;
+  abbe_field b = field_of(10, 20, 0), a = field_of(10, 20, 0);
+  assert_near(range_of(&b, &a, 1), 0, 0);
+  a.colour.value[1] = 3; /* one of 200: above 99 % of all, which are equal */
+  assert_near(range_of(&b, &a, 1), 5, 1e-12);
+  for (size_t i = 0; i < 10; i++) a.colour.value[3 * i + 1] = -0.0012f;
+  assert_near(range_of(&b, &a, 1), 0.002, 1e-15);
+  assert_near(range_of(&b, &a, 10), 0.02, 1e-14);
+  for (size_t i = 0; i < 10; i++) a.colour.value[3 * i + 1] = 1000;
+  a.colour.value[4] = NAN;
+  assert_near(range_of(&b, &a, 1), 1000, 1e-9);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* Pixels of the colour of t in the picture at path, the scale bar's too. */
+static size_t count(const char *path, double t, size_t *width, size_t *height) {
+  abbe_image image = {0};
+  abbe_error error = {0};
+  double rgb[3];
+  size_t found = 0;
+  if (abbe_png_read(path, &image, &error) != ABBE_OK) fail_msg("%s", error.text);
+  abbe_colour_map_at(ABBE_COLOUR_MAP_DIFFERENCE, t, rgb);
+  for (size_t i = 0; i < image.width * image.height; i++) {
+    double distance = 0;
+    for (size_t c = 0; c < 3; c++)
+      distance = fmax(distance, fabs((double)image.data[3 * i + c] - rgb[c]));
+    found += distance < 0.75 / 255;
+  }
+  *width = image.width;
+  *height = image.height;
+  abbe_image_free(&image);
+  return found;
+}
+
+static void draw(const char *path, const abbe_field *b, const abbe_field *a) {
+  abbe_error error = {0};
+  if (abbe_difference_picture_write(path, b, a, 1, 2, "a - b", &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+}
+
+/* Each pixel is four by four of the picture, in the colour of its difference. */
+static void test_the_picture(void **state) {
+  (void)state;
+  char path[64];
+  snprintf(path, sizeof path, "/tmp/abbe_test_difference_%ld.png", (long)getpid());
+  abbe_field b = field_of(128, 64, 1), a = field_of(128, 64, 1);
+  static const double y[] = {3, -1, 1.5, NAN, 1e9};
+  static const double t[] = {1, 0, 0.625, NAN, 1};
+  size_t width, height, before[5];
+  draw(path, &b, &a);
+  for (int i = 0; i < 5; i++) before[i] = count(path, t[i], &width, &height);
+  assert_true(width > 512 && width < 800 && height > 256 && height < 330);
+  assert_true(count(path, 0.5, &width, &height) >= 510 * 254); /* the frame lies on its rim */
+  for (int i = 0; i < 5; i++) a.colour.value[3 * (128 * 30 + 20 + i) + 1] = (float)y[i];
+  draw(path, &b, &a);
+  for (int i = 0; i < 5; i++)
+    assert_int_equal(count(path, t[i], &width, &height) - before[i], t[i] == 1 ? 32 : 16);
+  unlink(path);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+static void test_what_cannot_be_drawn(void **state) {
+  (void)state;
+  abbe_field b = field_of(4, 4, 1), small = field_of(4, 2, 1), empty = {0};
+  abbe_error error = {0};
+  double range;
+  static const double ranges[] = {0, -1, NAN, INFINITY};
+  for (int i = 0; i < 4; i++)
+    assert_int_equal(
+        abbe_difference_picture_write("/no/such.png", &b, &b, 1, ranges[i], NULL, &error),
+        ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_difference_picture_write("/no/such.png", &b, &small, 1, 1, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_difference_picture_write("/no/such.png", &b, &b, 1, 1, NULL, &error),
+                   ABBE_IO);
+  assert_contains(error.text, "/no/such.png");
+  assert_int_equal(abbe_difference_picture_range(&empty, &empty, 1, &range, &error),
+                   ABBE_INVALID_ARGUMENT);
+  abbe_field_free(&b);
+  abbe_field_free(&small);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_range),
+                                     cmocka_unit_test(test_the_picture),
+                                     cmocka_unit_test(test_what_cannot_be_drawn)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

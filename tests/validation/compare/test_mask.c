@@ -1,0 +1,168 @@
+#include "validation/compare/mask.h"
+
+#include "tests/check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static abbe_mask brightest(const double *light, size_t count, double share) {
+  abbe_mask mask = {0};
+  abbe_error error = {0};
+  if (abbe_mask_make_brightest(light, count, share, &mask, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return mask;
+}
+
+static void test_the_fewest_pixels_that_hold_the_share(void **state) {
+  (void)state;
+  const double light[] = {1, 50, 2, 40, 7};
+  static const struct {
+    double share;
+    const char *in;
+  } rows[] = {{0.001, "01000"}, {0.5, "01000"},  {0.51, "01010"}, {0.9, "01010"},
+              {0.95, "01011"},  {0.98, "01111"}, {1, "11111"}};
+  for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+    abbe_mask mask = brightest(light, 5, rows[r].share);
+    size_t inside = 0;
+    for (size_t i = 0; i < 5; i++) {
+      assert_int_equal(mask.in[i], rows[r].in[i] - '0');
+      inside += mask.in[i];
+    }
+    assert_int_equal(mask.inside, inside);
+    abbe_mask_free(&mask);
+  }
+}
+
+static void test_of_equals_the_first(void **state) {
+  (void)state;
+  const double light[] = {1, 1, 1, 1, 0, 0};
+  abbe_mask mask = brightest(light, 6, 0.5);
+  assert_memory_equal(mask.in, "\1\1\0\0\0\0", 6);
+  abbe_mask_free(&mask);
+  mask = brightest(light, 6, 1);
+  assert_int_equal(mask.inside, 4);
+  abbe_mask_free(&mask);
+}
+
+/* A wide field: the mask holds the share, and without its faintest pixel it would not. */
+static void test_smallest_on_many_pixels(void **state) {
+  (void)state;
+  enum { COUNT = 20000 };
+  double *light = malloc(COUNT * sizeof *light);
+  assert_non_null(light);
+  double total = 0;
+  for (int i = 0; i < COUNT; i++) total += light[i] = exp(8 * sin(i * 0.7) * cos(i * 0.0123));
+  abbe_mask mask = brightest(light, COUNT, ABBE_MASK_CAUSTIC_SHARE);
+  double held = 0, faintest = INFINITY, brightest_out = 0;
+  for (int i = 0; i < COUNT; i++) {
+    if (mask.in[i]) held += light[i], faintest = fmin(faintest, light[i]);
+    if (!mask.in[i]) brightest_out = fmax(brightest_out, light[i]);
+  }
+  assert_true(held >= 0.95 * total);
+  assert_true(held - faintest < 0.95 * total);
+  assert_true(brightest_out <= faintest);
+  abbe_mask_free(&mask);
+  free(light);
+}
+
+static void test_what_is_no_light(void **state) {
+  (void)state;
+  const double light[] = {NAN, -5, 3, INFINITY, 1};
+  abbe_mask mask = brightest(light, 5, 1);
+  assert_memory_equal(mask.in, "\0\0\1\0\1", 5);
+  abbe_mask_free(&mask);
+  const double dark[] = {0, -1, NAN};
+  abbe_error error = {0};
+  assert_int_equal(abbe_mask_make_brightest(dark, 3, 0.95, &mask, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "dark"));
+  static const double shares[] = {0, -1, 1.01, NAN};
+  for (int i = 0; i < 4; i++)
+    assert_int_equal(abbe_mask_make_brightest(light, 5, shares[i], &mask, &error),
+                     ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_mask_make_brightest(light, 0, 0.95, &mask, &error), ABBE_INVALID_ARGUMENT);
+  assert_null(mask.in);
+}
+
+static void test_drawn(void **state) {
+  (void)state;
+  static const char *const names[] = {"B", "G", "R"};
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(3, 2, 3, names, &image, NULL), ABBE_OK);
+  for (size_t i = 0; i < 6; i++) image.data[3 * i] = 1; /* blue draws nothing */
+  abbe_mask mask = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_mask_make_drawn(&image, &mask, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "'R'"));
+  image.data[3 * 1 + 2] = 0.51f;
+  image.data[3 * 2 + 2] = 0.5f;
+  image.data[3 * 5 + 2] = 1;
+  image.data[3 * 4 + 2] = NAN;
+  assert_int_equal(abbe_mask_make_drawn(&image, &mask, &error), ABBE_OK);
+  assert_memory_equal(mask.in, "\0\1\0\0\0\1", 6);
+  assert_int_equal(mask.inside, 2);
+  abbe_mask_free(&mask);
+  abbe_mask_free(&mask);
+  abbe_image_free(&image);
+  assert_int_equal(abbe_mask_make_drawn(&image, &mask, &error), ABBE_INVALID_ARGUMENT);
+}
+
+static abbe_field field_of(const char *const *names, size_t channels, const char *kind,
+                           const float *values) {
+  abbe_image image = {0};
+  abbe_field field = {0};
+  assert_int_equal(abbe_image_make(4, 1, channels, names, &image, NULL), ABBE_OK);
+  memcpy(image.data, values, 4 * channels * sizeof *values);
+  assert_int_equal(abbe_image_set_attribute(&image, "abbe:kind", kind, NULL), ABBE_OK);
+  assert_int_equal(abbe_field_make(&image, "it.exr", &field, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  return field;
+}
+
+static void assert_caustic(abbe_field field, const char *in) {
+  abbe_mask mask = {0};
+  abbe_error error = {0};
+  if (abbe_mask_make_caustic(&field, "it.exr", 0.95, &mask, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_memory_equal(mask.in, in, 4);
+  abbe_mask_free(&mask);
+  abbe_field_free(&field);
+}
+
+/* Of a map by Y or by the sum of its bands; of a picture by its caustic layers and not by itself.
+ */
+static void test_caustic(void **state) {
+  (void)state;
+  static const char *const xyz[] = {"X", "Y", "Z", "caustic.X", "caustic.Y", "caustic.Z"},
+                           *const bands[] = {"S0.450nm", "S0.650nm"};
+  static const float map[12] = {9, 0, 9, 0, 50, 0, 0, 46, 0, 9, 2, 9},
+                     band[8] = {1, 1, 50, 0, 0, 46, 0, 0},
+                     picture[24] = {9, 9, 9, 0, 0, 0, 1, 1, 1, 0, 8, 0,
+                                    9, 9, 9, 5, 0, 5, 1, 1, 1, 0, 8, 0};
+  assert_caustic(field_of(xyz, 3, "receiver map", map), "\0\1\1\0");
+  assert_caustic(field_of(bands, 2, "receiver map", band), "\0\1\1\0");
+  assert_caustic(field_of(xyz, 6, "picture", picture), "\0\1\0\1");
+  abbe_field bare = field_of(xyz, 3, "picture", map);
+  abbe_mask mask = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_mask_make_caustic(&bare, "it.exr", 0.95, &mask, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "it.exr");
+  abbe_field_free(&bare);
+  static const float dark[12] = {1, 0, 1};
+  bare = field_of(xyz, 3, "receiver map", dark);
+  assert_int_equal(abbe_mask_make_caustic(&bare, "it.exr", 0.95, &mask, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "it.exr");
+  abbe_field_free(&bare);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_fewest_pixels_that_hold_the_share),
+                                     cmocka_unit_test(test_of_equals_the_first),
+                                     cmocka_unit_test(test_smallest_on_many_pixels),
+                                     cmocka_unit_test(test_what_is_no_light),
+                                     cmocka_unit_test(test_drawn),
+                                     cmocka_unit_test(test_caustic)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,171 @@
+/* The closed forms against numbers that others printed, and against each other's limits. */
+#include "tests/check.h"
+
+#include "spectral/materials/material_table.h"
+#include "spectral/optics.h"
+#include "validation/known/closed_form.h"
+
+#define PI 3.14159265358979323846
+
+static double degrees(double radians) {
+  return radians * 180 / PI;
+}
+static double radians(double degree) {
+  return degree * PI / 180;
+}
+
+static void glass_reflects_as_the_books_say(void **state) {
+  (void)state;
+  assert_near(abbe_closed_form_fresnel(0, 1.5), 0.04, 1e-15);
+  assert_near(abbe_closed_form_fresnel(radians(60), 1.5), 0.08919, 5e-6);
+  assert_near(abbe_closed_form_fresnel(radians(80), 1.5), 0.38770, 1e-5);
+  assert_near(abbe_closed_form_fresnel(PI / 2, 1.5), 1, 1e-12);
+  assert_near(abbe_closed_form_fresnel(radians(41.82), 1 / 1.5), 1, 0);
+  assert_true(abbe_closed_form_fresnel(radians(41.80), 1 / 1.5) < 1);
+  assert_near(abbe_closed_form_fresnel(1e-5, 1.5), 0.04, 1e-9);
+  assert_near(abbe_closed_form_fresnel(0.99e-6, 1.5), abbe_closed_form_fresnel(1.01e-6, 1.5), 1e-9);
+}
+
+/* Two derivations, two files. */
+static void fresnel_agrees_with_the_optics(void **state) {
+  (void)state;
+  for (double n = 0.4; n < 4; n *= 1.17)
+    for (double i = 1; i < 90; i += 1.3)
+      assert_near(abbe_closed_form_fresnel(radians(i), n),
+                  abbe_optics_fresnel(cos(radians(i)), 1 / n), 1e-11);
+}
+
+/* A window pane: 7.7 % back and 92.3 % through, 2 n / (n^2 + 1) of it. */
+static void a_pane_of_glass(void **state) {
+  (void)state;
+  double reflected = 0, passed = 0;
+  abbe_closed_form_slab(0.04, 1, &reflected, &passed);
+  assert_near(passed, 2 * 1.5 / (1.5 * 1.5 + 1), 1e-15);
+  assert_near(reflected + passed, 1, 1e-15);
+  abbe_closed_form_slab(0.3, 0.6, &reflected, &passed);
+  double sum_r = 0.3, sum_t = 0, inside = 0.7; /* bounce by bounce */
+  for (int k = 0; k < 60; k++) {
+    inside *= 0.6;
+    (k % 2 ? (sum_r += 0.7 * inside) : (sum_t += 0.7 * inside));
+    inside *= 0.3;
+  }
+  assert_near(reflected, sum_r, 1e-14);
+  assert_near(passed, sum_t, 1e-14);
+  abbe_closed_form_slab(1, 1, &reflected, &passed);
+  assert_near(reflected, 1, 0);
+  assert_near(passed, 0, 0);
+}
+
+/* A small angle moves the ray by t i (n - 1) / n; a grazing one by the whole thickness. */
+static void a_slab_moves_a_ray(void **state) {
+  (void)state;
+  assert_near(abbe_closed_form_slab_shift(0.01, 1e-4, 1.5) / (0.01 * 1e-4 / 3), 1, 1e-7);
+  assert_near(abbe_closed_form_slab_shift(0.01, PI / 2, 1.5), 0.01, 1e-15);
+  assert_near(abbe_closed_form_slab_shift(0.01, radians(45), 1.5), 0.0032914, 5e-8);
+  assert_near(abbe_closed_form_slab_shift(0.01, radians(45), 1), 0, 1e-17);
+}
+
+/* Ball lenses as sold: N-BK7 of 10 mm has its focus 7.34 mm from its centre at 588 nm; n = 2 has
+ * it on its own back. */
+static void a_ball_focuses(void **state) {
+  (void)state;
+  assert_near(abbe_closed_form_ball_focus(5, 1.5168), 7.3375, 1e-3);
+  assert_near(abbe_closed_form_ball_focus(1, 2), 1, 0);
+  assert_near(abbe_closed_form_ball_crossing(1, 1.5, 1e-5), 1.5, 1e-9);
+  double h = 0.1, t = asin(h / 1.5), turn = 2 * (asin(h) - t);
+  /* the line through (h, at its exit) and the axis, by coordinates */
+  double exit_at = asin(h) - 2 * t; /* below the axis's far end, as an angle at the centre */
+  double x = cos(exit_at), y = -sin(exit_at);
+  assert_near(abbe_closed_form_ball_crossing(1, 1.5, h), x + y / tan(turn), 1e-12);
+}
+
+/* A core of the shell's own glass is no core; a ball of air with a core is that core; a thin film
+ * of glass around water hardly turns a ray. A bubble at least reflects what grazes it. */
+static void shells_turn_a_ray(void **state) {
+  (void)state;
+  double plain = 2 * (asin(0.4) - asin(0.4 / 1.5));
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.7, 1.5, 0.4), plain, 1e-15);
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.2, 1.0, 0.4), plain, 1e-15);
+  assert_near(abbe_closed_form_shell_turn(5, 1, 1, 1.5, 0.4), plain, 1e-15);
+  double drop = 2 * (asin(0.4) - asin(0.4 / 1.333));
+  assert_near(abbe_closed_form_shell_turn(1 + 1e-9, 1.5, 1, 1.333, 0.4), drop, 1e-8);
+  /* paraxial: powers of the shell's and the core's surfaces add, 2 (n - 1) / n and so on */
+  double h = 1e-6, power = 2 * (1 - 1 / 1.5) + 2 * (1 / 1.5 - 1) / 0.5;
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.5, 1, h) / h, power, 1e-9);
+  double graze = 2 * (asin(0.5) - asin(0.5 / 1.5)) - (PI - 2 * asin(0.5 / (0.5 * 1.5)));
+  assert_near(abbe_closed_form_shell_turn(1, 1.5, 0.5, 1, 0.5), graze, 1e-15);
+}
+
+/* Descartes 1637 for n = 4/3: 137.97 and 230.97 degrees, at incidences of 59.39 and 71.83. */
+static void the_rainbows_of_descartes(void **state) {
+  (void)state;
+  double deviation = 0, incidence = 0;
+  assert_true(abbe_closed_form_rainbow(4.0 / 3, 1, &deviation, &incidence));
+  assert_near(degrees(deviation), 137.97, 5e-3);
+  assert_near(degrees(incidence), 59.39, 5e-3);
+  assert_true(abbe_closed_form_rainbow(4.0 / 3, 2, &deviation, &incidence));
+  assert_near(degrees(deviation), 230.97, 0.03);
+  assert_near(degrees(incidence), 71.83, 5e-3);
+  /* the primary bow's red edge stands at 42.4, its violet at 40.6 degrees from the antisolar point
+   */
+  abbe_material_table table = {0};
+  const abbe_material *water = NULL;
+  double n = 0;
+  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  assert_int_equal(abbe_material_table_find(&table, "water", &water, NULL), ABBE_OK);
+  assert_int_equal(abbe_material_n(water, 700, &n, NULL), ABBE_OK);
+  assert_true(abbe_closed_form_rainbow(n, 1, &deviation, &incidence));
+  assert_near(180 - degrees(deviation), 42.4, 0.1);
+  assert_int_equal(abbe_material_n(water, 400, &n, NULL), ABBE_OK);
+  assert_true(abbe_closed_form_rainbow(n, 1, &deviation, &incidence));
+  assert_near(180 - degrees(deviation), 40.6, 0.1);
+  abbe_material_table_free(&table);
+  assert_false(abbe_closed_form_rainbow(2, 1, &deviation, &incidence));
+  assert_false(abbe_closed_form_rainbow(1, 1, &deviation, &incidence));
+  assert_false(abbe_closed_form_rainbow(NAN, 1, &deviation, &incidence));
+  assert_false(abbe_closed_form_rainbow(1.3, 0, &deviation, &incidence));
+}
+
+static void a_prism_deviates_least_symmetrically(void **state) {
+  (void)state;
+  double least = 0;
+  assert_true(abbe_closed_form_prism_least(radians(60), 1.5, &least));
+  assert_near(degrees(least), 37.1808, 5e-5);
+  assert_false(abbe_closed_form_prism_least(radians(60), 2.417, &least)); /* diamond */
+  abbe_prism_ray ray = {0};
+  double i = (least + radians(60)) / 2;
+  assert_true(abbe_closed_form_prism_ray(radians(60), 1.5, i, 0.02, &ray));
+  assert_near(ray.deviation, least, 1e-15);
+  assert_near(ray.from[1], ray.exit[1], 1e-17);
+  assert_near(ray.came[1], -ray.direction[1], 1e-15);
+  for (double off = -0.1; off < 0.11; off += 0.02) {
+    assert_true(abbe_closed_form_prism_ray(radians(60), 1.5, i + off, 0.02, &ray));
+    assert_true(ray.deviation >= least - 1e-15);
+    /* the crossing inside obeys Snell at both faces */
+    double d[2] = {ray.exit[0] - ray.from[0], ray.exit[1] - ray.from[1]}, l = hypot(d[0], d[1]);
+    double h = radians(30), u1[2] = {-sin(h), -cos(h)}, u2[2] = {sin(h), -cos(h)};
+    assert_near(1.5 * (d[0] * u1[0] + d[1] * u1[1]) / l, ray.came[0] * u1[0] + ray.came[1] * u1[1],
+                1e-14);
+    assert_near(1.5 * (d[0] * u2[0] + d[1] * u2[1]) / l,
+                ray.direction[0] * u2[0] + ray.direction[1] * u2[1], 1e-14);
+    double turn = atan2(ray.came[1], ray.came[0]) - atan2(ray.direction[1], ray.direction[0]);
+    assert_near(turn, ray.deviation, 1e-14);
+  }
+  assert_false(abbe_closed_form_prism_ray(radians(60), 2.417, i, 0.02, &ray));
+  assert_false(abbe_closed_form_prism_ray(radians(60), 1.5, 0.1, 0.02, &ray)); /* total */
+  assert_false(abbe_closed_form_prism_ray(radians(60), 1.5, i, 0, &ray));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(glass_reflects_as_the_books_say),
+      cmocka_unit_test(fresnel_agrees_with_the_optics),
+      cmocka_unit_test(a_pane_of_glass),
+      cmocka_unit_test(a_slab_moves_a_ray),
+      cmocka_unit_test(a_ball_focuses),
+      cmocka_unit_test(shells_turn_a_ray),
+      cmocka_unit_test(the_rainbows_of_descartes),
+      cmocka_unit_test(a_prism_deviates_least_symmetrically),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

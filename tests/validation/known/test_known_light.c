@@ -1,0 +1,120 @@
+/* The known answers that whole runs are held to, with few photons; `abbe validate` has many. */
+#include "tests/check.h"
+
+#include "validation/known/known_light.h"
+
+#include <stdlib.h>
+
+static const abbe_known_options few = {.samples = 1 << 15, .threads = 1};
+
+/* Every row is within what its own noise allows, whether or not that is narrow enough to pass. */
+static void check_rows(abbe_known_answers *a, size_t rows) {
+  assert_int_equal(a->count, rows);
+  for (size_t i = 0; i < a->count; i++) {
+    const abbe_known_answer *r = &a->row[i];
+    if (!(fabs(r->error) <= r->tolerance && r->tolerance < 0.2 * fabs(r->exact)))
+      fail_msg("%s: %s: %.9g, not %.9g within %g", r->group, r->quantity, r->traced, r->exact,
+               r->tolerance);
+    assert_int_equal(r->passed, r->tolerance <= r->useful);
+  }
+  abbe_known_answers_free(a);
+}
+
+static abbe_result make_picture(abbe_known_run *run, size_t index, bool other, abbe_error *error) {
+  (void)other;
+  return abbe_known_picture_setting(run, index, error);
+}
+
+typedef abbe_result (*setting_maker)(abbe_known_run *run, size_t index, bool other,
+                                     abbe_error *error);
+
+static void check_setting(setting_maker make, size_t index, bool other, size_t rows) {
+  abbe_known_answers a = {0};
+  abbe_error error = {0};
+  abbe_known_run run = {.options = &few, .out = &a, .group = "group", .to = 1};
+  if (make(&run, index, other, &error) != ABBE_OK) fail_msg("%s", error.text);
+  check_rows(&a, rows);
+}
+
+static void panes_reflect_pass_and_absorb(void **state) {
+  (void)state;
+  check_setting(abbe_known_pane_setting, 3, false, 1); /* reflected at 60 degrees */
+  check_setting(abbe_known_pane_setting, 3, true, 1);  /* what absorbing glass leaves, aslant */
+}
+
+static void spheres_throw_rings(void **state) {
+  (void)state;
+  check_setting(abbe_known_sphere_setting, 3, false, 5);  /* a point's light, silica */
+  check_setting(abbe_known_sphere_setting, 18, false, 5); /* two faces only */
+}
+
+static void settings_end(void **state) {
+  (void)state;
+  static const struct {
+    setting_maker make;
+    size_t index;
+    bool other;
+  } beyond[] = {{abbe_known_sphere_setting, 20, false},
+                {abbe_known_sphere_setting, 3, true},
+                {abbe_known_pane_setting, 10, false},
+                {abbe_known_pane_setting, 5, true},
+                {make_picture, 3, false}};
+  for (int i = 0; i < 5; i++) {
+    abbe_known_answers a = {0};
+    abbe_known_run run = {.options = &few, .out = &a, .group = "group", .to = 1};
+    assert_int_equal(beyond[i].make(&run, beyond[i].index, beyond[i].other, NULL),
+                     ABBE_INVALID_ARGUMENT);
+    assert_int_equal(a.count, 0);
+  }
+}
+
+/* t of 9 degrees of freedom: 4.297 at 1e-3 one-sided; four of a normal is 3.17e-5. */
+static void few_passes_are_trusted_less(void **state) {
+  (void)state;
+  assert_near(abbe_known_sigmas(1000000), 4, 1e-3);
+  assert_true(abbe_known_sigmas(10) > 4.297);
+  assert_true(abbe_known_sigmas(10) > abbe_known_sigmas(64));
+  assert_true(isinf(abbe_known_sigmas(1)));
+}
+
+static void means_and_their_errors(void **state) {
+  (void)state;
+  double sum[4][3] = {{0, 1, 0}, {0, 10, 0}, {0, 3, 0}, {0, 20, 0}}; /* two passes of two rings */
+  double mean, spread;
+  abbe_known_mean(sum, 2, 2, 0, 1, 1, &mean, &spread);
+  assert_near(mean, 2, 1e-15);
+  assert_near(spread, 1, 1e-15); /* sqrt(2 / 1 / 2) */
+  abbe_known_mean(sum, 2, 2, 0, 2, 1, &mean, &spread);
+  assert_near(mean, 17, 1e-14);
+  assert_near(spread, 6, 1e-14);
+  abbe_known_mean(sum, 1, 2, 0, 2, 1, &mean, &spread);
+  assert_true(isinf(spread));
+}
+
+static void samples_become_passes(void **state) {
+  (void)state;
+  abbe_known_options options = {.seed = 9, .threads = 3};
+  abbe_known_run run = {.options = &options};
+  abbe_trace_desc desc = {0};
+  assert_int_equal(abbe_known_passes(&run, 1 << 20, &desc), 64);
+  assert_int_equal(desc.photons, 1 << 14);
+  assert_int_equal(desc.seed, 9);
+  assert_int_equal(desc.threads, 3);
+  options.samples = (uint64_t)1 << 36; /* more than passes of the largest size hold */
+  assert_int_equal(abbe_known_passes(&run, 1 << 20, &desc) * desc.photons, options.samples);
+  assert_true(desc.photons <= ABBE_TRACER_MAX_PHOTONS);
+  abbe_known_narrow(500, &desc);
+  assert_true(desc.min_nm < 500 && desc.max_nm > 500 && desc.max_nm - desc.min_nm < 0.2);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(panes_reflect_pass_and_absorb),
+      cmocka_unit_test(spheres_throw_rings),
+      cmocka_unit_test(settings_end),
+      cmocka_unit_test(few_passes_are_trusted_less),
+      cmocka_unit_test(means_and_their_errors),
+      cmocka_unit_test(samples_become_passes),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,48 @@
+/* trace_scene.h: scenes and requests for tests of the tracer that are done in a moment. */
+#ifndef ABBE_TESTS_VALIDATION_TRACE_SCENE_H
+#define ABBE_TESTS_VALIDATION_TRACE_SCENE_H
+
+#include "tests/scenes/scene_text.h"
+
+#include "validation/tracer/tracer.h"
+
+/* Two small balls: they fill few of the cells that a light is aimed by, so that a tracer is made
+ * in a moment. */
+#define BEADS(material)                                                                            \
+  "- {name: east, shape: sphere, radius: 0.02, levels: 2, transform: [{translate: [0.15, 0, "      \
+  "0.1]}], material: " material "}\n"                                                              \
+  "- {name: west, shape: sphere, radius: 0.02, levels: 2, transform: [{translate: [-0.15, 0, "     \
+  "0.1]}], material: " material "}\n"
+
+static inline abbe_tracer *make_tracer(const abbe_scene *scene, const abbe_trace_desc *desc) {
+  abbe_tracer *tracer = NULL;
+  abbe_error error = {0};
+  abbe_result result = abbe_tracer_make(scene, desc, &tracer, &error);
+  if (result != ABBE_OK) print_error("%s\n", error.text);
+  assert_int_equal(result, ABBE_OK);
+  return tracer;
+}
+
+static inline void run_passes(abbe_tracer *tracer, size_t passes) {
+  for (size_t i = 0; i < passes; i++)
+    assert_int_equal(abbe_tracer_pass(tracer, NULL, NULL), ABBE_OK);
+}
+
+/* Sum of a channel over all pixels. */
+static inline double channel_sum(const abbe_image *image, const char *name) {
+  size_t channel = abbe_image_find_channel(image, name);
+  assert_true(channel < image->channels);
+  double sum = 0;
+  for (size_t i = 0; i < image->width * image->height; i++)
+    sum += (double)image->data[i * image->channels + channel];
+  return sum;
+}
+
+static inline void check_same_image(const abbe_image *a, const abbe_image *b) {
+  assert_int_equal(a->width, b->width);
+  assert_int_equal(a->height, b->height);
+  assert_int_equal(a->channels, b->channels);
+  assert_memory_equal(a->data, b->data, a->width * a->height * a->channels * sizeof *a->data);
+}
+
+#endif

@@ -1,0 +1,176 @@
+#include "tests/check.h"
+
+#include "tests/random.h"
+#include "validation/tracer/accumulator.h"
+
+#include <limits.h>
+#include <stdlib.h>
+
+static abbe_accumulator make(size_t values, size_t threads, double most) {
+  abbe_accumulator a;
+  assert_int_equal(abbe_accumulator_make(values, threads, most, &a, NULL), ABBE_OK);
+  return a;
+}
+
+/* The same numbers, in another order and on other threads: the same result to the last bit. */
+static void order_and_threads_do_not_matter(void **state) {
+  (void)state;
+  enum { COUNT = 5000, VALUES = 3 };
+  float x[COUNT];
+  uint64_t random = 5;
+  for (int i = 0; i < COUNT; i++)
+    x[i] = (float)(random_normal(&random) * exp(random_between(&random, -30, 3)));
+  double mean[4][VALUES], error[4][VALUES];
+  for (int way = 0; way < 4; way++) {
+    size_t threads = (size_t)way + 1;
+    abbe_accumulator a = make(VALUES, threads, 1e6);
+    for (int pass = 0; pass < 3; pass++) {
+      for (int i = 0; i < COUNT; i++) {
+        int j = way % 2 ? COUNT - 1 - i : i;
+        abbe_accumulator_add(&a, (size_t)(j * 7 + pass) % threads, (size_t)(j % VALUES),
+                             x[(j + pass) % COUNT]);
+      }
+      abbe_accumulator_end_pass(&a, 0.25);
+    }
+    for (size_t v = 0; v < VALUES; v++) {
+      mean[way][v] = abbe_accumulator_mean(&a, v);
+      error[way][v] = abbe_accumulator_error(&a, v);
+    }
+    assert_int_equal(abbe_accumulator_cuts(&a), 0);
+    abbe_accumulator_free(&a);
+  }
+  for (int way = 1; way < 4; way++) {
+    assert_memory_equal(mean[0], mean[way], sizeof mean[0]);
+    assert_memory_equal(error[0], error[way], sizeof error[0]);
+  }
+}
+
+/* Passes of 1, 2, 3, 4: mean 2.5, standard error sqrt(5/3 / 4). */
+static void mean_and_standard_error(void **state) {
+  (void)state;
+  abbe_accumulator a = make(2, 2, 1e6);
+  assert_true(abbe_accumulator_mean(&a, 0) == 0);
+  assert_true(isinf(abbe_accumulator_error(&a, 0)));
+  for (int pass = 1; pass <= 4; pass++) {
+    /* half of it by each thread, twice as large as the scale brings it to */
+    abbe_accumulator_add(&a, 0, 0, (float)pass);
+    abbe_accumulator_add(&a, 1, 0, (float)pass);
+    abbe_accumulator_add(&a, 1, 1, -3);
+    abbe_accumulator_end_pass(&a, 0.5);
+    if (pass == 1) assert_true(isinf(abbe_accumulator_error(&a, 0)));
+  }
+  assert_int_equal(a.passes, 4);
+  assert_near(abbe_accumulator_mean(&a, 0), 2.5, 1e-9);
+  assert_near(abbe_accumulator_error(&a, 0), sqrt(5.0 / 3 / 4), 1e-9);
+  assert_near(abbe_accumulator_mean(&a, 1), -1.5, 1e-9);
+  /* the same in every pass: no error, up to the rounding of squares */
+  assert_near(abbe_accumulator_error(&a, 1), 0, 1e-7);
+  abbe_accumulator_free(&a);
+}
+
+/* The error of the mean of n normal numbers of variance 1 is 1 / sqrt(n), known itself to a share
+ * of 1 / sqrt(2 n); over 400 values to a twentieth of that. */
+static void the_error_is_the_spread_of_the_mean(void **state) {
+  (void)state;
+  enum { VALUES = 400, PASSES = 50 };
+  abbe_accumulator a = make(VALUES, 1, 1e6);
+  uint64_t random = 11;
+  for (int pass = 0; pass < PASSES; pass++) {
+    for (size_t v = 0; v < VALUES; v++)
+      abbe_accumulator_add(&a, 0, v, (float)(10 + random_normal(&random)));
+    abbe_accumulator_end_pass(&a, 1);
+  }
+  double told = 0, true_square = 0;
+  for (size_t v = 0; v < VALUES; v++) {
+    told += pow(abbe_accumulator_error(&a, v), 2) / VALUES;
+    true_square += pow(abbe_accumulator_mean(&a, v) - 10, 2) / VALUES;
+  }
+  assert_near(told * PASSES, 1, 4 * sqrt(2.0 / PASSES / VALUES));
+  assert_near(true_square * PASSES, 1, 4 * sqrt(2.0 / VALUES));
+  abbe_accumulator_free(&a);
+}
+
+static void a_dropped_pass_leaves_nothing(void **state) {
+  (void)state;
+  abbe_accumulator a = make(1, 2, 1e6);
+  abbe_accumulator_add(&a, 0, 0, 1);
+  abbe_accumulator_end_pass(&a, 1);
+  abbe_accumulator_add(&a, 0, 0, 50);
+  abbe_accumulator_add(&a, 1, 0, 50);
+  abbe_accumulator_drop_pass(&a);
+  abbe_accumulator_add(&a, 1, 0, 3);
+  abbe_accumulator_end_pass(&a, 1);
+  assert_int_equal(a.passes, 2);
+  assert_near(abbe_accumulator_mean(&a, 0), 2, 1e-12);
+  assert_near(abbe_accumulator_error(&a, 0), 1, 1e-9);
+  abbe_accumulator_free(&a);
+}
+
+static void what_is_too_large_is_cut_and_counted(void **state) {
+  (void)state;
+  abbe_accumulator a = make(3, 2, 1024);
+  assert_near(a.limit, 1, 0);
+  const float awkward[] = {2, -INFINITY, NAN, 1, -1, 1.0000001f};
+  for (int i = 0; i < 6; i++)
+    abbe_accumulator_add(&a, (size_t)(i % 2), (size_t)(i / 2), awkward[i]);
+  abbe_accumulator_end_pass(&a, 1);
+  assert_int_equal(abbe_accumulator_cuts(&a), 4);
+  assert_near(abbe_accumulator_mean(&a, 0), 0, 1e-12); /* 1 - 1 */
+  assert_near(abbe_accumulator_mean(&a, 1), 1, 1e-12); /* nothing, and 1 whole */
+  assert_near(abbe_accumulator_mean(&a, 2), 0, 1e-12);
+  abbe_accumulator_free(&a);
+}
+
+/* More than a pass holds: no overflow, and it is told. */
+static void a_sum_that_runs_over_is_told(void **state) {
+  (void)state;
+  for (int sign = -1; sign <= 1; sign += 2) {
+    abbe_accumulator a = make(1, 3, 1024);
+    for (int i = 0; i < 30000; i++) abbe_accumulator_add(&a, (size_t)(i % 3), 0, (float)sign);
+    abbe_accumulator_end_pass(&a, 1);
+    assert_true(abbe_accumulator_cuts(&a) > 0);
+    assert_true(sign * abbe_accumulator_mean(&a, 0) >= 1024);
+    abbe_accumulator_free(&a);
+  }
+}
+
+/* Numbers of 2^-50 of what a pass holds still count. */
+static void small_numbers_are_not_lost(void **state) {
+  (void)state;
+  abbe_accumulator a = make(1, 1, 1);
+  for (int i = 0; i < 1000; i++) abbe_accumulator_add(&a, 0, 0, 0x1p-50f);
+  abbe_accumulator_add(&a, 0, 0, 0x1p-11f);
+  abbe_accumulator_add(&a, 0, 0, -0x1p-11f);
+  abbe_accumulator_end_pass(&a, 1);
+  assert_near(abbe_accumulator_mean(&a, 0) * 0x1p50, 1000, 1e-9);
+  abbe_accumulator_free(&a);
+}
+
+static void what_cannot_be_kept_is_refused(void **state) {
+  (void)state;
+  abbe_accumulator a;
+  abbe_error error = {0};
+  const double most[] = {0, -1, NAN, INFINITY};
+  for (int i = 0; i < 4; i++) {
+    assert_int_equal(abbe_accumulator_make(1, 1, most[i], &a, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "positive");
+  }
+  assert_int_equal(abbe_accumulator_make(0, 1, 1, &a, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_accumulator_make(1, 0, 1, &a, NULL), ABBE_INVALID_ARGUMENT);
+  abbe_accumulator_free(&a);
+  abbe_accumulator_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(order_and_threads_do_not_matter),
+      cmocka_unit_test(mean_and_standard_error),
+      cmocka_unit_test(the_error_is_the_spread_of_the_mean),
+      cmocka_unit_test(a_dropped_pass_leaves_nothing),
+      cmocka_unit_test(what_is_too_large_is_cut_and_counted),
+      cmocka_unit_test(a_sum_that_runs_over_is_told),
+      cmocka_unit_test(small_numbers_are_not_lost),
+      cmocka_unit_test(what_cannot_be_kept_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

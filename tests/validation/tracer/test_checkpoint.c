@@ -1,0 +1,300 @@
+#include "tests/validation/trace_scene.h"
+
+#include "validation/tracer/checkpoint.h"
+
+#include <unistd.h>
+
+static char folder[64], path[80];
+static abbe_scene scene;
+
+/* The layout of the map is given, for trying where the light lands takes longer than the rest. */
+static abbe_map_layout layout;
+static const abbe_trace_desc small = {.layout = &layout,
+
+                                      .width = 10,
+                                      .height = 7,
+                                      .map_width = 8,
+                                      .photons = 2000,
+                                      .threads = 1,
+                                      .bands = 2};
+
+#define SCENE(more) CAMERA POINT_LIGHT FLOOR BEADS("crown") more
+
+static int setup(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/abbe-test-checkpoint-XXXXXX");
+  if (mkdtemp(folder) == NULL) return 1;
+  snprintf(path, sizeof path, "%s/run.checkpoint", folder);
+  load_text(SCENE(""), &scene);
+  abbe_trace_desc fitted = small;
+  fitted.layout = NULL;
+  abbe_tracer *tracer = make_tracer(&scene, &fitted);
+  abbe_image map;
+  assert_int_equal(abbe_tracer_map(tracer, &map, NULL), ABBE_OK);
+  assert_int_equal(abbe_map_layout_read(&map, "map", &layout, NULL), ABBE_OK);
+  abbe_image_free(&map);
+  abbe_tracer_free(tracer);
+  return 0;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  unlink(path);
+  abbe_scene_free(&scene);
+  return rmdir(folder);
+}
+
+/* Saves a run of that many passes. */
+static void save(const abbe_trace_desc *desc, size_t passes) {
+  abbe_tracer *tracer = make_tracer(&scene, desc);
+  run_passes(tracer, passes);
+  assert_int_equal(abbe_checkpoint_save(tracer, path, NULL), ABBE_OK);
+  abbe_tracer_free(tracer);
+}
+
+static abbe_result load(abbe_tracer *tracer, abbe_error *error) {
+  *error = (abbe_error){0};
+  return abbe_checkpoint_load(tracer, path, error);
+}
+
+static void check_same(const abbe_tracer *a, const abbe_tracer *b) {
+  abbe_image x, y;
+  assert_int_equal(abbe_tracer_passes(a), abbe_tracer_passes(b));
+  assert_int_equal(abbe_tracer_picture(a, &x, NULL), ABBE_OK);
+  assert_int_equal(abbe_tracer_picture(b, &y, NULL), ABBE_OK);
+  check_same_image(&x, &y);
+  abbe_image_free(&x);
+  abbe_image_free(&y);
+  assert_int_equal(abbe_tracer_map(a, &x, NULL), ABBE_OK);
+  assert_int_equal(abbe_tracer_map(b, &y, NULL), ABBE_OK);
+  check_same_image(&x, &y);
+  abbe_image_free(&x);
+  abbe_image_free(&y);
+  abbe_trace_statistics s, t;
+  abbe_tracer_statistics(a, &s);
+  abbe_tracer_statistics(b, &t);
+  assert_true(s.photons == t.photons && s.light_rays == t.light_rays);
+  assert_true(s.eye_rays == t.eye_rays && s.cuts == t.cuts);
+  assert_memory_equal(&s.ledger, &t.ledger, sizeof s.ledger);
+}
+
+/* Saved after 2, taken up on another number of threads, 3 more: the image of 5. */
+static void resumed_runs_give_the_image_of_unbroken_ones(void **state) {
+  (void)state;
+  save(&small, 2);
+  abbe_tracer *whole = make_tracer(&scene, &small);
+  run_passes(whole, 5);
+  abbe_trace_desc desc = small;
+  desc.threads = 2;
+  abbe_tracer *broken = make_tracer(&scene, &desc);
+  abbe_error error;
+  assert_int_equal(load(broken, &error), ABBE_OK);
+  assert_int_equal(abbe_tracer_passes(broken), 2);
+  run_passes(broken, 3);
+  check_same(whole, broken);
+  abbe_tracer_free(whole);
+  abbe_tracer_free(broken);
+}
+
+/* Refused by a sentence that holds part, and the tracer goes on as if nothing had been. */
+static void check_refused(const abbe_scene *of, const abbe_trace_desc *desc, abbe_result why,
+                          const char *part) {
+  abbe_error error;
+  abbe_tracer *tracer = make_tracer(of, desc);
+  abbe_result result = load(tracer, &error);
+  if (result != why) print_error("%d: %s\n", result, error.text);
+  assert_int_equal(result, why);
+  assert_contains(error.text, path);
+  assert_contains(error.text, part);
+  assert_int_equal(abbe_tracer_passes(tracer), 0);
+  abbe_tracer_free(tracer);
+}
+
+static void a_refusal_changes_nothing(void **state) {
+  (void)state;
+  save(&small, 2);
+  abbe_trace_desc other = small;
+  other.seed = 9;
+  abbe_error error;
+  abbe_tracer *tracer = make_tracer(&scene, &other), *same = make_tracer(&scene, &other);
+  run_passes(tracer, 1);
+  assert_int_equal(load(tracer, &error), ABBE_INVALID_ARGUMENT);
+  run_passes(tracer, 1);
+  run_passes(same, 2);
+  check_same(tracer, same);
+  abbe_tracer_free(tracer);
+  abbe_tracer_free(same);
+}
+
+static void another_request_is_named(void **state) {
+  (void)state;
+  save(&small, 1);
+  static const struct {
+    abbe_trace_desc desc;
+    const char *part;
+  } others[] = {
+      {{.width = 11, .height = 7, .map_width = 8, .photons = 2000, .bands = 2}, "picture 10 x 7"},
+      /* much smaller and much larger files than what is asked for */
+      {{.width = 2, .height = 2, .map_width = 1, .photons = 2000}, "picture 10 x 7"},
+      {{.width = 90, .height = 90, .map_width = 8, .photons = 2000}, "picture 90 x 90"},
+      {{.width = 10, .height = 7, .map_width = 9, .photons = 2000, .bands = 2}, "map 8 x 8"},
+      {{.width = 10, .height = 7, .map_width = 8, .photons = 2001, .bands = 2}, "photons 2001"},
+      {{.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 3}, "bands 3"},
+      {{.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2, .seed = 1},
+       "seed 1"},
+      {{.width = 10,
+        .height = 7,
+        .map_width = 8,
+        .photons = 2000,
+        .bands = 2,
+        .physics = {.matched = true, .orders = 4}},
+       "physics matched"},
+      {{.width = 10,
+        .height = 7,
+        .map_width = 8,
+        .photons = 2000,
+        .bands = 2,
+        .space = ABBE_RGB_SPACE_REC709},
+       "space rec709"},
+      {{.width = 10, .height = 7, .no_map = true, .photons = 2000, .bands = 2}, "map 0 x 0"},
+  };
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    abbe_trace_desc desc = others[i].desc;
+    desc.threads = 1;
+    desc.layout = &layout;
+    check_refused(&scene, &desc, ABBE_INVALID_ARGUMENT, others[i].part);
+  }
+}
+
+/* Whatever the light meets belongs to the scene: places, glasses, colours, and how the textures
+ * and normals lie. */
+static void another_scene_is_told(void **state) {
+  (void)state;
+  save(&small, 1);
+  scene.light[0].position[0] += 1e-9;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  scene.light[0].position[0] -= 1e-9;
+  scene.object[0].reflectance[1] = 0.25;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  scene.object[0].reflectance[1] = 0.5;
+  scene.background = 1;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  scene.background = 0;
+  scene.camera.fov_y_rad *= 1.001;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  scene.camera.fov_y_rad /= 1.001;
+  abbe_map_layout moved = layout;
+  abbe_trace_desc other_layout = small;
+  moved.view.window[1] *= 1.5;
+  other_layout.layout = &moved;
+  check_refused(&scene, &other_layout, ABBE_INVALID_ARGUMENT, "layout");
+  static const char *const others[] = {SCENE(HILL), CAMERA POINT_LIGHT FLOOR BEADS("flat"),
+                                       CAMERA SUN FLOOR BEADS("crown")};
+  for (int i = 0; i < 3; i++) {
+    abbe_scene other;
+    load_text(others[i], &other);
+    check_refused(&other, &small, ABBE_INVALID_ARGUMENT, "another scene");
+    abbe_scene_free(&other);
+  }
+}
+
+static void textures_and_normals_are_part_of_the_scene(void **state) {
+  (void)state;
+  static const char *const names[] = {"R", "G", "B"};
+  abbe_scene kept = scene;
+  load_text(CAMERA POINT_LIGHT FLOOR RING("crown"), &scene);
+  abbe_object *floor = &scene.object[0], *ring = &scene.object[1];
+  assert_int_equal(abbe_image_make(4, 2, 3, names, &floor->texture, NULL), ABBE_OK);
+  floor->texture_repeat[0] = floor->texture_repeat[1] = 1;
+  save(&small, 1);
+  floor->texture_repeat[1] = 2;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  floor->texture_repeat[1] = 1;
+  floor->texture.width = 2;
+  floor->texture.height = 4;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  floor->texture.width = 4;
+  floor->texture.height = 2;
+  double kept_normal = ring->mesh.normal[7][0];
+  ring->mesh.normal[7][0] += 0.1;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  ring->mesh.normal[7][0] = kept_normal;
+  abbe_scene_free(&scene);
+  scene = kept;
+}
+
+static void broken_files_are_told(void **state) {
+  (void)state;
+  save(&small, 2);
+  char *data = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(path, 1 << 24, &data, &size, NULL), ABBE_OK);
+  char *broken = malloc(size + 8);
+  assert_non_null(broken);
+  abbe_error error;
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  /* cut off anywhere, or with something behind it */
+  for (size_t i = 0; i <= 40; i++) {
+    size_t length = i < 40 ? size * i / 40 : size - 1;
+    assert_int_equal(abbe_file_write(path, data, length, NULL), ABBE_OK);
+    assert_int_equal(load(tracer, &error), ABBE_PARSE);
+    assert_contains(error.text, path);
+  }
+  memcpy(broken, data, size);
+  memset(broken + size, 0, 8);
+  assert_int_equal(abbe_file_write(path, broken, size + 8, NULL), ABBE_OK);
+  assert_int_equal(load(tracer, &error), ABBE_PARSE);
+  assert_contains(error.text, "damaged");
+  /* one bit turned over, anywhere */
+  for (size_t i = 0; i < 60; i++) {
+    size_t at = i < 59 ? size * i / 59 : size - 1;
+    memcpy(broken, data, size);
+    broken[at] = (char)(broken[at] ^ 1 << i % 8);
+    assert_int_equal(abbe_file_write(path, broken, size, NULL), ABBE_OK);
+    abbe_result result = load(tracer, &error);
+    assert_true(result == ABBE_PARSE || (at < 600 && result == ABBE_INVALID_ARGUMENT));
+    assert_contains(error.text, path);
+  }
+  assert_int_equal(abbe_tracer_passes(tracer), 0);
+  free(broken);
+  free(data);
+  abbe_tracer_free(tracer);
+}
+
+static void what_is_no_checkpoint_is_told(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *part;
+  } files[] = {{"", "not a checkpoint"},
+               {"description: a scene\n", "not a checkpoint"},
+               {"abbe checkpoint 1\nscene 1\n\n", "another version"},
+               {"abbe checkpoint 2\n", "broken"},
+               {"abbe checkpoint 2\nscene 0123", "broken"},
+               {"abbe checkpoint 2\n\n\n", "start anew"}};
+  abbe_error error;
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    assert_int_equal(abbe_file_write(path, files[i].text, strlen(files[i].text), NULL), ABBE_OK);
+    assert_true(load(tracer, &error) != ABBE_OK);
+    assert_contains(error.text, files[i].part);
+  }
+  unlink(path);
+  assert_int_equal(load(tracer, &error), ABBE_IO);
+  assert_contains(error.text, path);
+  assert_int_equal(abbe_checkpoint_save(tracer, "/nowhere/at/all", &error), ABBE_IO);
+  assert_contains(error.text, "/nowhere/at/all");
+  abbe_tracer_free(tracer);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(resumed_runs_give_the_image_of_unbroken_ones),
+      cmocka_unit_test(a_refusal_changes_nothing),
+      cmocka_unit_test(another_request_is_named),
+      cmocka_unit_test(another_scene_is_told),
+      cmocka_unit_test(textures_and_normals_are_part_of_the_scene),
+      cmocka_unit_test(broken_files_are_told),
+      cmocka_unit_test(what_is_no_checkpoint_is_told),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

@@ -1,0 +1,96 @@
+#include "tests/scenes/scene_text.h"
+
+#include "validation/transport/media.h"
+
+static void the_last_refractor_is_there(void **state) {
+  (void)state;
+  assert_int_equal(abbe_media_of(0), -1);
+  assert_int_equal(abbe_media_of(1), 0);
+  assert_int_equal(abbe_media_of(5), 2);
+  assert_int_equal(abbe_media_of((abbe_media_set)1 << 63 | 3), 63);
+}
+
+static void crossing_and_crossing_back_change_nothing(void **state) {
+  (void)state;
+  for (uint32_t i = 0; i < 64; i += 7) {
+    abbe_media_set before, after, back, outside = 0x5a5a & ~((abbe_media_set)1 << i);
+    abbe_media_cross(outside, i, true, &before, &after);
+    assert_true(before == outside && after != outside);
+    abbe_media_cross(after, i, false, &before, &back);
+    assert_true(before == after && back == outside);
+  }
+}
+
+/* Between knots the index is interpolated: the error of a line over a step of 0.2 nm. */
+static void tables_follow_the_formula(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("smoke"), &scene);
+  abbe_geometry g;
+  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+  enum { STEPS = 2000 };
+  static double lambda_nm[STEPS + 1];
+  for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 380 + 400.0 * k / STEPS;
+  abbe_media m;
+  assert_int_equal(abbe_media_make(&g, lambda_nm, STEPS, &m, NULL), ABBE_OK);
+  assert_true(m.dispersive[0]);
+  assert_false(m.dispersive[1]);
+  for (uint32_t k = 0; k < STEPS; k += 97) {
+    double um = (lambda_nm[k] + 0.5 * 400.0 / STEPS) / 1000;
+    assert_true(fabs((double)abbe_media_n(&m, 0, k, 0.5f) - (1.5 + 0.006 / (um * um))) < 2e-7);
+    assert_true(abbe_media_n(&m, 1, k, 0.5f) == 1.5f);
+    assert_true(abbe_media_attenuation(&m, 0, k, 0.5f) == 0);
+  }
+  /* 20/m at 400 nm, and lengths are in frame units */
+  float a = abbe_media_attenuation(&m, 1, 100, 0);
+  assert_true(fabs((double)a / (20 * g.unit) - 1) < 1e-6);
+  assert_true(abbe_media_n(&m, -1, 3, 0.5f) == 1);
+  abbe_media_free(&m);
+  abbe_geometry_free(&g);
+  abbe_scene_free(&scene);
+}
+
+static void refuses_what_the_record_does_not_know(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
+  abbe_geometry g;
+  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+  abbe_media m;
+  abbe_error error = {0};
+  double lambda_nm[2] = {380, 780};
+  assert_int_equal(abbe_media_make(&g, lambda_nm, 1, &m, &error), ABBE_OUT_OF_RANGE);
+  assert_non_null(strstr(error.text, "narrow"));
+  abbe_geometry_free(&g);
+  abbe_scene_free(&scene);
+}
+
+static void refractors_of_one_material_are_one_medium(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("dense") RING("crown"), &scene);
+  abbe_geometry g;
+  assert_int_equal(abbe_geometry_make(&scene, &g, NULL), ABBE_OK);
+  abbe_media m;
+  const double lambda_nm[2] = {380, 780};
+  assert_int_equal(abbe_media_make(&g, lambda_nm, 1, &m, NULL), ABBE_OK);
+  assert_true(abbe_media_same(&m, 0, 2) && abbe_media_same(&m, 2, 0));
+  assert_true(abbe_media_same(&m, 1, 1) && abbe_media_same(&m, -1, -1));
+  assert_false(abbe_media_same(&m, 0, 1));
+  assert_false(abbe_media_same(&m, -1, 0));
+  assert_false(abbe_media_same(&m, 1, -1));
+  abbe_media_free(&m);
+  abbe_geometry_free(&g);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_last_refractor_is_there),
+      cmocka_unit_test(crossing_and_crossing_back_change_nothing),
+      cmocka_unit_test(tables_follow_the_formula),
+      cmocka_unit_test(refractors_of_one_material_are_one_medium),
+      cmocka_unit_test(refuses_what_the_record_does_not_know),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,142 @@
+#include "tests/check.h"
+
+#include "validation/transport/random.h"
+
+enum { COUNT = 1 << 17, BINS = 64 };
+
+/* Numbers of one counter that runs from start while the other three stand at 7: which of them runs
+ * is `counter`. */
+static void numbers_of(int counter, uint32_t start, uint32_t i, float out[4]) {
+  uint32_t c[4] = {7, 7, 7, 7};
+  c[counter] = start + i;
+  abbe_random4(c[0], c[1], c[2], c[3], out);
+}
+
+/* Chi-square over the bins has mean BINS - 1 and variance 2 (BINS - 1). It is asked to lie within
+ * five standard deviations: by chance one in more than 10^5 does not. */
+static void check_chi_square(const double *seen, size_t bins, double count) {
+  double chi = 0, expected = count / (double)bins;
+  for (size_t b = 0; b < bins; b++) chi += pow(seen[b] - expected, 2) / expected;
+  double freedom = (double)bins - 1;
+  assert_near(chi, freedom, 5 * sqrt(2 * freedom));
+}
+
+static void each_number_is_uniform_whichever_counter_runs(void **state) {
+  (void)state;
+  static const uint32_t starts[] = {0, 0xfffff000u, 0x61696du};
+  for (int counter = 0; counter < 4; counter++)
+    for (int s = 0; s < 3; s++) {
+      double seen[4][BINS] = {0};
+      for (uint32_t i = 0; i < COUNT; i++) {
+        float r[4];
+        numbers_of(counter, starts[s], i, r);
+        for (int k = 0; k < 4; k++) {
+          assert_true(r[k] >= 0 && r[k] < 1);
+          seen[k][(int)(r[k] * BINS)]++;
+        }
+      }
+      for (int k = 0; k < 4; k++) check_chi_square(seen[k], BINS, COUNT);
+    }
+}
+
+/* The low bits count as much as the high ones: 24 of them are used. */
+static void fine_parts_are_uniform(void **state) {
+  (void)state;
+  double seen[4][BINS] = {0};
+  for (uint32_t i = 0; i < COUNT; i++) {
+    float r[4];
+    numbers_of(0, 0, i, r);
+    for (int k = 0; k < 4; k++) seen[k][(uint32_t)(r[k] * 0x1p24f) % BINS]++;
+  }
+  for (int k = 0; k < 4; k++) check_chi_square(seen[k], BINS, COUNT);
+}
+
+/* Pairs of what neighbours in a counter get, on a grid of 8 by 8: pixels side by side, a path's
+ * steps, passes, seeds. */
+static void neighbours_do_not_know_of_each_other(void **state) {
+  (void)state;
+  for (int counter = 0; counter < 4; counter++)
+    for (int k = 0; k < 4; k++) {
+      double seen[BINS] = {0};
+      for (uint32_t i = 0; i < COUNT; i++) {
+        float a[4], b[4];
+        numbers_of(counter, 0, 2 * i, a);
+        numbers_of(counter, 0, 2 * i + 1, b);
+        seen[(int)(8 * a[k]) * 8 + (int)(8 * b[k])]++;
+      }
+      check_chi_square(seen, BINS, COUNT);
+    }
+}
+
+static void the_four_numbers_do_not_know_of_each_other(void **state) {
+  (void)state;
+  for (int k = 0; k < 4; k++)
+    for (int l = k + 1; l < 4; l++) {
+      double seen[BINS] = {0};
+      for (uint32_t i = 0; i < COUNT; i++) {
+        float r[4];
+        numbers_of(0, 0, i, r);
+        seen[(int)(8 * r[k]) * 8 + (int)(8 * r[l])]++;
+      }
+      check_chi_square(seen, BINS, COUNT);
+    }
+}
+
+/* A grid of pixels and passes, as the eye's paths use them. */
+static void two_counters_at_once(void **state) {
+  (void)state;
+  double seen[BINS] = {0};
+  for (uint32_t i = 0; i < COUNT; i++) {
+    float r[4];
+    abbe_random4(i % 256, i / 256, 1 << 16, 0x657965, r);
+    seen[(int)(8 * r[0]) * 8 + (int)(8 * r[1])]++;
+  }
+  check_chi_square(seen, BINS, COUNT);
+}
+
+static void the_same_counters_give_the_same_numbers(void **state) {
+  (void)state;
+  uint32_t a[4], b[4];
+  abbe_random_bits(1, 2, 3, 4, a);
+  abbe_random_bits(1, 2, 3, 4, b);
+  assert_memory_equal(a, b, sizeof a);
+  /* each counter and each of its bits matters */
+  for (int counter = 0; counter < 4; counter++)
+    for (int bit = 0; bit < 32; bit++) {
+      uint32_t c[4] = {1, 2, 3, 4};
+      c[counter] ^= (uint32_t)1 << bit;
+      abbe_random_bits(c[0], c[1], c[2], c[3], b);
+      assert_memory_not_equal(a, b, sizeof a);
+    }
+}
+
+static void numbers_stay_below_one(void **state) {
+  (void)state;
+  assert_true(abbe_random_float(0) == 0);
+  assert_true(abbe_random_float(0xffffffffu) < 1);
+  assert_true(abbe_random_float(0x80000000u) == 0.5f);
+  float last = nextafterf(1, 0);
+  const float x[] = {0, 0x1p-149f, 0x1p-25f, 0.5f, last, 1, 3.25f, 1e6f, 16777216};
+  const float shift[] = {0, 0x1p-149f, 0x1p-25f, 0.5f, 1 - 0x1p-24f, last};
+  for (size_t i = 0; i < sizeof x / sizeof *x; i++)
+    for (size_t j = 0; j < sizeof shift / sizeof *shift; j++) {
+      float y = abbe_random_shift(x[i], shift[j]);
+      assert_true(y >= 0 && y < 1);
+      double exact = (double)x[i] + (double)shift[j], away = fabs((double)y - fmod(exact, 1));
+      /* on a circle, to what single precision keeps of the sum */
+      assert_true(fmin(away, 1 - away) <= fmax(exact, 1) * 0x1p-24);
+    }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(each_number_is_uniform_whichever_counter_runs),
+      cmocka_unit_test(fine_parts_are_uniform),
+      cmocka_unit_test(neighbours_do_not_know_of_each_other),
+      cmocka_unit_test(the_four_numbers_do_not_know_of_each_other),
+      cmocka_unit_test(two_counters_at_once),
+      cmocka_unit_test(the_same_counters_give_the_same_numbers),
+      cmocka_unit_test(numbers_stay_below_one),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,297 @@
+#include "validation/compare/field.h"
+
+#include "base/number.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/rgb_space.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static const size_t absent = (size_t)-1;
+
+static const char *const colour_names[2][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}};
+
+const char *abbe_field_kind_name(abbe_field_kind kind) {
+  static const char *const names[] = {
+#define NAME(code, name) name,
+      ABBE_FIELD_KINDS(NAME)
+#undef NAME
+  };
+  return (unsigned)kind < ABBE_FIELD_KIND_COUNT ? names[kind] : "unknown";
+}
+
+/* Channels */
+
+static size_t find(const abbe_image *image, const char *prefix, const char *name) {
+  char full[96];
+  int n = snprintf(full, sizeof full, "%s%s", prefix, name);
+  return n > 0 && (size_t)n < sizeof full ? abbe_image_find_channel(image, full) : absent;
+}
+
+static abbe_result no_memory(const char *name, abbe_error *error) {
+  return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its samples", name);
+}
+
+/* The samples of the given channels, interleaved. */
+static float *gather(const abbe_image *image, const size_t *channel, size_t count) {
+  size_t pixels = image->width * image->height;
+  if (pixels > SIZE_MAX / sizeof(float) / count) return NULL;
+  float *out = malloc(pixels * count * sizeof *out);
+  for (size_t i = 0; out != NULL && i < pixels; i++)
+    for (size_t c = 0; c < count; c++)
+      out[i * count + c] = image->data[i * image->channels + channel[c]];
+  return out;
+}
+
+/* Takes prefix + names into *out; all, or none where the file has none of them. */
+static abbe_result take(const abbe_image *image, const char *prefix, const char *const *names,
+                        size_t count, const char *name, float **out, abbe_error *error) {
+  size_t channel[ABBE_IMAGE_MAX_CHANNELS], there = 0, missing = 0;
+  for (size_t c = 0; c < count; c++) {
+    channel[c] = find(image, prefix, names[c]);
+    there += channel[c] != absent;
+    if (channel[c] == absent) missing = c;
+  }
+  *out = NULL;
+  if (there == 0) return ABBE_OK;
+  if (there < count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: it has some of its %zu channels of one set but not '%s%s'", name,
+                          count, prefix, names[missing]);
+  *out = gather(image, channel, count);
+  return *out == NULL ? no_memory(name, error) : ABBE_OK;
+}
+
+/* Standard errors none of which is finite are not known: a trace of one pass has such. */
+static void drop_unknown(float **errors, size_t count) {
+  if (*errors == NULL) return;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite((*errors)[i])) return;
+  free(*errors);
+  *errors = NULL;
+}
+
+/* Colour */
+
+static bool is_stated(const double xy[8]) {
+  for (int i = 0; i < 8; i++)
+    if (xy[i] != 0) return true;
+  return false;
+}
+
+/* abbe:space, else the chromaticities, else what OpenEXR says that their absence means: Rec.709. */
+static abbe_result find_space(const abbe_image *image, const char *name, abbe_field *f,
+                              abbe_error *error) {
+  const char *word = abbe_image_attribute_text(image, "abbe:space");
+  abbe_rgb_space space = f->is_xyz ? ABBE_RGB_SPACE_XYZ : ABBE_RGB_SPACE_COUNT;
+  for (int s = 0; space == ABBE_RGB_SPACE_COUNT && word != NULL && s < ABBE_RGB_SPACE_COUNT; s++)
+    if (strcasecmp(word, abbe_rgb_space_name((abbe_rgb_space)s)) == 0) space = (abbe_rgb_space)s;
+  if (space == ABBE_RGB_SPACE_COUNT && is_stated(image->xy)) {
+    abbe_error why = {0};
+    space = abbe_rgb_space_of_chromaticities(image->xy);
+    snprintf(f->space, sizeof f->space, "RGB of the file's chromaticities");
+    if (abbe_rgb_space_chromaticities_to_xyz(image->xy, f->to_xyz, &why) != ABBE_OK)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %.400s", name, why.text);
+    if (space == ABBE_RGB_SPACE_COUNT) return ABBE_OK;
+  }
+  f->space_assumed = space == ABBE_RGB_SPACE_COUNT;
+  if (f->space_assumed) space = ABBE_RGB_SPACE_REC709;
+  snprintf(f->space, sizeof f->space, "%s", abbe_rgb_space_name(space));
+  abbe_rgb_space_to_xyz(space, f->to_xyz);
+  return ABBE_OK;
+}
+
+static abbe_result take_colour(const abbe_image *image, const char *name, abbe_field *f,
+                               abbe_error *error) {
+  f->is_xyz = abbe_image_find_channel(image, "R") == absent &&
+              abbe_image_find_channel(image, "X") != absent;
+  const char *const *names = colour_names[f->is_xyz];
+  abbe_result result = take(image, "", names, 3, name, &f->colour.value, error);
+  if (result != ABBE_OK || f->colour.value == NULL) return result;
+  f->colour.channels = 3;
+  result = take(image, "stderr.", names, 3, name, &f->colour.error, error);
+  drop_unknown(&f->colour.error, 3 * image->width * image->height);
+  if (result == ABBE_OK) result = take(image, "caustic.", names, 3, name, &f->caustic.value, error);
+  if (f->caustic.value != NULL) f->caustic.channels = 3;
+  return result == ABBE_OK ? find_space(image, name, f, error) : result;
+}
+
+/* Bands */
+
+typedef struct band {
+  double lambda_nm;
+  const char *name;
+} band;
+
+/* "S0.550,000000nm": the comma is the decimal point, for a point ends a layer's name. */
+static bool parse_band(const char *name, double *lambda_nm) {
+  if (strncmp(name, "S0.", 3) != 0) return false;
+  double digits = 0, scale = 1;
+  bool any = false, comma = false;
+  const char *c = name + 3;
+  for (; (*c >= '0' && *c <= '9') || (*c == ',' && !comma); c++) {
+    comma = comma || *c == ',';
+    if (*c == ',') continue;
+    any = true;
+    digits = 10 * digits + (*c - '0');
+    if (comma) scale *= 10;
+  }
+  *lambda_nm = digits / scale;
+  return any && strcmp(c, "nm") == 0 && isfinite(*lambda_nm) && *lambda_nm > 0;
+}
+
+static int ascending(const void *a, const void *b) {
+  double x = ((const band *)a)->lambda_nm, y = ((const band *)b)->lambda_nm;
+  return (x > y) - (x < y);
+}
+
+static abbe_result take_bands(const abbe_image *image, const char *name, abbe_field *f,
+                              abbe_error *error) {
+  band list[ABBE_IMAGE_MAX_CHANNELS];
+  const char *names[ABBE_IMAGE_MAX_CHANNELS];
+  size_t count = 0;
+  for (size_t c = 0; c < image->channels; c++) {
+    list[count].name = image->channel[c];
+    count += parse_band(image->channel[c], &list[count].lambda_nm);
+  }
+  if (count == 0) return ABBE_OK;
+  qsort(list, count, sizeof *list, ascending);
+  f->lambda_nm = calloc(count, sizeof *f->lambda_nm);
+  if (f->lambda_nm == NULL) return no_memory(name, error);
+  for (size_t i = 0; i < count; i++) {
+    names[i] = list[i].name;
+    f->lambda_nm[i] = list[i].lambda_nm;
+    if (i > 0 && list[i].lambda_nm == list[i - 1].lambda_nm)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: the channels '%s' and '%s' are of one wavelength", name,
+                            list[i - 1].name, list[i].name);
+  }
+  abbe_result result = take(image, "", names, count, name, &f->bands.value, error);
+  if (result == ABBE_OK)
+    result = take(image, "stderr.", names, count, name, &f->bands.error, error);
+  drop_unknown(&f->bands.error, count * image->width * image->height);
+  f->bands.channels = f->bands.value == NULL ? 0 : count;
+  return result;
+}
+
+/* The whole */
+
+static abbe_result copy_attributes(const abbe_image *image, abbe_field *f, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < image->attribute_count && result == ABBE_OK; i++)
+    result = abbe_image_set_attribute(&f->header, image->attribute[i].name,
+                                      image->attribute[i].text, error);
+  return result;
+}
+
+static abbe_field_kind find_kind(const abbe_image *image) {
+  const char *word = abbe_image_attribute_text(image, "abbe:kind");
+  bool map = word != NULL ? strcmp(word, abbe_field_kind_name(ABBE_FIELD_RECEIVER_MAP)) == 0
+                          : abbe_image_attribute_text(image, "abbe:map_view") != NULL;
+  return map ? ABBE_FIELD_RECEIVER_MAP : ABBE_FIELD_PICTURE;
+}
+
+static size_t find_passes(const abbe_image *image) {
+  const char *word = abbe_image_attribute_text(image, "abbe:passes");
+  const char *end;
+  double passes = 0;
+  if (word != NULL) abbe_number_read(word, &end, &passes);
+  return passes >= 1 && passes < 1e15 ? (size_t)passes : 0;
+}
+
+static abbe_result fill(const abbe_image *image, const char *name, abbe_field *f,
+                        abbe_error *error) {
+  f->kind = find_kind(image);
+  f->width = image->width;
+  f->height = image->height;
+  f->passes = find_passes(image);
+  f->header.display_window = image->display_window;
+  abbe_result result = copy_attributes(image, f, error);
+  if (result == ABBE_OK) result = take_colour(image, name, f, error);
+  if (result == ABBE_OK) result = take_bands(image, name, f, error);
+  if (result == ABBE_OK && f->colour.channels == 0 && f->bands.channels == 0)
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "%s: it has no channels R, G, B, nor X, Y, Z, nor bands such as "
+                            "S0.550,000000nm; its first channel is '%s'",
+                            name, image->channel[0]);
+  return result;
+}
+
+abbe_result abbe_field_make(const abbe_image *image, const char *name, abbe_field *out,
+                            abbe_error *error) {
+  ABBE_REQUIRE(image && name && out, error);
+  *out = (abbe_field){0};
+  if (image->data == NULL || image->channels == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the picture is empty", name);
+  abbe_field field = {0};
+  abbe_result result = fill(image, name, &field, error);
+  if (result == ABBE_OK)
+    *out = field;
+  else
+    abbe_field_free(&field);
+  return result;
+}
+
+abbe_result abbe_field_load(const char *path, abbe_field *out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
+  abbe_image image = {0};
+  *out = (abbe_field){0};
+  abbe_result result = abbe_exr_read(path, &image, error);
+  if (result == ABBE_OK) result = abbe_field_make(&image, path, out, error);
+  abbe_image_free(&image);
+  return result;
+}
+
+static void free_samples(abbe_field_samples *samples) {
+  free(samples->value);
+  free(samples->error);
+  *samples = (abbe_field_samples){0};
+}
+
+void abbe_field_free(abbe_field *field) {
+  if (field == NULL) return;
+  free_samples(&field->colour);
+  free_samples(&field->bands);
+  free_samples(&field->caustic);
+  free(field->lambda_nm);
+  abbe_image_free(&field->header);
+  *field = (abbe_field){0};
+}
+
+void abbe_field_xyz(const abbe_field *field, size_t pixel, double xyz[3], double error[3]) {
+  const float *v = field->colour.value + 3 * pixel;
+  const double value[3] = {v[0], v[1], v[2]};
+  abbe_rgb_space_apply(field->to_xyz, value, xyz);
+  if (error == NULL) return;
+  for (int row = 0; row < 3; row++) {
+    error[row] = 0;
+    for (size_t c = 0; c < 3 && field->colour.error != NULL; c++)
+      error[row] +=
+          fabs(field->to_xyz[3 * row + (int)c]) * (double)field->colour.error[3 * pixel + c];
+  }
+}
+
+void abbe_field_become_xyz(abbe_field *field) {
+  if (field->is_xyz || field->colour.channels == 0) return;
+  size_t pixels = field->width * field->height;
+  for (size_t i = 0; i < pixels; i++) {
+    double xyz[3], error[3];
+    abbe_field_xyz(field, i, xyz, error);
+    for (size_t c = 0; c < 3; c++) {
+      field->colour.value[3 * i + c] = (float)xyz[c];
+      if (field->colour.error != NULL) field->colour.error[3 * i + c] = (float)error[c];
+    }
+    if (field->caustic.channels == 0) continue;
+    float *v = field->caustic.value + 3 * i;
+    double caustic[3] = {v[0], v[1], v[2]};
+    abbe_rgb_space_apply(field->to_xyz, caustic, caustic);
+    for (size_t c = 0; c < 3; c++) v[c] = (float)caustic[c];
+  }
+  field->is_xyz = true;
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_XYZ, field->to_xyz);
+  snprintf(field->space, sizeof field->space, "%s", abbe_rgb_space_name(ABBE_RGB_SPACE_XYZ));
+}

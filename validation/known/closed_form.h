@@ -1,0 +1,70 @@
+/* closed_form.h: optics that is known in closed form, for the known answers.
+ *
+ * Plain formulas in double precision, written from their own sources and not through
+ * spectral/optics.h, so that a mistake there does not agree with itself. Indices are relative to
+ * the surroundings, angles in radians. What light throws onto a plane under a sphere is no closed
+ * form: see sphere_quadrature.h.
+ */
+#ifndef ABBE_VALIDATION_KNOWN_CLOSED_FORM_H
+#define ABBE_VALIDATION_KNOWN_CLOSED_FORM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Unpolarised Fresnel reflectance at incidence [0, pi/2] from outside into index n, by the sine
+ * and tangent laws; 1 beyond the critical angle where n < 1. [BornWolf1999, 1.5.2] */
+double abbe_closed_form_fresnel(double incidence, double n);
+
+/* Shares of the light that a plane-parallel slab reflects and passes with all reflections inside,
+ * incoherently: r of one face, tau what one crossing leaves. [BornWolf1999, 1.5.4] */
+void abbe_closed_form_slab(double r, double tau, double *reflected, double *passed);
+
+/* How far a slab of that thickness moves a ray sideways, at right angles to it. [BornWolf1999] */
+double abbe_closed_form_slab_shift(double thickness, double incidence, double n);
+
+/* Paraxial focal length of a ball, from its centre: n R / (2 (n - 1)). [BornWolf1999, 4.4] */
+double abbe_closed_form_ball_focus(double radius, double n);
+
+/* Distance from the ball's centre at which a ray that comes parallel to the axis, `height` off
+ * it, crosses it: the paraxial one less the spherical aberration. 0 < height < radius. */
+double abbe_closed_form_ball_crossing(double radius, double n, double height);
+
+/* Turning towards the axis of a ray that passes a ball of index n with a concentric core of index
+ * core_n, coming parallel to the axis `height` off it: n r sin(angle) is the same at every shell
+ * [BornWolf1999, 3.2.2]. A ray that misses the core turns as in a plain ball; one that the core
+ * reflects totally turns away from it, by the negative of what it returns. 0 < height < radius. */
+double abbe_closed_form_shell_turn(double radius, double n, double core, double core_n,
+                                   double height);
+
+/* Descartes's rainbow of `order` >= 1 inner reflections: the least deviation, in total turning
+ * (more than pi for the secondary), and the incidence at which it stands. False for n <= 1 or
+ * n >= order + 1, where there is none. [Adam2002] */
+bool abbe_closed_form_rainbow(double n, size_t order, double *deviation, double *incidence);
+
+/* Least deviation of a prism; false where no ray passes at all: n sin(apex / 2) > 1.
+ * [BornWolf1999, 4.7] */
+bool abbe_closed_form_prism_least(double apex, double n, double *deviation);
+
+/* A ray that crosses a prism in its principal plane. The apex is the origin, the base is down, the
+ * ray comes from the left, meets the left face `along` from the apex under `incidence` from the
+ * base's side of its normal. */
+typedef struct abbe_prism_ray {
+  double deviation;    /* towards the base */
+  double from[2];      /* where it enters */
+  double came[2];      /* unit, its direction before */
+  double exit[2];      /* where it leaves the right face */
+  double direction[2]; /* unit, after */
+} abbe_prism_ray;
+
+/* False where it is totally reflected at the second face or misses it. */
+bool abbe_closed_form_prism_ray(double apex, double n, double incidence, double along,
+                                abbe_prism_ray *ray);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,249 @@
+#include "validation/tracer/checkpoint.h"
+
+#include "base/file.h"
+#include "base/number.h"
+#include "validation/tracer/tracer_state.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
+ * ledger and sums as the machine keeps them, and a hash of all before it. */
+static const char magic[] = "abbe checkpoint 2\n";
+enum { HEAD = 4096 }; /* bytes that hold all the lines */
+
+/* ---- hash: FNV-1a, 64 bits ---- */
+
+static uint64_t hash(uint64_t h, const void *data, size_t size) {
+  const unsigned char *p = data;
+  for (size_t i = 0; i < size; i++) h = (h ^ p[i]) * 1099511628211u;
+  return h;
+}
+
+static const uint64_t hash_start = 14695981039346656037u;
+
+static uint64_t hash_doubles(uint64_t h, const double *x, size_t count) {
+  return hash(h, x, count * sizeof *x);
+}
+
+static uint64_t hash_texture(uint64_t h, const abbe_object *o, const abbe_surface *f) {
+  const abbe_image *t = &o->texture;
+  if (t->data == NULL) return h;
+  const double numbers[] = {(double)t->width, (double)t->height, o->texture_repeat[0],
+                            o->texture_repeat[1]};
+  h = hash_doubles(h, numbers, sizeof numbers / sizeof *numbers);
+  if (f->uv != NULL) h = hash(h, f->uv, o->mesh.vertex_count * sizeof *f->uv);
+  return hash(h, t->data, t->width * t->height * t->channels * sizeof *t->data);
+}
+
+/* All that the walks read of the scene. */
+static uint64_t hash_scene(const abbe_tracer *t) {
+  const abbe_scene *s = t->scene;
+  uint64_t h = hash_doubles(hash_start, t->geometry.origin, 3);
+  h = hash_doubles(h, &t->geometry.unit, 1);
+  h = hash_doubles(h, s->camera.eye, 3);
+  h = hash_doubles(h, s->camera.target, 3);
+  h = hash_doubles(h, s->camera.up, 3);
+  const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
+  h = hash_doubles(h, loose, 3);
+  for (size_t i = 0; i < s->light_count; i++) {
+    const abbe_light *l = &s->light[i];
+    const double numbers[] = {l->kind,         l->position[0],  l->position[1],  l->position[2],
+                              l->direction[0], l->direction[1], l->direction[2], l->radius,
+                              l->cone_rad,     l->soft_rad,     l->power};
+    h = hash_doubles(h, numbers, sizeof numbers / sizeof *numbers);
+  }
+  h = hash(h, t->sampling.xyz, t->sampling.lights * t->sampling.steps * sizeof *t->sampling.xyz);
+  h = hash(h, t->media.n, t->media.refractors * (t->media.steps + 1) * sizeof *t->media.n);
+  if (t->media.attenuation != NULL)
+    h = hash(h, t->media.attenuation,
+             t->media.refractors * (t->media.steps + 1) * sizeof *t->media.attenuation);
+  for (size_t i = 0; i < s->object_count; i++) {
+    const abbe_object *o = &s->object[i];
+    const abbe_surface *f = &t->geometry.surface[i];
+    h = hash(h, &f->kind, sizeof f->kind);
+    h = hash(h, f->centre, sizeof f->centre);
+    h = hash(h, &f->radius, sizeof f->radius);
+    h = hash_doubles(h, o->reflectance, 3);
+    if (f->position != NULL) h = hash(h, f->position, o->mesh.vertex_count * sizeof *f->position);
+    if (f->face != NULL) h = hash(h, f->face, o->mesh.face_count * sizeof *f->face);
+    if (f->normal != NULL)
+      h = hash(h, f->normal,
+               (f->flat ? o->mesh.face_count : o->mesh.vertex_count) * sizeof *f->normal);
+    h = hash_texture(h, o, f);
+  }
+  return h;
+}
+
+static uint64_t hash_layout(const abbe_tracer *t) {
+  if (t->desc.no_map) return 0;
+  const abbe_view *v = &t->layout.view;
+  uint64_t h = hash_doubles(hash_start, v->origin, 3);
+  h = hash_doubles(h, v->right, 3);
+  h = hash_doubles(h, v->up, 3);
+  h = hash_doubles(h, v->window, 4);
+  return hash_doubles(h, t->layout.knot[0], 2 * (ABBE_MAP_LAYOUT_STEPS + 1));
+}
+
+/* The lines that say what the run is; threads do not matter. The request comes first, for tables
+ * of the scene depend on it too. */
+static void describe(const abbe_tracer *t, char *out, size_t size) {
+  const abbe_trace_desc *d = &t->desc;
+  abbe_number_format(out, size,
+           "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nmap %zu "
+           "x %zu of light %zu\n"
+           "range %.17g:%.17g\nbands %zu\nspace %s\nphotons %zu\nseed %u\nscene %016llx\n"
+           "layout %016llx\n\n",
+           d->physics.matched ? "matched" : "full", d->physics.matched ? d->physics.orders : 0,
+           d->physics.matched ? d->physics.energy_share : 0,
+           d->physics.matched ? d->physics.eye_orders : 0,
+           d->physics.matched ? d->physics.eye_share : 0, d->no_picture ? 0 : d->width,
+           d->no_picture ? 0 : d->height, d->no_map ? 0 : d->map_width,
+           d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light, d->min_nm, d->max_nm,
+           d->bands, abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed,
+           (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t));
+}
+
+/* ---- the numbers ---- */
+
+typedef struct counts {
+  uint64_t passes, photons, light_rays, eye_rays, cuts;
+  abbe_light_ledger ledger;
+} counts;
+
+static size_t numbers_size(const abbe_tracer *t) {
+  return sizeof(counts) + 2 * sizeof(double) * (t->picture.values + t->map.values);
+}
+
+typedef struct hashed_stream {
+  FILE *stream;
+  uint64_t hash;
+} hashed_stream;
+
+static void put(hashed_stream *s, const void *data, size_t size) {
+  s->hash = hash(s->hash, data, size);
+  if (size > 0) fwrite(data, size, 1, s->stream); /* a short write shows in ferror */
+}
+
+abbe_result abbe_checkpoint_save(const abbe_tracer *t, const char *path, abbe_error *error) {
+  ABBE_REQUIRE(t && path, error);
+  abbe_file_writer writer = {0};
+  abbe_result result = abbe_file_writer_open(&writer, path, error);
+  if (result != ABBE_OK) return result;
+  char text[1024];
+  describe(t, text, sizeof text);
+  abbe_trace_statistics s;
+  abbe_tracer_statistics(t, &s);
+  counts c = {.passes = t->pass,
+              .photons = s.photons,
+              .light_rays = s.light_rays,
+              .eye_rays = s.eye_rays,
+              .cuts = s.cuts,
+              .ledger = t->statistics.ledger};
+  hashed_stream out = {.stream = writer.stream, .hash = hash_start};
+  put(&out, magic, strlen(magic));
+  put(&out, text, strlen(text));
+  put(&out, &c, sizeof c);
+  put(&out, t->picture.sum, t->picture.values * sizeof(double));
+  put(&out, t->picture.square, t->picture.values * sizeof(double));
+  put(&out, t->map.sum, t->map.values * sizeof(double));
+  put(&out, t->map.square, t->map.values * sizeof(double));
+  uint64_t sum = out.hash;
+  put(&out, &sum, sizeof sum);
+  return abbe_file_writer_commit(&writer, error);
+}
+
+/* The first line in which two descriptions differ. */
+static abbe_result say_difference(const char *path, const char *theirs, const char *ours,
+                                  abbe_error *error) {
+  while (*theirs != '\n' || *ours != '\n') {
+    size_t n = strcspn(theirs, "\n"), m = strcspn(ours, "\n");
+    if (n != m || strncmp(theirs, ours, n) != 0) {
+      bool scene = strncmp(theirs, "scene ", 6) == 0;
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            scene
+                                ? "%s belongs to another scene, or to another state of this one "
+                                  "(%.*s, not %.*s): start anew without --resume"
+                                : "%s was made with '%.*s', this run asks for '%.*s': ask for the "
+                                  "same, or start anew without --resume",
+                            path, (int)n, theirs, (int)m, ours);
+    }
+    theirs += n + 1;
+    ours += m + 1;
+  }
+  return ABBE_OK;
+}
+
+static abbe_result check_text(const abbe_tracer *t, const char *path, char *data, size_t size,
+                              size_t *numbers, abbe_error *error) {
+  char ours[1024];
+  size_t head = strlen(magic);
+  if (size < head || memcmp(data, magic, head) != 0) {
+    bool other = size > 16 && memcmp(data, magic, 16) == 0;
+    return abbe_error_set(error, ABBE_PARSE,
+                          other ? "%s is a checkpoint of another version of abbe: start anew"
+                                : "%s is not a checkpoint of abbe trace",
+                          path);
+  }
+  char *end = strstr(data, "\n\n");
+  if (end == NULL || (size_t)(end - data) > sizeof ours)
+    return abbe_error_set(error, ABBE_PARSE, "%s is a broken checkpoint: start anew", path);
+  *numbers = (size_t)(end - data) + 2;
+  describe(t, ours, sizeof ours);
+  return say_difference(path, data + head, ours, error);
+}
+
+static void take(const char **from, void *to, size_t size) {
+  if (size > 0) memcpy(to, *from, size);
+  *from += size;
+}
+
+/* What the file says of itself, before all of it is read: the file of another request may be much
+ * larger than this one's. */
+static abbe_result check_head(const abbe_tracer *t, const char *path, abbe_error *error) {
+  char head[HEAD + 1];
+  FILE *file;
+  if (abbe_file_open(path, &file, NULL, NULL) != ABBE_OK)
+    return ABBE_OK; /* reading it whole says why */
+  size_t numbers, size = fread(head, 1, HEAD, file);
+  bool failed = ferror(file) != 0;
+  fclose(file);
+  head[size] = '\0';
+  return failed ? ABBE_OK : check_text(t, path, head, size, &numbers, error);
+}
+
+abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *error) {
+  ABBE_REQUIRE(t && path, error);
+  char *data = NULL;
+  size_t size = 0, numbers = 0, most = numbers_size(t) + HEAD;
+  abbe_result result = check_head(t, path, error);
+  if (result == ABBE_OK) result = abbe_file_read(path, most, &data, &size, error);
+  if (result != ABBE_OK) return result;
+  result = check_text(t, path, data, size, &numbers, error);
+  if (result == ABBE_OK) {
+    uint64_t sum = 0;
+    bool whole = size == numbers + numbers_size(t) + sizeof sum;
+    if (whole) memcpy(&sum, data + size - sizeof sum, sizeof sum);
+    if (!whole || sum != hash(hash_start, data, size - sizeof sum))
+      result = abbe_error_set(error, ABBE_PARSE, "%s is cut off or damaged: start anew", path);
+  }
+  if (result == ABBE_OK) {
+    const char *at = data + numbers;
+    counts c;
+    take(&at, &c, sizeof c);
+    t->pass = t->picture.passes = t->map.passes = (size_t)c.passes;
+    t->statistics.photons = c.photons;
+    t->statistics.light_rays = c.light_rays;
+    t->other_rays = abbe_tracer_walk_rays(t);
+    t->statistics.eye_rays = c.eye_rays;
+    t->statistics.cuts = c.cuts;
+    t->statistics.ledger = c.ledger;
+    take(&at, t->picture.sum, t->picture.values * sizeof(double));
+    take(&at, t->picture.square, t->picture.values * sizeof(double));
+    take(&at, t->map.sum, t->map.values * sizeof(double));
+    take(&at, t->map.square, t->map.values * sizeof(double));
+  }
+  free(data);
+  return result;
+}

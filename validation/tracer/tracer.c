@@ -1,0 +1,519 @@
+#include "validation/tracer/tracer.h"
+
+#include "spectral/wavelengths.h"
+#include "validation/compare/mask.h"
+#include "validation/tracer/tracer_state.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+#ifdef __SSE__
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+#endif
+
+/* Radius and window shrink with this power of the pass: the squared bias then falls as fast as the
+ * variance, in three dimensions (place and wavelength) [KnausZwicker2011]. */
+static const double shrink = 1.0 / 7;
+static const double first_window_nm = 25;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* ---- the request ---- */
+
+static abbe_result check_count(const char *what, size_t value, size_t most, abbe_error *error) {
+  if (value <= most) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s %zu is too much: at most %zu", what,
+                        value, most);
+}
+
+static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_error *error) {
+  if (d->width == 0) d->width = scene->camera.width;
+  if (d->height == 0) d->height = scene->camera.height;
+  if (d->map_width == 0) d->map_width = 512;
+  if (d->map_height == 0) d->map_height = d->map_width;
+  if (d->min_nm == 0) d->min_nm = ABBE_WAVELENGTH_MIN_NM;
+  if (d->max_nm == 0) d->max_nm = ABBE_WAVELENGTH_MAX_NM;
+  abbe_result result = check_count("width", d->width, ABBE_TRACER_MAX_SIDE, error);
+  if (result == ABBE_OK) result = check_count("height", d->height, ABBE_TRACER_MAX_SIDE, error);
+  if (result == ABBE_OK) result = check_count("map", d->map_width, ABBE_TRACER_MAX_SIDE, error);
+  if (result == ABBE_OK) result = check_count("map", d->map_height, ABBE_TRACER_MAX_SIDE, error);
+  if (result == ABBE_OK)
+    result = check_count("photons", d->photons, ABBE_TRACER_MAX_PHOTONS, error);
+  if (result == ABBE_OK)
+    result = check_count("threads", d->threads, ABBE_TRACER_MAX_THREADS, error);
+  if (result != ABBE_OK) return result;
+  if (scene->light_count == 0 || scene->object_count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is nothing to trace: %s",
+                          scene->light_count == 0 ? "the scene has no light"
+                                                  : "the scene has no object");
+  if (d->map_light >= scene->light_count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "there is no light %zu for the map: the scene has %zu", d->map_light,
+                          scene->light_count);
+  if (d->no_picture && d->no_map)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "neither a picture nor a map is asked for: leave one of the two in");
+  if (d->layout != NULL) {
+    result = abbe_map_layout_check(d->layout, error);
+    if (result != ABBE_OK) return result;
+  }
+  if (d->photons == 0) {
+    d->photons = 1u << 20;
+    if (!d->no_picture && 4 * d->width * d->height > d->photons)
+      d->photons = 4 * d->width * d->height;
+    if (d->photons > ABBE_TRACER_MAX_PHOTONS) d->photons = ABBE_TRACER_MAX_PHOTONS;
+  }
+  if (d->threads == 0) d->threads = (size_t)omp_get_num_procs();
+  if (d->threads > ABBE_TRACER_MAX_THREADS) d->threads = ABBE_TRACER_MAX_THREADS;
+  return ABBE_OK;
+}
+
+/* ---- make ---- */
+
+static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
+  const abbe_trace_desc *d = &t->desc;
+  double uniform = d->bands > 0 ? 0.5 : 0.15;
+  abbe_result result = abbe_geometry_make(t->scene, &t->geometry, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_spectral_sampling_make(t->scene, d->min_nm, d->max_nm, uniform, &t->sampling, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);
+  if (result == ABBE_OK) result = abbe_bands_make(&t->sampling, d->bands, &t->bands, error);
+  if (result != ABBE_OK) return result;
+  t->mixing = d->space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : d->space;
+  abbe_reflectance_make(&t->geometry, t->mixing, &t->reflectance);
+  abbe_trace_camera_make(&t->geometry, d->width, d->height, &t->camera);
+  size_t lights = t->scene->light_count;
+  t->colour = calloc(lights * t->sampling.steps, sizeof *t->colour);
+  t->white = calloc(lights, sizeof *t->white);
+  t->aim = calloc(lights, sizeof *t->aim);
+  t->photons = calloc(lights, sizeof *t->photons);
+  t->parts = calloc(lights, sizeof *t->parts);
+  t->walk = calloc(d->threads, sizeof *t->walk);
+  if (!t->colour || !t->white || !t->aim || !t->photons || !t->parts || !t->walk)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the lights' tables");
+  abbe_spectral_sampling_colours(&t->sampling, t->mixing, t->colour);
+  double matrix[9], white[3];
+  abbe_rgb_space_to_xyz(t->mixing, matrix);
+  for (int i = 0; i < 9; i++) t->to_xyz[i] = (float)matrix[i];
+  abbe_rgb_space_from_xyz(t->mixing, matrix);
+  for (size_t l = 0; l < lights; l++) {
+    abbe_rgb_space_apply(matrix, t->sampling.white[l], white);
+    for (int k = 0; k < 3; k++) t->white[l][k] = (float)white[k];
+  }
+  for (size_t i = 0; i < d->threads && result == ABBE_OK; i++)
+    result =
+        abbe_light_walk_make(&t->geometry, &t->media, &d->physics, d->seed, &t->walk[i], error);
+  return result;
+}
+
+/* A request that cannot fit is refused before it is allocated: the system might grant it and fail
+ * later. */
+static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
+  const abbe_trace_desc *d = &t->desc;
+  double values = 0, pages = (double)sysconf(_SC_PHYS_PAGES), page = (double)sysconf(_SC_PAGESIZE);
+  if (!d->no_picture)
+    values += (double)(d->width * d->height) * (double)(ABBE_TRACER_BANDS + t->bands.count);
+  if (!d->no_map) values += (double)(d->map_width * d->map_height) * (double)(3 + t->bands.count);
+  double needed = values * 8 * (double)(d->threads + 2);
+  if (!(pages > 0) || !(page > 0) || needed < pages * page) return ABBE_OK;
+  return abbe_error_set(
+      error, ABBE_NO_MEMORY,
+      "the sums of %zu x %zu pixels, %zu bands and %zu threads need %.0f GiB, the "
+      "machine has %.0f: ask for fewer",
+      d->width, d->height, t->bands.count, d->threads, needed * 0x1p-30, pages * page * 0x1p-30);
+}
+
+/* Radiance of a white receiver in the middle of the scene, for the range of the sums. */
+static double usual_radiance(const abbe_tracer *t) {
+  double most = fmax(t->scene->ambient, t->scene->background);
+  for (size_t l = 0; l < t->scene->light_count; l++) {
+    const abbe_light *light = &t->scene->light[l];
+    double square = 1, power = light->power;
+    if (light->kind == ABBE_LIGHT_DISK) power *= 3.14159 * light->radius * light->radius;
+    if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
+      square = 0;
+      for (int k = 0; k < 3; k++) square += pow(light->position[k] - t->geometry.origin[k], 2);
+    }
+    most = fmax(most, power / fmax(square, 1e-6 * t->geometry.unit * t->geometry.unit));
+  }
+  return most > 0 ? most : 1;
+}
+
+static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
+  const abbe_trace_desc *d = &t->desc;
+  abbe_result result = check_memory(t, error);
+  if (result == ABBE_OK && !d->no_picture) {
+    t->picture_channels = ABBE_TRACER_BANDS + t->bands.count;
+    /* sums hold values 2^28 times the usual, to 2^-33 of it */
+    result = abbe_accumulator_make(d->width * d->height * t->picture_channels, d->threads,
+                                   usual_radiance(t) * 0x1p28, &t->picture, error);
+  }
+  if (result == ABBE_OK && !d->no_map) {
+    t->map_channels = 3 + t->bands.count;
+    double reach = t->aim[d->map_light].reach;
+    result = abbe_accumulator_make(d->map_width * d->map_height * t->map_channels, d->threads,
+                                   (reach > 0 ? reach : 1) * 0x1p14, &t->map, error);
+  }
+  return result;
+}
+
+/* The eye needs photons around where some ray that met a refractor lands. */
+static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
+  t->eye_gathers = !t->desc.no_picture && t->geometry.refractor_count > 0;
+  t->eye = (abbe_eye_walk){.geometry = &t->geometry,
+                           .media = &t->media,
+                           .sampling = &t->sampling,
+                           .bands = &t->bands,
+                           .camera = &t->camera,
+                           .reflectance = &t->reflectance,
+                           .colour = (const float(*)[3])t->colour,
+                           .white = (const float(*)[3])t->white,
+                           .physics = t->desc.physics,
+                           .seed = t->desc.seed};
+  if (t->desc.physics.eye_orders > 0) {
+    t->eye.physics.orders = t->desc.physics.eye_orders;
+    t->eye.physics.energy_share = t->desc.physics.eye_share;
+  }
+  if (!t->eye_gathers) return ABBE_OK;
+  for (size_t l = 0; l < t->scene->light_count; l++)
+    t->landed_room += abbe_tracer_most_landings(t, l, t->photons[l]);
+  t->landed = malloc((t->landed_room + 1) * sizeof *t->landed);
+  if (t->landed == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings a pass",
+                          t->landed_room);
+  /* four pixels of the receivers as far away as the refractors */
+  float eye[3], far = 0;
+  abbe_geometry_to_frame(&t->geometry, t->scene->camera.eye, eye);
+  for (int k = 0; k < 3; k++) far += eye[k] * eye[k];
+  t->radius = 4 * 2 * t->camera.half_height / (float)t->desc.height * sqrtf(far);
+  return ABBE_OK;
+}
+
+abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *desc,
+                             abbe_tracer **out, abbe_error *error) {
+  ABBE_REQUIRE(scene && desc && out, error);
+  *out = NULL;
+  abbe_tracer *t = calloc(1, sizeof *t);
+  if (t == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a tracer");
+  t->scene = scene;
+  if (desc != NULL) t->desc = *desc;
+  abbe_result result = resolve(scene, &t->desc, error);
+  if (result == ABBE_OK) result = make_tables(t, error);
+  if (result == ABBE_OK) result = abbe_tracer_share_photons(t, error);
+  if (result == ABBE_OK) result = abbe_tracer_choose_parts(t, error);
+  if (result == ABBE_OK && !t->desc.no_map) {
+    if (t->desc.layout != NULL)
+      t->layout = *t->desc.layout;
+    else
+      result = abbe_tracer_fit_layout(t, error);
+  }
+  if (result == ABBE_OK) result = make_sums(t, error);
+  if (result == ABBE_OK) result = prepare_eye(t, error);
+  if (result != ABBE_OK) {
+    abbe_tracer_free(t);
+    return result;
+  }
+  t->desc.layout = &t->layout;
+  t->other_rays = abbe_tracer_walk_rays(t);
+  *out = t;
+  return ABBE_OK;
+}
+
+void abbe_tracer_free(abbe_tracer *t) {
+  if (t == NULL) return;
+  for (size_t i = 0; t->walk != NULL && i < t->desc.threads; i++) abbe_light_walk_free(t->walk[i]);
+  for (size_t l = 0; t->aim != NULL && l < t->scene->light_count; l++) abbe_aim_free(&t->aim[l]);
+  abbe_accumulator_free(&t->picture);
+  abbe_accumulator_free(&t->map);
+  abbe_photon_grid_free(&t->grid);
+  abbe_bands_free(&t->bands);
+  abbe_media_free(&t->media);
+  abbe_spectral_sampling_free(&t->sampling);
+  abbe_geometry_free(&t->geometry);
+  free(t->landed);
+  free(t->colour);
+  free(t->white);
+  free(t->aim);
+  free(t->photons);
+  free(t->parts);
+  free(t->walk);
+  free(t);
+}
+
+/* ---- passes ---- */
+
+static void add_sample(abbe_tracer *t, size_t thread, size_t pixel, const abbe_eye_sample *s) {
+  size_t at = pixel * t->picture_channels;
+  float rgb[3], caustic[3];
+  abbe_tracer_finish(t, s->rgb, rgb);
+  abbe_tracer_finish(t, s->caustic, caustic);
+  for (size_t k = 0; k < 3; k++) {
+    abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_RGB + k, rgb[k]);
+    if (caustic[k] != 0)
+      abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_CAUSTIC + k, caustic[k]);
+  }
+  for (size_t i = 0; i < t->bands.count; i++)
+    abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_BANDS + i, s->band[i]);
+}
+
+static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *stop,
+                            abbe_error *error) {
+  t->eye.grid = NULL;
+  if (t->eye_gathers) {
+    double factor = pow((double)t->pass + 1, -shrink);
+    t->eye.radius = (float)((double)t->radius * factor);
+    t->eye.window_nm = fmin(first_window_nm, 0.5 * (t->desc.max_nm - t->desc.min_nm)) * factor;
+    abbe_result result = abbe_photon_grid_fill(&t->grid, t->landed, landed, t->eye.radius, error);
+    if (result != ABBE_OK) return result;
+    t->eye.grid = &t->grid;
+    t->statistics.radius = (double)t->eye.radius * t->geometry.unit;
+  }
+  uint64_t rays = 0;
+#pragma omp parallel for schedule(dynamic) num_threads((int)t->desc.threads) reduction(+ : rays)
+  for (size_t row = 0; row < t->desc.height; row++) {
+    if (stop != NULL && *stop) continue;
+    abbe_eye_sample s;
+    for (size_t column = 0; column < t->desc.width; column++) {
+      size_t pixel = row * t->desc.width + column;
+      abbe_eye_walk_pixel(&t->eye, pixel, (uint32_t)t->pass, &s);
+      add_sample(t, (size_t)omp_get_thread_num(), pixel, &s);
+      rays += s.rays;
+    }
+  }
+  t->statistics.eye_rays += rays;
+  return stop != NULL && *stop ? abbe_error_set(error, ABBE_CANCELLED, "stopped") : ABBE_OK;
+}
+
+/* Embree's advice: numbers too small for single precision count as zero, on every thread. The
+ * caller's own thread gets its mode back. */
+static unsigned flush_tiny_numbers(const abbe_tracer *t) {
+#ifdef __SSE__
+  unsigned mode = _mm_getcsr();
+#pragma omp parallel num_threads((int)t->desc.threads)
+  {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+  }
+  return mode;
+#else
+  (void)t;
+  return 0;
+#endif
+}
+
+static void restore_mode(unsigned mode) {
+#ifdef __SSE__
+  _mm_setcsr(mode);
+#else
+  (void)mode;
+#endif
+}
+
+abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_error *error) {
+  ABBE_REQUIRE(t, error);
+  unsigned mode = flush_tiny_numbers(t);
+  abbe_trace_statistics before = t->statistics;
+  size_t landed = 0;
+  double start = now();
+  abbe_result result = abbe_tracer_light_pass(t, stop, &landed, error);
+  double middle = now();
+  if (result == ABBE_OK && !t->desc.no_picture) result = eye_pass(t, landed, stop, error);
+  double end = now();
+  restore_mode(mode);
+  if (result != ABBE_OK) {
+    t->statistics = before;
+    if (!t->desc.no_picture) abbe_accumulator_drop_pass(&t->picture);
+    if (!t->desc.no_map) abbe_accumulator_drop_pass(&t->map);
+    return result;
+  }
+  t->statistics.light_seconds += middle - start;
+  t->statistics.eye_seconds += end - middle;
+  if (!t->desc.no_picture) abbe_accumulator_end_pass(&t->picture, 1);
+  if (!t->desc.no_map) abbe_accumulator_end_pass(&t->map, 1);
+  t->pass++;
+  return ABBE_OK;
+}
+
+size_t abbe_tracer_passes(const abbe_tracer *tracer) {
+  return tracer->pass;
+}
+
+/* ---- results ---- */
+
+static double picture_error(const abbe_tracer *t) {
+  double matrix[9], squares = 0, sum = 0;
+  size_t pixels = t->desc.width * t->desc.height;
+  abbe_rgb_space_to_xyz(t->desc.space, matrix);
+  for (size_t i = 0; i < pixels; i++)
+    for (size_t k = 0; k < 3; k++) {
+      double weight = matrix[3 + k],
+             at = abbe_accumulator_error(&t->picture, i * t->picture_channels + k);
+      squares += pow(weight * at, 2);
+      sum += weight * abbe_accumulator_mean(&t->picture, i * t->picture_channels + k);
+    }
+  return sum > 0 ? sqrt(squares / (double)pixels) / (sum / (double)pixels) : 0;
+}
+
+static double map_error(const abbe_tracer *t) {
+  size_t texels = t->desc.map_width * t->desc.map_height;
+  double *y = malloc(texels * sizeof *y), squares = 0, sum = 0;
+  abbe_mask mask = {0};
+  for (size_t i = 0; y != NULL && i < texels; i++)
+    y[i] = abbe_accumulator_mean(&t->map, i * t->map_channels + 1);
+  if (y != NULL &&
+      abbe_mask_make_brightest(y, texels, ABBE_MASK_CAUSTIC_SHARE, &mask, NULL) == ABBE_OK)
+    for (size_t i = 0; i < texels; i++) {
+      if (!mask.in[i]) continue;
+      squares += pow(abbe_accumulator_error(&t->map, i * t->map_channels + 1), 2);
+      sum += y[i];
+    }
+  double inside = (double)mask.inside;
+  abbe_mask_free(&mask);
+  free(y);
+  return sum > 0 ? sqrt(squares / inside) / (sum / inside) : 0;
+}
+
+double abbe_tracer_error(const abbe_tracer *t) {
+  if (t->pass < 2) return INFINITY;
+  double picture = t->desc.no_picture ? 0 : picture_error(t);
+  return t->desc.no_map ? picture : fmax(picture, map_error(t));
+}
+
+enum { NAME = 64, MAX_CHANNELS = 9 + 2 * ABBE_BANDS_MAX };
+
+typedef struct channel_list {
+  size_t count;
+  char name[MAX_CHANNELS][NAME];
+  size_t value[MAX_CHANNELS]; /* of the sums' channels */
+  bool error[MAX_CHANNELS];
+} channel_list;
+
+/* Of one pass nothing tells how far off it is: then there is no channel for the errors. */
+static void add_channel(const abbe_tracer *t, channel_list *list, const char *prefix,
+                        const char *name, size_t value, bool error) {
+  if (error && t->pass < 2) return;
+  snprintf(list->name[list->count], NAME, "%s%s", prefix, name);
+  list->value[list->count] = value;
+  list->error[list->count++] = error;
+}
+
+static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image *out,
+                              abbe_error *error) {
+  char passes[32], seed[32], photons[32];
+  snprintf(passes, sizeof passes, "%zu", t->pass);
+  snprintf(seed, sizeof seed, "%u", (unsigned)t->desc.seed);
+  snprintf(photons, sizeof photons, "%zu", t->desc.photons);
+  const char *pair[][2] = {
+      {"abbe:kind", kind},     {"abbe:physics", t->desc.physics.matched ? "matched" : "full"},
+      {"abbe:passes", passes}, {"abbe:photons", photons},
+      {"abbe:seed", seed},     {"abbe:scene", t->scene->path ? t->scene->path : "-"}};
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof pair / sizeof *pair && result == ABBE_OK; i++)
+    result = abbe_image_set_attribute(out, pair[i][0], pair[i][1], error);
+  if (result == ABBE_OK && t->bands.count > 0) {
+    result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
+    if (result == ABBE_OK)
+      result = abbe_image_set_attribute(out, "emissiveUnits",
+                                        kind[0] == 'p' ? "W.m^-2.sr^-1.nm^-1" : "W.nm^-1", error);
+  }
+  return result;
+}
+
+static abbe_result read_sums(const abbe_tracer *t, const abbe_accumulator *sums, size_t width,
+                             size_t height, size_t channels, const channel_list *list,
+                             const char *kind, abbe_image *out, abbe_error *error) {
+  const char *names[MAX_CHANNELS];
+  for (size_t i = 0; i < list->count; i++) names[i] = list->name[i];
+  abbe_result result = abbe_image_make(width, height, list->count, names, out, error);
+  if (result != ABBE_OK) return result;
+  for (size_t i = 0; i < width * height; i++)
+    for (size_t k = 0; k < list->count; k++) {
+      size_t value = i * channels + list->value[k];
+      out->data[i * list->count + k] = (float)(list->error[k] ? abbe_accumulator_error(sums, value)
+                                                              : abbe_accumulator_mean(sums, value));
+    }
+  result = attributes(t, kind, out, error);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
+}
+
+static void add_bands(const abbe_tracer *t, size_t first, channel_list *list) {
+  char name[NAME / 2];
+  for (size_t i = 0; i < t->bands.count; i++) {
+    abbe_bands_name(&t->bands, i, name, sizeof name);
+    add_channel(t, list, "", name, first + i, false);
+    add_channel(t, list, "stderr.", name, first + i, true);
+  }
+}
+
+abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(t && out, error);
+  *out = (abbe_image){0};
+  if (t->desc.no_picture)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no picture was traced");
+  static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
+  const char *const *name = t->desc.space == ABBE_RGB_SPACE_XYZ ? xyz : rgb;
+  channel_list *list = calloc(1, sizeof *list);
+  if (list == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
+  for (size_t k = 0; k < 3; k++) {
+    add_channel(t, list, "", name[k], ABBE_TRACER_RGB + k, false);
+    add_channel(t, list, "stderr.", name[k], ABBE_TRACER_RGB + k, true);
+    add_channel(t, list, "caustic.", name[k], ABBE_TRACER_CAUSTIC + k, false);
+  }
+  add_bands(t, ABBE_TRACER_BANDS, list);
+  abbe_result result = read_sums(t, &t->picture, t->desc.width, t->desc.height, t->picture_channels,
+                                 list, "picture", out, error);
+  free(list);
+  if (result == ABBE_OK) abbe_rgb_space_chromaticities(t->desc.space, out->xy);
+  return result;
+}
+
+abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(t && out, error);
+  *out = (abbe_image){0};
+  if (t->desc.no_map) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no map was traced");
+  static const char *const xyz[3] = {"X", "Y", "Z"};
+  channel_list *list = calloc(1, sizeof *list);
+  if (list == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
+  for (size_t k = 0; k < 3; k++) {
+    add_channel(t, list, "", xyz[k], k, false);
+    add_channel(t, list, "stderr.", xyz[k], k, true);
+  }
+  add_bands(t, 3, list);
+  abbe_result result = read_sums(t, &t->map, t->desc.map_width, t->desc.map_height, t->map_channels,
+                                 list, "receiver map", out, error);
+  free(list);
+  if (result == ABBE_OK)
+    result = abbe_map_layout_write(&t->layout, t->scene->light[t->desc.map_light].name, out, error);
+  if (result == ABBE_OK) abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_XYZ, out->xy);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
+}
+
+uint64_t abbe_tracer_walk_rays(const abbe_tracer *t) {
+  uint64_t rays = 0;
+  for (size_t i = 0; i < t->desc.threads; i++) rays += abbe_light_walk_rays(t->walk[i]);
+  return rays;
+}
+
+void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {
+  *out = t->statistics;
+  out->passes = t->pass;
+  out->light_rays += abbe_tracer_walk_rays(t) - t->other_rays;
+  if (!t->desc.no_picture) out->cuts += abbe_accumulator_cuts(&t->picture);
+  if (!t->desc.no_map) out->cuts += abbe_accumulator_cuts(&t->map);
+  double scale = t->pass > 0 ? 1 / (double)t->pass : 0;
+  double *part = &out->ledger.reached;
+  for (size_t i = 0; i < sizeof out->ledger / sizeof *part; i++) part[i] *= scale;
+}

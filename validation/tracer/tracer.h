@@ -1,0 +1,95 @@
+/* tracer.h: the reference: what light does in a scene, with error bars.
+ *
+ * Every path has its own wavelength. Photons go from the lights through refractors to receivers;
+ * they make the receiver map, and the caustics that the eye sees straight (both unbiased). Paths
+ * from the eye see direct light, mirror images and what shows through glass (unbiased), and there
+ * caustics from the photons around (consistent: the bias shrinks as passes are added). A receiver
+ * is lit by lamps straight and through refractors, and by the scene's ambient light, which stands
+ * for light between receivers. Work is done in passes that are independent of each other, so that
+ * their spread gives standard errors; same seed and settings, same result, on any number of
+ * threads. It uses nothing of the renderer.
+ */
+#ifndef ABBE_VALIDATION_TRACER_TRACER_H
+#define ABBE_VALIDATION_TRACER_TRACER_H
+
+#include "base/error.h"
+#include "colorimetry/image/image.h"
+#include "colorimetry/rgb_space.h"
+#include "scenes/scene.h"
+#include "scenes/view/map_layout.h"
+#include "validation/transport/light_walk.h"
+#include "validation/transport/physics.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_TRACER_MAX_SIDE 8192
+#define ABBE_TRACER_MAX_PHOTONS 67108864u /* a pass */
+#define ABBE_TRACER_MAX_THREADS 256
+
+/* A request; zero means the default in every field. */
+typedef struct abbe_trace_desc {
+  abbe_physics physics;
+  bool no_picture, no_map;       /* leave one of the two out */
+  size_t width, height;          /* pixels; 0: the scene's */
+  size_t map_width, map_height;  /* texels of the receiver map; 0: 512 */
+  size_t map_light;              /* whose light it holds */
+  const abbe_map_layout *layout; /* NULL: fitted to where the light lands */
+  double min_nm, max_nm;         /* 0: 380, 780 */
+  size_t bands;                  /* of the spectral output; 0: none */
+  abbe_rgb_space space;          /* of the picture */
+  size_t photons;                /* a pass; 0: 2^20, or four a pixel where that is more */
+  uint32_t seed;
+  size_t threads; /* 0: all cores */
+} abbe_trace_desc;
+
+typedef struct abbe_tracer abbe_tracer;
+
+typedef struct abbe_trace_statistics {
+  size_t passes;
+  uint64_t photons; /* emitted */
+  uint64_t light_rays, eye_rays;
+  double light_seconds, eye_seconds; /* wall time of the two parts; this run only */
+  abbe_light_ledger ledger;          /* W, mean over passes */
+  uint64_t cuts;                     /* contributions too large to be kept whole */
+  double radius;                     /* m, of the last gather; 0: none */
+} abbe_trace_statistics;
+
+/* ABBE_INVALID_ARGUMENT for a request outside the limits, ABBE_OUT_OF_RANGE for an index that is
+ * not known over the range, ABBE_UNSUPPORTED, ABBE_NO_MEMORY. The scene outlives the tracer. */
+abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *desc,
+                             abbe_tracer **out, abbe_error *error);
+void abbe_tracer_free(abbe_tracer *tracer);
+
+/* Traces one pass: one sample a pixel and the photons of a pass. *stop (may be NULL) ends it early
+ * with ABBE_CANCELLED, the pass forgotten. */
+abbe_result abbe_tracer_pass(abbe_tracer *tracer, const volatile int *stop, abbe_error *error);
+
+size_t abbe_tracer_passes(const abbe_tracer *tracer);
+/* Relative standard error of picture and map together: root mean square of the standard errors
+ * over the mean, of Y or luminance, the larger of the two; infinite before two passes. Of the map:
+ * over the brightest texels that hold 95 % of its light. */
+double abbe_tracer_error(const abbe_tracer *tracer);
+
+/* Means so far and, after two passes and more, their standard errors. Picture: R, G, B (X, Y, Z in that space), stderr.R …,
+ * caustic.R … (the part that came to its receiver through a refractor), then the bands S0.…nm and
+ * stderr.S0.…nm. Map: X, Y, Z, flux a texel in W, stderr.X …, bands in W/nm. Both carry what the
+ * run was as attributes. ABBE_INVALID_ARGUMENT where the request left it out. */
+abbe_result abbe_tracer_picture(const abbe_tracer *tracer, abbe_image *out, abbe_error *error);
+abbe_result abbe_tracer_map(const abbe_tracer *tracer, abbe_image *out, abbe_error *error);
+
+void abbe_tracer_statistics(const abbe_tracer *tracer, abbe_trace_statistics *out);
+
+/* Rays a second of one thread's photon walk, and of Embree alone on the very same packets of rays;
+ * traces a part of a pass that is not counted. */
+abbe_result abbe_tracer_rates(abbe_tracer *tracer, double *walk, double *embree, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,77 @@
+/* tracer_state.h: the insides of a tracer, for tracer.c, tracer_light.c and checkpoint.c alone.
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_TRACER_TRACER_STATE_H
+#define ABBE_VALIDATION_TRACER_TRACER_STATE_H
+
+#include "validation/tracer/accumulator.h"
+#include "validation/tracer/tracer.h"
+#include "validation/transport/aim.h"
+#include "validation/transport/eye_walk.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ABBE_TRACER_RGB = 0, ABBE_TRACER_CAUSTIC = 3, ABBE_TRACER_BANDS = 6 };
+
+struct abbe_tracer {
+  abbe_trace_desc desc; /* every field resolved */
+  const abbe_scene *scene;
+  abbe_geometry geometry;
+  abbe_spectral_sampling sampling;
+  abbe_media media;
+  abbe_bands bands;
+  abbe_reflectance reflectance;
+  abbe_trace_camera camera;
+  abbe_map_layout layout;
+  abbe_rgb_space mixing; /* light times reflectance: the picture's space, ACEScg for XYZ */
+  float to_xyz[9];       /* from there, for XYZ pictures; row-major */
+  float (*colour)[3], (*white)[3]; /* in that space */
+  abbe_aim *aim;                   /* [lights] */
+  size_t *photons;                 /* [lights] a pass */
+  unsigned *parts;                 /* [lights] interfaces at which its photons go both ways */
+  abbe_light_walk **walk;          /* [threads] */
+  abbe_accumulator picture, map;
+  size_t picture_channels, map_channels; /* a pixel, a texel */
+  abbe_eye_walk eye;
+  abbe_photon_grid grid;
+  abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
+  size_t landed_room;
+  bool eye_gathers;    /* some pixel may show a receiver through or in a refractor */
+  float radius;        /* of the first gather, frame */
+  size_t pass;         /* the next one */
+  uint64_t other_rays; /* of the walks: trials, and from before a checkpoint was taken up */
+  abbe_trace_statistics statistics;
+};
+
+/* Rays of the walks of all threads, trials too. */
+uint64_t abbe_tracer_walk_rays(const abbe_tracer *tracer);
+/* From the space of mixing to the picture's. */
+static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3], float out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = t->mixing == t->desc.space
+                 ? mixed[k]
+                 : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
+                       t->to_xyz[3 * k + 2] * mixed[2];
+}
+
+/* The photons of the pass; landings go to the map, to the picture, and to tracer->landed. */
+abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop,
+                                   size_t *landed_count, abbe_error *error);
+/* Photons of a pass shared out over the lights by the light that they send to refractors. */
+abbe_result abbe_tracer_share_photons(abbe_tracer *tracer, abbe_error *error);
+/* Chooses where photons are parted, by a trial of each light's. */
+abbe_result abbe_tracer_choose_parts(abbe_tracer *tracer, abbe_error *error);
+/* Most landings of so many photons of the light. */
+static inline size_t abbe_tracer_most_landings(const abbe_tracer *t, size_t light, size_t photons) {
+  for (int k = 0; k < ABBE_LIGHT_WALK_SPLITS; k++) photons <<= t->parts[light] >> k & 1;
+  return photons;
+}
+/* A view from the map's light around where its light lands. */
+abbe_result abbe_tracer_fit_layout(abbe_tracer *tracer, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

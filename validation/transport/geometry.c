@@ -1,0 +1,284 @@
+#include "validation/transport/geometry.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the frame ---- */
+
+static void choose_frame(abbe_geometry *g) {
+  double min[3], max[3], half[3];
+  if (!abbe_scene_bounds(g->scene, true, false, min, max))
+    abbe_scene_bounds(g->scene, true, true, min, max);
+  for (int k = 0; k < 3; k++) {
+    g->origin[k] = 0.5 * (min[k] + max[k]);
+    half[k] = 0.5 * (max[k] - min[k]);
+  }
+  g->unit = abbe_vector_length(half);
+  if (!(g->unit > 0)) g->unit = 1;
+}
+
+void abbe_geometry_to_frame(const abbe_geometry *g, const double world[3], float frame[3]) {
+  for (int k = 0; k < 3; k++) frame[k] = (float)((world[k] - g->origin[k]) / g->unit);
+}
+
+void abbe_geometry_to_world(const abbe_geometry *g, const float frame[3], double world[3]) {
+  for (int k = 0; k < 3; k++) world[k] = g->origin[k] + g->unit * (double)frame[k];
+}
+
+/* ---- surfaces ---- */
+
+static bool same_normals(const abbe_mesh *mesh) {
+  for (size_t i = 0; i < mesh->face_count; i++) {
+    const uint32_t *f = mesh->face[i];
+    for (int c = 1; c < 3; c++)
+      for (int k = 0; k < 3; k++)
+        if (fabs(mesh->normal[f[c]][k] - mesh->normal[f[0]][k]) > 1e-12) return false;
+  }
+  return true;
+}
+
+static void face_normal(const abbe_mesh *mesh, size_t face, float out[3]) {
+  const uint32_t *f = mesh->face[face];
+  double n[3];
+  abbe_vector_triangle(mesh->position[f[0]], mesh->position[f[1]], mesh->position[f[2]], n);
+  bool known = abbe_vector_normalise(n);
+  for (int k = 0; k < 3; k++) out[k] = (float)(known ? n[k] : mesh->normal[f[0]][k]);
+}
+
+/* Triangles of one plane of a convex solid have its normal, as thin ones may be off it. Embree
+ * reads 16 bytes at the last vertex: one more than there are is kept. */
+static bool copy_mesh(const abbe_geometry *g, const abbe_object *object, abbe_surface *s) {
+  const abbe_mesh *mesh = &object->mesh;
+  s->flat = same_normals(mesh);
+  size_t normals = s->flat ? mesh->face_count : mesh->vertex_count;
+  s->position = calloc(mesh->vertex_count + 1, sizeof *s->position);
+  s->normal = malloc(normals * sizeof *s->normal);
+  s->face = malloc(mesh->face_count * sizeof *s->face);
+  if (s->position == NULL || s->normal == NULL || s->face == NULL) return false;
+  for (size_t i = 0; i < mesh->vertex_count; i++)
+    abbe_geometry_to_frame(g, mesh->position[i], s->position[i]);
+  memcpy(s->face, mesh->face, mesh->face_count * sizeof *s->face);
+  for (size_t i = 0; i < normals; i++) {
+    if (s->flat && object->exact.kind == ABBE_EXACT_CONVEX)
+      for (int k = 0; k < 3; k++) s->normal[i][k] = (float)mesh->normal[mesh->face[i][0]][k];
+    else if (s->flat)
+      face_normal(mesh, i, s->normal[i]);
+    else
+      for (int k = 0; k < 3; k++) s->normal[i][k] = (float)mesh->normal[i][k];
+  }
+  s->uv = (const double(*)[2])mesh->uv;
+  return true;
+}
+
+static void attach(abbe_geometry *g, RTCGeometry geometry, unsigned id, unsigned mask) {
+  rtcSetGeometryMask(geometry, mask);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(g->embree, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+static bool add_sphere(abbe_geometry *g, const abbe_object *o, abbe_surface *s, unsigned id) {
+  s->sphere = true;
+  abbe_geometry_to_frame(g, o->exact.centre, s->centre);
+  s->radius = (float)(o->exact.radius / g->unit);
+  RTCGeometry geometry = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                     4 * sizeof *v, 1);
+  if (v != NULL) {
+    memcpy(v, s->centre, sizeof s->centre);
+    v[3] = s->radius;
+  }
+  attach(g, geometry, id, s->kind);
+  return v != NULL;
+}
+
+static bool add_triangles(abbe_geometry *g, const abbe_object *o, abbe_surface *s, unsigned id) {
+  if (!copy_mesh(g, o, s)) return false;
+  RTCGeometry geometry = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s->position, 0,
+                             sizeof *s->position, o->mesh.vertex_count);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s->face, 0,
+                             sizeof *s->face, o->mesh.face_count);
+  attach(g, geometry, id, s->kind);
+  return true;
+}
+
+static bool add_lamp(abbe_geometry *g, const abbe_light *light, abbe_surface *s, unsigned id) {
+  s->normal = malloc(sizeof *s->normal);
+  RTCGeometry geometry = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+  float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                     4 * sizeof *v, 1);
+  float *n = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3,
+                                     3 * sizeof *n, 1);
+  bool made = v != NULL && n != NULL && s->normal != NULL;
+  if (made) {
+    abbe_geometry_to_frame(g, light->position, s->centre);
+    s->radius = (float)(light->radius / g->unit);
+    for (int k = 0; k < 3; k++) {
+      v[k] = s->centre[k];
+      n[k] = s->normal[0][k] = (float)light->direction[k];
+    }
+    v[3] = s->radius;
+  }
+  attach(g, geometry, id, s->kind);
+  return made;
+}
+
+/* ---- make and free ---- */
+
+static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe_error *error) {
+  for (size_t i = 0; i < scene->object_count; i++) {
+    if (scene->object[i].material != NULL)
+      g->refractor_count++;
+    else
+      g->receiver_count++;
+  }
+  if (g->refractor_count > ABBE_GEOMETRY_MAX_REFRACTORS)
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "%s has %zu refractors; the tracer follows at most %d: join some into one "
+        "mesh",
+        scene->path ? scene->path : "the scene", g->refractor_count, ABBE_GEOMETRY_MAX_REFRACTORS);
+  g->surface_count = scene->object_count;
+  for (size_t i = 0; i < scene->light_count; i++)
+    g->surface_count += scene->light[i].kind == ABBE_LIGHT_DISK;
+  g->surface = calloc(g->surface_count + 1, sizeof *g->surface);
+  g->refractor_object = calloc(g->refractor_count + 1, sizeof *g->refractor_object);
+  if (g->surface == NULL || g->refractor_object == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu surfaces", g->surface_count);
+  return ABBE_OK;
+}
+
+/* A ray that starts beyond the face behind the one that it leaves is lost: at the rim of a lens of
+ * eight such steps it is half a percent of them. */
+static abbe_result check_thickness(const abbe_geometry *g, abbe_error *error) {
+  static const double least_steps = 8;
+  for (size_t i = 0; i < g->scene->object_count; i++) {
+    const abbe_object *o = &g->scene->object[i];
+    if (o->material == NULL) continue;
+    const double thick = abbe_object_thickness(o);
+    double far = 0;
+    for (int k = 0; k < 3; k++)
+      far = fmax(far, fmax(fabs(o->min[k] - g->origin[k]), fabs(o->max[k] - g->origin[k])));
+    const double least = least_steps * ABBE_GEOMETRY_OFFSET * far;
+    if (thick < least)
+      return abbe_error_set(
+          error, ABBE_UNSUPPORTED,
+          "the refractor '%s' is %.3g m thin and reaches %.3g m from the middle of "
+          "all refractors: the tracer's single precision does not tell its front "
+          "from its back; make it at least %.2g m thick, or leave it out",
+          o->name, thick, far, least);
+  }
+  return ABBE_OK;
+}
+
+static bool add_objects(abbe_geometry *g) {
+  size_t refractors = 0, receivers = 0;
+  bool added = true;
+  for (size_t i = 0; i < g->scene->object_count && added; i++) {
+    const abbe_object *o = &g->scene->object[i];
+    abbe_surface *s = &g->surface[i];
+    s->object = (uint32_t)i;
+    s->kind = o->material != NULL ? ABBE_GEOMETRY_REFRACTORS : ABBE_GEOMETRY_RECEIVERS;
+    s->index = (uint32_t)(o->material != NULL ? refractors : receivers);
+    if (o->material != NULL)
+      g->refractor_object[refractors++] = (uint32_t)i;
+    else
+      receivers++;
+    added = o->exact.kind == ABBE_EXACT_SPHERE ? add_sphere(g, o, s, (unsigned)i)
+                                               : add_triangles(g, o, s, (unsigned)i);
+  }
+  size_t id = g->scene->object_count;
+  for (size_t i = 0; i < g->scene->light_count && added; i++) {
+    if (g->scene->light[i].kind != ABBE_LIGHT_DISK) continue;
+    abbe_surface *s = &g->surface[id];
+    *s = (abbe_surface){.kind = ABBE_GEOMETRY_LAMPS, .index = (uint32_t)i, .object = (uint32_t)i};
+    added = add_lamp(g, &g->scene->light[i], s, (unsigned)id++);
+  }
+  return added;
+}
+
+/* One thread builds the hierarchy: its shape, and so the winner of a tie at an edge, is the same
+ * on every run. */
+abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
+  abbe_geometry g = {.scene = scene};
+  *out = g;
+  abbe_result result = count_objects(scene, &g, error);
+  choose_frame(&g);
+  if (result == ABBE_OK) result = check_thickness(&g, error);
+  if (result == ABBE_OK) {
+    g.device = rtcNewDevice("threads=1,set_affinity=0");
+    if (g.device != NULL) g.embree = rtcNewScene(g.device);
+    bool made = g.embree != NULL;
+    if (made) {
+      rtcSetSceneFlags(g.embree, RTC_SCENE_FLAG_ROBUST);
+      rtcSetSceneBuildQuality(g.embree, RTC_BUILD_QUALITY_HIGH);
+      made = add_objects(&g);
+      rtcCommitScene(g.embree);
+      made = made && rtcGetDeviceError(g.device) == RTC_ERROR_NONE;
+    }
+    if (!made)
+      result = abbe_error_set(error, ABBE_NO_MEMORY,
+                              "Embree could not build its hierarchy over the scene's surfaces");
+  }
+  if (result != ABBE_OK) {
+    abbe_geometry_free(&g);
+    return result;
+  }
+  *out = g;
+  return ABBE_OK;
+}
+
+void abbe_geometry_free(abbe_geometry *g) {
+  if (g == NULL) return;
+  if (g->embree != NULL) rtcReleaseScene(g->embree);
+  if (g->device != NULL) rtcReleaseDevice(g->device);
+  for (size_t i = 0; g->surface != NULL && i < g->surface_count; i++) {
+    free(g->surface[i].position);
+    free(g->surface[i].normal);
+    free(g->surface[i].face);
+  }
+  free(g->surface);
+  free(g->refractor_object);
+  *g = (abbe_geometry){0};
+}
+
+/* ---- single rays ---- */
+
+static struct RTCRay ray_of(unsigned mask, const float o[3], const float d[3], float limit) {
+  return (struct RTCRay){.org_x = o[0],
+                         .org_y = o[1],
+                         .org_z = o[2],
+                         .dir_x = d[0],
+                         .dir_y = d[1],
+                         .dir_z = d[2],
+                         .tnear = 0,
+                         .tfar = limit,
+                         .mask = mask};
+}
+
+bool abbe_geometry_hit(const abbe_geometry *g, unsigned mask, const float o[3], const float d[3],
+                       float limit, abbe_hit *hit) {
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  struct RTCRayHit r = {.ray = ray_of(mask, o, d, limit)};
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(g->embree, &context, &r);
+  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  abbe_geometry_place(&g->surface[r.hit.geomID], r.hit.primID, r.hit.u, r.hit.v, o, d, r.ray.tfar,
+                      hit);
+  return true;
+}
+
+bool abbe_geometry_occluded(const abbe_geometry *g, unsigned mask, const float o[3],
+                            const float d[3], float limit) {
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  struct RTCRay r = ray_of(mask, o, d, limit);
+  rtcOccluded1(g->embree, &context, &r);
+  return r.tfar < 0;
+}

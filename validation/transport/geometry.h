@@ -1,0 +1,149 @@
+/* geometry.h: a scene's surfaces in Embree, for the reference tracer.
+ *
+ * Triangles, spheres as spheres and disk lights as disks, in a frame of their own: the origin lies
+ * in the middle of the refractors and they are about one unit in size, so that single precision
+ * serves a scene of any size and place. Faces and interpolated normals point outwards. It finds
+ * hits; what light does there is the walks' business. A geometry is read-only once made, by any
+ * number of threads; the scene must outlive it.
+ */
+#ifndef ABBE_VALIDATION_TRANSPORT_GEOMETRY_H
+#define ABBE_VALIDATION_TRANSPORT_GEOMETRY_H
+
+#include "base/error.h"
+#include "scenes/scene.h"
+
+#include <embree3/rtcore.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_GEOMETRY_MAX_REFRACTORS 64 /* a bit each in the set of those around a path */
+
+/* Kinds of surfaces, as bits of ray masks. */
+enum { ABBE_GEOMETRY_REFRACTORS = 1, ABBE_GEOMETRY_RECEIVERS = 2, ABBE_GEOMETRY_LAMPS = 4 };
+
+/* The surface behind one of Embree's geometry identifiers; frame units. */
+typedef struct abbe_surface {
+  unsigned kind;   /* one of the bits above */
+  uint32_t index;  /* among its kind: refractor, receiver; of the light for lamps */
+  uint32_t object; /* in the scene; of the light for lamps */
+  bool sphere;     /* centre and radius hold; else triangles */
+  bool flat;       /* every face has one normal: its own */
+  float centre[3], radius;
+  float (*position)[3];  /* [vertices + 1] */
+  float (*normal)[3];    /* flat: [faces]; else [vertices] */
+  const double (*uv)[2]; /* [vertices] of the mesh, or NULL */
+  uint32_t (*face)[3];   /* [faces] */
+} abbe_surface;
+
+typedef struct abbe_geometry {
+  const abbe_scene *scene;
+  double origin[3], unit; /* world = origin + unit * frame, metres */
+  size_t surface_count;
+  abbe_surface *surface; /* [surface_count], by geometry identifier */
+  size_t refractor_count, receiver_count;
+  uint32_t *refractor_object; /* [refractor_count] */
+  RTCDevice device;
+  RTCScene embree;
+} abbe_geometry;
+
+/* ABBE_UNSUPPORTED for more than 64 refractors, or for one thinner than eight times what a ray starts
+ * off the face that it leaves (2^-15 of its largest coordinate); ABBE_NO_MEMORY where Embree has none. */
+abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error);
+void abbe_geometry_free(abbe_geometry *geometry);
+
+void abbe_geometry_to_frame(const abbe_geometry *g, const double world[3], float frame[3]);
+void abbe_geometry_to_world(const abbe_geometry *g, const float frame[3], double world[3]);
+
+/* A place on a surface, frame units. */
+typedef struct abbe_hit {
+  const abbe_surface *surface;
+  uint32_t face;
+  float u, v; /* barycentric, of the second and third corner */
+  float p[3];
+  float n[3];  /* unit, outwards, interpolated */
+  float ng[3]; /* unit, outwards, of the face */
+} abbe_hit;
+
+/* Where a ray that Embree found to hit (geometry, face, u, v) meets the surface. Spheres: the
+ * point nearest to o + t d on the sphere. */
+static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, float u, float v,
+                                       const float o[3], const float d[3], float t, abbe_hit *hit) {
+  hit->surface = s;
+  hit->face = face;
+  hit->u = u;
+  hit->v = v;
+  if (s->sphere) {
+    float r[3], length = 0;
+    for (int k = 0; k < 3; k++) r[k] = (o[k] - s->centre[k]) + t * d[k];
+    length = sqrtf(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+    for (int k = 0; k < 3; k++) {
+      hit->ng[k] = hit->n[k] = r[k] / length;
+      hit->p[k] = s->centre[k] + s->radius * hit->n[k];
+    }
+    return;
+  }
+  if (s->face == NULL) {
+    for (int k = 0; k < 3; k++) {
+      hit->p[k] = o[k] + t * d[k];
+      hit->ng[k] = hit->n[k] = s->normal[0][k];
+    }
+    return;
+  }
+  const uint32_t *f = s->face[face];
+  const float *a = s->position[f[0]], *b = s->position[f[1]], *c = s->position[f[2]];
+  for (int k = 0; k < 3; k++) hit->p[k] = a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]);
+  if (s->flat) {
+    for (int k = 0; k < 3; k++) hit->ng[k] = hit->n[k] = s->normal[face][k];
+    return;
+  }
+  float e[3], h[3], n[3], w = 1 - u - v;
+  for (int k = 0; k < 3; k++) {
+    e[k] = b[k] - a[k];
+    h[k] = c[k] - a[k];
+    n[k] = w * s->normal[f[0]][k] + u * s->normal[f[1]][k] + v * s->normal[f[2]][k];
+  }
+  hit->ng[0] = e[1] * h[2] - e[2] * h[1];
+  hit->ng[1] = e[2] * h[0] - e[0] * h[2];
+  hit->ng[2] = e[0] * h[1] - e[1] * h[0];
+  float g = hit->ng[0] * hit->ng[0] + hit->ng[1] * hit->ng[1] + hit->ng[2] * hit->ng[2];
+  float l = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+  g = 1 / sqrtf(g);
+  l = l > 0 ? 1 / sqrtf(l) : 0;
+  for (int k = 0; k < 3; k++) {
+    hit->ng[k] *= g;
+    hit->n[k] = l > 0 ? n[k] * l : hit->ng[k];
+  }
+}
+
+/* How far a ray starts off the face that it leaves, as a share of its coordinates. */
+#define ABBE_GEOMETRY_OFFSET 0x1p-18f
+
+/* p moved off the face to the side that d points to, by more than the rounding of p, so that a ray
+ * from there does not meet the face that it leaves. */
+static inline void abbe_geometry_leave(const abbe_hit *hit, const float d[3], float out[3]) {
+  const float share = ABBE_GEOMETRY_OFFSET;
+  float side = d[0] * hit->ng[0] + d[1] * hit->ng[1] + d[2] * hit->ng[2];
+  float size = fmaxf(fmaxf(fabsf(hit->p[0]), fabsf(hit->p[1])), fabsf(hit->p[2]));
+  if (hit->surface->sphere) size = fmaxf(size, hit->surface->radius);
+  float offset = side < 0 ? -share * size : share * size;
+  for (int k = 0; k < 3; k++) out[k] = hit->p[k] + offset * hit->ng[k];
+}
+
+/* First hit of the ray from o along unit d among the kinds of the mask; false where there is none.
+ * o and d in the frame, limit its length there. */
+bool abbe_geometry_hit(const abbe_geometry *g, unsigned mask, const float o[3], const float d[3],
+                       float limit, abbe_hit *hit);
+
+/* Whether anything of the mask's kinds stands on the ray within its length limit. */
+bool abbe_geometry_occluded(const abbe_geometry *g, unsigned mask, const float o[3],
+                            const float d[3], float limit);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

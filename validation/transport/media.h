@@ -1,0 +1,74 @@
+/* media.h: what a path is in, and what its wavelength sees of it.
+ *
+ * Refractors may overlap: where they do, the one listed last in the scene file is there. So the
+ * set of refractors around a point is enough to know its medium, and a surface that another,
+ * later refractor covers is no interface, nor is one between two of the same material. The tables
+ * hold index and attenuation of every refractor at the sampler's wavelengths. Air (n = 1) is where
+ * no refractor is.
+ */
+#ifndef ABBE_VALIDATION_TRANSPORT_MEDIA_H
+#define ABBE_VALIDATION_TRANSPORT_MEDIA_H
+
+#include "base/error.h"
+#include "validation/transport/geometry.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef uint64_t abbe_media_set; /* bit i: inside refractor i */
+
+/* The refractor that the point is in, or -1: air. */
+static inline int abbe_media_of(abbe_media_set set) {
+  return set != 0 ? 63 - __builtin_clzll(set) : -1;
+}
+
+/* Sets on both sides of refractor i's surface for a ray that comes from set; entering: it runs
+ * against the outward normal. */
+static inline void abbe_media_cross(abbe_media_set set, uint32_t i, bool entering,
+                                    abbe_media_set *before, abbe_media_set *after) {
+  abbe_media_set bit = (abbe_media_set)1 << i;
+  *before = entering ? set & ~bit : set | bit;
+  *after = entering ? set | bit : set & ~bit;
+}
+
+typedef struct abbe_media {
+  size_t refractors, steps;
+  float *n;           /* [refractors][steps + 1] at the steps' edges */
+  float *attenuation; /* the same, a frame unit; NULL where all are clear */
+  bool *dispersive;   /* [refractors] the index varies over the steps */
+  uint32_t *stuff;    /* [refractors] the first refractor of the same material */
+} abbe_media;
+
+/* Tables over the steps + 1 wavelengths lambda_nm, ascending. Errors as abbe_material_n. */
+abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
+                            abbe_media *out, abbe_error *error);
+void abbe_media_free(abbe_media *media);
+
+/* Whether two media (-1: air) are one, so that there is no interface between them. */
+static inline bool abbe_media_same(const abbe_media *m, int a, int b) {
+  return a == b || (a >= 0 && b >= 0 && m->stuff[a] == m->stuff[b]);
+}
+
+/* Index of medium i (-1: air) within step k, at the share f of it. */
+static inline float abbe_media_n(const abbe_media *m, int i, uint32_t k, float f) {
+  if (i < 0) return 1;
+  const float *n = m->n + (size_t)i * (m->steps + 1) + k;
+  return n[0] + f * (n[1] - n[0]);
+}
+
+/* Attenuation, natural, a frame unit. */
+static inline float abbe_media_attenuation(const abbe_media *m, int i, uint32_t k, float f) {
+  if (i < 0 || m->attenuation == NULL) return 0;
+  const float *a = m->attenuation + (size_t)i * (m->steps + 1) + k;
+  return a[0] + f * (a[1] - a[0]);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,127 @@
+#include "validation/transport/spectral_sampling.h"
+
+#include "colorimetry/observer.h"
+#include "colorimetry/weights.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FINE = 8192 }; /* bins of the density that is inverted */
+
+static double fine_nm(double min_nm, double max_nm, size_t i) {
+  return min_nm + (max_nm - min_nm) * (double)i / FINE;
+}
+
+/* What the eye sees of the lights, a share of 1 in all, over the fine bins; beyond them density has
+ * room for one light's. */
+static abbe_result visible_density(const abbe_scene *scene, double min_nm, double max_nm,
+                                   double *density, abbe_error *error) {
+  double *one = density + FINE;
+  for (size_t l = 0; l < scene->light_count; l++) {
+    const abbe_illuminant *illuminant = &scene->light[l].illuminant;
+    double sum = 0;
+    for (size_t i = 0; i < FINE; i++) {
+      double lambda = 0.5 * (fine_nm(min_nm, max_nm, i) + fine_nm(min_nm, max_nm, i + 1)), xyz[3];
+      abbe_observer_xyz(lambda, xyz);
+      one[i] = abbe_illuminant_power(illuminant, lambda) * (xyz[0] + xyz[1] + xyz[2]);
+      sum += one[i];
+    }
+    if (!(sum > 0 && isfinite(sum)))
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "light '%s' sends nothing that the eye sees between %g and %g nm; the "
+                            "eye sees %g to %g nm",
+                            scene->light[l].name, min_nm, max_nm, ABBE_OBSERVER_MIN_NM,
+                            ABBE_OBSERVER_MAX_NM);
+    for (size_t i = 0; i < FINE; i++) density[i] += one[i] / sum / (double)scene->light_count;
+  }
+  return ABBE_OK;
+}
+
+static void invert(const double *density, double min_nm, double max_nm, abbe_spectral_sampling *s) {
+  double below = 0;
+  size_t bin = 0;
+  s->lambda_nm[0] = min_nm;
+  s->lambda_nm[s->steps] = max_nm;
+  for (size_t k = 1; k < s->steps; k++) {
+    double wanted = (double)k / (double)s->steps;
+    while (bin + 1 < FINE && below + density[bin] < wanted) below += density[bin++];
+    double share = fmin(fmax((wanted - below) / density[bin], 0), 1);
+    s->lambda_nm[k] = min_nm + (max_nm - min_nm) * ((double)bin + share) / FINE;
+  }
+}
+
+static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling *s,
+                                abbe_error *error) {
+  abbe_wavelengths bands = {.count = s->steps, .lambda_nm = s->lambda_nm, .edge_nm = s->lambda_nm};
+  for (size_t l = 0; l < s->lights; l++) {
+    const abbe_illuminant *illuminant = &scene->light[l].illuminant;
+    abbe_weights weights;
+    abbe_result result = abbe_weights_make(&bands, illuminant, ABBE_RGB_SPACE_XYZ, &weights, error);
+    if (result != ABBE_OK) return result;
+    double power = 0;
+    memcpy(s->white[l], weights.sum, sizeof s->white[l]);
+    for (size_t k = 0; k < s->steps; k++) {
+      double from = s->lambda_nm[k], to = s->lambda_nm[k + 1];
+      double watts = abbe_illuminant_power(illuminant, 0.5 * (from + to)) * (to - from);
+      power += watts;
+      s->power[l * s->steps + k] = (float)watts;
+      for (int c = 0; c < 3; c++)
+        s->xyz[l * s->steps + k][c] = (float)((double)s->steps * weights.weight[k][c]);
+    }
+    abbe_weights_free(&weights);
+    for (size_t k = 0; k < s->steps; k++)
+      s->power[l * s->steps + k] *= (float)((double)s->steps / power);
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, double max_nm,
+                                        double uniform, abbe_spectral_sampling *out,
+                                        abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
+  *out = (abbe_spectral_sampling){0};
+  if (!(min_nm > 0 && min_nm < max_nm && isfinite(max_nm)) || !(uniform >= 0.01 && uniform <= 1))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a range of wavelengths rises from above 0, as 380:780 does: not %g:%g",
+                          min_nm, max_nm);
+  abbe_spectral_sampling s = {.steps = ABBE_SPECTRAL_SAMPLING_STEPS, .lights = scene->light_count};
+  double *density = calloc(2 * FINE, sizeof *density);
+  s.lambda_nm = calloc(s.steps + 1, sizeof *s.lambda_nm);
+  s.white = calloc(s.lights + 1, sizeof *s.white);
+  s.xyz = calloc(s.lights * s.steps + 1, sizeof *s.xyz);
+  s.power = calloc(s.lights * s.steps + 1, sizeof *s.power);
+  abbe_result result = ABBE_OK;
+  if (!density || !s.lambda_nm || !s.white || !s.xyz || !s.power)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tables of the spectrum");
+  if (result == ABBE_OK) result = visible_density(scene, min_nm, max_nm, density, error);
+  if (result == ABBE_OK) {
+    for (size_t i = 0; i < FINE; i++) density[i] = (1 - uniform) * density[i] + uniform / FINE;
+    invert(density, min_nm, max_nm, &s);
+    result = fill_colours(scene, &s, error);
+  }
+  free(density);
+  if (result != ABBE_OK) abbe_spectral_sampling_free(&s);
+  *out = s;
+  return result;
+}
+
+void abbe_spectral_sampling_free(abbe_spectral_sampling *s) {
+  if (s == NULL) return;
+  free(s->lambda_nm);
+  free(s->white);
+  free(s->xyz);
+  free(s->power);
+  *s = (abbe_spectral_sampling){0};
+}
+
+void abbe_spectral_sampling_colours(const abbe_spectral_sampling *s, abbe_rgb_space space,
+                                    float (*rgb)[3]) {
+  double matrix[9];
+  abbe_rgb_space_from_xyz(space, matrix);
+  for (size_t i = 0; i < s->lights * s->steps; i++) {
+    double c[3] = {(double)s->xyz[i][0], (double)s->xyz[i][1], (double)s->xyz[i][2]};
+    abbe_rgb_space_apply(matrix, c, c);
+    for (int k = 0; k < 3; k++) rgb[i][k] = (float)c[k];
+  }
+}

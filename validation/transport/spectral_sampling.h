@@ -1,0 +1,62 @@
+/* spectral_sampling.h: the continuous spectrum of the tracer's paths.
+ *
+ * A path has one wavelength, drawn from a density that follows what the eye sees of the lights,
+ * mixed with a uniform one so that no part of the range starves. The density is constant over each
+ * of `steps` intervals of equal probability; a path carries the mean colour of its interval, so
+ * the mean over all paths is the light's white exactly.
+ */
+#ifndef ABBE_VALIDATION_TRANSPORT_SPECTRAL_SAMPLING_H
+#define ABBE_VALIDATION_TRANSPORT_SPECTRAL_SAMPLING_H
+
+#include "base/error.h"
+#include "colorimetry/rgb_space.h"
+#include "scenes/scene.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_SPECTRAL_SAMPLING_STEPS 4096u
+
+typedef struct abbe_spectral_sampling {
+  size_t steps;      /* ABBE_SPECTRAL_SAMPLING_STEPS */
+  double *lambda_nm; /* [steps + 1], ascending: the ends of the steps; the first and last are the
+                        range */
+  size_t lights;
+  double (*white)[3]; /* [lights] XYZ of a light of power 1: Y = 1 */
+  float (*xyz)[3]; /* [lights][steps] XYZ that a path of power 1 carries; mean over steps: white */
+  float *power;    /* [lights][steps] power that a path carries, per watt of the light; mean 1 */
+} abbe_spectral_sampling;
+
+/* For the scene's lights over [min_nm, max_nm]; uniform is the uniform part of the density, 0.01 to
+ * 1. ABBE_INVALID_ARGUMENT where a light is dark there, or invisible. */
+abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, double max_nm,
+                                        double uniform, abbe_spectral_sampling *out,
+                                        abbe_error *error);
+void abbe_spectral_sampling_free(abbe_spectral_sampling *s);
+
+/* The colours in an RGB space: rgb[lights][steps][3]. */
+void abbe_spectral_sampling_colours(const abbe_spectral_sampling *s, abbe_rgb_space space,
+                                    float (*rgb)[3]);
+
+/* The step of a uniform number x in [0, 1), and the place within it in [0, 1). */
+static inline uint32_t abbe_spectral_sampling_step(float x, float *within) {
+  float at = x * (float)ABBE_SPECTRAL_SAMPLING_STEPS;
+  uint32_t k = (uint32_t)at;
+  *within = at - (float)k;
+  return k;
+}
+
+/* The wavelength at a place within a step, nm. */
+static inline double abbe_spectral_sampling_lambda(const abbe_spectral_sampling *s, uint32_t step,
+                                                   float within) {
+  return s->lambda_nm[step] + (double)within * (s->lambda_nm[step + 1] - s->lambda_nm[step]);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
