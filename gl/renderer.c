@@ -86,7 +86,7 @@ static size_t map_side(const abbe_renderer *r) {
 }
 
 abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const size_t side = map_side(r);
   size_t layers = r->plan.light_count;
   for (size_t i = 0; i < r->plan.light_count; i++)
@@ -100,7 +100,7 @@ abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error) {
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  r->device_bytes += r->map_texels * layers * 16;
+  r->gpu.bytes += r->map_texels * layers * 16;
   if (r->plan.caustics) return abbe_gl_check(gl, "the allocation of the map", error);
   static const float black[4] = {0, 0, 0, 0};
   for (size_t i = 0; i < layers; i++)
@@ -109,8 +109,6 @@ abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error) {
 }
 
 static abbe_result make_passes(abbe_renderer *r, abbe_error *error) {
-  r->gl->GenFramebuffers(1, &r->framebuffer);
-  r->gl->GenVertexArrays(1, &r->empty_array);
   abbe_result result = abbe_renderer_upload_scene(r, error);
   size_map(r, map_side(r));
   /* Photons tell first which layers it has. */
@@ -140,8 +138,8 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
   abbe_renderer *r = calloc(1, sizeof *r);
   if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
   r->context = context;
-  r->gl = abbe_context_gl(context);
-  abbe_result result = abbe_plan_make(scene, desc, &r->plan, error);
+  abbe_result result = abbe_gpu_make(abbe_context_gl(context), &r->gpu, error);
+  if (result == ABBE_OK) result = abbe_plan_make(scene, desc, &r->plan, error);
   if (result == ABBE_OK) result = abbe_local_scene_make(scene, &r->local, error);
   if (result == ABBE_OK && !abbe_profile_is_thesis(r->plan.desc.profile))
     result = abbe_local_scene_scale_light(&r->local, error);
@@ -170,17 +168,16 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
 
 void abbe_renderer_free(abbe_renderer *r) {
   if (r == NULL) return;
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   abbe_renderer_free_thesis(r);
   abbe_renderer_free_scene(r);
   abbe_renderer_free_refinement(r);
   abbe_renderer_free_pages(r);
   abbe_local_scene_free(&r->local);
-  gl->DeleteBuffers(BINDING_COUNT, r->buffer);
+  gl->DeleteBuffers(BINDING_DISPATCH, r->buffer);
   gl->DeleteBuffers(LEVELS, r->list);
   gl->DeleteTextures(3, r->hierarchy_texture);
   gl->DeleteBuffers(3, r->hierarchy);
-  gl->DeleteTextures(sizeof r->texels / sizeof *r->texels, r->texels);
   free(r->refractor_root);
   free(r->shadow_row);
   free(r->lit);
@@ -188,7 +185,8 @@ void abbe_renderer_free(abbe_renderer *r) {
   gl->DeleteBuffers(1, &r->band_attenuation);
   const GLuint lists[] = {r->table_warps, r->table_shadows, r->texel_sizes,
                           r->pixel_list,  r->refine_list,   r->path_marks,
-                          r->path_list,   r->splat_list,    r->map_sums};
+                          r->path_list,   r->splat_list,    r->map_sums,
+                          r->intervals};
   gl->DeleteBuffers(sizeof lists / sizeof *lists, lists);
   const GLuint textures[] = {
       r->texture_surface, r->light_layers,     r->light_owner, r->light_depth, r->map,
@@ -196,13 +194,12 @@ void abbe_renderer_free(abbe_renderer *r) {
       r->eye_layers,      r->eye_layers_depth, r->eye_owner,   r->eye_picture, r->eye_floor};
   gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
   const GLuint programs[] = {r->place,      r->cover,      r->groups,          r->trace,
-                             r->paths,      r->deposit,    r->splat,           r->list_groups,
+                             r->paths,      r->deposit,    r->splat,
                              r->resolve,    r->mip,        r->layer,           r->receivers,
                              r->unlit,      r->refraction, r->refraction_fine, r->refraction_list,
                              r->eye_resolve};
   for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) gl->DeleteProgram(programs[i]);
-  gl->DeleteFramebuffers(1, &r->framebuffer);
-  gl->DeleteVertexArrays(1, &r->empty_array);
+  abbe_gpu_free(&r->gpu);
   abbe_plan_free(&r->plan);
   free(r);
 }
@@ -222,9 +219,9 @@ void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_lay
 }
 
 static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
-  s->frame_ms = abbe_renderer_now_ms() - start_ms - r->untimed_ms;
+  s->frame_ms = abbe_gpu_now_ms() - start_ms - r->untimed_ms;
   s->wavelengths = r->plan.desc.wavelengths;
-  s->device_bytes = r->device_bytes;
+  s->device_bytes = r->gpu.bytes;
   if (!abbe_profile_is_thesis(r->plan.desc.profile)) s->layer_faces = abbe_renderer_layer_faces(r);
   for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
   double cells = (double)r->light[0].cells[0] * (double)r->light[0].cells[1];
@@ -237,10 +234,10 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
                                 abbe_statistics *statistics, abbe_error *error) {
   ABBE_REQUIRE(r, error);
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
-  r->statistics = statistics;
+  r->gpu.statistics = statistics;
   r->untimed_ms = 0;
   r->drawn = false;
-  double start_ms = abbe_renderer_now_ms();
+  double start_ms = abbe_gpu_now_ms();
   abbe_renderer_bind_tables(r);
   abbe_result result;
   if (abbe_profile_is_thesis(r->plan.desc.profile)) {
@@ -251,9 +248,9 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
       result = abbe_renderer_photons(r, progress, user, error);
     if (result == ABBE_OK) result = abbe_renderer_eye(r, progress, user, error);
   }
-  r->gl->Finish();
+  r->gpu.gl->Finish();
   if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
-  r->statistics = NULL;
+  r->gpu.statistics = NULL;
   r->drawn = result == ABBE_OK;
   return result;
 }
@@ -346,7 +343,7 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
     abbe_image_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");
   }
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const bool resolved = r->eye_picture != 0;
   const GLenum target = resolved ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
   gl->BindTexture(target, resolved ? r->eye_picture : r->eye_receivers);
@@ -405,8 +402,8 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   }
   GLenum target = flat ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
-  r->gl->BindTexture(target, flat ? abbe_renderer_thesis_map(r, filled) : r->map);
-  r->gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
+  r->gpu.gl->BindTexture(target, flat ? abbe_renderer_thesis_map(r, filled) : r->map);
+  r->gpu.gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
   /* Faces of a cube that share a layout add up. */
   for (size_t i = 0; i < r->plan.light_count; i++) {
     const float *layer = data + i * side * side * 4;
@@ -425,7 +422,7 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
             (float)(height * abbe_renderer_texel_size(r, light, 0, x));
   }
   abbe_rgb_space_chromaticities(thesis ? ABBE_RGB_SPACE_REC709 : ABBE_RGB_SPACE_XYZ, out->xy);
-  result = abbe_gl_check(r->gl, "the reading of the map", error);
+  result = abbe_gl_check(r->gpu.gl, "the reading of the map", error);
   abbe_map_layout layout;
   abbe_renderer_map_layout(r, light, &layout);
   if (result == ABBE_OK)

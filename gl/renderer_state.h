@@ -2,7 +2,8 @@
 #ifndef ABBE_GL_RENDERER_STATE_H
 #define ABBE_GL_RENDERER_STATE_H
 
-#include "gl/device/api.h"
+#include "gl/device/bindings.h"
+#include "gl/device/gpu.h"
 #include "gl/plan/plan.h"
 #include "gl/renderer.h"
 #include "gl/scene/local_scene.h"
@@ -10,37 +11,11 @@
 #include "gl/scene/receiver_pages.h"
 #include "spectral/wavelengths.h"
 
-/* Shader storage bindings, as the shaders name them. */
-enum {
-  BINDING_LIGHTS,
-  BINDING_REFRACTORS,
-  BINDING_PLANES,
-  BINDING_RECEIVERS,
-  BINDING_SURFACES,
-  BINDING_SPECTRA,
-  BINDING_PHOTONS,
-  BINDING_PHOTONS_IN,
-  BINDING_SLOTS,
-  BINDING_LANDINGS,
-  BINDING_SIGNATURES,
-  BINDING_SAMPLE_WEIGHTS,
-  BINDING_LEDGER,
-  BINDING_SHARED, /* paths, then map sums */
-  BINDING_INTERVALS,
-  BINDING_COUNT,
-  BINDING_LIST = BINDING_COUNT /* pieces of light, pixels */
-};
-
-/* Texture units of the hierarchy's buffers and the pages', from the first; passes bind theirs
- * below. */
-enum { HIERARCHY_UNIT = 7, PAGE_UNIT = 10 };
-
 /* What the shaders know of pages: rows of each, where they are found, and of charts: to their
  * coordinates, and which side of one each face is. */
 enum { PAGE_ROWS, PAGE_INDEX, CHART_ROWS, SIDE_OF_FACE, PAGE_TABLES };
 
 enum {
-  PHOTON_GROUP = 256,
   PHOTON_HEADER = 8 * 4,
   PHOTON_BYTES = 16,
   LANDING_BYTES = 32, /* place and flux, the wall that the light left, as exit_wall.glsl packs it */
@@ -84,7 +59,7 @@ typedef struct thesis_state thesis_state;
 
 struct abbe_renderer {
   abbe_context *context;
-  const abbe_gl *gl;
+  abbe_gpu gpu;
   abbe_local_scene local;
   const abbe_scene *scene; /* the local one: every place below is in its coordinates */
   abbe_map_layout given;   /* the request's layout there, where the scene is moved */
@@ -99,7 +74,8 @@ struct abbe_renderer {
   light_state light[ABBE_SCENE_MAX_LIGHTS];
   abbe_view eye;
 
-  GLuint buffer[BINDING_COUNT];
+  GLuint buffer[BINDING_DISPATCH]; /* by binding */
+  GLuint intervals;
   GLuint hierarchy[3];    /* nodes, triangles, normals; 0: no model needs them */
   GLuint hierarchy_texture[3];
   size_t *refractor_root; /* [refractor_count] of its tree */
@@ -122,7 +98,6 @@ struct abbe_renderer {
   size_t splat_room, chunks; /* pieces of light that are listed at a time */
   GLuint list[LEVELS];       /* cells that may show a refractor, last level last */
   GLuint texture_surface;
-  GLuint texels[6]; /* of buffers that are read as texels, one a unit */
   GLuint light_layers, light_owner, light_depth;
   GLuint map; /* XYZ flux over window area, one layer a light, in levels; then those of pages */
   size_t map_levels, map_texels, map_layers;
@@ -135,17 +110,15 @@ struct abbe_renderer {
   GLuint eye_owner, pixel_list, refine_list;
   lit_part *lit; /* where light may fall; all else is drawn unlit, where that is most */
   size_t lit_count;
-  GLuint framebuffer, empty_array;
   size_t layer_side;          /* of the light's layers */
   size_t lanes;               /* wavelengths traced in one batch */
   size_t steps;               /* of an interval */
   size_t map_bands, map_band; /* bands of the range whose light the map sums, and the first of the
                                  three; 0: X, Y, Z */
-  size_t device_bytes;
   char defines[2048];
   size_t page_defines; /* where in them those of pages start */
 
-  GLuint place, cover, groups, list_groups, trace, paths, deposit, select, deposit_fine, splat,
+  GLuint place, cover, groups, trace, paths, deposit, select, deposit_fine, splat,
       resolve, mip, layer, receivers, unlit, refraction, refraction_fine, refraction_list,
       eye_resolve;
   thesis_state *thesis;
@@ -153,11 +126,8 @@ struct abbe_renderer {
   bool wide;                   /* the map's sums have 64 bits, else 32 */
   bool drawn;                  /* the last frame was, to its end */
   double untimed_ms;           /* of this frame, spent on its ledger */
-  abbe_statistics *statistics; /* of the frame that runs, or NULL */
-  double pass_start_ms;
 };
 
-double abbe_renderer_now_ms(void);
 /* Flux of one unit of a light's map sums, W. */
 double abbe_renderer_map_unit(const abbe_renderer *r, size_t light);
 /* Window width (axis 0) or height (1) of the map's column or row `texel`. */
@@ -202,33 +172,9 @@ abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error);
 abbe_result abbe_renderer_make_shadows(abbe_renderer *r, abbe_error *error);
 abbe_result abbe_renderer_upload_shadows(abbe_renderer *r, abbe_error *error);
 
-/* resources.c: buffers and textures, counted. */
-abbe_result abbe_renderer_make_buffer(abbe_renderer *r, size_t size, const void *data, GLuint *out,
-                                      abbe_error *error);
-abbe_result abbe_renderer_make_texture(abbe_renderer *r, GLenum format, size_t width, size_t height,
-                                       size_t layers, bool linear, GLuint *out, abbe_error *error);
-abbe_result abbe_renderer_set_target(abbe_renderer *r, const GLuint *colour, const int *layer,
-                                     size_t count, GLuint depth, size_t width, size_t height,
-                                     abbe_error *error);
-void abbe_renderer_bind_texture(abbe_renderer *r, GLuint program, const char *name, int unit,
-                                GLuint texture);
-void abbe_renderer_bind_texture_2d(abbe_renderer *r, GLuint program, const char *name, int unit,
-                                   GLuint texture);
-/* A buffer of `size` bytes that shaders read as texels of `format`, and its texture, at a unit of its
- * own; what *buffer was is deleted, *texture is made where it is 0. */
-abbe_result abbe_renderer_make_texels(abbe_renderer *r, GLenum format, size_t size,
-                                      const void *data, int unit, GLuint *buffer, GLuint *texture,
-                                      abbe_error *error);
-/* A buffer whose elements a shader reads as texels. */
-void abbe_renderer_bind_texels(abbe_renderer *r, GLuint program, const char *name, int unit,
-                               GLenum format, GLuint buffer);
-void abbe_renderer_set_int(abbe_renderer *r, GLuint program, const char *name, int value);
-void abbe_renderer_set_float(abbe_renderer *r, GLuint program, const char *name, double value);
+/* scene_buffers.c: every table of the scene, where the shaders expect it. */
 void abbe_renderer_bind_tables(abbe_renderer *r);
-void abbe_renderer_dispatch_2d(abbe_renderer *r, size_t width, size_t height);
 void abbe_renderer_draw(abbe_renderer *r, size_t object);
-void abbe_renderer_begin_pass(abbe_renderer *r);
-void abbe_renderer_end_pass(abbe_renderer *r, const char *name);
 
 /* light_pass.c: the light's views, their layers, and the photons. */
 abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error);
@@ -327,9 +273,6 @@ void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, si
 /* Lists the paths of so many photons or refined intervals that the trace between the two has
  * marked. */
 void abbe_renderer_end_trace(abbe_renderer *r, trace_set set, size_t items);
-void abbe_renderer_dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t most,
-                                 size_t threads);
-void abbe_renderer_clear_buffer(abbe_renderer *r, GLuint buffer);
 
 /* cell_fit.c: photon grids no finer than the maps can tell. */
 abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *error);

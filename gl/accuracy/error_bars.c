@@ -325,7 +325,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
   static const abbe_error_bars_desc defaults = {0};
   *out = (abbe_error_bars){0};
   if (desc == NULL) desc = &defaults;
-  double start_ms = abbe_renderer_now_ms();
+  double start_ms = abbe_gpu_now_ms();
   size_t variants = desc->variants > 0 ? desc->variants : ABBE_ERROR_BARS_VARIANTS;
   work w = {.context = context, .scene = scene, .desc = desc};
   abbe_result result =
@@ -343,7 +343,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
     out->frames = w.frames;
     estimate(&w, out);
     result = summarise_all(&w, out, error);
-    out->ms = abbe_renderer_now_ms() - start_ms;
+    out->ms = abbe_gpu_now_ms() - start_ms;
   }
   free(w.difference);
   free(w.squares);

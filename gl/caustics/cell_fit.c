@@ -102,8 +102,8 @@ static void choose_cells(const batch_view *b, size_t out[2]) {
 static GLuint *read_words(abbe_renderer *r, GLuint buffer, size_t offset, size_t words) {
   GLuint *data = malloc(words * 4 + 4);
   if (data == NULL) return NULL;
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)offset, (GLsizeiptr)(words * 4),
+  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)offset, (GLsizeiptr)(words * 4),
                           data);
   return data;
 }
@@ -120,7 +120,7 @@ abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *
   result = abbe_renderer_read_batch(r, light, first, &landing, &path, error);
   GLuint *photon = read_words(r, r->buffer[BINDING_PHOTONS], PHOTON_HEADER,
                               state->photon_count * (PHOTON_BYTES / 4));
-  GLuint *slot = read_words(r, r->buffer[BINDING_SLOTS], 0, state->cells[0] * state->cells[1]);
+  GLuint *slot = read_words(r, r->buffer[BINDING_PHOTON_OF_CELL], 0, state->cells[0] * state->cells[1]);
   if (result == ABBE_OK && (photon == NULL || slot == NULL))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the photons' cells");
   if (result == ABBE_OK) {

@@ -5,7 +5,7 @@
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "common.glsl"
 #include "receiver_pages.glsl"
-layout(std430, binding = 13) readonly buffer MapSums { uint map_sum[]; };
+layout(std430, binding = BINDING_MAP_SUMS) readonly buffer MapSums { uint map_sum[]; };
 uniform sampler2DArray coarser_map;  // the same texture: its next level is done
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 uniform int light;

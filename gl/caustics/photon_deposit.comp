@@ -21,28 +21,28 @@ struct Photon {  // as in photon_start.glsl
   float flux;
   uint offset, extent;
 };
-layout(std430, binding = 6) readonly buffer Photons {
+layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
   uint photon_count, groups_x, groups_y, groups_z;
   uint draw[4];
   Photon photon_at[];
 };
-layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
+layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 // As textures: a software rasteriser fetches a texel in one load, and storage number by number.
 uniform samplerBuffer landings;     // LANDING_TEXELS each
 uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the way inside
-layout(std430, binding = 13) readonly buffer PathList {
+layout(std430, binding = BINDING_PATHS) readonly buffer PathList {
   uint path_count, path_groups[3];
   uint path_list[];
 };
 #ifdef REFINED
-layout(std430, binding = 7) readonly buffer PairList {
+layout(std430, binding = BINDING_PAIRS) readonly buffer PairList {
   uint pair_count, pair_groups[3];
   uint pair_at[];
 };
 uniform samplerBuffer fine_landings;
 uniform usamplerBuffer fine_signatures;
 #else
-layout(std430, binding = 7) readonly buffer Wants { uint want[]; };  // a bit a refined interval
+layout(std430, binding = BINDING_WANTS) readonly buffer Wants { uint want[]; };  // a bit a refined interval
 #endif
 // Interval i lies between nodes i and i - 1. [table_first + (light * REFRACTORS + refractor) *
 // (nodes + 1) + i] * (STEPS + 1) + k, INTERVAL_TEXELS each: XYZ of the interval from node i up to step
@@ -55,7 +55,7 @@ const int INTERVAL_TEXELS = 3;
 const int INTERVAL_TEXELS = 2;
 #endif
 // lo and hi of each, as in photon_path.glsl and behind them what is interpolated.
-layout(std430, binding = 12) buffer Ledger { uint ledger[]; };
+layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 uniform float ledger_unit;  // W
 shared uint more_sum[3], less_sum[3];
 const uint ABSORBED = 2u, MISSED = 4u, INTERPOLATED = 5u;

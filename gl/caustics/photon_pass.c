@@ -22,100 +22,59 @@ static double ledger_unit(const abbe_renderer *r, size_t light) {
   return ldexp(r->light[light].cell_flux, -22);
 }
 
-void abbe_renderer_clear_buffer(abbe_renderer *r, GLuint buffer) {
-  static const GLuint zero = 0;
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  r->gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                         &zero);
-}
-
-static void clear_count(abbe_renderer *r, GLuint list) {
-  static const GLuint zero = 0;
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
-  r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, &zero);
-}
-
-static size_t read_count(abbe_renderer *r, GLuint list) {
-  GLuint count = 0;
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
-  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
-  return count;
-}
-
-/* So many threads an element of the list; `most` is its room. The program is set up by then. */
-void abbe_renderer_dispatch_list(abbe_renderer *r, GLuint program, GLuint list, size_t most,
-                                 size_t threads) {
-  const abbe_gl *gl = r->gl;
-  gl->UseProgram(r->list_groups);
-  gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "group_size"), PHOTON_GROUP);
-  gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "most"), (GLuint)most);
-  gl->Uniform1ui(gl->GetUniformLocation(r->list_groups, "threads"), (GLuint)threads);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, list);
-  gl->DispatchCompute(1, 1, 1);
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-  gl->UseProgram(program);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST,
-                     program == r->trace             ? r->pair_list
-                     : program == r->refraction_fine ? r->refine_list
-                                                     : r->splat_list);
-  gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
-  gl->DispatchComputeIndirect(4);
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
 void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, size_t count) {
   const bool fine = set == TRACE_REFINED;
   abbe_renderer_bind_tables(r);
-  r->gl->UseProgram(r->trace);
+  r->gpu.gl->UseProgram(r->trace);
   abbe_renderer_set_lighting(r, r->trace);
-  abbe_renderer_bind_texture(r, r->trace, "layer_owner", 4, r->light_owner);
-  abbe_renderer_set_int(r, r->trace, "light", (int)light);
+  abbe_gpu_bind_array(&r->gpu, r->trace, "layer_owner", 4, r->light_owner);
+  abbe_gpu_set_int(&r->gpu, r->trace, "light", (int)light);
   abbe_renderer_set_grid(r, r->trace, light);
-  abbe_renderer_set_int(r, r->trace, "set", (int)set);
-  abbe_renderer_set_int(r, r->trace, "lane_first", 0);
-  abbe_renderer_set_int(r, r->trace, "lane_count", (int)count);
-  abbe_renderer_set_int(r, r->trace, "lane_stride", (int)(fine ? r->fine_nodes : r->lanes));
-  abbe_renderer_set_int(r, r->trace, "ledger_first", 0);
-  abbe_renderer_set_float(r, r->trace, "share_limit", r->plan.desc.energy_share);
-  abbe_renderer_set_float(r, r->trace, "ledger_unit", ledger_unit(r, light));
-  abbe_renderer_set_int(r, r->trace, "fits_pages", r->fits_pages ? 1 : 0);
+  abbe_gpu_set_int(&r->gpu, r->trace, "set", (int)set);
+  abbe_gpu_set_int(&r->gpu, r->trace, "lane_first", 0);
+  abbe_gpu_set_int(&r->gpu, r->trace, "lane_count", (int)count);
+  abbe_gpu_set_int(&r->gpu, r->trace, "lane_stride", (int)(fine ? r->fine_nodes : r->lanes));
+  abbe_gpu_set_int(&r->gpu, r->trace, "ledger_first", 0);
+  abbe_gpu_set_float(&r->gpu, r->trace, "share_limit", r->plan.desc.energy_share);
+  abbe_gpu_set_float(&r->gpu, r->trace, "ledger_unit", ledger_unit(r, light));
+  abbe_gpu_set_int(&r->gpu, r->trace, "fits_pages", r->fits_pages ? 1 : 0);
   if (r->plan.lengths)
-    abbe_renderer_bind_texels(r, r->trace, "band_attenuation", 5, GL_RGBA32F, r->band_attenuation);
-  r->gl->Uniform1ui(r->gl->GetUniformLocation(r->trace, "most_pairs"), (GLuint)r->pair_room);
-  const GLuint landings = fine ? r->fine_landings : r->buffer[BINDING_LANDINGS];
+    abbe_gpu_bind_texels(&r->gpu, r->trace, "band_attenuation", 5, GL_RGBA32F, r->band_attenuation);
+  abbe_gpu_set_uint(&r->gpu, r->trace, "most_pairs", r->pair_room);
+  const GLuint landings = fine ? r->fine_landings : r->buffer[BINDING_HITS];
   const GLuint signatures = fine ? r->fine_signatures : r->buffer[BINDING_SIGNATURES];
   const GLuint marks = fine ? r->fine_marks : r->path_marks;
-  abbe_renderer_clear_buffer(r, signatures);
-  abbe_renderer_clear_buffer(r, marks);
-  clear_count(r, fine ? r->fine_paths : r->path_list);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, landings);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SIGNATURES, signatures);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, marks);
+  abbe_gpu_clear_buffer(&r->gpu, signatures);
+  abbe_gpu_clear_buffer(&r->gpu, marks);
+  abbe_gpu_clear_list(&r->gpu, fine ? r->fine_paths : r->path_list);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_HITS, landings);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SIGNATURES, signatures);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PATH_MARKS, marks);
 }
 
 /* Lists the paths of so many photons or refined intervals. */
 void abbe_renderer_end_trace(abbe_renderer *r, trace_set set, size_t items) {
   const bool fine = set == TRACE_REFINED;
-  const size_t groups = (items * r->plan.slots + PHOTON_GROUP - 1) / PHOTON_GROUP;
+  const size_t groups = (items * r->plan.slots + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
   const size_t rows = (groups + 65534) / 65535;
   if (groups == 0) return;
-  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  r->gl->UseProgram(r->paths);
-  r->gl->Uniform1ui(r->gl->GetUniformLocation(r->paths, "items"), (GLuint)items);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED,
+  r->gpu.gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  r->gpu.gl->UseProgram(r->paths);
+  abbe_gpu_set_uint(&r->gpu, r->paths, "items", items);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PATHS,
                         fine ? r->fine_paths : r->path_list);
-  r->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
-  r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  r->gpu.gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
+  r->gpu.gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /* Wavelengths first .. first + count - 1; those below ledger_first are in the ledger already. */
 void abbe_renderer_trace_batch(abbe_renderer *r, size_t light, size_t first, size_t count,
                                size_t ledger_first) {
   abbe_renderer_begin_trace(r, light, TRACE_ALL, count);
-  abbe_renderer_set_int(r, r->trace, "lane_first", (int)first);
-  abbe_renderer_set_int(r, r->trace, "ledger_first", (int)ledger_first);
-  size_t groups = (r->light[light].photon_count + PHOTON_GROUP - 1) / PHOTON_GROUP;
-  if (groups > 0) r->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
+  abbe_gpu_set_int(&r->gpu, r->trace, "lane_first", (int)first);
+  abbe_gpu_set_int(&r->gpu, r->trace, "ledger_first", (int)ledger_first);
+  size_t groups = (r->light[light].photon_count + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
+  if (groups > 0) r->gpu.gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
   abbe_renderer_end_trace(r, TRACE_ALL, r->light[light].photon_count);
 }
 
@@ -129,105 +88,107 @@ typedef struct batch {
 
 /* Lists the batch's pieces of light, those of one chunk of the photons. */
 static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t chunk) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const bool fine = b->set == TRACE_REFINED;
   const GLuint deposit = fine ? r->deposit_fine : r->deposit;
   const size_t coarse_rows = r->plan.light_count * r->plan.refractor_count * (r->nodes + 1);
   const GLuint paths = fine ? r->fine_paths : r->path_list;
   abbe_renderer_bind_tables(r);
   gl->UseProgram(deposit);
-  abbe_renderer_set_int(r, deposit, "light", (int)light);
+  abbe_gpu_set_int(&r->gpu, deposit, "light", (int)light);
   abbe_renderer_set_grid(r, deposit, light);
-  abbe_renderer_set_int(r, deposit, "map_size", (int)r->plan.desc.map_size);
-  abbe_renderer_set_int(r, deposit, "lane_first", (int)b->first);
+  abbe_gpu_set_int(&r->gpu, deposit, "map_size", (int)r->plan.desc.map_size);
+  abbe_gpu_set_int(&r->gpu, deposit, "lane_first", (int)b->first);
   /* of the landings that photons have; a refined interval may have more of its own */
-  abbe_renderer_set_int(r, deposit, "lane_count", (int)(fine ? r->nodes : b->count));
-  abbe_renderer_set_int(r, deposit, "interval_first", (int)b->interval_first);
-  abbe_renderer_set_int(r, deposit, "interval_end", (int)b->interval_end);
-  abbe_renderer_set_int(r, deposit, "nodes", (int)(fine ? r->plan.desc.wavelengths : r->nodes));
-  abbe_renderer_set_int(r, deposit, "table_first", fine ? (int)coarse_rows : 0);
-  abbe_renderer_set_float(r, deposit, "ledger_unit", ledger_unit(r, light));
-  gl->Uniform1ui(gl->GetUniformLocation(deposit, "chunks"), (GLuint)r->chunks);
-  gl->Uniform1ui(gl->GetUniformLocation(deposit, "chunk"), (GLuint)chunk);
-  gl->Uniform1ui(gl->GetUniformLocation(deposit, "most"), (GLuint)r->splat_room);
-  clear_count(r, r->splat_list);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, fine ? r->pair_list : r->wants);
-  abbe_renderer_bind_texels(r, deposit, "landings", 0, GL_RGBA32F, r->buffer[BINDING_LANDINGS]);
+  abbe_gpu_set_int(&r->gpu, deposit, "lane_count", (int)(fine ? r->nodes : b->count));
+  abbe_gpu_set_int(&r->gpu, deposit, "interval_first", (int)b->interval_first);
+  abbe_gpu_set_int(&r->gpu, deposit, "interval_end", (int)b->interval_end);
+  abbe_gpu_set_int(&r->gpu, deposit, "nodes", (int)(fine ? r->plan.desc.wavelengths : r->nodes));
+  abbe_gpu_set_int(&r->gpu, deposit, "table_first", fine ? (int)coarse_rows : 0);
+  abbe_gpu_set_float(&r->gpu, deposit, "ledger_unit", ledger_unit(r, light));
+  abbe_gpu_set_uint(&r->gpu, deposit, "chunks", r->chunks);
+  abbe_gpu_set_uint(&r->gpu, deposit, "chunk", chunk);
+  abbe_gpu_set_uint(&r->gpu, deposit, "most", r->splat_room);
+  abbe_gpu_clear_list(&r->gpu, r->splat_list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, fine ? BINDING_PAIRS : BINDING_WANTS,
+                     fine ? r->pair_list : r->wants);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SPLATS, r->splat_list);
+  abbe_gpu_bind_texels(&r->gpu, deposit, "landings", 0, GL_RGBA32F, r->buffer[BINDING_HITS]);
   const GLenum signature = r->plan.lengths ? GL_RG32UI : GL_R32UI;
-  abbe_renderer_bind_texels(r, deposit, "signatures", 1, signature, r->buffer[BINDING_SIGNATURES]);
-  abbe_renderer_bind_texels(r, deposit, "interval_sums", 2, GL_RGBA32F,
-                            r->buffer[BINDING_INTERVALS]);
+  abbe_gpu_bind_texels(&r->gpu, deposit, "signatures", 1, signature, r->buffer[BINDING_SIGNATURES]);
+  abbe_gpu_bind_texels(&r->gpu, deposit, "interval_sums", 2, GL_RGBA32F,
+                            r->intervals);
   if (fine) {
-    abbe_renderer_bind_texels(r, deposit, "fine_landings", 3, GL_RGBA32F, r->fine_landings);
-    abbe_renderer_bind_texels(r, deposit, "fine_signatures", 4, signature, r->fine_signatures);
+    abbe_gpu_bind_texels(&r->gpu, deposit, "fine_landings", 3, GL_RGBA32F, r->fine_landings);
+    abbe_gpu_bind_texels(&r->gpu, deposit, "fine_signatures", 4, signature, r->fine_signatures);
   }
   if (r->plan.lengths) {
     const size_t rows = r->plan.light_count * r->plan.refractor_count;
-    abbe_renderer_bind_texels(r, deposit, "band_attenuation", 5, GL_RGBA32F, r->band_attenuation);
-    abbe_renderer_set_int(r, deposit, "band_first", (int)(fine ? rows * r->nodes : 0));
+    abbe_gpu_bind_texels(&r->gpu, deposit, "band_attenuation", 5, GL_RGBA32F, r->band_attenuation);
+    abbe_gpu_set_int(&r->gpu, deposit, "band_first", (int)(fine ? rows * r->nodes : 0));
   }
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, paths);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PATHS, paths);
   const size_t items = fine ? r->pair_room : r->light[light].photon_count;
-  abbe_renderer_dispatch_list(r, deposit, paths, items * r->plan.slots, 1);
+  abbe_gpu_dispatch_list(&r->gpu, deposit, paths, items * r->plan.slots, 1);
 }
 
 static abbe_result deposit_batch(abbe_renderer *r, size_t light, const batch *b,
                                  abbe_error *error) {
   for (size_t chunk = 0; chunk < r->chunks; chunk++) {
     list_pieces(r, light, b, chunk);
-    abbe_renderer_end_pass(r, r->plan.fills ? "light: gap fill" : "light: spectral map");
-    bool look = r->chunks > 1 || r->statistics != NULL;
-    if (look && read_count(r, r->splat_list) > r->splat_room)
+    abbe_gpu_end_pass(&r->gpu, r->plan.fills ? "light: gap fill" : "light: spectral map");
+    bool look = r->chunks > 1 || r->gpu.statistics != NULL;
+    if (look && abbe_gpu_read_count(&r->gpu, r->splat_list) > r->splat_room)
       return abbe_error_set(error, ABBE_GL,
                             "the photons' light falls into more than %zu pieces; "
                             "use fewer photons or wavelengths",
                             r->splat_room * r->chunks);
-    r->gl->UseProgram(r->splat);
-    abbe_renderer_set_int(r, r->splat, "map_size", (int)r->plan.desc.map_size);
-    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->splat, "most"), (GLuint)r->splat_room);
-    abbe_renderer_set_int(r, r->splat, "light", (int)light);
-    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->splat, "map_texels"), (GLuint)r->map_texels);
-    r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
-    abbe_renderer_dispatch_list(r, r->splat, r->splat_list, r->splat_room, 1);
-    abbe_renderer_end_pass(r, "light: spectral map");
+    r->gpu.gl->UseProgram(r->splat);
+    abbe_gpu_set_int(&r->gpu, r->splat, "map_size", (int)r->plan.desc.map_size);
+    abbe_gpu_set_uint(&r->gpu, r->splat, "most", r->splat_room);
+    abbe_gpu_set_int(&r->gpu, r->splat, "light", (int)light);
+    abbe_gpu_set_uint(&r->gpu, r->splat, "map_texels", r->map_texels);
+    r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_MAP_SUMS, r->map_sums);
+    abbe_gpu_dispatch_list(&r->gpu, r->splat, r->splat_list, r->splat_room, 1);
+    abbe_gpu_end_pass(&r->gpu, "light: spectral map");
   }
   return ABBE_OK;
 }
 
 /* Coarse to fine: each level takes over what the coarser ones hold; so many rows of a layer. */
 static void resolve_layer(abbe_renderer *r, size_t light, size_t layer, size_t rows) {
-  r->gl->UseProgram(r->resolve);
-  abbe_renderer_set_int(r, r->resolve, "light", (int)light);
-  abbe_renderer_set_int(r, r->resolve, "layer", (int)layer);
-  r->gl->Uniform1ui(r->gl->GetUniformLocation(r->resolve, "map_texels"), (GLuint)r->map_texels);
-  abbe_renderer_set_int(r, r->resolve, "map_size", (int)r->plan.desc.map_size);
-  abbe_renderer_set_int(r, r->resolve, "levels", (int)r->map_levels);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, r->texel_sizes);
-  abbe_renderer_bind_texture(r, r->resolve, "coarser_map", 0, r->map);
+  r->gpu.gl->UseProgram(r->resolve);
+  abbe_gpu_set_int(&r->gpu, r->resolve, "light", (int)light);
+  abbe_gpu_set_int(&r->gpu, r->resolve, "layer", (int)layer);
+  abbe_gpu_set_uint(&r->gpu, r->resolve, "map_texels", r->map_texels);
+  abbe_gpu_set_int(&r->gpu, r->resolve, "map_size", (int)r->plan.desc.map_size);
+  abbe_gpu_set_int(&r->gpu, r->resolve, "levels", (int)r->map_levels);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_MAP_SUMS, r->map_sums);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_TEXEL_SIZES, r->texel_sizes);
+  abbe_gpu_bind_array(&r->gpu, r->resolve, "coarser_map", 0, r->map);
   for (int level = (int)r->map_levels - 1; level >= 0; level--) {
     GLuint side = (GLuint)(r->plan.desc.map_size >> level);
-    abbe_renderer_set_int(r, r->resolve, "level", level);
-    r->gl->BindImageTexture(0, r->map, level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    abbe_renderer_dispatch_2d(r, side, rows >> level);
-    r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+    abbe_gpu_set_int(&r->gpu, r->resolve, "level", level);
+    r->gpu.gl->BindImageTexture(0, r->map, level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    abbe_gpu_dispatch_2d(&r->gpu, side, rows >> level);
+    r->gpu.gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   }
 }
 
 /* What the eye sees of the map where its samples are farther apart than texels. */
 static void make_mips(abbe_renderer *r, size_t light, size_t layer, size_t rows) {
-  r->gl->UseProgram(r->mip);
-  abbe_renderer_set_int(r, r->mip, "light", (int)light);
-  abbe_renderer_set_int(r, r->mip, "layer", (int)layer);
-  abbe_renderer_set_int(r, r->mip, "map_size", (int)r->plan.desc.map_size);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LANDINGS, r->texel_sizes);
-  abbe_renderer_bind_texture(r, r->mip, "map_levels", 0, r->map);
+  r->gpu.gl->UseProgram(r->mip);
+  abbe_gpu_set_int(&r->gpu, r->mip, "light", (int)light);
+  abbe_gpu_set_int(&r->gpu, r->mip, "layer", (int)layer);
+  abbe_gpu_set_int(&r->gpu, r->mip, "map_size", (int)r->plan.desc.map_size);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_TEXEL_SIZES, r->texel_sizes);
+  abbe_gpu_bind_array(&r->gpu, r->mip, "map_levels", 0, r->map);
   for (size_t level = 1; level < r->map_levels; level++) {
     size_t side = r->plan.desc.map_size >> level;
-    abbe_renderer_set_int(r, r->mip, "level", (int)level);
-    r->gl->BindImageTexture(0, r->map, (GLint)level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-    abbe_renderer_dispatch_2d(r, side, rows >> level);
-    r->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+    abbe_gpu_set_int(&r->gpu, r->mip, "level", (int)level);
+    r->gpu.gl->BindImageTexture(0, r->map, (GLint)level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+    abbe_gpu_dispatch_2d(&r->gpu, side, rows >> level);
+    r->gpu.gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   }
 }
 
@@ -286,14 +247,14 @@ static abbe_result trace_and_deposit(abbe_renderer *r, size_t light, abbe_render
                                      void *user, abbe_error *error) {
   batch b = {0};
   abbe_result result = ABBE_OK;
-  abbe_renderer_begin_pass(r);
+  abbe_gpu_begin_pass(&r->gpu);
   while (result == ABBE_OK && trace_next(r, light, &b)) {
-    abbe_renderer_end_pass(r, "light: photons");
+    abbe_gpu_end_pass(&r->gpu, "light: photons");
     result = deposit_batch(r, light, &b, error);
     double share = ((double)light + share_done(r, &b)) / (double)r->plan.light_count;
     if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
       result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-    abbe_renderer_begin_pass(r);
+    abbe_gpu_begin_pass(&r->gpu);
   }
   return result;
 }
@@ -334,31 +295,31 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
   size_t most = 1;
   r->chunks = 1;
   abbe_result result =
-      abbe_renderer_make_buffer(r, LIST_HEADER + SPLAT_BYTES, NULL, &r->splat_list, error);
+      abbe_gpu_make_buffer(&r->gpu, LIST_HEADER + SPLAT_BYTES, NULL, &r->splat_list, error);
   if (result == ABBE_OK) result = count_pairs(r, error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     batch b = {0};
     if (!r->plan.reaches[light]) continue;
     result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_bind_tables(r);
-    abbe_renderer_clear_buffer(r, r->buffer[BINDING_LEDGER]);
+    abbe_gpu_clear_buffer(&r->gpu, r->buffer[BINDING_LEDGER]);
     while (result == ABBE_OK && trace_next(r, light, &b)) {
       list_pieces(r, light, &b, 0);
-      size_t count = read_count(r, r->splat_list);
+      size_t count = abbe_gpu_read_count(&r->gpu, r->splat_list);
       if (count > most) most = count;
       result = show_making(r, 1, light, &b, error);
     }
     GLuint reached[2] = {0, 0};
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LEDGER]);
-    r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof reached, reached);
+    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LEDGER]);
+    r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof reached, reached);
     r->light[light].reached_flux = wide(reached) * ledger_unit(r, light);
   }
   abbe_renderer_upload_lights(r);
   if (result != ABBE_OK) return result;
   r->chunks = chunks_for(most, MAX_SPLATS);
   r->splat_room = most > MAX_SPLATS ? MAX_SPLATS : most;
-  r->gl->DeleteBuffers(1, &r->splat_list);
-  return abbe_renderer_make_buffer(r, LIST_HEADER + (r->splat_room + 1) * SPLAT_BYTES, NULL,
+  r->gpu.gl->DeleteBuffers(1, &r->splat_list);
+  return abbe_gpu_make_buffer(&r->gpu, LIST_HEADER + (r->splat_room + 1) * SPLAT_BYTES, NULL,
                                    &r->splat_list, error);
 }
 
@@ -367,32 +328,32 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
   abbe_result result = ABBE_OK;
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
     if (!r->plan.reaches[light]) continue;
-    abbe_renderer_begin_pass(r);
+    abbe_gpu_begin_pass(&r->gpu);
     result = abbe_renderer_start_photons(r, light, error);
-    abbe_renderer_end_pass(r, "light: photon placement");
+    abbe_gpu_end_pass(&r->gpu, "light: photon placement");
     abbe_renderer_bind_tables(r);
-    abbe_renderer_clear_buffer(r, r->map_sums);
-    abbe_renderer_clear_buffer(r, r->buffer[BINDING_LEDGER]);
-    abbe_renderer_end_pass(r, "light: spectral map");
+    abbe_gpu_clear_buffer(&r->gpu, r->map_sums);
+    abbe_gpu_clear_buffer(&r->gpu, r->buffer[BINDING_LEDGER]);
+    abbe_gpu_end_pass(&r->gpu, "light: spectral map");
     if (result == ABBE_OK) result = trace_and_deposit(r, light, progress, user, error);
     if (result != ABBE_OK) return result;
-    abbe_renderer_begin_pass(r);
+    abbe_gpu_begin_pass(&r->gpu);
     finish_map(r, light);
-    abbe_renderer_end_pass(r, "light: spectral map");
-    if (r->statistics == NULL) continue;
-    double start_ms = abbe_renderer_now_ms();
-    result = abbe_renderer_read_ledger(r, light, &r->statistics->energy, error);
-    r->untimed_ms += abbe_renderer_now_ms() - start_ms;
+    abbe_gpu_end_pass(&r->gpu, "light: spectral map");
+    if (r->gpu.statistics == NULL) continue;
+    double start_ms = abbe_gpu_now_ms();
+    result = abbe_renderer_read_ledger(r, light, &r->gpu.statistics->energy, error);
+    r->untimed_ms += abbe_gpu_now_ms() - start_ms;
   }
-  return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the photon passes", error);
+  return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the photon passes", error);
 }
 
 /* Adds the light's entries; what was deposited is summed from the map's and the pages' own Y. */
 abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledger *ledger,
                                       abbe_error *error) {
   GLuint word[LEDGER_WORDS];
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LEDGER]);
-  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
+  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LEDGER]);
+  r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
   double unit = ledger_unit(r, light);
   ledger->reached += wide(word) * unit;
   ledger->reflected += wide(word + 2) * unit;
@@ -404,8 +365,8 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
   size_t words = abbe_renderer_map_words(r), size = texels * words * sizeof(GLuint);
   GLuint *sum = malloc(size);
   if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->map_sums);
-  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, sum);
+  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->map_sums);
+  r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, sum);
   double deposited[2] = {0, 0};
   for (size_t i = 0; i < texels; i++)
     deposited[i / r->map_texels] += r->wide ? wide(sum + 6 * i + 2) : sum[3 * i + 1];
@@ -413,7 +374,7 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
   const double map_unit = abbe_renderer_map_unit(r, light);
   ledger->deposited += (deposited[0] + deposited[1]) * map_unit;
   ledger->on_pages += deposited[1] * map_unit;
-  return abbe_gl_check(r->gl, "the reading of the ledger", error);
+  return abbe_gl_check(r->gpu.gl, "the reading of the ledger", error);
 }
 
 static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
@@ -422,8 +383,8 @@ static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
     GLuint count = 0;
     if (!r->plan.reaches[light]) continue;
     result = abbe_renderer_start_photons(r, light, error);
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
-    r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
+    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
+    r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
     r->light[light].photon_count = count;
   }
   return result;
@@ -432,7 +393,7 @@ static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
 /* That a buffer can hold and a shader can read as texels. */
 static size_t most_landings(const abbe_renderer *r) {
   GLint texels = 0;
-  r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  r->gpu.gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   const size_t most = MOST_LANDING_BYTES / (LANDING_BYTES + abbe_renderer_signature_bytes(r));
   const size_t held = (size_t)texels * 16 / LANDING_BYTES; /* of four floats a texel */
   return most < held ? most : held;
@@ -468,15 +429,15 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   if (r->lanes > enough) r->lanes = enough < n ? enough : n;
   if (r->lanes < r->nodes && abbe_renderer_refines(r)) r->lanes = r->nodes;
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * LANDING_BYTES, NULL,
-                                       &r->buffer[BINDING_LANDINGS], error);
+    result = abbe_gpu_make_buffer(&r->gpu, a_lane * r->lanes * LANDING_BYTES, NULL,
+                                       &r->buffer[BINDING_HITS], error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, a_lane * r->lanes * abbe_renderer_signature_bytes(r),
+    result = abbe_gpu_make_buffer(&r->gpu, a_lane * r->lanes * abbe_renderer_signature_bytes(r),
                                        NULL, &r->buffer[BINDING_SIGNATURES], error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, a_lane * 4, NULL, &r->path_marks, error);
+    result = abbe_gpu_make_buffer(&r->gpu, a_lane * 4, NULL, &r->path_marks, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, LIST_HEADER + a_lane * 4, NULL, &r->path_list, error);
+    result = abbe_gpu_make_buffer(&r->gpu, LIST_HEADER + a_lane * 4, NULL, &r->path_list, error);
   if (result == ABBE_OK) result = abbe_renderer_make_refinement(r, most, error);
   return result;
 }
@@ -494,14 +455,14 @@ static void write_photon_defines(const abbe_renderer *r, char defines[PHOTON_DEF
 static abbe_result make_trace(abbe_renderer *r, abbe_error *error) {
   char defines[PHOTON_DEFINES];
   write_photon_defines(r, defines);
-  r->gl->DeleteProgram(r->trace);
-  r->gl->DeleteProgram(r->paths);
+  r->gpu.gl->DeleteProgram(r->trace);
+  r->gpu.gl->DeleteProgram(r->paths);
   r->paths = 0;
   abbe_result result =
-      abbe_program_make_compute(r->gl, "photon_trace.comp", defines, &r->trace, error);
+      abbe_program_make_compute(r->gpu.gl, "photon_trace.comp", defines, &r->trace, error);
   return result != ABBE_OK
              ? result
-             : abbe_program_make_compute(r->gl, "photon_paths.comp", defines, &r->paths, error);
+             : abbe_program_make_compute(r->gpu.gl, "photon_paths.comp", defines, &r->paths, error);
 }
 
 /* All that follow the trace. */
@@ -509,14 +470,14 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
   char defines[PHOTON_DEFINES];
   write_photon_defines(r, defines);
   abbe_result result =
-      abbe_program_make_compute(r->gl, "photon_deposit.comp", defines, &r->deposit, error);
+      abbe_program_make_compute(r->gpu.gl, "photon_deposit.comp", defines, &r->deposit, error);
   if (result == ABBE_OK) result = abbe_renderer_make_refining_programs(r, defines, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "photon_splat.comp", r->defines, &r->splat, error);
+    result = abbe_program_make_compute(r->gpu.gl, "photon_splat.comp", r->defines, &r->splat, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "map_resolve.comp", r->defines, &r->resolve, error);
+    result = abbe_program_make_compute(r->gpu.gl, "map_resolve.comp", r->defines, &r->resolve, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "map_mip.comp", NULL, &r->mip, error);
+    result = abbe_program_make_compute(r->gpu.gl, "map_mip.comp", NULL, &r->mip, error);
   return result;
 }
 
@@ -532,8 +493,8 @@ abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, size_t firs
     free(path);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings", count);
   }
-  const abbe_gl *gl = r->gl;
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LANDINGS]);
+  const abbe_gl *gl = r->gpu.gl;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_HITS]);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * LANDING_BYTES), landing);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SIGNATURES]);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * signature_bytes), path);
@@ -600,7 +561,7 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = make_trace(r, error);
   if (result == ABBE_OK)
     result =
-        abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
+        abbe_gpu_make_buffer(&r->gpu, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
     if (r->plan.reaches[light] && (r->pages || !abbe_renderer_map_is_given(r, light)))
       result = fit_map(r, light, error);
@@ -611,8 +572,7 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = make_programs(r, error);
   if (result == ABBE_OK) result = abbe_renderer_make_map(r, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(
-        r, (r->pages ? 2 : 1) * r->map_texels * abbe_renderer_map_words(r) * 4, NULL, &r->map_sums,
+    result = abbe_gpu_make_buffer(&r->gpu, (r->pages ? 2 : 1) * r->map_texels * abbe_renderer_map_words(r) * 4, NULL, &r->map_sums,
         error);
   for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
     if (r->plan.reaches[light]) result = abbe_renderer_fit_cells(r, light, error);
@@ -656,9 +616,9 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
     *data = NULL;
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", *count);
   }
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
-  r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER,
+  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
+  r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, PHOTON_HEADER,
                           (GLsizeiptr)(*count * PHOTON_BYTES), *cells);
   for (size_t i = 0; i < *count; i++) (*cells)[i] = (*cells)[i * (PHOTON_BYTES / sizeof **cells)];
-  return abbe_gl_check(r->gl, "the reading of photons", error);
+  return abbe_gl_check(r->gpu.gl, "the reading of photons", error);
 }

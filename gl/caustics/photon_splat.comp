@@ -8,7 +8,7 @@ layout(local_size_x = 256) in;
 #include "receiver_pages.glsl"
 // Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each. PAGES: then the same of their
 // layer.
-layout(std430, binding = 13) buffer MapSums { uint map_sum[]; };
+layout(std430, binding = BINDING_MAP_SUMS) buffer MapSums { uint map_sum[]; };
 uniform int light;
 uniform int map_size;
 uniform uint most;

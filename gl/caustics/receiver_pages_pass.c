@@ -23,13 +23,13 @@ static size_t block_side(const abbe_renderer *r) {
 static abbe_result upload(abbe_renderer *r, int table, GLenum format, size_t size, const void *data,
                           abbe_error *error) {
   GLint most = 0;
-  r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  r->gpu.gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (size / 4 > (size_t)most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the receivers' %zu faces and %zu flat parts are more than this OpenGL "
                           "reads in a buffer; use smaller meshes",
                           r->charts.face_count, r->charts.count);
-  return abbe_renderer_make_texels(r, format, size, data, PAGE_UNIT + table, &r->page_table[table],
+  return abbe_gpu_make_texels(&r->gpu, format, size, data, UNIT_PAGE_ROWS + table, &r->page_table[table],
                                    &r->page_texture[table], error);
 }
 
@@ -208,7 +208,7 @@ void abbe_renderer_page_place(const abbe_renderer *r, size_t light, const float 
 }
 
 void abbe_renderer_free_pages(abbe_renderer *r) {
-  r->gl->DeleteTextures(PAGE_TABLES, r->page_texture);
-  r->gl->DeleteBuffers(PAGE_TABLES, r->page_table);
+  r->gpu.gl->DeleteTextures(PAGE_TABLES, r->page_texture);
+  r->gpu.gl->DeleteBuffers(PAGE_TABLES, r->page_table);
   abbe_receiver_charts_free(&r->charts);
 }

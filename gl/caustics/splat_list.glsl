@@ -5,7 +5,7 @@
 // colour to the next, and by how much more the footprint's second half is than its first; its width
 // beside the way across, and the share of the next coarser level (two halves each, texels).
 const uint SPLAT_WORDS = 12u;
-layout(std430, binding = 15) buffer SplatList {
+layout(std430, binding = BINDING_SPLATS) buffer SplatList {
   uint splat_count, splat_groups_x, splat_groups_y, splat_groups_z;
   uint splat[];
 };

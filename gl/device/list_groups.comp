@@ -1,6 +1,6 @@
 // Turns the count at the head of a list into the dispatch that consumes it.
 layout(local_size_x = 1) in;
-layout(std430, binding = 15) buffer List { uint count, groups_x, groups_y, groups_z; };
+layout(std430, binding = BINDING_DISPATCH) buffer List { uint count, groups_x, groups_y, groups_z; };
 uniform uint group_size;
 uniform uint most;     // elements that the list has room for
 uniform uint threads;  // an element

@@ -83,6 +83,7 @@ static abbe_result compile(const abbe_gl *gl, GLenum type, const char *file, con
   static const char version[] = "#version 450 core\n";
   source s = {0};
   abbe_result result = append(&s, version, sizeof version - 1, error);
+  if (result == ABBE_OK) result = include_file(&s, "bindings.h", error);
   if (result == ABBE_OK && defines != NULL) result = append(&s, defines, strlen(defines), error);
   if (result == ABBE_OK)
     result = text != NULL ? expand(&s, file, text, error) : include_file(&s, file, error);

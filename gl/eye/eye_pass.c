@@ -61,7 +61,7 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   bool layers = r->plan.seen;
   GLint most = 0;
-  r->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+  r->gpu.gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   if (w > (size_t)most || h > (size_t)most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu x %zu pixels with %zu samples a side are %zu x %zu; this OpenGL "
@@ -86,16 +86,16 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof targets / sizeof *targets && result == ABBE_OK; i++)
     if (targets[i].wanted)
-      result = abbe_renderer_make_texture(r, targets[i].format, w, h, targets[i].layers, false,
+      result = abbe_gpu_make_texture(&r->gpu, targets[i].format, w, h, targets[i].layers, false,
                                           targets[i].texture, error);
   if (result == ABBE_OK && layers)
-    result = abbe_renderer_make_buffer(r, LIST_HEADER + 4 * w * h, NULL, &r->pixel_list, error);
+    result = abbe_gpu_make_buffer(&r->gpu, LIST_HEADER + 4 * w * h, NULL, &r->pixel_list, error);
   if (result == ABBE_OK && layers && refines(r)) {
     size_t room = w * h < REFINE_ROOM ? w * h : REFINE_ROOM;
-    result = abbe_renderer_make_buffer(r, LIST_HEADER + 8 * room, NULL, &r->refine_list, error);
+    result = abbe_gpu_make_buffer(&r->gpu, LIST_HEADER + 8 * room, NULL, &r->refine_list, error);
   }
   if (result == ABBE_OK && (resolves(r) || enlarges(r)))
-    result = abbe_renderer_make_texture(r, GL_RGBA32F, r->plan.desc.width, r->plan.desc.height, 0,
+    result = abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, r->plan.desc.width, r->plan.desc.height, 0,
                                         false, &r->eye_picture, error);
   return result;
 }
@@ -137,7 +137,7 @@ static abbe_result make_program(abbe_renderer *r, const char *more, GLuint *prog
                                 abbe_error *error) {
   char *defines = refraction_defines(r, more);
   if (defines == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
-  abbe_result result = abbe_program_make_compute(r->gl, "refraction.comp", defines, program, error);
+  abbe_result result = abbe_program_make_compute(r->gpu.gl, "refraction.comp", defines, program, error);
   free(defines);
   return result;
 }
@@ -213,7 +213,7 @@ static abbe_result make_unlit(abbe_renderer *r, abbe_error *error) {
   }
   if (!pays(r)) return ABBE_OK;
   snprintf(defines, sizeof defines, "%s#define UNLIT\n", r->defines);
-  return abbe_program_make(r->gl, stages, 2, defines, &r->unlit, error);
+  return abbe_program_make(r->gpu.gl, stages, 2, defines, &r->unlit, error);
 }
 
 abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
@@ -222,24 +222,24 @@ abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_renderer_fit_eye(r);
   abbe_result result = make_targets(r, error);
   if (result == ABBE_OK)
-    result = abbe_program_make(r->gl, lit, 2, r->defines, &r->receivers, error);
+    result = abbe_program_make(r->gpu.gl, lit, 2, r->defines, &r->receivers, error);
   if (result == ABBE_OK) result = make_unlit(r, error);
   if (result == ABBE_OK && r->plan.seen) result = make_refraction(r, error);
   if (result == ABBE_OK && r->plan.seen)
     result =
-        abbe_program_make_compute(r->gl, "refraction_list.comp", NULL, &r->refraction_list, error);
+        abbe_program_make_compute(r->gpu.gl, "refraction_list.comp", NULL, &r->refraction_list, error);
   if (result == ABBE_OK && (resolves(r) || enlarges(r)))
-    result = abbe_program_make_compute(r->gl, enlarges(r) ? "eye_enlarge.comp" : "eye_resolve.comp",
+    result = abbe_program_make_compute(r->gpu.gl, enlarges(r) ? "eye_enlarge.comp" : "eye_resolve.comp",
                                        NULL, &r->eye_resolve, error);
   return result;
 }
 
 /* What receiver.glsl wants to know, in whichever program includes it. */
 void abbe_renderer_set_lighting(abbe_renderer *r, GLuint program) {
-  const abbe_gl *gl = r->gl;
-  abbe_renderer_bind_texture(r, program, "spectral_map", 0, r->map);
-  abbe_renderer_bind_texture(r, program, "surface_texture", 1, r->texture_surface);
-  abbe_renderer_bind_texture(r, program, "light_layers", 2, r->light_layers);
+  const abbe_gl *gl = r->gpu.gl;
+  abbe_gpu_bind_array(&r->gpu, program, "spectral_map", 0, r->map);
+  abbe_gpu_bind_array(&r->gpu, program, "surface_texture", 1, r->texture_surface);
+  abbe_gpu_bind_array(&r->gpu, program, "light_layers", 2, r->light_layers);
   GLint matrix = gl->GetUniformLocation(program, "rgb_from_xyz");
   if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, r->rgb_from_xyz);
   matrix = gl->GetUniformLocation(program, "xyz_from_rgb");
@@ -251,7 +251,7 @@ void abbe_renderer_set_lighting(abbe_renderer *r, GLuint program) {
   gl->Uniform4f(gl->GetUniformLocation(program, "refractor_bounds"), (float)r->refractor_centre[0],
                 (float)r->refractor_centre[1], (float)r->refractor_centre[2],
                 (float)r->refractor_radius);
-  abbe_renderer_set_float(r, program, "scene_size", r->scene_size);
+  abbe_gpu_set_float(&r->gpu, program, "scene_size", r->scene_size);
 }
 
 static void set_eye(abbe_renderer *r, GLuint program) {
@@ -260,7 +260,7 @@ static void set_eye(abbe_renderer *r, GLuint program) {
   abbe_view_matrix(&r->eye, matrix);
   for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
   abbe_view_pack(&r->eye, packed);
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   gl->UniformMatrix4fv(gl->GetUniformLocation(program, "view_projection"), 1, GL_FALSE, clip);
   gl->Uniform3f(gl->GetUniformLocation(program, "eye"), packed[0], packed[1], packed[2]);
   GLint view = gl->GetUniformLocation(program, "eye_view");
@@ -270,14 +270,14 @@ static void set_eye(abbe_renderer *r, GLuint program) {
 }
 
 static void draw_receiver(abbe_renderer *r, GLuint program, size_t receiver) {
-  abbe_renderer_set_int(r, program, "surface", (int)receiver);
+  abbe_gpu_set_int(&r->gpu, program, "surface", (int)receiver);
   if (r->pages)
-    abbe_renderer_set_int(r, program, "face_first", (int)r->charts.face_first[receiver]);
+    abbe_gpu_set_int(&r->gpu, program, "face_first", (int)r->charts.face_first[receiver]);
   abbe_renderer_draw(r, r->plan.receiver_object[receiver]);
 }
 
 static void use_for_receivers(abbe_renderer *r, GLuint program) {
-  r->gl->UseProgram(program);
+  r->gpu.gl->UseProgram(program);
   abbe_renderer_set_lighting(r, program);
   set_eye(r, program);
 }
@@ -285,7 +285,7 @@ static void use_for_receivers(abbe_renderer *r, GLuint program) {
 /* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here.
  */
 static void draw_lit_parts(abbe_renderer *r) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   use_for_receivers(r, r->receivers);
   gl->Enable(GL_SCISSOR_TEST);
   gl->DepthFunc(GL_EQUAL);
@@ -299,13 +299,13 @@ static void draw_lit_parts(abbe_renderer *r) {
 }
 
 static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   GLuint target[3] = {r->eye_receivers, r->eye_direct, r->eye_caustic};
   static const int flat[3] = {0, -1, -1};
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  abbe_renderer_begin_pass(r);
-  abbe_result result = abbe_renderer_set_target(r, target, flat, r->plan.desc.layers ? 3 : 1,
+  abbe_gpu_begin_pass(&r->gpu);
+  abbe_result result = abbe_gpu_set_target(&r->gpu, target, flat, r->plan.desc.layers ? 3 : 1,
                                                 r->eye_depth, w, h, error);
   if (result != ABBE_OK) return result;
   GLfloat b = (GLfloat)r->scene->background, background[4] = {b, b, b, 0};
@@ -317,17 +317,17 @@ static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
   use_for_receivers(r, whole);
   for (size_t i = 0; i < r->plan.receiver_count; i++) draw_receiver(r, whole, i);
   if (r->unlit != 0) draw_lit_parts(r);
-  abbe_renderer_end_pass(r, "eye: receivers");
+  abbe_gpu_end_pass(&r->gpu, "eye: receivers");
   return ABBE_OK;
 }
 
 /* Front with its owner, and, where a mesh ends at its back layer, the back. */
 static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
   static const GLuint nobody[4] = {0, 0, 0, 0};
-  abbe_renderer_begin_pass(r);
+  abbe_gpu_begin_pass(&r->gpu);
   gl->UseProgram(r->layer);
   set_eye(r, r->layer);
   gl->Enable(GL_DEPTH_TEST);
@@ -336,17 +336,17 @@ static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
     GLuint target[2] = {r->eye_layers, r->eye_owner};
     int layer[2] = {back, -1};
     abbe_result result =
-        abbe_renderer_set_target(r, target, layer, back ? 1 : 2, r->eye_layers_depth, w, h, error);
+        abbe_gpu_set_target(&r->gpu, target, layer, back ? 1 : 2, r->eye_layers_depth, w, h, error);
     if (result != ABBE_OK) return result;
     gl->ClearBufferfv(GL_COLOR, 0, nothing);
     if (!back) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
     gl->ClearBufferfv(GL_DEPTH, 0, &far);
     gl->CullFace(back ? GL_FRONT : GL_BACK);
     for (size_t i = 0; i < r->plan.refractor_count; i++) {
-      gl->Uniform1ui(gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
+      abbe_gpu_set_uint(&r->gpu, r->layer, "owner", i + 1);
       abbe_renderer_draw_refractor(r, i);
     }
-    abbe_renderer_end_pass(r, back ? "eye: refractor back" : "eye: refractor front");
+    abbe_gpu_end_pass(&r->gpu, back ? "eye: refractor back" : "eye: refractor front");
   }
   gl->Disable(GL_CULL_FACE);
   return ABBE_OK;
@@ -354,48 +354,48 @@ static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
 
 static void list_pixels(abbe_renderer *r, size_t w, size_t h) {
   static const GLuint zero[4] = {0, 0, 0, 0};
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->pixel_list);
   gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, r->pixel_list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PIXELS, r->pixel_list);
   gl->UseProgram(r->refraction_list);
-  abbe_renderer_bind_texture(r, r->refraction_list, "eye_layers", 4, r->eye_layers);
-  abbe_renderer_bind_texture(r, r->refraction_list, "eye_receivers", 5, r->eye_receivers);
-  abbe_renderer_bind_texture_2d(r, r->refraction_list, "eye_owner", 6, r->eye_owner);
-  abbe_renderer_dispatch_2d(r, w, h);
+  abbe_gpu_bind_array(&r->gpu, r->refraction_list, "eye_layers", 4, r->eye_layers);
+  abbe_gpu_bind_array(&r->gpu, r->refraction_list, "eye_receivers", 5, r->eye_receivers);
+  abbe_gpu_bind_texture(&r->gpu, r->refraction_list, "eye_owner", 6, r->eye_owner);
+  abbe_gpu_dispatch_2d(&r->gpu, w, h);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 static void clear_refine_list(abbe_renderer *r) {
   static const GLuint zero[4] = {0, 0, 0, 0};
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->refine_list);
-  r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
-  r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, r->refine_list);
+  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->refine_list);
+  r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+  r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_REFINED_PIXELS, r->refine_list);
 }
 
 /* In strips where somebody watches, so that a long frame shows its progress and can be stopped. */
 static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progress, void *user,
                                   abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   GLuint count = 0;
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->pixel_list);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
   GLuint strips = progress != NULL ? 16 : 1;
-  GLuint step = (count / strips / PHOTON_GROUP + 1) * PHOTON_GROUP;
-  if (step > 65535u * (PHOTON_GROUP / r->ways))
-    step = 65535u * (PHOTON_GROUP / r->ways); /* the most groups of a dispatch */
+  GLuint step = (count / strips / ABBE_GPU_GROUP + 1) * ABBE_GPU_GROUP;
+  if (step > 65535u * (ABBE_GPU_GROUP / r->ways))
+    step = 65535u * (ABBE_GPU_GROUP / r->ways); /* the most groups of a dispatch */
   if (refines(r) && step > REFINE_ROOM) step = REFINE_ROOM;
   for (GLuint first = 0; first < count; first += step) {
     GLuint size = count - first < step ? count - first : step;
     gl->UseProgram(r->refraction);
     gl->Uniform1ui(gl->GetUniformLocation(r->refraction, "pixel_first"), first);
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, r->pixel_list);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PIXELS, r->pixel_list);
     if (refines(r)) clear_refine_list(r);
-    gl->DispatchCompute((size * r->ways + PHOTON_GROUP - 1) / PHOTON_GROUP, 1, 1);
+    gl->DispatchCompute((size * r->ways + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP, 1, 1);
     if (refines(r)) {
       gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-      abbe_renderer_dispatch_list(r, r->refraction_fine, r->refine_list, REFINE_ROOM, r->ways);
+      abbe_gpu_dispatch_list(&r->gpu, r->refraction_fine, r->refine_list, REFINE_ROOM, r->ways);
     }
     if (progress == NULL) continue;
     gl->Finish();
@@ -408,26 +408,26 @@ static abbe_result refract_pixels(abbe_renderer *r, abbe_render_progress progres
 }
 
 static void set_refraction(abbe_renderer *r, GLuint program, size_t rows) {
-  r->gl->UseProgram(program);
+  r->gpu.gl->UseProgram(program);
   abbe_renderer_set_lighting(r, program);
-  abbe_renderer_bind_texture(r, program, "eye_layers", 4, r->eye_layers);
-  abbe_renderer_bind_texture_2d(r, program, "eye_owner", 6, r->eye_owner);
+  abbe_gpu_bind_array(&r->gpu, program, "eye_layers", 4, r->eye_layers);
+  abbe_gpu_bind_texture(&r->gpu, program, "eye_owner", 6, r->eye_owner);
   set_eye(r, program);
-  abbe_renderer_set_float(r, program, "share_limit", r->plan.eye_share);
+  abbe_gpu_set_float(&r->gpu, program, "share_limit", r->plan.eye_share);
   double angle = (r->eye.window[3] - r->eye.window[2]) / (double)rows;
-  abbe_renderer_set_float(r, program, "pixel_angle", angle);
+  abbe_gpu_set_float(&r->gpu, program, "pixel_angle", angle);
 }
 
 static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progress, void *user,
                                    abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
-  abbe_renderer_begin_pass(r);
+  abbe_gpu_begin_pass(&r->gpu);
   abbe_result result = ABBE_OK;
   if (resolves(r)) {
-    result = abbe_renderer_set_target(r, &r->eye_refraction, &flat, 1, 0, w, h, error);
+    result = abbe_gpu_set_target(&r->gpu, &r->eye_refraction, &flat, 1, 0, w, h, error);
     if (result != ABBE_OK) return result;
     gl->ClearBufferfv(GL_COLOR, 0, nothing);
   }
@@ -435,31 +435,31 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progre
   list_pixels(r, w, h);
   if (refines(r)) set_refraction(r, r->refraction_fine, h);
   set_refraction(r, r->refraction, h);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_INTERVALS, r->table_bands);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_BANDS, r->table_bands);
   gl->BindImageTexture(0, resolves(r) ? r->eye_refraction : r->eye_receivers, 0, GL_FALSE, 0,
                        GL_READ_WRITE, GL_RGBA32F);
   result = refract_pixels(r, progress, user, error);
-  abbe_renderer_end_pass(r, "eye: refraction");
+  abbe_gpu_end_pass(&r->gpu, "eye: refraction");
   return result;
 }
 
 static void resolve_picture(abbe_renderer *r) {
-  const abbe_gl *gl = r->gl;
-  abbe_renderer_begin_pass(r);
+  const abbe_gl *gl = r->gpu.gl;
+  abbe_gpu_begin_pass(&r->gpu);
   gl->UseProgram(r->eye_resolve);
-  abbe_renderer_bind_texture(r, r->eye_resolve, "receivers", 0, r->eye_receivers);
+  abbe_gpu_bind_array(&r->gpu, r->eye_resolve, "receivers", 0, r->eye_receivers);
   if (resolves(r)) {
-    abbe_renderer_bind_texture_2d(r, r->eye_resolve, "refraction", 1, r->eye_refraction);
-    abbe_renderer_set_int(r, r->eye_resolve, "samples", (int)r->plan.desc.supersample);
+    abbe_gpu_bind_texture(&r->gpu, r->eye_resolve, "refraction", 1, r->eye_refraction);
+    abbe_gpu_set_int(&r->gpu, r->eye_resolve, "samples", (int)r->plan.desc.supersample);
   } else {
-    abbe_renderer_set_int(r, r->eye_resolve, "pixels", (int)r->plan.desc.upsample);
+    abbe_gpu_set_int(&r->gpu, r->eye_resolve, "pixels", (int)r->plan.desc.upsample);
   }
   gl->BindImageTexture(0, r->eye_picture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   gl->Uniform2i(gl->GetUniformLocation(r->eye_resolve, "size"), (GLint)r->plan.desc.width,
                 (GLint)r->plan.desc.height);
-  abbe_renderer_dispatch_2d(r, r->plan.desc.width, r->plan.desc.height);
+  abbe_gpu_dispatch_2d(&r->gpu, r->plan.desc.width, r->plan.desc.height);
   gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  abbe_renderer_end_pass(r, "eye: picture");
+  abbe_gpu_end_pass(&r->gpu, "eye: picture");
 }
 
 abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, void *user,
@@ -468,12 +468,12 @@ abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, v
   if (result == ABBE_OK && r->eye_layers != 0) result = draw_layers(r, error);
   if (result == ABBE_OK) result = draw_refraction(r, progress, user, error);
   if (result == ABBE_OK && r->eye_picture != 0) resolve_picture(r);
-  return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the eye's passes", error);
+  return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the eye's passes", error);
 }
 
 abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error) {
   ABBE_REQUIRE(r && ms, error);
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   static const int first = 0;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
   const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
@@ -481,19 +481,19 @@ abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error)
     return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no floor of its own");
   abbe_result result = ABBE_OK;
   if (r->eye_floor == 0) /* the picture may be what lies in eye_receivers, and stays */
-    result = abbe_renderer_make_texture(r, GL_RGBA32F, w, h, 1, false, &r->eye_floor, error);
+    result = abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, w, h, 1, false, &r->eye_floor, error);
   if (result != ABBE_OK) return result;
   gl->Finish();
-  double start_ms = abbe_renderer_now_ms();
+  double start_ms = abbe_gpu_now_ms();
   gl->UseProgram(r->layer);
   set_eye(r, r->layer);
   gl->Enable(GL_DEPTH_TEST);
-  result = abbe_renderer_set_target(r, &r->eye_floor, &first, 1, r->eye_depth, w, h, error);
+  result = abbe_gpu_set_target(&r->gpu, &r->eye_floor, &first, 1, r->eye_depth, w, h, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   for (size_t i = 0; i < r->scene->object_count; i++) abbe_renderer_draw(r, i);
   gl->Finish();
-  *ms = abbe_renderer_now_ms() - start_ms;
+  *ms = abbe_gpu_now_ms() - start_ms;
   return abbe_gl_check(gl, "the drawing of surfaces", error);
 }

@@ -9,7 +9,7 @@ in vec2 surface_uv;
 uniform vec3 eye;
 uniform int surface;
 #ifdef PAGES
-layout(binding = 13) uniform isamplerBuffer side_of_face;  // chart's side that a face's normal points to
+layout(binding = UNIT_SIDE_OF_FACE) uniform isamplerBuffer side_of_face;  // chart's side that a face's normal points to
 uniform int face_first;                                    // of the object that is drawn
 #endif
 layout(location = 0) out vec4 radiance;  // w: distance from the eye

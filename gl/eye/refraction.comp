@@ -10,18 +10,18 @@ layout(local_size_x = 256) in;
 // Pixel as below; joined bands (a bit each), level (four bits) whose bands are wanted, and how many
 // levels above it they were joined.
 #ifdef REFINED
-layout(std430, binding = 15) readonly buffer RefineList {
+layout(std430, binding = BINDING_REFINED_PIXELS) readonly buffer RefineList {
   uint refine_count, refine_groups[3];
   uvec2 refine[];
 };
 layout(rgba32f, binding = 0) uniform image2D picture;
 #else
-layout(std430, binding = 15) readonly buffer PixelList {
+layout(std430, binding = BINDING_PIXELS) readonly buffer PixelList {
   uint pixel_count, pixel_groups[3];
   uint pixel[];  // x | y << 16
 };
 #ifdef REFINES
-layout(std430, binding = 7) buffer RefineList {
+layout(std430, binding = BINDING_REFINED_PIXELS) buffer RefineList {
   uint refine_count, refine_groups[3];
   uvec2 refine[];
 };
@@ -41,9 +41,9 @@ struct Band {
   vec4 attenuation;  // 1/m in x
 };
 #ifdef BANDS_IN_STORAGE
-layout(std430, binding = 14) readonly buffer Bands { Band bands[]; };
+layout(std430, binding = BINDING_BANDS) readonly buffer Bands { Band bands[]; };
 #else
-layout(std140, binding = 6) uniform Bands { Band bands[BAND_ROOM]; };
+layout(std140, binding = BINDING_BANDS) uniform Bands { Band bands[BAND_ROOM]; };
 #endif
 uniform vec3 eye;
 uniform float share_limit;

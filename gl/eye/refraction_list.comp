@@ -1,6 +1,6 @@
 // Lists the pixels in which a refractor is seen before anything opaque.
 layout(local_size_x = 32, local_size_y = 16) in;
-layout(std430, binding = 15) buffer PixelList {
+layout(std430, binding = BINDING_PIXELS) buffer PixelList {
   uint pixel_count, pixel_groups[3];
   uint pixel[];  // x | y << 16
 };

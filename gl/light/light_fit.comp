@@ -8,7 +8,7 @@ uniform int light;
 #include "photon_start.glsl"
 
 uniform int side;  // rays
-layout(std430, binding = 15) buffer Box { uint box[4]; };  // left, right, bottom, top
+layout(std430, binding = BINDING_FOUND_BOX) buffer Box { uint box[4]; };  // left, right, bottom, top
 
 void main() {
   uvec2 at = gl_GlobalInvocationID.xy;

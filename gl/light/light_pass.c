@@ -163,13 +163,13 @@ static abbe_result make_layers(abbe_renderer *r, abbe_error *error) {
                                                : photons;
   side = side < MIN_LAYER_SIDE ? MIN_LAYER_SIDE : side > MAX_LAYER_SIDE ? MAX_LAYER_SIDE : side;
   r->layer_side = side;
-  abbe_result result = abbe_renderer_make_texture(r, GL_RGBA32F, side, side, 2 * lights, false,
+  abbe_result result = abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, side, side, 2 * lights, false,
                                                   &r->light_layers, error);
   if (result == ABBE_OK)
     result =
-        abbe_renderer_make_texture(r, GL_R16UI, side, side, lights, false, &r->light_owner, error);
+        abbe_gpu_make_texture(&r->gpu, GL_R16UI, side, side, lights, false, &r->light_owner, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_texture(r, GL_DEPTH_COMPONENT32F, side, side, 0, false,
+    result = abbe_gpu_make_texture(&r->gpu, GL_DEPTH_COMPONENT32F, side, side, 0, false,
                                         &r->light_depth, error);
   return result;
 }
@@ -181,12 +181,12 @@ static abbe_result make_lists(abbe_renderer *r, abbe_error *error) {
     /* The finer level's cells: four for each of this one's, rounded up at the rim. */
     size_t side = (r->plan.desc.photons >> (LEVELS - 1 - level)) + 2;
     size_t room = level == LEVELS - 1 ? cells : 4 * side * side;
-    result = abbe_renderer_make_buffer(r, PHOTON_HEADER + room * 4, NULL, &r->list[level], error);
+    result = abbe_gpu_make_buffer(&r->gpu, PHOTON_HEADER + room * 4, NULL, &r->list[level], error);
   }
   if (result != ABBE_OK || r->plan.desc.profile == ABBE_PROFILE_THESIS) return result;
-  result = abbe_renderer_make_buffer(r, cells * 4, NULL, &r->buffer[BINDING_SLOTS], error);
+  result = abbe_gpu_make_buffer(&r->gpu, cells * 4, NULL, &r->buffer[BINDING_PHOTON_OF_CELL], error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, PHOTON_HEADER + cells * PHOTON_BYTES, NULL,
+    result = abbe_gpu_make_buffer(&r->gpu, PHOTON_HEADER + cells * PHOTON_BYTES, NULL,
                                        &r->buffer[BINDING_PHOTONS], error);
   return result;
 }
@@ -204,10 +204,10 @@ void abbe_renderer_shift_cells(abbe_renderer *r, size_t light) {
 }
 
 static void set_start(abbe_renderer *r, GLuint program, size_t light) {
-  r->gl->UseProgram(program);
+  r->gpu.gl->UseProgram(program);
   abbe_renderer_set_lighting(r, program);
-  abbe_renderer_bind_texture(r, program, "layer_owner", 4, r->light_owner);
-  abbe_renderer_set_int(r, program, "light", (int)light);
+  abbe_gpu_bind_array(&r->gpu, program, "layer_owner", 4, r->light_owner);
+  abbe_gpu_set_int(&r->gpu, program, "light", (int)light);
 }
 
 /* A mesh's inside is what the near view sees of it: there the view stays. */
@@ -220,7 +220,7 @@ static void set_layer_view(abbe_renderer *r, const abbe_view *view) {
   float clip[16];
   abbe_view_matrix(view, matrix);
   for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   gl->UseProgram(r->layer);
   gl->UniformMatrix4fv(gl->GetUniformLocation(r->layer, "view_projection"), 1, GL_FALSE, clip);
   gl->Uniform4f(gl->GetUniformLocation(r->layer, "view_origin"), (float)view->origin[0],
@@ -240,21 +240,21 @@ static void clear_target(const abbe_gl *gl, GLfloat distance, bool owner) {
 
 static void draw_refractors(abbe_renderer *r) {
   for (size_t i = 0; i < r->plan.refractor_count; i++) {
-    r->gl->Uniform1ui(r->gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
+    abbe_gpu_set_uint(&r->gpu, r->layer, "owner", i + 1);
     abbe_renderer_draw_refractor(r, i);
   }
 }
 
 static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   set_layer_view(r, &r->light[light].near_view);
   gl->Enable(GL_DEPTH_TEST);
   gl->Enable(GL_CULL_FACE);
   for (int back = 0; back <= (r->plan.back ? 1 : 0); back++) {
-    abbe_renderer_begin_pass(r);
+    abbe_gpu_begin_pass(&r->gpu);
     GLuint target[2] = {r->light_layers, r->light_owner};
     int layer[2] = {2 * (int)light + back, (int)light};
-    abbe_result result = abbe_renderer_set_target(r, target, layer, back ? 1 : 2, r->light_depth,
+    abbe_result result = abbe_gpu_set_target(&r->gpu, target, layer, back ? 1 : 2, r->light_depth,
                                                   r->layer_side, r->layer_side, error);
     if (result != ABBE_OK) return result;
     /* So near to exact surfaces their triangles tell too little of what they cover. */
@@ -262,7 +262,7 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
     clear_target(gl, all ? 1 : 0, !back);
     gl->CullFace(back ? GL_FRONT : GL_BACK);
     if (!all) draw_refractors(r);
-    abbe_renderer_end_pass(r, back ? "light: refractor back" : "light: refractor front");
+    abbe_gpu_end_pass(&r->gpu, back ? "light: refractor back" : "light: refractor front");
   }
   gl->Disable(GL_CULL_FACE);
   return ABBE_OK;
@@ -280,7 +280,7 @@ abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
 static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_box, size_t light,
                                  abbe_error *error) {
   enum { SIDE = 1024, TURNS = 4 };
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   double *window = r->light[light].near_view.window;
   for (int turn = 0; turn < TURNS; turn++) {
     static const GLuint none[4] = {SIDE, 0, SIDE, 0};
@@ -292,9 +292,9 @@ static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_
     gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
     abbe_renderer_bind_tables(r);
     set_start(r, program, light);
-    abbe_renderer_set_int(r, program, "side", SIDE);
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_LIST, found_box);
-    abbe_renderer_dispatch_2d(r, SIDE, SIDE);
+    abbe_gpu_set_int(&r->gpu, program, "side", SIDE);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_FOUND_BOX, found_box);
+    abbe_gpu_dispatch_2d(&r->gpu, SIDE, SIDE);
     gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof found, found);
     if (found[0] > found[1]) break; /* nothing is lit */
@@ -320,13 +320,13 @@ static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_
 static abbe_result fit_to_light(abbe_renderer *r, abbe_error *error) {
   GLuint program = 0, box = 0;
   abbe_result result =
-      abbe_program_make_compute(r->gl, "light_fit.comp", r->defines, &program, error);
-  if (result == ABBE_OK) result = abbe_renderer_make_buffer(r, 4 * 4, NULL, &box, error);
+      abbe_program_make_compute(r->gpu.gl, "light_fit.comp", r->defines, &program, error);
+  if (result == ABBE_OK) result = abbe_gpu_make_buffer(&r->gpu, 4 * 4, NULL, &box, error);
   for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++)
     if (r->plan.reaches[i]) result = fit_near_view(r, program, box, i, error);
-  r->gl->DeleteBuffers(1, &box);
-  r->gl->DeleteProgram(program);
-  return result != ABBE_OK ? result : abbe_gl_check(r->gl, "the fit of the light's view", error);
+  r->gpu.gl->DeleteBuffers(1, &box);
+  r->gpu.gl->DeleteProgram(program);
+  return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the fit of the light's view", error);
 }
 
 abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
@@ -336,28 +336,26 @@ abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error) {
   abbe_renderer_fit_eye(r);
   abbe_renderer_upload_lights(r);
   abbe_result result = abbe_renderer_make_layer_faces(r, error);
-  if (result == ABBE_OK) result = abbe_program_make(r->gl, layer_stages, 2, NULL, &r->layer, error);
+  if (result == ABBE_OK) result = abbe_program_make(r->gpu.gl, layer_stages, 2, NULL, &r->layer, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "photon_place.comp", NULL, &r->place, error);
+    result = abbe_program_make_compute(r->gpu.gl, "photon_place.comp", NULL, &r->place, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "photon_groups.comp", NULL, &r->groups, error);
-  if (result == ABBE_OK)
-    result = abbe_program_make_compute(r->gl, "list_groups.comp", NULL, &r->list_groups, error);
+    result = abbe_program_make_compute(r->gpu.gl, "photon_groups.comp", NULL, &r->groups, error);
   if (result == ABBE_OK && !abbe_profile_is_thesis(r->plan.desc.profile))
     result = make_layers(r, error);
   if (result == ABBE_OK) result = make_lists(r, error);
   if (result == ABBE_OK && r->plan.caustics && r->plan.desc.profile != ABBE_PROFILE_THESIS)
-    result = abbe_program_make_compute(r->gl, "photon_cover.comp", r->defines, &r->cover, error);
+    result = abbe_program_make_compute(r->gpu.gl, "photon_cover.comp", r->defines, &r->cover, error);
   if (result == ABBE_OK && r->cover != 0 && fits_to_light(r)) result = fit_to_light(r, error);
   return result;
 }
 
 static void count_groups(abbe_renderer *r, GLuint list, GLuint rows) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   gl->UseProgram(r->groups);
-  gl->Uniform1ui(gl->GetUniformLocation(r->groups, "group_size"), PHOTON_GROUP);
+  gl->Uniform1ui(gl->GetUniformLocation(r->groups, "group_size"), ABBE_GPU_GROUP);
   gl->Uniform1ui(gl->GetUniformLocation(r->groups, "rows"), rows);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, list);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_CELLS, list);
   gl->DispatchCompute(1, 1, 1);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -365,12 +363,12 @@ static void count_groups(abbe_renderer *r, GLuint list, GLuint rows) {
 
 void abbe_renderer_set_grid(abbe_renderer *r, GLuint program, size_t light) {
   const size_t *cells = r->light[light].cells;
-  r->gl->Uniform2i(r->gl->GetUniformLocation(program, "grid"), (GLint)cells[0], (GLint)cells[1]);
+  r->gpu.gl->Uniform2i(r->gpu.gl->GetUniformLocation(program, "grid"), (GLint)cells[0], (GLint)cells[1]);
 }
 
 abbe_result abbe_renderer_place_photons(abbe_renderer *r, size_t light, GLuint coverage,
                                         int coverage_layer, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   static const GLuint zero[PHOTON_HEADER / 4] = {0};
   const size_t *cells = r->light[light].cells;
   for (int level = 0; level < LEVELS; level++) {
@@ -381,16 +379,16 @@ abbe_result abbe_renderer_place_photons(abbe_renderer *r, size_t light, GLuint c
     gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
     if (level > 0) count_groups(r, r->list[level - 1], 1);
     gl->UseProgram(r->place);
-    abbe_renderer_bind_texture(r, r->place, "coverage", 0, coverage);
-    abbe_renderer_set_int(r, r->place, "coverage_layer", coverage_layer);
+    abbe_gpu_bind_array(&r->gpu, r->place, "coverage", 0, coverage);
+    abbe_gpu_set_int(&r->gpu, r->place, "coverage_layer", coverage_layer);
     abbe_renderer_set_grid(r, r->place, light);
-    abbe_renderer_set_int(r, r->place, "cell", cell);
-    abbe_renderer_set_int(r, r->place, "first", level == 0);
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS, r->list[level]);
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN,
+    abbe_gpu_set_int(&r->gpu, r->place, "cell", cell);
+    abbe_gpu_set_int(&r->gpu, r->place, "first", level == 0);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_CELLS, r->list[level]);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_COARSER_CELLS,
                        r->list[level > 0 ? level - 1 : 1]);
     if (level == 0) {
-      gl->DispatchCompute((GLuint)((across * down + PHOTON_GROUP - 1) / PHOTON_GROUP), 1, 1);
+      gl->DispatchCompute((GLuint)((across * down + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP), 1, 1);
     } else {
       gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->list[level - 1]);
       gl->DispatchComputeIndirect(4);
@@ -403,19 +401,19 @@ abbe_result abbe_renderer_place_photons(abbe_renderer *r, size_t light, GLuint c
 }
 
 abbe_result abbe_renderer_start_photons(abbe_renderer *r, size_t light, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   static const GLuint zero[PHOTON_HEADER / 4] = {0};
   abbe_result result =
       abbe_renderer_place_photons(r, light, r->light_layers, 2 * (int)light, error);
   if (result != ABBE_OK) return result;
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_SLOTS]);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTON_OF_CELL]);
   gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, zero);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_PHOTONS]);
   gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
   abbe_renderer_bind_tables(r);
   set_start(r, r->cover, light);
   abbe_renderer_set_grid(r, r->cover, light);
-  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_PHOTONS_IN, r->list[LEVELS - 1]);
+  gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_CELLS, r->list[LEVELS - 1]);
   gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, r->list[LEVELS - 1]);
   gl->DispatchComputeIndirect(4);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -8,17 +8,17 @@ uniform int light;
 uniform ivec2 grid;
 #include "photon_start.glsl"
 
-layout(std430, binding = 6) buffer Photons {
+layout(std430, binding = BINDING_PHOTONS) buffer Photons {
   uint photon_count, groups_x, groups_y, groups_z;
   uint draw[4];
   Photon photon[];
 };
-layout(std430, binding = 7) readonly buffer Cells {
+layout(std430, binding = BINDING_CELLS) readonly buffer Cells {
   uint in_count, in_x, in_y, in_z;
   uint in_draw[4];
   uint in_cell[];
 };
-layout(std430, binding = 8) writeonly buffer Slots { uint slot[]; };  // photon + 1, by cell
+layout(std430, binding = BINDING_PHOTON_OF_CELL) writeonly buffer Slots { uint slot[]; };  // photon + 1, by cell
 
 const int SIDE = 8;  // rays a side of a cell that an edge crosses
 

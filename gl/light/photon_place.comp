@@ -4,7 +4,7 @@
 // triangles.
 layout(local_size_x = 256) in;
 #include "photon_list.glsl"
-layout(std430, binding = 7) readonly buffer InputList {
+layout(std430, binding = BINDING_COARSER_CELLS) readonly buffer InputList {
   uint in_count, in_x, in_y, in_z;
   uint in_draw[4];
   uint in_cell[];

@@ -11,7 +11,7 @@ const int NO_RECEIVER = 0, NOT_HELD = 1, LANDED = 2, LANDED_ON_PAGE = 3;
 
 #ifdef PAGES
 uniform bool fits_pages;  // they are yet to be chosen: coordinates of any chart will do
-layout(binding = 12) uniform samplerBuffer chart_rows;  // two a chart: from a place to its u, and v
+layout(binding = UNIT_CHART_ROWS) uniform samplerBuffer chart_rows;  // two a chart: from a place to its u, and v
 
 // Where the light's map does not hold a place: the page of a chart's side on which it lies; false where
 // there is none.

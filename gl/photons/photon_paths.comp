@@ -1,8 +1,8 @@
 // Lists the paths that land at some wavelength: those of the first exits of all photons, then of the second
 // and so on, for neighbours on the list are worked on together and should have as much to do.
 layout(local_size_x = 256) in;
-layout(std430, binding = 7) readonly buffer PathMarks { uint path_mark[]; };
-layout(std430, binding = 13) buffer PathList {
+layout(std430, binding = BINDING_PATH_MARKS) readonly buffer PathMarks { uint path_mark[]; };
+layout(std430, binding = BINDING_PATHS) buffer PathList {
   uint path_count, path_groups[3];
   uint path_list[];
 };

@@ -10,26 +10,26 @@ struct Photon {  // as in photon_start.glsl
   float flux;
   uint offset, extent;
 };
-layout(std430, binding = 6) readonly buffer Photons {
+layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
   uint photon_count, groups_x, groups_y, groups_z;
   uint draw[4];
   Photon photon_at[];
 };
-layout(std430, binding = 7) buffer Wants { uint want[]; };  // a bit an interval
-layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
-layout(std430, binding = 9) readonly buffer Landings { vec4 landing[]; };
+layout(std430, binding = BINDING_WANTS) buffer Wants { uint want[]; };  // a bit an interval
+layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
+layout(std430, binding = BINDING_HITS) readonly buffer Landings { vec4 landing[]; };
 #ifdef TINTING
-layout(std430, binding = 10) readonly buffer Signatures { uvec2 signature[]; };  // length inside in y
+layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uvec2 signature[]; };  // length inside in y
 #define SIGNATURE(i) signature[i].x
 #else
-layout(std430, binding = 10) readonly buffer Signatures { uint signature[]; };
+layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uint signature[]; };
 #define SIGNATURE(i) signature[i]
 #endif
-layout(std430, binding = 11) buffer PairList {
+layout(std430, binding = BINDING_PAIRS) buffer PairList {
   uint pair_count, pair_groups[3];
   uint pair_at[];
 };
-layout(std430, binding = 13) readonly buffer PathList {
+layout(std430, binding = BINDING_PATHS) readonly buffer PathList {
   uint path_count, path_groups[3];
   uint path_list[];
 };

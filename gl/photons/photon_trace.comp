@@ -9,25 +9,25 @@ layout(local_size_x = 256) in;
 // [((photon * SLOTS + order) * LANES + lane) * LANDING_TEXELS]: where it lands, and w: flux for unit
 // weight, W; then where it left its last refractor, and w: wall_word(). While pages are chosen: chart
 // coordinates, and the chart's side.
-layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
+layout(std430, binding = BINDING_HITS) writeonly buffer Landings { vec4 landing[]; };
 // Receiver, facets along the way and whether on a page, equal for paths that vary continuously;
 // refractor in the low eight bits; 0: no landing. TINTING: and the length of its way inside, m.
 #ifdef TINTING
-layout(std430, binding = 10) writeonly buffer Signatures { uvec2 signature[]; };
+layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uvec2 signature[]; };
 #else
-layout(std430, binding = 10) writeonly buffer Signatures { uint signature[]; };
+layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uint signature[]; };
 #endif
 // Y weight of the samples at [light * WAVELENGTHS + i]: of the parts of their bands below and above
 // the node, then those in the coarse set.
-layout(std430, binding = 11) readonly buffer SampleWeights { vec4 sample_weight[]; };
+layout(std430, binding = BINDING_SAMPLE_WEIGHTS) readonly buffer SampleWeights { vec4 sample_weight[]; };
 // 1 where the path (photon * SLOTS + order) lands at some wavelength.
-layout(std430, binding = 7) writeonly buffer PathMarks { uint path_mark[]; };
-layout(std430, binding = 15) readonly buffer PairList {
+layout(std430, binding = BINDING_PATH_MARKS) writeonly buffer PathMarks { uint path_mark[]; };
+layout(std430, binding = BINDING_PAIRS) readonly buffer PairList {
   uint pair_count, pair_groups[3];
   uint pair_at[];
 };
 // lo and hi of reached, reflected, absorbed, trapped, missed.
-layout(std430, binding = 12) buffer Ledger { uint ledger[]; };
+layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 
 uniform int light;
 uniform ivec2 grid;
@@ -44,7 +44,7 @@ uniform uint most_pairs;
 uniform float share_limit;   // paths below this share of their light end
 uniform float ledger_unit;   // W
 
-layout(std430, binding = 6) readonly buffer Photons {
+layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
   uint photon_count, groups_x, groups_y, groups_z;
   uint draw[4];
   Photon photon_at[];

@@ -102,10 +102,10 @@ abbe_result abbe_renderer_upload_attenuation(abbe_renderer *r, const abbe_wavele
   const size_t size = rows * nodes * sizeof *table;
   abbe_result result = ABBE_OK;
   if (r->band_attenuation == 0) {
-    result = abbe_renderer_make_buffer(r, size, table, &r->band_attenuation, error);
+    result = abbe_gpu_make_buffer(&r->gpu, size, table, &r->band_attenuation, error);
   } else { /* never larger than at first */
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->band_attenuation);
-    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
+    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->band_attenuation);
+    r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
   }
   free(table);
   return result;

@@ -37,31 +37,31 @@ const int MODEL_HIERARCHY = 3;
 
 // Tables of the scene. They are uniform blocks wherever they fit: a software rasteriser reads
 // those far faster than storage. ROOM: at least one element, whatever the count.
-layout(std140, binding = 0) uniform Lights { Light lights[LIGHT_ROOM]; };
-layout(std140, binding = 1) uniform Refractors { Refractor refractors[REFRACTOR_ROOM]; };
+layout(std140, binding = BINDING_LIGHTS) uniform Lights { Light lights[LIGHT_ROOM]; };
+layout(std140, binding = BINDING_REFRACTORS) uniform Refractors { Refractor refractors[REFRACTOR_ROOM]; };
 #ifdef PLANES_IN_STORAGE
-layout(std430, binding = 2) readonly buffer Planes { vec4 planes[]; };
+layout(std430, binding = BINDING_PLANES) readonly buffer Planes { vec4 planes[]; };
 #else
-layout(std140, binding = 2) uniform Planes { vec4 planes[PLANE_ROOM]; };  // n . x <= w
+layout(std140, binding = BINDING_PLANES) uniform Planes { vec4 planes[PLANE_ROOM]; };  // n . x <= w
 #endif
-layout(std140, binding = 3) uniform Receivers { Receiver receivers[RECEIVER_ROOM]; };
+layout(std140, binding = BINDING_RECEIVERS) uniform Receivers { Receiver receivers[RECEIVER_ROOM]; };
 #ifdef SURFACES_IN_STORAGE
-layout(std430, binding = 4) readonly buffer Surfaces { Surface surfaces[]; };
+layout(std430, binding = BINDING_SURFACES) readonly buffer Surfaces { Surface surfaces[]; };
 #else
-layout(std140, binding = 4) uniform Surfaces { Surface surfaces[SURFACE_ROOM]; };
+layout(std140, binding = BINDING_SURFACES) uniform Surfaces { Surface surfaces[SURFACE_ROOM]; };
 #endif
 // n and attenuation (1/m) at [refractor * WAVELENGTHS + i].
 #ifdef SPECTRA_IN_STORAGE
-layout(std430, binding = 5) readonly buffer Spectra { vec4 spectra[]; };
+layout(std430, binding = BINDING_SPECTRA) readonly buffer Spectra { vec4 spectra[]; };
 #else
-layout(std140, binding = 5) uniform Spectra { vec4 spectra[SPECTRUM_ROOM]; };
+layout(std140, binding = BINDING_SPECTRA) uniform Spectra { vec4 spectra[SPECTRUM_ROOM]; };
 #endif
 #include "copies.glsl"
 
 // The map's texels are finer where more light lands: each axis of its window is warped by a
 // monotone polygon. x and y at [light * (WARP_STEPS + 1) + k], from 0 to 1.
 const int WARP_STEPS = 128;
-layout(std140, binding = 7) uniform Warps { vec4 warps[LIGHT_ROOM * (WARP_STEPS + 1)]; };
+layout(std140, binding = BINDING_WARPS) uniform Warps { vec4 warps[LIGHT_ROOM * (WARP_STEPS + 1)]; };
 
 vec2 warp(int light, vec2 uv) {
   vec2 s = clamp(uv, vec2(0), vec2(1)) * float(WARP_STEPS);

@@ -3,9 +3,9 @@
 // alone: Mesa 22's llvmpipe clobbers what is loaded in a loop that lanes leave in its middle.
 
 // Buffers as textures: llvmpipe fetches a texel of all lanes at once, and storage word by word.
-layout(binding = 7) uniform usamplerBuffer hierarchy_nodes;  // as hierarchy_nodes.h has them
-layout(binding = 8) uniform samplerBuffer hierarchy_triangles;
-layout(binding = 9) uniform samplerBuffer hierarchy_corners;
+layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer hierarchy_nodes;  // as hierarchy_nodes.h has them
+layout(binding = UNIT_BVH_TRIANGLES) uniform samplerBuffer hierarchy_triangles;
+layout(binding = UNIT_BVH_CORNERS) uniform samplerBuffer hierarchy_corners;
 
 uvec4 hierarchy_node(int i) { return texelFetch(hierarchy_nodes, i); }
 // A corner (w: smooth part of its mesh) and the two edges from there (w of the first: surface, of

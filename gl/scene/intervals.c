@@ -131,11 +131,11 @@ abbe_result abbe_renderer_upload_intervals(abbe_renderer *r, const abbe_waveleng
     result = abbe_renderer_upload_attenuation(r, &coarse, w, error);
   }
   const size_t size = texels * sizeof *table;
-  if (result == ABBE_OK && r->buffer[BINDING_INTERVALS] == 0) {
-    result = abbe_renderer_make_buffer(r, size, table, &r->buffer[BINDING_INTERVALS], error);
+  if (result == ABBE_OK && r->intervals == 0) {
+    result = abbe_gpu_make_buffer(&r->gpu, size, table, &r->intervals, error);
   } else if (result == ABBE_OK) {
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_INTERVALS]);
-    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
+    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->intervals);
+    r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
   }
   abbe_wavelengths_free(&coarse);
   free(table);

@@ -17,7 +17,7 @@ static double keep_within(const abbe_renderer *r, const abbe_mesh *mesh) {
 /* The mesh's vertices, under another list of faces. */
 static abbe_result upload_faces(abbe_renderer *r, mesh_buffers *mesh, const uint32_t (*face)[3],
                                 size_t count, abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const size_t size = count * sizeof *face;
   gl->GenVertexArrays(1, &mesh->layer_array);
   gl->BindVertexArray(mesh->layer_array);
@@ -27,7 +27,7 @@ static abbe_result upload_faces(abbe_renderer *r, mesh_buffers *mesh, const uint
   gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->layer_indices);
   gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)size, face, GL_STATIC_DRAW);
   mesh->layer_index_count = (GLsizei)(3 * count);
-  r->device_bytes += size;
+  r->gpu.bytes += size;
   return abbe_gl_check(gl, "the upload of a simplified mesh", error);
 }
 
@@ -68,6 +68,6 @@ void abbe_renderer_draw_refractor(abbe_renderer *r, size_t refractor) {
     abbe_renderer_draw(r, object);
     return;
   }
-  r->gl->BindVertexArray(mesh->layer_array);
-  r->gl->DrawElements(GL_TRIANGLES, mesh->layer_index_count, GL_UNSIGNED_INT, NULL);
+  r->gpu.gl->BindVertexArray(mesh->layer_array);
+  r->gpu.gl->DrawElements(GL_TRIANGLES, mesh->layer_index_count, GL_UNSIGNED_INT, NULL);
 }

@@ -1,8 +1,8 @@
 // Maps on receivers, for light that the light's own map cannot hold. PAGES: some light has any. Tables
 // are textures: a software rasteriser fetches from those what differs from lane to lane.
 #ifdef PAGES
-layout(binding = 10) uniform samplerBuffer page_rows;    // PAGE_ROWS a page, MOST_PAGES a light
-layout(binding = 11) uniform isamplerBuffer page_index;  // PAGE_WORDS a light, of the three parts below
+layout(binding = UNIT_PAGE_ROWS) uniform samplerBuffer page_rows;    // PAGE_ROWS a page, MOST_PAGES a light
+layout(binding = UNIT_PAGE_INDEX) uniform isamplerBuffer page_index;  // PAGE_WORDS a light, of the three parts below
 const int PAGE_ROWS = 4;
 const int PAGE_WORDS = 1 + PAGE_BLOCKS * PAGE_BLOCKS + CHART_SIDES;
 

@@ -45,15 +45,15 @@ void abbe_renderer_point_to_vertices(const abbe_renderer *r) {
     size_t offset;
   } attribute[3] = {{3, 0}, {3, 12}, {2, 24}};
   for (GLuint k = 0; k < 3; k++) {
-    r->gl->EnableVertexAttribArray(k);
-    r->gl->VertexAttribPointer(k, attribute[k].size, GL_FLOAT, GL_FALSE, 32,
+    r->gpu.gl->EnableVertexAttribArray(k);
+    r->gpu.gl->VertexAttribPointer(k, attribute[k].size, GL_FLOAT, GL_FALSE, 32,
                                (const char *)NULL + attribute[k].offset);
   }
 }
 
 static abbe_result upload_mesh(abbe_renderer *r, const abbe_mesh *mesh, mesh_buffers *out,
                                abbe_error *error) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   size_t size = mesh->vertex_count * 8 * sizeof(float);
   float *vertices = malloc(size > 0 ? size : 1);
   if (vertices == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a mesh");
@@ -78,7 +78,7 @@ static abbe_result upload_mesh(abbe_renderer *r, const abbe_mesh *mesh, mesh_buf
   gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_size, mesh->face, GL_STATIC_DRAW);
   abbe_renderer_point_to_vertices(r);
   out->index_count = (GLsizei)(3 * mesh->face_count);
-  r->device_bytes += size + index_size;
+  r->gpu.bytes += size + index_size;
   return abbe_gl_check(gl, "the upload of a mesh", error);
 }
 
@@ -129,10 +129,10 @@ static abbe_result upload_refractors(abbe_renderer *r, abbe_error *error) {
       store(object->exact.plane[k], object->exact.plane[k][3], plane[next++]);
   }
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, plan->refractor_count * sizeof *refractor, refractor,
+    result = abbe_gpu_make_buffer(&r->gpu, plan->refractor_count * sizeof *refractor, refractor,
                                        &r->buffer[BINDING_REFRACTORS], error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, planes * sizeof *plane, plane, &r->buffer[BINDING_PLANES],
+    result = abbe_gpu_make_buffer(&r->gpu, planes * sizeof *plane, plane, &r->buffer[BINDING_PLANES],
                                        error);
   free(refractor);
   free(plane);
@@ -168,7 +168,7 @@ static abbe_result upload_receivers(abbe_renderer *r, abbe_error *error) {
     for (size_t k = 0; k < exact->count && next < count; k++)
       store_parallelogram(exact->parallelogram[k], i, &receiver[next++]);
   }
-  abbe_result result = abbe_renderer_make_buffer(r, count * sizeof *receiver, receiver,
+  abbe_result result = abbe_gpu_make_buffer(&r->gpu, count * sizeof *receiver, receiver,
                                                  &r->buffer[BINDING_RECEIVERS], error);
   free(receiver);
   return result;
@@ -198,11 +198,10 @@ static abbe_result upload_textures(abbe_renderer *r, gpu_surface *surface, abbe_
     if (t->width > width) width = t->width;
     if (t->height > height) height = t->height;
   }
-  abbe_result result = abbe_renderer_make_texture(
-      r, GL_RGBA16F, width, height, layers > 0 ? layers : 1, true, &r->texture_surface, error);
+  abbe_result result = abbe_gpu_make_texture(&r->gpu, GL_RGBA16F, width, height, layers > 0 ? layers : 1, true, &r->texture_surface, error);
   if (result != ABBE_OK || layers == 0) return result;
-  r->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
-  r->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
+  r->gpu.gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
+  r->gpu.gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
   float *texel = malloc(width * height * 4 * sizeof *texel);
   if (texel == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a texture");
   int layer = 0;
@@ -218,12 +217,12 @@ static abbe_result upload_textures(abbe_renderer *r, gpu_surface *surface, abbe_
         abbe_renderer_to_working(r, rgb, rgb);
         store(rgb, 1, texel + 4 * (y * width + x));
       }
-    r->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width, (GLsizei)height, 1,
+    r->gpu.gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width, (GLsizei)height, 1,
                          GL_RGBA, GL_FLOAT, texel);
     surface[i].texture_info[0] = (float)layer++;
   }
   free(texel);
-  return abbe_gl_check(r->gl, "the upload of textures", error);
+  return abbe_gl_check(r->gpu.gl, "the upload of textures", error);
 }
 
 static abbe_result upload_surfaces(abbe_renderer *r, abbe_error *error) {
@@ -240,7 +239,7 @@ static abbe_result upload_surfaces(abbe_renderer *r, abbe_error *error) {
   }
   abbe_result result = upload_textures(r, surface, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.receiver_count * sizeof *surface, surface,
+    result = abbe_gpu_make_buffer(&r->gpu, r->plan.receiver_count * sizeof *surface, surface,
                                        &r->buffer[BINDING_SURFACES], error);
   free(surface);
   return result;
@@ -261,7 +260,7 @@ static abbe_result upload_spectra(abbe_renderer *r, abbe_error *error) {
     }
   }
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.refractor_count * n * sizeof *spectrum, spectrum,
+    result = abbe_gpu_make_buffer(&r->gpu, r->plan.refractor_count * n * sizeof *spectrum, spectrum,
                                        &r->buffer[BINDING_SPECTRA], error);
   free(spectrum);
   return result;
@@ -295,7 +294,7 @@ static abbe_result upload_sample_weights(abbe_renderer *r, const abbe_wavelength
     weigh_halves(r, &coarse, light, 2, sample + light * n);
   }
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * n * sizeof *sample, sample,
+    result = abbe_gpu_make_buffer(&r->gpu, r->plan.light_count * n * sizeof *sample, sample,
                                        &r->buffer[BINDING_SAMPLE_WEIGHTS], error);
   abbe_wavelengths_free(&coarse);
   free(sample);
@@ -346,7 +345,7 @@ static abbe_result upload_bands(abbe_renderer *r, const abbe_wavelengths *w, abb
   for (size_t i = 0; i < refractors && result == ABBE_OK; i++)
     result = fill_bands(r, &xyz, i, band + i * r->band_count, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, refractors * r->band_count * sizeof *band, band,
+    result = abbe_gpu_make_buffer(&r->gpu, refractors * r->band_count * sizeof *band, band,
                                        &r->table_bands, error);
   abbe_weights_free(&xyz);
   free(band);
@@ -406,13 +405,13 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = upload_surfaces(r, error);
   if (result == ABBE_OK) result = upload_wavelengths(r, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * (WARP_STEPS + 1) * 16, NULL,
+    result = abbe_gpu_make_buffer(&r->gpu, r->plan.light_count * (WARP_STEPS + 1) * 16, NULL,
                                        &r->table_warps, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * r->plan.desc.map_size * 8 * 4, NULL,
+    result = abbe_gpu_make_buffer(&r->gpu, r->plan.light_count * r->plan.desc.map_size * 8 * 4, NULL,
                                        &r->texel_sizes, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * sizeof(gpu_light), NULL,
+    result = abbe_gpu_make_buffer(&r->gpu, r->plan.light_count * sizeof(gpu_light), NULL,
                                        &r->buffer[BINDING_LIGHTS], error);
   return result;
 }
@@ -462,9 +461,9 @@ static void upload_texel_sizes(const abbe_renderer *r, size_t light, int axis) {
         size[k] = (float)texel_size(r, light, axis, side, i + k);
         spread[k] = level > 0 ? (float)per_spread(r, light, axis, side, i + k) : 0;
       }
-      r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)((first + i) * sizeof *size),
+      r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)((first + i) * sizeof *size),
                            (GLsizeiptr)(count * sizeof *size), size);
-      r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER,
+      r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER,
                            (GLintptr)((first + 4 * whole + i) * sizeof *size),
                            (GLsizeiptr)(count * sizeof *size), spread);
     }
@@ -475,9 +474,9 @@ static void upload_warps(abbe_renderer *r, size_t light) {
   float row[WARP_STEPS + 1][4] = {{0}};
   for (int k = 0; k <= WARP_STEPS; k++)
     for (int axis = 0; axis < 2; axis++) row[k][axis] = (float)r->light[light].map.knot[axis][k];
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->table_warps);
-  r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row), sizeof row, row);
-  r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->texel_sizes);
+  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->table_warps);
+  r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row), sizeof row, row);
+  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->texel_sizes);
   for (int axis = 0; axis < 2; axis++) upload_texel_sizes(r, light, axis);
 }
 
@@ -507,19 +506,50 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     g.misc[3] = r->plan.reaches[i] ? 1 : 0;
     g.cube[0] = (float)r->plan.lamp[i].faces;
     upload_warps(r, i);
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);
-    r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g), sizeof g, &g);
+    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);
+    r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g), sizeof g, &g);
   }
 }
 
 void abbe_renderer_free_scene(abbe_renderer *r) {
   for (size_t i = 0; r->mesh != NULL && i < r->scene->object_count; i++) {
-    r->gl->DeleteVertexArrays(1, &r->mesh[i].array);
-    r->gl->DeleteBuffers(1, &r->mesh[i].vertices);
-    r->gl->DeleteBuffers(1, &r->mesh[i].indices);
-    r->gl->DeleteVertexArrays(1, &r->mesh[i].layer_array);
-    r->gl->DeleteBuffers(1, &r->mesh[i].layer_indices);
+    r->gpu.gl->DeleteVertexArrays(1, &r->mesh[i].array);
+    r->gpu.gl->DeleteBuffers(1, &r->mesh[i].vertices);
+    r->gpu.gl->DeleteBuffers(1, &r->mesh[i].indices);
+    r->gpu.gl->DeleteVertexArrays(1, &r->mesh[i].layer_array);
+    r->gpu.gl->DeleteBuffers(1, &r->mesh[i].layer_indices);
   }
   free(r->mesh);
   free(r->lambda_nm);
+}
+
+/* The scene's tables, as uniform blocks and as storage: the shaders choose by size. */
+void abbe_renderer_bind_tables(abbe_renderer *r) {
+  for (GLuint i = 0; i < BINDING_DISPATCH; i++) {
+    if (r->buffer[i] == 0) continue;
+    if (i <= BINDING_SPECTRA) r->gpu.gl->BindBufferBase(GL_UNIFORM_BUFFER, i, r->buffer[i]);
+    r->gpu.gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, r->buffer[i]);
+  }
+  for (GLenum k = 0; k < 3; k++) {
+    if (r->hierarchy_texture[k] == 0) continue;
+    r->gpu.gl->ActiveTexture(GL_TEXTURE0 + UNIT_BVH_NODES + k);
+    r->gpu.gl->BindTexture(GL_TEXTURE_BUFFER, r->hierarchy_texture[k]);
+  }
+  for (GLenum k = 0; k < PAGE_TABLES; k++) {
+    if (r->page_texture[k] == 0) continue;
+    r->gpu.gl->ActiveTexture(GL_TEXTURE0 + UNIT_PAGE_ROWS + k);
+    r->gpu.gl->BindTexture(GL_TEXTURE_BUFFER, r->page_texture[k]);
+  }
+  if (r->table_warps != 0)
+    r->gpu.gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_WARPS, r->table_warps);
+  if (r->table_shadows != 0)
+    r->gpu.gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_SHADOW_PLANES, r->table_shadows);
+  if (r->table_bands != 0)
+    r->gpu.gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_BANDS, r->table_bands);
+}
+
+void abbe_renderer_draw(abbe_renderer *r, size_t object) {
+  const mesh_buffers *mesh = &r->mesh[object];
+  r->gpu.gl->BindVertexArray(mesh->array);
+  r->gpu.gl->DrawElements(GL_TRIANGLES, mesh->index_count, GL_UNSIGNED_INT, NULL);
 }

@@ -146,14 +146,14 @@ static abbe_result add_mesh(grove *g, const forest *f, const abbe_mesh *mesh, si
 static abbe_result upload_texels(abbe_renderer *r, int which, GLenum format, size_t size,
                                  const void *data, abbe_error *error) {
   GLint most = 0;
-  r->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  r->gpu.gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (size / 16 > (size_t)most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the meshes that light is traced through take %zu texels in a buffer; "
                           "this OpenGL reads at most %d: use smaller meshes, or "
                           "the model 'layers' for those that refract",
                           size / 16, most);
-  return abbe_renderer_make_texels(r, format, size, data, HIERARCHY_UNIT + which,
+  return abbe_gpu_make_texels(&r->gpu, format, size, data, UNIT_BVH_NODES + which,
                                    &r->hierarchy[which], &r->hierarchy_texture[which], error);
 }
 

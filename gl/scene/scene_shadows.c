@@ -74,6 +74,6 @@ abbe_result abbe_renderer_make_shadows(abbe_renderer *r, abbe_error *error) {
 abbe_result abbe_renderer_upload_shadows(abbe_renderer *r, abbe_error *error) {
   const size_t pairs = r->plan.light_count * r->plan.refractor_count;
   if (r->shadow_planes == 0) return ABBE_OK;
-  return abbe_renderer_make_buffer(r, (pairs + r->shadow_planes) * sizeof *r->shadow_row,
+  return abbe_gpu_make_buffer(&r->gpu, (pairs + r->shadow_planes) * sizeof *r->shadow_row,
                                    r->shadow_row, &r->table_shadows, error);
 }

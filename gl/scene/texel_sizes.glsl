@@ -3,7 +3,7 @@
 
 // Of a light: widths of columns, heights of rows, then of each 1 / (what it spreads over): 2 map_size each,
 // a level after another.
-layout(std430, binding = 9) readonly buffer TexelSizes { float texel_size[]; };
+layout(std430, binding = BINDING_TEXEL_SIZES) readonly buffer TexelSizes { float texel_size[]; };
 
 int size_row(int axis, int level) {
   return 2 * (4 * light + axis) * map_size + 2 * (map_size - (map_size >> level));

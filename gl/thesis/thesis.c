@@ -127,7 +127,7 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   };
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_renderer_make_texture(r, all[i].format, all[i].width, all[i].height,
+    result = abbe_gpu_make_texture(&r->gpu, all[i].format, all[i].width, all[i].height,
                                         all[i].layers, all[i].linear, all[i].texture, error);
   return result;
 }
@@ -158,7 +158,7 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
              {fill, 2, &t->fill},     {lit, 2, &t->receivers},    {refracted, 2, &t->refraction}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_program_make(r->gl, all[i].stages, all[i].count, defines, all[i].out, error);
+    result = abbe_program_make(r->gpu.gl, all[i].stages, all[i].count, defines, all[i].out, error);
   return result;
 }
 
@@ -179,17 +179,17 @@ abbe_result abbe_renderer_make_thesis(abbe_renderer *r, abbe_error *error) {
 static void set_matrix(abbe_renderer *r, GLuint program, const char *name, const double m[16]) {
   float f[16];
   for (int k = 0; k < 16; k++) f[k] = (float)m[k];
-  r->gl->UniformMatrix4fv(r->gl->GetUniformLocation(program, name), 1, GL_FALSE, f);
+  r->gpu.gl->UniformMatrix4fv(r->gpu.gl->GetUniformLocation(program, name), 1, GL_FALSE, f);
 }
 
 static void set_planes(abbe_renderer *r, GLuint program, const abbe_view *view) {
-  r->gl->Uniform3f(r->gl->GetUniformLocation(program, "planes"), (float)(view->near * view->far),
+  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(program, "planes"), (float)(view->near * view->far),
                    (float)(view->far - view->near), (float)view->far);
 }
 
 static void set_common(abbe_renderer *r, GLuint program, const abbe_view *view,
                        const double clip[16]) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   thesis_state *t = r->thesis;
   const double *w = view->window;
   set_matrix(r, program, "projection", clip);
@@ -212,10 +212,10 @@ static void set_spot(abbe_renderer *r, GLuint program, const double direction[3]
   bool cone = light->kind == ABBE_LIGHT_SPOT;
   double outer = cone ? cos(light->cone_rad) : -2;
   double inner = cone ? cos(fmax(light->cone_rad - light->soft_rad, 0)) : -2;
-  r->gl->Uniform4f(r->gl->GetUniformLocation(program, "spot"), (float)direction[0],
+  r->gpu.gl->Uniform4f(r->gpu.gl->GetUniformLocation(program, "spot"), (float)direction[0],
                    (float)direction[1], (float)direction[2], (float)outer);
-  abbe_renderer_set_float(r, program, "spot_inner", inner);
-  r->gl->Uniform3f(r->gl->GetUniformLocation(program, "spot_colour"), (float)rgb[0], (float)rgb[1],
+  abbe_gpu_set_float(&r->gpu, program, "spot_inner", inner);
+  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(program, "spot_colour"), (float)rgb[0], (float)rgb[1],
                    (float)rgb[2]);
 }
 
@@ -224,11 +224,11 @@ static abbe_result draw_layers(abbe_renderer *r, GLuint normals, GLuint depths, 
                                abbe_error *error) {
   static const int all = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  abbe_result result = abbe_renderer_set_target(r, &normals, &all, 1, depths, width, height, error);
+  abbe_result result = abbe_gpu_set_target(&r->gpu, &normals, &all, 1, depths, width, height, error);
   if (result != ABBE_OK) return result;
-  r->gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  r->gl->ClearBufferfv(GL_DEPTH, 0, &far);
-  r->gl->UseProgram(r->thesis->layers);
+  r->gpu.gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  r->gpu.gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  r->gpu.gl->UseProgram(r->thesis->layers);
   set_matrix(r, r->thesis->layers, "view", look);
   set_matrix(r, r->thesis->layers, "projection", clip);
   for (size_t i = 0; i < r->plan.refractor_count; i++)
@@ -238,14 +238,14 @@ static abbe_result draw_layers(abbe_renderer *r, GLuint normals, GLuint depths, 
 
 static abbe_result light_passes(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   size_t map = r->plan.desc.map_size;
   static const GLfloat far = 1;
   double matrix[16];
   gl->Enable(GL_DEPTH_TEST);
-  abbe_renderer_begin_pass(r);
+  abbe_gpu_begin_pass(&r->gpu);
   abbe_result result =
-      abbe_renderer_set_target(r, NULL, NULL, 0, t->light_receiver_depth, map, map, error);
+      abbe_gpu_set_target(&r->gpu, NULL, NULL, 0, t->light_receiver_depth, map, map, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->UseProgram(t->depth_only);
@@ -253,24 +253,24 @@ static abbe_result light_passes(abbe_renderer *r, abbe_error *error) {
   set_matrix(r, t->depth_only, "view_projection", matrix);
   for (size_t i = 0; i < r->plan.receiver_count; i++)
     abbe_renderer_draw(r, r->plan.receiver_object[i]);
-  abbe_renderer_end_pass(r, "light: receiver depth");
+  abbe_gpu_end_pass(&r->gpu, "light: receiver depth");
   result = draw_layers(r, t->light_normals, t->light_depths, map, map, t->light_look, t->light_clip,
                        error);
-  abbe_renderer_end_pass(r, "light: refractor layers");
+  abbe_gpu_end_pass(&r->gpu, "light: refractor layers");
   return result;
 }
 
 static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   size_t map = r->plan.desc.map_size;
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
-  abbe_renderer_begin_pass(r);
+  abbe_gpu_begin_pass(&r->gpu);
   abbe_result result = abbe_renderer_place_photons(r, 0, t->light_normals, 0, error);
-  abbe_renderer_end_pass(r, "light: photon placement");
+  abbe_gpu_end_pass(&r->gpu, "light: photon placement");
   if (result == ABBE_OK)
-    result = abbe_renderer_set_target(r, &t->map, &flat, 1, 0, map, map, error);
+    result = abbe_gpu_set_target(&r->gpu, &t->map, &flat, 1, 0, map, map, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->Disable(GL_DEPTH_TEST);
@@ -282,43 +282,43 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   double direction[3] = {0, 0, -1};
   abbe_transform_direction(t->light_look, r->scene->light[0].direction, direction);
   set_spot(r, t->splat, direction);
-  abbe_renderer_bind_texture(r, t->splat, "normals", 0, t->light_normals);
-  abbe_renderer_bind_texture(r, t->splat, "depths", 1, t->light_depths);
-  abbe_renderer_bind_texture_2d(r, t->splat, "receiver_depth", 2, t->light_receiver_depth);
+  abbe_gpu_bind_array(&r->gpu, t->splat, "normals", 0, t->light_normals);
+  abbe_gpu_bind_array(&r->gpu, t->splat, "depths", 1, t->light_depths);
+  abbe_gpu_bind_texture(&r->gpu, t->splat, "receiver_depth", 2, t->light_receiver_depth);
   double across = (double)map / (double)r->plan.desc.photons;
-  abbe_renderer_set_int(r, t->splat, "grid", (int)r->plan.desc.photons);
-  abbe_renderer_set_float(r, t->splat, "resolution", (double)map);
-  abbe_renderer_set_float(r, t->splat, "modifier",
+  abbe_gpu_set_int(&r->gpu, t->splat, "grid", (int)r->plan.desc.photons);
+  abbe_gpu_set_float(&r->gpu, t->splat, "resolution", (double)map);
+  abbe_gpu_set_float(&r->gpu, t->splat, "modifier",
                           across * across / (t->cie ? splat_sum : colour_sum));
   gl->Uniform3fv(gl->GetUniformLocation(t->splat, "colour"), (GLsizei)r->plan.desc.wavelengths,
                  &t->colour[0][0]);
-  gl->BindVertexArray(r->empty_array);
+  gl->BindVertexArray(r->gpu.empty_array);
   gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, r->list[LEVELS - 1]);
   gl->DrawArraysIndirect(GL_POINTS, (const char *)NULL + 16);
   gl->Disable(GL_BLEND);
-  abbe_renderer_end_pass(r, "light: photons");
+  abbe_gpu_end_pass(&r->gpu, "light: photons");
   return ABBE_OK;
 }
 
 static abbe_result draw_screen(abbe_renderer *r, GLuint target, size_t width, size_t height,
                                abbe_error *error) {
   static const int flat = -1;
-  abbe_result result = abbe_renderer_set_target(r, &target, &flat, 1, 0, width, height, error);
+  abbe_result result = abbe_gpu_set_target(&r->gpu, &target, &flat, 1, 0, width, height, error);
   if (result != ABBE_OK) return result;
-  r->gl->Disable(GL_DEPTH_TEST);
-  r->gl->BindVertexArray(r->empty_array);
-  r->gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  r->gpu.gl->Disable(GL_DEPTH_TEST);
+  r->gpu.gl->BindVertexArray(r->gpu.empty_array);
+  r->gpu.gl->DrawArrays(GL_TRIANGLES, 0, 3);
   return ABBE_OK;
 }
 
 static abbe_result fill_gaps(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
   size_t map = r->plan.desc.map_size;
-  abbe_renderer_begin_pass(r);
-  r->gl->UseProgram(t->fill);
-  abbe_renderer_bind_texture_2d(r, t->fill, "spectral_map", 0, t->map);
+  abbe_gpu_begin_pass(&r->gpu);
+  r->gpu.gl->UseProgram(t->fill);
+  abbe_gpu_bind_texture(&r->gpu, t->fill, "spectral_map", 0, t->map);
   abbe_result result = draw_screen(r, t->filled, map, map, error);
-  abbe_renderer_end_pass(r, "light: gap fill");
+  abbe_gpu_end_pass(&r->gpu, "light: gap fill");
   return result;
 }
 
@@ -328,16 +328,16 @@ static void set_surface(abbe_renderer *r, size_t receiver, int *layer) {
   bool textured = o->texture.data != NULL;
   double rgb[3] = {o->reflectance[0], o->reflectance[1], o->reflectance[2]};
   if (r->thesis->cie) abbe_renderer_to_working(r, rgb, rgb);
-  r->gl->Uniform3f(r->gl->GetUniformLocation(p, "reflectance"), (float)rgb[0], (float)rgb[1],
+  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(p, "reflectance"), (float)rgb[0], (float)rgb[1],
                    (float)rgb[2]);
-  r->gl->Uniform3f(r->gl->GetUniformLocation(p, "texture_info"), textured ? (float)*layer : -1.0f,
+  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(p, "texture_info"), textured ? (float)*layer : -1.0f,
                    (float)o->texture_repeat[0], (float)o->texture_repeat[1]);
   *layer += textured;
 }
 
 /* What only the physical units ask for; programs without them have no such uniforms. */
 static void set_units(abbe_renderer *r, GLuint program) {
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   const double *forward = r->light[0].map.view.forward;
   const float *white = r->thesis->white, *m = r->rgb_from_xyz;
   if (!r->thesis->cie) return;
@@ -347,19 +347,19 @@ static void set_units(abbe_renderer *r, GLuint program) {
   gl->Uniform3f(gl->GetUniformLocation(program, "forward"), (float)forward[0], (float)forward[1],
                 (float)forward[2]);
   gl->Uniform3f(gl->GetUniformLocation(program, "white"), white[0], white[1], white[2]);
-  abbe_renderer_set_float(r, program, "power", r->scene->light[0].power);
-  abbe_renderer_set_float(r, program, "ambient", r->scene->ambient);
+  abbe_gpu_set_float(&r->gpu, program, "power", r->scene->light[0].power);
+  abbe_gpu_set_float(&r->gpu, program, "ambient", r->scene->ambient);
 }
 
 static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   static const int flat = -1;
   static const GLfloat far = 1;
   double matrix[16];
-  abbe_renderer_begin_pass(r);
+  abbe_gpu_begin_pass(&r->gpu);
   abbe_result result =
-      abbe_renderer_set_target(r, &t->eye_receivers, &flat, 1, t->eye_receiver_depth,
+      abbe_gpu_set_target(&r->gpu, &t->eye_receivers, &flat, 1, t->eye_receiver_depth,
                                r->plan.desc.width, r->plan.desc.height, error);
   if (result != ABBE_OK) return result;
   const GLfloat sky = t->cie ? (float)r->scene->background : 0;
@@ -381,29 +381,29 @@ static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
   gl->Uniform3f(gl->GetUniformLocation(t->receivers, "eye"), (float)eye[0], (float)eye[1],
                 (float)eye[2]);
   bool fills = r->plan.desc.fill == ABBE_FILL_SMEAR;
-  abbe_renderer_bind_texture_2d(r, t->receivers, "spectral_map", 0, fills ? t->filled : t->map);
-  abbe_renderer_bind_texture_2d(r, t->receivers, "shadow_map", 1, t->light_receiver_depth);
-  abbe_renderer_bind_texture(r, t->receivers, "surface_texture", 2, r->texture_surface);
-  abbe_renderer_bind_texture(r, t->receivers, "refractor_depths", 3, t->light_depths);
+  abbe_gpu_bind_texture(&r->gpu, t->receivers, "spectral_map", 0, fills ? t->filled : t->map);
+  abbe_gpu_bind_texture(&r->gpu, t->receivers, "shadow_map", 1, t->light_receiver_depth);
+  abbe_gpu_bind_array(&r->gpu, t->receivers, "surface_texture", 2, r->texture_surface);
+  abbe_gpu_bind_array(&r->gpu, t->receivers, "refractor_depths", 3, t->light_depths);
   int layer = 0;
   for (size_t i = 0; i < r->plan.receiver_count; i++) {
     set_surface(r, i, &layer);
     abbe_renderer_draw(r, r->plan.receiver_object[i]);
   }
-  abbe_renderer_end_pass(r, "eye: receivers");
+  abbe_gpu_end_pass(&r->gpu, "eye: receivers");
   return ABBE_OK;
 }
 
 static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
   thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gl;
+  const abbe_gl *gl = r->gpu.gl;
   size_t width = r->plan.desc.width, height = r->plan.desc.height;
   GLsizei n = (GLsizei)r->plan.desc.wavelengths;
   gl->Enable(GL_DEPTH_TEST);
-  abbe_renderer_begin_pass(r);
+  abbe_gpu_begin_pass(&r->gpu);
   abbe_result result =
       draw_layers(r, t->eye_normals, t->eye_depths, width, height, t->eye_look, t->eye_clip, error);
-  abbe_renderer_end_pass(r, "eye: refractor layers");
+  abbe_gpu_end_pass(&r->gpu, "eye: refractor layers");
   if (result != ABBE_OK) return result;
   gl->UseProgram(t->refraction);
   set_common(r, t->refraction, &r->eye, t->eye_clip);
@@ -414,19 +414,19 @@ static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
   gl->Uniform3f(gl->GetUniformLocation(t->refraction, "light_position"), (float)lamp[0],
                 (float)lamp[1], (float)lamp[2]);
   gl->Uniform2f(gl->GetUniformLocation(t->refraction, "picture_size"), (float)width, (float)height);
-  abbe_renderer_set_float(r, t->refraction, "attenuation", t->attenuation);
+  abbe_gpu_set_float(&r->gpu, t->refraction, "attenuation", t->attenuation);
   float(*colour)[3] = malloc((size_t)n * sizeof *colour);
   if (colour == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for colours");
   for (GLsizei i = 0; i < n; i++)
     for (int c = 0; c < 3; c++) colour[i][c] = t->colour[i][c] * (t->cie ? 1 / t->white[c] : 0.26f);
   gl->Uniform3fv(gl->GetUniformLocation(t->refraction, "colour"), n, &colour[0][0]);
   free(colour);
-  abbe_renderer_bind_texture(r, t->refraction, "normals", 0, t->eye_normals);
-  abbe_renderer_bind_texture(r, t->refraction, "depths", 1, t->eye_depths);
-  abbe_renderer_bind_texture_2d(r, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
-  abbe_renderer_bind_texture_2d(r, t->refraction, "receivers", 3, t->eye_receivers);
+  abbe_gpu_bind_array(&r->gpu, t->refraction, "normals", 0, t->eye_normals);
+  abbe_gpu_bind_array(&r->gpu, t->refraction, "depths", 1, t->eye_depths);
+  abbe_gpu_bind_texture(&r->gpu, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
+  abbe_gpu_bind_texture(&r->gpu, t->refraction, "receivers", 3, t->eye_receivers);
   result = draw_screen(r, r->eye_picture, width, height, error);
-  abbe_renderer_end_pass(r, "eye: refraction");
+  abbe_gpu_end_pass(&r->gpu, "eye: refraction");
   return result;
 }
 
@@ -437,13 +437,13 @@ abbe_result abbe_renderer_thesis_frame(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = light_receivers(r, error);
   if (result == ABBE_OK) result = refract_eye(r, error);
   if (result != ABBE_OK) return result;
-  if (r->statistics != NULL) {
+  if (r->gpu.statistics != NULL) {
     GLuint count = 0;
-    r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
-    r->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
+    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
+    r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
     r->light[0].photon_count = count;
   }
-  return abbe_gl_check(r->gl, "the thesis profile", error);
+  return abbe_gl_check(r->gpu.gl, "the thesis profile", error);
 }
 
 GLuint abbe_renderer_thesis_map(const abbe_renderer *r, bool filled) {
@@ -455,11 +455,11 @@ void abbe_renderer_free_thesis(abbe_renderer *r) {
   if (t == NULL) return;
   const GLuint programs[] = {t->layers, t->depth_only, t->splat,
                              t->fill,   t->receivers,  t->refraction};
-  for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) r->gl->DeleteProgram(programs[i]);
+  for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) r->gpu.gl->DeleteProgram(programs[i]);
   const GLuint textures[] = {
       t->light_normals, t->light_depths, t->light_receiver_depth, t->map,          t->filled,
       t->eye_normals,   t->eye_depths,   t->eye_receiver_depth,   t->eye_receivers};
-  r->gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
+  r->gpu.gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
   free(t->colour);
   free(t->index);
   free(t->attenuation_of);

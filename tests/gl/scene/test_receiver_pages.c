@@ -308,8 +308,8 @@ static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_rece
   float *texel = calloc(r->map_layers * side * side * 4, sizeof *texel);
   double sum = 0;
   assert_non_null(texel);
-  r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map);
-  r->gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, texel);
+  r->gpu.gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map);
+  r->gpu.gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, texel);
   *outside = 0;
   for (size_t y = 0; y < pages->rows; y++)
     for (size_t x = 0; x < side; x++) {

@@ -1,0 +1,58 @@
+/* bindings.h: where shaders find their buffers: one list, read by C and by GLSL. A number means one
+ * buffer, in every program. Internal to gl/. */
+#ifndef ABBE_GL_DEVICE_BINDINGS_H
+#define ABBE_GL_DEVICE_BINDINGS_H
+
+/* The scene: uniform blocks, or storage where a block is too small. */
+#define BINDING_LIGHTS 0
+#define BINDING_REFRACTORS 1
+#define BINDING_PLANES 2
+#define BINDING_RECEIVERS 3
+#define BINDING_SURFACES 4
+#define BINDING_SPECTRA 5
+#define BINDING_BANDS 6
+#define BINDING_WARPS 7
+#define BINDING_SHADOW_PLANES 8
+
+/* Photons: cells of the grid that may show a refractor, those of the coarser level, the photons
+ * and which one each cell has. */
+#define BINDING_CELLS 9
+#define BINDING_COARSER_CELLS 10
+#define BINDING_PHOTONS 11
+#define BINDING_PHOTON_OF_CELL 12
+#define BINDING_FOUND_BOX 13
+
+/* Their hits: places, path signatures, which paths there are, what the ledger weighs them by. */
+#define BINDING_HITS 14
+#define BINDING_SIGNATURES 15
+#define BINDING_PATH_MARKS 16
+#define BINDING_PATHS 17
+#define BINDING_SAMPLE_WEIGHTS 18
+#define BINDING_LEDGER 19
+
+/* Intervals between wavelengths that ask for all theirs. */
+#define BINDING_WANTS 20
+#define BINDING_PAIRS 21
+
+/* The spectral map. */
+#define BINDING_SPLATS 22
+#define BINDING_MAP_SUMS 23
+#define BINDING_TEXEL_SIZES 24
+
+/* The camera's picture: pixels that show a refractor, and those that ask for all bands. */
+#define BINDING_PIXELS 25
+#define BINDING_REFINED_PIXELS 26
+
+/* A list that becomes the size of a dispatch. */
+#define BINDING_DISPATCH 27
+
+/* Texture units that keep what they show; passes bind theirs below and say so. */
+#define UNIT_BVH_NODES 7
+#define UNIT_BVH_TRIANGLES 8
+#define UNIT_BVH_CORNERS 9
+#define UNIT_PAGE_ROWS 10
+#define UNIT_PAGE_INDEX 11
+#define UNIT_CHART_ROWS 12
+#define UNIT_SIDE_OF_FACE 13
+
+#endif

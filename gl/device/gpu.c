@@ -1,0 +1,214 @@
+#include "gl/device/gpu.h"
+
+#include "gl/device/program.h"
+#include "gl/device/bindings.h"
+
+#include <time.h>
+
+abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
+  out->gl = gl;
+  gl->GenFramebuffers(1, &out->framebuffer);
+  gl->GenVertexArrays(1, &out->empty_array);
+  return abbe_program_make_compute(gl, "list_groups.comp", NULL, &out->list_groups, error);
+}
+
+void abbe_gpu_free(abbe_gpu *gpu) {
+  if (gpu->gl == NULL) return;
+  gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels);
+  gpu->gl->DeleteProgram(gpu->list_groups);
+  gpu->gl->DeleteFramebuffers(1, &gpu->framebuffer);
+  gpu->gl->DeleteVertexArrays(1, &gpu->empty_array);
+  *gpu = (abbe_gpu){0};
+}
+
+double abbe_gpu_now_ms(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
+                                      abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  if (size == 0) size = 16; /* a bound buffer may not be empty */
+  gl->GenBuffers(1, out);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
+  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
+  gpu->bytes += size;
+  return abbe_gl_check(gl, "the allocation of a buffer", error);
+}
+
+static size_t texel_bytes(GLenum format) {
+  switch (format) {
+  case GL_RGBA32F:
+    return 16;
+  case GL_RGBA16F:
+    return 8;
+  case GL_R16UI:
+    return 2;
+  default:
+    return 4;
+  }
+}
+
+abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
+                                       size_t layers, bool linear, GLuint *out, abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  gl->GenTextures(1, out);
+  gl->BindTexture(target, *out);
+  if (layers > 0)
+    gl->TexStorage3D(target, 1, format, (GLsizei)width, (GLsizei)height, (GLsizei)layers);
+  else
+    gl->TexStorage2D(target, 1, format, (GLsizei)width, (GLsizei)height);
+  gl->TexParameteri(target, GL_TEXTURE_MIN_FILTER, linear ? GL_LINEAR : GL_NEAREST);
+  gl->TexParameteri(target, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
+  gl->TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl->TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  gpu->bytes += width * height * (layers > 0 ? layers : 1) * texel_bytes(format);
+  return abbe_gl_check(gl, "the allocation of a texture", error);
+}
+
+/* A layer of -1 attaches the whole texture: a 2D one, or every layer of an array. */
+abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *layer,
+                                     size_t count, GLuint depth, size_t width, size_t height,
+                                     abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  GLenum attachments[4];
+  gl->BindFramebuffer(GL_FRAMEBUFFER, gpu->framebuffer);
+  for (size_t i = 0; i < 4; i++) {
+    GLenum attachment = GL_COLOR_ATTACHMENT0 + (GLenum)i;
+    GLuint texture = i < count ? colour[i] : 0;
+    if (i < count && layer[i] >= 0)
+      gl->FramebufferTextureLayer(GL_FRAMEBUFFER, attachment, texture, 0, layer[i]);
+    else
+      gl->FramebufferTexture(GL_FRAMEBUFFER, attachment, texture, 0);
+    attachments[i] = attachment;
+  }
+  gl->FramebufferTexture(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, depth, 0);
+  gl->DrawBuffers((GLsizei)count, attachments);
+  gl->Viewport(0, 0, (GLsizei)width, (GLsizei)height);
+  if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return ABBE_OK;
+  return abbe_error_set(error, ABBE_GL, "this OpenGL cannot render to a %zu x %zu float texture",
+                        width, height);
+}
+
+abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size,
+                                      const void *data, int unit, GLuint *buffer, GLuint *texture,
+                                      abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  gl->DeleteBuffers(1, buffer);
+  *buffer = 0;
+  abbe_result result = abbe_gpu_make_buffer(gpu, size, data, buffer, error);
+  if (result != ABBE_OK) return result;
+  if (*texture == 0) gl->GenTextures(1, texture);
+  gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  gl->BindTexture(GL_TEXTURE_BUFFER, *texture);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, format, *buffer);
+  return abbe_gl_check(gl, "the upload of texels", error);
+}
+
+void abbe_gpu_bind_array(abbe_gpu *gpu, GLuint program, const char *name, int unit,
+                                GLuint texture) {
+  GLint location = gpu->gl->GetUniformLocation(program, name);
+  if (location < 0) return;
+  gpu->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  gpu->gl->BindTexture(GL_TEXTURE_2D_ARRAY, texture);
+  gpu->gl->Uniform1i(location, unit);
+}
+
+void abbe_gpu_bind_texture(abbe_gpu *gpu, GLuint program, const char *name, int unit,
+                                   GLuint texture) {
+  gpu->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  gpu->gl->BindTexture(GL_TEXTURE_2D, texture);
+  gpu->gl->Uniform1i(gpu->gl->GetUniformLocation(program, name), unit);
+}
+
+void abbe_gpu_bind_texels(abbe_gpu *gpu, GLuint program, const char *name, int unit,
+                               GLenum format, GLuint buffer) {
+  const abbe_gl *gl = gpu->gl;
+  if (gpu->texels[unit] == 0) gl->GenTextures(1, &gpu->texels[unit]);
+  gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+  gl->BindTexture(GL_TEXTURE_BUFFER, gpu->texels[unit]);
+  gl->TexBuffer(GL_TEXTURE_BUFFER, format, buffer);
+  gl->Uniform1i(gl->GetUniformLocation(program, name), unit);
+}
+
+void abbe_gpu_set_int(abbe_gpu *gpu, GLuint program, const char *name, int value) {
+  gpu->gl->Uniform1i(gpu->gl->GetUniformLocation(program, name), value);
+}
+
+void abbe_gpu_set_uint(abbe_gpu *gpu, GLuint program, const char *name, size_t value) {
+  gpu->gl->Uniform1ui(gpu->gl->GetUniformLocation(program, name), (GLuint)value);
+}
+
+void abbe_gpu_set_float(abbe_gpu *gpu, GLuint program, const char *name, double value) {
+  gpu->gl->Uniform1f(gpu->gl->GetUniformLocation(program, name), (float)value);
+}
+
+void abbe_gpu_bind_storage(abbe_gpu *gpu, GLuint binding, GLuint buffer) {
+  gpu->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
+}
+
+void abbe_gpu_clear_buffer(abbe_gpu *gpu, GLuint buffer) {
+  static const GLuint zero = 0;
+  gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  gpu->gl->ClearBufferData(GL_SHADER_STORAGE_BUFFER, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                           &zero);
+}
+
+void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list) {
+  static const GLuint zero[ABBE_GPU_LIST_HEADER / 4] = {0};
+  gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
+  gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+}
+
+size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list) {
+  GLuint count = 0;
+  gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
+  gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
+  return count;
+}
+
+void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t most,
+                            size_t threads) {
+  const abbe_gl *gl = gpu->gl;
+  gl->UseProgram(gpu->list_groups);
+  abbe_gpu_set_uint(gpu, gpu->list_groups, "group_size", ABBE_GPU_GROUP);
+  abbe_gpu_set_uint(gpu, gpu->list_groups, "most", most);
+  abbe_gpu_set_uint(gpu, gpu->list_groups, "threads", threads);
+  abbe_gpu_bind_storage(gpu, BINDING_DISPATCH, list);
+  gl->DispatchCompute(1, 1, 1);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  gl->UseProgram(program);
+  gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+  gl->DispatchComputeIndirect(4);
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+/* One thread a texel; the shaders' groups are 32 x 16, large because a software rasteriser pays
+ * for each. */
+void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height) {
+  gpu->gl->DispatchCompute((GLuint)((width + 31) / 32), (GLuint)((height + 15) / 16), 1);
+}
+
+void abbe_gpu_begin_pass(abbe_gpu *gpu) {
+  if (gpu->statistics == NULL) return;
+  gpu->gl->Finish();
+  gpu->pass_start_ms = abbe_gpu_now_ms();
+}
+
+void abbe_gpu_end_pass(abbe_gpu *gpu, const char *name) {
+  abbe_statistics *s = gpu->statistics;
+  if (s == NULL) return;
+  gpu->gl->Finish();
+  double ms = abbe_gpu_now_ms() - gpu->pass_start_ms;
+  gpu->pass_start_ms += ms;
+  for (size_t i = 0; i < s->pass_count; i++)
+    if (s->pass[i].name == name) {
+      s->pass[i].ms += ms;
+      return;
+    }
+  if (s->pass_count < ABBE_STATISTICS_MAX_PASSES)
+    s->pass[s->pass_count++] = (abbe_pass_time){name, ms};
+}

@@ -1,0 +1,86 @@
+/* gpu.h: what every pass does with the device: buffers and textures, counted; targets; uniforms; lists
+ * whose length stays on the device; the time of a pass. It knows no scene and no pass. Internal to gl/.
+ */
+#ifndef ABBE_GL_DEVICE_GPU_H
+#define ABBE_GL_DEVICE_GPU_H
+
+#include "base/error.h"
+#include "gl/device/api.h"
+#include "gl/statistics.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Texture units up to here show buffers through textures of the device's own. */
+#define ABBE_GPU_TEXEL_UNITS 6
+
+/* Threads of a group where there is one an element of a list. */
+#define ABBE_GPU_GROUP 256
+
+/* Bytes of a list before its elements: how many there are, and the groups of the dispatch that
+ * takes them. */
+#define ABBE_GPU_LIST_HEADER 16
+
+typedef struct abbe_gpu {
+  const abbe_gl *gl;
+  GLuint framebuffer, empty_array;
+  GLuint list_groups;                  /* program */
+  GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
+  size_t bytes;                        /* of all buffers and textures made so far */
+  abbe_statistics *statistics;         /* of the frame that runs, or NULL: no pass is waited for */
+  double pass_start_ms;
+} abbe_gpu;
+
+/* *out is zero or made before; free it also where this fails. ABBE_GL, ABBE_NO_MEMORY. */
+abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error);
+void abbe_gpu_free(abbe_gpu *gpu);
+
+/* A storage buffer; data may be NULL. ABBE_GL. */
+abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
+                                 abbe_error *error);
+/* A texture of one level, an array where layers > 0. ABBE_GL. */
+abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
+                                  size_t layers, bool linear, GLuint *out, abbe_error *error);
+/* A buffer of `size` bytes that shaders read as texels of `format`, and its texture, at a unit of its
+ * own; what *buffer was is deleted, *texture is made where it is 0. ABBE_GL. */
+abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
+                                 int unit, GLuint *buffer, GLuint *texture, abbe_error *error);
+
+/* Draws into these from now on. A layer of -1 attaches the whole texture: a 2D one, or every layer of
+ * an array. count at most 4, depth may be 0. ABBE_GL. */
+abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *layer, size_t count,
+                                GLuint depth, size_t width, size_t height, abbe_error *error);
+
+/* Into the program that is in use; a name that it does not have is left out. */
+void abbe_gpu_set_int(abbe_gpu *gpu, GLuint program, const char *name, int value);
+void abbe_gpu_set_uint(abbe_gpu *gpu, GLuint program, const char *name, size_t value);
+void abbe_gpu_set_float(abbe_gpu *gpu, GLuint program, const char *name, double value);
+/* A texture array; a 2D texture; a buffer whose elements are texels, at a unit below
+ * ABBE_GPU_TEXEL_UNITS. */
+void abbe_gpu_bind_array(abbe_gpu *gpu, GLuint program, const char *name, int unit, GLuint texture);
+void abbe_gpu_bind_texture(abbe_gpu *gpu, GLuint program, const char *name, int unit,
+                           GLuint texture);
+void abbe_gpu_bind_texels(abbe_gpu *gpu, GLuint program, const char *name, int unit, GLenum format,
+                          GLuint buffer);
+void abbe_gpu_bind_storage(abbe_gpu *gpu, GLuint binding, GLuint buffer);
+
+/* All words to zero. */
+void abbe_gpu_clear_buffer(abbe_gpu *gpu, GLuint buffer);
+/* Empties a list. */
+void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list);
+/* Waits for the device: elements of a list, also beyond its room. */
+size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
+
+/* One thread a texel, in groups of 32 x 16. */
+void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height);
+/* So many threads an element of the list, which has room for `most`; the program is set up by then. */
+void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t most,
+                            size_t threads);
+
+double abbe_gpu_now_ms(void);
+void abbe_gpu_begin_pass(abbe_gpu *gpu);
+/* What was done since the pass began, or since the last one's end, is of this pass; several ends of
+ * one pass add up. */
+void abbe_gpu_end_pass(abbe_gpu *gpu, const char *name);
+
+#endif
