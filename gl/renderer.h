@@ -11,7 +11,7 @@
 #include "colorimetry/image/image.h"
 #include "gl/device/context.h"
 #include "gl/plan/plan.h"
-#include "gl/statistics.h"
+#include "gl/device/statistics.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
 

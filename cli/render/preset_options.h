@@ -3,7 +3,7 @@
 #define ABBE_CLI_RENDER_PRESET_OPTIONS_H
 
 #include "gl/accuracy/preset.h"
-#include "gl/statistics.h"
+#include "gl/device/statistics.h"
 
 #include <argp.h>
 #include <stdbool.h>

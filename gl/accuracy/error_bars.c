@@ -2,7 +2,7 @@
 
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
-#include "gl/renderer_state.h"
+#include "gl/device/gpu.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "gl/renderer_state.h"
+#include "gl/caustics/cell_fit.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,26 +11,26 @@ static const double least_image = 2, counted_share = 0.95;
 enum { LEAST_CELLS = 16, STEP_BINS = 256 };
 
 typedef struct batch_view {
-  const abbe_renderer *renderer;
+  const abbe_receiver_atlas *atlas;
   const abbe_map_layout *map;
   double texels;
-  const float *landing; /* [photons][orders][lanes][4] */
+  const float *hit;     /* [photons][orders][lanes][4] */
   const GLuint *path;   /* the same without the last */
-  const GLuint *photon; /* [photons][PHOTON_BYTES / 4] */
+  const GLuint *photon; /* [photons][ABBE_PHOTON_BYTES / 4] */
   size_t photons, orders, lanes, lane;
   const GLuint *slot; /* [cells], photon + 1 */
   size_t cells[2];
 } batch_view;
 
-static double warped(const double knot[WARP_STEPS + 1], double u) {
-  double s = fmin(fmax(u, 0), 1) * WARP_STEPS;
-  int k = (int)fmin(s, WARP_STEPS - 1);
+static double warped(const double knot[ABBE_WARP_STEPS + 1], double u) {
+  double s = fmin(fmax(u, 0), 1) * ABBE_WARP_STEPS;
+  int k = (int)fmin(s, ABBE_WARP_STEPS - 1);
   return knot[k] + (knot[k + 1] - knot[k]) * (s - k);
 }
 
 static bool texel_of(const batch_view *b, const float *at, GLuint path, double out[2]) {
   double p[3] = {at[0], at[1], at[2]}, uvz[3];
-  if (abbe_renderer_is_on_page(b->renderer, path)) {
+  if (abbe_receiver_atlas_holds(b->atlas, path)) {
     memcpy(out, p, 2 * sizeof *out);
     return true;
   }
@@ -46,20 +46,20 @@ static int step_bin(double texels) {
   return (int)fmin(fmax(bin, 0), STEP_BINS - 1);
 }
 
-/* The brightest landing in 2^24 parts: flux is counted in whole ones, whose sums do not depend on
+/* The brightest hit in 2^24 parts: flux is counted in whole ones, whose sums do not depend on
  * the order in which photons are listed. */
 static double part_of(const batch_view *b) {
   float most = 0;
   for (size_t i = 0; i < b->photons * b->orders * b->lanes; i++)
-    most = fmaxf(most, b->landing[4 * i + 3]);
+    most = fmaxf(most, b->hit[4 * i + 3]);
   return most > 0 ? (double)most / (1 << 24) : 1;
 }
 
-/* Light by how far, in texels, the next cell's landing on the same path lies from this one's. */
+/* Light by how far, in texels, the next cell's hit on the same path lies from this one's. */
 static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS]) {
   double part = part_of(b);
   for (size_t i = 0; i < b->photons; i++) {
-    GLuint cell = b->photon[i * (PHOTON_BYTES / 4)];
+    GLuint cell = b->photon[i * (ABBE_PHOTON_BYTES / 4)];
     size_t at[2] = {cell & 0xffffu, cell >> 16};
     at[axis]++;
     if (at[axis] >= b->cells[axis]) continue;
@@ -70,11 +70,11 @@ static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS
       size_t there = ((next - 1) * b->orders + order) * b->lanes + b->lane;
       double from[2], to[2];
       if (b->path[here] == 0 || b->path[here] != b->path[there] ||
-          !texel_of(b, b->landing + 4 * here, b->path[here], from) ||
-          !texel_of(b, b->landing + 4 * there, b->path[there], to))
+          !texel_of(b, b->hit + 4 * here, b->path[here], from) ||
+          !texel_of(b, b->hit + 4 * there, b->path[there], to))
         continue;
       double step = hypot(to[0] - from[0], to[1] - from[1]);
-      histogram[step_bin(step)] += rint((double)b->landing[4 * here + 3] / part);
+      histogram[step_bin(step)] += rint((double)b->hit[4 * here + 3] / part);
     }
   }
 }
@@ -99,46 +99,48 @@ static void choose_cells(const batch_view *b, size_t out[2]) {
   }
 }
 
-static GLuint *read_words(abbe_renderer *r, GLuint buffer, size_t offset, size_t words) {
+static GLuint *read_words(const abbe_gl *gl, GLuint buffer, size_t offset, size_t words) {
   GLuint *data = malloc(words * 4 + 4);
   if (data == NULL) return NULL;
-  r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-  r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)offset, (GLsizeiptr)(words * 4),
-                          data);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)offset, (GLsizeiptr)(words * 4), data);
   return data;
 }
 
-abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *error) {
-  light_state *state = &r->light[light];
-  float *landing = NULL;
+abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_light_views *views, size_t light,
+                              abbe_error *error) {
+  const abbe_plan *plan = views->scene->plan;
+  const abbe_gl *gl = views->scene->gpu->gl;
+  abbe_light_view *view = &views->light[light];
+  const size_t lanes = trace->hits.stride;
+  const size_t middle = plan->desc.wavelengths / 2, first = middle - lanes / 2;
+  float *hit = NULL;
   GLuint *path = NULL;
-  size_t middle = r->plan.desc.wavelengths / 2, first = middle - r->lanes / 2;
-  abbe_result result = abbe_renderer_start_photons(r, light, error);
+  abbe_result result = abbe_photon_start_run(trace->start, light, error);
   if (result != ABBE_OK) return result;
-  abbe_renderer_bind_tables(r);
-  abbe_renderer_trace_batch(r, light, first, r->lanes, r->plan.desc.wavelengths);
-  result = abbe_renderer_read_batch(r, light, first, &landing, &path, error);
-  GLuint *photon = read_words(r, r->buffer[BINDING_PHOTONS], PHOTON_HEADER,
-                              state->photon_count * (PHOTON_BYTES / 4));
-  GLuint *slot = read_words(r, r->buffer[BINDING_PHOTON_OF_CELL], 0, state->cells[0] * state->cells[1]);
+  abbe_trace_pass_batch(trace, light, first, lanes, plan->desc.wavelengths);
+  result = abbe_trace_pass_read(trace, light, first, &hit, &path, error);
+  GLuint *photon = read_words(gl, trace->start->photons, ABBE_PHOTON_HEADER,
+                              view->photon_count * (ABBE_PHOTON_BYTES / 4));
+  GLuint *slot = read_words(gl, trace->start->photon_of_cell, 0, view->cells[0] * view->cells[1]);
   if (result == ABBE_OK && (photon == NULL || slot == NULL))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the photons' cells");
   if (result == ABBE_OK) {
-    batch_view b = {.renderer = r,
-                    .map = &state->map,
-                    .texels = (double)r->plan.desc.map_size,
-                    .landing = landing,
+    batch_view b = {.atlas = trace->atlas,
+                    .map = &view->map,
+                    .texels = (double)plan->desc.map_size,
+                    .hit = hit,
                     .path = path,
                     .photon = photon,
-                    .photons = state->photon_count,
-                    .orders = r->plan.slots,
-                    .lanes = r->lanes,
+                    .photons = view->photon_count,
+                    .orders = plan->slots,
+                    .lanes = lanes,
                     .lane = middle - first,
                     .slot = slot,
-                    .cells = {state->cells[0], state->cells[1]}};
-    choose_cells(&b, state->cells);
+                    .cells = {view->cells[0], view->cells[1]}};
+    choose_cells(&b, view->cells);
   }
-  free(landing);
+  free(hit);
   free(path);
   free(photon);
   free(slot);

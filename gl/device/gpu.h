@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "gl/device/api.h"
-#include "gl/statistics.h"
+#include "gl/device/statistics.h"
 
 #include <stdbool.h>
 #include <stddef.h>

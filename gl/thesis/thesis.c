@@ -10,10 +10,11 @@
  * fill takes means, irradiance follows from flux as it does in receiver.glsl. Its map holds flux
  * over window area for a lamp of unit power, so that undisturbed light on the axis is white and the
  * fill's thresholds mean what they do in the thesis. */
-#include "gl/device/program.h"
-#include "gl/renderer_state.h"
+#include "gl/thesis/thesis.h"
 
 #include "colorimetry/weights.h"
+#include "gl/caustics/map_picture.h"
+#include "gl/eye/picture.h"
 #include "scenes/geometry/transform.h"
 #include "spectral/wavelengths.h"
 
@@ -22,80 +23,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct thesis_state {
-  GLuint layers, depth_only, splat, fill, receivers, refraction;
-  GLuint light_normals, light_depths, light_receiver_depth, map, filled;
-  GLuint eye_normals, eye_depths, eye_receiver_depth, eye_receivers;
-  double light_look[16], light_clip[16], eye_look[16], eye_clip[16];
-  float (*colour)[3];
-  float *index, *attenuation_of; /* [wavelengths] */
-  bool cie;
-  float white[3]; /* XYZ, of all weights */
-  double attenuation;
-};
-
-static const double colour_sum = 3.5;
-
 /* Integral of the splat's Gaussian over its disk, in texels. */
 static const double splat_sum = 2.6075;
-
-/* XYZ weights, indices and attenuations of the default profile. */
-static abbe_result make_cie_tables(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  size_t n = r->plan.desc.wavelengths;
-  const abbe_material *material = r->scene->object[r->plan.refractor_object[0]].material;
-  abbe_wavelengths nodes = {0};
-  abbe_weights xyz = {0};
-  abbe_result result =
-      abbe_wavelengths_make(n, r->plan.desc.min_nm, r->plan.desc.max_nm, &nodes, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_weights_make(&nodes, &r->scene->light[0].illuminant, ABBE_RGB_SPACE_XYZ, &xyz, error);
-  for (size_t i = 0; i < n && result == ABBE_OK; i++) {
-    double index = 1;
-    result = abbe_material_n(material, nodes.lambda_nm[i], &index, error);
-    t->index[i] = (float)index;
-    t->attenuation_of[i] = (float)abbe_material_attenuation(material, nodes.lambda_nm[i]);
-    for (int c = 0; c < 3; c++) {
-      t->colour[i][c] = (float)xyz.weight[i][c];
-      t->white[c] = (float)xyz.sum[c];
-    }
-  }
-  abbe_weights_free(&xyz);
-  abbe_wavelengths_free(&nodes);
-  return result;
-}
-
-/* The seven colours, or as many as asked for along the same curve, with the same sum. */
-static abbe_result make_tables(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  size_t n = r->plan.desc.wavelengths;
-  t->colour = calloc(n, sizeof *t->colour);
-  t->index = calloc(n, sizeof *t->index);
-  t->attenuation_of = calloc(n, sizeof *t->attenuation_of);
-  if (t->colour == NULL || t->index == NULL || t->attenuation_of == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the thesis's colours");
-  if (t->cie) return make_cie_tables(r, error);
-  const abbe_material *material = r->scene->object[r->plan.refractor_object[0]].material;
-  double sum[3] = {0, 0, 0};
-  for (size_t i = 0; i < n; i++) {
-    double at = n > 1 ? 6.0 * (double)i / (double)(n - 1) : 3.0, f = at - floor(at), index = 1;
-    size_t k = (size_t)fmin(floor(at), 5);
-    f = at - (double)k;
-    for (int c = 0; c < 3; c++) {
-      double a = abbe_weights_thesis_rgb[k][c], b = abbe_weights_thesis_rgb[k + 1][c];
-      t->colour[i][c] = (float)(a + f * (b - a));
-      sum[c] += t->colour[i][c];
-    }
-    abbe_result result = abbe_material_n(material, r->lambda_nm[i], &index, error);
-    if (result != ABBE_OK) return result;
-    t->index[i] = (float)index;
-  }
-  for (size_t i = 0; i < n && n != ABBE_WEIGHTS_THESIS_COUNT; i++)
-    for (int c = 0; c < 3; c++) t->colour[i][c] *= (float)(colour_sum / sum[c]);
-  t->attenuation = abbe_material_attenuation(material, 550.0);
-  return ABBE_OK;
-}
 
 static void look_and_clip(const abbe_view *view, double look[16], double clip[16]) {
   double target[3];
@@ -105,9 +34,9 @@ static void look_and_clip(const abbe_view *view, double look[16], double clip[16
   abbe_transform_perspective(w[0], w[1], w[2], w[3], view->near, view->far, clip);
 }
 
-static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  size_t map = r->plan.desc.map_size, w = r->plan.desc.width, h = r->plan.desc.height;
+static abbe_result make_targets(abbe_thesis *t, abbe_error *error) {
+  size_t map = t->scene->plan->desc.map_size, w = t->scene->plan->desc.width,
+         h = t->scene->plan->desc.height;
   const struct {
     GLuint *texture;
     GLenum format;
@@ -123,19 +52,17 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
       {&t->eye_depths, GL_DEPTH_COMPONENT32F, w, h, 2, false},
       {&t->eye_receiver_depth, GL_DEPTH_COMPONENT32F, w, h, 0, false},
       {&t->eye_receivers, GL_RGBA32F, w, h, 0, false},
-      {&r->eye_picture, GL_RGBA32F, w, h, 0, false},
+      {&t->picture, GL_RGBA32F, w, h, 0, false},
   };
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_gpu_make_texture(&r->gpu, all[i].format, all[i].width, all[i].height,
-                                        all[i].layers, all[i].linear, all[i].texture, error);
+    result = abbe_gpu_make_texture(t->scene->gpu, all[i].format, all[i].width, all[i].height,
+                                   all[i].layers, all[i].linear, all[i].texture, error);
   return result;
 }
 
-static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  char defines[sizeof r->defines + 16];
-  snprintf(defines, sizeof defines, "%s%s", r->defines, t->cie ? "#define CIE\n" : "");
+static abbe_result make_programs(abbe_thesis *t, const abbe_shader_variant *variant,
+                                 abbe_error *error) {
   static const abbe_program_stage layers[] = {{GL_VERTEX_SHADER, "thesis_layers.vert"},
                                               {GL_GEOMETRY_SHADER, "thesis_layers.geom"},
                                               {GL_FRAGMENT_SHADER, "thesis_layers.frag"}};
@@ -158,52 +85,99 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
              {fill, 2, &t->fill},     {lit, 2, &t->receivers},    {refracted, 2, &t->refraction}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_program_make(r->gpu.gl, all[i].stages, all[i].count, defines, all[i].out, error);
+    result = abbe_shader_variant_program(variant, t->scene->gpu->gl, all[i].stages, all[i].count,
+                                         t->cie ? "#define CIE\n" : NULL, all[i].out, error);
   return result;
 }
 
-abbe_result abbe_renderer_make_thesis(abbe_renderer *r, abbe_error *error) {
-  r->thesis = calloc(1, sizeof *r->thesis);
-  if (r->thesis == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the thesis profile");
-  r->thesis->cie = r->plan.desc.profile == ABBE_PROFILE_THESIS_CIE;
-  abbe_renderer_fit_eye(r);
-  look_and_clip(&r->light[0].map.view, r->thesis->light_look, r->thesis->light_clip);
-  look_and_clip(&r->eye, r->thesis->eye_look, r->thesis->eye_clip);
-  abbe_result result = make_tables(r, error);
-  if (result == ABBE_OK) result = make_targets(r, error);
-  if (result == ABBE_OK) result = make_programs(r, error);
+static const double narrow_rad = 0.17; /* ten degrees */
+
+static void fit_objects(const abbe_gpu_scene *scene, const size_t *object, size_t count,
+                        abbe_view *view) {
+  for (size_t i = 0; i < count; i++) {
+    const abbe_mesh *mesh = &scene->local->object[object[i]].mesh;
+    abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count);
+  }
+}
+
+/* The thesis's light sees through one frustum: its cone, or all there is. With the CIE's weights
+ * also where the cone is narrow: a prism throws all of its light out of it. */
+static void fit_light(abbe_thesis *t) {
+  const abbe_light *light = &t->scene->local->light[0];
+  const abbe_plan *plan = t->scene->plan;
+  abbe_view fitted, *view = &fitted;
+  abbe_light_view_look(t->scene, 0, view);
+  fit_objects(t->scene, plan->refractor_object, plan->refractor_count, view);
+  fit_objects(t->scene, plan->receiver_object, plan->receiver_count, view);
+  bool narrow = t->cie && light->cone_rad < narrow_rad;
+  if (light->kind == ABBE_LIGHT_SPOT && !narrow) {
+    double look[3];
+    memcpy(look, light->direction, sizeof look);
+    double near = view->near, far = view->far;
+    abbe_view_look(light->position, look, view->up, false, view);
+    double tangent = fmin(tan(light->cone_rad), ABBE_VIEW_MAX_TANGENT);
+    double window[4] = {-tangent, tangent, -tangent, tangent};
+    memcpy(view->window, window, sizeof window);
+    view->near = fmax(0.25 * near, 1e-3 * far);
+    view->far = 1.5 * far;
+  } else {
+    abbe_view_pad(view, 0.01);
+  }
+  double half = 0.5 * fmax(view->window[1] - view->window[0], view->window[3] - view->window[2]);
+  for (int axis = 0; axis < 2; axis++) {
+    double middle = 0.5 * (view->window[2 * axis] + view->window[2 * axis + 1]);
+    view->window[2 * axis] = middle - half;
+    view->window[2 * axis + 1] = middle + half;
+  }
+  abbe_map_layout_make(view, &t->layout);
+}
+
+abbe_result abbe_thesis_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
+                             abbe_thesis *out, abbe_error *error) {
+  abbe_thesis *t = out;
+  t->scene = scene;
+  t->cie = scene->plan->desc.profile == ABBE_PROFILE_THESIS_CIE;
+  fit_light(t);
+  abbe_camera_view_fit(scene->local, &scene->plan->desc, &t->camera);
+  look_and_clip(&t->layout.view, t->light_look, t->light_clip);
+  look_and_clip(&t->camera.view, t->eye_look, t->eye_clip);
+  abbe_result result =
+      abbe_photon_cells_make(scene->gpu, scene->plan->desc.photons, &t->cells, error);
+  if (result == ABBE_OK) result = abbe_thesis_tables_make(t->scene, t->cie, &t->tables, error);
+  if (result == ABBE_OK) result = make_targets(t, error);
+  if (result == ABBE_OK) result = make_programs(t, variant, error);
   return result;
 }
 
-static void set_matrix(abbe_renderer *r, GLuint program, const char *name, const double m[16]) {
+static void set_matrix(abbe_thesis *t, GLuint program, const char *name, const double m[16]) {
   float f[16];
   for (int k = 0; k < 16; k++) f[k] = (float)m[k];
-  r->gpu.gl->UniformMatrix4fv(r->gpu.gl->GetUniformLocation(program, name), 1, GL_FALSE, f);
+  t->scene->gpu->gl->UniformMatrix4fv(t->scene->gpu->gl->GetUniformLocation(program, name), 1,
+                                      GL_FALSE, f);
 }
 
-static void set_planes(abbe_renderer *r, GLuint program, const abbe_view *view) {
-  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(program, "planes"), (float)(view->near * view->far),
-                   (float)(view->far - view->near), (float)view->far);
+static void set_planes(abbe_thesis *t, GLuint program, const abbe_view *view) {
+  t->scene->gpu->gl->Uniform3f(t->scene->gpu->gl->GetUniformLocation(program, "planes"),
+                               (float)(view->near * view->far), (float)(view->far - view->near),
+                               (float)view->far);
 }
 
-static void set_common(abbe_renderer *r, GLuint program, const abbe_view *view,
+static void set_common(abbe_thesis *t, GLuint program, const abbe_view *view,
                        const double clip[16]) {
-  const abbe_gl *gl = r->gpu.gl;
-  thesis_state *t = r->thesis;
+  const abbe_gl *gl = t->scene->gpu->gl;
   const double *w = view->window;
-  set_matrix(r, program, "projection", clip);
+  set_matrix(t, program, "projection", clip);
   gl->Uniform4f(gl->GetUniformLocation(program, "window"), (float)w[0], (float)w[1], (float)w[2],
                 (float)w[3]);
-  set_planes(r, program, view);
-  GLsizei n = (GLsizei)r->plan.desc.wavelengths;
-  gl->Uniform1fv(gl->GetUniformLocation(program, "index"), n, t->index);
-  gl->Uniform1fv(gl->GetUniformLocation(program, "attenuation_of"), n, t->attenuation_of);
+  set_planes(t, program, view);
+  GLsizei n = (GLsizei)t->scene->plan->desc.wavelengths;
+  gl->Uniform1fv(gl->GetUniformLocation(program, "index"), n, t->tables.index);
+  gl->Uniform1fv(gl->GetUniformLocation(program, "attenuation_of"), n, t->tables.attenuation_of);
 }
 
 /* The lamp: white in Rec.709 at full strength, a cone; a point light's reaches everywhere. */
-static void set_spot(abbe_renderer *r, GLuint program, const double direction[3]) {
-  const abbe_light *light = &r->scene->light[0];
+static void set_spot(abbe_thesis *t, GLuint program, const double direction[3]) {
+  const abbe_light *light = &t->scene->local->light[0];
   double white[3], rgb[3], matrix[9];
   abbe_weights_band_xyz(&light->illuminant, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM,
                         ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM, white);
@@ -212,65 +186,66 @@ static void set_spot(abbe_renderer *r, GLuint program, const double direction[3]
   bool cone = light->kind == ABBE_LIGHT_SPOT;
   double outer = cone ? cos(light->cone_rad) : -2;
   double inner = cone ? cos(fmax(light->cone_rad - light->soft_rad, 0)) : -2;
-  r->gpu.gl->Uniform4f(r->gpu.gl->GetUniformLocation(program, "spot"), (float)direction[0],
-                   (float)direction[1], (float)direction[2], (float)outer);
-  abbe_gpu_set_float(&r->gpu, program, "spot_inner", inner);
-  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(program, "spot_colour"), (float)rgb[0], (float)rgb[1],
-                   (float)rgb[2]);
+  t->scene->gpu->gl->Uniform4f(t->scene->gpu->gl->GetUniformLocation(program, "spot"),
+                               (float)direction[0], (float)direction[1], (float)direction[2],
+                               (float)outer);
+  abbe_gpu_set_float(t->scene->gpu, program, "spot_inner", inner);
+  t->scene->gpu->gl->Uniform3f(t->scene->gpu->gl->GetUniformLocation(program, "spot_colour"),
+                               (float)rgb[0], (float)rgb[1], (float)rgb[2]);
 }
 
-static abbe_result draw_layers(abbe_renderer *r, GLuint normals, GLuint depths, size_t width,
+static abbe_result draw_layers(abbe_thesis *t, GLuint normals, GLuint depths, size_t width,
                                size_t height, const double look[16], const double clip[16],
                                abbe_error *error) {
   static const int all = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  abbe_result result = abbe_gpu_set_target(&r->gpu, &normals, &all, 1, depths, width, height, error);
+  abbe_result result =
+      abbe_gpu_set_target(t->scene->gpu, &normals, &all, 1, depths, width, height, error);
   if (result != ABBE_OK) return result;
-  r->gpu.gl->ClearBufferfv(GL_COLOR, 0, nothing);
-  r->gpu.gl->ClearBufferfv(GL_DEPTH, 0, &far);
-  r->gpu.gl->UseProgram(r->thesis->layers);
-  set_matrix(r, r->thesis->layers, "view", look);
-  set_matrix(r, r->thesis->layers, "projection", clip);
-  for (size_t i = 0; i < r->plan.refractor_count; i++)
-    abbe_renderer_draw(r, r->plan.refractor_object[i]);
+  t->scene->gpu->gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  t->scene->gpu->gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  t->scene->gpu->gl->UseProgram(t->layers);
+  set_matrix(t, t->layers, "view", look);
+  set_matrix(t, t->layers, "projection", clip);
+  for (size_t i = 0; i < t->scene->plan->refractor_count; i++)
+    abbe_gpu_meshes_draw(t->scene, t->scene->plan->refractor_object[i]);
   return ABBE_OK;
 }
 
-static abbe_result light_passes(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gpu.gl;
-  size_t map = r->plan.desc.map_size;
+static abbe_result light_passes(abbe_thesis *t, abbe_error *error) {
+  const abbe_gl *gl = t->scene->gpu->gl;
+  size_t map = t->scene->plan->desc.map_size;
   static const GLfloat far = 1;
   double matrix[16];
   gl->Enable(GL_DEPTH_TEST);
-  abbe_gpu_begin_pass(&r->gpu);
+  abbe_gpu_begin_pass(t->scene->gpu);
   abbe_result result =
-      abbe_gpu_set_target(&r->gpu, NULL, NULL, 0, t->light_receiver_depth, map, map, error);
+      abbe_gpu_set_target(t->scene->gpu, NULL, NULL, 0, t->light_receiver_depth, map, map, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->UseProgram(t->depth_only);
   abbe_transform_multiply(t->light_clip, t->light_look, matrix);
-  set_matrix(r, t->depth_only, "view_projection", matrix);
-  for (size_t i = 0; i < r->plan.receiver_count; i++)
-    abbe_renderer_draw(r, r->plan.receiver_object[i]);
-  abbe_gpu_end_pass(&r->gpu, "light: receiver depth");
-  result = draw_layers(r, t->light_normals, t->light_depths, map, map, t->light_look, t->light_clip,
+  set_matrix(t, t->depth_only, "view_projection", matrix);
+  for (size_t i = 0; i < t->scene->plan->receiver_count; i++)
+    abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
+  abbe_gpu_end_pass(t->scene->gpu, "light: receiver depth");
+  result = draw_layers(t, t->light_normals, t->light_depths, map, map, t->light_look, t->light_clip,
                        error);
-  abbe_gpu_end_pass(&r->gpu, "light: refractor layers");
+  abbe_gpu_end_pass(t->scene->gpu, "light: refractor layers");
   return result;
 }
 
-static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gpu.gl;
-  size_t map = r->plan.desc.map_size;
+static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
+  const abbe_gl *gl = t->scene->gpu->gl;
+  size_t map = t->scene->plan->desc.map_size;
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
-  abbe_gpu_begin_pass(&r->gpu);
-  abbe_result result = abbe_renderer_place_photons(r, 0, t->light_normals, 0, error);
-  abbe_gpu_end_pass(&r->gpu, "light: photon placement");
+  const size_t grid[2] = {t->scene->plan->desc.photons, t->scene->plan->desc.photons};
+  abbe_gpu_begin_pass(t->scene->gpu);
+  abbe_result result = abbe_photon_cells_run(&t->cells, grid, t->light_normals, 0, error);
+  abbe_gpu_end_pass(t->scene->gpu, "light: photon placement");
   if (result == ABBE_OK)
-    result = abbe_gpu_set_target(&r->gpu, &t->map, &flat, 1, 0, map, map, error);
+    result = abbe_gpu_set_target(t->scene->gpu, &t->map, &flat, 1, 0, map, map, error);
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_COLOR, 0, nothing);
   gl->Disable(GL_DEPTH_TEST);
@@ -278,190 +253,221 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   gl->Enable(GL_PROGRAM_POINT_SIZE);
   gl->BlendFunc(GL_ONE, GL_ONE);
   gl->UseProgram(t->splat);
-  set_common(r, t->splat, &r->light[0].map.view, t->light_clip);
+  set_common(t, t->splat, &t->layout.view, t->light_clip);
   double direction[3] = {0, 0, -1};
-  abbe_transform_direction(t->light_look, r->scene->light[0].direction, direction);
-  set_spot(r, t->splat, direction);
-  abbe_gpu_bind_array(&r->gpu, t->splat, "normals", 0, t->light_normals);
-  abbe_gpu_bind_array(&r->gpu, t->splat, "depths", 1, t->light_depths);
-  abbe_gpu_bind_texture(&r->gpu, t->splat, "receiver_depth", 2, t->light_receiver_depth);
-  double across = (double)map / (double)r->plan.desc.photons;
-  abbe_gpu_set_int(&r->gpu, t->splat, "grid", (int)r->plan.desc.photons);
-  abbe_gpu_set_float(&r->gpu, t->splat, "resolution", (double)map);
-  abbe_gpu_set_float(&r->gpu, t->splat, "modifier",
-                          across * across / (t->cie ? splat_sum : colour_sum));
-  gl->Uniform3fv(gl->GetUniformLocation(t->splat, "colour"), (GLsizei)r->plan.desc.wavelengths,
-                 &t->colour[0][0]);
-  gl->BindVertexArray(r->gpu.empty_array);
-  gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, r->list[LEVELS - 1]);
+  abbe_transform_direction(t->light_look, t->scene->local->light[0].direction, direction);
+  set_spot(t, t->splat, direction);
+  abbe_gpu_bind_array(t->scene->gpu, t->splat, "normals", 0, t->light_normals);
+  abbe_gpu_bind_array(t->scene->gpu, t->splat, "depths", 1, t->light_depths);
+  abbe_gpu_bind_texture(t->scene->gpu, t->splat, "receiver_depth", 2, t->light_receiver_depth);
+  double across = (double)map / (double)t->scene->plan->desc.photons;
+  abbe_gpu_set_int(t->scene->gpu, t->splat, "grid", (int)t->scene->plan->desc.photons);
+  abbe_gpu_set_float(t->scene->gpu, t->splat, "resolution", (double)map);
+  abbe_gpu_set_float(t->scene->gpu, t->splat, "modifier",
+                     across * across / (t->cie ? splat_sum : ABBE_THESIS_COLOUR_SUM));
+  gl->Uniform3fv(gl->GetUniformLocation(t->splat, "colour"),
+                 (GLsizei)t->scene->plan->desc.wavelengths, &t->tables.colour[0][0]);
+  gl->BindVertexArray(t->scene->gpu->empty_array);
+  gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, t->cells.list[ABBE_CELL_LEVELS - 1]);
   gl->DrawArraysIndirect(GL_POINTS, (const char *)NULL + 16);
   gl->Disable(GL_BLEND);
-  abbe_gpu_end_pass(&r->gpu, "light: photons");
+  abbe_gpu_end_pass(t->scene->gpu, "light: photons");
   return ABBE_OK;
 }
 
-static abbe_result draw_screen(abbe_renderer *r, GLuint target, size_t width, size_t height,
+static abbe_result draw_screen(abbe_thesis *t, GLuint target, size_t width, size_t height,
                                abbe_error *error) {
   static const int flat = -1;
-  abbe_result result = abbe_gpu_set_target(&r->gpu, &target, &flat, 1, 0, width, height, error);
+  abbe_result result =
+      abbe_gpu_set_target(t->scene->gpu, &target, &flat, 1, 0, width, height, error);
   if (result != ABBE_OK) return result;
-  r->gpu.gl->Disable(GL_DEPTH_TEST);
-  r->gpu.gl->BindVertexArray(r->gpu.empty_array);
-  r->gpu.gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  t->scene->gpu->gl->Disable(GL_DEPTH_TEST);
+  t->scene->gpu->gl->BindVertexArray(t->scene->gpu->empty_array);
+  t->scene->gpu->gl->DrawArrays(GL_TRIANGLES, 0, 3);
   return ABBE_OK;
 }
 
-static abbe_result fill_gaps(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  size_t map = r->plan.desc.map_size;
-  abbe_gpu_begin_pass(&r->gpu);
-  r->gpu.gl->UseProgram(t->fill);
-  abbe_gpu_bind_texture(&r->gpu, t->fill, "spectral_map", 0, t->map);
-  abbe_result result = draw_screen(r, t->filled, map, map, error);
-  abbe_gpu_end_pass(&r->gpu, "light: gap fill");
+static abbe_result fill_gaps(abbe_thesis *t, abbe_error *error) {
+  size_t map = t->scene->plan->desc.map_size;
+  abbe_gpu_begin_pass(t->scene->gpu);
+  t->scene->gpu->gl->UseProgram(t->fill);
+  abbe_gpu_bind_texture(t->scene->gpu, t->fill, "spectral_map", 0, t->map);
+  abbe_result result = draw_screen(t, t->filled, map, map, error);
+  abbe_gpu_end_pass(t->scene->gpu, "light: gap fill");
   return result;
 }
 
-static void set_surface(abbe_renderer *r, size_t receiver, int *layer) {
-  const abbe_object *o = &r->scene->object[r->plan.receiver_object[receiver]];
-  GLuint p = r->thesis->receivers;
+static void set_surface(abbe_thesis *t, size_t receiver, int *layer) {
+  const abbe_object *o = &t->scene->local->object[t->scene->plan->receiver_object[receiver]];
+  GLuint p = t->receivers;
   bool textured = o->texture.data != NULL;
   double rgb[3] = {o->reflectance[0], o->reflectance[1], o->reflectance[2]};
-  if (r->thesis->cie) abbe_renderer_to_working(r, rgb, rgb);
-  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(p, "reflectance"), (float)rgb[0], (float)rgb[1],
-                   (float)rgb[2]);
-  r->gpu.gl->Uniform3f(r->gpu.gl->GetUniformLocation(p, "texture_info"), textured ? (float)*layer : -1.0f,
-                   (float)o->texture_repeat[0], (float)o->texture_repeat[1]);
+  if (t->cie) abbe_gpu_scene_to_working(t->scene, rgb, rgb);
+  t->scene->gpu->gl->Uniform3f(t->scene->gpu->gl->GetUniformLocation(p, "reflectance"),
+                               (float)rgb[0], (float)rgb[1], (float)rgb[2]);
+  t->scene->gpu->gl->Uniform3f(t->scene->gpu->gl->GetUniformLocation(p, "texture_info"),
+                               textured ? (float)*layer : -1.0f, (float)o->texture_repeat[0],
+                               (float)o->texture_repeat[1]);
   *layer += textured;
 }
 
 /* What only the physical units ask for; programs without them have no such uniforms. */
-static void set_units(abbe_renderer *r, GLuint program) {
-  const abbe_gl *gl = r->gpu.gl;
-  const double *forward = r->light[0].map.view.forward;
-  const float *white = r->thesis->white, *m = r->rgb_from_xyz;
-  if (!r->thesis->cie) return;
+static void set_units(abbe_thesis *t, GLuint program) {
+  const abbe_gl *gl = t->scene->gpu->gl;
+  const double *forward = t->layout.view.forward;
+  const float *white = t->tables.white, *m = t->scene->rgb_from_xyz;
+  if (!t->cie) return;
   gl->UniformMatrix3fv(gl->GetUniformLocation(program, "rgb_from_xyz"), 1, GL_FALSE, m);
   gl->UniformMatrix3fv(gl->GetUniformLocation(program, "xyz_from_rgb"), 1, GL_FALSE,
-                       r->xyz_from_rgb);
+                       t->scene->xyz_from_rgb);
   gl->Uniform3f(gl->GetUniformLocation(program, "forward"), (float)forward[0], (float)forward[1],
                 (float)forward[2]);
   gl->Uniform3f(gl->GetUniformLocation(program, "white"), white[0], white[1], white[2]);
-  abbe_gpu_set_float(&r->gpu, program, "power", r->scene->light[0].power);
-  abbe_gpu_set_float(&r->gpu, program, "ambient", r->scene->ambient);
+  abbe_gpu_set_float(t->scene->gpu, program, "power", t->scene->local->light[0].power);
+  abbe_gpu_set_float(t->scene->gpu, program, "ambient", t->scene->local->ambient);
 }
 
-static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gpu.gl;
+static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
+  const abbe_gl *gl = t->scene->gpu->gl;
   static const int flat = -1;
   static const GLfloat far = 1;
   double matrix[16];
-  abbe_gpu_begin_pass(&r->gpu);
+  abbe_gpu_begin_pass(t->scene->gpu);
   abbe_result result =
-      abbe_gpu_set_target(&r->gpu, &t->eye_receivers, &flat, 1, t->eye_receiver_depth,
-                               r->plan.desc.width, r->plan.desc.height, error);
+      abbe_gpu_set_target(t->scene->gpu, &t->eye_receivers, &flat, 1, t->eye_receiver_depth,
+                          t->scene->plan->desc.width, t->scene->plan->desc.height, error);
   if (result != ABBE_OK) return result;
-  const GLfloat sky = t->cie ? (float)r->scene->background : 0;
+  const GLfloat sky = t->cie ? (float)t->scene->local->background : 0;
   const GLfloat background[4] = {sky, sky, sky, 0};
   gl->ClearBufferfv(GL_COLOR, 0, background);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(t->receivers);
   abbe_transform_multiply(t->eye_clip, t->eye_look, matrix);
-  set_matrix(r, t->receivers, "view_projection", matrix);
+  set_matrix(t, t->receivers, "view_projection", matrix);
   abbe_transform_multiply(t->light_clip, t->light_look, matrix);
-  set_matrix(r, t->receivers, "light_matrix", matrix);
-  set_spot(r, t->receivers, r->scene->light[0].direction);
-  set_planes(r, t->receivers, &r->light[0].map.view);
-  set_units(r, t->receivers);
-  const double *lamp = r->scene->light[0].position, *eye = r->scene->camera.eye;
+  set_matrix(t, t->receivers, "light_matrix", matrix);
+  set_spot(t, t->receivers, t->scene->local->light[0].direction);
+  set_planes(t, t->receivers, &t->layout.view);
+  set_units(t, t->receivers);
+  const double *lamp = t->scene->local->light[0].position, *eye = t->scene->local->camera.eye;
   gl->Uniform3f(gl->GetUniformLocation(t->receivers, "light_position"), (float)lamp[0],
                 (float)lamp[1], (float)lamp[2]);
   gl->Uniform3f(gl->GetUniformLocation(t->receivers, "eye"), (float)eye[0], (float)eye[1],
                 (float)eye[2]);
-  bool fills = r->plan.desc.fill == ABBE_FILL_SMEAR;
-  abbe_gpu_bind_texture(&r->gpu, t->receivers, "spectral_map", 0, fills ? t->filled : t->map);
-  abbe_gpu_bind_texture(&r->gpu, t->receivers, "shadow_map", 1, t->light_receiver_depth);
-  abbe_gpu_bind_array(&r->gpu, t->receivers, "surface_texture", 2, r->texture_surface);
-  abbe_gpu_bind_array(&r->gpu, t->receivers, "refractor_depths", 3, t->light_depths);
+  bool fills = t->scene->plan->desc.fill == ABBE_FILL_SMEAR;
+  abbe_gpu_bind_texture(t->scene->gpu, t->receivers, "spectral_map", 0, fills ? t->filled : t->map);
+  abbe_gpu_bind_texture(t->scene->gpu, t->receivers, "shadow_map", 1, t->light_receiver_depth);
+  abbe_gpu_bind_array(t->scene->gpu, t->receivers, "surface_texture", 2, t->scene->surface_texture);
+  abbe_gpu_bind_array(t->scene->gpu, t->receivers, "refractor_depths", 3, t->light_depths);
   int layer = 0;
-  for (size_t i = 0; i < r->plan.receiver_count; i++) {
-    set_surface(r, i, &layer);
-    abbe_renderer_draw(r, r->plan.receiver_object[i]);
+  for (size_t i = 0; i < t->scene->plan->receiver_count; i++) {
+    set_surface(t, i, &layer);
+    abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
   }
-  abbe_gpu_end_pass(&r->gpu, "eye: receivers");
+  abbe_gpu_end_pass(t->scene->gpu, "eye: receivers");
   return ABBE_OK;
 }
 
-static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
-  thesis_state *t = r->thesis;
-  const abbe_gl *gl = r->gpu.gl;
-  size_t width = r->plan.desc.width, height = r->plan.desc.height;
-  GLsizei n = (GLsizei)r->plan.desc.wavelengths;
+static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
+  const abbe_gl *gl = t->scene->gpu->gl;
+  size_t width = t->scene->plan->desc.width, height = t->scene->plan->desc.height;
+  GLsizei n = (GLsizei)t->scene->plan->desc.wavelengths;
   gl->Enable(GL_DEPTH_TEST);
-  abbe_gpu_begin_pass(&r->gpu);
+  abbe_gpu_begin_pass(t->scene->gpu);
   abbe_result result =
-      draw_layers(r, t->eye_normals, t->eye_depths, width, height, t->eye_look, t->eye_clip, error);
-  abbe_gpu_end_pass(&r->gpu, "eye: refractor layers");
+      draw_layers(t, t->eye_normals, t->eye_depths, width, height, t->eye_look, t->eye_clip, error);
+  abbe_gpu_end_pass(t->scene->gpu, "eye: refractor layers");
   if (result != ABBE_OK) return result;
   gl->UseProgram(t->refraction);
-  set_common(r, t->refraction, &r->eye, t->eye_clip);
+  set_common(t, t->refraction, &t->camera.view, t->eye_clip);
   double lamp[3], none[3] = {0, 0, -1};
-  abbe_transform_point(t->eye_look, r->scene->light[0].position, lamp);
-  set_spot(r, t->refraction, none);
-  set_units(r, t->refraction);
+  abbe_transform_point(t->eye_look, t->scene->local->light[0].position, lamp);
+  set_spot(t, t->refraction, none);
+  set_units(t, t->refraction);
   gl->Uniform3f(gl->GetUniformLocation(t->refraction, "light_position"), (float)lamp[0],
                 (float)lamp[1], (float)lamp[2]);
   gl->Uniform2f(gl->GetUniformLocation(t->refraction, "picture_size"), (float)width, (float)height);
-  abbe_gpu_set_float(&r->gpu, t->refraction, "attenuation", t->attenuation);
+  abbe_gpu_set_float(t->scene->gpu, t->refraction, "attenuation", t->tables.attenuation);
   float(*colour)[3] = malloc((size_t)n * sizeof *colour);
   if (colour == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for colours");
   for (GLsizei i = 0; i < n; i++)
-    for (int c = 0; c < 3; c++) colour[i][c] = t->colour[i][c] * (t->cie ? 1 / t->white[c] : 0.26f);
+    for (int c = 0; c < 3; c++)
+      colour[i][c] = t->tables.colour[i][c] * (t->cie ? 1 / t->tables.white[c] : 0.26f);
   gl->Uniform3fv(gl->GetUniformLocation(t->refraction, "colour"), n, &colour[0][0]);
   free(colour);
-  abbe_gpu_bind_array(&r->gpu, t->refraction, "normals", 0, t->eye_normals);
-  abbe_gpu_bind_array(&r->gpu, t->refraction, "depths", 1, t->eye_depths);
-  abbe_gpu_bind_texture(&r->gpu, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
-  abbe_gpu_bind_texture(&r->gpu, t->refraction, "receivers", 3, t->eye_receivers);
-  result = draw_screen(r, r->eye_picture, width, height, error);
-  abbe_gpu_end_pass(&r->gpu, "eye: refraction");
+  abbe_gpu_bind_array(t->scene->gpu, t->refraction, "normals", 0, t->eye_normals);
+  abbe_gpu_bind_array(t->scene->gpu, t->refraction, "depths", 1, t->eye_depths);
+  abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
+  abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receivers", 3, t->eye_receivers);
+  result = draw_screen(t, t->picture, width, height, error);
+  abbe_gpu_end_pass(t->scene->gpu, "eye: refraction");
   return result;
 }
 
-abbe_result abbe_renderer_thesis_frame(abbe_renderer *r, abbe_error *error) {
-  abbe_result result = light_passes(r, error);
-  if (result == ABBE_OK) result = splat_photons(r, error);
-  if (result == ABBE_OK && r->plan.desc.fill == ABBE_FILL_SMEAR) result = fill_gaps(r, error);
-  if (result == ABBE_OK) result = light_receivers(r, error);
-  if (result == ABBE_OK) result = refract_eye(r, error);
+abbe_result abbe_thesis_run(abbe_thesis *t, abbe_error *error) {
+  abbe_result result = light_passes(t, error);
+  if (result == ABBE_OK) result = splat_photons(t, error);
+  if (result == ABBE_OK && t->scene->plan->desc.fill == ABBE_FILL_SMEAR)
+    result = fill_gaps(t, error);
+  if (result == ABBE_OK) result = light_receivers(t, error);
+  if (result == ABBE_OK) result = refract_eye(t, error);
   if (result != ABBE_OK) return result;
-  if (r->gpu.statistics != NULL) {
+  if (t->scene->gpu->statistics != NULL) {
     GLuint count = 0;
-    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->list[LEVELS - 1]);
-    r->gpu.gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
-    r->light[0].photon_count = count;
+    t->scene->gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, t->cells.list[ABBE_CELL_LEVELS - 1]);
+    t->scene->gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof count, &count);
+    t->photon_count = count;
   }
-  return abbe_gl_check(r->gpu.gl, "the thesis profile", error);
+  return abbe_gl_check(t->scene->gpu->gl, "the thesis profile", error);
 }
 
-GLuint abbe_renderer_thesis_map(const abbe_renderer *r, bool filled) {
-  return filled && r->plan.desc.fill == ABBE_FILL_SMEAR ? r->thesis->filled : r->thesis->map;
-}
-
-void abbe_renderer_free_thesis(abbe_renderer *r) {
-  thesis_state *t = r->thesis;
-  if (t == NULL) return;
+void abbe_thesis_free(abbe_thesis *t) {
+  if (t->scene == NULL) return;
+  abbe_photon_cells_free(&t->cells);
   const GLuint programs[] = {t->layers, t->depth_only, t->splat,
                              t->fill,   t->receivers,  t->refraction};
-  for (size_t i = 0; i < sizeof programs / sizeof *programs; i++) r->gpu.gl->DeleteProgram(programs[i]);
+  for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+    t->scene->gpu->gl->DeleteProgram(programs[i]);
   const GLuint textures[] = {
-      t->light_normals, t->light_depths, t->light_receiver_depth, t->map,          t->filled,
-      t->eye_normals,   t->eye_depths,   t->eye_receiver_depth,   t->eye_receivers};
-  r->gpu.gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  free(t->colour);
-  free(t->index);
-  free(t->attenuation_of);
-  free(t);
+      t->light_normals, t->light_depths, t->light_receiver_depth, t->map,           t->filled,
+      t->eye_normals,   t->eye_depths,   t->eye_receiver_depth,   t->eye_receivers, t->picture};
+  t->scene->gpu->gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
+  abbe_thesis_tables_free(&t->tables);
+}
+
+abbe_result abbe_thesis_read(const abbe_thesis *t, abbe_image *out, abbe_error *error) {
+  static const char *const rgb[] = {"R", "G", "B"}, *const xyz[] = {"X", "Y", "Z"};
+  const abbe_render_desc *desc = &t->scene->plan->desc;
+  const bool as_xyz = t->cie && desc->space == ABBE_RGB_SPACE_XYZ;
+  abbe_result result =
+      abbe_image_make(desc->width, desc->height, 3, as_xyz ? xyz : rgb, out, error);
+  if (result != ABBE_OK) return result;
+  float *data = malloc(out->width * out->height * 4 * sizeof *data);
+  if (data == NULL) {
+    abbe_image_free(out);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");
+  }
+  t->scene->gpu->gl->BindTexture(GL_TEXTURE_2D, t->picture);
+  t->scene->gpu->gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
+  abbe_picture_copy_flipped(data, 0, out, 0, 3, 1);
+  free(data);
+  if (as_xyz) abbe_picture_to_xyz(out, 0);
+  return ABBE_OK;
+}
+
+abbe_result abbe_thesis_read_map(const abbe_thesis *t, bool filled, abbe_image *out,
+                                 abbe_error *error) {
+  const bool smeared = filled && t->scene->plan->desc.fill == ABBE_FILL_SMEAR;
+  const size_t side = t->scene->plan->desc.map_size;
+  float *data = malloc(side * side * 4 * sizeof *data);
+  if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
+  t->scene->gpu->gl->BindTexture(GL_TEXTURE_2D, smeared ? t->filled : t->map);
+  t->scene->gpu->gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
+  /* The passes sum the light of a lamp of unit power. */
+  abbe_result result = t->cie ? abbe_map_picture_flux(data, side, &t->layout,
+                                                      t->scene->local->light[0].power, out, error)
+                              : abbe_map_picture_colour(data, side, out, error);
+  free(data);
+  return result;
 }

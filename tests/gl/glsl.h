@@ -8,6 +8,7 @@
 
 #include "tests/gl/gl_context.h"
 
+#include "gl/device/bindings.h"
 #include "gl/device/program.h"
 #include "gl/scene/hierarchy_nodes.h"
 

@@ -61,10 +61,11 @@ static void upload_receivers(receivers *r) {
     }
     memcpy(&triangle[3 * i + 1][3], &surface, sizeof surface);
   }
-  glsl_block(gl, 3, sizeof r->flat, r->flat);
+  glsl_block(gl, BINDING_RECEIVERS, sizeof r->flat, r->flat);
   glsl_hierarchy(gl, &r->h, (const double(*)[9])r->triangle);
-  glsl_texels(gl, 8, GL_RGBA32F, 3 * r->h.triangle_count * sizeof *triangle, triangle);
-  glsl_texels(gl, 9, GL_RGBA32F, 4 * r->h.triangle_count * sizeof *corner, corner);
+  glsl_texels(gl, UNIT_BVH_TRIANGLES, GL_RGBA32F, 3 * r->h.triangle_count * sizeof *triangle,
+              triangle);
+  glsl_texels(gl, UNIT_BVH_CORNERS, GL_RGBA32F, 4 * r->h.triangle_count * sizeof *corner, corner);
   free(triangle);
   free(corner);
 }

@@ -2,16 +2,16 @@
 #include "tests/gl/frame.h"
 
 #include "colorimetry/weights.h"
-#include "gl/renderer_state.h"
+#include "gl/photons/photon_spectra.h"
 #include "spectral/optics.h"
 
 static void coarse_nodes_reach_both_ends_in_order(void **state) {
   (void)state;
   for (size_t n = 5; n <= ABBE_RENDER_MAX_WAVELENGTHS; n++) {
-    assert_int_equal(abbe_renderer_coarse_node(n, 5, 0), 0);
-    assert_int_equal(abbe_renderer_coarse_node(n, 5, 4), n - 1);
+    assert_int_equal(abbe_photon_spectra_node(n, 5, 0), 0);
+    assert_int_equal(abbe_photon_spectra_node(n, 5, 4), n - 1);
     for (size_t k = 0; k < 4; k++)
-      assert_true(abbe_renderer_coarse_node(n, 5, k) < abbe_renderer_coarse_node(n, 5, k + 1));
+      assert_true(abbe_photon_spectra_node(n, 5, k) < abbe_photon_spectra_node(n, 5, k + 1));
   }
 }
 

@@ -112,7 +112,7 @@ static void draw(const char *text, bool unlit, size_t samples, abbe_image *pictu
   desc.layers = true;
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
-  assert_true((renderer->unlit != 0) == unlit);
+  assert_true((renderer->receivers.unlit != 0) == unlit);
   draw_frame(renderer);
   read_picture(renderer, true, picture);
   abbe_renderer_free(renderer);

@@ -93,8 +93,8 @@ static void upload_refractors(double radius, double plane[6][4], GLuint buffer[2
     f[i][3] = (float)(0.5 * radius);
     for (int k = 0; k < 4; k++) plane[i][k] = f[i][k];
   }
-  buffer[0] = glsl_block(gl, 1, sizeof r, r);
-  buffer[1] = glsl_block(gl, 2, sizeof f, f);
+  buffer[0] = glsl_block(gl, BINDING_REFRACTORS, sizeof r, r);
+  buffer[1] = glsl_block(gl, BINDING_PLANES, sizeof f, f);
 }
 
 /* Distance to the sphere, its entry and exit; false where the ray misses. */
@@ -235,7 +235,7 @@ static void receivers_are_met(void **state) {
       block[5][k] = (float)(v[k] / (2 * r));
     }
     aim(r);
-    GLuint buffer = glsl_block(gl, 3, sizeof block, block);
+    GLuint buffer = glsl_block(gl, BINDING_RECEIVERS, sizeof block, block);
     run("vec4 f(vec4 a, vec4 b) {\n"
         "  float t; int r = receiver_hit(a.xyz, b.xyz, 0.0, 1e30, t);\n"
         "  return vec4(t, r, 0, 0);\n"
@@ -352,7 +352,7 @@ static void maps_are_warped(void **state) {
   for (int i = 0; i < RAYS; i++)
     for (int k = 0; k < 2; k++)
       inputs[i][k] = (float)(i < 129 ? i / 128.0 : random_between(&random, -0.1, 1.1));
-  GLuint buffer = glsl_block(gl, 7, sizeof knot, knot);
+  GLuint buffer = glsl_block(gl, BINDING_WARPS, sizeof knot, knot);
   run("vec4 f(vec4 a, vec4 b) { return vec4(warp(0, a.xy), 0, 0); }\n");
   for (int i = 0; i < RAYS; i++)
     for (int axis = 0; axis < 2; axis++) {
@@ -386,7 +386,7 @@ static void spots_fade(void **state) {
       inputs[i][1] = 0;
       inputs[i][2] = -(float)cos(angle);
     }
-    GLuint buffer = glsl_block(gl, 0, sizeof block, block);
+    GLuint buffer = glsl_block(gl, BINDING_LIGHTS, sizeof block, block);
     run("vec4 f(vec4 a, vec4 b) { return vec4(light_profile(lights[0], a.xyz), 0, 0, 0); }\n");
     double width = cos(spot.cone_rad - spot.soft_rad) - cos(spot.cone_rad);
     for (int i = 0; i < RAYS; i++) {

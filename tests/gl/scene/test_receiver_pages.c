@@ -175,7 +175,7 @@ static abbe_statistics draw(const char *text, const abbe_render_desc *desc, abbe
   abbe_renderer *renderer = make_renderer(&scene, desc);
   abbe_statistics statistics = draw_frame(renderer);
   if (picture != NULL) read_picture(renderer, true, picture);
-  *pages = renderer->pages ? renderer->light[0].pages.count : 0;
+  *pages = renderer->atlas.used ? renderer->atlas.pages[0].count : 0;
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
   return statistics;
@@ -305,10 +305,10 @@ static void test_behind_the_lamp(void **state) {
 static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_receiver_pages *pages,
                            double *outside) {
   const size_t side = r->plan.desc.map_size;
-  float *texel = calloc(r->map_layers * side * side * 4, sizeof *texel);
+  float *texel = calloc(r->map.layers * side * side * 4, sizeof *texel);
   double sum = 0;
   assert_non_null(texel);
-  r->gpu.gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map);
+  r->gpu.gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map.texture);
   r->gpu.gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, texel);
   *outside = 0;
   for (size_t y = 0; y < pages->rows; y++)
@@ -318,7 +318,7 @@ static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_rece
       for (size_t k = 0; k < pages->count; k++) {
         const abbe_receiver_page *page = &pages->page[k];
         if (x >= page->rect[0] && x < page->rect[1] && y >= page->rect[2] && y < page->rect[3])
-          area = abbe_receiver_page_texel(page, r->charts.parallelogram[page->chart_side / 2]);
+          area = abbe_receiver_page_texel(page, r->scene.charts.parallelogram[page->chart_side / 2]);
       }
       sum += value * area;
       *outside += area == 0 ? fabs(value) : 0;
@@ -348,12 +348,12 @@ static void test_a_closed_room(void **state) {
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     const abbe_statistics s = draw_frame(renderer);
     const abbe_ledger *e = &s.energy;
-    const abbe_receiver_pages *pages = &renderer->light[0].pages;
+    const abbe_receiver_pages *pages = &renderer->atlas.pages[0];
     abbe_image map = {0};
     double outside = 0;
-    assert_true(renderer->pages);
+    assert_true(renderer->atlas.used);
     read_map(renderer, 0, &map);
-    const double beside = sum_of_layer(renderer, renderer->light[0].page_layer, pages, &outside);
+    const double beside = sum_of_layer(renderer, renderer->atlas.layer[0], pages, &outside);
     const double both = image_sum(&map, 1) + beside;
     print_message("%s: %zu pages, %.3f of all, missed %.2g, imbalance %.2g, open by %.2g\n",
                   rooms[i].what, pages->count, beside / e->reached,

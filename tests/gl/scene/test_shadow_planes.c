@@ -278,8 +278,8 @@ static void the_shader_agrees(void **state) {
            "vec4 f(vec4 a, vec4 b) {\n"
            "  return vec4(convex_shadow(int(a.w), 0, a.xyz) ? 1 : 0);\n}\n",
            SHADER_SOLIDS, SHADER_SOLIDS, sizeof shadow.plane / sizeof shadow.plane[0]);
-  GLuint block[2] = {glsl_block(gl, 0, sizeof lights, lights),
-                     glsl_block(gl, 9, sizeof shadow, &shadow)};
+  GLuint block[2] = {glsl_block(gl, BINDING_LIGHTS, sizeof lights, lights),
+                     glsl_block(gl, BINDING_SHADOW_PLANES, sizeof shadow, &shadow)};
   glsl_evaluate(gl, text, (const float(*)[8])in, PLACES, out);
   gl->DeleteBuffers(2, block);
   for (int i = 0; i < PLACES; i++) {

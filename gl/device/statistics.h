@@ -1,6 +1,6 @@
 /* statistics.h: what a frame took and where its light went. */
-#ifndef ABBE_GL_STATISTICS_H
-#define ABBE_GL_STATISTICS_H
+#ifndef ABBE_GL_DEVICE_STATISTICS_H
+#define ABBE_GL_DEVICE_STATISTICS_H
 
 #include <stddef.h>
 

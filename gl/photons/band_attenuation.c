@@ -1,7 +1,8 @@
 /* Attenuation in parts of the wavelengths' bands, for landings that keep the length of their way
  * inside: what is left of a band follows from it, and not from its node alone. */
+#include "gl/photons/photon_spectra.h"
+
 #include "colorimetry/weights.h"
-#include "gl/renderer_state.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -77,57 +78,62 @@ static void fill_node(const passage *p, const abbe_wavelengths *w, size_t i, nod
   fill_half(p, parts, one ? w->edge_nm[i] : node, above, &out->above);
 }
 
-static void fill_bands(const abbe_renderer *r, const abbe_wavelengths *w, node_bands *out) {
-  for (size_t light = 0; light < r->plan.light_count; light++)
-    for (size_t k = 0; k < r->plan.refractor_count; k++) {
-      const abbe_object *object = &r->scene->object[r->plan.refractor_object[k]];
+static void fill_bands(const abbe_photon_spectra *spectra, const abbe_wavelengths *w,
+                       node_bands *out) {
+  for (size_t light = 0; light < spectra->scene->plan->light_count; light++)
+    for (size_t k = 0; k < spectra->scene->plan->refractor_count; k++) {
+      const abbe_object *object =
+          &spectra->scene->local->object[spectra->scene->plan->refractor_object[k]];
       double square = 0;
       for (int x = 0; x < 3; x++) square += pow(object->max[x] - object->min[x], 2);
-      const passage p = {&r->scene->light[light].illuminant, object->material, w->edge_nm[0],
-                         w->edge_nm[w->count], fmax(0.5 * sqrt(square), 1e-12)};
+      const passage p = {&spectra->scene->local->light[light].illuminant, object->material,
+                         w->edge_nm[0], w->edge_nm[w->count], fmax(0.5 * sqrt(square), 1e-12)};
       for (size_t i = 0; i < w->count; i++) fill_node(&p, w, i, out++);
     }
 }
 
-abbe_result abbe_renderer_upload_attenuation(abbe_renderer *r, const abbe_wavelengths *coarse,
-                                             const abbe_wavelengths *all, abbe_error *error) {
-  if (!r->plan.lengths) return ABBE_OK;
+abbe_result abbe_photon_attenuation_upload(abbe_photon_spectra *spectra,
+                                           const abbe_wavelengths *coarse,
+                                           const abbe_wavelengths *all, abbe_error *error) {
+  if (!spectra->scene->plan->lengths) return ABBE_OK;
   const bool refines = coarse->count < all->count;
-  const size_t rows = r->plan.light_count * r->plan.refractor_count;
+  const size_t rows = spectra->scene->plan->light_count * spectra->scene->plan->refractor_count;
   const size_t nodes = coarse->count + (refines ? all->count : 0);
   node_bands *table = calloc(rows * nodes + 1, sizeof *table);
   if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");
-  fill_bands(r, coarse, table);
-  if (refines) fill_bands(r, all, table + rows * coarse->count);
+  fill_bands(spectra, coarse, table);
+  if (refines) fill_bands(spectra, all, table + rows * coarse->count);
   const size_t size = rows * nodes * sizeof *table;
   abbe_result result = ABBE_OK;
-  if (r->band_attenuation == 0) {
-    result = abbe_gpu_make_buffer(&r->gpu, size, table, &r->band_attenuation, error);
+  if (spectra->attenuation == 0) {
+    result = abbe_gpu_make_buffer(spectra->scene->gpu, size, table, &spectra->attenuation, error);
   } else { /* never larger than at first */
-    r->gpu.gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->band_attenuation);
-    r->gpu.gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
+    spectra->scene->gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, spectra->attenuation);
+    spectra->scene->gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, table);
   }
   free(table);
   return result;
 }
 
-size_t abbe_renderer_signature_bytes(const abbe_renderer *r) {
-  return r->plan.lengths ? 8 : 4;
+size_t abbe_photon_signature_bytes(const abbe_photon_spectra *spectra) {
+  return spectra->scene->plan->lengths ? 8 : 4;
 }
 
-void abbe_renderer_attenuate(const abbe_renderer *r, size_t first, size_t count, float *landing,
-                             GLuint *signature) {
-  if (!r->plan.lengths) return;
+void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, size_t lanes,
+                           size_t count, float *hit, GLuint *signature) {
+  if (!spectra->scene->plan->lengths) return;
   for (size_t i = 0; i < count; i++) {
     const GLuint path = signature[2 * i], refractor = path & 255u;
-    const size_t node = first + i % r->lanes;
+    const size_t node = first + i % lanes;
     float way_m = 0;
     memcpy(&way_m, &signature[2 * i + 1], sizeof way_m);
     signature[i] = path;
-    if (path == 0 || refractor >= r->plan.refractor_count || node >= r->plan.desc.wavelengths)
+    if (path == 0 || refractor >= spectra->scene->plan->refractor_count ||
+        node >= spectra->scene->plan->desc.wavelengths)
       continue;
-    const abbe_material *material = r->scene->object[r->plan.refractor_object[refractor]].material;
-    const double per_m = abbe_material_attenuation(material, r->lambda_nm[node]);
-    landing[4 * i + 3] *= (float)exp(-per_m * (double)way_m);
+    const abbe_material *material =
+        spectra->scene->local->object[spectra->scene->plan->refractor_object[refractor]].material;
+    const double per_m = abbe_material_attenuation(material, spectra->scene->lambda_nm[node]);
+    hit[4 * i + 3] *= (float)exp(-per_m * (double)way_m);
   }
 }

@@ -1,4 +1,6 @@
-#include "gl/renderer_state.h"
+#include "gl/scene/gpu_scene.h"
+
+#include "gl/device/bindings.h"
 #include "gl/scene/hierarchy_nodes.h"
 #include "scenes/mesh/hierarchy.h"
 
@@ -107,7 +109,8 @@ static bool gather(grove *g, double (*triangle)[9]) {
   return true;
 }
 
-static abbe_result grow(abbe_renderer *r, grove *g, forest *f, size_t *root, abbe_error *error) {
+static abbe_result grow(abbe_gpu_scene *scene, grove *g, forest *f, size_t *root,
+                        abbe_error *error) {
   const size_t faces = g->face_first[g->mesh_count];
   abbe_hierarchy h = {0};
   double(*triangle)[9] = calloc(faces + 1, sizeof *triangle);
@@ -118,7 +121,7 @@ static abbe_result grow(abbe_renderer *r, grove *g, forest *f, size_t *root, abb
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
           : abbe_hierarchy_make((const double(*)[9])triangle, faces, &h, error);
   if (result == ABBE_OK) result = plant(g, (const double(*)[9])triangle, &h, f, root, error);
-  if (h.depth > r->hierarchy_depth) r->hierarchy_depth = h.depth;
+  if (h.depth > scene->bvh_depth) scene->bvh_depth = h.depth;
   abbe_hierarchy_free(&h);
   free(triangle);
   free(g->part);
@@ -143,74 +146,76 @@ static abbe_result add_mesh(grove *g, const forest *f, const abbe_mesh *mesh, si
 }
 
 /* A buffer that the shaders read as a texture of vec4. */
-static abbe_result upload_texels(abbe_renderer *r, int which, GLenum format, size_t size,
+static abbe_result upload_texels(abbe_gpu_scene *scene, int which, GLenum format, size_t size,
                                  const void *data, abbe_error *error) {
   GLint most = 0;
-  r->gpu.gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  scene->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
   if (size / 16 > (size_t)most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the meshes that light is traced through take %zu texels in a buffer; "
                           "this OpenGL reads at most %d: use smaller meshes, or "
                           "the model 'layers' for those that refract",
                           size / 16, most);
-  return abbe_gpu_make_texels(&r->gpu, format, size, data, UNIT_BVH_NODES + which,
-                                   &r->hierarchy[which], &r->hierarchy_texture[which], error);
+  return abbe_gpu_make_texels(scene->gpu, format, size, data, UNIT_BVH_NODES + which,
+                              &scene->bvh[which], &scene->bvh_texture[which], error);
 }
 
-static abbe_result upload(abbe_renderer *r, const forest *f, abbe_error *error) {
+static abbe_result upload(abbe_gpu_scene *scene, const forest *f, abbe_error *error) {
   abbe_result result =
-      upload_texels(r, 0, GL_RGBA32UI, f->texel_count * sizeof *f->texel, f->texel, error);
+      upload_texels(scene, 0, GL_RGBA32UI, f->texel_count * sizeof *f->texel, f->texel, error);
   if (result == ABBE_OK)
-    result = upload_texels(r, 1, GL_RGBA32F, f->triangle_count * sizeof *f->triangle, f->triangle,
+    result = upload_texels(scene, 1, GL_RGBA32F, f->triangle_count * sizeof *f->triangle,
+                           f->triangle, error);
+  if (result == ABBE_OK)
+    result = upload_texels(scene, 2, GL_RGBA32F, f->triangle_count * sizeof *f->corners, f->corners,
                            error);
-  if (result == ABBE_OK)
-    result =
-        upload_texels(r, 2, GL_RGBA32F, f->triangle_count * sizeof *f->corners, f->corners, error);
   return result;
 }
 
 /* A tree for each mesh that refracts. */
-static abbe_result grow_refractors(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
+static abbe_result grow_refractors(abbe_gpu_scene *scene, grove *g, forest *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < r->plan.refractor_count && result == ABBE_OK; i++) {
-    if (r->plan.model[i] != ABBE_REFRACTOR_HIERARCHY) continue;
+  for (size_t i = 0; i < scene->plan->refractor_count && result == ABBE_OK; i++) {
+    if (scene->plan->model[i] != ABBE_REFRACTOR_HIERARCHY) continue;
     g->mesh_count = 0;
-    result = add_mesh(g, f, &r->scene->object[r->plan.refractor_object[i]].mesh, 0, NULL, error);
-    if (result == ABBE_OK) result = grow(r, g, f, &r->refractor_root[i], error);
+    result = add_mesh(g, f, &scene->local->object[scene->plan->refractor_object[i]].mesh, 0, NULL,
+                      error);
+    if (result == ABBE_OK) result = grow(scene, g, f, &scene->refractor_root[i], error);
   }
   return result;
 }
 
 /* One tree for all receivers that are traversed. */
-static abbe_result grow_receivers(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
+static abbe_result grow_receivers(abbe_gpu_scene *scene, grove *g, forest *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  if (scene->plan->receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
   g->mesh_count = 0;
-  for (size_t i = 0; i < r->plan.receiver_count && result == ABBE_OK; i++) {
-    const abbe_mesh *mesh = &r->scene->object[r->plan.receiver_object[i]].mesh;
-    const int32_t *side =
-        r->charts.face_side != NULL ? r->charts.face_side + r->charts.face_first[i] : NULL;
-    if (r->plan.receiver_model[i] == ABBE_RECEIVER_HIERARCHY)
+  for (size_t i = 0; i < scene->plan->receiver_count && result == ABBE_OK; i++) {
+    const abbe_mesh *mesh = &scene->local->object[scene->plan->receiver_object[i]].mesh;
+    const int32_t *side = scene->charts.face_side != NULL
+                              ? scene->charts.face_side + scene->charts.face_first[i]
+                              : NULL;
+    if (scene->plan->receiver_model[i] == ABBE_RECEIVER_HIERARCHY)
       result = add_mesh(g, f, mesh, i, side, error);
   }
-  return result == ABBE_OK ? grow(r, g, f, &r->receiver_root, error) : result;
+  return result == ABBE_OK ? grow(scene, g, f, &scene->receiver_root, error) : result;
 }
 
-abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error) {
-  const size_t most = r->scene->object_count + 1;
+abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error) {
+  const size_t most = scene->local->object_count + 1;
   forest f = {0};
-  if (!r->plan.hierarchy && r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
-  r->refractor_root = calloc(most, sizeof *r->refractor_root);
+  if (!scene->plan->hierarchy && scene->plan->receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  scene->refractor_root = calloc(most, sizeof *scene->refractor_root);
   grove g = {.mesh = calloc(most, sizeof *g.mesh),
              .surface = calloc(most, sizeof *g.surface),
              .side = calloc(most, sizeof *g.side),
              .face_first = calloc(most, sizeof *g.face_first)};
-  abbe_result result = r->refractor_root == NULL || g.mesh == NULL || g.surface == NULL ||
+  abbe_result result = scene->refractor_root == NULL || g.mesh == NULL || g.surface == NULL ||
                                g.side == NULL || g.face_first == NULL
                            ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
-                           : grow_refractors(r, &g, &f, error);
-  if (result == ABBE_OK) result = grow_receivers(r, &g, &f, error);
-  if (result == ABBE_OK) result = upload(r, &f, error);
+                           : grow_refractors(scene, &g, &f, error);
+  if (result == ABBE_OK) result = grow_receivers(scene, &g, &f, error);
+  if (result == ABBE_OK) result = upload(scene, &f, error);
   free(g.mesh);
   free(g.surface);
   free(g.side);

@@ -1,0 +1,341 @@
+#include "gl/caustics/caustics.h"
+
+#include "gl/caustics/cell_fit.h"
+#include "gl/caustics/map_fit.h"
+#include "gl/light/light_fit.h"
+
+#include <stdlib.h>
+
+static const abbe_plan *plan_of(const abbe_caustics *c) {
+  return c->views->scene->plan;
+}
+
+static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+    if (!plan_of(c)->reaches[light]) continue;
+    result = abbe_photon_start_run(&c->start, light, error);
+    c->views->light[light].photon_count = abbe_photon_start_count(&c->start);
+  }
+  return result;
+}
+
+/* All wavelengths in batches that overlap by one node, so that every interval between nodes lies
+ * in exactly one of them. (A single node has its light in the one before it.) False after the last.
+ */
+static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
+  const size_t n = plan_of(c)->desc.wavelengths, lanes = c->trace.hits.stride;
+  if (b->count > 0 && b->first + b->count == n) return false;
+  b->first = b->count == 0 ? 0 : b->first + b->count - 1;
+  b->count = n - b->first < lanes ? n - b->first : lanes;
+  b->interval_first = n > 1 ? b->first + 1 : 0;
+  b->interval_end = b->first + b->count;
+  return true;
+}
+
+/* Traces what next_batch() would, or the coarse set and then its refined intervals; deposited in
+ * another order: the coarse set last, when it is known what is refined. Returns false after the
+ * last. */
+static bool trace_next(abbe_caustics *c, size_t light, abbe_hit_batch *b) {
+  if (!abbe_photon_spectra_refines(&c->spectra)) {
+    const size_t done = b->first + b->count;
+    if (!next_batch(c, b)) return false;
+    abbe_trace_pass_batch(&c->trace, light, b->first, b->count, done);
+    return true;
+  }
+  if (b->set == ABBE_TRACE_COARSE) return false;
+  const size_t chunk = b->set == ABBE_TRACE_ALL ? 0 : b->pair_chunk + 1;
+  if (b->set == ABBE_TRACE_ALL) abbe_refine_pass_coarse(&c->refine, light);
+  *b = (abbe_hit_batch){
+      .set = ABBE_TRACE_REFINED, .pair_chunk = chunk, .count = c->refine.fine_nodes};
+  if (chunk < c->refine.chunks) {
+    abbe_refine_pass_run(&c->refine, light, chunk);
+    return true;
+  }
+  *b = (abbe_hit_batch){.set = ABBE_TRACE_COARSE,
+                        .count = c->spectra.nodes,
+                        .interval_first = 1,
+                        .interval_end = c->spectra.nodes};
+  return true;
+}
+
+static double share_done(const abbe_caustics *c, const abbe_hit_batch *b) {
+  if (b->set == ABBE_TRACE_ALL)
+    return (double)(b->first + b->count) / (double)plan_of(c)->desc.wavelengths;
+  if (b->set == ABBE_TRACE_COARSE) return 1;
+  return (double)(b->pair_chunk + 1) / (double)(c->refine.chunks + 1);
+}
+
+/* Hits of all wavelengths into the fit of the map, and of the pages. */
+static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
+                             abbe_page_light **beside, abbe_error *error) {
+  abbe_result result = abbe_photon_start_run(&c->start, light, error);
+  abbe_hit_batch b = {0};
+  while (result == ABBE_OK && next_batch(c, &b)) {
+    float *hit = NULL;
+    GLuint *path = NULL;
+    const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
+    abbe_trace_pass_batch(&c->trace, light, b.first, b.count, plan_of(c)->desc.wavelengths);
+    result = abbe_trace_pass_read(&c->trace, light, b.first, &hit, &path, error);
+    if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
+    if (result == ABBE_OK && fit->part > 0)
+      result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
+    free(hit);
+    free(path);
+  }
+  return result;
+}
+
+static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
+  abbe_map_layout *map = &c->views->light[light].map;
+  const size_t sides = c->atlas->used ? 2 * c->views->scene->charts.count : 0;
+  abbe_map_fit *fit = calloc(1, sizeof *fit);
+  abbe_page_light **beside = calloc(sides + 1, sizeof *beside);
+  abbe_result result = fit != NULL && beside != NULL
+                           ? ABBE_OK
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
+  /* Pages are for what no map of the light could hold, whichever window is given. */
+  const bool given = abbe_light_views_map_is_given(c->views, light);
+  const abbe_map_layout layout = *map;
+  if (result == ABBE_OK && given) {
+    abbe_light_views_whole_map(c->views, light, map);
+    abbe_light_views_upload(c->views);
+  }
+  if (result == ABBE_OK) result = sort_hits(c, light, fit, beside, error);
+  if (given) *map = layout;
+  if (result == ABBE_OK && !given) abbe_map_fit_layout(fit, map);
+  if (result == ABBE_OK)
+    result = abbe_receiver_atlas_choose(c->atlas, light, beside, fit->total, error);
+  for (size_t i = 0; i < sides && beside != NULL; i++) free(beside[i]);
+  free(beside);
+  free(fit);
+  return result;
+}
+
+/* What the trace's shaders are told beside the scene's. */
+static abbe_shader_variant photon_variant(const abbe_caustics *c,
+                                          const abbe_shader_variant *scene) {
+  const abbe_plan *plan = plan_of(c);
+  abbe_shader_variant v = *scene;
+  v.lanes = c->trace.hits.stride;
+  v.steps = c->spectra.steps;
+  v.nodes = c->spectra.nodes;
+  v.map_levels = c->views->map_levels;
+  v.bridge = plan->fills;
+  v.doubts_bridges = plan->layers || plan->hierarchy;
+  v.tinting = plan->lengths;
+  return v;
+}
+
+static abbe_result compile_trace(abbe_caustics *c, const abbe_shader_variant *variant,
+                                 abbe_error *error) {
+  const abbe_shader_variant photons = photon_variant(c, variant);
+  return abbe_trace_pass_compile(&c->trace, &photons, error);
+}
+
+/* Photons are traced once to see where light falls: maps and pages are fitted to that. */
+static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe_error *error) {
+  abbe_result result = compile_trace(c, variant, error);
+  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++)
+    if (plan_of(c)->reaches[light] &&
+        (c->atlas->used || !abbe_light_views_map_is_given(c->views, light)))
+      result = fit_map(c, light, error);
+  if (result != ABBE_OK || !c->atlas->used) return result;
+  result = abbe_receiver_atlas_keep(c->atlas, variant, error);
+  return result == ABBE_OK ? compile_trace(c, variant, error) : result;
+}
+
+static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++)
+    if (plan_of(c)->reaches[light]) result = abbe_cell_fit_run(&c->trace, c->views, light, error);
+  for (size_t light = 0; light < plan_of(c)->light_count; light++)
+    abbe_light_views_shift_cells(c->views, light);
+  if (result != ABBE_OK) return result;
+  abbe_light_views_upload(c->views);
+  result = abbe_light_layers_run(c->layers, error);
+  return result == ABBE_OK ? count_photons(c, error) : result;
+}
+
+/* Counts the refined intervals, the same in every frame. */
+static abbe_result count_pairs(abbe_caustics *c, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  size_t most = 0;
+  if (!abbe_photon_spectra_refines(&c->spectra)) return ABBE_OK;
+  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+    if (!plan_of(c)->reaches[light]) continue;
+    result = abbe_photon_start_run(&c->start, light, error);
+    abbe_refine_pass_coarse(&c->refine, light);
+    const size_t count = abbe_refine_pass_count(&c->refine, light);
+    if (count > most) most = count;
+  }
+  c->refine.chunks = abbe_deposit_pass_chunks(most, c->refine.pair_room);
+  return result;
+}
+
+/* The fit of the maps is the first half of what is traced, the count of splats the second. */
+static abbe_result show_making(const abbe_caustics *c, size_t light, const abbe_hit_batch *b,
+                               abbe_error *error) {
+  const abbe_render_desc *d = &plan_of(c)->desc;
+  if (d->progress == NULL) return ABBE_OK;
+  const double share = ((double)light + share_done(c, b)) / (double)plan_of(c)->light_count;
+  if (d->progress(d->progress_user, 0.5 + 0.5 * share)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+}
+
+/* Counts the splats, the same in every frame, and makes room for them. */
+static abbe_result count_splats(abbe_caustics *c, abbe_error *error) {
+  size_t most = 1;
+  abbe_result result = count_pairs(c, error);
+  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+    abbe_hit_batch b = {0};
+    abbe_ledger ledger = {0};
+    if (!plan_of(c)->reaches[light]) continue;
+    result = abbe_photon_start_run(&c->start, light, error);
+    abbe_photon_ledger_clear(&c->ledger);
+    while (result == ABBE_OK && trace_next(c, light, &b)) {
+      const size_t count = abbe_deposit_pass_count(&c->deposit, light, &b);
+      if (count > most) most = count;
+      result = show_making(c, light, &b, error);
+    }
+    abbe_photon_ledger_read(&c->ledger, light, &ledger);
+    c->views->light[light].reached_flux = ledger.reached;
+  }
+  abbe_light_views_upload(c->views);
+  return result == ABBE_OK ? abbe_deposit_pass_make_room(&c->deposit, most, error) : result;
+}
+
+static abbe_result make_passes(abbe_caustics *c, const abbe_shader_variant *variant,
+                               abbe_error *error) {
+  const abbe_shader_variant photons = photon_variant(c, variant);
+  abbe_result result = abbe_refine_pass_compile(&c->refine, &photons, error);
+  if (result == ABBE_OK)
+    result = abbe_spectral_map_make(c->views, c->atlas, variant, c->map, error);
+  if (result == ABBE_OK)
+    result = abbe_deposit_pass_make(&c->trace, &c->refine, c->map, &photons, variant, &c->deposit,
+                                    error);
+  return result;
+}
+
+abbe_result abbe_caustics_make(abbe_light_views *views, abbe_light_layers *layers,
+                               abbe_receiver_atlas *atlas, abbe_spectral_map *map,
+                               abbe_shader_variant *variant, abbe_caustics *out,
+                               abbe_error *error) {
+  abbe_caustics *c = out;
+  *c = (abbe_caustics){.views = views, .layers = layers, .atlas = atlas, .map = map};
+  abbe_result result = abbe_photon_start_make(views, layers, variant, &c->start, error);
+  if (result == ABBE_OK) result = abbe_light_fit_run(views, layers, variant, error);
+  if (result == ABBE_OK) result = abbe_light_layers_run(layers, error);
+  if (result == ABBE_OK) result = count_photons(c, error);
+  if (result == ABBE_OK) result = abbe_photon_spectra_make(views->scene, &c->spectra, error);
+  if (result == ABBE_OK) result = abbe_photon_ledger_make(views, &c->ledger, error);
+  if (result == ABBE_OK)
+    result = abbe_trace_pass_make(&c->start, &c->spectra, atlas, &c->ledger, &c->trace, error);
+  if (result == ABBE_OK) result = abbe_refine_pass_make(&c->trace, &c->refine, error);
+  if (result == ABBE_OK) result = abbe_receiver_atlas_make(views, variant, atlas, error);
+  if (result == ABBE_OK) result = fit_maps(c, variant, error);
+  if (result == ABBE_OK) result = make_passes(c, variant, error);
+  if (result == ABBE_OK) result = fit_grids(c, error);
+  if (result == ABBE_OK) result = count_splats(c, error);
+  return result;
+}
+
+void abbe_caustics_free(abbe_caustics *c) {
+  abbe_deposit_pass_free(&c->deposit);
+  abbe_refine_pass_free(&c->refine);
+  abbe_trace_pass_free(&c->trace);
+  abbe_photon_ledger_free(&c->ledger);
+  abbe_photon_spectra_free(&c->spectra);
+  abbe_photon_start_free(&c->start);
+}
+
+static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_render_progress progress,
+                                     void *user, abbe_error *error) {
+  abbe_gpu *gpu = c->views->scene->gpu;
+  abbe_hit_batch b = {0};
+  abbe_result result = ABBE_OK;
+  abbe_gpu_begin_pass(gpu);
+  while (result == ABBE_OK && trace_next(c, light, &b)) {
+    abbe_gpu_end_pass(gpu, "light: photons");
+    result = abbe_deposit_pass_run(&c->deposit, light, &b, error);
+    const double share = ((double)light + share_done(c, &b)) / (double)plan_of(c)->light_count;
+    if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
+      result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+    abbe_gpu_begin_pass(gpu);
+  }
+  return result;
+}
+
+static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progress progress,
+                             void *user, abbe_error *error) {
+  abbe_gpu *gpu = c->views->scene->gpu;
+  abbe_gpu_begin_pass(gpu);
+  abbe_result result = abbe_photon_start_run(&c->start, light, error);
+  abbe_gpu_end_pass(gpu, "light: photon placement");
+  abbe_spectral_map_clear(c->map);
+  abbe_photon_ledger_clear(&c->ledger);
+  abbe_gpu_end_pass(gpu, "light: spectral map");
+  if (result == ABBE_OK) result = trace_and_deposit(c, light, progress, user, error);
+  if (result != ABBE_OK) return result;
+  abbe_gpu_begin_pass(gpu);
+  abbe_spectral_map_resolve(c->map, light);
+  abbe_gpu_end_pass(gpu, "light: spectral map");
+  return ABBE_OK;
+}
+
+abbe_result abbe_caustics_run(abbe_caustics *c, abbe_render_progress progress, void *user,
+                              double *untimed_ms, abbe_error *error) {
+  abbe_gpu *gpu = c->views->scene->gpu;
+  abbe_result result = ABBE_OK;
+  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+    if (!plan_of(c)->reaches[light]) continue;
+    result = run_light(c, light, progress, user, error);
+    if (result != ABBE_OK || gpu->statistics == NULL) continue;
+    const double start_ms = abbe_gpu_now_ms();
+    abbe_photon_ledger_read(&c->ledger, light, &gpu->statistics->energy);
+    result = abbe_spectral_map_read_ledger(c->map, light, &gpu->statistics->energy, error);
+    *untimed_ms += abbe_gpu_now_ms() - start_ms;
+  }
+  return result != ABBE_OK ? result : abbe_gl_check(gpu->gl, "the photon passes", error);
+}
+
+/* x | y << 16 of each photon that there is now. */
+static abbe_result read_cells(const abbe_caustics *c, size_t count, unsigned **cells,
+                              abbe_error *error) {
+  const abbe_gl *gl = c->views->scene->gpu->gl;
+  unsigned *cell = malloc(count * ABBE_PHOTON_BYTES + ABBE_PHOTON_BYTES);
+  if (cell == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells", count);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, c->start.photons);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, ABBE_PHOTON_HEADER,
+                       (GLsizeiptr)(count * ABBE_PHOTON_BYTES), cell);
+  for (size_t i = 0; i < count; i++) cell[i] = cell[i * (ABBE_PHOTON_BYTES / sizeof *cell)];
+  *cells = cell;
+  return abbe_gl_check(gl, "the reading of photons", error);
+}
+
+abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, const double origin[3],
+                                    float **data, unsigned **cells, size_t *count,
+                                    abbe_error *error) {
+  GLuint *path = NULL;
+  abbe_result result = abbe_light_layers_run(c->layers, error);
+  if (result == ABBE_OK) result = abbe_photon_start_run(&c->start, light, error);
+  if (result != ABBE_OK) return result;
+  *count = c->views->light[light].photon_count;
+  abbe_trace_pass_batch(&c->trace, light, 0, c->trace.hits.stride, plan_of(c)->desc.wavelengths);
+  result = abbe_trace_pass_read(&c->trace, light, 0, data, &path, error);
+  const size_t hits = abbe_trace_pass_hit_count(&c->trace, light);
+  for (size_t i = 0; result == ABBE_OK && i < hits; i++) {
+    float *at = *data + 4 * i;
+    double place[3] = {at[0], at[1], at[2]};
+    if (!(at[3] > 0)) continue;
+    if (abbe_receiver_atlas_holds(c->atlas, path[i]))
+      abbe_receiver_atlas_world(c->atlas, light, at, place);
+    for (size_t k = 0; k < 3; k++) at[k] = (float)(place[k] + origin[k]);
+  }
+  free(path);
+  if (result == ABBE_OK && cells != NULL) result = read_cells(c, *count, cells, error);
+  if (result == ABBE_OK) return ABBE_OK;
+  free(*data);
+  *data = NULL;
+  return result;
+}

@@ -1,0 +1,49 @@
+/* caustics.h: light through refractors to the spectral map: what is fitted and counted once, and
+ * the passes of every frame. Internal to gl/.
+ */
+#ifndef ABBE_GL_CAUSTICS_CAUSTICS_H
+#define ABBE_GL_CAUSTICS_CAUSTICS_H
+
+#include "gl/caustics/deposit_pass.h"
+#include "gl/caustics/spectral_map.h"
+#include "gl/light/light_layers.h"
+#include "gl/light/photon_start.h"
+#include "gl/light/receiver_atlas.h"
+#include "gl/photons/photon_ledger.h"
+#include "gl/photons/photon_spectra.h"
+#include "gl/photons/refine_pass.h"
+#include "gl/photons/trace_pass.h"
+
+typedef struct abbe_caustics {
+  abbe_light_views *views;
+  abbe_light_layers *layers;
+  abbe_receiver_atlas *atlas;
+  abbe_spectral_map *map;
+  abbe_photon_start start;
+  abbe_photon_spectra spectra;
+  abbe_photon_ledger ledger;
+  abbe_trace_pass trace;
+  abbe_refine_pass refine;
+  abbe_deposit_pass deposit;
+} abbe_caustics;
+
+/* Fits views, maps, pages and grids by tracing photons, makes the atlas and the map, completes the
+ * scene's variant by the pages that there are. Of a plan with caustics. Calls the request's
+ * progress. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
+abbe_result abbe_caustics_make(abbe_light_views *views, abbe_light_layers *layers,
+                               abbe_receiver_atlas *atlas, abbe_spectral_map *map,
+                               abbe_shader_variant *variant, abbe_caustics *out, abbe_error *error);
+void abbe_caustics_free(abbe_caustics *caustics);
+
+/* Photons of every light to its map; their entries into the ledger of the frame's statistics, where
+ * there are any. untimed_ms: grows by what reading the ledger took. ABBE_CANCELLED, ABBE_GL. */
+abbe_result abbe_caustics_run(abbe_caustics *caustics, abbe_render_progress progress, void *user,
+                              double *untimed_ms, abbe_error *error);
+
+/* Hits of the first batch of wavelengths, as of abbe_renderer_read_landings; places move by
+ * `origin`. */
+abbe_result abbe_caustics_read_hits(abbe_caustics *caustics, size_t light, const double origin[3],
+                                    float **data, unsigned **cells, size_t *count,
+                                    abbe_error *error);
+
+#endif

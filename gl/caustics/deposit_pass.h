@@ -1,0 +1,47 @@
+/* deposit_pass.h: photon hits to light in the spectral map: splats between wavelengths and between
+ * cells, listed, then added, a chunk at a time. Internal to gl/.
+ */
+#ifndef ABBE_GL_CAUSTICS_DEPOSIT_PASS_H
+#define ABBE_GL_CAUSTICS_DEPOSIT_PASS_H
+
+#include "gl/caustics/spectral_map.h"
+#include "gl/photons/refine_pass.h"
+
+/* Hits that lie in the buffers now. */
+typedef struct abbe_hit_batch {
+  abbe_trace_set set;
+  size_t first, count;                 /* wavelengths */
+  size_t interval_first, interval_end; /* between them, that are deposited */
+  size_t pair_chunk;                   /* of the refined intervals */
+} abbe_hit_batch;
+
+typedef struct abbe_deposit_pass {
+  const abbe_trace_pass *trace;
+  const abbe_refine_pass *refine;
+  abbe_spectral_map *map;
+  GLuint list, list_refined, add; /* programs */
+  GLuint splats;
+  size_t splat_room, chunks; /* splats that are listed at a time; chunks of the photons */
+} abbe_deposit_pass;
+
+/* photons: the variant of the trace. With room for one splat: abbe_deposit_pass_make_room follows
+ * once they are counted. */
+abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refine_pass *refine,
+                                   abbe_spectral_map *map, const abbe_shader_variant *photons,
+                                   const abbe_shader_variant *scene, abbe_deposit_pass *out,
+                                   abbe_error *error);
+void abbe_deposit_pass_free(abbe_deposit_pass *pass);
+/* For up to `most` splats of a batch, in as many chunks as that takes. */
+abbe_result abbe_deposit_pass_make_room(abbe_deposit_pass *pass, size_t most, abbe_error *error);
+
+/* Chunks of photons for lists of `room`, if all together come to `count`. */
+size_t abbe_deposit_pass_chunks(size_t count, size_t room);
+
+/* Waits for the device: the splats of a batch, in one chunk. */
+size_t abbe_deposit_pass_count(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch);
+/* Deposits a batch. ABBE_GL where a chunk has more splats than there is room for; that is looked at
+ * where there are several chunks, or statistics. */
+abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
+                                  const abbe_hit_batch *batch, abbe_error *error);
+
+#endif

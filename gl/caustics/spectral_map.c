@@ -1,0 +1,157 @@
+#include "gl/caustics/spectral_map.h"
+
+#include "gl/caustics/map_picture.h"
+#include "gl/device/bindings.h"
+#include "gl/device/program.h"
+#include "gl/photons/photon_ledger.h"
+
+#include <stdlib.h>
+
+static const abbe_gpu_scene *scene_of(const abbe_spectral_map *map) {
+  return map->views->scene;
+}
+
+static abbe_result make_texture(abbe_spectral_map *map, abbe_error *error) {
+  static const float black[4] = {0, 0, 0, 0};
+  const abbe_gl *gl = scene_of(map)->gpu->gl;
+  const bool caustics = scene_of(map)->plan->caustics;
+  const size_t side = caustics ? scene_of(map)->plan->desc.map_size : 1;
+  gl->GenTextures(1, &map->texture);
+  gl->BindTexture(GL_TEXTURE_2D_ARRAY, map->texture);
+  gl->TexStorage3D(GL_TEXTURE_2D_ARRAY, (GLsizei)map->views->map_levels, GL_RGBA32F, (GLsizei)side,
+                   (GLsizei)side, (GLsizei)map->layers);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  scene_of(map)->gpu->bytes += map->views->map_texels * map->layers * 16;
+  for (size_t i = 0; i < map->layers && !caustics; i++)
+    gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, 1, 1, 1, GL_RGBA, GL_FLOAT, black);
+  return abbe_gl_check(gl, "the allocation of the map", error);
+}
+
+abbe_result abbe_spectral_map_make(const abbe_light_views *views, const abbe_receiver_atlas *atlas,
+                                   const abbe_shader_variant *variant, abbe_spectral_map *out,
+                                   abbe_error *error) {
+  abbe_gpu *gpu = views->scene->gpu;
+  out->views = views;
+  out->atlas = atlas;
+  out->layers = abbe_receiver_atlas_layers(atlas);
+  abbe_result result = make_texture(out, error);
+  if (result != ABBE_OK || !views->scene->plan->caustics) return result;
+  const size_t texels = (atlas->used ? 2 : 1) * views->map_texels;
+  result = abbe_gpu_make_buffer(gpu, texels * abbe_light_views_map_words(views) * 4, NULL,
+                                &out->sums, error);
+  if (result == ABBE_OK)
+    result = abbe_shader_variant_compute(variant, gpu->gl, "map_resolve.comp", NULL, &out->resolve,
+                                         error);
+  if (result == ABBE_OK)
+    result = abbe_program_make_compute(gpu->gl, "map_mip.comp", NULL, &out->mip, error);
+  return result;
+}
+
+void abbe_spectral_map_free(abbe_spectral_map *map) {
+  if (map->views == NULL) return;
+  const abbe_gl *gl = scene_of(map)->gpu->gl;
+  gl->DeleteTextures(1, &map->texture);
+  gl->DeleteBuffers(1, &map->sums);
+  gl->DeleteProgram(map->resolve);
+  gl->DeleteProgram(map->mip);
+}
+
+void abbe_spectral_map_clear(abbe_spectral_map *map) {
+  abbe_gpu_clear_buffer(scene_of(map)->gpu, map->sums);
+}
+
+void abbe_spectral_map_set(const abbe_spectral_map *map, GLuint program) {
+  abbe_gpu_bind_array(scene_of(map)->gpu, program, "spectral_map", 0, map->texture);
+}
+
+static void use(abbe_spectral_map *map, GLuint program, const char *sampler, size_t light,
+                size_t layer) {
+  abbe_gpu *gpu = scene_of(map)->gpu;
+  gpu->gl->UseProgram(program);
+  abbe_gpu_set_int(gpu, program, "light", (int)light);
+  abbe_gpu_set_int(gpu, program, "layer", (int)layer);
+  abbe_gpu_set_int(gpu, program, "map_size", (int)scene_of(map)->plan->desc.map_size);
+  abbe_gpu_bind_storage(gpu, BINDING_TEXEL_SIZES, map->views->texel_sizes);
+  abbe_gpu_bind_array(gpu, program, sampler, 0, map->texture);
+}
+
+static void write_level(abbe_spectral_map *map, GLuint program, size_t level, size_t rows) {
+  abbe_gpu *gpu = scene_of(map)->gpu;
+  abbe_gpu_set_int(gpu, program, "level", (int)level);
+  gpu->gl->BindImageTexture(0, map->texture, (GLint)level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  abbe_gpu_dispatch_2d(gpu, scene_of(map)->plan->desc.map_size >> level, rows >> level);
+  gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+/* Coarse to fine: each level takes over what the coarser ones hold; so many rows of a layer. */
+static void resolve_layer(abbe_spectral_map *map, size_t light, size_t layer, size_t rows) {
+  abbe_gpu *gpu = scene_of(map)->gpu;
+  abbe_gpu_scene_bind(scene_of(map));
+  abbe_light_views_bind(map->views);
+  abbe_receiver_atlas_bind(map->atlas);
+  use(map, map->resolve, "coarser_map", light, layer);
+  abbe_gpu_set_uint(gpu, map->resolve, "map_texels", map->views->map_texels);
+  abbe_gpu_set_int(gpu, map->resolve, "levels", (int)map->views->map_levels);
+  abbe_gpu_bind_storage(gpu, BINDING_MAP_SUMS, map->sums);
+  for (size_t level = map->views->map_levels; level-- > 0;)
+    write_level(map, map->resolve, level, rows);
+}
+
+/* What the eye sees of the map where its samples are farther apart than texels. */
+static void make_mips(abbe_spectral_map *map, size_t light, size_t layer, size_t rows) {
+  use(map, map->mip, "map_levels", light, layer);
+  for (size_t level = 1; level < map->views->map_levels; level++)
+    write_level(map, map->mip, level, rows);
+}
+
+void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light) {
+  const size_t side = scene_of(map)->plan->desc.map_size;
+  const abbe_receiver_pages *pages = &map->atlas->pages[light];
+  resolve_layer(map, light, light, side);
+  make_mips(map, light, light, side);
+  if (pages->count == 0) return;
+  resolve_layer(map, light, map->atlas->layer[light], pages->rows);
+  make_mips(map, light, map->atlas->layer[light], pages->rows);
+}
+
+abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t light,
+                                          abbe_ledger *out, abbe_error *error) {
+  const abbe_gl *gl = scene_of(map)->gpu->gl;
+  const size_t layer = map->views->map_texels, texels = layer * (map->atlas->used ? 2 : 1);
+  const size_t words = abbe_light_views_map_words(map->views);
+  const size_t size = texels * words * sizeof(GLuint);
+  double deposited[2] = {0, 0};
+  GLuint *sum = malloc(size);
+  if (sum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, map->sums);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, sum);
+  for (size_t i = 0; i < texels; i++)
+    deposited[i / layer] +=
+        map->views->wide ? abbe_photon_ledger_wide(sum + 6 * i + 2) : sum[3 * i + 1];
+  free(sum);
+  const double unit = abbe_light_views_map_unit(map->views, light);
+  out->deposited += (deposited[0] + deposited[1]) * unit;
+  out->on_pages += deposited[1] * unit;
+  return abbe_gl_check(gl, "the reading of the ledger", error);
+}
+
+abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, double unit,
+                                   abbe_image *out, abbe_error *error) {
+  const abbe_plan *plan = scene_of(map)->plan;
+  const size_t side = plan->desc.map_size, layer = side * side * 4;
+  float *data = malloc(map->layers * layer * sizeof *data);
+  if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
+  scene_of(map)->gpu->gl->BindTexture(GL_TEXTURE_2D_ARRAY, map->texture);
+  scene_of(map)->gpu->gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, data);
+  for (size_t i = 0; i < plan->light_count; i++) {
+    if (i == light || plan->lamp[i].light != light) continue;
+    for (size_t k = 0; k < layer; k++) data[light * layer + k] += data[i * layer + k];
+  }
+  abbe_result result = abbe_map_picture_flux(data + light * layer, side,
+                                             &map->views->light[light].map, unit, out, error);
+  free(data);
+  return result;
+}

@@ -1,0 +1,26 @@
+#include "gl/eye/lighting.h"
+
+static void set_camera(const abbe_lighting *lighting, GLuint program) {
+  const abbe_gl *gl = lighting->scene->gpu->gl;
+  const abbe_view *view = &lighting->camera->view;
+  double matrix[16];
+  float clip[16], packed[24];
+  abbe_view_matrix(view, matrix);
+  for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
+  abbe_view_pack(view, packed);
+  gl->UniformMatrix4fv(gl->GetUniformLocation(program, "view_projection"), 1, GL_FALSE, clip);
+  gl->Uniform3f(gl->GetUniformLocation(program, "eye"), packed[0], packed[1], packed[2]);
+  GLint packed_view = gl->GetUniformLocation(program, "eye_view");
+  if (packed_view >= 0) gl->Uniform4fv(packed_view, 6, packed);
+}
+
+void abbe_lighting_use(const abbe_lighting *lighting, GLuint program) {
+  abbe_gpu_scene_bind(lighting->scene);
+  abbe_light_views_bind(lighting->views);
+  abbe_receiver_atlas_bind(lighting->atlas);
+  lighting->scene->gpu->gl->UseProgram(program);
+  abbe_spectral_map_set(lighting->map, program);
+  abbe_gpu_scene_set(lighting->scene, program);
+  abbe_light_layers_set(lighting->layers, program);
+  set_camera(lighting, program);
+}

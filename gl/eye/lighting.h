@@ -1,0 +1,24 @@
+/* lighting.h: all that shaders ask for to light a receiver (receiver.glsl): tables, light layers,
+ * spectral map, pages. Internal to gl/.
+ */
+#ifndef ABBE_GL_EYE_LIGHTING_H
+#define ABBE_GL_EYE_LIGHTING_H
+
+#include "gl/caustics/spectral_map.h"
+#include "gl/light/light_layers.h"
+#include "gl/light/receiver_atlas.h"
+#include "gl/scene/camera_view.h"
+
+typedef struct abbe_lighting {
+  const abbe_gpu_scene *scene;
+  const abbe_light_views *views;
+  const abbe_light_layers *layers;
+  const abbe_receiver_atlas *atlas;
+  const abbe_spectral_map *map;
+  const abbe_camera_view *camera;
+} abbe_lighting;
+
+/* The program is in use, everything is bound, the camera is told. */
+void abbe_lighting_use(const abbe_lighting *lighting, GLuint program);
+
+#endif

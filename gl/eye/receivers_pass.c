@@ -1,0 +1,169 @@
+#include "gl/eye/receivers_pass.h"
+
+#include "gl/plan/lit_window.h"
+
+#include <stdlib.h>
+
+static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                            {GL_FRAGMENT_SHADER, "receivers.frag"}};
+
+/* Views that hold all that the light may reach, straight and through refractors; 0: no such are
+ * known.
+ */
+static size_t views_of_light(const abbe_receivers_pass *pass, size_t light, abbe_view out[2]) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  if (scene->plan->cubes || pass->lighting->atlas->used ||
+      !abbe_lit_window_cone(&scene->local->light[light], &out[0]))
+    return 0;
+  out[1] = pass->lighting->views->light[light].map.view;
+  return scene->plan->reaches[light] ? 2 : 1;
+}
+
+/* Around what the view holds of the object. */
+static bool bound_object(const abbe_receivers_pass *pass, const abbe_view *view,
+                         const abbe_exact *exact, int out[4]) {
+  const size_t w = pass->lighting->camera->samples[0], h = pass->lighting->camera->samples[1];
+  bool any = false;
+  for (size_t i = 0; i < exact->count; i++) {
+    int part[4];
+    if (!abbe_lit_window(view, &pass->lighting->camera->view, exact->parallelogram[i], w, h, part))
+      continue;
+    for (int k = 0; k < 4; k++) {
+      const bool further = k < 2 ? part[k] < out[k] : part[k] > out[k];
+      if (!any || further) out[k] = part[k];
+    }
+    any = true;
+  }
+  return any;
+}
+
+/* Of the picture's samples, a half at least must be drawn without light for it to pay that the
+ * others are drawn once more. */
+static bool pays(const abbe_receivers_pass *pass) {
+  double area = 0, samples = (double)pass->lighting->camera->samples[0] *
+                             (double)pass->lighting->camera->samples[1];
+  for (size_t i = 0; i < pass->part_count; i++) {
+    const int *rect = pass->part[i].rect;
+    area += (double)(rect[2] - rect[0]) * (double)(rect[3] - rect[1]);
+  }
+  return area < 0.5 * samples;
+}
+
+/* Where the picture is mostly dark, receivers are drawn without any light, and what a light may
+ * reach once more: a software rasteriser skips no part of a shader that nobody needs. */
+static abbe_result make_unlit(abbe_receivers_pass *pass, const abbe_shader_variant *variant,
+                              abbe_error *error) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  const abbe_plan *plan = scene->plan;
+  if (plan->desc.everything || plan->receivers != ABBE_RECEIVER_EXACT) return ABBE_OK;
+  pass->part = calloc(2 * plan->light_count * plan->receiver_count + 1, sizeof *pass->part);
+  if (pass->part == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
+  for (size_t light = 0; light < plan->light_count; light++) {
+    abbe_view view[2];
+    const size_t views = views_of_light(pass, light, view);
+    if (views == 0) return ABBE_OK;
+    for (size_t k = 0; k < views * plan->receiver_count; k++) {
+      abbe_lit_part *part = &pass->part[pass->part_count];
+      part->receiver = k / views;
+      const size_t object = plan->receiver_object[part->receiver];
+      if (bound_object(pass, &view[k % views], &scene->local->object[object].exact, part->rect))
+        pass->part_count++;
+    }
+  }
+  if (!pays(pass)) return ABBE_OK;
+  return abbe_shader_variant_program(variant, scene->gpu->gl, stages, 2, "#define UNLIT\n",
+                                     &pass->unlit, error);
+}
+
+static void draw_receiver(abbe_receivers_pass *pass, GLuint program, size_t receiver) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  abbe_gpu_set_int(scene->gpu, program, "surface", (int)receiver);
+  if (pass->lighting->atlas->used)
+    abbe_gpu_set_int(scene->gpu, program, "face_first", (int)scene->charts.face_first[receiver]);
+  abbe_gpu_meshes_draw(scene, scene->plan->receiver_object[receiver]);
+}
+
+/* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here.
+ */
+static void draw_lit_parts(abbe_receivers_pass *pass) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  abbe_lighting_use(pass->lighting, pass->lit);
+  gl->Enable(GL_SCISSOR_TEST);
+  gl->DepthFunc(GL_EQUAL);
+  for (size_t i = pass->part_count; i-- > 0;) {
+    const int *rect = pass->part[i].rect;
+    gl->Scissor(rect[0], rect[1], rect[2] - rect[0], rect[3] - rect[1]);
+    draw_receiver(pass, pass->lit, pass->part[i].receiver);
+  }
+  gl->DepthFunc(GL_LESS);
+  gl->Disable(GL_SCISSOR_TEST);
+}
+
+abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  const size_t w = pass->lighting->camera->samples[0], h = pass->lighting->camera->samples[1];
+  GLuint target[3] = {pass->colour, pass->direct, pass->caustic};
+  static const int flat[3] = {0, -1, -1};
+  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  abbe_gpu_begin_pass(scene->gpu);
+  abbe_result result = abbe_gpu_set_target(
+      scene->gpu, target, flat, scene->plan->desc.layers ? 3 : 1, pass->depth, w, h, error);
+  if (result != ABBE_OK) return result;
+  GLfloat b = (GLfloat)scene->local->background, background[4] = {b, b, b, 0};
+  gl->ClearBufferfv(GL_COLOR, 0, background);
+  for (GLint k = 1; k < 3 && scene->plan->desc.layers; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  gl->Enable(GL_DEPTH_TEST);
+  const GLuint whole = pass->unlit != 0 ? pass->unlit : pass->lit;
+  abbe_lighting_use(pass->lighting, whole);
+  for (size_t i = 0; i < scene->plan->receiver_count; i++) draw_receiver(pass, whole, i);
+  if (pass->unlit != 0) draw_lit_parts(pass);
+  abbe_gpu_end_pass(scene->gpu, "eye: receivers");
+  return ABBE_OK;
+}
+
+static abbe_result make_targets(abbe_receivers_pass *pass, abbe_error *error) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  const abbe_render_desc *desc = &scene->plan->desc;
+  const size_t w = pass->lighting->camera->samples[0], h = pass->lighting->camera->samples[1];
+  GLint most = 0;
+  scene->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+  if (w > (size_t)most || h > (size_t)most)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%zu x %zu pixels with %zu samples a side are %zu x %zu; this OpenGL "
+                          "draws at most %d a side: use fewer samples or a smaller picture",
+                          desc->width, desc->height, desc->supersample, w, h, most);
+  abbe_result result =
+      abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 1, false, &pass->colour, error);
+  if (result == ABBE_OK && desc->layers)
+    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->direct, error);
+  if (result == ABBE_OK && desc->layers)
+    result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->caustic, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_texture(scene->gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth,
+                                   error);
+  return result;
+}
+
+abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
+                                     const abbe_shader_variant *variant, abbe_receivers_pass *out,
+                                     abbe_error *error) {
+  out->lighting = lighting;
+  abbe_result result = make_targets(out, error);
+  if (result == ABBE_OK)
+    result = abbe_shader_variant_program(variant, lighting->scene->gpu->gl, stages, 2, NULL,
+                                         &out->lit, error);
+  return result == ABBE_OK ? make_unlit(out, variant, error) : result;
+}
+
+void abbe_receivers_pass_free(abbe_receivers_pass *pass) {
+  if (pass->lighting == NULL) return;
+  const abbe_gl *gl = pass->lighting->scene->gpu->gl;
+  const GLuint textures[] = {pass->colour, pass->direct, pass->caustic, pass->depth};
+  gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
+  gl->DeleteProgram(pass->lit);
+  gl->DeleteProgram(pass->unlit);
+  free(pass->part);
+}

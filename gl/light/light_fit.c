@@ -1,0 +1,76 @@
+#include "gl/light/light_fit.h"
+
+#include "gl/device/bindings.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 1024, TURNS = 4 };
+
+/* The window of lit rays, in whole rays: least and greatest column, then row. */
+static void find_lit(const abbe_light_fit *fit, size_t light, GLuint found[4]) {
+  static const GLuint none[4] = {SIDE, 0, SIDE, 0};
+  const abbe_gpu_scene *scene = fit->views->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, fit->found);
+  gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
+  abbe_gpu_scene_bind(scene);
+  abbe_light_views_bind(fit->views);
+  gl->UseProgram(fit->program);
+  abbe_gpu_scene_set(scene, fit->program);
+  abbe_light_layers_set(fit->layers, fit->program);
+  abbe_gpu_set_int(scene->gpu, fit->program, "light", (int)light);
+  abbe_gpu_set_int(scene->gpu, fit->program, "side", SIDE);
+  abbe_gpu_bind_storage(scene->gpu, BINDING_FOUND_BOX, fit->found);
+  abbe_gpu_dispatch_2d(scene->gpu, SIDE, SIDE);
+  gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 4 * sizeof *found, found);
+}
+
+/* Each turn sees as finely as the last one left the view, and leaves a ray's width on every side.
+ */
+static abbe_result fit_near_view(const abbe_light_fit *fit, size_t light, abbe_error *error) {
+  double *window = fit->views->light[light].near_view.window;
+  for (int turn = 0; turn < TURNS; turn++) {
+    GLuint found[4] = {0};
+    /* What rays meet of meshes is told by the front layer of the view as it is now. */
+    abbe_result result = fit->views->scene->plan->hierarchy
+                             ? abbe_light_layers_draw(fit->layers, light, error)
+                             : ABBE_OK;
+    if (result != ABBE_OK) return result;
+    find_lit(fit, light, found);
+    if (found[0] > found[1]) break; /* nothing is lit */
+    bool shrinks = false;
+    double box[4];
+    for (int axis = 0; axis < 2; axis++)
+      shrinks = shrinks || found[2 * axis + 1] - found[2 * axis] < 9 * SIDE / 10;
+    for (int axis = 0; axis < 2; axis++) {
+      double low = window[2 * axis], ray = (window[2 * axis + 1] - low) / SIDE;
+      /* The edge lies half a ray to either side of where the last lit ray's place begins. */
+      double room = shrinks ? 0.5 : 0;
+      box[2 * axis] = low + ray * fmax((double)found[2 * axis] - room, 0);
+      box[2 * axis + 1] = low + ray * fmin((double)found[2 * axis + 1] + 1 + room, SIDE);
+    }
+    if (turn == 0 && !shrinks) break; /* nothing to speak of is cut off */
+    memcpy(window, box, sizeof box);
+    abbe_light_views_upload(fit->views);
+    if (!shrinks) break;
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_light_fit_run(abbe_light_views *views, abbe_light_layers *layers,
+                               const abbe_shader_variant *variant, abbe_error *error) {
+  abbe_gpu *gpu = views->scene->gpu;
+  const abbe_plan *plan = views->scene->plan;
+  abbe_light_fit fit = {.views = views, .layers = layers};
+  if (plan->layers) return ABBE_OK; /* a mesh's inside is what the near view sees of it */
+  abbe_result result =
+      abbe_shader_variant_compute(variant, gpu->gl, "light_fit.comp", NULL, &fit.program, error);
+  if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, 4 * 4, NULL, &fit.found, error);
+  for (size_t i = 0; i < plan->light_count && result == ABBE_OK; i++)
+    if (plan->reaches[i]) result = fit_near_view(&fit, i, error);
+  gpu->gl->DeleteBuffers(1, &fit.found);
+  gpu->gl->DeleteProgram(fit.program);
+  return result != ABBE_OK ? result : abbe_gl_check(gpu->gl, "the fit of the light's view", error);
+}

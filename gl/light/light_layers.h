@@ -1,0 +1,28 @@
+/* light_layers.h: what each light's near view shows of the refractors: front and back faces. A pass
+ * of every frame; the fit of the near views uses it too. Internal to gl/.
+ */
+#ifndef ABBE_GL_LIGHT_LIGHT_LAYERS_H
+#define ABBE_GL_LIGHT_LIGHT_LAYERS_H
+
+#include "gl/light/light_views.h"
+#include "gl/scene/refractor_faces.h"
+
+typedef struct abbe_light_layers {
+  const abbe_light_views *views;
+  const abbe_refractor_faces *faces;
+  GLuint layers, owner, depth; /* front and back of each light; whose the front is */
+  size_t side;
+} abbe_light_layers;
+
+abbe_result abbe_light_layers_make(const abbe_light_views *views, const abbe_refractor_faces *faces,
+                                   abbe_light_layers *out, abbe_error *error);
+void abbe_light_layers_free(abbe_light_layers *layers);
+
+/* Of one light, then of all whose light may meet a refractor. */
+abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe_error *error);
+abbe_result abbe_light_layers_run(abbe_light_layers *layers, abbe_error *error);
+
+/* The textures, into the program that is in use. */
+void abbe_light_layers_set(const abbe_light_layers *layers, GLuint program);
+
+#endif

@@ -1,0 +1,51 @@
+#include "gl/photons/photon_ledger.h"
+
+#include "gl/device/bindings.h"
+
+#include <math.h>
+
+enum { WORDS = 12 };
+
+abbe_result abbe_photon_ledger_make(const abbe_light_views *views, abbe_photon_ledger *out,
+                                    abbe_error *error) {
+  out->views = views;
+  return abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error);
+}
+
+void abbe_photon_ledger_free(abbe_photon_ledger *ledger) {
+  if (ledger->views != NULL) ledger->views->scene->gpu->gl->DeleteBuffers(1, &ledger->sums);
+}
+
+void abbe_photon_ledger_clear(abbe_photon_ledger *ledger) {
+  abbe_gpu_clear_buffer(ledger->views->scene->gpu, ledger->sums);
+}
+
+void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger) {
+  abbe_gpu_bind_storage(ledger->views->scene->gpu, BINDING_LEDGER, ledger->sums);
+}
+
+/* A group of 256 photons sums in 32 bits. */
+static double unit_of(const abbe_photon_ledger *ledger, size_t light) {
+  return ldexp(ledger->views->light[light].cell_flux, -22);
+}
+
+void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light) {
+  abbe_gpu_set_float(ledger->views->scene->gpu, program, "ledger_unit", unit_of(ledger, light));
+}
+
+/* What is taken back may come to a little more than what was entered, by what is known only between
+ * two wavelengths. */
+double abbe_photon_ledger_wide(const GLuint *lo_hi) {
+  return ldexp((double)(GLint)lo_hi[1], 32) + lo_hi[0];
+}
+
+void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out) {
+  const abbe_gl *gl = ledger->views->scene->gpu->gl;
+  GLuint word[WORDS];
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, ledger->sums);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
+  double *const entry[WORDS / 2] = {&out->reached, &out->reflected, &out->absorbed,
+                                    &out->trapped, &out->missed,    &out->interpolated};
+  for (size_t i = 0; i < WORDS / 2; i++)
+    *entry[i] += abbe_photon_ledger_wide(word + 2 * i) * unit_of(ledger, light);
+}

@@ -1,0 +1,30 @@
+/* photon_ledger.h: where a light's flux goes, summed on the device while photons are traced and
+ * deposited. Internal to gl/.
+ */
+#ifndef ABBE_GL_PHOTONS_PHOTON_LEDGER_H
+#define ABBE_GL_PHOTONS_PHOTON_LEDGER_H
+
+#include "gl/light/light_views.h"
+#include "gl/device/statistics.h"
+
+typedef struct abbe_photon_ledger {
+  const abbe_light_views *views;
+  GLuint sums;
+} abbe_photon_ledger;
+
+abbe_result abbe_photon_ledger_make(const abbe_light_views *views, abbe_photon_ledger *out,
+                                    abbe_error *error);
+void abbe_photon_ledger_free(abbe_photon_ledger *ledger);
+
+void abbe_photon_ledger_clear(abbe_photon_ledger *ledger);
+void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger);
+/* Of the light that is traced now: its unit, W, into the program that is in use. */
+void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light);
+
+/* Waits for the device. Adds the light's entries but for what is deposited. */
+void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out);
+
+/* A sum of two words, which may be below zero. */
+double abbe_photon_ledger_wide(const GLuint *lo_hi);
+
+#endif

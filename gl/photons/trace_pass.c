@@ -1,0 +1,219 @@
+#include "gl/photons/trace_pass.h"
+
+#include "gl/device/bindings.h"
+
+#include <stdlib.h>
+
+enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, LEAST_LANES = 7 };
+
+static const abbe_gpu_scene *scene_of(const abbe_trace_pass *pass) {
+  return pass->spectra->scene;
+}
+
+/* That a buffer can hold and a shader can read as texels. */
+static size_t most_hits(const abbe_trace_pass *pass) {
+  GLint texels = 0;
+  scene_of(pass)->gpu->gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
+  const size_t most =
+      MOST_HIT_BYTES / (ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra));
+  const size_t held = (size_t)texels * 16 / ABBE_HIT_BYTES; /* of four floats a texel */
+  return most < held ? most : held;
+}
+
+static size_t most_photons(const abbe_trace_pass *pass) {
+  const abbe_plan *plan = scene_of(pass)->plan;
+  const size_t side = plan->desc.photons, cells = side * side, rim = 8 * side;
+  size_t most = 1;
+  for (size_t i = 0; i < plan->light_count; i++)
+    if (pass->start->views->light[i].photon_count > most)
+      most = pass->start->views->light[i].photon_count;
+  /* A grid that is moved or made coarser may show a little more: a rim of cells. */
+  return most + rim < cells ? most + rim : cells;
+}
+
+/* Wavelengths of a batch. */
+static size_t choose_lanes(const abbe_trace_pass *pass, size_t room) {
+  const abbe_plan *plan = scene_of(pass)->plan;
+  const size_t a_lane = pass->most_photons * plan->slots;
+  /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
+  const size_t usual = ABBE_PLAN_EXITS + 1;
+  const size_t slots = !plan->walk && plan->slots > usual ? usual : plan->slots;
+  const size_t a_hit = ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra);
+  size_t lanes = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
+  if (lanes > room / a_lane) lanes = room / a_lane;
+  return lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
+}
+
+abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *spectra,
+                                 const abbe_receiver_atlas *atlas, abbe_photon_ledger *ledger,
+                                 abbe_trace_pass *out, abbe_error *error) {
+  *out = (abbe_trace_pass){.start = start, .spectra = spectra, .atlas = atlas, .ledger = ledger};
+  const abbe_plan *plan = scene_of(out)->plan;
+  out->most_photons = most_photons(out);
+  const size_t a_lane = out->most_photons * plan->slots, n = plan->desc.wavelengths;
+  const size_t room = most_hits(out);
+  if (a_lane * (n > 1 ? 2 : 1) > room)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%zu photons with %zu exits each are more than the device takes at a "
+                          "time; use a grid below %zu or fewer exits",
+                          out->most_photons, plan->desc.orders, plan->desc.photons);
+  size_t lanes = choose_lanes(out, room);
+  abbe_result result = ABBE_OK;
+  /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
+  if (a_lane * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
+  const bool refines = abbe_photon_spectra_refines(spectra);
+  const size_t enough = refines ? LEAST_LANES : n;
+  if (lanes > enough) lanes = enough < n ? enough : n;
+  if (lanes < spectra->nodes && refines) lanes = spectra->nodes;
+  if (result != ABBE_OK) return result;
+  return abbe_hits_make(scene_of(out)->gpu, out->most_photons, plan->slots, lanes,
+                        abbe_photon_signature_bytes(spectra), &out->hits, error);
+}
+
+abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t stride,
+                           size_t signature_bytes, abbe_hits *out, abbe_error *error) {
+  const size_t paths = items * slots;
+  out->stride = stride;
+  abbe_result result =
+      abbe_gpu_make_buffer(gpu, paths * stride * ABBE_HIT_BYTES, NULL, &out->hits, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_gpu_make_buffer(gpu, paths * stride * signature_bytes, NULL, &out->signatures, error);
+  if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, paths * 4, NULL, &out->marks, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + paths * 4, NULL, &out->paths, error);
+  return result;
+}
+
+void abbe_hits_free(abbe_gpu *gpu, abbe_hits *hits) {
+  const GLuint buffers[] = {hits->hits, hits->signatures, hits->marks, hits->paths};
+  gpu->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+}
+
+void abbe_trace_pass_free(abbe_trace_pass *pass) {
+  if (pass->spectra == NULL) return;
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  abbe_hits_free(gpu, &pass->hits);
+  gpu->gl->DeleteProgram(pass->program);
+  gpu->gl->DeleteProgram(pass->list_paths);
+}
+
+abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
+                                    abbe_error *error) {
+  const abbe_gl *gl = scene_of(pass)->gpu->gl;
+  gl->DeleteProgram(pass->program);
+  gl->DeleteProgram(pass->list_paths);
+  pass->list_paths = 0;
+  abbe_result result =
+      abbe_shader_variant_compute(variant, gl, "photon_trace.comp", NULL, &pass->program, error);
+  if (result == ABBE_OK)
+    result = abbe_shader_variant_compute(variant, gl, "photon_paths.comp", NULL, &pass->list_paths,
+                                         error);
+  return result;
+}
+
+void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set set,
+                           const abbe_hits *hits, size_t count) {
+  const abbe_gpu_scene *scene = scene_of(pass);
+  abbe_gpu *gpu = scene->gpu;
+  const GLuint program = pass->program;
+  abbe_gpu_scene_bind(scene);
+  abbe_light_views_bind(pass->start->views);
+  abbe_receiver_atlas_bind(pass->atlas);
+  abbe_photon_start_bind(pass->start);
+  abbe_photon_ledger_bind(pass->ledger);
+  gpu->gl->UseProgram(program);
+  abbe_gpu_scene_set(scene, program);
+  abbe_light_layers_set(pass->start->layers, program);
+  abbe_light_views_set_grid(pass->start->views, program, light);
+  abbe_photon_ledger_set(pass->ledger, program, light);
+  abbe_gpu_set_int(gpu, program, "light", (int)light);
+  abbe_gpu_set_int(gpu, program, "set", (int)set);
+  abbe_gpu_set_int(gpu, program, "lane_first", 0);
+  abbe_gpu_set_int(gpu, program, "lane_count", (int)count);
+  abbe_gpu_set_int(gpu, program, "lane_stride", (int)hits->stride);
+  abbe_gpu_set_int(gpu, program, "ledger_first", 0);
+  abbe_gpu_set_float(gpu, program, "share_limit", scene->plan->desc.energy_share);
+  abbe_gpu_set_int(gpu, program, "fits_pages", pass->atlas->fits ? 1 : 0);
+  if (scene->plan->lengths)
+    abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F,
+                         pass->spectra->attenuation);
+  abbe_gpu_clear_buffer(gpu, hits->signatures);
+  abbe_gpu_clear_buffer(gpu, hits->marks);
+  abbe_gpu_clear_list(gpu, hits->paths);
+  abbe_gpu_bind_storage(gpu, BINDING_SAMPLE_WEIGHTS, pass->spectra->sample_weights);
+  abbe_gpu_bind_storage(gpu, BINDING_HITS, hits->hits);
+  abbe_gpu_bind_storage(gpu, BINDING_SIGNATURES, hits->signatures);
+  abbe_gpu_bind_storage(gpu, BINDING_PATH_MARKS, hits->marks);
+}
+
+/* Groups in rows of at most as many as a dispatch takes. */
+static void dispatch(abbe_gpu *gpu, size_t threads) {
+  const size_t groups = (threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
+  const size_t rows = (groups + 65534) / 65535;
+  if (groups > 0) gpu->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
+}
+
+void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t paths = items * scene_of(pass)->plan->slots;
+  if (paths == 0) return;
+  gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  gpu->gl->UseProgram(pass->list_paths);
+  abbe_gpu_set_uint(gpu, pass->list_paths, "items", items);
+  abbe_gpu_bind_storage(gpu, BINDING_PATHS, hits->paths);
+  dispatch(gpu, paths);
+  gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, size_t count,
+                           size_t ledger_first) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t photons = pass->start->views->light[light].photon_count;
+  const size_t groups = (photons + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
+  abbe_trace_pass_begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
+  abbe_gpu_set_int(gpu, pass->program, "lane_first", (int)first);
+  abbe_gpu_set_int(gpu, pass->program, "ledger_first", (int)ledger_first);
+  if (groups > 0) gpu->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
+  abbe_trace_pass_end(pass, &pass->hits, photons);
+}
+
+void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light) {
+  const size_t photons = pass->start->views->light[light].photon_count;
+  abbe_trace_pass_begin(pass, light, ABBE_TRACE_COARSE, &pass->hits, pass->spectra->nodes);
+  dispatch(scene_of(pass)->gpu, photons * pass->spectra->nodes);
+  abbe_trace_pass_end(pass, &pass->hits, photons);
+}
+
+size_t abbe_trace_pass_hit_count(const abbe_trace_pass *pass, size_t light) {
+  return pass->start->views->light[light].photon_count * scene_of(pass)->plan->slots *
+         pass->hits.stride;
+}
+
+abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
+                                 GLuint **paths, abbe_error *error) {
+  const abbe_gl *gl = scene_of(pass)->gpu->gl;
+  const size_t count = abbe_trace_pass_hit_count(pass, light);
+  const size_t signature_bytes = abbe_photon_signature_bytes(pass->spectra);
+  float *hit = malloc(count * ABBE_HIT_BYTES + 1);
+  GLuint *path = malloc(count * signature_bytes + 1);
+  if (hit == NULL || path == NULL) {
+    free(hit);
+    free(path);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu hits", count);
+  }
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.hits);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * ABBE_HIT_BYTES), hit);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, pass->hits.signatures);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * signature_bytes), path);
+  abbe_receiver_atlas_place(pass->atlas, light, hit, path, signature_bytes / sizeof *path, count);
+  abbe_photon_attenuate(pass->spectra, first, pass->hits.stride, count, hit, path);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < 4 && path[i] == 0; k++) hit[4 * i + k] = 0;
+  *hits = hit;
+  if (paths != NULL)
+    *paths = path;
+  else
+    free(path);
+  return abbe_gl_check(gl, "the reading of hits", error);
+}

@@ -1,0 +1,34 @@
+#include "gl/scene/camera_view.h"
+
+#include <math.h>
+#include <string.h>
+
+void abbe_camera_view_fit(const abbe_scene *scene, const abbe_render_desc *desc,
+                          abbe_camera_view *out) {
+  const size_t pixels[2] = {desc->width, desc->height};
+  const abbe_camera *camera = &scene->camera;
+  double forward[3];
+  for (int axis = 0; axis < 2; axis++)
+    out->samples[axis] = (pixels[axis] * desc->supersample + desc->upsample - 1) / desc->upsample;
+  for (int k = 0; k < 3; k++) forward[k] = camera->target[k] - camera->eye[k];
+  abbe_view_look(camera->eye, forward, camera->up, false, &out->view);
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    double corner[8][3];
+    for (int k = 0; k < 24; k++)
+      corner[k / 3][k % 3] = (k / 3 >> k % 3) & 1 ? o->max[k % 3] : o->min[k % 3];
+    abbe_view_fit(&out->view, (const double(*)[3])corner, 8);
+  }
+  abbe_view_pad(&out->view, 0.01);
+  double y = tan(0.5 * camera->fov_y_rad);
+  double x = y * (double)desc->width / (double)desc->height;
+  /* Whole samples, the last of which may stand for pixels beyond the picture. */
+  const double side = (double)desc->upsample / (double)desc->supersample;
+  const double wide = side * 2 * x / (double)desc->width;
+  const double high = side * 2 * y / (double)desc->height;
+  const double left = wide * desc->sample_shift[0] - x;
+  const double bottom = high * desc->sample_shift[1] - y;
+  const double window[4] = {left, left + wide * (double)out->samples[0], bottom,
+                            bottom + high * (double)out->samples[1]};
+  memcpy(out->view.window, window, sizeof window);
+}

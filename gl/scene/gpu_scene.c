@@ -1,0 +1,289 @@
+#include "gl/scene/gpu_scene.h"
+
+#include "gl/device/bindings.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Float copies of the shaders' structs (common.glsl). */
+typedef struct gpu_refractor {
+  float sphere[4];
+  int info[4];
+} gpu_refractor;
+
+typedef struct gpu_receiver {
+  float corner[4], u[4], v[4], normal[4], du[4], dv[4];
+} gpu_receiver;
+
+typedef struct gpu_surface {
+  float reflectance[4], texture_info[4];
+} gpu_surface;
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void store(const double v[3], double w, float out[4]) {
+  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
+  out[3] = (float)w;
+}
+
+/* Refractors and the planes of the convex ones. */
+static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
+  const abbe_plan *plan = scene->plan;
+  size_t planes = 0;
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    if (plan->model[i] == ABBE_REFRACTOR_CONVEX)
+      planes += scene->local->object[plan->refractor_object[i]].exact.count;
+  gpu_refractor *refractor = calloc(plan->refractor_count + 1, sizeof *refractor);
+  float(*plane)[4] = calloc(planes + 1, sizeof *plane);
+  abbe_result result = ABBE_OK;
+  if (refractor == NULL || plane == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for refractors");
+  size_t next = 0;
+  for (size_t i = 0; result == ABBE_OK && i < plan->refractor_count; i++) {
+    const abbe_object *object = &scene->local->object[plan->refractor_object[i]];
+    double centre[3], half = 0;
+    for (int k = 0; k < 3; k++) {
+      centre[k] = 0.5 * (object->min[k] + object->max[k]);
+      half += pow(0.5 * (object->max[k] - object->min[k]), 2);
+    }
+    bool sphere = plan->model[i] == ABBE_REFRACTOR_SPHERE;
+    store(sphere ? object->exact.centre : centre, sphere ? object->exact.radius : sqrt(half),
+          refractor[i].sphere);
+    refractor[i].info[0] = (int)plan->model[i];
+    for (size_t k = 0; k <= i; k++) { /* the first of the same material */
+      refractor[i].info[3] = (int)k;
+      if (scene->local->object[plan->refractor_object[k]].material == object->material) break;
+    }
+    refractor[i].info[1] = (int)next;
+    if (plan->model[i] == ABBE_REFRACTOR_HIERARCHY)
+      refractor[i].info[1] = (int)scene->refractor_root[i];
+    if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;
+    refractor[i].info[2] = (int)object->exact.count;
+    for (size_t k = 0; k < object->exact.count; k++)
+      store(object->exact.plane[k], object->exact.plane[k][3], plane[next++]);
+  }
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, plan->refractor_count * sizeof *refractor, refractor,
+                                  &scene->refractors, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, planes * sizeof *plane, plane, &scene->planes, error);
+  free(refractor);
+  free(plane);
+  return result;
+}
+
+static void store_parallelogram(const double p[9], size_t surface, gpu_receiver *out) {
+  const double *u = p + 3, *v = p + 6;
+  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  double area2 = dot(n, n), du[3], dv[3];
+  /* Dual edges within the plane: du = (v x n) / |n|^2, dv = (n x u) / |n|^2. */
+  for (int k = 0; k < 3; k++) {
+    int a = (k + 1) % 3, b = (k + 2) % 3;
+    du[k] = (v[a] * n[b] - v[b] * n[a]) / area2;
+    dv[k] = (n[a] * u[b] - n[b] * u[a]) / area2;
+  }
+  for (int k = 0; k < 3; k++) n[k] /= sqrt(area2);
+  store(p, (double)surface, out->corner);
+  store(u, 0, out->u);
+  store(v, 0, out->v);
+  store(n, 0, out->normal);
+  store(du, 0, out->du);
+  store(dv, 0, out->dv);
+}
+
+static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
+  size_t count = scene->plan->parallelogram_count, next = 0;
+  gpu_receiver *receiver = calloc(count + 1, sizeof *receiver);
+  if (receiver == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
+  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
+    if (scene->plan->receiver_model[i] != ABBE_RECEIVER_EXACT) continue;
+    const abbe_exact *exact = &scene->local->object[scene->plan->receiver_object[i]].exact;
+    for (size_t k = 0; k < exact->count && next < count; k++)
+      store_parallelogram(exact->parallelogram[k], i, &receiver[next++]);
+  }
+  abbe_result result = abbe_gpu_make_buffer(scene->gpu, count * sizeof *receiver, receiver,
+                                            &scene->receivers, error);
+  free(receiver);
+  return result;
+}
+
+/* Working space: the picture's, or ACEScg where the picture is XYZ, so that a colour times a
+ * reflectance means something. */
+abbe_rgb_space abbe_gpu_scene_working_space(const abbe_gpu_scene *scene) {
+  return scene->plan->desc.space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG
+                                                       : scene->plan->desc.space;
+}
+
+void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]) {
+  double to_xyz[9], from_xyz[9];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
+  abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(scene), from_xyz);
+  abbe_rgb_space_apply(to_xyz, rgb, out);
+  abbe_rgb_space_apply(from_xyz, out, out);
+}
+
+/* All textures in one array as large as the largest; smaller ones are resampled to it. */
+static abbe_result upload_textures(abbe_gpu_scene *scene, gpu_surface *surface, abbe_error *error) {
+  size_t width = 1, height = 1, layers = 0;
+  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
+    const abbe_image *t = &scene->local->object[scene->plan->receiver_object[i]].texture;
+    if (t->data == NULL) continue;
+    layers++;
+    if (t->width > width) width = t->width;
+    if (t->height > height) height = t->height;
+  }
+  abbe_result result =
+      abbe_gpu_make_texture(scene->gpu, GL_RGBA16F, width, height, layers > 0 ? layers : 1, true,
+                            &scene->surface_texture, error);
+  if (result != ABBE_OK || layers == 0) return result;
+  scene->gpu->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
+  scene->gpu->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
+  float *texel = malloc(width * height * 4 * sizeof *texel);
+  if (texel == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a texture");
+  int layer = 0;
+  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
+    const abbe_image *t = &scene->local->object[scene->plan->receiver_object[i]].texture;
+    if (t->data == NULL) continue;
+    for (size_t y = 0; y < height; y++)
+      for (size_t x = 0; x < width; x++) {
+        const float *from =
+            t->data +
+            ((height - 1 - y) * t->height / height * t->width + x * t->width / width) * t->channels;
+        double rgb[3] = {from[0], from[1], from[2]};
+        abbe_gpu_scene_to_working(scene, rgb, rgb);
+        store(rgb, 1, texel + 4 * (y * width + x));
+      }
+    scene->gpu->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width,
+                                  (GLsizei)height, 1, GL_RGBA, GL_FLOAT, texel);
+    surface[i].texture_info[0] = (float)layer++;
+  }
+  free(texel);
+  return abbe_gl_check(scene->gpu->gl, "the upload of textures", error);
+}
+
+static abbe_result upload_surfaces(abbe_gpu_scene *scene, abbe_error *error) {
+  gpu_surface *surface = calloc(scene->plan->receiver_count + 1, sizeof *surface);
+  if (surface == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for surfaces");
+  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
+    const abbe_object *object = &scene->local->object[scene->plan->receiver_object[i]];
+    double rgb[3];
+    abbe_gpu_scene_to_working(scene, object->reflectance, rgb);
+    store(rgb, 1, surface[i].reflectance);
+    surface[i].texture_info[0] = -1.0f;
+    surface[i].texture_info[1] = (float)object->texture_repeat[0];
+    surface[i].texture_info[2] = (float)object->texture_repeat[1];
+  }
+  abbe_result result = upload_textures(scene, surface, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, scene->plan->receiver_count * sizeof *surface,
+                                  surface, &scene->surfaces, error);
+  free(surface);
+  return result;
+}
+
+static void measure_scene(abbe_gpu_scene *scene) {
+  double size = 0, radius = 0, min[3], max[3];
+  abbe_scene_bounds(scene->local, true, true, scene->min, scene->max);
+  bool any = abbe_scene_bounds(scene->local, true, false, min, max);
+  for (int k = 0; k < 3; k++) {
+    size += pow(scene->max[k] - scene->min[k], 2);
+    scene->refractor_centre[k] = any ? 0.5 * (min[k] + max[k]) : 0;
+    radius += any ? pow(0.5 * (max[k] - min[k]), 2) : 0;
+  }
+  scene->size = sqrt(size);
+  scene->refractor_radius = sqrt(radius);
+}
+
+static void store_matrix(const double matrix[9], float out[9]) {
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 3; column++)
+      out[3 * column + row] = (float)matrix[3 * row + column];
+}
+
+abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
+                                abbe_gpu_scene *out, abbe_error *error) {
+  out->gpu = gpu;
+  out->local = local;
+  out->plan = plan;
+  out->band_levels = 1;
+  out->band_count = plan->desc.wavelengths;
+  for (size_t n = plan->desc.wavelengths; n > 1; out->band_levels++)
+    out->band_count += n = (n + 1) / 2;
+  measure_scene(out);
+  double matrix[9];
+  abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(out), matrix);
+  store_matrix(matrix, out->rgb_from_xyz);
+  abbe_rgb_space_to_xyz(abbe_gpu_scene_working_space(out), matrix);
+  store_matrix(matrix, out->xyz_from_rgb);
+  abbe_result result = ABBE_OK;
+  if (plan->pages) result = abbe_receiver_charts_make(local, plan, &out->charts, error);
+  if (result == ABBE_OK) result = abbe_gpu_bvh_make(out, error);
+  if (result == ABBE_OK) result = abbe_gpu_shadows_make(out, error);
+  return result;
+}
+
+abbe_result abbe_gpu_scene_upload(abbe_gpu_scene *scene, abbe_error *error) {
+  abbe_result result = abbe_gpu_meshes_upload(scene, error);
+  if (result == ABBE_OK) result = upload_refractors(scene, error);
+  if (result == ABBE_OK) result = abbe_gpu_shadows_upload(scene, error);
+  if (result == ABBE_OK) result = upload_receivers(scene, error);
+  if (result == ABBE_OK) result = upload_surfaces(scene, error);
+  if (result == ABBE_OK) result = abbe_gpu_spectra_upload(scene, error);
+  return result;
+}
+
+void abbe_gpu_scene_free(abbe_gpu_scene *scene) {
+  if (scene->gpu == NULL) return;
+  const abbe_gl *gl = scene->gpu->gl;
+  const GLuint buffers[] = {scene->refractors, scene->planes, scene->receivers, scene->surfaces,
+                            scene->spectra,    scene->bands,  scene->shadows};
+  abbe_gpu_meshes_free(scene);
+  gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+  gl->DeleteTextures(1, &scene->surface_texture);
+  gl->DeleteTextures(3, scene->bvh_texture);
+  gl->DeleteBuffers(3, scene->bvh);
+  abbe_receiver_charts_free(&scene->charts);
+  free(scene->lambda_nm);
+  free(scene->refractor_root);
+  free(scene->shadow_row);
+}
+
+void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
+  const abbe_gl *gl = scene->gpu->gl;
+  const struct {
+    GLuint binding, buffer;
+  } tables[] = {{BINDING_REFRACTORS, scene->refractors}, {BINDING_PLANES, scene->planes},
+                {BINDING_RECEIVERS, scene->receivers},   {BINDING_SURFACES, scene->surfaces},
+                {BINDING_SPECTRA, scene->spectra},       {BINDING_BANDS, scene->bands},
+                {BINDING_SHADOW_PLANES, scene->shadows}};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+    if (tables[i].buffer == 0) continue;
+    /* As blocks and as storage: the shaders choose by size. */
+    gl->BindBufferBase(GL_UNIFORM_BUFFER, tables[i].binding, tables[i].buffer);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, tables[i].binding, tables[i].buffer);
+  }
+  for (GLenum k = 0; k < 3; k++) {
+    if (scene->bvh_texture[k] == 0) continue;
+    gl->ActiveTexture(GL_TEXTURE0 + UNIT_BVH_NODES + k);
+    gl->BindTexture(GL_TEXTURE_BUFFER, scene->bvh_texture[k]);
+  }
+}
+
+void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
+  const abbe_gl *gl = scene->gpu->gl;
+  abbe_gpu_bind_array(scene->gpu, program, "surface_texture", 1, scene->surface_texture);
+  GLint matrix = gl->GetUniformLocation(program, "rgb_from_xyz");
+  if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, scene->rgb_from_xyz);
+  matrix = gl->GetUniformLocation(program, "xyz_from_rgb");
+  if (matrix >= 0) gl->UniformMatrix3fv(matrix, 1, GL_FALSE, scene->xyz_from_rgb);
+  /* Ambient light and background are white by definition, in every working space. */
+  const float ambient = (float)scene->local->ambient, background = (float)scene->local->background;
+  gl->Uniform3f(gl->GetUniformLocation(program, "ambient"), ambient, ambient, ambient);
+  gl->Uniform3f(gl->GetUniformLocation(program, "background"), background, background, background);
+  gl->Uniform4f(gl->GetUniformLocation(program, "refractor_bounds"),
+                (float)scene->refractor_centre[0], (float)scene->refractor_centre[1],
+                (float)scene->refractor_centre[2], (float)scene->refractor_radius);
+  abbe_gpu_set_float(scene->gpu, program, "scene_size", scene->size);
+}

@@ -1,0 +1,93 @@
+/* gpu_scene.h: the scene on the device, as the plan asks for it: meshes, tables, triangles to be
+ * traversed, shadows' planes. Made once; every pass reads it as const. Internal to gl/.
+ */
+#ifndef ABBE_GL_SCENE_GPU_SCENE_H
+#define ABBE_GL_SCENE_GPU_SCENE_H
+
+#include "gl/device/gpu.h"
+#include "gl/plan/plan.h"
+#include "gl/scene/receiver_charts.h"
+#include "scenes/scene.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* OpenGL promises uniform blocks of 16 KiB; every desktop driver, llvmpipe too, has 64. */
+enum { ABBE_GPU_BLOCK_BYTES = 65536 };
+
+typedef struct abbe_gpu_mesh {
+  GLuint array, vertices, indices;
+  GLsizei index_count;
+  GLuint layer_array, layer_indices; /* of fewer faces, where layers are drawn with them; else 0 */
+  GLsizei layer_index_count;
+} abbe_gpu_mesh;
+
+/* A row of the shaders' block of shadows. */
+typedef union abbe_gpu_shadow_row {
+  int range[4]; /* first plane of each light and refractor, and how many */
+  float plane[4];
+} abbe_gpu_shadow_row;
+
+typedef struct abbe_gpu_scene {
+  abbe_gpu *gpu;
+  const abbe_scene *local; /* whose coordinates all below are in */
+  const abbe_plan *plan;
+  abbe_receiver_charts charts; /* where the plan has pages */
+
+  double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
+  double refractor_centre[3], refractor_radius;
+  float rgb_from_xyz[9], xyz_from_rgb[9]; /* column-major, for uniforms */
+  double *lambda_nm;                      /* [wavelengths] */
+
+  abbe_gpu_mesh *mesh; /* [object_count] */
+  GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
+  GLuint surface_texture;
+  size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
+
+  GLuint bvh[3], bvh_texture[3]; /* nodes, triangles, corners; 0: no model needs them */
+  size_t *refractor_root;        /* [refractor_count] of its tree */
+  size_t receiver_root;          /* of the tree of all receivers that are traversed */
+  size_t bvh_depth;
+  abbe_gpu_shadow_row *shadow_row; /* all ranges, then all planes */
+  size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
+} abbe_gpu_scene;
+
+/* Measures and sorts; what the shaders' variants must know is known after it. Errors as of
+ * abbe_renderer_make. */
+abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
+                                abbe_gpu_scene *out, abbe_error *error);
+abbe_result abbe_gpu_scene_upload(abbe_gpu_scene *scene, abbe_error *error);
+void abbe_gpu_scene_free(abbe_gpu_scene *scene);
+
+/* Every table where the shaders expect it. */
+void abbe_gpu_scene_bind(const abbe_gpu_scene *scene);
+/* The scene's uniforms and textures, into the program that is in use. */
+void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program);
+
+/* gpu_meshes.c */
+void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);
+/* With the faces that layers have. */
+void abbe_gpu_meshes_draw_refractor(const abbe_gpu_scene *scene, size_t refractor);
+abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
+void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
+/* Fewer faces for what is drawn as layers: `within` m of the mesh. */
+abbe_result abbe_gpu_meshes_simplify(abbe_gpu_scene *scene, size_t object, double within,
+                                     abbe_error *error);
+/* Of all refractors, as layers draw them. */
+size_t abbe_gpu_meshes_layer_faces(const abbe_gpu_scene *scene);
+
+/* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths. */
+abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
+
+/* gpu_bvh.c: the triangles of what is traversed. */
+abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);
+
+/* gpu_shadows.c: the planes of convex refractors' shadows. */
+abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error);
+abbe_result abbe_gpu_shadows_upload(abbe_gpu_scene *scene, abbe_error *error);
+
+/* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
+void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]);
+abbe_rgb_space abbe_gpu_scene_working_space(const abbe_gpu_scene *scene);
+
+#endif

@@ -1,0 +1,59 @@
+#include "gl/scene/refractor_faces.h"
+
+#include "gl/device/program.h"
+
+abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,
+                                      abbe_error *error) {
+  static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                              {GL_FRAGMENT_SHADER, "layer.frag"}};
+  out->scene = scene;
+  return abbe_program_make(scene->gpu->gl, stages, 2, NULL, &out->program, error);
+}
+
+void abbe_refractor_faces_free(abbe_refractor_faces *faces) {
+  if (faces->scene != NULL) faces->scene->gpu->gl->DeleteProgram(faces->program);
+}
+
+void abbe_refractor_faces_use(const abbe_refractor_faces *faces, const abbe_view *view) {
+  const abbe_gl *gl = faces->scene->gpu->gl;
+  const GLuint program = faces->program;
+  double matrix[16];
+  float clip[16];
+  abbe_view_matrix(view, matrix);
+  for (int k = 0; k < 16; k++) clip[k] = (float)matrix[k];
+  gl->UseProgram(program);
+  gl->UniformMatrix4fv(gl->GetUniformLocation(program, "view_projection"), 1, GL_FALSE, clip);
+  gl->Uniform4f(gl->GetUniformLocation(program, "view_origin"), (float)view->origin[0],
+                (float)view->origin[1], (float)view->origin[2], view->orthographic ? 0.0f : 1.0f);
+  gl->Uniform3f(gl->GetUniformLocation(program, "view_forward"), (float)view->forward[0],
+                (float)view->forward[1], (float)view->forward[2]);
+}
+
+abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
+                                      const abbe_faces_target *target, bool clear_alone,
+                                      abbe_error *error) {
+  static const GLfloat far = 1;
+  static const GLuint nobody[4] = {0, 0, 0, 0};
+  const abbe_gpu_scene *scene = faces->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  const GLfloat nothing[4] = {0, 0, 0, target->distance};
+  const GLuint colour[2] = {target->layers, target->owner};
+  const int layer[2] = {target->layer, target->owner_layer};
+  const bool owners = !target->back;
+  abbe_result result = abbe_gpu_set_target(scene->gpu, colour, layer, owners ? 2 : 1, target->depth,
+                                           target->width, target->height, error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  if (owners) gl->ClearBufferuiv(GL_COLOR, 1, nobody);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  if (clear_alone) return ABBE_OK;
+  gl->Enable(GL_DEPTH_TEST);
+  gl->Enable(GL_CULL_FACE);
+  gl->CullFace(target->back ? GL_FRONT : GL_BACK);
+  for (size_t i = 0; i < scene->plan->refractor_count; i++) {
+    abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);
+    abbe_gpu_meshes_draw_refractor(scene, i);
+  }
+  gl->Disable(GL_CULL_FACE);
+  return ABBE_OK;
+}

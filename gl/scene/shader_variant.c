@@ -1,0 +1,158 @@
+#include "gl/scene/shader_variant.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out) {
+  const abbe_plan *p = scene->plan;
+  *out = (abbe_shader_variant){
+      .lights = p->light_count,
+      .refractors = p->refractor_count,
+      .receivers = p->parallelogram_count,
+      .surfaces = p->receiver_count,
+      .wavelengths = p->desc.wavelengths,
+      .bands = scene->band_count,
+      .band_levels = scene->band_levels,
+      .exits = p->desc.orders,
+      .slots = p->slots,
+      .bvh_stack = scene->bvh_depth + 1,
+      .receiver_root = scene->receiver_root,
+      .shadow_planes = scene->shadow_planes,
+      .spheres = p->spheres,
+      .convex = p->convex,
+      .layers = p->layers,
+      .hierarchy = p->hierarchy,
+      .receiver_hierarchy = p->receivers == ABBE_RECEIVER_HIERARCHY,
+      .one_convex = p->convex && p->refractor_count == 1,
+      .one_shadow = p->light_count * p->refractor_count == 1,
+      .receiver_shadows = p->receiver_shadows,
+      .absorbing = p->absorbing,
+      .textured = p->textured,
+      .caustics = p->caustics,
+      .walk = p->walk,
+      .cubes = p->cubes,
+      .layers_out = p->desc.layers,
+      .ways = !p->walk                  ? 1
+              : p->desc.wavelengths > 1 ? 8
+                                        : 2,
+  };
+  for (size_t i = 0; i < p->refractor_count; i++)
+    if (p->model[i] == ABBE_REFRACTOR_CONVEX)
+      out->planes += scene->local->object[p->refractor_object[i]].exact.count;
+}
+
+static void print_count(FILE *to, const char *name, size_t count) {
+  fprintf(to, "#define %s %zu\n", name, count);
+}
+
+/* A block of none has room for one. */
+static void print_room(FILE *to, const char *name, size_t count) {
+  print_count(to, name, count > 0 ? count : 1);
+}
+
+static void print_flag(FILE *to, const char *name, bool is) {
+  if (is) fprintf(to, "#define %s\n", name);
+}
+
+static bool too_large(size_t count, size_t element) {
+  return count * element > ABBE_GPU_BLOCK_BYTES;
+}
+
+static void print_tables(FILE *to, const abbe_shader_variant *v) {
+  const size_t spectra = v->refractors * v->wavelengths, bands = v->refractors * v->bands;
+  print_count(to, "LIGHTS", v->lights);
+  print_count(to, "REFRACTORS", v->refractors);
+  print_count(to, "RECEIVERS", v->receivers);
+  print_count(to, "WAVELENGTHS", v->wavelengths);
+  print_count(to, "EXITS", v->exits);
+  print_count(to, "SLOTS", v->slots);
+  print_room(to, "LIGHT_ROOM", v->lights);
+  print_room(to, "REFRACTOR_ROOM", v->refractors);
+  print_room(to, "PLANE_ROOM", v->planes);
+  print_room(to, "RECEIVER_ROOM", v->receivers);
+  print_room(to, "SURFACE_ROOM", v->surfaces);
+  print_room(to, "SPECTRUM_ROOM", spectra);
+  print_count(to, "BAND_COUNT", v->bands);
+  print_count(to, "BAND_LEVELS", v->band_levels);
+  print_room(to, "BAND_ROOM", bands);
+  print_flag(to, "BANDS_IN_STORAGE", too_large(bands, 32));
+  print_flag(to, "PLANES_IN_STORAGE", too_large(v->planes, 16));
+  print_flag(to, "SURFACES_IN_STORAGE", too_large(v->surfaces, 32));
+  print_flag(to, "SPECTRA_IN_STORAGE", too_large(spectra, 16));
+  print_count(to, "HIERARCHY_STACK", v->bvh_stack);
+  print_count(to, "RECEIVER_ROOT", v->receiver_root);
+  if (v->shadow_planes == 0) return;
+  print_count(to, "SHADOW_PLANES", v->shadow_planes);
+  print_flag(to, "ONE_SHADOW", v->one_shadow);
+}
+
+static void print_facts(FILE *to, const abbe_shader_variant *v) {
+  print_flag(to, "RECEIVER_SHADOWS", v->receiver_shadows);
+  print_flag(to, "WIDE", v->wide);
+  print_flag(to, "LIGHT_LAYERS_OUT", v->layers_out);
+  print_flag(to, "ONE_CONVEX", v->one_convex);
+  print_flag(to, "SPHERES", v->spheres);
+  print_flag(to, "CONVEX", v->convex);
+  print_flag(to, "LAYERS", v->layers);
+  print_flag(to, "FRONT_LAYER", v->layers || v->hierarchy);
+  print_flag(to, "HIERARCHY", v->hierarchy);
+  print_flag(to, "RECEIVER_HIERARCHY", v->receiver_hierarchy);
+  print_flag(to, "ABSORBING", v->absorbing);
+  print_flag(to, "TEXTURED", v->textured);
+  print_flag(to, "CAUSTICS", v->caustics);
+  print_flag(to, "WALK", v->walk);
+  print_flag(to, "CUBES", v->cubes);
+  print_count(to, "WAYS", v->ways);
+}
+
+static void print_photons(FILE *to, const abbe_shader_variant *v) {
+  if (v->pages > 0) {
+    print_flag(to, "PAGES", true);
+    print_count(to, "MOST_PAGES", v->pages);
+    print_count(to, "PAGE_BLOCKS", v->page_blocks);
+    print_count(to, "CHART_SIDES", v->chart_sides);
+  }
+  if (v->map_levels > 0) print_count(to, "MAP_LEVELS", v->map_levels);
+  if (v->lanes == 0) return;
+  print_count(to, "LANES", v->lanes);
+  print_count(to, "STEPS", v->steps);
+  print_count(to, "NODES", v->nodes);
+  print_flag(to, "BRIDGE", v->bridge);
+  print_flag(to, "DOUBTS_BRIDGES", v->doubts_bridges);
+  print_flag(to, "TINTING", v->tinting);
+  if (!v->refined) return;
+  print_flag(to, "REFINED", true);
+  print_count(to, "FINE_NODES", v->fine_nodes);
+}
+
+char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  if (to == NULL) return NULL;
+  print_tables(to, variant);
+  print_facts(to, variant);
+  print_photons(to, variant);
+  if (more != NULL) fputs(more, to);
+  const bool failed = ferror(to) != 0;
+  if (fclose(to) == 0 && !failed) return text;
+  free(text);
+  return NULL;
+}
+
+abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, const abbe_gl *gl,
+                                        const abbe_program_stage *stages, size_t count,
+                                        const char *more, GLuint *out, abbe_error *error) {
+  char *text = abbe_shader_variant_text(variant, more);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
+  const abbe_result result = abbe_program_make(gl, stages, count, text, out, error);
+  free(text);
+  return result;
+}
+
+abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, const abbe_gl *gl,
+                                        const char *file, const char *more, GLuint *out,
+                                        abbe_error *error) {
+  const abbe_program_stage stage = {GL_COMPUTE_SHADER, file};
+  return abbe_shader_variant_program(variant, gl, &stage, 1, more, out, error);
+}

@@ -1,0 +1,46 @@
+/* shader_variant.h: what shaders are compiled for: counts and facts of the scene, which each pass
+ * may copy and complete. It prints itself as #defines. Internal to gl/.
+ */
+#ifndef ABBE_GL_SCENE_SHADER_VARIANT_H
+#define ABBE_GL_SCENE_SHADER_VARIANT_H
+
+#include "gl/device/program.h"
+#include "gl/scene/gpu_scene.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct abbe_shader_variant {
+  /* the scene */
+  size_t lights, refractors, receivers, surfaces, planes;
+  size_t wavelengths, bands, band_levels;
+  size_t exits, slots;
+  size_t bvh_stack, receiver_root, shadow_planes;
+  bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
+  bool receiver_shadows, absorbing, textured, caustics, walk, cubes;
+  /* the picture */
+  bool layers_out;
+  size_t ways; /* threads of a pixel (refraction_ways.glsl) */
+  /* the map */
+  bool wide;
+  size_t map_levels;                      /* 0: not told */
+  size_t pages, page_blocks, chart_sides; /* pages of a light at the most; 0: none has any */
+  /* photons; lanes 0: not told */
+  size_t lanes, steps, nodes, fine_nodes;
+  bool bridge, doubts_bridges, tinting, refined;
+} abbe_shader_variant;
+
+void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out);
+
+/* The #defines, and `more` after them (may be NULL); malloc'd. NULL: no memory. */
+char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more);
+
+/* A program of one compute shader, or of so many stages. Errors as of abbe_program_make. */
+abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, const abbe_gl *gl,
+                                        const char *file, const char *more, GLuint *out,
+                                        abbe_error *error);
+abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, const abbe_gl *gl,
+                                        const abbe_program_stage *stages, size_t count,
+                                        const char *more, GLuint *out, abbe_error *error);
+
+#endif
