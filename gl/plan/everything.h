@@ -7,7 +7,7 @@
 #ifndef ABBE_GL_PLAN_EVERYTHING_H
 #define ABBE_GL_PLAN_EVERYTHING_H
 
-#include "gl/plan/plan.h"
+#include "gl/plan/plan_facts.h"
 
 #ifdef __cplusplus
 extern "C" {

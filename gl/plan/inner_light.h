@@ -7,7 +7,7 @@
 #ifndef ABBE_GL_PLAN_INNER_LIGHT_H
 #define ABBE_GL_PLAN_INNER_LIGHT_H
 
-#include "gl/plan/plan.h"
+#include "gl/plan/plan_facts.h"
 #include "scenes/scene.h"
 #include "scenes/view/view.h"
 

@@ -24,103 +24,6 @@
 
 enum { MAX_PARALLELOGRAMS = 96, RANGE_STEPS = 81, MAX_MODEL_ENTRIES = 48, WALK_SLOTS = 16 };
 
-#if defined(__GNUC__)
-__attribute__((format(printf, 4, 5)))
-#endif
-static void
-add(abbe_plan *plan, bool runs, const char *name, const char *format, ...) {
-  if (plan->entry_count == ABBE_PLAN_MAX_ENTRIES) return;
-  abbe_plan_entry *entry = &plan->entry[plan->entry_count++];
-  snprintf(entry->name, sizeof entry->name, "%s", name);
-  entry->runs = runs;
-  va_list args;
-  va_start(args, format);
-  abbe_number_format_list(entry->reason, sizeof entry->reason, format, args);
-  va_end(args);
-}
-
-#if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
-#endif
-static void
-note(abbe_plan *plan, const char *format, ...) {
-  if (plan->note_count == sizeof plan->note / sizeof *plan->note) return;
-  va_list args;
-  va_start(args, format);
-  abbe_number_format_list(plan->note[plan->note_count++], sizeof plan->note[0], format, args);
-  va_end(args);
-}
-
-static abbe_result check_limit(const char *what, size_t value, size_t most, abbe_error *error) {
-  if (value >= 1 && value <= most) return ABBE_OK;
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s is %zu; it may be 1 to %zu", what, value,
-                        most);
-}
-
-static abbe_result resolve_desc(const abbe_scene *scene, const abbe_render_desc *desc,
-                                abbe_plan *plan, abbe_error *error) {
-  abbe_render_desc d = desc != NULL ? *desc : (abbe_render_desc){0};
-  bool thesis = abbe_profile_is_thesis(d.profile);
-  if (d.width == 0) d.width = scene->camera.width;
-  if (d.height == 0) d.height = scene->camera.height;
-  if (d.min_nm == 0) d.min_nm = ABBE_WAVELENGTH_MIN_NM;
-  if (d.max_nm == 0) d.max_nm = d.profile == ABBE_PROFILE_THESIS ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
-  if (d.photons == 0) d.photons = thesis ? 512 : ABBE_PLAN_PHOTONS;
-  if (d.map_size == 0) d.map_size = ABBE_PLAN_MAP;
-  if (d.upsample == 0) d.upsample = 1;
-  if (d.supersample == 0) d.supersample = thesis || d.upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
-  if (d.fill == ABBE_FILL_AUTO) d.fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
-  if (d.energy_share == 0) d.energy_share = ABBE_PLAN_SHARE;
-  plan->desc = d;
-  abbe_result result = check_limit("the width", d.width, ABBE_RENDER_MAX_SIDE, error);
-  if (result == ABBE_OK) result = check_limit("the height", d.height, ABBE_RENDER_MAX_SIDE, error);
-  if (result == ABBE_OK)
-    result = check_limit("the photon grid", d.photons, ABBE_RENDER_MAX_PHOTONS, error);
-  if (result == ABBE_OK)
-    result = check_limit("the spectral map", d.map_size, ABBE_RENDER_MAX_MAP, error);
-  if (result == ABBE_OK) result = check_limit("the supersampling", d.supersample, 4, error);
-  if (result == ABBE_OK) result = check_limit("the upsampling", d.upsample, 4, error);
-  if (result == ABBE_OK && d.upsample > 1 && (thesis || d.supersample > 1))
-    return thesis
-               ? abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                                "the thesis profile has a sample for every pixel; it cannot be "
-                                "upsampled")
-               : abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                                "a sample for %zu x %zu pixels and %zu samples a pixel side: ask "
-                                "for one of the two",
-                                d.upsample, d.upsample, d.supersample);
-  if (result == ABBE_OK && d.wavelengths != 0)
-    result = check_limit("the number of wavelengths", d.wavelengths,
-                         thesis ? 64 : ABBE_RENDER_MAX_WAVELENGTHS, error);
-  if (result == ABBE_OK && d.orders != 0)
-    result = check_limit("the number of exits", d.orders, ABBE_RENDER_MAX_ORDERS, error);
-  if (result != ABBE_OK) return result;
-  if (!(d.min_nm > 0) || !(d.min_nm < d.max_nm) || !isfinite(d.max_nm))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the range %g to %g nm is empty; 380 to 780 is the usual one", d.min_nm,
-                          d.max_nm);
-  if (!(d.energy_share > 0) || d.energy_share > 1)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the share of energy at which paths end is %g; it may be above 0, to 1",
-                          d.energy_share);
-  const double shift[4] = {d.photon_shift[0], d.photon_shift[1], d.sample_shift[0],
-                           d.sample_shift[1]};
-  for (int k = 0; k < 4; k++)
-    if (!(fabs(shift[k]) <= 0.5))
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "the %s are shifted by %g of their distance; it may be -0.5 to 0.5",
-                            k < 2 ? "photons" : "samples", shift[k]);
-  if ((int)d.model < 0 || d.model >= ABBE_MODEL_COUNT || (thesis && d.model != ABBE_MODEL_AUTO))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the model '%s' does not go with the profile '%s'",
-                          abbe_model_name(d.model), abbe_profile_name(d.profile));
-  if (thesis != (d.fill == ABBE_FILL_SMEAR) && d.fill != ABBE_FILL_NONE)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the fill '%s' does not go with the profile '%s'", abbe_fill_name(d.fill),
-                          abbe_profile_name(d.profile));
-  return ABBE_OK;
-}
-
 /* The most that a material's wavelengths outside its valid range are of a light's white. */
 static double extrapolated_share(const abbe_scene *scene, const abbe_material *material, double min,
                                  double max) {
@@ -161,8 +64,8 @@ static abbe_result examine_material(const abbe_scene *scene, const abbe_material
   for (size_t i = 0; i < plan->refractor_count && outside; i++)
     if (scene->object[plan->refractor_object[i]].material == material) outside = false;
   if (outside)
-    note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm", material->name,
-         material->min_nm, material->max_nm);
+    abbe_plan_note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm",
+                   material->name, material->min_nm, material->max_nm);
   return ABBE_OK;
 }
 
@@ -186,14 +89,18 @@ static void choose_receiver_models(const abbe_scene *scene, abbe_plan *plan) {
   if (!thesis && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_HIERARCHY;
   const char *model = abbe_receiver_model_name(plan->receivers);
   if (thesis)
-    add(plan, true, "model: receivers", "%s: the thesis profile knows no other model", model);
+    abbe_plan_add(plan, true, "model: receivers", "%s: the thesis profile knows no other model",
+                  model);
   else if (general != NULL)
-    add(plan, true, "model: receivers", "%s: '%.50s' is a general mesh", model, general->name);
+    abbe_plan_add(plan, true, "model: receivers", "%s: '%.50s' is a general mesh", model,
+                  general->name);
   else if (beyond != NULL)
-    add(plan, true, "model: receivers", "%s: with '%.50s' there are more than %d parallelograms",
-        model, beyond->name, MAX_PARALLELOGRAMS);
+    abbe_plan_add(plan, true, "model: receivers",
+                  "%s: with '%.50s' there are more than %d parallelograms", model, beyond->name,
+                  MAX_PARALLELOGRAMS);
   else
-    add(plan, true, "model: receivers", "%s: every receiver is a rectangle or a box", model);
+    abbe_plan_add(plan, true, "model: receivers", "%s: every receiver is a rectangle or a box",
+                  model);
 }
 
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
@@ -219,7 +126,8 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     char name[64];
     snprintf(name, sizeof name, "model: %.50s", object->name);
     if (abbe_transport_invisible(scene, object, plan)) {
-      add(plan, false, name, "clear, and its index is that of air: light does not notice it");
+      abbe_plan_add(plan, false, name,
+                    "clear, and its index is that of air: light does not notice it");
       continue;
     }
     abbe_result result = examine_material(scene, object->material, plan, error);
@@ -235,18 +143,19 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     plan->hierarchy = plan->hierarchy || model == ABBE_REFRACTOR_HIERARCHY;
     char reason[192];
     abbe_transport_reason(object, plan, reason, sizeof reason);
-    add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), reason);
+    abbe_plan_add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), reason);
   }
   if (plan->refractor_count > MAX_MODEL_ENTRIES)
-    add(plan, true, "models", "and %zu refractors more", plan->refractor_count - MAX_MODEL_ENTRIES);
-  add(plan, plan->walk, "refractors in turn", "%s",
-      plan->refractor_count == 0 ? "nothing refracts"
-      : plan->walk               ? walk
-      : thesis                   ? "the thesis profile follows two interfaces"
-      : plan->desc.model == ABBE_MODEL_LAYERS
-          ? "light goes through two layers and no further, as asked"
-      : plan->refractor_count < 2 ? "light that leaves the refractor cannot meet it again"
-                                  : "there are more refractors than are followed");
+    abbe_plan_add(plan, true, "models", "and %zu refractors more",
+                  plan->refractor_count - MAX_MODEL_ENTRIES);
+  abbe_plan_add(plan, plan->walk, "refractors in turn", "%s",
+                plan->refractor_count == 0 ? "nothing refracts"
+                : plan->walk               ? walk
+                : thesis                   ? "the thesis profile follows two interfaces"
+                : plan->desc.model == ABBE_MODEL_LAYERS
+                    ? "light goes through two layers and no further, as asked"
+                : plan->refractor_count < 2 ? "light that leaves the refractor cannot meet it again"
+                                            : "there are more refractors than are followed");
   choose_receiver_models(scene, plan);
   return ABBE_OK;
 }
@@ -301,9 +210,9 @@ static void examine_shadows(const abbe_scene *scene, abbe_plan *plan) {
     for (size_t k = 0; k < exact->count && !plan->receiver_shadows; k++)
       plan->receiver_shadows = !bounds_all(scene, plan, exact->parallelogram[k], 1e-6 * size);
   }
-  add(plan, plan->receiver_shadows, "shadows of receivers",
-      plan->receiver_shadows ? "a receiver may stand between a light and another"
-                             : "the receivers bound a convex room around the lights");
+  abbe_plan_add(plan, plan->receiver_shadows, "shadows of receivers",
+                plan->receiver_shadows ? "a receiver may stand between a light and another"
+                                       : "the receivers bound a convex room around the lights");
 }
 
 /* Which lights and whether the eye may meet a refractor; what none of them meets takes no light
@@ -328,37 +237,21 @@ static void examine_reach(const abbe_scene *scene, abbe_plan *plan) {
   plan->dispersive = plan->absorbing = plan->tinting = false;
 }
 
-/* Why nothing refracts, or NULL. */
-static const char *no_refraction(const abbe_plan *plan) {
-  return plan->caustics || plan->seen ? NULL
-         : plan->refractor_count == 0 ? "nothing refracts"
-                                      : "neither a light nor the eye meets a refractor";
-}
-
-size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
-  /* What lies between these is followed from the wall where light leaves (exit_wall.glsl). */
-  static const size_t coarse = 4;
-  const size_t n = plan->desc.wavelengths;
-  /* Without lengths landings do not know what absorption changes between two wavelengths. */
-  const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
-  return apart && plan->tinting == plan->lengths && n > coarse ? coarse : n;
-}
-
 static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
-  return no_refraction(plan) != NULL ? no_refraction(plan)
-         : asked                     ? "as asked"
-         : plan->dispersive          ? "the index varies with wavelength"
-         : plan->tinting             ? "the attenuation varies with wavelength"
-                                     : "all indices are constant, one geometry serves all";
+  return abbe_plan_no_refraction(plan) != NULL ? abbe_plan_no_refraction(plan)
+         : asked                               ? "as asked"
+         : plan->dispersive                    ? "the index varies with wavelength"
+         : plan->tinting                       ? "the attenuation varies with wavelength"
+                         : "all indices are constant, one geometry serves all";
 }
 
 static void resolve_wavelengths(abbe_plan *plan) {
   bool asked = plan->desc.wavelengths != 0;
   if (!asked)
     plan->desc.wavelengths = plan->dispersive || plan->tinting ? ABBE_PLAN_WAVELENGTHS : 1;
-  if (no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
-  add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
-      plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
+  if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
+  abbe_plan_add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
+                plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
 }
 
 /* Mesa 22's llvmpipe ends every loop of a thread after 65535 turns of any loops, and a thread may
@@ -374,7 +267,8 @@ static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (thesis || plan->desc.orders == 0)
     plan->desc.orders = thesis ? 1 : plan->layers ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
-  if (plan->convex && plan->refractor_count == 1 && !plan->walk && no_refraction(plan) == NULL)
+  if (plan->convex && plan->refractor_count == 1 && !plan->walk &&
+      abbe_plan_no_refraction(plan) == NULL)
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
   /* Layers show less and less of what is inside; and who asks for few exits sees them. A smaller
@@ -385,15 +279,15 @@ static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked
   plan->eye_share = plan->desc.energy_share;
   if (!plan->walk) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
-  if (no_refraction(plan) != NULL)
-    add(plan, false, "inner reflections", "%s", no_refraction(plan));
+  if (abbe_plan_no_refraction(plan) != NULL)
+    abbe_plan_add(plan, false, "inner reflections", "%s", abbe_plan_no_refraction(plan));
   else if (plan->desc.orders == 1)
-    add(plan, false, "inner reflections", "two interfaces only, as %s%s",
-        thesis ? "in the thesis" : "asked", inside);
+    abbe_plan_add(plan, false, "inner reflections", "two interfaces only, as %s%s",
+                  thesis ? "in the thesis" : "asked", inside);
   else
-    add(plan, true, "inner reflections",
-        "followed until less than %g of the light is left, %zu exits at most%s",
-        plan->desc.energy_share, plan->desc.orders, inside);
+    abbe_plan_add(plan, true, "inner reflections",
+                  "followed until less than %g of the light is left, %zu exits at most%s",
+                  plan->desc.energy_share, plan->desc.orders, inside);
 }
 
 /* The scene's rule, that the later object wins, is not the renderer's. */
@@ -413,7 +307,7 @@ static void note_overlaps(const abbe_scene *scene, abbe_plan *plan) {
   char more[48] = "";
   if (pairs > 1)
     snprintf(more, sizeof more, " (and %zu pair%s more)", pairs - 1, pairs > 2 ? "s" : "");
-  note(
+  abbe_plan_note(
       plan,
       "the refractors '%.50s' and '%.50s'%s overlap, to judge by their bounds; each is taken as if "
       "it stood in air alone",
@@ -447,90 +341,99 @@ static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
     char name[64];
     snprintf(name, sizeof name, "map: %.50s", scene->light[i].name);
     if (plan->lamp[i].face >= 0)
-      add(plan, true, name,
+      abbe_plan_add(
+          plan, true, name,
           "a cube: %d of 6 faces, as '%.50s' is more than 76 degrees off the middle of all "
           "refractors",
           count_faces(plan, i), scene->object[plan->off_view[i]].name);
     else
-      add(plan, plan->reaches[i], name, "%s",
-          plan->reaches[i] ? "the light may meet a refractor" : "its cone misses every refractor");
+      abbe_plan_add(plan, plan->reaches[i], name, "%s",
+                    plan->reaches[i] ? "the light may meet a refractor"
+                                     : "its cone misses every refractor");
   }
   plan->pages = caustics && !thesis && (plan->receiver_shadows || plan->aside);
-  add(plan, plan->pages, "maps on receivers", "%s",
-      !caustics                ? "no light meets a refractor"
-      : thesis                 ? "the thesis knows none"
-      : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
-      : plan->aside ? "a receiver lies more than 76 degrees off the view of a light's map"
-                    : "the lights' maps hold all receivers");
-  add(plan, depth, "light: receiver depth",
-      depth ? "receivers are found by their depth from the light" : "receivers are hit exactly");
-  add(plan, caustics, "light: refractor front",
-      caustics ? "photons start where the light sees a refractor" : "no light meets a refractor");
-  add(plan, caustics && plan->layers, "light: refractor back",
-      !plan->layers ? "every refractor has an exact surface"
-      : caustics    ? "a mesh without an exact surface ends at its back layer"
-                    : "no light meets a refractor");
+  abbe_plan_add(plan, plan->pages, "maps on receivers", "%s",
+                !caustics                ? "no light meets a refractor"
+                : thesis                 ? "the thesis knows none"
+                : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
+                : plan->aside ? "a receiver lies more than 76 degrees off the view of a light's map"
+                              : "the lights' maps hold all receivers");
+  abbe_plan_add(plan, depth, "light: receiver depth",
+                depth ? "receivers are found by their depth from the light"
+                      : "receivers are hit exactly");
+  abbe_plan_add(plan, caustics, "light: refractor front",
+                caustics ? "photons start where the light sees a refractor"
+                         : "no light meets a refractor");
+  abbe_plan_add(plan, caustics && plan->layers, "light: refractor back",
+                !plan->layers ? "every refractor has an exact surface"
+                : caustics    ? "a mesh without an exact surface ends at its back layer"
+                              : "no light meets a refractor");
   bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
   plan->lengths = caustics && plan->tinting && !plan->walk && !thesis;
   size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
   if (caustics) {
-    add(plan, true, "light: photon placement", "at most %zu a side, where light meets a refractor",
-        plan->desc.photons);
+    abbe_plan_add(plan, true, "light: photon placement",
+                  "at most %zu a side, where light meets a refractor", plan->desc.photons);
     if (least < most)
-      add(plan, true, "light: photons", "%zu to %zu wavelengths, as each photon's landings ask",
-          least, most);
+      abbe_plan_add(plan, true, "light: photons",
+                    "%zu to %zu wavelengths, as each photon's landings ask", least, most);
     else
-      add(plan, true, "light: photons", "%zu wavelengths through the refractors", most);
-    add(plan, true, "light: spectral map", "%zu x %zu texels%s", plan->desc.map_size,
-        plan->desc.map_size,
-        plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "");
+      abbe_plan_add(plan, true, "light: photons", "%zu wavelengths through the refractors", most);
+    abbe_plan_add(plan, true, "light: spectral map", "%zu x %zu texels%s", plan->desc.map_size,
+                  plan->desc.map_size,
+                  plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "");
   } else {
     static const char *const passes[] = {"light: photon placement", "light: photons",
                                          "light: spectral map"};
-    for (int k = 0; k < 3; k++) add(plan, false, passes[k], "no light meets a refractor");
+    for (int k = 0; k < 3; k++) abbe_plan_add(plan, false, passes[k], "no light meets a refractor");
   }
   if (plan->fills)
-    add(plan, true, "light: gap fill", "%s: %s", abbe_fill_name(plan->desc.fill),
-        apart ? "wavelengths land apart" : "the thesis fills whatever lands");
+    abbe_plan_add(plan, true, "light: gap fill", "%s: %s", abbe_fill_name(plan->desc.fill),
+                  apart ? "wavelengths land apart" : "the thesis fills whatever lands");
   else
-    add(plan, false, "light: gap fill", apart ? "none, as asked" : "nothing lands apart");
-  add(plan, plan->absorbing, "absorption", "%s",
-      no_refraction(plan) != NULL ? no_refraction(plan)
-      : plan->lengths   ? "a material attenuates by wavelength: landings keep the length inside"
-      : plan->absorbing ? "a material attenuates; path lengths are kept"
-                        : "every material is clear");
-  add(plan, true, "eye: receivers", "light, shadow and spectral map");
+    abbe_plan_add(plan, false, "light: gap fill", apart ? "none, as asked" : "nothing lands apart");
+  abbe_plan_add(plan, plan->absorbing, "absorption", "%s",
+                abbe_plan_no_refraction(plan) != NULL ? abbe_plan_no_refraction(plan)
+                : plan->lengths
+                    ? "a material attenuates by wavelength: landings keep the length inside"
+                : plan->absorbing ? "a material attenuates; path lengths are kept"
+                                  : "every material is clear");
+  abbe_plan_add(plan, true, "eye: receivers", "light, shadow and spectral map");
   bool seen = plan->seen;
   const char *unseen = plan->refractor_count > 0 ? "the eye sees no refractor" : "nothing refracts";
-  add(plan, seen, "eye: refractor front", "%s", seen ? "the pixels that show a refractor" : unseen);
-  add(plan, seen && plan->layers, "eye: refractor back", "%s",
-      !plan->layers ? "every refractor has an exact surface"
-      : seen        ? "a mesh without an exact surface ends at its back layer"
-                    : unseen);
+  abbe_plan_add(plan, seen, "eye: refractor front", "%s",
+                seen ? "the pixels that show a refractor" : unseen);
+  abbe_plan_add(plan, seen && plan->layers, "eye: refractor back", "%s",
+                !plan->layers ? "every refractor has an exact surface"
+                : seen        ? "a mesh without an exact surface ends at its back layer"
+                              : unseen);
   char fewer[160];
   if (plan->layers && !thesis)
-    add(plan, abbe_layer_detail_reason(scene, plan, fewer), "simplified layers", "%s", fewer);
+    abbe_plan_add(plan, abbe_layer_detail_reason(scene, plan, fewer), "simplified layers", "%s",
+                  fewer);
   if (seen && plan->eye_exits > 1)
-    add(plan, true, "eye: refraction",
+    abbe_plan_add(
+        plan, true, "eye: refraction",
         "one direction a wavelength, until less than %g of its light is left, %zu exits at most",
         plan->eye_share, plan->eye_exits);
   else
-    add(plan, seen, "eye: refraction", "%s", seen ? "one direction a wavelength" : unseen);
+    abbe_plan_add(plan, seen, "eye: refraction", "%s",
+                  seen ? "one direction a wavelength" : unseen);
   if (plan->desc.supersample > 1)
-    add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
-        plan->desc.supersample);
+    abbe_plan_add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
+                  plan->desc.supersample);
   else if (plan->desc.upsample > 1)
-    add(plan, true, "eye: picture", "a sample for %zu x %zu pixels", plan->desc.upsample,
-        plan->desc.upsample);
+    abbe_plan_add(plan, true, "eye: picture", "a sample for %zu x %zu pixels", plan->desc.upsample,
+                  plan->desc.upsample);
   else
-    add(plan, false, "eye: picture", "one sample a pixel: nothing is averaged");
-  add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
+    abbe_plan_add(plan, false, "eye: picture", "one sample a pixel: nothing is averaged");
+  abbe_plan_add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
   if (plan->refractor_count > 1 && !plan->walk)
-    note(plan, "light that leaves one refractor and meets another goes on unrefracted");
+    abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   if (!plan->walk) note_overlaps(scene, plan);
   if (seen && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
-    note(plan, "through refractors, colours are split by the first light's illuminant");
+    abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");
 }
 
 static abbe_result check_thesis(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
@@ -714,7 +617,8 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
                            abbe_error *error) {
   ABBE_REQUIRE(scene && out, error);
   memset(out, 0, sizeof *out);
-  abbe_result result = resolve_desc(scene, desc, out, error);
+  abbe_result result =
+      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error);
   if (result == ABBE_OK) result = check_lights(scene, error);
   if (result == ABBE_OK) result = examine_objects(scene, out, error);
   if (result == ABBE_OK) result = check_thesis(scene, out, error);
@@ -733,13 +637,4 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   out->back = out->layers;
   if (out->desc.everything) abbe_everything_switch_on(scene, desc, out);
   return ABBE_OK;
-}
-
-void abbe_plan_free(abbe_plan *plan) {
-  if (plan == NULL) return;
-  free(plan->refractor_object);
-  free(plan->receiver_object);
-  free(plan->receiver_model);
-  free(plan->model);
-  memset(plan, 0, sizeof *plan);
 }

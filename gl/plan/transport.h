@@ -6,7 +6,7 @@
 #define ABBE_GL_PLAN_TRANSPORT_H
 
 #include "base/error.h"
-#include "gl/plan/plan.h"
+#include "gl/plan/plan_facts.h"
 #include "scenes/scene.h"
 
 #ifdef __cplusplus

@@ -1,0 +1,115 @@
+/* plan_facts.h: what a plan holds: facts of the scene, models, entries and notes.
+ *
+ * What the plan's rooms fill in and the renderer reads. It examines nothing (gl/plan/plan.h).
+ */
+#ifndef ABBE_GL_PLAN_PLAN_FACTS_H
+#define ABBE_GL_PLAN_PLAN_FACTS_H
+
+#include "gl/plan/render_desc.h"
+#include "scenes/scene.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum abbe_refractor_model {
+  ABBE_REFRACTOR_SPHERE,    /* exact quadric */
+  ABBE_REFRACTOR_CONVEX,    /* plane tests */
+  ABBE_REFRACTOR_LAYERS,    /* front and back as a view sees them */
+  ABBE_REFRACTOR_HIERARCHY, /* triangles, traversed */
+  ABBE_REFRACTOR_MODEL_COUNT
+} abbe_refractor_model;
+
+typedef enum abbe_receiver_model {
+  ABBE_RECEIVER_EXACT,     /* parallelograms, hit exactly */
+  ABBE_RECEIVER_HIERARCHY, /* triangles, traversed */
+  ABBE_RECEIVER_DEPTH      /* iterated image-space intersection */
+} abbe_receiver_model;
+
+typedef struct abbe_plan_entry {
+  char name[64];
+  char reason[224];
+  bool runs;
+} abbe_plan_entry;
+
+#define ABBE_PLAN_MAX_ENTRIES 96
+
+/* A light, or a face of the cube around one whose refractors do not fit one view. */
+typedef struct abbe_plan_lamp {
+  size_t light;   /* the scene's */
+  int face;       /* that it looks through (gl/plan/light_cube.h); -1: it is no part of a cube */
+  unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
+                     those through which no light reaches a refractor; without a cube, all */
+} abbe_plan_lamp;
+
+typedef struct abbe_plan {
+  abbe_render_desc desc; /* every field resolved, none zero */
+  size_t refractor_count;
+  size_t *refractor_object;    /* [refractor_count] index into the scene's objects */
+  abbe_refractor_model *model; /* [refractor_count] */
+  size_t receiver_count;
+  size_t *receiver_object;             /* [receiver_count] */
+  abbe_receiver_model *receiver_model; /* [receiver_count] */
+  size_t parallelogram_count;          /* of the exact receivers */
+  abbe_receiver_model receivers;       /* the most general of theirs */
+  bool receiver_shadows;               /* some receiver may hide another from a light */
+  bool through; /* some receiver may lie where light goes on nearly straight through a refractor */
+  bool aside;   /* some receiver lies beyond a light's map view */
+  bool pages;   /* light may land where its light's map cannot hold it: receivers have pages */
+  bool spheres, convex, layers, hierarchy; /* models in use */
+  bool walk;       /* light that leaves a refractor may meet one again, and is followed */
+  bool dispersive; /* some index varies over the range */
+  bool absorbing;  /* some attenuation is above zero in the range */
+  bool tinting;    /* some attenuation varies over the range */
+  bool lengths;    /* and landings keep the length of their way inside, which tells it anywhere */
+  bool textured;
+  size_t eye_exits; /* that the eye's rays are followed for, at the most */
+  double eye_share; /* and the share of their light at which they end */
+  size_t slots;     /* landings of a photon at the most: its exits, and the mirror on the outside */
+  bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
+  bool caustics;                       /* some light may */
+  bool seen;                           /* the eye may */
+  bool fills;                          /* light is laid between wavelengths */
+  bool back;                           /* the back of refractors is drawn */
+  size_t
+      light_count; /* the scene's lights, and after them what cubes have more than one face each */
+  abbe_plan_lamp lamp[ABBE_SCENE_MAX_LIGHTS];
+  bool cubes;                             /* some light has one */
+  size_t off_view[ABBE_SCENE_MAX_LIGHTS]; /* of a light with a cube: an object that asks for it */
+  size_t entry_count;                     /* passes and models, in the order in which they run */
+  abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];
+  size_t note_count; /* what is not modelled, or extrapolated */
+  char note[16][256];
+} abbe_plan;
+
+void abbe_plan_free(abbe_plan *plan);
+
+/* Wavelengths that every photon is traced at; more, up to the plan's, where its landings ask. */
+size_t abbe_plan_least_wavelengths(const abbe_plan *plan);
+/* Why nothing refracts, as a sentence's part, or NULL. */
+const char *abbe_plan_no_refraction(const abbe_plan *plan);
+const char *abbe_refractor_model_name(abbe_refractor_model model);
+const char *abbe_receiver_model_name(abbe_receiver_model model);
+
+/* Adds an entry, or a note; more than there is room for are left out. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+void
+abbe_plan_add(abbe_plan *plan, bool runs, const char *name, const char *format, ...);
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+void
+abbe_plan_note(abbe_plan *plan, const char *format, ...);
+
+/* The entry of that name, or NULL. */
+const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
