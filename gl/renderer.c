@@ -9,12 +9,6 @@
 
 enum { MAX_MAP_LEVELS = 6 };
 
-double abbe_ledger_imbalance(const abbe_ledger *l) {
-  if (!(l->reached > 0)) return 0;
-  double parts = l->reflected + l->absorbed + l->trapped + l->missed + l->deposited;
-  return fabs(l->reached + l->interpolated - parts) / l->reached;
-}
-
 static size_t room(size_t count) {
   return count > 0 ? count : 1;
 }

@@ -228,7 +228,7 @@ void abbe_renderer_bind_tables(abbe_renderer *r);
 void abbe_renderer_dispatch_2d(abbe_renderer *r, size_t width, size_t height);
 void abbe_renderer_draw(abbe_renderer *r, size_t object);
 void abbe_renderer_begin_pass(abbe_renderer *r);
-void abbe_renderer_end_pass(abbe_renderer *r, const char *name);
+void abbe_renderer_end_pass(abbe_renderer *r, abbe_pass pass);
 
 /* light_pass.c: the light's views, their layers, and the photons. */
 abbe_result abbe_renderer_make_light(abbe_renderer *r, abbe_error *error);

@@ -172,7 +172,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON *passes = cJSON_AddArrayToObject(root, "passes");
   for (size_t i = 0; i < s->pass_count; i++) {
     cJSON *pass = cJSON_CreateObject();
-    cJSON_AddStringToObject(pass, "name", s->pass[i].name);
+    cJSON_AddStringToObject(pass, "name", abbe_plan_item_text(s->pass[i].pass));
     cJSON_AddNumberToObject(pass, "ms", s->pass[i].ms);
     cJSON_AddItemToArray(passes, pass);
   }

@@ -263,13 +263,6 @@ bool abbe_preset_is_fine(const abbe_render_desc *d) {
          d->fill == ABBE_FILL_BRIDGE && d->model == ABBE_MODEL_AUTO;
 }
 
-static double passes_ms(const abbe_statistics *s, const char *prefix) {
-  double sum = 0;
-  for (size_t i = 0; i < s->pass_count; i++)
-    if (strncmp(s->pass[i].name, prefix, strlen(prefix)) == 0) sum += s->pass[i].ms;
-  return sum;
-}
-
 abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
                                   const abbe_preset_front *front, const abbe_render_desc *desc,
                                   abbe_preset_speed *out, abbe_error *error) {
@@ -285,8 +278,10 @@ abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, &statistics, error);
   abbe_renderer_free(renderer);
   if (result != ABBE_OK) return result;
-  out->light = passes_ms(&statistics, "light:") / fmax(point->light_ms, least_ms);
-  out->eye = passes_ms(&statistics, "eye:") / fmax(point->eye_ms, least_ms);
+  const double light_ms = abbe_statistics_stage_ms(&statistics, ABBE_STAGE_LIGHT);
+  const double eye_ms = abbe_statistics_stage_ms(&statistics, ABBE_STAGE_EYE);
+  out->light = light_ms / fmax(point->light_ms, least_ms);
+  out->eye = eye_ms / fmax(point->eye_ms, least_ms);
   return ABBE_OK;
 }
 

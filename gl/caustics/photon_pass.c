@@ -175,7 +175,7 @@ static abbe_result deposit_batch(abbe_renderer *r, size_t light, const batch *b,
                                  abbe_error *error) {
   for (size_t chunk = 0; chunk < r->chunks; chunk++) {
     list_pieces(r, light, b, chunk);
-    abbe_renderer_end_pass(r, r->plan.fills ? "light: gap fill" : "light: spectral map");
+    abbe_renderer_end_pass(r, r->plan.fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
     bool look = r->chunks > 1 || r->statistics != NULL;
     if (look && read_count(r, r->splat_list) > r->splat_room)
       return abbe_error_set(error, ABBE_GL,
@@ -189,7 +189,7 @@ static abbe_result deposit_batch(abbe_renderer *r, size_t light, const batch *b,
     r->gl->Uniform1ui(r->gl->GetUniformLocation(r->splat, "map_texels"), (GLuint)r->map_texels);
     r->gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, r->map_sums);
     abbe_renderer_dispatch_list(r, r->splat, r->splat_list, r->splat_room, 1);
-    abbe_renderer_end_pass(r, "light: spectral map");
+    abbe_renderer_end_pass(r, ABBE_PASS_SPECTRAL_MAP);
   }
   return ABBE_OK;
 }
@@ -288,7 +288,7 @@ static abbe_result trace_and_deposit(abbe_renderer *r, size_t light, abbe_render
   abbe_result result = ABBE_OK;
   abbe_renderer_begin_pass(r);
   while (result == ABBE_OK && trace_next(r, light, &b)) {
-    abbe_renderer_end_pass(r, "light: photons");
+    abbe_renderer_end_pass(r, ABBE_PASS_PHOTONS);
     result = deposit_batch(r, light, &b, error);
     double share = ((double)light + share_done(r, &b)) / (double)r->plan.light_count;
     if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
@@ -369,16 +369,16 @@ abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progres
     if (!r->plan.reaches[light]) continue;
     abbe_renderer_begin_pass(r);
     result = abbe_renderer_start_photons(r, light, error);
-    abbe_renderer_end_pass(r, "light: photon placement");
+    abbe_renderer_end_pass(r, ABBE_PASS_PHOTON_PLACEMENT);
     abbe_renderer_bind_tables(r);
     abbe_renderer_clear_buffer(r, r->map_sums);
     abbe_renderer_clear_buffer(r, r->buffer[BINDING_LEDGER]);
-    abbe_renderer_end_pass(r, "light: spectral map");
+    abbe_renderer_end_pass(r, ABBE_PASS_SPECTRAL_MAP);
     if (result == ABBE_OK) result = trace_and_deposit(r, light, progress, user, error);
     if (result != ABBE_OK) return result;
     abbe_renderer_begin_pass(r);
     finish_map(r, light);
-    abbe_renderer_end_pass(r, "light: spectral map");
+    abbe_renderer_end_pass(r, ABBE_PASS_SPECTRAL_MAP);
     if (r->statistics == NULL) continue;
     double start_ms = abbe_renderer_now_ms();
     result = abbe_renderer_read_ledger(r, light, &r->statistics->energy, error);

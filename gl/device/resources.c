@@ -167,17 +167,10 @@ void abbe_renderer_begin_pass(abbe_renderer *r) {
   r->pass_start_ms = abbe_renderer_now_ms();
 }
 
-void abbe_renderer_end_pass(abbe_renderer *r, const char *name) {
-  abbe_statistics *s = r->statistics;
-  if (s == NULL) return;
+void abbe_renderer_end_pass(abbe_renderer *r, abbe_pass pass) {
+  if (r->statistics == NULL) return;
   r->gl->Finish();
-  double ms = abbe_renderer_now_ms() - r->pass_start_ms;
-  r->pass_start_ms += ms;
-  for (size_t i = 0; i < s->pass_count; i++)
-    if (s->pass[i].name == name) {
-      s->pass[i].ms += ms;
-      return;
-    }
-  if (s->pass_count < ABBE_STATISTICS_MAX_PASSES)
-    s->pass[s->pass_count++] = (abbe_pass_time){name, ms};
+  const double now_ms = abbe_renderer_now_ms();
+  abbe_statistics_add_ms(r->statistics, pass, now_ms - r->pass_start_ms);
+  r->pass_start_ms = now_ms;
 }

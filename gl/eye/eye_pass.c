@@ -317,7 +317,7 @@ static abbe_result draw_receivers(abbe_renderer *r, abbe_error *error) {
   use_for_receivers(r, whole);
   for (size_t i = 0; i < r->plan.receiver_count; i++) draw_receiver(r, whole, i);
   if (r->unlit != 0) draw_lit_parts(r);
-  abbe_renderer_end_pass(r, "eye: receivers");
+  abbe_renderer_end_pass(r, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
 
@@ -346,7 +346,7 @@ static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
       gl->Uniform1ui(gl->GetUniformLocation(r->layer, "owner"), (GLuint)i + 1);
       abbe_renderer_draw_refractor(r, i);
     }
-    abbe_renderer_end_pass(r, back ? "eye: refractor back" : "eye: refractor front");
+    abbe_renderer_end_pass(r, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);
   }
   gl->Disable(GL_CULL_FACE);
   return ABBE_OK;
@@ -439,7 +439,7 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progre
   gl->BindImageTexture(0, resolves(r) ? r->eye_refraction : r->eye_receivers, 0, GL_FALSE, 0,
                        GL_READ_WRITE, GL_RGBA32F);
   result = refract_pixels(r, progress, user, error);
-  abbe_renderer_end_pass(r, "eye: refraction");
+  abbe_renderer_end_pass(r, ABBE_PASS_EYE_REFRACTION);
   return result;
 }
 
@@ -459,7 +459,7 @@ static void resolve_picture(abbe_renderer *r) {
                 (GLint)r->plan.desc.height);
   abbe_renderer_dispatch_2d(r, r->plan.desc.width, r->plan.desc.height);
   gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  abbe_renderer_end_pass(r, "eye: picture");
+  abbe_renderer_end_pass(r, ABBE_PASS_EYE_PICTURE);
 }
 
 abbe_result abbe_renderer_eye(abbe_renderer *r, abbe_render_progress progress, void *user,

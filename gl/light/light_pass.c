@@ -262,7 +262,7 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
     clear_target(gl, all ? 1 : 0, !back);
     gl->CullFace(back ? GL_FRONT : GL_BACK);
     if (!all) draw_refractors(r);
-    abbe_renderer_end_pass(r, back ? "light: refractor back" : "light: refractor front");
+    abbe_renderer_end_pass(r, back ? ABBE_PASS_LIGHT_BACK : ABBE_PASS_LIGHT_FRONT);
   }
   gl->Disable(GL_CULL_FACE);
   return ABBE_OK;

@@ -2,10 +2,10 @@
 
 #include "base/number.h"
 #include "colorimetry/weights.h"
-#include "gl/plan/everything.h"
 #include "gl/plan/inner_light.h"
-#include "gl/plan/layer_detail.h"
 #include "gl/plan/light_cube.h"
+#include "gl/plan/no_culling.h"
+#include "gl/plan/pass_list.h"
 #include "gl/plan/precision.h"
 #include "gl/plan/reach.h"
 #include "gl/plan/transport.h"
@@ -89,18 +89,27 @@ static void choose_receiver_models(const abbe_scene *scene, abbe_plan *plan) {
   if (!thesis && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_HIERARCHY;
   const char *model = abbe_receiver_model_name(plan->receivers);
   if (thesis)
-    abbe_plan_add(plan, true, "model: receivers", "%s: the thesis profile knows no other model",
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: the thesis profile knows no other model",
                   model);
   else if (general != NULL)
-    abbe_plan_add(plan, true, "model: receivers", "%s: '%.50s' is a general mesh", model,
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: '%.50s' is a general mesh", model,
                   general->name);
   else if (beyond != NULL)
-    abbe_plan_add(plan, true, "model: receivers",
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL,
                   "%s: with '%.50s' there are more than %d parallelograms", model, beyond->name,
                   MAX_PARALLELOGRAMS);
   else
-    abbe_plan_add(plan, true, "model: receivers", "%s: every receiver is a rectangle or a box",
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: every receiver is a rectangle or a box",
                   model);
+}
+
+/* Refractors beyond those that the plan has room for are counted. */
+static void list_model(abbe_plan *plan, size_t object, const char *name, const char *reason,
+                       size_t *unlisted) {
+  if (plan->entry_count < MAX_MODEL_ENTRIES)
+    abbe_plan_add_about(plan, ABBE_CHOICE_REFRACTOR_MODEL, object, name, "%s", reason);
+  else
+    ++*unlisted;
 }
 
 static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
@@ -113,6 +122,7 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
       plan->receiver_model == NULL || plan->model == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
   const char *walk = abbe_transport_walk(scene, plan);
+  size_t unlisted = 0;
   plan->walk = walk != NULL;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
@@ -123,11 +133,9 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     }
     if (plan->refractor_count == 255)
       return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than 255 refractors");
-    char name[64];
-    snprintf(name, sizeof name, "model: %.50s", object->name);
     if (abbe_transport_invisible(scene, object, plan)) {
-      abbe_plan_add(plan, false, name,
-                    "clear, and its index is that of air: light does not notice it");
+      list_model(plan, i, object->name,
+                 "clear, and its index is that of air: light does not notice it", &unlisted);
       continue;
     }
     abbe_result result = examine_material(scene, object->material, plan, error);
@@ -141,14 +149,14 @@ static abbe_result examine_objects(const abbe_scene *scene, abbe_plan *plan, abb
     plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
     plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
     plan->hierarchy = plan->hierarchy || model == ABBE_REFRACTOR_HIERARCHY;
-    char reason[192];
-    abbe_transport_reason(object, plan, reason, sizeof reason);
-    abbe_plan_add(plan, true, name, "%s: %s", abbe_refractor_model_name(model), reason);
+    char why[192], reason[224];
+    abbe_transport_reason(object, plan, why, sizeof why);
+    snprintf(reason, sizeof reason, "%s: %s", abbe_refractor_model_name(model), why);
+    list_model(plan, i, object->name, reason, &unlisted);
   }
-  if (plan->refractor_count > MAX_MODEL_ENTRIES)
-    abbe_plan_add(plan, true, "models", "and %zu refractors more",
-                  plan->refractor_count - MAX_MODEL_ENTRIES);
-  abbe_plan_add(plan, plan->walk, "refractors in turn", "%s",
+  if (unlisted > 0)
+    abbe_plan_add(plan, ABBE_CHOICE_MORE_REFRACTORS, "and %zu refractors more", unlisted);
+  abbe_plan_add(plan, ABBE_CHOICE_REFRACTORS_IN_TURN, "%s",
                 plan->refractor_count == 0 ? "nothing refracts"
                 : plan->walk               ? walk
                 : thesis                   ? "the thesis profile follows two interfaces"
@@ -210,7 +218,7 @@ static void examine_shadows(const abbe_scene *scene, abbe_plan *plan) {
     for (size_t k = 0; k < exact->count && !plan->receiver_shadows; k++)
       plan->receiver_shadows = !bounds_all(scene, plan, exact->parallelogram[k], 1e-6 * size);
   }
-  abbe_plan_add(plan, plan->receiver_shadows, "shadows of receivers",
+  abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_SHADOWS,
                 plan->receiver_shadows ? "a receiver may stand between a light and another"
                                        : "the receivers bound a convex room around the lights");
 }
@@ -250,7 +258,7 @@ static void resolve_wavelengths(abbe_plan *plan) {
   if (!asked)
     plan->desc.wavelengths = plan->dispersive || plan->tinting ? ABBE_PLAN_WAVELENGTHS : 1;
   if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
-  abbe_plan_add(plan, true, "wavelengths", "%zu from %g to %g nm: %s", plan->desc.wavelengths,
+  abbe_plan_add(plan, ABBE_CHOICE_WAVELENGTHS, "%zu from %g to %g nm: %s", plan->desc.wavelengths,
                 plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
 }
 
@@ -280,12 +288,12 @@ static void resolve_exits(const abbe_scene *scene, const abbe_render_desc *asked
   if (!plan->walk) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
   plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
   if (abbe_plan_no_refraction(plan) != NULL)
-    abbe_plan_add(plan, false, "inner reflections", "%s", abbe_plan_no_refraction(plan));
+    abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS, "%s", abbe_plan_no_refraction(plan));
   else if (plan->desc.orders == 1)
-    abbe_plan_add(plan, false, "inner reflections", "two interfaces only, as %s%s",
+    abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS, "two interfaces only, as %s%s",
                   thesis ? "in the thesis" : "asked", inside);
   else
-    abbe_plan_add(plan, true, "inner reflections",
+    abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS,
                   "followed until less than %g of the light is left, %zu exits at most%s",
                   plan->desc.energy_share, plan->desc.orders, inside);
 }
@@ -314,13 +322,6 @@ static void note_overlaps(const abbe_scene *scene, abbe_plan *plan) {
       first[0]->name, first[1]->name, more);
 }
 
-static int count_faces(const abbe_plan *plan, size_t light) {
-  int faces = 0;
-  for (size_t i = 0; i < plan->light_count; i++)
-    if (plan->lamp[i].light == light) faces++;
-  return faces;
-}
-
 /* Whether all lights are of one spectrum, up to a factor. */
 static bool shine_alike(const abbe_scene *scene, double min, double max) {
   const abbe_illuminant *first = &scene->light[0].illuminant;
@@ -334,105 +335,21 @@ static bool shine_alike(const abbe_scene *scene, double min, double max) {
   return true;
 }
 
-static void list_passes(const abbe_scene *scene, abbe_plan *plan) {
-  bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
-  bool depth = plan->receivers == ABBE_RECEIVER_DEPTH;
-  for (size_t i = 0; i < scene->light_count && plan->refractor_count > 0; i++) {
-    char name[64];
-    snprintf(name, sizeof name, "map: %.50s", scene->light[i].name);
-    if (plan->lamp[i].face >= 0)
-      abbe_plan_add(
-          plan, true, name,
-          "a cube: %d of 6 faces, as '%.50s' is more than 76 degrees off the middle of all "
-          "refractors",
-          count_faces(plan, i), scene->object[plan->off_view[i]].name);
-    else
-      abbe_plan_add(plan, plan->reaches[i], name, "%s",
-                    plan->reaches[i] ? "the light may meet a refractor"
-                                     : "its cone misses every refractor");
-  }
+/* What entries rest on that all facts together decide. */
+static void combine(abbe_plan *plan) {
+  const bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
+  const bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
+  plan->back = plan->layers;
   plan->pages = caustics && !thesis && (plan->receiver_shadows || plan->aside);
-  abbe_plan_add(plan, plan->pages, "maps on receivers", "%s",
-                !caustics                ? "no light meets a refractor"
-                : thesis                 ? "the thesis knows none"
-                : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
-                : plan->aside ? "a receiver lies more than 76 degrees off the view of a light's map"
-                              : "the lights' maps hold all receivers");
-  abbe_plan_add(plan, depth, "light: receiver depth",
-                depth ? "receivers are found by their depth from the light"
-                      : "receivers are hit exactly");
-  abbe_plan_add(plan, caustics, "light: refractor front",
-                caustics ? "photons start where the light sees a refractor"
-                         : "no light meets a refractor");
-  abbe_plan_add(plan, caustics && plan->layers, "light: refractor back",
-                !plan->layers ? "every refractor has an exact surface"
-                : caustics    ? "a mesh without an exact surface ends at its back layer"
-                              : "no light meets a refractor");
-  bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
   plan->lengths = caustics && plan->tinting && !plan->walk && !thesis;
-  size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
-  if (caustics) {
-    abbe_plan_add(plan, true, "light: photon placement",
-                  "at most %zu a side, where light meets a refractor", plan->desc.photons);
-    if (least < most)
-      abbe_plan_add(plan, true, "light: photons",
-                    "%zu to %zu wavelengths, as each photon's landings ask", least, most);
-    else
-      abbe_plan_add(plan, true, "light: photons", "%zu wavelengths through the refractors", most);
-    abbe_plan_add(plan, true, "light: spectral map", "%zu x %zu texels%s", plan->desc.map_size,
-                  plan->desc.map_size,
-                  plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "");
-  } else {
-    static const char *const passes[] = {"light: photon placement", "light: photons",
-                                         "light: spectral map"};
-    for (int k = 0; k < 3; k++) abbe_plan_add(plan, false, passes[k], "no light meets a refractor");
-  }
-  if (plan->fills)
-    abbe_plan_add(plan, true, "light: gap fill", "%s: %s", abbe_fill_name(plan->desc.fill),
-                  apart ? "wavelengths land apart" : "the thesis fills whatever lands");
-  else
-    abbe_plan_add(plan, false, "light: gap fill", apart ? "none, as asked" : "nothing lands apart");
-  abbe_plan_add(plan, plan->absorbing, "absorption", "%s",
-                abbe_plan_no_refraction(plan) != NULL ? abbe_plan_no_refraction(plan)
-                : plan->lengths
-                    ? "a material attenuates by wavelength: landings keep the length inside"
-                : plan->absorbing ? "a material attenuates; path lengths are kept"
-                                  : "every material is clear");
-  abbe_plan_add(plan, true, "eye: receivers", "light, shadow and spectral map");
-  bool seen = plan->seen;
-  const char *unseen = plan->refractor_count > 0 ? "the eye sees no refractor" : "nothing refracts";
-  abbe_plan_add(plan, seen, "eye: refractor front", "%s",
-                seen ? "the pixels that show a refractor" : unseen);
-  abbe_plan_add(plan, seen && plan->layers, "eye: refractor back", "%s",
-                !plan->layers ? "every refractor has an exact surface"
-                : seen        ? "a mesh without an exact surface ends at its back layer"
-                              : unseen);
-  char fewer[160];
-  if (plan->layers && !thesis)
-    abbe_plan_add(plan, abbe_layer_detail_reason(scene, plan, fewer), "simplified layers", "%s",
-                  fewer);
-  if (seen && plan->eye_exits > 1)
-    abbe_plan_add(
-        plan, true, "eye: refraction",
-        "one direction a wavelength, until less than %g of its light is left, %zu exits at most",
-        plan->eye_share, plan->eye_exits);
-  else
-    abbe_plan_add(plan, seen, "eye: refraction", "%s",
-                  seen ? "one direction a wavelength" : unseen);
-  if (plan->desc.supersample > 1)
-    abbe_plan_add(plan, true, "eye: picture", "%zu x %zu samples a pixel", plan->desc.supersample,
-                  plan->desc.supersample);
-  else if (plan->desc.upsample > 1)
-    abbe_plan_add(plan, true, "eye: picture", "a sample for %zu x %zu pixels", plan->desc.upsample,
-                  plan->desc.upsample);
-  else
-    abbe_plan_add(plan, false, "eye: picture", "one sample a pixel: nothing is averaged");
-  abbe_plan_add(plan, plan->textured, "textures", plan->textured ? "a receiver has one" : "none");
+}
+
+static void add_notes(const abbe_scene *scene, abbe_plan *plan) {
   if (plan->refractor_count > 1 && !plan->walk)
     abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   if (!plan->walk) note_overlaps(scene, plan);
-  if (seen && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
+  if (plan->seen && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
     abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");
 }
 
@@ -633,8 +550,9 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   examine_shadows(scene, out);
   resolve_wavelengths(out);
   resolve_exits(scene, desc, out);
-  list_passes(scene, out);
-  out->back = out->layers;
-  if (out->desc.everything) abbe_everything_switch_on(scene, desc, out);
+  combine(out);
+  abbe_pass_list_add(scene, out);
+  add_notes(scene, out);
+  if (out->desc.everything) abbe_no_culling_apply(scene, desc, out);
   return ABBE_OK;
 }

@@ -35,14 +35,53 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   return apart && plan->tinting == plan->lengths && n > coarse ? coarse : n;
 }
 
-void abbe_plan_add(abbe_plan *plan, bool runs, const char *name, const char *format, ...) {
+static bool is_thesis(const abbe_plan *p) {
+  return abbe_profile_is_thesis(p->desc.profile);
+}
+
+static bool refracts(const abbe_plan *p, size_t object) {
+  for (size_t k = 0; k < p->refractor_count; k++)
+    if (p->refractor_object[k] == object) return true;
+  return false;
+}
+
+bool abbe_plan_runs(const abbe_plan *p, abbe_plan_item item, size_t i) {
+  switch (item) {
+#define PASS_CASE(id, stage, text, condition)                                                      \
+  case ABBE_PASS_##id:                                                                             \
+    return condition;
+#define CHOICE_CASE(id, text, condition)                                                           \
+  case ABBE_CHOICE_##id:                                                                           \
+    return condition;
+    ABBE_PASSES(PASS_CASE)
+    ABBE_PLAN_CHOICES(CHOICE_CASE)
+  default:
+    return false;
+  }
+}
+
+static void add_entry(abbe_plan *plan, abbe_plan_item item, size_t index, const char *name,
+                      const char *reason, va_list args) {
   if (plan->entry_count == ABBE_PLAN_MAX_ENTRIES) return;
   abbe_plan_entry *entry = &plan->entry[plan->entry_count++];
-  snprintf(entry->name, sizeof entry->name, "%s", name);
-  entry->runs = runs;
+  *entry =
+      (abbe_plan_entry){.item = item, .index = (unsigned)index, .runs = abbe_plan_runs(plan, item, index)};
+  snprintf(entry->name, sizeof entry->name, "%s%.50s", abbe_plan_item_text(item), name);
+  abbe_number_format_list(entry->reason, sizeof entry->reason, reason, args);
+}
+
+void abbe_plan_add(abbe_plan *plan, abbe_plan_item item, const char *reason, ...) {
   va_list args;
-  va_start(args, format);
-  abbe_number_format_list(entry->reason, sizeof entry->reason, format, args);
+  va_start(args, reason);
+  add_entry(plan, item, 0, "", reason, args);
+  va_end(args);
+}
+
+void abbe_plan_add_about(abbe_plan *plan, abbe_plan_item item, size_t index, const char *name,
+                         const char *reason, ...) {
+  va_list args;
+  va_start(args, reason);
+  add_entry(plan, item, index, name, reason, args);
   va_end(args);
 }
 
@@ -54,9 +93,9 @@ void abbe_plan_note(abbe_plan *plan, const char *format, ...) {
   va_end(args);
 }
 
-const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name) {
+const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, abbe_plan_item item, size_t index) {
   for (size_t i = 0; i < plan->entry_count; i++)
-    if (strcmp(plan->entry[i].name, name) == 0) return &plan->entry[i];
+    if (plan->entry[i].item == item && plan->entry[i].index == index) return &plan->entry[i];
   return NULL;
 }
 

@@ -5,6 +5,7 @@
 #ifndef ABBE_GL_PLAN_PLAN_FACTS_H
 #define ABBE_GL_PLAN_PLAN_FACTS_H
 
+#include "gl/plan/passes.h"
 #include "gl/plan/render_desc.h"
 #include "scenes/scene.h"
 
@@ -30,7 +31,9 @@ typedef enum abbe_receiver_model {
 } abbe_receiver_model;
 
 typedef struct abbe_plan_entry {
-  char name[64];
+  abbe_plan_item item;
+  unsigned index; /* the scene's object or light, of the items that are about one; else 0 */
+  char name[60];
   char reason[224];
   bool runs;
 } abbe_plan_entry;
@@ -73,6 +76,7 @@ typedef struct abbe_plan {
   bool caustics;                       /* some light may */
   bool seen;                           /* the eye may */
   bool fills;                          /* light is laid between wavelengths */
+  bool fewer_faces;                    /* some mesh is drawn with fewer (gl/plan/layer_detail.h) */
   bool back;                           /* the back of refractors is drawn */
   size_t
       light_count; /* the scene's lights, and after them what cubes have more than one face each */
@@ -94,20 +98,30 @@ const char *abbe_plan_no_refraction(const abbe_plan *plan);
 const char *abbe_refractor_model_name(abbe_refractor_model model);
 const char *abbe_receiver_model_name(abbe_receiver_model model);
 
-/* Adds an entry, or a note; more than there is room for are left out. */
+/* Whether the plan, as it stands, runs the item, by the table's condition. */
+bool abbe_plan_runs(const abbe_plan *plan, abbe_plan_item item, size_t index);
+
+/* Adds an entry that runs or does not by its condition, with its reason; one about an object or a
+ * light by its index and name; or a note. More than there is room for are left out. */
 #if defined(__GNUC__)
-__attribute__((format(printf, 4, 5)))
+__attribute__((format(printf, 3, 4)))
 #endif
 void
-abbe_plan_add(abbe_plan *plan, bool runs, const char *name, const char *format, ...);
+abbe_plan_add(abbe_plan *plan, abbe_plan_item item, const char *reason, ...);
+#if defined(__GNUC__)
+__attribute__((format(printf, 5, 6)))
+#endif
+void
+abbe_plan_add_about(abbe_plan *plan, abbe_plan_item item, size_t index, const char *name,
+                    const char *reason, ...);
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
 void
 abbe_plan_note(abbe_plan *plan, const char *format, ...);
 
-/* The entry of that name, or NULL. */
-const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, const char *name);
+/* The entry of that item, and of that object or light (0 where it is about none); or NULL. */
+const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, abbe_plan_item item, size_t index);
 
 #ifdef __cplusplus
 }

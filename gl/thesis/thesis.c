@@ -253,10 +253,10 @@ static abbe_result light_passes(abbe_renderer *r, abbe_error *error) {
   set_matrix(r, t->depth_only, "view_projection", matrix);
   for (size_t i = 0; i < r->plan.receiver_count; i++)
     abbe_renderer_draw(r, r->plan.receiver_object[i]);
-  abbe_renderer_end_pass(r, "light: receiver depth");
+  abbe_renderer_end_pass(r, ABBE_PASS_RECEIVER_DEPTH);
   result = draw_layers(r, t->light_normals, t->light_depths, map, map, t->light_look, t->light_clip,
                        error);
-  abbe_renderer_end_pass(r, "light: refractor layers");
+  abbe_renderer_end_pass(r, ABBE_PASS_LIGHT_FRONT_AND_BACK);
   return result;
 }
 
@@ -268,7 +268,7 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   abbe_renderer_begin_pass(r);
   abbe_result result = abbe_renderer_place_photons(r, 0, t->light_normals, 0, error);
-  abbe_renderer_end_pass(r, "light: photon placement");
+  abbe_renderer_end_pass(r, ABBE_PASS_PHOTON_PLACEMENT);
   if (result == ABBE_OK)
     result = abbe_renderer_set_target(r, &t->map, &flat, 1, 0, map, map, error);
   if (result != ABBE_OK) return result;
@@ -296,7 +296,7 @@ static abbe_result splat_photons(abbe_renderer *r, abbe_error *error) {
   gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, r->list[LEVELS - 1]);
   gl->DrawArraysIndirect(GL_POINTS, (const char *)NULL + 16);
   gl->Disable(GL_BLEND);
-  abbe_renderer_end_pass(r, "light: photons");
+  abbe_renderer_end_pass(r, ABBE_PASS_PHOTONS);
   return ABBE_OK;
 }
 
@@ -318,7 +318,7 @@ static abbe_result fill_gaps(abbe_renderer *r, abbe_error *error) {
   r->gl->UseProgram(t->fill);
   abbe_renderer_bind_texture_2d(r, t->fill, "spectral_map", 0, t->map);
   abbe_result result = draw_screen(r, t->filled, map, map, error);
-  abbe_renderer_end_pass(r, "light: gap fill");
+  abbe_renderer_end_pass(r, ABBE_PASS_GAP_FILL);
   return result;
 }
 
@@ -390,7 +390,7 @@ static abbe_result light_receivers(abbe_renderer *r, abbe_error *error) {
     set_surface(r, i, &layer);
     abbe_renderer_draw(r, r->plan.receiver_object[i]);
   }
-  abbe_renderer_end_pass(r, "eye: receivers");
+  abbe_renderer_end_pass(r, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
 
@@ -403,7 +403,7 @@ static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
   abbe_renderer_begin_pass(r);
   abbe_result result =
       draw_layers(r, t->eye_normals, t->eye_depths, width, height, t->eye_look, t->eye_clip, error);
-  abbe_renderer_end_pass(r, "eye: refractor layers");
+  abbe_renderer_end_pass(r, ABBE_PASS_EYE_FRONT_AND_BACK);
   if (result != ABBE_OK) return result;
   gl->UseProgram(t->refraction);
   set_common(r, t->refraction, &r->eye, t->eye_clip);
@@ -426,7 +426,7 @@ static abbe_result refract_eye(abbe_renderer *r, abbe_error *error) {
   abbe_renderer_bind_texture_2d(r, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
   abbe_renderer_bind_texture_2d(r, t->refraction, "receivers", 3, t->eye_receivers);
   result = draw_screen(r, r->eye_picture, width, height, error);
-  abbe_renderer_end_pass(r, "eye: refraction");
+  abbe_renderer_end_pass(r, ABBE_PASS_EYE_REFRACTION);
   return result;
 }
 

@@ -167,19 +167,12 @@ static int by_time(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static double passes_ms(const abbe_statistics *s, const char *prefix) {
-  double sum = 0;
-  for (size_t i = 0; i < s->pass_count; i++)
-    if (strncmp(s->pass[i].name, prefix, strlen(prefix)) == 0) sum += s->pass[i].ms;
-  return sum;
-}
-
 static void note_times(const abbe_statistics *sorted, size_t count, abbe_sweep_row *out) {
   const abbe_statistics *median = &sorted[count / 2];
   out->number[ABBE_SWEEP_FRAME_MS] = median->frame_ms;
   out->number[ABBE_SWEEP_FASTEST_MS] = sorted[0].frame_ms;
-  out->number[ABBE_SWEEP_LIGHT_MS] = passes_ms(median, "light:");
-  out->number[ABBE_SWEEP_EYE_MS] = passes_ms(median, "eye:");
+  out->number[ABBE_SWEEP_LIGHT_MS] = abbe_statistics_stage_ms(median, ABBE_STAGE_LIGHT);
+  out->number[ABBE_SWEEP_EYE_MS] = abbe_statistics_stage_ms(median, ABBE_STAGE_EYE);
 }
 
 /* What is bridged while it is deposited is in the ledger, which sums the map itself. */

@@ -2,6 +2,7 @@
 #include "tests/gl/frame.h"
 
 #include "gl/plan/inner_light.h"
+#include "gl/plan/plan.h"
 #include "scenes/geometry/vector.h"
 
 #include <string.h>

@@ -1,6 +1,7 @@
 /* What the plan reads off a scene's refractors, and the convexity that it rests on. */
 #include "tests/scenes/scene_text.h"
 
+#include "gl/plan/plan.h"
 #include "gl/plan/transport.h"
 #include "scenes/shapes/shape.h"
 

@@ -1,9 +1,8 @@
-#include "gl/plan/everything.h"
+#include "gl/plan/no_culling.h"
 
 #include "scenes/view/view.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* Whether one view of the light holds all refractors. */
 static bool holds_refractors(const abbe_scene *scene, const abbe_light *light,
@@ -23,19 +22,20 @@ static bool holds_refractors(const abbe_scene *scene, const abbe_light *light,
   return sun || all;
 }
 
-static void say(abbe_plan *plan, const char *name) {
+/* What runs by now and did not. */
+static void list_again(abbe_plan *plan) {
   for (size_t i = 0; i < plan->entry_count; i++) {
     abbe_plan_entry *entry = &plan->entry[i];
-    if (strcmp(entry->name, name) != 0 || entry->runs) continue;
+    if (entry->runs || !abbe_plan_runs(plan, entry->item, entry->index)) continue;
     entry->runs = true;
     snprintf(entry->reason, sizeof entry->reason, "no fact asks for it: switched on, as asked");
   }
 }
 
-static void rewrite(abbe_plan *plan, const char *name, size_t count, const char *what) {
+static void rewrite(abbe_plan *plan, abbe_plan_item item, size_t count, const char *what) {
   for (size_t i = 0; i < plan->entry_count; i++) {
     abbe_plan_entry *entry = &plan->entry[i];
-    if (strcmp(entry->name, name) != 0) continue;
+    if (entry->item != item) continue;
     entry->runs = true;
     snprintf(entry->reason, sizeof entry->reason, "%zu %s: everything is switched on, as asked",
              count, what);
@@ -44,44 +44,29 @@ static void rewrite(abbe_plan *plan, const char *name, size_t count, const char 
 
 static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc *asked,
                                  abbe_plan *plan) {
-  static const char *const passes[] = {"light: refractor front",  "light: refractor back",
-                                       "light: photon placement", "maps on receivers",
-                                       "light: photons",          "light: spectral map",
-                                       "light: gap fill",         "absorption",
-                                       "eye: refractor front",    "eye: refractor back",
-                                       "eye: refraction",         "inner reflections"};
-  for (size_t i = 0; i < scene->light_count; i++) {
-    char name[64];
-    if (!plan->reaches[i] && !holds_refractors(scene, &scene->light[i], plan)) continue;
-    plan->reaches[i] = plan->caustics = true;
-    snprintf(name, sizeof name, "map: %.50s", scene->light[i].name);
-    say(plan, name);
-  }
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (plan->reaches[i] || holds_refractors(scene, &scene->light[i], plan))
+      plan->reaches[i] = plan->caustics = true;
   plan->seen = plan->back = plan->absorbing = true;
   plan->pages = plan->caustics && plan->receiver_count > 0;
   if (plan->desc.wavelengths < 7 && (asked == NULL || asked->wavelengths == 0)) {
     plan->desc.wavelengths = 7;
-    rewrite(plan, "wavelengths", 7, "wavelengths");
-    rewrite(plan, "light: photons", 7, "wavelengths");
+    rewrite(plan, ABBE_CHOICE_WAVELENGTHS, 7, "wavelengths");
+    rewrite(plan, ABBE_PASS_PHOTONS, 7, "wavelengths");
   }
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
   if (!plan->walk && (asked == NULL || asked->orders == 0)) {
     plan->slots += ABBE_RENDER_MAX_ORDERS - plan->desc.orders;
     plan->desc.orders = ABBE_RENDER_MAX_ORDERS;
     if (plan->eye_exits < plan->desc.orders) plan->eye_exits = plan->desc.orders;
-    rewrite(plan, "inner reflections", plan->desc.orders, "exits at most");
+    rewrite(plan, ABBE_CHOICE_INNER_REFLECTIONS, plan->desc.orders, "exits at most");
   }
-  for (size_t i = 0; i < sizeof passes / sizeof *passes; i++)
-    if ((plan->fills || strcmp(passes[i], "light: gap fill") != 0) &&
-        (plan->pages || strcmp(passes[i], "maps on receivers") != 0))
-      say(plan, passes[i]);
 }
 
-void abbe_everything_switch_on(const abbe_scene *scene, const abbe_render_desc *asked,
-                               abbe_plan *plan) {
+void abbe_no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked,
+                           abbe_plan *plan) {
   if (abbe_profile_is_thesis(plan->desc.profile)) return;
   plan->receiver_shadows = plan->textured = true;
-  say(plan, "shadows of receivers");
-  say(plan, "textures");
   if (plan->refractor_count > 0) switch_refraction_on(scene, asked, plan);
+  list_again(plan);
 }

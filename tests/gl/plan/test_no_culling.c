@@ -1,7 +1,7 @@
 /* What the plan leaves out does not show: with everything switched on the picture is the same. */
 #include "tests/gl/frame.h"
 
-#include "gl/plan/everything.h"
+#include "gl/plan/no_culling.h"
 
 #define ASIDE                                                                                      \
   "- {name: aside, kind: spot, position: [-0.3, 0.03, 0.6], target: [-0.5, 0, 0], cone: 10, "      \
@@ -67,10 +67,10 @@ static void test_every_switch_is_on(void **state) {
   load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
   assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
   for (size_t i = 0; i < plan.entry_count; i++) {
-    const char *name = plan.entry[i].name;
-    bool model = strcmp(name, "light: receiver depth") == 0 || /* other models, other pictures */
-                 strcmp(name, "refractors in turn") == 0;
-    if (plan.entry[i].runs == model) fail_msg("%s: %s", name, plan.entry[i].reason);
+    const abbe_plan_entry *entry = &plan.entry[i];
+    const bool model = entry->item == ABBE_PASS_RECEIVER_DEPTH || /* other models, other pictures */
+                       entry->item == ABBE_CHOICE_REFRACTORS_IN_TURN;
+    if (entry->runs == model) fail_msg("%s: %s", entry->name, entry->reason);
   }
   assert_true(plan.reaches[1] && plan.receiver_shadows && plan.absorbing && plan.textured);
   assert_true(plan.back && plan.fills && plan.seen);
@@ -90,7 +90,7 @@ static void test_what_is_asked_for_stays(void **state) {
   assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
   assert_int_equal(plan.desc.wavelengths, 3);
   assert_int_equal(plan.desc.orders, 2);
-  assert_false(plan.fills || abbe_plan_find(&plan, "light: gap fill")->runs);
+  assert_false(plan.fills || abbe_plan_find(&plan, ABBE_PASS_GAP_FILL, 0)->runs);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
 }
