@@ -1,5 +1,6 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-foreach(name transport local_scene passes plan plan_facts plan_scenes precision reach receiver_charts light_cube layer_detail
+foreach(name layer_detail light_cube light_views local_scene passes plan plan_facts precision reach receiver_charts
+    receiver_model refractor_model spectral_needs support
     render_desc statistics)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()

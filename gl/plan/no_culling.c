@@ -1,26 +1,8 @@
 #include "gl/plan/no_culling.h"
 
-#include "scenes/view/view.h"
+#include "gl/plan/light_views.h"
 
 #include <stdio.h>
-
-/* Whether one view of the light holds all refractors. */
-static bool holds_refractors(const abbe_scene *scene, const abbe_light *light,
-                             const abbe_plan *plan) {
-  static const double up[3] = {0, 1, 0};
-  double min[3], max[3], forward[3];
-  bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL, all = true;
-  abbe_view view;
-  abbe_scene_bounds(scene, true, false, min, max);
-  for (int k = 0; k < 3; k++)
-    forward[k] = sun ? light->direction[k] : 0.5 * (min[k] + max[k]) - light->position[k];
-  abbe_view_look(sun ? min : light->position, forward, up, sun, &view);
-  for (size_t i = 0; i < plan->refractor_count; i++) {
-    const abbe_mesh *mesh = &scene->object[plan->refractor_object[i]].mesh;
-    all = abbe_view_fit(&view, (const double(*)[3])mesh->position, mesh->vertex_count) && all;
-  }
-  return sun || all;
-}
 
 /* What runs by now and did not. */
 static void list_again(abbe_plan *plan) {
@@ -44,8 +26,9 @@ static void rewrite(abbe_plan *plan, abbe_plan_item item, size_t count, const ch
 
 static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc *asked,
                                  abbe_plan *plan) {
+  abbe_view view;
   for (size_t i = 0; i < scene->light_count; i++)
-    if (plan->reaches[i] || holds_refractors(scene, &scene->light[i], plan))
+    if (plan->reaches[i] || abbe_light_views_fit(scene, &scene->light[i], plan, &view, NULL))
       plan->reaches[i] = plan->caustics = true;
   plan->seen = plan->back = plan->absorbing = true;
   plan->pages = plan->caustics && plan->receiver_count > 0;

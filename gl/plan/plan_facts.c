@@ -64,8 +64,8 @@ static void add_entry(abbe_plan *plan, abbe_plan_item item, size_t index, const 
                       const char *reason, va_list args) {
   if (plan->entry_count == ABBE_PLAN_MAX_ENTRIES) return;
   abbe_plan_entry *entry = &plan->entry[plan->entry_count++];
-  *entry =
-      (abbe_plan_entry){.item = item, .index = (unsigned)index, .runs = abbe_plan_runs(plan, item, index)};
+  *entry = (abbe_plan_entry){
+      .item = item, .index = (unsigned)index, .runs = abbe_plan_runs(plan, item, index)};
   snprintf(entry->name, sizeof entry->name, "%s%.50s", abbe_plan_item_text(item), name);
   abbe_number_format_list(entry->reason, sizeof entry->reason, reason, args);
 }
