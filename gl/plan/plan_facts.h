@@ -50,40 +50,52 @@ typedef struct abbe_plan_lamp {
 
 typedef struct abbe_plan {
   abbe_render_desc desc; /* every field resolved, none zero */
+
+  /* Objects, by their index in the scene, each with its model. */
   size_t refractor_count;
-  size_t *refractor_object;    /* [refractor_count] index into the scene's objects */
+  size_t *refractor_object;
   abbe_refractor_model *model; /* [refractor_count] */
   size_t receiver_count;
-  size_t *receiver_object;             /* [receiver_count] */
+  size_t *receiver_object;
   abbe_receiver_model *receiver_model; /* [receiver_count] */
-  size_t parallelogram_count;          /* of the exact receivers */
-  abbe_receiver_model receivers;       /* the most general of theirs */
-  bool receiver_shadows;               /* some receiver may hide another from a light */
-  bool through; /* some receiver may lie where light goes on nearly straight through a refractor */
-  bool aside;   /* some receiver lies beyond a light's map view */
-  bool pages;   /* light may land where its light's map cannot hold it: receivers have pages */
-  bool spheres, convex, layers, hierarchy; /* models in use */
-  bool walk;       /* light that leaves a refractor may meet one again, and is followed */
-  bool dispersive; /* some index varies over the range */
-  bool absorbing;  /* some attenuation is above zero in the range */
-  bool tinting;    /* some attenuation varies over the range */
-  bool lengths;    /* and landings keep the length of their way inside, which tells it anywhere */
-  bool textured;
-  size_t eye_exits; /* that the eye's rays are followed for, at the most */
-  double eye_share; /* and the share of their light at which they end */
-  size_t slots;     /* landings of a photon at the most: its exits, and the mirror on the outside */
+  /* Models of refractors in use; the most general of receivers, and parallelograms hit exactly. */
+  bool spheres, convex, layers, hierarchy;
+  abbe_receiver_model receivers;
+  size_t parallelogram_count;
+
+  /* Where light and looks meet what. */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may */
   bool seen;                           /* the eye may */
-  bool fills;                          /* light is laid between wavelengths */
-  bool fewer_faces;                    /* some mesh is drawn with fewer (gl/plan/layer_detail.h) */
-  bool back;                           /* the back of refractors is drawn */
-  size_t
-      light_count; /* the scene's lights, and after them what cubes have more than one face each */
+  bool walk;    /* light that leaves a refractor may meet one again, and is followed */
+  bool through; /* some receiver may lie where light goes on nearly straight through a refractor */
+  bool aside;   /* some receiver lies beyond a light's map view */
+  bool receiver_shadows; /* some receiver may hide another from a light */
+
+  /* The scene's lights, and after them the views that cubes have more than one of. */
+  size_t light_count;
   abbe_plan_lamp lamp[ABBE_SCENE_MAX_LIGHTS];
   bool cubes;                             /* some light has one */
   size_t off_view[ABBE_SCENE_MAX_LIGHTS]; /* of a light with a cube: an object that asks for it */
-  size_t entry_count;                     /* passes and models, in the order in which they run */
+
+  /* Over the range of wavelengths, of some refractor. */
+  bool dispersive; /* its index varies */
+  bool absorbing;  /* its attenuation is above zero somewhere */
+  bool tinting;    /* its attenuation varies */
+
+  size_t eye_exits; /* that the eye's rays are followed for, at the most */
+  double eye_share; /* and the share of their light at which they end */
+  size_t slots;     /* landings of a photon at the most: its exits, and the mirror on the outside */
+
+  /* What follows from the facts above. */
+  bool pages;       /* light may land where its light's map cannot hold it: receivers have pages */
+  bool fills;       /* light is laid between wavelengths */
+  bool lengths;     /* landings keep the length of their way inside, which tells a tint anywhere */
+  bool back;        /* the back of refractors is drawn */
+  bool fewer_faces; /* some mesh is drawn with fewer (gl/plan/layer_detail.h) */
+  bool textured;
+
+  size_t entry_count; /* models and passes, in the order in which they run */
   abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];
   size_t note_count; /* what is not modelled, or extrapolated */
   char note[16][256];
