@@ -38,8 +38,8 @@ static void write_defines(abbe_renderer *r) {
            "#define SURFACE_ROOM %zu\n#define SPECTRUM_ROOM %zu\n#define BAND_COUNT %zu\n"
            "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s"
            "#define HIERARCHY_STACK %zu\n#define RECEIVER_ROOT %zu\n#define WAYS %u\n",
-           p->light_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
-           p->desc.orders, p->slots, room(p->light_count), room(p->refractor_count), room(planes),
+           p->light_view_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
+           p->desc.orders, p->slots, room(p->light_view_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
            r->band_levels, room(p->refractor_count * r->band_count),
            storage(p->refractor_count * r->band_count, 32, "#define BANDS_IN_STORAGE\n"),
@@ -61,7 +61,7 @@ static void write_defines(abbe_renderer *r) {
   if (r->shadow_planes > 0)
     snprintf(r->defines + used, sizeof r->defines - used, "#define SHADOW_PLANES %zu\n%s",
              r->shadow_planes,
-             p->light_count * p->refractor_count == 1 ? "#define ONE_SHADOW\n" : "");
+             p->light_view_count * p->refractor_count == 1 ? "#define ONE_SHADOW\n" : "");
 }
 
 /* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
@@ -82,8 +82,8 @@ static size_t map_side(const abbe_renderer *r) {
 abbe_result abbe_renderer_make_map(abbe_renderer *r, abbe_error *error) {
   const abbe_gl *gl = r->gl;
   const size_t side = map_side(r);
-  size_t layers = r->plan.light_count;
-  for (size_t i = 0; i < r->plan.light_count; i++)
+  size_t layers = r->plan.light_view_count;
+  for (size_t i = 0; i < r->plan.light_view_count; i++)
     if (r->light[i].pages.count > 0) layers++;
   r->map_layers = layers;
   gl->GenTextures(1, &r->map);
@@ -122,8 +122,8 @@ static abbe_result make_passes(abbe_renderer *r, abbe_error *error) {
 static abbe_result repeat_lights(abbe_renderer *r, const abbe_scene *scene, abbe_error *error) {
   const size_t own = scene->light_count;
   size_t of[ABBE_SCENE_MAX_LIGHTS] = {0};
-  for (size_t i = own; i < r->plan.light_count; i++) of[i - own] = r->plan.lamp[i].light;
-  return abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_count - own, error);
+  for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
+  return abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
 }
 
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
@@ -220,7 +220,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   s->wavelengths = r->plan.desc.wavelengths;
   s->device_bytes = r->device_bytes;
   if (!abbe_profile_is_thesis(r->plan.desc.profile)) s->layer_faces = abbe_renderer_layer_faces(r);
-  for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->light[i].photon_count;
+  for (size_t i = 0; i < r->plan.light_view_count; i++) s->photons += r->light[i].photon_count;
   double cells = (double)r->light[0].cells[0] * (double)r->light[0].cells[1];
   s->refractor_share = (double)r->light[0].photon_count / cells;
   double *part = &s->energy.reached;
@@ -369,7 +369,7 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
 }
 
 abbe_result abbe_renderer_check_map(const abbe_renderer *r, size_t light, abbe_error *error) {
-  if (light >= r->plan.light_count || !r->plan.reaches[light] || r->plan.lamp[light].light != light)
+  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || r->plan.light_view[light].light != light)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the scene has no spectral map of light %zu", light);
   abbe_result result = check_drawn(r, error);
@@ -402,9 +402,9 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   r->gl->BindTexture(target, flat ? abbe_renderer_thesis_map(r, filled) : r->map);
   r->gl->GetTexImage(target, 0, GL_RGBA, GL_FLOAT, data);
   /* Faces of a cube that share a layout add up. */
-  for (size_t i = 0; i < r->plan.light_count; i++) {
+  for (size_t i = 0; i < r->plan.light_view_count; i++) {
     const float *layer = data + i * side * side * 4;
-    if (i == light || r->plan.lamp[i].light != light) continue;
+    if (i == light || r->plan.light_view[i].light != light) continue;
     for (size_t k = 0; k < side * side * 4; k++) data[light * side * side * 4 + k] += layer[k];
   }
   copy_flipped(data + light * side * side * 4, 0, out, 0, 3, 1);

@@ -132,7 +132,7 @@ static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t c
   const abbe_gl *gl = r->gl;
   const bool fine = b->set == TRACE_REFINED;
   const GLuint deposit = fine ? r->deposit_fine : r->deposit;
-  const size_t coarse_rows = r->plan.light_count * r->plan.refractor_count * (r->nodes + 1);
+  const size_t coarse_rows = r->plan.light_view_count * r->plan.refractor_count * (r->nodes + 1);
   const GLuint paths = fine ? r->fine_paths : r->path_list;
   abbe_renderer_bind_tables(r);
   gl->UseProgram(deposit);
@@ -162,7 +162,7 @@ static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t c
     abbe_renderer_bind_texels(r, deposit, "fine_signatures", 4, signature, r->fine_signatures);
   }
   if (r->plan.lengths) {
-    const size_t rows = r->plan.light_count * r->plan.refractor_count;
+    const size_t rows = r->plan.light_view_count * r->plan.refractor_count;
     abbe_renderer_bind_texels(r, deposit, "band_attenuation", 5, GL_RGBA32F, r->band_attenuation);
     abbe_renderer_set_int(r, deposit, "band_first", (int)(fine ? rows * r->nodes : 0));
   }
@@ -290,7 +290,7 @@ static abbe_result trace_and_deposit(abbe_renderer *r, size_t light, abbe_render
   while (result == ABBE_OK && trace_next(r, light, &b)) {
     abbe_renderer_end_pass(r, ABBE_PASS_PHOTONS);
     result = deposit_batch(r, light, &b, error);
-    double share = ((double)light + share_done(r, &b)) / (double)r->plan.light_count;
+    double share = ((double)light + share_done(r, &b)) / (double)r->plan.light_view_count;
     if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
       result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
     abbe_renderer_begin_pass(r);
@@ -304,7 +304,7 @@ static abbe_result show_making(abbe_renderer *r, int pass, size_t light, const b
   const abbe_render_desc *d = &r->plan.desc;
   if (d->progress == NULL) return ABBE_OK;
   double share =
-      0.5 * pass + 0.5 * ((double)light + share_done(r, b)) / (double)r->plan.light_count;
+      0.5 * pass + 0.5 * ((double)light + share_done(r, b)) / (double)r->plan.light_view_count;
   if (d->progress(d->progress_user, share)) return ABBE_OK;
   return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
 }
@@ -318,7 +318,7 @@ static size_t chunks_for(size_t count, size_t room) {
 static abbe_result count_pairs(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
   size_t most = 0;
-  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < r->plan.light_view_count && result == ABBE_OK; light++) {
     if (!r->plan.reaches[light] || !abbe_renderer_refines(r)) continue;
     result = abbe_renderer_start_photons(r, light, error);
     abbe_renderer_trace_coarse(r, light);
@@ -336,7 +336,7 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
   abbe_result result =
       abbe_renderer_make_buffer(r, LIST_HEADER + SPLAT_BYTES, NULL, &r->splat_list, error);
   if (result == ABBE_OK) result = count_pairs(r, error);
-  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < r->plan.light_view_count && result == ABBE_OK; light++) {
     batch b = {0};
     if (!r->plan.reaches[light]) continue;
     result = abbe_renderer_start_photons(r, light, error);
@@ -365,7 +365,7 @@ static abbe_result make_splats(abbe_renderer *r, abbe_error *error) {
 abbe_result abbe_renderer_photons(abbe_renderer *r, abbe_render_progress progress, void *user,
                                   abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < r->plan.light_view_count && result == ABBE_OK; light++) {
     if (!r->plan.reaches[light]) continue;
     abbe_renderer_begin_pass(r);
     result = abbe_renderer_start_photons(r, light, error);
@@ -418,7 +418,7 @@ abbe_result abbe_renderer_read_ledger(abbe_renderer *r, size_t light, abbe_ledge
 
 static abbe_result count_photons(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < r->plan.light_view_count && result == ABBE_OK; light++) {
     GLuint count = 0;
     if (!r->plan.reaches[light]) continue;
     result = abbe_renderer_start_photons(r, light, error);
@@ -440,7 +440,7 @@ static size_t most_landings(const abbe_renderer *r) {
 
 static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t most = 1;
-  for (size_t i = 0; i < r->plan.light_count; i++)
+  for (size_t i = 0; i < r->plan.light_view_count; i++)
     if (r->light[i].photon_count > most) most = r->light[i].photon_count;
   /* A grid that is moved or made coarser may show a little more: a rim of cells. */
   size_t cells = r->plan.desc.photons * r->plan.desc.photons, rim = 8 * r->plan.desc.photons;
@@ -601,7 +601,7 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         abbe_renderer_make_buffer(r, LEDGER_WORDS * 4, NULL, &r->buffer[BINDING_LEDGER], error);
-  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
+  for (size_t light = 0; light < r->plan.light_view_count && result == ABBE_OK; light++)
     if (r->plan.reaches[light] && (r->pages || !abbe_renderer_map_is_given(r, light)))
       result = fit_map(r, light, error);
   if (result == ABBE_OK && r->pages) {
@@ -614,9 +614,9 @@ abbe_result abbe_renderer_make_photons(abbe_renderer *r, abbe_error *error) {
     result = abbe_renderer_make_buffer(
         r, (r->pages ? 2 : 1) * r->map_texels * abbe_renderer_map_words(r) * 4, NULL, &r->map_sums,
         error);
-  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++)
+  for (size_t light = 0; light < r->plan.light_view_count && result == ABBE_OK; light++)
     if (r->plan.reaches[light]) result = abbe_renderer_fit_cells(r, light, error);
-  for (size_t light = 0; light < r->plan.light_count; light++) abbe_renderer_shift_cells(r, light);
+  for (size_t light = 0; light < r->plan.light_view_count; light++) abbe_renderer_shift_cells(r, light);
   if (result == ABBE_OK) abbe_renderer_upload_lights(r);
   if (result == ABBE_OK) result = abbe_renderer_light_layers(r, error);
   if (result == ABBE_OK) result = count_photons(r, error);
@@ -629,7 +629,7 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
                                         size_t *lanes, abbe_error *error) {
   ABBE_REQUIRE(r && data && count && orders && lanes, error);
   *data = NULL;
-  if (light >= r->plan.light_count || !r->plan.reaches[light] || r->trace == 0)
+  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || r->trace == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
   abbe_result result = abbe_renderer_light_layers(r, error);
   if (result == ABBE_OK) result = abbe_renderer_start_photons(r, light, error);

@@ -51,7 +51,7 @@ static void write_index(const abbe_renderer *r, const light_state *state, size_t
 
 /* The shaders' tables, `most` pages a light, and what they are told of them. */
 static abbe_result tell_shaders(abbe_renderer *r, size_t most, abbe_error *error) {
-  const size_t lights = r->plan.light_count, sides = 2 * r->charts.count;
+  const size_t lights = r->plan.light_view_count, sides = 2 * r->charts.count;
   const size_t blocks = r->plan.desc.map_size / block_side(r);
   const size_t words = 1 + blocks * blocks + sides;
   float(*row)[ABBE_PAGE_FLOATS] = calloc(lights * most, sizeof *row);
@@ -180,13 +180,13 @@ abbe_result abbe_renderer_choose_pages(abbe_renderer *r, size_t light,
       "%.2g %% of the light that '%.40s' sends through refractors falls where it does not shine "
       "itself, on more parts of receivers than the %zu that maps are kept for, most of it on "
       "'%.40s'; give that a smoother mesh, ask for a larger --map, or allow a larger --share",
-      100 * left / total, r->scene->light[r->plan.lamp[light].light].name, pages->count,
+      100 * left / total, r->scene->light[r->plan.light_view[light].light].name, pages->count,
       r->scene->object[r->charts.object[worst / 2]].name);
 }
 
 abbe_result abbe_renderer_keep_pages(abbe_renderer *r, abbe_error *error) {
-  size_t layer = r->plan.light_count, most = 0;
-  for (size_t i = 0; i < r->plan.light_count; i++) {
+  size_t layer = r->plan.light_view_count, most = 0;
+  for (size_t i = 0; i < r->plan.light_view_count; i++) {
     light_state *state = &r->light[i];
     if (state->pages.count > most) most = state->pages.count;
     if (state->pages.count > 0) state->page_layer = layer++;

@@ -118,14 +118,14 @@ static char *refraction_defines(const abbe_renderer *r, const char *more) {
   const bool software = strstr(abbe_context_description(r->context), "llvmpipe") != NULL;
   const bool convex = p->convex && p->refractor_count == 1 && !p->walk;
   const size_t planes = convex ? r->scene->object[p->refractor_object[0]].exact.count : 0;
-  const size_t shadows = p->light_count * p->refractor_count == 1 ? r->shadow_planes : 0;
+  const size_t shadows = p->light_view_count * p->refractor_count == 1 ? r->shadow_planes : 0;
   const size_t room = sizeof r->defines + strlen(more) + 256 + 4 * (64 + 8 * MOST_COPIES);
   char *text = malloc(room);
   if (text == NULL) return NULL;
   size_t used = (size_t)snprintf(text, room, "%s#undef EXITS\n#define EXITS %zu\n%s", r->defines,
                                  p->eye_exits, more);
   if (!software) return text;
-  used += write_each(text + used, room - used, "LIGHT", p->light_count, MOST_COPIED_LIGHTS);
+  used += write_each(text + used, room - used, "LIGHT", p->light_view_count, MOST_COPIED_LIGHTS);
   used += write_each(text + used, room - used, "RECEIVER", p->parallelogram_count,
                      MOST_COPIED_RECEIVERS);
   used += write_each(text + used, room - used, "PLANE", planes, MOST_COPIES);
@@ -197,9 +197,9 @@ static abbe_result make_unlit(abbe_renderer *r, abbe_error *error) {
                                               {GL_FRAGMENT_SHADER, "receivers.frag"}};
   char defines[sizeof r->defines + 64];
   if (r->plan.desc.everything || r->plan.receivers != ABBE_RECEIVER_EXACT) return ABBE_OK;
-  r->lit = calloc(2 * r->plan.light_count * r->plan.receiver_count + 1, sizeof *r->lit);
+  r->lit = calloc(2 * r->plan.light_view_count * r->plan.receiver_count + 1, sizeof *r->lit);
   if (r->lit == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
-  for (size_t light = 0; light < r->plan.light_count; light++) {
+  for (size_t light = 0; light < r->plan.light_view_count; light++) {
     abbe_view view[2];
     const size_t views = views_of_light(r, light, view);
     if (views == 0) return ABBE_OK;

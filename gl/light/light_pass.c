@@ -13,14 +13,14 @@ static const double narrow_rad = 0.17; /* ten degrees */
 enum { MIN_LAYER_SIDE = 128, USUAL_LAYER_SIDE = 256, MAX_LAYER_SIDE = 2048 };
 
 bool abbe_renderer_is_face(const abbe_renderer *r, size_t light) {
-  return r->plan.lamp[light].face >= 0;
+  return r->plan.light_view[light].face >= 0;
 }
 
 static void look_from_light(const abbe_renderer *r, size_t index, abbe_view *view) {
   static const double up[3] = {0, 1, 0};
   const abbe_light *light = &r->scene->light[index];
   if (abbe_renderer_is_face(r, index)) {
-    abbe_light_cube_look(light->position, r->plan.lamp[index].face, view);
+    abbe_light_cube_look(light->position, r->plan.light_view[index].face, view);
     return;
   }
   double origin[3], forward[3];
@@ -76,7 +76,7 @@ static void fit_thesis(abbe_renderer *r, const abbe_light *light, light_state *s
 
 bool abbe_renderer_map_is_given(const abbe_renderer *r, size_t light) {
   return r->plan.desc.map_layout != NULL &&
-         r->plan.desc.map_layout_light == r->plan.lamp[light].light;
+         r->plan.desc.map_layout_light == r->plan.light_view[light].light;
 }
 
 /* All of it but the range, which must hold this scene's receivers. */
@@ -110,7 +110,7 @@ static void fit_face(const abbe_renderer *r, size_t light, abbe_view *view) {
   for (size_t i = 0; i < plan->refractor_count; i++) {
     const abbe_object *object = &r->scene->object[plan->refractor_object[i]];
     const abbe_mesh *mesh = &object->mesh;
-    if ((abbe_light_cube_reached(from, object) >> plan->lamp[light].face & 1) == 0) continue;
+    if ((abbe_light_cube_reached(from, object) >> plan->light_view[light].face & 1) == 0) continue;
     abbe_light_cube_fit(view, object);
     if (plan->model[i] == ABBE_REFRACTOR_LAYERS)
       abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count);
@@ -133,7 +133,7 @@ static void fit_face(const abbe_renderer *r, size_t light, abbe_view *view) {
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
  * to the photons' landings later where the request does not give it. */
 static void fit_views(abbe_renderer *r) {
-  for (size_t i = 0; i < r->plan.light_count; i++) {
+  for (size_t i = 0; i < r->plan.light_view_count; i++) {
     const abbe_light *light = &r->scene->light[i];
     light_state *state = &r->light[i];
     state->cells[0] = state->cells[1] = r->plan.desc.photons;
@@ -157,7 +157,7 @@ static void fit_views(abbe_renderer *r) {
 }
 
 static abbe_result make_layers(abbe_renderer *r, abbe_error *error) {
-  const size_t photons = r->plan.desc.photons, lights = r->plan.light_count;
+  const size_t photons = r->plan.desc.photons, lights = r->plan.light_view_count;
   size_t side = 4 * photons < USUAL_LAYER_SIDE ? 4 * photons
                 : photons < USUAL_LAYER_SIDE   ? USUAL_LAYER_SIDE
                                                : photons;
@@ -270,7 +270,7 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
 
 abbe_result abbe_renderer_light_layers(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < r->plan.light_view_count && result == ABBE_OK; i++)
     if (r->plan.reaches[i]) result = front_and_back(r, i, error);
   return result;
 }
@@ -322,7 +322,7 @@ static abbe_result fit_to_light(abbe_renderer *r, abbe_error *error) {
   abbe_result result =
       abbe_program_make_compute(r->gl, "light_fit.comp", r->defines, &program, error);
   if (result == ABBE_OK) result = abbe_renderer_make_buffer(r, 4 * 4, NULL, &box, error);
-  for (size_t i = 0; i < r->plan.light_count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < r->plan.light_view_count && result == ABBE_OK; i++)
     if (r->plan.reaches[i]) result = fit_near_view(r, program, box, i, error);
   r->gl->DeleteBuffers(1, &box);
   r->gl->DeleteProgram(program);

@@ -70,15 +70,15 @@ static abbe_result make_cube(const abbe_scene *scene, size_t light, abbe_plan *p
   for (int face = 0; face < ABBE_LIGHT_CUBE_FACES; face++) {
     abbe_view view;
     if ((all >> face & 1) == 0) continue;
-    if (!first && plan->light_count == ABBE_SCENE_MAX_LIGHTS)
+    if (!first && plan->light_view_count == ABBE_SCENE_MAX_LIGHTS)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
                             "the refractors around the light '%s' need a cube of maps, and all "
                             "lights together more than %d maps; move it away from them, or leave "
                             "lights out",
                             from->name, ABBE_SCENE_MAX_LIGHTS);
-    const size_t at = first ? light : plan->light_count++;
+    const size_t at = first ? light : plan->light_view_count++;
     const unsigned rest = first ? ABBE_LIGHT_CUBE_ALL & ~all : 0;
-    plan->lamp[at] = (abbe_plan_lamp){light, face, 1u << face | rest};
+    plan->light_view[at] = (abbe_light_view){light, face, 1u << face | rest};
     plan->reaches[at] = plan->cubes = true;
     first = false;
     abbe_light_cube_look(from->position, face, &view);
@@ -127,9 +127,9 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
 
 abbe_result abbe_light_views_choose(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {
   ABBE_REQUIRE(scene && plan, error);
-  plan->light_count = scene->light_count;
+  plan->light_view_count = scene->light_count;
   for (size_t i = 0; i < scene->light_count; i++)
-    plan->lamp[i] = (abbe_plan_lamp){i, -1, ABBE_LIGHT_CUBE_ALL};
+    plan->light_view[i] = (abbe_light_view){i, -1, ABBE_LIGHT_CUBE_ALL};
   if (plan->refractor_count == 0) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count; i++) {
     if (scene->light[i].kind == ABBE_LIGHT_DIRECTIONAL || !plan->reaches[i]) continue;
@@ -137,7 +137,7 @@ abbe_result abbe_light_views_choose(const abbe_scene *scene, abbe_plan *plan, ab
     if (result != ABBE_OK) return result;
   }
   plan->caustics = false;
-  for (size_t i = 0; i < plan->light_count; i++)
+  for (size_t i = 0; i < plan->light_view_count; i++)
     plan->caustics = plan->caustics || plan->reaches[i];
   return ABBE_OK;
 }

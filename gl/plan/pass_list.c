@@ -6,15 +6,15 @@ static const char unlit[] = "no light meets a refractor";
 
 static int count_faces(const abbe_plan *plan, size_t light) {
   int faces = 0;
-  for (size_t i = 0; i < plan->light_count; i++)
-    if (plan->lamp[i].light == light) faces++;
+  for (size_t i = 0; i < plan->light_view_count; i++)
+    if (plan->light_view[i].light == light) faces++;
   return faces;
 }
 
 static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
   for (size_t i = 0; i < scene->light_count && plan->refractor_count > 0; i++) {
     const char *name = scene->light[i].name;
-    if (plan->lamp[i].face >= 0)
+    if (plan->light_view[i].face >= 0)
       abbe_plan_add_about(plan, ABBE_CHOICE_LIGHT_MAP, i, name,
                           "a cube: %d of 6 faces, as '%.50s' is more than 76 degrees off the "
                           "middle of all refractors",

@@ -41,12 +41,12 @@ typedef struct abbe_plan_entry {
 #define ABBE_PLAN_MAX_ENTRIES 96
 
 /* A light, or a face of the cube around one whose refractors do not fit one view. */
-typedef struct abbe_plan_lamp {
+typedef struct abbe_light_view {
   size_t light;   /* the scene's */
   int face;       /* that it looks through (gl/plan/light_cube.h); -1: it is no part of a cube */
   unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
                      those through which no light reaches a refractor; without a cube, all */
-} abbe_plan_lamp;
+} abbe_light_view;
 
 typedef struct abbe_plan {
   abbe_render_desc desc; /* every field resolved, none zero */
@@ -73,8 +73,8 @@ typedef struct abbe_plan {
   bool receiver_shadows; /* some receiver may hide another from a light */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
-  size_t light_count;
-  abbe_plan_lamp lamp[ABBE_SCENE_MAX_LIGHTS];
+  size_t light_view_count;
+  abbe_light_view light_view[ABBE_SCENE_MAX_LIGHTS];
   bool cubes;                             /* some light has one */
   size_t off_view[ABBE_SCENE_MAX_LIGHTS]; /* of a light with a cube: an object that asks for it */
 

@@ -78,7 +78,7 @@ static void fill_node(const passage *p, const abbe_wavelengths *w, size_t i, nod
 }
 
 static void fill_bands(const abbe_renderer *r, const abbe_wavelengths *w, node_bands *out) {
-  for (size_t light = 0; light < r->plan.light_count; light++)
+  for (size_t light = 0; light < r->plan.light_view_count; light++)
     for (size_t k = 0; k < r->plan.refractor_count; k++) {
       const abbe_object *object = &r->scene->object[r->plan.refractor_object[k]];
       double square = 0;
@@ -93,7 +93,7 @@ abbe_result abbe_renderer_upload_attenuation(abbe_renderer *r, const abbe_wavele
                                              const abbe_wavelengths *all, abbe_error *error) {
   if (!r->plan.lengths) return ABBE_OK;
   const bool refines = coarse->count < all->count;
-  const size_t rows = r->plan.light_count * r->plan.refractor_count;
+  const size_t rows = r->plan.light_view_count * r->plan.refractor_count;
   const size_t nodes = coarse->count + (refines ? all->count : 0);
   node_bands *table = calloc(rows * nodes + 1, sizeof *table);
   if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");

@@ -108,7 +108,7 @@ abbe_result abbe_renderer_coarse_wavelengths(const abbe_renderer *r, const abbe_
 
 static float (*fill_intervals(const abbe_renderer *r, const abbe_wavelengths *w,
                               float (*out)[4]))[4] {
-  for (size_t light = 0; light < r->plan.light_count; light++)
+  for (size_t light = 0; light < r->plan.light_view_count; light++)
     for (size_t k = 0; k < r->plan.refractor_count; k++)
       for (size_t i = 0; i <= w->count; i++, out += interval_texels(r) * (r->steps + 1))
         fill_interval(r, w, light, r->scene->object[r->plan.refractor_object[k]].material, i, out);
@@ -119,7 +119,7 @@ abbe_result abbe_renderer_upload_intervals(abbe_renderer *r, const abbe_waveleng
                                            abbe_error *error) {
   const bool refines = abbe_renderer_refines(r);
   const size_t sets = r->nodes + 1 + (refines ? w->count + 1 : 0);
-  const size_t rows = r->plan.light_count * r->plan.refractor_count * sets;
+  const size_t rows = r->plan.light_view_count * r->plan.refractor_count * sets;
   abbe_wavelengths coarse = {0};
   const size_t texels = rows * interval_texels(r) * (r->steps + 1);
   float(*table)[4] = calloc(texels + 1, sizeof *table);

@@ -7,7 +7,7 @@
 static double keep_within(const abbe_renderer *r, const abbe_mesh *mesh) {
   const size_t samples[2] = {abbe_renderer_samples(r, 0), abbe_renderer_samples(r, 1)};
   double cell = INFINITY, sample = INFINITY;
-  for (size_t i = 0; i < r->plan.light_count; i++)
+  for (size_t i = 0; i < r->plan.light_view_count; i++)
     if (r->plan.reaches[i])
       cell = fmin(cell, abbe_layer_detail_step(&r->light[i].near_view, r->light[i].cells, mesh));
   if (r->plan.seen) sample = abbe_layer_detail_step(&r->eye, samples, mesh);

@@ -287,15 +287,15 @@ static abbe_result upload_sample_weights(abbe_renderer *r, const abbe_wavelength
                                          abbe_error *error) {
   size_t n = w->count;
   abbe_wavelengths coarse = {0};
-  float(*sample)[4] = calloc(r->plan.light_count * n + 1, sizeof *sample);
+  float(*sample)[4] = calloc(r->plan.light_view_count * n + 1, sizeof *sample);
   if (sample == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
   abbe_result result = abbe_renderer_coarse_wavelengths(r, w, &coarse, error);
-  for (size_t light = 0; light < r->plan.light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < r->plan.light_view_count && result == ABBE_OK; light++) {
     weigh_halves(r, w, light, 0, sample + light * n);
     weigh_halves(r, &coarse, light, 2, sample + light * n);
   }
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * n * sizeof *sample, sample,
+    result = abbe_renderer_make_buffer(r, r->plan.light_view_count * n * sizeof *sample, sample,
                                        &r->buffer[BINDING_SAMPLE_WEIGHTS], error);
   abbe_wavelengths_free(&coarse);
   free(sample);
@@ -406,13 +406,13 @@ abbe_result abbe_renderer_upload_scene(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK) result = upload_surfaces(r, error);
   if (result == ABBE_OK) result = upload_wavelengths(r, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * (WARP_STEPS + 1) * 16, NULL,
+    result = abbe_renderer_make_buffer(r, r->plan.light_view_count * (WARP_STEPS + 1) * 16, NULL,
                                        &r->table_warps, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * r->plan.desc.map_size * 8 * 4, NULL,
+    result = abbe_renderer_make_buffer(r, r->plan.light_view_count * r->plan.desc.map_size * 8 * 4, NULL,
                                        &r->texel_sizes, error);
   if (result == ABBE_OK)
-    result = abbe_renderer_make_buffer(r, r->plan.light_count * sizeof(gpu_light), NULL,
+    result = abbe_renderer_make_buffer(r, r->plan.light_view_count * sizeof(gpu_light), NULL,
                                        &r->buffer[BINDING_LIGHTS], error);
   return result;
 }
@@ -483,7 +483,7 @@ static void upload_warps(abbe_renderer *r, size_t light) {
 
 /* Called again whenever a light's view changes. */
 void abbe_renderer_upload_lights(abbe_renderer *r) {
-  for (size_t i = 0; i < r->plan.light_count; i++) {
+  for (size_t i = 0; i < r->plan.light_view_count; i++) {
     const abbe_light *light = &r->scene->light[i];
     light_state *state = &r->light[i];
     gpu_light g = {0};
@@ -505,7 +505,7 @@ void abbe_renderer_upload_lights(abbe_renderer *r) {
     g.misc[1] = (float)abbe_renderer_map_unit(r, i);
     g.misc[2] = (float)(1 / cell_area);
     g.misc[3] = r->plan.reaches[i] ? 1 : 0;
-    g.cube[0] = (float)r->plan.lamp[i].faces;
+    g.cube[0] = (float)r->plan.light_view[i].faces;
     upload_warps(r, i);
     r->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, r->buffer[BINDING_LIGHTS]);
     r->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g), sizeof g, &g);

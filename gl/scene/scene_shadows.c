@@ -59,7 +59,7 @@ static abbe_result keep_shadows(abbe_renderer *r, const shadow *found, size_t pa
 
 abbe_result abbe_renderer_make_shadows(abbe_renderer *r, abbe_error *error) {
   const size_t refractors = r->plan.convex ? r->plan.refractor_count : 0;
-  const size_t pairs = r->plan.light_count * refractors;
+  const size_t pairs = r->plan.light_view_count * refractors;
   if (pairs == 0 || pairs * sizeof *r->shadow_row > BLOCK_BYTES) return ABBE_OK;
   shadow *found = calloc(pairs, sizeof *found);
   abbe_result result = ABBE_OK;
@@ -72,7 +72,7 @@ abbe_result abbe_renderer_make_shadows(abbe_renderer *r, abbe_error *error) {
 }
 
 abbe_result abbe_renderer_upload_shadows(abbe_renderer *r, abbe_error *error) {
-  const size_t pairs = r->plan.light_count * r->plan.refractor_count;
+  const size_t pairs = r->plan.light_view_count * r->plan.refractor_count;
   if (r->shadow_planes == 0) return ABBE_OK;
   return abbe_renderer_make_buffer(r, (pairs + r->shadow_planes) * sizeof *r->shadow_row,
                                    r->shadow_row, &r->table_shadows, error);

@@ -353,7 +353,7 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
   abbe_image map = {0}, before = {0};
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
-  if (!plan->caustics || s->light >= plan->light_count) return ABBE_OK;
+  if (!plan->caustics || s->light >= plan->light_view_count) return ABBE_OK;
   abbe_result result =
       thesis ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
              : abbe_renderer_read_map_bands(renderer, s->light, ABBE_SWEEP_BANDS, &map, error);
@@ -460,7 +460,7 @@ abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s has no refractor that a light reaches: there is no map to compare",
                             scene->path);
-  else if (abbe_renderer_plan(renderer)->lamp[light].face >= 0)
+  else if (abbe_renderer_plan(renderer)->light_view[light].face >= 0)
     result =
         abbe_error_set(error, ABBE_UNSUPPORTED,
                        "the light '%s' of %s has a cube of maps and no single layout to compare "
