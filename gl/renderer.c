@@ -25,7 +25,7 @@ static void write_defines(abbe_renderer *r) {
   for (size_t n = r->plan.desc.wavelengths; n > 1; r->band_levels++)
     r->band_count += n = (n + 1) / 2;
   const abbe_plan *p = &r->plan;
-  r->ways = !p->walk ? 1 : p->desc.wavelengths > 1 ? 8 : 2;
+  r->ways = !p->multi_refractor_paths ? 1 : p->desc.wavelengths > 1 ? 8 : 2;
   size_t planes = 0, spectra = p->refractor_count * p->desc.wavelengths;
   for (size_t i = 0; i < p->refractor_count; i++)
     if (p->model[i] == ABBE_REFRACTOR_CONVEX)
@@ -55,7 +55,7 @@ static void write_defines(abbe_renderer *r) {
            p->hierarchy ? "#define HIERARCHY\n" : "",
            p->receivers == ABBE_RECEIVER_HIERARCHY ? "#define RECEIVER_HIERARCHY\n" : "",
            p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
-           p->caustics ? "#define CAUSTICS\n" : "", p->walk ? "#define WALK\n" : "",
+           p->caustics ? "#define CAUSTICS\n" : "", p->multi_refractor_paths ? "#define WALK\n" : "",
            p->cubes ? "#define CUBES\n" : "", r->hierarchy_depth + 1, r->receiver_root, r->ways);
   const size_t used = strlen(r->defines);
   if (r->shadow_planes > 0)

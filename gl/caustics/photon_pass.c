@@ -448,7 +448,7 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   size_t a_lane = most * r->plan.slots, n = r->plan.desc.wavelengths;
   /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
   const size_t usual = ABBE_PLAN_EXITS + 1;
-  const size_t slots = !r->plan.walk && r->plan.slots > usual ? usual : r->plan.slots;
+  const size_t slots = !r->plan.multi_refractor_paths && r->plan.slots > usual ? usual : r->plan.slots;
   const size_t a_landing = LANDING_BYTES + abbe_renderer_signature_bytes(r);
   size_t lanes = MAX_LANDING_BYTES / a_landing / (most * slots), room = most_landings(r);
   if (a_lane * (n > 1 ? 2 : 1) > room)

@@ -59,7 +59,7 @@ void abbe_renderer_fit_eye(abbe_renderer *r) {
 
 static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
   const size_t w = abbe_renderer_samples(r, 0), h = abbe_renderer_samples(r, 1);
-  bool layers = r->plan.seen;
+  bool layers = r->plan.camera_sees_refractor;
   GLint most = 0;
   r->gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
   if (w > (size_t)most || h > (size_t)most)
@@ -79,7 +79,7 @@ static abbe_result make_targets(abbe_renderer *r, abbe_error *error) {
       {&r->eye_caustic, GL_RGBA32F, 0, r->plan.desc.layers},
       {&r->eye_refraction, GL_RGBA32F, 0, resolves(r)},
       {&r->eye_depth, GL_DEPTH_COMPONENT32F, 0, true},
-      {&r->eye_layers, GL_RGBA32F, r->plan.back ? 2 : 1, layers},
+      {&r->eye_layers, GL_RGBA32F, r->plan.draw_back ? 2 : 1, layers},
       {&r->eye_owner, GL_R16UI, 0, layers},
       {&r->eye_layers_depth, GL_DEPTH_COMPONENT32F, 0, layers},
   };
@@ -116,7 +116,7 @@ static size_t write_each(char *text, size_t room, const char *name, size_t count
 static char *refraction_defines(const abbe_renderer *r, const char *more) {
   const abbe_plan *p = &r->plan;
   const bool software = strstr(abbe_context_description(r->context), "llvmpipe") != NULL;
-  const bool convex = p->convex && p->refractor_count == 1 && !p->walk;
+  const bool convex = p->convex && p->refractor_count == 1 && !p->multi_refractor_paths;
   const size_t planes = convex ? r->scene->object[p->refractor_object[0]].exact.count : 0;
   const size_t shadows = p->light_view_count * p->refractor_count == 1 ? r->shadow_planes : 0;
   const size_t room = sizeof r->defines + strlen(more) + 256 + 4 * (64 + 8 * MOST_COPIES);
@@ -224,8 +224,8 @@ abbe_result abbe_renderer_make_eye(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_program_make(r->gl, lit, 2, r->defines, &r->receivers, error);
   if (result == ABBE_OK) result = make_unlit(r, error);
-  if (result == ABBE_OK && r->plan.seen) result = make_refraction(r, error);
-  if (result == ABBE_OK && r->plan.seen)
+  if (result == ABBE_OK && r->plan.camera_sees_refractor) result = make_refraction(r, error);
+  if (result == ABBE_OK && r->plan.camera_sees_refractor)
     result =
         abbe_program_make_compute(r->gl, "refraction_list.comp", NULL, &r->refraction_list, error);
   if (result == ABBE_OK && (resolves(r) || enlarges(r)))
@@ -332,7 +332,7 @@ static abbe_result draw_layers(abbe_renderer *r, abbe_error *error) {
   set_eye(r, r->layer);
   gl->Enable(GL_DEPTH_TEST);
   gl->Enable(GL_CULL_FACE);
-  for (int back = 0; back <= (r->plan.back ? 1 : 0); back++) {
+  for (int back = 0; back <= (r->plan.draw_back ? 1 : 0); back++) {
     GLuint target[2] = {r->eye_layers, r->eye_owner};
     int layer[2] = {back, -1};
     abbe_result result =
@@ -431,7 +431,7 @@ static abbe_result draw_refraction(abbe_renderer *r, abbe_render_progress progre
     if (result != ABBE_OK) return result;
     gl->ClearBufferfv(GL_COLOR, 0, nothing);
   }
-  if (!r->plan.seen) return ABBE_OK;
+  if (!r->plan.camera_sees_refractor) return ABBE_OK;
   list_pixels(r, w, h);
   if (refines(r)) set_refraction(r, r->refraction_fine, h);
   set_refraction(r, r->refraction, h);

@@ -250,7 +250,7 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
   set_layer_view(r, &r->light[light].near_view);
   gl->Enable(GL_DEPTH_TEST);
   gl->Enable(GL_CULL_FACE);
-  for (int back = 0; back <= (r->plan.back ? 1 : 0); back++) {
+  for (int back = 0; back <= (r->plan.draw_back ? 1 : 0); back++) {
     abbe_renderer_begin_pass(r);
     GLuint target[2] = {r->light_layers, r->light_owner};
     int layer[2] = {2 * (int)light + back, (int)light};

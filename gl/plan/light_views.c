@@ -11,15 +11,15 @@ void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
       if (thesis || abbe_reach_light(&scene->light[i], object))
         plan->caustics = plan->reaches[i] = true;
     if (thesis || abbe_reach_eye(&scene->camera, plan->desc.width, plan->desc.height, object))
-      plan->seen = true;
+      plan->camera_sees_refractor = true;
   }
-  for (size_t i = 0; i < scene->light_count && !plan->through; i++)
-    for (size_t k = 0; k < plan->refractor_count && plan->reaches[i] && !plan->through; k++)
-      for (size_t j = 0; j < plan->receiver_count && !plan->through; j++)
-        plan->through =
+  for (size_t i = 0; i < scene->light_count && !plan->forward_transmission; i++)
+    for (size_t k = 0; k < plan->refractor_count && plan->reaches[i] && !plan->forward_transmission; k++)
+      for (size_t j = 0; j < plan->receiver_count && !plan->forward_transmission; j++)
+        plan->forward_transmission =
             abbe_reach_through(&scene->light[i], &scene->object[plan->refractor_object[k]],
                                &scene->object[plan->receiver_object[j]]);
-  if (plan->caustics || plan->seen) return;
+  if (plan->caustics || plan->camera_sees_refractor) return;
   plan->dispersive = plan->absorbing = plan->tinting = false;
 }
 
@@ -28,7 +28,7 @@ static void find_aside(const abbe_scene *scene, abbe_plan *plan, abbe_view *view
   for (size_t k = 0; k < plan->receiver_count; k++) {
     const abbe_mesh *mesh = &scene->object[plan->receiver_object[k]].mesh;
     if (!abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count))
-      plan->aside = true;
+      plan->outside_map_view = true;
   }
 }
 

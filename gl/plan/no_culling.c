@@ -30,7 +30,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
   for (size_t i = 0; i < scene->light_count; i++)
     if (plan->reaches[i] || abbe_light_views_fit(scene, &scene->light[i], plan, &view, NULL))
       plan->reaches[i] = plan->caustics = true;
-  plan->seen = plan->back = plan->absorbing = true;
+  plan->camera_sees_refractor = plan->draw_back = plan->absorbing = true;
   plan->pages = plan->caustics && plan->receiver_count > 0;
   if (plan->desc.wavelengths < 7 && (asked == NULL || asked->wavelengths == 0)) {
     plan->desc.wavelengths = 7;
@@ -38,7 +38,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
     rewrite(plan, ABBE_PASS_PHOTONS, 7, "wavelengths");
   }
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
-  if (!plan->walk && (asked == NULL || asked->orders == 0)) {
+  if (!plan->multi_refractor_paths && (asked == NULL || asked->orders == 0)) {
     plan->slots += ABBE_RENDER_MAX_ORDERS - plan->desc.orders;
     plan->desc.orders = ABBE_RENDER_MAX_ORDERS;
     if (plan->eye_exits < plan->desc.orders) plan->eye_exits = plan->desc.orders;

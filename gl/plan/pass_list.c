@@ -28,7 +28,7 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
                 !plan->caustics                              ? unlit
                 : abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
                 : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
-                : plan->aside ? "a receiver lies more than 76 degrees off the view of a light's map"
+                : plan->outside_map_view ? "a receiver lies more than 76 degrees off the view of a light's map"
                               : "the lights' maps hold all receivers");
 }
 
@@ -102,20 +102,20 @@ static void list_eye(const abbe_scene *scene, abbe_plan *plan) {
   char fewer[160];
   abbe_plan_add(plan, ABBE_PASS_EYE_RECEIVERS, "light, shadow and spectral map");
   abbe_plan_add(plan, ABBE_PASS_EYE_FRONT, "%s",
-                plan->seen ? "the pixels that show a refractor" : unseen);
-  list_back(plan, ABBE_PASS_EYE_BACK, plan->seen, unseen);
+                plan->camera_sees_refractor ? "the pixels that show a refractor" : unseen);
+  list_back(plan, ABBE_PASS_EYE_BACK, plan->camera_sees_refractor, unseen);
   if (plan->layers && !abbe_profile_is_thesis(plan->desc.profile)) {
     plan->fewer_faces = abbe_layer_detail_reason(scene, plan, fewer);
     abbe_plan_add(plan, ABBE_CHOICE_FEWER_FACES, "%s", fewer);
   }
-  if (plan->seen && plan->eye_exits > 1)
+  if (plan->camera_sees_refractor && plan->eye_exits > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,
                   "one direction a wavelength, until less than %g of its light is left, %zu exits "
                   "at most",
                   plan->eye_share, plan->eye_exits);
   else
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION, "%s",
-                  plan->seen ? "one direction a wavelength" : unseen);
+                  plan->camera_sees_refractor ? "one direction a wavelength" : unseen);
   list_picture(plan);
   abbe_plan_add(plan, ABBE_CHOICE_TEXTURES, plan->textured ? "a receiver has one" : "none");
 }

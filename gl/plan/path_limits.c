@@ -21,7 +21,7 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
   /* What a view's layers do not show is missed more with every reflection: fewer are worth it. */
   if (thesis || plan->desc.orders == 0)
     plan->desc.orders = thesis ? 1 : plan->layers ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
-  if (plan->convex && plan->refractor_count == 1 && !plan->walk &&
+  if (plan->convex && plan->refractor_count == 1 && !plan->multi_refractor_paths &&
       abbe_plan_no_refraction(plan) == NULL)
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
@@ -31,8 +31,8 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
   const bool eye_goes_on = !thesis && !plan->layers && !few;
   plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.orders;
   plan->eye_share = plan->desc.energy_share;
-  if (!plan->walk) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
-  plan->slots = plan->walk ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
+  if (!plan->multi_refractor_paths) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
+  plan->slots = plan->multi_refractor_paths ? WALK_SLOTS : plan->desc.orders + (thesis ? 0 : 1);
   if (abbe_plan_no_refraction(plan) != NULL)
     abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS, "%s", abbe_plan_no_refraction(plan));
   else if (plan->desc.orders == 1)

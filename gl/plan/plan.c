@@ -34,10 +34,10 @@ static abbe_result make_lists(const abbe_scene *scene, abbe_plan *plan, abbe_err
 static void combine(abbe_plan *plan) {
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
   const bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
-  plan->back = plan->layers;
-  plan->pages = caustics && !thesis && (plan->receiver_shadows || plan->aside);
+  plan->draw_back = plan->layers;
+  plan->pages = caustics && !thesis && (plan->receiver_shadows || plan->outside_map_view);
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
-  plan->lengths = caustics && plan->tinting && !plan->walk && !thesis;
+  plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !thesis;
 }
 
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,

@@ -21,7 +21,7 @@ const char *abbe_receiver_model_name(abbe_receiver_model model) {
 }
 
 const char *abbe_plan_no_refraction(const abbe_plan *plan) {
-  return plan->caustics || plan->seen ? NULL
+  return plan->caustics || plan->camera_sees_refractor ? NULL
          : plan->refractor_count == 0 ? "nothing refracts"
                                       : "neither a light nor the eye meets a refractor";
 }

@@ -66,10 +66,10 @@ typedef struct abbe_plan {
   /* Where light and looks meet what. */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may */
-  bool seen;                           /* the eye may */
-  bool walk;    /* light that leaves a refractor may meet one again, and is followed */
-  bool through; /* some receiver may lie where light goes on nearly straight through a refractor */
-  bool aside;   /* some receiver lies beyond a light's map view */
+  bool camera_sees_refractor;                           /* the eye may */
+  bool multi_refractor_paths;    /* light that leaves a refractor may meet one again, and is followed */
+  bool forward_transmission; /* some receiver may lie where light goes on nearly straight through a refractor */
+  bool outside_map_view;   /* some receiver lies beyond a light's map view */
   bool receiver_shadows; /* some receiver may hide another from a light */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
@@ -91,7 +91,7 @@ typedef struct abbe_plan {
   bool pages;       /* light may land where its light's map cannot hold it: receivers have pages */
   bool fills;       /* light is laid between wavelengths */
   bool lengths;     /* landings keep the length of their way inside, which tells a tint anywhere */
-  bool back;        /* the back of refractors is drawn */
+  bool draw_back;        /* the back of refractors is drawn */
   bool fewer_faces; /* some mesh is drawn with fewer (gl/plan/layer_detail.h) */
   bool textured;
 

@@ -72,7 +72,7 @@ static abbe_result check_asked(const abbe_object *object, const abbe_plan *plan,
                           "the model 'convex' cannot serve '%s', which is no convex solid of at "
                           "most %d faces%s%s",
                           object->name, ABBE_SCENE_MAX_PLANES, why[0] != '\0' ? ": " : "", why);
-  if (asked == ABBE_MODEL_HIERARCHY && !plan->walk)
+  if (asked == ABBE_MODEL_HIERARCHY && !plan->multi_refractor_paths)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the model 'hierarchy' follows light through at most %d refractors; the "
                           "scene has more",
@@ -86,7 +86,7 @@ static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan 
     return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
   if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
   if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
-  return plan->walk ? ABBE_REFRACTOR_HIERARCHY : ABBE_REFRACTOR_LAYERS;
+  return plan->multi_refractor_paths ? ABBE_REFRACTOR_HIERARCHY : ABBE_REFRACTOR_LAYERS;
 }
 
 /* The object's model, why, and why it is no better one. */
@@ -105,7 +105,7 @@ static void write_reason(const abbe_object *object, const abbe_plan *plan, char 
   } else if (object->exact.kind == ABBE_EXACT_CONVEX) {
     because = "the object is a convex faceted solid";
     joint = ": ";
-  } else if (plan->walk) {
+  } else if (plan->multi_refractor_paths) {
     because = "the object is a general mesh, and light may meet it more than twice";
     joint = ": ";
   } else {
@@ -142,9 +142,9 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
 }
 
 static void list_in_turn(abbe_plan *plan, const char *why) {
-  abbe_plan_add(plan, ABBE_CHOICE_REFRACTORS_IN_TURN, "%s",
+  abbe_plan_add(plan, ABBE_CHOICE_MULTI_REFRACTOR_PATHS, "%s",
                 plan->refractor_count == 0 ? "nothing refracts"
-                : plan->walk               ? why
+                : plan->multi_refractor_paths               ? why
                 : abbe_profile_is_thesis(plan->desc.profile)
                     ? "the thesis profile follows two interfaces"
                 : plan->desc.model == ABBE_MODEL_LAYERS
@@ -158,7 +158,7 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
   ABBE_REQUIRE(scene && plan, error);
   const char *in_turn = why_in_turn(scene, plan);
   size_t unlisted = 0;
-  plan->walk = in_turn != NULL;
+  plan->multi_refractor_paths = in_turn != NULL;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
     if (object->material == NULL) continue;
@@ -186,7 +186,7 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
 void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_object *first[2] = {NULL, NULL};
   size_t pairs = 0;
-  if (plan->walk) return;
+  if (plan->multi_refractor_paths) return;
   if (plan->refractor_count > 1)
     abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");
   for (size_t i = 0; i < plan->refractor_count; i++)

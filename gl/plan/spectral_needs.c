@@ -85,6 +85,6 @@ static bool shine_alike(const abbe_scene *scene, double min, double max) {
 }
 
 void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
-  if (plan->seen && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
+  if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
     abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");
 }

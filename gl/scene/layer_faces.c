@@ -10,7 +10,7 @@ static double keep_within(const abbe_renderer *r, const abbe_mesh *mesh) {
   for (size_t i = 0; i < r->plan.light_view_count; i++)
     if (r->plan.reaches[i])
       cell = fmin(cell, abbe_layer_detail_step(&r->light[i].near_view, r->light[i].cells, mesh));
-  if (r->plan.seen) sample = abbe_layer_detail_step(&r->eye, samples, mesh);
+  if (r->plan.camera_sees_refractor) sample = abbe_layer_detail_step(&r->eye, samples, mesh);
   return abbe_layer_detail_distance(cell, sample);
 }
 

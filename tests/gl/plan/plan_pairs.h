@@ -72,7 +72,7 @@ typedef struct pair {
 #define BALL_ROWS(pages)                                                                           \
   COUNTS(7, 8, 9),                                                                                 \
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball", "exact sphere: the object is a sphere"),             \
-      RESTS(CHOICE_REFRACTORS_IN_TURN, "light that leaves the refractor cannot meet it again"),    \
+      RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "light that leaves the refractor cannot meet it again"),    \
       RUNS(CHOICE_RECEIVER_MODEL, "exact parallelograms: every receiver is a rectangle or a box"), \
       RESTS(CHOICE_RECEIVER_SHADOWS, "the receivers bound a convex room around the lights"),       \
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the index varies with wavelength"),          \
@@ -112,7 +112,7 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR,
      {0},
-     {COUNTS(1, 8, 9), RESTS(CHOICE_REFRACTORS_IN_TURN, "nothing refracts"),
+     {COUNTS(1, 8, 9), RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "nothing refracts"),
       RUNS(CHOICE_WAVELENGTHS, "1 from 380 to 780 nm: nothing refracts"),
       RESTS(CHOICE_INNER_REFLECTIONS, "nothing refracts"), UNLIT,
       RESTS(CHOICE_ABSORPTION, "nothing refracts"), RESTS(PASS_EYE_FRONT, "nothing refracts"),
@@ -157,7 +157,7 @@ static const pair pairs[] = {
      {COUNTS(1, 8, 9),
       RESTS_OF(CHOICE_REFRACTOR_MODEL, "ball",
                "clear, and its index is that of air: light does not notice it"),
-      RESTS(CHOICE_REFRACTORS_IN_TURN, "nothing refracts"),
+      RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "nothing refracts"),
       RUNS(CHOICE_WAVELENGTHS, "1 from 380 to 780 nm: nothing refracts"),
       RESTS(CHOICE_INNER_REFLECTIONS, "nothing refracts"), UNLIT,
       RESTS(CHOICE_ABSORPTION, "nothing refracts"), RESTS(PASS_EYE_FRONT, "nothing refracts"),
@@ -262,7 +262,7 @@ static const pair pairs[] = {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_REFRACTORS_IN_TURN, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       END}},
     {"a second refractor, apart",
@@ -272,7 +272,7 @@ static const pair pairs[] = {
      {COUNTS(7, 8, 16),
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "brick",
               "convex planes: the object is a convex faceted solid"),
-      RUNS(CHOICE_REFRACTORS_IN_TURN, "there is more than one refractor"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "there is more than one refractor"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       END}},
     {"a second refractor, within",
@@ -281,14 +281,14 @@ static const pair pairs[] = {
      {0},
      {COUNTS(7, 8, 16),
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "yolk", "exact sphere: the object is a sphere"),
-      RUNS(CHOICE_REFRACTORS_IN_TURN, "there is more than one refractor"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "there is more than one refractor"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       END}},
     {"a refractor that reaches into the floor",
      ball,
      CAMERA POINT_LIGHT FLOOR SUNK("crown"),
      {0},
-     {COUNTS(7, 8, 16), RUNS(CHOICE_REFRACTORS_IN_TURN, "a receiver may reach into the refractor"),
+     {COUNTS(7, 8, 16), RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "a receiver may reach into the refractor"),
       SHADOWED,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       END}},
@@ -364,7 +364,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR HILL EGG("crown"),
      {.model = ABBE_MODEL_LAYERS},
      {RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball", "front and back layers: as asked"),
-      RESTS(CHOICE_REFRACTORS_IN_TURN, "light goes through two layers and no further, as asked"),
+      RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "light goes through two layers and no further, as asked"),
       RUNS(CHOICE_RECEIVER_MODEL, "triangle hierarchy: 'hill' is a general mesh"), SHADOWED, END}},
     {"a room around the refractor",
      ball,
@@ -428,7 +428,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR RING("murk"),
      {.wavelengths = 21},
      {COUNTS(21, 8, 16), RUNS_OF(CHOICE_REFRACTOR_MODEL, "ring", "triangle hierarchy"),
-      RUNS(CHOICE_REFRACTORS_IN_TURN, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
       RUNS(PASS_PHOTONS, "21 wavelengths through the refractors"),
       RUNS(CHOICE_ABSORPTION, "a material attenuates; path lengths are kept"),
@@ -459,7 +459,7 @@ static const pair pairs[] = {
      {COUNTS(7, 1, 1),
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball",
               "front and back layers: the thesis profile knows no other model"),
-      RESTS(CHOICE_REFRACTORS_IN_TURN, "the thesis profile follows two interfaces"),
+      RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "the thesis profile follows two interfaces"),
       RUNS(CHOICE_RECEIVER_MODEL, "iterated image space: the thesis profile knows no other model"),
       RUNS(CHOICE_RECEIVER_SHADOWS, "a receiver may stand between a light and another"),
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 680 nm: the index varies with wavelength"),

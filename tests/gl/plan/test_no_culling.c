@@ -69,11 +69,11 @@ static void test_every_switch_is_on(void **state) {
   for (size_t i = 0; i < plan.entry_count; i++) {
     const abbe_plan_entry *entry = &plan.entry[i];
     const bool model = entry->item == ABBE_PASS_RECEIVER_DEPTH || /* other models, other pictures */
-                       entry->item == ABBE_CHOICE_REFRACTORS_IN_TURN;
+                       entry->item == ABBE_CHOICE_MULTI_REFRACTOR_PATHS;
     if (entry->runs == model) fail_msg("%s: %s", entry->name, entry->reason);
   }
   assert_true(plan.reaches[1] && plan.receiver_shadows && plan.absorbing && plan.textured);
-  assert_true(plan.back && plan.fills && plan.seen);
+  assert_true(plan.draw_back && plan.fills && plan.camera_sees_refractor);
   assert_int_equal(plan.desc.wavelengths, 7);
   assert_int_equal(plan.desc.orders, ABBE_RENDER_MAX_ORDERS);
   abbe_plan_free(&plan);

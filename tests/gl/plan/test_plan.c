@@ -46,7 +46,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ring",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_REFRACTORS_IN_TURN, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"bunny",
@@ -54,7 +54,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "bunny",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_REFRACTORS_IN_TURN, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"glass",
@@ -62,7 +62,7 @@ static const struct {
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "glass",
               "triangle hierarchy: the object is a general mesh, and light may meet it more than "
               "twice"),
-      RUNS(CHOICE_REFRACTORS_IN_TURN, "the refractor is not convex"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       RUNS(CHOICE_TEXTURES, "a receiver has one"), GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
 };
@@ -152,11 +152,11 @@ static void lists_name_the_scenes_objects(void **state) {
   assert_int_equal(plan.refractor_count, 2);
   assert_true(plan.refractor_object[0] == 1 && plan.refractor_object[1] == 3);
   assert_true(plan.model[0] == ABBE_REFRACTOR_SPHERE && plan.model[1] == ABBE_REFRACTOR_CONVEX);
-  assert_true(plan.spheres && plan.convex && !plan.layers && !plan.hierarchy && plan.walk);
+  assert_true(plan.spheres && plan.convex && !plan.layers && !plan.hierarchy && plan.multi_refractor_paths);
   assert_int_equal(plan.receiver_count, 2);
   assert_true(plan.receiver_object[0] == 0 && plan.receiver_object[1] == 2);
   assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
-  assert_true(plan.dispersive && plan.caustics && plan.seen && plan.fills && !plan.absorbing);
+  assert_true(plan.dispersive && plan.caustics && plan.camera_sees_refractor && plan.fills && !plan.absorbing);
   abbe_plan_free(&plan);
 }
 

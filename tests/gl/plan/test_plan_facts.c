@@ -38,7 +38,7 @@ static void each_condition_is_its_own(void **state) {
   assert_false(abbe_plan_runs(&plan, ABBE_PASS_LIGHT_FRONT_AND_BACK, 0));
   plan.desc.profile = ABBE_PROFILE_THESIS_CIE;
   assert_true(abbe_plan_runs(&plan, ABBE_PASS_LIGHT_FRONT_AND_BACK, 0));
-  plan = (abbe_plan){.seen = true, .back = true};
+  plan = (abbe_plan){.camera_sees_refractor = true, .draw_back = true};
   assert_true(abbe_plan_runs(&plan, ABBE_PASS_EYE_BACK, 0));
   assert_false(abbe_plan_runs(&plan, ABBE_PASS_LIGHT_BACK, 0));
   plan.desc.orders = 2;

@@ -39,7 +39,7 @@ static void a_model_that_is_asked_for(void **state) {
       assert_contains(error.text, rows[i].refusal);
     } else {
       assert_int_equal(plan.model[0], rows[i].expected);
-      assert_true(plan.walk == rows[i].walk);
+      assert_true(plan.multi_refractor_paths == rows[i].walk);
       abbe_plan_free(&plan);
     }
     abbe_scene_free(&scene);
