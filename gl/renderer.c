@@ -51,9 +51,9 @@ static void write_defines(abbe_renderer *r) {
            storage(spectra, 16, "#define SPECTRA_IN_STORAGE\n"),
            p->spheres ? "#define SPHERES\n" : "", p->convex ? "#define CONVEX\n" : "",
            p->layers ? "#define LAYERS\n" : "",
-           p->layers || p->hierarchy ? "#define FRONT_LAYER\n" : "",
-           p->hierarchy ? "#define HIERARCHY\n" : "",
-           p->receivers == ABBE_RECEIVER_HIERARCHY ? "#define RECEIVER_HIERARCHY\n" : "",
+           p->layers || p->bvh ? "#define FRONT_LAYER\n" : "",
+           p->bvh ? "#define HIERARCHY\n" : "",
+           p->receivers == ABBE_RECEIVER_BVH ? "#define RECEIVER_HIERARCHY\n" : "",
            p->absorbing ? "#define ABSORBING\n" : "", p->textured ? "#define TEXTURED\n" : "",
            p->caustics ? "#define CAUSTICS\n" : "", p->multi_refractor_paths ? "#define WALK\n" : "",
            p->cubes ? "#define CUBES\n" : "", r->hierarchy_depth + 1, r->receiver_root, r->ways);

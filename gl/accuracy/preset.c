@@ -27,7 +27,7 @@ const char *abbe_preset_class_name(abbe_preset_class which) {
 }
 
 abbe_preset_class abbe_preset_class_of(const abbe_plan *plan) {
-  return plan->layers || plan->hierarchy ? ABBE_PRESET_CLASS_MESHES
+  return plan->layers || plan->bvh ? ABBE_PRESET_CLASS_MESHES
          : plan->convex                  ? ABBE_PRESET_CLASS_CONVEX
          : plan->spheres ? plan->forward_transmission ? ABBE_PRESET_CLASS_SPHERES : ABBE_PRESET_CLASS_BOWS
                          : ABBE_PRESET_CLASS_NONE;

@@ -487,7 +487,7 @@ static void write_photon_defines(const abbe_renderer *r, char defines[PHOTON_DEF
            "#define NODES %zu\n%s%s%s",
            r->defines, r->lanes, r->steps, r->map_levels, r->nodes,
            r->plan.fills ? "#define BRIDGE\n" : "",
-           r->plan.layers || r->plan.hierarchy ? "#define DOUBTS_BRIDGES\n" : "",
+           r->plan.layers || r->plan.bvh ? "#define DOUBTS_BRIDGES\n" : "",
            r->plan.lengths ? "#define TINTING\n" : "");
 }
 

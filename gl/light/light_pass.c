@@ -124,7 +124,7 @@ static void fit_face(const abbe_renderer *r, size_t light, abbe_view *view) {
   for (int k = 0; k < 4; k++) /* a seam's rounding may leave it empty */
     if (!isfinite(view->window[k])) view->window[k] = 0;
   abbe_view_pad(view, 0.01);
-  for (int k = 0; k < 4 && !plan->layers && !plan->hierarchy; k++)
+  for (int k = 0; k < 4 && !plan->layers && !plan->bvh; k++)
     view->window[k] = fmin(fmax(view->window[k], -1), 1);
   view->far = far > 0 ? far : 1;
   view->near = fmax(fmin(near, 0.5 * view->far), 1e-4 * view->far);
@@ -258,7 +258,7 @@ static abbe_result front_and_back(abbe_renderer *r, size_t light, abbe_error *er
                                                   r->layer_side, r->layer_side, error);
     if (result != ABBE_OK) return result;
     /* So near to exact surfaces their triangles tell too little of what they cover. */
-    const bool all = abbe_renderer_is_face(r, light) && !r->plan.layers && !r->plan.hierarchy;
+    const bool all = abbe_renderer_is_face(r, light) && !r->plan.layers && !r->plan.bvh;
     clear_target(gl, all ? 1 : 0, !back);
     gl->CullFace(back ? GL_FRONT : GL_BACK);
     if (!all) draw_refractors(r);
@@ -286,7 +286,7 @@ static abbe_result fit_near_view(abbe_renderer *r, GLuint program, GLuint found_
     static const GLuint none[4] = {SIDE, 0, SIDE, 0};
     GLuint found[4] = {0};
     /* What rays meet of meshes is told by the front layer of the view as it is now. */
-    abbe_result result = r->plan.hierarchy ? front_and_back(r, light, error) : ABBE_OK;
+    abbe_result result = r->plan.bvh ? front_and_back(r, light, error) : ABBE_OK;
     if (result != ABBE_OK) return result;
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, found_box);
     gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);

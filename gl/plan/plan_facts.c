@@ -16,7 +16,7 @@ const char *abbe_refractor_model_name(abbe_refractor_model model) {
 
 const char *abbe_receiver_model_name(abbe_receiver_model model) {
   return model == ABBE_RECEIVER_EXACT       ? "exact parallelograms"
-         : model == ABBE_RECEIVER_HIERARCHY ? "triangle hierarchy"
+         : model == ABBE_RECEIVER_BVH ? "triangle hierarchy"
                                             : "iterated image space";
 }
 

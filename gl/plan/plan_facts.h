@@ -20,13 +20,13 @@ typedef enum abbe_refractor_model {
   ABBE_REFRACTOR_SPHERE,    /* exact quadric */
   ABBE_REFRACTOR_CONVEX,    /* plane tests */
   ABBE_REFRACTOR_LAYERS,    /* front and back as a view sees them */
-  ABBE_REFRACTOR_HIERARCHY, /* triangles, traversed */
+  ABBE_REFRACTOR_BVH, /* triangles, traversed */
   ABBE_REFRACTOR_MODEL_COUNT
 } abbe_refractor_model;
 
 typedef enum abbe_receiver_model {
   ABBE_RECEIVER_EXACT,     /* parallelograms, hit exactly */
-  ABBE_RECEIVER_HIERARCHY, /* triangles, traversed */
+  ABBE_RECEIVER_BVH, /* triangles, traversed */
   ABBE_RECEIVER_DEPTH      /* iterated image-space intersection */
 } abbe_receiver_model;
 
@@ -59,7 +59,7 @@ typedef struct abbe_plan {
   size_t *receiver_object;
   abbe_receiver_model *receiver_model; /* [receiver_count] */
   /* Models of refractors in use; the most general of receivers, and parallelograms hit exactly. */
-  bool spheres, convex, layers, hierarchy;
+  bool spheres, convex, layers, bvh;
   abbe_receiver_model receivers;
   size_t parallelogram_count;
 

@@ -16,13 +16,13 @@ void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan) {
     const bool room = flat && object->exact.count <= MAX_PARALLELOGRAMS - plan->parallelogram_count;
     plan->receiver_model[i] = thesis ? ABBE_RECEIVER_DEPTH
                               : room ? ABBE_RECEIVER_EXACT
-                                     : ABBE_RECEIVER_HIERARCHY;
+                                     : ABBE_RECEIVER_BVH;
     if (plan->receiver_model[i] == ABBE_RECEIVER_EXACT)
       plan->parallelogram_count += object->exact.count;
     if (!flat && general == NULL) general = object;
     if (flat && !room && beyond == NULL) beyond = object;
   }
-  if (!thesis && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_HIERARCHY;
+  if (!thesis && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_BVH;
   const char *model = abbe_receiver_model_name(plan->receivers);
   if (thesis)
     abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: the thesis profile knows no other model",

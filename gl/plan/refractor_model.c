@@ -49,7 +49,7 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
   }
   if (abbe_profile_is_thesis(plan->desc.profile) || refractors == 0) return NULL;
   if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_WALK_REFRACTORS) return NULL;
-  if (plan->desc.model == ABBE_MODEL_HIERARCHY) return "as asked";
+  if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
   if (refractors > 1) return "there is more than one refractor";
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
       !abbe_mesh_is_convex(&only->mesh))
@@ -72,7 +72,7 @@ static abbe_result check_asked(const abbe_object *object, const abbe_plan *plan,
                           "the model 'convex' cannot serve '%s', which is no convex solid of at "
                           "most %d faces%s%s",
                           object->name, ABBE_SCENE_MAX_PLANES, why[0] != '\0' ? ": " : "", why);
-  if (asked == ABBE_MODEL_HIERARCHY && !plan->multi_refractor_paths)
+  if (asked == ABBE_MODEL_BVH && !plan->multi_refractor_paths)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the model 'hierarchy' follows light through at most %d refractors; the "
                           "scene has more",
@@ -86,7 +86,7 @@ static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan 
     return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
   if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
   if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
-  return plan->multi_refractor_paths ? ABBE_REFRACTOR_HIERARCHY : ABBE_REFRACTOR_LAYERS;
+  return plan->multi_refractor_paths ? ABBE_REFRACTOR_BVH : ABBE_REFRACTOR_LAYERS;
 }
 
 /* The object's model, why, and why it is no better one. */
@@ -137,7 +137,7 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
   plan->spheres = plan->spheres || model == ABBE_REFRACTOR_SPHERE;
   plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
   plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
-  plan->hierarchy = plan->hierarchy || model == ABBE_REFRACTOR_HIERARCHY;
+  plan->bvh = plan->bvh || model == ABBE_REFRACTOR_BVH;
   return ABBE_OK;
 }
 

@@ -40,7 +40,7 @@ typedef enum abbe_fill {
  * all refractors. */
 #define ABBE_MODELS(X)                                                                             \
   X(AUTO, "auto")                                                                                  \
-  X(SPHERE, "sphere") X(CONVEX, "convex") X(LAYERS, "layers") X(HIERARCHY, "hierarchy")
+  X(SPHERE, "sphere") X(CONVEX, "convex") X(LAYERS, "layers") X(BVH, "hierarchy")
 typedef enum abbe_model {
 #define ABBE_MODEL_ENUM(code, name) ABBE_MODEL_##code,
   ABBE_MODELS(ABBE_MODEL_ENUM)

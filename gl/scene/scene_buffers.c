@@ -121,7 +121,7 @@ static abbe_result upload_refractors(abbe_renderer *r, abbe_error *error) {
       if (r->scene->object[plan->refractor_object[k]].material == object->material) break;
     }
     refractor[i].info[1] = (int)next;
-    if (plan->model[i] == ABBE_REFRACTOR_HIERARCHY)
+    if (plan->model[i] == ABBE_REFRACTOR_BVH)
       refractor[i].info[1] = (int)r->refractor_root[i];
     if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;
     refractor[i].info[2] = (int)object->exact.count;

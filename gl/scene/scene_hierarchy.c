@@ -173,7 +173,7 @@ static abbe_result upload(abbe_renderer *r, const forest *f, abbe_error *error) 
 static abbe_result grow_refractors(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < r->plan.refractor_count && result == ABBE_OK; i++) {
-    if (r->plan.model[i] != ABBE_REFRACTOR_HIERARCHY) continue;
+    if (r->plan.model[i] != ABBE_REFRACTOR_BVH) continue;
     g->mesh_count = 0;
     result = add_mesh(g, f, &r->scene->object[r->plan.refractor_object[i]].mesh, 0, NULL, error);
     if (result == ABBE_OK) result = grow(r, g, f, &r->refractor_root[i], error);
@@ -184,13 +184,13 @@ static abbe_result grow_refractors(abbe_renderer *r, grove *g, forest *f, abbe_e
 /* One tree for all receivers that are traversed. */
 static abbe_result grow_receivers(abbe_renderer *r, grove *g, forest *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  if (r->plan.receivers != ABBE_RECEIVER_BVH) return ABBE_OK;
   g->mesh_count = 0;
   for (size_t i = 0; i < r->plan.receiver_count && result == ABBE_OK; i++) {
     const abbe_mesh *mesh = &r->scene->object[r->plan.receiver_object[i]].mesh;
     const int32_t *side =
         r->charts.face_side != NULL ? r->charts.face_side + r->charts.face_first[i] : NULL;
-    if (r->plan.receiver_model[i] == ABBE_RECEIVER_HIERARCHY)
+    if (r->plan.receiver_model[i] == ABBE_RECEIVER_BVH)
       result = add_mesh(g, f, mesh, i, side, error);
   }
   return result == ABBE_OK ? grow(r, g, f, &r->receiver_root, error) : result;
@@ -199,7 +199,7 @@ static abbe_result grow_receivers(abbe_renderer *r, grove *g, forest *f, abbe_er
 abbe_result abbe_renderer_make_hierarchy(abbe_renderer *r, abbe_error *error) {
   const size_t most = r->scene->object_count + 1;
   forest f = {0};
-  if (!r->plan.hierarchy && r->plan.receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  if (!r->plan.bvh && r->plan.receivers != ABBE_RECEIVER_BVH) return ABBE_OK;
   r->refractor_root = calloc(most, sizeof *r->refractor_root);
   grove g = {.mesh = calloc(most, sizeof *g.mesh),
              .surface = calloc(most, sizeof *g.surface),

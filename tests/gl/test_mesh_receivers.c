@@ -376,7 +376,7 @@ static void a_pane_mirrors_what_is_behind_the_eye(void **state) {
     abbe_render_desc desc = small_frame;
     abbe_image picture = {0};
     desc.space = ABBE_RGB_SPACE_XYZ;
-    desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_HIERARCHY;
+    desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_BVH;
     desc.width = desc.height = 16;
     desc.energy_share = 1e-6;
     desc.orders = ABBE_RENDER_MAX_ORDERS;

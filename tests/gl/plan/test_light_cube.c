@@ -209,7 +209,7 @@ static void layers_need_one_view(void **state) {
             &scene);
   assert_int_equal(abbe_plan_make(&scene, &desc, &plan, &error), ABBE_UNSUPPORTED);
   assert_contains(error.text, "no view holds its layers");
-  desc.model = ABBE_MODEL_HIERARCHY;
+  desc.model = ABBE_MODEL_BVH;
   assert_int_equal(abbe_plan_make(&scene, &desc, &plan, &error), ABBE_OK);
   assert_true(plan.cubes);
   abbe_plan_free(&plan);

@@ -7,9 +7,9 @@ static void a_curved_receiver_asks_for_a_hierarchy(void **state) {
   (void)state;
   abbe_plan plan;
   plan_text(CAMERA POINT_LIGHT FLOOR HILL BALL("crown"), NULL, &plan);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_HIERARCHY);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_BVH);
   assert_int_equal(plan.receiver_model[0], ABBE_RECEIVER_EXACT);
-  assert_int_equal(plan.receiver_model[1], ABBE_RECEIVER_HIERARCHY);
+  assert_int_equal(plan.receiver_model[1], ABBE_RECEIVER_BVH);
   assert_int_equal(plan.parallelogram_count, 1);
   assert_false(abbe_plan_find(&plan, ABBE_PASS_RECEIVER_DEPTH, 0)->runs);
   assert_contains(abbe_plan_find(&plan, ABBE_CHOICE_RECEIVER_MODEL, 0)->reason,
@@ -33,7 +33,7 @@ static void too_many_rectangles_are_traversed(void **state) {
   abbe_plan_free(&plan);
   exact->count = 97;
   plan_scene(&scene, NULL, &plan);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_HIERARCHY);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_BVH);
   assert_int_equal(plan.parallelogram_count, 0);
   assert_contains(abbe_plan_find(&plan, ABBE_CHOICE_RECEIVER_MODEL, 0)->reason,
                   "with 'floor' there are more than 96 parallelograms");

@@ -18,7 +18,7 @@ static void a_model_that_is_asked_for(void **state) {
        NULL},
       {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
        NULL},
-      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_HIERARCHY, ABBE_REFRACTOR_HIERARCHY, true,
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_BVH, ABBE_REFRACTOR_BVH, true,
        NULL},
       {CAMERA POINT_LIGHT FLOOR RING("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
        NULL},
