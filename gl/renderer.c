@@ -39,7 +39,7 @@ static void write_defines(abbe_renderer *r) {
            "#define BAND_LEVELS %zu\n#define BAND_ROOM %zu\n%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s"
            "#define HIERARCHY_STACK %zu\n#define RECEIVER_ROOT %zu\n#define WAYS %u\n",
            p->light_view_count, p->refractor_count, p->parallelogram_count, p->desc.wavelengths,
-           p->desc.orders, p->slots, room(p->light_view_count), room(p->refractor_count), room(planes),
+           p->desc.exits, p->hit_slots, room(p->light_view_count), room(p->refractor_count), room(planes),
            room(p->parallelogram_count), room(p->receiver_count), room(spectra), r->band_count,
            r->band_levels, room(p->refractor_count * r->band_count),
            storage(p->refractor_count * r->band_count, 32, "#define BANDS_IN_STORAGE\n"),

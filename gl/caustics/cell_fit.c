@@ -131,7 +131,7 @@ abbe_result abbe_renderer_fit_cells(abbe_renderer *r, size_t light, abbe_error *
                     .path = path,
                     .photon = photon,
                     .photons = state->photon_count,
-                    .orders = r->plan.slots,
+                    .orders = r->plan.hit_slots,
                     .lanes = r->lanes,
                     .lane = middle - first,
                     .slot = slot,

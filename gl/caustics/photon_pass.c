@@ -96,7 +96,7 @@ void abbe_renderer_begin_trace(abbe_renderer *r, size_t light, trace_set set, si
 /* Lists the paths of so many photons or refined intervals. */
 void abbe_renderer_end_trace(abbe_renderer *r, trace_set set, size_t items) {
   const bool fine = set == TRACE_REFINED;
-  const size_t groups = (items * r->plan.slots + PHOTON_GROUP - 1) / PHOTON_GROUP;
+  const size_t groups = (items * r->plan.hit_slots + PHOTON_GROUP - 1) / PHOTON_GROUP;
   const size_t rows = (groups + 65534) / 65535;
   if (groups == 0) return;
   r->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -168,7 +168,7 @@ static void list_pieces(abbe_renderer *r, size_t light, const batch *b, size_t c
   }
   gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, BINDING_SHARED, paths);
   const size_t items = fine ? r->pair_room : r->light[light].photon_count;
-  abbe_renderer_dispatch_list(r, deposit, paths, items * r->plan.slots, 1);
+  abbe_renderer_dispatch_list(r, deposit, paths, items * r->plan.hit_slots, 1);
 }
 
 static abbe_result deposit_batch(abbe_renderer *r, size_t light, const batch *b,
@@ -445,17 +445,17 @@ static abbe_result make_landings(abbe_renderer *r, abbe_error *error) {
   /* A grid that is moved or made coarser may show a little more: a rim of cells. */
   size_t cells = r->plan.desc.photons * r->plan.desc.photons, rim = 8 * r->plan.desc.photons;
   most = most + rim < cells ? most + rim : cells;
-  size_t a_lane = most * r->plan.slots, n = r->plan.desc.wavelengths;
+  size_t a_lane = most * r->plan.hit_slots, n = r->plan.desc.wavelengths;
   /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
   const size_t usual = ABBE_PLAN_EXITS + 1;
-  const size_t slots = !r->plan.multi_refractor_paths && r->plan.slots > usual ? usual : r->plan.slots;
+  const size_t slots = !r->plan.multi_refractor_paths && r->plan.hit_slots > usual ? usual : r->plan.hit_slots;
   const size_t a_landing = LANDING_BYTES + abbe_renderer_signature_bytes(r);
   size_t lanes = MAX_LANDING_BYTES / a_landing / (most * slots), room = most_landings(r);
   if (a_lane * (n > 1 ? 2 : 1) > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "
                           "time; use a grid below %zu or fewer exits",
-                          most, r->plan.desc.orders, r->plan.desc.photons);
+                          most, r->plan.desc.exits, r->plan.desc.photons);
   if (lanes > room / a_lane) lanes = room / a_lane;
   r->lanes = lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
   abbe_result result = ABBE_OK;
@@ -523,7 +523,7 @@ static abbe_result make_programs(abbe_renderer *r, abbe_error *error) {
 /* The batch's landings, zero where there is none; malloc'd. */
 abbe_result abbe_renderer_read_batch(abbe_renderer *r, size_t light, size_t first, float **data,
                                      GLuint **paths, abbe_error *error) {
-  size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
+  size_t count = r->light[light].photon_count * r->plan.hit_slots * r->lanes;
   float *landing = malloc(count * LANDING_BYTES + 1);
   const size_t signature_bytes = abbe_renderer_signature_bytes(r);
   GLuint *path = malloc(count * signature_bytes + 1);
@@ -573,7 +573,7 @@ static abbe_result fit_map(abbe_renderer *r, size_t light, abbe_error *error) {
     GLuint *path = NULL;
     abbe_renderer_trace_batch(r, light, b.first, b.count, r->plan.desc.wavelengths);
     result = abbe_renderer_read_batch(r, light, b.first, &landing, &path, error);
-    size_t count = r->light[light].photon_count * r->plan.slots * r->lanes;
+    size_t count = r->light[light].photon_count * r->plan.hit_slots * r->lanes;
     if (result == ABBE_OK && part == 0) part = abbe_renderer_part_of(landing, count);
     if (result == ABBE_OK && part > 0) {
       total += abbe_renderer_sort_landings(r, light, landing, path, count, part, histogram);
@@ -635,7 +635,7 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
   if (result == ABBE_OK) result = abbe_renderer_start_photons(r, light, error);
   if (result != ABBE_OK) return result;
   *count = r->light[light].photon_count;
-  *orders = r->plan.slots;
+  *orders = r->plan.hit_slots;
   *lanes = r->lanes;
   abbe_renderer_bind_tables(r);
   abbe_renderer_trace_batch(r, light, 0, r->lanes, r->plan.desc.wavelengths);

@@ -34,7 +34,7 @@ abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons,
   if (result == ABBE_OK) abbe_renderer_clear_buffer(r, r->wants);
   if (result != ABBE_OK || !abbe_renderer_refines(r)) return result;
   r->fine_nodes = widest_interval(r) + 1;
-  size_t a_pair = r->plan.slots * r->fine_nodes, most = most_photons * (r->nodes - 1);
+  size_t a_pair = r->plan.hit_slots * r->fine_nodes, most = most_photons * (r->nodes - 1);
   r->pair_room = MAX_FINE_BYTES / (LANDING_BYTES + abbe_renderer_signature_bytes(r)) / a_pair;
   if (r->pair_room < LEAST_PAIRS) r->pair_room = LEAST_PAIRS;
   if (r->pair_room > most) r->pair_room = most;
@@ -44,8 +44,8 @@ abbe_result abbe_renderer_make_refinement(abbe_renderer *r, size_t most_photons,
   } made[] = {{&r->pair_list, LIST_HEADER + r->pair_room * 4},
               {&r->fine_landings, r->pair_room * a_pair * LANDING_BYTES},
               {&r->fine_signatures, r->pair_room * a_pair * abbe_renderer_signature_bytes(r)},
-              {&r->fine_marks, r->pair_room * r->plan.slots * 4},
-              {&r->fine_paths, LIST_HEADER + r->pair_room * r->plan.slots * 4}};
+              {&r->fine_marks, r->pair_room * r->plan.hit_slots * 4},
+              {&r->fine_paths, LIST_HEADER + r->pair_room * r->plan.hit_slots * 4}};
   for (size_t i = 0; i < sizeof made / sizeof made[0] && result == ABBE_OK; i++)
     result = abbe_renderer_make_buffer(r, made[i].size, NULL, made[i].buffer, error);
   return result;
@@ -114,7 +114,7 @@ static void select_pairs(abbe_renderer *r, size_t light, size_t chunk) {
   bind_storage(r, BINDING_SAMPLE_WEIGHTS, r->pair_list);
   bind_storage(r, BINDING_SHARED, r->path_list);
   abbe_renderer_dispatch_list(r, r->select, r->path_list,
-                              r->light[light].photon_count * r->plan.slots, 1);
+                              r->light[light].photon_count * r->plan.hit_slots, 1);
 }
 
 size_t abbe_renderer_count_pairs(abbe_renderer *r, size_t light) {

@@ -38,11 +38,11 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
     rewrite(plan, ABBE_PASS_PHOTONS, 7, "wavelengths");
   }
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && plan->desc.wavelengths > 1;
-  if (!plan->multi_refractor_paths && (asked == NULL || asked->orders == 0)) {
-    plan->slots += ABBE_RENDER_MAX_ORDERS - plan->desc.orders;
-    plan->desc.orders = ABBE_RENDER_MAX_ORDERS;
-    if (plan->eye_exits < plan->desc.orders) plan->eye_exits = plan->desc.orders;
-    rewrite(plan, ABBE_CHOICE_INNER_REFLECTIONS, plan->desc.orders, "exits at most");
+  if (!plan->multi_refractor_paths && (asked == NULL || asked->exits == 0)) {
+    plan->hit_slots += ABBE_RENDER_MAX_EXITS - plan->desc.exits;
+    plan->desc.exits = ABBE_RENDER_MAX_EXITS;
+    if (plan->eye_exits < plan->desc.exits) plan->eye_exits = plan->desc.exits;
+    rewrite(plan, ABBE_CHOICE_INNER_REFLECTIONS, plan->desc.exits, "exits at most");
   }
 }
 

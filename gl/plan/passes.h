@@ -40,7 +40,7 @@ extern "C" {
   X(RECEIVER_MODEL, "model: receivers", true)                                                      \
   X(RECEIVER_SHADOWS, "shadows of receivers", p->receiver_shadows)                                 \
   X(WAVELENGTHS, "wavelengths", true)                                                              \
-  X(INNER_REFLECTIONS, "inner reflections", (p->caustics || p->camera_sees_refractor) && p->desc.orders > 1)        \
+  X(INNER_REFLECTIONS, "inner reflections", (p->caustics || p->camera_sees_refractor) && p->desc.exits > 1)        \
   X(LIGHT_MAP, "map: ", p->reaches[i])                                                             \
   X(RECEIVER_MAPS, "maps on receivers", p->pages)                                                  \
   X(ABSORPTION, "absorption", p->absorbing)                                                        \

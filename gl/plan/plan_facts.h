@@ -85,7 +85,7 @@ typedef struct abbe_plan {
 
   size_t eye_exits; /* that the eye's rays are followed for, at the most */
   double eye_share; /* and the share of their light at which they end */
-  size_t slots;     /* landings of a photon at the most: its exits, and the mirror on the outside */
+  size_t hit_slots;     /* landings of a photon at the most: its exits, and the mirror on the outside */
 
   /* What follows from the facts above. */
   bool pages;       /* light may land where its light's map cannot hold it: receivers have pages */

@@ -54,7 +54,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       /* 0: the scene tells */
       {"the number of wavelengths", d->wavelengths, 0,
        abbe_profile_is_thesis(d->profile) ? 64 : ABBE_RENDER_MAX_WAVELENGTHS},
-      {"the number of exits", d->orders, 0, ABBE_RENDER_MAX_ORDERS},
+      {"the number of exits", d->exits, 0, ABBE_RENDER_MAX_EXITS},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i].value < counts[i].least || counts[i].value > counts[i].most)

@@ -52,7 +52,7 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
 #define ABBE_RENDER_MAX_MAP 4096     /* a side */
 #define ABBE_RENDER_MAX_WAVELENGTHS 1000
-#define ABBE_RENDER_MAX_ORDERS 32
+#define ABBE_RENDER_MAX_EXITS 32
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
@@ -93,7 +93,7 @@ typedef struct abbe_render_desc {
   double energy_share;
   /* exits followed at the most; 0: as many as carry energy, at most 8, or up to 24 where a convex
    * solid keeps light inside (4 where a mesh is known by its layers) */
-  size_t orders;
+  size_t exits;
   abbe_rgb_space space; /* of the picture */
   /* Layout of one light's map, and which light's; it lives as long as the plan. NULL: each map is
    * fitted to where its light lands. */

@@ -25,7 +25,7 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
                               .samples = thesis ? 1 : d->supersample,
                               .upsample = d->upsample,
                               .share = thesis ? 0.01 : d->energy_share,
-                              .exits = d->orders};
+                              .exits = d->exits};
   snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
   snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
   snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
@@ -57,7 +57,7 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
                             .fill = (abbe_fill)fill,
                             .model = (abbe_model)model,
                             .energy_share = setting->share,
-                            .orders = setting->exits};
+                            .exits = setting->exits};
   return ABBE_OK;
 }
 
@@ -123,7 +123,7 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
     d.map_size = take(&g->map, &counter);
     d.supersample = take(&g->samples, &counter);
     d.upsample = take(&g->upsample, &counter);
-    d.orders = take(&g->exits, &counter);
+    d.exits = take(&g->exits, &counter);
     d.fill = (abbe_fill)take(&g->fills, &counter);
     d.model = (abbe_model)take(&g->models, &counter);
     d.profile = (abbe_profile)take(&g->profiles, &counter);

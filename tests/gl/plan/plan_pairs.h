@@ -226,7 +226,7 @@ static const pair pairs[] = {
     {"ten exits, asked for in a dense stone",
      stone,
      CAMERA POINT_LIGHT FLOOR STONE("dense"),
-     {.orders = 10},
+     {.exits = 10},
      {COUNTS(7, 10, 11),
       RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.01 of the light is left, 10 exits "
                                      "at most; 20 % of it is still inside then"),
@@ -449,7 +449,7 @@ static const pair pairs[] = {
     {"one exit, as asked",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
-     {.orders = 1},
+     {.exits = 1},
      {COUNTS(7, 1, 2), RESTS(CHOICE_INNER_REFLECTIONS, "two interfaces only, as asked"),
       RUNS(PASS_EYE_REFRACTION, "one direction a wavelength"), END}},
     {"the thesis profile, as asked",

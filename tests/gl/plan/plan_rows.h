@@ -81,8 +81,8 @@ static inline void tell(const abbe_scene *scene, const abbe_plan *plan, lines *o
   out->count = 0;
   line *counts = put(out, ROW_COUNTS, 0);
   counts->count[0] = plan->desc.wavelengths;
-  counts->count[1] = plan->desc.orders;
-  counts->count[2] = plan->slots;
+  counts->count[1] = plan->desc.exits;
+  counts->count[2] = plan->hit_slots;
   for (size_t i = 0; i < plan->entry_count; i++) {
     const abbe_plan_entry *e = &plan->entry[i];
     line *l = put(out, e->runs ? ROW_RUNS : ROW_RESTS, e->item);

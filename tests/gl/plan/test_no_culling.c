@@ -31,7 +31,7 @@ static double with_everything(const abbe_scene *scene, size_t exits) {
   abbe_image planned = {0}, all = {0};
   draw(scene, &desc, &planned);
   desc.everything = true;
-  desc.orders = exits;
+  desc.exits = exits;
   draw(scene, &desc, &all);
   double found = difference(&planned, &all);
   abbe_image_free(&planned);
@@ -75,7 +75,7 @@ static void test_every_switch_is_on(void **state) {
   assert_true(plan.reaches[1] && plan.receiver_shadows && plan.absorbing && plan.textured);
   assert_true(plan.draw_back && plan.fills && plan.camera_sees_refractor);
   assert_int_equal(plan.desc.wavelengths, 7);
-  assert_int_equal(plan.desc.orders, ABBE_RENDER_MAX_ORDERS);
+  assert_int_equal(plan.desc.exits, ABBE_RENDER_MAX_EXITS);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
 }
@@ -85,11 +85,11 @@ static void test_what_is_asked_for_stays(void **state) {
   abbe_scene scene = {0};
   abbe_plan plan;
   const abbe_render_desc all = {
-      .everything = true, .wavelengths = 3, .orders = 2, .fill = ABBE_FILL_NONE};
+      .everything = true, .wavelengths = 3, .exits = 2, .fill = ABBE_FILL_NONE};
   load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
   assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
   assert_int_equal(plan.desc.wavelengths, 3);
-  assert_int_equal(plan.desc.orders, 2);
+  assert_int_equal(plan.desc.exits, 2);
   assert_false(plan.fills || abbe_plan_find(&plan, ABBE_PASS_GAP_FILL, 0)->runs);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);

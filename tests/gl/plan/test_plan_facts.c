@@ -41,9 +41,9 @@ static void each_condition_is_its_own(void **state) {
   plan = (abbe_plan){.camera_sees_refractor = true, .draw_back = true};
   assert_true(abbe_plan_runs(&plan, ABBE_PASS_EYE_BACK, 0));
   assert_false(abbe_plan_runs(&plan, ABBE_PASS_LIGHT_BACK, 0));
-  plan.desc.orders = 2;
+  plan.desc.exits = 2;
   assert_true(abbe_plan_runs(&plan, ABBE_CHOICE_INNER_REFLECTIONS, 0));
-  plan.desc.orders = 1;
+  plan.desc.exits = 1;
   assert_false(abbe_plan_runs(&plan, ABBE_CHOICE_INNER_REFLECTIONS, 0));
   plan = (abbe_plan){.desc = {.upsample = 2}};
   assert_true(abbe_plan_runs(&plan, ABBE_PASS_EYE_PICTURE, 0));

@@ -15,7 +15,7 @@ static void what_is_left_open_gets_its_default(void **state) {
   abbe_render_desc d = resolve(NULL);
   assert_true(d.width == 320 && d.height == 200 && d.photons == 256 && d.map_size == 1024);
   assert_true(d.supersample == 2 && d.upsample == 1 && d.fill == ABBE_FILL_BRIDGE);
-  assert_true(d.wavelengths == 0 && d.orders == 0); /* the scene tells */
+  assert_true(d.wavelengths == 0 && d.exits == 0); /* the scene tells */
   assert_true(d.min_nm == 380 && d.max_nm == 780 && d.energy_share == 0.01);
   d = resolve(&(abbe_render_desc){.upsample = 3, .width = 7});
   assert_true(d.supersample == 1 && d.width == 7);
@@ -54,7 +54,7 @@ static void limits_are_kept(void **state) {
       {{.profile = ABBE_PROFILE_THESIS, .upsample = 2}, "cannot be upsampled"},
       {{.wavelengths = ABBE_RENDER_MAX_WAVELENGTHS + 1}, "wavelengths is 1001"},
       {{.profile = ABBE_PROFILE_THESIS, .wavelengths = 65}, "wavelengths is 65"},
-      {{.orders = ABBE_RENDER_MAX_ORDERS + 1}, "exits is 33"},
+      {{.exits = ABBE_RENDER_MAX_EXITS + 1}, "exits is 33"},
       {{.width = (size_t)-1}, "width"},
       {{.min_nm = 700, .max_nm = 400}, "700 to 400"},
       {{.min_nm = -1}, "-1 to 780"},

@@ -15,7 +15,7 @@ static const abbe_render_desc far = {.width = 16,
                                      .map_size = 64,
                                      .wavelengths = 1,
                                      .energy_share = 1e-5,
-                                     .orders = ABBE_RENDER_MAX_ORDERS};
+                                     .exits = ABBE_RENDER_MAX_EXITS};
 
 static abbe_ledger energy_of(const char *text, const abbe_render_desc *desc) {
   abbe_scene scene = {0};
