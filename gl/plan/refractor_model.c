@@ -1,12 +1,13 @@
 #include "gl/plan/refractor_model.h"
 
+#include "gl/plan/material_range.h"
 #include "gl/plan/reach.h"
 #include "gl/plan/spectral_needs.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum { RANGE_STEPS = 81, MAX_WALK_REFRACTORS = 32, MAX_REFRACTORS = 255, MAX_LISTED = 48 };
+enum { MAX_FOLLOWED = 32, MAX_REFRACTORS = 255, MAX_LISTED = 48 };
 
 /* An index as near to air's as this bends no ray by more than that, a few grazing ones aside. */
 static const double invisible = 2e-6;
@@ -14,14 +15,13 @@ static const double invisible = 2e-6;
 /* Whether light goes through the object as through air: clear, of air's index, and no bubble. */
 static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
                          const abbe_plan *plan) {
-  const double min = plan->desc.min_nm, max = plan->desc.max_nm;
-  if (plan->desc.profile == ABBE_PROFILE_THESIS) return false;
-  for (int i = 0; i < RANGE_STEPS; i++) {
-    double lambda_nm = min + (max - min) * i / (RANGE_STEPS - 1), n = 0;
-    if (abbe_material_n(object->material, lambda_nm, &n, NULL) != ABBE_OK) return false;
-    if (!(fabs(n - 1) <= invisible)) return false;
-    if (abbe_material_attenuation(object->material, lambda_nm) > 0) return false;
-  }
+  abbe_material_range range;
+  if (plan->desc.profile == ABBE_PROFILE_THESIS ||
+      abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
+                               NULL) != ABBE_OK)
+    return false;
+  if (!(range.least_n >= 1 - invisible && range.most_n <= 1 + invisible) || range.most_per_m > 0)
+    return false;
   for (size_t i = 0; i < scene->object_count; i++)
     if (&scene->object[i] != object && scene->object[i].material != NULL &&
         abbe_reach_overlap(&scene->object[i], object))
@@ -48,7 +48,7 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
     refractors++;
   }
   if (abbe_profile_is_thesis(plan->desc.profile) || refractors == 0) return NULL;
-  if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_WALK_REFRACTORS) return NULL;
+  if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
   if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
   if (refractors > 1) return "there is more than one refractor";
   if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
@@ -76,7 +76,7 @@ static abbe_result check_asked(const abbe_object *object, const abbe_plan *plan,
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the model 'hierarchy' follows light through at most %d refractors; the "
                           "scene has more",
-                          MAX_WALK_REFRACTORS);
+                          MAX_FOLLOWED);
   return ABBE_OK;
 }
 
@@ -143,8 +143,8 @@ static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *p
 
 static void list_in_turn(abbe_plan *plan, const char *why) {
   abbe_plan_add(plan, ABBE_CHOICE_MULTI_REFRACTOR_PATHS, "%s",
-                plan->refractor_count == 0 ? "nothing refracts"
-                : plan->multi_refractor_paths               ? why
+                plan->refractor_count == 0    ? "nothing refracts"
+                : plan->multi_refractor_paths ? why
                 : abbe_profile_is_thesis(plan->desc.profile)
                     ? "the thesis profile follows two interfaces"
                 : plan->desc.model == ABBE_MODEL_LAYERS

@@ -1,6 +1,7 @@
 #include "gl/plan/spectral_needs.h"
 
 #include "colorimetry/weights.h"
+#include "gl/plan/material_range.h"
 
 #include <math.h>
 
@@ -33,19 +34,15 @@ static double extrapolated_share(const abbe_scene *scene, const abbe_material *m
 abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
                                         abbe_plan *plan, abbe_error *error) {
   ABBE_REQUIRE(scene && material && plan, error);
-  double min = plan->desc.min_nm, max = plan->desc.max_nm, first = 0, first_per_m = 0;
+  const double min = plan->desc.min_nm, max = plan->desc.max_nm;
   bool outside = extrapolated_share(scene, material, min, max) > LEAST_EXTRAPOLATED;
-  for (int i = 0; i < RANGE_STEPS; i++) {
-    double lambda_nm = min + (max - min) * i / (RANGE_STEPS - 1), n = 0;
-    abbe_result result = abbe_material_n(material, lambda_nm, &n, error);
-    if (result != ABBE_OK) return result;
-    double per_m = abbe_material_attenuation(material, lambda_nm);
-    if (i == 0) first = n;
-    if (i == 0) first_per_m = per_m;
-    if ((float)n != (float)first) plan->dispersive = true; /* the shaders hold it so */
-    if (per_m != first_per_m) plan->tinting = true;
-    if (per_m > 0) plan->absorbing = true;
-  }
+  abbe_material_range range;
+  abbe_result result = abbe_material_range_make(material, min, max, &range, error);
+  if (result != ABBE_OK) return result;
+  /* as floats: the shaders hold it so */
+  if ((float)range.least_n != (float)range.most_n) plan->dispersive = true;
+  if (range.least_per_m != range.most_per_m) plan->tinting = true;
+  if (range.most_per_m > 0) plan->absorbing = true;
   for (size_t i = 0; i < plan->refractor_count && outside; i++)
     if (scene->object[plan->refractor_object[i]].material == material) outside = false;
   if (outside)
