@@ -130,7 +130,8 @@ static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inne
   abbe_vector_subtract(object->max, object->min, size);
   for (size_t i = 0; i <= scene->light_count; i++) {
     const abbe_light *light = i < scene->light_count ? &scene->light[i] : NULL;
-    if (light != NULL ? !abbe_reach_light(light, object) : met || !plan->camera_sees_refractor) continue;
+    if (light != NULL ? !abbe_reach_light(light, object) : met || !plan->camera_sees_refractor)
+      continue;
     const bool parallel = light != NULL && light->kind == ABBE_LIGHT_DIRECTIONAL;
     double from[3], forward[3];
     memcpy(from, light != NULL ? light->position : scene->camera.eye, sizeof from);

@@ -14,7 +14,8 @@ void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
       plan->camera_sees_refractor = true;
   }
   for (size_t i = 0; i < scene->light_count && !plan->forward_transmission; i++)
-    for (size_t k = 0; k < plan->refractor_count && plan->reaches[i] && !plan->forward_transmission; k++)
+    for (size_t k = 0; k < plan->refractor_count && plan->reaches[i] && !plan->forward_transmission;
+         k++)
       for (size_t j = 0; j < plan->receiver_count && !plan->forward_transmission; j++)
         plan->forward_transmission =
             abbe_reach_through(&scene->light[i], &scene->object[plan->refractor_object[k]],
@@ -50,7 +51,7 @@ static abbe_result check_layers(const abbe_scene *scene, const abbe_plan *plan,
       light->name, object->name);
 }
 
-/* One lamp for each face of the cube through which light may reach a refractor; the first stands
+/* One view for each face of the cube through which light may reach a refractor; the first stands
  * in the light's own place. */
 static abbe_result make_cube(const abbe_scene *scene, size_t light, abbe_plan *plan,
                              abbe_error *error) {

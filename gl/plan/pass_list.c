@@ -28,8 +28,9 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
                 !plan->caustics                              ? unlit
                 : abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
                 : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
-                : plan->outside_map_view ? "a receiver lies more than 76 degrees off the view of a light's map"
-                              : "the lights' maps hold all receivers");
+                : plan->outside_map_view
+                    ? "a receiver lies more than 76 degrees off the view of a light's map"
+                    : "the lights' maps hold all receivers");
 }
 
 /* What a view draws of refractors for their back; `unmet`: why it draws none. */

@@ -18,17 +18,17 @@ extern "C" {
 #define ABBE_PASSES(X)                                                                             \
   X(RECEIVER_DEPTH, LIGHT, "light: receiver depth", p->receivers == ABBE_RECEIVER_DEPTH)           \
   X(LIGHT_FRONT, LIGHT, "light: refractor front", p->caustics)                                     \
-  X(LIGHT_BACK, LIGHT, "light: refractor back", p->caustics && p->draw_back)                            \
+  X(LIGHT_BACK, LIGHT, "light: refractor back", p->caustics && p->draw_back)                       \
   X(LIGHT_FRONT_AND_BACK, LIGHT, "light: refractor layers", is_thesis(p) && p->caustics)           \
   X(PHOTON_PLACEMENT, LIGHT, "light: photon placement", p->caustics)                               \
   X(PHOTONS, LIGHT, "light: photons", p->caustics)                                                 \
   X(SPECTRAL_MAP, LIGHT, "light: spectral map", p->caustics)                                       \
   X(GAP_FILL, LIGHT, "light: gap fill", p->fills)                                                  \
   X(EYE_RECEIVERS, EYE, "eye: receivers", true)                                                    \
-  X(EYE_FRONT, EYE, "eye: refractor front", p->camera_sees_refractor)                                               \
-  X(EYE_BACK, EYE, "eye: refractor back", p->camera_sees_refractor && p->draw_back)                                      \
-  X(EYE_FRONT_AND_BACK, EYE, "eye: refractor layers", is_thesis(p) && p->camera_sees_refractor)                     \
-  X(EYE_REFRACTION, EYE, "eye: refraction", p->camera_sees_refractor)                                               \
+  X(EYE_FRONT, EYE, "eye: refractor front", p->camera_sees_refractor)                              \
+  X(EYE_BACK, EYE, "eye: refractor back", p->camera_sees_refractor && p->draw_back)                \
+  X(EYE_FRONT_AND_BACK, EYE, "eye: refractor layers", is_thesis(p) && p->camera_sees_refractor)    \
+  X(EYE_REFRACTION, EYE, "eye: refraction", p->camera_sees_refractor)                              \
   X(EYE_PICTURE, EYE, "eye: picture", p->desc.supersample > 1 || p->desc.upsample > 1)
 
 /* X(id, text, condition): models and facts that passes rest on; i is the index of the scene's
@@ -36,11 +36,12 @@ extern "C" {
 #define ABBE_PLAN_CHOICES(X)                                                                       \
   X(REFRACTOR_MODEL, "model: ", refracts(p, i))                                                    \
   X(MORE_REFRACTORS, "models", true)                                                               \
-  X(MULTI_REFRACTOR_PATHS, "refractors in turn", p->multi_refractor_paths)                                             \
+  X(MULTI_REFRACTOR_PATHS, "refractors in turn", p->multi_refractor_paths)                         \
   X(RECEIVER_MODEL, "model: receivers", true)                                                      \
   X(RECEIVER_SHADOWS, "shadows of receivers", p->receiver_shadows)                                 \
   X(WAVELENGTHS, "wavelengths", true)                                                              \
-  X(INNER_REFLECTIONS, "inner reflections", (p->caustics || p->camera_sees_refractor) && p->desc.exits > 1)        \
+  X(INNER_REFLECTIONS, "inner reflections",                                                        \
+    (p->caustics || p->camera_sees_refractor) && p->desc.exits > 1)                                \
   X(LIGHT_MAP, "map: ", p->reaches[i])                                                             \
   X(RECEIVER_MAPS, "maps on receivers", p->pages)                                                  \
   X(ABSORPTION, "absorption", p->absorbing)                                                        \

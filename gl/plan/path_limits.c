@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { WALK_SLOTS = 16 };
+enum { MULTI_REFRACTOR_SLOTS = 16 };
 
 /* Mesa 22's llvmpipe ends every loop of a thread after 65535 turns of any loops, and a thread may
  * follow all wavelengths. */
@@ -26,13 +26,14 @@ void abbe_path_limits_choose(const abbe_scene *scene, const abbe_render_desc *as
     abbe_number_format(inside, sizeof inside, "; %.2g %% of it is still inside then",
                        100 * abbe_inner_light_plan(scene, asked, plan));
   /* Layers show less and less of what is inside; and who asks for few exits sees them. A smaller
-   * share brings a walk nothing that what is left does not show. */
+   * share brings multi-refractor paths nothing that what is left does not show. */
   const bool few = asked != NULL && asked->exits > 0 && asked->exits < ABBE_PLAN_EXITS;
   const bool eye_goes_on = !thesis && !plan->layers && !few;
   plan->eye_exits = eye_goes_on ? eye_exits(plan) : plan->desc.exits;
   plan->eye_share = plan->desc.energy_share;
   if (!plan->multi_refractor_paths) plan->eye_share = fmin(plan->eye_share, ABBE_PLAN_EYE_SHARE);
-  plan->hit_slots = plan->multi_refractor_paths ? WALK_SLOTS : plan->desc.exits + (thesis ? 0 : 1);
+  plan->hit_slots =
+      plan->multi_refractor_paths ? MULTI_REFRACTOR_SLOTS : plan->desc.exits + (thesis ? 0 : 1);
   if (abbe_plan_no_refraction(plan) != NULL)
     abbe_plan_add(plan, ABBE_CHOICE_INNER_REFLECTIONS, "%s", abbe_plan_no_refraction(plan));
   else if (plan->desc.exits == 1)

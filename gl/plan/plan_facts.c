@@ -15,14 +15,14 @@ const char *abbe_refractor_model_name(abbe_refractor_model model) {
 }
 
 const char *abbe_receiver_model_name(abbe_receiver_model model) {
-  return model == ABBE_RECEIVER_EXACT       ? "exact parallelograms"
+  return model == ABBE_RECEIVER_EXACT ? "exact parallelograms"
          : model == ABBE_RECEIVER_BVH ? "triangle hierarchy"
-                                            : "iterated image space";
+                                      : "iterated image space";
 }
 
 const char *abbe_plan_no_refraction(const abbe_plan *plan) {
   return plan->caustics || plan->camera_sees_refractor ? NULL
-         : plan->refractor_count == 0 ? "nothing refracts"
+         : plan->refractor_count == 0                  ? "nothing refracts"
                                       : "neither a light nor the eye meets a refractor";
 }
 

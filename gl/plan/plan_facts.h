@@ -17,17 +17,17 @@ extern "C" {
 #endif
 
 typedef enum abbe_refractor_model {
-  ABBE_REFRACTOR_SPHERE,    /* exact quadric */
-  ABBE_REFRACTOR_CONVEX,    /* plane tests */
-  ABBE_REFRACTOR_LAYERS,    /* front and back as a view sees them */
-  ABBE_REFRACTOR_BVH, /* triangles, traversed */
+  ABBE_REFRACTOR_SPHERE, /* exact quadric */
+  ABBE_REFRACTOR_CONVEX, /* plane tests */
+  ABBE_REFRACTOR_LAYERS, /* front and back as a view sees them */
+  ABBE_REFRACTOR_BVH,    /* triangles, traversed */
   ABBE_REFRACTOR_MODEL_COUNT
 } abbe_refractor_model;
 
 typedef enum abbe_receiver_model {
-  ABBE_RECEIVER_EXACT,     /* parallelograms, hit exactly */
-  ABBE_RECEIVER_BVH, /* triangles, traversed */
-  ABBE_RECEIVER_DEPTH      /* iterated image-space intersection */
+  ABBE_RECEIVER_EXACT, /* parallelograms, hit exactly */
+  ABBE_RECEIVER_BVH,   /* triangles, traversed */
+  ABBE_RECEIVER_DEPTH  /* iterated image-space intersection */
 } abbe_receiver_model;
 
 typedef struct abbe_plan_entry {
@@ -66,11 +66,13 @@ typedef struct abbe_plan {
   /* Where light and looks meet what. */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
   bool caustics;                       /* some light may */
-  bool camera_sees_refractor;                           /* the eye may */
-  bool multi_refractor_paths;    /* light that leaves a refractor may meet one again, and is followed */
-  bool forward_transmission; /* some receiver may lie where light goes on nearly straight through a refractor */
-  bool outside_map_view;   /* some receiver lies beyond a light's map view */
-  bool receiver_shadows; /* some receiver may hide another from a light */
+  bool camera_sees_refractor;          /* the eye may */
+  bool
+      multi_refractor_paths; /* light that leaves a refractor may meet one again, and is followed */
+  bool forward_transmission; /* some receiver may lie where light goes on nearly straight through a
+                                refractor */
+  bool outside_map_view;     /* some receiver lies beyond a light's map view */
+  bool receiver_shadows;     /* some receiver may hide another from a light */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
   size_t light_view_count;
@@ -85,13 +87,13 @@ typedef struct abbe_plan {
 
   size_t eye_exits; /* that the eye's rays are followed for, at the most */
   double eye_share; /* and the share of their light at which they end */
-  size_t hit_slots;     /* landings of a photon at the most: its exits, and the mirror on the outside */
+  size_t hit_slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
 
   /* What follows from the facts above. */
   bool pages;       /* light may land where its light's map cannot hold it: receivers have pages */
   bool fills;       /* light is laid between wavelengths */
   bool lengths;     /* landings keep the length of their way inside, which tells a tint anywhere */
-  bool draw_back;        /* the back of refractors is drawn */
+  bool draw_back;   /* the back of refractors is drawn */
   bool fewer_faces; /* some mesh is drawn with fewer (gl/plan/layer_detail.h) */
   bool textured;
 

@@ -143,6 +143,6 @@ abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
   for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
     if (plan->reaches[i])
       result = plan->light_view[i].face >= 0 ? check_cube(scene, plan, i, error)
-                                       : check_one_view(scene, plan, &scene->light[i], error);
+                                             : check_one_view(scene, plan, &scene->light[i], error);
   return result;
 }

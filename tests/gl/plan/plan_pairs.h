@@ -72,7 +72,7 @@ typedef struct pair {
 #define BALL_ROWS(pages)                                                                           \
   COUNTS(7, 8, 9),                                                                                 \
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball", "exact sphere: the object is a sphere"),             \
-      RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "light that leaves the refractor cannot meet it again"),    \
+      RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "light that leaves the refractor cannot meet it again"), \
       RUNS(CHOICE_RECEIVER_MODEL, "exact parallelograms: every receiver is a rectangle or a box"), \
       RESTS(CHOICE_RECEIVER_SHADOWS, "the receivers bound a convex room around the lights"),       \
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the index varies with wavelength"),          \
@@ -288,8 +288,8 @@ static const pair pairs[] = {
      ball,
      CAMERA POINT_LIGHT FLOOR SUNK("crown"),
      {0},
-     {COUNTS(7, 8, 16), RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "a receiver may reach into the refractor"),
-      SHADOWED,
+     {COUNTS(7, 8, 16),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "a receiver may reach into the refractor"), SHADOWED,
       RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
       END}},
     {"a directional light",

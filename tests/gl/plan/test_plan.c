@@ -152,11 +152,13 @@ static void lists_name_the_scenes_objects(void **state) {
   assert_int_equal(plan.refractor_count, 2);
   assert_true(plan.refractor_object[0] == 1 && plan.refractor_object[1] == 3);
   assert_true(plan.model[0] == ABBE_REFRACTOR_SPHERE && plan.model[1] == ABBE_REFRACTOR_CONVEX);
-  assert_true(plan.spheres && plan.convex && !plan.layers && !plan.bvh && plan.multi_refractor_paths);
+  assert_true(plan.spheres && plan.convex && !plan.layers && !plan.bvh &&
+              plan.multi_refractor_paths);
   assert_int_equal(plan.receiver_count, 2);
   assert_true(plan.receiver_object[0] == 0 && plan.receiver_object[1] == 2);
   assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
-  assert_true(plan.dispersive && plan.caustics && plan.camera_sees_refractor && plan.fills && !plan.absorbing);
+  assert_true(plan.dispersive && plan.caustics && plan.camera_sees_refractor && plan.fills &&
+              !plan.absorbing);
   abbe_plan_free(&plan);
 }
 
