@@ -252,7 +252,7 @@ static abbe_result match_plan(const abbe_scene *scene, abbe_trace_desc *desc, ab
   abbe_render_desc render = {.min_nm = desc->min_nm, .max_nm = desc->max_nm};
   abbe_result result = abbe_plan_make(scene, &render, &plan, error);
   if (result != ABBE_OK) return result;
-  desc->physics.orders = plan.desc.orders;
+  desc->physics.orders = plan.desc.exits;
   desc->physics.energy_share = plan.desc.energy_share;
   desc->physics.eye_orders = plan.eye_exits;
   desc->physics.eye_share = plan.eye_share;

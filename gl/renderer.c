@@ -8,12 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-double abbe_ledger_imbalance(const abbe_ledger *l) {
-  if (!(l->reached > 0)) return 0;
-  double parts = l->reflected + l->absorbed + l->trapped + l->missed + l->deposited;
-  return fabs(l->reached + l->interpolated - parts) / l->reached;
-}
-
 static bool is_thesis(const abbe_renderer *r) {
   return abbe_profile_is_thesis(r->plan.desc.profile);
 }
@@ -24,9 +18,9 @@ static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, a
   size_t of[ABBE_SCENE_MAX_LIGHTS] = {0};
   abbe_result result = abbe_local_scene_make(scene, &r->local, error);
   if (result == ABBE_OK && !is_thesis(r)) result = abbe_local_scene_scale_light(&r->local, error);
-  for (size_t i = own; i < r->plan.light_count; i++) of[i - own] = r->plan.lamp[i].light;
+  for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
   if (result == ABBE_OK && r->plan.cubes)
-    result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_count - own, error);
+    result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
   if (result != ABBE_OK || !r->local.moved || r->plan.desc.map_layout == NULL) return result;
   r->given = *r->plan.desc.map_layout;
   abbe_local_scene_from_world(&r->local, &r->given.view);
@@ -42,11 +36,12 @@ static abbe_result simplify_layers(abbe_renderer *r, abbe_error *error) {
     const abbe_mesh *mesh = &r->scene.local->object[object].mesh;
     double cell = INFINITY, sample = INFINITY;
     if (!abbe_layer_detail_asks(r->scene.local, &r->plan, i)) continue;
-    for (size_t k = 0; k < r->plan.light_count; k++)
+    for (size_t k = 0; k < r->plan.light_view_count; k++)
       if (r->plan.reaches[k])
         cell = fmin(cell, abbe_layer_detail_step(&r->views.light[k].near_view,
                                                  r->views.light[k].cells, mesh));
-    if (r->plan.seen) sample = abbe_layer_detail_step(&r->camera.view, r->camera.samples, mesh);
+    if (r->plan.camera_sees_refractor)
+      sample = abbe_layer_detail_step(&r->camera.view, r->camera.samples, mesh);
     result = abbe_gpu_meshes_simplify(&r->scene, object, abbe_layer_detail_distance(cell, sample),
                                       error);
   }
@@ -82,7 +77,7 @@ static abbe_result make_passes(abbe_renderer *r, bool software, abbe_error *erro
   if (result == ABBE_OK && is_thesis(r))
     return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
-  if (result == ABBE_OK) result = abbe_light_views_make(&r->scene, &r->views, error);
+  if (result == ABBE_OK) result = abbe_photon_lights_make(&r->scene, &r->views, error);
   r->variant.wide = r->views.wide;
   if (result == ABBE_OK) result = make_light(r, error);
   return result == ABBE_OK ? make_eye(r, software, error) : result;
@@ -121,7 +116,7 @@ void abbe_renderer_free(abbe_renderer *r) {
   abbe_receiver_atlas_free(&r->atlas);
   abbe_light_layers_free(&r->layers);
   abbe_refractor_faces_free(&r->faces);
-  abbe_light_views_free(&r->views);
+  abbe_photon_lights_free(&r->views);
   abbe_gpu_scene_free(&r->scene);
   if (r->gpu.gl != NULL) r->gpu.gl->DeleteTextures(1, &r->baseline);
   abbe_gpu_free(&r->gpu);
@@ -154,7 +149,8 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   size_t first = r->thesis.photon_count;
   if (!is_thesis(r)) {
     s->layer_faces = abbe_gpu_meshes_layer_faces(&r->scene);
-    for (size_t i = 0; i < r->plan.light_count; i++) s->photons += r->views.light[i].photon_count;
+    for (size_t i = 0; i < r->plan.light_view_count; i++)
+      s->photons += r->views.light[i].photon_count;
     cells = (double)r->views.light[0].cells[0] * (double)r->views.light[0].cells[1];
     first = r->views.light[0].photon_count;
   } else {
@@ -234,13 +230,14 @@ abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, a
 }
 
 static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *error) {
-  if (light >= r->plan.light_count || !r->plan.reaches[light] || r->plan.lamp[light].light != light)
+  if (light >= r->plan.light_view_count || !r->plan.reaches[light] ||
+      r->plan.light_view[light].light != light)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the scene has no spectral map of light %zu", light);
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
-  if (is_thesis(r) || !abbe_light_views_is_face(&r->views, light) ||
-      abbe_light_views_map_is_given(&r->views, light))
+  if (is_thesis(r) || !abbe_photon_lights_is_face(&r->views, light) ||
+      abbe_photon_lights_map_is_given(&r->views, light))
     return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "the light '%s' has a cube of maps, each with its own layout; give one "
@@ -302,9 +299,9 @@ abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **
                                         size_t *lanes, abbe_error *error) {
   ABBE_REQUIRE(r && data && count && orders && lanes, error);
   *data = NULL;
-  if (light >= r->plan.light_count || !r->plan.reaches[light] || is_thesis(r))
+  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_thesis(r))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
-  *orders = r->plan.slots;
+  *orders = r->plan.hit_slots;
   *lanes = r->caustics.trace.hits.stride;
   return abbe_caustics_read_hits(&r->caustics, light, r->local.origin, data, cells, count, error);
 }

@@ -1,5 +1,5 @@
-/* renderer_state.h: what a renderer is made of. Internal to gl/: renderer.c alone and its tests look
- * inside.
+/* renderer_state.h: what a renderer is made of. Internal to gl/: renderer.c alone and its tests
+ * look inside.
  */
 #ifndef ABBE_GL_RENDERER_STATE_H
 #define ABBE_GL_RENDERER_STATE_H
@@ -19,7 +19,7 @@ struct abbe_renderer {
   abbe_shader_variant variant;
 
   abbe_camera_view camera;
-  abbe_light_views views;
+  abbe_photon_lights views;
   abbe_refractor_faces faces;
   abbe_light_layers layers;
   abbe_receiver_atlas atlas;

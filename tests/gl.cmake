@@ -1,5 +1,7 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-foreach(name transport local_scene plan plan_scenes precision reach receiver_charts light_cube layer_detail)
+foreach(name layer_detail light_cube light_views local_scene material_range passes plan plan_facts
+    precision reach receiver_charts receiver_model refractor_model render_desc spectral_needs
+    statistics support)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()
 abbe_test(context gl ${gl_rooms})
@@ -13,7 +15,7 @@ abbe_test(shadow_planes gl ${gl_rooms})
 abbe_test(refraction_bands gl ${gl_rooms})
 abbe_test(refractors_traced gl abbe_validation ${gl_rooms})
 abbe_test(inner_light gl ${gl_rooms})
-abbe_test(everything gl ${gl_rooms})
+abbe_test(no_culling gl ${gl_rooms})
 abbe_test(layer_faces gl ${gl_rooms})
 abbe_test(lit_window gl ${gl_rooms})
 abbe_test(renderer gl ${gl_rooms})

@@ -55,7 +55,7 @@ static abbe_result print_json(const abbe_scene *scene, const abbe_plan *plan, ab
     cJSON_AddItemToArray(notes, cJSON_CreateString(plan->note[i]));
   abbe_scene_list_json(scene, root);
   cJSON_AddNumberToObject(root, "wavelengths", (double)plan->desc.wavelengths);
-  cJSON_AddNumberToObject(root, "exits", (double)plan->desc.orders);
+  cJSON_AddNumberToObject(root, "exits", (double)plan->desc.exits);
   abbe_result result = abbe_command_print_json(root, error);
   cJSON_Delete(root);
   return result;

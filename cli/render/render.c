@@ -172,7 +172,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON *passes = cJSON_AddArrayToObject(root, "passes");
   for (size_t i = 0; i < s->pass_count; i++) {
     cJSON *pass = cJSON_CreateObject();
-    cJSON_AddStringToObject(pass, "name", s->pass[i].name);
+    cJSON_AddStringToObject(pass, "name", abbe_plan_item_text(s->pass[i].pass));
     cJSON_AddNumberToObject(pass, "ms", s->pass[i].ms);
     cJSON_AddItemToArray(passes, pass);
   }
@@ -274,7 +274,7 @@ static abbe_result annotate(const request *q, const abbe_renderer *renderer,
            "profile %s, %zu wavelengths %g:%g nm, photons %zu, map %zu, samples %zu, upsample %zu, fill %s, "
            "share %g, exits %zu",
            abbe_profile_name(d->profile), d->wavelengths, d->min_nm, d->max_nm, d->photons,
-           d->map_size, d->supersample, d->upsample, abbe_fill_name(d->fill), d->energy_share, d->orders);
+           d->map_size, d->supersample, d->upsample, abbe_fill_name(d->fill), d->energy_share, d->exits);
   abbe_result result = abbe_image_set_attribute(image, "abbe:settings", text, error);
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error);

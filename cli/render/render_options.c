@@ -98,7 +98,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     d->energy_share = abbe_command_number(p, "--share", text, 1e-9, 1);
     return 0;
   case OPTION_EXITS:
-    d->orders = abbe_command_count(p, "--exits", text, 1, ABBE_RENDER_MAX_ORDERS);
+    d->exits = abbe_command_count(p, "--exits", text, 1, ABBE_RENDER_MAX_EXITS);
     return 0;
   case OPTION_SPACE:
     d->space =

@@ -137,7 +137,7 @@ static void take_count(const request *q, const char *option, const char *word, s
                        void *out) {
   size_t most = strcmp(option, "--samples") == 0       ? 4
                 : strcmp(option, "--upsample") == 0    ? 4
-                : strcmp(option, "--exits") == 0       ? ABBE_RENDER_MAX_ORDERS
+                : strcmp(option, "--exits") == 0       ? ABBE_RENDER_MAX_EXITS
                 : strcmp(option, "--wavelengths") == 0 ? ABBE_RENDER_MAX_WAVELENGTHS
                                                        : ABBE_RENDER_MAX_PHOTONS;
   ((abbe_sweep_values *)out)->value[at] =

@@ -122,7 +122,7 @@ static abbe_result trace_reference(work *w, bool matched, traced *to, abbe_error
     abbe_plan plan;
     result = abbe_plan_make(&w->scene, NULL, &plan, error);
     if (result != ABBE_OK) return result;
-    desc.trace.physics = (abbe_physics){true, plan.desc.orders, plan.desc.energy_share,
+    desc.trace.physics = (abbe_physics){true, plan.desc.exits, plan.desc.energy_share,
                                         plan.eye_exits, plan.eye_share};
     abbe_plan_free(&plan);
   }

@@ -305,7 +305,7 @@ static abbe_result begin(work *w, abbe_renderer *renderer, size_t variants, abbe
   w->frames = variants + (plan->refractor_count > 0 ? 1 : 0);
   if (w->request.map_layout == NULL) w->request.map_layout_light = 0;
   /* No layout serves all faces of a cube: each is fitted anew. */
-  const bool cube = plan->lamp[w->request.map_layout_light].face >= 0;
+  const bool cube = plan->light_view[w->request.map_layout_light].face >= 0;
   w->has_map = plan->caustics && (w->request.map_layout != NULL || !cube);
   abbe_renderer_map_layout(renderer, w->request.map_layout_light, &w->map);
   abbe_result result = abbe_renderer_read(renderer, plan->desc.layers, &w->picture, error);

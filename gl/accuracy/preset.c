@@ -27,10 +27,11 @@ const char *abbe_preset_class_name(abbe_preset_class which) {
 }
 
 abbe_preset_class abbe_preset_class_of(const abbe_plan *plan) {
-  return plan->layers || plan->hierarchy ? ABBE_PRESET_CLASS_MESHES
-         : plan->convex                  ? ABBE_PRESET_CLASS_CONVEX
-         : plan->spheres ? plan->through ? ABBE_PRESET_CLASS_SPHERES : ABBE_PRESET_CLASS_BOWS
-                         : ABBE_PRESET_CLASS_NONE;
+  return plan->layers || plan->bvh ? ABBE_PRESET_CLASS_MESHES
+         : plan->convex            ? ABBE_PRESET_CLASS_CONVEX
+         : plan->spheres
+             ? plan->forward_transmission ? ABBE_PRESET_CLASS_SPHERES : ABBE_PRESET_CLASS_BOWS
+             : ABBE_PRESET_CLASS_NONE;
 }
 
 /* Reading */
@@ -58,7 +59,7 @@ static abbe_result get_counts(const reader *r, abbe_yaml_node node, abbe_render_
                 {"map", ABBE_RENDER_MAX_MAP, &d->map_size},
                 {"samples", 4, &d->supersample},
                 {"upsample", 4, &d->upsample},
-                {"exits", ABBE_RENDER_MAX_ORDERS, &d->orders}};
+                {"exits", ABBE_RENDER_MAX_EXITS, &d->exits}};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     abbe_result result = abbe_yaml_get_count(r->yaml, node, counts[i].key, 1, counts[i].most,
                                              counts[i].out, r->error);
@@ -223,8 +224,8 @@ abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan
 static bool take_exits(size_t *mine, const abbe_render_desc *preset) {
   const size_t planned =
       preset->model == ABBE_MODEL_LAYERS ? ABBE_PLAN_LAYER_EXITS : ABBE_PLAN_EXITS;
-  const bool same = *mine == 0 || *mine == preset->orders;
-  if (*mine == 0 && preset->orders < planned) *mine = preset->orders;
+  const bool same = *mine == 0 || *mine == preset->exits;
+  if (*mine == 0 && preset->exits < planned) *mine = preset->exits;
   return same;
 }
 
@@ -249,7 +250,7 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
   same = take(&d->upsample, p->upsample) && same;
   same = take(&d->supersample, d->upsample > 1 ? 1 : p->supersample) && same;
   same = d->supersample == p->supersample && same;
-  same = take_exits(&d->orders, p) && same;
+  same = take_exits(&d->exits, p) && same;
   if (d->fill == ABBE_FILL_AUTO) d->fill = p->fill;
   same = take_share(&d->energy_share, p->energy_share) && same;
   if (d->model == ABBE_MODEL_AUTO) d->model = p->model;
@@ -259,15 +260,8 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *d) {
 bool abbe_preset_is_fine(const abbe_render_desc *d) {
   return d->wavelengths > ABBE_PLAN_WAVELENGTHS && d->photons > ABBE_PLAN_PHOTONS &&
          d->map_size >= ABBE_PLAN_MAP && d->supersample >= ABBE_PLAN_SAMPLES && d->upsample == 1 &&
-         d->orders >= ABBE_PLAN_EXITS && d->energy_share <= ABBE_PLAN_SHARE &&
+         d->exits >= ABBE_PLAN_EXITS && d->energy_share <= ABBE_PLAN_SHARE &&
          d->fill == ABBE_FILL_BRIDGE && d->model == ABBE_MODEL_AUTO;
-}
-
-static double passes_ms(const abbe_statistics *s, const char *prefix) {
-  double sum = 0;
-  for (size_t i = 0; i < s->pass_count; i++)
-    if (strncmp(s->pass[i].name, prefix, strlen(prefix)) == 0) sum += s->pass[i].ms;
-  return sum;
 }
 
 abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
@@ -285,8 +279,10 @@ abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, &statistics, error);
   abbe_renderer_free(renderer);
   if (result != ABBE_OK) return result;
-  out->light = passes_ms(&statistics, "light:") / fmax(point->light_ms, least_ms);
-  out->eye = passes_ms(&statistics, "eye:") / fmax(point->eye_ms, least_ms);
+  const double light_ms = abbe_statistics_stage_ms(&statistics, ABBE_STAGE_LIGHT);
+  const double eye_ms = abbe_statistics_stage_ms(&statistics, ABBE_STAGE_EYE);
+  out->light = light_ms / fmax(point->light_ms, least_ms);
+  out->eye = eye_ms / fmax(point->eye_ms, least_ms);
   return ABBE_OK;
 }
 

@@ -12,7 +12,7 @@ static const abbe_plan *plan_of(const abbe_caustics *c) {
 
 static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (!plan_of(c)->reaches[light]) continue;
     result = abbe_photon_start_run(&c->start, light, error);
     c->views->light[light].photon_count = abbe_photon_start_count(&c->start);
@@ -95,11 +95,11 @@ static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
                            ? ABBE_OK
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
   /* Pages are for what no map of the light could hold, whichever window is given. */
-  const bool given = abbe_light_views_map_is_given(c->views, light);
+  const bool given = abbe_photon_lights_map_is_given(c->views, light);
   const abbe_map_layout layout = *map;
   if (result == ABBE_OK && given) {
-    abbe_light_views_whole_map(c->views, light, map);
-    abbe_light_views_upload(c->views);
+    abbe_photon_lights_whole_map(c->views, light, map);
+    abbe_photon_lights_upload(c->views);
   }
   if (result == ABBE_OK) result = sort_hits(c, light, fit, beside, error);
   if (given) *map = layout;
@@ -122,7 +122,7 @@ static abbe_shader_variant photon_variant(const abbe_caustics *c,
   v.nodes = c->spectra.nodes;
   v.map_levels = c->views->map_levels;
   v.bridge = plan->fills;
-  v.doubts_bridges = plan->layers || plan->hierarchy;
+  v.doubts_bridges = plan->layers || plan->bvh;
   v.tinting = plan->lengths;
   return v;
 }
@@ -136,9 +136,9 @@ static abbe_result compile_trace(abbe_caustics *c, const abbe_shader_variant *va
 /* Photons are traced once to see where light falls: maps and pages are fitted to that. */
 static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe_error *error) {
   abbe_result result = compile_trace(c, variant, error);
-  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++)
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)
     if (plan_of(c)->reaches[light] &&
-        (c->atlas->used || !abbe_light_views_map_is_given(c->views, light)))
+        (c->atlas->used || !abbe_photon_lights_map_is_given(c->views, light)))
       result = fit_map(c, light, error);
   if (result != ABBE_OK || !c->atlas->used) return result;
   result = abbe_receiver_atlas_keep(c->atlas, variant, error);
@@ -147,12 +147,12 @@ static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe
 
 static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++)
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)
     if (plan_of(c)->reaches[light]) result = abbe_cell_fit_run(&c->trace, c->views, light, error);
-  for (size_t light = 0; light < plan_of(c)->light_count; light++)
-    abbe_light_views_shift_cells(c->views, light);
+  for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
+    abbe_photon_lights_shift_cells(c->views, light);
   if (result != ABBE_OK) return result;
-  abbe_light_views_upload(c->views);
+  abbe_photon_lights_upload(c->views);
   result = abbe_light_layers_run(c->layers, error);
   return result == ABBE_OK ? count_photons(c, error) : result;
 }
@@ -162,7 +162,7 @@ static abbe_result count_pairs(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
   size_t most = 0;
   if (!abbe_photon_spectra_refines(&c->spectra)) return ABBE_OK;
-  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (!plan_of(c)->reaches[light]) continue;
     result = abbe_photon_start_run(&c->start, light, error);
     abbe_refine_pass_coarse(&c->refine, light);
@@ -178,7 +178,7 @@ static abbe_result show_making(const abbe_caustics *c, size_t light, const abbe_
                                abbe_error *error) {
   const abbe_render_desc *d = &plan_of(c)->desc;
   if (d->progress == NULL) return ABBE_OK;
-  const double share = ((double)light + share_done(c, b)) / (double)plan_of(c)->light_count;
+  const double share = ((double)light + share_done(c, b)) / (double)plan_of(c)->light_view_count;
   if (d->progress(d->progress_user, 0.5 + 0.5 * share)) return ABBE_OK;
   return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
 }
@@ -187,7 +187,7 @@ static abbe_result show_making(const abbe_caustics *c, size_t light, const abbe_
 static abbe_result count_splats(abbe_caustics *c, abbe_error *error) {
   size_t most = 1;
   abbe_result result = count_pairs(c, error);
-  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     abbe_hit_batch b = {0};
     abbe_ledger ledger = {0};
     if (!plan_of(c)->reaches[light]) continue;
@@ -201,7 +201,7 @@ static abbe_result count_splats(abbe_caustics *c, abbe_error *error) {
     abbe_photon_ledger_read(&c->ledger, light, &ledger);
     c->views->light[light].reached_flux = ledger.reached;
   }
-  abbe_light_views_upload(c->views);
+  abbe_photon_lights_upload(c->views);
   return result == ABBE_OK ? abbe_deposit_pass_make_room(&c->deposit, most, error) : result;
 }
 
@@ -217,7 +217,7 @@ static abbe_result make_passes(abbe_caustics *c, const abbe_shader_variant *vari
   return result;
 }
 
-abbe_result abbe_caustics_make(abbe_light_views *views, abbe_light_layers *layers,
+abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *layers,
                                abbe_receiver_atlas *atlas, abbe_spectral_map *map,
                                abbe_shader_variant *variant, abbe_caustics *out,
                                abbe_error *error) {
@@ -256,9 +256,9 @@ static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_render
   abbe_result result = ABBE_OK;
   abbe_gpu_begin_pass(gpu);
   while (result == ABBE_OK && trace_next(c, light, &b)) {
-    abbe_gpu_end_pass(gpu, "light: photons");
+    abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
     result = abbe_deposit_pass_run(&c->deposit, light, &b, error);
-    const double share = ((double)light + share_done(c, &b)) / (double)plan_of(c)->light_count;
+    const double share = ((double)light + share_done(c, &b)) / (double)plan_of(c)->light_view_count;
     if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
       result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
     abbe_gpu_begin_pass(gpu);
@@ -271,15 +271,15 @@ static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progres
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_gpu_begin_pass(gpu);
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
-  abbe_gpu_end_pass(gpu, "light: photon placement");
+  abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTON_PLACEMENT);
   abbe_spectral_map_clear(c->map);
   abbe_photon_ledger_clear(&c->ledger);
-  abbe_gpu_end_pass(gpu, "light: spectral map");
+  abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
   if (result == ABBE_OK) result = trace_and_deposit(c, light, progress, user, error);
   if (result != ABBE_OK) return result;
   abbe_gpu_begin_pass(gpu);
   abbe_spectral_map_resolve(c->map, light);
-  abbe_gpu_end_pass(gpu, "light: spectral map");
+  abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
   return ABBE_OK;
 }
 
@@ -287,7 +287,7 @@ abbe_result abbe_caustics_run(abbe_caustics *c, abbe_render_progress progress, v
                               double *untimed_ms, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_result result = ABBE_OK;
-  for (size_t light = 0; light < plan_of(c)->light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (!plan_of(c)->reaches[light]) continue;
     result = run_light(c, light, progress, user, error);
     if (result != ABBE_OK || gpu->statistics == NULL) continue;

@@ -15,7 +15,7 @@
 #include "gl/photons/trace_pass.h"
 
 typedef struct abbe_caustics {
-  abbe_light_views *views;
+  abbe_photon_lights *views;
   abbe_light_layers *layers;
   abbe_receiver_atlas *atlas;
   abbe_spectral_map *map;
@@ -30,7 +30,7 @@ typedef struct abbe_caustics {
 /* Fits views, maps, pages and grids by tracing photons, makes the atlas and the map, completes the
  * scene's variant by the pages that there are. Of a plan with caustics. Calls the request's
  * progress. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
-abbe_result abbe_caustics_make(abbe_light_views *views, abbe_light_layers *layers,
+abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *layers,
                                abbe_receiver_atlas *atlas, abbe_spectral_map *map,
                                abbe_shader_variant *variant, abbe_caustics *out, abbe_error *error);
 void abbe_caustics_free(abbe_caustics *caustics);

@@ -107,11 +107,11 @@ static GLuint *read_words(const abbe_gl *gl, GLuint buffer, size_t offset, size_
   return data;
 }
 
-abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_light_views *views, size_t light,
+abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views, size_t light,
                               abbe_error *error) {
   const abbe_plan *plan = views->scene->plan;
   const abbe_gl *gl = views->scene->gpu->gl;
-  abbe_light_view *view = &views->light[light];
+  abbe_photon_light *view = &views->light[light];
   const size_t lanes = trace->hits.stride;
   const size_t middle = plan->desc.wavelengths / 2, first = middle - lanes / 2;
   float *hit = NULL;
@@ -133,7 +133,7 @@ abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_light_views *views, s
                     .path = path,
                     .photon = photon,
                     .photons = view->photon_count,
-                    .orders = plan->slots,
+                    .orders = plan->hit_slots,
                     .lanes = lanes,
                     .lane = middle - first,
                     .slot = slot,

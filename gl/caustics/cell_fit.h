@@ -7,7 +7,7 @@
 
 /* Traces a batch of wavelengths and makes the light's grid coarser, each way by itself, where the
  * images of nearly all cells are thinner than two texels. The map is fitted by then. */
-abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_light_views *views, size_t light,
+abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views, size_t light,
                               abbe_error *error);
 
 #endif

@@ -61,9 +61,9 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   const abbe_plan *plan = spectra->scene->plan;
   abbe_gpu *gpu = spectra->scene->gpu;
   const bool fine = b->set == ABBE_TRACE_REFINED;
-  const size_t rows = plan->light_count * plan->refractor_count;
+  const size_t rows = plan->light_view_count * plan->refractor_count;
   abbe_gpu_set_int(gpu, program, "light", (int)light);
-  abbe_light_views_set_grid(pass->map->views, program, light);
+  abbe_photon_lights_set_grid(pass->map->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)plan->desc.map_size);
   abbe_gpu_set_int(gpu, program, "lane_first", (int)b->first);
   /* of the hits that photons have; a refined interval may have more of its own */
@@ -109,7 +109,7 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   const size_t items =
       fine ? pass->refine->pair_room : trace->start->views->light[light].photon_count;
   abbe_gpu_scene_bind(scene);
-  abbe_light_views_bind(trace->start->views);
+  abbe_photon_lights_bind(trace->start->views);
   abbe_receiver_atlas_bind(trace->atlas);
   abbe_photon_start_bind(trace->start);
   abbe_photon_ledger_bind(trace->ledger);
@@ -123,7 +123,7 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   abbe_gpu_bind_storage(gpu, BINDING_SPLATS, pass->splats);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, paths);
   bind_hits(pass, program, fine);
-  abbe_gpu_dispatch_list(gpu, program, paths, items * scene->plan->slots, 1);
+  abbe_gpu_dispatch_list(gpu, program, paths, items * scene->plan->hit_slots, 1);
 }
 
 size_t abbe_deposit_pass_count(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch) {
@@ -147,7 +147,8 @@ abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
   abbe_gpu *gpu = scene_of(pass)->gpu;
   for (size_t chunk = 0; chunk < pass->chunks; chunk++) {
     list_splats(pass, light, batch, chunk);
-    abbe_gpu_end_pass(gpu, scene_of(pass)->plan->fills ? "light: gap fill" : "light: spectral map");
+    abbe_gpu_end_pass(gpu,
+                      scene_of(pass)->plan->fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
     const bool look = pass->chunks > 1 || gpu->statistics != NULL;
     if (look && abbe_gpu_read_count(gpu, pass->splats) > pass->splat_room)
       return abbe_error_set(error, ABBE_GL,
@@ -155,7 +156,7 @@ abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
                             "use fewer photons or wavelengths",
                             pass->splat_room * pass->chunks);
     add_splats(pass, light);
-    abbe_gpu_end_pass(gpu, "light: spectral map");
+    abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
   }
   return ABBE_OK;
 }

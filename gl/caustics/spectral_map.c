@@ -30,7 +30,8 @@ static abbe_result make_texture(abbe_spectral_map *map, abbe_error *error) {
   return abbe_gl_check(gl, "the allocation of the map", error);
 }
 
-abbe_result abbe_spectral_map_make(const abbe_light_views *views, const abbe_receiver_atlas *atlas,
+abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
+                                   const abbe_receiver_atlas *atlas,
                                    const abbe_shader_variant *variant, abbe_spectral_map *out,
                                    abbe_error *error) {
   abbe_gpu *gpu = views->scene->gpu;
@@ -40,7 +41,7 @@ abbe_result abbe_spectral_map_make(const abbe_light_views *views, const abbe_rec
   abbe_result result = make_texture(out, error);
   if (result != ABBE_OK || !views->scene->plan->caustics) return result;
   const size_t texels = (atlas->used ? 2 : 1) * views->map_texels;
-  result = abbe_gpu_make_buffer(gpu, texels * abbe_light_views_map_words(views) * 4, NULL,
+  result = abbe_gpu_make_buffer(gpu, texels * abbe_photon_lights_map_words(views) * 4, NULL,
                                 &out->sums, error);
   if (result == ABBE_OK)
     result = abbe_shader_variant_compute(variant, gpu->gl, "map_resolve.comp", NULL, &out->resolve,
@@ -90,7 +91,7 @@ static void write_level(abbe_spectral_map *map, GLuint program, size_t level, si
 static void resolve_layer(abbe_spectral_map *map, size_t light, size_t layer, size_t rows) {
   abbe_gpu *gpu = scene_of(map)->gpu;
   abbe_gpu_scene_bind(scene_of(map));
-  abbe_light_views_bind(map->views);
+  abbe_photon_lights_bind(map->views);
   abbe_receiver_atlas_bind(map->atlas);
   use(map, map->resolve, "coarser_map", light, layer);
   abbe_gpu_set_uint(gpu, map->resolve, "map_texels", map->views->map_texels);
@@ -121,7 +122,7 @@ abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t l
                                           abbe_ledger *out, abbe_error *error) {
   const abbe_gl *gl = scene_of(map)->gpu->gl;
   const size_t layer = map->views->map_texels, texels = layer * (map->atlas->used ? 2 : 1);
-  const size_t words = abbe_light_views_map_words(map->views);
+  const size_t words = abbe_photon_lights_map_words(map->views);
   const size_t size = texels * words * sizeof(GLuint);
   double deposited[2] = {0, 0};
   GLuint *sum = malloc(size);
@@ -132,7 +133,7 @@ abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t l
     deposited[i / layer] +=
         map->views->wide ? abbe_photon_ledger_wide(sum + 6 * i + 2) : sum[3 * i + 1];
   free(sum);
-  const double unit = abbe_light_views_map_unit(map->views, light);
+  const double unit = abbe_photon_lights_map_unit(map->views, light);
   out->deposited += (deposited[0] + deposited[1]) * unit;
   out->on_pages += deposited[1] * unit;
   return abbe_gl_check(gl, "the reading of the ledger", error);
@@ -146,8 +147,8 @@ abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, d
   if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
   scene_of(map)->gpu->gl->BindTexture(GL_TEXTURE_2D_ARRAY, map->texture);
   scene_of(map)->gpu->gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, data);
-  for (size_t i = 0; i < plan->light_count; i++) {
-    if (i == light || plan->lamp[i].light != light) continue;
+  for (size_t i = 0; i < plan->light_view_count; i++) {
+    if (i == light || plan->light_view[i].light != light) continue;
     for (size_t k = 0; k < layer; k++) data[light * layer + k] += data[i * layer + k];
   }
   abbe_result result = abbe_map_picture_flux(data + light * layer, side,

@@ -6,14 +6,14 @@
 #define ABBE_GL_CAUSTICS_SPECTRAL_MAP_H
 
 #include "colorimetry/image/image.h"
-#include "gl/light/receiver_atlas.h"
 #include "gl/device/statistics.h"
+#include "gl/light/receiver_atlas.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
 typedef struct abbe_spectral_map {
-  const abbe_light_views *views;
+  const abbe_photon_lights *views;
   const abbe_receiver_atlas *atlas;
   GLuint texture, sums;
   GLuint resolve, mip; /* programs */
@@ -22,7 +22,8 @@ typedef struct abbe_spectral_map {
 
 /* Black, of one texel a layer, where the plan has no caustics; then it has no sums and is never
  * cleared or resolved. */
-abbe_result abbe_spectral_map_make(const abbe_light_views *views, const abbe_receiver_atlas *atlas,
+abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
+                                   const abbe_receiver_atlas *atlas,
                                    const abbe_shader_variant *variant, abbe_spectral_map *out,
                                    abbe_error *error);
 void abbe_spectral_map_free(abbe_spectral_map *map);

@@ -1,7 +1,7 @@
 #include "gl/device/gpu.h"
 
-#include "gl/device/program.h"
 #include "gl/device/bindings.h"
+#include "gl/device/program.h"
 
 #include <time.h>
 
@@ -28,7 +28,7 @@ double abbe_gpu_now_ms(void) {
 }
 
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
-                                      abbe_error *error) {
+                                 abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   if (size == 0) size = 16; /* a bound buffer may not be empty */
   gl->GenBuffers(1, out);
@@ -52,7 +52,7 @@ static size_t texel_bytes(GLenum format) {
 }
 
 abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
-                                       size_t layers, bool linear, GLuint *out, abbe_error *error) {
+                                  size_t layers, bool linear, GLuint *out, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
   gl->GenTextures(1, out);
@@ -70,9 +70,8 @@ abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, si
 }
 
 /* A layer of -1 attaches the whole texture: a 2D one, or every layer of an array. */
-abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *layer,
-                                     size_t count, GLuint depth, size_t width, size_t height,
-                                     abbe_error *error) {
+abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *layer, size_t count,
+                                GLuint depth, size_t width, size_t height, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   GLenum attachments[4];
   gl->BindFramebuffer(GL_FRAMEBUFFER, gpu->framebuffer);
@@ -93,9 +92,8 @@ abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *
                         width, height);
 }
 
-abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size,
-                                      const void *data, int unit, GLuint *buffer, GLuint *texture,
-                                      abbe_error *error) {
+abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
+                                 int unit, GLuint *buffer, GLuint *texture, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
   gl->DeleteBuffers(1, buffer);
   *buffer = 0;
@@ -109,7 +107,7 @@ abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size,
 }
 
 void abbe_gpu_bind_array(abbe_gpu *gpu, GLuint program, const char *name, int unit,
-                                GLuint texture) {
+                         GLuint texture) {
   GLint location = gpu->gl->GetUniformLocation(program, name);
   if (location < 0) return;
   gpu->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
@@ -118,14 +116,14 @@ void abbe_gpu_bind_array(abbe_gpu *gpu, GLuint program, const char *name, int un
 }
 
 void abbe_gpu_bind_texture(abbe_gpu *gpu, GLuint program, const char *name, int unit,
-                                   GLuint texture) {
+                           GLuint texture) {
   gpu->gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
   gpu->gl->BindTexture(GL_TEXTURE_2D, texture);
   gpu->gl->Uniform1i(gpu->gl->GetUniformLocation(program, name), unit);
 }
 
-void abbe_gpu_bind_texels(abbe_gpu *gpu, GLuint program, const char *name, int unit,
-                               GLenum format, GLuint buffer) {
+void abbe_gpu_bind_texels(abbe_gpu *gpu, GLuint program, const char *name, int unit, GLenum format,
+                          GLuint buffer) {
   const abbe_gl *gl = gpu->gl;
   if (gpu->texels[unit] == 0) gl->GenTextures(1, &gpu->texels[unit]);
   gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
@@ -198,17 +196,10 @@ void abbe_gpu_begin_pass(abbe_gpu *gpu) {
   gpu->pass_start_ms = abbe_gpu_now_ms();
 }
 
-void abbe_gpu_end_pass(abbe_gpu *gpu, const char *name) {
-  abbe_statistics *s = gpu->statistics;
-  if (s == NULL) return;
+void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass) {
+  if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
-  double ms = abbe_gpu_now_ms() - gpu->pass_start_ms;
-  gpu->pass_start_ms += ms;
-  for (size_t i = 0; i < s->pass_count; i++)
-    if (s->pass[i].name == name) {
-      s->pass[i].ms += ms;
-      return;
-    }
-  if (s->pass_count < ABBE_STATISTICS_MAX_PASSES)
-    s->pass[s->pass_count++] = (abbe_pass_time){name, ms};
+  const double now_ms = abbe_gpu_now_ms();
+  abbe_statistics_add_ms(gpu->statistics, pass, now_ms - gpu->pass_start_ms);
+  gpu->pass_start_ms = now_ms;
 }

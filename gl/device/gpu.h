@@ -1,5 +1,6 @@
-/* gpu.h: what every pass does with the device: buffers and textures, counted; targets; uniforms; lists
- * whose length stays on the device; the time of a pass. It knows no scene and no pass. Internal to gl/.
+/* gpu.h: what every pass does with the device: buffers and textures, counted; targets; uniforms;
+ * lists whose length stays on the device; the time of a pass. It knows no scene and no pass.
+ * Internal to gl/.
  */
 #ifndef ABBE_GL_DEVICE_GPU_H
 #define ABBE_GL_DEVICE_GPU_H
@@ -41,13 +42,13 @@ abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, G
 /* A texture of one level, an array where layers > 0. ABBE_GL. */
 abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
                                   size_t layers, bool linear, GLuint *out, abbe_error *error);
-/* A buffer of `size` bytes that shaders read as texels of `format`, and its texture, at a unit of its
- * own; what *buffer was is deleted, *texture is made where it is 0. ABBE_GL. */
+/* A buffer of `size` bytes that shaders read as texels of `format`, and its texture, at a unit of
+ * its own; what *buffer was is deleted, *texture is made where it is 0. ABBE_GL. */
 abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error);
 
-/* Draws into these from now on. A layer of -1 attaches the whole texture: a 2D one, or every layer of
- * an array. count at most 4, depth may be 0. ABBE_GL. */
+/* Draws into these from now on. A layer of -1 attaches the whole texture: a 2D one, or every layer
+ * of an array. count at most 4, depth may be 0. ABBE_GL. */
 abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *layer, size_t count,
                                 GLuint depth, size_t width, size_t height, abbe_error *error);
 
@@ -73,7 +74,8 @@ size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
 
 /* One thread a texel, in groups of 32 x 16. */
 void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height);
-/* So many threads an element of the list, which has room for `most`; the program is set up by then. */
+/* So many threads an element of the list, which has room for `most`; the program is set up by then.
+ */
 void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t most,
                             size_t threads);
 
@@ -81,6 +83,6 @@ double abbe_gpu_now_ms(void);
 void abbe_gpu_begin_pass(abbe_gpu *gpu);
 /* What was done since the pass began, or since the last one's end, is of this pass; several ends of
  * one pass add up. */
-void abbe_gpu_end_pass(abbe_gpu *gpu, const char *name);
+void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass);
 
 #endif

@@ -2,13 +2,13 @@
 #ifndef ABBE_GL_DEVICE_STATISTICS_H
 #define ABBE_GL_DEVICE_STATISTICS_H
 
+#include "gl/plan/passes.h"
+
 #include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-#define ABBE_STATISTICS_MAX_PASSES 32
 
 /* Light that reached refractors, and its parts, each sample weighted by its ybar (W of the lights'
  * power); deposited is summed from the map itself, so that the balance is a check and no identity.
@@ -31,15 +31,15 @@ typedef struct abbe_ledger {
 double abbe_ledger_imbalance(const abbe_ledger *ledger);
 
 typedef struct abbe_pass_time {
-  const char *name;
+  abbe_pass pass;
   double ms;
 } abbe_pass_time;
 
 typedef struct abbe_statistics {
-  double frame_ms; /* all passes, finished */
-  double floor_ms; /* drawing the surfaces alone, where it was measured; else 0 */
-  size_t pass_count;
-  abbe_pass_time pass[ABBE_STATISTICS_MAX_PASSES];
+  double frame_ms;   /* all passes, finished */
+  double floor_ms;   /* drawing the surfaces alone, where it was measured; else 0 */
+  size_t pass_count; /* of those that ran, as they first ended */
+  abbe_pass_time pass[ABBE_PASS_COUNT];
   size_t photons; /* cells that hold a refractor, all lights */
   size_t wavelengths;
   double refractor_share; /* of the first light's photon grid */
@@ -47,6 +47,10 @@ typedef struct abbe_statistics {
   size_t device_bytes;    /* buffers and textures */
   abbe_ledger energy;
 } abbe_statistics;
+
+void abbe_statistics_add_ms(abbe_statistics *s, abbe_pass pass, double ms);
+/* Of all passes of the light's side of the frame, or of the eye's. */
+double abbe_statistics_stage_ms(const abbe_statistics *s, abbe_pass_stage stage);
 
 #ifdef __cplusplus
 }

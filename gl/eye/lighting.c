@@ -16,7 +16,7 @@ static void set_camera(const abbe_lighting *lighting, GLuint program) {
 
 void abbe_lighting_use(const abbe_lighting *lighting, GLuint program) {
   abbe_gpu_scene_bind(lighting->scene);
-  abbe_light_views_bind(lighting->views);
+  abbe_photon_lights_bind(lighting->views);
   abbe_receiver_atlas_bind(lighting->atlas);
   lighting->scene->gpu->gl->UseProgram(program);
   abbe_spectral_map_set(lighting->map, program);

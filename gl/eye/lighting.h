@@ -11,7 +11,7 @@
 
 typedef struct abbe_lighting {
   const abbe_gpu_scene *scene;
-  const abbe_light_views *views;
+  const abbe_photon_lights *views;
   const abbe_light_layers *layers;
   const abbe_receiver_atlas *atlas;
   const abbe_spectral_map *map;

@@ -51,7 +51,7 @@ void abbe_picture_run(abbe_picture *picture) {
   gl->Uniform2i(gl->GetUniformLocation(program, "size"), (GLint)desc->width, (GLint)desc->height);
   abbe_gpu_dispatch_2d(gpu, desc->width, desc->height);
   gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  abbe_gpu_end_pass(gpu, "eye: picture");
+  abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_PICTURE);
 }
 
 void abbe_picture_copy_flipped(const float *from, size_t first, abbe_image *image, size_t to,

@@ -56,9 +56,9 @@ static abbe_result make_unlit(abbe_receivers_pass *pass, const abbe_shader_varia
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const abbe_plan *plan = scene->plan;
   if (plan->desc.everything || plan->receivers != ABBE_RECEIVER_EXACT) return ABBE_OK;
-  pass->part = calloc(2 * plan->light_count * plan->receiver_count + 1, sizeof *pass->part);
+  pass->part = calloc(2 * plan->light_view_count * plan->receiver_count + 1, sizeof *pass->part);
   if (pass->part == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for receivers");
-  for (size_t light = 0; light < plan->light_count; light++) {
+  for (size_t light = 0; light < plan->light_view_count; light++) {
     abbe_view view[2];
     const size_t views = views_of_light(pass, light, view);
     if (views == 0) return ABBE_OK;
@@ -120,7 +120,7 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   abbe_lighting_use(pass->lighting, whole);
   for (size_t i = 0; i < scene->plan->receiver_count; i++) draw_receiver(pass, whole, i);
   if (pass->unlit != 0) draw_lit_parts(pass);
-  abbe_gpu_end_pass(scene->gpu, "eye: receivers");
+  abbe_gpu_end_pass(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
 

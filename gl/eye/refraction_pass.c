@@ -38,17 +38,17 @@ static void write_each(FILE *to, const char *name, size_t count, size_t most) {
 /* What a software rasteriser copies (copies.glsl). NULL: no memory. */
 static char *write_copies(const abbe_gpu_scene *scene) {
   const abbe_plan *p = scene->plan;
-  const bool convex = p->convex && p->refractor_count == 1 && !p->walk;
+  const bool convex = p->convex && p->refractor_count == 1 && !p->multi_refractor_paths;
   char *text = NULL;
   size_t size = 0;
   FILE *to = open_memstream(&text, &size);
   if (to == NULL) return NULL;
-  write_each(to, "LIGHT", p->light_count, MOST_COPIED_LIGHTS);
+  write_each(to, "LIGHT", p->light_view_count, MOST_COPIED_LIGHTS);
   write_each(to, "RECEIVER", p->parallelogram_count, MOST_COPIED_RECEIVERS);
   write_each(to, "PLANE", convex ? scene->local->object[p->refractor_object[0]].exact.count : 0,
              MOST_COPIES);
   write_each(to, "SHADOW_PLANE",
-             p->light_count * p->refractor_count == 1 ? scene->shadow_planes : 0, MOST_COPIES);
+             p->light_view_count * p->refractor_count == 1 ? scene->shadow_planes : 0, MOST_COPIES);
   const bool failed = ferror(to) != 0;
   if (fclose(to) == 0 && !failed) return text;
   free(text);
@@ -93,9 +93,9 @@ static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (resolves(pass))
     result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, 0, false, &pass->colour, error);
-  if (result != ABBE_OK || !plan->seen) return result;
-  result =
-      abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, plan->back ? 2 : 1, false, &pass->layers, error);
+  if (result != ABBE_OK || !plan->camera_sees_refractor) return result;
+  result = abbe_gpu_make_texture(gpu, GL_RGBA32F, w, h, plan->draw_back ? 2 : 1, false,
+                                 &pass->layers, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_texture(gpu, GL_R16UI, w, h, 0, false, &pass->owner, error);
   if (result == ABBE_OK)
@@ -117,7 +117,7 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
   *out = (abbe_refraction_pass){
       .lighting = lighting, .faces = faces, .receivers = receivers, .ways = variant->ways};
   abbe_result result = make_targets(out, error);
-  if (result == ABBE_OK && lighting->scene->plan->seen)
+  if (result == ABBE_OK && lighting->scene->plan->camera_sees_refractor)
     result = make_programs(out, variant, software, error);
   return result;
 }
@@ -140,7 +140,8 @@ static abbe_result draw_faces(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_result result = ABBE_OK;
   abbe_gpu_begin_pass(gpu);
   abbe_refractor_faces_use(pass->faces, &pass->lighting->camera->view);
-  for (int back = 0; back <= (scene_of(pass)->plan->back ? 1 : 0) && result == ABBE_OK; back++) {
+  for (int back = 0; back <= (scene_of(pass)->plan->draw_back ? 1 : 0) && result == ABBE_OK;
+       back++) {
     const abbe_faces_target target = {.layers = pass->layers,
                                       .owner = pass->owner,
                                       .depth = pass->depth,
@@ -150,7 +151,7 @@ static abbe_result draw_faces(abbe_refraction_pass *pass, abbe_error *error) {
                                       .height = pass->lighting->camera->samples[1],
                                       .back = back != 0};
     result = abbe_refractor_faces_draw(pass->faces, &target, false, error);
-    abbe_gpu_end_pass(gpu, back ? "eye: refractor back" : "eye: refractor front");
+    abbe_gpu_end_pass(gpu, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);
   }
   return result;
 }
@@ -231,7 +232,7 @@ static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
 abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_progress progress,
                                      void *user, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const bool seen = scene_of(pass)->plan->seen;
+  const bool seen = scene_of(pass)->plan->camera_sees_refractor;
   abbe_result result = seen ? draw_faces(pass, error) : ABBE_OK;
   abbe_gpu_begin_pass(gpu);
   if (result == ABBE_OK && resolves(pass)) result = clear_colour(pass, error);
@@ -242,6 +243,6 @@ abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_pro
   gpu->gl->BindImageTexture(0, resolves(pass) ? pass->colour : pass->receivers->colour, 0, GL_FALSE,
                             0, GL_READ_WRITE, GL_RGBA32F);
   result = refract_pixels(pass, progress, user, error);
-  abbe_gpu_end_pass(gpu, "eye: refraction");
+  abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

@@ -15,7 +15,7 @@ static void find_lit(const abbe_light_fit *fit, size_t light, GLuint found[4]) {
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, fit->found);
   gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof none, none);
   abbe_gpu_scene_bind(scene);
-  abbe_light_views_bind(fit->views);
+  abbe_photon_lights_bind(fit->views);
   gl->UseProgram(fit->program);
   abbe_gpu_scene_set(scene, fit->program);
   abbe_light_layers_set(fit->layers, fit->program);
@@ -34,9 +34,8 @@ static abbe_result fit_near_view(const abbe_light_fit *fit, size_t light, abbe_e
   for (int turn = 0; turn < TURNS; turn++) {
     GLuint found[4] = {0};
     /* What rays meet of meshes is told by the front layer of the view as it is now. */
-    abbe_result result = fit->views->scene->plan->hierarchy
-                             ? abbe_light_layers_draw(fit->layers, light, error)
-                             : ABBE_OK;
+    abbe_result result =
+        fit->views->scene->plan->bvh ? abbe_light_layers_draw(fit->layers, light, error) : ABBE_OK;
     if (result != ABBE_OK) return result;
     find_lit(fit, light, found);
     if (found[0] > found[1]) break; /* nothing is lit */
@@ -53,13 +52,13 @@ static abbe_result fit_near_view(const abbe_light_fit *fit, size_t light, abbe_e
     }
     if (turn == 0 && !shrinks) break; /* nothing to speak of is cut off */
     memcpy(window, box, sizeof box);
-    abbe_light_views_upload(fit->views);
+    abbe_photon_lights_upload(fit->views);
     if (!shrinks) break;
   }
   return ABBE_OK;
 }
 
-abbe_result abbe_light_fit_run(abbe_light_views *views, abbe_light_layers *layers,
+abbe_result abbe_light_fit_run(abbe_photon_lights *views, abbe_light_layers *layers,
                                const abbe_shader_variant *variant, abbe_error *error) {
   abbe_gpu *gpu = views->scene->gpu;
   const abbe_plan *plan = views->scene->plan;
@@ -68,7 +67,7 @@ abbe_result abbe_light_fit_run(abbe_light_views *views, abbe_light_layers *layer
   abbe_result result =
       abbe_shader_variant_compute(variant, gpu->gl, "light_fit.comp", NULL, &fit.program, error);
   if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, 4 * 4, NULL, &fit.found, error);
-  for (size_t i = 0; i < plan->light_count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < plan->light_view_count && result == ABBE_OK; i++)
     if (plan->reaches[i]) result = fit_near_view(&fit, i, error);
   gpu->gl->DeleteBuffers(1, &fit.found);
   gpu->gl->DeleteProgram(fit.program);

@@ -8,14 +8,14 @@
 #include "gl/scene/shader_variant.h"
 
 typedef struct abbe_light_fit {
-  abbe_light_views *views;
+  abbe_photon_lights *views;
   abbe_light_layers *layers;
   GLuint program, found;
 } abbe_light_fit;
 
 /* Of all lights whose light may meet a refractor; layers are drawn for it where meshes are
  * traversed. ABBE_GL, ABBE_NO_MEMORY. */
-abbe_result abbe_light_fit_run(abbe_light_views *views, abbe_light_layers *layers,
+abbe_result abbe_light_fit_run(abbe_photon_lights *views, abbe_light_layers *layers,
                                const abbe_shader_variant *variant, abbe_error *error);
 
 #endif

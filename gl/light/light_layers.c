@@ -10,10 +10,11 @@ static size_t side_for(size_t photons) {
   return side < MIN_LAYER_SIDE ? MIN_LAYER_SIDE : side > MAX_LAYER_SIDE ? MAX_LAYER_SIDE : side;
 }
 
-abbe_result abbe_light_layers_make(const abbe_light_views *views, const abbe_refractor_faces *faces,
-                                   abbe_light_layers *out, abbe_error *error) {
+abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
+                                   const abbe_refractor_faces *faces, abbe_light_layers *out,
+                                   abbe_error *error) {
   abbe_gpu *gpu = views->scene->gpu;
-  const size_t lights = views->scene->plan->light_count;
+  const size_t lights = views->scene->plan->light_view_count;
   const size_t side = side_for(views->scene->plan->desc.photons);
   out->views = views;
   out->faces = faces;
@@ -38,11 +39,10 @@ abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe
   const abbe_plan *plan = layers->views->scene->plan;
   abbe_gpu *gpu = layers->views->scene->gpu;
   /* So near to exact surfaces their triangles tell too little of what they cover. */
-  const bool all =
-      abbe_light_views_is_face(layers->views, light) && !plan->layers && !plan->hierarchy;
+  const bool all = abbe_photon_lights_is_face(layers->views, light) && !plan->layers && !plan->bvh;
   abbe_result result = ABBE_OK;
   abbe_refractor_faces_use(layers->faces, &layers->views->light[light].near_view);
-  for (int back = 0; back <= (plan->back ? 1 : 0) && result == ABBE_OK; back++) {
+  for (int back = 0; back <= (plan->draw_back ? 1 : 0) && result == ABBE_OK; back++) {
     const abbe_faces_target target = {.layers = layers->layers,
                                       .owner = layers->owner,
                                       .depth = layers->depth,
@@ -54,7 +54,7 @@ abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe
                                       .back = back != 0};
     abbe_gpu_begin_pass(gpu);
     result = abbe_refractor_faces_draw(layers->faces, &target, all, error);
-    abbe_gpu_end_pass(gpu, back ? "light: refractor back" : "light: refractor front");
+    abbe_gpu_end_pass(gpu, back ? ABBE_PASS_LIGHT_BACK : ABBE_PASS_LIGHT_FRONT);
   }
   return result;
 }
@@ -62,7 +62,7 @@ abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe
 abbe_result abbe_light_layers_run(abbe_light_layers *layers, abbe_error *error) {
   const abbe_plan *plan = layers->views->scene->plan;
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < plan->light_count && result == ABBE_OK; i++)
+  for (size_t i = 0; i < plan->light_view_count && result == ABBE_OK; i++)
     if (plan->reaches[i]) result = abbe_light_layers_draw(layers, i, error);
   return result;
 }

@@ -4,18 +4,19 @@
 #ifndef ABBE_GL_LIGHT_LIGHT_LAYERS_H
 #define ABBE_GL_LIGHT_LIGHT_LAYERS_H
 
-#include "gl/light/light_views.h"
+#include "gl/light/photon_lights.h"
 #include "gl/scene/refractor_faces.h"
 
 typedef struct abbe_light_layers {
-  const abbe_light_views *views;
+  const abbe_photon_lights *views;
   const abbe_refractor_faces *faces;
   GLuint layers, owner, depth; /* front and back of each light; whose the front is */
   size_t side;
 } abbe_light_layers;
 
-abbe_result abbe_light_layers_make(const abbe_light_views *views, const abbe_refractor_faces *faces,
-                                   abbe_light_layers *out, abbe_error *error);
+abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
+                                   const abbe_refractor_faces *faces, abbe_light_layers *out,
+                                   abbe_error *error);
 void abbe_light_layers_free(abbe_light_layers *layers);
 
 /* Of one light, then of all whose light may meet a refractor. */

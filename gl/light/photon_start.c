@@ -78,7 +78,7 @@ abbe_result abbe_photon_cells_run(abbe_photon_cells *cells, const size_t grid[2]
   return abbe_gl_check(gl, "the placement of photons", error);
 }
 
-abbe_result abbe_photon_start_make(const abbe_light_views *views, const abbe_light_layers *layers,
+abbe_result abbe_photon_start_make(const abbe_photon_lights *views, const abbe_light_layers *layers,
                                    const abbe_shader_variant *variant, abbe_photon_start *out,
                                    abbe_error *error) {
   abbe_gpu *gpu = views->scene->gpu;
@@ -105,10 +105,10 @@ void abbe_photon_start_free(abbe_photon_start *start) {
   start->views->scene->gpu->gl->DeleteBuffers(2, buffers);
 }
 
-static void use(const abbe_light_views *views, const abbe_light_layers *layers, GLuint program,
+static void use(const abbe_photon_lights *views, const abbe_light_layers *layers, GLuint program,
                 size_t light) {
   abbe_gpu_scene_bind(views->scene);
-  abbe_light_views_bind(views);
+  abbe_photon_lights_bind(views);
   views->scene->gpu->gl->UseProgram(program);
   abbe_gpu_scene_set(views->scene, program);
   abbe_light_layers_set(layers, program);
@@ -134,7 +134,7 @@ abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_e
   clear_header(gpu, start->photons);
   use(start->views, start->layers, start->cover, light);
   abbe_photon_start_bind(start);
-  abbe_light_views_set_grid(start->views, start->cover, light);
+  abbe_photon_lights_set_grid(start->views, start->cover, light);
   abbe_gpu_bind_storage(gpu, BINDING_CELLS, lit);
   gpu->gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, lit);
   gpu->gl->DispatchComputeIndirect(4);

@@ -25,14 +25,14 @@ abbe_result abbe_photon_cells_run(abbe_photon_cells *cells, const size_t grid[2]
                                   int layer, abbe_error *error);
 
 typedef struct abbe_photon_start {
-  const abbe_light_views *views;
+  const abbe_photon_lights *views;
   const abbe_light_layers *layers;
   abbe_photon_cells cells;
   GLuint cover;                   /* program */
   GLuint photons, photon_of_cell; /* + 1; 0: none */
 } abbe_photon_start;
 
-abbe_result abbe_photon_start_make(const abbe_light_views *views, const abbe_light_layers *layers,
+abbe_result abbe_photon_start_make(const abbe_photon_lights *views, const abbe_light_layers *layers,
                                    const abbe_shader_variant *variant, abbe_photon_start *out,
                                    abbe_error *error);
 void abbe_photon_start_free(abbe_photon_start *start);

@@ -53,7 +53,7 @@ static void write_index(const abbe_receiver_atlas *atlas, size_t light, size_t b
 /* The shaders' tables, `most` pages a light, and what they are told of them. */
 static abbe_result tell_shaders(abbe_receiver_atlas *atlas, size_t most,
                                 abbe_shader_variant *variant, abbe_error *error) {
-  const size_t lights = atlas->views->scene->plan->light_count,
+  const size_t lights = atlas->views->scene->plan->light_view_count,
                sides = 2 * atlas->views->scene->charts.count;
   const size_t blocks = atlas->views->scene->plan->desc.map_size / block_side(atlas);
   const size_t words = 1 + blocks * blocks + sides;
@@ -185,7 +185,7 @@ abbe_result abbe_receiver_atlas_choose(abbe_receiver_atlas *atlas, size_t light,
       "itself, on more parts of receivers than the %zu that maps are kept for, most of it on "
       "'%.40s'; give that a smoother mesh, ask for a larger --map, or allow a larger --share",
       100 * left / total,
-      atlas->views->scene->local->light[atlas->views->scene->plan->lamp[light].light].name,
+      atlas->views->scene->local->light[atlas->views->scene->plan->light_view[light].light].name,
       pages->count,
       atlas->views->scene->local->object[atlas->views->scene->charts.object[worst / 2]].name);
 }
@@ -199,7 +199,7 @@ void abbe_receiver_atlas_world(const abbe_receiver_atlas *atlas, size_t light, c
                            hit[0], hit[1], out);
 }
 
-abbe_result abbe_receiver_atlas_make(const abbe_light_views *views, abbe_shader_variant *variant,
+abbe_result abbe_receiver_atlas_make(const abbe_photon_lights *views, abbe_shader_variant *variant,
                                      abbe_receiver_atlas *out, abbe_error *error) {
   out->views = views;
   if (!views->scene->plan->pages) return ABBE_OK;
@@ -227,7 +227,7 @@ void abbe_receiver_atlas_bind(const abbe_receiver_atlas *atlas) {
 
 abbe_result abbe_receiver_atlas_keep(abbe_receiver_atlas *atlas, abbe_shader_variant *variant,
                                      abbe_error *error) {
-  const size_t lights = atlas->views->scene->plan->light_count;
+  const size_t lights = atlas->views->scene->plan->light_view_count;
   size_t layer = lights, most = 0;
   for (size_t i = 0; i < lights; i++) {
     if (atlas->pages[i].count > most) most = atlas->pages[i].count;
@@ -241,7 +241,7 @@ abbe_result abbe_receiver_atlas_keep(abbe_receiver_atlas *atlas, abbe_shader_var
 }
 
 size_t abbe_receiver_atlas_layers(const abbe_receiver_atlas *atlas) {
-  size_t layers = atlas->views->scene->plan->light_count;
+  size_t layers = atlas->views->scene->plan->light_view_count;
   for (size_t i = 0, lights = layers; i < lights; i++)
     if (atlas->pages[i].count > 0) layers++;
   return layers;

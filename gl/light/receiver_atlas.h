@@ -4,7 +4,7 @@
 #ifndef ABBE_GL_LIGHT_RECEIVER_ATLAS_H
 #define ABBE_GL_LIGHT_RECEIVER_ATLAS_H
 
-#include "gl/light/light_views.h"
+#include "gl/light/photon_lights.h"
 #include "gl/scene/receiver_pages.h"
 #include "gl/scene/shader_variant.h"
 
@@ -16,7 +16,7 @@
 enum { ABBE_PAGE_ROWS, ABBE_PAGE_INDEX, ABBE_CHART_ROWS, ABBE_SIDE_OF_FACE, ABBE_PAGE_TABLES };
 
 typedef struct abbe_receiver_atlas {
-  const abbe_light_views *views;
+  const abbe_photon_lights *views;
   bool used; /* some light has pages, or they are yet to be chosen */
   bool fits; /* they are yet to be chosen */
   abbe_receiver_pages pages[ABBE_SCENE_MAX_LIGHTS];
@@ -25,7 +25,7 @@ typedef struct abbe_receiver_atlas {
 } abbe_receiver_atlas;
 
 /* Without pages yet; where the plan asks for some, shaders of this variant can choose them. */
-abbe_result abbe_receiver_atlas_make(const abbe_light_views *views, abbe_shader_variant *variant,
+abbe_result abbe_receiver_atlas_make(const abbe_photon_lights *views, abbe_shader_variant *variant,
                                      abbe_receiver_atlas *out, abbe_error *error);
 void abbe_receiver_atlas_free(abbe_receiver_atlas *atlas);
 void abbe_receiver_atlas_bind(const abbe_receiver_atlas *atlas);

@@ -80,7 +80,7 @@ static void fill_node(const passage *p, const abbe_wavelengths *w, size_t i, nod
 
 static void fill_bands(const abbe_photon_spectra *spectra, const abbe_wavelengths *w,
                        node_bands *out) {
-  for (size_t light = 0; light < spectra->scene->plan->light_count; light++)
+  for (size_t light = 0; light < spectra->scene->plan->light_view_count; light++)
     for (size_t k = 0; k < spectra->scene->plan->refractor_count; k++) {
       const abbe_object *object =
           &spectra->scene->local->object[spectra->scene->plan->refractor_object[k]];
@@ -97,7 +97,8 @@ abbe_result abbe_photon_attenuation_upload(abbe_photon_spectra *spectra,
                                            const abbe_wavelengths *all, abbe_error *error) {
   if (!spectra->scene->plan->lengths) return ABBE_OK;
   const bool refines = coarse->count < all->count;
-  const size_t rows = spectra->scene->plan->light_count * spectra->scene->plan->refractor_count;
+  const size_t rows =
+      spectra->scene->plan->light_view_count * spectra->scene->plan->refractor_count;
   const size_t nodes = coarse->count + (refines ? all->count : 0);
   node_bands *table = calloc(rows * nodes + 1, sizeof *table);
   if (table == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");

@@ -6,7 +6,7 @@
 
 enum { WORDS = 12 };
 
-abbe_result abbe_photon_ledger_make(const abbe_light_views *views, abbe_photon_ledger *out,
+abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
                                     abbe_error *error) {
   out->views = views;
   return abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error);

@@ -4,15 +4,15 @@
 #ifndef ABBE_GL_PHOTONS_PHOTON_LEDGER_H
 #define ABBE_GL_PHOTONS_PHOTON_LEDGER_H
 
-#include "gl/light/light_views.h"
 #include "gl/device/statistics.h"
+#include "gl/light/photon_lights.h"
 
 typedef struct abbe_photon_ledger {
-  const abbe_light_views *views;
+  const abbe_photon_lights *views;
   GLuint sums;
 } abbe_photon_ledger;
 
-abbe_result abbe_photon_ledger_make(const abbe_light_views *views, abbe_photon_ledger *out,
+abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
                                     abbe_error *error);
 void abbe_photon_ledger_free(abbe_photon_ledger *ledger);
 

@@ -116,7 +116,7 @@ abbe_result abbe_photon_spectra_coarse(const abbe_photon_spectra *spectra,
 
 static float (*fill_intervals(const abbe_photon_spectra *spectra, const abbe_wavelengths *w,
                               float (*out)[4]))[4] {
-  for (size_t light = 0; light < spectra->scene->plan->light_count; light++)
+  for (size_t light = 0; light < spectra->scene->plan->light_view_count; light++)
     for (size_t k = 0; k < spectra->scene->plan->refractor_count; k++)
       for (size_t i = 0; i <= w->count; i++, out += interval_texels(spectra) * (spectra->steps + 1))
         fill_interval(
@@ -131,7 +131,7 @@ static abbe_result upload_intervals(abbe_photon_spectra *spectra, const abbe_wav
   const bool refines = abbe_photon_spectra_refines(spectra);
   const size_t sets = spectra->nodes + 1 + (refines ? w->count + 1 : 0);
   const size_t rows =
-      spectra->scene->plan->light_count * spectra->scene->plan->refractor_count * sets;
+      spectra->scene->plan->light_view_count * spectra->scene->plan->refractor_count * sets;
   abbe_wavelengths coarse = {0};
   const size_t texels = rows * interval_texels(spectra) * (spectra->steps + 1);
   float(*table)[4] = calloc(texels + 1, sizeof *table);
@@ -187,17 +187,18 @@ static abbe_result upload_sample_weights(abbe_photon_spectra *spectra, const abb
                                          abbe_error *error) {
   size_t n = w->count;
   abbe_wavelengths coarse = {0};
-  float(*sample)[4] = calloc(spectra->scene->plan->light_count * n + 1, sizeof *sample);
+  float(*sample)[4] = calloc(spectra->scene->plan->light_view_count * n + 1, sizeof *sample);
   if (sample == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
   abbe_result result = abbe_photon_spectra_coarse(spectra, w, &coarse, error);
-  for (size_t light = 0; light < spectra->scene->plan->light_count && result == ABBE_OK; light++) {
+  for (size_t light = 0; light < spectra->scene->plan->light_view_count && result == ABBE_OK;
+       light++) {
     weigh_halves(spectra, w, light, 0, sample + light * n);
     weigh_halves(spectra, &coarse, light, 2, sample + light * n);
   }
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(spectra->scene->gpu,
-                                  spectra->scene->plan->light_count * n * sizeof *sample, sample,
-                                  &spectra->sample_weights, error);
+                                  spectra->scene->plan->light_view_count * n * sizeof *sample,
+                                  sample, &spectra->sample_weights, error);
   abbe_wavelengths_free(&coarse);
   free(sample);
   return result;

@@ -20,7 +20,7 @@ abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out,
                                   abbe_error *error) {
   const abbe_photon_spectra *spectra = trace->spectra;
   abbe_gpu *gpu = spectra->scene->gpu;
-  const size_t slots = spectra->scene->plan->slots;
+  const size_t slots = spectra->scene->plan->hit_slots;
   const size_t signature_bytes = abbe_photon_signature_bytes(spectra);
   out->trace = trace;
   out->chunks = 1;
@@ -90,13 +90,13 @@ static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_gpu *gpu = scene->gpu;
   const GLuint program = pass->select;
   abbe_gpu_scene_bind(scene);
-  abbe_light_views_bind(trace->start->views);
+  abbe_photon_lights_bind(trace->start->views);
   abbe_receiver_atlas_bind(trace->atlas);
   abbe_photon_start_bind(trace->start);
   abbe_gpu_clear_list(gpu, pass->pairs);
   gpu->gl->UseProgram(program);
   abbe_gpu_set_int(gpu, program, "light", (int)light);
-  abbe_light_views_set_grid(trace->start->views, program, light);
+  abbe_photon_lights_set_grid(trace->start->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)scene->plan->desc.map_size);
   set_weights(pass, light);
   abbe_gpu_set_uint(gpu, program, "chunks", pass->chunks);
@@ -108,7 +108,8 @@ static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->pairs);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, trace->hits.paths);
   abbe_gpu_dispatch_list(gpu, program, trace->hits.paths,
-                         trace->start->views->light[light].photon_count * scene->plan->slots, 1);
+                         trace->start->views->light[light].photon_count * scene->plan->hit_slots,
+                         1);
 }
 
 size_t abbe_refine_pass_count(abbe_refine_pass *pass, size_t light) {

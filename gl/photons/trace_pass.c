@@ -24,7 +24,7 @@ static size_t most_photons(const abbe_trace_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
   const size_t side = plan->desc.photons, cells = side * side, rim = 8 * side;
   size_t most = 1;
-  for (size_t i = 0; i < plan->light_count; i++)
+  for (size_t i = 0; i < plan->light_view_count; i++)
     if (pass->start->views->light[i].photon_count > most)
       most = pass->start->views->light[i].photon_count;
   /* A grid that is moved or made coarser may show a little more: a rim of cells. */
@@ -34,10 +34,11 @@ static size_t most_photons(const abbe_trace_pass *pass) {
 /* Wavelengths of a batch. */
 static size_t choose_lanes(const abbe_trace_pass *pass, size_t room) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  const size_t a_lane = pass->most_photons * plan->slots;
+  const size_t a_lane = pass->most_photons * plan->hit_slots;
   /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
   const size_t usual = ABBE_PLAN_EXITS + 1;
-  const size_t slots = !plan->walk && plan->slots > usual ? usual : plan->slots;
+  const size_t slots =
+      !plan->multi_refractor_paths && plan->hit_slots > usual ? usual : plan->hit_slots;
   const size_t a_hit = ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra);
   size_t lanes = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
   if (lanes > room / a_lane) lanes = room / a_lane;
@@ -50,13 +51,13 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
   *out = (abbe_trace_pass){.start = start, .spectra = spectra, .atlas = atlas, .ledger = ledger};
   const abbe_plan *plan = scene_of(out)->plan;
   out->most_photons = most_photons(out);
-  const size_t a_lane = out->most_photons * plan->slots, n = plan->desc.wavelengths;
+  const size_t a_lane = out->most_photons * plan->hit_slots, n = plan->desc.wavelengths;
   const size_t room = most_hits(out);
   if (a_lane * (n > 1 ? 2 : 1) > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "
                           "time; use a grid below %zu or fewer exits",
-                          out->most_photons, plan->desc.orders, plan->desc.photons);
+                          out->most_photons, plan->desc.exits, plan->desc.photons);
   size_t lanes = choose_lanes(out, room);
   abbe_result result = ABBE_OK;
   /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
@@ -66,7 +67,7 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
   if (lanes > enough) lanes = enough < n ? enough : n;
   if (lanes < spectra->nodes && refines) lanes = spectra->nodes;
   if (result != ABBE_OK) return result;
-  return abbe_hits_make(scene_of(out)->gpu, out->most_photons, plan->slots, lanes,
+  return abbe_hits_make(scene_of(out)->gpu, out->most_photons, plan->hit_slots, lanes,
                         abbe_photon_signature_bytes(spectra), &out->hits, error);
 }
 
@@ -118,14 +119,14 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_gpu *gpu = scene->gpu;
   const GLuint program = pass->program;
   abbe_gpu_scene_bind(scene);
-  abbe_light_views_bind(pass->start->views);
+  abbe_photon_lights_bind(pass->start->views);
   abbe_receiver_atlas_bind(pass->atlas);
   abbe_photon_start_bind(pass->start);
   abbe_photon_ledger_bind(pass->ledger);
   gpu->gl->UseProgram(program);
   abbe_gpu_scene_set(scene, program);
   abbe_light_layers_set(pass->start->layers, program);
-  abbe_light_views_set_grid(pass->start->views, program, light);
+  abbe_photon_lights_set_grid(pass->start->views, program, light);
   abbe_photon_ledger_set(pass->ledger, program, light);
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_gpu_set_int(gpu, program, "set", (int)set);
@@ -156,7 +157,7 @@ static void dispatch(abbe_gpu *gpu, size_t threads) {
 
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const size_t paths = items * scene_of(pass)->plan->slots;
+  const size_t paths = items * scene_of(pass)->plan->hit_slots;
   if (paths == 0) return;
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   gpu->gl->UseProgram(pass->list_paths);
@@ -186,7 +187,7 @@ void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light) {
 }
 
 size_t abbe_trace_pass_hit_count(const abbe_trace_pass *pass, size_t light) {
-  return pass->start->views->light[light].photon_count * scene_of(pass)->plan->slots *
+  return pass->start->views->light[light].photon_count * scene_of(pass)->plan->hit_slots *
          pass->hits.stride;
 }
 

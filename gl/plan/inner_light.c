@@ -65,7 +65,7 @@ static double follow(const abbe_exact *solid, const matter *m, double weight, do
   if (!abbe_optics_refract(back, plane, 1 / m->n, inner)) return weight;
   move(p, along, d);
   out->kept[0] += weight * share;
-  for (size_t exits = 1; exits <= ABBE_RENDER_MAX_ORDERS; exits++) {
+  for (size_t exits = 1; exits <= ABBE_RENDER_MAX_EXITS; exits++) {
     facet = wall_of(solid, facet, p, inner, &along);
     if (facet < 0) return weight;
     plane = solid->plane[facet];
@@ -73,7 +73,7 @@ static double follow(const abbe_exact *solid, const matter *m, double weight, do
     share *= abbe_optics_transmittance(m->attenuation_per_m, along);
     share *= abbe_optics_fresnel(fmin(cosine, 1), m->n);
     if (share < m->energy_share) {
-      for (size_t k = exits; k <= ABBE_RENDER_MAX_ORDERS; k++) out->faint[k] += weight * share;
+      for (size_t k = exits; k <= ABBE_RENDER_MAX_EXITS; k++) out->faint[k] += weight * share;
       return weight;
     }
     out->kept[exits] += weight * share;
@@ -99,7 +99,7 @@ bool abbe_inner_light_follow(const abbe_exact *solid, const abbe_view *view,
         cosine * cosine * cosine * (light != NULL ? abbe_light_profile(light, d) : 1);
     if (weight > 0) total += follow(solid, &m, weight, p, d, out);
   }
-  for (size_t k = 0; k <= ABBE_RENDER_MAX_ORDERS && total > 0; k++) {
+  for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS && total > 0; k++) {
     out->kept[k] /= total;
     out->faint[k] /= total;
   }
@@ -130,7 +130,8 @@ static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inne
   abbe_vector_subtract(object->max, object->min, size);
   for (size_t i = 0; i <= scene->light_count; i++) {
     const abbe_light *light = i < scene->light_count ? &scene->light[i] : NULL;
-    if (light != NULL ? !abbe_reach_light(light, object) : met || !plan->seen) continue;
+    if (light != NULL ? !abbe_reach_light(light, object) : met || !plan->camera_sees_refractor)
+      continue;
     const bool parallel = light != NULL && light->kind == ABBE_LIGHT_DIRECTIONAL;
     double from[3], forward[3];
     memcpy(from, light != NULL ? light->position : scene->camera.eye, sizeof from);
@@ -147,7 +148,7 @@ static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inne
                                   plan->desc.energy_share, &one))
         break;
     met = true;
-    for (size_t k = 0; k <= ABBE_RENDER_MAX_ORDERS; k++) {
+    for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) {
       out->kept[k] = fmax(out->kept[k], one.kept[k]);
       out->faint[k] = fmax(out->faint[k], one.faint[k]);
     }
@@ -161,22 +162,22 @@ static bool is_little(const abbe_inner_light *inside, size_t exits) {
 double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *asked,
                              abbe_plan *plan) {
   const bool share_is_open = asked == NULL || asked->energy_share == 0;
-  const bool exits_are_open = asked == NULL || asked->orders == 0;
+  const bool exits_are_open = asked == NULL || asked->exits == 0;
   abbe_inner_light inside, lower;
   follow_all(scene, plan, &inside);
   if (exits_are_open)
-    plan->desc.orders = abbe_inner_light_exits(&inside, ABBE_PLAN_EXITS, ABBE_PLAN_MOST_EXITS);
-  if (share_is_open && exits_are_open && !is_little(&inside, plan->desc.orders)) {
+    plan->desc.exits = abbe_inner_light_exits(&inside, ABBE_PLAN_EXITS, ABBE_PLAN_MOST_EXITS);
+  if (share_is_open && exits_are_open && !is_little(&inside, plan->desc.exits)) {
     plan->desc.energy_share = ABBE_PLAN_LOW_SHARE;
     follow_all(scene, plan, &lower);
     const size_t exits = abbe_inner_light_exits(&lower, ABBE_PLAN_EXITS, ABBE_PLAN_MOST_EXITS);
     /* Where no exits are enough, faint paths are not what keeps the light. */
     if (is_little(&lower, exits)) {
-      plan->desc.orders = exits;
+      plan->desc.exits = exits;
       inside = lower;
     } else {
       plan->desc.energy_share = ABBE_PLAN_SHARE;
     }
   }
-  return inside.kept[plan->desc.orders] + inside.faint[plan->desc.orders];
+  return inside.kept[plan->desc.exits] + inside.faint[plan->desc.exits];
 }

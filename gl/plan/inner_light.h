@@ -7,7 +7,7 @@
 #ifndef ABBE_GL_PLAN_INNER_LIGHT_H
 #define ABBE_GL_PLAN_INNER_LIGHT_H
 
-#include "gl/plan/plan.h"
+#include "gl/plan/plan_facts.h"
 #include "scenes/scene.h"
 #include "scenes/view/view.h"
 
@@ -23,11 +23,11 @@ extern "C" {
 #define ABBE_INNER_LIGHT_MOST 0.005
 #define ABBE_INNER_LIGHT_MOST_FAINT 0.0025
 
-/* Shares of the light that meets the solid, by exits, 1 to ABBE_RENDER_MAX_ORDERS; [0]: what its
+/* Shares of the light that meets the solid, by exits, 1 to ABBE_RENDER_MAX_EXITS; [0]: what its
  * outside lets in, and 0. */
 typedef struct abbe_inner_light {
-  double kept[ABBE_RENDER_MAX_ORDERS + 1];  /* inside after so many exits, in paths that go on */
-  double faint[ABBE_RENDER_MAX_ORDERS + 1]; /* in paths that have ended by then, below the share */
+  double kept[ABBE_RENDER_MAX_EXITS + 1];  /* inside after so many exits, in paths that go on */
+  double faint[ABBE_RENDER_MAX_EXITS + 1]; /* in paths that have ended by then, below the share */
 } abbe_inner_light;
 
 /* The light through a view's window that meets the solid (ABBE_EXACT_CONVEX), of index n and an

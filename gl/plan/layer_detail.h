@@ -7,7 +7,7 @@
 #ifndef ABBE_GL_PLAN_LAYER_DETAIL_H
 #define ABBE_GL_PLAN_LAYER_DETAIL_H
 
-#include "gl/plan/plan.h"
+#include "gl/plan/plan_facts.h"
 #include "scenes/view/view.h"
 
 #ifdef __cplusplus

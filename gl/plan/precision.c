@@ -1,6 +1,7 @@
 #include "gl/plan/precision.h"
 
 #include "gl/plan/light_cube.h"
+#include "gl/plan/light_views.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/view/view.h"
 
@@ -69,18 +70,9 @@ static abbe_result check_cells(const abbe_plan *plan, const abbe_light *light,
 
 static abbe_result check_one_view(const abbe_scene *scene, const abbe_plan *plan,
                                   const abbe_light *light, abbe_error *error) {
-  static const double up[3] = {0, 1, 0};
-  const bool sun = light->kind == ABBE_LIGHT_DIRECTIONAL;
-  double min[3], max[3], forward[3];
   abbe_result result = ABBE_OK;
   abbe_view view;
-  abbe_scene_bounds(scene, true, false, min, max);
-  for (int k = 0; k < 3; k++) forward[k] = 0.5 * (min[k] + max[k]) - light->position[k];
-  abbe_view_look(sun ? min : light->position, sun ? light->direction : forward, up, sun, &view);
-  for (size_t k = 0; k < plan->refractor_count; k++) {
-    const abbe_mesh *mesh = &scene->object[plan->refractor_object[k]].mesh;
-    abbe_view_fit(&view, (const double(*)[3])mesh->position, mesh->vertex_count);
-  }
+  abbe_light_views_fit(scene, light, plan, &view, NULL);
   for (size_t k = 0; k < plan->refractor_count && result == ABBE_OK; k++) {
     const abbe_object *object = &scene->object[plan->refractor_object[k]];
     abbe_view own;
@@ -150,7 +142,7 @@ abbe_result abbe_precision_check(const abbe_scene *scene, const abbe_plan *plan,
   if (plan->refractor_count == 0 || plan->desc.profile == ABBE_PROFILE_THESIS) return ABBE_OK;
   for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++)
     if (plan->reaches[i])
-      result = plan->lamp[i].face >= 0 ? check_cube(scene, plan, i, error)
-                                       : check_one_view(scene, plan, &scene->light[i], error);
+      result = plan->light_view[i].face >= 0 ? check_cube(scene, plan, i, error)
+                                             : check_one_view(scene, plan, &scene->light[i], error);
   return result;
 }

@@ -8,7 +8,7 @@
 #define ABBE_GL_PLAN_PRECISION_H
 
 #include "base/error.h"
-#include "gl/plan/plan.h"
+#include "gl/plan/plan_facts.h"
 #include "scenes/scene.h"
 
 #ifdef __cplusplus

@@ -86,3 +86,62 @@ bool abbe_reach_eye(const abbe_camera *camera, size_t width, size_t height,
   bounds(object, min, max);
   return meets_pyramid(&view, right, up, 0, min, max);
 }
+
+double abbe_reach_side(const double p[9], const double at[3]) {
+  const double *u = p + 3, *v = p + 6;
+  double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  double sum = 0, length = 0;
+  for (int k = 0; k < 3; k++) {
+    sum += n[k] * (at[k] - p[k]);
+    length += n[k] * n[k];
+  }
+  return sum / sqrt(length);
+}
+
+/* Between the boxes that bound them. */
+static bool boxes_meet(const double a_min[3], const double a_max[3], const double b_min[3],
+                       const double b_max[3]) {
+  for (int k = 0; k < 3; k++)
+    if (!(a_min[k] < b_max[k] && b_min[k] < a_max[k])) return false;
+  return true;
+}
+
+bool abbe_reach_overlap(const abbe_object *a, const abbe_object *b) {
+  if (!boxes_meet(a->min, a->max, b->min, b->max)) return false;
+  if (a->exact.kind != ABBE_EXACT_SPHERE || b->exact.kind != ABBE_EXACT_SPHERE) return true;
+  double apart[3];
+  abbe_vector_subtract(a->exact.centre, b->exact.centre, apart);
+  return abbe_vector_length(apart) < a->exact.radius + b->exact.radius;
+}
+
+/* Whether the box has corners on both sides of the parallelogram's plane, near enough to touch it.
+ */
+static bool reaches_into(const double p[9], const abbe_object *refractor) {
+  double min[3], max[3], low = INFINITY, high = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    min[k] = p[k] + fmin(p[3 + k], 0) + fmin(p[6 + k], 0);
+    max[k] = p[k] + fmax(p[3 + k], 0) + fmax(p[6 + k], 0);
+    /* a parallelogram in a plane of two axes has no third extent */
+    double least = 1e-9 * (refractor->max[k] - refractor->min[k]);
+    min[k] -= least;
+    max[k] += least;
+  }
+  if (!boxes_meet(min, max, refractor->min, refractor->max)) return false;
+  for (int c = 0; c < 8; c++) {
+    double corner[3];
+    for (int k = 0; k < 3; k++) corner[k] = c >> k & 1 ? refractor->max[k] : refractor->min[k];
+    double side = abbe_reach_side(p, corner);
+    low = fmin(low, side);
+    high = fmax(high, side);
+  }
+  return low < 0 && high > 0;
+}
+
+bool abbe_reach_into(const abbe_object *receiver, const abbe_object *refractor) {
+  const abbe_exact *exact = &receiver->exact;
+  if (exact->kind != ABBE_EXACT_PARALLELOGRAMS)
+    return boxes_meet(receiver->min, receiver->max, refractor->min, refractor->max);
+  for (size_t k = 0; k < exact->count; k++)
+    if (reaches_into(exact->parallelogram[k], refractor)) return true;
+  return false;
+}

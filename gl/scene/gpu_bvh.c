@@ -176,7 +176,7 @@ static abbe_result upload(abbe_gpu_scene *scene, const forest *f, abbe_error *er
 static abbe_result grow_refractors(abbe_gpu_scene *scene, grove *g, forest *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < scene->plan->refractor_count && result == ABBE_OK; i++) {
-    if (scene->plan->model[i] != ABBE_REFRACTOR_HIERARCHY) continue;
+    if (scene->plan->model[i] != ABBE_REFRACTOR_BVH) continue;
     g->mesh_count = 0;
     result = add_mesh(g, f, &scene->local->object[scene->plan->refractor_object[i]].mesh, 0, NULL,
                       error);
@@ -188,14 +188,14 @@ static abbe_result grow_refractors(abbe_gpu_scene *scene, grove *g, forest *f, a
 /* One tree for all receivers that are traversed. */
 static abbe_result grow_receivers(abbe_gpu_scene *scene, grove *g, forest *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (scene->plan->receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  if (scene->plan->receivers != ABBE_RECEIVER_BVH) return ABBE_OK;
   g->mesh_count = 0;
   for (size_t i = 0; i < scene->plan->receiver_count && result == ABBE_OK; i++) {
     const abbe_mesh *mesh = &scene->local->object[scene->plan->receiver_object[i]].mesh;
     const int32_t *side = scene->charts.face_side != NULL
                               ? scene->charts.face_side + scene->charts.face_first[i]
                               : NULL;
-    if (scene->plan->receiver_model[i] == ABBE_RECEIVER_HIERARCHY)
+    if (scene->plan->receiver_model[i] == ABBE_RECEIVER_BVH)
       result = add_mesh(g, f, mesh, i, side, error);
   }
   return result == ABBE_OK ? grow(scene, g, f, &scene->receiver_root, error) : result;
@@ -204,7 +204,7 @@ static abbe_result grow_receivers(abbe_gpu_scene *scene, grove *g, forest *f, ab
 abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error) {
   const size_t most = scene->local->object_count + 1;
   forest f = {0};
-  if (!scene->plan->hierarchy && scene->plan->receivers != ABBE_RECEIVER_HIERARCHY) return ABBE_OK;
+  if (!scene->plan->bvh && scene->plan->receivers != ABBE_RECEIVER_BVH) return ABBE_OK;
   scene->refractor_root = calloc(most, sizeof *scene->refractor_root);
   grove g = {.mesh = calloc(most, sizeof *g.mesh),
              .surface = calloc(most, sizeof *g.surface),

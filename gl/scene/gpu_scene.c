@@ -57,8 +57,7 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
       if (scene->local->object[plan->refractor_object[k]].material == object->material) break;
     }
     refractor[i].info[1] = (int)next;
-    if (plan->model[i] == ABBE_REFRACTOR_HIERARCHY)
-      refractor[i].info[1] = (int)scene->refractor_root[i];
+    if (plan->model[i] == ABBE_REFRACTOR_BVH) refractor[i].info[1] = (int)scene->refractor_root[i];
     if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;
     refractor[i].info[2] = (int)object->exact.count;
     for (size_t k = 0; k < object->exact.count; k++)

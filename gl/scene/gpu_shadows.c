@@ -64,7 +64,7 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
 
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error) {
   const size_t refractors = scene->plan->convex ? scene->plan->refractor_count : 0;
-  const size_t pairs = scene->plan->light_count * refractors;
+  const size_t pairs = scene->plan->light_view_count * refractors;
   if (pairs == 0 || pairs * sizeof *scene->shadow_row > ABBE_GPU_BLOCK_BYTES) return ABBE_OK;
   shadow *found = calloc(pairs, sizeof *found);
   abbe_result result = ABBE_OK;
@@ -77,7 +77,7 @@ abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error) {
 }
 
 abbe_result abbe_gpu_shadows_upload(abbe_gpu_scene *scene, abbe_error *error) {
-  const size_t pairs = scene->plan->light_count * scene->plan->refractor_count;
+  const size_t pairs = scene->plan->light_view_count * scene->plan->refractor_count;
   if (scene->shadow_planes == 0) return ABBE_OK;
   return abbe_gpu_make_buffer(scene->gpu,
                               (pairs + scene->shadow_planes) * sizeof *scene->shadow_row,

@@ -6,33 +6,33 @@
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out) {
   const abbe_plan *p = scene->plan;
   *out = (abbe_shader_variant){
-      .lights = p->light_count,
+      .lights = p->light_view_count,
       .refractors = p->refractor_count,
       .receivers = p->parallelogram_count,
       .surfaces = p->receiver_count,
       .wavelengths = p->desc.wavelengths,
       .bands = scene->band_count,
       .band_levels = scene->band_levels,
-      .exits = p->desc.orders,
-      .slots = p->slots,
+      .exits = p->desc.exits,
+      .slots = p->hit_slots,
       .bvh_stack = scene->bvh_depth + 1,
       .receiver_root = scene->receiver_root,
       .shadow_planes = scene->shadow_planes,
       .spheres = p->spheres,
       .convex = p->convex,
       .layers = p->layers,
-      .hierarchy = p->hierarchy,
-      .receiver_hierarchy = p->receivers == ABBE_RECEIVER_HIERARCHY,
+      .hierarchy = p->bvh,
+      .receiver_hierarchy = p->receivers == ABBE_RECEIVER_BVH,
       .one_convex = p->convex && p->refractor_count == 1,
-      .one_shadow = p->light_count * p->refractor_count == 1,
+      .one_shadow = p->light_view_count * p->refractor_count == 1,
       .receiver_shadows = p->receiver_shadows,
       .absorbing = p->absorbing,
       .textured = p->textured,
       .caustics = p->caustics,
-      .walk = p->walk,
+      .walk = p->multi_refractor_paths,
       .cubes = p->cubes,
       .layers_out = p->desc.layers,
-      .ways = !p->walk                  ? 1
+      .ways = !p->multi_refractor_paths ? 1
               : p->desc.wavelengths > 1 ? 8
                                         : 2,
   };

@@ -106,7 +106,7 @@ static void fit_light(abbe_thesis *t) {
   const abbe_light *light = &t->scene->local->light[0];
   const abbe_plan *plan = t->scene->plan;
   abbe_view fitted, *view = &fitted;
-  abbe_light_view_look(t->scene, 0, view);
+  abbe_photon_light_look(t->scene, 0, view);
   fit_objects(t->scene, plan->refractor_object, plan->refractor_count, view);
   fit_objects(t->scene, plan->receiver_object, plan->receiver_count, view);
   bool narrow = t->cie && light->cone_rad < narrow_rad;
@@ -228,10 +228,10 @@ static abbe_result light_passes(abbe_thesis *t, abbe_error *error) {
   set_matrix(t, t->depth_only, "view_projection", matrix);
   for (size_t i = 0; i < t->scene->plan->receiver_count; i++)
     abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
-  abbe_gpu_end_pass(t->scene->gpu, "light: receiver depth");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_RECEIVER_DEPTH);
   result = draw_layers(t, t->light_normals, t->light_depths, map, map, t->light_look, t->light_clip,
                        error);
-  abbe_gpu_end_pass(t->scene->gpu, "light: refractor layers");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
   return result;
 }
 
@@ -243,7 +243,7 @@ static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
   const size_t grid[2] = {t->scene->plan->desc.photons, t->scene->plan->desc.photons};
   abbe_gpu_begin_pass(t->scene->gpu);
   abbe_result result = abbe_photon_cells_run(&t->cells, grid, t->light_normals, 0, error);
-  abbe_gpu_end_pass(t->scene->gpu, "light: photon placement");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_PHOTON_PLACEMENT);
   if (result == ABBE_OK)
     result = abbe_gpu_set_target(t->scene->gpu, &t->map, &flat, 1, 0, map, map, error);
   if (result != ABBE_OK) return result;
@@ -271,7 +271,7 @@ static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
   gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, t->cells.list[ABBE_CELL_LEVELS - 1]);
   gl->DrawArraysIndirect(GL_POINTS, (const char *)NULL + 16);
   gl->Disable(GL_BLEND);
-  abbe_gpu_end_pass(t->scene->gpu, "light: photons");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_PHOTONS);
   return ABBE_OK;
 }
 
@@ -293,7 +293,7 @@ static abbe_result fill_gaps(abbe_thesis *t, abbe_error *error) {
   t->scene->gpu->gl->UseProgram(t->fill);
   abbe_gpu_bind_texture(t->scene->gpu, t->fill, "spectral_map", 0, t->map);
   abbe_result result = draw_screen(t, t->filled, map, map, error);
-  abbe_gpu_end_pass(t->scene->gpu, "light: gap fill");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_GAP_FILL);
   return result;
 }
 
@@ -365,7 +365,7 @@ static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
     set_surface(t, i, &layer);
     abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
   }
-  abbe_gpu_end_pass(t->scene->gpu, "eye: receivers");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
 
@@ -377,7 +377,7 @@ static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
   abbe_gpu_begin_pass(t->scene->gpu);
   abbe_result result =
       draw_layers(t, t->eye_normals, t->eye_depths, width, height, t->eye_look, t->eye_clip, error);
-  abbe_gpu_end_pass(t->scene->gpu, "eye: refractor layers");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_EYE_FRONT_AND_BACK);
   if (result != ABBE_OK) return result;
   gl->UseProgram(t->refraction);
   set_common(t, t->refraction, &t->camera.view, t->eye_clip);
@@ -401,7 +401,7 @@ static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receivers", 3, t->eye_receivers);
   result = draw_screen(t, t->picture, width, height, error);
-  abbe_gpu_end_pass(t->scene->gpu, "eye: refraction");
+  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }
 

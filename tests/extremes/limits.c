@@ -107,7 +107,7 @@ static void no_dispersion(abbe_context *context, extreme_row *row) {
     all = all && equal;
     tiny.scene.b = 1e-6;
     calm = fmax(calm, compare_calm(context, &tiny, &none, row));
-    none.desc.orders = tiny.desc.orders = 7;
+    none.desc.exits = tiny.desc.exits = 7;
     worst = fmax(worst, compare(context, &tiny, &none, false, &equal, row));
   }
   want_same("B = 1e-9", all, row);

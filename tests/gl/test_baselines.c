@@ -13,7 +13,7 @@ static void draw(const abbe_scene *scene, abbe_profile profile, abbe_image *pict
                                  .photons = 217, /* so that splats lie anywhere in a texel */
                                  .map_size = 512,
                                  .supersample = 1,
-                                 .orders = 1,
+                                 .exits = 1,
                                  .space = ABBE_RGB_SPACE_XYZ,
                                  .fill = ABBE_FILL_NONE};
   abbe_renderer *renderer = make_renderer(scene, &desc);

@@ -81,7 +81,7 @@ static void colours_part_within_a_texel(void **state) {
   abbe_map_layout fitted, even;
   abbe_render_desc desc = small_frame;
   desc.width = desc.height = 16;
-  desc.orders = 1;
+  desc.exits = 1;
   load_text(BEAM_THROUGH_PANE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   abbe_renderer_map_layout(renderer, 0, &fitted);

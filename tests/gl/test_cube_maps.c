@@ -156,7 +156,7 @@ static void seams_are_not_seen(void **state) {
 static void direct_light_is_whole(void **state) {
   (void)state;
   static const place ball[2] = {{{-0.25, -0.25, -0.1}, 0.08}, {{0.25, 0.25, -0.1}, 0.08}};
-  static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_HIERARCHY, ABBE_MODEL_LAYERS};
+  static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
   for (int m = 0; m < 3; m++) {
     abbe_render_desc desc = small_frame;
     abbe_image both = {0}, one[2] = {{0}, {0}};
@@ -195,7 +195,7 @@ static void direct_light_is_whole(void **state) {
 static void the_tracer_agrees(void **state) {
   (void)state;
   enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12 };
-  static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_HIERARCHY, ABBE_MODEL_LAYERS};
+  static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
   abbe_scene scene;
   abbe_image traced, drawn;
   abbe_map_layout layout;

@@ -302,7 +302,7 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
                                  .photons = 96,
                                  .map_size = 256,
                                  .energy_share = 1e-6,
-                                 .orders = ABBE_RENDER_MAX_ORDERS,
+                                 .exits = ABBE_RENDER_MAX_EXITS,
                                  .space = ABBE_RGB_SPACE_XYZ,
                                  .layers = true};
   abbe_scene scene = {0};
@@ -377,10 +377,10 @@ static void a_pane_mirrors_what_is_behind_the_eye(void **state) {
     abbe_render_desc desc = small_frame;
     abbe_image picture = {0};
     desc.space = ABBE_RGB_SPACE_XYZ;
-    desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_HIERARCHY;
+    desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_BVH;
     desc.width = desc.height = 16;
     desc.energy_share = 1e-6;
-    desc.orders = ABBE_RENDER_MAX_ORDERS;
+    desc.exits = ABBE_RENDER_MAX_EXITS;
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
     read_picture(renderer, false, &picture);

@@ -31,7 +31,7 @@ static abbe_image picture(const abbe_scene *scene, size_t wavelengths, bool ever
   abbe_render_desc desc = small_frame;
   desc.wavelengths = wavelengths;
   desc.everything = everything;
-  desc.orders = 8;
+  desc.exits = 8;
   desc.supersample = 1;
   desc.width = desc.height = 96;
   abbe_image image;

@@ -29,7 +29,7 @@ static agreement compare(const char *text) {
   desc.photons = 128;
   desc.map_size = SIDE;
   load_text(text, &scene);
-  desc.orders = 16;
+  desc.exits = 16;
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   const abbe_statistics statistics = draw_frame(renderer);
   read_map(renderer, 0, &drawn);

@@ -50,8 +50,10 @@ static void assert_repeats(abbe_renderer *renderer) {
 /* What ran is what the plan says. */
 static void assert_as_planned(const abbe_renderer *renderer, const abbe_statistics *s) {
   for (size_t i = 0; i < s->pass_count; i++) {
-    const abbe_plan_entry *entry = abbe_plan_find(abbe_renderer_plan(renderer), s->pass[i].name);
-    if (entry == NULL || !entry->runs) print_error("'%s' ran unplanned\n", s->pass[i].name);
+    const abbe_plan_entry *entry =
+        abbe_plan_find(abbe_renderer_plan(renderer), s->pass[i].pass, 0);
+    if (entry == NULL || !entry->runs)
+      print_error("'%s' ran unplanned\n", abbe_plan_item_text(s->pass[i].pass));
     assert_true(entry != NULL && entry->runs);
   }
 }

@@ -180,7 +180,7 @@ static void each_band_lands_in_its_place(void **state) {
       {"sf10", 1.72825, 1, 0},    {"n-bk7", 1.5168, 0.3, -40}, {"n-sf11", 1.78472, 0.3, 0},
       {"n-sf11", 1.78472, 1, 40}, {"sf10", 1.72825, 3, 45},    {"n-sf11", 1.78472, 3, -40},
   };
-  const abbe_render_desc desc = {.width = 16, .height = 16, .photons = 64, .orders = 1};
+  const abbe_render_desc desc = {.width = 16, .height = 16, .photons = 64, .exits = 1};
   for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++)
     assert_bands_in_place(&settings[i], &desc);
 }

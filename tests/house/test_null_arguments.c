@@ -64,6 +64,7 @@ static const struct {
     {"abbe_program_make_compute", "defines"},
     {"abbe_program_make_compute_text", "defines"},
     {"abbe_record_draft_open", "path"},
+    {"abbe_render_desc_resolve", "desc"},
     {"abbe_renderer_frame", "user"},
     {"abbe_renderer_frame", "statistics"},
     {"abbe_renderer_make", "desc"},

@@ -26,6 +26,8 @@
   "made up,\n   absorption: {attenuation_per_m: [[400, 20], [500, 0], [700, 0]]}}\n"               \
   "- {name: smoke, model: constant, coefficients: [1.5], source: made up,\n"                       \
   "   absorption: {attenuation_per_m: [[400, 20], [700, 5]]}}\n"                                   \
+  "- {name: grey, model: constant, coefficients: [1.5], source: made up,\n"                        \
+  "   absorption: {attenuation_per_m: [[400, 10], [700, 10]]}}\n"                                   \
   "- {name: narrow, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 700],\n"            \
   "   source: made up}\n"                                                                          \
   "- {name: loose, model: cauchy, coefficients: [1.5, 0.006], range_nm: [400, 700],\n"             \

@@ -25,7 +25,7 @@ void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
                               .samples = thesis ? 1 : d->supersample,
                               .upsample = d->upsample,
                               .share = thesis ? 0.01 : d->energy_share,
-                              .exits = d->orders};
+                              .exits = d->exits};
   snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
   snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
   snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
@@ -57,7 +57,7 @@ abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_rend
                             .fill = (abbe_fill)fill,
                             .model = (abbe_model)model,
                             .energy_share = setting->share,
-                            .orders = setting->exits};
+                            .exits = setting->exits};
   return ABBE_OK;
 }
 
@@ -123,7 +123,7 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
     d.map_size = take(&g->map, &counter);
     d.supersample = take(&g->samples, &counter);
     d.upsample = take(&g->upsample, &counter);
-    d.orders = take(&g->exits, &counter);
+    d.exits = take(&g->exits, &counter);
     d.fill = (abbe_fill)take(&g->fills, &counter);
     d.model = (abbe_model)take(&g->models, &counter);
     d.profile = (abbe_profile)take(&g->profiles, &counter);
@@ -167,19 +167,12 @@ static int by_time(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static double passes_ms(const abbe_statistics *s, const char *prefix) {
-  double sum = 0;
-  for (size_t i = 0; i < s->pass_count; i++)
-    if (strncmp(s->pass[i].name, prefix, strlen(prefix)) == 0) sum += s->pass[i].ms;
-  return sum;
-}
-
 static void note_times(const abbe_statistics *sorted, size_t count, abbe_sweep_row *out) {
   const abbe_statistics *median = &sorted[count / 2];
   out->number[ABBE_SWEEP_FRAME_MS] = median->frame_ms;
   out->number[ABBE_SWEEP_FASTEST_MS] = sorted[0].frame_ms;
-  out->number[ABBE_SWEEP_LIGHT_MS] = passes_ms(median, "light:");
-  out->number[ABBE_SWEEP_EYE_MS] = passes_ms(median, "eye:");
+  out->number[ABBE_SWEEP_LIGHT_MS] = abbe_statistics_stage_ms(median, ABBE_STAGE_LIGHT);
+  out->number[ABBE_SWEEP_EYE_MS] = abbe_statistics_stage_ms(median, ABBE_STAGE_EYE);
 }
 
 /* What is bridged while it is deposited is in the ledger, which sums the map itself. */
@@ -360,7 +353,7 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
   abbe_image map = {0}, before = {0};
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   bool thesis = abbe_profile_is_thesis(plan->desc.profile);
-  if (!plan->caustics || s->light >= plan->light_count) return ABBE_OK;
+  if (!plan->caustics || s->light >= plan->light_view_count) return ABBE_OK;
   abbe_result result =
       thesis ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
              : abbe_renderer_read_map_bands(renderer, s->light, ABBE_SWEEP_BANDS, &map, error);
@@ -467,7 +460,7 @@ abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
                             "%s has no refractor that a light reaches: there is no map to compare",
                             scene->path);
-  else if (abbe_renderer_plan(renderer)->lamp[light].face >= 0)
+  else if (abbe_renderer_plan(renderer)->light_view[light].face >= 0)
     result =
         abbe_error_set(error, ABBE_UNSUPPORTED,
                        "the light '%s' of %s has a cube of maps and no single layout to compare "

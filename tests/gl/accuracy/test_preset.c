@@ -125,7 +125,7 @@ static void test_a_name_may_be_missing(void **state) {
                                 .map_size = 1024,
                                 .supersample = 2,
                                 .upsample = 1,
-                                .orders = 8,
+                                .exits = 8,
                                 .energy_share = 0.01,
                                 .fill = ABBE_FILL_BRIDGE};
   abbe_render_desc fine = own;
@@ -174,7 +174,7 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   assert_int_equal(empty.photons, 64);
   assert_int_equal(empty.map_size, 512);
   assert_int_equal(empty.supersample, 1);
-  assert_int_equal(empty.orders, 0); /* as many as a plan has by itself: left to it */
+  assert_int_equal(empty.exits, 0); /* as many as a plan has by itself: left to it */
   assert_int_equal(empty.fill, ABBE_FILL_BRIDGE);
   assert_near(empty.energy_share, 0, 0); /* likewise: a gem's own is lower */
   assert_false(abbe_preset_apply(point, &own));
@@ -182,12 +182,12 @@ static void test_what_the_caller_asks_for_stays(void **state) {
   assert_int_equal(own.photons, 64);
   assert_true(abbe_preset_apply(point, &equal));
   abbe_preset_point fewer = *point;
-  abbe_render_desc some = {0}, other = {.orders = 3};
-  fewer.desc.orders = 2;
+  abbe_render_desc some = {0}, other = {.exits = 3};
+  fewer.desc.exits = 2;
   assert_true(abbe_preset_apply(&fewer, &some));
-  assert_int_equal(some.orders, 2);
+  assert_int_equal(some.exits, 2);
   assert_false(abbe_preset_apply(&fewer, &other));
-  assert_int_equal(other.orders, 3);
+  assert_int_equal(other.exits, 3);
   abbe_preset_point faint = *point;
   abbe_render_desc low = {0}, high = {.energy_share = 0.1};
   faint.desc.energy_share = 0.003;

@@ -2,6 +2,7 @@
 #include "tests/gl/frame.h"
 
 #include "gl/plan/inner_light.h"
+#include "gl/plan/plan.h"
 #include "scenes/geometry/vector.h"
 
 #include <string.h>
@@ -40,7 +41,7 @@ static void a_slab_keeps_a_geometric_series(void **state) {
   for (int tinted = 0; tinted < 2; tinted++) {
     abbe_inner_light inside;
     assert_true(abbe_inner_light_follow(&solid, &view, NULL, n, tinted * per_m, 1e-300, &inside));
-    for (size_t k = 0; k <= ABBE_RENDER_MAX_ORDERS; k++) {
+    for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) {
       const double left = exp(-tinted * per_m * THICKNESS * (double)k);
       const double known = (1 - r) * pow(r, (double)k) * left;
       assert_near(inside.kept[k] / known, 1, 1e-9);
@@ -57,7 +58,7 @@ static void faint_paths_end(void **state) {
   abbe_inner_light inside;
   assert_true(abbe_inner_light_follow(&solid, &view, NULL, n, 0, 0.01, &inside));
   assert_near(inside.kept[1], (1 - r) * r, 1e-12); /* 0.038 */
-  for (size_t k = 2; k <= ABBE_RENDER_MAX_ORDERS; k++) {
+  for (size_t k = 2; k <= ABBE_RENDER_MAX_EXITS; k++) {
     assert_true(inside.kept[k] == 0);
     assert_near(inside.faint[k], (1 - r) * r * r, 1e-12); /* 0.0015 */
   }
@@ -71,7 +72,7 @@ static void air_keeps_nothing(void **state) {
   abbe_inner_light inside;
   assert_true(abbe_inner_light_follow(&solid, &view, NULL, 1, 0, share_of_nothing, &inside));
   assert_near(inside.kept[0], 1, 1e-12);
-  for (size_t k = 1; k <= ABBE_RENDER_MAX_ORDERS; k++)
+  for (size_t k = 1; k <= ABBE_RENDER_MAX_EXITS; k++)
     assert_true(inside.kept[k] == 0 && inside.faint[k] == 0);
 }
 
@@ -102,7 +103,7 @@ static void what_no_light_meets_keeps_none(void **state) {
   const double corner[4][3] = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
   abbe_view_fit(&view, corner, 4);
   assert_false(abbe_inner_light_follow(&solid, &view, &spot, 1.5, 0, 0.01, &inside));
-  for (size_t k = 0; k <= ABBE_RENDER_MAX_ORDERS; k++)
+  for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++)
     assert_true(inside.kept[k] == 0 && inside.faint[k] == 0);
   spot.direction[2] = -1;
   assert_true(abbe_inner_light_follow(&solid, &view, &spot, 1.5, 0, 0.01, &inside));
@@ -123,7 +124,7 @@ static void diamond_keeps_more_than_crown(void **state) {
       abbe_inner_light_follow(&stone->exact, &view, NULL, 2.42, 0, share_of_nothing, &diamond));
   assert_true(
       abbe_inner_light_follow(&stone->exact, &view, NULL, 1.52, 0, share_of_nothing, &crown));
-  for (size_t k = 3; k <= ABBE_RENDER_MAX_ORDERS; k++)
+  for (size_t k = 3; k <= ABBE_RENDER_MAX_EXITS; k++)
     assert_true(diamond.kept[k] > 1.5 * crown.kept[k]);
   abbe_scene_free(&scene);
 }
@@ -131,14 +132,14 @@ static void diamond_keeps_more_than_crown(void **state) {
 static void exits_are_as_few_as_do(void **state) {
   (void)state;
   abbe_inner_light inside = {{0}, {0}};
-  for (size_t k = 0; k <= ABBE_RENDER_MAX_ORDERS; k++) inside.kept[k] = pow(0.5, (double)k);
+  for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) inside.kept[k] = pow(0.5, (double)k);
   assert_int_equal(abbe_inner_light_exits(&inside, 2, 24), 8); /* 1 / 256 is below 1 / 200 */
   assert_int_equal(abbe_inner_light_exits(&inside, 10, 24), 10);
   assert_int_equal(abbe_inner_light_exits(&inside, 2, 6), 6);
-  for (size_t k = 0; k <= ABBE_RENDER_MAX_ORDERS; k++) inside.faint[k] = 0.002;
+  for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) inside.faint[k] = 0.002;
   assert_int_equal(abbe_inner_light_exits(&inside, 2, 24), 9); /* 1 / 512 and 0.002 */
   /* More than a part of what faint paths keep is no reason for exits, which do not follow them. */
-  for (size_t k = 0; k <= ABBE_RENDER_MAX_ORDERS; k++) inside.faint[k] = 0.1;
+  for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) inside.faint[k] = 0.1;
   assert_int_equal(abbe_inner_light_exits(&inside, 2, 24), 9);
 }
 
@@ -156,15 +157,15 @@ static void a_gem_takes_as_many_exits_as_carry_light(void **state) {
   abbe_plan plan, fewer, asked;
   load_shipped("gem", &scene);
   const double left = planned(&scene, NULL, &plan);
-  assert_true(plan.desc.orders > ABBE_PLAN_EXITS && plan.desc.orders < ABBE_PLAN_MOST_EXITS);
+  assert_true(plan.desc.exits > ABBE_PLAN_EXITS && plan.desc.exits < ABBE_PLAN_MOST_EXITS);
   assert_true(plan.desc.energy_share < ABBE_PLAN_SHARE);
   assert_true(left > 0 && left <= ABBE_INNER_LIGHT_MOST);
-  const abbe_render_desc one_less = {.orders = plan.desc.orders - 1,
+  const abbe_render_desc one_less = {.exits = plan.desc.exits - 1,
                                      .energy_share = plan.desc.energy_share};
   assert_true(planned(&scene, &one_less, &fewer) > ABBE_INNER_LIGHT_MOST);
-  const abbe_render_desc own = {.orders = 3, .energy_share = 0.2};
+  const abbe_render_desc own = {.exits = 3, .energy_share = 0.2};
   assert_true(planned(&scene, &own, &asked) > 0.1);
-  assert_int_equal(asked.desc.orders, 3);
+  assert_int_equal(asked.desc.exits, 3);
   assert_near(asked.desc.energy_share, 0.2, 0);
   abbe_plan_free(&plan);
   abbe_plan_free(&fewer);
@@ -193,7 +194,7 @@ static void the_ledger_says_the_same(void **state) {
       abbe_render_desc desc = small_frame;
       desc.photons = 384;
       desc.map_size = 512;
-      desc.orders = exits;
+      desc.exits = exits;
       desc.energy_share = 1e-6;
       const double left = planned(&scene, &desc, &plan);
       abbe_plan_free(&plan);

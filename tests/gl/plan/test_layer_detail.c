@@ -2,6 +2,7 @@
 #include "tests/scenes/scene_text.h"
 
 #include "gl/plan/layer_detail.h"
+#include "gl/plan/plan.h"
 #include "scenes/shapes/shape.h"
 
 #include <math.h>
@@ -52,7 +53,7 @@ static const abbe_object *finest(const abbe_scene *scene, const abbe_render_desc
   abbe_plan plan;
   abbe_error error = {0};
   if (abbe_plan_make(scene, desc, &plan, &error) != ABBE_OK) fail_msg("%s", error.text);
-  const abbe_plan_entry *entry = abbe_plan_find(&plan, "simplified layers");
+  const abbe_plan_entry *entry = abbe_plan_find(&plan, ABBE_CHOICE_FEWER_FACES, 0);
   const abbe_object *found = abbe_layer_detail_finest(scene, &plan);
   *told = entry != NULL;
   *runs = *told && entry->runs;

@@ -176,13 +176,13 @@ static void maps_have_an_end(void **state) {
            balls);
   load_text(text, &scene);
   assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_OK);
-  assert_int_equal(plan.light_count, 16);
+  assert_int_equal(plan.light_view_count, 16);
   unsigned carried[4] = {0};
-  for (size_t i = 0; i < plan.light_count; i++) {
-    assert_true(plan.lamp[i].light < 4 && plan.reaches[i]);
-    if (i < 4) assert_int_equal(plan.lamp[i].light, i);
-    assert_int_equal(carried[plan.lamp[i].light] & plan.lamp[i].faces, 0);
-    carried[plan.lamp[i].light] |= plan.lamp[i].faces;
+  for (size_t i = 0; i < plan.light_view_count; i++) {
+    assert_true(plan.light_view[i].light < 4 && plan.reaches[i]);
+    if (i < 4) assert_int_equal(plan.light_view[i].light, i);
+    assert_int_equal(carried[plan.light_view[i].light] & plan.light_view[i].faces, 0);
+    carried[plan.light_view[i].light] |= plan.light_view[i].faces;
   }
   for (int i = 0; i < 4; i++) assert_int_equal(carried[i], ABBE_LIGHT_CUBE_ALL);
   abbe_plan_free(&plan);
@@ -209,7 +209,7 @@ static void layers_need_one_view(void **state) {
             &scene);
   assert_int_equal(abbe_plan_make(&scene, &desc, &plan, &error), ABBE_UNSUPPORTED);
   assert_contains(error.text, "no view holds its layers");
-  desc.model = ABBE_MODEL_HIERARCHY;
+  desc.model = ABBE_MODEL_BVH;
   assert_int_equal(abbe_plan_make(&scene, &desc, &plan, &error), ABBE_OK);
   assert_true(plan.cubes);
   abbe_plan_free(&plan);

@@ -1,560 +1,173 @@
-/* The plan: each pass and model follows from a fact of the scene, and goes when the fact goes. */
-#include "tests/scenes/scene_text.h"
+/* The plan of each shipped scene, whole, and what one fact more or less in a scene changes of its
+ * plan: each pass and model follows from a fact, and goes when the fact goes. */
+#include "tests/gl/plan/plan_pairs.h"
 
-#include "gl/plan/plan.h"
+static const row sphere_rows[] = {
+    BALL_ROWS(RUNS(CHOICE_RECEIVER_MAPS,
+                   "a receiver lies more than 76 degrees off the view of a light's map")) END};
 
-static void make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *plan) {
-  abbe_error error = {0};
-  abbe_result result = abbe_plan_make(scene, desc, plan, &error);
-  if (result != ABBE_OK) print_error("%s\n", error.text);
-  assert_int_equal(result, ABBE_OK);
-}
-
-static void make_text(const char *text, const abbe_render_desc *desc, abbe_plan *plan) {
-  abbe_scene scene = {0};
-  load_text(text, &scene);
-  make(&scene, desc, plan);
-  abbe_scene_free(&scene);
-}
-
-#define assert_runs(plan, name, expected) check_runs(plan, name, expected, __FILE__, __LINE__)
-static void check_runs(const abbe_plan *plan, const char *name, bool expected, const char *file,
-                       int line) {
-  const abbe_plan_entry *entry = abbe_plan_find(plan, name);
-  if (entry != NULL && entry->runs == expected) return;
-  print_error("'%s' %s\n", name, entry == NULL ? "is not in the plan" : entry->reason);
-  _fail(file, line);
-}
-
-static bool noted(const abbe_plan *plan, const char *part) {
-  for (size_t i = 0; i < plan->note_count; i++)
-    if (strstr(plan->note[i], part) != NULL) return true;
-  return false;
-}
-
-static void test_a_ball_over_a_floor(void **state) {
-  (void)state;
-  abbe_plan plan;
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), NULL, &plan);
-  assert_int_equal(plan.refractor_count, 1);
-  assert_int_equal(plan.refractor_object[0], 1);
-  assert_int_equal(plan.receiver_object[0], 0);
-  assert_int_equal(plan.model[0], ABBE_REFRACTOR_SPHERE);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
-  assert_int_equal(plan.desc.wavelengths, 7);
-  assert_true(plan.spheres && !plan.convex && !plan.layers && !plan.absorbing && !plan.textured);
-  assert_runs(&plan, "light: receiver depth", false);
-  assert_runs(&plan, "light: refractor front", true);
-  assert_runs(&plan, "light: refractor back", false);
-  assert_runs(&plan, "light: photons", true);
-  assert_runs(&plan, "light: gap fill", true);
-  assert_runs(&plan, "absorption", false);
-  assert_runs(&plan, "eye: refractor back", false);
-  assert_runs(&plan, "eye: refraction", true);
-  assert_runs(&plan, "textures", false);
-  assert_runs(&plan, "inner reflections", true);
-  assert_contains(abbe_plan_find(&plan, "model: ball")->reason, "the object is a sphere");
-  assert_null(abbe_plan_find(&plan, "no such pass"));
-  abbe_plan_free(&plan);
-}
-
-static void test_without_refractors_no_light_is_split(void **state) {
-  (void)state;
-  abbe_plan plan;
-  const abbe_render_desc many = {.wavelengths = 21};
-  make_text(CAMERA POINT_LIGHT FLOOR, &many, &plan);
-  assert_false(plan.caustics);
-  assert_int_equal(plan.desc.wavelengths, 1);
-  assert_runs(&plan, "light: refractor front", false);
-  assert_runs(&plan, "light: refractor back", false);
-  assert_runs(&plan, "light: photon placement", false);
-  assert_runs(&plan, "light: photons", false);
-  assert_runs(&plan, "light: spectral map", false);
-  assert_runs(&plan, "light: gap fill", false);
-  assert_runs(&plan, "eye: refraction", false);
-  assert_runs(&plan, "eye: receivers", true);
-  assert_contains(abbe_plan_find(&plan, "wavelengths")->reason, "nothing refracts");
-  abbe_plan_free(&plan);
-}
-
-static void test_a_constant_index_needs_one_wavelength(void **state) {
-  (void)state;
-  abbe_plan plan;
-  const abbe_render_desc asked = {.wavelengths = 21};
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), NULL, &plan);
-  assert_false(plan.dispersive);
-  assert_int_equal(plan.desc.wavelengths, 1);
-  assert_runs(&plan, "light: gap fill", false);
-  assert_runs(&plan, "light: photons", true);
-  abbe_plan_free(&plan);
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &asked, &plan);
-  assert_int_equal(plan.desc.wavelengths, 21);
-  assert_contains(abbe_plan_find(&plan, "wavelengths")->reason, "as asked");
-  abbe_plan_free(&plan);
-}
-
-static void test_absorption_runs_where_something_absorbs(void **state) {
-  (void)state;
-  abbe_plan plan;
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("smoke"), NULL, &plan);
-  assert_true(plan.absorbing);
-  assert_runs(&plan, "absorption", true);
-  abbe_plan_free(&plan);
-}
-
-/* Convex, and no sphere. */
-#define EGG(material)                                                                              \
-  "- {name: egg, shape: sphere, radius: 0.08, levels: 4, transform: [{scale: [1, 1, 1.4]}, "       \
-  "{translate: [0, 0, 0.2]}], material: " material "}\n"
-
-static void test_a_mesh_asks_for_its_back_layer(void **state) {
-  (void)state;
-  abbe_plan plan;
-  make_text(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &plan);
-  assert_int_equal(plan.model[0], ABBE_REFRACTOR_HIERARCHY);
-  assert_true(plan.walk && plan.hierarchy && !plan.layers);
-  assert_runs(&plan, "refractors in turn", true);
-  assert_runs(&plan, "light: refractor back", false);
-  assert_runs(&plan, "eye: refractor back", false);
-  assert_contains(abbe_plan_find(&plan, "refractors in turn")->reason, "not convex");
-  abbe_plan_free(&plan);
-  make_text(CAMERA POINT_LIGHT FLOOR EGG("crown"), NULL, &plan);
-  assert_int_equal(plan.model[0], ABBE_REFRACTOR_LAYERS);
-  assert_true(!plan.walk && !plan.hierarchy && plan.layers);
-  assert_runs(&plan, "refractors in turn", false);
-  assert_runs(&plan, "light: refractor back", true);
-  assert_runs(&plan, "eye: refractor back", true);
-  assert_runs(&plan, "inner reflections", true);
-  abbe_plan_free(&plan);
-  make_text(CAMERA POINT_LIGHT FLOOR BRICK("crown"), NULL, &plan);
-  assert_int_equal(plan.model[0], ABBE_REFRACTOR_CONVEX);
-  assert_runs(&plan, "light: refractor back", false);
-  assert_runs(&plan, "inner reflections", true);
-  abbe_plan_free(&plan);
-  make_text(CAMERA POINT_LIGHT FLOOR RING("crown") BALL("flat") BRICK("flat"), NULL, &plan);
-  assert_true(plan.spheres && plan.convex && plan.hierarchy && plan.walk && !plan.layers);
-  assert_true(!noted(&plan, "meets another"));
-  assert_contains(abbe_plan_find(&plan, "refractors in turn")->reason, "more than one");
-  abbe_plan_free(&plan);
-}
-
-/* One refractor alone is not walked; a second, a hollow, or a receiver within it asks for that. */
-static void test_what_light_may_meet_again_is_walked(void **state) {
-  (void)state;
-  static const struct {
-    const char *text;
-    bool walk;
-  } rows[] = {
-      {CAMERA POINT_LIGHT FLOOR BALL("crown"), false},
-      {CAMERA POINT_LIGHT FLOOR BRICK("crown"), false},
-      {CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), true},
-      {CAMERA POINT_LIGHT FLOOR
-       "- {name: low, shape: sphere, radius: 0.08, transform: [{translate: [0, 0, 0.05]}], "
-       "material: crown}\n",
-       true},
-      {CAMERA POINT_LIGHT FLOOR
-       "- {name: room, shape: box, size: [3, 3, 3], reflectance: 0.5}\n" BALL("crown"),
-       false},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_plan plan;
-    make_text(rows[i].text, NULL, &plan);
-    if (plan.walk != rows[i].walk) print_error("scene %zu\n", i);
-    assert_true(plan.walk == rows[i].walk);
-    assert_runs(&plan, "refractors in turn", rows[i].walk);
-    abbe_plan_free(&plan);
-  }
-}
-
-/* What is asked for is taken where it can serve, and refused by name where it cannot. */
-static void test_a_model_that_is_asked_for(void **state) {
-  (void)state;
-  static const struct {
-    const char *text;
-    abbe_model model;
-    abbe_refractor_model expected;
-    bool walk;
-    const char *refusal; /* NULL: none */
-  } rows[] = {
-      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_SPHERE, ABBE_REFRACTOR_SPHERE, false,
-       NULL},
-      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
-       NULL},
-      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_HIERARCHY, ABBE_REFRACTOR_HIERARCHY, true,
-       NULL},
-      {CAMERA POINT_LIGHT FLOOR RING("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
-       NULL},
-      {CAMERA POINT_LIGHT FLOOR BALL("crown") RING("crown"), ABBE_MODEL_SPHERE,
-       ABBE_REFRACTOR_SPHERE, false, "'sphere' cannot serve 'ring'"},
-      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_CONVEX, ABBE_REFRACTOR_CONVEX, false,
-       "'convex' cannot serve 'ball'"},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_scene scene = {0};
-    abbe_plan plan;
-    abbe_error error = {0};
-    load_text(rows[i].text, &scene);
-    abbe_result result =
-        abbe_plan_make(&scene, &(abbe_render_desc){.model = rows[i].model}, &plan, &error);
-    assert_int_equal(result, rows[i].refusal != NULL ? ABBE_UNSUPPORTED : ABBE_OK);
-    if (rows[i].refusal != NULL) {
-      assert_contains(error.text, rows[i].refusal);
-    } else {
-      assert_int_equal(plan.model[0], rows[i].expected);
-      assert_true(plan.walk == rows[i].walk);
-      abbe_plan_free(&plan);
-    }
-    abbe_scene_free(&scene);
-  }
-}
-
-static void test_a_curved_receiver_asks_for_a_hierarchy(void **state) {
-  (void)state;
-  abbe_plan plan;
-  make_text(CAMERA POINT_LIGHT FLOOR HILL BALL("crown"), NULL, &plan);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_HIERARCHY);
-  assert_int_equal(plan.receiver_model[0], ABBE_RECEIVER_EXACT);
-  assert_int_equal(plan.receiver_model[1], ABBE_RECEIVER_HIERARCHY);
-  assert_int_equal(plan.parallelogram_count, 1);
-  assert_runs(&plan, "light: receiver depth", false);
-  assert_contains(abbe_plan_find(&plan, "model: receivers")->reason, "'hill' is a general mesh");
-  abbe_plan_free(&plan);
-}
-
-static void test_too_many_rectangles_are_traversed(void **state) {
-  (void)state;
-  abbe_scene scene = {0};
-  abbe_plan plan;
-  double many[97][9];
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  abbe_exact *exact = &scene.object[0].exact, floor = *exact;
-  for (size_t i = 0; i < 97; i++) memcpy(many[i], floor.parallelogram[0], sizeof many[i]);
-  exact->parallelogram = many;
-  exact->count = 96;
-  make(&scene, NULL, &plan);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
-  assert_int_equal(plan.parallelogram_count, 96);
-  abbe_plan_free(&plan);
-  exact->count = 97;
-  make(&scene, NULL, &plan);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_HIERARCHY);
-  assert_int_equal(plan.parallelogram_count, 0);
-  assert_contains(abbe_plan_find(&plan, "model: receivers")->reason,
-                  "with 'floor' there are more than 96 parallelograms");
-  abbe_plan_free(&plan);
-  *exact = floor;
-  abbe_scene_free(&scene);
-}
-
-static void test_the_thesis_profile_knows_one_way(void **state) {
-  (void)state;
-  abbe_plan plan;
-  const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &thesis, &plan);
-  assert_int_equal(plan.model[0], ABBE_REFRACTOR_LAYERS);
-  assert_int_equal(plan.receivers, ABBE_RECEIVER_DEPTH);
-  assert_int_equal(plan.desc.fill, ABBE_FILL_SMEAR);
-  assert_int_equal(plan.desc.wavelengths, 7);
-  assert_int_equal(plan.desc.orders, 1);
-  assert_near(plan.desc.min_nm, 380, 0);
-  assert_near(plan.desc.max_nm, 680, 0);
-  abbe_plan_free(&plan);
-}
-
-/* Where the default profile has a cube, the thesis's has none; of a spot its view is the cone. */
-static void test_the_thesis_profile_looks_through_one_view(void **state) {
-  (void)state;
-  static const struct {
-    const char *kind;
-    bool one_view;
-  } rows[] = {{"point", false}, {"spot, direction: [1, 0, 0], cone: 30", true}};
-  static const abbe_profile profiles[] = {ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE};
-  for (size_t i = 0; i < 4; i++) {
-    char text[1024];
-    abbe_scene scene;
-    abbe_plan plan;
-    abbe_error error = {0};
-    snprintf(text, sizeof text,
-             CAMERA "lights:\n- {name: lamp, kind: %s, position: [0.1, 0, 0.2], intensity: "
-                    "1}\n" FLOOR "%s" BALL("crown"),
-             rows[i / 2].kind, BRICK("crown"));
-    load_text(text, &scene);
-    const abbe_render_desc desc = {.profile = profiles[i % 2]};
-    const abbe_result result = abbe_plan_make(&scene, &desc, &plan, &error);
-    assert_int_equal(result, rows[i / 2].one_view ? ABBE_OK : ABBE_UNSUPPORTED);
-    if (!rows[i / 2].one_view) assert_contains(error.text, "looks through one view");
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
-  }
-}
-
-static void test_the_fill_goes_when_it_is_not_wanted(void **state) {
-  (void)state;
-  abbe_plan plan;
-  const abbe_render_desc none = {.fill = ABBE_FILL_NONE};
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &none, &plan);
-  assert_runs(&plan, "light: gap fill", false);
-  assert_runs(&plan, "light: spectral map", true);
-  abbe_plan_free(&plan);
-}
-
-static void refuse(const abbe_render_desc *desc, abbe_result expected, const char *part,
-                   const char *text) {
-  abbe_scene scene = {0};
-  abbe_plan plan;
-  abbe_error error = {0};
-  load_text(text, &scene);
-  abbe_result result = abbe_plan_make(&scene, desc, &plan, &error);
-  if (result != expected) print_error("%s: '%s'\n", part, error.text);
-  assert_int_equal(result, expected);
-  assert_int_equal(error.code, expected);
-  assert_contains(error.text, part);
-  abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
-}
-
-static void test_limits_are_kept(void **state) {
-  (void)state;
-  const struct {
-    abbe_render_desc desc;
-    const char *part;
-  } rows[] = {
-      {{.width = ABBE_RENDER_MAX_SIDE + 1}, "8193"},
-      {{.height = ABBE_RENDER_MAX_SIDE + 1}, "height"},
-      {{.photons = ABBE_RENDER_MAX_PHOTONS + 1}, "photon grid is 4097"},
-      {{.map_size = ABBE_RENDER_MAX_MAP + 1}, "spectral map is 4097"},
-      {{.supersample = 5}, "supersampling is 5"},
-      {{.upsample = 5}, "upsampling is 5"},
-      {{.supersample = 2, .upsample = 2}, "a sample for 2 x 2 pixels and 2 samples"},
-      {{.profile = ABBE_PROFILE_THESIS, .upsample = 2}, "cannot be upsampled"},
-      {{.wavelengths = ABBE_RENDER_MAX_WAVELENGTHS + 1}, "wavelengths is 1001"},
-      {{.profile = ABBE_PROFILE_THESIS, .wavelengths = 65}, "wavelengths is 65"},
-      {{.orders = ABBE_RENDER_MAX_ORDERS + 1}, "exits is 33"},
-      {{.width = (size_t)-1}, "width"},
-      {{.min_nm = 700, .max_nm = 400}, "700 to 400"},
-      {{.min_nm = -1}, "-1 to 780"},
-      {{.min_nm = NAN}, "nan"},
-      {{.max_nm = INFINITY}, "inf"},
-      {{.energy_share = -0.1}, "-0.1"},
-      {{.energy_share = 1.5}, "1.5"},
-      {{.energy_share = NAN}, "nan"},
-      {{.photon_shift = {0, 0.6}}, "photons are shifted by 0.6"},
-      {{.sample_shift = {NAN, 0}}, "samples are shifted by nan"},
-      {{.fill = ABBE_FILL_SMEAR}, "'smear'"},
-      {{.profile = ABBE_PROFILE_THESIS, .fill = ABBE_FILL_BRIDGE}, "'thesis'"},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    refuse(&rows[i].desc, ABBE_INVALID_ARGUMENT, rows[i].part,
-           CAMERA POINT_LIGHT FLOOR BALL("crown"));
-}
-
-static void test_an_index_that_is_not_known_is_refused_or_noted(void **state) {
-  (void)state;
-  abbe_plan plan;
-  refuse(NULL, ABBE_OUT_OF_RANGE, "narrow", CAMERA POINT_LIGHT FLOOR BALL("narrow"));
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("loose"), NULL, &plan);
-  assert_true(noted(&plan, "loose: the index is extrapolated"));
-  abbe_plan_free(&plan);
-  /* of a diamond's wavelengths 760 to 780 nm are not known, in which there is nothing to see */
-  make_text("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BALL("diamond"),
-            NULL, &plan);
-  assert_false(noted(&plan, "extrapolated"));
-  abbe_plan_free(&plan);
-  const abbe_render_desc inside = {.min_nm = 420, .max_nm = 680};
-  make_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &inside, &plan);
-  assert_false(noted(&plan, "extrapolated"));
-  abbe_plan_free(&plan);
-}
-
-static void test_too_many_refractors_are_unsupported(void **state) {
-  (void)state;
-  abbe_scene scene = {0};
-  abbe_plan plan;
-  abbe_error error = {0};
-  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
-  abbe_object *object = scene.object, *many = calloc(256, sizeof *many);
-  assert_non_null(many);
-  for (size_t i = 0; i < 256; i++) many[i] = object[1];
-  scene.object = many;
-  scene.object_count = 255;
-  make(&scene, NULL, &plan);
-  assert_int_equal(plan.refractor_count, 255);
-  abbe_plan_free(&plan);
-  scene.object_count = 256;
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_UNSUPPORTED);
-  assert_contains(error.text, "255 refractors");
-  scene.object = object;
-  scene.object_count = 2;
-  free(many);
-  abbe_scene_free(&scene);
-}
-
-/* What a shipped scene is made of decides how it is drawn. */
+/* What each has otherwise than scenes/sphere.yaml. */
 static const struct {
   const char *name;
-  abbe_refractor_model model;
-  bool textured;
+  row row[24];
 } shipped[] = {
-    {"sphere", ABBE_REFRACTOR_SPHERE, false},   {"rainbow", ABBE_REFRACTOR_SPHERE, false},
-    {"gem", ABBE_REFRACTOR_CONVEX, false},      {"prism", ABBE_REFRACTOR_CONVEX, true},
-    {"diamond", ABBE_REFRACTOR_CONVEX, false},  {"ring", ABBE_REFRACTOR_HIERARCHY, false},
-    {"bunny", ABBE_REFRACTOR_HIERARCHY, false}, {"glass", ABBE_REFRACTOR_HIERARCHY, true},
+    {"rainbow",
+     {RUNS_OF(CHOICE_REFRACTOR_MODEL, "drop", "exact sphere: the object is a sphere"), SHADOWED,
+      GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+    {"gem",
+     {COUNTS(7, 20, 21),
+      RUNS_OF(CHOICE_REFRACTOR_MODEL, "gem", "convex planes: the object is a convex faceted solid"),
+      RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.005 of the light is left, 20 "
+                                     "exits at most; 0.4 % of it is still inside then"),
+      RUNS(CHOICE_ABSORPTION,
+           "a material attenuates by wavelength: landings keep the length inside"),
+      GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+    {"prism",
+     {RUNS_OF(CHOICE_REFRACTOR_MODEL, "prism",
+              "convex planes: the object is a convex faceted solid"),
+      RUNS(CHOICE_RECEIVER_SHADOWS, "a receiver may stand between a light and another"),
+      RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.01 of the light is left, 8 exits "
+                                     "at most; 0.16 % of it is still inside then"),
+      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"),
+      RUNS(CHOICE_TEXTURES, "a receiver has one"), GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+    {"diamond",
+     {COUNTS(7, 24, 25),
+      RUNS_OF(CHOICE_REFRACTOR_MODEL, "diamond",
+              "convex planes: the object is a convex faceted solid"),
+      RUNS(CHOICE_RECEIVER_SHADOWS, "a receiver may stand between a light and another"),
+      RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.01 of the light is left, 24 exits "
+                                     "at most; 2.9 % of it is still inside then"),
+      RESTS_OF(CHOICE_LIGHT_MAP, "lamp of the left card", "its cone misses every refractor"),
+      RESTS_OF(CHOICE_LIGHT_MAP, "lamp of the high card", "its cone misses every refractor"),
+      RUNS(CHOICE_RECEIVER_MAPS, "a receiver may hide from a light where its light lands"),
+      GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+    {"ring",
+     {COUNTS(7, 8, 16),
+      RUNS_OF(CHOICE_REFRACTOR_MODEL, "ring",
+              "triangle hierarchy: the object is a general mesh, and light may meet it more than "
+              "twice"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
+      RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
+      GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+    {"bunny",
+     {COUNTS(7, 8, 16),
+      RUNS_OF(CHOICE_REFRACTOR_MODEL, "bunny",
+              "triangle hierarchy: the object is a general mesh, and light may meet it more than "
+              "twice"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
+      RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
+      GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
+    {"glass",
+     {COUNTS(7, 8, 16),
+      RUNS_OF(CHOICE_REFRACTOR_MODEL, "glass",
+              "triangle hierarchy: the object is a general mesh, and light may meet it more than "
+              "twice"),
+      RUNS(CHOICE_MULTI_REFRACTOR_PATHS, "the refractor is not convex"),
+      RUNS(PASS_EYE_REFRACTION, "until less than 0.01 of its light is left, 256 exits at most"),
+      RUNS(CHOICE_TEXTURES, "a receiver has one"), GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
 };
 
-static void test_shipped_scenes(void **state) {
+static void plan_of(const abbe_scene *scene, const abbe_render_desc *desc, lines *out) {
+  abbe_plan plan;
+  plan_scene(scene, desc, &plan);
+  tell(scene, &plan, out);
+  abbe_plan_free(&plan);
+}
+
+static void load_and_plan(const char *text, const abbe_render_desc *desc, lines *out) {
+  abbe_scene scene = {0};
+  load_text(text, &scene);
+  plan_of(&scene, desc, out);
+  abbe_scene_free(&scene);
+}
+
+static void load_and_plan_shipped(const char *name, lines *out) {
+  abbe_scene scene = {0};
+  load_shipped(name, &scene);
+  plan_of(&scene, NULL, out);
+  abbe_scene_free(&scene);
+}
+
+static void shipped_scenes(void **state) {
   (void)state;
+  static lines sphere, other, difference;
+  load_and_plan_shipped("sphere", &sphere);
+  check_rows("sphere", sphere_rows, &sphere);
   for (size_t i = 0; i < sizeof shipped / sizeof *shipped; i++) {
-    abbe_scene scene = {0};
-    abbe_plan plan;
-    load_shipped(shipped[i].name, &scene);
-    make(&scene, NULL, &plan);
-    bool layers = shipped[i].model == ABBE_REFRACTOR_LAYERS;
-    assert_int_equal(plan.refractor_count, 1);
-    assert_int_equal(plan.model[0], shipped[i].model);
-    assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
-    assert_true(plan.caustics && plan.dispersive);
-    assert_int_equal(plan.desc.wavelengths, 7);
-    assert_runs(&plan, "light: refractor back", layers);
-    assert_runs(&plan, "inner reflections", true);
-    assert_runs(&plan, "textures", shipped[i].textured);
-    for (size_t k = 0; k < plan.entry_count; k++) {
-      assert_true(plan.entry[k].name[0] != '\0');
-      assert_true(plan.entry[k].reason[0] != '\0');
-    }
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
+    load_and_plan_shipped(shipped[i].name, &other);
+    differ(&sphere, &other, &difference);
+    check_rows(shipped[i].name, shipped[i].row, &difference);
   }
 }
 
-static bool notes(const abbe_plan *plan, const char *part) {
-  for (size_t i = 0; i < plan->note_count; i++)
-    if (strstr(plan->note[i], part) != NULL) return true;
+static void a_fact_changes_what_follows_from_it_alone(void **state) {
+  (void)state;
+  static lines from, to, difference;
+  load_and_plan(ball, NULL, &from);
+  check_rows("ball", ball_rows, &from);
+  for (size_t i = 0; i < PAIRS; i++) {
+    load_and_plan(pairs[i].from, NULL, &from);
+    load_and_plan(pairs[i].to, &pairs[i].desc, &to);
+    differ(&from, &to, &difference);
+    check_rows(pairs[i].fact, pairs[i].row, &difference);
+  }
+}
+
+/* Whether the item runs in one of the plans and rests in the other. */
+static bool flips(const lines *a, const lines *b, const line *item) {
+  for (size_t i = 0; i < a->count; i++)
+    for (size_t k = 0; k < b->count; k++)
+      if (is_about_the_same(&a->line[i], item) && is_about_the_same(&b->line[k], item) &&
+          a->line[i].kind != b->line[k].kind)
+        return true;
   return false;
 }
 
-#define WHITE_BALL                                                                                 \
-  "- {name: white, shape: sphere, radius: 0.05, levels: 2, "                                       \
-  "transform: [{translate: [-0.2, 0, 0.1]}], reflectance: 0.5}\n"
-#define DROP(name, radius, z)                                                                      \
-  "- {name: " name ", shape: sphere, radius: " radius ", levels: 2, "                              \
-  "transform: [{translate: [0.09, 0.09, " z "]}], material: flat}\n"
-
-static void test_refractors_that_overlap_are_noted(void **state) {
+static void every_pass_goes_with_some_fact(void **state) {
   (void)state;
-  static const struct {
-    const char *text, *part; /* NULL: none overlap */
-  } rows[] = {
-      {CAMERA POINT_LIGHT FLOOR BALL("flat") BRICK("flat"), NULL},
-      /* the boxes around these two overlap at a corner, the balls do not */
-      {CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.04", "0.26"), NULL},
-      {CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.08", "0.26"),
-       "'ball' and 'drop' over"},
-      {CAMERA POINT_LIGHT FLOOR DROP("shell", "0.05", "0.2") DROP("bubble", "0.04", "0.2"),
-       "'shell' and 'bubble' overlap"},
-      {CAMERA POINT_LIGHT FLOOR DROP("a", "0.05", "0.2") DROP("b", "0.04", "0.2")
-           DROP("c", "0.03", "0.2"),
-       "'a' and 'b' (and 2 pairs more) overlap"},
-      {CAMERA POINT_LIGHT FLOOR RING("flat") BALL("flat"), "'ring' and 'ball' overlap"},
-  };
-  /* walked light keeps the scene's rule; two layers know one refractor at a time */
-  const abbe_render_desc apart = {.model = ABBE_MODEL_LAYERS};
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    abbe_scene scene;
-    abbe_plan plan;
-    load_text(rows[i].text, &scene);
-    assert_int_equal(abbe_plan_make(&scene, &apart, &plan, NULL), ABBE_OK);
-    if (notes(&plan, "overlap") != (rows[i].part != NULL) ||
-        (rows[i].part != NULL && !notes(&plan, rows[i].part)))
-      fail_msg("scene %zu: %s", i,
-               plan.note_count > 0 ? plan.note[plan.note_count - 1] : "no note");
-    abbe_plan_free(&plan);
-    abbe_scene_free(&scene);
+  static lines all, from[PAIRS], to[PAIRS];
+  load_and_plan(ball, NULL, &all);
+  for (size_t k = 0; k < PAIRS; k++) {
+    load_and_plan(pairs[k].from, NULL, &from[k]);
+    load_and_plan(pairs[k].to, &pairs[k].desc, &to[k]);
+  }
+  for (size_t i = 0; i < all.count; i++) {
+    const line *l = &all.line[i];
+    if (l->kind != ROW_RUNS && l->kind != ROW_RESTS) continue;
+    /* what every picture of the default profile needs */
+    const bool always = l->item == ABBE_CHOICE_RECEIVER_MODEL ||
+                        l->item == ABBE_CHOICE_WAVELENGTHS || l->item == ABBE_PASS_EYE_RECEIVERS;
+    bool goes = false;
+    for (size_t k = 0; k < PAIRS && !goes; k++) goes = flips(&from[k], &to[k], l);
+    if (goes == always)
+      fail_msg("'%s' goes with %s", abbe_plan_item_text(l->item), goes ? "a fact" : "no fact");
   }
 }
 
-static void test_a_disk_is_refused_by_name(void **state) {
+/* The lists are the scene's objects in their order, and the flags the models in use. */
+static void lists_name_the_scenes_objects(void **state) {
   (void)state;
-  abbe_scene scene;
   abbe_plan plan;
-  abbe_error error = {0};
-  load_text(CAMERA "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.6], target: [0, 0, 0], "
-                   "radius: 0.1, radiance: 100}\n" FLOOR BALL("flat"),
-            &scene);
-  assert_int_equal(scene.light[0].kind, ABBE_LIGHT_DISK);
-  assert_near(scene.light[0].radius, 0.1, 0);
-  assert_near(scene.light[0].power, 100, 0);
-  assert_near(scene.light[0].direction[2], -1, 0);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_UNSUPPORTED);
-  assert_contains(error.text, "'panel' is a disk");
-  assert_contains(error.text, "trace the scene");
-  assert_contains(error.text, "of 3.14159 W/sr"); /* 100 pi 0.1^2 */
-  abbe_scene_free(&scene);
-}
-
-static void refuse_layout(const char *text, const abbe_render_desc *desc, const char *part) {
-  abbe_scene scene;
-  abbe_plan plan;
-  abbe_error error = {0};
-  load_text(text, &scene);
-  assert_int_equal(abbe_plan_make(&scene, desc, &plan, &error), ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, part);
-  abbe_scene_free(&scene);
-}
-
-static void test_a_map_layout_belongs_to_its_light(void **state) {
-  (void)state;
-  static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
-  static const double at[3] = {0.05, 0.03, 0.6}, down[3] = {0, 0, -1}, up[3] = {0, 1, 0};
-  static const double point[1][3] = {{0, 0, 0}};
-  abbe_view view;
-  abbe_map_layout layout;
-  abbe_view_look(at, down, up, false, &view);
-  abbe_view_fit(&view, point, 1);
-  abbe_view_pad(&view, 0.1);
-  abbe_map_layout_make(&view, &layout);
-  abbe_render_desc desc = {.map_layout = &layout};
-  abbe_scene scene;
-  abbe_plan plan;
-  load_text(ball, &scene);
-  assert_int_equal(abbe_plan_make(&scene, &desc, &plan, NULL), ABBE_OK);
-  assert_contains(abbe_plan_find(&plan, "light: spectral map")->reason, "laid out as asked");
+  plan_text(CAMERA POINT_LIGHT FLOOR BALL("crown") CARD BRICK("flat"), NULL, &plan);
+  assert_int_equal(plan.refractor_count, 2);
+  assert_true(plan.refractor_object[0] == 1 && plan.refractor_object[1] == 3);
+  assert_true(plan.model[0] == ABBE_REFRACTOR_SPHERE && plan.model[1] == ABBE_REFRACTOR_CONVEX);
+  assert_true(plan.spheres && plan.convex && !plan.layers && !plan.bvh &&
+              plan.multi_refractor_paths);
+  assert_int_equal(plan.receiver_count, 2);
+  assert_true(plan.receiver_object[0] == 0 && plan.receiver_object[1] == 2);
+  assert_int_equal(plan.receivers, ABBE_RECEIVER_EXACT);
+  assert_true(plan.dispersive && plan.caustics && plan.camera_sees_refractor && plan.fills &&
+              !plan.absorbing);
   abbe_plan_free(&plan);
-  abbe_scene_free(&scene);
-  refuse_layout(CAMERA POINT_LIGHT FLOOR, &desc, "no refractor");
-  refuse_layout(CAMERA SUN FLOOR BALL("flat"), &desc, "another place than 'sun'");
-  desc.map_layout_light = 1;
-  refuse_layout(ball, &desc, "for light 2; the scene has 1");
-  desc.map_layout_light = 0;
-  desc.profile = ABBE_PROFILE_THESIS;
-  refuse_layout(ball, &desc, "thesis");
-  desc.profile = ABBE_PROFILE_DEFAULT;
-  layout.knot[0][3] = NAN;
-  refuse_layout(ball, &desc, "along x");
-  layout.view.origin[0] += 1e-3;
-  refuse_layout(ball, &desc, "another place than 'lamp'");
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_ball_over_a_floor),
-      cmocka_unit_test(test_without_refractors_no_light_is_split),
-      cmocka_unit_test(test_a_constant_index_needs_one_wavelength),
-      cmocka_unit_test(test_absorption_runs_where_something_absorbs),
-      cmocka_unit_test(test_a_mesh_asks_for_its_back_layer),
-      cmocka_unit_test(test_what_light_may_meet_again_is_walked),
-      cmocka_unit_test(test_a_model_that_is_asked_for),
-      cmocka_unit_test(test_a_curved_receiver_asks_for_a_hierarchy),
-      cmocka_unit_test(test_too_many_rectangles_are_traversed),
-      cmocka_unit_test(test_the_thesis_profile_knows_one_way),
-      cmocka_unit_test(test_the_thesis_profile_looks_through_one_view),
-      cmocka_unit_test(test_the_fill_goes_when_it_is_not_wanted),
-      cmocka_unit_test(test_limits_are_kept),
-      cmocka_unit_test(test_an_index_that_is_not_known_is_refused_or_noted),
-      cmocka_unit_test(test_too_many_refractors_are_unsupported),
-      cmocka_unit_test(test_refractors_that_overlap_are_noted),
-      cmocka_unit_test(test_a_disk_is_refused_by_name),
-      cmocka_unit_test(test_a_map_layout_belongs_to_its_light),
-      cmocka_unit_test(test_shipped_scenes),
+      cmocka_unit_test(shipped_scenes),
+      cmocka_unit_test(a_fact_changes_what_follows_from_it_alone),
+      cmocka_unit_test(every_pass_goes_with_some_fact),
+      cmocka_unit_test(lists_name_the_scenes_objects),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 /* What a light's cone and the eye's window may meet, at their rims and far from them. */
-#include "tests/check.h"
+#include "tests/scenes/scene_text.h"
 #include "tests/random.h"
 
 #include "gl/plan/reach.h"
@@ -143,8 +143,38 @@ static void test_an_exact_ball_stands_out_of_its_triangles(void **state) {
   assert_false(abbe_reach_eye(&camera, 200, 100, &triangles));
 }
 
+static void sides_and_overlaps(void **state) {
+  (void)state;
+  const double floor[9] = {0, 0, 1, 2, 0, 0, 0, 2, 0};
+  assert_near(abbe_reach_side(floor, (double[3]){5, 5, 4}), 3, 1e-15);
+  assert_near(abbe_reach_side(floor, (double[3]){-5, 0, -1}), -2, 1e-15);
+  abbe_scene scene = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat") BRICK("flat") RING("flat"), &scene);
+  assert_false(abbe_reach_overlap(&scene.object[1], &scene.object[2]));
+  assert_true(abbe_reach_overlap(&scene.object[1], &scene.object[3]));
+  abbe_scene_free(&scene);
+}
+
+/* A plane at 45 degrees: boxes on one side of it share its bounds, and are not reached into. */
+static void a_receiver_reaches_into_what_its_plane_cuts(void **state) {
+  (void)state;
+  double slope[1][9] = {{0, 0, 0, 1, 0, 1, 0, 1, 0}};
+  abbe_object receiver = {
+      .exact = {.kind = ABBE_EXACT_PARALLELOGRAMS, .count = 1, .parallelogram = slope}};
+  const abbe_object cut = box(0.5, 0.5, 0.5, 0.1), below = box(0.8, 0.5, 0.2, 0.1);
+  const abbe_object apart = box(0.5, 1.5, 0.5, 0.1);
+  assert_true(abbe_reach_into(&receiver, &cut));
+  assert_false(abbe_reach_into(&receiver, &below));
+  assert_false(abbe_reach_into(&receiver, &apart));
+  abbe_object mesh = box(0.5, 0.5, 0.5, 0.5);
+  assert_true(abbe_reach_into(&mesh, &below));
+  assert_false(abbe_reach_into(&mesh, &apart));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sides_and_overlaps),
+      cmocka_unit_test(a_receiver_reaches_into_what_its_plane_cuts),
       cmocka_unit_test(test_a_cone_touches_a_ball),
       cmocka_unit_test(test_what_stands_behind_a_ball),
       cmocka_unit_test(test_light_without_a_cone_goes_everywhere),

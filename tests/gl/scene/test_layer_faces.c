@@ -20,7 +20,7 @@ static abbe_statistics draw(size_t photons, bool everything, abbe_image *picture
                                  .map_size = 128,
                                  .supersample = 1,
                                  .wavelengths = 3,
-                                 .orders = 4,
+                                 .exits = 4,
                                  .model = ABBE_MODEL_LAYERS,
                                  .everything = everything};
   abbe_renderer *renderer = make_renderer(&ring, &desc);

@@ -158,7 +158,7 @@ static const abbe_render_desc one_exit = {.width = 96,
                                           .height = 96,
                                           .photons = 128,
                                           .map_size = 512,
-                                          .orders = 1,
+                                          .exits = 1,
                                           .layers = true,
                                           .space = ABBE_RGB_SPACE_XYZ};
 

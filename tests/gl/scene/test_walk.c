@@ -15,7 +15,7 @@ static const abbe_render_desc far = {.width = 16,
                                      .map_size = 64,
                                      .wavelengths = 1,
                                      .energy_share = 1e-5,
-                                     .orders = ABBE_RENDER_MAX_ORDERS};
+                                     .exits = ABBE_RENDER_MAX_EXITS};
 
 static abbe_ledger energy_of(const char *text, const abbe_render_desc *desc) {
   abbe_scene scene = {0};
@@ -65,7 +65,7 @@ static void draw_both(const abbe_scene *scene, abbe_ledger energy[2], double apa
   abbe_render_desc desc = small_frame;
   abbe_map_layout layout;
   for (int i = 0; i < 2; i++) {
-    desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_HIERARCHY;
+    desc.model = i == 0 ? ABBE_MODEL_CONVEX : ABBE_MODEL_BVH;
     abbe_renderer *renderer = make_renderer(scene, &desc);
     energy[i] = draw_frame(renderer).energy;
     read_map(renderer, 0, &map[i]);

@@ -1,7 +1,7 @@
 /* What the plan leaves out does not show: with everything switched on the picture is the same. */
 #include "tests/gl/frame.h"
 
-#include "gl/plan/everything.h"
+#include "gl/plan/no_culling.h"
 
 #define ASIDE                                                                                      \
   "- {name: aside, kind: spot, position: [-0.3, 0.03, 0.6], target: [-0.5, 0, 0], cone: 10, "      \
@@ -31,7 +31,7 @@ static double with_everything(const abbe_scene *scene, size_t exits) {
   abbe_image planned = {0}, all = {0};
   draw(scene, &desc, &planned);
   desc.everything = true;
-  desc.orders = exits;
+  desc.exits = exits;
   draw(scene, &desc, &all);
   double found = difference(&planned, &all);
   abbe_image_free(&planned);
@@ -67,15 +67,15 @@ static void test_every_switch_is_on(void **state) {
   load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
   assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
   for (size_t i = 0; i < plan.entry_count; i++) {
-    const char *name = plan.entry[i].name;
-    bool model = strcmp(name, "light: receiver depth") == 0 || /* other models, other pictures */
-                 strcmp(name, "refractors in turn") == 0;
-    if (plan.entry[i].runs == model) fail_msg("%s: %s", name, plan.entry[i].reason);
+    const abbe_plan_entry *entry = &plan.entry[i];
+    const bool model = entry->item == ABBE_PASS_RECEIVER_DEPTH || /* other models, other pictures */
+                       entry->item == ABBE_CHOICE_MULTI_REFRACTOR_PATHS;
+    if (entry->runs == model) fail_msg("%s: %s", entry->name, entry->reason);
   }
   assert_true(plan.reaches[1] && plan.receiver_shadows && plan.absorbing && plan.textured);
-  assert_true(plan.back && plan.fills && plan.seen);
+  assert_true(plan.draw_back && plan.fills && plan.camera_sees_refractor);
   assert_int_equal(plan.desc.wavelengths, 7);
-  assert_int_equal(plan.desc.orders, ABBE_RENDER_MAX_ORDERS);
+  assert_int_equal(plan.desc.exits, ABBE_RENDER_MAX_EXITS);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
 }
@@ -85,12 +85,12 @@ static void test_what_is_asked_for_stays(void **state) {
   abbe_scene scene = {0};
   abbe_plan plan;
   const abbe_render_desc all = {
-      .everything = true, .wavelengths = 3, .orders = 2, .fill = ABBE_FILL_NONE};
+      .everything = true, .wavelengths = 3, .exits = 2, .fill = ABBE_FILL_NONE};
   load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
   assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
   assert_int_equal(plan.desc.wavelengths, 3);
-  assert_int_equal(plan.desc.orders, 2);
-  assert_false(plan.fills || abbe_plan_find(&plan, "light: gap fill")->runs);
+  assert_int_equal(plan.desc.exits, 2);
+  assert_false(plan.fills || abbe_plan_find(&plan, ABBE_PASS_GAP_FILL, 0)->runs);
   abbe_plan_free(&plan);
   abbe_scene_free(&scene);
 }

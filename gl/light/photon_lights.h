@@ -1,9 +1,9 @@
-/* light_views.h: how each light looks: the near view of its photons and their grid, the map around
- * receivers; and the tables that tell shaders of it. A light with a cube has a view a face.
+/* photon_lights.h: how each light looks: the near view of its photons and their grid, the map
+ * around receivers; and the tables that tell shaders of it. A light with a cube has a view a face.
  * Internal to gl/.
  */
-#ifndef ABBE_GL_LIGHT_LIGHT_VIEWS_H
-#define ABBE_GL_LIGHT_LIGHT_VIEWS_H
+#ifndef ABBE_GL_LIGHT_PHOTON_LIGHTS_H
+#define ABBE_GL_LIGHT_PHOTON_LIGHTS_H
 
 #include "gl/scene/gpu_scene.h"
 #include "scenes/view/map_layout.h"
@@ -14,7 +14,7 @@
 
 enum { ABBE_WARP_STEPS = ABBE_MAP_LAYOUT_STEPS };
 
-typedef struct abbe_light_view {
+typedef struct abbe_photon_light {
   abbe_view near_view;
   abbe_map_layout map;
   size_t cells[2]; /* of the photon grid, across and up */
@@ -22,44 +22,45 @@ typedef struct abbe_light_view {
   double cell_flux;    /* most that one photon cell can carry, W */
   double white_peak;   /* largest of X, Y, Z of the light's white, by its Y */
   double reached_flux; /* that all cells together bring to refractors, weighted by ybar, W */
-} abbe_light_view;
+} abbe_photon_light;
 
-typedef struct abbe_light_views {
+typedef struct abbe_photon_lights {
   const abbe_gpu_scene *scene;
-  abbe_light_view light[ABBE_SCENE_MAX_LIGHTS];
+  abbe_photon_light light[ABBE_SCENE_MAX_LIGHTS];
   GLuint lights, warps, texel_sizes;
   size_t map_levels, map_texels; /* halved as long as sides are even; texels of all levels */
   bool wide;                     /* the map's sums have 64 bits, else 32 */
-} abbe_light_views;
+} abbe_photon_lights;
 
 /* Fits every view to the scene: near views tight around the refractors, maps around all receivers
  * or as the request gives them; makes the tables. Not of the thesis's light, which fits its own. */
-abbe_result abbe_light_views_make(const abbe_gpu_scene *scene, abbe_light_views *out,
-                                  abbe_error *error);
-void abbe_light_views_free(abbe_light_views *views);
+abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lights *out,
+                                    abbe_error *error);
+void abbe_photon_lights_free(abbe_photon_lights *views);
 /* Writes the tables anew: after any change of a view, of cells or of what is reached. */
-void abbe_light_views_upload(abbe_light_views *views);
-void abbe_light_views_bind(const abbe_light_views *views);
+void abbe_photon_lights_upload(abbe_photon_lights *views);
+void abbe_photon_lights_bind(const abbe_photon_lights *views);
 
 /* From the light to the refractors, or through its face of the cube; no window is set. */
-void abbe_light_view_look(const abbe_gpu_scene *scene, size_t light, abbe_view *out);
+void abbe_photon_light_look(const abbe_gpu_scene *scene, size_t light, abbe_view *out);
 
 /* Whether the request gives the layout of this light's map. */
-bool abbe_light_views_map_is_given(const abbe_light_views *views, size_t light);
+bool abbe_photon_lights_map_is_given(const abbe_photon_lights *views, size_t light);
 /* Whether the light looks through one face of a cube, and shares its power with the others. */
-bool abbe_light_views_is_face(const abbe_light_views *views, size_t light);
+bool abbe_photon_lights_is_face(const abbe_photon_lights *views, size_t light);
 /* A light's map around all receivers, before it is fitted to the photons' hits. */
-void abbe_light_views_whole_map(const abbe_light_views *views, size_t light, abbe_map_layout *out);
+void abbe_photon_lights_whole_map(const abbe_photon_lights *views, size_t light,
+                                  abbe_map_layout *out);
 /* Moves the photon grid by the request's part of a cell; what is lit stays in the window. */
-void abbe_light_views_shift_cells(abbe_light_views *views, size_t light);
-void abbe_light_views_set_grid(const abbe_light_views *views, GLuint program, size_t light);
+void abbe_photon_lights_shift_cells(abbe_photon_lights *views, size_t light);
+void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program, size_t light);
 
 /* Flux of one unit of a light's map sums, W. */
-double abbe_light_views_map_unit(const abbe_light_views *views, size_t light);
+double abbe_photon_lights_map_unit(const abbe_photon_lights *views, size_t light);
 /* 32-bit words of a map texel's sums. */
-size_t abbe_light_views_map_words(const abbe_light_views *views);
+size_t abbe_photon_lights_map_words(const abbe_photon_lights *views);
 /* Window width (axis 0) or height (1) of the map's column or row `texel`. */
-double abbe_light_views_texel_size(const abbe_light_views *views, size_t light, int axis,
-                                   size_t texel);
+double abbe_photon_lights_texel_size(const abbe_photon_lights *views, size_t light, int axis,
+                                     size_t texel);
 
 #endif

@@ -1,21 +1,21 @@
-/* everything.h: a plan with all that is optional switched on, whether a fact asks for it or not.
+/* no_culling.h: a plan with all that is optional switched on, whether a fact asks for it or not.
  *
  * It is there to measure what the plan saves. The picture stays the same within sampling, so
  * models stay as planned: receivers by their depth, refractors by their triangles or in turn are
  * other pictures. The default profile only; the thesis's passes all run anyway.
  */
-#ifndef ABBE_GL_PLAN_EVERYTHING_H
-#define ABBE_GL_PLAN_EVERYTHING_H
+#ifndef ABBE_GL_PLAN_NO_CULLING_H
+#define ABBE_GL_PLAN_NO_CULLING_H
 
-#include "gl/plan/plan.h"
+#include "gl/plan/plan_facts.h"
+#include "scenes/scene.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* asked: the request as it came; what it says itself stays. */
-void abbe_everything_switch_on(const abbe_scene *scene, const abbe_render_desc *asked,
-                               abbe_plan *plan);
+void abbe_no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked, abbe_plan *plan);
 
 #ifdef __cplusplus
 }

@@ -1,4 +1,4 @@
-#include "gl/light/light_views.h"
+#include "gl/light/photon_lights.h"
 
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
@@ -23,15 +23,15 @@ static void store(const double v[3], double w, float out[4]) {
   out[3] = (float)w;
 }
 
-bool abbe_light_views_is_face(const abbe_light_views *views, size_t light) {
-  return views->scene->plan->lamp[light].face >= 0;
+bool abbe_photon_lights_is_face(const abbe_photon_lights *views, size_t light) {
+  return views->scene->plan->light_view[light].face >= 0;
 }
 
-void abbe_light_view_look(const abbe_gpu_scene *scene, size_t index, abbe_view *view) {
+void abbe_photon_light_look(const abbe_gpu_scene *scene, size_t index, abbe_view *view) {
   static const double up[3] = {0, 1, 0};
   const abbe_light *light = &scene->local->light[index];
-  if (scene->plan->lamp[index].face >= 0) {
-    abbe_light_cube_look(light->position, scene->plan->lamp[index].face, view);
+  if (scene->plan->light_view[index].face >= 0) {
+    abbe_light_cube_look(light->position, scene->plan->light_view[index].face, view);
     return;
   }
   double origin[3], forward[3];
@@ -48,7 +48,7 @@ void abbe_light_view_look(const abbe_gpu_scene *scene, size_t index, abbe_view *
   abbe_view_look(origin, forward, up, light->kind == ABBE_LIGHT_DIRECTIONAL, view);
 }
 
-static void fit_objects(const abbe_light_views *views, const size_t *object, size_t count,
+static void fit_objects(const abbe_photon_lights *views, const size_t *object, size_t count,
                         abbe_view *view) {
   for (size_t i = 0; i < count; i++) {
     const abbe_mesh *mesh = &views->scene->local->object[object[i]].mesh;
@@ -56,13 +56,13 @@ static void fit_objects(const abbe_light_views *views, const size_t *object, siz
   }
 }
 
-bool abbe_light_views_map_is_given(const abbe_light_views *views, size_t light) {
+bool abbe_photon_lights_map_is_given(const abbe_photon_lights *views, size_t light) {
   return views->scene->plan->desc.map_layout != NULL &&
-         views->scene->plan->desc.map_layout_light == views->scene->plan->lamp[light].light;
+         views->scene->plan->desc.map_layout_light == views->scene->plan->light_view[light].light;
 }
 
 /* All of it but the range, which must hold this scene's receivers. */
-static void take_layout(const abbe_light_views *views, const abbe_map_layout *given,
+static void take_layout(const abbe_photon_lights *views, const abbe_map_layout *given,
                         abbe_map_layout *out) {
   *out = *given;
   out->view.near = INFINITY;
@@ -73,13 +73,14 @@ static void take_layout(const abbe_light_views *views, const abbe_map_layout *gi
   memcpy(out->view.window, given->view.window, sizeof out->view.window);
 }
 
-void abbe_light_views_whole_map(const abbe_light_views *views, size_t light, abbe_map_layout *out) {
+void abbe_photon_lights_whole_map(const abbe_photon_lights *views, size_t light,
+                                  abbe_map_layout *out) {
   abbe_view view;
-  abbe_light_view_look(views->scene, light, &view);
+  abbe_photon_light_look(views->scene, light, &view);
   fit_objects(views, views->scene->plan->receiver_object, views->scene->plan->receiver_count,
               &view);
-  if (abbe_light_views_is_face(views,
-                               light)) /* receivers lie all around it, as the refractors do */
+  if (abbe_photon_lights_is_face(views,
+                                 light)) /* receivers lie all around it, as the refractors do */
     for (int k = 0; k < 4; k++)
       view.window[k] = k % 2 != 0 ? ABBE_VIEW_MAX_TANGENT : -ABBE_VIEW_MAX_TANGENT;
   abbe_view_pad(&view, 0.01);
@@ -88,14 +89,14 @@ void abbe_light_views_whole_map(const abbe_light_views *views, size_t light, abb
 
 /* Around what the face shows of the refractors. The shaders' profile of the light keeps photons in
  * the face; the window ends there too, unless layers are read beyond it. */
-static void fit_face(const abbe_light_views *views, size_t light, abbe_view *view) {
+static void fit_face(const abbe_photon_lights *views, size_t light, abbe_view *view) {
   const abbe_plan *plan = views->scene->plan;
   const abbe_light *from = &views->scene->local->light[light];
   double near = INFINITY, far = 0;
   for (size_t i = 0; i < plan->refractor_count; i++) {
     const abbe_object *object = &views->scene->local->object[plan->refractor_object[i]];
     const abbe_mesh *mesh = &object->mesh;
-    if ((abbe_light_cube_reached(from, object) >> plan->lamp[light].face & 1) == 0) continue;
+    if ((abbe_light_cube_reached(from, object) >> plan->light_view[light].face & 1) == 0) continue;
     abbe_light_cube_fit(view, object);
     if (plan->model[i] == ABBE_REFRACTOR_LAYERS)
       abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count);
@@ -109,7 +110,7 @@ static void fit_face(const abbe_light_views *views, size_t light, abbe_view *vie
   for (int k = 0; k < 4; k++) /* a seam's rounding may leave it empty */
     if (!isfinite(view->window[k])) view->window[k] = 0;
   abbe_view_pad(view, 0.01);
-  for (int k = 0; k < 4 && !plan->layers && !plan->hierarchy; k++)
+  for (int k = 0; k < 4 && !plan->layers && !plan->bvh; k++)
     view->window[k] = fmin(fmax(view->window[k], -1), 1);
   view->far = far > 0 ? far : 1;
   view->near = fmax(fmin(near, 0.5 * view->far), 1e-4 * view->far);
@@ -117,11 +118,11 @@ static void fit_face(const abbe_light_views *views, size_t light, abbe_view *vie
 
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
  * to the photons' landings later where the request does not give it. */
-static void fit_views(abbe_light_views *views) {
-  for (size_t i = 0; i < views->scene->plan->light_count; i++) {
-    abbe_light_view *state = &views->light[i];
+static void fit_views(abbe_photon_lights *views) {
+  for (size_t i = 0; i < views->scene->plan->light_view_count; i++) {
+    abbe_photon_light *state = &views->light[i];
     state->cells[0] = state->cells[1] = views->scene->plan->desc.photons;
-    abbe_light_view_look(views->scene, i, &state->near_view);
+    abbe_photon_light_look(views->scene, i, &state->near_view);
     if (views->scene->plan->refractor_count > 0)
       fit_objects(views, views->scene->plan->refractor_object, views->scene->plan->refractor_count,
                   &state->near_view);
@@ -129,19 +130,19 @@ static void fit_views(abbe_light_views *views) {
       fit_objects(views, views->scene->plan->receiver_object, views->scene->plan->receiver_count,
                   &state->near_view);
     abbe_view_pad(&state->near_view, 0.01);
-    if (abbe_light_views_is_face(views, i)) {
-      abbe_light_view_look(views->scene, i, &state->near_view);
+    if (abbe_photon_lights_is_face(views, i)) {
+      abbe_photon_light_look(views->scene, i, &state->near_view);
       fit_face(views, i, &state->near_view);
     }
-    abbe_light_views_whole_map(views, i, &state->map);
-    if (abbe_light_views_map_is_given(views, i))
+    abbe_photon_lights_whole_map(views, i, &state->map);
+    if (abbe_photon_lights_map_is_given(views, i))
       take_layout(views, views->scene->plan->desc.map_layout, &state->map);
   }
 }
 
-void abbe_light_views_shift_cells(abbe_light_views *views, size_t light) {
+void abbe_photon_lights_shift_cells(abbe_photon_lights *views, size_t light) {
   const double *shift = views->scene->plan->desc.photon_shift;
-  abbe_light_view *state = &views->light[light];
+  abbe_photon_light *state = &views->light[light];
   if (fmax(fabs(shift[0]), fabs(shift[1])) == 0) return;
   for (int axis = 0; axis < 2; axis++) {
     double *low = &state->near_view.window[2 * axis], *high = low + 1;
@@ -151,7 +152,7 @@ void abbe_light_views_shift_cells(abbe_light_views *views, size_t light) {
   }
 }
 
-void abbe_light_views_set_grid(const abbe_light_views *views, GLuint program, size_t light) {
+void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program, size_t light) {
   const size_t *cells = views->light[light].cells;
   views->scene->gpu->gl->Uniform2i(views->scene->gpu->gl->GetUniformLocation(program, "grid"),
                                    (GLint)cells[0], (GLint)cells[1]);
@@ -159,31 +160,31 @@ void abbe_light_views_set_grid(const abbe_light_views *views, GLuint program, si
 
 /* Wide sums have room for 2^36 full photons of 2^28 units; narrow ones share 2^31 units among all
  * the light that reaches refractors. Both count the largest of the white's X, Y and Z. */
-double abbe_light_views_map_unit(const abbe_light_views *views, size_t light) {
-  const abbe_light_view *state = &views->light[light];
+double abbe_photon_lights_map_unit(const abbe_photon_lights *views, size_t light) {
+  const abbe_photon_light *state = &views->light[light];
   bool known = !views->wide && state->reached_flux > 0;
   double unit = known ? ldexp(state->reached_flux, -31) : ldexp(state->cell_flux, -28);
   return (double)(float)(unit * state->white_peak);
 }
 
-size_t abbe_light_views_map_words(const abbe_light_views *views) {
+size_t abbe_photon_lights_map_words(const abbe_photon_lights *views) {
   return views->wide ? 6 : 3;
 }
 
-double abbe_light_views_texel_size(const abbe_light_views *views, size_t light, int axis,
-                                   size_t texel) {
+double abbe_photon_lights_texel_size(const abbe_photon_lights *views, size_t light, int axis,
+                                     size_t texel) {
   return abbe_map_layout_texel_size(&views->light[light].map, axis,
                                     views->scene->plan->desc.map_size, texel);
 }
 
-static double texel_size(const abbe_light_views *views, size_t light, int axis, size_t side,
+static double texel_size(const abbe_photon_lights *views, size_t light, int axis, size_t side,
                          size_t i) {
   return abbe_map_layout_texel_size(&views->light[light].map, axis, side, i);
 }
 
 /* 1 / what a texel spreads its light over: by the weights of a bilinear filter, of the finer ones'
  * sizes. */
-static double per_spread(const abbe_light_views *views, size_t light, int axis, size_t side,
+static double per_spread(const abbe_photon_lights *views, size_t light, int axis, size_t side,
                          size_t i) {
   const size_t finer = 2 * side, before = i > 0 ? 2 * i - 1 : 0;
   const size_t after = 2 * i + 2 < finer ? 2 * i + 2 : 2 * i + 1;
@@ -193,7 +194,7 @@ static double per_spread(const abbe_light_views *views, size_t light, int axis, 
 }
 
 /* Of one axis of a light, as texel_sizes.glsl reads them: of one level after another. */
-static void upload_texel_sizes(const abbe_light_views *views, size_t light, int axis) {
+static void upload_texel_sizes(const abbe_photon_lights *views, size_t light, int axis) {
   const size_t whole = views->scene->plan->desc.map_size;
   enum { CHUNK = 256 };
   float size[CHUNK], spread[CHUNK];
@@ -216,7 +217,7 @@ static void upload_texel_sizes(const abbe_light_views *views, size_t light, int 
   }
 }
 
-static void upload_warps(abbe_light_views *views, size_t light) {
+static void upload_warps(abbe_photon_lights *views, size_t light) {
   float row[ABBE_WARP_STEPS + 1][4] = {{0}};
   for (int k = 0; k <= ABBE_WARP_STEPS; k++)
     for (int axis = 0; axis < 2; axis++)
@@ -229,10 +230,10 @@ static void upload_warps(abbe_light_views *views, size_t light) {
 }
 
 /* Called again whenever a light's view changes. */
-void abbe_light_views_upload(abbe_light_views *views) {
-  for (size_t i = 0; i < views->scene->plan->light_count; i++) {
+void abbe_photon_lights_upload(abbe_photon_lights *views) {
+  for (size_t i = 0; i < views->scene->plan->light_view_count; i++) {
     const abbe_light *light = &views->scene->local->light[i];
-    abbe_light_view *state = &views->light[i];
+    abbe_photon_light *state = &views->light[i];
     gpu_light g = {0};
     double white[3], rgb[3], matrix[9];
     abbe_weights_band_xyz(&light->illuminant, views->scene->plan->desc.min_nm,
@@ -250,10 +251,10 @@ void abbe_light_views_upload(abbe_light_views *views) {
     store(light->direction, cos(light->cone_rad), g.direction);
     store(rgb, light->power, g.white);
     g.misc[0] = (float)cos(fmax(light->cone_rad - light->soft_rad, 0));
-    g.misc[1] = (float)abbe_light_views_map_unit(views, i);
+    g.misc[1] = (float)abbe_photon_lights_map_unit(views, i);
     g.misc[2] = (float)(1 / cell_area);
     g.misc[3] = views->scene->plan->reaches[i] ? 1 : 0;
-    g.cube[0] = (float)views->scene->plan->lamp[i].faces;
+    g.cube[0] = (float)views->scene->plan->light_view[i].faces;
     upload_warps(views, i);
     views->scene->gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, views->lights);
     views->scene->gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(i * sizeof g),
@@ -262,7 +263,7 @@ void abbe_light_views_upload(abbe_light_views *views) {
 }
 
 /* Levels halve the side as long as it is even, so that coarse texels cover whole fine ones. */
-static void size_map(abbe_light_views *views, size_t side) {
+static void size_map(abbe_photon_lights *views, size_t side) {
   views->map_levels = 1;
   views->map_texels = side * side;
   while (views->map_levels < MAX_MAP_LEVELS && side % 2 == 0 && side > 2) {
@@ -272,10 +273,10 @@ static void size_map(abbe_light_views *views, size_t side) {
   }
 }
 
-abbe_result abbe_light_views_make(const abbe_gpu_scene *scene, abbe_light_views *out,
-                                  abbe_error *error) {
+abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lights *out,
+                                    abbe_error *error) {
   const abbe_render_desc *desc = &scene->plan->desc;
-  const size_t lights = scene->plan->light_count;
+  const size_t lights = scene->plan->light_view_count;
   out->scene = scene;
   out->wide = desc->photons * desc->photons * desc->wavelengths > MAX_NARROW_PHOTONS;
   size_map(out, scene->plan->caustics ? desc->map_size : 1);
@@ -288,17 +289,17 @@ abbe_result abbe_light_views_make(const abbe_gpu_scene *scene, abbe_light_views 
   if (result == ABBE_OK)
     result =
         abbe_gpu_make_buffer(scene->gpu, lights * sizeof(gpu_light), NULL, &out->lights, error);
-  if (result == ABBE_OK) abbe_light_views_upload(out);
+  if (result == ABBE_OK) abbe_photon_lights_upload(out);
   return result;
 }
 
-void abbe_light_views_free(abbe_light_views *views) {
+void abbe_photon_lights_free(abbe_photon_lights *views) {
   if (views->scene == NULL) return;
   const GLuint buffers[] = {views->lights, views->warps, views->texel_sizes};
   views->scene->gpu->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
 }
 
-void abbe_light_views_bind(const abbe_light_views *views) {
+void abbe_photon_lights_bind(const abbe_photon_lights *views) {
   const abbe_gl *gl = views->scene->gpu->gl;
   gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_LIGHTS, views->lights);
   gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_WARPS, views->warps);

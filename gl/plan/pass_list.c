@@ -1,0 +1,129 @@
+#include "gl/plan/pass_list.h"
+
+#include "gl/plan/layer_detail.h"
+
+static const char unlit[] = "no light meets a refractor";
+
+static int count_faces(const abbe_plan *plan, size_t light) {
+  int faces = 0;
+  for (size_t i = 0; i < plan->light_view_count; i++)
+    if (plan->light_view[i].light == light) faces++;
+  return faces;
+}
+
+static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
+  for (size_t i = 0; i < scene->light_count && plan->refractor_count > 0; i++) {
+    const char *name = scene->light[i].name;
+    if (plan->light_view[i].face >= 0)
+      abbe_plan_add_about(plan, ABBE_CHOICE_LIGHT_MAP, i, name,
+                          "a cube: %d of 6 faces, as '%.50s' is more than 76 degrees off the "
+                          "middle of all refractors",
+                          count_faces(plan, i), scene->object[plan->off_view[i]].name);
+    else
+      abbe_plan_add_about(plan, ABBE_CHOICE_LIGHT_MAP, i, name, "%s",
+                          plan->reaches[i] ? "the light may meet a refractor"
+                                           : "its cone misses every refractor");
+  }
+  abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MAPS, "%s",
+                !plan->caustics                              ? unlit
+                : abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
+                : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
+                : plan->outside_map_view
+                    ? "a receiver lies more than 76 degrees off the view of a light's map"
+                    : "the lights' maps hold all receivers");
+}
+
+/* What a view draws of refractors for their back; `unmet`: why it draws none. */
+static void list_back(abbe_plan *plan, abbe_pass pass, bool met, const char *unmet) {
+  abbe_plan_add(plan, pass, "%s",
+                !plan->layers ? "every refractor has an exact surface"
+                : met         ? "a mesh without an exact surface ends at its back layer"
+                              : unmet);
+}
+
+static void list_photons(abbe_plan *plan) {
+  const size_t least = abbe_plan_least_wavelengths(plan), most = plan->desc.wavelengths;
+  if (!plan->caustics) {
+    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, unlit);
+    abbe_plan_add(plan, ABBE_PASS_PHOTONS, unlit);
+    abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, unlit);
+    return;
+  }
+  abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT,
+                "at most %zu a side, where light meets a refractor", plan->desc.photons);
+  if (least < most)
+    abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu to %zu wavelengths, as each photon's landings ask",
+                  least, most);
+  else
+    abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu wavelengths through the refractors", most);
+  abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, "%zu x %zu texels%s", plan->desc.map_size,
+                plan->desc.map_size,
+                plan->desc.map_layout != NULL ? ", one light's laid out as asked" : "");
+}
+
+static void list_light(abbe_plan *plan) {
+  const bool apart = plan->caustics && plan->dispersive && plan->desc.wavelengths > 1;
+  abbe_plan_add(plan, ABBE_PASS_RECEIVER_DEPTH,
+                plan->receivers == ABBE_RECEIVER_DEPTH
+                    ? "receivers are found by their depth from the light"
+                    : "receivers are hit exactly");
+  abbe_plan_add(plan, ABBE_PASS_LIGHT_FRONT, "%s",
+                plan->caustics ? "photons start where the light sees a refractor" : unlit);
+  list_back(plan, ABBE_PASS_LIGHT_BACK, plan->caustics, unlit);
+  list_photons(plan);
+  if (plan->fills)
+    abbe_plan_add(plan, ABBE_PASS_GAP_FILL, "%s: %s", abbe_fill_name(plan->desc.fill),
+                  apart ? "wavelengths land apart" : "the thesis fills whatever lands");
+  else
+    abbe_plan_add(plan, ABBE_PASS_GAP_FILL, apart ? "none, as asked" : "nothing lands apart");
+}
+
+static void list_absorption(abbe_plan *plan) {
+  const char *none = abbe_plan_no_refraction(plan);
+  abbe_plan_add(plan, ABBE_CHOICE_ABSORPTION, "%s",
+                none != NULL ? none
+                : plan->lengths
+                    ? "a material attenuates by wavelength: landings keep the length inside"
+                : plan->absorbing ? "a material attenuates; path lengths are kept"
+                                  : "every material is clear");
+}
+
+static void list_picture(abbe_plan *plan) {
+  const size_t samples = plan->desc.supersample, pixels = plan->desc.upsample;
+  if (samples > 1)
+    abbe_plan_add(plan, ABBE_PASS_EYE_PICTURE, "%zu x %zu samples a pixel", samples, samples);
+  else if (pixels > 1)
+    abbe_plan_add(plan, ABBE_PASS_EYE_PICTURE, "a sample for %zu x %zu pixels", pixels, pixels);
+  else
+    abbe_plan_add(plan, ABBE_PASS_EYE_PICTURE, "one sample a pixel: nothing is averaged");
+}
+
+static void list_eye(const abbe_scene *scene, abbe_plan *plan) {
+  const char *unseen = plan->refractor_count > 0 ? "the eye sees no refractor" : "nothing refracts";
+  char fewer[160];
+  abbe_plan_add(plan, ABBE_PASS_EYE_RECEIVERS, "light, shadow and spectral map");
+  abbe_plan_add(plan, ABBE_PASS_EYE_FRONT, "%s",
+                plan->camera_sees_refractor ? "the pixels that show a refractor" : unseen);
+  list_back(plan, ABBE_PASS_EYE_BACK, plan->camera_sees_refractor, unseen);
+  if (plan->layers && !abbe_profile_is_thesis(plan->desc.profile)) {
+    plan->fewer_faces = abbe_layer_detail_reason(scene, plan, fewer);
+    abbe_plan_add(plan, ABBE_CHOICE_FEWER_FACES, "%s", fewer);
+  }
+  if (plan->camera_sees_refractor && plan->eye_exits > 1)
+    abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,
+                  "one direction a wavelength, until less than %g of its light is left, %zu exits "
+                  "at most",
+                  plan->eye_share, plan->eye_exits);
+  else
+    abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION, "%s",
+                  plan->camera_sees_refractor ? "one direction a wavelength" : unseen);
+  list_picture(plan);
+  abbe_plan_add(plan, ABBE_CHOICE_TEXTURES, plan->textured ? "a receiver has one" : "none");
+}
+
+void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan) {
+  list_maps(scene, plan);
+  list_light(plan);
+  list_absorption(plan);
+  list_eye(scene, plan);
+}

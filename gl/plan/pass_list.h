@@ -1,0 +1,21 @@
+/* pass_list.h: the plan's entries of a frame's passes, each with the fact that asks for it.
+ *
+ * Written when all facts are known; whether a pass runs is the table's to say (gl/plan/passes.h).
+ */
+#ifndef ABBE_GL_PLAN_PASS_LIST_H
+#define ABBE_GL_PLAN_PASS_LIST_H
+
+#include "gl/plan/plan_facts.h"
+#include "scenes/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Adds maps, passes and what stands between them in the order in which they run. */
+void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

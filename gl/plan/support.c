@@ -1,0 +1,74 @@
+#include "gl/plan/support.h"
+
+#include "scenes/geometry/vector.h"
+
+abbe_result abbe_support_thesis(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  ABBE_REQUIRE(scene && plan, error);
+  if (!abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
+  if (scene->light_count != 1)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile knows one light; this scene has %zu",
+                          scene->light_count);
+  if (scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile knows point and spot lights; '%s' is directional",
+                          scene->light[0].name);
+  if (plan->refractor_count == 0)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile needs a refractor; this scene has none");
+  for (size_t i = 1; i < plan->refractor_count; i++)
+    if (scene->object[plan->refractor_object[i]].material !=
+        scene->object[plan->refractor_object[0]].material)
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the thesis profile knows one material; this scene has several");
+  return ABBE_OK;
+}
+
+/* A layout belongs to where its light is. */
+static bool looks_from(const abbe_view *view, const abbe_light *light) {
+  const bool directional = light->kind == ABBE_LIGHT_DIRECTIONAL;
+  double apart[3];
+  if (view->orthographic != directional) return false;
+  abbe_vector_subtract(directional ? view->forward : view->origin,
+                       directional ? light->direction : light->position, apart);
+  return abbe_vector_length(apart) <= 1e-6 * (directional ? 1 : view->near);
+}
+
+abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+  ABBE_REQUIRE(scene && plan, error);
+  const abbe_map_layout *layout = plan->desc.map_layout;
+  const size_t index = plan->desc.map_layout_light;
+  if (layout == NULL) return ABBE_OK;
+  if (index >= scene->light_count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the map layout is for light %zu; the scene has %zu", index + 1,
+                          scene->light_count);
+  if (abbe_profile_is_thesis(plan->desc.profile))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the thesis profile lays its map out by the light's cone; a given layout "
+                          "goes with the default profile");
+  if (plan->refractor_count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the scene has no refractor, so there is no map to lay out");
+  if (!looks_from(&layout->view, &scene->light[index]))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the map layout was made for a light in another place than '%s'; take "
+                          "the map of that very light",
+                          scene->light[index].name);
+  return abbe_map_layout_check(layout, error);
+}
+
+abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error) {
+  ABBE_REQUIRE(scene, error);
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    if (light->kind != ABBE_LIGHT_DISK) continue;
+    double area = 3.14159265358979323846 * light->radius * light->radius;
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the light '%s' is a disk, and the renderer's lights have no size; trace "
+                          "the scene, or make it a point or spot light of %.6g W/sr, which is what "
+                          "it sends along its normal",
+                          light->name, light->power * area);
+  }
+  return ABBE_OK;
+}

@@ -1,0 +1,28 @@
+/* support.h: what the renderer does not model, refused by name.
+ *
+ * Of scenes whose refractors single precision does not resolve, see gl/plan/precision.h.
+ */
+#ifndef ABBE_GL_PLAN_SUPPORT_H
+#define ABBE_GL_PLAN_SUPPORT_H
+
+#include "base/error.h"
+#include "gl/plan/plan_facts.h"
+#include "scenes/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ABBE_UNSUPPORTED for a light that has a size. */
+abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error);
+
+/* ABBE_UNSUPPORTED for what the thesis profile does not know, where it is asked for. */
+abbe_result abbe_support_thesis(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
+
+/* ABBE_INVALID_ARGUMENT for a given map layout that is not the layout of its light's map. */
+abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

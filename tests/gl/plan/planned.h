@@ -1,0 +1,41 @@
+/* planned.h: plans of scenes that a test writes down, and what must not be planned. */
+#ifndef ABBE_TESTS_GL_PLAN_PLANNED_H
+#define ABBE_TESTS_GL_PLAN_PLANNED_H
+
+#include "tests/scenes/scene_text.h"
+
+#include "gl/plan/plan.h"
+
+static inline void plan_scene(const abbe_scene *scene, const abbe_render_desc *desc,
+                              abbe_plan *plan) {
+  abbe_error error = {0};
+  if (abbe_plan_make(scene, desc, plan, &error) != ABBE_OK) fail_msg("%s", error.text);
+}
+
+static inline void plan_text(const char *text, const abbe_render_desc *desc, abbe_plan *plan) {
+  abbe_scene scene = {0};
+  load_text(text, &scene);
+  plan_scene(&scene, desc, plan);
+  abbe_scene_free(&scene);
+}
+
+static inline bool is_noted(const abbe_plan *plan, const char *part) {
+  for (size_t i = 0; i < plan->note_count; i++)
+    if (strstr(plan->note[i], part) != NULL) return true;
+  return false;
+}
+
+/* The plan of the text is refused so, and the sentence has the part. */
+static inline void refuse_plan(const char *text, const abbe_render_desc *desc, abbe_result expected,
+                               const char *part) {
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  abbe_error error = {0};
+  load_text(text, &scene);
+  assert_int_equal(abbe_plan_make(&scene, desc, &plan, &error), expected);
+  assert_int_equal(error.code, expected);
+  assert_contains(error.text, part);
+  abbe_scene_free(&scene);
+}
+
+#endif

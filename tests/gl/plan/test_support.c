@@ -1,0 +1,67 @@
+/* What the renderer does not model is refused by name. */
+#include "tests/gl/plan/planned.h"
+
+#include "gl/plan/support.h"
+
+#include <math.h>
+
+static void a_disk_is_refused_by_name(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_plan plan;
+  abbe_error error = {0};
+  load_text(CAMERA "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.6], target: [0, 0, 0], "
+                   "radius: 0.1, radiance: 100}\n" FLOOR BALL("flat"),
+            &scene);
+  assert_int_equal(scene.light[0].kind, ABBE_LIGHT_DISK);
+  assert_near(scene.light[0].radius, 0.1, 0);
+  assert_near(scene.light[0].power, 100, 0);
+  assert_near(scene.light[0].direction[2], -1, 0);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'panel' is a disk");
+  assert_contains(error.text, "trace the scene");
+  assert_contains(error.text, "of 3.14159 W/sr"); /* 100 pi 0.1^2 */
+  abbe_scene_free(&scene);
+}
+
+static void a_map_layout_belongs_to_its_light(void **state) {
+  (void)state;
+  static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
+  static const double at[3] = {0.05, 0.03, 0.6}, down[3] = {0, 0, -1}, up[3] = {0, 1, 0};
+  static const double point[1][3] = {{0, 0, 0}};
+  abbe_view view;
+  abbe_map_layout layout;
+  abbe_view_look(at, down, up, false, &view);
+  abbe_view_fit(&view, point, 1);
+  abbe_view_pad(&view, 0.1);
+  abbe_map_layout_make(&view, &layout);
+  abbe_render_desc desc = {.map_layout = &layout};
+  abbe_scene scene;
+  abbe_plan plan;
+  load_text(ball, &scene);
+  assert_int_equal(abbe_plan_make(&scene, &desc, &plan, NULL), ABBE_OK);
+  assert_contains(abbe_plan_find(&plan, ABBE_PASS_SPECTRAL_MAP, 0)->reason, "laid out as asked");
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  refuse_plan(CAMERA POINT_LIGHT FLOOR, &desc, ABBE_INVALID_ARGUMENT, "no refractor");
+  refuse_plan(CAMERA SUN FLOOR BALL("flat"), &desc, ABBE_INVALID_ARGUMENT,
+              "another place than 'sun'");
+  desc.map_layout_light = 1;
+  refuse_plan(ball, &desc, ABBE_INVALID_ARGUMENT, "for light 2; the scene has 1");
+  desc.map_layout_light = 0;
+  desc.profile = ABBE_PROFILE_THESIS;
+  refuse_plan(ball, &desc, ABBE_INVALID_ARGUMENT, "thesis");
+  desc.profile = ABBE_PROFILE_DEFAULT;
+  layout.knot[0][3] = NAN;
+  refuse_plan(ball, &desc, ABBE_INVALID_ARGUMENT, "along x");
+  layout.view.origin[0] += 1e-3;
+  refuse_plan(ball, &desc, ABBE_INVALID_ARGUMENT, "another place than 'lamp'");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_disk_is_refused_by_name),
+      cmocka_unit_test(a_map_layout_belongs_to_its_light),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
