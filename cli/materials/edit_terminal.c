@@ -1,6 +1,6 @@
 #include "cli/materials/edit_terminal.h"
 
-#include "cli/output.h"
+#include "cli/base/output.h"
 
 #include <curses.h>
 #include <langinfo.h>

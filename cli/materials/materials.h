@@ -7,8 +7,8 @@
 #ifndef ABBE_CLI_MATERIALS_MATERIALS_H
 #define ABBE_CLI_MATERIALS_MATERIALS_H
 
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 #include "spectral/materials/material_table.h"
 
 #include <cjson/cJSON.h>

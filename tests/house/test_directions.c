@@ -160,13 +160,13 @@ static void test_the_rule_refuses_wrong_directions(void **state) {
   assert_true(may_include("cli/render/render.c", "validation/tracer/tracer.h"));
   assert_true(may_include("validation/sweep/sweep.c", "gl/renderer.h"));
   assert_true(may_include("validation/sweep/sweep.h", "gl/renderer.h"));
-  assert_false(may_include("validation/sweep/sweep.c", "cli/command.h"));
+  assert_false(may_include("validation/sweep/sweep.c", "cli/base/command.h"));
   assert_false(may_include("validation/tracer/tracer.c", "gl/plan/plan.h"));
   assert_false(may_include("gl/plan/plan.c", "validation/tracer/tracer.h"));
   assert_false(may_include("base/file.c", "colorimetry/image/image.h"));
   assert_false(may_include("colorimetry/image/exr.c", "scenes/scene.h"));
   assert_false(may_include("scenes/scene.c", "gl/plan/plan.h"));
-  assert_false(may_include("gl/plan/plan.c", "cli/command.h"));
+  assert_false(may_include("gl/plan/plan.c", "cli/base/command.h"));
   assert_false(may_include("gl/plan/plan.c", "plan.h"));
   assert_false(may_include("main.c", "gl/plan/plan.h"));
 }

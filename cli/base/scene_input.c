@@ -1,9 +1,44 @@
-#include "cli/scene_notes.h"
+#include "cli/base/scene_input.h"
+
+#include "cli/base/arguments.h"
+#include "scenes/import/scene_file.h"
 
 #include <cjson/cJSON.h>
+#include <limits.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
 
-void abbe_scene_notes(const abbe_scene *scene) {
+/* path, or where it is in the share folder beside the program's own, or where the build installs
+ * it; in text[size]. */
+static const char *find_shipped(const char *path, char *text, size_t size) {
+  static const char *const shares[] = {ABBE_SHARE_BESIDE, ABBE_SHARE};
+  char own[PATH_MAX];
+  if (path[0] == '/' || access(path, F_OK) == 0) return path;
+  ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
+  own[length > 0 ? length : 0] = '\0';
+  char *slash = strrchr(own, '/');
+  if (slash != NULL) slash[1] = '\0';
+  for (int i = slash == NULL; i < 2; i++) {
+    int n = snprintf(text, size, "%s%s/%s", i == 0 ? own : "", shares[i], path);
+    if (n > 0 && (size_t)n < size && access(text, F_OK) == 0) return text;
+  }
+  return path;
+}
+
+abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
+                                  abbe_scene *out, abbe_error *error) {
+  char shipped[2 * PATH_MAX];
+  const abbe_scene_options options = {.materials = materials};
+  const char *found = find_shipped(path, shipped, sizeof shipped);
+  if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
+  abbe_result result = abbe_scene_load(found, &options, out, error);
+  for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)
+    abbe_arguments_add(program, ABBE_ARGUMENT_READS, "the scene's file", abbe_scene_file(out, i));
+  return result;
+}
+
+void abbe_scene_input_note(const abbe_scene *scene) {
   for (size_t i = 0; i < scene->object_count; i++)
     if (scene->object[i].mended != NULL)
       fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].mended);
@@ -13,7 +48,7 @@ static const char *made_of(const abbe_object *o) {
   return o->material != NULL ? o->material->name : "receiver";
 }
 
-void abbe_scene_list(const abbe_scene *scene) {
+void abbe_scene_input_list(const abbe_scene *scene) {
   enum { MOST = 48 };
   printf("What is there, with its size and the middle of its bounds, m:\n");
   for (size_t i = 0; i < scene->object_count && i < MOST; i++) {
@@ -30,7 +65,7 @@ void abbe_scene_list(const abbe_scene *scene) {
   printf("\n");
 }
 
-void abbe_scene_list_json(const abbe_scene *scene, cJSON *root) {
+void abbe_scene_input_list_json(const abbe_scene *scene, cJSON *root) {
   cJSON *list = cJSON_AddArrayToObject(root, "objects");
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];

@@ -1,6 +1,6 @@
-#include "cli/progress.h"
+#include "cli/base/progress.h"
 
-#include "cli/output.h"
+#include "cli/base/output.h"
 
 #include <signal.h>
 #include <stdio.h>

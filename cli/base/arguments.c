@@ -1,7 +1,7 @@
-#include "cli/arguments.h"
+#include "cli/base/arguments.h"
 
 #include "base/nearest.h"
-#include "cli/command.h"
+#include "cli/base/command.h"
 #include "spectral/materials/material_table.h"
 
 #include <libgen.h>

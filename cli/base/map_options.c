@@ -1,7 +1,7 @@
-#include "cli/map_options.h"
+#include "cli/base/map_options.h"
 
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 #include "colorimetry/image/exr.h"
 
 #include <stdio.h>

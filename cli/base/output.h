@@ -4,8 +4,8 @@
  * Everything that is written to stdout or stderr, by whomever, becomes printable here
  * (base/encoding.h), so that no line of the program needs to think of it.
  */
-#ifndef ABBE_CLI_OUTPUT_H
-#define ABBE_CLI_OUTPUT_H
+#ifndef ABBE_CLI_BASE_OUTPUT_H
+#define ABBE_CLI_BASE_OUTPUT_H
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* fopencookie */
 
-#include "cli/output.h"
+#include "cli/base/output.h"
 
 #include "base/encoding.h"
 

@@ -1,14 +1,11 @@
-#include "cli/command.h"
+#include "cli/base/command.h"
 
 #include "base/encoding.h"
 #include "base/file.h"
 #include "base/nearest.h"
-#include "cli/arguments.h"
-#include "scenes/import/scene_file.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
@@ -164,35 +161,6 @@ void abbe_command_size(const char *program, const char *option, const char *text
   }
   *width = w;
   *height = h;
-}
-
-/* path, or where it is in the share folder beside the program's own, or where the build installs
- * it; in text[size]. */
-static const char *find_shipped(const char *path, char *text, size_t size) {
-  static const char *const shares[] = {ABBE_SHARE_BESIDE, ABBE_SHARE};
-  char own[PATH_MAX];
-  if (path[0] == '/' || access(path, F_OK) == 0) return path;
-  ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
-  own[length > 0 ? length : 0] = '\0';
-  char *slash = strrchr(own, '/');
-  if (slash != NULL) slash[1] = '\0';
-  for (int i = slash == NULL; i < 2; i++) {
-    int n = snprintf(text, size, "%s%s/%s", i == 0 ? own : "", shares[i], path);
-    if (n > 0 && (size_t)n < size && access(text, F_OK) == 0) return text;
-  }
-  return path;
-}
-
-abbe_result abbe_command_load_scene(const char *program, const char *path, const char *materials,
-                                    abbe_scene *out, abbe_error *error) {
-  char shipped[2 * PATH_MAX];
-  const abbe_scene_options options = {.materials = materials};
-  const char *found = find_shipped(path, shipped, sizeof shipped);
-  if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
-  abbe_result result = abbe_scene_load(found, &options, out, error);
-  for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)
-    abbe_arguments_add(program, ABBE_ARGUMENT_READS, "the scene's file", abbe_scene_file(out, i));
-  return result;
 }
 
 abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error) {

@@ -5,8 +5,8 @@
  * output may be an input or another output: not the same file by device and inode, nor, where there
  * is none yet, the same name in the same folder.
  */
-#ifndef ABBE_CLI_ARGUMENTS_H
-#define ABBE_CLI_ARGUMENTS_H
+#ifndef ABBE_CLI_BASE_ARGUMENTS_H
+#define ABBE_CLI_BASE_ARGUMENTS_H
 
 #include <argp.h>
 

@@ -4,15 +4,14 @@
  * stdout, messages to stderr. Exit codes: 0 done, 1 failed at run time, 2 used wrongly, 3 a
  * comparison was out of tolerance.
  */
-#ifndef ABBE_CLI_COMMAND_H
-#define ABBE_CLI_COMMAND_H
+#ifndef ABBE_CLI_BASE_COMMAND_H
+#define ABBE_CLI_BASE_COMMAND_H
 
 #include "base/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
-struct abbe_scene;
 struct cJSON;
 
 enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_TOLERANCE = 3 };
@@ -63,12 +62,6 @@ const char *abbe_command_target(const char *program, const char *option, const c
 /* "512x512" as width and height, each 1 to `most`. */
 void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
                        size_t *width, size_t *height);
-
-/* abbe_scene_load with that table of materials (NULL: the scene's own). A path that leads nowhere
- * and is found in the share folder that came with the program is taken there, with a note. Ends the
- * program with ABBE_EXIT_USAGE where a file of the scene is one that is to be written. */
-abbe_result abbe_command_load_scene(const char *program, const char *path, const char *materials,
-                                    struct abbe_scene *out, abbe_error *error);
 
 /* Opens and discards each of the files (NULL: none), so that a target that cannot be written is
  * found out before the work, not after it. */

@@ -1,7 +1,7 @@
 /* progress.h: a progress bar with the time left, on a terminal, for work over a second; and
  * whether the user asked to stop (Ctrl-C). */
-#ifndef ABBE_CLI_PROGRESS_H
-#define ABBE_CLI_PROGRESS_H
+#ifndef ABBE_CLI_BASE_PROGRESS_H
+#define ABBE_CLI_BASE_PROGRESS_H
 
 #include <stdbool.h>
 
