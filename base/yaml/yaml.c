@@ -1,10 +1,10 @@
 #include "base/yaml/yaml.h"
 
-#include "base/encoding.h"
 #include "base/file.h"
 #include "base/nearest.h"
 #include "base/number.h"
 #include "base/text_cursor.h"
+#include "base/utf8.h"
 
 #include <errno.h>
 #include <math.h>
@@ -623,7 +623,7 @@ abbe_result abbe_yaml_get_name(abbe_yaml *yaml, abbe_yaml_node mapping, const ch
     free(text);
     return no_memory(yaml, error);
   }
-  abbe_encoding_printable(text, length, false, shown, size);
+  abbe_utf8_printable(text, length, false, shown, size);
   free(text);
   free(*out);
   *out = shown;

@@ -1,8 +1,8 @@
 #include "cli/base/command.h"
 
-#include "base/encoding.h"
 #include "base/file.h"
 #include "base/nearest.h"
+#include "base/utf8.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -82,7 +82,7 @@ char *abbe_command_json_text(const struct cJSON *json) {
   char *raw = json == NULL ? NULL : cJSON_Print(json);
   const size_t length = raw == NULL ? 0 : strlen(raw), size = 3 * length + 2;
   char *text = raw == NULL ? NULL : malloc(size);
-  if (text != NULL) strcpy(text + abbe_encoding_printable(raw, length, true, text, size), "\n");
+  if (text != NULL) strcpy(text + abbe_utf8_printable(raw, length, true, text, size), "\n");
   cJSON_free(raw);
   return text;
 }

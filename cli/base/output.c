@@ -2,7 +2,7 @@
 
 #include "cli/base/output.h"
 
-#include "base/encoding.h"
+#include "base/utf8.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -40,7 +40,7 @@ static ssize_t write_shown(void *cookie, const char *bytes, size_t size) {
     memcpy(in, s->held, s->count);
     memcpy(in + s->count, bytes + done, part);
     const size_t all = s->count + part, rest = unfinished(in, all);
-    const size_t length = abbe_encoding_printable(in, all - rest, true, out, sizeof out);
+    const size_t length = abbe_utf8_printable(in, all - rest, true, out, sizeof out);
     memcpy(s->held, in + all - rest, rest);
     s->count = rest;
     if (fwrite(out, 1, length, s->raw) != length) return 0;

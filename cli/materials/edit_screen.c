@@ -2,8 +2,8 @@
 
 #include "cli/materials/edit_terminal.h"
 
-#include "base/encoding.h"
 #include "base/number.h"
+#include "base/utf8.h"
 #include "colorimetry/plot/text_plot.h"
 #include "spectral/editing/doctor.h"
 #include "spectral/materials/material_numbers.h"
@@ -46,9 +46,9 @@ static void put(int y, int x, int width, const char *text) {
   char shown[2048];
   int used = 0;
   move(y, x);
-  abbe_encoding_printable(text, strlen(text), false, shown, sizeof shown);
+  abbe_utf8_printable(text, strlen(text), false, shown, sizeof shown);
   for (const char *c = shown; *c != '\0' && used < width; used++) {
-    const size_t size = abbe_encoding_letter(c);
+    const size_t size = abbe_utf8_letter(c);
     addnstr(c, (int)size);
     c += size;
   }

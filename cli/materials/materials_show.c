@@ -1,5 +1,6 @@
 #include "cli/materials/materials.h"
 
+#include "spectral/dispersion/fit.h"
 #include "spectral/editing/doctor.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"
@@ -133,8 +134,8 @@ static abbe_result show_fit_yaml(const abbe_material *m, abbe_error *error) {
   abbe_dispersion fit[2];
   double max_error[2];
   for (int i = 0; i < 2; i++) {
-    result = abbe_dispersion_fit_cauchy(&m->dispersion, (size_t)i + 2, low, high, &fit[i],
-                                        &max_error[i], error);
+    result = abbe_fit_dispersion(&m->dispersion, (size_t)i + 2, low, high, &fit[i], &max_error[i],
+                                 error);
     if (result != ABBE_OK) return result;
   }
   printf("fit:\n");

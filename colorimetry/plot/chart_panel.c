@@ -1,6 +1,6 @@
 #include "colorimetry/plot/chart_panel.h"
 
-#include "base/encoding.h"
+#include "base/utf8.h"
 
 #include <cairo.h>
 #include <math.h>
@@ -135,7 +135,7 @@ enum { MAX_TEXT = 512 };
 
 /* A label may be any file's name; cairo draws none of a chart in which one is no UTF-8. */
 static const char *drawable(const char *text, char out[MAX_TEXT]) {
-  abbe_encoding_printable(text, strlen(text), false, out, MAX_TEXT);
+  abbe_utf8_printable(text, strlen(text), false, out, MAX_TEXT);
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "spectral/editing/doctor.h"
 
 #include "base/number.h"
+#include "spectral/dispersion/fit.h"
 #include "spectral/editing/doctor_parts.h"
 #include "spectral/wavelengths.h"
 
@@ -196,8 +197,8 @@ static void check_fit(abbe_doctor *d, const abbe_material_fit *fit) {
   double error = 0;
   abbe_doctor_say(d, &f->mend, "make the fit anew from the record's own %s formula",
                   abbe_dispersion_model_name(m->dispersion.model));
-  if (abbe_dispersion_fit_cauchy(&m->dispersion, fit->terms, fit->min_nm, fit->max_nm, &right,
-                                 &error, NULL) != ABBE_OK)
+  if (abbe_fit_dispersion(&m->dispersion, fit->terms, fit->min_nm, fit->max_nm, &right, &error,
+                          NULL) != ABBE_OK)
     return;
   char list[8 * (ABBE_NUMBER_TEXT_SIZE + 2)] = "", text[3][ABBE_NUMBER_TEXT_SIZE];
   size_t used = 0;

@@ -3,6 +3,7 @@
 #include "base/encoding.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/utf8.h"
 #include "spectral/dispersion/points.h"
 #include "spectral/formats/agf_formula.h"
 #include "spectral/materials/absorption.h"
@@ -74,7 +75,7 @@ static const char *take_word(const char *c, char *text, size_t size) {
   size_t length = (size_t)(end - c) < size - 1 ? (size_t)(end - c) : size - 1;
   memcpy(text, c, length);
   text[length] = '\0';
-  abbe_encoding_trim(text);
+  abbe_utf8_trim(text);
   return end;
 }
 
@@ -143,7 +144,7 @@ static void title_of(const char *remark, char title[MAX_TITLE + 8]) {
   size_t length = strlen(remark);
   snprintf(title, MAX_TITLE + 8, "; %.*s", MAX_TITLE, remark);
   if (length <= MAX_TITLE) return;
-  abbe_encoding_trim(title);
+  abbe_utf8_trim(title);
   char *blank_at = strrchr(title + 2, ' ');
   if (blank_at != NULL) *blank_at = '\0';
   strcat(title, "…");
@@ -159,7 +160,7 @@ static abbe_result read_source(reader *r, abbe_material *m) {
   char text[MAX_TEXT], title[MAX_TITLE + 8] = "";
   if (r->remark != NULL) title_of(r->remark, title);
   snprintf(text, sizeof text, "Zemax catalogue %.200s, %s%s", r->file, g->name, title);
-  abbe_encoding_trim(text);
+  abbe_utf8_trim(text);
   return keep_text(r, text, &m->source);
 }
 
@@ -231,8 +232,8 @@ static void read_range(reader *r, abbe_material *m) {
     abbe_report_add(r->report, ABBE_NOTE_ASSUMED, g->line, g->name,
                     "it has no LD line with a range; %g to %g nm are taken", low, high);
   }
-  m->min_nm = fmax(low, ABBE_MATERIAL_LOW_NM);
-  m->max_nm = fmin(high, ABBE_MATERIAL_HIGH_NM);
+  m->min_nm = fmax(low, ABBE_SPECTRUM_LOW_NM);
+  m->max_nm = fmin(high, ABBE_SPECTRUM_HIGH_NM);
   if (m->min_nm != low || m->max_nm != high)
     abbe_report_add(r->report, ABBE_NOTE_LOST, g->line, g->name,
                     "its range of %g to %g nm is cut to %g to %g nm", low, high, m->min_nm,
@@ -374,7 +375,7 @@ static abbe_result take_transmittance(reader *r, const char *c) {
   take_numbers(c, &l);
   double lambda_nm = abbe_number_tidy(at(&l, 0, 0) * 1000), share = at(&l, 1, -1);
   double thickness_m = at(&l, 2, 0) / 1000;
-  bool usable = lambda_nm >= ABBE_MATERIAL_LOW_NM && lambda_nm <= ABBE_MATERIAL_HIGH_NM &&
+  bool usable = lambda_nm >= ABBE_SPECTRUM_LOW_NM && lambda_nm <= ABBE_SPECTRUM_HIGH_NM &&
                 share >= 0 && share <= 1.02 && thickness_m > 1e-9 && thickness_m < 1e9;
   if (!usable || g->transmittance.count == ABBE_SPECTRUM_MAX_COUNT) {
     g->odd++;

@@ -1,6 +1,6 @@
 #include "spectral/formats/material_store.h"
 
-#include "base/encoding.h"
+#include "base/utf8.h"
 #include "spectral/formats/material_store_columns.h"
 
 #include <fcntl.h>
@@ -94,7 +94,7 @@ static double get_double(const unsigned char *from) {
 static bool is_text(const char *text, int size) {
   if (strlen(text) != (size_t)size) return false;
   while (*text != '\0') {
-    size_t length = abbe_encoding_letter(text);
+    size_t length = abbe_utf8_letter(text);
     if (length == 0) return false;
     text += length;
   }
@@ -190,7 +190,7 @@ static abbe_result read_spectrum(reader *r, abbe_store_column column,
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     lambda_nm[i] = get_double(bytes + 16 * i);
     value[i] = get_double(bytes + 16 * i + 8);
-    if (!(lambda_nm[i] >= ABBE_MATERIAL_LOW_NM && lambda_nm[i] <= ABBE_MATERIAL_HIGH_NM &&
+    if (!(lambda_nm[i] >= ABBE_SPECTRUM_LOW_NM && lambda_nm[i] <= ABBE_SPECTRUM_HIGH_NM &&
           value[i] >= min && value[i] <= max))
       result = damaged(r, column, "holds a number out of its range");
   }
@@ -217,8 +217,8 @@ static abbe_result read_fit(reader *r, abbe_store_column column, size_t terms,
                              .min_nm = value[terms + 1],
                              .max_nm = value[terms + 2]};
   memcpy(out->c, value, terms * sizeof *value);
-  bool ascends = out->min_nm >= ABBE_MATERIAL_LOW_NM && out->min_nm < out->max_nm &&
-                 out->max_nm <= ABBE_MATERIAL_HIGH_NM;
+  bool ascends = out->min_nm >= ABBE_SPECTRUM_LOW_NM && out->min_nm < out->max_nm &&
+                 out->max_nm <= ABBE_SPECTRUM_HIGH_NM;
   return ascends && out->max_error >= 0 ? ABBE_OK : damaged(r, column, "has no range");
 }
 
@@ -257,7 +257,7 @@ static abbe_result read_dispersion(reader *r) {
                           d->c, &d->count);
   if (result == ABBE_OK)
     result = read_spectrum(r, ABBE_STORE_points, ABBE_STORE_interpolation, 1e-3, 1e3, &d->table);
-  const double low = ABBE_MATERIAL_LOW_NM, high = ABBE_MATERIAL_HIGH_NM;
+  const double low = ABBE_SPECTRUM_LOW_NM, high = ABBE_SPECTRUM_HIGH_NM;
   if (result == ABBE_OK) result = read_number(r, ABBE_STORE_from_nm, low, high, &m->min_nm);
   return result == ABBE_OK ? read_number(r, ABBE_STORE_to_nm, low, high, &m->max_nm) : result;
 }

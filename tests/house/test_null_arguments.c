@@ -24,7 +24,7 @@ static const struct {
     {"abbe_csv_write", "report"},
     {"abbe_csv_write", "sampling"},
     {"abbe_difference_picture_write", "title"},
-    {"abbe_dispersion_fit_cauchy", "max_error"},
+    {"abbe_fit_dispersion", "max_error"},
     {"abbe_display_list", "config"},
     {"abbe_doctor_check_material", "known"},
     {"abbe_doctor_check_table", "known"},

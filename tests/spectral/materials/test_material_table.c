@@ -1,6 +1,7 @@
 #include "tests/check.h"
 
 #include "base/file.h"
+#include "spectral/dispersion/fit.h"
 #include "spectral/materials/material_table.h"
 
 #include <stdlib.h>
@@ -140,9 +141,8 @@ static void every_recorded_fit_is_made_again(void **state) {
       assert_int_equal(fit->terms, k + 2);
       assert_near(fit->min_nm, 380, 0);
       assert_near(fit->max_nm, 780, 0);
-      assert_int_equal(
-          abbe_dispersion_fit_cauchy(&m->dispersion, k + 2, 380, 780, &made, &worst, NULL),
-          ABBE_OK);
+      assert_int_equal(abbe_fit_dispersion(&m->dispersion, k + 2, 380, 780, &made, &worst, NULL),
+                       ABBE_OK);
       for (size_t j = 0; j < k + 2; j++) assert_near(fit->c[j], made.c[j], 1e-8 * fabs(made.c[j]));
       assert_near(fit->max_error, worst, 0.006 * worst); /* printed to three digits */
       /* and the recorded coefficients do leave no more than the recorded error */
