@@ -2,6 +2,7 @@
 
 #include "spectral/editing/doctor.h"
 #include "spectral/editing/table_mend.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 #include "cli/materials/materials.h"
 
+#include "spectral/formats/material_table_load.h"
 #include "spectral/materials/table_compare.h"
 
 #include <argp.h>

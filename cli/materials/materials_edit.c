@@ -1,5 +1,6 @@
 #include "cli/materials/edit_screen.h"
 #include "cli/materials/materials_change.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <argp.h>
 #include <stdio.h>

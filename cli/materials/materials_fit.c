@@ -4,6 +4,7 @@
 #include "cli/materials/materials_fit_plot.h"
 #include "spectral/dispersion/fit.h"
 #include "spectral/dispersion/index_difference.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/wavelengths.h"
 

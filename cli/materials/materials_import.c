@@ -3,8 +3,8 @@
 
 #include "base/file.h"
 #include "spectral/formats/import_batch.h"
-#include "spectral/formats/material_store_write.h"
 #include "spectral/formats/material_write.h"
+#include "spectral/store/material_store_write.h"
 
 #include <argp.h>
 #include <stdio.h>

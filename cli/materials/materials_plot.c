@@ -1,4 +1,5 @@
 #include "cli/materials/materials.h"
+#include "spectral/formats/material_table_load.h"
 
 #include "colorimetry/plot/material_chart.h"
 

@@ -2,6 +2,7 @@
 
 #include "spectral/dispersion/fit.h"
 #include "spectral/editing/doctor.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"
 #include "spectral/wavelengths.h"

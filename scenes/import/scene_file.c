@@ -3,6 +3,7 @@
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/import/object_file.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -7,8 +7,8 @@
 #include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_quote.h"
 #include "spectral/formats/material_import.h"
-#include "spectral/formats/material_store.h"
 #include "spectral/materials/material_table.h"
+#include "spectral/store/material_store.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/utf8.h"
 #include "spectral/formats/import_files.h"
-#include "spectral/formats/material_store.h"
+#include "spectral/store/material_store.h"
 
 #include <stdbool.h>
 #include <stdio.h>

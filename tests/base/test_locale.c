@@ -17,6 +17,7 @@
 #include "spectral/formats/agf_write.h"
 #include "spectral/formats/csv_write.h"
 #include "spectral/formats/material_import.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/formats/rii_write.h"
 #include "spectral/formats/shader_export.h"

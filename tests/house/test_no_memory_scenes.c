@@ -18,6 +18,7 @@
 #include "scenes/shapes/shape.h"
 #include "scenes/view/map_layout.h"
 #include "scenes/view/map_resample.h"
+#include "spectral/formats/material_table_load.h"
 
 #include "base/file.h"
 

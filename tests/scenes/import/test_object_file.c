@@ -1,4 +1,5 @@
 #include "scenes/import/object_file.h"
+#include "spectral/formats/material_table_load.h"
 
 #include "scenes/geometry/vector.h"
 

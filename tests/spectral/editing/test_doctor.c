@@ -3,6 +3,7 @@
 
 #include "spectral/editing/doctor.h"
 #include "spectral/editing/table_edit.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
 

@@ -2,6 +2,7 @@
 #include "tests/check.h"
 
 #include "spectral/editing/doctor.h"
+#include "spectral/formats/material_table_load.h"
 
 static abbe_material_table known;
 

@@ -1,6 +1,7 @@
 #include "tests/check.h"
 
 #include "spectral/editing/table_mend.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
 

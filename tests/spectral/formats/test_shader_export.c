@@ -1,5 +1,6 @@
 #include "tests/check.h"
 
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/shader_export.h"
 
 #include <cjson/cJSON.h>

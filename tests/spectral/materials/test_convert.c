@@ -2,6 +2,7 @@
 #include "tests/random.h"
 
 #include "spectral/dispersion/index_difference.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/materials/convert.h"
 
 static abbe_material_table table;

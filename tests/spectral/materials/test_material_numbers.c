@@ -1,7 +1,7 @@
 #include "tests/check.h"
 
+#include "spectral/formats/material_table_load.h"
 #include "spectral/materials/material_numbers.h"
-#include "spectral/materials/material_table.h"
 
 static abbe_material_table table;
 

@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "spectral/dispersion/fit.h"
-#include "spectral/materials/material_table.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* material_store_columns.h: what is in a store of materials, and how SQLite's failures are told.
  * Internal to spectral/.
  */
-#ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_STORE_COLUMNS_H
-#define ABBE_SPECTRAL_FORMATS_MATERIAL_STORE_COLUMNS_H
+#ifndef ABBE_SPECTRAL_STORE_MATERIAL_STORE_COLUMNS_H
+#define ABBE_SPECTRAL_STORE_MATERIAL_STORE_COLUMNS_H
 
 #include "base/error.h"
 

@@ -1,7 +1,7 @@
-#include "spectral/formats/material_store.h"
+#include "spectral/store/material_store.h"
 
 #include "base/utf8.h"
-#include "spectral/formats/material_store_columns.h"
+#include "spectral/store/material_store_columns.h"
 
 #include <fcntl.h>
 #include <math.h>

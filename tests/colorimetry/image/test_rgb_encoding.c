@@ -1,7 +1,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "colorimetry/rgb_encoding.h"
+#include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/rgb_space.h"
 
 #include <lcms2.h>

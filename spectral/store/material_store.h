@@ -1,11 +1,12 @@
 /* material_store.h: a table of materials as one SQLite file, for more of them than YAML can hold.
  *
  * Rows are found by name without reading the others. A store is written whole, from a table
- * (spectral/formats/material_store_write.h), and not changed afterwards: what people edit is YAML
- * (spectral/editing/table_edit.h). docs/materials.md describes its columns, which any SQLite program reads.
+ * (spectral/store/material_store_write.h), and not changed afterwards: what people edit is YAML
+ * (spectral/editing/table_edit.h). docs/materials.md describes its columns, which any SQLite
+ * program reads.
  */
-#ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_STORE_H
-#define ABBE_SPECTRAL_FORMATS_MATERIAL_STORE_H
+#ifndef ABBE_SPECTRAL_STORE_MATERIAL_STORE_H
+#define ABBE_SPECTRAL_STORE_MATERIAL_STORE_H
 
 #include "base/error.h"
 #include "base/report.h"

@@ -5,8 +5,8 @@
  * the parametric curve of [ICC2022]. All 0: not known. Profiles are made and applied by
  * Little CMS. It displays nothing and reads no files.
  */
-#ifndef ABBE_COLORIMETRY_RGB_ENCODING_H
-#define ABBE_COLORIMETRY_RGB_ENCODING_H
+#ifndef ABBE_COLORIMETRY_IMAGE_RGB_ENCODING_H
+#define ABBE_COLORIMETRY_IMAGE_RGB_ENCODING_H
 
 #include "colorimetry/image/image.h"
 

@@ -1,6 +1,6 @@
-#include "spectral/formats/material_store_write.h"
+#include "spectral/store/material_store_write.h"
 
-#include "spectral/formats/material_store_columns.h"
+#include "spectral/store/material_store_columns.h"
 
 #include <math.h>
 #include <stdbool.h>

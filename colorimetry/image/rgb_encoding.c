@@ -1,4 +1,4 @@
-#include "colorimetry/rgb_encoding.h"
+#include "colorimetry/image/rgb_encoding.h"
 
 #include "colorimetry/rgb_space.h"
 

@@ -1,6 +1,6 @@
-/* material_store_write.h: a table of materials into a store (spectral/formats/material_store.h). */
-#ifndef ABBE_SPECTRAL_FORMATS_MATERIAL_STORE_WRITE_H
-#define ABBE_SPECTRAL_FORMATS_MATERIAL_STORE_WRITE_H
+/* material_store_write.h: a table of materials into a store (spectral/store/material_store.h). */
+#ifndef ABBE_SPECTRAL_STORE_MATERIAL_STORE_WRITE_H
+#define ABBE_SPECTRAL_STORE_MATERIAL_STORE_WRITE_H
 
 #include "base/error.h"
 #include "spectral/materials/material_table.h"
