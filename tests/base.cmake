@@ -1,4 +1,4 @@
-foreach(name encoding error file html_text nearest number report tally text_cursor text_diff utf8
+foreach(name encoding error file html_text nearest number report summary text_cursor text_diff utf8
         yaml yaml_edit yaml_quote)
   abbe_test(${name} cpu abbe_base)
 endforeach()

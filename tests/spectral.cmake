@@ -3,7 +3,7 @@ foreach(name wavelengths spectrum optics
         material material_numbers material_query material_table absorption glass_distance convert
         table_compare
         agf agf_formula agf_write rii rii_write csv_write material_write material_import import_batch
-        doctor doctor_right table_edit table_mend record_draft)
+        check check_right table_edit table_fix record_draft)
   abbe_test(${name} cpu abbe_spectral abbe_base)
 endforeach()
 abbe_test(material_store cpu abbe_spectral abbe_base PkgConfig::SQLITE)

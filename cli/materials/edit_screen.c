@@ -5,7 +5,7 @@
 #include "base/number.h"
 #include "base/utf8.h"
 #include "colorimetry/plot/text_plot.h"
-#include "spectral/editing/doctor.h"
+#include "spectral/editing/check.h"
 #include "spectral/materials/material_numbers.h"
 #include "spectral/wavelengths.h"
 
@@ -267,14 +267,14 @@ static int draw_warnings(const app *a, int y, int rows) {
   const abbe_material *m = shown(a);
   abbe_findings found = {0};
   int used = 0;
-  if (m != NULL) abbe_doctor_check_material(m, a->screen->known, &found, NULL);
+  if (m != NULL) abbe_check_material(m, a->screen->known, &found, NULL);
   for (int weight = ABBE_FINDING_WRONG; weight >= ABBE_FINDING_NOTE; weight--)
     for (size_t i = 0; i < found.count && used < rows; i++) {
       const abbe_finding *f = &found.finding[i];
       if ((int)f->weight != weight) continue;
       char line[1000];
       snprintf(line, sizeof line, "%s: %s; %s", abbe_finding_weight_name(f->weight), f->evidence,
-               f->mend);
+               f->fix);
       colour(PAIR_WARNING, weight == ABBE_FINDING_WRONG);
       used += put_wrapped(y + used, rows - used, line);
       colour(PAIR_WARNING, false);
@@ -295,7 +295,7 @@ static void draw_message(const app *a, int warnings) {
 static const char *keys_line(const app *a) {
   if (a->asking) return "There are changes. Save them?  y yes   n no   Esc back";
   if (a->editing) return "Enter keep   Esc leave as it was   (shown as you type)";
-  return "Enter edit  s save  q quit  Q quit unsaved  ? help  u undo  r redo  m mend";
+  return "Enter edit  s save  q quit  Q quit unsaved  ? help  u undo  r redo  f fix";
 }
 
 static void draw_help(void) {
@@ -307,14 +307,14 @@ static void draw_help(void) {
       "Delete           empty the field, which takes an optional key out of the record",
       "u, r             undo, redo",
       "+, X             a coefficient more at the end, or one fewer",
-      "m                put in the doctor's first certain mend",
+      "f                put in the first fix that the check is certain of",
       "s                save: only this record's bytes change in the file",
       "q                quit, asking first where there are changes",
       "Q                quit without saving",
       "Ctrl-L           draw the screen anew",
       "",
       "Above are the index over wavelength and its difference to the source; below n_d,",
-      "V_d and what the material doctor finds. A * marks a field that differs from the file.",
+      "V_d and what the check of the record finds. A * marks a field that differs from the file.",
       "",
       "Any key goes back."};
   for (int i = 0; i < (int)(sizeof lines / sizeof lines[0]) && i + 2 < LINES; i++)
@@ -484,18 +484,18 @@ static void save(app *a) {
     say(a, error.text);
 }
 
-/* Puts in the first mend that is certain. */
-static void mend(app *a) {
+/* Puts in the first fix that is certain. */
+static void fix(app *a) {
   const abbe_material *m = abbe_record_draft_material(a->draft);
   abbe_findings found = {0};
   abbe_error error = {0};
-  say(a, "The doctor knows no certain mend for this record");
-  if (m != NULL) abbe_doctor_check_material(m, a->screen->known, &found, NULL);
+  say(a, "The check knows no certain fix for this record");
+  if (m != NULL) abbe_check_material(m, a->screen->known, &found, NULL);
   for (size_t i = 0; i < found.count; i++) {
     const abbe_finding *f = &found.finding[i];
     if (!f->certain || f->key == NULL || f->value == NULL) continue;
     abbe_result result = abbe_record_draft_put(a->draft, f->key, f->value, &error);
-    say(a, result == ABBE_OK ? f->mend : error.text);
+    say(a, result == ABBE_OK ? f->fix : error.text);
     break;
   }
   abbe_findings_free(&found);
@@ -527,8 +527,8 @@ static void letter(app *a, int key) {
   case 'X':
     resize_record(a, key == '+');
     return;
-  case 'm':
-    mend(a);
+  case 'f':
+    fix(a);
     return;
   case 's':
     save(a);

@@ -1,7 +1,7 @@
 #include "cli/materials/materials.h"
 
 #include "spectral/dispersion/fit.h"
-#include "spectral/editing/doctor.h"
+#include "spectral/editing/check.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"
@@ -97,7 +97,7 @@ static void show_findings(const abbe_findings *found) {
   for (size_t i = 0; i < found->count; i++) {
     const abbe_finding *f = &found->finding[i];
     printf("  %-13s %s: %s; %s\n", abbe_finding_weight_name(f->weight),
-           abbe_finding_kind_meaning(f->kind), f->evidence, f->mend);
+           abbe_finding_kind_meaning(f->kind), f->evidence, f->fix);
   }
 }
 
@@ -208,7 +208,7 @@ static void add_findings(cJSON *to, const abbe_findings *found) {
     cJSON_AddStringToObject(item, "weight", abbe_finding_weight_name(f->weight));
     cJSON_AddStringToObject(item, "kind", abbe_finding_kind_name(f->kind));
     cJSON_AddStringToObject(item, "evidence", f->evidence);
-    cJSON_AddStringToObject(item, "mend", f->mend);
+    cJSON_AddStringToObject(item, "fix", f->fix);
   }
 }
 
@@ -312,7 +312,7 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
   abbe_material_table known;
   abbe_findings found = {0};
   result = abbe_material_table_load(NULL, &known, error);
-  if (result == ABBE_OK) result = abbe_doctor_check_material(m, &known, &found, error);
+  if (result == ABBE_OK) result = abbe_check_material(m, &known, &found, error);
   if (result == ABBE_OK)
     result = r->json ? show_json(r, table, m, &found, error) : show_text(r, m, &found, error);
   abbe_findings_free(&found);

@@ -53,7 +53,7 @@ typedef struct abbe_material {
   char *source;              /* key into BIBLIOGRAPHY.md, then details */
   char *warning;             /* what a user of this row must know (thesis rows); may be NULL */
   abbe_material_fit fit[2];  /* two and three terms */
-  double published_n_d;      /* n_d and V_d as the source prints them, for the doctor; */
+  double published_n_d;      /* n_d and V_d as the source prints them, for the check; */
   double published_v_d;      /* 0 where it prints none */
   char *comment;             /* the source's own remark; may be NULL */
   abbe_material_catalogue catalogue;

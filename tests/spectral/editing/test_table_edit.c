@@ -430,7 +430,7 @@ static void a_file_that_changed_is_not_overwritten(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void a_table_is_not_broken_but_may_be_mended(void **state) {
+static void a_table_is_not_broken_but_may_be_fixed(void **state) {
   (void)state;
   abbe_table_edit *edit = NULL;
   must(abbe_table_edit_open(path, &edit, &error));
@@ -445,7 +445,7 @@ static void a_table_is_not_broken_but_may_be_mended(void **state) {
   must(abbe_table_edit_open(path, &edit, &error));
   must(abbe_table_edit_set(edit, "a", "model", "constant", &error));
   must(abbe_table_edit_set(edit, "a", "coefficients", "[1.5]", &error));
-  must(abbe_table_edit_save(edit, &error)); /* b is still wrong: one mend at a time */
+  must(abbe_table_edit_save(edit, &error)); /* b is still wrong: one fix at a time */
   assert_int_equal(abbe_table_edit_check(edit, &error), ABBE_SCHEMA);
   abbe_table_edit_free(edit);
 }
@@ -496,7 +496,7 @@ int main(void) {
       cmocka_unit_test(what_cannot_be_is_refused),
       with_file(a_saved_edit_is_on_the_disk),
       with_file(a_file_that_changed_is_not_overwritten),
-      with_file(a_table_is_not_broken_but_may_be_mended),
+      with_file(a_table_is_not_broken_but_may_be_fixed),
       with_file(a_new_table_begins_with_a_record),
       cmocka_unit_test(a_record_moves_from_table_to_table),
   };

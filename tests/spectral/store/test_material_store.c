@@ -210,7 +210,7 @@ static void what_is_wrong_with_a_row_is_told(void **state) {
   }
 }
 
-/* A formula without an index is seen where the row is used, and by the doctor. */
+/* A formula without an index is seen where the row is used, and by the check. */
 static void a_row_that_is_used_has_an_index(void **state) {
   (void)state;
   write_three();
@@ -227,7 +227,7 @@ static void a_row_that_is_used_has_an_index(void **state) {
   abbe_material_table_free(&table);
 }
 
-/* The doctor's reading leaves such a row out, and says so. */
+/* The check's reading leaves such a row out, and says so. */
 static void a_bad_row_is_noted_and_left_out(void **state) {
   (void)state;
   write_three();

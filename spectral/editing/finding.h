@@ -1,15 +1,9 @@
-/* doctor.h: what is wrong, or may be wrong, with the records of a material table.
+/* finding.h: one thing that a check of a material table found, and the list of them.
  *
- * Each finding names its row, gives the evidence in numbers and a mend. It judges the numbers by
- * themselves, by what the record says that its source prints, and by known materials: the record's
- * namesake where there is one, else all of them; all of it inside the record's own range alone. It
- * changes nothing: a certain mend comes as a key and a value for whoever edits the file.
+ * It finds nothing itself: that is check.h's.
  */
-#ifndef ABBE_SPECTRAL_EDITING_DOCTOR_H
-#define ABBE_SPECTRAL_EDITING_DOCTOR_H
-
-#include "base/error.h"
-#include "spectral/materials/material_table.h"
+#ifndef ABBE_SPECTRAL_EDITING_FINDING_H
+#define ABBE_SPECTRAL_EDITING_FINDING_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,7 +43,7 @@ typedef enum abbe_finding_kind {
 } abbe_finding_kind;
 
 typedef enum abbe_finding_weight {
-  ABBE_FINDING_NOTE,     /* to know, not to mend */
+  ABBE_FINDING_NOTE,     /* to know, not to fix */
   ABBE_FINDING_DOUBTFUL, /* to look at */
   ABBE_FINDING_WRONG
 } abbe_finding_weight;
@@ -62,10 +56,10 @@ typedef struct abbe_finding {
   size_t row;      /* of the table; 0 for a single material */
   size_t other;    /* the row that it is like, or ABBE_FINDING_NO_ROW */
   char *evidence;  /* a sentence with numbers */
-  char *mend;      /* a sentence: what would be right */
-  bool certain;    /* key set to value mends it */
+  char *fix;       /* a sentence: what would be right */
+  bool certain;    /* key set to value fixes it */
   const char *key; /* of the record, such as "coefficients"; NULL without a value */
-  char *value;     /* YAML, one line; NULL where the mend is not a value */
+  char *value;     /* YAML, one line; NULL where the fix is not a value */
 } abbe_finding;
 
 /* Zero-initialise. */
@@ -76,21 +70,10 @@ typedef struct abbe_findings {
 
 void abbe_findings_free(abbe_findings *findings);
 
-/* Adds what there is to say about one material. known may be NULL or hold the material itself.
- * ABBE_NO_MEMORY; finding nothing is ABBE_OK. */
-abbe_result abbe_doctor_check_material(const abbe_material *material,
-                                       const abbe_material_table *known, abbe_findings *findings,
-                                       abbe_error *error);
-
-/* Adds what there is to say about every row, and about rows that are alike. Tables read with
- * abbe_material_table_load_lenient may be checked. */
-abbe_result abbe_doctor_check_table(const abbe_material_table *table,
-                                    const abbe_material_table *known, abbe_findings *findings,
-                                    abbe_error *error);
-
-/* The first material of known that is called as this one is: whatever the case, the punctuation
- * and Schott's "N-"; NULL where there is none. */
-const abbe_material *abbe_doctor_namesake(const abbe_material_table *known, const char *name);
+/* A finding at the end of the list, of that row and without a text yet; NULL for want of memory. It
+ * stays where it is until the next is added. */
+abbe_finding *abbe_findings_add(abbe_findings *findings, abbe_finding_kind kind,
+                                abbe_finding_weight weight, size_t row);
 
 const char *abbe_finding_kind_name(abbe_finding_kind kind);
 const char *abbe_finding_kind_meaning(abbe_finding_kind kind);

@@ -1,6 +1,6 @@
 #include "tests/check.h"
 
-#include "spectral/editing/table_mend.h"
+#include "spectral/editing/table_fix.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
@@ -26,11 +26,11 @@ static abbe_table_edit *open_edit(const char *text) {
   return edit;
 }
 
-static abbe_table_mend mended(abbe_table_edit *edit) {
-  abbe_table_mend mend;
+static abbe_table_fix fix_of(abbe_table_edit *edit) {
+  abbe_table_fix fix;
   abbe_error error = {0};
-  if (abbe_table_mend_make(edit, &known, &mend, &error) != ABBE_OK) fail_msg("%s", error.text);
-  return mend;
+  if (abbe_table_fix_make(edit, &known, &fix, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return fix;
 }
 
 /* Only the bytes of the wrong values change. */
@@ -45,9 +45,9 @@ static void wrong_values_change_and_nothing_else(void **state) {
                                     "    source: a book\n"
                                     "  - {name: good, model: cauchy, coefficients: [1.50, 0.0040], "
                                     "range_nm: [380, 780], source: s1}\n");
-  abbe_table_mend mend = mended(edit);
-  assert_int_equal(mend.mended, 2);
-  assert_int_equal(mend.refused, 0);
+  abbe_table_fix fix = fix_of(edit);
+  assert_int_equal(fix.fixed, 2);
+  assert_int_equal(fix.refused, 0);
   size_t size = 0;
   assert_string_equal(abbe_table_edit_text(edit, &size),
                       "# my glasses\n"
@@ -59,20 +59,20 @@ static void wrong_values_change_and_nothing_else(void **state) {
                       "    source: a book\n"
                       "  - {name: good, model: cauchy, coefficients: [1.50, 0.0040], "
                       "range_nm: [380, 780], source: s1}\n");
-  mend = mended(edit);
-  assert_int_equal(mend.mended, 0);
+  fix = fix_of(edit);
+  assert_int_equal(fix.fixed, 0);
   abbe_table_edit_free(edit);
 }
 
-/* New coefficients make a recorded fit stale, which is the next to mend. */
-static void a_mend_brings_out_the_next(void **state) {
+/* New coefficients make a recorded fit stale, which is the next to fix. */
+static void a_fix_brings_out_the_next(void **state) {
   (void)state;
   abbe_table_edit *edit = open_edit(
       "materials:\n- name: a\n  model: cauchy\n  coefficients: [1.5046, 4200]\n"
       "  range_nm: [380, 780]\n  source: s1\n  fit:\n"
       "    cauchy2: {coefficients: [1.5046, 0.0052], max_error: 1.0e-6, range_nm: [380, 780]}\n");
-  abbe_table_mend mend = mended(edit);
-  assert_int_equal(mend.mended, 2);
+  abbe_table_fix fix = fix_of(edit);
+  assert_int_equal(fix.fixed, 2);
   size_t size = 0;
   assert_contains(abbe_table_edit_text(edit, &size), "coefficients: [1.5046, 0.0042]\n");
   assert_contains(abbe_table_edit_text(edit, &size), "cauchy2: {coefficients: [1.5046, 0.0042], ");
@@ -90,11 +90,11 @@ static void doubt_and_shared_names_are_left_alone(void **state) {
       "- {name: TWIN, model: cauchy, coefficients: [1.6046, 6200], range_nm: [380, 780], source: "
       "s1}\n";
   abbe_table_edit *edit = open_edit(text);
-  abbe_table_mend mend = mended(edit);
+  abbe_table_fix fix = fix_of(edit);
   size_t size = 0;
-  assert_int_equal(mend.mended, 0);
-  assert_int_equal(mend.refused, 2);
-  assert_contains(mend.why, "twin: the name stands twice");
+  assert_int_equal(fix.fixed, 0);
+  assert_int_equal(fix.refused, 2);
+  assert_contains(fix.why, "twin: the name stands twice");
   assert_string_equal(abbe_table_edit_text(edit, &size), text);
   abbe_table_edit_free(edit);
 }
@@ -102,7 +102,7 @@ static void doubt_and_shared_names_are_left_alone(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(wrong_values_change_and_nothing_else),
-      cmocka_unit_test(a_mend_brings_out_the_next),
+      cmocka_unit_test(a_fix_brings_out_the_next),
       cmocka_unit_test(doubt_and_shared_names_are_left_alone),
   };
   return cmocka_run_group_tests(tests, setup, teardown);

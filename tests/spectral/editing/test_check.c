@@ -1,7 +1,7 @@
 #include "tests/check.h"
 #include "tests/random.h"
 
-#include "spectral/editing/doctor.h"
+#include "spectral/editing/check.h"
 #include "spectral/editing/table_edit.h"
 #include "spectral/formats/material_table_load.h"
 
@@ -23,7 +23,7 @@ static int teardown(void **state) {
 static abbe_findings check_table(const abbe_material_table *table) {
   abbe_findings found = {0};
   abbe_error error = {0};
-  if (abbe_doctor_check_table(table, &known, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
+  if (abbe_check_table(table, &known, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
   return found;
 }
 
@@ -92,13 +92,13 @@ static abbe_material_table parse(const char *record) {
 #define POLES "1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653]"
 #define ROOTS "1.03961212, 0.0774642, 0.231792344, 0.14148467, 1.01046945, 10.1764755]"
 
-static void each_fault_is_found_with_its_mend(void **state) {
+static void each_fault_is_found_with_its_fix(void **state) {
   (void)state;
   const struct {
     const char *record;
     abbe_finding_kind kind;
     abbe_finding_weight weight;
-    const char *evidence, *key, *value; /* a key only where the mend is certain */
+    const char *evidence, *key, *value; /* a key only where the fix is certain */
   } cases[] = {
       {"- {name: a, model: cauchy, coefficients: [1.5046, 4200], range_nm: [380, 780], source: s1}",
        ABBE_FINDING_B_IN_NM2, ABBE_FINDING_WRONG, "1.5168 and 64.43", "coefficients",
@@ -211,7 +211,7 @@ static void each_fault_is_found_with_its_mend(void **state) {
                      cases[i].weight >= ABBE_FINDING_DOUBTFUL);
     assert_int_equal(f->weight, cases[i].weight);
     assert_contains(f->evidence, cases[i].evidence);
-    assert_true(strlen(f->mend) > 5);
+    assert_true(strlen(f->fix) > 5);
     assert_int_equal(f->certain, cases[i].key != NULL);
     if (cases[i].key != NULL) assert_string_equal(f->key, cases[i].key);
     if (cases[i].value != NULL) assert_string_equal(f->value, cases[i].value);
@@ -229,9 +229,11 @@ static void rows_that_are_alike_are_found(void **state) {
       "- {name: c, model: cauchy, coefficients: [1.5, 0.004], range_nm: [380, 780], source: s1}\n"
       "- {name: B, model: cauchy, coefficients: [1.600004, 0.009], range_nm: [380, 780], "
       "source: s1}\n"
-      "- {name: f, model: cauchy, coefficients: [1.70001, 0.01], range_nm: [380, 780], source: s1}\n"
+      "- {name: f, model: cauchy, coefficients: [1.70001, 0.01], range_nm: [380, 780], source: "
+      "s1}\n"
       "- {name: g, model: cauchy, coefficients: [1.7, 0.01], range_nm: [380, 780], source: s1}\n"
-      "- {name: h, model: cauchy, coefficients: [1.70003, 0.01], range_nm: [380, 780], source: s1}\n"
+      "- {name: h, model: cauchy, coefficients: [1.70003, 0.01], range_nm: [380, 780], source: "
+      "s1}\n"
       "- {name: d, model: constant, coefficients: [1.5], source: s1}\n"
       "- {name: e, model: constant, coefficients: [1.5], source: s1}\n");
   abbe_findings found = check_table(&table);
@@ -252,10 +254,10 @@ static void rows_that_are_alike_are_found(void **state) {
   abbe_material_table_free(&table);
 }
 
-/* ---- mends ---- */
+/* ---- fixes ---- */
 
-/* Certain mends put into the text leave nothing certain to mend, and no new fault. */
-static void certain_mends_mend(void **state) {
+/* Certain fixes put into the text leave nothing certain to fix, and no new fault. */
+static void certain_fixes_fix(void **state) {
   (void)state;
   const char text[] =
       "materials:\n"
@@ -277,7 +279,7 @@ static void certain_mends_mend(void **state) {
   abbe_error error = {0};
   if (abbe_table_edit_parse(text, sizeof text - 1, "t.yaml", &edit, &error) != ABBE_OK)
     fail_msg("%s", error.text);
-  size_t mended = 0, certain = 1;
+  size_t fixed = 0, certain = 1;
   for (int pass = 0; pass < 3 && certain > 0; pass++) {
     size_t size = 0;
     const char *now = abbe_table_edit_text(edit, &size);
@@ -296,13 +298,13 @@ static void certain_mends_mend(void **state) {
           ABBE_OK)
         fail_msg("%s: %s", f->value, error.text);
     }
-    mended += certain;
+    fixed += certain;
     if (certain == 0) assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
     abbe_findings_free(&found);
     abbe_material_table_free(&table);
   }
   assert_int_equal(certain, 0);
-  assert_int_equal(mended, 7);
+  assert_int_equal(fixed, 7);
   assert_int_equal(abbe_table_edit_check(edit, &error), ABBE_OK);
   abbe_table_edit_free(edit);
 }
@@ -322,7 +324,7 @@ static abbe_material row(const abbe_dispersion *d) {
 /* The finding of that kind, or none where the kind is ABBE_FINDING_KIND_COUNT, and nothing else. */
 static void expect(const abbe_material *m, abbe_finding_kind kind, const abbe_dispersion *right) {
   abbe_findings found = {0};
-  assert_int_equal(abbe_doctor_check_material(m, NULL, &found, NULL), ABBE_OK);
+  assert_int_equal(abbe_check_material(m, NULL, &found, NULL), ABBE_OK);
   bool good = kind == ABBE_FINDING_KIND_COUNT ? found.count == 0
                                               : found.count == 1 && found.finding[0].kind == kind;
   if (!good) {
@@ -353,7 +355,7 @@ static void any_glass_is_well_or_has_its_own_fault(void **state) {
     abbe_dispersion_numbers own = abbe_dispersion_describe(&good);
     m.published_n_d = round(own.n_d * 1e5) / 1e5;
     m.published_v_d = round(own.v_d * 100) / 100;
-    assert_int_equal(abbe_doctor_check_material(&m, NULL, &found, NULL), ABBE_OK);
+    assert_int_equal(abbe_check_material(&m, NULL, &found, NULL), ABBE_OK);
     assert_int_equal(found.count, 1);
     assert_int_equal(found.finding[0].kind, ABBE_FINDING_POLES);
     assert_string_equal(found.finding[0].value, "sellmeier");
@@ -395,10 +397,10 @@ static void senseless_records_are_survived(void **state) {
     m.fit[0] = (abbe_material_fit){2, {1.5, 0.004}, 1e-4, 380, 780};
     abbe_findings found = {0};
     const abbe_material_table one = {.count = 1, .material = &m};
-    assert_int_equal(abbe_doctor_check_table(&one, &known, &found, NULL), ABBE_OK);
+    assert_int_equal(abbe_check_table(&one, &known, &found, NULL), ABBE_OK);
     for (size_t k = 0; k < found.count; k++) {
       assert_non_null(found.finding[k].evidence);
-      assert_non_null(found.finding[k].mend);
+      assert_non_null(found.finding[k].fix);
       if (found.finding[k].certain) assert_null(strstr(found.finding[k].value, "nan"));
     }
     abbe_findings_free(&found);
@@ -413,11 +415,11 @@ static void namesakes_are_found_in_any_spelling(void **state) {
                {"N-SF11", "n-sf11"}, {"SF 11", "sf11"},  {"Fused Silica", "fused-silica"},
                {"kryptonite", NULL}, {"", NULL},         {"---", NULL}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    const abbe_material *m = abbe_doctor_namesake(&known, cases[i].name);
+    const abbe_material *m = abbe_check_namesake(&known, cases[i].name);
     assert_int_equal(m != NULL, cases[i].known != NULL);
     if (m != NULL) assert_string_equal(m->name, cases[i].known);
   }
-  assert_null(abbe_doctor_namesake(NULL, "n-bk7"));
+  assert_null(abbe_check_namesake(NULL, "n-bk7"));
 }
 
 static void words_are_there_for_all(void **state) {
@@ -433,9 +435,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_thesis_has_four_wrong_rows_and_bk7),
       cmocka_unit_test(the_default_table_is_well),
-      cmocka_unit_test(each_fault_is_found_with_its_mend),
+      cmocka_unit_test(each_fault_is_found_with_its_fix),
       cmocka_unit_test(rows_that_are_alike_are_found),
-      cmocka_unit_test(certain_mends_mend),
+      cmocka_unit_test(certain_fixes_fix),
       cmocka_unit_test(any_glass_is_well_or_has_its_own_fault),
       cmocka_unit_test(senseless_records_are_survived),
       cmocka_unit_test(namesakes_are_found_in_any_spelling),

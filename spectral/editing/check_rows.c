@@ -1,5 +1,5 @@
 /* Rows that are alike: one name twice, or one glass under two names. */
-#include "spectral/editing/doctor_parts.h"
+#include "spectral/editing/check_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,10 +34,10 @@ static int by_index(const void *a, const void *b) {
 
 /* The finding stands at the later row and names the earlier. */
 static abbe_finding *find_pair(abbe_findings *findings, const place *a, const place *b,
-                               abbe_finding_kind kind, abbe_finding_weight weight, abbe_doctor *d) {
+                               abbe_finding_kind kind, abbe_finding_weight weight, abbe_check *c) {
   const place *first = a->row < b->row ? a : b, *later = first == a ? b : a;
-  *d = (abbe_doctor){.row = later->row, .findings = findings, .error = d->error};
-  abbe_finding *f = abbe_doctor_find(d, kind, weight);
+  *c = (abbe_check){.row = later->row, .findings = findings, .error = c->error};
+  abbe_finding *f = abbe_check_find(c, kind, weight);
   if (f != NULL) f->other = first->row;
   return f;
 }
@@ -47,16 +47,16 @@ static abbe_result compare_names(place *places, size_t count, abbe_findings *fin
   qsort(places, count, sizeof *places, by_name);
   for (size_t i = 1; i < count; i++) {
     if (strcasecmp(places[i - 1].material->name, places[i].material->name) != 0) continue;
-    abbe_doctor d = {.error = error};
+    abbe_check c = {.error = error};
     abbe_finding *f = find_pair(findings, &places[i - 1], &places[i], ABBE_FINDING_SAME_NAME,
-                                ABBE_FINDING_WRONG, &d);
+                                ABBE_FINDING_WRONG, &c);
     if (f != NULL) {
-      abbe_doctor_say(&d, &f->evidence, "the name '%s' stands on lines %zu and %zu",
-                      places[i].material->name, places[i - 1].material->line,
-                      places[i].material->line);
-      abbe_doctor_say(&d, &f->mend, "rename or remove one of the two");
+      abbe_check_say(&c, &f->evidence, "the name '%s' stands on lines %zu and %zu",
+                     places[i].material->name, places[i - 1].material->line,
+                     places[i].material->line);
+      abbe_check_say(&c, &f->fix, "rename or remove one of the two");
     }
-    if (d.result != ABBE_OK) return d.result;
+    if (c.result != ABBE_OK) return c.result;
   }
   return ABBE_OK;
 }
@@ -70,24 +70,24 @@ static double apart(const place *a, const place *b) {
 
 static abbe_result note_pair(const place *a, const place *b, double off, abbe_findings *findings,
                              abbe_error *error) {
-  abbe_doctor d = {.error = error};
+  abbe_check c = {.error = error};
   bool same = off <= SAME;
   abbe_finding *f = find_pair(findings, a, b, same ? ABBE_FINDING_SAME : ABBE_FINDING_NEAR,
-                              ABBE_FINDING_NOTE, &d);
-  if (f == NULL) return d.result;
+                              ABBE_FINDING_NOTE, &c);
+  if (f == NULL) return c.result;
   const place *first = a->row < b->row ? a : b;
   bool absorbs = a->material->attenuation != NULL || b->material->attenuation != NULL;
   const char *besides = absorbs ? "; absorption is not compared" : "";
   if (off == 0)
-    abbe_doctor_say(&d, &f->evidence, "n is that of %s (line %zu)%s", first->material->name,
-                    first->material->line, besides);
+    abbe_check_say(&c, &f->evidence, "n is that of %s (line %zu)%s", first->material->name,
+                   first->material->line, besides);
   else
-    abbe_doctor_say(&d, &f->evidence, "n differs from that of %s (line %zu) by %.1g at most%s",
-                    first->material->name, first->material->line, off, besides);
-  abbe_doctor_say(&d, &f->mend,
-                  same ? "keep one, unless they differ in something else"
-                       : "the same glass from two sources, or a copy with a slip?");
-  return d.result;
+    abbe_check_say(&c, &f->evidence, "n differs from that of %s (line %zu) by %.1g at most%s",
+                   first->material->name, first->material->line, off, besides);
+  abbe_check_say(&c, &f->fix,
+                 same ? "keep one, unless they differ in something else"
+                      : "the same glass from two sources, or a copy with a slip?");
+  return c.result;
 }
 
 static abbe_result compare_indices(place *places, size_t count, abbe_findings *findings,
@@ -110,8 +110,8 @@ static abbe_result compare_indices(place *places, size_t count, abbe_findings *f
   return ABBE_OK;
 }
 
-abbe_result abbe_doctor_compare_rows(const abbe_material_table *table, abbe_findings *findings,
-                                     abbe_error *error) {
+abbe_result abbe_check_compare_rows(const abbe_material_table *table, abbe_findings *findings,
+                                    abbe_error *error) {
   place *places = malloc((table->count + 1) * sizeof *places);
   if (places == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to compare rows");
   for (size_t i = 0; i < table->count; i++) {

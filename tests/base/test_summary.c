@@ -1,19 +1,19 @@
 #include "tests/check.h"
 
-#include "base/tally.h"
+#include "base/summary.h"
 
 static void many_materials_make_one_note(void **state) {
   (void)state;
-  static const abbe_tally_row rows[] = {{ABBE_NOTE_LOST, "no place for wit"},
-                                        {ABBE_NOTE_CHANGED, "said otherwise"},
-                                        {ABBE_NOTE_LOST, "never met"}};
-  abbe_tally tally = {0};
+  static const abbe_summary_row rows[] = {{ABBE_NOTE_LOST, "no place for wit"},
+                                          {ABBE_NOTE_CHANGED, "said otherwise"},
+                                          {ABBE_NOTE_LOST, "never met"}};
+  abbe_summary summary = {0};
   abbe_report report = {0};
   const char *const names[] = {"a", "b", "c", "d", "e", "f"};
-  for (int i = 0; i < 6; i++) abbe_tally_add(&tally, 0, names[i]);
-  abbe_tally_add(&tally, 1, "only");
-  abbe_tally_add(&tally, 99, "beyond");
-  abbe_tally_report(&tally, rows, 3, &report);
+  for (int i = 0; i < 6; i++) abbe_summary_add(&summary, 0, names[i]);
+  abbe_summary_add(&summary, 1, "only");
+  abbe_summary_add(&summary, 99, "beyond");
+  abbe_summary_report(&summary, rows, 3, &report);
   assert_int_equal(report.count, 2);
   assert_string_equal(report.note[0].text, "no place for wit (6 materials: a, b, c, d, …)");
   assert_int_equal(report.note[0].kind, ABBE_NOTE_LOST);

@@ -1,7 +1,7 @@
-/* Rows that are right, however odd they look, are left alone by the doctor. */
+/* Rows that are right, however odd they look, are left alone by the check. */
 #include "tests/check.h"
 
-#include "spectral/editing/doctor.h"
+#include "spectral/editing/check.h"
 #include "spectral/formats/material_table_load.h"
 
 static abbe_material_table known;
@@ -28,8 +28,7 @@ static abbe_findings check_record(const char *record) {
       ABBE_OK)
     fail_msg("%s", error.text);
   assert_int_equal(table.count, 1);
-  if (abbe_doctor_check_table(&table, &known, &found, &error) != ABBE_OK)
-    fail_msg("%s", error.text);
+  if (abbe_check_table(&table, &known, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
   abbe_material_table_free(&table);
   return found;
 }
