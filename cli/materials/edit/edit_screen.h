@@ -3,8 +3,8 @@
  * Every number that it shows comes from the library's functions, the same that `show` uses. The
  * terminal is put back as it was on every way out, signals and crashes included.
  */
-#ifndef ABBE_CLI_MATERIALS_EDIT_SCREEN_H
-#define ABBE_CLI_MATERIALS_EDIT_SCREEN_H
+#ifndef ABBE_CLI_MATERIALS_EDIT_EDIT_SCREEN_H
+#define ABBE_CLI_MATERIALS_EDIT_EDIT_SCREEN_H
 
 #include "spectral/dispersion/index_points.h"
 #include "spectral/editing/record_draft.h"

@@ -1,6 +1,6 @@
-#include "cli/materials/edit_screen.h"
+#include "cli/materials/edit/edit_screen.h"
 
-#include "cli/materials/edit_terminal.h"
+#include "cli/materials/edit/edit_terminal.h"
 
 #include "base/number.h"
 #include "base/utf8.h"

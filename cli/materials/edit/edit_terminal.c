@@ -1,4 +1,4 @@
-#include "cli/materials/edit_terminal.h"
+#include "cli/materials/edit/edit_terminal.h"
 
 #include "cli/base/output.h"
 

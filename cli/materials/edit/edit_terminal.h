@@ -1,6 +1,6 @@
 /* edit_terminal.h: takes the terminal for a full screen, and gives it back on every way out. */
-#ifndef ABBE_CLI_MATERIALS_EDIT_TERMINAL_H
-#define ABBE_CLI_MATERIALS_EDIT_TERMINAL_H
+#ifndef ABBE_CLI_MATERIALS_EDIT_EDIT_TERMINAL_H
+#define ABBE_CLI_MATERIALS_EDIT_EDIT_TERMINAL_H
 
 #include <stdbool.h>
 
