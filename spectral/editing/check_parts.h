@@ -3,8 +3,10 @@
 #ifndef ABBE_SPECTRAL_EDITING_CHECK_PARTS_H
 #define ABBE_SPECTRAL_EDITING_CHECK_PARTS_H
 
-#include "spectral/editing/check.h"
+#include "base/error.h"
+#include "spectral/editing/finding.h"
 #include "spectral/materials/material_numbers.h"
+#include "spectral/materials/material_table.h"
 
 #ifdef __cplusplus
 extern "C" {
