@@ -1,5 +1,5 @@
-/* check_parts.h: the parts of spectral/editing/check.c, and what they share. Internal to spectral/.
- */
+/* check_parts.h: the parts of spectral/editing/check.c, and what they share.
+ * Internal to spectral/. */
 #ifndef ABBE_SPECTRAL_EDITING_CHECK_PARTS_H
 #define ABBE_SPECTRAL_EDITING_CHECK_PARTS_H
 
