@@ -22,17 +22,6 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
                              const abbe_material_table *table, abbe_object *out, size_t room,
                              size_t *count, abbe_error *error);
 
-/* Path relative to folder, or as it is where it is absolute; malloc'd, NULL without memory. */
-char *abbe_object_path(const char *folder, const char *path);
-
-/* Puts "FILE:LINE: " before the sentence of an error that came from deeper down; returns code. */
-abbe_result abbe_object_locate(const abbe_yaml *yaml, abbe_yaml_node node, abbe_result code,
-                               abbe_error *error);
-
-/* Three finite coordinates that must be there. */
-abbe_result abbe_object_need_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
-                                   double out[3], abbe_error *error);
-
 #ifdef __cplusplus
 }
 #endif

@@ -1,4 +1,5 @@
 #include "scenes/import/object_file.h"
+#include "scenes/import/scene_value.h"
 #include "spectral/formats/material_table_load.h"
 
 #include "scenes/geometry/vector.h"
@@ -161,10 +162,10 @@ static void parts_of_a_mesh_are_objects(void **state) {
 
 static void paths_follow_the_folder(void **state) {
   (void)state;
-  char *path = abbe_object_path("scenes/", "a.png");
+  char *path = abbe_scene_value_path("scenes/", "a.png");
   assert_string_equal(path, "scenes/a.png");
   free(path);
-  path = abbe_object_path("scenes/", "/a.png");
+  path = abbe_scene_value_path("scenes/", "/a.png");
   assert_string_equal(path, "/a.png");
   free(path);
 }
