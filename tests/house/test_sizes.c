@@ -6,7 +6,6 @@ enum { MOST_FILES = 28, MOST_LINES = 500 };
 
 /* What is still too large. Nothing is ever added here; what has become smaller must go. */
 static const char *const long_sources[] = {
-    "cli/materials/edit/edit_screen.c",
     "cli/sweep/sweep_report.c",
     "cli/trace.c",
     "gl/caustics/photon_deposit.comp",
