@@ -40,8 +40,8 @@ abbe_result abbe_scene_input_load(const char *program, const char *path, const c
 
 void abbe_scene_input_note(const abbe_scene *scene) {
   for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].mended != NULL)
-      fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].mended);
+    if (scene->object[i].fixes != NULL)
+      fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].fixes);
 }
 
 static const char *made_of(const abbe_object *o) {
@@ -75,7 +75,7 @@ void abbe_scene_input_list_json(const abbe_scene *scene, cJSON *root) {
     cJSON_AddItemToObject(item, "min", cJSON_CreateDoubleArray(o->min, 3));
     cJSON_AddItemToObject(item, "max", cJSON_CreateDoubleArray(o->max, 3));
     cJSON_AddNumberToObject(item, "faces", (double)o->mesh.face_count);
-    if (o->mended != NULL) cJSON_AddStringToObject(item, "note", o->mended);
+    if (o->fixes != NULL) cJSON_AddStringToObject(item, "note", o->fixes);
     cJSON_AddItemToArray(list, item);
   }
 }

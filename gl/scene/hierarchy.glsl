@@ -1,4 +1,4 @@
-// Triangles in a hierarchy of boxes (scenes/mesh/hierarchy.h), several trees in one buffer: the nearest
+// Triangles in a hierarchy of boxes (scenes/mesh/bvh.h), several trees in one buffer: the nearest
 // one on a ray. HIERARCHY_STACK: what the deepest tree stacks at the most. Loops end at their top
 // alone: Mesa 22's llvmpipe clobbers what is loaded in a loop that lanes leave in its middle.
 

@@ -12,14 +12,14 @@ enum { TREE_TEXELS = 2, NODE_TEXELS = 3, GRID_LOW = 200, GRID_CELLS = 65000, CON
 static const double MARGIN = 0.0625;
 
 typedef struct packer {
-  const abbe_hierarchy *h;
+  const abbe_bvh *h;
   const double (*triangle)[9];
   size_t first_texel, first_triangle, texels;
   double low[3], cell[3];
   uint32_t (*out)[4];
 } packer;
 
-size_t abbe_hierarchy_nodes_count(const abbe_hierarchy *h) {
+size_t abbe_hierarchy_nodes_count(const abbe_bvh *h) {
   return TREE_TEXELS + NODE_TEXELS * ((h->node_count - 1) / 2);
 }
 
@@ -31,7 +31,7 @@ static uint32_t bits_of(double x) {
 }
 
 static void lay_grid(packer *p) {
-  const abbe_hierarchy_node *root = p->h->node;
+  const abbe_bvh_node *root = p->h->node;
   double widest = 0;
   for (int k = 0; k < 3; k++) widest = fmax(widest, (double)root->max[k] - (double)root->min[k]);
   for (int k = 0; k < 3; k++) {
@@ -45,7 +45,7 @@ static void lay_grid(packer *p) {
   }
 }
 
-static void pack_box(const packer *p, const abbe_hierarchy_node *n, uint32_t out[4]) {
+static void pack_box(const packer *p, const abbe_bvh_node *n, uint32_t out[4]) {
   for (int k = 0; k < 3; k++) {
     double low = floor(((double)n->min[k] - p->low[k]) / p->cell[k] - MARGIN);
     double high = ceil(((double)n->max[k] - p->low[k]) / p->cell[k] + MARGIN);
@@ -95,7 +95,7 @@ static void pack_cone(const packer *p, size_t first, size_t count, uint32_t out[
   out[1] = word[2] | (uint32_t)word[3] << 16;
 }
 
-static size_t count_below(const abbe_hierarchy *h, const abbe_hierarchy_node *n, size_t *first) {
+static size_t count_below(const abbe_bvh *h, const abbe_bvh_node *n, size_t *first) {
   if (n->count > 0) {
     *first = (size_t)n->first;
     return (size_t)n->count;
@@ -105,13 +105,13 @@ static size_t count_below(const abbe_hierarchy *h, const abbe_hierarchy_node *n,
 }
 
 /* Returns what the node leads to. */
-static int32_t pack(packer *p, const abbe_hierarchy_node *n) {
+static int32_t pack(packer *p, const abbe_bvh_node *n) {
   if (n->count > 0)
     return ~(int32_t)(((size_t)n->first + p->first_triangle) << 3 | (size_t)n->count);
   size_t at = p->texels;
   p->texels += NODE_TEXELS;
   for (size_t k = 0; k < 2; k++) {
-    const abbe_hierarchy_node *child = p->h->node + n->first + k;
+    const abbe_bvh_node *child = p->h->node + n->first + k;
     size_t first, count = count_below(p->h, child, &first);
     pack_box(p, child, p->out[at + k]);
     pack_cone(p, first, count, p->out[at + 2] + 2 * k);
@@ -120,7 +120,7 @@ static int32_t pack(packer *p, const abbe_hierarchy_node *n) {
   return (int32_t)(p->first_texel + at);
 }
 
-void abbe_hierarchy_nodes_pack(const abbe_hierarchy *h, const double (*triangle)[9],
+void abbe_hierarchy_nodes_pack(const abbe_bvh *h, const double (*triangle)[9],
                                size_t first_texel, size_t first_triangle, uint32_t (*out)[4]) {
   packer p = {.h = h,
               .triangle = triangle,

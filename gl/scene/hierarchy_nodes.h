@@ -7,7 +7,7 @@
 #ifndef ABBE_GL_SCENE_HIERARCHY_NODES_H
 #define ABBE_GL_SCENE_HIERARCHY_NODES_H
 
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 /* Texels of four words: two for the tree, then three for each inner node. */
-size_t abbe_hierarchy_nodes_count(const abbe_hierarchy *hierarchy);
+size_t abbe_hierarchy_nodes_count(const abbe_bvh *hierarchy);
 
 /* triangle: as the hierarchy was made from. The texels are the first_texel'th and following of
  * the buffer that the shaders read, the triangles, in the hierarchy's order, the first_triangle'th
@@ -28,7 +28,7 @@ size_t abbe_hierarchy_nodes_count(const abbe_hierarchy *hierarchy);
  * it leads to; then its cone twice, axis and sine of the half angle, snorm16: x | y << 16, z |
  * sine << 16; a sine of one leaves nothing out. Leads to: an inner node's first texel, or the
  * complement of a leaf's first triangle << 3 | count. */
-void abbe_hierarchy_nodes_pack(const abbe_hierarchy *hierarchy, const double (*triangle)[9],
+void abbe_hierarchy_nodes_pack(const abbe_bvh *hierarchy, const double (*triangle)[9],
                                size_t first_texel, size_t first_triangle, uint32_t (*out)[4]);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 #include "gl/renderer_state.h"
 #include "gl/scene/hierarchy_nodes.h"
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -72,7 +72,7 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
 }
 
 /* The tree behind the others; its root's texel. */
-static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_hierarchy *h,
+static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_bvh *h,
                          forest *f, size_t *root, abbe_error *error) {
   const size_t texels = abbe_hierarchy_nodes_count(h);
   if (!make_room(f, texels, h->triangle_count))
@@ -93,8 +93,8 @@ static bool gather(grove *g, double (*triangle)[9]) {
   size_t parts = 0;
   for (size_t m = 0; m < g->mesh_count; m++) {
     const size_t first = g->face_first[m], count = g->mesh[m]->face_count;
-    double(*corners)[9] = abbe_hierarchy_triangles(g->mesh[m]);
-    const size_t own = abbe_hierarchy_parts(g->mesh[m], g->part + first);
+    double(*corners)[9] = abbe_bvh_triangles(g->mesh[m]);
+    const size_t own = abbe_bvh_parts(g->mesh[m], g->part + first);
     if (corners != NULL) memcpy(triangle + first, corners, count * sizeof *triangle);
     free(corners);
     if (corners == NULL || own == 0) return false;
@@ -109,17 +109,17 @@ static bool gather(grove *g, double (*triangle)[9]) {
 
 static abbe_result grow(abbe_renderer *r, grove *g, forest *f, size_t *root, abbe_error *error) {
   const size_t faces = g->face_first[g->mesh_count];
-  abbe_hierarchy h = {0};
+  abbe_bvh h = {0};
   double(*triangle)[9] = calloc(faces + 1, sizeof *triangle);
   g->part = calloc(faces + 1, sizeof *g->part);
   g->owner = calloc(faces + 1, sizeof *g->owner);
   abbe_result result =
       triangle == NULL || g->part == NULL || g->owner == NULL || !gather(g, triangle)
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
-          : abbe_hierarchy_make((const double(*)[9])triangle, faces, &h, error);
+          : abbe_bvh_make((const double(*)[9])triangle, faces, &h, error);
   if (result == ABBE_OK) result = plant(g, (const double(*)[9])triangle, &h, f, root, error);
   if (h.depth > r->hierarchy_depth) r->hierarchy_depth = h.depth;
-  abbe_hierarchy_free(&h);
+  abbe_bvh_free(&h);
   free(triangle);
   free(g->part);
   free(g->owner);

@@ -196,7 +196,7 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
 
 /* --- the surface in the world --- */
 
-/* Faceted shapes keep one normal a face where they are mended, rounded ones one a point; of others,
+/* Faceted shapes keep one normal a face where they are fixed, rounded ones one a point; of others,
  * and of files that do not say, normals go by what is there. */
 static abbe_mesh_normals normals_of(const abbe_object_reading *r) {
   return r->kind == ABBE_OBJECT_GEM || r->kind == ABBE_OBJECT_BRILLIANT ||

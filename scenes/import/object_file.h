@@ -1,7 +1,7 @@
 /* object_file.h: one object of a scene file: its shape or mesh, its transform, what it is made of.
  *
  * A part of scene_file.h with the keys of an entry under "objects"; docs/scene-files.md documents
- * them. It reads, tessellates, places, checks and mends one object; the scene as a whole is
+ * them. It reads, tessellates, places, checks and fixes one object; the scene as a whole is
  * scene_file's business.
  */
 #ifndef ABBE_SCENES_IMPORT_OBJECT_FILE_H

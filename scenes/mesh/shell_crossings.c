@@ -1,6 +1,6 @@
 /* Faces of shells that go through one another, or lie on one another. */
 #include "scenes/geometry/vector.h"
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
 
 #include <math.h>
@@ -25,10 +25,10 @@ static bool edge_goes_through(const double a[9], const double b[9], double toler
     const int next = (k + 1) % 3;
     const double low = fmin(height[k], height[next]), high = fmax(height[k], height[next]);
     if (!(low < -tolerance && high > tolerance)) continue;
-    abbe_hierarchy_hit hit;
+    abbe_bvh_hit hit;
     double d[3];
     abbe_vector_subtract(a + 3 * next, a + 3 * k, d);
-    if (!abbe_hierarchy_meet(b, a + 3 * k, d, 0, 0, 1, &hit)) continue;
+    if (!abbe_bvh_meet(b, a + 3 * k, d, 0, 0, 1, &hit)) continue;
     for (int i = 0; i < 3; i++) place[i] = a[3 * k + i] + hit.t * d[i];
     return true;
   }

@@ -1,6 +1,6 @@
 /* Which shells lie in which: points of each vote, along rays. */
 #include "scenes/geometry/vector.h"
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
 
 #include <math.h>
@@ -31,9 +31,9 @@ static void meet_face_on_ray(const abbe_shell_search *s, uint32_t face, const do
                              const double d[3], meetings *met) {
   const double *a = s->triangle[face];
   const uint32_t shell = s->t->shell[face];
-  abbe_hierarchy_hit hit;
+  abbe_bvh_hit hit;
   double n[3];
-  if (!abbe_hierarchy_meet(a, p, d, 0, 0, met->nearest[shell], &hit)) return;
+  if (!abbe_bvh_meet(a, p, d, 0, 0, met->nearest[shell], &hit)) return;
   if (isinf(met->nearest[shell])) met->shell[met->count++] = shell;
   met->nearest[shell] = hit.t;
   abbe_vector_triangle(a, a + 3, a + 6, n);

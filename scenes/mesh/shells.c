@@ -1,7 +1,7 @@
 #include "scenes/mesh/shells.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 #include "scenes/mesh/shell_search.h"
 
 #include <math.h>
@@ -130,7 +130,7 @@ static void measure(abbe_shell_search *s) {
 
 static abbe_result prepare(abbe_shell_search *s, const abbe_mesh *mesh, abbe_error *error) {
   s->out->shell = calloc(s->out->count + 1, sizeof *s->out->shell);
-  s->triangle = abbe_hierarchy_triangles(mesh);
+  s->triangle = abbe_bvh_triangles(mesh);
   if (!s->out->shell || !s->triangle)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the parts of a mesh");
   double low[3], high[3], size[3];

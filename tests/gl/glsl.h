@@ -46,7 +46,7 @@ static inline void glsl_texels(const abbe_gl *gl, GLenum unit, GLenum format, si
 }
 
 /* A tree's nodes where the shaders read them. */
-static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_hierarchy *h,
+static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_bvh *h,
                                   const double (*triangle)[9]) {
   const size_t count = abbe_hierarchy_nodes_count(h);
   uint32_t(*texel)[4] = calloc(count, sizeof *texel);

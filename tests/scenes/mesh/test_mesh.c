@@ -29,10 +29,10 @@ static void turn(abbe_mesh *m, size_t f) {
   m->face[f][2] = second;
 }
 
-static void assert_mends(abbe_mesh *m, const char *word) {
+static void assert_fixes(abbe_mesh *m, const char *word) {
   char *what = NULL;
   abbe_error error = {0};
-  if (abbe_mesh_mend(m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error) != ABBE_OK)
+  if (abbe_mesh_fix(m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error) != ABBE_OK)
     fail_msg("%s", error.text);
   if (word) {
     assert_non_null(what);
@@ -78,7 +78,7 @@ static void a_sound_mesh_is_left_alone(void **state) {
   (void)state;
   abbe_mesh m = sphere(2);
   const double(*before)[3] = (const double(*)[3])m.position;
-  assert_mends(&m, NULL);
+  assert_fixes(&m, NULL);
   assert_ptr_equal(before, m.position);
   abbe_mesh_free(&m);
 }
@@ -88,7 +88,7 @@ static void an_inverted_mesh_is_turned(void **state) {
   abbe_mesh m = sphere(2);
   for (size_t f = 0; f < m.face_count; f++) turn(&m, f);
   assert_true(check(&m).volume < 0);
-  assert_mends(&m, "inside-out part turned");
+  assert_fixes(&m, "inside-out part turned");
   assert_true(abbe_vector_dot(m.normal[0], m.position[0]) > 0.99);
   abbe_mesh_free(&m);
 }
@@ -98,7 +98,7 @@ static void single_flipped_faces_are_turned(void **state) {
   abbe_mesh m = sphere(2);
   turn(&m, 0);
   turn(&m, 77);
-  assert_mends(&m, "2 faces turned");
+  assert_fixes(&m, "2 faces turned");
   abbe_mesh_free(&m);
 }
 
@@ -106,13 +106,13 @@ static void small_and_flat_holes_are_closed(void **state) {
   (void)state;
   abbe_mesh m = sphere(3);
   m.face_count--;
-  assert_mends(&m, "1 hole closed");
+  assert_fixes(&m, "1 hole closed");
   assert_int_equal(m.face_count, 1280);
   abbe_mesh_free(&m);
   const double size[3] = {1, 1, 1};
   assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
   m.face_count -= 2;
-  assert_mends(&m, "1 hole closed");
+  assert_fixes(&m, "1 hole closed");
   assert_true(fabs(check(&m).volume - 1) < 1e-12);
   abbe_mesh_free(&m);
 }
@@ -124,7 +124,7 @@ static void a_large_bent_hole_is_refused_and_counted(void **state) {
   abbe_error error;
   char *what = NULL;
   const abbe_mesh_report r = check(&m);
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error),
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error),
                    ABBE_GEOMETRY);
   assert_null(what);
   char where[160];
@@ -177,8 +177,8 @@ static void repair_closes_what_bends(void **state) {
   m.face_count = kept;
   abbe_error error = {0};
   char *what = NULL;
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
-  if (abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
+  if (abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
     fail_msg("%s", error.text);
   assert_contains(what, "1 hole closed, 1.98 across in the mesh's own unit");
   free(what);
@@ -195,7 +195,7 @@ static void faces_that_are_there_twice_are_one(void **state) {
   (void)state;
   const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, false}};
   abbe_mesh m = test_boxes(box, 2);
-  assert_mends(&m, "12 faces that were there twice dropped");
+  assert_fixes(&m, "12 faces that were there twice dropped");
   assert_int_equal(m.face_count, 12);
   assert_near(check(&m).volume, 1, 1e-12);
   abbe_mesh_free(&m);
@@ -204,7 +204,7 @@ static void faces_that_are_there_twice_are_one(void **state) {
 static char *repaired(abbe_mesh *m) {
   abbe_error error = {0};
   char *what = NULL;
-  if (abbe_mesh_mend(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
+  if (abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
     fail_msg("%s", error.text);
   return what;
 }
@@ -239,7 +239,7 @@ static void repair_drops_sheets(void **state) {
   m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
   m.face_count = 13;
   abbe_error error = {0};
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
   assert_contains(error.text,
                   "1 edge with more than two faces, one of 3 from (1, 0, 0) to (1, 0, 1)");
   assert_contains(error.text, "'repair: true'");
@@ -252,7 +252,7 @@ static void repair_drops_sheets(void **state) {
   m = test_boxes(box, 2);
   m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
   m.face_count = 13;
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_SMOOTH, true, NULL, NULL, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, true, NULL, NULL, NULL), ABBE_OK);
   assert_int_equal(m.vertex_count, 8);
   abbe_mesh_free(&m);
   const test_box beside[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
@@ -304,7 +304,7 @@ static void bodies_that_cross_stay_bodies(void **state) {
   abbe_mesh m = test_boxes(box, 2), *part = NULL;
   size_t solids = 0, count = 0;
   char *what = NULL;
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, false, &solids, &what, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, &solids, &what, NULL), ABBE_OK);
   assert_null(what);
   assert_int_equal(solids, 2);
   assert_int_equal(abbe_mesh_split(&m, &part, &count, NULL), ABBE_OK);
@@ -352,7 +352,7 @@ static void a_surface_that_crosses_itself_is_said(void **state) {
   assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
   for (size_t v = 0; v < m.vertex_count; v++)
     if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, NULL), ABBE_OK);
   assert_contains(what, "the surface crosses itself, in ");
   assert_contains(what, ": light may go wrong there");
   free(what);
@@ -380,7 +380,7 @@ static void normals_by_angles_keep_creases(void **state) {
   abbe_mesh_free(&m);
 }
 
-static void degenerate_faces_are_mended(void **state) {
+static void degenerate_faces_are_fixed(void **state) {
   (void)state;
   abbe_mesh m;
   /* a box whose top has a vertex in the middle of one edge: one face without area beside it */
@@ -394,7 +394,7 @@ static void degenerate_faces_are_mended(void **state) {
   memcpy(m.face, face, sizeof face);
   assert_int_equal(check(&m).degenerate_faces, 3);
   assert_int_equal(check(&m).open_edges, 0);
-  assert_mends(&m, "1 face without area split away");
+  assert_fixes(&m, "1 face without area split away");
   assert_true(fabs(check(&m).volume - 1) < 1e-12);
   abbe_mesh_free(&m);
 }
@@ -423,9 +423,9 @@ static void a_bubble_faces_into_itself(void **state) {
   const double whole = check(&outer).volume, hole = check(&inner).volume;
   abbe_mesh m = joined(&outer, &inner);
   assert_int_equal(check(&m).shells, 2);
-  assert_mends(&m, "1 inside-out part");
+  assert_fixes(&m, "1 inside-out part");
   assert_true(fabs(check(&m).volume - (whole - hole)) < 1e-12);
-  assert_mends(&m, NULL);
+  assert_fixes(&m, NULL);
   const double in_glass[3] = {0.7, 0.1, 0.1}, in_bubble[3] = {0.1, 0.2, 0.1}, out[3] = {2, 0, 0};
   assert_true(abbe_mesh_contains(&m, in_glass));
   assert_false(abbe_mesh_contains(&m, in_bubble));
@@ -712,9 +712,9 @@ static void a_file_s_normals_are_its_default(void **state) {
   abbe_mesh_free(&m);
 }
 
-/* The lid of a box is missing: mended, all that was there has the file's normals, the lid has its
+/* The lid of a box is missing: fixed, all that was there has the file's normals, the lid has its
  * own. */
-static void mending_keeps_given_normals(void **state) {
+static void fixing_keeps_given_normals(void **state) {
   (void)state;
   const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
   abbe_mesh m = test_boxes(&box, 1), whole = test_boxes(&box, 1); /* smooth, as if a file said so */
@@ -722,7 +722,7 @@ static void mending_keeps_given_normals(void **state) {
   m.given_normals = true;
   m.face_count = 10;
   for (size_t f = 0; f < 10; f++) turn(&m, f); /* and inside out */
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, false, NULL, &what, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, &what, NULL), ABBE_OK);
   assert_contains(what, "hole closed");
   free(what);
   assert_true(m.given_normals);
@@ -760,7 +760,7 @@ int main(void) {
       cmocka_unit_test(single_flipped_faces_are_turned),
       cmocka_unit_test(small_and_flat_holes_are_closed),
       cmocka_unit_test(a_large_bent_hole_is_refused_and_counted),
-      cmocka_unit_test(degenerate_faces_are_mended),
+      cmocka_unit_test(degenerate_faces_are_fixed),
       cmocka_unit_test(a_bubble_faces_into_itself),
       cmocka_unit_test(subdivision_keeps_a_mesh_closed_and_smooth),
       cmocka_unit_test(subdividing_an_octahedron_weights_the_limit_right),
@@ -781,7 +781,7 @@ int main(void) {
       cmocka_unit_test(normals_by_angles_keep_creases),
       cmocka_unit_test(points_without_faces_are_left_out),
       cmocka_unit_test(a_file_s_normals_are_its_default),
-      cmocka_unit_test(mending_keeps_given_normals),
+      cmocka_unit_test(fixing_keeps_given_normals),
       cmocka_unit_test(smooth_normals_are_shared_across_split_vertices),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/vector.h"
@@ -18,7 +18,7 @@ typedef struct builder {
   const box *bounds; /* of each triangle */
   const double (*middle)[3];
   uint32_t *order;
-  abbe_hierarchy_node *node;
+  abbe_bvh_node *node;
   size_t node_count, depth;
 } builder;
 
@@ -54,7 +54,7 @@ static float above(double x) {
   return (double)f >= x ? f : nextafterf(f, INFINITY);
 }
 
-static void set_box(abbe_hierarchy_node *node, const box *b) {
+static void set_box(abbe_bvh_node *node, const box *b) {
   for (int k = 0; k < 3; k++) {
     node->min[k] = below(b->min[k]);
     node->max[k] = above(b->max[k]);
@@ -145,25 +145,24 @@ static void build(builder *b, size_t node, size_t first, size_t count, size_t de
   build(b, child + 1, first + left, count - left, depth + 1);
 }
 
-abbe_result abbe_hierarchy_make(const double (*triangle)[9], size_t count, abbe_hierarchy *out,
-                                abbe_error *error) {
+abbe_result abbe_bvh_make(const double (*triangle)[9], size_t count, abbe_bvh *out,
+                          abbe_error *error) {
   ABBE_REQUIRE((triangle || count == 0) && out, error);
-  *out = (abbe_hierarchy){0};
+  *out = (abbe_bvh){0};
   if (count == 0)
-    return abbe_error_set(error, ABBE_GEOMETRY, "a hierarchy needs a triangle; there is none");
+    return abbe_error_set(error, ABBE_GEOMETRY, "a BVH needs a triangle; there is none");
   if (count > ABBE_MESH_MAX_FACES)
-    return abbe_error_set(error, ABBE_GEOMETRY, "a hierarchy holds at most %u triangles, not %zu",
+    return abbe_error_set(error, ABBE_GEOMETRY, "a BVH holds at most %u triangles, not %zu",
                           ABBE_MESH_MAX_FACES, count);
   box *bounds = malloc(count * sizeof *bounds);
   double(*middle)[3] = malloc(count * sizeof *middle);
-  abbe_hierarchy h = {.node = malloc(2 * count * sizeof *h.node),
-                      .triangle_count = count,
-                      .triangle = malloc(count * sizeof *h.triangle)};
+  abbe_bvh h = {.node = malloc(2 * count * sizeof *h.node),
+                .triangle_count = count,
+                .triangle = malloc(count * sizeof *h.triangle)};
   abbe_result result = ABBE_OK;
   if (bounds == NULL || middle == NULL || h.node == NULL || h.triangle == NULL) {
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy over %zu triangles",
-                            count);
-    abbe_hierarchy_free(&h);
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a BVH over %zu triangles", count);
+    abbe_bvh_free(&h);
   } else {
     for (size_t i = 0; i < count; i++) {
       h.triangle[i] = (uint32_t)i;
@@ -186,18 +185,18 @@ abbe_result abbe_hierarchy_make(const double (*triangle)[9], size_t count, abbe_
   return result;
 }
 
-void abbe_hierarchy_free(abbe_hierarchy *h) {
+void abbe_bvh_free(abbe_bvh *h) {
   if (h == NULL) return;
   free(h->node);
   free(h->triangle);
-  *h = (abbe_hierarchy){0};
+  *h = (abbe_bvh){0};
 }
 
 /* ---- rays ---- */
 
 /* [MollerTrumbore1997] */
-bool abbe_hierarchy_meet(const double triangle[9], const double o[3], const double d[3], int side,
-                         double t_min, double t_max, abbe_hierarchy_hit *hit) {
+bool abbe_bvh_meet(const double triangle[9], const double o[3], const double d[3], int side,
+                   double t_min, double t_max, abbe_bvh_hit *hit) {
   double e1[3], e2[3], across[3], from[3], q[3];
   abbe_vector_subtract(triangle + 3, triangle, e1);
   abbe_vector_subtract(triangle + 6, triangle, e2);
@@ -216,7 +215,7 @@ bool abbe_hierarchy_meet(const double triangle[9], const double o[3], const doub
 }
 
 /* Where the ray enters the box, or infinity. */
-static double enter(const abbe_hierarchy_node *node, const double o[3], const double inverse[3],
+static double enter(const abbe_bvh_node *node, const double o[3], const double inverse[3],
                     double t_min, double t_max) {
   double from = t_min, to = t_max;
   for (int k = 0; k < 3; k++) {
@@ -228,27 +227,26 @@ static double enter(const abbe_hierarchy_node *node, const double o[3], const do
   return from <= to ? from : INFINITY;
 }
 
-bool abbe_hierarchy_trace(const abbe_hierarchy *h, const double (*triangle)[9], const double o[3],
-                          const double d[3], int side, double t_min, double t_max,
-                          abbe_hierarchy_hit *hit) {
-  const abbe_hierarchy_node *stack[ABBE_HIERARCHY_MAX_DEPTH + 1];
+bool abbe_bvh_trace(const abbe_bvh *h, const double (*triangle)[9], const double o[3],
+                    const double d[3], int side, double t_min, double t_max, abbe_bvh_hit *hit) {
+  const abbe_bvh_node *stack[ABBE_BVH_MAX_DEPTH + 1];
   size_t waiting = 0;
   double inverse[3];
   bool found = false;
   for (int k = 0; k < 3; k++) inverse[k] = 1 / (fabs(d[k]) > 1e-30 ? d[k] : copysign(1e-30, d[k]));
   stack[waiting++] = h->node;
   while (waiting > 0) {
-    const abbe_hierarchy_node *node = stack[--waiting];
+    const abbe_bvh_node *node = stack[--waiting];
     if (isinf(enter(node, o, inverse, t_min, t_max))) continue;
     for (int i = 0; i < node->count; i++) {
       uint32_t index = h->triangle[node->first + i];
-      if (!abbe_hierarchy_meet(triangle[index], o, d, side, t_min, t_max, hit)) continue;
+      if (!abbe_bvh_meet(triangle[index], o, d, side, t_min, t_max, hit)) continue;
       hit->index = index;
       t_max = hit->t;
       found = true;
     }
     if (node->count > 0) continue;
-    const abbe_hierarchy_node *a = h->node + node->first, *b = a + 1;
+    const abbe_bvh_node *a = h->node + node->first, *b = a + 1;
     bool b_first = enter(b, o, inverse, t_min, t_max) < enter(a, o, inverse, t_min, t_max);
     stack[waiting++] = b_first ? a : b;
     stack[waiting++] = b_first ? b : a;
@@ -258,7 +256,7 @@ bool abbe_hierarchy_trace(const abbe_hierarchy *h, const double (*triangle)[9], 
 
 /* ---- meshes ---- */
 
-double (*abbe_hierarchy_triangles(const abbe_mesh *mesh))[9] {
+double (*abbe_bvh_triangles(const abbe_mesh *mesh))[9] {
   double(*triangle)[9] = malloc((mesh->face_count + 1) * sizeof *triangle);
   for (size_t i = 0; triangle != NULL && i < mesh->face_count; i++)
     for (int c = 0; c < 3; c++)
@@ -278,7 +276,7 @@ static int by_key(const void *a, const void *b) {
   return 0;
 }
 
-size_t abbe_hierarchy_parts(const abbe_mesh *mesh, uint32_t *group) {
+size_t abbe_bvh_parts(const abbe_mesh *mesh, uint32_t *group) {
   size_t vertices = mesh->vertex_count, groups = 0;
   corner *sorted = malloc((vertices + 1) * sizeof *sorted);
   uint32_t *parent = malloc((vertices + 1) * sizeof *parent);

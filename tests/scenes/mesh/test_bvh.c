@@ -1,8 +1,8 @@
-/* The hierarchy against every triangle in turn: in double precision, and as the shaders have it. */
+/* The BVH against every triangle in turn: in double precision, and as the shaders have it. */
 #include "tests/gl/glsl.h"
 
 #include "gl/scene/hierarchy_nodes.h"
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 #include "scenes/shapes/shape.h"
 #include "tests/random.h"
 
@@ -13,17 +13,16 @@ typedef struct soup {
   double (*triangle)[9];
   size_t count;
   double size;
-  abbe_hierarchy h;
+  abbe_bvh h;
 } soup;
 
 static void finish(soup *s) {
   assert_non_null(s->triangle);
-  assert_int_equal(abbe_hierarchy_make((const double(*)[9])s->triangle, s->count, &s->h, NULL),
-                   ABBE_OK);
+  assert_int_equal(abbe_bvh_make((const double(*)[9])s->triangle, s->count, &s->h, NULL), ABBE_OK);
 }
 
 static void drop(soup *s) {
-  abbe_hierarchy_free(&s->h);
+  abbe_bvh_free(&s->h);
   free(s->triangle);
 }
 
@@ -44,7 +43,7 @@ static void make_soup(size_t count, double size, soup *s) {
 static void make_ring(soup *s) {
   abbe_mesh mesh = {0};
   assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);
-  *s = (soup){.count = mesh.face_count, .size = 0.1, .triangle = abbe_hierarchy_triangles(&mesh)};
+  *s = (soup){.count = mesh.face_count, .size = 0.1, .triangle = abbe_bvh_triangles(&mesh)};
   abbe_mesh_free(&mesh);
   finish(s);
 }
@@ -66,11 +65,11 @@ static void random_ray(const soup *s, uint64_t *random, double o[3], double d[3]
 }
 
 static bool brute_force(const soup *s, const double o[3], const double d[3], int side,
-                        abbe_hierarchy_hit *hit) {
+                        abbe_bvh_hit *hit) {
   bool found = false;
   double nearest = INFINITY;
   for (size_t i = 0; i < s->count; i++) {
-    if (!abbe_hierarchy_meet(s->triangle[i], o, d, side, 0, nearest, hit)) continue;
+    if (!abbe_bvh_meet(s->triangle[i], o, d, side, 0, nearest, hit)) continue;
     nearest = hit->t;
     hit->index = i;
     found = true;
@@ -83,11 +82,10 @@ static void compare(const soup *s, size_t rays) {
   size_t hits = 0;
   for (size_t i = 0; i < rays; i++) {
     double o[3], d[3];
-    abbe_hierarchy_hit a = {0}, b = {0};
+    abbe_bvh_hit a = {0}, b = {0};
     int side = (int)(i % 3) - 1;
     random_ray(s, &random, o, d);
-    bool met =
-        abbe_hierarchy_trace(&s->h, (const double(*)[9])s->triangle, o, d, side, 0, INFINITY, &a);
+    bool met = abbe_bvh_trace(&s->h, (const double(*)[9])s->triangle, o, d, side, 0, INFINITY, &a);
     assert_true(met == brute_force(s, o, d, side, &b));
     if (!met) continue;
     hits++;
@@ -104,7 +102,7 @@ static void nearest_of_all_triangles(void **state) {
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     make_soup(counts[i], i % 2 ? 1 : 1e4, &s);
     if (counts[i] >= 300) compare(&s, 1000);
-    assert_true(s.h.node_count < 2 * counts[i] && s.h.depth <= ABBE_HIERARCHY_MAX_DEPTH);
+    assert_true(s.h.node_count < 2 * counts[i] && s.h.depth <= ABBE_BVH_MAX_DEPTH);
     drop(&s);
   }
   make_ring(&s);
@@ -119,7 +117,7 @@ static void boxes_hold_their_triangles(void **state) {
   make_soup(1000, 1, &s);
   size_t seen = 0;
   for (size_t i = 0; i < s.h.node_count; i++) {
-    const abbe_hierarchy_node *n = &s.h.node[i];
+    const abbe_bvh_node *n = &s.h.node[i];
     assert_true(n->count <= 4);
     for (int k = 0; k < n->count; k++, seen++)
       for (int c = 0; c < 9; c++) {
@@ -158,7 +156,7 @@ static void boxes_are_tight(void **state) {
     for (int c = 0; c < 9; c++)
       s.triangle[i][c] = random_between(&random, 0, 1) + (c % 3 == 0 && i % 2 ? 100 : 0);
   finish(&s);
-  const abbe_hierarchy_node *child = s.h.node + s.h.node->first;
+  const abbe_bvh_node *child = s.h.node + s.h.node->first;
   assert_true(child[0].max[0] < child[1].min[0] || child[1].max[0] < child[0].min[0]);
   drop(&s);
 }
@@ -168,9 +166,9 @@ static void equal_triangles_end_in_leaves(void **state) {
   soup s = {.count = 100000, .triangle = calloc(100000, sizeof *s.triangle)};
   for (size_t i = 0; i < s.count; i++) s.triangle[i][3] = s.triangle[i][7] = 1;
   finish(&s);
-  assert_true(s.h.depth <= ABBE_HIERARCHY_MAX_DEPTH);
+  assert_true(s.h.depth <= ABBE_BVH_MAX_DEPTH);
   drop(&s);
-  assert_int_equal(abbe_hierarchy_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
+  assert_int_equal(abbe_bvh_make(NULL, 0, &s.h, NULL), ABBE_GEOMETRY);
 }
 
 static float float_of(uint32_t bits) {
@@ -195,7 +193,7 @@ static size_t check_packed(const soup *s, uint32_t (*texel)[4], size_t at, int c
   const size_t first = (size_t)~code >> 3, count = (size_t)~code & 7;
   for (size_t i = first; i < first + count; i++) {
     const double *t = s->triangle[s->h.triangle[i]];
-    abbe_hierarchy_hit hit;
+    abbe_bvh_hit hit;
     for (int k = 0; k < 9; k++) {
       double low = (double)float_of(texel[0][k % 3]), cell = (double)float_of(texel[1][k % 3]);
       assert_true(low + cell * (box[k % 3] & 0xffff) < t[k]);
@@ -203,7 +201,7 @@ static size_t check_packed(const soup *s, uint32_t (*texel)[4], size_t at, int c
     }
     double o[3];
     for (int k = 0; k < 3; k++) o[k] = (t[k] + t[3 + k] + t[6 + k]) / 3 - s->size * d[k];
-    if (out) assert_false(abbe_hierarchy_meet(t, o, d, 1, 0, INFINITY, &hit));
+    if (out) assert_false(abbe_bvh_meet(t, o, d, 1, 0, INFINITY, &hit));
   }
   *left_out += out ? count : 0;
   return count;
@@ -284,7 +282,7 @@ static void the_shaders_find_the_same(void **state) {
     glsl_evaluate(abbe_context_gl(context), text, (const float(*)[8])in, RAYS, out);
     for (size_t i = 0; i < RAYS; i++) {
       double o[3], d[3];
-      abbe_hierarchy_hit hit;
+      abbe_bvh_hit hit;
       for (int k = 0; k < 3; k++) {
         o[k] = (double)in[i][k];
         d[k] = (double)in[i][4 + k];
@@ -310,17 +308,17 @@ static void parts_end_where_normals_break(void **state) {
   abbe_mesh mesh = {0};
   uint32_t group[8192];
   assert_int_equal(abbe_shape_box((double[3]){1, 2, 3}, &mesh, NULL), ABBE_OK);
-  assert_int_equal(abbe_hierarchy_parts(&mesh, group), 6);
+  assert_int_equal(abbe_bvh_parts(&mesh, group), 6);
   for (size_t i = 0; i < mesh.face_count; i++)
     for (size_t k = 0; k < mesh.face_count; k++) {
       const double *a = mesh.normal[mesh.face[i][0]], *b = mesh.normal[mesh.face[k][0]];
       assert_true((group[i] == group[k]) == (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]));
     }
   assert_int_equal(abbe_mesh_compute_normals(&mesh, ABBE_NORMALS_SMOOTH, NULL), ABBE_OK);
-  assert_int_equal(abbe_hierarchy_parts(&mesh, group), 1);
+  assert_int_equal(abbe_bvh_parts(&mesh, group), 1);
   abbe_mesh_free(&mesh);
   assert_int_equal(abbe_shape_ring(0.08, 0.02, 64, 32, &mesh, NULL), ABBE_OK);
-  assert_int_equal(abbe_hierarchy_parts(&mesh, group), 1);
+  assert_int_equal(abbe_bvh_parts(&mesh, group), 1);
   abbe_mesh_free(&mesh);
 }
 

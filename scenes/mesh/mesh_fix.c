@@ -1,4 +1,4 @@
-/* Mending: a mesh as points and faces, on which the steps work until it is closed and outwards. */
+/* Fixing: a mesh as points and faces, on which the steps work until it is closed and outwards. */
 #include "base/number.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/mesh/mesh.h"
@@ -11,12 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct mending {
+typedef struct fixing {
   size_t repeated, doubles, walls, sheets, slivers, turned, holes, inverted, crossings, solids;
   double volume;      /* that is enclosed */
   double widest;      /* hole, in the mesh's own unit */
   double crossing[3]; /* where the surface crosses itself first */
-} mending;
+} fixing;
 
 /* The mesh with one vertex a point, which later steps may change. */
 static abbe_result welded(const abbe_topology *t, abbe_mesh *out, abbe_error *error) {
@@ -31,7 +31,7 @@ static bool repeats(const uint32_t f[3]) {
   return f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
 }
 
-static void drop_repeated(abbe_mesh *mesh, mending *done) {
+static void drop_repeated(abbe_mesh *mesh, fixing *done) {
   size_t kept = 0;
   for (size_t f = 0; f < mesh->face_count; f++) {
     if (repeats(mesh->face[f]))
@@ -67,7 +67,7 @@ static bool flip_sliver(abbe_mesh *mesh, const abbe_topology *t, uint32_t f, int
   return true;
 }
 
-static abbe_result flip_slivers(abbe_mesh *mesh, mending *done, abbe_error *error) {
+static abbe_result flip_slivers(abbe_mesh *mesh, fixing *done, abbe_error *error) {
   for (int pass = 0; pass < 8; pass++) {
     abbe_topology t;
     const abbe_result result = abbe_topology_make(mesh, &t, error);
@@ -75,7 +75,7 @@ static abbe_result flip_slivers(abbe_mesh *mesh, mending *done, abbe_error *erro
     bool *touched = calloc(mesh->face_count + 1, sizeof *touched);
     if (!touched) {
       abbe_topology_free(&t);
-      return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to mend a mesh");
+      return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fix a mesh");
     }
     size_t flipped = 0;
     for (size_t f = 0; f < mesh->face_count; f++) {
@@ -129,7 +129,7 @@ static size_t walk(const abbe_topology *t, uint32_t first, unsigned char *side, 
   return tail;
 }
 
-static abbe_result make_consistent(abbe_mesh *mesh, mending *done, abbe_error *error) {
+static abbe_result make_consistent(abbe_mesh *mesh, fixing *done, abbe_error *error) {
   abbe_topology t;
   const abbe_result result = abbe_topology_make(mesh, &t, error);
   if (result != ABBE_OK) return result;
@@ -150,7 +150,7 @@ static abbe_result make_consistent(abbe_mesh *mesh, mending *done, abbe_error *e
   free(side);
   free(queue);
   abbe_topology_free(&t);
-  return ok ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to mend a mesh");
+  return ok ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fix a mesh");
 }
 
 static bool is_sound(const abbe_mesh_report *r) {
@@ -159,7 +159,7 @@ static bool is_sound(const abbe_mesh_report *r) {
 
 /* Turns shells so that bodies look outwards and hollows into themselves. What is not closed has no
  * inside, and is left to be refused. */
-static abbe_result turn_outwards(abbe_mesh *mesh, const abbe_topology *t, mending *done,
+static abbe_result turn_outwards(abbe_mesh *mesh, const abbe_topology *t, fixing *done,
                                  size_t *turned, abbe_error *error) {
   abbe_shells shells;
   const abbe_result result = abbe_shells_find(mesh, t, &shells, error);
@@ -182,7 +182,7 @@ static abbe_result turn_outwards(abbe_mesh *mesh, const abbe_topology *t, mendin
   return ABBE_OK;
 }
 
-static abbe_result run_steps(abbe_mesh *mesh, bool repair, mending *done, abbe_error *error) {
+static abbe_result run_steps(abbe_mesh *mesh, bool repair, fixing *done, abbe_error *error) {
   drop_repeated(mesh, done);
   if (mesh->face_count == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "the mesh has no face with an area");
@@ -211,7 +211,7 @@ static abbe_result refuse(const abbe_mesh_report *r, bool repair, abbe_error *er
 }
 
 /* After the steps, or at once where none is needed. */
-static abbe_result finish(abbe_mesh *mesh, const abbe_topology *t, bool repair, mending *done,
+static abbe_result finish(abbe_mesh *mesh, const abbe_topology *t, bool repair, fixing *done,
                           abbe_error *error) {
   abbe_mesh_report r;
   abbe_result result = abbe_mesh_check_known(mesh, t, &r, error);
@@ -241,7 +241,7 @@ static void say(char *text, size_t size, size_t count, const char *one, const ch
   snprintf(text + used, size - used, "%s%zu %s", used ? ", " : "", count, count == 1 ? one : many);
 }
 
-static abbe_result describe(const mending *done, bool repair, char **what, abbe_error *error) {
+static abbe_result describe(const fixing *done, bool repair, char **what, abbe_error *error) {
   char text[640] = "", one[80], many[80];
   abbe_number_format(one, sizeof one, "hole closed, %.3g across in the mesh's own unit",
                      done->widest);
@@ -324,9 +324,9 @@ static abbe_result carry_normals(const abbe_mesh *from, const abbe_topology *t, 
   return ABBE_OK;
 }
 
-/* Of the mended mesh, by angles and where it is the file's face by its normals. */
-static abbe_result mended_normals(const abbe_mesh *from, const abbe_topology *t, abbe_mesh *mesh,
-                                  abbe_error *error) {
+/* Of the fixed mesh, by angles and where it is the file's face by its normals. */
+static abbe_result fixed_normals(const abbe_mesh *from, const abbe_topology *t, abbe_mesh *mesh,
+                                 abbe_error *error) {
   abbe_topology own;
   abbe_result result = abbe_topology_make(mesh, &own, error);
   if (result != ABBE_OK) return result;
@@ -344,8 +344,8 @@ static abbe_result mended_normals(const abbe_mesh *from, const abbe_topology *t,
 }
 
 /* The steps over a mesh of one vertex a point, which it leaves in *work. */
-static abbe_result mend(const abbe_topology *t, bool repair, mending *done, abbe_mesh *work,
-                        abbe_error *error) {
+static abbe_result fix(const abbe_topology *t, bool repair, fixing *done, abbe_mesh *work,
+                       abbe_error *error) {
   abbe_topology own = {0};
   abbe_result result = welded(t, work, error);
   if (result == ABBE_OK) result = run_steps(work, repair, done, error);
@@ -355,14 +355,14 @@ static abbe_result mend(const abbe_topology *t, bool repair, mending *done, abbe
   return result;
 }
 
-abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
-                           char **what, abbe_error *error) {
+abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
+                          char **what, abbe_error *error) {
   ABBE_REQUIRE(mesh, error);
   if (what) *what = NULL;
   abbe_topology t;
   abbe_mesh_report report;
   abbe_mesh work = {0};
-  mending done = {0};
+  fixing done = {0};
   abbe_result result = abbe_topology_make(mesh, &t, error);
   if (result != ABBE_OK) return result;
   result = abbe_mesh_check_known(mesh, &t, &report, error);
@@ -371,7 +371,7 @@ abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repa
     result = welded(&t, &work, error);
     if (result == ABBE_OK) result = finish(&work, &t, repair, &done, error);
   } else if (result == ABBE_OK) {
-    result = mend(&t, repair, &done, &work, error);
+    result = fix(&t, repair, &done, &work, error);
   }
   const bool changed = done.repeated + done.doubles + done.walls + done.sheets + done.slivers +
                            done.turned + done.holes + done.inverted >
@@ -379,7 +379,7 @@ abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repa
   if (result == ABBE_OK && changed && normals != ABBE_NORMALS_AUTO)
     result = abbe_mesh_drop_unused(&work, error);
   if (result == ABBE_OK && changed)
-    result = normals == ABBE_NORMALS_AUTO ? mended_normals(mesh, &t, &work, error)
+    result = normals == ABBE_NORMALS_AUTO ? fixed_normals(mesh, &t, &work, error)
                                           : abbe_mesh_compute_normals(&work, normals, error);
   if (result == ABBE_OK) result = describe(&done, repair, what, error);
   abbe_topology_free(&t);
