@@ -1,5 +1,6 @@
 #include "tests/check.h"
 #include "tests/random.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "spectral/editing/check.h"
 #include "spectral/editing/table_edit.h"
@@ -7,23 +8,10 @@
 
 #include <stdlib.h>
 
-static abbe_material_table known;
-
-static int setup(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &known, NULL) != ABBE_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  abbe_material_table_free(&known);
-  return 0;
-}
-
 static abbe_findings check_table(const abbe_material_table *table) {
   abbe_findings found = {0};
   abbe_error error = {0};
-  if (abbe_check_table(table, &known, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
+  if (abbe_check_table(table, &shipped, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
   return found;
 }
 
@@ -66,7 +54,7 @@ static void the_thesis_has_four_wrong_rows_and_bk7(void **state) {
 
 static void the_default_table_is_well(void **state) {
   (void)state;
-  abbe_findings found = check_table(&known);
+  abbe_findings found = check_table(&shipped);
   assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
   for (size_t i = 0; i < found.count; i++)
     assert_int_equal(found.finding[i].kind, ABBE_FINDING_EXTRAPOLATED);
@@ -397,7 +385,7 @@ static void senseless_records_are_survived(void **state) {
     m.fit[0] = (abbe_material_fit){2, {1.5, 0.004}, 1e-4, 380, 780};
     abbe_findings found = {0};
     const abbe_material_table one = {.count = 1, .material = &m};
-    assert_int_equal(abbe_check_table(&one, &known, &found, NULL), ABBE_OK);
+    assert_int_equal(abbe_check_table(&one, &shipped, &found, NULL), ABBE_OK);
     for (size_t k = 0; k < found.count; k++) {
       assert_non_null(found.finding[k].evidence);
       assert_non_null(found.finding[k].fix);
@@ -415,7 +403,7 @@ static void namesakes_are_found_in_any_spelling(void **state) {
                {"N-SF11", "n-sf11"}, {"SF 11", "sf11"},  {"Fused Silica", "fused-silica"},
                {"kryptonite", NULL}, {"", NULL},         {"---", NULL}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    const abbe_material *m = abbe_check_namesake(&known, cases[i].name);
+    const abbe_material *m = abbe_check_namesake(&shipped, cases[i].name);
     assert_int_equal(m != NULL, cases[i].known != NULL);
     if (m != NULL) assert_string_equal(m->name, cases[i].known);
   }
@@ -443,5 +431,5 @@ int main(void) {
       cmocka_unit_test(namesakes_are_found_in_any_spelling),
       cmocka_unit_test(words_are_there_for_all),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

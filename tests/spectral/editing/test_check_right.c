@@ -1,21 +1,8 @@
 /* Rows that are right, however odd they look, are left alone by the check. */
 #include "tests/check.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "spectral/editing/check.h"
-#include "spectral/formats/material_table_load.h"
-
-static abbe_material_table known;
-
-static int setup(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &known, NULL) != ABBE_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  abbe_material_table_free(&known);
-  return 0;
-}
 
 /* What is found about one record. */
 static abbe_findings check_record(const char *record) {
@@ -28,7 +15,7 @@ static abbe_findings check_record(const char *record) {
       ABBE_OK)
     fail_msg("%s", error.text);
   assert_int_equal(table.count, 1);
-  if (abbe_check_table(&table, &known, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
+  if (abbe_check_table(&table, &shipped, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
   abbe_material_table_free(&table);
   return found;
 }
@@ -142,5 +129,5 @@ int main(void) {
       cmocka_unit_test(metals_dyes_and_gases_are_well),
       cmocka_unit_test(rows_are_judged_inside_their_range),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -1,22 +1,9 @@
 #include "tests/check.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "spectral/editing/table_fix.h"
-#include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
-
-static abbe_material_table known;
-
-static int setup(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &known, NULL) != ABBE_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  abbe_material_table_free(&known);
-  return 0;
-}
 
 static abbe_table_edit *open_edit(const char *text) {
   abbe_table_edit *edit = NULL;
@@ -29,7 +16,7 @@ static abbe_table_edit *open_edit(const char *text) {
 static abbe_table_fix fix_of(abbe_table_edit *edit) {
   abbe_table_fix fix;
   abbe_error error = {0};
-  if (abbe_table_fix_make(edit, &known, &fix, &error) != ABBE_OK) fail_msg("%s", error.text);
+  if (abbe_table_fix_make(edit, &shipped, &fix, &error) != ABBE_OK) fail_msg("%s", error.text);
   return fix;
 }
 
@@ -105,5 +92,5 @@ int main(void) {
       cmocka_unit_test(a_fix_brings_out_the_next),
       cmocka_unit_test(doubt_and_shared_names_are_left_alone),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -1,24 +1,22 @@
 /* colord.h: reads the CIE's tables as Debian's package colord-data prints them, for tests that
  * check ours against an independent copy.
  */
-#ifndef ABBE_TESTS_CLI_COLORD_H
-#define ABBE_TESTS_CLI_COLORD_H
+#ifndef ABBE_TESTS_COLORIMETRY_COLORD_H
+#define ABBE_TESTS_COLORIMETRY_COLORD_H
 
-#include <stdio.h>
+#include "tests/check.h"
+
 #include <stdlib.h>
-#include <string.h>
 
-/* The numbers after BEGIN_DATA, row after row, into values[max]; their count, 0 where the file is
- * not there (the package is not installed). *start and *end are the first and last wavelength. */
+/* The numbers after BEGIN_DATA, row after row, into values[max]; their count. *start and *end are
+ * the first and last wavelength. Fails the test where the package is not installed, which
+ * script/bootstrap does. */
 static size_t colord_read(const char *name, double *values, size_t max, double *start,
                           double *end) {
   char path[256], word[256];
   snprintf(path, sizeof path, "/usr/share/colord/%s", name);
   FILE *file = fopen(path, "r");
-  if (file == NULL) {
-    fprintf(stderr, "%s is missing; apt install colord-data\n", path);
-    return 0;
-  }
+  if (file == NULL) fail_msg("%s is missing; script/bootstrap installs it (colord-data)", path);
   size_t count = 0;
   int inside = 0;
   while (fscanf(file, "%255s", word) == 1 && strcmp(word, "END_DATA") != 0) {
