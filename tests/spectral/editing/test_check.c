@@ -1,19 +1,12 @@
 #include "tests/check.h"
 #include "tests/random.h"
-#include "tests/spectral/shipped_table.h"
+#include "tests/spectral/editing/checked_record.h"
 
 #include "spectral/editing/check.h"
 #include "spectral/editing/table_edit.h"
 #include "spectral/formats/material_table_load.h"
 
 #include <stdlib.h>
-
-static abbe_findings check_table(const abbe_material_table *table) {
-  abbe_findings found = {0};
-  abbe_error error = {0};
-  if (abbe_check_table(table, &shipped, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
-  return found;
-}
 
 static const abbe_finding *find(const abbe_findings *found, abbe_finding_kind kind) {
   for (size_t i = 0; i < found->count; i++)
@@ -33,7 +26,7 @@ static void the_thesis_has_four_wrong_rows_and_bk7(void **state) {
   (void)state;
   abbe_material_table thesis;
   assert_int_equal(abbe_material_table_load("thesis", &thesis, NULL), ABBE_OK);
-  abbe_findings found = check_table(&thesis);
+  abbe_findings found = checked_table(&thesis);
   const char *const wrong[] = {"fused-silica", "k5", "bak4", "baf10"};
   const double right_a[] = {1.44775, 1.50870, 1.55362, 1.64848};
   assert_int_equal(found.count, 4);
@@ -54,7 +47,7 @@ static void the_thesis_has_four_wrong_rows_and_bk7(void **state) {
 
 static void the_default_table_is_well(void **state) {
   (void)state;
-  abbe_findings found = check_table(&shipped);
+  abbe_findings found = checked_table(&shipped);
   assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
   for (size_t i = 0; i < found.count; i++)
     assert_int_equal(found.finding[i].kind, ABBE_FINDING_EXTRAPOLATED);
@@ -62,20 +55,6 @@ static void the_default_table_is_well(void **state) {
 }
 
 /* ---- one record at a time ---- */
-
-static abbe_material_table parse(const char *record) {
-  char text[2048];
-  abbe_material_table table;
-  abbe_report report = {0};
-  abbe_error error = {0};
-  snprintf(text, sizeof text, "materials:\n%s", record);
-  if (abbe_material_table_parse_lenient(text, strlen(text), "t.yaml", &table, &report, &error) !=
-      ABBE_OK)
-    fail_msg("%s", error.text);
-  assert_int_equal(report.count, 0);
-  abbe_report_free(&report);
-  return table;
-}
 
 #define POLES "1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653]"
 #define ROOTS "1.03961212, 0.0774642, 0.231792344, 0.14148467, 1.01046945, 10.1764755]"
@@ -190,8 +169,8 @@ static void each_fault_is_found_with_its_fix(void **state) {
        ABBE_FINDING_FIT, ABBE_FINDING_WRONG, "it errs by 0.00693 at 380 nm", "fit.cauchy2", NULL},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    abbe_material_table table = parse(cases[i].record);
-    abbe_findings found = check_table(&table);
+    abbe_material_table table = checked_parse(cases[i].record);
+    abbe_findings found = checked_table(&table);
     const abbe_finding *f = find(&found, cases[i].kind);
     if (f == NULL)
       fail_msg("%s: %s is not found", cases[i].record, abbe_finding_kind_name(cases[i].kind));
@@ -211,7 +190,7 @@ static void each_fault_is_found_with_its_fix(void **state) {
 
 static void rows_that_are_alike_are_found(void **state) {
   (void)state;
-  abbe_material_table table = parse(
+  abbe_material_table table = checked_parse(
       "- {name: a, model: cauchy, coefficients: [1.5, 0.004], range_nm: [380, 780], source: s1}\n"
       "- {name: b, model: cauchy, coefficients: [1.6, 0.009], range_nm: [380, 780], source: s1}\n"
       "- {name: c, model: cauchy, coefficients: [1.5, 0.004], range_nm: [380, 780], source: s1}\n"
@@ -224,7 +203,7 @@ static void rows_that_are_alike_are_found(void **state) {
       "s1}\n"
       "- {name: d, model: constant, coefficients: [1.5], source: s1}\n"
       "- {name: e, model: constant, coefficients: [1.5], source: s1}\n");
-  abbe_findings found = check_table(&table);
+  abbe_findings found = checked_table(&table);
   assert_int_equal(found.count, 4);
   assert_int_equal(found.finding[0].kind, ABBE_FINDING_SAME);
   assert_int_equal(found.finding[0].row, 2);
@@ -276,7 +255,7 @@ static void certain_fixes_fix(void **state) {
     assert_int_equal(abbe_material_table_parse_lenient(now, size, "t.yaml", &table, &report, NULL),
                      ABBE_OK);
     assert_int_equal(report.count, 0);
-    abbe_findings found = check_table(&table);
+    abbe_findings found = checked_table(&table);
     certain = 0;
     for (size_t i = 0; i < found.count; i++) {
       const abbe_finding *f = &found.finding[i];

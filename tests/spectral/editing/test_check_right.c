@@ -1,21 +1,14 @@
 /* Rows that are right, however odd they look, are left alone by the check. */
 #include "tests/check.h"
-#include "tests/spectral/shipped_table.h"
+#include "tests/spectral/editing/checked_record.h"
 
 #include "spectral/editing/check.h"
 
 /* What is found about one record. */
 static abbe_findings check_record(const char *record) {
-  char text[1024];
-  abbe_material_table table;
-  abbe_findings found = {0};
-  abbe_error error = {0};
-  snprintf(text, sizeof text, "materials:\n%s", record);
-  if (abbe_material_table_parse_lenient(text, strlen(text), "t.yaml", &table, NULL, &error) !=
-      ABBE_OK)
-    fail_msg("%s", error.text);
+  abbe_material_table table = checked_parse(record);
   assert_int_equal(table.count, 1);
-  if (abbe_check_table(&table, &shipped, &found, &error) != ABBE_OK) fail_msg("%s", error.text);
+  abbe_findings found = checked_table(&table);
   abbe_material_table_free(&table);
   return found;
 }
