@@ -15,7 +15,6 @@ static const char *const long_sources[] = {
     "tests/gl/plan/test_plan.c",
     "tests/gl/test_plan_scenes.c",
     "tests/gl/test_renderer.c",
-    "tests/spectral/editing/test_table_edit.c",
     "tests/validation/compare/test_compare.c",
     "tests/validation/transport/test_light_walk.c",
     "validation/sweep/sweep.c",
