@@ -1,35 +1,21 @@
 #include "base/encoding.h"
 
-#include <stdbool.h>
+#include "base/utf8.h"
+
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef enum form { UTF8, UTF16_LITTLE, UTF16_BIG, WINDOWS } form;
 
-enum { REPLACEMENT = 0xfffd };
+enum { REPLACEMENT = ABBE_UTF8_REPLACEMENT };
 
 /* ---- which encoding ---- */
-
-/* Bytes of the UTF-8 sequence at c and its code point; 0 where it is malformed, overlong, a
- * surrogate or beyond Unicode. */
-static size_t sequence(const unsigned char *c, size_t left, uint32_t *code) {
-  size_t count = c[0] < 0x80 ? 1 : c[0] < 0xc2 ? 0 : c[0] < 0xe0 ? 2 : c[0] < 0xf0 ? 3 : 4;
-  if (count == 0 || c[0] > 0xf4 || count > left) return 0;
-  static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-  *code = count == 1 ? c[0] : c[0] & (0xffu >> (count + 1));
-  for (size_t i = 1; i < count; i++) {
-    if ((c[i] & 0xc0) != 0x80) return 0;
-    *code = *code << 6 | (c[i] & 0x3fu);
-  }
-  bool wrong = *code < least[count] || *code > 0x10ffff || (*code >= 0xd800 && *code < 0xe000);
-  return wrong ? 0 : count;
-}
 
 static bool is_utf8(const unsigned char *c, size_t size) {
   uint32_t code;
   for (size_t i = 0, step; i < size; i += step) {
-    step = sequence(c + i, size - i, &code);
+    step = abbe_utf8_read(c + i, size - i, &code);
     if (step == 0) return false;
   }
   return true;
@@ -79,7 +65,7 @@ static size_t take(const unsigned char *c, size_t left, form from, uint32_t *cod
   size_t step = 1;
   switch (from) {
   case UTF8:
-    step = sequence(c, left, code);
+    step = abbe_utf8_read(c, left, code);
     if (step == 0) *code = REPLACEMENT;
     return step == 0 ? 1 : step;
   case UTF16_LITTLE:
@@ -90,17 +76,6 @@ static size_t take(const unsigned char *c, size_t left, form from, uint32_t *cod
     break;
   }
   return step;
-}
-
-static size_t put(char *to, uint32_t code) {
-  if (code < 0x80) {
-    to[0] = (char)code;
-    return 1;
-  }
-  size_t count = code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
-  for (size_t i = count; i-- > 1; code >>= 6) to[i] = (char)(0x80 | (code & 0x3f));
-  to[0] = (char)((0xf00u >> count & 0xf0u) | code);
-  return count;
 }
 
 /* Control characters, the C1 range, and the two that YAML does not allow. */
@@ -126,7 +101,7 @@ abbe_result abbe_encoding_decode(const char *bytes, size_t size, char **text, si
     after_return = code == '\r';
     if (skip) continue;
     if (after_return) code = '\n';
-    used += put(out + used, unwanted(code) ? ' ' : code);
+    used += abbe_utf8_write(out + used, unwanted(code) ? ' ' : code);
   }
   out[used] = '\0';
   *text = out;
@@ -144,55 +119,4 @@ bool abbe_encoding_is_binary(const char *bytes, size_t size) {
     controls += c[i] < 0x20 && strchr("\t\n\r\f\x1a", c[i]) == NULL; /* CP/M's end of a file too */
   }
   return zeros > 0 || controls > looked / 32;
-}
-
-/* Letters that turn the direction of what follows, end a line, or cannot be seen: what is read is
- * then not what stands there. Of Unicode's format characters (Cf) and separators (Zl, Zp). */
-static bool misleads(uint32_t code) {
-  static const uint32_t range[][2] = {{0x061c, 0x061c},  {0x200b, 0x200f}, {0x2028, 0x202e},
-                                      {0x2060, 0x206f},  {0xfeff, 0xfeff}, {0xfff9, 0xfffb},
-                                      {0xe0000, 0xe007f}};
-  for (size_t i = 0; i < sizeof range / sizeof *range; i++)
-    if (code >= range[i][0] && code <= range[i][1]) return true;
-  return false;
-}
-
-static uint32_t shown(uint32_t code, bool before_newline, bool lines) {
-  if (code == '\n' || code == '\t') return lines ? code : ' ';
-  if (code == '\r' && before_newline) return lines ? code : ' ';
-  if (code < 0x20) return 0x2400 + code;
-  if (code == 0x7f) return 0x2421;
-  return (code >= 0x80 && code < 0xa0) || misleads(code) ? REPLACEMENT : code;
-}
-
-size_t abbe_encoding_printable(const char *text, size_t length, bool lines, char *out,
-                               size_t size) {
-  const unsigned char *c = (const unsigned char *)text;
-  size_t used = 0;
-  for (size_t i = 0; i < length;) {
-    uint32_t code = REPLACEMENT;
-    char letter[4];
-    i += take(c + i, length - i, UTF8, &code);
-    size_t count = put(letter, shown(code, i < length && c[i] == '\n', lines));
-    if (used + count >= size) break;
-    memcpy(out + used, letter, count);
-    used += count;
-  }
-  if (size > 0) out[used] = '\0';
-  return used;
-}
-
-size_t abbe_encoding_letter(const char *text) {
-  uint32_t code;
-  return text[0] == '\0' ? 0 : sequence((const unsigned char *)text, strnlen(text, 4), &code);
-}
-
-void abbe_encoding_trim(char *text) {
-  size_t end = strlen(text), start = end;
-  while (start > 0 && end - start < 4) {
-    start--;
-    if (((unsigned char)text[start] & 0xc0) == 0x80) continue; /* inside a letter */
-    if (start + abbe_encoding_letter(text + start) != end) text[start] = '\0';
-    return;
-  }
 }

@@ -1,7 +1,7 @@
 #include "base/error.h"
 
-#include "base/encoding.h"
 #include "base/number.h"
+#include "base/utf8.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -25,7 +25,7 @@ abbe_result abbe_error_set_list(abbe_error *error, abbe_result code, const char 
   if (used >= 0 && (size_t)used < sizeof raw)
     abbe_number_format_list(raw + used, sizeof raw - (size_t)used, format, arguments);
   error->code = code;
-  abbe_encoding_printable(raw, strlen(raw), false, error->text, sizeof error->text);
+  abbe_utf8_printable(raw, strlen(raw), false, error->text, sizeof error->text);
   return code;
 }
 

@@ -1,7 +1,7 @@
 #include "base/report.h"
 
-#include "base/encoding.h"
 #include "base/number.h"
+#include "base/utf8.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -40,15 +40,15 @@ void abbe_report_add(abbe_report *report, abbe_note_kind kind, size_t line, cons
   size_t length = strlen(file), most = sizeof note->file - 1;
   file += length > most ? length - most : 0;
   while (((unsigned char)*file & 0xc0) == 0x80) file++; /* to a whole letter */
-  abbe_encoding_printable(file, strlen(file), false, note->file, sizeof note->file);
+  abbe_utf8_printable(file, strlen(file), false, note->file, sizeof note->file);
   char raw[sizeof note->text];
   va_list args;
   va_start(args, format);
   abbe_number_format_list(raw, sizeof raw, format, args);
   va_end(args);
-  abbe_encoding_printable(raw, strlen(raw), false, note->text, sizeof note->text);
+  abbe_utf8_printable(raw, strlen(raw), false, note->text, sizeof note->text);
   if (name == NULL) name = "";
-  abbe_encoding_printable(name, strlen(name), false, note->name, sizeof note->name);
+  abbe_utf8_printable(name, strlen(name), false, note->name, sizeof note->name);
 }
 
 const char *abbe_note_kind_word(abbe_note_kind kind) {

@@ -1,5 +1,5 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 #include "cli/compare_report.h"
 
 #include "base/nearest.h"

@@ -1,6 +1,6 @@
 #include "cli/compare_report.h"
 
-#include "cli/command.h"
+#include "cli/base/command.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

@@ -1,5 +1,6 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/scene_input.h"
 
 #include "scenes/export/pov_file.h"
 #include "scenes/import/scene_file.h"
@@ -118,7 +119,7 @@ int abbe_command_export(int argc, char **argv) {
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
-  abbe_result result = abbe_command_load_scene(argv[0], q.scene, q.materials, &scene, &error);
+  abbe_result result = abbe_scene_input_load(argv[0], q.scene, q.materials, &scene, &error);
   if (result == ABBE_OK) result = abbe_pov_file_write(q.output, &scene, &q.pov, &error);
   if (result == ABBE_OK && (q.json || !q.quiet)) result = report(&q, &scene, &error);
   abbe_scene_free(&scene);

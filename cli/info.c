@@ -1,7 +1,7 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 
-#include "base/encoding.h"
+#include "base/utf8.h"
 #include "colorimetry/image/exr.h"
 
 #include <argp.h>
@@ -71,7 +71,7 @@ static void print_windows(const abbe_image *image) {
 /* Lines after the first are set in: what a file says must not look like what the program says. */
 static void print_attribute(const abbe_image_attribute *attribute) {
   char name[256];
-  abbe_encoding_printable(attribute->name, strlen(attribute->name), false, name, sizeof name);
+  abbe_utf8_printable(attribute->name, strlen(attribute->name), false, name, sizeof name);
   printf("%s: ", name);
   for (const char *c = attribute->text; *c != '\0'; c++) {
     putchar(*c);
@@ -93,7 +93,7 @@ static void print_text(const request *r, const abbe_image *image) {
   for (size_t c = 0; c < image->channels; c++) {
     statistics s = measure(image, c);
     char name[256];
-    abbe_encoding_printable(image->channel[c], strlen(image->channel[c]), false, name, sizeof name);
+    abbe_utf8_printable(image->channel[c], strlen(image->channel[c]), false, name, sizeof name);
     printf("%-20s %12.6g %12.6g %12.6g %8zu %8zu\n", name, s.min, s.max, s.mean, s.nan, s.inf);
   }
 }

@@ -1,5 +1,5 @@
-#include "cli/command.h"
-#include "cli/output.h"
+#include "cli/base/command.h"
+#include "cli/base/output.h"
 
 #include "base/nearest.h"
 #include "colorimetry/image/display_ocio.h"

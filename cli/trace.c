@@ -1,8 +1,8 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
-#include "cli/map_options.h"
-#include "cli/progress.h"
-#include "cli/scene_notes.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/map_options.h"
+#include "cli/base/progress.h"
+#include "cli/base/scene_input.h"
 
 #include "base/file.h"
 #include "colorimetry/image/display_ocio.h"
@@ -524,8 +524,8 @@ int abbe_command_trace(int argc, char **argv) {
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = name_checkpoint(&q, &error);
   if (result == ABBE_OK)
-    result = abbe_command_load_scene(argv[0], q.scene, q.materials, &scene, &error);
-  if (result == ABBE_OK && !q.quiet) abbe_scene_notes(&scene);
+    result = abbe_scene_input_load(argv[0], q.scene, q.materials, &scene, &error);
+  if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
   if (result == ABBE_OK) result = run(&q, &scene, &error);
   free(q.checkpoint_path);
   abbe_scene_free(&scene);

@@ -1,6 +1,6 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
-#include "cli/progress.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/progress.h"
 
 #include "validation/known/known_answers.h"
 #include "validation/known/known_chart.h"

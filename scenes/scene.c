@@ -18,7 +18,7 @@ static void object_free(abbe_object *object) {
   abbe_image_free(&object->texture);
   free(object->mesh_path);
   free(object->mesh_others);
-  free(object->mended);
+  free(object->fixes);
 }
 
 void abbe_scene_free(abbe_scene *scene) {

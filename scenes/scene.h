@@ -84,7 +84,7 @@ typedef struct abbe_object {
   double texture_repeat[2];
   char *mesh_path;   /* NULL or the file that the mesh is of */
   char *mesh_others; /* and those that it names, as abbe_mesh_load has them */
-  char *mended;      /* what was mended, and what is not whole still, or NULL */
+  char *fixes;       /* what was fixed, and what is not whole still, or NULL */
 } abbe_object;
 
 typedef struct abbe_scene {

@@ -25,6 +25,11 @@ const char *abbe_interpolation_name(abbe_interpolation interpolation);
 
 #define ABBE_SPECTRUM_MAX_COUNT 65536
 
+/* The wavelengths, nm, that records and files of points may speak of: wide enough for any optical
+ * data, and narrow enough that no formula overflows. */
+#define ABBE_SPECTRUM_LOW_NM 1.0
+#define ABBE_SPECTRUM_HIGH_NM 1e6
+
 typedef struct abbe_spectrum abbe_spectrum;
 
 /* A spectrum through count points. ABBE_INVALID_ARGUMENT unless the wavelengths are finite,

@@ -1,5 +1,22 @@
 # The house as a whole: who may include whom, and each header by itself.
-abbe_test(directions cpu abbe_build)
+foreach(name circles directions sizes)
+  abbe_test(${name} cpu abbe_build)
+  target_sources(test_${name} PRIVATE house/sources.c)
+endforeach()
+target_sources(test_circles PRIVATE house/graph.c)
+# The objects of the library and of the program, whose symbols say who uses whom.
+get_property(rooms GLOBAL PROPERTY ABBE_ROOMS)
+set(objects "")
+foreach(target ${rooms} abbe)
+  string(APPEND objects "$<JOIN:$<TARGET_OBJECTS:${target}>,\n>\n")
+endforeach()
+file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/objects.txt CONTENT "${objects}")
+foreach(name circles directions)
+  target_sources(test_${name} PRIVATE house/symbols.c)
+  target_compile_definitions(test_${name} PRIVATE ABBE_NM="${CMAKE_NM}"
+    ABBE_OBJECT_LIST="${CMAKE_CURRENT_BINARY_DIR}/objects.txt")
+  add_dependencies(test_${name} abbe)
+endforeach()
 abbe_test(number_places cpu abbe_base)
 
 # Each header is included twice, first and alone, in a C17 and a C++17 file of its own.

@@ -1,5 +1,5 @@
 foreach(name transform disjoint_sets vector
-        mesh mesh_repair mesh_charts topology shells
+        mesh mesh_fix mesh_repair mesh_charts topology shells
         convex shape brilliant
         scene object_file object_surface scene_file mesh_import mesh_files ply_strips
         view map_layout map_resample pov_file)

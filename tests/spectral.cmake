@@ -2,8 +2,9 @@ foreach(name wavelengths spectrum optics
         dispersion index_points index_difference fit points csv_points povray_index
         material material_numbers material_query material_table absorption glass_distance convert
         table_compare
-        agf agf_formula agf_write rii rii_write csv_write material_write material_import import_batch
-        doctor doctor_right table_edit table_mend record_draft)
+        agf agf_formula agf_write rii rii_write csv_write material_write material_import material_table_load
+        import_batch
+        check check_right table_edit table_fix record_draft)
   abbe_test(${name} cpu abbe_spectral abbe_base)
 endforeach()
 abbe_test(material_store cpu abbe_spectral abbe_base PkgConfig::SQLITE)

@@ -18,8 +18,10 @@
 extern "C" {
 #endif
 
-typedef struct abbe_yaml abbe_yaml;           /* a document */
-typedef struct abbe_yaml_node { int id; } abbe_yaml_node; /* of one document; id 0: absent */
+typedef struct abbe_yaml abbe_yaml; /* a document */
+typedef struct abbe_yaml_node {
+  int id;
+} abbe_yaml_node; /* of one document; id 0: absent */
 
 abbe_result abbe_yaml_parse(const char *text, size_t size, const char *name, abbe_yaml **out,
                             abbe_error *error);
@@ -60,15 +62,16 @@ abbe_result abbe_yaml_get_number(abbe_yaml *yaml, abbe_yaml_node mapping, const 
                                  double min, double max, double *out, abbe_error *error);
 abbe_result abbe_yaml_get_count(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                 size_t min, size_t max, size_t *out, abbe_error *error);
-abbe_result abbe_yaml_get_bool(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
-                               bool *out, abbe_error *error);
+abbe_result abbe_yaml_get_bool(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key, bool *out,
+                               abbe_error *error);
 /* *out is malloc'd (or left) and freed by the caller; a previous value is freed first. */
 abbe_result abbe_yaml_get_string(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  char **out, abbe_error *error);
-/* The same as one printable line (encoding.h): for names, which stand in messages and tables. */
+/* The same as one printable line (base/utf8.h): for names, which stand in messages and tables. */
 abbe_result abbe_yaml_get_name(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key, char **out,
                                abbe_error *error);
-/* One word of a list (names ends with NULL); *out is its index. An unknown word names the nearest. */
+/* One word of a list (names ends with NULL); *out is its index. An unknown word names the nearest.
+ */
 abbe_result abbe_yaml_get_choice(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
                                  const char *const *names, int *out, abbe_error *error);
 /* Exactly count finite numbers in [min, max]. */
@@ -91,8 +94,9 @@ abbe_result abbe_yaml_check_keys(const abbe_yaml *yaml, abbe_yaml_node mapping, 
 #if defined(__GNUC__)
 __attribute__((format(printf, 4, 5)))
 #endif
-abbe_result abbe_yaml_fail(const abbe_yaml *yaml, abbe_yaml_node node, abbe_error *error,
-                           const char *format, ...);
+abbe_result
+abbe_yaml_fail(const abbe_yaml *yaml, abbe_yaml_node node, abbe_error *error, const char *format,
+               ...);
 
 #ifdef __cplusplus
 }

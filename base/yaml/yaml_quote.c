@@ -1,6 +1,6 @@
 #include "base/yaml/yaml_quote.h"
 
-#include "base/encoding.h"
+#include "base/utf8.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -60,7 +60,7 @@ void abbe_yaml_quote_write(const char *text, FILE *to) {
     } else {
       taken = escape(c, to);
     }
-    size_t letter = abbe_encoding_letter((const char *)c);
+    size_t letter = abbe_utf8_letter((const char *)c);
     if (taken == 0 && letter == 0) fputs("\\ufffd", to);
     if (taken == 0) fwrite(c, 1, letter, to);
     c += taken > 0 ? taken : letter > 0 ? letter : 1;

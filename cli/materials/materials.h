@@ -1,17 +1,12 @@
-/* materials.h: the verbs of `abbe materials`, a file each, and what they share.
+/* materials.h: the verbs of `abbe materials`, a file each.
  *
- * A verb is one line of ABBE_MATERIALS_VERBS and one function in cli/materials_NAME.c. The program
- * finds it by its name, lists it with its summary in `abbe materials --help`, and hands it its
- * arguments with argv[0] "abbe materials NAME". No verb holds logic that a library could use.
+ * A verb is one line of ABBE_MATERIALS_VERBS and one function in cli/materials/materials_NAME.c.
+ * The program finds it by its name, lists it with its summary in `abbe materials --help`, and hands
+ * it its arguments with argv[0] "abbe materials NAME". No verb holds logic that a library could
+ * use.
  */
 #ifndef ABBE_CLI_MATERIALS_MATERIALS_H
 #define ABBE_CLI_MATERIALS_MATERIALS_H
-
-#include "cli/arguments.h"
-#include "cli/command.h"
-#include "spectral/materials/material_table.h"
-
-#include <cjson/cJSON.h>
 
 /* X(name, summary): every verb NAME is `int abbe_materials_NAME(int argc, char **argv)`. */
 #define ABBE_MATERIALS_VERBS(X)                                                                    \
@@ -19,7 +14,7 @@
   X(show, "one material: model, indices, Abbe number, absorption, source, fits")                   \
   X(plot, "draw the index over wavelength, with fits and measurements, or the glass map")          \
   X(nearest, "the materials nearest to an n_d and V_d, to a curve, or to points")                  \
-  X(check, "what is wrong or doubtful in a table, and how to mend it")                             \
+  X(check, "what is wrong or doubtful in a table, and how to fix it")                              \
   X(fit, "a Cauchy or Sellmeier form through a material, a formula or points")                     \
   X(from, "a record from n_d and V_d, a gem's dispersion, A and B, or glTF's pair")                \
   X(diff, "what differs between two tables, and by how much")                                      \
@@ -34,39 +29,5 @@
 #define ABBE_MATERIALS_DECLARE(name, summary) int abbe_materials_##name(int argc, char **argv);
 ABBE_MATERIALS_VERBS(ABBE_MATERIALS_DECLARE)
 #undef ABBE_MATERIALS_DECLARE
-
-/* Rows of an argp_option list that several verbs have, and their keys; a verb's own keys begin at
- * ABBE_MATERIALS_KEY_OWN. */
-enum { ABBE_MATERIALS_KEY_TABLE = 256, ABBE_MATERIALS_KEY_JSON, ABBE_MATERIALS_KEY_OWN };
-#define ABBE_MATERIALS_TABLE_OPTION                                                                \
-  {                                                                                                \
-    "table", ABBE_MATERIALS_KEY_TABLE, "FILE", ABBE_ARGUMENT_READS,                                \
-        "a table file, or default or thesis; without it, default", 0                               \
-  }
-#define ABBE_MATERIALS_JSON_OPTION                                                                 \
-  { "json", ABBE_MATERIALS_KEY_JSON, NULL, 0, "as JSON, numbers in full", 0 }
-
-struct argp;
-/* abbe_arguments_parse for verbs whose arguments are no files. */
-void abbe_materials_parse(const struct argp *parser, int argc, char **argv, void *request);
-/* Prints "PROGRAM: sentence" and where help is, and ends the program with ABBE_EXIT_USAGE. */
-_Noreturn void abbe_materials_wrong_use(const char *program, const char *sentence);
-
-/* The numbers of a material; NaN where its record does not vouch for the wavelengths. */
-abbe_dispersion_numbers abbe_materials_numbers(const abbe_material *material);
-/* value by format into text[size], or "-" for NaN, or "infinite"; returns what to print. */
-const char *abbe_materials_number(char *text, size_t size, const char *format, double value);
-
-/* An object for abbe_materials_print_json; want of memory at any step after this is remembered,
- * and then nothing is printed: half an answer is none. */
-cJSON *abbe_materials_json(void);
-abbe_result abbe_materials_print_json(const cJSON *root, abbe_error *error);
-/* Adds text, or null where there is none. */
-void abbe_materials_add_text(cJSON *to, const char *key, const char *text);
-/* n_d, v_d, the indices at the lines, b_g and partial dispersions; null where the record does not vouch for them. */
-void abbe_materials_add_numbers(cJSON *to, const abbe_material *material);
-/* A few coefficients to twelve digits, for a record that people read: no index moves by 1e-10. */
-void abbe_materials_round(abbe_dispersion *dispersion);
-void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b);
 
 #endif

@@ -1,9 +1,13 @@
+#include "cli/materials/materials.h"
+#include "cli/materials/materials_change.h"
+#include "cli/materials/materials_options.h"
+
 #include "base/file.h"
 #include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_quote.h"
-#include "cli/materials/materials_change.h"
-#include "spectral/formats/material_store.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
+#include "spectral/store/material_store.h"
 
 #include <argp.h>
 #include <stdio.h>

@@ -2,8 +2,10 @@
 #ifndef ABBE_CLI_MATERIALS_MATERIALS_CHANGE_H
 #define ABBE_CLI_MATERIALS_MATERIALS_CHANGE_H
 
-#include "cli/materials/materials.h"
+#include "cli/materials/materials_options.h"
 #include "spectral/editing/table_edit.h"
+
+#include <stdbool.h>
 
 /* The options that all of them have. */
 enum { ABBE_CHANGE_KEY_DRY_RUN = ABBE_MATERIALS_KEY_OWN, ABBE_CHANGE_KEY_OWN };

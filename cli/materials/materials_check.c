@@ -1,7 +1,11 @@
+#include "cli/materials/materials.h"
 #include "cli/materials/materials_change.h"
+#include "cli/materials/materials_options.h"
+#include "cli/materials/materials_values.h"
 
-#include "spectral/editing/doctor.h"
-#include "spectral/editing/table_mend.h"
+#include "spectral/editing/check.h"
+#include "spectral/editing/table_fix.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -27,9 +31,9 @@ static counts count(const abbe_findings *found, const abbe_report *unread) {
 
 static void print_finding(const abbe_material_table *table, const abbe_finding *f) {
   const abbe_material *m = &table->material[f->row];
-  printf("%s (line %zu): %s, %s: %s\n    %s\n    mend: %s\n", m->name, m->line,
+  printf("%s (line %zu): %s, %s: %s\n    %s\n    fix: %s\n", m->name, m->line,
          abbe_finding_weight_name(f->weight), abbe_finding_kind_name(f->kind),
-         abbe_finding_kind_meaning(f->kind), f->evidence, f->mend);
+         abbe_finding_kind_meaning(f->kind), f->evidence, f->fix);
   if (f->certain) printf("    --fix: %s: %s\n", f->key, f->value);
 }
 
@@ -90,7 +94,7 @@ static void add_finding(cJSON *list, const abbe_material_table *table, const abb
   cJSON_AddStringToObject(item, "weight", abbe_finding_weight_name(f->weight));
   cJSON_AddStringToObject(item, "kind", abbe_finding_kind_name(f->kind));
   cJSON_AddStringToObject(item, "evidence", f->evidence);
-  cJSON_AddStringToObject(item, "mend", f->mend);
+  cJSON_AddStringToObject(item, "fix", f->fix);
   cJSON_AddBoolToObject(item, "certain", f->certain);
   abbe_materials_add_text(item, "key", f->key);
   abbe_materials_add_text(item, "value", f->value);
@@ -138,7 +142,7 @@ static void keep_row(abbe_findings *found, const abbe_material_table *table,
   while (found->count > kept) {
     abbe_finding *last = &found->finding[--found->count];
     free(last->evidence);
-    free(last->mend);
+    free(last->fix);
     free(last->value);
   }
 }
@@ -151,7 +155,7 @@ static abbe_result examine(const request *r, const abbe_material_table *known, a
   abbe_result result = abbe_material_table_load_lenient(r->table, &table, &unread, error);
   if (result == ABBE_OK && r->name != NULL)
     result = abbe_material_table_find(&table, r->name, &one, error);
-  if (result == ABBE_OK) result = abbe_doctor_check_table(&table, known, &found, error);
+  if (result == ABBE_OK) result = abbe_check_table(&table, known, &found, error);
   if (result == ABBE_OK && one != NULL) {
     keep_row(&found, &table, one);
     abbe_report_free(&unread);
@@ -171,13 +175,13 @@ static abbe_result examine(const request *r, const abbe_material_table *known, a
   return result;
 }
 
-static abbe_result mend(const request *r, const abbe_material_table *known, abbe_error *error) {
+static abbe_result fix(const request *r, const abbe_material_table *known, abbe_error *error) {
   abbe_table_edit *edit = NULL;
-  abbe_table_mend made = {0};
+  abbe_table_fix made = {0};
   char *diff = NULL;
   abbe_result result = abbe_change_check_table(r->table, error);
   if (result == ABBE_OK) result = abbe_table_edit_open(r->table, &edit, error);
-  if (result == ABBE_OK) result = abbe_table_mend_make(edit, known, &made, error);
+  if (result == ABBE_OK) result = abbe_table_fix_make(edit, known, &made, error);
   if (result == ABBE_OK && r->dry_run) {
     result = abbe_table_edit_diff(edit, &diff, error);
     if (result == ABBE_OK) fputs(diff, stdout);
@@ -185,8 +189,8 @@ static abbe_result mend(const request *r, const abbe_material_table *known, abbe
     result = abbe_table_edit_save(edit, error);
   }
   if (result == ABBE_OK)
-    fprintf(stderr, "%s: %zu value%s %s\n", r->program, made.mended, made.mended == 1 ? "" : "s",
-            r->dry_run ? "would be mended" : "mended");
+    fprintf(stderr, "%s: %zu value%s %s\n", r->program, made.fixed, made.fixed == 1 ? "" : "s",
+            r->dry_run ? "would be fixed" : "fixed");
   if (result == ABBE_OK && made.warned[0] != '\0')
     fprintf(stderr, "%s: %s: the row's own warning stays as it was; see whether it still holds\n",
             r->program, made.warned);
@@ -206,7 +210,7 @@ static const struct argp_option options[] = {
     {"known", KEY_KNOWN, "FILE", ABBE_ARGUMENT_READS,
      "a table of materials that are known, to compare with; without it, default", 0},
     {"fix", KEY_FIX, NULL, 0,
-     "put the mends that are certain into the file, and check what is left", 0},
+     "put the fixes that are certain into the file, and check what is left", 0},
     {"dry-run", KEY_DRY_RUN, NULL, 0, "with --fix: show the change as a diff, write nothing", 0},
     {"all", KEY_ALL, NULL, 0, "show every note, not one line for many of a kind", 0},
     ABBE_MATERIALS_JSON_OPTION,
@@ -253,7 +257,7 @@ static const struct argp parser = {
            "  abbe materials check --table glasses.yaml --fix\n"
            "  abbe materials check my-glass --table glasses.yaml\n"
            "  abbe materials check --table thesis\n\n"
-           "Each finding has its evidence in numbers and a mend. Ends with 0 where nothing is "
+           "Each finding has its evidence in numbers and a fix. Ends with 0 where nothing is "
            "wrong or doubtful (notes may be there), with 3 where something is.",
 };
 
@@ -265,11 +269,11 @@ int abbe_materials_check(int argc, char **argv) {
   if (r.fix && r.table == NULL)
     abbe_materials_wrong_use(r.program, "--fix changes a file; name it with --table FILE");
   if (r.fix && (r.name != NULL || r.json))
-    abbe_materials_wrong_use(r.program, "--fix mends the whole table, and goes without a name "
+    abbe_materials_wrong_use(r.program, "--fix changes the whole table, and goes without a name "
                                         "and --json");
   abbe_material_table known = {0};
   abbe_result result = abbe_material_table_load(r.known, &known, &error);
-  if (result == ABBE_OK && r.fix) result = mend(&r, &known, &error);
+  if (result == ABBE_OK && r.fix) result = fix(&r, &known, &error);
   if (result == ABBE_OK && !r.dry_run) result = examine(&r, &known, &error);
   abbe_material_table_free(&known);
   return abbe_command_end(r.program, result, &error);

@@ -1,5 +1,9 @@
-#include "cli/materials/edit_screen.h"
+#include "cli/materials/edit/edit_screen.h"
+#include "cli/materials/materials.h"
 #include "cli/materials/materials_change.h"
+#include "cli/materials/materials_options.h"
+
+#include "spectral/formats/material_table_load.h"
 
 #include <argp.h>
 #include <stdio.h>

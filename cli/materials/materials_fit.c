@@ -1,9 +1,12 @@
 #include "cli/materials/materials.h"
+#include "cli/materials/materials_fit_plot.h"
+#include "cli/materials/materials_options.h"
+#include "cli/materials/materials_values.h"
 
 #include "base/number.h"
-#include "cli/materials/materials_fit_plot.h"
 #include "spectral/dispersion/fit.h"
 #include "spectral/dispersion/index_difference.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/wavelengths.h"
 

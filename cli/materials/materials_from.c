@@ -1,6 +1,9 @@
 #include "cli/materials/materials.h"
+#include "cli/materials/materials_options.h"
+#include "cli/materials/materials_values.h"
 
-#include "spectral/editing/doctor.h"
+#include "spectral/editing/check.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/materials/convert.h"
 #include "spectral/wavelengths.h"
@@ -71,18 +74,18 @@ static abbe_result print_json(const request *r, const abbe_material *m, const ab
   return result;
 }
 
-/* What the doctor doubts is said beside the record, not in it. */
+/* What the check doubts is said beside the record, not in it. */
 static abbe_result warn(const request *r, const abbe_material *m, const abbe_material_table *known,
                         abbe_error *error) {
   abbe_findings found = {0};
-  abbe_result result = abbe_doctor_check_material(m, known, &found, error);
+  abbe_result result = abbe_check_material(m, known, &found, error);
   fflush(stdout);
   for (size_t i = 0; i < found.count && result == ABBE_OK; i++)
     if (found.finding[i].weight > ABBE_FINDING_NOTE)
       fprintf(stderr, "%s: %s, %s: %s; %s\n", r->program,
               abbe_finding_weight_name(found.finding[i].weight),
               abbe_finding_kind_meaning(found.finding[i].kind), found.finding[i].evidence,
-              found.finding[i].mend);
+              found.finding[i].fix);
   abbe_findings_free(&found);
   return result;
 }

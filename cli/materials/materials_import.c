@@ -1,10 +1,13 @@
 #include "cli/materials/materials.h"
+#include "cli/materials/materials_options.h"
 #include "cli/materials/materials_report.h"
+#include "cli/materials/materials_values.h"
 
 #include "base/file.h"
 #include "spectral/formats/import_batch.h"
-#include "spectral/formats/material_store_write.h"
 #include "spectral/formats/material_write.h"
+#include "spectral/materials/material_table.h"
+#include "spectral/store/material_store_write.h"
 
 #include <argp.h>
 #include <stdio.h>

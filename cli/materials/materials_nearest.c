@@ -1,5 +1,8 @@
 #include "cli/materials/materials.h"
+#include "cli/materials/materials_options.h"
+#include "cli/materials/materials_values.h"
 
+#include "spectral/formats/material_table_load.h"
 #include "spectral/materials/glass_distance.h"
 #include "spectral/wavelengths.h"
 

@@ -1,6 +1,8 @@
 #include "cli/materials/materials.h"
+#include "cli/materials/materials_options.h"
 
 #include "colorimetry/plot/material_chart.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <argp.h>
 #include <stdio.h>

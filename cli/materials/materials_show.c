@@ -1,6 +1,10 @@
 #include "cli/materials/materials.h"
+#include "cli/materials/materials_options.h"
+#include "cli/materials/materials_values.h"
 
-#include "spectral/editing/doctor.h"
+#include "spectral/dispersion/fit.h"
+#include "spectral/editing/check.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"
 #include "spectral/wavelengths.h"
@@ -95,7 +99,7 @@ static void show_findings(const abbe_findings *found) {
   for (size_t i = 0; i < found->count; i++) {
     const abbe_finding *f = &found->finding[i];
     printf("  %-13s %s: %s; %s\n", abbe_finding_weight_name(f->weight),
-           abbe_finding_kind_meaning(f->kind), f->evidence, f->mend);
+           abbe_finding_kind_meaning(f->kind), f->evidence, f->fix);
   }
 }
 
@@ -133,8 +137,8 @@ static abbe_result show_fit_yaml(const abbe_material *m, abbe_error *error) {
   abbe_dispersion fit[2];
   double max_error[2];
   for (int i = 0; i < 2; i++) {
-    result = abbe_dispersion_fit_cauchy(&m->dispersion, (size_t)i + 2, low, high, &fit[i],
-                                        &max_error[i], error);
+    result = abbe_fit_dispersion(&m->dispersion, (size_t)i + 2, low, high, &fit[i], &max_error[i],
+                                 error);
     if (result != ABBE_OK) return result;
   }
   printf("fit:\n");
@@ -206,7 +210,7 @@ static void add_findings(cJSON *to, const abbe_findings *found) {
     cJSON_AddStringToObject(item, "weight", abbe_finding_weight_name(f->weight));
     cJSON_AddStringToObject(item, "kind", abbe_finding_kind_name(f->kind));
     cJSON_AddStringToObject(item, "evidence", f->evidence);
-    cJSON_AddStringToObject(item, "mend", f->mend);
+    cJSON_AddStringToObject(item, "fix", f->fix);
   }
 }
 
@@ -310,7 +314,7 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
   abbe_material_table known;
   abbe_findings found = {0};
   result = abbe_material_table_load(NULL, &known, error);
-  if (result == ABBE_OK) result = abbe_doctor_check_material(m, &known, &found, error);
+  if (result == ABBE_OK) result = abbe_check_material(m, &known, &found, error);
   if (result == ABBE_OK)
     result = r->json ? show_json(r, table, m, &found, error) : show_text(r, m, &found, error);
   abbe_findings_free(&found);

@@ -1,8 +1,8 @@
 #include "cli/render/error_options.h"
 
-#include "cli/arguments.h"
-#include "cli/command.h"
-#include "cli/progress.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/progress.h"
 #include "gl/accuracy/error_picture.h"
 
 #include <cjson/cJSON.h>

@@ -1,7 +1,7 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/scene_input.h"
 #include "cli/render/render_options.h"
-#include "cli/scene_notes.h"
 
 #include "scenes/import/scene_file.h"
 
@@ -53,7 +53,7 @@ static abbe_result print_json(const abbe_scene *scene, const abbe_plan *plan, ab
   cJSON *notes = cJSON_AddArrayToObject(root, "notes");
   for (size_t i = 0; i < plan->note_count; i++)
     cJSON_AddItemToArray(notes, cJSON_CreateString(plan->note[i]));
-  abbe_scene_list_json(scene, root);
+  abbe_scene_input_list_json(scene, root);
   cJSON_AddNumberToObject(root, "wavelengths", (double)plan->desc.wavelengths);
   cJSON_AddNumberToObject(root, "exits", (double)plan->desc.exits);
   abbe_result result = abbe_command_print_json(root, error);
@@ -83,13 +83,13 @@ int abbe_command_plan(int argc, char **argv) {
   abbe_scene scene = {0};
   abbe_plan plan = {0};
   abbe_result result =
-      abbe_command_load_scene(argv[0], o.render.scene, o.render.materials, &scene, &error);
+      abbe_scene_input_load(argv[0], o.render.scene, o.render.materials, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
-  if (loaded) abbe_scene_notes(&scene);
+  if (loaded) abbe_scene_input_note(&scene);
   if (result == ABBE_OK && o.json) result = print_json(&scene, &plan, &error);
   if (result == ABBE_OK && !o.json) {
-    abbe_scene_list(&scene);
+    abbe_scene_input_list(&scene);
     print_text(&plan);
   }
   abbe_plan_free(&plan);

@@ -1,11 +1,11 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
-#include "cli/map_options.h"
-#include "cli/progress.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/map_options.h"
+#include "cli/base/progress.h"
+#include "cli/base/scene_input.h"
 #include "cli/render/error_options.h"
 #include "cli/render/preset_options.h"
 #include "cli/render/render_options.h"
-#include "cli/scene_notes.h"
 
 #include "base/file.h"
 #include "colorimetry/image/display_ocio.h"
@@ -335,7 +335,7 @@ static void summarise(const request *q, const abbe_statistics *s, double prepare
 }
 
 static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
-  abbe_scene_notes(scene);
+  abbe_scene_input_note(scene);
   for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
 }
 
@@ -439,7 +439,7 @@ int abbe_command_render(int argc, char **argv) {
   abbe_result result = abbe_command_check_targets(targets, 5, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK)
-    result = abbe_command_load_scene(argv[0], q.render.scene, q.render.materials, &scene, &error);
+    result = abbe_scene_input_load(argv[0], q.render.scene, q.render.materials, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)

@@ -1,7 +1,7 @@
 #include "cli/render/render_options.h"
 
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 #include "cli/sweep/sweep_report.h"
 #include "cli/sweep/sweep_work.h"
 

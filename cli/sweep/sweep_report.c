@@ -1,7 +1,7 @@
 #include "cli/sweep/sweep_report.h"
 
-#include "cli/arguments.h"
-#include "cli/command.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
 
 #include "base/file.h"
 #include "colorimetry/image/display_ocio.h"

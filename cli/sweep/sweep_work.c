@@ -1,8 +1,9 @@
 #include "cli/sweep/sweep_work.h"
 
-#include "cli/arguments.h"
-#include "cli/command.h"
-#include "cli/progress.h"
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/progress.h"
+#include "cli/base/scene_input.h"
 
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/preset.h"
@@ -339,7 +340,7 @@ static abbe_result list(const work *w) {
 
 static abbe_result work_on(work *w, abbe_error *error) {
   abbe_result result =
-      abbe_command_load_scene(w->q->program, w->q->scene, w->q->materials, &w->scene, error);
+      abbe_scene_input_load(w->q->program, w->q->scene, w->q->materials, &w->scene, error);
   if (result == ABBE_OK) result = get_settings(w, error);
   if (result == ABBE_OK && w->q->list) return list(w);
   if (result == ABBE_OK) result = name_files(w, error);
@@ -371,7 +372,7 @@ abbe_result abbe_sweep_grow(const abbe_sweep_request *q, abbe_error *error) {
   abbe_context *context = NULL;
   abbe_sweep_growth growth;
   abbe_progress progress;
-  abbe_result result = abbe_command_load_scene(q->program, q->scene, q->materials, &scene, error);
+  abbe_result result = abbe_scene_input_load(q->program, q->scene, q->materials, &scene, error);
   if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
   if (result == ABBE_OK) {
     const abbe_sweep sweep = {.context = context, .scene = &scene, .frames = q->frames};

@@ -1,7 +1,7 @@
 #include "colorimetry/image/png_file.h"
 
 #include "base/file.h"
-#include "colorimetry/rgb_encoding.h"
+#include "colorimetry/image/rgb_encoding.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "gl/scene/gpu_scene.h"
 
 #include "gl/device/bindings.h"
-#include "gl/scene/hierarchy_nodes.h"
-#include "scenes/mesh/hierarchy.h"
+#include "gl/scene/bvh_nodes.h"
+#include "scenes/mesh/bvh.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@ typedef struct gpu_corners {
 } gpu_corners;
 
 typedef struct forest {
-  uint32_t (*texel)[4]; /* hierarchy_nodes.h */
+  uint32_t (*texel)[4]; /* bvh_nodes.h */
   gpu_triangle *triangle;
   gpu_corners *corners;
   size_t texel_count, triangle_count;
@@ -74,13 +74,13 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
 }
 
 /* The tree behind the others; its root's texel. */
-static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_hierarchy *h,
+static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_bvh *h,
                          forest *f, size_t *root, abbe_error *error) {
-  const size_t texels = abbe_hierarchy_nodes_count(h);
+  const size_t texels = abbe_bvh_nodes_count(h);
   if (!make_room(f, texels, h->triangle_count))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
   *root = f->texel_count;
-  abbe_hierarchy_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
+  abbe_bvh_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
                             f->texel + f->texel_count);
   for (size_t i = 0; i < h->triangle_count; i++)
     store_triangle(g, h->triangle[i], &f->triangle[f->triangle_count + i],
@@ -95,8 +95,8 @@ static bool gather(grove *g, double (*triangle)[9]) {
   size_t parts = 0;
   for (size_t m = 0; m < g->mesh_count; m++) {
     const size_t first = g->face_first[m], count = g->mesh[m]->face_count;
-    double(*corners)[9] = abbe_hierarchy_triangles(g->mesh[m]);
-    const size_t own = abbe_hierarchy_parts(g->mesh[m], g->part + first);
+    double(*corners)[9] = abbe_bvh_triangles(g->mesh[m]);
+    const size_t own = abbe_bvh_parts(g->mesh[m], g->part + first);
     if (corners != NULL) memcpy(triangle + first, corners, count * sizeof *triangle);
     free(corners);
     if (corners == NULL || own == 0) return false;
@@ -112,17 +112,17 @@ static bool gather(grove *g, double (*triangle)[9]) {
 static abbe_result grow(abbe_gpu_scene *scene, grove *g, forest *f, size_t *root,
                         abbe_error *error) {
   const size_t faces = g->face_first[g->mesh_count];
-  abbe_hierarchy h = {0};
+  abbe_bvh h = {0};
   double(*triangle)[9] = calloc(faces + 1, sizeof *triangle);
   g->part = calloc(faces + 1, sizeof *g->part);
   g->owner = calloc(faces + 1, sizeof *g->owner);
   abbe_result result =
       triangle == NULL || g->part == NULL || g->owner == NULL || !gather(g, triangle)
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy")
-          : abbe_hierarchy_make((const double(*)[9])triangle, faces, &h, error);
+          : abbe_bvh_make((const double(*)[9])triangle, faces, &h, error);
   if (result == ABBE_OK) result = plant(g, (const double(*)[9])triangle, &h, f, root, error);
   if (h.depth > scene->bvh_depth) scene->bvh_depth = h.depth;
-  abbe_hierarchy_free(&h);
+  abbe_bvh_free(&h);
   free(triangle);
   free(g->part);
   free(g->owner);

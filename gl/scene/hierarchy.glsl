@@ -1,9 +1,9 @@
-// Triangles in a hierarchy of boxes (scenes/mesh/hierarchy.h), several trees in one buffer: the nearest
+// Triangles in a hierarchy of boxes (scenes/mesh/bvh.h), several trees in one buffer: the nearest
 // one on a ray. HIERARCHY_STACK: what the deepest tree stacks at the most. Loops end at their top
 // alone: Mesa 22's llvmpipe clobbers what is loaded in a loop that lanes leave in its middle.
 
 // Buffers as textures: llvmpipe fetches a texel of all lanes at once, and storage word by word.
-layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer hierarchy_nodes;  // as hierarchy_nodes.h has them
+layout(binding = UNIT_BVH_NODES) uniform usamplerBuffer hierarchy_nodes;  // as bvh_nodes.h has them
 layout(binding = UNIT_BVH_TRIANGLES) uniform samplerBuffer hierarchy_triangles;
 layout(binding = UNIT_BVH_CORNERS) uniform samplerBuffer hierarchy_corners;
 

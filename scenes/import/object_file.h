@@ -1,7 +1,7 @@
 /* object_file.h: one object of a scene file: its shape or mesh, its transform, what it is made of.
  *
  * A part of scene_file.h with the keys of an entry under "objects"; docs/scene-files.md documents
- * them. It reads, tessellates, places, checks and mends one object; the scene as a whole is
+ * them. It reads, tessellates, places, checks and fixes one object; the scene as a whole is
  * scene_file's business.
  */
 #ifndef ABBE_SCENES_IMPORT_OBJECT_FILE_H
@@ -21,17 +21,6 @@ extern "C" {
 abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
                              const abbe_material_table *table, abbe_object *out, size_t room,
                              size_t *count, abbe_error *error);
-
-/* Path relative to folder, or as it is where it is absolute; malloc'd, NULL without memory. */
-char *abbe_object_path(const char *folder, const char *path);
-
-/* Puts "FILE:LINE: " before the sentence of an error that came from deeper down; returns code. */
-abbe_result abbe_object_locate(const abbe_yaml *yaml, abbe_yaml_node node, abbe_result code,
-                               abbe_error *error);
-
-/* Three finite coordinates that must be there. */
-abbe_result abbe_object_need_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
-                                   double out[3], abbe_error *error);
 
 #ifdef __cplusplus
 }

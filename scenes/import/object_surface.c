@@ -189,12 +189,12 @@ static abbe_result choose_facets(abbe_mesh *mesh, abbe_error *error) {
 }
 
 static abbe_result add_note(abbe_object *out, const char *text, abbe_error *error) {
-  const size_t size = (out->mended ? strlen(out->mended) : 0) + strlen(text) + 3;
+  const size_t size = (out->fixes ? strlen(out->fixes) : 0) + strlen(text) + 3;
   char *all = malloc(size);
   if (!all) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a sentence");
-  snprintf(all, size, "%s%s%s", out->mended ? out->mended : "", out->mended ? "; " : "", text);
-  free(out->mended);
-  out->mended = all;
+  snprintf(all, size, "%s%s%s", out->fixes ? out->fixes : "", out->fixes ? "; " : "", text);
+  free(out->fixes);
+  out->fixes = all;
   return ABBE_OK;
 }
 
@@ -224,8 +224,7 @@ static abbe_result solidify(const abbe_object_surface *s, abbe_object *out, size
                             size_t *count, abbe_error *error) {
   abbe_mesh *part = NULL;
   size_t parts = 1;
-  abbe_result result =
-      abbe_mesh_mend(&out->mesh, s->normals, s->repair, &parts, &out->mended, error);
+  abbe_result result = abbe_mesh_fix(&out->mesh, s->normals, s->repair, &parts, &out->fixes, error);
   if (result == ABBE_OK && parts > 1) result = abbe_mesh_split(&out->mesh, &part, &parts, error);
   if (result != ABBE_OK || parts < 2) return result;
   if (parts > room)
@@ -254,7 +253,7 @@ static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_
   abbe_result result =
       abbe_convex_flatten(&out->mesh, s->flatten, ABBE_SCENE_MAX_PLANES, &moved, error);
   if (result == ABBE_OK)
-    result = abbe_mesh_mend(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
+    result = abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
   if (result != ABBE_OK) return result;
   abbe_number_format(
       text, sizeof text,

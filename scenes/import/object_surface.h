@@ -1,4 +1,4 @@
-/* object_surface.h: an object's surface in the world: mended, placed, told apart, known exactly
+/* object_surface.h: an object's surface in the world: fixed, placed, told apart, known exactly
  * where it can be.
  *
  * A part of object_file.h, which reads what is asked for. Here a refractor's mesh becomes a closed

@@ -3,13 +3,14 @@
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/import/object_file.h"
+#include "scenes/import/scene_value.h"
+#include "spectral/formats/material_table_load.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define RADIANS (3.14159265358979323846 / 180.0)
-#define FAR 1e6       /* m */
 #define BRIGHTEST 1e9 /* W/sr, W/m2, W/(m2 sr) */
 #define FAINTEST 1e-30
 
@@ -21,10 +22,10 @@ static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera
   double fov = 45.0, size[2] = {512, 512}, view[3], side[3];
   memcpy(out->up, (const double[3]){0.0, 0.0, 1.0}, sizeof out->up);
   abbe_result result = abbe_yaml_require(yaml, root, "camera", &node, error);
-  if (result == ABBE_OK) result = abbe_object_need_point(yaml, node, "eye", out->eye, error);
-  if (result == ABBE_OK) result = abbe_object_need_point(yaml, node, "target", out->target, error);
+  if (result == ABBE_OK) result = abbe_scene_value_point(yaml, node, "eye", out->eye, error);
+  if (result == ABBE_OK) result = abbe_scene_value_point(yaml, node, "target", out->target, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_numbers(yaml, node, "up", 3, -FAR, FAR, out->up, error);
+    result = abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error);
   if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error);
@@ -70,12 +71,12 @@ static abbe_result read_direction(abbe_yaml *yaml, abbe_yaml_node node, abbe_lig
                           light_kinds[out->kind], direction.id ? "both" : "neither");
   abbe_result result = ABBE_OK;
   if (direction.id) {
-    result = abbe_object_need_point(yaml, node, "direction", out->direction, error);
+    result = abbe_scene_value_point(yaml, node, "direction", out->direction, error);
   } else {
     if (out->kind == ABBE_LIGHT_DIRECTIONAL)
-      result = abbe_object_need_point(yaml, node, "position", out->position, error);
+      result = abbe_scene_value_point(yaml, node, "position", out->position, error);
     if (result == ABBE_OK)
-      result = abbe_object_need_point(yaml, node, "target", out->direction, error);
+      result = abbe_scene_value_point(yaml, node, "target", out->direction, error);
     abbe_vector_subtract(out->direction, out->position, out->direction);
   }
   if (result == ABBE_OK && !abbe_vector_normalise(out->direction))
@@ -101,7 +102,7 @@ static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light 
   abbe_yaml_node value;
   abbe_result result = abbe_yaml_require(yaml, node, "radius", &value, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, "radius", 0, FAR, &out->radius, error);
+    result = abbe_yaml_get_number(yaml, node, "radius", 0, ABBE_SCENE_FAR, &out->radius, error);
   if (result == ABBE_OK && !(out->radius > 0.0))
     result =
         abbe_yaml_fail(yaml, value, error,
@@ -113,7 +114,7 @@ static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abb
                                        abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (out->kind != ABBE_LIGHT_DIRECTIONAL)
-    result = abbe_object_need_point(yaml, node, "position", out->position, error);
+    result = abbe_scene_value_point(yaml, node, "position", out->position, error);
   if (result == ABBE_OK && out->kind == ABBE_LIGHT_POINT) {
     result = refuse_key(yaml, node, "direction", 0, "it shines in every direction", error);
     if (result == ABBE_OK)
@@ -175,7 +176,7 @@ static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const c
   char *name = NULL, *path = NULL;
   abbe_result result = abbe_yaml_get_string(yaml, node, "illuminant", &name, error);
   if (result == ABBE_OK && name) {
-    path = abbe_object_path(is_standard(name) ? "" : folder, name);
+    path = abbe_scene_value_path(is_standard(name) ? "" : folder, name);
     result = path ? abbe_illuminant_make(path, &out->illuminant, error)
                   : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
     if (result == ABBE_IO) {
@@ -187,7 +188,7 @@ static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const c
                      name, sentence);
     }
     if (result != ABBE_OK)
-      abbe_object_locate(yaml, abbe_yaml_get(yaml, node, "illuminant"), result, error);
+      abbe_scene_value_locate(yaml, abbe_yaml_get(yaml, node, "illuminant"), result, error);
     if (result == ABBE_OK && out->illuminant.kind == ABBE_ILLUMINANT_TABULATED) {
       out->illuminant_path = path;
       path = NULL;
@@ -305,7 +306,7 @@ static abbe_result read_table(abbe_yaml *yaml, abbe_yaml_node root, const char *
   const bool given = options && options->materials;
   const bool shipped = !name || strcmp(name, "default") == 0 || strcmp(name, "thesis") == 0;
   if (!given && !shipped) {
-    path = abbe_object_path(folder, name);
+    path = abbe_scene_value_path(folder, name);
     if (!path) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
   }
   if (result == ABBE_OK)

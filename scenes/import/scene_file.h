@@ -13,7 +13,7 @@ typedef struct abbe_scene_options {
   const char *materials; /* table to use instead of the file's: a path, "default" or "thesis" */
 } abbe_scene_options;
 
-/* Loads, tessellates, checks and mends. Paths in the file are relative to it. Errors name file,
+/* Loads, tessellates, checks and fixes. Paths in the file are relative to it. Errors name file,
  * line, key and value. On failure *out is zeroed. options may be NULL. */
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error);

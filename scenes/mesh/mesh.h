@@ -1,7 +1,7 @@
-/* mesh.h: triangle meshes: loading through assimp, checking, mending, subdividing.
+/* mesh.h: triangle meshes: loading through assimp, checking, fixing, subdividing.
  *
  * Refractors must be closed, consistently oriented (normals outwards) and free of degenerate
- * faces; abbe_mesh_check says what is wrong and abbe_mesh_mend mends what is safe to mend.
+ * faces; abbe_mesh_check says what is wrong and abbe_mesh_fix fixes what is safe to fix.
  */
 #ifndef ABBE_SCENES_MESH_MESH_H
 #define ABBE_SCENES_MESH_MESH_H
@@ -78,17 +78,17 @@ abbe_result abbe_mesh_check(const abbe_mesh *mesh, abbe_mesh_report *report, abb
  * part of a sentence; empty where nothing does. */
 void abbe_mesh_report_faults(const abbe_mesh_report *report, char *text, size_t size);
 
-/* Mends what is safe: drops degenerate faces and faces that are there twice, makes orientation
+/* Fixes what is safe: drops degenerate faces and faces that are there twice, makes orientation
  * consistent, turns an inside-out mesh, closes flat or small holes. repair: closes holes of any
  * shape by the smallest surface, and drops what parts a body from itself: walls of faces back to
  * back (or one of them, where nothing is around), sheets that hang on it or stand in it. *what (may
  * be NULL) gets a malloc'd sentence that says what was done, and where the surface still crosses
- * itself, or NULL where there is nothing to say. A mended mesh has no uv; given normals stay where
+ * itself, or NULL where there is nothing to say. A fixed mesh has no uv; given normals stay where
  * faces do. Leaves the mesh closed and outwards or fails with ABBE_GEOMETRY, the mesh unchanged,
  * and a sentence that counts what is wrong and says where.
  * *solids (may be NULL): of how many parts abbe_mesh_split makes it. */
-abbe_result abbe_mesh_mend(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
-                           char **what, abbe_error *error);
+abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
+                          char **what, abbe_error *error);
 
 #define ABBE_MESH_MAX_SOLIDS 32u
 

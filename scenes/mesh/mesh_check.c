@@ -1,4 +1,4 @@
-/* What is wrong with a mesh; mesh_mend.c does something about it. */
+/* What is wrong with a mesh; mesh_fix.c does something about it. */
 #include "base/number.h"
 #include "scenes/geometry/disjoint_sets.h"
 #include "scenes/geometry/vector.h"

@@ -139,7 +139,7 @@ abbe_result abbe_mesh_drop_doubles(abbe_mesh *mesh, bool walls_go, size_t *doubl
     if (*walls > 0 && walls_go) judge_walls(&t, parent, vote, at_edge, fate);
     if (*doubles > 0 || (*walls > 0 && walls_go)) keep_marked(mesh, fate);
   } else {
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to mend a mesh");
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fix a mesh");
   }
   free(all);
   free(fate);

@@ -34,7 +34,7 @@ double abbe_mesh_diagonal(const abbe_mesh *mesh, double centre[3]);
 /* Drops vertices that no face names. */
 abbe_result abbe_mesh_drop_unused(abbe_mesh *mesh, abbe_error *error);
 
-/* Steps of mending, over a mesh of one vertex a point. */
+/* Steps of fixing, over a mesh of one vertex a point. */
 
 /* Drops faces that are there twice and counts them; in walls: that lie on one another back to back,
  * which stay unless they are to go. */

@@ -16,7 +16,7 @@ enum { LEAST_PASSES = 8 }; /* of however many faces */
 /* What hangs together over edges of two faces. */
 typedef struct patch {
   double area;
-  long mends;    /* edges that become sound without it, less those that no longer are */
+  long fixes;    /* edges that become sound without it, less those that no longer are */
   bool attached; /* to others, at an edge of an odd number of faces */
   bool waits;    /* for a lesser one at one of its edges, without which it is judged anew */
   bool goes;
@@ -79,7 +79,7 @@ static void judge(const abbe_topology *t, desk *d) {
     const uint32_t e = all[from].edge, faces = t->edge[e].along + t->edge[e].against;
     for (to = from; to < count && by_edge(&all[to], &all[from]) == 0;) to++;
     patch *p = &at[all[from].patch];
-    p->mends += (long)is_bad(faces) - (long)is_bad(faces - (uint32_t)(to - from));
+    p->fixes += (long)is_bad(faces) - (long)is_bad(faces - (uint32_t)(to - from));
     p->attached = p->attached || (faces > 2 && is_bad(faces));
   }
   d->count = count;
@@ -92,7 +92,7 @@ static int by_area(const void *a, const void *b) {
 }
 
 static bool had_better_go(const patch *p, double whole) {
-  return p->attached && p->mends > 0 && p->area < 0.5 * whole;
+  return p->attached && p->fixes > 0 && p->area < 0.5 * whole;
 }
 
 /* Of patches that meet at an edge and had better go, all but the least wait. */
@@ -150,7 +150,7 @@ abbe_result abbe_mesh_drop_sheets(abbe_mesh *mesh, size_t *sheets, abbe_error *e
             .sheet = malloc((faces + 1) * sizeof *d.sheet)};
   abbe_result result = d.parent && d.at && d.all && d.sheet
                            ? ABBE_OK
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to mend a mesh");
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fix a mesh");
   double work = 0;
   size_t dropped = 1;
   for (int pass = 0; result == ABBE_OK && dropped > 0; pass++, *sheets += dropped) {

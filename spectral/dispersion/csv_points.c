@@ -3,7 +3,6 @@
 #include "base/encoding.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "spectral/materials/material.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -291,12 +290,12 @@ static abbe_result order(reader *r, abbe_points *list, double unit_nm, const cha
   size_t kept = 0, dropped = 0;
   for (size_t i = 0; i < list->count; i++) {
     double lambda_nm = list->point[i].lambda_nm;
-    if (lambda_nm >= ABBE_MATERIAL_LOW_NM && lambda_nm <= ABBE_MATERIAL_HIGH_NM)
+    if (lambda_nm >= ABBE_SPECTRUM_LOW_NM && lambda_nm <= ABBE_SPECTRUM_HIGH_NM)
       list->point[kept++] = list->point[i];
   }
   char range[64];
-  abbe_number_format(range, sizeof range, "outside %g to %g nm", ABBE_MATERIAL_LOW_NM,
-                     ABBE_MATERIAL_HIGH_NM);
+  abbe_number_format(range, sizeof range, "outside %g to %g nm", ABBE_SPECTRUM_LOW_NM,
+                     ABBE_SPECTRUM_HIGH_NM);
   abbe_result result = lose(r, list->count - kept, what, range);
   list->count = kept;
   if (result == ABBE_OK) result = abbe_points_sort(list, repeats ? NULL : &dropped, r->error);
@@ -320,7 +319,7 @@ static abbe_result finish(reader *r) {
   if (result == ABBE_OK) result = order(r, &r->out->power, unit_nm, "power");
   if (result == ABBE_OK && count_of(r->out) == 0)
     result = abbe_error_set(r->error, ABBE_SCHEMA, "%s: no point lies from %g to %g nm", r->name,
-                            ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
+                            ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM);
   return result;
 }
 

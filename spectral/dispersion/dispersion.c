@@ -1,7 +1,5 @@
 #include "spectral/dispersion/dispersion.h"
 
-#include "spectral/dispersion/fit.h"
-
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -198,34 +196,5 @@ abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error 
                             i, name, dispersion->c[i]);
   if (dispersion->model == ABBE_DISPERSION_TABULATED && dispersion->table == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the model tabulated has no points");
-  return ABBE_OK;
-}
-
-/* ---- the Cauchy fit ---- */
-
-enum { MAX_FIT_TERMS = 8, MAX_FIT_POINTS = 100001 }; /* 1 nm steps up to 100 um */
-
-abbe_result abbe_dispersion_fit_cauchy(const abbe_dispersion *source, size_t terms, double min_nm,
-                                       double max_nm, abbe_dispersion *out, double *max_error,
-                                       abbe_error *error) {
-  ABBE_REQUIRE(source && out, error);
-  *out = (abbe_dispersion){0};
-  if (terms < 1 || terms > MAX_FIT_TERMS)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a Cauchy fit of %zu terms is asked for; 1 to %d are possible", terms,
-                          MAX_FIT_TERMS);
-  if (min_nm > 0 && !isfinite(1e6 / (min_nm * min_nm)))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the range %g:%g nm is too wide for a Cauchy fit", min_nm, max_nm);
-  abbe_index_points points;
-  abbe_fit fit;
-  abbe_result result = abbe_index_points_sample(source, min_nm, max_nm, 8 * terms, MAX_FIT_POINTS,
-                                                &points, error);
-  if (result == ABBE_OK)
-    result = abbe_fit_make(&points, &(abbe_fit_request){.terms = terms}, &fit, error);
-  abbe_index_points_free(&points);
-  if (result != ABBE_OK) return result;
-  if (max_error != NULL) *max_error = fit.max_error;
-  *out = fit.dispersion;
   return ABBE_OK;
 }

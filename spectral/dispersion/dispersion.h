@@ -79,14 +79,6 @@ const char *abbe_dispersion_model_name(abbe_dispersion_model model);
 /* The formula as one line of text, for people. */
 const char *abbe_dispersion_model_formula(abbe_dispersion_model model);
 
-/* Least-squares Cauchy form with `terms` coefficients over [min_nm, max_nm], fitted to n of
- * `source` at 1 nm steps (or at least 8 points a term on narrower ranges); largest absolute
- * residual over those points in *max_error (may be NULL). GSL does the linear algebra.
- * ABBE_INVALID_ARGUMENT for terms outside [1, 8] or an empty range. */
-abbe_result abbe_dispersion_fit_cauchy(const abbe_dispersion *source, size_t terms, double min_nm,
-                                       double max_nm, abbe_dispersion *out, double *max_error,
-                                       abbe_error *error);
-
 #ifdef __cplusplus
 }
 #endif

@@ -146,3 +146,32 @@ abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_reques
   if (result == ABBE_OK) *out = fit;
   return result;
 }
+
+/* ---- of another curve ---- */
+
+enum { MAX_CURVE_TERMS = 8, MAX_CURVE_POINTS = 100001 }; /* 1 nm steps up to 100 um */
+
+abbe_result abbe_fit_dispersion(const abbe_dispersion *source, size_t terms, double min_nm,
+                                double max_nm, abbe_dispersion *out, double *max_error,
+                                abbe_error *error) {
+  ABBE_REQUIRE(source && out, error);
+  *out = (abbe_dispersion){0};
+  if (terms < 1 || terms > MAX_CURVE_TERMS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a Cauchy fit of %zu terms is asked for; 1 to %d are possible", terms,
+                          MAX_CURVE_TERMS);
+  if (min_nm > 0 && !isfinite(1e6 / (min_nm * min_nm)))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the range %g:%g nm is too wide for a Cauchy fit", min_nm, max_nm);
+  abbe_index_points points;
+  abbe_fit fit;
+  abbe_result result =
+      abbe_index_points_sample(source, min_nm, max_nm, 8 * terms, MAX_CURVE_POINTS, &points, error);
+  if (result == ABBE_OK)
+    result = abbe_fit_make(&points, &(abbe_fit_request){.terms = terms}, &fit, error);
+  abbe_index_points_free(&points);
+  if (result != ABBE_OK) return result;
+  if (max_error != NULL) *max_error = fit.max_error;
+  *out = fit.dispersion;
+  return ABBE_OK;
+}

@@ -58,6 +58,14 @@ typedef struct abbe_fit {
 abbe_result abbe_fit_make(const abbe_index_points *points, const abbe_fit_request *request,
                           abbe_fit *out, abbe_error *error);
 
+/* Least-squares Cauchy form with `terms` coefficients over [min_nm, max_nm], fitted to n of
+ * `source` at 1 nm steps (or at least 8 points a term on narrower ranges); largest absolute
+ * residual over those points in *max_error (may be NULL). ABBE_INVALID_ARGUMENT for terms outside
+ * [1, 8] or an empty range. */
+abbe_result abbe_fit_dispersion(const abbe_dispersion *source, size_t terms, double min_nm,
+                                double max_nm, abbe_dispersion *out, double *max_error,
+                                abbe_error *error);
+
 /* Standard error of coefficient i: the root of its variance. */
 double abbe_fit_standard_error(const abbe_fit *fit, size_t i);
 

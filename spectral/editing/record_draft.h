@@ -43,7 +43,7 @@ const abbe_draft_field *abbe_record_draft_field(const abbe_record_draft *draft, 
 abbe_result abbe_record_draft_set(abbe_record_draft *draft, size_t index, const char *text,
                                   abbe_error *error);
 /* The value of key (any of the record's, as abbe_table_edit_set has it) becomes this line of YAML:
- * a mend that the doctor names. */
+ * a fix that a finding names. */
 abbe_result abbe_record_draft_put(abbe_record_draft *draft, const char *key, const char *value,
                                   abbe_error *error);
 /* One coefficient more (0, at the end) or one fewer. */

@@ -1,20 +1,19 @@
 #include "spectral/editing/table_edit.h"
 
 #include "base/file.h"
-#include "base/nearest.h"
 #include "base/number.h"
 #include "base/text_diff.h"
 #include "base/yaml/yaml_edit.h"
 #include "base/yaml/yaml_quote.h"
+#include "spectral/editing/table_place.h"
 #include "spectral/formats/material_import.h"
-#include "spectral/formats/material_store.h"
 #include "spectral/materials/material_table.h"
+#include "spectral/store/material_store.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 enum { MAX_BYTES = 16 << 20, MAX_LISTED = 64 };
@@ -32,21 +31,6 @@ static abbe_result no_memory(abbe_error *error, const char *name) {
   return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory to edit it", name);
 }
 
-/* The index of the pair `materials` of the root, where it is a list or empty. */
-static abbe_result find_list(const abbe_table_edit *edit, size_t *index, abbe_error *error) {
-  const abbe_yaml *yaml = edit->yaml.yaml;
-  abbe_yaml_node root = abbe_yaml_root(yaml);
-  for (*index = 0; *index < abbe_yaml_count(yaml, root) && abbe_yaml_is_mapping(yaml, root);
-       ++*index) {
-    if (strcmp(abbe_yaml_text(yaml, abbe_yaml_key(yaml, root, *index)), "materials") != 0) continue;
-    abbe_yaml_node list = abbe_yaml_value(yaml, root, *index);
-    const char *text = abbe_yaml_text(yaml, list);
-    if (abbe_yaml_is_sequence(yaml, list) || (text != NULL && *text == '\0')) return ABBE_OK;
-  }
-  return abbe_error_set(error, ABBE_SCHEMA, "%s: is no material table: it has no list 'materials'",
-                        edit->yaml.name);
-}
-
 abbe_result abbe_table_edit_parse(const char *text, size_t size, const char *name,
                                   abbe_table_edit **out, abbe_error *error) {
   ABBE_REQUIRE(text && name && out, error);
@@ -56,7 +40,7 @@ abbe_result abbe_table_edit_parse(const char *text, size_t size, const char *nam
   edit->in_memory = true;
   size_t list;
   abbe_result result = abbe_yaml_edit_make(text, size, name, &edit->yaml, error);
-  if (result == ABBE_OK) result = find_list(edit, &list, error);
+  if (result == ABBE_OK) result = abbe_table_place_list(&edit->yaml, &list, error);
   if (result == ABBE_OK) {
     edit->before = malloc(size + 1);
     edit->before_size = size;
@@ -126,171 +110,6 @@ const char *abbe_table_edit_original(const abbe_table_edit *edit, size_t *size) 
   return edit->before;
 }
 
-/* ---- records and keys ---- */
-
-static abbe_yaml_node list_of(const abbe_table_edit *edit) {
-  size_t index = 0;
-  if (find_list(edit, &index, NULL) != ABBE_OK) return (abbe_yaml_node){0};
-  return abbe_yaml_value(edit->yaml.yaml, abbe_yaml_root(edit->yaml.yaml), index);
-}
-
-/* The pair of mapping under key, or count where it has none. */
-static size_t find_pair(const abbe_yaml *yaml, abbe_yaml_node mapping, const char *key) {
-  size_t count = abbe_yaml_is_mapping(yaml, mapping) ? abbe_yaml_count(yaml, mapping) : 0, i = 0;
-  while (i < count && strcmp(abbe_yaml_text(yaml, abbe_yaml_key(yaml, mapping, i)), key) != 0) i++;
-  return i;
-}
-
-static const char *record_name(const abbe_yaml *yaml, abbe_yaml_node record) {
-  size_t index = find_pair(yaml, record, "name");
-  const char *name = abbe_yaml_text(yaml, abbe_yaml_value(yaml, record, index));
-  return name != NULL ? name : "";
-}
-
-static abbe_result not_found(const abbe_table_edit *edit, abbe_yaml_node list, const char *name,
-                             abbe_error *error) {
-  const abbe_yaml *yaml = edit->yaml.yaml;
-  size_t count = abbe_yaml_count(yaml, list);
-  const char **names = malloc((count + 1) * sizeof *names);
-  if (names == NULL) return no_memory(error, edit->yaml.name);
-  for (size_t i = 0; i < count; i++) names[i] = record_name(yaml, abbe_yaml_item(yaml, list, i));
-  const char *near = abbe_nearest_word(name, names, count);
-  free(names);
-  return abbe_error_set(error, ABBE_NOT_FOUND,
-                        near != NULL ? "%s: has no material '%.80s'; did you mean '%.80s'?"
-                                     : "%s: has no material '%.80s'%s",
-                        edit->yaml.name, name, near != NULL ? near : "");
-}
-
-static abbe_result shared(const abbe_table_edit *edit, const char *what, abbe_error *error) {
-  return abbe_error_set(error, ABBE_UNSUPPORTED,
-                        "%s: '%.80s' is written as an alias (*name) of what stands elsewhere; edit "
-                        "it by hand",
-                        edit->yaml.name, what);
-}
-
-static abbe_result find_record(const abbe_table_edit *edit, const char *name, size_t *index,
-                               abbe_yaml_node *record, abbe_error *error) {
-  const abbe_yaml *yaml = edit->yaml.yaml;
-  abbe_yaml_node list = list_of(edit);
-  *record = (abbe_yaml_node){0};
-  for (size_t i = 0; i < abbe_yaml_count(yaml, list); i++) {
-    abbe_yaml_node item = abbe_yaml_item(yaml, list, i);
-    if (strcasecmp(record_name(yaml, item), name) != 0) continue;
-    if (record->id != 0)
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "%s: the name '%.80s' stands on lines %zu and %zu; give one of them "
-                            "another name by hand first",
-                            edit->yaml.name, name, abbe_yaml_line(yaml, *record),
-                            abbe_yaml_line(yaml, item));
-    *record = item;
-    *index = i;
-  }
-  if (record->id == 0) return not_found(edit, list, name, error);
-  return abbe_yaml_edit_is_alias(&edit->yaml, list, *index) ? shared(edit, name, error) : ABBE_OK;
-}
-
-/* A record's keys in the order of docs/materials.md, so that a new one goes where readers look. */
-static size_t rank(const char *key) {
-  static const char *const order[] = {
-      "name",     "description",   "model",       "coefficients", "points", "interpolation",
-      "range_nm", "temperature_c", "extrapolate", "n_d",          "v_d",    "source",
-      "warning",  "comment",       "absorption",  "catalogue",    "fit"};
-  enum { COUNT = sizeof order / sizeof order[0] };
-  for (size_t i = 0; i < COUNT; i++)
-    if (strcmp(order[i], key) == 0) return i;
-  return COUNT;
-}
-
-/* The last pair that ranks no later than key. */
-static size_t place_of(const abbe_yaml *yaml, abbe_yaml_node record, const char *key) {
-  size_t place = ABBE_YAML_EDIT_END;
-  for (size_t i = 0; i < abbe_yaml_count(yaml, record); i++)
-    if (rank(abbe_yaml_text(yaml, abbe_yaml_key(yaml, record, i))) <= rank(key)) place = i;
-  return place;
-}
-
-/* How far a path leads: the last collection on it, the step in it, and what is left of the path
- * where that step is not there. */
-typedef struct place {
-  abbe_yaml_node parent;
-  size_t index;
-  bool found, in_record;
-  char rest[128]; /* the steps that are not there, dotted */
-} place;
-
-static abbe_result no_such_key(const abbe_table_edit *edit, const char *name, const char *key,
-                               abbe_error *error) {
-  return abbe_error_set(error, ABBE_NOT_FOUND, "%s: the record '%.80s' has no '%.80s'",
-                        edit->yaml.name, name, key);
-}
-
-/* A step that list `at` has not, though the steps before it are there. */
-static abbe_result no_such_item(const abbe_table_edit *edit, const char *name, const char *key,
-                                abbe_yaml_node at, abbe_error *error) {
-  size_t count = abbe_yaml_count(edit->yaml.yaml, at);
-  if (!abbe_yaml_is_sequence(edit->yaml.yaml, at) || count == 0)
-    return no_such_key(edit, name, key, error);
-  return abbe_error_set(error, ABBE_NOT_FOUND,
-                        "%s: the record '%.80s' has no '%.80s'; the list has %zu items, 0 to %zu",
-                        edit->yaml.name, name, key, count, count - 1);
-}
-
-static bool step_into(const abbe_yaml *yaml, abbe_yaml_node at, const char *step, size_t *index) {
-  if (abbe_yaml_is_mapping(yaml, at)) {
-    *index = find_pair(yaml, at, step);
-  } else if (abbe_yaml_is_sequence(yaml, at) && step[strspn(step, "0123456789")] == '\0') {
-    *index = strlen(step) < 9 ? (size_t)strtoul(step, NULL, 10) : SIZE_MAX;
-  } else {
-    return false;
-  }
-  return *index < abbe_yaml_count(yaml, at);
-}
-
-/* Words of letters, digits and _, parted by single dots. */
-static bool is_path(const char *key) {
-  const char *word = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.";
-  size_t length = strlen(key);
-  return length > 0 && length < sizeof((place *)0)->rest && key[strspn(key, word)] == '\0' &&
-         key[0] != '.' && key[length - 1] != '.' && strstr(key, "..") == NULL;
-}
-
-static abbe_result find_key(const abbe_table_edit *edit, const char *name, const char *key,
-                            place *out, abbe_error *error) {
-  const abbe_yaml *yaml = edit->yaml.yaml;
-  size_t item;
-  abbe_yaml_node at;
-  abbe_result result = find_record(edit, name, &item, &at, error);
-  if (result != ABBE_OK) return result;
-  *out = (place){.in_record = true};
-  if (!is_path(key))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "'%.80s' is no key; keys are words, parted by a dot where one stands "
-                          "inside another, as in absorption.distance_m",
-                          key);
-  snprintf(out->rest, sizeof out->rest, "%s", key);
-  for (char *step = out->rest; step != NULL;) {
-    char *dot = strchr(step, '.');
-    if (dot != NULL) *dot = '\0';
-    out->parent = at;
-    out->found = step_into(yaml, at, step, &out->index);
-    if (!out->found) {
-      if (dot != NULL) *dot = '.';
-      memmove(out->rest, step, strlen(step) + 1);
-      /* only a mapping takes new keys */
-      return abbe_yaml_is_mapping(yaml, at) ? ABBE_OK
-                                            : no_such_item(edit, name, key, at, error);
-    }
-    if (dot == NULL) break;
-    if (abbe_yaml_edit_is_alias(&edit->yaml, at, out->index)) return shared(edit, key, error);
-    at = abbe_yaml_is_mapping(yaml, at) ? abbe_yaml_value(yaml, at, out->index)
-                                        : abbe_yaml_item(yaml, at, out->index);
-    out->in_record = false;
-    step = dot + 1;
-  }
-  return ABBE_OK;
-}
-
 /* ---- changes ---- */
 
 /* "a.b" and v as the key a and the value {b: v}. */
@@ -316,13 +135,14 @@ static char *nested(char *rest, const char *value) {
 abbe_result abbe_table_edit_set(abbe_table_edit *edit, const char *name, const char *key,
                                 const char *value, abbe_error *error) {
   ABBE_REQUIRE(edit && name && key && value, error);
-  place p;
-  abbe_result result = find_key(edit, name, key, &p, error);
+  abbe_table_place p;
+  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
   if (result != ABBE_OK) return result;
   if (p.found) return abbe_yaml_edit_replace(&edit->yaml, p.parent, p.index, value, error);
   char *whole = nested(p.rest, value);
   if (whole == NULL) return no_memory(error, edit->yaml.name);
-  size_t after = p.in_record ? place_of(edit->yaml.yaml, p.parent, p.rest) : ABBE_YAML_EDIT_END;
+  size_t after = p.in_record ? abbe_table_place_after(edit->yaml.yaml, p.parent, p.rest)
+                             : ABBE_YAML_EDIT_END;
   result = abbe_yaml_edit_insert_pair(&edit->yaml, p.parent, after, p.rest, whole, error);
   free(whole);
   return result;
@@ -350,9 +170,9 @@ static abbe_result set_each(abbe_table_edit *edit, const char *name, const char 
                             const double *value, size_t count, abbe_error *error) {
   for (size_t i = 0; i < count; i++) {
     char path[160];
-    place p;
+    abbe_table_place p;
     snprintf(path, sizeof path, "%.120s.%zu", key, i);
-    abbe_result result = find_key(edit, name, path, &p, error);
+    abbe_result result = abbe_table_place_key(&edit->yaml, name, path, &p, error);
     if (result != ABBE_OK) return result;
     double old = 0;
     abbe_yaml_node item = abbe_yaml_item(edit->yaml.yaml, p.parent, p.index);
@@ -368,8 +188,8 @@ static abbe_result set_each(abbe_table_edit *edit, const char *name, const char 
 abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name, const char *key,
                                         const double *value, size_t count, abbe_error *error) {
   ABBE_REQUIRE(edit && name && key && value, error);
-  place p;
-  abbe_result result = find_key(edit, name, key, &p, error);
+  abbe_table_place p;
+  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
   if (result != ABBE_OK) return result;
   abbe_yaml_node old = {0};
   if (p.found && abbe_yaml_is_mapping(edit->yaml.yaml, p.parent))
@@ -388,9 +208,9 @@ abbe_result abbe_table_edit_set_numbers(abbe_table_edit *edit, const char *name,
 abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const char *key,
                                   abbe_error *error) {
   ABBE_REQUIRE(edit && name && key, error);
-  place p;
-  abbe_result result = find_key(edit, name, key, &p, error);
-  if (result == ABBE_OK && !p.found) result = no_such_key(edit, name, key, error);
+  abbe_table_place p;
+  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, error);
+  if (result == ABBE_OK && !p.found) result = abbe_table_place_none(&edit->yaml, name, key, error);
   if (result != ABBE_OK) return result;
   return abbe_yaml_edit_remove(&edit->yaml, p.parent, p.index, error);
 }
@@ -398,7 +218,7 @@ abbe_result abbe_table_edit_unset(abbe_table_edit *edit, const char *name, const
 abbe_result abbe_table_edit_add(abbe_table_edit *edit, const char *record, abbe_error *error) {
   ABBE_REQUIRE(edit && record, error);
   size_t index;
-  abbe_result result = find_list(edit, &index, error);
+  abbe_result result = abbe_table_place_list(&edit->yaml, &index, error);
   if (result != ABBE_OK) return result;
   return abbe_yaml_edit_append(&edit->yaml, abbe_yaml_root(edit->yaml.yaml), index, record, error);
 }
@@ -406,8 +226,8 @@ abbe_result abbe_table_edit_add(abbe_table_edit *edit, const char *record, abbe_
 abbe_result abbe_table_edit_remove(abbe_table_edit *edit, const char *name, abbe_error *error) {
   ABBE_REQUIRE(edit && name, error);
   size_t index = 0;
-  abbe_yaml_node record, list = list_of(edit);
-  abbe_result result = find_record(edit, name, &index, &record, error);
+  abbe_yaml_node record, list = abbe_table_place_records(&edit->yaml);
+  abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
   if (result != ABBE_OK) return result;
   if (abbe_yaml_count(edit->yaml.yaml, list) == 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -421,9 +241,10 @@ abbe_result abbe_table_edit_rename(abbe_table_edit *edit, const char *name, cons
   ABBE_REQUIRE(edit && name && new_name, error);
   size_t index = 0, other = 0;
   abbe_yaml_node record, taken;
-  abbe_result result = find_record(edit, name, &index, &record, error);
+  abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
   if (result != ABBE_OK) return result;
-  if (find_record(edit, new_name, &other, &taken, NULL) == ABBE_OK && other != index)
+  if (abbe_table_place_record(&edit->yaml, new_name, &other, &taken, NULL) == ABBE_OK &&
+      other != index)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s:%zu: the name '%.80s' is taken by the record here", edit->yaml.name,
                           abbe_yaml_line(edit->yaml.yaml, taken), new_name);
@@ -435,21 +256,22 @@ abbe_result abbe_table_edit_record(abbe_table_edit *edit, const char *name, char
   ABBE_REQUIRE(edit && name && out, error);
   size_t index = 0;
   abbe_yaml_node record;
-  abbe_result result = find_record(edit, name, &index, &record, error);
+  abbe_result result = abbe_table_place_record(&edit->yaml, name, &index, &record, error);
   if (result != ABBE_OK) return result;
-  return abbe_yaml_edit_item(&edit->yaml, list_of(edit), index, out, error);
+  return abbe_yaml_edit_item(&edit->yaml, abbe_table_place_records(&edit->yaml), index, out, error);
 }
 
 abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, const char *key,
                                 char **out, abbe_error *error) {
   ABBE_REQUIRE(edit && name && key && out, error);
   *out = NULL;
-  place p;
+  abbe_table_place p;
   abbe_error why = {0};
-  abbe_result result = find_key(edit, name, key, &p, &why);
+  abbe_result result = abbe_table_place_key(&edit->yaml, name, key, &p, &why);
   size_t item;
   abbe_yaml_node record;
-  if (result == ABBE_NOT_FOUND && find_record(edit, name, &item, &record, NULL) == ABBE_OK)
+  if (result == ABBE_NOT_FOUND &&
+      abbe_table_place_record(&edit->yaml, name, &item, &record, NULL) == ABBE_OK)
     return ABBE_OK; /* the key leads nowhere */
   if (result != ABBE_OK) return abbe_error_set(error, result, "%s", why.text);
   if (!p.found) return ABBE_OK;
@@ -465,8 +287,8 @@ abbe_result abbe_table_edit_get(const abbe_table_edit *edit, const char *name, c
 }
 
 char *abbe_table_edit_first_name(const abbe_table_edit *edit) {
-  abbe_yaml_node record = abbe_yaml_item(edit->yaml.yaml, list_of(edit), 0);
-  return record.id != 0 ? strdup(record_name(edit->yaml.yaml, record)) : NULL;
+  abbe_yaml_node record = abbe_yaml_item(edit->yaml.yaml, abbe_table_place_records(&edit->yaml), 0);
+  return record.id != 0 ? strdup(abbe_table_place_name(edit->yaml.yaml, record)) : NULL;
 }
 
 abbe_result abbe_table_edit_revert(abbe_table_edit *edit, abbe_error *error) {

@@ -21,7 +21,7 @@ typedef struct abbe_table_edit abbe_table_edit;
 
 /* Reads the file at path (at most 16 MiB). ABBE_UNSUPPORTED, with what to do instead, for NULL, the
  * tables that are compiled in, and stores; ABBE_PARSE where it is not YAML with a list 'materials'.
- * A file that is YAML but no table (a wrong record) can be edited: that is how it is mended. */
+ * A file that is YAML but no table (a wrong record) can be edited: that is how it is fixed. */
 abbe_result abbe_table_edit_open(const char *path, abbe_table_edit **out, abbe_error *error);
 /* A table without a record yet, for a file that must not exist until it is saved. */
 abbe_result abbe_table_edit_make(const char *path, abbe_table_edit **out, abbe_error *error);

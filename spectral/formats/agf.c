@@ -3,7 +3,9 @@
 #include "base/encoding.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "base/utf8.h"
 #include "spectral/dispersion/points.h"
+#include "spectral/formats/agf_fields.h"
 #include "spectral/formats/agf_formula.h"
 #include "spectral/materials/absorption.h"
 
@@ -14,26 +16,18 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MAX_BYTES = 64 << 20, MAX_FIELDS = 16, MAX_TEXT = 1000, MAX_TITLE = 60 };
+enum { MAX_BYTES = 64 << 20, MAX_TEXT = 1000, MAX_TITLE = 60 };
 
 /* Range where a catalogue states none: what every glass is measured over. */
 static const double ASSUMED_LOW_NM = 404.66, ASSUMED_HIGH_NM = 656.27;
-
-/* Numbers of a record that may go on over several lines. NaN stands for '-'. */
-typedef struct list {
-  double value[MAX_FIELDS];
-  size_t count;
-  bool bad;    /* something in it was no number */
-  bool commas; /* it had decimal commas */
-} list;
 
 typedef struct glass {
   bool open;
   size_t line, cd_line;
   char name[ABBE_MATERIAL_MAX_NAME + 16];
   char formula[24], code[24];
-  list nm; /* what follows the code: n_d, V_d, exclude, status, melt frequency */
-  list ed, cd, td, od, ld;
+  abbe_agf_numbers nm; /* what follows the code: n_d, V_d, exclude, status, melt frequency */
+  abbe_agf_numbers ed, cd, td, od, ld;
   char *comment;
   abbe_points transmittance; /* nm, attenuation in 1/m */
   size_t opaque, clear, odd; /* IT lines with T = 0, with T >= 1, that could not be used */
@@ -47,83 +41,14 @@ typedef struct reader {
   size_t line, glasses;
   size_t noted; /* notes of others before ours */
   glass glass;
-  list *open;   /* which a line that begins with a number continues */
-  char *remark; /* the first CC line */
+  abbe_agf_numbers *open; /* which a line that begins with a number continues */
+  char *remark;           /* the first CC line */
 } reader;
 
-/* ---- lines ---- */
-
-static bool blank(char c) {
-  return c == ' ' || c == '\t' || c == ',';
-}
-
-static const char *skip(const char *c) {
-  while (blank(*c)) c++;
-  return c;
-}
-
-static const char *field_end(const char *c) {
-  while (*c != '\0' && !blank(*c)) c++;
-  return c;
-}
-
-/* The next field into text, cut to fit; past it. */
-static const char *take_word(const char *c, char *text, size_t size) {
-  c = skip(c);
-  const char *end = field_end(c);
-  size_t length = (size_t)(end - c) < size - 1 ? (size_t)(end - c) : size - 1;
-  memcpy(text, c, length);
-  text[length] = '\0';
-  abbe_encoding_trim(text);
-  return end;
-}
-
-/* Length of 1,5168 where that is all between two blanks; 0 where a comma parts two numbers. */
-static size_t decimal_comma(const char *c) {
-  static const char digits[] = "0123456789";
-  size_t sign = *c == '-' || *c == '+', whole = strspn(c + sign, digits);
-  const char *comma = c + sign + whole;
-  size_t part = *comma == ',' ? strspn(comma + 1, digits) : 0;
-  if (whole == 0 || part == 0) return 0;
-  const char *end = comma + 1 + part;
-  if (*end == 'e' || *end == 'E') {
-    end += 1 + (end[1] == '-' || end[1] == '+');
-    end += strspn(end, digits);
-  }
-  return *end == '\0' || *end == ' ' || *end == '\t' ? (size_t)(end - c) : 0;
-}
-
-static void take_numbers(const char *c, list *to) {
-  const char *end = c;
-  for (c = skip(c); *c != '\0' && to->count < MAX_FIELDS; c = skip(end)) {
-    double value = NAN;
-    char text[64];
-    bool parted = memchr(end, ',', (size_t)(c - end)) != NULL;
-    size_t length = parted ? 0 : decimal_comma(c);
-    const char *field = c, *past = c;
-    end = length > 0 ? c + length : field_end(c);
-    if (length > 0 && length < sizeof text) {
-      snprintf(text, sizeof text, "%.*s", (int)length, c);
-      *strchr(text, ',') = '.';
-      field = past = text;
-      to->commas = true;
-    }
-    bool unknown = (c[0] == '-' || c[0] == '?') && (c[1] == '\0' || blank(c[1]));
-    bool good = abbe_number_read(field, &past, &value) && (*past == '\0' || blank(*past)) &&
-                isfinite(value);
-    to->bad = to->bad || (!good && !unknown);
-    to->value[to->count++] = good ? value : NAN;
-  }
-}
-
-static double at(const list *l, size_t i, double otherwise) {
-  return i < l->count && isfinite(l->value[i]) ? l->value[i] : otherwise;
-}
-
 static abbe_result keep_text(reader *r, const char *text, char **out) {
-  text = skip(text);
+  text = abbe_agf_skip(text);
   size_t length = strlen(text);
-  while (length > 0 && blank(text[length - 1])) length--;
+  while (length > 0 && abbe_agf_is_blank(text[length - 1])) length--;
   if (length == 0 || *out != NULL) return ABBE_OK;
   if (length > MAX_TEXT) length = MAX_TEXT;
   while (length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80) length--; /* a whole letter */
@@ -143,7 +68,7 @@ static void title_of(const char *remark, char title[MAX_TITLE + 8]) {
   size_t length = strlen(remark);
   snprintf(title, MAX_TITLE + 8, "; %.*s", MAX_TITLE, remark);
   if (length <= MAX_TITLE) return;
-  abbe_encoding_trim(title);
+  abbe_utf8_trim(title);
   char *blank_at = strrchr(title + 2, ' ');
   if (blank_at != NULL) *blank_at = '\0';
   strcat(title, "…");
@@ -159,7 +84,7 @@ static abbe_result read_source(reader *r, abbe_material *m) {
   char text[MAX_TEXT], title[MAX_TITLE + 8] = "";
   if (r->remark != NULL) title_of(r->remark, title);
   snprintf(text, sizeof text, "Zemax catalogue %.200s, %s%s", r->file, g->name, title);
-  abbe_encoding_trim(text);
+  abbe_utf8_trim(text);
   return keep_text(r, text, &m->source);
 }
 
@@ -189,25 +114,26 @@ static abbe_result read_catalogue(reader *r, abbe_material *m) {
   static const char *const statuses[] = {"standard", "preferred", "obsolete", "special", "melt"};
   const glass *g = &r->glass;
   abbe_material_catalogue *c = &m->catalogue;
-  double n_d = at(&g->nm, 0, 0), v_d = at(&g->nm, 1, 0), status = at(&g->nm, 3, -1);
+  double n_d = abbe_agf_number(&g->nm, 0, 0), v_d = abbe_agf_number(&g->nm, 1, 0),
+         status = abbe_agf_number(&g->nm, 3, -1);
   /* placeholders: 1 for n_d, 0 for V_d */
   m->published_n_d = n_d > 1 && n_d < 1000 ? n_d : 0;
   m->published_v_d = fabs(v_d) < 1e6 ? v_d : 0;
-  c->melt_frequency = fmax(at(&g->nm, 4, 0), 0);
+  c->melt_frequency = fmax(abbe_agf_number(&g->nm, 4, 0), 0);
   for (int i = 0; i < 2; i++)
-    c->expansion_per_k[i] = abbe_number_tidy(at(&g->ed, (size_t)i, 0) * 1e-6);
-  c->density_g_cm3 = fmax(at(&g->ed, 2, 0), 0);
-  c->dpgf = at(&g->ed, 3, 0);
-  for (size_t i = 0; i < 6; i++) c->thermal[i] = at(&g->td, i, 0);
+    c->expansion_per_k[i] = abbe_number_tidy(abbe_agf_number(&g->ed, (size_t)i, 0) * 1e-6);
+  c->density_g_cm3 = fmax(abbe_agf_number(&g->ed, 2, 0), 0);
+  c->dpgf = abbe_agf_number(&g->ed, 3, 0);
+  for (size_t i = 0; i < 6; i++) c->thermal[i] = abbe_agf_number(&g->td, i, 0);
   for (size_t i = 0; i < 6; i++) {
-    c->ratings[i] = at(&g->od, i, -1);
+    c->ratings[i] = abbe_agf_number(&g->od, i, -1);
     if (c->ratings[i] >= 0) c->rating_count = 6;
   }
   size_t beyond = abbe_material_catalogue_bound(c);
   if (beyond > 0)
     abbe_report_add(r->report, ABBE_NOTE_LOST, g->line, g->name,
                     "%zu of its numbers besides the index are too large to be true", beyond);
-  double temperature = at(&g->td, 6, NAN);
+  double temperature = abbe_agf_number(&g->td, 6, NAN);
   m->temperature_c = temperature >= -273.15 && temperature <= 1e4 ? temperature : NAN;
   if (status >= 0 && status < 5) return keep_text(r, statuses[(int)status], &c->status);
   return ABBE_OK;
@@ -215,8 +141,8 @@ static abbe_result read_catalogue(reader *r, abbe_material *m) {
 
 static void read_range(reader *r, abbe_material *m) {
   const glass *g = &r->glass;
-  double low = abbe_number_tidy(at(&g->ld, 0, 0) * 1000);
-  double high = abbe_number_tidy(at(&g->ld, 1, 0) * 1000);
+  double low = abbe_number_tidy(abbe_agf_number(&g->ld, 0, 0) * 1000);
+  double high = abbe_number_tidy(abbe_agf_number(&g->ld, 1, 0) * 1000);
   if (low > high && high > 0) {
     double swap = low;
     low = high;
@@ -231,8 +157,8 @@ static void read_range(reader *r, abbe_material *m) {
     abbe_report_add(r->report, ABBE_NOTE_ASSUMED, g->line, g->name,
                     "it has no LD line with a range; %g to %g nm are taken", low, high);
   }
-  m->min_nm = fmax(low, ABBE_MATERIAL_LOW_NM);
-  m->max_nm = fmin(high, ABBE_MATERIAL_HIGH_NM);
+  m->min_nm = fmax(low, ABBE_SPECTRUM_LOW_NM);
+  m->max_nm = fmin(high, ABBE_SPECTRUM_HIGH_NM);
   if (m->min_nm != low || m->max_nm != high)
     abbe_report_add(r->report, ABBE_NOTE_LOST, g->line, g->name,
                     "its range of %g to %g nm is cut to %g to %g nm", low, high, m->min_nm,
@@ -284,7 +210,7 @@ static bool read_dispersion(reader *r, abbe_material *m, abbe_error *why) {
                                     : "its CD line holds something that is no number");
     return false;
   }
-  for (size_t i = 0; i < ABBE_AGF_COEFFICIENTS; i++) formula.c[i] = at(&g->cd, i, 0);
+  for (size_t i = 0; i < ABBE_AGF_COEFFICIENTS; i++) formula.c[i] = abbe_agf_number(&g->cd, i, 0);
   return abbe_agf_formula_read(&formula, &m->dispersion, why) == ABBE_OK;
 }
 
@@ -312,7 +238,7 @@ static abbe_result take_glass(reader *r, abbe_material *m) {
   if (g->nm.commas || g->cd.commas || g->ld.commas)
     abbe_report_add(r->report, ABBE_NOTE_CHANGED, g->line, g->name,
                     "its decimal commas are read as points");
-  if (at(&g->nm, 2, 0) != 0 || at(&g->ed, 4, 0) != 0)
+  if (abbe_agf_number(&g->nm, 2, 0) != 0 || abbe_agf_number(&g->ed, 4, 0) != 0)
     abbe_report_add(r->report, ABBE_NOTE_LOST, g->line, g->name,
                     "its flags to exclude it from substitution or to ignore expansion are Zemax's "
                     "alone");
@@ -348,15 +274,15 @@ static abbe_result close_glass(reader *r) {
 /* A name such as OCTANE-1,6 ends at a blank, where a formula follows; else commas part the fields.
  */
 static const char *take_name(const char *c, glass *g) {
-  c = skip(c);
+  c = abbe_agf_skip(c);
   size_t length = strcspn(c, " \t"), kept = length;
   while (kept > 0 && c[kept - 1] == ',') kept--;
-  const char *past = take_word(c + length, g->formula, sizeof g->formula);
+  const char *past = abbe_agf_word(c + length, g->formula, sizeof g->formula);
   bool whole = kept > 0 && kept < sizeof g->name && formula_number(g->formula) > 0;
   if (whole) memcpy(g->name, c, kept); /* it is zeroed behind */
   if (whole) return past;
-  c = take_word(c, g->name, sizeof g->name);
-  return take_word(c, g->formula, sizeof g->formula);
+  c = abbe_agf_word(c, g->name, sizeof g->name);
+  return abbe_agf_word(c, g->formula, sizeof g->formula);
 }
 
 static void open_glass(reader *r, const char *c) {
@@ -364,17 +290,18 @@ static void open_glass(reader *r, const char *c) {
   g->open = true;
   g->line = r->line;
   c = take_name(c, g);
-  c = take_word(c, g->code, sizeof g->code);
-  take_numbers(c, &g->nm);
+  c = abbe_agf_word(c, g->code, sizeof g->code);
+  abbe_agf_numbers_read(c, &g->nm);
 }
 
 static abbe_result take_transmittance(reader *r, const char *c) {
   glass *g = &r->glass;
-  list l = {0};
-  take_numbers(c, &l);
-  double lambda_nm = abbe_number_tidy(at(&l, 0, 0) * 1000), share = at(&l, 1, -1);
-  double thickness_m = at(&l, 2, 0) / 1000;
-  bool usable = lambda_nm >= ABBE_MATERIAL_LOW_NM && lambda_nm <= ABBE_MATERIAL_HIGH_NM &&
+  abbe_agf_numbers l = {0};
+  abbe_agf_numbers_read(c, &l);
+  double lambda_nm = abbe_number_tidy(abbe_agf_number(&l, 0, 0) * 1000),
+         share = abbe_agf_number(&l, 1, -1);
+  double thickness_m = abbe_agf_number(&l, 2, 0) / 1000;
+  bool usable = lambda_nm >= ABBE_SPECTRUM_LOW_NM && lambda_nm <= ABBE_SPECTRUM_HIGH_NM &&
                 share >= 0 && share <= 1.02 && thickness_m > 1e-9 && thickness_m < 1e9;
   if (!usable || g->transmittance.count == ABBE_SPECTRUM_MAX_COUNT) {
     g->odd++;
@@ -389,12 +316,13 @@ static abbe_result take_transmittance(reader *r, const char *c) {
 
 /* A code is two letters and a blank or the line's end. */
 static bool is_code(const char *line, const char *code) {
-  return line[0] == code[0] && line[1] == code[1] && (line[2] == '\0' || blank(line[2]));
+  return line[0] == code[0] && line[1] == code[1] &&
+         (line[2] == '\0' || abbe_agf_is_blank(line[2]));
 }
 
 static abbe_result take_line(reader *r, const char *line) {
   glass *g = &r->glass;
-  line = skip(line);
+  line = abbe_agf_skip(line);
   if (*line == '\0') return ABBE_OK;
   if (is_code(line, "NM")) {
     abbe_result result = close_glass(r);
@@ -407,7 +335,7 @@ static abbe_result take_line(reader *r, const char *line) {
   }
   if (!g->open) return ABBE_OK; /* free text before the first glass */
   if (strchr("0123456789+-.", *line) != NULL) {
-    if (r->open != NULL) take_numbers(line, r->open);
+    if (r->open != NULL) abbe_agf_numbers_read(line, r->open);
     return ABBE_OK;
   }
   r->open = NULL;
@@ -415,13 +343,13 @@ static abbe_result take_line(reader *r, const char *line) {
   if (is_code(line, "IT")) return take_transmittance(r, line + 2);
   const struct {
     const char *code;
-    list *to;
+    abbe_agf_numbers *to;
   } lists[] = {{"ED", &g->ed}, {"CD", &g->cd}, {"TD", &g->td}, {"OD", &g->od}, {"LD", &g->ld}};
   for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
     if (is_code(line, lists[i].code)) {
       r->open = lists[i].to;
-      *r->open = (list){0};
-      take_numbers(line + 2, r->open);
+      *r->open = (abbe_agf_numbers){0};
+      abbe_agf_numbers_read(line + 2, r->open);
     }
   return ABBE_OK;
 }

@@ -1,6 +1,7 @@
 #include "spectral/formats/agf_formula.h"
 
 #include "base/number.h"
+#include "spectral/dispersion/fit.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -256,8 +257,7 @@ abbe_result abbe_agf_formula_write(const abbe_dispersion *dispersion, double min
   }
   *fidelity = ABBE_AGF_FITTED;
   abbe_dispersion fit;
-  abbe_result result =
-      abbe_dispersion_fit_cauchy(dispersion, 4, min_nm, max_nm, &fit, max_error, error);
+  abbe_result result = abbe_fit_dispersion(dispersion, 4, min_nm, max_nm, &fit, max_error, error);
   if (result == ABBE_OK) write_cauchy(&fit, out);
   return result;
 }

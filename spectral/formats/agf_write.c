@@ -1,7 +1,7 @@
 #include "spectral/formats/agf_write.h"
 
 #include "base/number.h"
-#include "base/tally.h"
+#include "base/summary.h"
 #include "spectral/formats/agf_formula.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"
@@ -26,7 +26,7 @@ typedef enum loss {
   LOSSES
 } loss;
 
-static const abbe_tally_row losses[LOSSES] = {
+static const abbe_summary_row losses[LOSSES] = {
     [DESCRIPTION] = {ABBE_NOTE_LOST, "AGF has no place for a description"},
     [WARNING] = {ABBE_NOTE_LOST, "AGF has no place for a warning"},
     [FITS] = {ABBE_NOTE_LOST, "AGF has no place for recorded fits"},
@@ -48,14 +48,14 @@ static void put_line(FILE *to, const char *text) {
   for (; *text != '\0'; text++) fputc((unsigned char)*text < 0x20 ? ' ' : *text, to);
 }
 
-static void write_name(const abbe_material *m, abbe_tally *t, FILE *to) {
+static void write_name(const abbe_material *m, abbe_summary *t, FILE *to) {
   bool changed = false;
   for (const char *c = m->name; *c != '\0'; c++) {
     bool parts = *c == ' ' || *c == '\t' || (*c == ',' && c[1] == '\0');
     changed = changed || parts;
     fputc(parts ? '_' : *c, to);
   }
-  if (changed) abbe_tally_add(t, NAME, m->name);
+  if (changed) abbe_summary_add(t, NAME, m->name);
 }
 
 static int status_number(const char *status) {
@@ -65,7 +65,7 @@ static int status_number(const char *status) {
   return -1;
 }
 
-static void write_nm(const abbe_material *m, int formula, abbe_tally *t, FILE *to) {
+static void write_nm(const abbe_material *m, int formula, abbe_summary *t, FILE *to) {
   const abbe_material_catalogue *c = &m->catalogue;
   abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
   abbe_material_published printed; /* also where only the words of the source say it */
@@ -76,7 +76,7 @@ static void write_nm(const abbe_material *m, int formula, abbe_tally *t, FILE *t
   if (n_d == 0 && v_d == 0 && inside && isfinite(d.n_d) && fabs(d.v_d) < 1000) {
     n_d = round(d.n_d * 1e6) / 1e6;
     v_d = round(d.v_d * 1e6) / 1e6;
-    abbe_tally_add(t, COMPUTED, m->name);
+    abbe_summary_add(t, COMPUTED, m->name);
   }
   fputs("NM ", to);
   write_name(m, t, to);
@@ -225,10 +225,10 @@ static void put_share(double attenuation, double usual_mm, FILE *to) {
   put(to, abbe_number_tidy(thickness_mm));
 }
 
-static void write_it(const abbe_material *m, abbe_tally *t, FILE *to) {
+static void write_it(const abbe_material *m, abbe_summary *t, FILE *to) {
   if (m->attenuation == NULL) return;
   if (abbe_spectrum_interpolation(m->attenuation) != ABBE_INTERPOLATION_LINEAR)
-    abbe_tally_add(t, INTERPOLATION, m->name);
+    abbe_summary_add(t, INTERPOLATION, m->name);
   const double *lambda_nm = abbe_spectrum_lambda_nm(m->attenuation);
   const double *a = abbe_spectrum_value(m->attenuation);
   size_t count = abbe_spectrum_count(m->attenuation);
@@ -241,12 +241,12 @@ static void write_it(const abbe_material *m, abbe_tally *t, FILE *to) {
   }
 }
 
-static void count_losses(const abbe_material *m, abbe_tally *t) {
-  if (m->description != NULL) abbe_tally_add(t, DESCRIPTION, m->name);
-  if (m->warning != NULL) abbe_tally_add(t, WARNING, m->name);
-  if (m->fit[0].terms > 0 || m->fit[1].terms > 0) abbe_tally_add(t, FITS, m->name);
-  if (m->extrapolate) abbe_tally_add(t, EXTRAPOLATE, m->name);
-  abbe_tally_add(t, SOURCE, m->name);
+static void count_losses(const abbe_material *m, abbe_summary *t) {
+  if (m->description != NULL) abbe_summary_add(t, DESCRIPTION, m->name);
+  if (m->warning != NULL) abbe_summary_add(t, WARNING, m->name);
+  if (m->fit[0].terms > 0 || m->fit[1].terms > 0) abbe_summary_add(t, FITS, m->name);
+  if (m->extrapolate) abbe_summary_add(t, EXTRAPOLATE, m->name);
+  abbe_summary_add(t, SOURCE, m->name);
 }
 
 /* The visible part of the range is what a fit should serve; where it has none, all of it. */
@@ -258,8 +258,8 @@ static void fit_range(const abbe_material *m, double *low_nm, double *high_nm) {
   *high_nm = m->max_nm;
 }
 
-static abbe_result write_glass(const abbe_material *m, abbe_tally *t, abbe_report *report, FILE *to,
-                               abbe_error *error) {
+static abbe_result write_glass(const abbe_material *m, abbe_summary *t, abbe_report *report,
+                               FILE *to, abbe_error *error) {
   abbe_agf_formula formula;
   abbe_agf_fidelity fidelity;
   abbe_error why = {0};
@@ -274,7 +274,7 @@ static abbe_result write_glass(const abbe_material *m, abbe_tally *t, abbe_repor
                     abbe_dispersion_model_name(m->dispersion.model), why.text);
     return ABBE_OK;
   }
-  if (fidelity == ABBE_AGF_REWRITTEN) abbe_tally_add(t, REWRITTEN, m->name);
+  if (fidelity == ABBE_AGF_REWRITTEN) abbe_summary_add(t, REWRITTEN, m->name);
   if (fidelity == ABBE_AGF_FITTED)
     abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                     "no formula of a catalogue computes its %s; a polynomial fitted over %g to %g "
@@ -292,7 +292,7 @@ static abbe_result write_glass(const abbe_material *m, abbe_tally *t, abbe_repor
 abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_report *report,
                            abbe_error *error) {
   ABBE_REQUIRE(table && to, error);
-  abbe_tally t = {0};
+  abbe_summary t = {0};
   fputs("CC ", to);
   put_line(to, table->description != NULL ? table->description : "written by Abbe");
   fputc('\n', to);
@@ -304,7 +304,7 @@ abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_repo
     else
       result = write_glass(&table->material[i], &t, report, to, error);
   }
-  abbe_tally_report(&t, losses, LOSSES, report);
+  abbe_summary_report(&t, losses, LOSSES, report);
   if (result != ABBE_OK) return result;
   if (fflush(to) == 0 && !ferror(to)) return ABBE_OK;
   return abbe_error_set(error, ABBE_IO, "the catalogue could not be written");

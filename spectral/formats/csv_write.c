@@ -31,8 +31,8 @@ static abbe_result plan(const abbe_material *m, const abbe_csv_sampling *asked,
   bool visible = m->min_nm < ABBE_WAVELENGTH_MAX_NM && m->max_nm > ABBE_WAVELENGTH_MIN_NM;
   if (s->min_nm == 0) s->min_nm = visible ? fmax(m->min_nm, ABBE_WAVELENGTH_MIN_NM) : m->min_nm;
   if (s->max_nm == 0) s->max_nm = visible ? fmin(m->max_nm, ABBE_WAVELENGTH_MAX_NM) : m->max_nm;
-  bool good = s->step_nm > 0 && s->min_nm >= ABBE_MATERIAL_LOW_NM && s->min_nm < s->max_nm &&
-              s->max_nm <= ABBE_MATERIAL_HIGH_NM &&
+  bool good = s->step_nm > 0 && s->min_nm >= ABBE_SPECTRUM_LOW_NM && s->min_nm < s->max_nm &&
+              s->max_nm <= ABBE_SPECTRUM_HIGH_NM &&
               (s->max_nm - s->min_nm) / s->step_nm < ABBE_SPECTRUM_MAX_COUNT - 1;
   if (good) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,

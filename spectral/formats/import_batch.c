@@ -1,9 +1,9 @@
 #include "spectral/formats/import_batch.h"
 
-#include "base/encoding.h"
 #include "base/file.h"
+#include "base/utf8.h"
 #include "spectral/formats/import_files.h"
-#include "spectral/formats/material_store.h"
+#include "spectral/store/material_store.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -137,7 +137,7 @@ static void part_of(const row *it, int level, char out[MAX_PART]) {
   const char *dot = *end == '\0' ? strrchr(start, '.') : NULL;
   if (dot != NULL && dot > start) end = dot;
   snprintf(out, MAX_PART, "%.*s", level > 0 ? 0 : (int)(end - start), start);
-  abbe_encoding_trim(out);
+  abbe_utf8_trim(out);
 }
 
 typedef struct label {
@@ -179,7 +179,7 @@ static bool find_labels(const row *rows, size_t count, label *labels, label *par
       snprintf(joined, sizeof joined, "%s%s%s", part, *part != '\0' && *text != '\0' ? "-" : "",
                text);
       snprintf(text, MAX_PART, "%.*s", MAX_PART - 1, joined);
-      abbe_encoding_trim(text);
+      abbe_utf8_trim(text);
     }
     if (compare(labels, count, sorted) == ALL_DIFFER) return true;
   }
@@ -195,7 +195,7 @@ static abbe_result rename_row(runner *r, const row *it, const char *before, bool
   size_t taken = strlen(old) + is_label;
   size_t room = taken < ABBE_MATERIAL_MAX_NAME ? ABBE_MATERIAL_MAX_NAME - taken : 0;
   snprintf(cut, sizeof cut, "%.*s", (int)room, before);
-  abbe_encoding_trim(cut);
+  abbe_utf8_trim(cut);
   bool whole = strcmp(cut, before) == 0;
   for (char *c = cut; *c != '\0'; c++)
     if ((unsigned char)*c < 0x20 || *c == 0x7f) *c = '?';

@@ -4,9 +4,9 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "spectral/formats/agf.h"
-#include "spectral/formats/material_store.h"
 #include "spectral/formats/rii.h"
 #include "spectral/materials/absorption.h"
+#include "spectral/store/material_store.h"
 
 #include <math.h>
 #include <stdbool.h>

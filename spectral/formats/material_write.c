@@ -86,7 +86,7 @@ static void write_dispersion(const abbe_material *m, FILE *to) {
     write_list(d->c, d->count, 18, 6, to);
     fputc('\n', to);
   }
-  bool all = m->min_nm == ABBE_MATERIAL_LOW_NM && m->max_nm == ABBE_MATERIAL_HIGH_NM;
+  bool all = m->min_nm == ABBE_SPECTRUM_LOW_NM && m->max_nm == ABBE_SPECTRUM_HIGH_NM;
   if (d->model != ABBE_DISPERSION_CONSTANT || !all)
     fprintf(to, "    range_nm: [%s, %s]\n", abbe_number_text(m->min_nm, low),
             abbe_number_text(m->max_nm, high));

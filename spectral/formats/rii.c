@@ -107,8 +107,8 @@ static abbe_result read_wavelengths(reader *r, abbe_yaml_node entry) {
                           "a formula wants its 'wavelength_range', two ascending wavelengths in um "
                           "such as 0.3 2.5");
   double low = abbe_number_tidy(range[0] * 1000), high = abbe_number_tidy(range[1] * 1000);
-  r->m->min_nm = fmax(low, ABBE_MATERIAL_LOW_NM);
-  r->m->max_nm = fmin(high, ABBE_MATERIAL_HIGH_NM);
+  r->m->min_nm = fmax(low, ABBE_SPECTRUM_LOW_NM);
+  r->m->max_nm = fmin(high, ABBE_SPECTRUM_HIGH_NM);
   if (r->m->min_nm != low || r->m->max_nm != high)
     note(r, ABBE_NOTE_LOST, node, "its range is cut to 1 nm to 1 mm");
   return ABBE_OK;
@@ -143,7 +143,7 @@ typedef struct columns {
 
 static abbe_result take_row(reader *r, columns which, const double *row, size_t *odd) {
   double lambda_nm = abbe_number_tidy(row[0] * 1000), n = row[1], k = row[which.n ? 2 : 1];
-  bool inside = lambda_nm >= ABBE_MATERIAL_LOW_NM && lambda_nm <= ABBE_MATERIAL_HIGH_NM;
+  bool inside = lambda_nm >= ABBE_SPECTRUM_LOW_NM && lambda_nm <= ABBE_SPECTRUM_HIGH_NM;
   bool n_good = !which.n || (n >= 1e-3 && n <= 1e3), k_good = !which.k || (k >= 0 && k <= 1e3);
   if (!inside || !n_good || !k_good) ++*odd;
   abbe_result result = ABBE_OK;

@@ -1,6 +1,6 @@
 #include "spectral/materials/material.h"
 
-#include "base/encoding.h"
+#include "base/utf8.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -45,7 +45,7 @@ abbe_result abbe_material_check_name(const char *name, abbe_error *error) {
   bool good =
       length > 0 && length <= ABBE_MATERIAL_MAX_NAME && name[0] != ' ' && name[length - 1] != ' ';
   char shown[ABBE_MATERIAL_MAX_NAME + 1];
-  if (good) abbe_encoding_printable(name, length, false, shown, sizeof shown);
+  if (good) abbe_utf8_printable(name, length, false, shown, sizeof shown);
   good = good && strcmp(name, shown) == 0;
   if (good) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
@@ -55,7 +55,7 @@ abbe_result abbe_material_check_name(const char *name, abbe_error *error) {
 }
 
 static abbe_result check_range(const abbe_material *m, abbe_error *error) {
-  bool ascends = m->min_nm >= ABBE_MATERIAL_LOW_NM && m->max_nm <= ABBE_MATERIAL_HIGH_NM &&
+  bool ascends = m->min_nm >= ABBE_SPECTRUM_LOW_NM && m->max_nm <= ABBE_SPECTRUM_HIGH_NM &&
                  m->min_nm < m->max_nm;
   const abbe_spectrum *table = m->dispersion.table;
   if (table != NULL && abbe_spectrum_count(table) < 2)
@@ -66,7 +66,7 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
   if (!ascends)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
-                          m->min_nm, m->max_nm, ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM);
+                          m->min_nm, m->max_nm, ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM);
   if (table == NULL) return ABBE_OK;
   const double *lambda_nm = abbe_spectrum_lambda_nm(table);
   double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(table) - 1];

@@ -27,11 +27,6 @@ typedef struct abbe_material_fit {
 
 enum { ABBE_MATERIAL_MAX_NAME = 80 };
 
-/* The wavelengths, nm, that a record may speak of: wide enough for any optical data, and narrow
- * enough that no formula overflows. */
-#define ABBE_MATERIAL_LOW_NM 1.0
-#define ABBE_MATERIAL_HIGH_NM 1e6
-
 /* What a maker's catalogue says about a glass besides its index. It is carried, not used. 0 (NULL)
  * means that the catalogue is silent, as it does in the catalogues themselves. */
 typedef struct abbe_material_catalogue {
@@ -58,7 +53,7 @@ typedef struct abbe_material {
   char *source;              /* key into BIBLIOGRAPHY.md, then details */
   char *warning;             /* what a user of this row must know (thesis rows); may be NULL */
   abbe_material_fit fit[2];  /* two and three terms */
-  double published_n_d;      /* n_d and V_d as the source prints them, for the doctor; */
+  double published_n_d;      /* n_d and V_d as the source prints them, for the check; */
   double published_v_d;      /* 0 where it prints none */
   char *comment;             /* the source's own remark; may be NULL */
   abbe_material_catalogue catalogue;
@@ -80,7 +75,7 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
 
 /* Whether a table may hold the record, that is: what is written of it can be read again. The name
  * has 1 to 80 printable characters and no space at its ends, there is a source, the coefficients go
- * with the model, the range ascends inside [ABBE_MATERIAL_LOW_NM, ABBE_MATERIAL_HIGH_NM] and inside
+ * with the model, the range ascends inside [ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM] and inside
  * the points of a tabulated model, and the formula has a real index at 1001 wavelengths over it.
  * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);

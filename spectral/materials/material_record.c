@@ -43,8 +43,8 @@ static abbe_result read_pairs(reader *r, abbe_yaml_node list, const char *key, d
     if (!abbe_yaml_is_sequence(r->yaml, pair) || abbe_yaml_count(r->yaml, pair) != 2)
       return abbe_yaml_fail(r->yaml, pair, r->error, "'%s' wants pairs such as [550, 1.5]", key);
     abbe_result result =
-        abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, pair, 0), key, ABBE_MATERIAL_LOW_NM,
-                         ABBE_MATERIAL_HIGH_NM, *lambda_nm + i, r->error);
+        abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, pair, 0), key, ABBE_SPECTRUM_LOW_NM,
+                         ABBE_SPECTRUM_HIGH_NM, *lambda_nm + i, r->error);
     if (result == ABBE_OK)
       result = abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, pair, 1), key, min, max,
                                 *value + i, r->error);
@@ -79,9 +79,9 @@ static abbe_result read_points(reader *r, abbe_yaml_node list, const char *key, 
 static abbe_result read_range(reader *r, abbe_yaml_node where, const char *key, double *min_nm,
                               double *max_nm) {
   double range[2] = {*min_nm, *max_nm};
-  double low = r->lenient ? 1e-3 : ABBE_MATERIAL_LOW_NM; /* a range in um is one to find */
+  double low = r->lenient ? 1e-3 : ABBE_SPECTRUM_LOW_NM; /* a range in um is one to find */
   abbe_result result =
-      abbe_yaml_get_numbers(r->yaml, where, key, 2, low, ABBE_MATERIAL_HIGH_NM, range, r->error);
+      abbe_yaml_get_numbers(r->yaml, where, key, 2, low, ABBE_SPECTRUM_HIGH_NM, range, r->error);
   if (result != ABBE_OK) return result;
   if (range[0] >= range[1])
     return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, where, key), r->error,
@@ -161,8 +161,8 @@ static abbe_result read_formula(reader *r) {
   abbe_result result = read_coefficients(r);
   if (result != ABBE_OK) return result;
   abbe_yaml_node node = {0};
-  m->min_nm = ABBE_MATERIAL_LOW_NM;
-  m->max_nm = ABBE_MATERIAL_HIGH_NM;
+  m->min_nm = ABBE_SPECTRUM_LOW_NM;
+  m->max_nm = ABBE_SPECTRUM_HIGH_NM;
   if (m->dispersion.model != ABBE_DISPERSION_CONSTANT) result = require(r, "range_nm", &node);
   if (r->lenient && node.id == 0 && m->dispersion.model != ABBE_DISPERSION_CONSTANT) {
     m->min_nm = m->max_nm = 0;

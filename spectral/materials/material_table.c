@@ -2,8 +2,6 @@
 
 #include "base/nearest.h"
 #include "base/yaml/yaml.h"
-#include "spectral/formats/material_import.h"
-#include "spectral/formats/material_store.h"
 #include "spectral/materials/material_record.h"
 
 #include <stdbool.h>
@@ -187,44 +185,10 @@ const char *abbe_material_table_shipped(const char *path, size_t *size) {
   return (const char *)(thesis ? abbe_embedded_thesis : abbe_embedded_materials);
 }
 
-static abbe_result load(const char *path, const mode *how, abbe_material_table *out,
-                        abbe_error *error) {
-  *out = (abbe_material_table){0};
-  size_t size;
-  const char *shipped = abbe_material_table_shipped(path, &size);
-  if (shipped != NULL)
-    return parse(shipped, size, path == NULL ? "default" : path, how, out, error);
-  if (abbe_material_store_is(path))
-    return abbe_material_store_read(path, NULL, 0, how->lenient ? how->report : NULL, out, error);
-  abbe_yaml *yaml = NULL;
-  abbe_result result = abbe_yaml_load(path, &yaml, error);
-  if (result == ABBE_OK) result = read_table(yaml, path, how, out, error);
-  if (result != ABBE_OK) abbe_material_table_free(out);
-  abbe_yaml_free(yaml);
-  return abbe_import_explain(path, result, error);
-}
-
 abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,
                                       abbe_material_table *out, abbe_error *error) {
   ABBE_REQUIRE(text && name && out, error);
   return parse(text, size, name, &(mode){false, NULL}, out, error);
-}
-
-abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
-                                     abbe_error *error) {
-  ABBE_REQUIRE(out, error);
-  return load(path, &(mode){false, NULL}, out, error);
-}
-
-abbe_result abbe_material_table_load_named(const char *path, const char *const *names, size_t count,
-                                           abbe_material_table *out, abbe_error *error) {
-  ABBE_REQUIRE(names && out, error);
-  size_t size;
-  bool shipped = abbe_material_table_shipped(path, &size) != NULL;
-  if (shipped || !abbe_material_store_is(path)) return abbe_material_table_load(path, out, error);
-  abbe_result result = abbe_material_store_read(path, names, count, NULL, out, error);
-  out->part = result == ABBE_OK;
-  return result;
 }
 
 abbe_result abbe_material_table_parse_lenient(const char *text, size_t size, const char *name,
@@ -234,30 +198,19 @@ abbe_result abbe_material_table_parse_lenient(const char *text, size_t size, con
   return parse(text, size, name, &(mode){true, report}, out, error);
 }
 
-abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_table *out,
-                                             abbe_report *report, abbe_error *error) {
-  ABBE_REQUIRE(out, error);
-  return load(path, &(mode){true, report}, out, error);
-}
-
 void abbe_material_table_free(abbe_material_table *table) {
   if (table == NULL) return;
   for (size_t i = 0; i < table->count; i++) abbe_material_free(&table->material[i]);
   free(table->material);
   free(table->path);
   free(table->description);
+  abbe_material_table_free(table->all);
+  free(table->all);
   *table = (abbe_material_table){0};
 }
 
 static abbe_result not_found(const abbe_material_table *table, const char *name,
                              abbe_error *error) {
-  if (table->part) { /* what else it has is not known yet */
-    abbe_material_table all;
-    abbe_result result = abbe_material_store_read_names(table->path, &all, error);
-    if (result == ABBE_OK) result = not_found(&all, name, error);
-    abbe_material_table_free(&all);
-    return result;
-  }
   const char **names = malloc((table->count + 1) * sizeof *names);
   if (names == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
   char list[700] = "";
@@ -290,5 +243,6 @@ abbe_result abbe_material_table_find(const abbe_material_table *table, const cha
     *out = &table->material[i];
     return ABBE_OK;
   }
-  return error != NULL ? not_found(table, name, error) : ABBE_NOT_FOUND;
+  return error != NULL ? not_found(table->all != NULL ? table->all : table, name, error)
+                       : ABBE_NOT_FOUND;
 }

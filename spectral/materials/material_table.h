@@ -1,6 +1,6 @@
-/* material_table.h: a table of materials: YAML, a record a material, or a store of many.
+/* material_table.h: a table of materials, as a text of YAML has it, a record a material.
  *
- * docs/materials.md documents the formats. A store is an SQLite file (spectral/formats/material_store.h).
+ * docs/materials.md documents the format; spectral/formats/material_table_load.h reads files.
  * Errors name file, line, key and value. The shipped tables are compiled in: "default" (published
  * formulas) and "thesis" (the thesis's Table 1, verbatim, historical: its indices are high, see the
  * rows' warnings).
@@ -26,29 +26,20 @@ typedef struct abbe_material_table {
   char *description;       /* what the table is, for people; may be NULL */
   size_t count;
   abbe_material *material; /* [count], in file order */
-  bool part;               /* the rows of a store that were asked for, not all of it */
+  struct abbe_material_table
+      *all; /* of a store of which only some rows were read, one of them in
+               vain: the names of all its rows and no more; else NULL; owned */
 } abbe_material_table;
 
 /* The text of a table that is compiled in, as it is in its file: path is NULL, "default" or
  * "thesis"; NULL and 0 for any other. */
 const char *abbe_material_table_shipped(const char *path, size_t *size);
-/* Loads a table: NULL or "default", "thesis", or the path of a YAML file (at most 16 MiB) or of a
- * store. */
-abbe_result abbe_material_table_load(const char *path, abbe_material_table *out,
-                                     abbe_error *error);
-/* The same for one who will ask for these names alone: of a store no other rows are read. Names
- * that it does not have are no failure here; abbe_material_table_find says so of each. */
-abbe_result abbe_material_table_load_named(const char *path, const char *const *names, size_t count,
-                                           abbe_material_table *out, abbe_error *error);
-/* The same from text; name stands for the path in messages. */
+/* The table in a text of YAML; name stands for the path in messages. */
 abbe_result abbe_material_table_parse(const char *text, size_t size, const char *name,
                                       abbe_material_table *out, abbe_error *error);
 /* A table to be examined, not used: records are read as abbe_material_record_read_lenient has it,
  * one that cannot be read even so is noted in report with its line and left out (the table may
  * then be empty), and names may stand twice. */
-abbe_result abbe_material_table_load_lenient(const char *path, abbe_material_table *out,
-                                             abbe_report *report, abbe_error *error);
-/* The same from text. */
 abbe_result abbe_material_table_parse_lenient(const char *text, size_t size, const char *name,
                                               abbe_material_table *out, abbe_report *report,
                                               abbe_error *error);

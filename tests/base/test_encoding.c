@@ -54,96 +54,6 @@ static void what_cannot_be_decoded_is_replaced(void **state) {
   BECOMES("a\0b", "a b");
 }
 
-static void letters_are_told_and_cut_ones_trimmed(void **state) {
-  (void)state;
-  assert_int_equal(abbe_encoding_letter(""), 0);
-  assert_int_equal(abbe_encoding_letter("a"), 1);
-  assert_int_equal(abbe_encoding_letter("\xe2\x82\xac"), 3);
-  assert_int_equal(abbe_encoding_letter("\xe2\x82"), 0);
-  assert_int_equal(abbe_encoding_letter("\x80"), 0);
-  const char *const rows[][2] = {{"", ""},
-                                 {"ab", "ab"},
-                                 {"a\xe2\x82", "a"},
-                                 {"a\xe2\x82\xac", "a\xe2\x82\xac"},
-                                 {"\xf0\x9f\x92", ""},
-                                 {"a\xc3", "a"}};
-  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    char text[16];
-    strcpy(text, rows[i][0]);
-    abbe_encoding_trim(text);
-    assert_string_equal(text, rows[i][1]);
-  }
-}
-
-static void what_a_terminal_obeys_becomes_pictures(void **state) {
-  (void)state;
-  static const struct {
-    const char *text, *lines, *line;
-  } rows[] = {{"", "", ""},
-              {"plain \xe2\x82\xac \xf0\x9f\x92\x8e", "plain \xe2\x82\xac \xf0\x9f\x92\x8e",
-               "plain \xe2\x82\xac \xf0\x9f\x92\x8e"},
-              {"a\nb\tc\r\nd\re",
-               "a\nb\tc\r\nd\xe2\x90\x8d"
-               "e",
-               "a b c  d\xe2\x90\x8d"
-               "e"},
-              {"\x1b[2J\x7f\x01", "\xe2\x90\x9b[2J\xe2\x90\xa1\xe2\x90\x81",
-               "\xe2\x90\x9b[2J\xe2\x90\xa1\xe2\x90\x81"},
-              {"\xc2\x9b"
-               "1m\xc2\xa0",
-               "\xef\xbf\xbd"
-               "1m\xc2\xa0",
-               "\xef\xbf\xbd"
-               "1m\xc2\xa0"},
-              {"\x9b\xc0\x80\xed\xa0\x80\xe2\x82", NULL, NULL}}; /* eight bytes that are no UTF-8 */
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    char out[64], eight[25] = "";
-    for (int k = 0; k < 8; k++) strcat(eight, "\xef\xbf\xbd");
-    for (int lines = 0; lines < 2; lines++) {
-      const char *right = rows[i].lines == NULL ? eight : lines ? rows[i].lines : rows[i].line;
-      const size_t n =
-          abbe_encoding_printable(rows[i].text, strlen(rows[i].text), lines != 0, out, sizeof out);
-      assert_string_equal(out, right);
-      assert_int_equal(n, strlen(right));
-    }
-  }
-  char zero[16], small[4] = "xyz";
-  assert_int_equal(abbe_encoding_printable("a\0b", 3, false, zero, sizeof zero), 5);
-  assert_string_equal(zero, "a\xe2\x90\x80"
-                            "b");
-  assert_int_equal(abbe_encoding_printable("a\x1b"
-                                           "b",
-                                           3, false, small, 4),
-                   1); /* a letter is whole */
-  assert_string_equal(small, "a");
-  assert_int_equal(abbe_encoding_printable("ab", 2, false, small, 1), 0);
-  assert_string_equal(small, "");
-}
-
-static void what_misleads_the_eye_is_shown(void **state) {
-  (void)state;
-  /* of each range its ends, and the letters beside them, which stay */
-  static const struct {
-    const char *first, *last, *before, *after;
-  } rows[] = {{"\u061c", "\u061c", "\u061b", "\u061d"},
-              {"\u200b", "\u200f", "\u200a", "\u2010"},
-              {"\u2028", "\u202e", "\u2027", "\u202f"},
-              {"\u2060", "\u206f", "\u205f", "\u2070"},
-              {"\ufeff", "\ufeff", "\ufefc", "\uff01"},
-              {"\ufff9", "\ufffb", "\uffee", "\ufffc"},
-              {"\U000e0001", "\U000e007f", "\u6c34", "\U000e0100"}};
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    for (int lines = 0; lines < 2; lines++) {
-      char text[64], right[64], out[64];
-      snprintf(text, sizeof text, "%s a%sb%sc %s", rows[i].before, rows[i].first, rows[i].last,
-               rows[i].after);
-      snprintf(right, sizeof right, "%s a\ufffdb\ufffdc %s", rows[i].before, rows[i].after);
-      const size_t n = abbe_encoding_printable(text, strlen(text), lines != 0, out, sizeof out);
-      assert_string_equal(out, right);
-      assert_int_equal(n, strlen(right));
-    }
-}
-
 static void texts_are_told_from_other_files(void **state) {
   (void)state;
   static const char latin[] = "NM F2 25\xb0\x43\r\n\x1a", marked[] = "\xff\xfeN\0M\0",
@@ -164,10 +74,7 @@ static void texts_are_told_from_other_files(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_encoding_becomes_utf8),
-      cmocka_unit_test(letters_are_told_and_cut_ones_trimmed),
       cmocka_unit_test(texts_are_told_from_other_files),
-      cmocka_unit_test(what_a_terminal_obeys_becomes_pictures),
-      cmocka_unit_test(what_misleads_the_eye_is_shown),
       cmocka_unit_test(lines_end_in_one_way),
       cmocka_unit_test(what_cannot_be_decoded_is_replaced),
   };

@@ -13,10 +13,11 @@
 #include "gl/plan/plan.h"
 #include "scenes/export/pov_file.h"
 #include "scenes/view/map_layout.h"
-#include "spectral/editing/doctor.h"
+#include "spectral/editing/check.h"
 #include "spectral/formats/agf_write.h"
 #include "spectral/formats/csv_write.h"
 #include "spectral/formats/material_import.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/formats/rii_write.h"
 #include "spectral/formats/shader_export.h"
@@ -93,10 +94,10 @@ static void with_materials(FILE *to) {
     ok(abbe_csv_write(&table.material[1], &sampling, to, &report, &error));
     ok(abbe_rii_write(&table.material[1], to, &report, &error));
     for (size_t i = 0; i < report.count; i++) fprintf(to, "%s\n", report.note[i].text);
-    ok(abbe_doctor_check_table(&table, &known, &findings, &error));
+    ok(abbe_check_table(&table, &known, &findings, &error));
     for (size_t i = 0; i < findings.count; i++)
       fprintf(to, "%s %s %s\n", findings.finding[i].evidence,
-              findings.finding[i].mend ? findings.finding[i].mend : "",
+              findings.finding[i].fix ? findings.finding[i].fix : "",
               findings.finding[i].value ? findings.finding[i].value : "");
     abbe_findings_free(&findings);
     abbe_report_free(&report);

@@ -1,7 +1,7 @@
 #include "tests/check.h"
 
-#include "base/encoding.h"
 #include "base/report.h"
+#include "base/utf8.h"
 
 static void notes_are_kept_in_order(void **state) {
   (void)state;
@@ -39,8 +39,8 @@ static void texts_are_cut_between_letters(void **state) {
   assert_int_equal(strlen(n->file), 126);
   const char *const cut[] = {n->text, n->name, n->file};
   for (int i = 0; i < 3; i++)
-    for (const char *c = cut[i]; *c != '\0'; c += abbe_encoding_letter(c))
-      assert_true(abbe_encoding_letter(c) > 0);
+    for (const char *c = cut[i]; *c != '\0'; c += abbe_utf8_letter(c))
+      assert_true(abbe_utf8_letter(c) > 0);
   assert_string_equal(n->file + 124, "/z");
   abbe_report_free(&report);
 }

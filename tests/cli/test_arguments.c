@@ -2,7 +2,7 @@
  * or another output, of every verb. */
 #include "tests/cli/run_program.h"
 
-#include "cli/command.h"
+#include "cli/base/command.h"
 #include "cli/materials/materials.h"
 
 #include <fcntl.h>

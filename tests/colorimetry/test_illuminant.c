@@ -1,15 +1,9 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
+#include "tests/colorimetry/colord.h"
 
 #include "base/file.h"
 #include "colorimetry/illuminant.h"
-#include "tests/cli/colord.h"
 
-#include <math.h>
 #include <unistd.h>
 
 static abbe_illuminant make(const char *name) {
@@ -24,7 +18,6 @@ static void compare(const char *name, const char *file, double tolerance) {
   static double cie[600];
   double start = 0, end = 0;
   size_t count = colord_read(file, cie, 600, &start, &end);
-  if (count == 0) skip();
   abbe_illuminant light = make(name);
   for (size_t i = 0; i < count; i++) {
     double nm = start + (end - start) * (double)i / (double)(count - 1);

@@ -1,4 +1,4 @@
-/* Any triangles at all through the mesh's checks, mending, subdivision, planes and topology.
+/* Any triangles at all through the mesh's checks, fixing, subdivision, planes and topology.
  *
  * Input: a byte of choices, a byte each for the numbers of vertices and faces, a byte that scales,
  * then positions and faces. Choices: 1 smooth, 2 positions as eight raw bytes a coordinate (else
@@ -112,14 +112,14 @@ static void split(const abbe_mesh *mesh, size_t solids) {
   free(part);
 }
 
-static void mend(abbe_mesh *mesh, int smooth, bool repair, size_t levels) {
+static void fix(abbe_mesh *mesh, int smooth, bool repair, size_t levels) {
   abbe_mesh before;
   abbe_error error = {0};
   char *what = NULL;
   copy_mesh(mesh, &before);
   size_t solids = 0;
-  if (abbe_mesh_mend(mesh, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, repair, &solids, &what,
-                     &error) != ABBE_OK) {
+  if (abbe_mesh_fix(mesh, smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_AUTO, repair, &solids, &what,
+                    &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0' && what == NULL && same_mesh(mesh, &before));
     abbe_mesh_free(&before);
     return;
@@ -159,7 +159,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   abbe_error error = {0};
   if (abbe_mesh_check(&mesh, &report, &error) != ABBE_OK) {
     FUZZ_PROMISE(error.text[0] != '\0');
-    FUZZ_PROMISE(abbe_mesh_mend(&mesh, ABBE_NORMALS_AUTO, false, NULL, NULL, &error) != ABBE_OK);
+    FUZZ_PROMISE(abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, false, NULL, NULL, &error) != ABBE_OK);
   } else {
     topology_holds(&mesh);
     double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -168,7 +168,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                  ABBE_OK);
     usable(&mesh);
     FUZZ_PROMISE((abbe_mesh_transform(&mesh, matrix, &error) == ABBE_OK) == (matrix[0] != 0));
-    mend(&mesh, choices & 1, (choices & 8) != 0, (choices & 4) != 0);
+    fix(&mesh, choices & 1, (choices & 8) != 0, (choices & 4) != 0);
   }
   abbe_mesh_free(&mesh);
   return 0;

@@ -3,7 +3,7 @@
 #include "tests/fuzz/memory_file.h"
 
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/rgb_encoding.h"
+#include "colorimetry/image/rgb_encoding.h"
 
 #include <string.h>
 #include <zlib.h>

@@ -10,7 +10,7 @@
 
 #include "gl/device/bindings.h"
 #include "gl/device/program.h"
-#include "gl/scene/hierarchy_nodes.h"
+#include "gl/scene/bvh_nodes.h"
 
 #include <stdlib.h>
 
@@ -47,11 +47,11 @@ static inline void glsl_texels(const abbe_gl *gl, GLenum unit, GLenum format, si
 }
 
 /* A tree's nodes where the shaders read them. */
-static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_hierarchy *h,
+static inline void glsl_hierarchy(const abbe_gl *gl, const abbe_bvh *h,
                                   const double (*triangle)[9]) {
-  const size_t count = abbe_hierarchy_nodes_count(h);
+  const size_t count = abbe_bvh_nodes_count(h);
   uint32_t(*texel)[4] = calloc(count, sizeof *texel);
-  abbe_hierarchy_nodes_pack(h, triangle, 0, 0, texel);
+  abbe_bvh_nodes_pack(h, triangle, 0, 0, texel);
   glsl_texels(gl, 7, GL_RGBA32UI, count * sizeof *texel, texel);
   free(texel);
 }

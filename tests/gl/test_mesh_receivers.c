@@ -5,7 +5,7 @@
 #include "tests/random.h"
 
 #include "scenes/geometry/vector.h"
-#include "scenes/mesh/hierarchy.h"
+#include "scenes/mesh/bvh.h"
 #include "scenes/shapes/shape.h"
 #include "scenes/view/view.h"
 
@@ -17,7 +17,7 @@ typedef struct receivers {
   float flat[FLATS][6][4]; /* as common.glsl has a parallelogram */
   abbe_mesh mesh;
   double (*triangle)[9];
-  abbe_hierarchy h;
+  abbe_bvh h;
   double (*tiles)[9]; /* two triangles a parallelogram */
 } receivers;
 
@@ -75,16 +75,15 @@ static void make_receivers(receivers *r) {
   r->tiles = calloc(2 * FLATS, sizeof *r->tiles);
   for (int k = 0; k < FLATS; k++) make_flat(k, r);
   assert_int_equal(abbe_shape_ring(0.2, 0.06, 48, 24, &r->mesh, NULL), ABBE_OK);
-  r->triangle = abbe_hierarchy_triangles(&r->mesh);
-  assert_int_equal(
-      abbe_hierarchy_make((const double(*)[9])r->triangle, r->mesh.face_count, &r->h, NULL),
-      ABBE_OK);
+  r->triangle = abbe_bvh_triangles(&r->mesh);
+  assert_int_equal(abbe_bvh_make((const double(*)[9])r->triangle, r->mesh.face_count, &r->h, NULL),
+                   ABBE_OK);
   upload_receivers(r);
 }
 
 static void free_receivers(receivers *r) {
   abbe_mesh_free(&r->mesh);
-  abbe_hierarchy_free(&r->h);
+  abbe_bvh_free(&r->h);
   free(r->triangle);
   free(r->tiles);
 }
@@ -92,16 +91,16 @@ static void free_receivers(receivers *r) {
 /* Parallelogram, FLATS for the mesh, -1 for none; the interpolated normal of a mesh. */
 static int nearest(const receivers *r, const double o[3], const double d[3], double t_max,
                    double *t, double n[3]) {
-  abbe_hierarchy_hit hit;
+  abbe_bvh_hit hit;
   int found = -1;
   *t = t_max;
   for (int i = 0; i < 2 * FLATS; i++)
-    if (abbe_hierarchy_meet(r->tiles[i], o, d, 0, 0, *t, &hit)) {
+    if (abbe_bvh_meet(r->tiles[i], o, d, 0, 0, *t, &hit)) {
       *t = hit.t;
       found = i / 2;
     }
   for (size_t i = 0; i < r->mesh.face_count; i++) {
-    if (!abbe_hierarchy_meet(r->triangle[i], o, d, 0, 0, *t, &hit)) continue;
+    if (!abbe_bvh_meet(r->triangle[i], o, d, 0, 0, *t, &hit)) continue;
     const uint32_t *f = r->mesh.face[i];
     *t = hit.t;
     found = FLATS;

@@ -1,8 +1,9 @@
-/* The rooms include only what they may: the directions of CONVENTIONS.md, read from the sources. */
+/* Rooms use only what lies below them: the directions of CONVENTIONS.md, read from the includes of
+ * the sources and from the symbols that the build's objects define and want. */
 #include "tests/check.h"
+#include "tests/house/sources.h"
+#include "tests/house/symbols.h"
 
-#include <dirent.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
@@ -19,53 +20,29 @@ static const struct {
     {"cli", ALL},
     {"tests", ALL},
 };
-enum { ROOMS = sizeof directions / sizeof *directions, MAX_PATH = 1024 };
 
 /* The exceptions: the sweep compares both pictures; C++ stays in the bridges. */
-static const char *const exception_files = "validation/sweep/sweep.", *const exception_room = "gl";
-static const char *const bridges[] = {"colorimetry/image/display_ocio.cpp", "scenes/geometry/transform.cpp",
-                                      "scenes/mesh/edge_collapse.cpp", "tests/colorimetry/image/exr_library.cpp"};
+static const char *const exception_files = "validation/sweep/sweep", *const exception_room = "gl";
+static const char *const bridges[] = {
+    "colorimetry/image/display_ocio.cpp", "scenes/geometry/transform.cpp",
+    "scenes/mesh/edge_collapse.cpp", "tests/colorimetry/image/exr_library.cpp"};
 
-static size_t folder_length(const char *path) {
-  const char *slash = strchr(path, '/');
-  return slash != NULL ? (size_t)(slash - path) : 0;
-}
-
-static int room_of(const char *path) {
-  for (int i = 0; i < ROOMS; i++)
-    if (strlen(directions[i].room) == folder_length(path) &&
-        strncmp(path, directions[i].room, folder_length(path)) == 0)
-      return i;
-  return -1;
-}
-
-static bool has_word(const char *words, const char *word) {
-  size_t length = strlen(word);
-  if (length == 0) return false;
-  for (const char *at = words; (at = strstr(at, word)) != NULL; at += length)
-    if ((at == words || at[-1] == ' ') && (at[length] == ' ' || at[length] == '\0')) return true;
-  return false;
-}
-
-static bool may_include(const char *file, const char *included) {
-  int from = room_of(file), to = room_of(included);
-  if (from < 0 || to < 0) return false;
-  if (has_word(directions[from].may, directions[to].room)) return true;
-  return strncmp(file, exception_files, strlen(exception_files)) == 0 &&
-         strcmp(directions[to].room, exception_room) == 0;
-}
-
-static const char *ending(const char *path) {
-  const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
-  return dot != NULL && (slash == NULL || dot > slash) ? dot + 1 : "";
-}
-
-static bool is_c(const char *path) {
-  return has_word("c h", ending(path));
+static bool may_use(const char *file, const char *used) {
+  const char *from = sources_room(file), *to = sources_room(used);
+  bool allowed = strncmp(file, exception_files, strlen(exception_files)) == 0 &&
+                 strcmp(to, exception_room) == 0;
+  for (size_t i = 0; i < sizeof directions / sizeof *directions; i++)
+    if (strcmp(directions[i].room, from) == 0)
+      allowed = allowed || sources_has_word(directions[i].may, to);
+  return allowed;
 }
 
 static bool is_cpp(const char *path) {
-  return has_word("cpp cc cxx hpp hh C", ending(path));
+  return sources_has_word("cpp cc cxx hpp hh C", sources_ending(path));
+}
+
+static bool is_c(const char *path) {
+  return sources_has_word("c h", sources_ending(path)) || is_cpp(path);
 }
 
 static bool is_bridge(const char *path) {
@@ -74,119 +51,152 @@ static bool is_bridge(const char *path) {
   return false;
 }
 
-/* The name between the quotes of an include line. <…> counts where it starts with a room. */
-static bool included_name(const char *line, char *out, size_t size) {
-  char mark, name[MAX_PATH];
-  if (sscanf(line, " # include %c%1023[^\">]", &mark, name) != 2) return false;
-  if (mark != '"' && !(mark == '<' && room_of(name) >= 0)) return false;
-  snprintf(out, size, "%s", name);
-  return true;
-}
+/* ---- includes ---- */
 
-typedef struct survey {
-  size_t files, includes, wrong;
-} survey;
-
-static void complain(survey *s, const char *file, int line, const char *what) {
-  print_error("%s:%d: %s\n", file, line, what);
-  s->wrong++;
-}
-
-static void read_includes(survey *s, const char *path) {
-  char line[2048], full[2 * MAX_PATH], name[MAX_PATH], what[2 * MAX_PATH];
-  struct stat status;
-  snprintf(full, sizeof full, ABBE_SOURCE_DIR "/%s", path);
-  FILE *file = fopen(full, "r");
-  assert_non_null(file);
-  for (int number = 1; fgets(line, sizeof line, file) != NULL; number++) {
-    if (!included_name(line, name, sizeof name)) continue;
-    s->includes++;
-    snprintf(full, sizeof full, ABBE_SOURCE_DIR "/%s", name);
-    snprintf(what, sizeof what, "may not include \"%s\"", name);
-    if (!may_include(path, name)) complain(s, path, number, what);
-    snprintf(what, sizeof what, "\"%s\" is not there; includes are written from the root", name);
-    if (stat(full, &status) != 0) complain(s, path, number, what);
+static size_t judge_file(const source_file *f) {
+  size_t wrong = 0;
+  if (sources_room(f->path)[0] == '\0') wrong++, print_error("%s: is in no room\n", f->path);
+  if (is_cpp(f->path) && !is_bridge(f->path))
+    wrong++, print_error("%s: is C++ and no bridge\n", f->path);
+  for (size_t i = 0; i < f->include_count; i++) {
+    const source_include *n = &f->include[i];
+    char full[2 * SOURCES_MAX_PATH];
+    struct stat status;
+    snprintf(full, sizeof full, ABBE_SOURCE_DIR "/%s", n->name);
+    if (!may_use(f->path, n->name))
+      wrong++, print_error("%s:%d: may not include \"%s\"\n", f->path, n->line, n->name);
+    if (stat(full, &status) != 0)
+      wrong++, print_error("%s:%d: \"%s\" is not there; includes are written from the root\n",
+                           f->path, n->line, n->name);
   }
-  fclose(file);
-}
-
-static void visit_file(survey *s, const char *path) {
-  if (!is_c(path) && !is_cpp(path)) return;
-  s->files++;
-  if (room_of(path) < 0) complain(s, path, 1, "is in no room");
-  if (is_cpp(path) && !is_bridge(path)) complain(s, path, 1, "is C++ and no bridge");
-  read_includes(s, path);
-}
-
-/* Hidden folders and what the build and the demo make are not sources. */
-static bool is_source_folder(const char *path) {
-  return strcmp(path, "build") != 0 && strcmp(path, "out") != 0;
-}
-
-static void visit_folder(survey *s, const char *folder) {
-  char full[2 * MAX_PATH], path[MAX_PATH];
-  struct stat status;
-  snprintf(full, sizeof full, ABBE_SOURCE_DIR "/%s", folder);
-  DIR *dir = opendir(full);
-  assert_non_null(dir);
-  for (struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-    if (entry->d_name[0] == '.') continue;
-    int n = snprintf(path, sizeof path, "%s%s%s", folder, *folder ? "/" : "", entry->d_name);
-    assert_true(n > 0 && (size_t)n < sizeof path);
-    snprintf(full, sizeof full, ABBE_SOURCE_DIR "/%s", path);
-    if (stat(full, &status) != 0) continue;
-    if (!S_ISDIR(status.st_mode))
-      visit_file(s, path);
-    else if (is_source_folder(path))
-      visit_folder(s, path);
-  }
-  closedir(dir);
+  return wrong;
 }
 
 static void test_the_sources_keep_the_directions(void **state) {
   (void)state;
-  survey s = {0};
-  visit_folder(&s, "");
-  assert_int_equal(s.wrong, 0);
-  /* The survey has read the house and not an empty folder. */
-  assert_true(s.files > 100);
-  assert_true(s.includes > 3 * s.files / 2);
+  sources all;
+  size_t wrong = 0, files = 0, includes = 0;
+  sources_read(&all);
+  for (size_t i = 0; i < all.count; i++) {
+    if (!is_c(all.file[i].path)) continue;
+    files++;
+    includes += all.file[i].include_count;
+    wrong += judge_file(&all.file[i]);
+  }
+  sources_free(&all);
+  assert_int_equal(wrong, 0);
+  /* The house was read and not an empty folder. */
+  assert_true(files > 100);
+  assert_true(includes > 3 * files / 2);
 }
 
 static void test_the_rule_refuses_wrong_directions(void **state) {
   (void)state;
-  assert_true(may_include("gl/plan/plan.c", "scenes/scene.h"));
-  assert_true(may_include("scenes/scene.c", "colorimetry/image/image.h"));
-  assert_true(may_include("cli/render/render.c", "validation/tracer/tracer.h"));
-  assert_true(may_include("validation/sweep/sweep.c", "gl/renderer.h"));
-  assert_true(may_include("validation/sweep/sweep.h", "gl/renderer.h"));
-  assert_false(may_include("validation/sweep/sweep.c", "cli/command.h"));
-  assert_false(may_include("validation/tracer/tracer.c", "gl/plan/plan.h"));
-  assert_false(may_include("gl/plan/plan.c", "validation/tracer/tracer.h"));
-  assert_false(may_include("base/file.c", "colorimetry/image/image.h"));
-  assert_false(may_include("colorimetry/image/exr.c", "scenes/scene.h"));
-  assert_false(may_include("scenes/scene.c", "gl/plan/plan.h"));
-  assert_false(may_include("gl/plan/plan.c", "cli/command.h"));
-  assert_false(may_include("gl/plan/plan.c", "plan.h"));
-  assert_false(may_include("main.c", "gl/plan/plan.h"));
+  assert_true(may_use("gl/plan/plan.c", "scenes/scene.h"));
+  assert_true(may_use("scenes/scene.c", "colorimetry/image/image.h"));
+  assert_true(may_use("cli/render/render.c", "validation/tracer/tracer.h"));
+  assert_true(may_use("validation/sweep/sweep.c", "gl/renderer.h"));
+  assert_true(may_use("validation/sweep/sweep_growth.c", "gl/renderer.h"));
+  assert_false(may_use("validation/sweep/front.c", "gl/renderer.h"));
+  assert_false(may_use("validation/sweep/sweep.c", "cli/base/command.h"));
+  assert_false(may_use("validation/tracer/tracer.c", "gl/plan/plan.h"));
+  assert_false(may_use("gl/plan/plan.c", "validation/tracer/tracer.h"));
+  assert_false(may_use("base/file.c", "colorimetry/image/image.h"));
+  assert_false(may_use("base/file.c", "spectral/optics.h"));
+  assert_false(may_use("colorimetry/image/exr.c", "scenes/scene.h"));
+  assert_false(may_use("scenes/scene.c", "gl/plan/plan.h"));
+  assert_false(may_use("gl/plan/plan.c", "cli/base/command.h"));
+  assert_false(may_use("gl/plan/plan.c", "plan.h"));
+  assert_false(may_use("main.c", "gl/plan/plan.h"));
 }
 
 static void test_include_lines_are_understood(void **state) {
   (void)state;
-  char name[MAX_PATH];
-  assert_true(included_name("#include \"gl/plan/plan.h\"\n", name, sizeof name));
+  char name[SOURCES_MAX_PATH];
+  assert_true(sources_included_name("#include \"gl/plan/plan.h\"\n", name, sizeof name));
   assert_string_equal(name, "gl/plan/plan.h");
-  assert_true(included_name("  #  include  \"view.h\" /* near */\n", name, sizeof name));
+  assert_true(sources_included_name("  #  include  \"view.h\" /* near */\n", name, sizeof name));
   assert_string_equal(name, "view.h");
-  assert_true(included_name("#include <gl/plan/plan.h>\n", name, sizeof name));
-  assert_false(included_name("#include <math.h>\n", name, sizeof name));
-  assert_false(included_name("#include <sys/stat.h>\n", name, sizeof name));
-  assert_false(included_name("// include \"gl/plan/plan.h\"\n", name, sizeof name));
+  assert_true(sources_included_name("#include <gl/plan/plan.h>\n", name, sizeof name));
+  assert_false(sources_included_name("#include <math.h>\n", name, sizeof name));
+  assert_false(sources_included_name("#include <sys/stat.h>\n", name, sizeof name));
+  assert_false(sources_included_name("// include \"gl/plan/plan.h\"\n", name, sizeof name));
+}
+
+/* ---- symbols ---- */
+
+typedef struct tally {
+  size_t edges, wrong;
+} tally;
+
+static void judge_edge(void *user, const char *from, const char *to, const char *name) {
+  tally *t = user;
+  t->edges++;
+  if (may_use(from, to)) return;
+  t->wrong++;
+  print_error("%s may not use %s of %s\n", from, name, to);
+}
+
+static void test_the_objects_keep_the_directions(void **state) {
+  (void)state;
+  symbols all;
+  tally t = {0};
+  symbols_read(ABBE_NM, ABBE_OBJECT_LIST, &all);
+  symbols_edges(&all, judge_edge, &t);
+  symbols_free(&all);
+  assert_int_equal(t.wrong, 0);
+  assert_true(t.edges > 1000);
+}
+
+static void test_lines_of_nm_are_understood(void **state) {
+  (void)state;
+  symbol s = {0};
+  char source[SOURCES_MAX_PATH];
+  assert_true(symbols_source("/b/gl/CMakeFiles/abbe_gl.dir/plan/plan.c.o", source, sizeof source));
+  assert_string_equal(source, "gl/plan/plan.c");
+  assert_true(symbols_source("/b/gl/CMakeFiles/abbe_gl.dir/./a.c.o", source, sizeof source));
+  assert_string_equal(source, "gl/a.c");
+  assert_true(symbols_source("cli/CMakeFiles/abbe.dir/main.c.o", source, sizeof source));
+  assert_string_equal(source, "cli/main.c");
+  assert_false(symbols_source("/b/other/CMakeFiles/x.dir/x.c.o", source, sizeof source));
+  assert_false(symbols_source("/b/gl/plan.c.o", source, sizeof source));
+  assert_true(symbols_line("base/CMakeFiles/abbe_base.dir/file.c.o: abbe_file_read T 0 10\n", &s));
+  assert_string_equal(s.source, "base/file.c");
+  assert_string_equal(s.name, "abbe_file_read");
+  assert_true(s.defined);
+  free(s.source), free(s.name);
+  assert_true(symbols_line("base/CMakeFiles/abbe_base.dir/file.c.o: malloc U         \n", &s));
+  assert_false(s.defined);
+  free(s.source), free(s.name);
+  assert_false(symbols_line("base/CMakeFiles/abbe_base.dir/file.c.o: hidden t 0 10\n", &s));
+  assert_false(symbols_line("base/CMakeFiles/abbe_base.dir/file.c.o: _ZN1aE T 0 10\n", &s));
+}
+
+static void count_edge(void *user, const char *from, const char *to, const char *name) {
+  assert_string_equal(from, "gl/a.c");
+  assert_string_equal(to, "gl/b.c");
+  assert_string_equal(name, "of_b");
+  ++*(size_t *)user;
+}
+
+static void test_who_wants_what_is_defined_is_found(void **state) {
+  (void)state;
+  symbol list[] = {{"gl/a.c", "of_b", false},
+                   {"gl/b.c", "of_b", true},
+                   {"gl/b.c", "malloc", false},
+                   {"gl/a.c", "malloc", false},
+                   {"gl/a.c", "of_a", true}};
+  size_t edges = 0;
+  symbols_edges(&(symbols){sizeof list / sizeof *list, list}, count_edge, &edges);
+  assert_int_equal(edges, 1);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_sources_keep_the_directions),
                                      cmocka_unit_test(test_the_rule_refuses_wrong_directions),
-                                     cmocka_unit_test(test_include_lines_are_understood)};
+                                     cmocka_unit_test(test_include_lines_are_understood),
+                                     cmocka_unit_test(test_the_objects_keep_the_directions),
+                                     cmocka_unit_test(test_lines_of_nm_are_understood),
+                                     cmocka_unit_test(test_who_wants_what_is_defined_is_found)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,6 +18,7 @@
 #include "scenes/shapes/shape.h"
 #include "scenes/view/map_layout.h"
 #include "scenes/view/map_resample.h"
+#include "spectral/formats/material_table_load.h"
 
 #include "base/file.h"
 
@@ -184,7 +185,7 @@ static abbe_result meshes(abbe_error *error) {
     result = abbe_mesh_load(paths[i], i == 0 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
                             error);
     if (result == ABBE_OK)
-      result = abbe_mesh_mend(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
+      result = abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
     if (result == ABBE_OK) result = abbe_mesh_compute_normals(&mesh, (abbe_mesh_normals)i, error);
     if (result == ABBE_OK) result = abbe_convex_find(&mesh, 16, plane, NULL, &found, error);
     if (result == ABBE_OK && found.verdict == ABBE_CONVEX_SOLID)
@@ -205,8 +206,8 @@ static abbe_result meshes(abbe_error *error) {
   return result;
 }
 
-/* A box with slivers, a hole and turned faces, so that all steps of mending have work. */
-static abbe_result mend(abbe_error *error) {
+/* A box with slivers, a hole and turned faces, so that all steps of fixing have work. */
+static abbe_result fix(abbe_error *error) {
   static const char *const names[] = {"box_open",   "box_turned", "sliver",  "two_shells",
                                       "degenerate", "crossing",   "doubled", "finned"};
   abbe_result result = ABBE_OK;
@@ -224,7 +225,7 @@ static abbe_result mend(abbe_error *error) {
     for (size_t k = 0; result == ABBE_OK && k < 3 * mesh.face_count; k++)
       mesh.face[k / 3][k % 3] = (uint32_t)(unsigned char)data[4 + 3 * mesh.vertex_count + k];
     if (result == ABBE_OK)
-      result = abbe_mesh_mend(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
+      result = abbe_mesh_fix(&mesh, ABBE_NORMALS_AUTO, true, NULL, &what, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
     abbe_mesh *part = NULL;
     size_t parts = 0;
@@ -325,7 +326,7 @@ static void test_scenes(void **state) {
   static const operation list[] = {
       {"shapes", shapes, 0},
       {"meshes", meshes, 40},
-      {"mend", mend, 0},
+      {"fix", fix, 0},
       {"scene of shapes", scene_shapes, 300},
       {"scene of a gem", scene_gem, 100},
       {"scene of files", scene_files, 40},

@@ -3,20 +3,21 @@
 
 #include "base/text_diff.h"
 #include "spectral/dispersion/fit.h"
-#include "spectral/editing/doctor.h"
+#include "spectral/editing/check.h"
 #include "spectral/editing/record_draft.h"
 #include "spectral/editing/table_edit.h"
-#include "spectral/editing/table_mend.h"
+#include "spectral/editing/table_fix.h"
 #include "spectral/formats/csv_write.h"
 #include "spectral/formats/import_batch.h"
 #include "spectral/formats/material_import.h"
-#include "spectral/formats/material_store_write.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 #include "spectral/formats/rii_write.h"
 #include "spectral/formats/shader_export.h"
 #include "spectral/materials/convert.h"
 #include "spectral/materials/material_query.h"
 #include "spectral/materials/table_compare.h"
+#include "spectral/store/material_store_write.h"
 #include "spectral/wavelengths.h"
 
 #include "base/file.h"
@@ -165,7 +166,7 @@ static abbe_result examine(abbe_error *error) {
   abbe_result result = parse(small, &table, error);
   const abbe_result both = parse(other, &second, result == ABBE_OK ? error : NULL);
   if (result == ABBE_OK) result = both;
-  if (result == ABBE_OK) result = abbe_doctor_check_table(&table, &second, &findings, error);
+  if (result == ABBE_OK) result = abbe_check_table(&table, &second, &findings, error);
   for (size_t i = 0; i < findings.count && result == ABBE_OK; i++)
     digest_text(findings.finding[i].evidence);
   if (result == ABBE_OK) result = abbe_table_compare(&table, &second, &difference, error);
@@ -207,17 +208,17 @@ static abbe_result edit_table(abbe_error *error) {
   return result;
 }
 
-static abbe_result mend_table(abbe_error *error) {
+static abbe_result fix_table(abbe_error *error) {
   static const char wrong[] =
       "materials:\n- {name: a, model: cauchy, coefficients: [1.5, 4000], source: s}\n"
       "- {name: b, model: tabulated, points: [[0.4, 1.5], [0.5, 1.4]], source: s}\n";
   abbe_table_edit *edit = NULL;
-  abbe_table_mend mend;
+  abbe_table_fix fix;
   char *diff = NULL;
   abbe_result result = abbe_table_edit_parse(wrong, sizeof wrong - 1, "t", &edit, error);
-  if (result == ABBE_OK) result = abbe_table_mend_make(edit, NULL, &mend, error);
+  if (result == ABBE_OK) result = abbe_table_fix_make(edit, NULL, &fix, error);
   if (result == ABBE_OK) result = abbe_table_edit_diff(edit, &diff, error);
-  if (result == ABBE_OK) digest(&mend.mended, sizeof mend.mended);
+  if (result == ABBE_OK) digest(&fix.fixed, sizeof fix.fixed);
   if (result == ABBE_OK) digest_text(diff);
   free(diff);
   abbe_table_edit_free(edit);
@@ -297,7 +298,7 @@ static void test_tables(void **state) {
       {"write tables", write_tables, 300},
       {"examine a table", examine, 0},
       {"edit a table", edit_table, 120},
-      {"mend a table", mend_table, 500},
+      {"fix a table", fix_table, 500},
       {"draft a record", draft_record, 80},
       {"fit", fit, 300},
       {"convert", convert, 0},

@@ -6,6 +6,7 @@
 #include "tests/check.h"
 
 #include "scenes/mesh/mesh.h"
+#include "scenes/shapes/shape.h"
 
 #include <stdbool.h>
 
@@ -32,6 +33,24 @@ static inline abbe_mesh test_boxes(const test_box *box, size_t count) {
   }
   assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_SMOOTH, NULL), ABBE_OK);
   return m;
+}
+
+static inline abbe_mesh test_sphere(size_t levels) {
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_sphere(1, levels, &m, NULL), ABBE_OK);
+  return m;
+}
+
+static inline abbe_mesh_report test_mesh_faults(const abbe_mesh *m) {
+  abbe_mesh_report r;
+  assert_int_equal(abbe_mesh_check(m, &r, NULL), ABBE_OK);
+  return r;
+}
+
+static inline void test_turn_face(abbe_mesh *m, size_t f) {
+  const uint32_t second = m->face[f][1];
+  m->face[f][1] = m->face[f][2];
+  m->face[f][2] = second;
 }
 
 #endif

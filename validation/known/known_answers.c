@@ -38,32 +38,6 @@ const char *abbe_known_answers_describe(size_t index) {
   return index < GROUPS ? groups[index].what : NULL;
 }
 
-abbe_result abbe_known_add(abbe_known_run *run, abbe_known_answer row, abbe_error *error) {
-  abbe_known_answers *out = run->out;
-  if (out->count == out->room) {
-    size_t room = out->room > 0 ? 2 * out->room : 64;
-    abbe_known_answer *bigger = realloc(out->row, room * sizeof *bigger);
-    if (bigger == NULL)
-      return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for %zu known answers",
-                            room);
-    out->row = bigger;
-    out->room = room;
-  }
-  row.group = run->group;
-  row.error = row.traced - row.exact;
-  row.passed = fabs(row.error) <= row.tolerance && /* false for NaN */
-               (row.useful <= 0 || row.tolerance <= row.useful);
-  out->row[out->count++] = row;
-  return ABBE_OK;
-}
-
-abbe_result abbe_known_progress(const abbe_known_run *run, double done, abbe_error *error) {
-  const abbe_known_options *o = run->options;
-  double whole = run->from + (run->to - run->from) * fmin(fmax(done, 0), 1);
-  if (o->progress == NULL || o->progress(o->user, whole)) return ABBE_OK;
-  return abbe_error_set(error, ABBE_CANCELLED, "the known answers were stopped before their end");
-}
-
 static abbe_result check_group(const char *only, abbe_error *error) {
   const char *names[GROUPS];
   for (size_t i = 0; i < GROUPS; i++) {

@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "validation/tracer/tracer_state.h"
+#include "validation/tracer/light_pass.h"
 
 #include <stdio.h>
 #include <stdlib.h>

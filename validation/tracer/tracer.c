@@ -1,13 +1,12 @@
 #include "validation/tracer/tracer.h"
 
 #include "spectral/wavelengths.h"
-#include "validation/compare/mask.h"
-#include "validation/tracer/tracer_state.h"
+#include "validation/tracer/layout_fit.h"
+#include "validation/tracer/light_pass.h"
 
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 #ifdef __SSE__
@@ -347,164 +346,6 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
 
 size_t abbe_tracer_passes(const abbe_tracer *tracer) {
   return tracer->pass;
-}
-
-/* ---- results ---- */
-
-static double picture_error(const abbe_tracer *t) {
-  double matrix[9], squares = 0, sum = 0;
-  size_t pixels = t->desc.width * t->desc.height;
-  abbe_rgb_space_to_xyz(t->desc.space, matrix);
-  for (size_t i = 0; i < pixels; i++)
-    for (size_t k = 0; k < 3; k++) {
-      double weight = matrix[3 + k],
-             at = abbe_accumulator_error(&t->picture, i * t->picture_channels + k);
-      squares += pow(weight * at, 2);
-      sum += weight * abbe_accumulator_mean(&t->picture, i * t->picture_channels + k);
-    }
-  return sum > 0 ? sqrt(squares / (double)pixels) / (sum / (double)pixels) : 0;
-}
-
-static double map_error(const abbe_tracer *t) {
-  size_t texels = t->desc.map_width * t->desc.map_height;
-  double *y = malloc(texels * sizeof *y), squares = 0, sum = 0;
-  abbe_mask mask = {0};
-  for (size_t i = 0; y != NULL && i < texels; i++)
-    y[i] = abbe_accumulator_mean(&t->map, i * t->map_channels + 1);
-  if (y != NULL &&
-      abbe_mask_make_brightest(y, texels, ABBE_MASK_CAUSTIC_SHARE, &mask, NULL) == ABBE_OK)
-    for (size_t i = 0; i < texels; i++) {
-      if (!mask.in[i]) continue;
-      squares += pow(abbe_accumulator_error(&t->map, i * t->map_channels + 1), 2);
-      sum += y[i];
-    }
-  double inside = (double)mask.inside;
-  abbe_mask_free(&mask);
-  free(y);
-  return sum > 0 ? sqrt(squares / inside) / (sum / inside) : 0;
-}
-
-double abbe_tracer_error(const abbe_tracer *t) {
-  if (t->pass < 2) return INFINITY;
-  double picture = t->desc.no_picture ? 0 : picture_error(t);
-  return t->desc.no_map ? picture : fmax(picture, map_error(t));
-}
-
-enum { NAME = 64, MAX_CHANNELS = 9 + 2 * ABBE_BANDS_MAX };
-
-typedef struct channel_list {
-  size_t count;
-  char name[MAX_CHANNELS][NAME];
-  size_t value[MAX_CHANNELS]; /* of the sums' channels */
-  bool error[MAX_CHANNELS];
-} channel_list;
-
-/* Of one pass nothing tells how far off it is: then there is no channel for the errors. */
-static void add_channel(const abbe_tracer *t, channel_list *list, const char *prefix,
-                        const char *name, size_t value, bool error) {
-  if (error && t->pass < 2) return;
-  snprintf(list->name[list->count], NAME, "%s%s", prefix, name);
-  list->value[list->count] = value;
-  list->error[list->count++] = error;
-}
-
-static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image *out,
-                              abbe_error *error) {
-  char passes[32], seed[32], photons[32];
-  snprintf(passes, sizeof passes, "%zu", t->pass);
-  snprintf(seed, sizeof seed, "%u", (unsigned)t->desc.seed);
-  snprintf(photons, sizeof photons, "%zu", t->desc.photons);
-  const char *pair[][2] = {
-      {"abbe:kind", kind},     {"abbe:physics", t->desc.physics.matched ? "matched" : "full"},
-      {"abbe:passes", passes}, {"abbe:photons", photons},
-      {"abbe:seed", seed},     {"abbe:scene", t->scene->path ? t->scene->path : "-"}};
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < sizeof pair / sizeof *pair && result == ABBE_OK; i++)
-    result = abbe_image_set_attribute(out, pair[i][0], pair[i][1], error);
-  if (result == ABBE_OK && t->bands.count > 0) {
-    result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
-    if (result == ABBE_OK)
-      result = abbe_image_set_attribute(out, "emissiveUnits",
-                                        kind[0] == 'p' ? "W.m^-2.sr^-1.nm^-1" : "W.nm^-1", error);
-  }
-  return result;
-}
-
-static abbe_result read_sums(const abbe_tracer *t, const abbe_accumulator *sums, size_t width,
-                             size_t height, size_t channels, const channel_list *list,
-                             const char *kind, abbe_image *out, abbe_error *error) {
-  const char *names[MAX_CHANNELS];
-  for (size_t i = 0; i < list->count; i++) names[i] = list->name[i];
-  abbe_result result = abbe_image_make(width, height, list->count, names, out, error);
-  if (result != ABBE_OK) return result;
-  for (size_t i = 0; i < width * height; i++)
-    for (size_t k = 0; k < list->count; k++) {
-      size_t value = i * channels + list->value[k];
-      out->data[i * list->count + k] = (float)(list->error[k] ? abbe_accumulator_error(sums, value)
-                                                              : abbe_accumulator_mean(sums, value));
-    }
-  result = attributes(t, kind, out, error);
-  if (result != ABBE_OK) abbe_image_free(out);
-  return result;
-}
-
-static void add_bands(const abbe_tracer *t, size_t first, channel_list *list) {
-  char name[NAME / 2];
-  for (size_t i = 0; i < t->bands.count; i++) {
-    abbe_bands_name(&t->bands, i, name, sizeof name);
-    add_channel(t, list, "", name, first + i, false);
-    add_channel(t, list, "stderr.", name, first + i, true);
-  }
-}
-
-abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(t && out, error);
-  *out = (abbe_image){0};
-  if (t->desc.no_picture)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no picture was traced");
-  static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
-  const char *const *name = t->desc.space == ABBE_RGB_SPACE_XYZ ? xyz : rgb;
-  channel_list *list = calloc(1, sizeof *list);
-  if (list == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
-  for (size_t k = 0; k < 3; k++) {
-    add_channel(t, list, "", name[k], ABBE_TRACER_RGB + k, false);
-    add_channel(t, list, "stderr.", name[k], ABBE_TRACER_RGB + k, true);
-    add_channel(t, list, "caustic.", name[k], ABBE_TRACER_CAUSTIC + k, false);
-  }
-  add_bands(t, ABBE_TRACER_BANDS, list);
-  abbe_result result = read_sums(t, &t->picture, t->desc.width, t->desc.height, t->picture_channels,
-                                 list, "picture", out, error);
-  free(list);
-  if (result == ABBE_OK) abbe_rgb_space_chromaticities(t->desc.space, out->xy);
-  return result;
-}
-
-abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(t && out, error);
-  *out = (abbe_image){0};
-  if (t->desc.no_map) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no map was traced");
-  static const char *const xyz[3] = {"X", "Y", "Z"};
-  channel_list *list = calloc(1, sizeof *list);
-  if (list == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
-  for (size_t k = 0; k < 3; k++) {
-    add_channel(t, list, "", xyz[k], k, false);
-    add_channel(t, list, "stderr.", xyz[k], k, true);
-  }
-  add_bands(t, 3, list);
-  abbe_result result = read_sums(t, &t->map, t->desc.map_width, t->desc.map_height, t->map_channels,
-                                 list, "receiver map", out, error);
-  free(list);
-  if (result == ABBE_OK)
-    result = abbe_map_layout_write(&t->layout, t->scene->light[t->desc.map_light].name, out, error);
-  if (result == ABBE_OK) abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_XYZ, out->xy);
-  if (result != ABBE_OK) abbe_image_free(out);
-  return result;
-}
-
-uint64_t abbe_tracer_walk_rays(const abbe_tracer *t) {
-  uint64_t rays = 0;
-  for (size_t i = 0; i < t->desc.threads; i++) rays += abbe_light_walk_rays(t->walk[i]);
-  return rays;
 }
 
 void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {

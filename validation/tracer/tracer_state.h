@@ -1,4 +1,4 @@
-/* tracer_state.h: the insides of a tracer, for tracer.c, tracer_light.c and checkpoint.c alone.
+/* tracer_state.h: the insides of a tracer, for the files of this folder alone.
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRACER_TRACER_STATE_H
@@ -45,8 +45,6 @@ struct abbe_tracer {
   abbe_trace_statistics statistics;
 };
 
-/* Rays of the walks of all threads, trials too. */
-uint64_t abbe_tracer_walk_rays(const abbe_tracer *tracer);
 /* From the space of mixing to the picture's. */
 static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3], float out[3]) {
   for (int k = 0; k < 3; k++)
@@ -55,21 +53,11 @@ static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3]
                  : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
                        t->to_xyz[3 * k + 2] * mixed[2];
 }
-
-/* The photons of the pass; landings go to the map, to the picture, and to tracer->landed. */
-abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop,
-                                   size_t *landed_count, abbe_error *error);
-/* Photons of a pass shared out over the lights by the light that they send to refractors. */
-abbe_result abbe_tracer_share_photons(abbe_tracer *tracer, abbe_error *error);
-/* Chooses where photons are parted, by a trial of each light's. */
-abbe_result abbe_tracer_choose_parts(abbe_tracer *tracer, abbe_error *error);
 /* Most landings of so many photons of the light. */
 static inline size_t abbe_tracer_most_landings(const abbe_tracer *t, size_t light, size_t photons) {
   for (int k = 0; k < ABBE_LIGHT_WALK_SPLITS; k++) photons <<= t->parts[light] >> k & 1;
   return photons;
 }
-/* A view from the map's light around where its light lands. */
-abbe_result abbe_tracer_fit_layout(abbe_tracer *tracer, abbe_error *error);
 
 #ifdef __cplusplus
 }

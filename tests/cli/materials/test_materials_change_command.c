@@ -13,7 +13,7 @@ static int done(const char *line) {
   return code;
 }
 
-static void a_row_is_mended(void **state) {
+static void a_row_is_corrected(void **state) {
   (void)state;
   assert_int_equal(done(RENEW MATERIALS
                         "set k5 coefficients.0=1.5090 --unset warning --dry-run" TABLE
@@ -173,10 +173,13 @@ static void help_shows_examples(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_row_is_mended),           cmocka_unit_test(records_come_and_go),
-      cmocka_unit_test(a_copy_is_whole),           cmocka_unit_test(tables_are_compared),
+      cmocka_unit_test(a_row_is_corrected),
+      cmocka_unit_test(records_come_and_go),
+      cmocka_unit_test(a_copy_is_whole),
+      cmocka_unit_test(tables_are_compared),
       cmocka_unit_test(what_is_so_already_is_not_changed),
-      cmocka_unit_test(wrong_use_gets_a_sentence), cmocka_unit_test(help_shows_examples),
+      cmocka_unit_test(wrong_use_gets_a_sentence),
+      cmocka_unit_test(help_shows_examples),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
 }

@@ -182,8 +182,8 @@ static void warnings_and_complaints_are_shown(void **state) {
   type("s", "not saved");
   type("u", "n_d 1.535296");
   type("uu", "n_d 1.535296");
-  type("m", "n_d 1.522"); /* the doctor's: A is n_d - B / L^2 */
-  type("m", "no certain mend");
+  type("f", "n_d 1.522"); /* the check's: A is n_d - B / L^2 */
+  type("f", "no certain fix");
   type("u", "n_d 1.535296");
   send_keys("q");
   int status = finish();

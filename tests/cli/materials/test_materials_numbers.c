@@ -128,7 +128,7 @@ static void check_finds_the_four_wrong_rows_of_the_thesis(void **state) {
   answers("$abbe materials check", 0, "0 wrong, 0 doubtful");
 }
 
-static void fix_mends_a_copy_and_leaves_the_rest(void **state) {
+static void fix_changes_a_copy_and_leaves_the_rest(void **state) {
   (void)state;
   answers("cp $house/spectral/materials/thesis.yaml t.yaml\n"
           "$abbe materials check --table t.yaml --fix --dry-run && cmp t.yaml "
@@ -253,7 +253,7 @@ static void two_numbers_make_a_record(void **state) {
   assert_near(number(json, "rounding_error"), 1e-3, 5e-4);
   assert_true(number(json, "largest_error") > number(json, "typical_error"));
   cJSON_Delete(json);
-  /* what the doctor doubts is said, on the side */
+  /* what the check doubts is said, on the side */
   assert_int_equal(run_line("$abbe materials from --a 1.5690 --b 0.00531"), 0);
   assert_contains(run_errors, "the column A holds n_d");
 }
@@ -270,8 +270,9 @@ static void wrong_input_gets_a_sentence(void **state) {
       {"$abbe materials list --sort nd", 2, "did you mean 'n_d'?"},
       {"$abbe materials list --columns name,vd", 2, "did you mean 'v_d'?"},
       {"$abbe materials list --columns ,", 2, "names no column"},
-      {"$abbe materials list --nd 1.5", 2, "--nd '1.5' is not a range: two numbers above 0, the "
-                                           "smaller first, such as 1.5:1.6"},
+      {"$abbe materials list --nd 1.5", 2,
+       "--nd '1.5' is not a range: two numbers above 0, the "
+       "smaller first, such as 1.5:1.6"},
       {"$abbe materials from --nd 1.5 --bg 5", 1, "1.5 and 5 go with no material"},
       {"$abbe materials nearest", 2, "nearest to what?"},
       {"$abbe materials nearest --nd 1.5", 2, "--nd and --vd go together"},
@@ -282,7 +283,7 @@ static void wrong_input_gets_a_sentence(void **state) {
       {"$abbe materials nearest --points /no/such.csv", 1, "/no/such.csv"},
       {"$abbe materials nearest --nd 1.5 --vd sixty", 2, "--vd 'sixty' is not a number"},
       {"$abbe materials check --dry-run", 2, "--dry-run goes with --fix"},
-      {"$abbe materials check --fix --json --table t", 2, "mends the whole table"},
+      {"$abbe materials check --fix --json --table t", 2, "changes the whole table"},
       {"$abbe materials check --fix", 2, "--table FILE"},
       {"$abbe materials check --fix --table thesis", 1, "--to yaml -o FILE' makes a copy"},
       {"$abbe materials check --table $house/docs/examples/maker.agf", 1,
@@ -345,7 +346,7 @@ int main(void) {
       cmocka_unit_test(show_tells_all_that_is_known),
       cmocka_unit_test(nearest_finds_by_numbers_curve_and_points),
       cmocka_unit_test(check_finds_the_four_wrong_rows_of_the_thesis),
-      cmocka_unit_test(fix_mends_a_copy_and_leaves_the_rest),
+      cmocka_unit_test(fix_changes_a_copy_and_leaves_the_rest),
       cmocka_unit_test(notes_of_many_rows_are_one_line),
       cmocka_unit_test(unreadable_records_do_not_stop_a_check),
       cmocka_unit_test(fits_come_with_their_errors),

@@ -7,8 +7,8 @@
 
 #include "base/file.h"
 #include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/rgb_encoding.h"
 #include "colorimetry/observer.h"
-#include "colorimetry/rgb_encoding.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>

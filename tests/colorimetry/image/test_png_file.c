@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "colorimetry/image/png_file.h"
-#include "colorimetry/rgb_encoding.h"
+#include "colorimetry/image/rgb_encoding.h"
 
 #include <math.h>
 #include <png.h>

@@ -1,4 +1,6 @@
 #include "scenes/import/object_file.h"
+#include "scenes/import/scene_value.h"
+#include "spectral/formats/material_table_load.h"
 
 #include "scenes/geometry/vector.h"
 
@@ -55,7 +57,7 @@ static void a_sphere_stays_one_under_similarities_only(void **state) {
   scene = read("{shape: sphere, radius: 1, material: water, transform: [{scale: [-2, 2, 2]}]}");
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_SPHERE);
   assert_true(fabs(scene.object[0].exact.radius - 2) < 1e-12);
-  assert_null(scene.object[0].mended);
+  assert_null(scene.object[0].fixes);
   abbe_scene_free(&scene);
   scene = read("{shape: sphere, radius: 1, material: water, transform: [{scale: [1, 1, 2]}]}");
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_NONE);
@@ -104,11 +106,11 @@ static void look_turns_z_to_the_target(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void an_inverted_mesh_is_mended_and_said(void **state) {
+static void an_inverted_mesh_is_fixed_and_said(void **state) {
   (void)state;
   abbe_scene scene = read("{mesh: inverted.obj, smooth: false, material: n-sf11}");
-  assert_non_null(scene.object[0].mended);
-  assert_non_null(strstr(scene.object[0].mended, "inside-out"));
+  assert_non_null(scene.object[0].fixes);
+  assert_non_null(strstr(scene.object[0].fixes, "inside-out"));
   assert_int_equal(scene.object[0].exact.kind, ABBE_EXACT_CONVEX);
   assert_int_equal(scene.object[0].exact.count, 4);
   abbe_scene_free(&scene);
@@ -149,21 +151,21 @@ static void parts_of_a_mesh_are_objects(void **state) {
   assert_int_equal(scene.object_count, 2);
   assert_string_equal(scene.object[1].name, "boxes (part 2 of 2)");
   assert_int_equal(scene.object[1].exact.count, 6);
-  assert_non_null(strstr(scene.object[0].mended, "2 solids"));
+  assert_non_null(strstr(scene.object[0].fixes, "2 solids"));
   abbe_scene_free(&scene);
   /* what receives light is not parted */
   scene = read("{mesh: ../meshes/crossing.obj, reflectance: 1}");
   assert_int_equal(scene.object_count, 1);
-  assert_null(scene.object[0].mended);
+  assert_null(scene.object[0].fixes);
   abbe_scene_free(&scene);
 }
 
 static void paths_follow_the_folder(void **state) {
   (void)state;
-  char *path = abbe_object_path("scenes/", "a.png");
+  char *path = abbe_scene_value_path("scenes/", "a.png");
   assert_string_equal(path, "scenes/a.png");
   free(path);
-  path = abbe_object_path("scenes/", "/a.png");
+  path = abbe_scene_value_path("scenes/", "/a.png");
   assert_string_equal(path, "/a.png");
   free(path);
 }
@@ -174,7 +176,7 @@ int main(void) {
       cmocka_unit_test(boxes_are_planes_or_parallelograms),
       cmocka_unit_test(steps_apply_in_order),
       cmocka_unit_test(look_turns_z_to_the_target),
-      cmocka_unit_test(an_inverted_mesh_is_mended_and_said),
+      cmocka_unit_test(an_inverted_mesh_is_fixed_and_said),
       cmocka_unit_test(a_die_is_what_the_scene_says),
       cmocka_unit_test(parts_of_a_mesh_are_objects),
       cmocka_unit_test(paths_follow_the_folder),

@@ -82,7 +82,7 @@ static void what_is_dropped_has_no_size(void **state) {
   s.fit = 0.02;
   s.centred = true;
   abbe_scene scene = place(m, &s, true);
-  assert_contains(scene.object[0].mended, "1 sheet that hung on the body");
+  assert_contains(scene.object[0].fixes, "1 sheet that hung on the body");
   assert_near(scene.object[0].max[0] - scene.object[0].min[0], 0.02, 1e-15);
   assert_near(scene.object[0].max[0], 0.01, 1e-15);
   abbe_scene_free(&scene);
@@ -130,8 +130,8 @@ static void shells_that_cross_become_objects(void **state) {
   assert_int_equal(scene.object_count, 2);
   assert_string_equal(scene.object[0].name, "thing");
   assert_string_equal(scene.object[1].name, "thing (part 2 of 2)");
-  assert_contains(scene.object[0].mended, "followed as 2 solids that overlap");
-  assert_null(scene.object[1].mended);
+  assert_contains(scene.object[0].fixes, "followed as 2 solids that overlap");
+  assert_null(scene.object[1].fixes);
   assert_int_equal(scene.object[0].mesh.face_count, 24);
   assert_int_equal(scene.object[1].mesh.face_count, 12);
   assert_true(scene.object[1].material == &glass && scene.object[1].line == 7);

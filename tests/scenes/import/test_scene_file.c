@@ -59,7 +59,7 @@ static void every_shipped_scene_loads(void **state) {
     assert_int_equal(glass->mesh.face_count, scenes[i].faces);
     assert_int_equal(glass->exact.kind, scenes[i].exact);
     assert_int_equal(glass->exact.count, scenes[i].count);
-    assert_null(glass->mended);
+    assert_null(glass->fixes);
     assert_int_equal(scene.camera.width, 512);
     assert_int_equal(scene.camera.height, 512);
     assert_non_null(scene.description);

@@ -12,7 +12,7 @@ static bool is_closed(const abbe_mesh *m) {
 static void assert_repairs(abbe_mesh *m, const char *word) {
   abbe_error error = {0};
   char *what = NULL;
-  if (abbe_mesh_mend(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
+  if (abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
     fail_msg("%s", error.text);
   assert_contains(what, word);
   assert_true(is_closed(m));
@@ -118,7 +118,7 @@ static void many_long_rims_are_refused(void **state) {
   abbe_mesh m = strips(21, 600);
   const size_t faces = m.face_count;
   abbe_error error = {0};
-  assert_int_equal(abbe_mesh_mend(&m, ABBE_NORMALS_AUTO, true, NULL, NULL, &error), ABBE_GEOMETRY);
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, NULL, &error), ABBE_GEOMETRY);
   assert_contains(error.text, "21 holes that bend, of up to 600 edges");
   assert_contains(error.text, "where the mesh was made");
   assert_int_equal(m.face_count, faces);

@@ -2,8 +2,6 @@
 
 #include "spectral/dispersion/dispersion.h"
 
-#include <gsl/gsl_errno.h>
-
 static const abbe_dispersion bk7 = {
     .model = ABBE_DISPERSION_SELLMEIER2,
     .count = 7,
@@ -153,105 +151,6 @@ static void wrong_coefficients_are_refused(void **state) {
   assert_int_equal(abbe_dispersion_check(&d, NULL), ABBE_INVALID_ARGUMENT);
 }
 
-/* ---- the fit ---- */
-
-static void a_cauchy_form_is_found_again(void **state) {
-  (void)state;
-  const abbe_dispersion exact = {.model = ABBE_DISPERSION_CAUCHY,
-                                 .count = 8,
-                                 .c = {1.5, 4e-3, 1e-4, -2e-5, 3e-6, -1e-6, 2e-7, -1e-8}};
-  for (size_t terms = 1; terms <= 8; terms++) {
-    abbe_dispersion cut = exact, found;
-    double worst = NAN;
-    cut.count = terms;
-    assert_int_equal(abbe_dispersion_fit_cauchy(&cut, terms, 380, 780, &found, &worst, NULL),
-                     ABBE_OK);
-    assert_int_equal(found.model, ABBE_DISPERSION_CAUCHY);
-    assert_int_equal(found.count, terms);
-    assert_true(worst < 1e-11);
-    for (size_t k = 0; k < terms && terms <= 4; k++) assert_near(found.c[k], exact.c[k], 1e-10);
-  }
-}
-
-/* The two-term form by the normal equations, written out: an independent answer. */
-static void two_terms_agree_with_the_normal_equations(void **state) {
-  (void)state;
-  double n = 0, sx = 0, sxx = 0, sy = 0, sxy = 0, worst = 0, told = 0;
-  for (int l = 380; l <= 780; l++) {
-    double x = 1e6 / (double)(l * l), y = abbe_dispersion_n(&bk7, l);
-    n++, sx += x, sxx += x * x, sy += y, sxy += x * y;
-  }
-  double b = (n * sxy - sx * sy) / (n * sxx - sx * sx), a = (sy - b * sx) / n;
-  for (int l = 380; l <= 780; l++)
-    worst = fmax(worst, fabs(a + b * 1e6 / (double)(l * l) - abbe_dispersion_n(&bk7, l)));
-  abbe_dispersion found;
-  assert_int_equal(abbe_dispersion_fit_cauchy(&bk7, 2, 380, 780, &found, &told, NULL), ABBE_OK);
-  assert_near(found.c[0], a, 1e-11);
-  assert_near(found.c[1], b, 1e-11);
-  assert_near(told, worst, 1e-11);
-}
-
-static void more_terms_fit_better(void **state) {
-  (void)state;
-  double before = INFINITY;
-  for (size_t terms = 1; terms <= 6; terms++) {
-    abbe_dispersion found;
-    double worst = NAN;
-    assert_int_equal(abbe_dispersion_fit_cauchy(&bk7, terms, 380, 780, &found, &worst, NULL),
-                     ABBE_OK);
-    assert_true(worst < before);
-    before = worst;
-  }
-  assert_true(before < 1e-5);
-}
-
-static void odd_ranges_are_fitted(void **state) {
-  (void)state;
-  abbe_dispersion found;
-  double worst = NAN;
-  assert_int_equal(abbe_dispersion_fit_cauchy(&bk7, 3, 550, 550.5, &found, &worst, NULL), ABBE_OK);
-  assert_true(worst < 1e-9);
-  assert_int_equal(abbe_dispersion_fit_cauchy(&bk7, 2, 380.25, 779.5, &found, &worst, NULL),
-                   ABBE_OK);
-  assert_true(worst < 3e-4);
-  const abbe_dispersion flat = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}};
-  assert_int_equal(abbe_dispersion_fit_cauchy(&flat, 3, 1, 1e6, &found, &worst, NULL), ABBE_OK);
-  assert_true(worst < 1e-6); /* nearly all points are at one end of 1 / L^2 */
-}
-
-static int handled;
-static void hosts_handler(const char *reason, const char *file, int line, int number) {
-  (void)reason, (void)file, (void)line, (void)number;
-  handled++;
-}
-
-static void what_cannot_be_fitted_is_refused(void **state) {
-  (void)state;
-  const struct {
-    size_t terms;
-    double min_nm, max_nm;
-    const char *part;
-  } cases[] = {
-      {0, 380, 780, "0 terms"},      {9, 380, 780, "9 terms"},
-      {2, 780, 380, "780:380"},      {2, 500, 500, "500:500"},
-      {2, NAN, 780, "nan"},          {2, 380, INFINITY, "inf"},
-      {2, -1, 780, "-1:780"},        {2, 0, 780, "0:780"},
-      {2, 1e-200, 780, "too wide"},  {2, 500, 500.00000000001, "too narrow"},
-      {2, 50, 780, "no real index"},
-  };
-  gsl_error_handler_t *before = gsl_set_error_handler(hosts_handler);
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    abbe_dispersion found;
-    abbe_error error;
-    assert_int_equal(abbe_dispersion_fit_cauchy(&bk7, cases[i].terms, cases[i].min_nm,
-                                                cases[i].max_nm, &found, NULL, &error),
-                     ABBE_INVALID_ARGUMENT);
-    assert_contains(error.text, cases[i].part);
-  }
-  assert_int_equal(handled, 0);
-  assert_ptr_equal(gsl_set_error_handler(before), hosts_handler);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_model_gives_its_published_index),
@@ -262,11 +161,6 @@ int main(void) {
       cmocka_unit_test(fraunhofer_numbers_are_the_catalogues),
       cmocka_unit_test(models_have_names_and_formulas),
       cmocka_unit_test(wrong_coefficients_are_refused),
-      cmocka_unit_test(a_cauchy_form_is_found_again),
-      cmocka_unit_test(two_terms_agree_with_the_normal_equations),
-      cmocka_unit_test(more_terms_fit_better),
-      cmocka_unit_test(odd_ranges_are_fitted),
-      cmocka_unit_test(what_cannot_be_fitted_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -117,7 +117,7 @@ static void changes_are_live_and_undone(void **state) {
   abbe_record_draft_free(d);
 }
 
-static void a_mend_is_put_in(void **state) {
+static void a_fix_is_put_in(void **state) {
   (void)state;
   abbe_record_draft *d = open_draft("k5");
   assert_int_equal(abbe_record_draft_put(d, "coefficients", "[1.509, 0.00459]", &error), ABBE_OK);
@@ -227,7 +227,7 @@ static void undo_reaches_back_a_thousand_changes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      with_file(a_mend_is_put_in),
+      with_file(a_fix_is_put_in),
       with_file(fields_are_those_of_the_record),
       with_file(changes_are_live_and_undone),
       with_file(what_is_saved_is_what_was_changed),

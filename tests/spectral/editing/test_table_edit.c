@@ -1,5 +1,6 @@
 #define _XOPEN_SOURCE 700
 #include "tests/check.h"
+#include "tests/random.h"
 
 #include "base/file.h"
 #include "spectral/editing/table_edit.h"
@@ -181,13 +182,10 @@ static void each_edit_stays_inside_its_record(void **state) {
 
 /* ---- laws, over random tables in every style ---- */
 
-static unsigned long long state_of_chance;
+static uint64_t state_of_chance;
 
-static unsigned chance(unsigned below) { /* [Steele2014] */
-  unsigned long long z = (state_of_chance += 0x9e3779b97f4a7c15ull);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return (unsigned)((z ^ (z >> 31)) >> 33) % below;
+static unsigned chance(unsigned below) {
+  return (unsigned)(random_bits(&state_of_chance) >> 33) % below;
 }
 
 /* A value of a record, in one of the ways that YAML has to write it. */
@@ -277,7 +275,7 @@ static void check_random_table(int round) {
   static char text[1 << 14];
   enum { COUNT = 4 };
   char *before[COUNT], name[8];
-  state_of_chance = (unsigned long long)round;
+  state_of_chance = (uint64_t)round;
   make_table(text, COUNT);
   abbe_table_edit *edit = parse(text);
   must(abbe_table_edit_check(edit, &error));
@@ -348,9 +346,6 @@ static abbe_result remove_flint(abbe_table_edit *e, abbe_error *why) {
 static abbe_result set_flint(abbe_table_edit *e, abbe_error *why) {
   return abbe_table_edit_set(e, "flint", "coefficients.0", "2", why);
 }
-static abbe_result save(abbe_table_edit *e, abbe_error *why) {
-  return abbe_table_edit_save(e, why);
-}
 
 static void what_cannot_be_is_refused(void **state) {
   (void)state;
@@ -360,7 +355,7 @@ static void what_cannot_be_is_refused(void **state) {
   refuses(two, ABBE_INVALID_ARGUMENT, "'fit..cauchy2' is no key", set_empty_step);
   refuses(two, ABBE_NOT_FOUND, "has no 'warning'", unset_absent);
   refuses(two, ABBE_INVALID_ARGUMENT, "t.yaml:14: the name 'FLINT' is taken", rename_taken);
-  refuses(two, ABBE_INVALID_ARGUMENT, "from memory", save);
+  refuses(two, ABBE_INVALID_ARGUMENT, "from memory", abbe_table_edit_save);
   refuses("materials: [{name: flint}]", ABBE_INVALID_ARGUMENT, "only record", remove_flint);
   refuses("materials: [{name: flint}, {name: Flint}]", ABBE_INVALID_ARGUMENT, "lines 1 and 1",
           remove_flint);
@@ -430,7 +425,7 @@ static void a_file_that_changed_is_not_overwritten(void **state) {
   abbe_table_edit_free(edit);
 }
 
-static void a_table_is_not_broken_but_may_be_mended(void **state) {
+static void a_table_is_not_broken_but_may_be_fixed(void **state) {
   (void)state;
   abbe_table_edit *edit = NULL;
   must(abbe_table_edit_open(path, &edit, &error));
@@ -445,7 +440,7 @@ static void a_table_is_not_broken_but_may_be_mended(void **state) {
   must(abbe_table_edit_open(path, &edit, &error));
   must(abbe_table_edit_set(edit, "a", "model", "constant", &error));
   must(abbe_table_edit_set(edit, "a", "coefficients", "[1.5]", &error));
-  must(abbe_table_edit_save(edit, &error)); /* b is still wrong: one mend at a time */
+  must(abbe_table_edit_save(edit, &error)); /* b is still wrong: one fix at a time */
   assert_int_equal(abbe_table_edit_check(edit, &error), ABBE_SCHEMA);
   abbe_table_edit_free(edit);
 }
@@ -496,7 +491,7 @@ int main(void) {
       cmocka_unit_test(what_cannot_be_is_refused),
       with_file(a_saved_edit_is_on_the_disk),
       with_file(a_file_that_changed_is_not_overwritten),
-      with_file(a_table_is_not_broken_but_may_be_mended),
+      with_file(a_table_is_not_broken_but_may_be_fixed),
       with_file(a_new_table_begins_with_a_record),
       cmocka_unit_test(a_record_moves_from_table_to_table),
   };

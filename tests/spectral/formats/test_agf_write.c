@@ -4,6 +4,7 @@
 
 #include "spectral/formats/agf.h"
 #include "spectral/formats/agf_write.h"
+#include "spectral/formats/material_table_load.h"
 
 static abbe_material_table reread(const abbe_material_table *table, abbe_report *report) {
   char *text = NULL;

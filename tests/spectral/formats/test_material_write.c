@@ -1,6 +1,7 @@
 #include "tests/spectral/random_material.h"
 #include "tests/spectral/same_material.h"
 
+#include "spectral/formats/material_table_load.h"
 #include "spectral/formats/material_write.h"
 
 static abbe_material_table reread(const abbe_material_table *table, char **text) {

@@ -1,31 +1,18 @@
 #include "tests/check.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "spectral/formats/shader_export.h"
 
 #include <cjson/cJSON.h>
 #include <stdlib.h>
 
-static abbe_material_table table;
 static abbe_report report;
 
 static char plain[] = "s", broken[] = "line\nbreak */", letter[] = "x";
 
-static int load(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &table, NULL) != ABBE_OK;
-}
-
 static int unload(void **state) {
-  (void)state;
-  abbe_material_table_free(&table);
   abbe_report_free(&report);
-  return 0;
-}
-
-static const abbe_material *named(const char *name) {
-  const abbe_material *m = NULL;
-  assert_int_equal(abbe_material_table_find(&table, name, &m, NULL), ABBE_OK);
-  return m;
+  return shipped_free(state);
 }
 
 static char *written(abbe_shader shader, const abbe_material *m, size_t count) {
@@ -71,11 +58,11 @@ static void the_laws_of_others_are_found_again(void **state) {
 /* N-BK7 has n_d 1.5168 and V_d 64.17: 20 / 64.17 = 0.3117. */
 static void gltf_has_the_numbers_of_the_catalogue(void **state) {
   (void)state;
-  char *text = written(ABBE_SHADER_GLTF, table.material, table.count);
+  char *text = written(ABBE_SHADER_GLTF, shipped.material, shipped.count);
   cJSON *root = cJSON_Parse(text);
   assert_non_null(root);
   cJSON *list = cJSON_GetObjectItem(root, "materials");
-  assert_int_equal(cJSON_GetArraySize(list), table.count);
+  assert_int_equal(cJSON_GetArraySize(list), shipped.count);
   cJSON *bk7 = cJSON_GetArrayItem(list, 1), *all = cJSON_GetObjectItem(bk7, "extensions");
   assert_string_equal(cJSON_GetObjectItem(bk7, "name")->valuestring, "n-bk7");
   cJSON *ior = cJSON_GetObjectItem(all, "KHR_materials_ior");
@@ -91,7 +78,7 @@ static void gltf_has_the_numbers_of_the_catalogue(void **state) {
     double d = cJSON_GetObjectItem(volume, "attenuationDistance")->valuedouble;
     double blue =
         cJSON_GetArrayItem(cJSON_GetObjectItem(volume, "attenuationColor"), 2)->valuedouble;
-    assert_near(blue, exp(-d * abbe_material_attenuation(named("f2"), 464.2)), 1e-6);
+    assert_near(blue, exp(-d * abbe_material_attenuation(shipped_material("f2"), 464.2)), 1e-6);
     assert_near(blue, exp(-1), 1e-6);
   }
   cJSON_Delete(root);
@@ -102,7 +89,7 @@ static void gltf_has_the_numbers_of_the_catalogue(void **state) {
  * outside. */
 static void pbrt_gets_the_index_every_five_nanometres(void **state) {
   (void)state;
-  const abbe_material *m = named("n-bk7");
+  const abbe_material *m = shipped_material("n-bk7");
   char *text = written(ABBE_SHADER_PBRT, m, 1);
   char *at = strstr(text, "\"spectrum eta\" [");
   assert_non_null(at);
@@ -115,7 +102,7 @@ static void pbrt_gets_the_index_every_five_nanometres(void **state) {
   assert_null(strstr(text, "sigma_a"));
   assert_contains(report.note[0].text, "sampled every 5 nm");
   free(text);
-  text = written(ABBE_SHADER_PBRT, named("f2"), 1);
+  text = written(ABBE_SHADER_PBRT, shipped_material("f2"), 1);
   assert_contains(text, "MakeNamedMedium \"f2\"");
   assert_contains(text, "\"spectrum sigma_a\"");
   free(text);
@@ -170,7 +157,7 @@ static void names_become_identifiers_once_each(void **state) {
 /* exp(-(1 - fade_color) d / fade_distance) is exp(-a d). */
 static void povray_fades_as_the_material_absorbs(void **state) {
   (void)state;
-  const abbe_material *m = named("n-sf11");
+  const abbe_material *m = shipped_material("n-sf11");
   char *text = written(ABBE_SHADER_POVRAY, m, 1), *at = strstr(text, "fade_distance ");
   double distance = strtod(at + strlen("fade_distance "), NULL), colour[3];
   at = strchr(at, '<') + 1;
@@ -185,9 +172,9 @@ static void failures_are_told(void **state) {
   (void)state;
   abbe_error error;
   FILE *full = fopen("/dev/full", "w");
-  assert_int_equal(abbe_shader_write(ABBE_SHADER_MDL, &table, full, NULL, &error), ABBE_IO);
+  assert_int_equal(abbe_shader_write(ABBE_SHADER_MDL, &shipped, full, NULL, &error), ABBE_IO);
   fclose(full);
-  assert_int_equal(abbe_shader_write(ABBE_SHADER_COUNT, &table, stdout, NULL, &error),
+  assert_int_equal(abbe_shader_write(ABBE_SHADER_COUNT, &shipped, stdout, NULL, &error),
                    ABBE_INVALID_ARGUMENT);
   abbe_material bad = {.name = (char[]){"bad"}};
   free(written(ABBE_SHADER_GLTF, &bad, 1));
@@ -205,5 +192,5 @@ int main(void) {
       cmocka_unit_test(povray_fades_as_the_material_absorbs),
       cmocka_unit_test(failures_are_told),
   };
-  return cmocka_run_group_tests(tests, load, unload);
+  return cmocka_run_group_tests(tests, shipped_load, unload);
 }

@@ -1,21 +1,9 @@
 #include "tests/check.h"
 #include "tests/random.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "spectral/dispersion/index_difference.h"
 #include "spectral/materials/convert.h"
-
-static abbe_material_table table;
-
-static int setup(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &table, NULL) != ABBE_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  abbe_material_table_free(&table);
-  return 0;
-}
 
 static abbe_dispersion made(abbe_given given, abbe_fit_form form) {
   abbe_dispersion d;
@@ -74,7 +62,7 @@ static void gltf_is_the_curve_of_its_extension(void **state) {
 /* What is told of the error is what the known glass itself shows, where it is the only one. */
 static void the_error_is_that_of_known_glasses(void **state) {
   (void)state;
-  const abbe_material_table one = {.count = 1, .material = &table.material[1]};
+  const abbe_material_table one = {.count = 1, .material = &shipped.material[1]};
   abbe_dispersion_numbers own = abbe_dispersion_describe(&one.material->dispersion);
   for (int form = 0; form < 2; form++) {
     abbe_given given = {.kind = ABBE_GIVEN_ND_VD, .first = own.n_d, .second = own.v_d};
@@ -98,13 +86,13 @@ static void the_error_is_that_of_known_glasses(void **state) {
 static void the_error_told_is_near_the_true_one(void **state) {
   (void)state;
   size_t covered = 0, tried = 0;
-  for (size_t i = 0; i < table.count; i++) {
-    const abbe_material *m = &table.material[i];
+  for (size_t i = 0; i < shipped.count; i++) {
+    const abbe_material *m = &shipped.material[i];
     if (abbe_material_extrapolates(m, 380) || abbe_material_extrapolates(m, 780)) continue;
     abbe_material others[64];
     size_t count = 0;
-    for (size_t k = 0; k < table.count; k++)
-      if (k != i) others[count++] = table.material[k];
+    for (size_t k = 0; k < shipped.count; k++)
+      if (k != i) others[count++] = shipped.material[k];
     const abbe_material_table rest = {.count = count, .material = others};
     abbe_dispersion_numbers own = abbe_dispersion_describe(&m->dispersion);
     if (!isfinite(own.v_d)) continue; /* air */
@@ -130,11 +118,11 @@ static void digits_left_open_move_the_curve(void **state) {
   (void)state;
   abbe_given given = {ABBE_GIVEN_ND_VD, 1.5168, 64.17, 5e-5, 0};
   abbe_convert_error e;
-  assert_int_equal(abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &table, 380, 780, &e, NULL),
+  assert_int_equal(abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &shipped, 380, 780, &e, NULL),
                    ABBE_OK);
   assert_near(e.rounding, 5e-5 * (1 + 2.11 / 64.17), 1e-7);
   given.second_half = 5;
-  assert_int_equal(abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &table, 380, 780, &e, NULL),
+  assert_int_equal(abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &shipped, 380, 780, &e, NULL),
                    ABBE_OK);
   /* (n_d - 1) (1 / 59.17 - 1 / 64.17) times the Cauchy shape at 380 nm, 2.11 */
   assert_near(e.rounding, 0.5168 * (1 / 59.17 - 1 / 64.17) * 2.11 + 5e-5, 3e-5);
@@ -178,13 +166,13 @@ static void impossible_numbers_are_refused(void **state) {
     abbe_fit_form form = (abbe_fit_form)cases[i].form;
     assert_int_equal(abbe_convert_make(&cases[i].given, form, &d, &error), ABBE_INVALID_ARGUMENT);
     assert_contains(error.text, cases[i].part);
-    assert_int_equal(abbe_convert_judge(&cases[i].given, form, &table, 380, 780, &e, &error),
+    assert_int_equal(abbe_convert_judge(&cases[i].given, form, &shipped, 380, 780, &e, &error),
                      ABBE_INVALID_ARGUMENT);
   }
   abbe_given given = {.kind = ABBE_GIVEN_ND_VD, .first = 1.5, .second = 60};
   abbe_convert_error e;
   abbe_error error;
-  assert_int_equal(abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &table, 780, 380, &e, &error),
+  assert_int_equal(abbe_convert_judge(&given, ABBE_FIT_CAUCHY, &shipped, 780, 380, &e, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_string_equal(abbe_given_first_name((abbe_given_kind)-1), "unknown");
   assert_string_equal(abbe_given_second_name(ABBE_GIVEN_ND_VD), "V_d");
@@ -200,5 +188,5 @@ int main(void) {
       cmocka_unit_test(nothing_known_leaves_the_error_open),
       cmocka_unit_test(impossible_numbers_are_refused),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -1,33 +1,21 @@
 #include "tests/check.h"
 #include "tests/random.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "spectral/dispersion/index_difference.h"
 #include "spectral/materials/glass_distance.h"
 
-static abbe_material_table table;
-
-static int setup(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &table, NULL) != ABBE_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  abbe_material_table_free(&table);
-  return 0;
-}
-
 static const char *name_of(const abbe_glass_distances *d, size_t i) {
-  return table.material[d->nearest[i].index].name;
+  return shipped.material[d->nearest[i].index].name;
 }
 
 static void numbers_find_their_own_glass(void **state) {
   (void)state;
-  for (size_t i = 0; i < table.count; i++) {
-    abbe_dispersion_numbers own = abbe_dispersion_describe(&table.material[i].dispersion);
+  for (size_t i = 0; i < shipped.count; i++) {
+    abbe_dispersion_numbers own = abbe_dispersion_describe(&shipped.material[i].dispersion);
     if (own.n_d <= 1) continue; /* air */
     abbe_glass_distances d;
-    assert_int_equal(abbe_glass_distance_to_numbers(&table, own.n_d, own.v_d, 3, &d, NULL),
+    assert_int_equal(abbe_glass_distance_to_numbers(&shipped, own.n_d, own.v_d, 3, &d, NULL),
                      ABBE_OK);
     assert_int_equal(d.count, 3);
     assert_int_equal(d.nearest[0].index, i);
@@ -42,7 +30,7 @@ static void numbers_find_their_own_glass(void **state) {
 /* The distance is that of two Cauchy curves written out. */
 static void the_distance_is_a_difference_of_index(void **state) {
   (void)state;
-  abbe_dispersion bk7 = table.material[1].dispersion, pair[2];
+  abbe_dispersion bk7 = shipped.material[1].dispersion, pair[2];
   abbe_dispersion_numbers own = abbe_dispersion_describe(&bk7);
   const double n_d[] = {1.52, own.n_d}, v_d[] = {60, own.v_d};
   for (int i = 0; i < 2; i++) {
@@ -56,8 +44,8 @@ static void the_distance_is_a_difference_of_index(void **state) {
   assert_int_equal(abbe_index_difference_of_curves(&pair[0], &pair[1], 380, 780, &direct, NULL),
                    ABBE_OK);
   abbe_glass_distances d;
-  assert_int_equal(abbe_glass_distance_to_numbers(&table, 1.52, 60, 0, &d, NULL), ABBE_OK);
-  assert_int_equal(d.count + d.skipped, table.count);
+  assert_int_equal(abbe_glass_distance_to_numbers(&shipped, 1.52, 60, 0, &d, NULL), ABBE_OK);
+  assert_int_equal(d.count + d.skipped, shipped.count);
   for (size_t i = 0; i < d.count; i++)
     if (d.nearest[i].index == 1) assert_near(d.nearest[i].rms, direct.rms, 1e-9);
   abbe_glass_distances_free(&d);
@@ -70,8 +58,8 @@ static void curves_and_points_find_their_own_glass(void **state) {
   for (int i = 0; i < 4; i++) {
     const abbe_material *m = NULL;
     abbe_glass_distances d;
-    assert_int_equal(abbe_material_table_find(&table, names[i], &m, NULL), ABBE_OK);
-    assert_int_equal(abbe_glass_distance_to_curve(&table, &m->dispersion, 400, 700, 2, &d, NULL),
+    assert_int_equal(abbe_material_table_find(&shipped, names[i], &m, NULL), ABBE_OK);
+    assert_int_equal(abbe_glass_distance_to_curve(&shipped, &m->dispersion, 400, 700, 2, &d, NULL),
                      ABBE_OK);
     assert_string_equal(name_of(&d, 0), names[i]);
     assert_near(d.nearest[0].max, 0, 0);
@@ -83,7 +71,7 @@ static void curves_and_points_find_their_own_glass(void **state) {
     for (int k = 0; k < 3; k++)
       n[k] = round(abbe_dispersion_n(&m->dispersion, lambda_nm[k]) * 1e5) / 1e5;
     const abbe_index_points points = {.count = 3, .lambda_nm = lambda_nm, .n = n};
-    assert_int_equal(abbe_glass_distance_to_points(&table, &points, 1, &d, NULL), ABBE_OK);
+    assert_int_equal(abbe_glass_distance_to_points(&shipped, &points, 1, &d, NULL), ABBE_OK);
     assert_string_equal(name_of(&d, 0), names[i]);
     assert_true(d.nearest[0].rms < 5.1e-6);
     abbe_glass_distances_free(&d);
@@ -94,11 +82,11 @@ static void materials_without_data_there_are_skipped(void **state) {
   (void)state;
   abbe_glass_distances d;
   /* beyond 1129 nm water has no data and does not extrapolate */
-  assert_int_equal(
-      abbe_glass_distance_to_curve(&table, &table.material[1].dispersion, 500, 2000, 0, &d, NULL),
-      ABBE_OK);
+  assert_int_equal(abbe_glass_distance_to_curve(&shipped, &shipped.material[1].dispersion, 500,
+                                                2000, 0, &d, NULL),
+                   ABBE_OK);
   assert_true(d.skipped > 0);
-  assert_int_equal(d.count + d.skipped, table.count);
+  assert_int_equal(d.count + d.skipped, shipped.count);
   for (size_t i = 0; i < d.count; i++) assert_string_not_equal(name_of(&d, i), "water");
   abbe_glass_distances_free(&d);
   const abbe_material_table empty = {0};
@@ -115,7 +103,7 @@ static void what_is_no_glass_is_refused(void **state) {
     abbe_glass_distances d;
     abbe_error error;
     assert_int_equal(
-        abbe_glass_distance_to_numbers(&table, cases[i][0], cases[i][1], 0, &d, &error),
+        abbe_glass_distance_to_numbers(&shipped, cases[i][0], cases[i][1], 0, &d, &error),
         ABBE_INVALID_ARGUMENT);
     assert_contains(error.text, "such as 1.5168 and 64.17");
     assert_null(d.nearest);
@@ -123,11 +111,11 @@ static void what_is_no_glass_is_refused(void **state) {
   abbe_glass_distances d;
   abbe_error error;
   const abbe_index_points none = {0};
-  assert_int_equal(abbe_glass_distance_to_points(&table, &none, 0, &d, &error),
+  assert_int_equal(abbe_glass_distance_to_points(&shipped, &none, 0, &d, &error),
                    ABBE_INVALID_ARGUMENT);
-  assert_int_equal(
-      abbe_glass_distance_to_curve(&table, &table.material[0].dispersion, 780, 380, 0, &d, &error),
-      ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_glass_distance_to_curve(&shipped, &shipped.material[0].dispersion, 780, 380,
+                                                0, &d, &error),
+                   ABBE_INVALID_ARGUMENT);
   assert_null(d.nearest);
 }
 
@@ -139,5 +127,5 @@ int main(void) {
       cmocka_unit_test(materials_without_data_there_are_skipped),
       cmocka_unit_test(what_is_no_glass_is_refused),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -1,32 +1,13 @@
 #include "tests/check.h"
+#include "tests/spectral/shipped_table.h"
 
 #include "spectral/materials/material_numbers.h"
-#include "spectral/materials/material_table.h"
-
-static abbe_material_table table;
-
-static int setup(void **state) {
-  (void)state;
-  return abbe_material_table_load(NULL, &table, NULL) != ABBE_OK;
-}
-
-static int teardown(void **state) {
-  (void)state;
-  abbe_material_table_free(&table);
-  return 0;
-}
-
-static const abbe_material *find(const char *name) {
-  const abbe_material *m = NULL;
-  assert_int_equal(abbe_material_table_find(&table, name, &m, NULL), ABBE_OK);
-  return m;
-}
 
 /* Schott's data sheets print P_gF 0.5349 and 0.6046, and their distance from the normal line. */
 static void numbers_are_those_of_the_data_sheets(void **state) {
   (void)state;
   abbe_material_numbers m;
-  abbe_material_numbers_make(find("n-bk7"), &m);
+  abbe_material_numbers_make(shipped_material("n-bk7"), &m);
   assert_near(m.n_d, 1.51680, 5e-6);
   assert_near(m.n_e, 1.51872, 5e-6);
   assert_near(m.n_g, 1.52668, 5e-6);
@@ -35,10 +16,10 @@ static void numbers_are_those_of_the_data_sheets(void **state) {
   assert_near(m.v_d, 64.17, 5e-3);
   assert_near(m.p_gF, 0.5349, 5e-5);
   assert_near(m.dp_gF, -0.0009, 5e-5);
-  abbe_material_numbers_make(find("sf10"), &m);
+  abbe_material_numbers_make(shipped_material("sf10"), &m);
   assert_near(m.p_gF, 0.6046, 5e-5);
   assert_near(m.dp_gF, 0.0085, 1.1e-4);
-  abbe_material_numbers_make(find("diamond"), &m);
+  abbe_material_numbers_make(shipped_material("diamond"), &m);
   assert_near(m.b_g, 0.044, 5e-4); /* as gem tables print it */
 }
 
@@ -96,11 +77,11 @@ static void published_numbers_are_read_with_their_digits(void **state) {
 static void shipped_rows_give_what_their_sources_print(void **state) {
   (void)state;
   size_t checked = 0;
-  for (size_t i = 0; i < table.count; i++) {
+  for (size_t i = 0; i < shipped.count; i++) {
     abbe_material_numbers m;
     abbe_material_published p;
-    abbe_material_numbers_make(&table.material[i], &m);
-    abbe_material_published_make(&table.material[i], &p);
+    abbe_material_numbers_make(&shipped.material[i], &m);
+    abbe_material_published_make(&shipped.material[i], &p);
     if (!isnan(p.n_d)) assert_near(m.n_d, p.n_d, p.n_d_half), checked++;
     if (!isnan(p.v_d)) assert_near(m.v_d, p.v_d, p.v_d_half), checked++;
   }
@@ -109,9 +90,9 @@ static void shipped_rows_give_what_their_sources_print(void **state) {
 
 static void recorded_fits_are_held_against_the_formula(void **state) {
   (void)state;
-  for (size_t i = 0; i < table.count; i++)
+  for (size_t i = 0; i < shipped.count; i++)
     for (int k = 0; k < 2; k++) {
-      const abbe_material *m = &table.material[i];
+      const abbe_material *m = &shipped.material[i];
       abbe_index_difference d;
       if (m->fit[k].terms == 0) continue; /* air */
       assert_int_equal(abbe_material_fit_residual(m, &m->fit[k], &d, NULL), ABBE_OK);
@@ -121,10 +102,10 @@ static void recorded_fits_are_held_against_the_formula(void **state) {
   abbe_index_difference d;
   abbe_error error;
   const abbe_material_fit none = {0}, wrong = {.terms = 9};
-  assert_int_equal(abbe_material_fit_residual(&table.material[0], &none, &d, &error),
+  assert_int_equal(abbe_material_fit_residual(&shipped.material[0], &none, &d, &error),
                    ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, table.material[0].name);
-  assert_int_equal(abbe_material_fit_residual(&table.material[0], &wrong, &d, &error),
+  assert_contains(error.text, shipped.material[0].name);
+  assert_int_equal(abbe_material_fit_residual(&shipped.material[0], &wrong, &d, &error),
                    ABBE_INVALID_ARGUMENT);
 }
 
@@ -136,5 +117,5 @@ int main(void) {
       cmocka_unit_test(shipped_rows_give_what_their_sources_print),
       cmocka_unit_test(recorded_fits_are_held_against_the_formula),
   };
-  return cmocka_run_group_tests(tests, setup, teardown);
+  return cmocka_run_group_tests(tests, shipped_load, shipped_free);
 }

@@ -1,5 +1,6 @@
 #include "tests/check.h"
 
+#include "spectral/formats/material_table_load.h"
 #include "spectral/materials/table_compare.h"
 
 static abbe_error error;

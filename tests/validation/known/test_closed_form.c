@@ -1,7 +1,7 @@
 /* The closed forms against numbers that others printed, and against each other's limits. */
 #include "tests/check.h"
 
-#include "spectral/materials/material_table.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/optics.h"
 #include "validation/known/closed_form.h"
 

@@ -1,7 +1,7 @@
 /* The quadrature against closed forms, and against rays traced one by one as vectors. */
 #include "tests/check.h"
 
-#include "spectral/materials/material_table.h"
+#include "spectral/formats/material_table_load.h"
 #include "spectral/optics.h"
 #include "validation/known/sphere_quadrature.h"
 

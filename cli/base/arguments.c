@@ -1,0 +1,206 @@
+#include "cli/base/arguments.h"
+
+#include "base/nearest.h"
+#include "cli/base/command.h"
+#include "spectral/materials/material_table.h"
+
+#include <libgen.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static _Noreturn void no_memory(const char *program) {
+  fprintf(stderr, "%s: no memory to read the arguments\n", program);
+  exit(ABBE_EXIT_FAILED);
+}
+
+static _Noreturn void wrong_use(const char *program) {
+  fprintf(stderr, "Try '%s --help'.\n", program);
+  exit(ABBE_EXIT_USAGE);
+}
+
+/* ---- files ---- */
+
+typedef struct named_file {
+  unsigned flags;
+  const char *what;
+  char *path;
+} named_file;
+
+static struct {
+  named_file *file;
+  size_t count, room;
+} named;
+
+/* What tells a file from all others: itself, or its folder and its name where there is none. */
+typedef struct identity {
+  bool known, exists;
+  dev_t device;
+  ino_t inode;
+  char *name;
+} identity;
+
+static identity identify(const char *path, char *room) {
+  struct stat s;
+  if (stat(path, &s) == 0) return (identity){true, true, s.st_dev, s.st_ino, NULL};
+  size_t length = strlen(path) + 1;
+  memcpy(room, path, length);
+  memcpy(room + length, path, length);
+  if (stat(dirname(room), &s) != 0) return (identity){0};
+  return (identity){true, false, s.st_dev, s.st_ino, basename(room + length)};
+}
+
+static bool is_same_file(const char *a, const char *b, const char *program) {
+  char *room[2] = {malloc(2 * strlen(a) + 2), malloc(2 * strlen(b) + 2)};
+  if (room[0] == NULL || room[1] == NULL) no_memory(program);
+  identity x = identify(a, room[0]), y = identify(b, room[1]);
+  bool same = x.known && y.known && x.exists == y.exists && x.device == y.device &&
+              x.inode == y.inode && (x.exists || strcmp(x.name, y.name) == 0);
+  free(room[0]);
+  free(room[1]);
+  return same;
+}
+
+static _Noreturn void refuse_overwriting(const char *program, const named_file *a,
+                                         const named_file *b) {
+  const named_file *out = a->flags & ABBE_ARGUMENT_WRITES ? a : b, *other = out == a ? b : a;
+  if (other->flags & ABBE_ARGUMENT_WRITES)
+    fprintf(stderr, "%s: %s '%s' and %s '%s' are one file; give each its own\n", program,
+            other->what, other->path, out->what, out->path);
+  else
+    fprintf(stderr, "%s: %s '%s' would be written over %s '%s', which is read; name another file\n",
+            program, out->what, out->path, other->what, other->path);
+  wrong_use(program);
+}
+
+void abbe_arguments_add(const char *program, unsigned flags, const char *what, const char *path) {
+  size_t size;
+  if (path == NULL || path[0] == '\0') return;
+  if (!(flags & ABBE_ARGUMENT_WRITES) && abbe_material_table_shipped(path, &size) != NULL) return;
+  if (named.count == named.room) {
+    size_t room = named.room == 0 ? 16 : 2 * named.room;
+    named_file *file = realloc(named.file, room * sizeof *file);
+    if (file == NULL) no_memory(program);
+    named.file = file;
+    named.room = room;
+  }
+  named_file *own = &named.file[named.count];
+  *own = (named_file){flags, what, strdup(path)};
+  if (own->path == NULL) no_memory(program);
+  for (size_t i = 0; i < named.count; i++)
+    if (((flags | named.file[i].flags) & ABBE_ARGUMENT_WRITES) &&
+        is_same_file(path, named.file[i].path, program))
+      refuse_overwriting(program, &named.file[i], own);
+  named.count++;
+}
+
+/* ---- options ---- */
+
+/* Of the command and the parts that it is made of. */
+enum { MAX_OPTIONS = 160 };
+typedef struct option_list {
+  const struct argp_option *option[MAX_OPTIONS];
+  const char *value[MAX_OPTIONS]; /* as given so far */
+  size_t count;
+} option_list;
+
+static void collect(const struct argp *argp, option_list *list) {
+  for (const struct argp_option *o = argp->options; o != NULL && (o->name || o->key || o->doc); o++)
+    if (o->name != NULL && list->count < MAX_OPTIONS) list->option[list->count++] = o;
+  for (const struct argp_child *c = argp->children; c != NULL && c->argp != NULL; c++)
+    collect(c->argp, list);
+}
+
+static bool takes_next(const struct argp_option *o) {
+  return o->arg != NULL && !(o->flags & OPTION_ARG_OPTIONAL);
+}
+
+/* The option of that name, or the one that it abbreviates; NULL where argp is to say that it may be
+ * several. A name that is none ends the program. */
+static size_t find_long(const char *program, const option_list *list, const char *word) {
+  const char *names[MAX_OPTIONS];
+  size_t length = strcspn(word, "="), found = list->count, begins = 0;
+  for (size_t i = 0; i < list->count; i++) {
+    names[i] = list->option[i]->name;
+    if (strncmp(names[i], word, length) != 0) continue;
+    if (names[i][length] == '\0') return i;
+    begins++;
+    found = i;
+  }
+  if (begins > 1) return list->count;
+  if (begins == 1 && names[found][length + 1] != '\0') return found;
+  char own[128];
+  snprintf(own, sizeof own, "%.*s", (int)length, word);
+  const char *near = begins == 1 ? names[found] : abbe_nearest_word(own, names, list->count);
+  fprintf(stderr, "%s: there is no option '--%s'", program, own);
+  if (near != NULL) fprintf(stderr, "; did you mean '--%s'?", near);
+  fprintf(stderr, "\n");
+  wrong_use(program);
+}
+
+static void take_value(const char *program, option_list *list, size_t i, const char *value) {
+  static const unsigned once = ABBE_ARGUMENT_ONCE | ABBE_ARGUMENT_READS | ABBE_ARGUMENT_WRITES;
+  static char called[MAX_OPTIONS][40];
+  const unsigned flags = (unsigned)list->option[i]->flags;
+  if (value == NULL || !(flags & once)) return;
+  snprintf(called[i], sizeof called[i], "--%s", list->option[i]->name);
+  if (list->value[i] != NULL && !(flags & ABBE_ARGUMENT_REPEATS)) {
+    fprintf(stderr, "%s: %s is given twice, '%s' and '%s'; only one can be taken\n", program,
+            called[i], list->value[i], value);
+    wrong_use(program);
+  }
+  list->value[i] = value;
+  if (flags & (ABBE_ARGUMENT_READS | ABBE_ARGUMENT_WRITES))
+    abbe_arguments_add(program, flags, called[i], value);
+}
+
+/* Letters behind one dash; true where the last one's value is the next word. */
+static bool take_letters(const char *program, option_list *list, const char *letters,
+                         const char *next) {
+  for (; *letters != '\0'; letters++) {
+    size_t i = 0;
+    while (i < list->count && list->option[i]->key != *letters) i++;
+    if (i == list->count || list->option[i]->arg == NULL) continue;
+    bool own = letters[1] != '\0', optional = !takes_next(list->option[i]);
+    take_value(program, list, i, own ? letters + 1 : optional ? NULL : next);
+    return !own && !optional;
+  }
+  return false;
+}
+
+/* One word that begins with a dash; true where the next one is its value. */
+static bool take_option(const char *program, option_list *list, const char *word,
+                        const char *next) {
+  if (word[1] != '-') return take_letters(program, list, word + 1, next);
+  size_t i = find_long(program, list, word + 2);
+  if (i == list->count) return false;
+  const char *equals = strchr(word, '=');
+  bool separate = equals == NULL && takes_next(list->option[i]);
+  take_value(program, list, i, equals != NULL ? equals + 1 : separate ? next : NULL);
+  return separate;
+}
+
+void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, char **argv,
+                          void *input) {
+  static const struct argp_option own[] = {{"help", '?', NULL, 0, NULL, 0},
+                                           {"usage", -1, NULL, 0, NULL, 0},
+                                           {"version", 'V', NULL, 0, NULL, 0},
+                                           {0}};
+  static const struct argp always = {.options = own};
+  option_list list = {.count = 0};
+  bool only_arguments = false;
+  collect(argp, &list);
+  collect(&always, &list);
+  abbe_arguments_add(argv[0], ABBE_ARGUMENT_READS, "$OCIO", getenv("OCIO"));
+  for (int i = 1; i < argc; i++) {
+    const char *word = argv[i];
+    if (!only_arguments && strcmp(word, "--") == 0)
+      only_arguments = true;
+    else if (only_arguments || word[0] != '-' || word[1] == '\0')
+      abbe_arguments_add(argv[0], flags, "the argument", flags != 0 ? word : NULL);
+    else
+      i += take_option(argv[0], &list, word, argv[i + 1]);
+  }
+  if (argp_parse(argp, argc, argv, 0, NULL, input) != 0) no_memory(argv[0]);
+}

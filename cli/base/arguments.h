@@ -1,0 +1,32 @@
+/* arguments.h: a command line, held to three rules before argp reads it.
+ *
+ * An option that is not there, or that lacks the last letter of one, is refused with the name that
+ * was meant. A file that is named twice for one option is refused, for one would be ignored. And no
+ * output may be an input or another output: not the same file by device and inode, nor, where there
+ * is none yet, the same name in the same folder.
+ */
+#ifndef ABBE_CLI_BASE_ARGUMENTS_H
+#define ABBE_CLI_BASE_ARGUMENTS_H
+
+#include <argp.h>
+
+/* Flags of an argp_option beside argp's own, which end at 0x10. A table that is edited in place is
+ * read. */
+enum {
+  ABBE_ARGUMENT_ONCE = 0x100,    /* a second one would be ignored */
+  ABBE_ARGUMENT_READS = 0x200,   /* names a file that is read, once */
+  ABBE_ARGUMENT_WRITES = 0x400,  /* names a file that is written, once */
+  ABBE_ARGUMENT_REPEATS = 0x800, /* names a file each time */
+};
+
+/* argp_parse under the rules. The flags are those of what is no option: 0, or
+ * ABBE_ARGUMENT_READS where they name files. Ends the program with ABBE_EXIT_USAGE where something
+ * is refused, with ABBE_EXIT_FAILED where memory lacks. argv[0] is the command's name. */
+void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, char **argv,
+                          void *input);
+
+/* Holds a file to the third rule that no option names: `what` says what it is. Ends the program
+ * likewise. A path that is NULL or empty is none. */
+void abbe_arguments_add(const char *program, unsigned flags, const char *what, const char *path);
+
+#endif

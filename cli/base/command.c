@@ -1,0 +1,175 @@
+#include "cli/base/command.h"
+
+#include "base/file.h"
+#include "base/nearest.h"
+#include "base/utf8.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+int abbe_command_fail(const char *program, const abbe_error *error) {
+  const char *text = error->text[0] ? error->text : abbe_result_text(error->code);
+  fprintf(stderr, "%s: %s\n", program, text);
+  return error->code == ABBE_TOLERANCE ? ABBE_EXIT_TOLERANCE : ABBE_EXIT_FAILED;
+}
+
+static _Noreturn void wrong_use(const char *program) {
+  fprintf(stderr, "Try '%s --help'.\n", program);
+  exit(ABBE_EXIT_USAGE);
+}
+
+double abbe_command_number(const char *program, const char *option, const char *text, double min,
+                           double max) {
+  char *end = NULL;
+  double value = strtod(text, &end);
+  if (end == text || *end != '\0' || !isfinite(value) || value < min || value > max) {
+    fprintf(stderr, "%s: %s '%s' is not a number from %g to %g\n", program, option, text, min, max);
+    wrong_use(program);
+  }
+  return value;
+}
+
+unsigned long abbe_command_count(const char *program, const char *option, const char *text,
+                                 unsigned long min, unsigned long max) {
+  char *end = NULL;
+  errno = 0;
+  unsigned long value = strtoul(text, &end, 10);
+  if (end == text || *end != '\0' || text[0] == '-' || errno != 0 || value < min || value > max) {
+    fprintf(stderr, "%s: %s '%s' is not a whole number from %lu to %lu\n", program, option, text,
+            min, max);
+    wrong_use(program);
+  }
+  return value;
+}
+
+void abbe_command_range(const char *program, const char *option, const char *text, double *from,
+                        double *to) {
+  char *middle = NULL, *end = NULL;
+  *from = strtod(text, &middle);
+  *to = *middle == ':' ? strtod(middle + 1, &end) : 0;
+  if (middle == text || end == NULL || end == middle + 1 || *end != '\0' || !isfinite(*from) ||
+      !isfinite(*to) || *from >= *to || *from <= 0) {
+    fprintf(stderr,
+            "%s: %s '%s' is not a range: two numbers above 0, the smaller first, such as %s\n",
+            program, option, text, *from > 0 && *from < 100 ? "1.5:1.6" : "380:780");
+    wrong_use(program);
+  }
+}
+
+int abbe_command_choice(const char *program, const char *option, const char *text,
+                        const char *const *names, int count) {
+  for (int i = 0; i < count; i++)
+    if (strcasecmp(text, names[i]) == 0) return i;
+  const char *near = abbe_nearest_word(text, names, (size_t)count);
+  fprintf(stderr, "%s: %s '%s' is not known; ", program, option, text);
+  if (near != NULL) fprintf(stderr, "did you mean '%s'? ", near);
+  fprintf(stderr, "it is one of");
+  for (int i = 0; i < count; i++) fprintf(stderr, "%s %s", i > 0 ? "," : "", names[i]);
+  fprintf(stderr, "\n");
+  wrong_use(program);
+}
+
+/* cJSON copies the bytes of strings as they are, but for those below U+0020. */
+char *abbe_command_json_text(const struct cJSON *json) {
+  char *raw = json == NULL ? NULL : cJSON_Print(json);
+  const size_t length = raw == NULL ? 0 : strlen(raw), size = 3 * length + 2;
+  char *text = raw == NULL ? NULL : malloc(size);
+  if (text != NULL) strcpy(text + abbe_utf8_printable(raw, length, true, text, size), "\n");
+  cJSON_free(raw);
+  return text;
+}
+
+abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error) {
+  char *text = abbe_command_json_text(json);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for the JSON");
+  fputs(text, stdout);
+  free(text);
+  return ABBE_OK;
+}
+
+static bool output_told;
+
+/* A reader that has gone, as `head` goes, is no failure to tell of: all else is done and written,
+ * so the program ends as it would by the signal that it holds back. */
+static void leave_broken_pipe(void) {
+  struct pollfd out = {.fd = STDOUT_FILENO, .events = POLLOUT};
+  if (poll(&out, 1, 0) != 1 || !(out.revents & POLLERR)) return;
+  signal(SIGPIPE, SIG_DFL);
+  raise(SIGPIPE);
+}
+
+/* Why not everything reached stdout; NULL where it did. An earlier write leaves no reason behind.
+ */
+static const char *output_trouble(void) {
+  int number = fflush(stdout) != 0 ? errno : 0;
+  if (number == 0 && !ferror(stdout)) return NULL;
+  leave_broken_pipe();
+  return number != 0 ? strerror(number) : "an earlier write failed";
+}
+
+bool abbe_command_output_failed(void) {
+  const char *why = output_told ? NULL : output_trouble();
+  if (why != NULL) fprintf(stderr, "abbe: it could not be written to the output: %s\n", why);
+  return why != NULL;
+}
+
+int abbe_command_end(const char *program, abbe_result result, abbe_error *error) {
+  const char *why = result == ABBE_OK ? output_trouble() : NULL;
+  if (why != NULL) {
+    output_told = true;
+    result =
+        abbe_error_set(error, ABBE_IO, "the results could not be written to the output: %s", why);
+  }
+  return result == ABBE_OK ? ABBE_EXIT_DONE : abbe_command_fail(program, error);
+}
+
+const char *abbe_command_target(const char *program, const char *option, const char *text,
+                                const char *ending) {
+  static const char *const known[] = {".exr",  ".png", ".jpg",  ".jpeg", ".svg", ".tif",
+                                      ".tiff", ".bmp", ".gif",  ".hdr",  ".pfm", ".webp",
+                                      ".json", ".csv", ".yaml", ".pov"};
+  const char *dot = strrchr(text, '.');
+  if (dot == NULL || strcasecmp(dot, ending) == 0) return text;
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    if (strcasecmp(dot, known[i]) != 0) continue;
+    bool looks = strcmp(ending, ".exr") == 0 && strcmp(option, "-o") == 0;
+    fprintf(stderr,
+            "%s: %s writes a %s file, and '%s' ends like another kind; name it '%.*s%s'%s\n",
+            program, option, ending, text, (int)(dot - text), text, ending,
+            looks ? ", or take --png for a picture to look at" : "");
+    exit(ABBE_EXIT_USAGE);
+  }
+  return text;
+}
+
+void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
+                       size_t *width, size_t *height) {
+  unsigned w = 0, h = 0;
+  char rest;
+  if (sscanf(text, "%6ux%6u%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > most || h > most) {
+    fprintf(stderr, "%s: %s '%s' is not a size such as 512x512 (at most %zux%zu)\n", program,
+            option, text, most, most);
+    exit(ABBE_EXIT_USAGE);
+  }
+  *width = w;
+  *height = h;
+}
+
+abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error) {
+  for (size_t i = 0; i < count; i++) {
+    if (paths[i] == NULL) continue;
+    abbe_file_writer writer = {0};
+    abbe_result result = abbe_file_writer_open(&writer, paths[i], error);
+    abbe_file_writer_discard(&writer);
+    if (result != ABBE_OK) return result;
+  }
+  return ABBE_OK;
+}

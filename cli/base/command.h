@@ -1,0 +1,81 @@
+/* command.h: the program's subcommands, a file each: arguments in, library calls, text out.
+ *
+ * Arguments are parsed by argp, which answers --help and ends with 2 for wrong use. Results go to
+ * stdout, messages to stderr. Exit codes: 0 done, 1 failed at run time, 2 used wrongly, 3 a
+ * comparison was out of tolerance.
+ */
+#ifndef ABBE_CLI_BASE_COMMAND_H
+#define ABBE_CLI_BASE_COMMAND_H
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct cJSON;
+
+enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_TOLERANCE = 3 };
+
+/* X(name, summary): every subcommand NAME is `int abbe_command_NAME(int argc, char **argv)`;
+ * argv[0] is "abbe NAME". */
+#define ABBE_COMMANDS(X)                                                                           \
+  X(render, "render a scene to OpenEXR and PNG")                                                   \
+  X(trace, "trace the reference: what light really does, with standard errors")                    \
+  X(plan, "say which passes and models a scene asks for, and why")                                 \
+  X(materials, "look into, edit, convert and check tables of materials")                           \
+  X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
+  X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
+  X(export, "write a scene for POV-Ray, an outside witness of its caustics")                       \
+  X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
+  X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
+  X(sweep, "measure settings: time against error, and which are worth it")                         \
+  X(compare, "say how far a picture or a receiver map is from a reference")                        \
+  X(validate, "hold the reference tracer against optics that is known")
+
+#define ABBE_COMMAND_DECLARE(name, summary) int abbe_command_##name(int argc, char **argv);
+ABBE_COMMANDS(ABBE_COMMAND_DECLARE)
+#undef ABBE_COMMAND_DECLARE
+
+/* Prints "PROGRAM: sentence" to stderr (its general text where the sentence is empty); returns
+ * the exit code that goes with the result. */
+int abbe_command_fail(const char *program, const abbe_error *error);
+
+/* Parses the whole text as a finite number in [min, max]. On failure prints a sentence that names
+ * the option, and ends the program with ABBE_EXIT_USAGE. */
+double abbe_command_number(const char *program, const char *option, const char *text, double min,
+                           double max);
+/* The same for whole numbers. */
+unsigned long abbe_command_count(const char *program, const char *option, const char *text,
+                                 unsigned long min, unsigned long max);
+/* "380:780" as a range, 0 < from < to. */
+void abbe_command_range(const char *program, const char *option, const char *text, double *from,
+                        double *to);
+/* One word of names[count]; its index. An unknown word names the nearest and the list. */
+int abbe_command_choice(const char *program, const char *option, const char *text,
+                        const char *const *names, int count);
+
+/* The name of a file that the option writes. One that ends like a file of another kind, such as
+ * 'gem.png' or 'gem.jpg' for .exr, is refused; any other ending is the user's own. */
+const char *abbe_command_target(const char *program, const char *option, const char *text,
+                                const char *ending);
+
+/* "512x512" as width and height, each 1 to `most`. */
+void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
+                       size_t *width, size_t *height);
+
+/* Opens and discards each of the files (NULL: none), so that a target that cannot be written is
+ * found out before the work, not after it. */
+abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error);
+
+/* json as text that ends with a newline, always valid UTF-8 whatever strings it was given
+ * (malloc'd, the caller frees); NULL for want of memory or where json is NULL. */
+char *abbe_command_json_text(const struct cJSON *json);
+/* Prints json (NULL: it could not be made for want of memory) and a line's end to stdout. */
+abbe_result abbe_command_print_json(const struct cJSON *json, abbe_error *error);
+/* At the end of the program: true, and a sentence on stderr, where something did not reach stdout
+ * and no command has said so. */
+bool abbe_command_output_failed(void);
+/* Ends a command: 0 where all results reached stdout; else the failure, said on stderr. */
+int abbe_command_end(const char *program, abbe_result result, abbe_error *error);
+
+#endif

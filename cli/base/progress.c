@@ -1,0 +1,78 @@
+#include "cli/base/progress.h"
+
+#include "cli/base/output.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { BAR_WIDTH = 30 };
+
+static volatile sig_atomic_t interrupted;
+
+/* The first asks the work to stop, at once or as soon as some begins; a second ends the program. */
+static void interrupt(int signal_number) {
+  if (interrupted) {
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+  }
+  interrupted = 1;
+}
+
+static double now_s(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Whoever asks for the end, a user or a machine that goes down: what is done is saved. A terminal
+ * that hangs up ends nothing where the parent said so (nohup). */
+static void catch_interrupts(void) {
+  struct sigaction action, present;
+  memset(&action, 0, sizeof action);
+  action.sa_handler = interrupt;
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGHUP, NULL, &present);
+  if (present.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
+}
+
+void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet) {
+  memset(progress, 0, sizeof *progress);
+  progress->what = what;
+  progress->silent = quiet || !isatty(STDERR_FILENO);
+  progress->start_s = now_s();
+  catch_interrupts();
+}
+
+bool abbe_progress_update(void *user, double done) {
+  abbe_progress *progress = user;
+  double now = now_s(), spent = now - progress->start_s;
+  double left = done > 0 ? spent * (1 - done) / done : 0;
+  /* Work that will be over within a second needs no bar. */
+  if (!progress->silent && (spent > 0.3 && spent + left > 1.0) && now - progress->last_s > 0.1) {
+    int filled = (int)(done * BAR_WIDTH);
+    FILE *out = abbe_output_raw(stderr);
+    fprintf(out, "\r%s [", progress->what);
+    for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', out);
+    fprintf(out, "] %3.0f %%, %.0f s left ", 100 * done, left);
+    fflush(out);
+    progress->shown = true;
+    progress->last_s = now;
+  }
+  return !interrupted;
+}
+
+const volatile int *abbe_progress_stopped(void) {
+  return &interrupted;
+}
+
+double abbe_progress_seconds(const abbe_progress *progress) {
+  return now_s() - progress->start_s;
+}
+
+void abbe_progress_end(abbe_progress *progress) {
+  if (progress->shown) fprintf(abbe_output_raw(stderr), "\r%*s\r", BAR_WIDTH + 60, "");
+}

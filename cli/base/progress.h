@@ -1,0 +1,27 @@
+/* progress.h: a progress bar with the time left, on a terminal, for work over a second; and
+ * whether the user asked to stop (Ctrl-C). */
+#ifndef ABBE_CLI_BASE_PROGRESS_H
+#define ABBE_CLI_BASE_PROGRESS_H
+
+#include <stdbool.h>
+
+typedef struct abbe_progress {
+  const char *what;
+  bool shown;  /* a bar stands on the terminal */
+  bool silent; /* never show one */
+  double start_s, last_s;
+} abbe_progress;
+
+/* Starts the clock and catches Ctrl-C, from then on until the program ends: between two works as
+ * well; a second one ends it. A bar is shown only where stderr is a terminal. */
+void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet);
+/* `done` from 0 to 1; false where the user has asked to stop. Matches abbe_render_progress. */
+bool abbe_progress_update(void *progress, double done);
+/* Becomes other than 0 when the user asks to stop, for work that looks at it by itself. */
+const volatile int *abbe_progress_stopped(void);
+/* Since the beginning, s. */
+double abbe_progress_seconds(const abbe_progress *progress);
+/* Clears the bar. */
+void abbe_progress_end(abbe_progress *progress);
+
+#endif

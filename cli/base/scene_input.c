@@ -1,0 +1,81 @@
+#include "cli/base/scene_input.h"
+
+#include "cli/base/arguments.h"
+#include "scenes/import/scene_file.h"
+
+#include <cjson/cJSON.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* path, or where it is in the share folder beside the program's own, or where the build installs
+ * it; in text[size]. */
+static const char *find_shipped(const char *path, char *text, size_t size) {
+  static const char *const shares[] = {ABBE_SHARE_BESIDE, ABBE_SHARE};
+  char own[PATH_MAX];
+  if (path[0] == '/' || access(path, F_OK) == 0) return path;
+  ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
+  own[length > 0 ? length : 0] = '\0';
+  char *slash = strrchr(own, '/');
+  if (slash != NULL) slash[1] = '\0';
+  for (int i = slash == NULL; i < 2; i++) {
+    int n = snprintf(text, size, "%s%s/%s", i == 0 ? own : "", shares[i], path);
+    if (n > 0 && (size_t)n < size && access(text, F_OK) == 0) return text;
+  }
+  return path;
+}
+
+abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
+                                  abbe_scene *out, abbe_error *error) {
+  char shipped[2 * PATH_MAX];
+  const abbe_scene_options options = {.materials = materials};
+  const char *found = find_shipped(path, shipped, sizeof shipped);
+  if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
+  abbe_result result = abbe_scene_load(found, &options, out, error);
+  for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)
+    abbe_arguments_add(program, ABBE_ARGUMENT_READS, "the scene's file", abbe_scene_file(out, i));
+  return result;
+}
+
+void abbe_scene_input_note(const abbe_scene *scene) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].fixes != NULL)
+      fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].fixes);
+}
+
+static const char *made_of(const abbe_object *o) {
+  return o->material != NULL ? o->material->name : "receiver";
+}
+
+void abbe_scene_input_list(const abbe_scene *scene) {
+  enum { MOST = 48 };
+  printf("What is there, with its size and the middle of its bounds, m:\n");
+  for (size_t i = 0; i < scene->object_count && i < MOST; i++) {
+    const abbe_object *o = &scene->object[i];
+    char size[64], middle[64];
+    snprintf(size, sizeof size, "%.3g x %.3g x %.3g", o->max[0] - o->min[0], o->max[1] - o->min[1],
+             o->max[2] - o->min[2]);
+    snprintf(middle, sizeof middle, "(%.3g, %.3g, %.3g)", 0.5 * (o->min[0] + o->max[0]),
+             0.5 * (o->min[1] + o->max[1]), 0.5 * (o->min[2] + o->max[2]));
+    printf("  %-26.60s %-26s %-26s %s, %zu faces\n", o->name, size, middle, made_of(o),
+           o->mesh.face_count);
+  }
+  if (scene->object_count > MOST) printf("  and %zu objects more\n", scene->object_count - MOST);
+  printf("\n");
+}
+
+void abbe_scene_input_list_json(const abbe_scene *scene, cJSON *root) {
+  cJSON *list = cJSON_AddArrayToObject(root, "objects");
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    cJSON *item = cJSON_CreateObject();
+    cJSON_AddStringToObject(item, "name", o->name);
+    if (o->material != NULL) cJSON_AddStringToObject(item, "material", o->material->name);
+    cJSON_AddItemToObject(item, "min", cJSON_CreateDoubleArray(o->min, 3));
+    cJSON_AddItemToObject(item, "max", cJSON_CreateDoubleArray(o->max, 3));
+    cJSON_AddNumberToObject(item, "faces", (double)o->mesh.face_count);
+    if (o->fixes != NULL) cJSON_AddStringToObject(item, "note", o->fixes);
+    cJSON_AddItemToArray(list, item);
+  }
+}

@@ -1,0 +1,223 @@
+#include "colorimetry/image/rgb_encoding.h"
+
+#include "colorimetry/rgb_space.h"
+
+#include <lcms2.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double srgb_curve[5] = {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045};
+
+void abbe_rgb_encoding_srgb(double xy[8], double curve[5]) {
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
+  memcpy(curve, srgb_curve, sizeof srgb_curve);
+}
+
+void abbe_rgb_encoding_display_p3(double xy[8], double curve[5]) {
+  static const double p3[8] = {0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290};
+  memcpy(xy, p3, sizeof p3);
+  memcpy(curve, srgb_curve, sizeof srgb_curve);
+}
+
+bool abbe_rgb_encoding_is_known(const double xy[8], const double curve[5]) {
+  return xy[7] > 0 && curve[0] > 0;
+}
+
+static bool same(const double *a, const double *b, int count, double tolerance) {
+  for (int i = 0; i < count; i++)
+    if (!(fabs(a[i] - b[i]) <= tolerance)) return false;
+  return true;
+}
+
+bool abbe_rgb_encoding_is_srgb(const double xy[8], const double curve[5]) {
+  double right[8], srgb[5];
+  abbe_rgb_encoding_srgb(right, srgb);
+  return same(xy, right, 8, 1e-3) && same(curve, srgb, 5, 1e-6);
+}
+
+double abbe_rgb_encoding_light(const double curve[5], double value) {
+  return value < curve[4] ? curve[3] * value : pow(fmax(curve[1] * value + curve[2], 0), curve[0]);
+}
+
+/* Probes: black, red, green, blue, white, each primary at half its number, then greys. */
+
+enum { WHITE = 4, HALVES = 5, GREYS = 8, LAST = ABBE_RGB_ENCODING_PROBES - 1 };
+
+static float grey(int probe) {
+  return (float)(probe - GREYS) / (LAST - GREYS);
+}
+
+void abbe_rgb_encoding_probes(float rgb[ABBE_RGB_ENCODING_PROBES][3]) {
+  memset(rgb, 0, ABBE_RGB_ENCODING_PROBES * sizeof *rgb);
+  for (int c = 0; c < 3; c++) {
+    rgb[1 + c][c] = rgb[WHITE][c] = 1;
+    rgb[HALVES + c][c] = 0.5f;
+    for (int i = GREYS; i <= LAST; i++) rgb[i][c] = grey(i);
+  }
+}
+
+/* The curve, sRGB's or a power, that the greys follow. */
+static bool fit_curve(const float xyz[ABBE_RGB_ENCODING_PROBES][3], double curve[5]) {
+  const double middle = (double)xyz[(GREYS + LAST) / 2][1], at = (double)grey((GREYS + LAST) / 2);
+  const double power[5] = {middle > 0 && middle < 1 ? log(middle) / log(at) : 0, 1, 0, 0, 0};
+  const double *const form[] = {srgb_curve, power};
+  for (int f = 0; f < 2; f++) {
+    bool follows = form[f][0] > 0;
+    for (int i = GREYS; follows && i <= LAST; i++)
+      follows = fabs(abbe_rgb_encoding_light(form[f], (double)grey(i)) - (double)xyz[i][1]) < 5e-4;
+    if (follows) memcpy(curve, form[f], 5 * sizeof *curve);
+    if (follows) return true;
+  }
+  return false;
+}
+
+bool abbe_rgb_encoding_of_probes(const float xyz[ABBE_RGB_ENCODING_PROBES][3], double xy[8],
+                                 double curve[5]) {
+  memset(xy, 0, 8 * sizeof *xy);
+  memset(curve, 0, 5 * sizeof *curve);
+  double fitted[5];
+  bool sound = fabs((double)xyz[WHITE][1] - 1) < 5e-3 && fit_curve(xyz, fitted);
+  const double half = sound ? abbe_rgb_encoding_light(fitted, 0.5) : 0;
+  for (int k = 0; sound && k < 3; k++) {
+    sound =
+        fabs((double)xyz[0][k]) < 1e-3 && fabs((double)xyz[1][k] + (double)xyz[2][k] +
+                                               (double)xyz[3][k] - (double)xyz[WHITE][k]) < 2e-3;
+    for (int c = 0; c < 3; c++)
+      sound = sound && fabs((double)xyz[HALVES + c][k] - half * (double)xyz[1 + c][k]) < 1e-3;
+  }
+  if (!sound) return false;
+  for (int c = 0; c < 4; c++) {
+    const float *v = xyz[1 + c];
+    const double sum = (double)v[0] + (double)v[1] + (double)v[2];
+    if (!(sum > 0)) {
+      memset(xy, 0, 8 * sizeof *xy);
+      return false;
+    }
+    xy[2 * c] = (double)v[0] / sum;
+    xy[2 * c + 1] = (double)v[1] / sum;
+  }
+  memcpy(curve, fitted, sizeof fitted);
+  return true;
+}
+
+/* Profiles */
+
+static abbe_result no_profile(abbe_error *error) {
+  return abbe_error_set(error, ABBE_COLOUR, "Little CMS makes no ICC profile of an encoding");
+}
+
+static cmsHPROFILE make_profile(const double xy[8], const double curve[5]) {
+  double p3_xy[8], p3_curve[5];
+  abbe_rgb_encoding_display_p3(p3_xy, p3_curve);
+  const bool p3 = same(xy, p3_xy, 8, 1e-3) && same(curve, p3_curve, 5, 1e-6);
+  const cmsCIExyY white = {xy[6], xy[7], 1};
+  const cmsCIExyYTRIPLE primaries = {{xy[0], xy[1], 1}, {xy[2], xy[3], 1}, {xy[4], xy[5], 1}};
+  cmsToneCurve *one = cmsBuildParametricToneCurve(NULL, 4, curve);
+  cmsToneCurve *const all[3] = {one, one, one};
+  cmsHPROFILE profile = one == NULL ? NULL : cmsCreateRGBProfile(&white, &primaries, all);
+  cmsFreeToneCurve(one);
+  cmsMLU *text = profile == NULL ? NULL : cmsMLUalloc(NULL, 1);
+  if (text == NULL) return profile;
+  cmsMLUsetASCII(text, "en", "US", p3 ? "Display P3" : "RGB of a display");
+  cmsWriteTag(profile, cmsSigProfileDescriptionTag, text);
+  cmsMLUsetASCII(text, "en", "US", "No copyright, use freely");
+  cmsWriteTag(profile, cmsSigCopyrightTag, text);
+  cmsMLUfree(text);
+  return profile;
+}
+
+/* The time of making is a profile's bytes 24 to 35: that of this form, for equal bytes each time.
+ */
+static void fix_date(unsigned char *icc) {
+  static const unsigned char date[12] = {0x07, 0xe8, 0, 1, 0, 1}; /* 2024-01-01 0:00:00 */
+  memcpy(icc + 24, date, sizeof date);
+}
+
+abbe_result abbe_rgb_encoding_profile(const double xy[8], const double curve[5], void **icc,
+                                      size_t *size, abbe_error *error) {
+  ABBE_REQUIRE(xy && curve && icc && size, error);
+  *icc = NULL;
+  *size = 0;
+  cmsHPROFILE profile = abbe_rgb_encoding_is_known(xy, curve) ? make_profile(xy, curve) : NULL;
+  if (profile == NULL) return no_profile(error);
+  cmsUInt32Number bytes = 0;
+  abbe_result result = ABBE_OK;
+  void *made = cmsSaveProfileToMem(profile, NULL, &bytes) && bytes > 128 ? malloc(bytes) : NULL;
+  if (made == NULL || !cmsSaveProfileToMem(profile, made, &bytes)) {
+    free(made);
+    result = no_profile(error);
+  } else {
+    fix_date(made);
+    *icc = made;
+    *size = bytes;
+  }
+  cmsCloseProfile(profile);
+  return result;
+}
+
+/* To sRGB */
+
+static void become_srgb(abbe_image *image) {
+  const size_t count = image->width * image->height * image->channels;
+  for (size_t i = 0; i < count; i++) {
+    const float v = image->data[i];
+    image->data[i] = v >= 1 ? 1 : v > 0 ? v : 0; /* not-a-number too */
+  }
+  abbe_rgb_encoding_srgb(image->xy, image->curve);
+}
+
+static double srgb_of(double light) {
+  return light <= srgb_curve[4] * srgb_curve[3] ? 12.92 * light
+                                                : 1.055 * pow(light, 1 / 2.4) - 0.055;
+}
+
+abbe_result abbe_rgb_encoding_to_srgb(abbe_image *image, const char *name, abbe_error *error) {
+  ABBE_REQUIRE(image && name, error);
+  double to_xyz[9], from_xyz[9];
+  abbe_error why = {0};
+  if (image->channels != 3 || !abbe_rgb_encoding_is_known(image->xy, image->curve) ||
+      abbe_rgb_space_chromaticities_to_xyz(image->xy, to_xyz, &why) != ABBE_OK)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its chromaticities and curve are of no RGB encoding%s%.300s", name,
+                          why.text[0] ? ": " : "", why.text);
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
+  for (size_t i = 0; i < image->width * image->height; i++) {
+    float *pixel = image->data + 3 * i;
+    double v[3];
+    for (int c = 0; c < 3; c++) v[c] = abbe_rgb_encoding_light(image->curve, (double)pixel[c]);
+    abbe_rgb_space_apply(to_xyz, v, v);
+    abbe_rgb_space_apply(from_xyz, v, v);
+    for (int c = 0; c < 3; c++) pixel[c] = (float)srgb_of(v[c]);
+  }
+  become_srgb(image);
+  return ABBE_OK;
+}
+
+abbe_result abbe_rgb_encoding_profile_to_srgb(abbe_image *image, const void *icc, size_t size,
+                                              const char *name, abbe_error *error) {
+  ABBE_REQUIRE(image && icc && name, error);
+  const cmsUInt32Number one = FLOAT_SH(1) | CHANNELS_SH(1) | EXTRA_SH(2) | BYTES_SH(4);
+  cmsHPROFILE from = size <= UINT32_MAX ? cmsOpenProfileFromMem(icc, (cmsUInt32Number)size) : NULL;
+  cmsHPROFILE to = cmsCreate_sRGBProfile();
+  const cmsColorSpaceSignature space = from == NULL ? 0 : cmsGetColorSpace(from);
+  cmsHTRANSFORM transform = NULL;
+  if (to != NULL && image->channels == 3 && (space == cmsSigRgbData || space == cmsSigGrayData))
+    transform = cmsCreateTransform(
+        from, space == cmsSigRgbData ? TYPE_RGB_FLT : one | COLORSPACE_SH(PT_GRAY), to,
+        TYPE_RGB_FLT, INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE);
+  for (size_t y = 0; transform != NULL && y < image->height; y++) {
+    float *row = image->data + 3 * image->width * y;
+    cmsDoTransform(transform, row, row, (cmsUInt32Number)image->width);
+  }
+  const bool done = transform != NULL;
+  if (done) become_srgb(image);
+  if (done) cmsDeleteTransform(transform);
+  if (from != NULL) cmsCloseProfile(from);
+  if (to != NULL) cmsCloseProfile(to);
+  if (done) return ABBE_OK;
+  return abbe_error_set(error, ABBE_COLOUR,
+                        "%s: its ICC profile cannot be used; one for RGB or grey can, or none for "
+                        "sRGB",
+                        name);
+}

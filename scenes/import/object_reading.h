@@ -1,0 +1,45 @@
+/* object_reading.h: what is known of an object of a scene file while it is read.
+ * Internal to scenes/. */
+#ifndef ABBE_SCENES_IMPORT_OBJECT_READING_H
+#define ABBE_SCENES_IMPORT_OBJECT_READING_H
+
+#include "base/yaml/yaml.h"
+#include "scenes/mesh/mesh.h"
+#include "scenes/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_OBJECT_RADIANS (3.14159265358979323846 / 180.0)
+
+typedef enum abbe_object_kind {
+  ABBE_OBJECT_SPHERE,
+  ABBE_OBJECT_RING,
+  ABBE_OBJECT_GEM,
+  ABBE_OBJECT_BRILLIANT,
+  ABBE_OBJECT_PRISM,
+  ABBE_OBJECT_BOX,
+  ABBE_OBJECT_RECTANGLE,
+  ABBE_OBJECT_LATHE,
+  ABBE_OBJECT_MESH
+} abbe_object_kind;
+
+typedef struct abbe_object_reading {
+  abbe_yaml *yaml;
+  abbe_yaml_node node;
+  const char *folder;
+  abbe_object_kind kind;
+  double radius;             /* of a sphere */
+  abbe_mesh_normals normals; /* of a mesh */
+  double matrix[16];         /* to world */
+} abbe_object_reading;
+
+/* The surface under `shape` or `mesh`, in its own coordinates, and its kind, radius and normals. */
+abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
+                                     abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,211 @@
+/* The surface of an object: one of the shapes, or the mesh of a file. */
+#include "scenes/import/object_reading.h"
+#include "scenes/import/scene_value.h"
+#include "scenes/shapes/brilliant.h"
+#include "scenes/shapes/shape.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const shape_names[] = {"sphere", "ring",      "gem",   "brilliant", "prism",
+                                          "box",    "rectangle", "lathe", NULL};
+
+/* A length that must be there; the shape itself says that it must be above zero. */
+static abbe_result need_length(const abbe_object_reading *r, const char *key, double *out,
+                               abbe_error *error) {
+  abbe_yaml_node ignored;
+  const abbe_result result = abbe_yaml_require(r->yaml, r->node, key, &ignored, error);
+  return result == ABBE_OK ? abbe_yaml_get_number(r->yaml, r->node, key, -ABBE_SCENE_FAR,
+                                                  ABBE_SCENE_FAR, out, error)
+                           : result;
+}
+
+static abbe_result read_count(const abbe_object_reading *r, const char *key, size_t min, size_t max,
+                              size_t *out, abbe_error *error) {
+  return abbe_yaml_get_count(r->yaml, r->node, key, min, max, out, error);
+}
+
+/* --- shapes --- */
+
+static abbe_result read_sphere(abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  size_t levels = 4;
+  abbe_result result = need_length(r, "radius", &r->radius, error);
+  if (result == ABBE_OK) result = read_count(r, "levels", 0, 9, &levels, error);
+  return result == ABBE_OK ? abbe_shape_sphere(r->radius, levels, out, error) : result;
+}
+
+static abbe_result read_ring(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  double major = 0.0, minor = 0.0;
+  size_t around = 256, across = 128;
+  abbe_result result = need_length(r, "major", &major, error);
+  if (result == ABBE_OK) result = need_length(r, "minor", &minor, error);
+  if (result == ABBE_OK) result = read_count(r, "around", 3, 4096, &around, error);
+  if (result == ABBE_OK) result = read_count(r, "across", 3, 4096, &across, error);
+  return result == ABBE_OK ? abbe_shape_ring(major, minor, around, across, out, error) : result;
+}
+
+static abbe_result read_gem(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  static const char *const keys[] = {"girdle", "table", "crown", "pavilion"};
+  double length[4] = {0};
+  size_t sides = 6;
+  abbe_result result = read_count(r, "sides", 3, 1024, &sides, error);
+  for (int i = 0; i < 4 && result == ABBE_OK; i++)
+    result = need_length(r, keys[i], &length[i], error);
+  return result == ABBE_OK
+             ? abbe_shape_gem(sides, length[0], length[1], length[2], length[3], out, error)
+             : result;
+}
+
+/* Angles in degrees, the rest in shares of the diameter or of the way; 0 stays the default. */
+static abbe_result read_brilliant(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  abbe_brilliant cut = {0};
+  double crown = 34.5, pavilion = 40.75;
+  const struct {
+    const char *key;
+    double *value;
+  } keys[] = {{"table", &cut.table},   {"star", &cut.star}, {"lower", &cut.lower},
+              {"girdle", &cut.girdle}, {"crown", &crown},   {"pavilion", &pavilion}};
+  abbe_result result = need_length(r, "diameter", &cut.diameter, error);
+  for (size_t i = 0; i < sizeof keys / sizeof *keys && result == ABBE_OK; i++)
+    result = abbe_yaml_get_number(r->yaml, r->node, keys[i].key, 1e-6, 90, keys[i].value, error);
+  cut.crown_rad = crown * ABBE_OBJECT_RADIANS;
+  cut.pavilion_rad = pavilion * ABBE_OBJECT_RADIANS;
+  return result == ABBE_OK ? abbe_brilliant_make(&cut, out, error) : result;
+}
+
+static abbe_result read_prism(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  double apex = 60.0, side = 0.0, length = 0.0;
+  abbe_result result = abbe_yaml_get_number(r->yaml, r->node, "apex", -360, 360, &apex, error);
+  if (result == ABBE_OK) result = need_length(r, "side", &side, error);
+  if (result == ABBE_OK) result = need_length(r, "length", &length, error);
+  return result == ABBE_OK ? abbe_shape_prism(apex * ABBE_OBJECT_RADIANS, side, length, out, error)
+                           : result;
+}
+
+static abbe_result read_box(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  double size[3] = {0};
+  const abbe_result result = abbe_scene_value_point(r->yaml, r->node, "size", size, error);
+  return result == ABBE_OK ? abbe_shape_box(size, out, error) : result;
+}
+
+static abbe_result read_rectangle(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  double width = 0.0, height = 0.0;
+  abbe_result result = need_length(r, "width", &width, error);
+  if (result == ABBE_OK) result = need_length(r, "height", &height, error);
+  return result == ABBE_OK ? abbe_shape_rectangle(width, height, out, error) : result;
+}
+
+/* The list of [r, z] pairs under "profile". */
+static abbe_result read_profile(const abbe_object_reading *r, double (**out)[2], size_t *count,
+                                abbe_error *error) {
+  abbe_yaml_node list;
+  abbe_result result = abbe_yaml_require(r->yaml, r->node, "profile", &list, error);
+  if (result != ABBE_OK) return result;
+  *count = abbe_yaml_count(r->yaml, list);
+  if (!abbe_yaml_is_sequence(r->yaml, list) || *count < 3 || *count > ABBE_SHAPE_MAX_PROFILE)
+    return abbe_yaml_fail(r->yaml, list, error, "'profile' wants a list of 3 to %u points [r, z]",
+                          ABBE_SHAPE_MAX_PROFILE);
+  double(*profile)[2] = malloc(*count * sizeof *profile);
+  if (!profile) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a lathe profile");
+  for (size_t i = 0; i < *count && result == ABBE_OK; i++) {
+    const abbe_yaml_node point = abbe_yaml_item(r->yaml, list, i);
+    if (!abbe_yaml_is_sequence(r->yaml, point) || abbe_yaml_count(r->yaml, point) != 2)
+      result = abbe_yaml_fail(r->yaml, point, error, "a point of 'profile' is two numbers [r, z]");
+    for (size_t k = 0; k < 2 && result == ABBE_OK; k++)
+      result = abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, point, k), "profile",
+                                -ABBE_SCENE_FAR, ABBE_SCENE_FAR, &profile[i][k], error);
+  }
+  if (result == ABBE_OK)
+    *out = profile;
+  else
+    free(profile);
+  return result;
+}
+
+static abbe_result read_lathe(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  size_t around = 96, round = 0, count = 0, rounded_count = 0;
+  double(*profile)[2] = NULL, (*rounded)[2] = NULL;
+  abbe_result result = read_count(r, "around", 3, 4096, &around, error);
+  if (result == ABBE_OK) result = read_count(r, "round", 0, 8, &round, error);
+  if (result == ABBE_OK) result = read_profile(r, &profile, &count, error);
+  if (result == ABBE_OK)
+    result = abbe_shape_round_profile((const double(*)[2])profile, count, round, &rounded,
+                                      &rounded_count, error);
+  if (result == ABBE_OK)
+    result = abbe_shape_lathe((const double(*)[2])rounded, rounded_count, around, out, error);
+  free(profile);
+  free(rounded);
+  return result;
+}
+
+static abbe_result read_mesh(abbe_object_reading *r, abbe_object *out, abbe_error *error) {
+  const bool says = abbe_yaml_get(r->yaml, r->node, "smooth").id != 0;
+  char *name = NULL;
+  size_t levels = 0;
+  bool smooth = true;
+  abbe_result result = abbe_yaml_get_string(r->yaml, r->node, "mesh", &name, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "smooth", &smooth, error);
+  if (result == ABBE_OK) result = read_count(r, "subdivide", 0, 8, &levels, error);
+  if (result == ABBE_OK && levels > 0 && !smooth)
+    result = abbe_yaml_fail(r->yaml, r->node, error,
+                            "'subdivide' makes a smooth surface; leave it out or leave out "
+                            "'smooth: false'");
+  if (says || levels > 0) r->normals = smooth ? ABBE_NORMALS_SMOOTH : ABBE_NORMALS_FLAT;
+  if (result == ABBE_OK) out->mesh_path = abbe_scene_value_path(r->folder, name);
+  if (result == ABBE_OK && !out->mesh_path)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  if (result == ABBE_OK)
+    result = abbe_mesh_load(out->mesh_path, r->normals, &out->mesh, &out->mesh_others, error);
+  if (result == ABBE_OK && levels > 0) result = abbe_mesh_subdivide(&out->mesh, levels, error);
+  free(name);
+  return result;
+}
+
+abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object,
+                                     abbe_error *error) {
+  abbe_mesh *out = &object->mesh;
+  const abbe_yaml_node shape = abbe_yaml_get(r->yaml, r->node, "shape");
+  const abbe_yaml_node mesh = abbe_yaml_get(r->yaml, r->node, "mesh");
+  if ((shape.id != 0) == (mesh.id != 0))
+    return abbe_yaml_fail(r->yaml, r->node, error,
+                          "an object has either a 'shape' or a 'mesh' file; this one has %s",
+                          shape.id ? "both" : "neither");
+  int kind = ABBE_OBJECT_MESH;
+  abbe_result result = abbe_yaml_get_choice(r->yaml, r->node, "shape", shape_names, &kind, error);
+  if (result != ABBE_OK) return result;
+  r->kind = (abbe_object_kind)kind;
+  switch (r->kind) {
+  case ABBE_OBJECT_SPHERE:
+    result = read_sphere(r, out, error);
+    break;
+  case ABBE_OBJECT_RING:
+    result = read_ring(r, out, error);
+    break;
+  case ABBE_OBJECT_GEM:
+    result = read_gem(r, out, error);
+    break;
+  case ABBE_OBJECT_BRILLIANT:
+    result = read_brilliant(r, out, error);
+    break;
+  case ABBE_OBJECT_PRISM:
+    result = read_prism(r, out, error);
+    break;
+  case ABBE_OBJECT_BOX:
+    result = read_box(r, out, error);
+    break;
+  case ABBE_OBJECT_RECTANGLE:
+    result = read_rectangle(r, out, error);
+    break;
+  case ABBE_OBJECT_LATHE:
+    result = read_lathe(r, out, error);
+    break;
+  case ABBE_OBJECT_MESH:
+    result = read_mesh(r, object, error);
+    break;
+  }
+  /* schema errors carry their line already; the geometry's own sentences do not */
+  if (result != ABBE_OK && result != ABBE_SCHEMA)
+    return abbe_scene_value_locate(r->yaml, shape.id ? shape : mesh, result, error);
+  return result;
+}

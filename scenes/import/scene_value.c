@@ -1,0 +1,33 @@
+#include "scenes/import/scene_value.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+char *abbe_scene_value_path(const char *folder, const char *path) {
+  const size_t prefix = path[0] == '/' ? 0 : strlen(folder), size = prefix + strlen(path) + 1;
+  char *joined = malloc(size);
+  if (joined) snprintf(joined, size, "%.*s%s", (int)prefix, folder, path);
+  return joined;
+}
+
+abbe_result abbe_scene_value_locate(const abbe_yaml *yaml, abbe_yaml_node node, abbe_result code,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(yaml, error);
+  if (!error) return code;
+  char sentence[sizeof error->text];
+  memcpy(sentence, error->text, sizeof sentence);
+  abbe_yaml_fail(yaml, node, error, "%s", sentence);
+  error->code = code;
+  return code;
+}
+
+abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                   double out[3], abbe_error *error) {
+  ABBE_REQUIRE(yaml && key && out, error);
+  abbe_yaml_node ignored;
+  const abbe_result result = abbe_yaml_require(yaml, mapping, key, &ignored, error);
+  return result == ABBE_OK ? abbe_yaml_get_numbers(yaml, mapping, key, 3, -ABBE_SCENE_FAR,
+                                                   ABBE_SCENE_FAR, out, error)
+                           : result;
+}

@@ -1,0 +1,29 @@
+/* scene_value.h: values that the entries of a scene file share: paths, places of errors, points. */
+#ifndef ABBE_SCENES_IMPORT_SCENE_VALUE_H
+#define ABBE_SCENES_IMPORT_SCENE_VALUE_H
+
+#include "base/error.h"
+#include "base/yaml/yaml.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* No coordinate or length of a scene, in metres, may be larger. */
+#define ABBE_SCENE_FAR 1e6
+
+/* Path relative to folder, or as it is where it is absolute; malloc'd, NULL without memory. */
+char *abbe_scene_value_path(const char *folder, const char *path);
+
+/* Puts "FILE:LINE: " before the sentence of an error that came from deeper down; returns code. */
+abbe_result abbe_scene_value_locate(const abbe_yaml *yaml, abbe_yaml_node node, abbe_result code,
+                                    abbe_error *error);
+
+/* Three finite coordinates that must be there. */
+abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, const char *key,
+                                   double out[3], abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

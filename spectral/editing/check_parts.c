@@ -1,0 +1,52 @@
+#include "spectral/editing/check_parts.h"
+
+#include "base/number.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static abbe_finding *no_memory(abbe_check *c) {
+  c->result = abbe_error_set(c->error, ABBE_NO_MEMORY, "no memory for what is found");
+  return NULL;
+}
+
+bool abbe_check_has(const abbe_check *c, double lambda_nm) {
+  return lambda_nm >= c->low_nm && lambda_nm <= c->high_nm;
+}
+
+bool abbe_check_is_exponent(const abbe_dispersion *dispersion, size_t k) {
+  abbe_dispersion_model model = dispersion->model;
+  bool powers = model == ABBE_DISPERSION_POLYNOMIAL || model == ABBE_DISPERSION_POWERS ||
+                model == ABBE_DISPERSION_RII4;
+  return powers && k > 0 && k % 2 == 0;
+}
+
+abbe_finding *abbe_check_find(abbe_check *c, abbe_finding_kind kind, abbe_finding_weight weight) {
+  abbe_finding *made = abbe_findings_add(c->findings, kind, weight, c->row);
+  return made != NULL ? made : no_memory(c);
+}
+
+void abbe_check_say(abbe_check *c, char **sentence, const char *format, ...) {
+  char text[1200];
+  va_list arguments;
+  va_start(arguments, format);
+  abbe_number_format_list(text, sizeof text, format, arguments);
+  va_end(arguments);
+  free(*sentence);
+  *sentence = strdup(text);
+  if (*sentence == NULL) no_memory(c);
+}
+
+void abbe_check_set_coefficients(abbe_check *c, abbe_finding *finding,
+                                 const abbe_dispersion *right) {
+  char list[ABBE_DISPERSION_MAX_COEFFICIENTS * (ABBE_NUMBER_TEXT_SIZE + 2) + 3] = "[";
+  char text[ABBE_NUMBER_TEXT_SIZE];
+  size_t used = 1;
+  for (size_t i = 0; i < right->count; i++)
+    used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i > 0 ? ", " : "",
+                             abbe_number_text(right->c[i], text));
+  abbe_check_say(c, &finding->value, "%s]", list);
+  finding->key = "coefficients";
+}

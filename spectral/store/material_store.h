@@ -1,0 +1,41 @@
+/* material_store.h: a table of materials as one SQLite file, for more of them than YAML can hold.
+ *
+ * Rows are found by name without reading the others. A store is written whole, from a table
+ * (spectral/store/material_store_write.h), and not changed afterwards: what people edit is YAML
+ * (spectral/editing/table_edit.h). docs/materials.md describes its columns, which any SQLite
+ * program reads.
+ */
+#ifndef ABBE_SPECTRAL_STORE_MATERIAL_STORE_H
+#define ABBE_SPECTRAL_STORE_MATERIAL_STORE_H
+
+#include "base/error.h"
+#include "base/report.h"
+#include "spectral/materials/material_table.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Whether a regular file stands at path that begins as SQLite's do. */
+bool abbe_material_store_is(const char *path);
+/* Reads the rows of those names (whatever the case; one that is not there is left out), or with
+ * names NULL all rows, in the order in which they were written; a material's line is its row,
+ * from 1. With unread a row that cannot be read is noted there and left out, else it is
+ * ABBE_SCHEMA. Of all rows it is not tried whether their formulas have an index over their ranges,
+ * as abbe_material_check does for those of names. ABBE_IO; ABBE_PARSE where the file is damaged or
+ * not a store of this version; ABBE_NO_MEMORY. */
+abbe_result abbe_material_store_read(const char *path, const char *const *names, size_t count,
+                                     abbe_report *unread, abbe_material_table *out,
+                                     abbe_error *error);
+
+/* All rows, but of each its name alone: not to be used, but to be asked for. */
+abbe_result abbe_material_store_read_names(const char *path, abbe_material_table *out,
+                                           abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,182 @@
+#include "spectral/store/material_store_write.h"
+
+#include "spectral/store/material_store_columns.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+bool abbe_material_store_is_name(const char *path) {
+  const char *dot = strrchr(path, '.');
+  return dot != NULL && strcasecmp(dot, ".sqlite") == 0;
+}
+
+/* ---- what a row holds ---- */
+
+static void put_double(unsigned char *to, double value) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  for (int i = 0; i < 8; i++) to[i] = (unsigned char)(bits >> (8 * i));
+}
+
+static int bind_text(sqlite3_stmt *q, abbe_store_column column, const char *text) {
+  return sqlite3_bind_text(q, column + 1, text, -1, SQLITE_STATIC);
+}
+
+/* As the YAML of a table has it: NaN and 0 are not said. */
+static int bind_number(sqlite3_stmt *q, abbe_store_column column, double value) {
+  return value == 0 || isnan(value) ? SQLITE_OK : sqlite3_bind_double(q, column + 1, value);
+}
+
+static int bind_numbers(sqlite3_stmt *q, abbe_store_column column, const double *value,
+                        size_t count) {
+  unsigned char bytes[8 * ABBE_DISPERSION_MAX_COEFFICIENTS];
+  for (size_t i = 0; i < count; i++) put_double(bytes + 8 * i, value[i]);
+  return count == 0 ? SQLITE_OK
+                    : sqlite3_bind_blob(q, column + 1, bytes, (int)(8 * count), SQLITE_TRANSIENT);
+}
+
+static int bind_said(sqlite3_stmt *q, abbe_store_column column, const double *value, size_t count) {
+  bool any = false;
+  for (size_t i = 0; i < count; i++) any = any || value[i] != 0;
+  return any ? bind_numbers(q, column, value, count) : SQLITE_OK;
+}
+
+static int bind_spectrum(sqlite3_stmt *q, abbe_store_column column, abbe_store_column interpolation,
+                         const abbe_spectrum *spectrum) {
+  if (spectrum == NULL) return SQLITE_OK;
+  size_t count = abbe_spectrum_count(spectrum);
+  unsigned char *bytes = malloc(16 * count);
+  if (bytes == NULL) return SQLITE_NOMEM;
+  for (size_t i = 0; i < count; i++) {
+    put_double(bytes + 16 * i, abbe_spectrum_lambda_nm(spectrum)[i]);
+    put_double(bytes + 16 * i + 8, abbe_spectrum_value(spectrum)[i]);
+  }
+  int code = sqlite3_bind_blob(q, column + 1, bytes, (int)(16 * count), free); /* it frees them */
+  const char *name = abbe_interpolation_name(abbe_spectrum_interpolation(spectrum));
+  return code == SQLITE_OK ? bind_text(q, interpolation, name) : code;
+}
+
+static int bind_fit(sqlite3_stmt *q, abbe_store_column column, const abbe_material_fit *fit) {
+  double value[ABBE_STORE_MAX_TERMS + 3];
+  if (fit->terms == 0 || fit->terms > ABBE_STORE_MAX_TERMS) return SQLITE_OK;
+  memcpy(value, fit->c, fit->terms * sizeof *value);
+  value[fit->terms] = fit->max_error;
+  value[fit->terms + 1] = fit->min_nm;
+  value[fit->terms + 2] = fit->max_nm;
+  return bind_numbers(q, column, value, fit->terms + 3);
+}
+
+static int bind_catalogue(sqlite3_stmt *q, const abbe_material_catalogue *c) {
+  int code = bind_text(q, ABBE_STORE_code, c->code);
+  if (code == SQLITE_OK) code = bind_text(q, ABBE_STORE_status, c->status);
+  if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_melt_frequency, c->melt_frequency);
+  if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_density_g_cm3, c->density_g_cm3);
+  if (code == SQLITE_OK) code = bind_said(q, ABBE_STORE_expansion_per_k, c->expansion_per_k, 2);
+  if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_dpgf, c->dpgf);
+  if (code == SQLITE_OK) code = bind_said(q, ABBE_STORE_thermal, c->thermal, 6);
+  if (code == SQLITE_OK) code = bind_numbers(q, ABBE_STORE_ratings, c->ratings, c->rating_count);
+  return code;
+}
+
+static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
+  const abbe_dispersion *d = &m->dispersion;
+  const struct {
+    abbe_store_column column;
+    const char *text;
+  } texts[] = {{ABBE_STORE_name, m->name},
+               {ABBE_STORE_description, m->description},
+               {ABBE_STORE_model, abbe_dispersion_model_name(d->model)},
+               {ABBE_STORE_source, m->source},
+               {ABBE_STORE_comment, m->comment},
+               {ABBE_STORE_warning, m->warning}};
+  int code = SQLITE_OK;
+  for (size_t i = 0; i < sizeof texts / sizeof texts[0] && code == SQLITE_OK; i++)
+    code = bind_text(q, texts[i].column, texts[i].text);
+  if (code == SQLITE_OK) code = bind_numbers(q, ABBE_STORE_coefficients, d->c, d->count);
+  if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_from_nm, m->min_nm);
+  if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_to_nm, m->max_nm);
+  if (code == SQLITE_OK) code = sqlite3_bind_int(q, ABBE_STORE_extrapolate + 1, m->extrapolate);
+  if (code == SQLITE_OK && !isnan(m->temperature_c))
+    code = sqlite3_bind_double(q, ABBE_STORE_temperature_c + 1, m->temperature_c);
+  if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_n_d, m->published_n_d);
+  if (code == SQLITE_OK) code = bind_number(q, ABBE_STORE_v_d, m->published_v_d);
+  if (code == SQLITE_OK) code = bind_fit(q, ABBE_STORE_cauchy2, &m->fit[0]);
+  if (code == SQLITE_OK) code = bind_fit(q, ABBE_STORE_cauchy3, &m->fit[1]);
+  if (code == SQLITE_OK)
+    code = bind_spectrum(q, ABBE_STORE_points, ABBE_STORE_interpolation, d->table);
+  if (code == SQLITE_OK)
+    code = bind_spectrum(q, ABBE_STORE_attenuation_per_m, ABBE_STORE_attenuation_interpolation,
+                         m->attenuation);
+  return code == SQLITE_OK ? bind_catalogue(q, &m->catalogue) : code;
+}
+
+#define ASKED(name, type) ", ?"
+
+static abbe_result insert(sqlite3 *db, const abbe_material_table *table, abbe_error *error) {
+  sqlite3_stmt *q = NULL;
+  abbe_result result =
+      abbe_store_prepare(db, "INSERT INTO materials VALUES(NULL" ABBE_STORE_COLUMNS(ASKED) ")",
+                         "the store", &q, error);
+  for (size_t i = 0; i < table->count && result == ABBE_OK; i++) {
+    const abbe_material *m = &table->material[i];
+    result = abbe_material_check(m, error);
+    if (result != ABBE_OK) break;
+    sqlite3_reset(q);
+    sqlite3_clear_bindings(q);
+    int code = bind_material(q, m);
+    if (code == SQLITE_OK) code = sqlite3_step(q);
+    if (code == SQLITE_CONSTRAINT)
+      result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the name '%s' stands twice", m->name);
+    else if (code != SQLITE_DONE)
+      result = abbe_store_fail(db, code, m->name, error);
+  }
+  sqlite3_finalize(q);
+  return result;
+}
+
+static abbe_result describe(sqlite3 *db, const char *description, abbe_error *error) {
+  sqlite3_stmt *q = NULL;
+  abbe_result result =
+      abbe_store_prepare(db, "INSERT INTO about VALUES(?)", "the store", &q, error);
+  if (result != ABBE_OK) return result;
+  int code = sqlite3_bind_text(q, 1, description, -1, SQLITE_STATIC);
+  if (code == SQLITE_OK) code = sqlite3_step(q);
+  if (code != SQLITE_DONE) result = abbe_store_fail(db, code, "the store", error);
+  sqlite3_finalize(q);
+  return result;
+}
+
+static abbe_result execute(sqlite3 *db, const char *sql, abbe_error *error) {
+  int code = sqlite3_exec(db, sql, NULL, NULL, NULL);
+  return code == SQLITE_OK ? ABBE_OK : abbe_store_fail(db, code, "the store", error);
+}
+
+/* Made in memory, so that the file is written as every other, beside its target. */
+abbe_result abbe_material_store_write(const abbe_material_table *table, FILE *to,
+                                      abbe_error *error) {
+  ABBE_REQUIRE(table && to, error);
+  sqlite3 *db = NULL;
+  char sql[256];
+  snprintf(sql, sizeof sql, "PRAGMA application_id=%d; PRAGMA user_version=%d; BEGIN",
+           ABBE_STORE_APPLICATION, ABBE_STORE_VERSION);
+  int code = sqlite3_open_v2(":memory:", &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL);
+  abbe_result result =
+      code == SQLITE_OK ? execute(db, sql, error) : abbe_store_fail(db, code, "it", error);
+  if (result == ABBE_OK) result = execute(db, ABBE_STORE_ABOUT ";" ABBE_STORE_MATERIALS, error);
+  if (result == ABBE_OK) result = describe(db, table->description, error);
+  if (result == ABBE_OK) result = insert(db, table, error);
+  if (result == ABBE_OK) result = execute(db, "COMMIT", error);
+  sqlite3_int64 size = 0;
+  unsigned char *bytes = result == ABBE_OK ? sqlite3_serialize(db, "main", &size, 0) : NULL;
+  if (result == ABBE_OK && bytes == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a store");
+  if (result == ABBE_OK) fwrite(bytes, 1, (size_t)size, to);
+  sqlite3_free(bytes);
+  sqlite3_close(db);
+  if (result != ABBE_OK || (fflush(to) == 0 && !ferror(to))) return result;
+  return abbe_error_set(error, ABBE_IO, "the store could not be written");
+}

@@ -1,0 +1,207 @@
+#include "tests/check.h"
+#include "tests/random.h"
+
+#include "colorimetry/image/rgb_encoding.h"
+#include "colorimetry/rgb_space.h"
+
+#include <lcms2.h>
+#include <stdlib.h>
+
+static const char *const names[] = {"R", "G", "B"};
+
+static abbe_image one_pixel(double r, double g, double b) {
+  abbe_image image = {0};
+  assert_int_equal(abbe_image_make(1, 1, 3, names, &image, NULL), ABBE_OK);
+  image.data[0] = (float)r;
+  image.data[1] = (float)g;
+  image.data[2] = (float)b;
+  return image;
+}
+
+static void pixel_is(abbe_image *image, double r, double g, double b, double tolerance) {
+  assert_near((double)image->data[0], r, tolerance);
+  assert_near((double)image->data[1], g, tolerance);
+  assert_near((double)image->data[2], b, tolerance);
+  assert_true(abbe_rgb_encoding_is_srgb(image->xy, image->curve));
+  abbe_image_free(image);
+}
+
+static void test_curves(void **state) {
+  (void)state;
+  double xy[8], curve[5];
+  const double none[8] = {0};
+  abbe_rgb_encoding_srgb(xy, curve);
+  assert_near(abbe_rgb_encoding_light(curve, 0.5), 0.21404114048, 1e-10); /* [IEC61966] */
+  assert_near(abbe_rgb_encoding_light(curve, 0.02), 0.02 / 12.92, 1e-15);
+  assert_near(abbe_rgb_encoding_light(curve, 1), 1, 1e-15);
+  assert_true(abbe_rgb_encoding_is_known(xy, curve) && abbe_rgb_encoding_is_srgb(xy, curve));
+  abbe_rgb_encoding_display_p3(xy, curve);
+  assert_true(abbe_rgb_encoding_is_known(xy, curve) && !abbe_rgb_encoding_is_srgb(xy, curve));
+  assert_false(abbe_rgb_encoding_is_known(none, curve));
+  assert_false(abbe_rgb_encoding_is_known(xy, none));
+}
+
+/* What a display of this encoding would make of the probes. */
+static void answer(const double xy[8], const double curve[5], float xyz[][3]) {
+  double to_xyz[9];
+  abbe_rgb_encoding_probes(xyz);
+  assert_int_equal(abbe_rgb_space_chromaticities_to_xyz(xy, to_xyz, NULL), ABBE_OK);
+  for (int i = 0; i < ABBE_RGB_ENCODING_PROBES; i++) {
+    double v[3];
+    for (int c = 0; c < 3; c++) v[c] = abbe_rgb_encoding_light(curve, (double)xyz[i][c]);
+    abbe_rgb_space_apply(to_xyz, v, v);
+    for (int c = 0; c < 3; c++) xyz[i][c] = (float)v[c];
+  }
+}
+
+static void test_probes_find_the_encoding(void **state) {
+  (void)state;
+  double xy[3][8], curve[3][5] = {{0}, {0}, {2.4, 1, 0, 0, 0}};
+  abbe_rgb_encoding_srgb(xy[0], curve[0]);
+  abbe_rgb_encoding_display_p3(xy[1], curve[1]);
+  memcpy(xy[2], xy[0], sizeof xy[2]);
+  for (int i = 0; i < 3; i++) {
+    float xyz[ABBE_RGB_ENCODING_PROBES][3];
+    double found_xy[8], found_curve[5];
+    answer(xy[i], curve[i], xyz);
+    assert_true(abbe_rgb_encoding_of_probes((const float(*)[3])xyz, found_xy, found_curve));
+    for (int k = 0; k < 8; k++) assert_near(found_xy[k], xy[i][k], 1e-5);
+    for (int k = 0; k < 5; k++) assert_near(found_curve[k], curve[i][k], 1e-4);
+  }
+}
+
+/* Each breaks one thing that an encoding of this form has. */
+static void test_probes_of_something_else(void **state) {
+  (void)state;
+  for (int broken = 0; broken < 6; broken++) {
+    double xy[8], curve[5];
+    float xyz[ABBE_RGB_ENCODING_PROBES][3];
+    abbe_rgb_encoding_srgb(xy, curve);
+    answer(xy, curve, xyz);
+    for (int i = 0; i < ABBE_RGB_ENCODING_PROBES; i++)
+      for (int c = 0; c < 3; c++) {
+        if (broken == 0) xyz[i][c] *= 100;              /* PQ's unit */
+        if (broken == 1) xyz[i][c] += 0.01f;            /* black is lit */
+        if (broken == 2 && i == 1) xyz[i][c] *= 1.02f;  /* red does not add up */
+        if (broken == 3 && i == 20) xyz[i][c] += 2e-3f; /* the greys have a step */
+        if (broken == 4 && i == 6) xyz[i][c] *= 1.02f;  /* half a green is another curve's */
+        if (broken == 5) xyz[i][c] = NAN;
+      }
+    const float(*probes)[3] = (const float(*)[3])xyz;
+    assert_false(abbe_rgb_encoding_of_probes(probes, xy, curve));
+    assert_false(abbe_rgb_encoding_is_known(xy, curve));
+  }
+}
+
+/* The profile as another program opens it. */
+static void test_the_profile_of_display_p3(void **state) {
+  (void)state;
+  double xy[8], curve[5];
+  void *icc[2];
+  size_t size[2];
+  abbe_rgb_encoding_display_p3(xy, curve);
+  for (int i = 0; i < 2; i++)
+    assert_int_equal(abbe_rgb_encoding_profile(xy, curve, &icc[i], &size[i], NULL), ABBE_OK);
+  assert_int_equal(size[0], size[1]);
+  assert_memory_equal(icc[0], icc[1], size[0]);
+  cmsHPROFILE profile = cmsOpenProfileFromMem(icc[0], (cmsUInt32Number)size[0]);
+  assert_non_null(profile);
+  char text[40];
+  cmsGetProfileInfoASCII(profile, cmsInfoDescription, "en", "US", text, sizeof text);
+  assert_string_equal(text, "Display P3");
+  /* as in the profiles that makers of displays ship */
+  static const double columns[3][3] = {
+      {0.51512, 0.24120, -0.00105}, {0.29198, 0.69225, 0.04189}, {0.15710, 0.06657, 0.78407}};
+  static const cmsTagSignature tags[] = {cmsSigRedColorantTag, cmsSigGreenColorantTag,
+                                         cmsSigBlueColorantTag};
+  for (int c = 0; c < 3; c++) {
+    const cmsCIEXYZ *v = cmsReadTag(profile, tags[c]);
+    assert_near(v->X, columns[c][0], 3e-5);
+    assert_near(v->Y, columns[c][1], 3e-5);
+    assert_near(v->Z, columns[c][2], 3e-5);
+  }
+  const cmsToneCurve *tone = cmsReadTag(profile, cmsSigGreenTRCTag);
+  assert_near((double)cmsEvalToneCurveFloat(tone, 0.5f), 0.21404114, 1e-5);
+  assert_near((double)cmsEvalToneCurveFloat(tone, 0.02f), 0.02 / 12.92, 1e-6);
+  cmsCloseProfile(profile);
+  free(icc[0]);
+  free(icc[1]);
+  const double none[8] = {0};
+  assert_int_equal(abbe_rgb_encoding_profile(none, none, &icc[0], &size[0], NULL), ABBE_COLOUR);
+  assert_null(icc[0]);
+}
+
+/* By formula and by Little CMS through the profile: the same. */
+static void test_to_srgb_in_two_ways(void **state) {
+  (void)state;
+  double xy[8], curve[5];
+  void *icc = NULL;
+  size_t size = 0;
+  abbe_rgb_encoding_display_p3(xy, curve);
+  assert_int_equal(abbe_rgb_encoding_profile(xy, curve, &icc, &size, NULL), ABBE_OK);
+  uint64_t seed = 7;
+  for (int i = 0; i < 200; i++) {
+    double v[3];
+    for (int c = 0; c < 3; c++) v[c] = random_between(&seed, 0, 1);
+    abbe_image a = one_pixel(v[0], v[1], v[2]), b = one_pixel(v[0], v[1], v[2]);
+    memcpy(a.xy, xy, sizeof xy);
+    memcpy(a.curve, curve, sizeof curve);
+    assert_int_equal(abbe_rgb_encoding_to_srgb(&a, "a", NULL), ABBE_OK);
+    assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&b, icc, size, "b", NULL), ABBE_OK);
+    pixel_is(&b, (double)a.data[0], (double)a.data[1], (double)a.data[2], 1.5e-3);
+    abbe_image_free(&a);
+  }
+  /* Rec.709's red, as published for CSS colours, and a red that sRGB cannot hold */
+  abbe_image red = one_pixel(0.91749, 0.20029, 0.13856);
+  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&red, icc, size, "red", NULL), ABBE_OK);
+  pixel_is(&red, 1, 0, 0, 4e-3);
+  red = one_pixel(1, 0, 0);
+  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&red, icc, size, "red", NULL), ABBE_OK);
+  pixel_is(&red, 1, 0, 0, 0);
+  free(icc);
+}
+
+static void *saved(cmsHPROFILE profile, cmsUInt32Number *size) {
+  assert_true(profile != NULL && cmsSaveProfileToMem(profile, NULL, size));
+  void *icc = malloc(*size);
+  assert_true(icc != NULL && cmsSaveProfileToMem(profile, icc, size));
+  cmsCloseProfile(profile);
+  return icc;
+}
+
+static void test_other_profiles(void **state) {
+  (void)state;
+  cmsUInt32Number size = 0;
+  cmsToneCurve *linear = cmsBuildGamma(NULL, 1);
+  void *icc = saved(cmsCreateGrayProfile(cmsD50_xyY(), linear), &size);
+  cmsFreeToneCurve(linear);
+  abbe_image grey = one_pixel(0.5, 0.5, 0.5);
+  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&grey, icc, size, "grey", NULL), ABBE_OK);
+  pixel_is(&grey, 0.73536, 0.73536, 0.73536, 1e-3);
+  abbe_error error = {0};
+  abbe_image image = one_pixel(0.5, 0.5, 0.5);
+  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&image, icc, 100, "cut.png", &error),
+                   ABBE_COLOUR);
+  assert_contains(error.text, "cut.png");
+  free(icc);
+  icc = saved(cmsCreateLab4Profile(NULL), &size);
+  assert_int_equal(abbe_rgb_encoding_profile_to_srgb(&image, icc, size, "lab", NULL), ABBE_COLOUR);
+  free(icc);
+  assert_int_equal(abbe_rgb_encoding_to_srgb(&image, "unstated.png", &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "unstated.png");
+  abbe_rgb_encoding_srgb(image.xy, image.curve);
+  image.xy[1] = image.xy[3] = image.xy[5] = 0.3; /* primaries on a line */
+  assert_int_equal(abbe_rgb_encoding_to_srgb(&image, "line.png", &error), ABBE_INVALID_ARGUMENT);
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_curves),
+                                     cmocka_unit_test(test_probes_find_the_encoding),
+                                     cmocka_unit_test(test_probes_of_something_else),
+                                     cmocka_unit_test(test_the_profile_of_display_p3),
+                                     cmocka_unit_test(test_to_srgb_in_two_ways),
+                                     cmocka_unit_test(test_other_profiles)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,113 @@
+/* No folder is too full to be seen at a glance, and no source too long to be read at a sitting. */
+#include "tests/check.h"
+#include "tests/house/sources.h"
+
+enum { MOST_FILES = 28, MOST_LINES = 500 };
+
+/* What is still too large. Nothing is ever added here; what has become smaller must go. */
+static const char *const long_sources[] = {
+    "cli/sweep/sweep_report.c",
+    "cli/trace.c",
+    "gl/caustics/photon_deposit.comp",
+    "gl/caustics/photon_pass.c",
+    "gl/plan/plan.c",
+    "gl/scene/scene_buffers.c",
+    "tests/gl/plan/test_plan.c",
+    "tests/gl/test_plan_scenes.c",
+    "tests/gl/test_renderer.c",
+    "tests/validation/compare/test_compare.c",
+    "tests/validation/transport/test_light_walk.c",
+    "validation/sweep/sweep.c",
+    "validation/transport/light_walk.c",
+    NULL,
+};
+/* Folders of data, which nobody reads from end to end. */
+static const char *const data_folders[] = {"tests/bad", "docs/images", NULL};
+
+static bool is_among(const char *name, const char *const *list) {
+  for (size_t i = 0; list[i] != NULL; i++)
+    if (strcmp(list[i], name) == 0) return true;
+  return false;
+}
+
+typedef struct sized {
+  const char *name;
+  size_t size;
+} sized;
+
+/* What is above the limit without being an exception, and each exception that is not above it. */
+static size_t judge(const sized *list, size_t count, size_t most, const char *unit,
+                    const char *const *exceptions) {
+  size_t wrong = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (list[i].size <= most || is_among(list[i].name, exceptions)) continue;
+    print_error("%s has %zu %s; at most %zu are allowed\n", list[i].name, list[i].size, unit, most);
+    wrong++;
+  }
+  for (size_t k = 0; exceptions[k] != NULL; k++) {
+    bool needed = false;
+    for (size_t i = 0; i < count; i++)
+      needed = needed || (list[i].size > most && strcmp(list[i].name, exceptions[k]) == 0);
+    if (needed) continue;
+    print_error("the exception '%s' is not needed any more; take it out\n", exceptions[k]);
+    wrong++;
+  }
+  return wrong;
+}
+
+static void test_sources_can_be_read(void **state) {
+  (void)state;
+  sources all;
+  static sized list[4096];
+  size_t count = 0;
+  sources_read(&all);
+  for (size_t i = 0; i < all.count && count < 4096; i++)
+    if (all.file[i].is_source) list[count++] = (sized){all.file[i].path, all.file[i].lines};
+  assert_true(count > 500 && count < 4096);
+  size_t wrong = judge(list, count, MOST_LINES, "lines", long_sources);
+  sources_free(&all);
+  assert_int_equal(wrong, 0);
+}
+
+static void test_folders_can_be_seen(void **state) {
+  (void)state;
+  sources all;
+  static char name[512][SOURCES_MAX_PATH];
+  static sized list[512];
+  size_t count = 0;
+  sources_read(&all);
+  for (size_t i = 0; i < all.count; i++) {
+    char folder[SOURCES_MAX_PATH];
+    size_t at = 0;
+    sources_folder(all.file[i].path, folder);
+    while (at < count && strcmp(name[at], folder) != 0) at++;
+    assert_true(at < 512);
+    if (at == count) {
+      strcpy(name[at], folder);
+      list[count++] = (sized){name[at], 0};
+    }
+    list[at].size++;
+  }
+  sources_free(&all);
+  assert_true(count > 50);
+  assert_int_equal(judge(list, count, MOST_FILES, "files", data_folders), 0);
+}
+
+static void test_the_judge_sees_both_ends(void **state) {
+  (void)state;
+  static const char *const none[] = {NULL}, *const b[] = {"b", NULL}, *const a[] = {"a", NULL};
+  const sized list[] = {{"a", 10}, {"b", 11}};
+  assert_int_equal(judge(list, 2, 11, "lines", none), 0);
+  assert_int_equal(judge(list, 2, 10, "lines", b), 0);
+  print_message("the next lines are of sizes made wrong on purpose\n");
+  assert_int_equal(judge(list, 2, 10, "lines", none), 1);
+  assert_int_equal(judge(list, 2, 10, "lines", a), 2);
+  assert_int_equal(judge(list, 2, 11, "lines", b), 1);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sources_can_be_read),
+                                     cmocka_unit_test(test_folders_can_be_seen),
+                                     cmocka_unit_test(test_the_judge_sees_both_ends)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,435 @@
+/* What abbe_mesh_fix does, and what it refuses. */
+#include "tests/scenes/solids.h"
+
+#include "scenes/geometry/transform.h"
+#include "scenes/geometry/vector.h"
+#include "scenes/shapes/shape.h"
+
+#include <stdlib.h>
+
+static void assert_fixes(abbe_mesh *m, const char *word) {
+  char *what = NULL;
+  abbe_error error = {0};
+  if (abbe_mesh_fix(m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  if (word) {
+    assert_non_null(what);
+    if (!strstr(what, word)) fail_msg("'%s' lacks '%s'", what, word);
+  } else {
+    assert_null(what);
+  }
+  free(what);
+  const abbe_mesh_report r = test_mesh_faults(m);
+  assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
+  assert_true(r.volume > 0);
+}
+
+static void a_sound_mesh_is_left_alone(void **state) {
+  (void)state;
+  abbe_mesh m = test_sphere(2);
+  const double(*before)[3] = (const double(*)[3])m.position;
+  assert_fixes(&m, NULL);
+  assert_ptr_equal(before, m.position);
+  abbe_mesh_free(&m);
+}
+
+static void an_inverted_mesh_is_turned(void **state) {
+  (void)state;
+  abbe_mesh m = test_sphere(2);
+  for (size_t f = 0; f < m.face_count; f++) test_turn_face(&m, f);
+  assert_true(test_mesh_faults(&m).volume < 0);
+  assert_fixes(&m, "inside-out part turned");
+  assert_true(abbe_vector_dot(m.normal[0], m.position[0]) > 0.99);
+  abbe_mesh_free(&m);
+}
+
+static void single_flipped_faces_are_turned(void **state) {
+  (void)state;
+  abbe_mesh m = test_sphere(2);
+  test_turn_face(&m, 0);
+  test_turn_face(&m, 77);
+  assert_fixes(&m, "2 faces turned");
+  abbe_mesh_free(&m);
+}
+
+static void small_and_flat_holes_are_closed(void **state) {
+  (void)state;
+  abbe_mesh m = test_sphere(3);
+  m.face_count--;
+  assert_fixes(&m, "1 hole closed");
+  assert_int_equal(m.face_count, 1280);
+  abbe_mesh_free(&m);
+  const double size[3] = {1, 1, 1};
+  assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
+  m.face_count -= 2;
+  assert_fixes(&m, "1 hole closed");
+  assert_true(fabs(test_mesh_faults(&m).volume - 1) < 1e-12);
+  abbe_mesh_free(&m);
+}
+
+static void a_large_bent_hole_is_refused_and_counted(void **state) {
+  (void)state;
+  abbe_mesh m = test_sphere(3);
+  m.face_count -= 200;
+  abbe_error error;
+  char *what = NULL;
+  const abbe_mesh_report r = test_mesh_faults(&m);
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, &error),
+                   ABBE_GEOMETRY);
+  assert_null(what);
+  char where[160];
+  snprintf(where, sizeof where,
+           "%zu open edges make %zu hole%s, the widest of %zu edges, %.3g across", r.open_edges,
+           r.holes, r.holes == 1 ? "" : "s", r.hole_edges, r.hole_size);
+  assert_contains(error.text, where);
+  snprintf(where, sizeof where, "around (%.4g, %.4g, %.4g)", r.hole[0], r.hole[1], r.hole[2]);
+  assert_contains(error.text, where);
+  assert_contains(error.text, "'repair: true' closes holes");
+  assert_int_equal(m.face_count, 1080);
+  abbe_mesh_free(&m);
+}
+
+/* The rim of a bowl, and a body with two unlike holes. */
+static void holes_are_measured_and_placed(void **state) {
+  (void)state;
+  const test_box box = {{0, 0, 0}, {3, 2, 1}, false};
+  abbe_mesh m = test_boxes(&box, 1);
+  memmove(m.face, m.face + 2, 8 * sizeof *m.face); /* neither x = 0 nor z = 1 */
+  m.face_count = 8;
+  abbe_mesh_report r = test_mesh_faults(&m);
+  assert_int_equal(r.holes, 1); /* they meet in an edge, so that they are one */
+  assert_int_equal(r.hole_edges, 6);
+  assert_near(r.hole_size, 3, 1e-12);
+  assert_near(r.hole[0], 1.5, 1e-12);
+  abbe_mesh_free(&m);
+  m = test_boxes(&box, 1);
+  m.face_count = 10;
+  memmove(m.face, m.face + 2, 8 * sizeof *m.face); /* x = 0 alone is gone, and z = 1 */
+  m.face_count = 8;
+  r = test_mesh_faults(&m);
+  assert_int_equal(r.open_edges, 6);
+  abbe_mesh_free(&m);
+}
+
+/* Without being asked a bowl is no solid; repaired it is one with a lid, as small as can be. */
+static void repair_closes_what_bends(void **state) {
+  (void)state;
+  abbe_mesh m = test_sphere(3);
+  size_t kept = 0;
+  for (size_t f = 0; f < m.face_count; f++) {
+    const uint32_t *c = m.face[f];
+    /* below a plane that leans, and an edge that is not round */
+    double most = -1;
+    for (int k = 0; k < 3; k++)
+      most = fmax(most, m.position[c[k]][2] + 0.6 * m.position[c[k]][0] * m.position[c[k]][1]);
+    if (most < 0.3) memmove(m.face[kept++], c, sizeof *m.face);
+  }
+  m.face_count = kept;
+  abbe_error error = {0};
+  char *what = NULL;
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
+  if (abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_contains(what, "1 hole closed, 1.98 across in the mesh's own unit");
+  free(what);
+  const abbe_mesh_report r = test_mesh_faults(&m);
+  assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
+  assert_int_equal(r.shells, 1);
+  /* of half a ball, a little more */
+  assert_true(r.volume > 2.0 && r.volume < 3.2);
+  assert_true(r.area > 2 * 3.14159 && r.area < 3.6 * 3.14159);
+  abbe_mesh_free(&m);
+}
+
+static void faces_that_are_there_twice_are_one(void **state) {
+  (void)state;
+  const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, false}};
+  abbe_mesh m = test_boxes(box, 2);
+  assert_fixes(&m, "12 faces that were there twice dropped");
+  assert_int_equal(m.face_count, 12);
+  assert_near(test_mesh_faults(&m).volume, 1, 1e-12);
+  abbe_mesh_free(&m);
+}
+
+static char *repaired(abbe_mesh *m) {
+  abbe_error error = {0};
+  char *what = NULL;
+  if (abbe_mesh_fix(m, ABBE_NORMALS_AUTO, true, NULL, &what, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return what;
+}
+
+/* Both sides of every face are there; and two bodies share a wall. */
+static void repair_drops_walls_of_faces_back_to_back(void **state) {
+  (void)state;
+  const test_box both[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{0, 0, 0}, {1, 1, 1}, true}};
+  abbe_mesh m = test_boxes(both, 2);
+  char *what = repaired(&m);
+  assert_contains(what, "12 pairs of faces back to back");
+  assert_int_equal(m.face_count, 12);
+  assert_near(test_mesh_faults(&m).volume, 1, 1e-12);
+  free(what);
+  abbe_mesh_free(&m);
+  const test_box beside[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
+  m = test_boxes(beside, 2);
+  what = repaired(&m);
+  assert_contains(what, "2 pairs of faces back to back");
+  assert_int_equal(m.face_count, 20);
+  assert_int_equal(test_mesh_faults(&m).shells, 1);
+  assert_near(test_mesh_faults(&m).volume, 2, 1e-12);
+  free(what);
+  abbe_mesh_free(&m);
+}
+
+/* A fin on a box, and a wall of single faces across a longer one. */
+static void repair_drops_sheets(void **state) {
+  (void)state;
+  const test_box box[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{5, 5, 5}, {6, 6, 6}, false}};
+  abbe_mesh m = test_boxes(box, 2);
+  m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
+  m.face_count = 13;
+  abbe_error error = {0};
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, NULL, &error), ABBE_GEOMETRY);
+  assert_contains(error.text,
+                  "1 edge with more than two faces, one of 3 from (1, 0, 0) to (1, 0, 1)");
+  assert_contains(error.text, "'repair: true'");
+  char *what = repaired(&m);
+  assert_contains(what, "1 sheet that hung on the body");
+  assert_int_equal(m.face_count, 12);
+  assert_near(test_mesh_faults(&m).max[0], 1, 0); /* the sheet's corner is gone as well */
+  free(what);
+  abbe_mesh_free(&m);
+  m = test_boxes(box, 2);
+  m.face[12][0] = 4, m.face[12][1] = 5, m.face[12][2] = 15;
+  m.face_count = 13;
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, true, NULL, NULL, NULL), ABBE_OK);
+  assert_int_equal(m.vertex_count, 8);
+  abbe_mesh_free(&m);
+  const test_box beside[2] = {{{0, 0, 0}, {1, 1, 1}, false}, {{1, 0, 0}, {2, 1, 1}, false}};
+  m = test_boxes(beside, 2);
+  memmove(m.face[12], m.face[14], 10 * sizeof *m.face); /* the second one's half of the wall */
+  m.face_count = 22;
+  what = repaired(&m);
+  assert_contains(what, "1 sheet");
+  assert_int_equal(m.face_count, 20);
+  assert_near(test_mesh_faults(&m).volume, 2, 1e-12);
+  free(what);
+  abbe_mesh_free(&m);
+}
+
+/* A point on another's edge, as booleans of modellers leave it: a slit without a width. */
+static void repair_closes_slits(void **state) {
+  (void)state;
+  const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
+  abbe_mesh corner = test_boxes(&box, 1), m;
+  assert_int_equal(abbe_mesh_make(9, 13, false, &m, NULL), ABBE_OK);
+  memcpy(m.position, corner.position, 8 * sizeof *m.position);
+  memcpy(m.face, corner.face, 12 * sizeof *m.face);
+  abbe_mesh_free(&corner);
+  m.position[8][0] = 0.4, m.position[8][2] = 1; /* on the edge from 1 to 5 */
+  /* the top's face at that edge is cut there, the front's is not */
+  const uint32_t left[3] = {1, 8, 3}, right[3] = {8, 5, 7};
+  size_t at = 0;
+  for (size_t f = 0; f < 12; f++)
+    if (m.face[f][0] == 1 && m.face[f][1] == 5 && m.face[f][2] == 7) at = f;
+  assert_true(at > 0);
+  memcpy(m.face[at], right, sizeof right);
+  const uint32_t middle[3] = {1, 8, 7};
+  memcpy(m.face[12], middle, sizeof middle);
+  (void)left;
+  assert_int_equal(test_mesh_faults(&m).open_edges, 3);
+  char *what = repaired(&m);
+  const abbe_mesh_report r = test_mesh_faults(&m);
+  assert_int_equal(r.open_edges + r.crowded_edges + r.flipped_edges + r.degenerate_faces, 0);
+  assert_near(r.volume, 1, 1e-12);
+  free(what);
+  abbe_mesh_free(&m);
+}
+
+/* Depth is told among what does not cross: a body that reaches into another is no bubble of it. */
+static void bodies_that_cross_stay_bodies(void **state) {
+  (void)state;
+  const test_box box[2] = {{{-1, -1, -1}, {1, 1, 1}, false},
+                           {{-0.1, -0.3, -0.3}, {1.9, 0.9, 0.7}, false}};
+  abbe_mesh m = test_boxes(box, 2), *part = NULL;
+  size_t solids = 0, count = 0;
+  char *what = NULL;
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, &solids, &what, NULL), ABBE_OK);
+  assert_null(what);
+  assert_int_equal(solids, 2);
+  assert_int_equal(abbe_mesh_split(&m, &part, &count, NULL), ABBE_OK);
+  assert_int_equal(count, 2);
+  assert_near(test_mesh_faults(&part[0]).volume, 8, 1e-12);
+  assert_near(test_mesh_faults(&part[1]).volume, 2 * 1.2, 1e-12);
+  for (size_t i = 0; i < 2; i++) abbe_mesh_free(&part[i]);
+  free(part);
+  abbe_mesh_free(&m);
+  m = test_boxes(box, 1);
+  assert_int_equal(abbe_mesh_split(&m, &part, &count, NULL), ABBE_OK);
+  assert_int_equal(count, 1);
+  assert_null(part);
+  abbe_mesh_free(&m);
+}
+
+static void more_solids_than_are_followed_are_refused(void **state) {
+  (void)state;
+  enum { COUNT = 34 };
+  test_box box[COUNT];
+  for (int i = 0; i < COUNT; i++) { /* each crosses all others: rods through one middle */
+    const double a = 0.01 * (i + 1);
+    box[i] = (test_box){{-1 - a, -a, -0.5 - a}, {1 + a, a, 0.5 + a}, false};
+    if (i % 2) box[i] = (test_box){{-a, -1 - a, -0.6 + 0.5 * a}, {a, 1 + a, 0.6 - 0.5 * a}, false};
+  }
+  abbe_mesh m = test_boxes(box, COUNT), *part = NULL;
+  size_t count = 0;
+  abbe_error error = {0};
+  const abbe_result result = abbe_mesh_split(&m, &part, &count, &error);
+  if (result == ABBE_OK) {
+    assert_true(count <= ABBE_MESH_MAX_SOLIDS);
+    for (size_t i = 0; i < count; i++) abbe_mesh_free(&part[i]);
+    free(part);
+  } else {
+    assert_int_equal(result, ABBE_UNSUPPORTED);
+    assert_contains(error.text, "at most 32");
+  }
+  abbe_mesh_free(&m);
+}
+
+static void a_surface_that_crosses_itself_is_said(void **state) {
+  (void)state;
+  abbe_mesh m;
+  char *what = NULL;
+  assert_int_equal(abbe_shape_ring(1, 0.3, 48, 24, &m, NULL), ABBE_OK);
+  for (size_t v = 0; v < m.vertex_count; v++)
+    if (m.position[v][0] > 0.8) m.position[v][0] -= 2.1;
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, &what, NULL), ABBE_OK);
+  assert_contains(what, "the surface crosses itself, in ");
+  assert_contains(what, ": light may go wrong there");
+  free(what);
+  abbe_mesh_free(&m);
+}
+
+/* A cylinder: around it smooth, at its rims not. */
+static void normals_by_angles_keep_creases(void **state) {
+  (void)state;
+  const double profile[4][2] = {{0, 0}, {1, 0}, {1, 2}, {0, 2}};
+  abbe_mesh m;
+  assert_int_equal(abbe_shape_lathe(profile, 4, 24, &m, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_AUTO, NULL), ABBE_OK);
+  assert_int_equal(m.vertex_count, 24 * 4 + 2);
+  for (size_t v = 0; v < m.vertex_count; v++) {
+    const double *p = m.position[v], *n = m.normal[v];
+    if (n[2] > 0.5)
+      assert_near(n[2], 1, 1e-12);
+    else if (n[2] < -0.5)
+      assert_near(n[2], -1, 1e-12);
+    else
+      assert_near(n[0] * p[0] + n[1] * p[1], 1, 1e-9);
+  }
+  abbe_mesh_free(&m);
+}
+
+static void degenerate_faces_are_fixed(void **state) {
+  (void)state;
+  abbe_mesh m;
+  /* a box whose top has a vertex in the middle of one edge: one face without area beside it */
+  const double at[9][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},  {0, 0, 1},
+                           {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {0.5, 0, 1}};
+  const uint32_t face[16][3] = {{0, 2, 1}, {0, 3, 2}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6},
+                                {3, 0, 4}, {3, 4, 7}, {0, 1, 5}, {0, 5, 4}, {4, 5, 8}, {4, 8, 7},
+                                {8, 5, 6}, {8, 6, 7}, {0, 0, 1}, {6, 7, 7}};
+  assert_int_equal(abbe_mesh_make(9, 16, false, &m, NULL), ABBE_OK);
+  memcpy(m.position, at, sizeof at);
+  memcpy(m.face, face, sizeof face);
+  assert_int_equal(test_mesh_faults(&m).degenerate_faces, 3);
+  assert_int_equal(test_mesh_faults(&m).open_edges, 0);
+  assert_fixes(&m, "1 face without area split away");
+  assert_true(fabs(test_mesh_faults(&m).volume - 1) < 1e-12);
+  abbe_mesh_free(&m);
+}
+
+/* Two shells in one mesh: b is moved into a. */
+static abbe_mesh joined(abbe_mesh *a, abbe_mesh *b) {
+  abbe_mesh m;
+  assert_int_equal(abbe_mesh_make(a->vertex_count + b->vertex_count, a->face_count + b->face_count,
+                                  false, &m, NULL),
+                   ABBE_OK);
+  memcpy(m.position, a->position, a->vertex_count * sizeof *a->position);
+  memcpy(m.position + a->vertex_count, b->position, b->vertex_count * sizeof *b->position);
+  memcpy(m.face, a->face, a->face_count * sizeof *a->face);
+  for (size_t f = 0; f < b->face_count; f++)
+    for (int k = 0; k < 3; k++)
+      m.face[a->face_count + f][k] = (uint32_t)a->vertex_count + b->face[f][k];
+  abbe_mesh_free(a);
+  abbe_mesh_free(b);
+  return m;
+}
+
+static void a_bubble_faces_into_itself(void **state) {
+  (void)state;
+  abbe_mesh outer = test_sphere(2), inner;
+  assert_int_equal(abbe_shape_sphere(0.5, 2, &inner, NULL), ABBE_OK);
+  const double whole = test_mesh_faults(&outer).volume, hole = test_mesh_faults(&inner).volume;
+  abbe_mesh m = joined(&outer, &inner);
+  assert_int_equal(test_mesh_faults(&m).shells, 2);
+  assert_fixes(&m, "1 inside-out part");
+  assert_true(fabs(test_mesh_faults(&m).volume - (whole - hole)) < 1e-12);
+  assert_fixes(&m, NULL);
+  const double in_glass[3] = {0.7, 0.1, 0.1}, in_bubble[3] = {0.1, 0.2, 0.1}, out[3] = {2, 0, 0};
+  assert_true(abbe_mesh_contains(&m, in_glass));
+  assert_false(abbe_mesh_contains(&m, in_bubble));
+  assert_false(abbe_mesh_contains(&m, out));
+  abbe_mesh_free(&m);
+}
+
+/* The lid of a box is missing: fixed, all that was there has the file's normals, the lid has its
+ * own. */
+static void fixing_keeps_given_normals(void **state) {
+  (void)state;
+  const test_box box = {{0, 0, 0}, {1, 1, 1}, false};
+  abbe_mesh m = test_boxes(&box, 1), whole = test_boxes(&box, 1); /* smooth, as if a file said so */
+  char *what = NULL;
+  m.given_normals = true;
+  m.face_count = 10;
+  for (size_t f = 0; f < 10; f++) test_turn_face(&m, f); /* and inside out */
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_AUTO, false, NULL, &what, NULL), ABBE_OK);
+  assert_contains(what, "hole closed");
+  free(what);
+  assert_true(m.given_normals);
+  for (size_t f = 0; f < 10; f++)
+    for (int k = 0; k < 3; k++) {
+      const double *p = m.position[m.face[f][k]], *n = m.normal[m.face[f][k]];
+      for (size_t v = 0; v < whole.vertex_count; v++)
+        if (memcmp(whole.position[v], p, sizeof whole.position[v]) == 0)
+          for (int i = 0; i < 3; i++) assert_near(n[i], whole.normal[v][i], 1e-12);
+    }
+  for (size_t f = 10; f < m.face_count; f++)
+    for (int k = 0; k < 3; k++) assert_near(m.normal[m.face[f][k]][2], 1, 1e-9);
+  abbe_mesh_free(&whole);
+  abbe_mesh_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_sound_mesh_is_left_alone),
+      cmocka_unit_test(an_inverted_mesh_is_turned),
+      cmocka_unit_test(single_flipped_faces_are_turned),
+      cmocka_unit_test(small_and_flat_holes_are_closed),
+      cmocka_unit_test(a_large_bent_hole_is_refused_and_counted),
+      cmocka_unit_test(holes_are_measured_and_placed),
+      cmocka_unit_test(repair_closes_what_bends),
+      cmocka_unit_test(faces_that_are_there_twice_are_one),
+      cmocka_unit_test(repair_drops_walls_of_faces_back_to_back),
+      cmocka_unit_test(repair_drops_sheets),
+      cmocka_unit_test(repair_closes_slits),
+      cmocka_unit_test(bodies_that_cross_stay_bodies),
+      cmocka_unit_test(more_solids_than_are_followed_are_refused),
+      cmocka_unit_test(a_surface_that_crosses_itself_is_said),
+      cmocka_unit_test(normals_by_angles_keep_creases),
+      cmocka_unit_test(degenerate_faces_are_fixed),
+      cmocka_unit_test(a_bubble_faces_into_itself),
+      cmocka_unit_test(fixing_keeps_given_normals),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

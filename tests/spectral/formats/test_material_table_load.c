@@ -1,0 +1,234 @@
+#include "tests/check.h"
+
+#include "base/file.h"
+#include "spectral/dispersion/fit.h"
+#include "spectral/formats/material_table_load.h"
+
+#include <stdlib.h>
+
+static abbe_material_table load(const char *path) {
+  abbe_material_table table;
+  abbe_error error = {0};
+  if (abbe_material_table_load(path, &table, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return table;
+}
+
+static const abbe_material *find(const abbe_material_table *table, const char *name) {
+  const abbe_material *m = NULL;
+  abbe_error error = {0};
+  if (abbe_material_table_find(table, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return m;
+}
+
+/* ---- the shipped tables ---- */
+
+/* As the catalogues print them; for papers that print none, from an evaluation of their formulas by
+ * another hand. The tolerance is half of the last printed digit. */
+static void shipped_indices_are_the_published_ones(void **state) {
+  (void)state;
+  const struct {
+    const char *name;
+    double n_d, n_d_within, v_d, v_d_within;
+  } rows[] = {
+      {"fused-silica", 1.458464, 5e-7, 67.821, 5e-4},
+      {"n-bk7", 1.51680, 5e-6, 64.17, 5e-3},
+      {"k5", 1.522490, 5e-7, 59.731, 5e-4},
+      {"n-bak4", 1.56883, 5e-6, 55.98, 5e-3},
+      {"n-baf10", 1.67003, 5e-6, 47.11, 5e-3},
+      {"f2", 1.62004, 5e-6, 36.37, 5e-3},
+      {"sf10", 1.72825, 5e-6, 28.41, 5e-3},
+      {"sf11", 1.78472, 5e-6, 25.76, 5e-3},
+      {"n-sf11", 1.78472, 5e-6, 25.68, 5e-3},
+      {"water", 1.333403, 5e-7, 55.760, 5e-4},
+      {"pmma", 1.490595, 5e-7, 58.005, 5e-4},
+      {"sapphire", 1.768172, 5e-7, 72.309, 5e-4},
+      {"diamond", 2.417486, 5e-7, 55.301, 5e-4},
+      {"cubic-zirconia", 2.158769, 5e-7, 33.540, 5e-4},
+      {"moissanite", 2.647990, 5e-7, 25.957, 5e-4},
+      {"quartz", 1.544276, 5e-7, 69.689, 5e-4},
+      {"rutile", 2.614265, 5e-7, 9.869, 5e-4},
+      {"fluorite", 1.43385, 5e-6, 95.0, 5e-2},
+      {"yag", 1.8328, 5e-5, 52.6, 5e-2},
+  };
+  abbe_material_table table = load("default");
+  const size_t published = sizeof rows / sizeof rows[0];
+  assert_int_equal(table.count, published + 1); /* and air */
+  for (size_t i = 0; i < published; i++) {
+    const abbe_material *m = find(&table, rows[i].name);
+    abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
+    assert_near(d.n_d, rows[i].n_d, rows[i].n_d_within);
+    assert_near(d.v_d, rows[i].v_d, rows[i].v_d_within);
+  }
+  abbe_material_table_free(&table);
+}
+
+/* Both ends of the spectrum, from an evaluation of the same published formulas by another hand. */
+static void shipped_indices_hold_at_the_ends(void **state) {
+  (void)state;
+  const struct {
+    const char *name;
+    double n_380, n_780;
+  } rows[] = {
+      {"n-bk7", 1.533745, 1.511183},          {"sf10", 1.790460, 1.712268},
+      {"fused-silica", 1.472485, 1.453671},   {"diamond", 2.474068, 2.401104},
+      {"sapphire", 1.790254, 1.760681},       {"water", 1.345619, 1.328961},
+      {"cubic-zirconia", 2.237196, 2.136650}, {"k5", 1.541144, 1.516617},
+      {"moissanite", 2.795213, 2.608101},     {"rutile", 3.117870, 2.524920},
+      {"quartz", 1.560460, 1.538743},         {"pmma", 1.509101, 1.485111},
+  };
+  abbe_material_table table = load(NULL);
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    const abbe_material *m = find(&table, rows[i].name);
+    double n = 0;
+    assert_int_equal(abbe_material_n(m, 380, &n, NULL), ABBE_OK);
+    assert_near(n, rows[i].n_380, 5.1e-7);
+    assert_int_equal(abbe_material_n(m, 780, &n, NULL), ABBE_OK);
+    assert_near(n, rows[i].n_780, 5.1e-7);
+  }
+  abbe_material_table_free(&table);
+}
+
+/* What the indices are relative to has the index 1, exactly and everywhere. */
+static void air_is_what_indices_are_relative_to(void **state) {
+  (void)state;
+  abbe_material_table table = load("default");
+  const abbe_material *air = find(&table, "air");
+  for (double l = 200; l <= 3000; l += 10) {
+    double n = 0;
+    assert_int_equal(abbe_material_n(air, l, &n, NULL), ABBE_OK);
+    assert_true(n == 1);
+    assert_true(abbe_material_attenuation(air, l) == 0);
+    assert_false(abbe_material_extrapolates(air, l));
+  }
+  abbe_material_table_free(&table);
+}
+
+static bool varies(const abbe_material *m) {
+  return m->dispersion.model != ABBE_DISPERSION_CONSTANT;
+}
+
+static void every_shipped_row_covers_the_spectrum_and_falls_with_wavelength(void **state) {
+  (void)state;
+  abbe_material_table table = load("default");
+  for (size_t i = 0; i < table.count; i++) {
+    const abbe_material *m = &table.material[i];
+    double before = INFINITY;
+    for (double l = 380; l <= 780; l += 2) {
+      double n = 0;
+      assert_int_equal(abbe_material_n(m, l, &n, NULL), ABBE_OK);
+      assert_true(n < before || !varies(m));
+      before = n;
+      assert_true(abbe_material_attenuation(m, l) >= 0);
+    }
+    /* what is continued past its data says so, and nothing else claims to be */
+    bool short_of = abbe_material_extrapolates(m, 380) || abbe_material_extrapolates(m, 780);
+    assert_int_equal(m->extrapolate, short_of);
+    if (short_of) assert_contains(m->warning, "continued");
+  }
+  abbe_material_table_free(&table);
+}
+
+static void every_recorded_fit_is_made_again(void **state) {
+  (void)state;
+  abbe_material_table table = load("default");
+  for (size_t i = 0; i < table.count; i++) {
+    const abbe_material *m = &table.material[i];
+    if (!varies(m)) continue; /* it is its own fit */
+    for (size_t k = 0; k < 2; k++) {
+      const abbe_material_fit *fit = &m->fit[k];
+      abbe_dispersion made;
+      double worst = 0;
+      assert_int_equal(fit->terms, k + 2);
+      assert_near(fit->min_nm, 380, 0);
+      assert_near(fit->max_nm, 780, 0);
+      assert_int_equal(abbe_fit_dispersion(&m->dispersion, k + 2, 380, 780, &made, &worst, NULL),
+                       ABBE_OK);
+      for (size_t j = 0; j < k + 2; j++) assert_near(fit->c[j], made.c[j], 1e-8 * fabs(made.c[j]));
+      assert_near(fit->max_error, worst, 0.006 * worst); /* printed to three digits */
+      /* and the recorded coefficients do leave no more than the recorded error */
+      for (int l = 380; l <= 780; l++) {
+        double x = 1e6 / (double)(l * l), n = 0, form = 0;
+        for (size_t j = k + 2; j-- > 0;) form = form * x + fit->c[j];
+        assert_int_equal(abbe_material_n(m, l, &n, NULL), ABBE_OK);
+        assert_true(fabs(form - n) <= fit->max_error * 1.006 + 1e-8);
+      }
+    }
+    assert_true(m->fit[1].max_error < m->fit[0].max_error);
+  }
+  abbe_material_table_free(&table);
+}
+
+static void every_source_is_in_the_bibliography(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  assert_int_equal(abbe_file_read(ABBE_SOURCE_DIR "/BIBLIOGRAPHY.md", 1 << 20, &text, &size, NULL),
+                   ABBE_OK);
+  const char *const tables[] = {"default", "thesis"};
+  for (int t = 0; t < 2; t++) {
+    abbe_material_table table = load(tables[t]);
+    for (size_t i = 0; i < table.count; i++) {
+      const char *source = table.material[i].source;
+      size_t length = strcspn(source, "]") + 1;
+      char key[128];
+      assert_int_equal(source[0], '[');
+      snprintf(key, sizeof key, "- **%.*s**", (int)length, source);
+      assert_contains(text, key);
+    }
+    abbe_material_table_free(&table);
+  }
+  free(text);
+}
+
+/* Verbatim: the digits that the thesis prints, and what is wrong with them. */
+static void the_thesis_is_kept_as_printed(void **state) {
+  (void)state;
+  const struct {
+    const char *name;
+    double a, b, high_by;
+  } rows[] = {{"fused-silica", 1.4580, 0.00354, 0.0098},
+              {"bk7", 1.5046, 0.00420, 0},
+              {"k5", 1.5220, 0.00459, 0.0128},
+              {"bak4", 1.5690, 0.00531, 0.0156},
+              {"baf10", 1.6700, 0.00743, 0.0215}};
+  const char *const now[] = {"fused-silica", "n-bk7", "k5", "n-bak4", "n-baf10"};
+  abbe_material_table thesis = load("thesis"), table = load("default");
+  assert_int_equal(thesis.count, 5);
+  for (size_t i = 0; i < 5; i++) {
+    const abbe_material *m = find(&thesis, rows[i].name);
+    assert_int_equal(m->dispersion.model, ABBE_DISPERSION_CAUCHY);
+    assert_int_equal(m->dispersion.count, 2);
+    assert_near(m->dispersion.c[0], rows[i].a, 0);
+    assert_near(m->dispersion.c[1], rows[i].b, 0);
+    assert_contains(m->warning, "Historical");
+    double old = abbe_dispersion_describe(&m->dispersion).n_d;
+    double good = abbe_dispersion_describe(&find(&table, now[i])->dispersion).n_d;
+    assert_near(old - good, rows[i].high_by, 1e-4);
+  }
+  abbe_material_table_free(&thesis);
+  abbe_material_table_free(&table);
+}
+
+static void missing_files_are_named(void **state) {
+  (void)state;
+  abbe_material_table t;
+  abbe_error error;
+  assert_int_equal(abbe_material_table_load("/no/such/table.yaml", &t, &error), ABBE_IO);
+  assert_contains(error.text, "/no/such/table.yaml");
+  assert_int_equal(t.count, 0);
+  assert_int_equal(abbe_material_table_load(ABBE_SOURCE_DIR, &t, &error), ABBE_IO);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(shipped_indices_are_the_published_ones),
+      cmocka_unit_test(shipped_indices_hold_at_the_ends),
+      cmocka_unit_test(air_is_what_indices_are_relative_to),
+      cmocka_unit_test(every_shipped_row_covers_the_spectrum_and_falls_with_wavelength),
+      cmocka_unit_test(every_recorded_fit_is_made_again),
+      cmocka_unit_test(every_source_is_in_the_bibliography),
+      cmocka_unit_test(the_thesis_is_kept_as_printed),
+      cmocka_unit_test(missing_files_are_named),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

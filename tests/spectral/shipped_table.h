@@ -1,0 +1,30 @@
+/* shipped_table.h: the default table of materials, loaded once for a group of tests: pass
+ * shipped_load and shipped_free to cmocka_run_group_tests. */
+#ifndef ABBE_TESTS_SPECTRAL_SHIPPED_TABLE_H
+#define ABBE_TESTS_SPECTRAL_SHIPPED_TABLE_H
+
+#include "tests/check.h"
+
+#include "spectral/formats/material_table_load.h"
+
+static abbe_material_table shipped;
+
+static inline int shipped_load(void **state) {
+  (void)state;
+  return abbe_material_table_load(NULL, &shipped, NULL) != ABBE_OK;
+}
+
+static inline int shipped_free(void **state) {
+  (void)state;
+  abbe_material_table_free(&shipped);
+  return 0;
+}
+
+static inline const abbe_material *shipped_material(const char *name) {
+  const abbe_material *m = NULL;
+  abbe_error error = {0};
+  if (abbe_material_table_find(&shipped, name, &m, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return m;
+}
+
+#endif

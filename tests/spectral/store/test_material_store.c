@@ -1,0 +1,346 @@
+#include "tests/random.h"
+#include "tests/spectral/random_material.h"
+#include "tests/spectral/same_material.h"
+
+#include "base/file.h"
+#include "spectral/formats/material_table_load.h"
+#include "spectral/store/material_store.h"
+#include "spectral/store/material_store_write.h"
+
+#include <sqlite3.h>
+#include <unistd.h>
+
+static char folder[64], path[128];
+
+static int setup(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/abbe-test-store-XXXXXX");
+  if (mkdtemp(folder) == NULL) return 1;
+  /* as awkward as a path of a store may be */
+  snprintf(path, sizeof path, "%s/50%% of #1? \xc3\xa4.sqlite", folder);
+  return 0;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  unlink(path);
+  return rmdir(folder);
+}
+
+static void write_store(const abbe_material_table *table) {
+  abbe_error error = {0};
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  if (abbe_material_store_write(table, file, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(fclose(file), 0);
+}
+
+/* In place: a file that is made anew each time is synced by some file systems. */
+static void write_bytes(const char *bytes, size_t size) {
+  FILE *file = fopen(path, "r+b");
+  assert_non_null(file);
+  assert_int_equal(fwrite(bytes, 1, size, file), size);
+  assert_int_equal(fflush(file), 0);
+  assert_int_equal(ftruncate(fileno(file), (off_t)size), 0);
+  assert_int_equal(fclose(file), 0);
+}
+
+static abbe_material_table read_all(void) {
+  abbe_material_table table;
+  abbe_error error = {0};
+  if (abbe_material_table_load(path, &table, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return table;
+}
+
+static abbe_material_table table_of(const char *records) {
+  char text[2048];
+  abbe_material_table table;
+  abbe_error error = {0};
+  snprintf(text, sizeof text, "description: three\nmaterials:\n%s", records);
+  if (abbe_material_table_parse(text, strlen(text), "t", &table, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return table;
+}
+
+#define A                                                                                          \
+  "- {name: a, model: cauchy, coefficients: [1.5, 0.004], range_nm: [400, 800], source: s}\n"
+#define B "- {name: B, model: tabulated, points: [[400, 1.5], [500, 1.4], [600, 1.3]], source: s}\n"
+#define C "- {name: c, model: constant, coefficients: [1.6], source: s}\n"
+
+static void write_three(void) {
+  abbe_material_table table = table_of(A B C);
+  write_store(&table);
+  abbe_material_table_free(&table);
+}
+
+/* Asks the file as an outside program does. */
+static void run_sql(const char *sql) {
+  sqlite3 *db = NULL;
+  char *why = NULL;
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  sqlite3_exec(db, "PRAGMA synchronous = OFF", NULL, NULL, NULL);
+  if (sqlite3_exec(db, sql, NULL, NULL, &why) != SQLITE_OK) fail_msg("%s: %s", sql, why);
+  assert_int_equal(sqlite3_close(db), SQLITE_OK);
+}
+
+static void refuses(abbe_result code, const char *part) {
+  abbe_material_table table;
+  abbe_error error = {0};
+  abbe_result result = abbe_material_store_read(path, NULL, 0, NULL, &table, &error);
+  if (result != code || strstr(error.text, part) == NULL || strstr(error.text, path) == NULL)
+    fail_msg("%d, '%s'; '%s' is expected", (int)result, error.text, part);
+}
+
+/* ---- round trips ---- */
+
+static void every_record_comes_back_the_same(void **state) {
+  (void)state;
+  srand(21);
+  abbe_material_table table = {0};
+  for (size_t i = 0; i < 300; i++) {
+    abbe_material m = random_material(i);
+    assert_int_equal(abbe_material_table_append(&table, &m, NULL), ABBE_OK);
+  }
+  table.description = strdup("it's \"all\"");
+  write_store(&table);
+  assert_true(abbe_material_store_is(path));
+  abbe_material_table back = read_all();
+  assert_int_equal(back.count, table.count);
+  assert_string_equal(back.description, table.description);
+  assert_string_equal(back.path, path);
+  for (size_t i = 0; i < back.count; i++) {
+    assert_same_record(&table.material[i], &back.material[i]);
+    assert_int_equal(back.material[i].line, i + 1);
+  }
+  abbe_material_table_free(&back);
+  abbe_material_table_free(&table);
+}
+
+static void the_shipped_table_comes_back_the_same(void **state) {
+  (void)state;
+  abbe_material_table table;
+  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  write_store(&table);
+  abbe_material_table back = read_all();
+  assert_int_equal(back.count, table.count);
+  for (size_t i = 0; i < back.count; i++) assert_same_record(&table.material[i], &back.material[i]);
+  abbe_material_table_free(&back);
+  abbe_material_table_free(&table);
+}
+
+/* ---- rows by name ---- */
+
+/* A row that is asked for is read, however broken the others are. */
+static void one_name_reads_one_row(void **state) {
+  (void)state;
+  write_three();
+  run_sql("UPDATE materials SET points = x'00' WHERE name = 'B'");
+  const char *const names[] = {"C", "c", "A", "nobody"};
+  abbe_material_table table;
+  const abbe_material *m = NULL;
+  abbe_error error = {0};
+  assert_int_equal(abbe_material_table_load_named(path, names, 4, &table, &error), ABBE_OK);
+  assert_int_equal(table.count, 2);
+  assert_int_equal(abbe_material_table_find(&table, "A", &m, &error), ABBE_OK);
+  assert_int_equal(m->line, 1);
+  assert_int_equal(abbe_material_table_find(&table, "c", &m, &error), ABBE_OK);
+  assert_near(m->dispersion.c[0], 1.6, 0);
+  /* of what it does not have it names the nearest, among all */
+  assert_int_equal(abbe_material_table_find(&table, "nobody", &m, NULL), ABBE_NOT_FOUND);
+  assert_int_equal(abbe_material_table_find(&table, "bb", &m, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "did you mean 'B'?");
+  abbe_material_table_free(&table);
+  refuses(ABBE_SCHEMA, "row 2 ('B') cannot be used: 'points' is not whole");
+}
+
+/* Which is what YAML and the shipped tables do with all of theirs. */
+static void other_tables_are_asked_in_the_same_words(void **state) {
+  (void)state;
+  const char *const name = "diamond";
+  abbe_material_table table;
+  const abbe_material *m = NULL;
+  assert_int_equal(abbe_material_table_load_named(NULL, &name, 1, &table, NULL), ABBE_OK);
+  assert_int_equal(abbe_material_table_find(&table, "sapphire", &m, NULL), ABBE_OK);
+  abbe_material_table_free(&table);
+}
+
+/* ---- files of strangers ---- */
+
+static void what_is_wrong_with_a_row_is_told(void **state) {
+  (void)state;
+  const struct {
+    const char *set, *part;
+  } rows[] = {
+      {"name = ''", "row 2 ('') cannot be used: '' is not a name"},
+      {"name = x'61'", "'name' is no text"},
+      {"name = cast(x'61ff' as text)", "'name' is no whole text"},
+      {"model = 'cachy'", "'model' is not known"},
+      {"interpolation = 'step'", "'interpolation' is not known"},
+      {"points = NULL", "cannot be used"},
+      {"points = x'0000000000000000'", "'points' is not whole"},
+      {"points = zeroblob(32)", "'points' holds a number out of its range"},
+      {"points = zeroblob(1600000)", "'points' has too many points"},
+      {"points = 'text'", "'points' is no list of numbers"},
+      {"points = (SELECT substr(points, 17) || substr(points, 1, 16) FROM materials WHERE id = 2)",
+       "'points' is no list of numbers"}, /* || makes text */
+      {"from_nm = -1", "'from_nm' is out of its range"},
+      {"from_nm = 'x'", "'from_nm' is no number"},
+      {"to_nm = 9e999", "'to_nm' is out of its range"},
+      {"to_nm = 300", "does not ascend"},
+      {"source = NULL", "names no source"},
+      {"temperature_c = -300", "'temperature_c' is out of its range"},
+      {"attenuation_per_m = zeroblob(16)", "'attenuation_per_m' holds a number out of its range"},
+      {"thermal = zeroblob(8)", "'thermal' has another length"},
+      {"ratings = zeroblob(56)", "'ratings' has another length"},
+      {"cauchy2 = zeroblob(40)", "'cauchy2' has no range"},
+      {"cauchy3 = zeroblob(40)", "'cauchy3' has another length"},
+      {"coefficients = zeroblob(8)", "cannot be used"},
+      {"model = 'sellmeier', coefficients = zeroblob(800)", "'coefficients' has another length"},
+      {"source = zeroblob(5000000)", "too big"}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    char sql[400];
+    write_three();
+    snprintf(sql, sizeof sql, "UPDATE materials SET %s WHERE id = 2", rows[i].set);
+    run_sql(sql);
+    abbe_material_table table;
+    abbe_error error = {0};
+    abbe_result result = abbe_material_table_load(path, &table, &error);
+    if (result == ABBE_OK || strstr(error.text, rows[i].part) == NULL)
+      fail_msg("%s: '%s', not '%s'", rows[i].set, error.text, rows[i].part);
+  }
+}
+
+/* A formula without an index is seen where the row is used, and by the check. */
+static void a_row_that_is_used_has_an_index(void **state) {
+  (void)state;
+  write_three();
+  run_sql("UPDATE materials SET coefficients = x'000000000000f0bf000000000000f0bf' WHERE id = 1");
+  const char *const names[] = {"a", "c"};
+  abbe_material_table table = read_all();
+  assert_int_equal(table.count, 3);
+  abbe_material_table_free(&table);
+  abbe_error error = {0};
+  assert_int_equal(abbe_material_table_load_named(path, names, 2, &table, &error), ABBE_SCHEMA);
+  assert_contains(error.text,
+                  "row 1 ('a') cannot be used: a: its cauchy formula has no real index");
+  assert_int_equal(abbe_material_table_load_named(path, names + 1, 1, &table, &error), ABBE_OK);
+  abbe_material_table_free(&table);
+}
+
+/* The check's reading leaves such a row out, and says so. */
+static void a_bad_row_is_noted_and_left_out(void **state) {
+  (void)state;
+  write_three();
+  run_sql("UPDATE materials SET model = 'cachy' WHERE id = 2");
+  abbe_material_table table;
+  abbe_report unread = {0};
+  assert_int_equal(abbe_material_table_load_lenient(path, &table, &unread, NULL), ABBE_OK);
+  assert_int_equal(table.count, 2);
+  assert_int_equal(unread.count, 1);
+  assert_int_equal(unread.note[0].line, 2);
+  assert_string_equal(unread.note[0].name, "B");
+  abbe_report_free(&unread);
+  abbe_material_table_free(&table);
+}
+
+static void other_databases_are_no_stores(void **state) {
+  (void)state;
+  const char *const alien[] = {
+      "CREATE TABLE materials(id INTEGER PRIMARY KEY, name TEXT)",
+      "PRAGMA application_id = 1096966757; PRAGMA user_version = 1; CREATE TABLE materials(name)",
+      /* a query that never ends, under our table's name */
+      "PRAGMA application_id = 1096966757; PRAGMA user_version = 1; CREATE VIEW materials AS WITH "
+      "RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT x AS id FROM n"};
+  for (size_t i = 0; i < sizeof alien / sizeof alien[0]; i++) {
+    unlink(path);
+    run_sql(alien[i]);
+    refuses(ABBE_PARSE, "is an SQLite file, and no store of this version of Abbe");
+  }
+  write_three();
+  run_sql("PRAGMA user_version = 2");
+  refuses(ABBE_PARSE, "no store of this version");
+  write_bytes("SQLite format 3", 16);
+  assert_true(abbe_material_store_is(path));
+  refuses(ABBE_PARSE, "the store is damaged");
+  write_bytes("materials:\n", 11);
+  assert_false(abbe_material_store_is(path));
+  assert_false(abbe_material_store_is(folder));
+  assert_false(abbe_material_store_is("/nowhere"));
+  abbe_material_table table;
+  assert_int_equal(abbe_material_store_read("/nowhere", NULL, 0, NULL, &table, NULL), ABBE_IO);
+}
+
+/* Whatever a disk or a stranger does to the bytes: a table, or a sentence. */
+static void changed_bytes_are_survived(void **state) {
+  (void)state;
+  write_three();
+  char *bytes = NULL;
+  size_t size = 0, read = 0, refused = 0;
+  assert_int_equal(abbe_file_read(path, 1 << 24, &bytes, &size, NULL), ABBE_OK);
+  char *changed = malloc(size);
+  uint64_t random = 3;
+  for (int i = 0; i < 1500; i++) {
+    memcpy(changed, bytes, size);
+    size_t length = i % 10 == 0 ? random_bits(&random) % size : size;
+    for (uint64_t k = 1 + random_bits(&random) % 6; k > 0; k--)
+      changed[random_bits(&random) % (i % 3 == 0 ? 200 : size)] = (char)random_bits(&random);
+    write_bytes(changed, length);
+    abbe_material_table table;
+    abbe_error error = {0};
+    abbe_result result = abbe_material_store_read(path, NULL, 0, NULL, &table, &error);
+    if (result != ABBE_OK) assert_true(error.text[0] != '\0' && table.material == NULL);
+    read += result == ABBE_OK;
+    refused += result != ABBE_OK;
+    for (size_t k = 0; k < table.count; k++)
+      assert_int_equal(abbe_material_check_form(&table.material[k], NULL), ABBE_OK);
+    abbe_material_table_free(&table);
+    const char *const names[] = {"a", "b", "c"};
+    result = abbe_material_store_read(path, names, 3, NULL, &table, &error);
+    for (size_t k = 0; k < table.count; k++)
+      assert_int_equal(abbe_material_check(&table.material[k], NULL), ABBE_OK);
+    abbe_material_table_free(&table);
+  }
+  assert_true(read > 100 && refused > 100);
+  free(changed);
+  free(bytes);
+}
+
+/* ---- writing ---- */
+
+static void what_cannot_be_stored_is_refused(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  abbe_material_table table = table_of(A B C);
+  FILE *full = fopen("/dev/full", "w");
+  assert_int_equal(abbe_material_store_write(&table, full, &error), ABBE_IO);
+  fclose(full);
+  FILE *to = tmpfile();
+  strcpy(table.material[2].name, "A");
+  assert_int_equal(abbe_material_store_write(&table, to, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "the name 'A' stands twice");
+  table.material[0].max_nm = 1;
+  assert_int_equal(abbe_material_store_write(&table, to, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "does not ascend");
+  assert_int_equal(ftell(to), 0);
+  fclose(to);
+  abbe_material_table_free(&table);
+  assert_true(abbe_material_store_is_name("a/b.SQLite"));
+  assert_false(abbe_material_store_is_name("a.sqlite/b"));
+  assert_false(abbe_material_store_is_name("sqlite"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_record_comes_back_the_same),
+      cmocka_unit_test(the_shipped_table_comes_back_the_same),
+      cmocka_unit_test(one_name_reads_one_row),
+      cmocka_unit_test(other_tables_are_asked_in_the_same_words),
+      cmocka_unit_test(what_is_wrong_with_a_row_is_told),
+      cmocka_unit_test(a_row_that_is_used_has_an_index),
+      cmocka_unit_test(a_bad_row_is_noted_and_left_out),
+      cmocka_unit_test(other_databases_are_no_stores),
+      cmocka_unit_test(changed_bytes_are_survived),
+      cmocka_unit_test(what_cannot_be_stored_is_refused),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

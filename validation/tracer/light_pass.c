@@ -1,0 +1,264 @@
+#include "validation/tracer/light_pass.h"
+
+#include "validation/tracer/emission.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TASK = 16384, PART_TRIALS = 16384 };
+
+/* ---- landings ---- */
+
+typedef struct sink {
+  abbe_tracer *t;
+  size_t thread, light;
+} sink;
+
+void abbe_tracer_add_to_map(abbe_tracer *t, size_t thread, size_t light, const abbe_landing *l) {
+  if (t->desc.no_map || light != t->desc.map_light || l->hidden) return;
+  double p[3];
+  size_t column, row;
+  abbe_geometry_to_world(&t->geometry, l->p, p);
+  if (!abbe_map_layout_texel(&t->layout, t->desc.map_width, t->desc.map_height, p, &column, &row))
+    return;
+  size_t at = (row * t->desc.map_width + column) * t->map_channels;
+  const float *xyz = t->sampling.xyz[light * t->sampling.steps + l->step];
+  for (size_t k = 0; k < 3; k++) abbe_accumulator_add(&t->map, thread, at + k, l->flux * xyz[k]);
+  if (t->bands.count > 0)
+    abbe_accumulator_add(&t->map, thread, at + 3 + t->bands.of_step[l->step],
+                         l->flux * t->sampling.power[light * t->sampling.steps + l->step] /
+                             (float)t->bands.width_nm);
+}
+
+/* What a landing adds to the pixel that sees it straight. */
+typedef struct splat {
+  const abbe_landing *landing;
+  size_t pixel;
+  float value; /* radiance of the pixel, for a reflectance of pi */
+} splat;
+
+/* The ray from the landing to the eye in lane k of the packet; false where it cannot be seen. */
+static bool prepare_splat(const abbe_tracer *t, const abbe_landing *l, struct RTCRay16 *packet,
+                          size_t k, splat *out) {
+  float d[3], distance, per_pixel, o[3];
+  size_t pixel;
+  if (!abbe_trace_camera_pixel(&t->camera, l->p, &pixel, &distance, d, &per_pixel)) return false;
+  abbe_hit hit;
+  for (int i = 0; i < 3; i++) d[i] = -d[i];
+  abbe_geometry_place(&t->geometry.surface[l->surface], l->face, l->u, l->v, l->p, d, 0, &hit);
+  float facing = d[0] * hit.ng[0] + d[1] * hit.ng[1] + d[2] * hit.ng[2];
+  if (facing * l->side <= 0) return false;
+  float metres = distance * (float)t->geometry.unit;
+  *out = (splat){.landing = l,
+                 .pixel = pixel,
+                 .value = l->flux * fabsf(facing) * per_pixel / (metres * metres)};
+  abbe_geometry_leave(&hit, d, o);
+  packet->org_x[k] = o[0];
+  packet->org_y[k] = o[1];
+  packet->org_z[k] = o[2];
+  packet->dir_x[k] = d[0];
+  packet->dir_y[k] = d[1];
+  packet->dir_z[k] = d[2];
+  packet->tnear[k] = 0;
+  packet->tfar[k] = distance;
+  packet->mask[k] = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  packet->flags[k] = 0;
+  return true;
+}
+
+static void add_splat(const sink *s, const splat *p) {
+  abbe_tracer *t = s->t;
+  const abbe_landing *l = p->landing;
+  float rgb[3];
+  abbe_reflectance_at(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
+  size_t colour = s->light * t->sampling.steps + l->step, at = p->pixel * t->picture_channels;
+  float value = p->value * 0.318309886f, seen[3];
+  for (size_t k = 0; k < 3; k++) rgb[k] *= value * t->colour[colour][k];
+  abbe_tracer_finish(t, rgb, seen);
+  for (size_t k = 0; k < 3; k++) {
+    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_RGB + k, seen[k]);
+    abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, seen[k]);
+  }
+  if (t->bands.count == 0) return;
+  abbe_reflectance_rec709(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
+  size_t band = t->bands.of_step[l->step];
+  float kept = abbe_reflectance_band(rgb, t->bands.middle_nm[band]);
+  abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_BANDS + band,
+                       value * kept * t->sampling.power[colour] / (float)t->bands.width_nm);
+}
+
+static uint64_t flush_splats(const sink *s, struct RTCRay16 *packet, const splat *splats,
+                             size_t count) {
+  if (count == 0) return 0;
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  _Alignas(64) int valid[16];
+  for (size_t k = 0; k < 16; k++) valid[k] = k < count ? -1 : 0;
+  rtcOccluded16(valid, s->t->geometry.embree, &context, packet);
+  for (size_t k = 0; k < count; k++)
+    if (!(packet->tfar[k] < 0)) add_splat(s, &splats[k]);
+  return count;
+}
+
+static uint64_t add_to_picture(const sink *s, const abbe_landing *landing, size_t count) {
+  if (s->t->desc.no_picture) return 0;
+  struct RTCRay16 packet;
+  memset(&packet, 0, sizeof packet);
+  splat splats[16];
+  size_t waiting = 0;
+  uint64_t rays = 0;
+  for (size_t i = 0; i < count; i++) {
+    waiting += prepare_splat(s->t, &landing[i], &packet, waiting, &splats[waiting]);
+    if (waiting < 16) continue;
+    rays += flush_splats(s, &packet, splats, waiting);
+    waiting = 0;
+  }
+  return rays + flush_splats(s, &packet, splats, waiting);
+}
+
+/* ---- tasks ---- */
+
+typedef struct task_result {
+  abbe_light_ledger ledger;
+  uint64_t splat_rays;
+  size_t kept; /* landings for the eye's gathers, from the task's first photon on */
+} task_result;
+
+static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t thread,
+                     abbe_grid_photon *keep, task_result *out) {
+  abbe_tracer *t = (abbe_tracer *)e->t;
+  abbe_light_walk_room *room = abbe_light_walk_get_room(t->walk[thread]);
+  abbe_photon *photon = room->photon;
+  abbe_landing *landing = room->landing;
+  sink s = {.t = t, .thread = thread, .light = e->light};
+  *out = (task_result){0};
+  abbe_light_walk_part(t->walk[thread], t->parts[e->light]);
+  for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
+    size_t count = abbe_emission_batch(e, j, to, photon);
+    size_t landed = abbe_light_walk_run(t->walk[thread], &t->scene->light[e->light], e->pass,
+                                        photon, count, landing, &out->ledger);
+    for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, thread, e->light, &landing[i]);
+    out->splat_rays += add_to_picture(&s, landing, landed);
+    for (size_t i = 0; keep != NULL && i < landed; i++) {
+      const abbe_landing *l = &landing[i];
+      abbe_grid_photon *g = &keep[out->kept++];
+      *g = (abbe_grid_photon){.flux = l->side * l->flux,
+                              .surface = l->surface,
+                              .colour = (uint32_t)(e->light * t->sampling.steps) + l->step};
+      memcpy(g->p, l->p, sizeof g->p);
+    }
+  }
+}
+
+static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
+  to->reached += from->reached;
+  to->landed += from->landed;
+  to->contact += from->contact;
+  to->hidden += from->hidden;
+  to->absorbed += from->absorbed;
+  to->escaped += from->escaped;
+  to->dropped += from->dropped;
+  to->lost += from->lost;
+}
+
+/* The tasks of one light; results are joined in the order of the tasks, whoever did them. */
+static abbe_result run_light(abbe_tracer *t, const abbe_emission *e, const volatile int *stop,
+                             size_t *landed, abbe_error *error) {
+  size_t tasks = (e->count + TASK - 1) / TASK;
+  task_result *result = calloc(tasks + 1, sizeof *result);
+  if (result == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu tasks", tasks);
+  size_t base = *landed;
+  bool keeps = t->eye_gathers;
+#pragma omp parallel for schedule(dynamic) num_threads((int)t->desc.threads)
+  for (size_t i = 0; i < tasks; i++) {
+    if (stop != NULL && *stop) continue;
+    uint32_t from = (uint32_t)(i * TASK);
+    uint32_t to = (uint32_t)(e->count - from < TASK ? e->count : from + TASK);
+    run_task(e, from, to, (size_t)omp_get_thread_num(),
+             keeps ? t->landed + base + abbe_tracer_most_landings(t, e->light, from) : NULL,
+             &result[i]);
+  }
+  for (size_t i = 0; i < tasks; i++) {
+    add_ledger(&t->statistics.ledger, &result[i].ledger);
+    t->statistics.light_rays += result[i].splat_rays;
+    if (keeps && result[i].kept > 0)
+      memmove(t->landed + *landed,
+              t->landed + base + abbe_tracer_most_landings(t, e->light, i * TASK),
+              result[i].kept * sizeof *t->landed);
+    *landed += result[i].kept;
+  }
+  t->statistics.photons += e->count;
+  free(result);
+  return stop != NULL && *stop ? abbe_error_set(error, ABBE_CANCELLED, "stopped") : ABBE_OK;
+}
+
+uint64_t abbe_tracer_walk_rays(const abbe_tracer *t) {
+  uint64_t rays = 0;
+  for (size_t i = 0; i < t->desc.threads; i++) rays += abbe_light_walk_rays(t->walk[i]);
+  return rays;
+}
+
+abbe_result abbe_tracer_light_pass(abbe_tracer *t, const volatile int *stop, size_t *landed_count,
+                                   abbe_error *error) {
+  *landed_count = 0;
+  abbe_result result = ABBE_OK;
+  for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
+    if (t->photons[l] == 0) continue;
+    abbe_emission e;
+    result = abbe_emission_make(t, l, t->photons[l], (uint32_t)t->pass, t->desc.seed, &e, error);
+    if (result == ABBE_OK) result = run_light(t, &e, stop, landed_count, error);
+    abbe_emission_free(&e);
+  }
+  return result;
+}
+
+abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
+  double total = 0;
+  for (size_t l = 0; l < t->scene->light_count; l++) {
+    bool wanted = !t->desc.no_picture || l == t->desc.map_light;
+    abbe_result result = wanted ? abbe_aim_make(&t->geometry, l, &t->aim[l], error) : ABBE_OK;
+    if (result != ABBE_OK) return result;
+    total += t->aim[l].reach;
+  }
+  for (size_t l = 0; l < t->scene->light_count && total > 0; l++) {
+    if (t->aim[l].count == 0 || !(t->aim[l].reach > 0)) continue;
+    t->photons[l] = (size_t)((double)t->desc.photons * t->aim[l].reach / total);
+    /* a faint light still needs enough of them to show where it goes */
+    if (t->photons[l] < t->desc.photons / 16) t->photons[l] = t->desc.photons / 16;
+    if (t->photons[l] < 64) t->photons[l] = 64;
+  }
+  return ABBE_OK;
+}
+
+/* The trial's photons, followed without parting. */
+static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_landing *landing) {
+  abbe_photon *photon = abbe_light_walk_get_room(t->walk[0])->photon;
+  abbe_light_ledger ledger = {0};
+  size_t landed = 0;
+  abbe_light_walk_part(t->walk[0], 0);
+  for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
+    size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
+    landed += abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon, count,
+                                  landing + landed, &ledger);
+  }
+  return landed;
+}
+
+abbe_result abbe_tracer_choose_parts(abbe_tracer *t, abbe_error *error) {
+  abbe_landing *landing = malloc(PART_TRIALS * sizeof *landing);
+  abbe_result result =
+      landing != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a trial");
+  for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
+    if (t->photons[l] == 0) continue;
+    abbe_emission e;
+    result = abbe_emission_make(t, l, PART_TRIALS, 0, t->desc.seed, &e, error);
+    if (result == ABBE_OK)
+      t->parts[l] = abbe_light_walk_best_parts(landing, land_trial(t, &e, landing));
+    abbe_emission_free(&e);
+  }
+  free(landing);
+  return result;
+}
