@@ -5,9 +5,8 @@
 #include "cli/base/scene_input.h"
 
 #include "base/file.h"
-#include "colorimetry/image/display_ocio.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/png_file.h"
+#include "colorimetry/image/screen_png.h"
 #include "gl/plan/plan.h"
 #include "scenes/import/scene_file.h"
 #include "validation/tracer/checkpoint.h"
@@ -350,26 +349,10 @@ static abbe_result write_stats(const request *q, const abbe_tracer *tracer, abbe
   return result;
 }
 
-static abbe_result write_png(const request *q, abbe_image *image, abbe_error *error) {
-  abbe_display *display = NULL;
-  abbe_display_desc desc = q->display;
-  desc.source_space = abbe_rgb_space_ocio_name(q->desc.space);
-  /* the display takes the first three channels: the picture's own must stand there */
-  static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
-  const char *const *name = q->desc.space == ABBE_RGB_SPACE_XYZ ? xyz : rgb;
-  abbe_image plain = {0};
-  abbe_result result = abbe_image_make(image->width, image->height, 3, name, &plain, error);
-  for (size_t k = 0; k < 3 && result == ABBE_OK; k++) {
-    size_t from = abbe_image_find_channel(image, name[k]);
-    for (size_t i = 0; i < image->width * image->height; i++)
-      plain.data[3 * i + k] = image->data[i * image->channels + from];
-  }
-  if (result == ABBE_OK) result = abbe_display_make(&desc, &display, error);
-  if (result == ABBE_OK) result = abbe_display_apply(display, &plain, error);
-  if (result == ABBE_OK) result = abbe_png_write(q->png, &plain, 8, error);
-  abbe_display_free(display);
-  abbe_image_free(&plain);
-  return result;
+static abbe_result write_png(const request *q, const abbe_image *image, abbe_error *error) {
+  abbe_screen_png_desc desc = {.display = q->display};
+  desc.display.source_space = abbe_rgb_space_ocio_name(q->desc.space);
+  return abbe_screen_png_write(q->png, image, &desc, error);
 }
 
 static abbe_result write_exr(const request *q, const char *path, const abbe_image *image,
