@@ -7,8 +7,8 @@
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/screen_png.h"
-#include "gl/plan/plan.h"
 #include "scenes/import/scene_file.h"
+#include "validation/sweep/matched_physics.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/tracer.h"
 
@@ -244,21 +244,6 @@ static abbe_result name_checkpoint(request *q, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* What matched physics leaves out is read off the renderer's plan. */
-static abbe_result match_plan(const abbe_scene *scene, abbe_trace_desc *desc, abbe_error *error) {
-  if (!desc->physics.matched) return ABBE_OK;
-  abbe_plan plan;
-  abbe_render_desc render = {.min_nm = desc->min_nm, .max_nm = desc->max_nm};
-  abbe_result result = abbe_plan_make(scene, &render, &plan, error);
-  if (result != ABBE_OK) return result;
-  desc->physics.orders = plan.desc.orders;
-  desc->physics.energy_share = plan.desc.energy_share;
-  desc->physics.eye_orders = plan.eye_exits;
-  desc->physics.eye_share = plan.eye_share;
-  abbe_plan_free(&plan);
-  return ABBE_OK;
-}
-
 /* ---- the work ---- */
 
 static double now(void) {
@@ -471,7 +456,8 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   }
   q->desc.no_picture = q->exr == NULL && q->png == NULL && q->map.save != NULL;
   q->desc.no_map = q->map.save == NULL && !q->desc.no_picture;
-  result = match_plan(scene, &q->desc, error);
+  if (q->desc.physics.matched)
+    result = abbe_matched_physics(scene, q->desc.min_nm, q->desc.max_nm, &q->desc.physics, error);
   if (result == ABBE_OK) result = abbe_tracer_make(scene, &q->desc, &tracer, error);
   if (result == ABBE_OK) result = print_rates(q, tracer, error);
   if (result == ABBE_OK && (q->exr || q->png || q->map.save || q->stats || q->json))

@@ -1,7 +1,7 @@
 #include "validation/sweep/sweep_plot.h"
 
 #include "colorimetry/plot/chart.h"
-#include "validation/sweep/front.h"
+#include "validation/sweep/pareto_front.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -86,7 +86,7 @@ static void add_other_fronts(const abbe_sweep_table *table, figures *f) {
     if (strcmp(f->profile[k], "default") == 0) continue;
     for (size_t i = 0; i < table->count; i++)
       own[i] = strcmp(table->row[i].setting.profile, f->profile[k]) == 0 ? f->x[i] : NAN;
-    size_t count = abbe_front_order(own, f->y, table->count, f->order);
+    size_t count = abbe_pareto_front_order(own, f->y, table->count, f->order);
     for (size_t i = 0; i < count; i++) {
       f->bx[at + i] = f->x[f->order[i]];
       f->by[at + i] = f->y[f->order[i]];
@@ -101,14 +101,14 @@ static void add_other_fronts(const abbe_sweep_table *table, figures *f) {
 }
 
 static void add_front(const abbe_sweep_table *table, figures *f) {
-  f->front = abbe_front_order(f->x, f->y, table->count, f->order);
+  f->front = abbe_pareto_front_order(f->x, f->y, table->count, f->order);
   for (size_t k = 0; k < f->front; k++) {
     f->fx[k] = f->x[f->order[k]];
     f->fy[k] = f->y[f->order[k]];
     abbe_sweep_setting_label(&table->row[f->order[k]].setting, f->label[k], LABEL);
     f->text[k] = f->label[k];
   }
-  f->series[f->series_count++] = (abbe_chart_series){.label = "front",
+  f->series[f->series_count++] = (abbe_chart_series){.label = "Pareto front",
                                                      .style = ABBE_CHART_JOINED_POINTS,
                                                      .count = f->front,
                                                      .x = f->fx,

@@ -1,4 +1,4 @@
-/* sweep_plot.h: a sweep as a picture: error against time in logarithms, and the front.
+/* sweep_plot.h: a sweep as a picture: error against time in logarithms, and the Pareto front.
  *
  * Every setting is a point, a profile a colour; the front is a line with its settings' names,
  * and each other profile's own front a line without; the

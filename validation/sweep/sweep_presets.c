@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "base/yaml/yaml_quote.h"
-#include "validation/sweep/front.h"
+#include "validation/sweep/pareto_front.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -138,7 +138,7 @@ static abbe_result open_front(const abbe_sweep_table *tables, size_t count, size
     f->cost[i] = f->point[i].light_ms + f->point[i].eye_ms;
     f->error[i] = f->point[i].error;
   }
-  f->on_front = abbe_front_order(f->cost, f->error, f->points, f->order);
+  f->on_front = abbe_pareto_front_order(f->cost, f->error, f->points, f->order);
   /* In the order of cost, so in place: what is overwritten may still be needed. */
   for (size_t i = 0; i < f->on_front; i++) {
     const point *p = &f->point[f->order[i]];
@@ -239,8 +239,9 @@ static void write_class(FILE *out, const front *f, const margins *widest) {
                     own.time, own.scenes);
   size_t accurate = find_accurate(f);
   bool has_one = accurate < f->on_front;
-  size_t last = has_one ? accurate : abbe_front_accurate(f->error, f->on_front, slack);
-  fprintf(out, "\n  draft: 0\n  balanced: %zu\n", abbe_front_knee(f->cost, f->error, last + 1));
+  size_t last = has_one ? accurate : abbe_pareto_front_accurate(f->error, f->on_front, slack);
+  fprintf(out, "\n  draft: 0\n  balanced: %zu\n",
+          abbe_pareto_front_knee(f->cost, f->error, last + 1));
   if (has_one)
     fprintf(out, "  accurate: %zu\n  front:\n", accurate);
   else

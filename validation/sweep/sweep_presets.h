@@ -1,4 +1,4 @@
-/* sweep_presets.h: presets read off sweeps: one front for every class of scenes, as YAML.
+/* sweep_presets.h: presets read off sweeps: one Pareto front for every class of scenes, as YAML.
  *
  * A class's front is over the settings of the default profile that all its sweeps have: cost is the
  * cheapest setting's time (geometric mean) times the worst of the sweeps' ratios to it, error the

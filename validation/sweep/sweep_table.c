@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "validation/sweep/front.h"
+#include "validation/sweep/pareto_front.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -55,6 +55,16 @@ bool abbe_sweep_number_is_error(abbe_sweep_number number) {
          strstr(number_names[number], "_noise") == NULL;
 }
 
+const abbe_sweep_number abbe_sweep_shown[ABBE_SWEEP_SHOWN] = {
+    ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, ABBE_SWEEP_CAUSTIC_RMSE,
+    ABBE_SWEEP_MAP_RMSE, ABBE_SWEEP_MAP_ENERGY, ABBE_SWEEP_PICTURE_DE};
+
+const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]) {
+  if (!isfinite(value)) return "-";
+  abbe_number_format(out, ABBE_SWEEP_SHORT, fabs(value) >= 1000 ? "%.0f" : "%.3g", value);
+  return out;
+}
+
 const char *abbe_sweep_fact_name(abbe_sweep_fact fact) {
   return (unsigned)fact < ABBE_SWEEP_FACT_COUNT ? fact_names[fact] : "unknown";
 }
@@ -66,17 +76,6 @@ bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setti
          strcmp(a->model, b->model) == 0 && a->wavelengths == b->wavelengths &&
          a->photons == b->photons && a->map == b->map && a->samples == b->samples &&
          a->upsample == b->upsample && a->exits == b->exits && a->share == b->share;
-}
-
-void abbe_sweep_setting_describe(const abbe_sweep_setting *s, char *out, size_t size) {
-  bool plain = strcmp(s->profile, "default") == 0;
-  char share[ABBE_NUMBER_TEXT_SIZE], upsample[32] = "";
-  if (s->upsample > 1) snprintf(upsample, sizeof upsample, ", upsample %zu", s->upsample);
-  snprintf(out, size,
-           "%s%s%zu wavelengths, %zu photons, map %zu, %zu samples, fill %s, %zu exits, share %s, "
-           "model %s%s",
-           plain ? "" : s->profile, plain ? "" : ": ", s->wavelengths, s->photons, s->map,
-           s->samples, s->fill, s->exits, abbe_number_text(s->share, share), s->model, upsample);
 }
 
 void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t size) {
@@ -119,8 +118,8 @@ abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *
                                  abbe_error *error) {
   ABBE_REQUIRE(table && row, error);
   if (abbe_sweep_table_find(table, &row->setting) != NULL) {
-    char text[160];
-    abbe_sweep_setting_describe(&row->setting, text, sizeof text);
+    char text[64];
+    abbe_sweep_setting_label(&row->setting, text, sizeof text);
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the setting '%s' is there twice", text);
   }
   if (table->count == ABBE_SWEEP_MAX_ROWS)
@@ -154,11 +153,26 @@ abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number num
     cost[i] = counts ? row->number[ABBE_SWEEP_FRAME_MS] : NAN;
     cost[count + i] = row->number[number];
   }
-  abbe_front_mark(cost, cost + count, count, on);
+  abbe_pareto_front_mark(cost, cost + count, count, on);
   for (size_t i = 0; i < count; i++) table->row[i].front = on[i];
   free(cost);
   free(on);
   return ABBE_OK;
+}
+
+size_t *abbe_sweep_table_front(const abbe_sweep_table *table, size_t *out_count) {
+  size_t count = 0;
+  size_t *order = calloc(table->count + 1, sizeof *order);
+  for (size_t i = 0; order != NULL && i < table->count; i++) {
+    if (!table->row[i].front) continue;
+    size_t at = count++;
+    double ms = table->row[i].number[ABBE_SWEEP_FRAME_MS];
+    for (; at > 0 && table->row[order[at - 1]].number[ABBE_SWEEP_FRAME_MS] > ms; at--)
+      order[at] = order[at - 1];
+    order[at] = i;
+  }
+  *out_count = count;
+  return order;
 }
 
 abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,

@@ -1,4 +1,4 @@
-/* sweep_table.h: what a sweep has measured so far: settings, times, errors, and the front.
+/* sweep_table.h: what a sweep has measured so far: settings, times, errors, and the Pareto front.
  *
  * A table of one scene at one size against one reference on one machine, kept as CSV: comments
  * "# fact: text" say what it belongs to, then a line of column names, then a row a setting. A cell
@@ -118,11 +118,15 @@ abbe_sweep_number abbe_sweep_number_find(const char *column);
 bool abbe_sweep_number_is_error(abbe_sweep_number number);
 const char *abbe_sweep_fact_name(abbe_sweep_fact fact);
 
+/* What tables for people show beside a setting, and a number for them: three digits, "-" where it
+ * is not known. */
+#define ABBE_SWEEP_SHOWN 6
+#define ABBE_SWEEP_SHORT 24
+extern const abbe_sweep_number abbe_sweep_shown[ABBE_SWEEP_SHOWN];
+const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]);
+
 bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setting *b);
-/* "7 wavelengths, 256 photons, map 1024, 2 samples, fill bridge, 8 exits, share 0.01", the profile
- * first where it is not the default one; and for charts "w7 p256 m1024 s2", with what else is
- * unusual. */
-void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, size_t size);
+/* For charts: "w7 p256 m1024 s2", with what else is unusual. */
 void abbe_sweep_setting_label(const abbe_sweep_setting *setting, char *out, size_t size);
 
 void abbe_sweep_table_free(abbe_sweep_table *table);
@@ -138,6 +142,8 @@ abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *
  * profile's name) over that profile's rows alone. ABBE_NO_MEMORY. */
 abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number number,
                                   const char *profile, abbe_error *error);
+/* The rows on the front in the order of time, as malloc'd indices; NULL for want of memory. */
+size_t *abbe_sweep_table_front(const abbe_sweep_table *table, size_t *out_count);
 
 /* The table as text, and beside its target and renamed. ABBE_IO, ABBE_NO_MEMORY. */
 abbe_result abbe_sweep_table_save(const abbe_sweep_table *table, const char *path,

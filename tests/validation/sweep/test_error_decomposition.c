@@ -1,7 +1,7 @@
 /* What a sweep's error is made of: the parts that are found, and the sentence for each case. */
 #include "tests/validation/sweep/sweep_row.h"
 
-#include "validation/sweep/sweep_split.h"
+#include "validation/sweep/error_decomposition.h"
 
 #include <math.h>
 
@@ -35,10 +35,10 @@ static void test_parts_and_words(void **state) {
   (void)state;
   abbe_sweep_table t = {0};
   abbe_sweep_model model;
-  abbe_sweep_split s;
+  abbe_error_decomposition s;
   char words[2000];
-  abbe_sweep_split_make(&t, &s);
-  abbe_sweep_split_say(&s, words, sizeof words);
+  abbe_error_decomposition_make(&t, &s);
+  abbe_error_decomposition_say(&s, words, sizeof words);
   assert_null(s.row);
   assert_string_equal(words, "");
   assert_false(abbe_sweep_model_read(&t, &model));
@@ -48,7 +48,7 @@ static void test_parts_and_words(void **state) {
   add(&t, 7, 256, "none", 5, 4.5);
   add(&t, 7, 256, "bridge", 3, 1);
   set_model(&t, 2.8);
-  abbe_sweep_split_make(&t, &s);
+  abbe_error_decomposition_make(&t, &s);
   assert_int_equal(s.row->setting.photons, 256);
   assert_near(s.total, 3, 0);
   assert_near(s.model, 2.8, 1e-12);
@@ -57,7 +57,7 @@ static void test_parts_and_words(void **state) {
   assert_near(s.without_fill, 4.5, 0);
   assert_near(s.fewer_photons, 2.6, 0); /* 128, and not 64 */
   assert_near(s.fewer_wavelengths, 1.02, 0);
-  abbe_sweep_split_say(&s, words, sizeof words);
+  abbe_error_decomposition_say(&s, words, sizeof words);
   assert_contains(words, "w7 p256 m512 s1 has 3 (0.1 of it noise)");
   assert_contains(words, "most of it is the model's");
   assert_contains(words, "keeps 93.0 % of the map's light, and the setting has 90.0 %");
@@ -66,21 +66,21 @@ static void test_parts_and_words(void **state) {
   assert_contains(words, "turns 4.5 into 1");
   /* The other way round, both alike, and nothing but noise. */
   set_model(&t, 0.4);
-  abbe_sweep_split_make(&t, &s);
-  abbe_sweep_split_say(&s, words, sizeof words);
+  abbe_error_decomposition_make(&t, &s);
+  abbe_error_decomposition_say(&s, words, sizeof words);
   assert_contains(words, "most of it is sampling and reconstruction");
   set_model(&t, 1.1);
-  abbe_sweep_split_make(&t, &s);
-  abbe_sweep_split_say(&s, words, sizeof words);
+  abbe_error_decomposition_make(&t, &s);
+  abbe_error_decomposition_say(&s, words, sizeof words);
   assert_contains(words, "the model has about as much of it");
   set_model(&t, 0.1);
   t.row[4].number[ABBE_SWEEP_MATCHED_DE] = 0.1;
-  abbe_sweep_split_make(&t, &s);
-  abbe_sweep_split_say(&s, words, sizeof words);
+  abbe_error_decomposition_make(&t, &s);
+  abbe_error_decomposition_say(&s, words, sizeof words);
   assert_contains(words, "Both are noise");
   /* Never past the end. */
   memset(words, 'x', sizeof words);
-  abbe_sweep_split_say(&s, words, 20);
+  abbe_error_decomposition_say(&s, words, 20);
   assert_int_equal(strlen(words), 19);
   assert_int_equal(words[20], 'x');
   abbe_sweep_table_free(&t);

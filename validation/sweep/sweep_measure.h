@@ -1,18 +1,19 @@
-/* sweep.h: renderer settings against a traced reference: one measurement, the reference.
+/* sweep_measure.h: renderer settings against a traced reference: one measurement, the reference.
  *
- * The only part of validation/ that uses gl/. A setting is drawn, timed as the median of warmed
+ * A setting is drawn, timed as the median of warmed
  * frames, and compared with the reference: its receiver map in the reference's layout, its picture
  * pixel by pixel. The thesis profile knows no units, so its map and its picture are first
  * multiplied by the one factor each that suits it best; the same method in physical units
  * (thesis-cie) gets none. Maps of both, which they lay out by the lamp's cone, are resampled. It
  * keeps no files and draws no charts.
  */
-#ifndef ABBE_VALIDATION_SWEEP_SWEEP_H
-#define ABBE_VALIDATION_SWEEP_SWEEP_H
+#ifndef ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_H
+#define ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_H
 
+#include "colorimetry/image/image.h"
 #include "gl/device/context.h"
 #include "gl/plan/plan.h"
-#include "validation/sweep/sweep_grid.h"
+#include "scenes/view/map_layout.h"
 #include "validation/sweep/sweep_table.h"
 
 #ifdef __cplusplus
@@ -20,20 +21,6 @@ extern "C" {
 #endif
 
 #define ABBE_SWEEP_BANDS 8 /* in which maps are compared over wavelength */
-
-/* What is to be drawn: every setting of the grids once, resolved by the scene's plan, in order.
- * Those that a profile does not know for this scene are left out: *refused counts them and `why`
- * (may be NULL) says of the first. ABBE_INVALID_ARGUMENT where none remains or they are too many.
- * *out is malloc'd. */
-abbe_result abbe_sweep_grid_expand(const abbe_scene *scene, const abbe_sweep_grid *grids,
-                                   size_t count, abbe_sweep_setting **out, size_t *out_count,
-                                   size_t *refused, abbe_error *why, abbe_error *error);
-
-/* The setting of a resolved request, and the request of a setting (size and space left 0).
- * ABBE_NOT_FOUND for a profile or fill of an unknown name. */
-void abbe_sweep_setting_of(const abbe_render_desc *desc, abbe_sweep_setting *out);
-abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
-                                    abbe_error *error);
 
 /* What the settings are held against. The images outlive it. */
 typedef struct abbe_sweep {
@@ -68,10 +55,6 @@ abbe_result abbe_sweep_time(const abbe_sweep *sweep, const abbe_sweep_setting *s
  * the model does. Needs all four references. */
 abbe_result abbe_sweep_model_measure(const abbe_sweep *sweep, abbe_sweep_model *out,
                                      abbe_error *error);
-
-/* Numbers that tell whether two sweeps saw one scene, and one reference (either may be NULL). */
-unsigned long long abbe_sweep_hash_scene(const abbe_scene *scene);
-unsigned long long abbe_sweep_hash_images(const abbe_image *picture, const abbe_image *map);
 
 #ifdef __cplusplus
 }

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "tests/random.h"
-#include "validation/sweep/front.h"
+#include "validation/sweep/pareto_front.h"
 
 #include <stdlib.h>
 
@@ -13,13 +13,13 @@ static void test_a_front_by_hand(void **state) {
   static const bool right[] = {true, true, false, true, false, false, false, false, false, false};
   bool on[10];
   size_t order[10];
-  assert_int_equal(abbe_front_mark(cost, error, 10, on), 3);
+  assert_int_equal(abbe_pareto_front_mark(cost, error, 10, on), 3);
   for (int i = 0; i < 10; i++) assert_int_equal(on[i], right[i]);
-  assert_int_equal(abbe_front_order(cost, error, 10, order), 3);
+  assert_int_equal(abbe_pareto_front_order(cost, error, 10, order), 3);
   assert_int_equal(order[0], 0);
   assert_int_equal(order[1], 1);
   assert_int_equal(order[2], 3);
-  assert_int_equal(abbe_front_mark(cost, error, 0, on), 0);
+  assert_int_equal(abbe_pareto_front_mark(cost, error, 0, on), 0);
 }
 
 /* Every point off the front is beaten by one on it; none on it is; the order falls. */
@@ -34,8 +34,8 @@ static void test_the_front_is_what_it_says(void **state) {
     cost[i] = 1 + floor(random_between(&random, 0, 20));
     error[i] = floor(random_between(&random, 0, 20));
   }
-  size_t count = abbe_front_mark(cost, error, COUNT, on);
-  assert_int_equal(abbe_front_order(cost, error, COUNT, order), count);
+  size_t count = abbe_pareto_front_mark(cost, error, COUNT, on);
+  assert_int_equal(abbe_pareto_front_order(cost, error, COUNT, order), count);
   for (size_t k = 0; k < count; k++) {
     assert_true(on[order[k]]);
     if (k == 0) continue;
@@ -57,16 +57,16 @@ static void test_the_knee_and_the_accurate_end(void **state) {
   /* In logarithms (0, 4), (1, 1), (2, 0.9), (4, 0): the line falls by 1 a step. */
   const double cost[] = {1, exp(1), exp(2), exp(4)};
   const double error[] = {exp(4), exp(1), exp(0.9), exp(0)};
-  assert_int_equal(abbe_front_knee(cost, error, 4), 1);
+  assert_int_equal(abbe_pareto_front_knee(cost, error, 4), 1);
   const double straight[] = {exp(4), exp(3), exp(2), exp(0)};
-  assert_int_equal(abbe_front_knee(cost, straight, 4), 2);
-  assert_int_equal(abbe_front_knee(cost, error, 1), 0);
-  assert_int_equal(abbe_front_knee(cost, error, 2), 1);
+  assert_int_equal(abbe_pareto_front_knee(cost, straight, 4), 2);
+  assert_int_equal(abbe_pareto_front_knee(cost, error, 1), 0);
+  assert_int_equal(abbe_pareto_front_knee(cost, error, 2), 1);
   const double exact[] = {1, 0.5, 0.1, 0};
-  assert_true(abbe_front_knee(cost, exact, 4) < 4);
-  assert_int_equal(abbe_front_accurate(error, 4, 0), 3);
-  assert_int_equal(abbe_front_accurate(error, 4, exp(0.9) - 1 + 1e-9), 2);
-  assert_int_equal(abbe_front_accurate(error, 4, 1e9), 0);
+  assert_true(abbe_pareto_front_knee(cost, exact, 4) < 4);
+  assert_int_equal(abbe_pareto_front_accurate(error, 4, 0), 3);
+  assert_int_equal(abbe_pareto_front_accurate(error, 4, exp(0.9) - 1 + 1e-9), 2);
+  assert_int_equal(abbe_pareto_front_accurate(error, 4, 1e9), 0);
 }
 
 int main(void) {

@@ -1,4 +1,5 @@
-/* sweep_split.h: of what a setting's error is made: model, sampling, reconstruction; in words.
+/* error_decomposition.h: of what a setting's error is made: model, sampling, reconstruction; in
+ * words.
  *
  * The model's part is how far matched physics is from full. The rest is how far the setting is from
  * matched physics: sampling and reconstruction together. What reconstruction does is seen where the
@@ -6,8 +7,8 @@
  * it has the same setting with half the photons a side or half the wavelengths. Errors are
  * mean CIEDE2000 of the caustic; they do not add up, so parts are named by size and not summed.
  */
-#ifndef ABBE_VALIDATION_SWEEP_SWEEP_SPLIT_H
-#define ABBE_VALIDATION_SWEEP_SWEEP_SPLIT_H
+#ifndef ABBE_VALIDATION_SWEEP_ERROR_DECOMPOSITION_H
+#define ABBE_VALIDATION_SWEEP_ERROR_DECOMPOSITION_H
 
 #include "validation/sweep/sweep_table.h"
 
@@ -16,7 +17,7 @@ extern "C" {
 #endif
 
 /* NaN: not measured. Each part with its reference's noise taken off in squares (0: all noise). */
-typedef struct abbe_sweep_split {
+typedef struct abbe_error_decomposition {
   const abbe_sweep_row *row; /* the setting: the default profile's most accurate; NULL: none */
   double total, total_noise;
   double model, model_noise;       /* matched physics against full */
@@ -26,12 +27,13 @@ typedef struct abbe_sweep_split {
   double fewer_wavelengths;        /* the rest with half the wavelengths, or fewer */
   double energy, model_energy;     /* of the map, against full: the setting's, and the model's */
   double fill_invented, fill_lost; /* shares of the map's light, of the setting */
-} abbe_sweep_split;
+} abbe_error_decomposition;
 
-void abbe_sweep_split_make(const abbe_sweep_table *table, abbe_sweep_split *out);
+void abbe_error_decomposition_make(const abbe_sweep_table *table, abbe_error_decomposition *out);
 
 /* One paragraph; "" where the table has no row of the default profile. */
-void abbe_sweep_split_say(const abbe_sweep_split *split, char *out, size_t size);
+void abbe_error_decomposition_say(const abbe_error_decomposition *decomposition, char *out,
+                                  size_t size);
 
 #ifdef __cplusplus
 }

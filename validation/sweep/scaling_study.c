@@ -1,8 +1,10 @@
-#include "validation/sweep/sweep_growth.h"
+#include "validation/sweep/scaling_study.h"
 
 #include "base/file.h"
 #include "base/number.h"
 #include "colorimetry/plot/chart.h"
+#include "validation/sweep/sweep_grid.h"
+#include "validation/sweep/sweep_setting.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,15 +14,15 @@ enum { MAX_FACES = 2000000 };
 
 #define ABBE_NAME_OF(code, name, text) name,
 #define ABBE_TEXT_OF(code, name, text) text,
-static const char *const names[] = {ABBE_SWEEP_GROWTHS(ABBE_NAME_OF)};
-static const char *const texts[] = {ABBE_SWEEP_GROWTHS(ABBE_TEXT_OF)};
+static const char *const names[] = {ABBE_SCALINGS(ABBE_NAME_OF)};
+static const char *const texts[] = {ABBE_SCALINGS(ABBE_TEXT_OF)};
 
-const char *abbe_sweep_growth_name(abbe_sweep_growth_axis axis) {
-  return (unsigned)axis < ABBE_SWEEP_GROWTH_COUNT ? names[axis] : "unknown";
+const char *abbe_scaling_study_name(abbe_scaling_study_axis axis) {
+  return (unsigned)axis < ABBE_SCALING_COUNT ? names[axis] : "unknown";
 }
 
-const char *abbe_sweep_growth_text(abbe_sweep_growth_axis axis) {
-  return (unsigned)axis < ABBE_SWEEP_GROWTH_COUNT ? texts[axis] : "unknown";
+const char *abbe_scaling_study_text(abbe_scaling_study_axis axis) {
+  return (unsigned)axis < ABBE_SCALING_COUNT ? texts[axis] : "unknown";
 }
 
 /* Meshes */
@@ -87,33 +89,33 @@ typedef struct work {
   size_t side;
   abbe_render_progress progress;
   void *user;
-  abbe_sweep_growth *out;
+  abbe_scaling_study *out;
   abbe_error *error;
 } work;
 
-static abbe_result add(work *w, abbe_sweep_growth_axis axis, double x,
+static abbe_result add(work *w, abbe_scaling_study_axis axis, double x,
                        const abbe_sweep_setting *setting, size_t side) {
   abbe_sweep_row row;
-  abbe_sweep_growth *g = w->out;
-  if (g->count == ABBE_SWEEP_GROWTH_MAX) return ABBE_OK;
+  abbe_scaling_study *g = w->out;
+  if (g->count == ABBE_SCALING_MAX) return ABBE_OK;
   if (w->progress != NULL && !w->progress(w->user, (double)g->count / 24))
     return abbe_error_set(w->error, ABBE_CANCELLED, "stopped; nothing was written");
   abbe_sweep sweep = *w->sweep;
   sweep.scene = w->scene;
   abbe_result result = abbe_sweep_time(&sweep, setting, side, side, &row, w->error);
   if (result != ABBE_OK) return result;
-  g->point[g->count++] = (abbe_sweep_growth_point){axis,
-                                                   x,
-                                                   row.number[ABBE_SWEEP_FRAME_MS],
-                                                   row.number[ABBE_SWEEP_LIGHT_MS],
-                                                   row.number[ABBE_SWEEP_EYE_MS],
-                                                   row.number[ABBE_SWEEP_FLOOR_MS]};
+  g->point[g->count++] = (abbe_scaling_study_point){axis,
+                                                    x,
+                                                    row.number[ABBE_SWEEP_FRAME_MS],
+                                                    row.number[ABBE_SWEEP_LIGHT_MS],
+                                                    row.number[ABBE_SWEEP_EYE_MS],
+                                                    row.number[ABBE_SWEEP_FLOOR_MS]};
   return ABBE_OK;
 }
 
-static abbe_result grow_setting(work *w, abbe_sweep_growth_axis axis) {
+static abbe_result grow_setting(work *w, abbe_scaling_study_axis axis) {
   static const size_t eighths[] = {1, 2, 4, 8, 16}, wavelengths[] = {1, 3, 7, 14, 28, 56};
-  bool of_photons = axis == ABBE_SWEEP_GROWTH_PHOTONS;
+  bool of_photons = axis == ABBE_SCALING_PHOTONS;
   size_t count =
       of_photons ? sizeof eighths / sizeof *eighths : sizeof wavelengths / sizeof *wavelengths;
   abbe_result result = ABBE_OK;
@@ -132,7 +134,7 @@ static abbe_result grow_setting(work *w, abbe_sweep_growth_axis axis) {
 static abbe_result grow_pixels(work *w) {
   abbe_result result = ABBE_OK;
   for (size_t side = w->side / 4; side <= 2 * w->side && result == ABBE_OK; side *= 2)
-    result = add(w, ABBE_SWEEP_GROWTH_PIXELS, (double)(side * side), &w->base, side);
+    result = add(w, ABBE_SCALING_PIXELS, (double)(side * side), &w->base, side);
   return result;
 }
 
@@ -142,7 +144,7 @@ static abbe_result grow_share(work *w) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof share / sizeof *share && result == ABBE_OK; i++) {
     w->scene->camera.fov_y_rad = 2 * atan(tan(0.5 * fov) / sqrt(share[i]));
-    result = add(w, ABBE_SWEEP_GROWTH_SHARE, share[i], &w->base, w->side);
+    result = add(w, ABBE_SCALING_SHARE, share[i], &w->base, w->side);
   }
   w->scene->camera.fov_y_rad = fov;
   return result;
@@ -152,8 +154,7 @@ static abbe_result grow_share(work *w) {
 static abbe_result grow_faces(work *w) {
   abbe_mesh *kept = calloc(w->scene->object_count + 1, sizeof *kept);
   if (kept == NULL) return abbe_error_set(w->error, ABBE_NO_MEMORY, "no memory for meshes");
-  abbe_result result =
-      add(w, ABBE_SWEEP_GROWTH_FACES, (double)count_faces(w->scene), &w->base, w->side);
+  abbe_result result = add(w, ABBE_SCALING_FACES, (double)count_faces(w->scene), &w->base, w->side);
   for (size_t i = 0; i < w->scene->object_count && result == ABBE_OK; i++) {
     if (w->scene->object[i].material == NULL) continue;
     kept[i] = w->scene->object[i].mesh;
@@ -163,7 +164,7 @@ static abbe_result grow_faces(work *w) {
   for (int i = 0; i < 3 && result == ABBE_OK && count_faces(w->scene) <= MAX_FACES; i++) {
     if (i > 0) result = refine(w->scene, w->error);
     if (result == ABBE_OK)
-      result = add(w, ABBE_SWEEP_GROWTH_FACES, (double)count_faces(w->scene), &w->base, w->side);
+      result = add(w, ABBE_SCALING_FACES, (double)count_faces(w->scene), &w->base, w->side);
   }
   for (size_t i = 0; i < w->scene->object_count; i++) {
     if (kept[i].face_count == 0) continue;
@@ -174,9 +175,9 @@ static abbe_result grow_faces(work *w) {
   return result;
 }
 
-abbe_result abbe_sweep_growth_measure(const abbe_sweep *sweep, abbe_scene *scene, size_t side,
-                                      abbe_render_progress progress, void *user,
-                                      abbe_sweep_growth *out, abbe_error *error) {
+abbe_result abbe_scaling_study_measure(const abbe_sweep *sweep, abbe_scene *scene, size_t side,
+                                       abbe_render_progress progress, void *user,
+                                       abbe_scaling_study *out, abbe_error *error) {
   ABBE_REQUIRE(sweep && scene && out, error);
   work w = {sweep, scene, {.wavelengths = 0}, side, progress, user, out, error};
   abbe_sweep_setting *list = NULL;
@@ -185,7 +186,7 @@ abbe_result abbe_sweep_growth_measure(const abbe_sweep *sweep, abbe_scene *scene
                                 .photons = {1, {side / 2}},
                                 .map = {1, {2 * side}},
                                 .samples = {1, {1}}};
-  *out = (abbe_sweep_growth){.count = 0};
+  *out = (abbe_scaling_study){.count = 0};
   if (side < 16 || side % 8 != 0 || 2 * side > ABBE_RENDER_MAX_MAP)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the base picture has %zu pixels a side; it may have 16 to %d, in eights",
@@ -200,8 +201,8 @@ abbe_result abbe_sweep_growth_measure(const abbe_sweep *sweep, abbe_scene *scene
   const double base_x[] = {(double)(w.base.photons * w.base.photons), (double)w.base.wavelengths,
                            (double)(side * side), (double)count_faces(scene), 1};
   memcpy(out->base_x, base_x, sizeof out->base_x);
-  result = grow_setting(&w, ABBE_SWEEP_GROWTH_PHOTONS);
-  if (result == ABBE_OK) result = grow_setting(&w, ABBE_SWEEP_GROWTH_WAVELENGTHS);
+  result = grow_setting(&w, ABBE_SCALING_PHOTONS);
+  if (result == ABBE_OK) result = grow_setting(&w, ABBE_SCALING_WAVELENGTHS);
   if (result == ABBE_OK) result = grow_pixels(&w);
   if (result == ABBE_OK) result = grow_faces(&w);
   return result == ABBE_OK ? grow_share(&w) : result;
@@ -209,7 +210,7 @@ abbe_result abbe_sweep_growth_measure(const abbe_sweep *sweep, abbe_scene *scene
 
 /* Numbers */
 
-double abbe_sweep_growth_slope(const abbe_sweep_growth *g, abbe_sweep_growth_axis axis) {
+double abbe_scaling_study_slope(const abbe_scaling_study *g, abbe_scaling_study_axis axis) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (size_t i = 0; i < g->count; i++) {
     if (g->point[i].axis != axis) continue;
@@ -224,8 +225,8 @@ double abbe_sweep_growth_slope(const abbe_sweep_growth *g, abbe_sweep_growth_axi
   return n >= 2 && spread > 0 ? (n * xy - x * y) / spread : NAN;
 }
 
-abbe_result abbe_sweep_growth_save(const abbe_sweep_growth *g, const char *path,
-                                   abbe_error *error) {
+abbe_result abbe_scaling_study_save(const abbe_scaling_study *g, const char *path,
+                                    abbe_error *error) {
   ABBE_REQUIRE(g && path, error);
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
@@ -233,7 +234,7 @@ abbe_result abbe_sweep_growth_save(const abbe_sweep_growth *g, const char *path,
   fprintf(writer.stream, "# scene: %s\n# base: %s\naxis,x,frame_ms,light_ms,eye_ms,floor_ms\n",
           g->scene, g->base);
   for (size_t i = 0; i < g->count; i++) {
-    const abbe_sweep_growth_point *p = &g->point[i];
+    const abbe_scaling_study_point *p = &g->point[i];
     const double value[] = {p->x, p->frame_ms, p->light_ms, p->eye_ms, p->floor_ms};
     fprintf(writer.stream, "%s", names[p->axis]);
     for (int k = 0; k < 5; k++) {
@@ -245,16 +246,16 @@ abbe_result abbe_sweep_growth_save(const abbe_sweep_growth *g, const char *path,
   return abbe_file_writer_commit(&writer, error);
 }
 
-void abbe_sweep_growth_print(const abbe_sweep_growth *g, FILE *out) {
+void abbe_scaling_study_print(const abbe_scaling_study *g, FILE *out) {
   fprintf(out,
           "%s; %s\n\n| what grows | | frame, ms | light's passes | eye's passes | floor |\n"
           "|---|---|---|---|---|---|\n",
           g->scene, g->base);
   for (size_t i = 0; i < g->count; i++) {
-    const abbe_sweep_growth_point *p = &g->point[i];
+    const abbe_scaling_study_point *p = &g->point[i];
     bool first = i == 0 || p[-1].axis != p->axis;
     fprintf(out, "| %s", first ? texts[p->axis] : "");
-    if (first) abbe_number_write(out, " (slope %.2f)", abbe_sweep_growth_slope(g, p->axis));
+    if (first) abbe_number_write(out, " (slope %.2f)", abbe_scaling_study_slope(g, p->axis));
     abbe_number_write(out, " | %.4g | %.1f | %.1f | %.1f | %.1f |\n", p->x, p->frame_ms,
                       p->light_ms, p->eye_ms, p->floor_ms);
   }
@@ -262,24 +263,24 @@ void abbe_sweep_growth_print(const abbe_sweep_growth *g, FILE *out) {
 
 /* The chart */
 
-abbe_result abbe_sweep_growth_plot(const abbe_sweep_growth *g, const char *path,
-                                   abbe_error *error) {
+abbe_result abbe_scaling_study_plot(const abbe_scaling_study *g, const char *path,
+                                    abbe_error *error) {
   ABBE_REQUIRE(g && path, error);
-  double x[ABBE_SWEEP_GROWTH_MAX], y[ABBE_SWEEP_GROWTH_MAX], line_x[2] = {1, 1}, line_y[2];
-  char label[ABBE_SWEEP_GROWTH_COUNT][96], title[320];
-  abbe_chart_series series[ABBE_SWEEP_GROWTH_COUNT + 1];
+  double x[ABBE_SCALING_MAX], y[ABBE_SCALING_MAX], line_x[2] = {1, 1}, line_y[2];
+  char label[ABBE_SCALING_COUNT][96], title[320];
+  abbe_chart_series series[ABBE_SCALING_COUNT + 1];
   size_t used = 0;
   double base_ms = NAN;
   for (size_t i = 0; i < g->count; i++) {
-    const abbe_sweep_growth_point *p = &g->point[i];
+    const abbe_scaling_study_point *p = &g->point[i];
     x[i] = p->x / g->base_x[p->axis];
     y[i] = p->frame_ms;
     line_x[0] = fmin(line_x[0], x[i]);
     line_x[1] = fmax(line_x[1], x[i]);
-    if (p->axis == ABBE_SWEEP_GROWTH_PIXELS && x[i] == 1) base_ms = y[i];
+    if (p->axis == ABBE_SCALING_PIXELS && x[i] == 1) base_ms = y[i];
     if (i == 0 || p[-1].axis != p->axis) {
       abbe_number_format(label[used], sizeof label[used], "%s (slope %.2f)", texts[p->axis],
-                         abbe_sweep_growth_slope(g, p->axis));
+                         abbe_scaling_study_slope(g, p->axis));
       series[used] = (abbe_chart_series){
           .label = label[used], .style = ABBE_CHART_JOINED_POINTS, .x = &x[i], .y = &y[i]};
       used++;

@@ -1,4 +1,4 @@
-#include "validation/sweep/sweep_split.h"
+#include "validation/sweep/error_decomposition.h"
 
 #include "base/number.h"
 
@@ -33,7 +33,7 @@ static const abbe_sweep_row *most_accurate(const abbe_sweep_table *table) {
 }
 
 /* A pair that differs in the fill alone; of several the one with most samples. */
-static void find_fill(const abbe_sweep_table *table, abbe_sweep_split *out) {
+static void find_fill(const abbe_sweep_table *table, abbe_error_decomposition *out) {
   size_t most = 0;
   for (size_t i = 0; i < table->count; i++) {
     const abbe_sweep_row *bare = &table->row[i];
@@ -67,9 +67,10 @@ static double with_fewer(const abbe_sweep_table *table, const abbe_sweep_setting
   return rest;
 }
 
-void abbe_sweep_split_make(const abbe_sweep_table *table, abbe_sweep_split *out) {
+void abbe_error_decomposition_make(const abbe_sweep_table *table, abbe_error_decomposition *out) {
   abbe_sweep_model model = {NAN, NAN, NAN, NAN, NAN};
-  *out = (abbe_sweep_split){.row = most_accurate(table), .with_fill = NAN, .without_fill = NAN};
+  *out = (abbe_error_decomposition){
+      .row = most_accurate(table), .with_fill = NAN, .without_fill = NAN};
   if (out->row == NULL) return;
   const double *number = out->row->number;
   abbe_sweep_model_read(table, &model);
@@ -113,7 +114,7 @@ static double above_noise(double error, double noise) {
   return isfinite(noise) ? sqrt(fmax(error * error - noise * noise, 0)) : error;
 }
 
-static void say_parts(const abbe_sweep_split *s, text *t) {
+static void say_parts(const abbe_error_decomposition *s, text *t) {
   double model = above_noise(s->model, s->model_noise), rest = above_noise(s->rest, s->rest_noise);
   say(t,
       " Matched physics, which leaves out what the model does, is itself %.3g (%.2g) away from "
@@ -130,14 +131,14 @@ static void say_parts(const abbe_sweep_split *s, text *t) {
 }
 
 /* Whether the last step up in samples still paid. */
-static void say_step(const abbe_sweep_split *s, double before, const char *what, text *t) {
+static void say_step(const abbe_error_decomposition *s, double before, const char *what, text *t) {
   if (!isfinite(before) || !isfinite(s->rest)) return;
   bool pays = s->rest < (1 - helps) * before;
   say(t, " With fewer %s it was %.3g: more of them %s.", what, before,
       pays ? "would help on" : "would not help");
 }
 
-void abbe_sweep_split_say(const abbe_sweep_split *s, char *out, size_t size) {
+void abbe_error_decomposition_say(const abbe_error_decomposition *s, char *out, size_t size) {
   text t = {out, size, 0};
   char label[64];
   if (size > 0) out[0] = '\0';

@@ -1,7 +1,7 @@
 /* The default profile against a baseline: numbers worked out by hand. */
 #include "tests/validation/sweep/sweep_row.h"
 
-#include "validation/sweep/sweep_duel.h"
+#include "validation/sweep/baseline_comparison.h"
 
 #include <math.h>
 
@@ -15,18 +15,18 @@ static void add(abbe_sweep_table *table, const char *profile, size_t photons, do
   assert_int_equal(abbe_sweep_table_add(table, &row, NULL), ABBE_OK);
 }
 
-static abbe_sweep_duel duel_of(const abbe_sweep_table *table, const char *profile) {
-  abbe_sweep_duel duel;
+static abbe_baseline_comparison compare_with(const abbe_sweep_table *table, const char *profile) {
+  abbe_baseline_comparison c;
   abbe_error error = {0};
-  if (abbe_sweep_duel_make(table, profile, ABBE_SWEEP_CAUSTIC_DE, &duel, &error) != ABBE_OK)
+  if (abbe_baseline_comparison_make(table, profile, ABBE_SWEEP_CAUSTIC_DE, &c, &error) != ABBE_OK)
     fail_msg("%s", error.text);
-  return duel;
+  return c;
 }
 
 static void test_by_hand(void **state) {
   (void)state;
   abbe_sweep_table t = {0};
-  abbe_sweep_duel d = duel_of(&t, "thesis");
+  abbe_baseline_comparison d = compare_with(&t, "thesis");
   assert_null(d.baseline);
   assert_int_equal(d.front, 0);
   assert_true(isnan(d.equal_error_speedup) && isnan(d.front_ratio));
@@ -37,7 +37,7 @@ static void test_by_hand(void **state) {
   add(&t, "thesis", 512, 200, 20); /* its own settings */
   add(&t, "thesis", 1024, 400, 10);
   add(&t, "thesis", 256, 300, 25); /* not on its front */
-  d = duel_of(&t, "thesis");
+  d = compare_with(&t, "thesis");
   assert_int_equal(d.baseline->setting.photons, 512);
   assert_near(d.equal_error_speedup, 200 / 10.0, 1e-12);
   assert_near(d.equal_time_error_ratio, 2 / 20.0, 1e-12);
@@ -49,16 +49,16 @@ static void test_by_hand(void **state) {
   /* A point that is cheaper than all, or better than all, has no answer, and that is said. */
   add(&t, "thesis-cie", 512, 500, 3);
   add(&t, "thesis-cie", 1024, 900, 1.5);
-  d = duel_of(&t, "thesis-cie");
+  d = compare_with(&t, "thesis-cie");
   assert_near(d.equal_error_speedup, 500 / 160.0, 1e-12);
   assert_near(d.equal_time_error_ratio, 2 / 3.0, 1e-12);
   assert_int_equal(d.beaten, 1);
   assert_true(isnan(d.front_speedup));
   assert_near(d.front_ratio, 2 / 1.5, 1e-12);
   add(&t, "thesis-cie", 64, 5, 90);
-  d = duel_of(&t, "thesis-cie");
+  d = compare_with(&t, "thesis-cie");
   assert_true(isnan(d.front_ratio));
-  assert_contains(abbe_sweep_baseline_text("thesis-cie"), "physical units");
+  assert_contains(abbe_baseline_text("thesis-cie"), "physical units");
   abbe_sweep_table_free(&t);
 }
 

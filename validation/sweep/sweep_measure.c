@@ -1,185 +1,24 @@
-#include "validation/sweep/sweep.h"
+#include "validation/sweep/sweep_measure.h"
 
-#include "gl/renderer.h"
+#include "gl/accuracy/frame_times.h"
 #include "scenes/view/map_resample.h"
 #include "validation/compare/compare.h"
+#include "validation/sweep/sweep_setting.h"
 
 #include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_FRAMES = 1000, PARTS = 4, INDEX_STEPS = 9 };
+enum { PARTS = 4 };
 
 static const double enough_ms = 3000;
 
-/* Settings */
-
-void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
-  bool thesis = abbe_profile_is_thesis(d->profile);
-  *out = (abbe_sweep_setting){.wavelengths = d->wavelengths,
-                              .photons = d->photons,
-                              .map = d->map_size,
-                              /* without effect there: one setting whatever was asked */
-                              .samples = thesis ? 1 : d->supersample,
-                              .upsample = d->upsample,
-                              .share = thesis ? 0.01 : d->energy_share,
-                              .exits = d->orders};
-  snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
-  snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
-  snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
-}
-
-abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
-                                    abbe_error *error) {
-  ABBE_REQUIRE(setting && out, error);
-  int profile = 0, fill = 0, model = 0;
-  while (profile < ABBE_PROFILE_COUNT &&
-         strcmp(abbe_profile_name((abbe_profile)profile), setting->profile) != 0)
-    profile++;
-  while (fill < ABBE_FILL_COUNT && strcmp(abbe_fill_name((abbe_fill)fill), setting->fill) != 0)
-    fill++;
-  while (model < ABBE_MODEL_COUNT &&
-         strcmp(abbe_model_name((abbe_model)model), setting->model) != 0)
-    model++;
-  *out = (abbe_render_desc){0};
-  if (profile == ABBE_PROFILE_COUNT || fill == ABBE_FILL_COUNT || model == ABBE_MODEL_COUNT)
-    return abbe_error_set(error, ABBE_NOT_FOUND,
-                          "the renderer has no profile '%s' with a fill '%s' and a model '%s'",
-                          setting->profile, setting->fill, setting->model);
-  *out = (abbe_render_desc){.profile = (abbe_profile)profile,
-                            .wavelengths = setting->wavelengths,
-                            .photons = setting->photons,
-                            .map_size = setting->map,
-                            .supersample = setting->samples,
-                            .upsample = setting->upsample,
-                            .fill = (abbe_fill)fill,
-                            .model = (abbe_model)model,
-                            .energy_share = setting->share,
-                            .orders = setting->exits};
-  return ABBE_OK;
-}
-
-typedef struct expansion {
-  const abbe_scene *scene;
-  abbe_sweep_setting *list;
-  size_t count, refused;
-  abbe_error *why;
-} expansion;
-
-static size_t length_of(const abbe_sweep_values *values) {
-  return values->count > 0 ? values->count : 1;
-}
-
-/* The value of a mixed counter's digit; 0, the default, where the axis has none. */
-static size_t take(const abbe_sweep_values *values, size_t *counter) {
-  size_t length = length_of(values), digit = *counter % length;
-  *counter /= length;
-  return values->count > 0 ? values->value[digit] : 0;
-}
-
-static abbe_result add_setting(expansion *e, const abbe_render_desc *desc, abbe_error *error) {
-  abbe_plan plan;
-  abbe_sweep_setting setting;
-  abbe_error why = {0};
-  abbe_result result = abbe_plan_make(e->scene, desc, &plan, &why);
-  if (result == ABBE_NO_MEMORY) return abbe_error_set(error, result, "%s", why.text);
-  if (result != ABBE_OK) {
-    if (e->refused++ == 0 && e->why != NULL) *e->why = why;
-    return ABBE_OK;
-  }
-  abbe_sweep_setting_of(&plan.desc, &setting);
-  abbe_plan_free(&plan);
-  for (size_t i = 0; i < e->count; i++)
-    if (abbe_sweep_setting_same(&e->list[i], &setting)) return ABBE_OK;
-  if (e->count == ABBE_SWEEP_MAX_ROWS)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the grid has more than %d settings; give shorter lists",
-                          ABBE_SWEEP_MAX_ROWS);
-  e->list[e->count++] = setting;
-  return ABBE_OK;
-}
-
-static bool has_mesh(const abbe_scene *scene) {
-  for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].material != NULL && scene->object[i].exact.kind == ABBE_EXACT_NONE)
-      return true;
-  return false;
-}
-
-static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *error) {
-  size_t shares = g->share_count > 0 ? g->share_count : 1, total = shares;
-  const abbe_sweep_values *const axes[] = {&g->profiles, &g->wavelengths, &g->photons,
-                                           &g->map,      &g->samples,     &g->upsample,
-                                           &g->exits,    &g->fills,       &g->models};
-  for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) total *= length_of(axes[i]);
-  abbe_result result = ABBE_OK;
-  if (g->meshes && !has_mesh(e->scene)) return ABBE_OK;
-  for (size_t i = 0; i < total && result == ABBE_OK; i++) {
-    size_t counter = i;
-    abbe_render_desc d = {.wavelengths = take(&g->wavelengths, &counter)};
-    d.photons = take(&g->photons, &counter);
-    d.map_size = take(&g->map, &counter);
-    d.supersample = take(&g->samples, &counter);
-    d.upsample = take(&g->upsample, &counter);
-    d.orders = take(&g->exits, &counter);
-    d.fill = (abbe_fill)take(&g->fills, &counter);
-    d.model = (abbe_model)take(&g->models, &counter);
-    d.profile = (abbe_profile)take(&g->profiles, &counter);
-    if (g->share_count > 0) d.energy_share = g->share[counter % shares];
-    result = add_setting(e, &d, error);
-  }
-  return result;
-}
-
-abbe_result abbe_sweep_grid_expand(const abbe_scene *scene, const abbe_sweep_grid *grids,
-                                   size_t count, abbe_sweep_setting **out, size_t *out_count,
-                                   size_t *refused, abbe_error *why, abbe_error *error) {
-  ABBE_REQUIRE(scene && grids && out && out_count && refused, error);
-  abbe_error first = {0};
-  expansion e = {.scene = scene, .why = &first};
-  *out = NULL;
-  *out_count = *refused = 0;
-  e.list = calloc(ABBE_SWEEP_MAX_ROWS, sizeof *e.list);
-  abbe_result result = ABBE_OK;
-  if (e.list == NULL) result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the grid");
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) result = add_grid(&e, &grids[i], error);
-  if (result == ABBE_OK && e.count == 0)
-    result =
-        abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                       "no setting of the grid can be drawn for this scene: %.600s", first.text);
-  if (result != ABBE_OK) {
-    free(e.list);
-    return result;
-  }
-  if (why != NULL) *why = first;
-  *out = e.list;
-  *out_count = e.count;
-  *refused = e.refused;
-  return ABBE_OK;
-}
-
 /* Times */
-
-static int by_time(const void *a, const void *b) {
-  double x = ((const abbe_statistics *)a)->frame_ms, y = ((const abbe_statistics *)b)->frame_ms;
-  return (x > y) - (x < y);
-}
 
 static double passes_ms(const abbe_statistics *s, const char *prefix) {
   double sum = 0;
   for (size_t i = 0; i < s->pass_count; i++)
     if (strncmp(s->pass[i].name, prefix, strlen(prefix)) == 0) sum += s->pass[i].ms;
   return sum;
-}
-
-static void note_times(const abbe_statistics *sorted, size_t count, abbe_sweep_row *out) {
-  const abbe_statistics *median = &sorted[count / 2];
-  out->number[ABBE_SWEEP_FRAME_MS] = median->frame_ms;
-  out->number[ABBE_SWEEP_FASTEST_MS] = sorted[0].frame_ms;
-  out->number[ABBE_SWEEP_LIGHT_MS] = passes_ms(median, "light:");
-  out->number[ABBE_SWEEP_EYE_MS] = passes_ms(median, "eye:");
 }
 
 /* What is bridged while it is deposited is in the ledger, which sums the map itself. */
@@ -191,38 +30,22 @@ static void note_balance(const abbe_ledger *e, abbe_sweep_row *out) {
   out->number[ABBE_SWEEP_FILL_LOST] = fmax(e->reached - parts, 0) / e->deposited;
 }
 
-/* A warming frame, then the median of the others; slow ones are not drawn as often, for they vary
- * less. The floor is the median of three. */
+/* Slow frames are not drawn as often, for they vary less. */
 static abbe_result time_frames(const abbe_sweep *s, abbe_renderer *renderer,
                                abbe_render_progress progress, void *user, abbe_sweep_row *out,
                                abbe_error *error) {
-  size_t count = s->frames > 0 ? s->frames : DEFAULT_FRAMES;
-  if (count > MAX_FRAMES) count = MAX_FRAMES;
-  double spent_ms = 0;
-  abbe_statistics *all = calloc(count, sizeof *all);
-  if (all == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the times");
-  abbe_result result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
-    if (progress != NULL && !progress(user, (double)i / (double)count))
-      result = abbe_error_set(error, ABBE_CANCELLED, "stopped");
-    if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, &all[i], error);
-    spent_ms += all[i].frame_ms;
-    if (result == ABBE_OK && i + 1 >= ENOUGH_FRAMES && spent_ms > enough_ms) count = i + 1;
-  }
-  if (result == ABBE_OK) {
-    note_balance(&all[0].energy, out);
-    qsort(all, count, sizeof *all, by_time);
-    note_times(all, count, out);
-  }
-  free(all);
-  double floor_ms[3] = {NAN, NAN, NAN};
-  bool thesis = abbe_profile_is_thesis(abbe_renderer_plan(renderer)->desc.profile);
-  for (int i = 0; i < 3 && !thesis && result == ABBE_OK; i++)
-    result = abbe_renderer_floor(renderer, &floor_ms[i], error);
-  if (result == ABBE_OK && !thesis)
-    out->number[ABBE_SWEEP_FLOOR_MS] =
-        fmax(fmin(floor_ms[0], floor_ms[1]), fmin(fmax(floor_ms[0], floor_ms[1]), floor_ms[2]));
-  return result;
+  abbe_frame_times times;
+  const abbe_frame_times_desc desc = {
+      .frames = s->frames, .enough_ms = enough_ms, .progress = progress, .user = user};
+  abbe_result result = abbe_frame_times_measure(renderer, &desc, &times, error);
+  if (result != ABBE_OK) return result;
+  note_balance(&times.median.energy, out);
+  out->number[ABBE_SWEEP_FRAME_MS] = times.median.frame_ms;
+  out->number[ABBE_SWEEP_FASTEST_MS] = times.fastest_ms;
+  out->number[ABBE_SWEEP_LIGHT_MS] = passes_ms(&times.median, "light:");
+  out->number[ABBE_SWEEP_EYE_MS] = passes_ms(&times.median, "eye:");
+  if (abbe_profile_is_thesis(abbe_renderer_plan(renderer)->desc.profile)) return ABBE_OK;
+  return abbe_frame_times_floor(renderer, 3, &out->number[ABBE_SWEEP_FLOOR_MS], error);
 }
 
 /* Errors */
@@ -477,64 +300,4 @@ abbe_result abbe_sweep_fit_layout(abbe_context *context, const abbe_scene *scene
     abbe_renderer_map_layout(renderer, light, out);
   abbe_renderer_free(renderer);
   return result;
-}
-
-/* Hashes: FNV-1a, 64 bits */
-
-static unsigned long long hash(unsigned long long h, const void *data, size_t size) {
-  const unsigned char *byte = data;
-  for (size_t i = 0; i < size; i++) h = (h ^ byte[i]) * 1099511628211u;
-  return h & 0xffffffffffffffffu;
-}
-
-static const unsigned long long hash_start = 14695981039346656037u;
-
-static unsigned long long hash_object(unsigned long long h, const abbe_object *o) {
-  h = hash(h, o->mesh.position, o->mesh.vertex_count * sizeof *o->mesh.position);
-  h = hash(h, o->mesh.face, o->mesh.face_count * sizeof *o->mesh.face);
-  h = hash(h, o->reflectance, sizeof o->reflectance);
-  h = hash(h, o->texture.data,
-           o->texture.width * o->texture.height * o->texture.channels * sizeof *o->texture.data);
-  for (int i = 0; i < INDEX_STEPS && o->material != NULL; i++) {
-    double lambda_nm = 380 + 50.0 * i, n = 0;
-    abbe_material_n(o->material, lambda_nm, &n, NULL);
-    double numbers[] = {n, abbe_material_attenuation(o->material, lambda_nm)};
-    h = hash(h, numbers, sizeof numbers);
-  }
-  return h;
-}
-
-unsigned long long abbe_sweep_hash_scene(const abbe_scene *s) {
-  unsigned long long h = hash_start;
-  h = hash(h, s->camera.eye, sizeof s->camera.eye);
-  h = hash(h, s->camera.target, sizeof s->camera.target);
-  h = hash(h, s->camera.up, sizeof s->camera.up);
-  const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
-  h = hash(h, loose, sizeof loose);
-  for (size_t i = 0; i < s->light_count; i++) {
-    const abbe_light *l = &s->light[i];
-    const double numbers[] = {l->kind,         l->position[0],  l->position[1],
-                              l->position[2],  l->direction[0], l->direction[1],
-                              l->direction[2], l->radius,       l->cone_rad,
-                              l->soft_rad,     l->power,        l->illuminant.kind};
-    h = hash(h, numbers, sizeof numbers);
-    for (int k = 0; k < INDEX_STEPS; k++) {
-      double power = abbe_illuminant_power(&l->illuminant, 380 + 50.0 * k);
-      h = hash(h, &power, sizeof power);
-    }
-  }
-  for (size_t i = 0; i < s->object_count; i++) h = hash_object(h, &s->object[i]);
-  return h;
-}
-
-unsigned long long abbe_sweep_hash_images(const abbe_image *picture, const abbe_image *map) {
-  const abbe_image *const images[] = {picture, map};
-  unsigned long long h = hash_start;
-  for (int i = 0; i < 2; i++) {
-    if (images[i] == NULL) continue;
-    const size_t sizes[] = {images[i]->width, images[i]->height, images[i]->channels};
-    h = hash(h, sizes, sizeof sizes);
-    h = hash(h, images[i]->data, sizes[0] * sizes[1] * sizes[2] * sizeof *images[i]->data);
-  }
-  return h;
 }

@@ -1,6 +1,6 @@
-#include "validation/sweep/sweep_duel.h"
+#include "validation/sweep/baseline_comparison.h"
 
-#include "validation/sweep/front.h"
+#include "validation/sweep/pareto_front.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,12 +8,12 @@
 
 #define ABBE_NAME_OF(name, text) name,
 #define ABBE_TEXT_OF(name, text) text,
-const char *const abbe_sweep_baselines[] = {ABBE_SWEEP_BASELINES(ABBE_NAME_OF)};
-static const char *const texts[] = {ABBE_SWEEP_BASELINES(ABBE_TEXT_OF)};
+const char *const abbe_baselines[] = {ABBE_BASELINES(ABBE_NAME_OF)};
+static const char *const texts[] = {ABBE_BASELINES(ABBE_TEXT_OF)};
 
-const char *abbe_sweep_baseline_text(const char *profile) {
-  for (int i = 0; i < ABBE_SWEEP_BASELINE_COUNT; i++)
-    if (strcmp(abbe_sweep_baselines[i], profile) == 0) return texts[i];
+const char *abbe_baseline_text(const char *profile) {
+  for (int i = 0; i < ABBE_BASELINE_COUNT; i++)
+    if (strcmp(abbe_baselines[i], profile) == 0) return texts[i];
   return profile;
 }
 
@@ -39,7 +39,8 @@ static void meet(const abbe_sweep_table *table, abbe_sweep_number number, double
 }
 
 static void meet_front(const abbe_sweep_table *table, const double *cost, const double *error,
-                       const size_t *order, abbe_sweep_number number, abbe_sweep_duel *out) {
+                       const size_t *order, abbe_sweep_number number,
+                       abbe_baseline_comparison *out) {
   double least = INFINITY, most = 0;
   bool reached = true, begun = true;
   for (size_t i = 0; i < out->front; i++) {
@@ -57,14 +58,14 @@ static void meet_front(const abbe_sweep_table *table, const double *cost, const 
   if (out->front > 0 && begun) out->front_ratio = most;
 }
 
-abbe_result abbe_sweep_duel_make(const abbe_sweep_table *table, const char *profile,
-                                 abbe_sweep_number number, abbe_sweep_duel *out,
-                                 abbe_error *error) {
+abbe_result abbe_baseline_comparison_make(const abbe_sweep_table *table, const char *profile,
+                                          abbe_sweep_number number, abbe_baseline_comparison *out,
+                                          abbe_error *error) {
   ABBE_REQUIRE(table && profile && out, error);
   size_t count = table->count;
   double *cost = calloc(2 * count + 1, sizeof *cost);
   size_t *order = calloc(count + 1, sizeof *order);
-  *out = (abbe_sweep_duel){NULL, NAN, NAN, 0, 0, NAN, NAN};
+  *out = (abbe_baseline_comparison){NULL, NAN, NAN, 0, 0, NAN, NAN};
   abbe_result result = ABBE_OK;
   if (cost == NULL || order == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the baseline's front");
@@ -76,7 +77,7 @@ abbe_result abbe_sweep_duel_make(const abbe_sweep_table *table, const char *prof
     if (is_own(&row->setting, profile)) out->baseline = row;
   }
   if (result == ABBE_OK) {
-    out->front = abbe_front_order(cost, cost + count, count, order);
+    out->front = abbe_pareto_front_order(cost, cost + count, count, order);
     meet_front(table, cost, cost + count, order, number, out);
   }
   if (result == ABBE_OK && out->baseline != NULL)

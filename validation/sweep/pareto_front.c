@@ -1,4 +1,4 @@
-#include "validation/sweep/front.h"
+#include "validation/sweep/pareto_front.h"
 
 #include <math.h>
 
@@ -12,7 +12,8 @@ static bool beats(const double *cost, const double *error, size_t j, size_t i) {
   return cost[j] < cost[i] || error[j] < error[i] || j < i;
 }
 
-size_t abbe_front_mark(const double *cost, const double *error, size_t count, bool *on_front) {
+size_t abbe_pareto_front_mark(const double *cost, const double *error, size_t count,
+                              bool *on_front) {
   size_t marked = 0;
   for (size_t i = 0; i < count; i++) {
     on_front[i] = counts(cost[i], error[i]);
@@ -23,7 +24,8 @@ size_t abbe_front_mark(const double *cost, const double *error, size_t count, bo
   return marked;
 }
 
-size_t abbe_front_order(const double *cost, const double *error, size_t count, size_t *order) {
+size_t abbe_pareto_front_order(const double *cost, const double *error, size_t count,
+                               size_t *order) {
   size_t found = 0;
   for (size_t i = 0; i < count; i++) {
     bool on_front = counts(cost[i], error[i]);
@@ -40,7 +42,7 @@ static double height(double error) {
   return log(fmax(error, 1e-12));
 }
 
-size_t abbe_front_knee(const double *cost, const double *error, size_t count) {
+size_t abbe_pareto_front_knee(const double *cost, const double *error, size_t count) {
   if (count < 3) return count / 2;
   double x0 = log(cost[0]), x1 = log(cost[count - 1]);
   double y0 = height(error[0]), y1 = height(error[count - 1]);
@@ -55,7 +57,7 @@ size_t abbe_front_knee(const double *cost, const double *error, size_t count) {
   return best;
 }
 
-size_t abbe_front_accurate(const double *error, size_t count, double slack) {
+size_t abbe_pareto_front_accurate(const double *error, size_t count, double slack) {
   double least = INFINITY;
   for (size_t i = 0; i < count; i++) least = fmin(least, error[i]);
   for (size_t i = 0; i < count; i++)

@@ -1,7 +1,9 @@
-/* Settings held against references: grids without doubles, and errors that are known beforehand. */
+/* Settings held against references: errors that are known beforehand. */
 #include "tests/gl/frame.h"
 
-#include "validation/sweep/sweep.h"
+#include "validation/sweep/sweep_grid.h"
+#include "validation/sweep/sweep_measure.h"
+#include "validation/sweep/sweep_setting.h"
 #include "validation/tracer/reference.h"
 
 #define SCENE CAMERA POINT_LIGHT FLOOR BALL("crown")
@@ -9,125 +11,17 @@
   "lights:\n- {name: lamp, kind: spot, position: [0.05, 0.03, 0.6], direction: [0, 0, -1], "       \
   "intensity: 1, cone: 40}\n"
 
-static size_t expand(const abbe_scene *scene, const abbe_sweep_grid *grids, size_t count,
-                     abbe_sweep_setting **out, size_t *refused) {
-  abbe_error error = {0}, why = {0};
-  size_t got = 0;
-  abbe_result result =
-      abbe_sweep_grid_expand(scene, grids, count, out, &got, refused, &why, &error);
-  if (result != ABBE_OK) fail_msg("%s", error.text);
-  return got;
-}
-
-static void test_grids_hold_each_setting_once(void **state) {
-  (void)state;
-  abbe_scene scene = {0};
-  abbe_sweep_setting *list;
-  size_t refused;
-  load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
-  /* 7 wavelengths are the default: the second grid has one setting of the first again. */
-  const abbe_sweep_grid grids[] = {{.wavelengths = {2, {3, 7}},
-                                    .photons = {2, {32, 64}},
-                                    .share_count = 2,
-                                    .share = {0.1, 0.01}},
-                                   {.photons = {1, {64}}}};
-  size_t count = expand(&scene, grids, 2, &list, &refused);
-  assert_int_equal(count, 8);
-  assert_int_equal(refused, 0);
-  for (size_t i = 0; i < count; i++) {
-    assert_true(list[i].wavelengths == 3 || list[i].wavelengths == 7);
-    assert_int_equal(list[i].map, 1024);
-    assert_string_equal(list[i].fill, "bridge");
-    for (size_t k = 0; k < i; k++) assert_false(abbe_sweep_setting_same(&list[i], &list[k]));
-    /* A setting's request resolves to itself. */
-    abbe_render_desc desc;
-    abbe_plan plan;
-    abbe_sweep_setting again;
-    assert_int_equal(abbe_sweep_setting_desc(&list[i], &desc, NULL), ABBE_OK);
-    assert_int_equal(abbe_plan_make(&scene, &desc, &plan, NULL), ABBE_OK);
-    abbe_sweep_setting_of(&plan.desc, &again);
-    assert_true(abbe_sweep_setting_same(&list[i], &again));
-    abbe_plan_free(&plan);
-  }
-  free(list);
-  /* Samples and exits are without effect in the thesis profile: one setting. */
-  const abbe_sweep_grid thesis = {.profiles = {1, {ABBE_PROFILE_THESIS}},
-                                  .samples = {3, {1, 2, 3}},
-                                  .exits = {2, {1, 5}},
-                                  .share_count = 2,
-                                  .share = {0.1, 0.2}};
-  assert_int_equal(expand(&scene, &thesis, 1, &list, &refused), 1);
-  assert_string_equal(list[0].fill, "smear");
-  free(list);
-  for (int name = 0; name < ABBE_SWEEP_GRID_COUNT; name++) {
-    abbe_sweep_grid parts[ABBE_SWEEP_MAX_GRIDS];
-    size_t n = abbe_sweep_grid_make((abbe_sweep_grid_name)name, parts);
-    assert_true(n > 0 && n <= ABBE_SWEEP_MAX_GRIDS);
-    static const size_t least[] = {30, 150, 18};
-    assert_true(expand(&scene, parts, n, &list, &refused) >= least[name]);
-    assert_int_equal(refused, 0);
-    free(list);
-  }
-  abbe_scene_free(&scene);
-}
-
-/* Presets join the scenes of a class by setting, whatever exits their own plans take. */
-static void test_the_thin_grid_is_the_same_for_every_convex_solid(void **state) {
-  (void)state;
-  static const char *const names[] = {"prism", "gem", "diamond"};
-  abbe_sweep_setting *list[3];
-  size_t counts[3];
-  for (int i = 0; i < 3; i++) {
-    abbe_scene scene = {0};
-    abbe_sweep_grid parts[ABBE_SWEEP_MAX_GRIDS];
-    size_t refused;
-    load_shipped(names[i], &scene);
-    const size_t n = abbe_sweep_grid_make(ABBE_SWEEP_GRID_THIN, parts);
-    counts[i] = expand(&scene, parts, n, &list[i], &refused);
-    abbe_scene_free(&scene);
-    for (size_t k = 0; k < counts[0]; k++) {
-      bool found =
-          strcmp(list[0][k].profile, "default") != 0; /* its views do not hold every scene */
-      for (size_t j = 0; j < counts[i] && !found; j++)
-        found = abbe_sweep_setting_same(&list[i][j], &list[0][k]);
-      if (!found) fail_msg("%s: setting %zu", names[i], k);
-    }
-  }
-  for (int i = 0; i < 3; i++) free(list[i]);
-}
-
-static void test_what_a_profile_does_not_know_is_left_out(void **state) {
-  (void)state;
-  abbe_scene scene = {0};
-  abbe_sweep_setting *list;
-  size_t refused, count;
-  abbe_error error = {0};
-  load_text(CAMERA SUN FLOOR BALL("crown"), &scene);
-  abbe_sweep_grid grid = {.profiles = {2, {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_THESIS}}};
-  assert_int_equal(expand(&scene, &grid, 1, &list, &refused), 1);
-  assert_int_equal(refused, 1);
-  free(list);
-  grid.profiles = (abbe_sweep_values){1, {ABBE_PROFILE_THESIS}};
-  assert_int_equal(abbe_sweep_grid_expand(&scene, &grid, 1, &list, &count, &refused, NULL, &error),
-                   ABBE_INVALID_ARGUMENT);
-  assert_contains(error.text, "'sun' is directional");
-  assert_null(list);
-  abbe_sweep_setting wrong = {.profile = "default", .fill = "glue"};
-  abbe_render_desc desc;
-  assert_int_equal(abbe_sweep_setting_desc(&wrong, &desc, &error), ABBE_NOT_FOUND);
-  assert_contains(error.text, "'glue'");
-  abbe_scene_free(&scene);
-}
-
 /* A setting of the default profile, small. */
 static abbe_sweep_setting small_setting(const abbe_scene *scene, abbe_profile profile) {
   abbe_sweep_setting *list, setting;
-  size_t refused;
+  size_t count, refused;
+  abbe_error error = {0};
   const abbe_sweep_grid grid = {.profiles = {1, {(size_t)profile}},
                                 .photons = {1, {64}},
                                 .map = {1, {128}},
                                 .samples = {1, {1}}};
-  assert_int_equal(expand(scene, &grid, 1, &list, &refused), 1);
+  assert_ok(abbe_sweep_grid_expand(scene, &grid, 1, &list, &count, &refused, NULL, &error), &error);
+  assert_int_equal(count, 1);
   setting = list[0];
   free(list);
   return setting;
@@ -329,31 +223,6 @@ static void test_against_a_traced_reference(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void test_hashes_tell_scenes_and_references_apart(void **state) {
-  (void)state;
-  static const char *const texts[] = {SCENE, CAMERA POINT_LIGHT FLOOR BALL("flat"),
-                                      CAMERA SPOT FLOOR BALL("crown"), CAMERA POINT_LIGHT FLOOR};
-  unsigned long long seen[4];
-  for (size_t i = 0; i < 4; i++) {
-    abbe_scene scene = {0};
-    load_text(texts[i], &scene);
-    seen[i] = abbe_sweep_hash_scene(&scene);
-    assert_true(seen[i] == abbe_sweep_hash_scene(&scene));
-    for (size_t k = 0; k < i; k++) assert_true(seen[i] != seen[k]);
-    abbe_scene_free(&scene);
-  }
-  static const char *const names[] = {"Y"};
-  abbe_image a = {0}, b = {0};
-  assert_int_equal(abbe_image_make(4, 4, 1, names, &a, NULL), ABBE_OK);
-  assert_int_equal(abbe_image_make(4, 4, 1, names, &b, NULL), ABBE_OK);
-  assert_true(abbe_sweep_hash_images(&a, &b) == abbe_sweep_hash_images(&b, &a));
-  b.data[3] = 1;
-  assert_true(abbe_sweep_hash_images(&a, &b) != abbe_sweep_hash_images(&b, &a));
-  assert_true(abbe_sweep_hash_images(&a, NULL) != abbe_sweep_hash_images(&b, NULL));
-  abbe_image_free(&a);
-  abbe_image_free(&b);
-}
-
 static void test_a_scene_without_refractors_has_no_map(void **state) {
   (void)state;
   abbe_scene scene = {0};
@@ -367,14 +236,10 @@ static void test_a_scene_without_refractors_has_no_map(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_grids_hold_each_setting_once),
-      cmocka_unit_test(test_the_thin_grid_is_the_same_for_every_convex_solid),
-      cmocka_unit_test(test_what_a_profile_does_not_know_is_left_out),
       cmocka_unit_test(test_the_same_picture_has_no_error),
       cmocka_unit_test(test_the_thesis_gets_its_best_brightness),
       cmocka_unit_test(test_the_method_in_units_gets_no_factor),
       cmocka_unit_test(test_against_a_traced_reference),
-      cmocka_unit_test(test_hashes_tell_scenes_and_references_apart),
       cmocka_unit_test(test_a_scene_without_refractors_has_no_map),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
