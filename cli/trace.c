@@ -300,12 +300,12 @@ static abbe_result run_passes(const request *q, abbe_tracer *tracer, abbe_error 
 static void add_ledger(cJSON *root, const abbe_light_ledger *l) {
   cJSON *energy = cJSON_AddObjectToObject(root, "energy");
   cJSON_AddNumberToObject(energy, "reached", l->reached);
-  cJSON_AddNumberToObject(energy, "landed", l->landed);
+  cJSON_AddNumberToObject(energy, "deposited", l->deposited);
   cJSON_AddNumberToObject(energy, "contact", l->contact);
   cJSON_AddNumberToObject(energy, "hidden", l->hidden);
   cJSON_AddNumberToObject(energy, "absorbed", l->absorbed);
-  cJSON_AddNumberToObject(energy, "escaped", l->escaped);
-  cJSON_AddNumberToObject(energy, "dropped", l->dropped);
+  cJSON_AddNumberToObject(energy, "missed", l->missed);
+  cJSON_AddNumberToObject(energy, "trapped", l->trapped);
   cJSON_AddNumberToObject(energy, "lost", l->lost);
 }
 
@@ -379,15 +379,15 @@ static void summarise(const request *q, const abbe_tracer *tracer) {
   if (s.ledger.reached > 0) {
     double whole = 100 / s.ledger.reached;
     fprintf(stderr,
-            "; of the light that met refractors %.2f %% landed, %.2f %% was absorbed, %.2f %% "
-            "escaped, %.2g %% was lost",
-            whole * s.ledger.landed, whole * s.ledger.absorbed, whole * s.ledger.escaped,
+            "; of the light that met refractors %.2f %% is on receivers, %.2f %% absorbed, %.2f %% "
+            "missed, %.2g %% lost",
+            whole * s.ledger.deposited, whole * s.ledger.absorbed, whole * s.ledger.missed,
             whole * s.ledger.lost);
     if (s.ledger.hidden > 0)
-      fprintf(stderr, ", %.2f %% landed where receivers hide it from its lamp, in no map",
+      fprintf(stderr, ", %.2f %% where receivers hide it from its lamp, in no map",
               whole * s.ledger.hidden);
-    if (s.ledger.dropped > 0)
-      fprintf(stderr, ", %.2f %% is not modelled", whole * s.ledger.dropped);
+    if (s.ledger.trapped > 0)
+      fprintf(stderr, ", %.2f %% trapped, which is not modelled", whole * s.ledger.trapped);
   }
   fprintf(stderr, "\n");
   if (s.cuts > 0)

@@ -28,6 +28,7 @@ foreach(name
     random
     reflectance
     route
+    scatter
     spectral_sampling
     reference
     sphere_quadrature

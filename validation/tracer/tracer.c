@@ -97,9 +97,9 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   t->white = calloc(lights, sizeof *t->white);
   t->aim = calloc(lights, sizeof *t->aim);
   t->photons = calloc(lights, sizeof *t->photons);
-  t->parts = calloc(lights, sizeof *t->parts);
+  t->splits = calloc(lights, sizeof *t->splits);
   t->walk = calloc(d->threads, sizeof *t->walk);
-  if (!t->colour || !t->white || !t->aim || !t->photons || !t->parts || !t->walk)
+  if (!t->colour || !t->white || !t->aim || !t->photons || !t->splits || !t->walk)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the lights' tables");
   abbe_spectral_sampling_colours(&t->sampling, t->mixing, t->colour);
   double matrix[9], white[3];
@@ -186,10 +186,10 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
   }
   if (!t->eye_gathers) return ABBE_OK;
   for (size_t l = 0; l < t->scene->light_count; l++)
-    t->landed_room += abbe_tracer_most_landings(t, l, t->photons[l]);
+    t->landed_room += abbe_tracer_most_hits(t, l, t->photons[l]);
   t->landed = malloc((t->landed_room + 1) * sizeof *t->landed);
   if (t->landed == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings a pass",
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu photons of a pass",
                           t->landed_room);
   /* four pixels of the receivers as far away as the refractors */
   float eye[3], far = 0;
@@ -210,7 +210,7 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
   abbe_result result = resolve(scene, &t->desc, error);
   if (result == ABBE_OK) result = make_tables(t, error);
   if (result == ABBE_OK) result = abbe_tracer_share_photons(t, error);
-  if (result == ABBE_OK) result = abbe_tracer_choose_parts(t, error);
+  if (result == ABBE_OK) result = abbe_tracer_choose_splits(t, error);
   if (result == ABBE_OK && !t->desc.no_map) {
     if (t->desc.layout != NULL)
       t->layout = *t->desc.layout;
@@ -245,7 +245,7 @@ void abbe_tracer_free(abbe_tracer *t) {
   free(t->white);
   free(t->aim);
   free(t->photons);
-  free(t->parts);
+  free(t->splits);
   free(t->walk);
   free(t);
 }

@@ -20,8 +20,8 @@ typedef struct fixture {
   abbe_light_walk *walk;
   abbe_light_ledger ledger;
   abbe_photon photon[BATCH];
-  abbe_landing landing[ABBE_LIGHT_WALK_LANDINGS];
-  size_t photons, hidden; /* hidden: landings of the last rays that the lamp does not see */
+  abbe_photon_hit hit[ABBE_LIGHT_WALK_HITS];
+  size_t photons, hidden; /* hidden: hits of the last rays that the lamp does not see */
 } fixture;
 
 /* Over 500 to 600 nm. */
@@ -61,9 +61,9 @@ static size_t shoot(fixture *f, const double from[3], const double d[3], uint32_
   f->hidden = 0;
   for (uint32_t b = 0; b < batches; b++) {
     for (uint32_t i = 0; i < BATCH; i++) f->photon[i] = photon_of(f, from, d, i);
-    size_t count = abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->landing,
-                                       &f->ledger);
-    for (size_t i = 0; i < count; i++) f->hidden += f->landing[i].hidden ? 1 : 0;
+    size_t count =
+        abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
+    for (size_t i = 0; i < count; i++) f->hidden += f->hit[i].hidden ? 1 : 0;
     landed += count;
     f->photons += BATCH;
   }
@@ -85,13 +85,13 @@ static void flood(fixture *f, uint32_t batches) {
         d[k] = to[k] + random_between(&random, -0.1, 0.1) - f->scene.light[0].position[k];
       f->photon[i] = photon_of(f, f->scene.light[0].position, d, i);
     }
-    abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->landing, &f->ledger);
+    abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
     f->photons += BATCH;
   }
 }
 
 /* What reached refractors went somewhere. Photons keep their flux but for absorption, whose
- * roulette is booked as absorbed, gained or lost: the books close to rounding. */
+ * roulette is counted as absorbed, gained or lost: the ledger closes to rounding. */
 static void the_books_close(void **state) {
   (void)state;
   static const abbe_physics matched = {.matched = true, .orders = 3, .energy_share = 0.001};
@@ -105,9 +105,9 @@ static void the_books_close(void **state) {
     flood(&f, 8);
     const abbe_light_ledger *l = &f.ledger;
     assert_true(l->reached > 0.05 * (double)f.photons);
-    double sum = l->landed + l->absorbed + l->escaped + l->dropped + l->lost;
+    double sum = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
     assert_near(sum / l->reached, 1, 1e-6);
-    assert_true(i % 2 ? l->dropped > 0 : l->dropped == 0);
+    assert_true(i % 2 ? l->trapped > 0 : l->trapped == 0);
     assert_true(l->contact == 0);
     assert_true(l->lost <= 1e-4 * l->reached);
     drop(&f);
@@ -122,7 +122,7 @@ static void fresnels_share_at_normal_incidence(void **state) {
   double r = 0.04, back = 2 * r / (1 + r);
   size_t landed = shoot(&f, (double[3]){0.02, 0.01, 0.6}, (double[3]){0, 0, -1}, 40);
   check_share((double)landed, (double)f.photons, 1 - back);
-  check_share(f.ledger.escaped, (double)f.photons, back);
+  check_share(f.ledger.missed, (double)f.photons, back);
   assert_near(f.ledger.reached, (double)f.photons, 0);
   drop(&f);
 }
@@ -135,7 +135,7 @@ static void beer_and_lambert(void **state) {
   make(CAMERA POINT_LIGHT FLOOR SLAB("smoke"), NULL, &f);
   double landed = 0, r = 0.04, expected = 0;
   shoot(&f, (double[3]){0.02, 0.01, 0.6}, (double[3]){0, 0, -1}, 40);
-  landed = f.ledger.landed / (double)f.photons;
+  landed = f.ledger.deposited / (double)f.photons;
   for (uint32_t k = 0; k < STEPS; k++) {
     double nm = 500 + 100.0 * (k + 0.5) / STEPS, a = 20 - 15 * (nm - 400) / 300;
     double keep = exp(-a * 0.1);
@@ -158,7 +158,7 @@ static void total_reflection_lets_nothing_through(void **state) {
        NULL, &f);
   size_t landed = shoot(&f, (double[3]){0.04, 0.01, 0.1}, (double[3]){0, 0, 1}, 4);
   assert_int_equal(landed, f.photons);
-  assert_near(f.ledger.landed, (double)f.photons, 1e-6);
+  assert_near(f.ledger.deposited, (double)f.photons, 1e-6);
   drop(&f);
 }
 
@@ -176,7 +176,7 @@ static void nested_glass_reflects_by_the_two_indices(void **state) {
     double inner = pow((n - 1.5) / (n + 1.5), 2), outer = 0.04;
     mean += 1 / (1 + 2 * outer / (1 - outer) + 2 * inner / (1 - inner)) / STEPS;
   }
-  check_share(f.ledger.landed, (double)f.photons, mean);
+  check_share(f.ledger.deposited, (double)f.photons, mean);
   assert_true(f.ledger.lost == 0);
   drop(&f);
 }
@@ -192,9 +192,9 @@ static void glass_of_index_one_is_not_there(void **state) {
   assert_int_equal(landed, BATCH);
   double p[3], t = 0.6 / 0.4;
   for (size_t i = 0; i < landed; i++) {
-    abbe_geometry_to_world(&f.geometry, f.landing[i].p, p);
+    abbe_geometry_to_world(&f.geometry, f.hit[i].p, p);
     for (int k = 0; k < 3; k++) assert_near(p[k], from[k] + t * d[k], 1e-6);
-    assert_true(f.landing[i].side > 0 && f.landing[i].surface == 0);
+    assert_true(f.hit[i].side > 0 && f.hit[i].surface == 0);
   }
   drop(&f);
 }
@@ -214,10 +214,10 @@ static void light_that_misses_is_not_counted(void **state) {
     f.photon[i].flux = i % 2 ? 0 : NAN;
   }
   assert_int_equal(
-      abbe_light_walk_run(f.walk, &f.scene.light[0], 0, f.photon, BATCH, f.landing, &f.ledger), 0);
+      abbe_light_walk_run(f.walk, &f.scene.light[0], 0, f.photon, BATCH, f.hit, &f.ledger), 0);
   assert_memory_equal(&f.ledger, &empty, sizeof empty);
-  assert_int_equal(
-      abbe_light_walk_run(f.walk, &f.scene.light[0], 0, f.photon, 0, f.landing, &f.ledger), 0);
+  assert_int_equal(abbe_light_walk_run(f.walk, &f.scene.light[0], 0, f.photon, 0, f.hit, &f.ledger),
+                   0);
   drop(&f);
 }
 
@@ -234,17 +234,17 @@ static void matched_rules_drop_what_they_say(void **state) {
     /* walls met: 1 leaves below, 2 above, 3 below; reflections at the last wall are dropped */
     double below = (1 - r) * (1 - r) * (1 + (orders >= 3 ? r * r : 0));
     double above = orders >= 2 ? (1 - r) * r * (1 - r) : 0;
-    check_share(f.ledger.landed, (double)f.photons, below);
-    check_share(f.ledger.escaped, (double)f.photons, above + r);
-    check_share(f.ledger.dropped, (double)f.photons, 1 - below - above - r);
+    check_share(f.ledger.deposited, (double)f.photons, below);
+    check_share(f.ledger.missed, (double)f.photons, above + r);
+    check_share(f.ledger.trapped, (double)f.photons, 1 - below - above - r);
     drop(&f);
   }
   /* below a share of 1 % no order is left: (1 - r) r = 3.8 % goes on, (1 - r) r^2 does not */
   const abbe_physics faint = {.matched = true, .orders = 8, .energy_share = 0.01};
   make(CAMERA POINT_LIGHT FLOOR SLAB("flat"), &faint, &f);
   shoot(&f, (double[3]){0.02, 0.01, 0.6}, (double[3]){0, 0, -1}, 20);
-  check_share(f.ledger.landed, (double)f.photons, (1 - r) * (1 - r));
-  check_share(f.ledger.escaped, (double)f.photons, (1 - r) * r * (1 - r) + r);
+  check_share(f.ledger.deposited, (double)f.photons, (1 - r) * (1 - r));
+  check_share(f.ledger.missed, (double)f.photons, (1 - r) * r * (1 - r) + r);
   drop(&f);
 }
 
@@ -261,12 +261,12 @@ static void matched_light_passes_two_refractors(void **state) {
   shoot(&f, from, down, 20);
   /* straight through four faces, or to and fro once between the first two: what the third face
    * sends back is the third interface after the first at the next */
-  check_share(f.ledger.landed, (double)f.photons, pow(1 - r, 4) * (1 + r * r));
+  check_share(f.ledger.deposited, (double)f.photons, pow(1 - r, 4) * (1 + r * r));
   drop(&f);
   make(two, NULL, &f);
   shoot(&f, from, down, 20);
   /* four faces on one axis: 1/T = 1 + 4 r / (1 - r) */
-  check_share(f.ledger.landed, (double)f.photons, 1 / (1 + 4 * r / (1 - r)));
+  check_share(f.ledger.deposited, (double)f.photons, 1 / (1 + 4 * r / (1 - r)));
   drop(&f);
 }
 
@@ -317,7 +317,7 @@ static void walls_hide_nothing(void **state) {
     snprintf(text, sizeof text, "%s%s%s", CAMERA POINT_LIGHT FLOOR, more[i], BALL("flat"));
     make(text, NULL, &f);
     flood(&f, 4);
-    assert_true(f.ledger.landed > 0);
+    assert_true(f.ledger.deposited > 0);
     assert_true(f.ledger.hidden == 0);
     drop(&f);
   }
@@ -333,7 +333,7 @@ static void contact_is_told(void **state) {
        NULL, &f);
   shoot(&f, (double[3]){0, 0, 0.6}, (double[3]){0, 0, -1}, 4);
   check_share(f.ledger.contact, (double)f.photons, 0.96);
-  assert_near(f.ledger.contact, f.ledger.landed, 1e-6);
+  assert_near(f.ledger.contact, f.ledger.deposited, 1e-6);
   drop(&f);
 }
 
@@ -343,7 +343,7 @@ static void a_walk_repeats_itself(void **state) {
   static fixture f, g;
   make(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &f);
   make(CAMERA POINT_LIGHT FLOOR RING("crown"), NULL, &g);
-  static abbe_landing first[BATCH];
+  static abbe_photon_hit first[BATCH];
   uint64_t random = 4;
   for (uint32_t i = 0; i < BATCH; i++) {
     double d[3], to[3] = {0.08, 0, 0.2};
@@ -355,17 +355,16 @@ static void a_walk_repeats_itself(void **state) {
   size_t a = abbe_light_walk_run(f.walk, &f.scene.light[0], 5, f.photon, BATCH, first, &f.ledger);
   flood(&g, 1);
   memcpy(g.photon, f.photon, sizeof f.photon);
-  size_t b =
-      abbe_light_walk_run(g.walk, &g.scene.light[0], 5, g.photon, BATCH, g.landing, &g.ledger);
+  size_t b = abbe_light_walk_run(g.walk, &g.scene.light[0], 5, g.photon, BATCH, g.hit, &g.ledger);
   assert_true(a > 100);
   assert_int_equal(a, b);
   for (size_t i = 0; i < a; i++) {
-    assert_memory_equal(first[i].p, g.landing[i].p, sizeof first[i].p);
-    assert_true(first[i].flux == g.landing[i].flux && first[i].step == g.landing[i].step);
+    assert_memory_equal(first[i].p, g.hit[i].p, sizeof first[i].p);
+    assert_true(first[i].flux == g.hit[i].flux && first[i].step == g.hit[i].step);
   }
-  b = abbe_light_walk_run(g.walk, &g.scene.light[0], 6, g.photon, BATCH, g.landing, &g.ledger);
-  assert_true(a != b || memcmp(first[0].p, g.landing[0].p, sizeof first[0].p) != 0 ||
-              memcmp(first[a - 1].p, g.landing[a - 1].p, sizeof first[0].p) != 0);
+  b = abbe_light_walk_run(g.walk, &g.scene.light[0], 6, g.photon, BATCH, g.hit, &g.ledger);
+  assert_true(a != b || memcmp(first[0].p, g.hit[0].p, sizeof first[0].p) != 0 ||
+              memcmp(first[a - 1].p, g.hit[a - 1].p, sizeof first[0].p) != 0);
   assert_true(abbe_light_walk_rays(f.walk) >= 2 * a);
   drop(&f);
   drop(&g);
@@ -379,22 +378,22 @@ static void parted_light_is_the_same_light(void **state) {
                                        CAMERA POINT_LIGHT FLOOR BALL("smoke"),
                                        CAMERA POINT_LIGHT FLOOR SHELL};
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-    double landed[1 << ABBE_LIGHT_WALK_SPLITS], reached = 0;
-    for (unsigned parts = 0; parts < 1u << ABBE_LIGHT_WALK_SPLITS; parts++) {
+    double landed[1 << ABBE_PHOTON_SPLITS], reached = 0;
+    for (unsigned parts = 0; parts < 1u << ABBE_PHOTON_SPLITS; parts++) {
       static fixture f;
       make(scenes[i], NULL, &f);
-      abbe_light_walk_part(f.walk, parts);
+      abbe_light_walk_split(f.walk, parts);
       flood(&f, 64);
       const abbe_light_ledger *l = &f.ledger;
-      double sum = l->landed + l->absorbed + l->escaped + l->dropped + l->lost;
+      double sum = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
       assert_near(sum / l->reached, 1, 1e-6);
       if (parts == 0) reached = l->reached;
       assert_true(l->reached == reached);
-      landed[parts] = l->landed;
+      landed[parts] = l->deposited;
       drop(&f);
     }
     /* the share that lands is that of some 20000 photons: four standard deviations, of two means */
-    for (unsigned parts = 1; parts < 1u << ABBE_LIGHT_WALK_SPLITS; parts++)
+    for (unsigned parts = 1; parts < 1u << ABBE_PHOTON_SPLITS; parts++)
       assert_near(landed[parts] / reached, landed[0] / reached, 4 * sqrt(2 * 0.25 / reached));
   }
 }
@@ -405,12 +404,12 @@ static void parting_gives_fresnels_share_exactly(void **state) {
   static const double down[3] = {0, 0, -1}, above[3] = {0.1, 0.05, 0.9};
   static fixture f;
   make(CAMERA POINT_LIGHT FLOOR SLAB("flat"), NULL, &f);
-  abbe_light_walk_part(f.walk, 3);
+  abbe_light_walk_split(f.walk, 3);
   size_t count = shoot(&f, above, down, 1);
   const double r = 0.04;
   size_t straight = 0;
   for (size_t i = 0; i < count; i++) {
-    double flux = (double)f.landing[i].flux;
+    double flux = (double)f.hit[i].flux;
     straight += fabs(flux - (1 - r) * (1 - r)) < 1e-5;
     assert_true(fabs(flux - (1 - r) * (1 - r)) < 1e-5 || flux < r * (1 + 1e-5));
   }
@@ -430,16 +429,16 @@ static void parts_are_where_the_rare_way_lands(void **state) {
       {{0.04f, 1}, {0.96f, 0.04f}, 50, 3},      {{1, 1}, {1, 1}, 50, 0},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    abbe_landing landing[100];
-    memset(landing, 0, sizeof landing);
+    abbe_photon_hit hit[100];
+    memset(hit, 0, sizeof hit);
     for (size_t k = 0; k < 100; k++) {
-      landing[k].flux = 2;
-      memcpy(landing[k].way, k < cases[i].rare_of_100 ? cases[i].rare : cases[i].common,
-             sizeof landing[k].way);
+      hit[k].flux = 2;
+      memcpy(hit[k].chance, k < cases[i].rare_of_100 ? cases[i].rare : cases[i].common,
+             sizeof hit[k].chance);
     }
-    assert_int_equal(abbe_light_walk_best_parts(landing, 100), cases[i].parts);
+    assert_int_equal(abbe_light_walk_best_splits(hit, 100), cases[i].parts);
   }
-  assert_int_equal(abbe_light_walk_best_parts(NULL, 0), 0);
+  assert_int_equal(abbe_light_walk_best_splits(NULL, 0), 0);
 }
 
 /* Straight down through 0.4 m of smoke less than 2 % comes out: paths end by roulette below 5 %,
@@ -466,8 +465,8 @@ static void dark_glass_keeps_its_mean(void **state) {
   for (uint32_t b = 0; b < batches; b++) {
     for (uint32_t i = 0; i < BATCH; i++) f.photon[i] = photon_of(&f, from, down, i);
     const size_t count =
-        abbe_light_walk_run(f.walk, &f.scene.light[0], b, f.photon, BATCH, f.landing, &f.ledger);
-    for (size_t i = 0; i < count; i++) landed += (double)f.landing[i].flux;
+        abbe_light_walk_run(f.walk, &f.scene.light[0], b, f.photon, BATCH, f.hit, &f.ledger);
+    for (size_t i = 0; i < count; i++) landed += (double)f.hit[i].flux;
   }
   const double photons = (double)batches * BATCH, sigma = sqrt(variance / photons);
   print_message("%.6f of %.6f passes, known to %.6f\n", landed / photons, want, sigma);
@@ -507,7 +506,7 @@ static void what_a_bent_normal_mirrors_stays_inside(void **state) {
   assert_int_equal(abbe_light_walk_make(&f.geometry, &f.media, &full, 3, &f.walk, NULL), ABBE_OK);
   assert_int_equal(shoot(&f, from, down, 4), 0);
   assert_true(f.ledger.lost == 0 && f.ledger.contact == 0);
-  assert_near(f.ledger.escaped / (double)f.photons, 1, 1e-6);
+  assert_near(f.ledger.missed / (double)f.photons, 1, 1e-6);
   drop(&f);
 }
 
