@@ -1,7 +1,6 @@
 set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name
     accumulator
-    aim
     bands
     camera
     checkpoint
@@ -25,6 +24,7 @@ foreach(name
     rings
     outline
     photon_grid
+    projection_map
     random
     reflectance
     route

@@ -47,11 +47,11 @@ static size_t try_photons(const abbe_tracer *t, abbe_light_walk *walk, const abb
 
 abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
   const abbe_light *light = &t->scene->light[t->desc.map_light];
-  const abbe_aim *aim = &t->aim[t->desc.map_light];
+  const abbe_projection_map *map = &t->projection[t->desc.map_light];
   bool parallel = light->kind == ABBE_LIGHT_DIRECTIONAL;
   double origin[3], way[3], up[3] = {0, 0, 1};
-  abbe_geometry_to_world(&t->geometry, aim->origin, origin);
-  for (int k = 0; k < 3; k++) way[k] = (double)aim->way[k];
+  abbe_geometry_to_world(&t->geometry, map->origin, origin);
+  for (int k = 0; k < 3; k++) way[k] = (double)map->way[k];
   /* From the very place of the light: the renderer takes a map of no other. */
   memcpy(parallel ? way : origin, parallel ? light->direction : light->position, sizeof way);
   abbe_view view;

@@ -217,13 +217,14 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
   double total = 0;
   for (size_t l = 0; l < t->scene->light_count; l++) {
     bool wanted = !t->desc.no_picture || l == t->desc.map_light;
-    abbe_result result = wanted ? abbe_aim_make(&t->geometry, l, &t->aim[l], error) : ABBE_OK;
+    abbe_result result =
+        wanted ? abbe_projection_map_make(&t->geometry, l, &t->projection[l], error) : ABBE_OK;
     if (result != ABBE_OK) return result;
-    total += t->aim[l].reach;
+    total += t->projection[l].reach;
   }
   for (size_t l = 0; l < t->scene->light_count && total > 0; l++) {
-    if (t->aim[l].count == 0 || !(t->aim[l].reach > 0)) continue;
-    t->photons[l] = (size_t)((double)t->desc.photons * t->aim[l].reach / total);
+    if (t->projection[l].count == 0 || !(t->projection[l].reach > 0)) continue;
+    t->photons[l] = (size_t)((double)t->desc.photons * t->projection[l].reach / total);
     /* a faint light still needs enough of them to show where it goes */
     if (t->photons[l] < t->desc.photons / 16) t->photons[l] = t->desc.photons / 16;
     if (t->photons[l] < 64) t->photons[l] = 64;

@@ -1,5 +1,7 @@
-/* light_pass.h: the photons of a pass, from the lights to the map, the picture and the eye's
- * gathers. Internal to validation/: it is not installed.
+/* light_pass.h: the photons of a pass, from the lights to the map, the picture and the camera's
+ * gathers.
+ *
+ * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRACER_LIGHT_PASS_H
 #define ABBE_VALIDATION_TRACER_LIGHT_PASS_H

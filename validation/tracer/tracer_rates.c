@@ -34,7 +34,7 @@ abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe
   enum { TURNS = 5, PHOTONS = 131072, PACKETS = 65536 };
   *walk = *embree = 0;
   size_t light = 0;
-  while (light < t->scene->light_count && t->aim[light].count == 0) light++;
+  while (light < t->scene->light_count && t->projection[light].count == 0) light++;
   if (light == t->scene->light_count)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "no light reaches a refractor, so there is no walk to time");

@@ -1,4 +1,5 @@
 /* tracer_state.h: the insides of a tracer, for the files of this folder alone.
+ *
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRACER_TRACER_STATE_H
@@ -6,7 +7,7 @@
 
 #include "validation/tracer/accumulator.h"
 #include "validation/tracer/tracer.h"
-#include "validation/transport/aim.h"
+#include "validation/transport/projection_map.h"
 #include "validation/transport/eye_walk.h"
 
 #ifdef __cplusplus
@@ -28,7 +29,7 @@ struct abbe_tracer {
   abbe_rgb_space mixing; /* light times reflectance: the picture's space, ACEScg for XYZ */
   float to_xyz[9];       /* from there, for XYZ pictures; row-major */
   float (*colour)[3], (*white)[3]; /* in that space */
-  abbe_aim *aim;                   /* [lights] */
+  abbe_projection_map *projection; /* [lights] */
   size_t *photons;                 /* [lights] a pass */
   unsigned *splits;                /* [lights] interfaces at which its paths are split */
   abbe_light_walk **walk;          /* [threads] */

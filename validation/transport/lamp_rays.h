@@ -2,6 +2,7 @@
  *
  * The map of a light holds only those: the others are marked as hidden. Rays to the lamp wait until
  * there is a packet of them.
+ *
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_LAMP_RAYS_H

@@ -1,6 +1,7 @@
 /* ray_batch.h: the rays of many paths, sixteen a packet, as Embree traces them side by side.
  *
  * It knows no light: a ray has a place in its batch, and what it meets is read there.
+ *
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_RAY_BATCH_H

@@ -1,6 +1,7 @@
 /* scatter.h: Snell's and Fresnel's laws for a packet of sixteen paths, each at its own interface.
  *
  * Arithmetic alone, in arrays of a lane each, for the compiler to do side by side.
+ *
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_SCATTER_H

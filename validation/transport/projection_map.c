@@ -1,4 +1,4 @@
-#include "validation/transport/aim.h"
+#include "validation/transport/projection_map.h"
 
 #include "scenes/geometry/vector.h"
 #include "validation/transport/random.h"
@@ -13,7 +13,7 @@ static const double least_share = 0.03;
 
 /* ---- the plane ---- */
 
-static void ray_at(const abbe_aim *a, float x, float y, float o[3], float d[3]) {
+static void ray_at(const abbe_projection_map *a, float x, float y, float o[3], float d[3]) {
   if (a->parallel) {
     for (int k = 0; k < 3; k++) {
       o[k] = a->origin[k] + x * a->right[k] + y * a->up[k];
@@ -30,14 +30,14 @@ static void ray_at(const abbe_aim *a, float x, float y, float o[3], float d[3]) 
 }
 
 /* 1 - cos of the angle between d and the light's own direction, also where it is tiny. */
-static float versine(const abbe_aim *a, const float d[3]) {
+static float versine(const abbe_projection_map *a, const float d[3]) {
   float square = 0;
   for (int k = 0; k < 3; k++) square += (d[k] - a->facing[k]) * (d[k] - a->facing[k]);
   return 0.5f * square;
 }
 
 /* Intensity of the spot along d, relative to its middle. */
-static float profile(const abbe_aim *a, const float d[3]) {
+static float profile(const abbe_projection_map *a, const float d[3]) {
   float v = versine(a, d);
   if (!(v <= a->outer)) return 0;
   if (v <= a->inner) return 1;
@@ -46,7 +46,7 @@ static float profile(const abbe_aim *a, const float d[3]) {
 }
 
 /* A place on the disk of the light, from its middle. */
-static void disk_place(const abbe_aim *a, const float disk[2], float out[3]) {
+static void disk_place(const abbe_projection_map *a, const float disk[2], float out[3]) {
   const float *z = a->facing;
   float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)pi * disk[1];
   float e[3] = {fabsf(z[0]) < 0.6f, fabsf(z[0]) >= 0.6f, 0}, s[3], t[3];
@@ -60,8 +60,8 @@ static void disk_place(const abbe_aim *a, const float disk[2], float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = r * (cosf(angle) * s[k] + sinf(angle) * t[k]);
 }
 
-float abbe_aim_ray(const abbe_aim *a, const abbe_aim_cell *cell, const float uv[2],
-                   const float disk[2], float o[3], float d[3]) {
+float abbe_projection_map_ray(const abbe_projection_map *a, const abbe_projection_map_cell *cell,
+                              const float uv[2], const float disk[2], float o[3], float d[3]) {
   float x = a->low + a->step * ((float)cell->x + uv[0]);
   float y = a->low + a->step * ((float)cell->y + uv[1]);
   ray_at(a, x, y, o, d);
@@ -84,7 +84,7 @@ typedef struct patch {
   double own;          /* the part of radius that is the ball's, not the lamp's */
 } patch;
 
-static patch cover(const abbe_aim *a, const double centre[3], double radius) {
+static patch cover(const abbe_projection_map *a, const double centre[3], double radius) {
   double to[3], x = 0, y = 0, z = 0;
   for (int k = 0; k < 3; k++) {
     to[k] = centre[k] - (double)a->origin[k];
@@ -106,7 +106,7 @@ static patch cover(const abbe_aim *a, const double centre[3], double radius) {
 
 /* Images of every piece of the refractors, largest first halved until it is small. */
 typedef struct cover_list {
-  const abbe_aim *aim;
+  const abbe_projection_map *map;
   void (*take)(void *user, patch p);
   void *user;
   double fine; /* pieces below this radius are not split, nor small ones before a large lamp */
@@ -122,7 +122,7 @@ static void cover_triangle(const cover_list *list, const double a[3], const doub
     abbe_vector_subtract(corner[i], centre, from);
     radius = fmax(radius, abbe_vector_length(from));
   }
-  patch p = cover(list->aim, centre, radius * 1.000001);
+  patch p = cover(list->map, centre, radius * 1.000001);
   if (splits == 0 || (p.radius >= 0 && p.own <= fmax(list->fine, 0.1 * p.radius))) {
     list->take(list->user, p);
     return;
@@ -139,7 +139,7 @@ static void cover_triangle(const cover_list *list, const double a[3], const doub
 static void cover_surface(const abbe_geometry *g, const abbe_surface *s, const cover_list *list) {
   if (s->sphere) {
     double centre[3] = {(double)s->centre[0], (double)s->centre[1], (double)s->centre[2]};
-    list->take(list->user, cover(list->aim, centre, (double)s->radius * 1.000001));
+    list->take(list->user, cover(list->map, centre, (double)s->radius * 1.000001));
     return;
   }
   size_t faces = g->scene->object[s->object].mesh.face_count;
@@ -164,14 +164,15 @@ static void take_extent(void *user, patch p) {
 }
 
 typedef struct marks {
-  unsigned char at[ABBE_AIM_SIDE][ABBE_AIM_SIDE];    /* [y][x] */
-  unsigned short done[ABBE_AIM_SIDE][ABBE_AIM_SIDE]; /* radius in steps of a disc around a cell */
+  unsigned char at[ABBE_PROJECTION_MAP_SIDE][ABBE_PROJECTION_MAP_SIDE]; /* [y][x] */
+  unsigned short done[ABBE_PROJECTION_MAP_SIDE]
+                     [ABBE_PROJECTION_MAP_SIDE]; /* radius in steps of a disc around a cell */
   double low, step;
 } marks;
 
 static int cell_of(const marks *m, double at) {
   double cell = floor((at - m->low) / m->step);
-  return (int)fmin(fmax(cell, 0), ABBE_AIM_SIDE - 1);
+  return (int)fmin(fmax(cell, 0), ABBE_PROJECTION_MAP_SIDE - 1);
 }
 
 /* The many patches of a fine mesh before a large lamp are much larger than their distances: those
@@ -179,10 +180,10 @@ static int cell_of(const marks *m, double at) {
 static bool widen(marks *m, patch *p) {
   double size = p->radius / m->step;
   if (size < 4 || p->own > 0.5 * p->radius) return true;
-  int q = 1 + (int)fmin(size / 12, ABBE_AIM_SIDE - 1);
+  int q = 1 + (int)fmin(size / 12, ABBE_PROJECTION_MAP_SIDE - 1);
   int x = cell_of(m, p->x) / q * q + q / 2, y = cell_of(m, p->y) / q * q + q / 2;
-  if (x >= ABBE_AIM_SIDE) x = ABBE_AIM_SIDE - 1;
-  if (y >= ABBE_AIM_SIDE) y = ABBE_AIM_SIDE - 1;
+  if (x >= ABBE_PROJECTION_MAP_SIDE) x = ABBE_PROJECTION_MAP_SIDE - 1;
+  if (y >= ABBE_PROJECTION_MAP_SIDE) y = ABBE_PROJECTION_MAP_SIDE - 1;
   double middle[2] = {m->low + (x + 0.5) * m->step, m->low + (y + 0.5) * m->step};
   double away = fmax(fabs(p->x - middle[0]), fabs(p->y - middle[1])) / m->step;
   double most = 0.5 * (q + (q > 1)) * 1.001;
@@ -215,8 +216,8 @@ static void take_marks(void *user, patch p) {
 
 /* ---- shares ---- */
 
-static double try_cell(const abbe_geometry *g, const abbe_aim *a, const abbe_aim_cell *cell,
-                       uint32_t index, double *flux) {
+static double try_cell(const abbe_geometry *g, const abbe_projection_map *a,
+                       const abbe_projection_map_cell *cell, uint32_t index, double *flux) {
   double share = 0;
   *flux = 0;
   for (uint32_t i = 0; i < TRIALS; i++) {
@@ -224,7 +225,7 @@ static double try_cell(const abbe_geometry *g, const abbe_aim *a, const abbe_aim
     abbe_random4(index, i, 0x61696d, 0, r);
     r[0] = ((float)(i % 4) + r[0]) / 4;
     r[1] = ((float)(i / 4) + r[1]) / 2;
-    double f = (double)abbe_aim_ray(a, cell, r, r + 2, o, d);
+    double f = (double)abbe_projection_map_ray(a, cell, r, r + 2, o, d);
     abbe_hit hit;
     unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
     bool met = f > 0 && abbe_geometry_hit(g, mask, o, d, INFINITY, &hit) &&
@@ -244,7 +245,7 @@ static uint32_t spread(uint32_t x) {
 }
 
 static int by_curve(const void *a, const void *b) {
-  const abbe_aim_cell *p = a, *q = b;
+  const abbe_projection_map_cell *p = a, *q = b;
   uint32_t i = spread(p->x) | spread(p->y) << 1, j = spread(q->x) | spread(q->y) << 1;
   return (i > j) - (i < j);
 }
@@ -254,7 +255,7 @@ static float angle_of(float versine) {
 }
 
 /* Whether all of the cell lies outside the spot's cone, or beyond the sphere of directions. */
-static bool dark(const abbe_aim *a, const abbe_aim_cell *cell) {
+static bool dark(const abbe_projection_map *a, const abbe_projection_map_cell *cell) {
   if (a->parallel) return false;
   float nearest = 1e30f, v = 2;
   for (int i = 0; i < 9; i++) {
@@ -270,17 +271,17 @@ static bool dark(const abbe_aim *a, const abbe_aim_cell *cell) {
   return a->light->kind == ABBE_LIGHT_SPOT && angle_of(v) > angle_of(a->outer) + slack;
 }
 
-static abbe_result keep_cells(const abbe_geometry *g, const marks *m, abbe_aim *a,
+static abbe_result keep_cells(const abbe_geometry *g, const marks *m, abbe_projection_map *a,
                               abbe_error *error) {
   size_t marked = 0;
-  for (int y = 0; y < ABBE_AIM_SIDE; y++)
-    for (int x = 0; x < ABBE_AIM_SIDE; x++) marked += m->at[y][x];
+  for (int y = 0; y < ABBE_PROJECTION_MAP_SIDE; y++)
+    for (int x = 0; x < ABBE_PROJECTION_MAP_SIDE; x++) marked += m->at[y][x];
   a->cell = calloc(marked + 1, sizeof *a->cell);
   if (a->cell == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu cells of light", marked);
-  for (int y = 0; y < ABBE_AIM_SIDE; y++)
-    for (int x = 0; x < ABBE_AIM_SIDE; x++) {
-      abbe_aim_cell cell = {.x = (uint16_t)x, .y = (uint16_t)y};
+  for (int y = 0; y < ABBE_PROJECTION_MAP_SIDE; y++)
+    for (int x = 0; x < ABBE_PROJECTION_MAP_SIDE; x++) {
+      abbe_projection_map_cell cell = {.x = (uint16_t)x, .y = (uint16_t)y};
       if (m->at[y][x] && !dark(a, &cell)) a->cell[a->count++] = cell;
     }
   qsort(a->cell, a->count, sizeof *a->cell, by_curve);
@@ -299,7 +300,7 @@ static abbe_result keep_cells(const abbe_geometry *g, const marks *m, abbe_aim *
 /* ---- make ---- */
 
 /* The plane's axes around a way. */
-static void turn(abbe_aim *a, const double way[3]) {
+static void turn(abbe_projection_map *a, const double way[3]) {
   double right[3], up[3];
   double hint[3] = {fabs(way[0]) < 0.6, fabs(way[0]) >= 0.6, 0};
   abbe_vector_cross(hint, way, right);
@@ -312,7 +313,7 @@ static void turn(abbe_aim *a, const double way[3]) {
   }
 }
 
-static void look(const abbe_geometry *g, abbe_aim *a) {
+static void look(const abbe_geometry *g, abbe_projection_map *a) {
   const abbe_light *light = a->light;
   double middle[3], way[3], min[3], max[3], far = 0;
   for (int k = 0; k < 3; k++) middle[k] = -(double)a->origin[k];
@@ -335,11 +336,11 @@ static double versine_of(double angle) {
   return 2 * pow(sin(0.5 * angle), 2);
 }
 
-abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim *out,
-                          abbe_error *error) {
+abbe_result abbe_projection_map_make(const abbe_geometry *geometry, size_t light,
+                                     abbe_projection_map *out, abbe_error *error) {
   ABBE_REQUIRE(geometry && geometry->scene && light < geometry->scene->light_count && out, error);
   const abbe_light *l = &geometry->scene->light[light];
-  abbe_aim a = {
+  abbe_projection_map a = {
       .light = l, .parallel = l->kind == ABBE_LIGHT_DIRECTIONAL, .power = (float)l->power};
   *out = a;
   if (!a.parallel) abbe_geometry_to_frame(geometry, l->position, a.origin);
@@ -351,7 +352,7 @@ abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim 
   a.inner = (float)versine_of(fmax(l->cone_rad - l->soft_rad, 0));
   look(geometry, &a);
   double extent = 0;
-  cover_list list = {.aim = &a, .take = take_extent, .user = &extent, .fine = 0.02};
+  cover_list list = {.map = &a, .take = take_extent, .user = &extent, .fine = 0.02};
   cover_all(geometry, &list);
   *out = a;
   if (!(extent > 0)) return ABBE_OK;
@@ -365,22 +366,22 @@ abbe_result abbe_aim_make(const abbe_geometry *geometry, size_t light, abbe_aim 
   marks *m = calloc(1, sizeof *m);
   if (m == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for cells of light");
   m->low = -extent;
-  m->step = 2 * extent / ABBE_AIM_SIDE;
+  m->step = 2 * extent / ABBE_PROJECTION_MAP_SIDE;
   a.low = (float)m->low;
   a.step = (float)m->step;
   double side = m->step * (a.parallel ? geometry->unit : 1);
   a.measure = (float)(side * side);
-  list = (cover_list){.aim = &a, .take = take_marks, .user = m, .fine = 2 * m->step};
+  list = (cover_list){.map = &a, .take = take_marks, .user = m, .fine = 2 * m->step};
   cover_all(geometry, &list);
   abbe_result result = keep_cells(geometry, m, &a, error);
   free(m);
-  if (result != ABBE_OK) abbe_aim_free(&a);
+  if (result != ABBE_OK) abbe_projection_map_free(&a);
   *out = a;
   return result;
 }
 
-void abbe_aim_free(abbe_aim *aim) {
-  if (aim == NULL) return;
-  free(aim->cell);
-  *aim = (abbe_aim){0};
+void abbe_projection_map_free(abbe_projection_map *map) {
+  if (map == NULL) return;
+  free(map->cell);
+  *map = (abbe_projection_map){0};
 }

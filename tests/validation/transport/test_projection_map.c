@@ -2,7 +2,7 @@
 
 #include "scenes/geometry/vector.h"
 #include "tests/random.h"
-#include "validation/transport/aim.h"
+#include "validation/transport/projection_map.h"
 
 static const double pi = 3.14159265358979;
 
@@ -28,17 +28,17 @@ static const double pi = 3.14159265358979;
 typedef struct fixture {
   abbe_scene scene;
   abbe_geometry geometry;
-  abbe_aim aim;
+  abbe_projection_map aim;
 } fixture;
 
 static void make(const char *text, fixture *f) {
   load_text(text, &f->scene);
   assert_int_equal(abbe_geometry_make(&f->scene, &f->geometry, NULL), ABBE_OK);
-  assert_int_equal(abbe_aim_make(&f->geometry, 0, &f->aim, NULL), ABBE_OK);
+  assert_int_equal(abbe_projection_map_make(&f->geometry, 0, &f->aim, NULL), ABBE_OK);
 }
 
 static void drop(fixture *f) {
-  abbe_aim_free(&f->aim);
+  abbe_projection_map_free(&f->aim);
   abbe_geometry_free(&f->geometry);
   abbe_scene_free(&f->scene);
 }
@@ -59,7 +59,7 @@ static void any_direction(uint64_t *random, float d[3]) {
 }
 
 /* Lambert's equal-area map, by its definition: twice the sine of half the angle to the way. */
-static void on_plane(const abbe_aim *a, const float d[3], double at[2]) {
+static void on_plane(const abbe_projection_map *a, const float d[3], double at[2]) {
   double x = dot(d, a->right), y = dot(d, a->up), across = hypot(x, y);
   double r = 2 * sin(0.5 * atan2(across, dot(d, a->way)));
   at[0] = across > 0 ? r * x / across : 0;
@@ -67,18 +67,21 @@ static void on_plane(const abbe_aim *a, const float d[3], double at[2]) {
 }
 
 /* Cells by their place. */
-typedef const abbe_aim_cell *cell_table[ABBE_AIM_SIDE][ABBE_AIM_SIDE];
+typedef const abbe_projection_map_cell
+    *cell_table[ABBE_PROJECTION_MAP_SIDE][ABBE_PROJECTION_MAP_SIDE];
 
-static void fill_table(const abbe_aim *a, cell_table table) {
+static void fill_table(const abbe_projection_map *a, cell_table table) {
   memset(table, 0, sizeof(cell_table));
   for (size_t i = 0; i < a->count; i++) table[a->cell[i].y][a->cell[i].x] = &a->cell[i];
 }
 
 /* The cell of a place in the plane, or NULL where none was kept. */
-static const abbe_aim_cell *cell_at(const abbe_aim *a, cell_table table, const double at[2]) {
+static const abbe_projection_map_cell *cell_at(const abbe_projection_map *a, cell_table table,
+                                               const double at[2]) {
   double x = floor((at[0] - (double)a->low) / (double)a->step);
   double y = floor((at[1] - (double)a->low) / (double)a->step);
-  if (!(x >= 0 && y >= 0 && x < ABBE_AIM_SIDE && y < ABBE_AIM_SIDE)) return NULL;
+  if (!(x >= 0 && y >= 0 && x < ABBE_PROJECTION_MAP_SIDE && y < ABBE_PROJECTION_MAP_SIDE))
+    return NULL;
   return table[(int)y][(int)x];
 }
 
@@ -109,7 +112,7 @@ static bool any_ray(const fixture *f, size_t i, uint64_t *random, float o[3], fl
 }
 
 static void check_ray(const fixture *f, cell_table table, const float o[3], const float d[3]) {
-  const abbe_aim *a = &f->aim;
+  const abbe_projection_map *a = &f->aim;
   double at[2];
   on_plane(a, d, at);
   if (a->light->kind == ABBE_LIGHT_DIRECTIONAL) {
@@ -118,7 +121,7 @@ static void check_ray(const fixture *f, cell_table table, const float o[3], cons
     at[0] = dot(across, a->right);
     at[1] = dot(across, a->up);
   }
-  const abbe_aim_cell *cell = cell_at(a, table, at);
+  const abbe_projection_map_cell *cell = cell_at(a, table, at);
   if (cell == NULL)
     fail_msg("%g %g %g meets a refractor; its place %g %g is in no cell", (double)d[0],
              (double)d[1], (double)d[2], at[0], at[1]);
@@ -127,7 +130,7 @@ static void check_ray(const fixture *f, cell_table table, const float o[3], cons
   float uv[2], out[3], way[3], disk[2] = {0.3f, 0.6f};
   for (int k = 0; k < 2; k++)
     uv[k] = (float)((at[k] - (double)a->low) / (double)a->step - corner[k]);
-  float flux = abbe_aim_ray(a, cell, uv, disk, out, way);
+  float flux = abbe_projection_map_ray(a, cell, uv, disk, out, way);
   if (flux <= 0)
     fail_msg("%g %g %g carries nothing: way %g, plane %g %g", (double)d[0], (double)d[1],
              (double)d[2], dot(d, a->way), at[0], at[1]);
@@ -191,7 +194,8 @@ static void shares_add_up_to_one(void **state) {
     double sum = 0;
     for (size_t c = 0; c < f.aim.count; c++) {
       assert_true(f.aim.cell[c].share > 0);
-      assert_true(f.aim.cell[c].x < ABBE_AIM_SIDE && f.aim.cell[c].y < ABBE_AIM_SIDE);
+      assert_true(f.aim.cell[c].x < ABBE_PROJECTION_MAP_SIDE &&
+                  f.aim.cell[c].y < ABBE_PROJECTION_MAP_SIDE);
       sum += (double)f.aim.cell[c].share;
     }
     assert_near(sum, 1, 1e-4);
@@ -209,7 +213,7 @@ static double flux_that_meets(const fixture *f, uint64_t random, size_t each) {
         uv[k] = (float)random_between(&random, 0, 0.9999999);
         disk[k] = (float)random_between(&random, 0, 0.9999999);
       }
-      float flux = abbe_aim_ray(&f->aim, &f->aim.cell[c], uv, disk, o, d);
+      float flux = abbe_projection_map_ray(&f->aim, &f->aim.cell[c], uv, disk, o, d);
       abbe_hit hit;
       if (flux > 0 &&
           abbe_geometry_hit(&f->geometry, ABBE_GEOMETRY_REFRACTORS, o, d, INFINITY, &hit))
@@ -305,7 +309,7 @@ static void hidden_cells_keep_a_share(void **state) {
   double share[2] = {0}, count[2] = {0};
   for (size_t c = 0; c < f.aim.count; c++) {
     float o[3], d[3], middle[2] = {0.5f, 0.5f};
-    abbe_aim_ray(&f.aim, &f.aim.cell[c], middle, middle, o, d);
+    abbe_projection_map_ray(&f.aim, &f.aim.cell[c], middle, middle, o, d);
     abbe_hit hit;
     unsigned all = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
     if (!abbe_geometry_hit(&f.geometry, all, o, d, INFINITY, &hit)) continue;
@@ -336,7 +340,7 @@ static void lights_that_miss(void **state) {
        &f);
   assert_true(f.aim.reach == 0);
   drop(&f);
-  abbe_aim_free(NULL);
+  abbe_projection_map_free(NULL);
 }
 
 /* Neighbours in the list are neighbours in the plane: most steps are of one cell. */
