@@ -10,15 +10,14 @@
 #include "scenes/import/scene_file.h"
 #include "validation/sweep/matched_physics.h"
 #include "validation/tracer/checkpoint.h"
+#include "validation/tracer/trace_run.h"
 #include "validation/tracer/tracer.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -246,51 +245,16 @@ static abbe_result name_checkpoint(request *q, abbe_error *error) {
 
 /* ---- the work ---- */
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* How far the run is by what stops it first. Errors fall as one over the root of the passes. */
-static double progress_made(const request *q, size_t passes, double spent, double error) {
-  double done = q->passes > 0 ? (double)passes / (double)q->passes : 0;
-  if (q->seconds > 0) done = fmax(done, spent / q->seconds);
-  if (q->until > 0 && isfinite(error)) done = fmax(done, pow(q->until / error, 2));
-  return fmin(done, 1);
-}
-
-static bool finished(const request *q, size_t passes, double spent, double error) {
-  if (q->passes > 0 && passes >= q->passes) return true;
-  if (q->seconds > 0 && spent >= q->seconds && passes >= 2) return true;
-  return q->until > 0 && passes >= 4 && error <= q->until;
-}
-
-static abbe_result save_checkpoint(const request *q, const abbe_tracer *tracer, abbe_error *error) {
-  if (q->checkpoint_path == NULL || abbe_tracer_passes(tracer) == 0) return ABBE_OK;
-  return abbe_checkpoint_save(tracer, q->checkpoint_path, error);
-}
-
 /* ABBE_CANCELLED where the user stopped it: what is done is to be saved all the same. */
-static abbe_result run_passes(const request *q, abbe_tracer *tracer, abbe_error *error) {
+static abbe_result run_passes(const request *q, const abbe_trace_run_desc *run, abbe_tracer *tracer,
+                              abbe_error *error) {
   abbe_progress progress;
+  abbe_trace_run_desc own = *run;
+  own.progress = abbe_progress_update;
+  own.user = &progress;
+  own.stop = abbe_progress_stopped();
   abbe_progress_begin(&progress, "trace", q->quiet);
-  double start = now(), saved = start, estimate = INFINITY;
-  abbe_result result = ABBE_OK;
-  for (;;) {
-    size_t passes = abbe_tracer_passes(tracer);
-    double spent = now() - start;
-    if (q->until > 0) estimate = abbe_tracer_error(tracer);
-    bool goes_on = abbe_progress_update(&progress, progress_made(q, passes, spent, estimate));
-    if (finished(q, passes, spent, estimate)) break;
-    if (!goes_on) result = abbe_error_set(error, ABBE_CANCELLED, "stopped");
-    if (result == ABBE_OK) result = abbe_tracer_pass(tracer, abbe_progress_stopped(), error);
-    if (result != ABBE_OK) break;
-    if (now() - saved < q->every) continue;
-    result = save_checkpoint(q, tracer, error);
-    if (result != ABBE_OK) break;
-    saved = now();
-  }
+  abbe_result result = abbe_trace_run(tracer, &own, error);
   abbe_progress_end(&progress);
   return result;
 }
@@ -421,9 +385,14 @@ static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *err
 
 /* A user's stop keeps what is done: results are written, and the checkpoint to go on from. */
 static abbe_result trace(const request *q, abbe_tracer *tracer, abbe_error *error) {
+  const abbe_trace_run_desc run = {.passes = q->passes,
+                                   .seconds = q->seconds,
+                                   .error = q->until,
+                                   .checkpoint = q->checkpoint_path,
+                                   .checkpoint_s = q->every};
   abbe_result result = resume(q, tracer, error);
   if (result != ABBE_OK) return result;
-  result = run_passes(q, tracer, error);
+  result = run_passes(q, &run, tracer, error);
   bool stopped = result == ABBE_CANCELLED;
   if (result != ABBE_OK && !stopped) return result;
   size_t passes = abbe_tracer_passes(tracer);
@@ -433,7 +402,7 @@ static abbe_result trace(const request *q, abbe_tracer *tracer, abbe_error *erro
                           "was written");
   result = write_results(q, tracer, error);
   if (result == ABBE_OK && (stopped || q->checkpoint != NULL))
-    result = save_checkpoint(q, tracer, error);
+    result = abbe_trace_keep(tracer, &run, error);
   else if (result == ABBE_OK && q->checkpoint_path != NULL)
     unlink(q->checkpoint_path);
   if (result == ABBE_OK) summarise(q, tracer);

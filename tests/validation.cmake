@@ -32,6 +32,7 @@ foreach(name
     spectral_sampling
     reference
     sphere_quadrature
+    trace_run
     tracer
     sweep_plot
     sweep_presets
