@@ -13,6 +13,7 @@ foreach(name
     pareto_front
     sweep_hash
     field
+    file_comparison
     geometry
     interface
     light_walk

@@ -57,6 +57,7 @@ static const struct {
     {"abbe_outline_make", "options"},
     {"abbe_photon_grid_fill", "photon"},
     {"abbe_plan_make", "desc"},
+    {"abbe_outline_load", "minus"},
     {"abbe_points_sort", "dropped"},
     {"abbe_pov_file_write", "options"},
     {"abbe_presets_load", "path"},
