@@ -11,7 +11,6 @@ foreach(name
     error_decomposition
     eye_walk
     pareto_front
-    sweep_hash
     field
     file_comparison
     geometry
@@ -43,7 +42,7 @@ foreach(name
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-foreach(name matched_physics sweep_grid sweep_promises sweep_reference sweep_setting)
+foreach(name matched_physics sweep_grid sweep_hash sweep_promises sweep_reference sweep_setting)
   abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
 endforeach()
 foreach(name scaling_study sweep_measure sweep_page sweep_run)

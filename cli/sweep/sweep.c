@@ -7,9 +7,9 @@
 
 #include "validation/sweep/scaling_study.h"
 #include "validation/sweep/sweep_page.h"
-#include "validation/sweep/sweep_plot.h"
-#include "validation/sweep/sweep_presets.h"
 #include "validation/sweep/sweep_setting.h"
+#include "validation/tradeoff/sweep_plot.h"
+#include "validation/tradeoff/sweep_presets.h"
 
 #include <stdio.h>
 #include <stdlib.h>

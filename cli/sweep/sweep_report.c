@@ -2,8 +2,8 @@
 
 #include "cli/base/command.h"
 
-#include "validation/sweep/baseline_comparison.h"
-#include "validation/sweep/error_decomposition.h"
+#include "validation/tradeoff/baseline_comparison.h"
+#include "validation/tradeoff/error_decomposition.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

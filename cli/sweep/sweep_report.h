@@ -3,7 +3,7 @@
 #define ABBE_CLI_SWEEP_SWEEP_REPORT_H
 
 #include "validation/sweep/sweep_promises.h"
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 
 /* The Pareto front, the baselines and what the error is made of, on stdout. */
 abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number number,

@@ -3,7 +3,7 @@
 #include "tests/decimal_comma.h"
 #include "tests/fontconfig.h"
 #include "tests/scenes/scene_text.h"
-#include "tests/validation/sweep/sweep_row.h"
+#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/number.h"
 #include "colorimetry/image/display_ocio.h"
@@ -22,9 +22,9 @@
 #include "spectral/formats/shader_export.h"
 #include "validation/compare/field.h"
 #include "validation/known/known_answers.h"
-#include "validation/sweep/error_decomposition.h"
+#include "validation/tradeoff/error_decomposition.h"
 #include "validation/sweep/scaling_study.h"
-#include "validation/sweep/sweep_presets.h"
+#include "validation/tradeoff/sweep_presets.h"
 #include "validation/tracer/reference.h"
 
 static abbe_error error;

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "scenes/scene.h"
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -14,7 +14,7 @@
 #include "gl/device/context.h"
 #include "gl/plan/plan.h"
 #include "scenes/view/map_layout.h"
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #ifdef __cplusplus
 extern "C" {

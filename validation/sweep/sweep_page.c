@@ -5,9 +5,9 @@
 #include "colorimetry/image/screen_png.h"
 #include "gl/renderer.h"
 #include "scenes/import/scene_file.h"
-#include "validation/sweep/baseline_comparison.h"
-#include "validation/sweep/error_decomposition.h"
 #include "validation/sweep/sweep_setting.h"
+#include "validation/tradeoff/baseline_comparison.h"
+#include "validation/tradeoff/error_decomposition.h"
 
 #include <math.h>
 #include <stdio.h>

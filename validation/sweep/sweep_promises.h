@@ -3,7 +3,7 @@
 #define ABBE_VALIDATION_SWEEP_SWEEP_PROMISES_H
 
 #include "gl/accuracy/preset.h"
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #ifdef __cplusplus
 extern "C" {

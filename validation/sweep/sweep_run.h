@@ -7,7 +7,7 @@
 #include "gl/device/context.h"
 #include "scenes/scene.h"
 #include "validation/sweep/sweep_reference.h"
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #ifdef __cplusplus
 extern "C" {

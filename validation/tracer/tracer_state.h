@@ -7,8 +7,8 @@
 
 #include "validation/tracer/accumulator.h"
 #include "validation/tracer/tracer.h"
-#include "validation/transport/projection_map.h"
-#include "validation/transport/eye_walk.h"
+#include "validation/walks/eye_walk.h"
+#include "validation/walks/projection_map.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,7 +1,7 @@
 /* `abbe sweep` as people meet it: rows, going on, stopping, the report, and what it refuses. */
 #include "tests/cli/run_program.h"
 
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #include <cjson/cJSON.h>
 

@@ -1,6 +1,6 @@
 /* The page of sweeps: its tables, and the pictures that it names. */
 #include "tests/gl/frame.h"
-#include "tests/validation/sweep/sweep_row.h"
+#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "validation/sweep/sweep_page.h"
 

@@ -1,5 +1,5 @@
 /* Promises of presets beside what a table met: by hand. */
-#include "tests/validation/sweep/sweep_row.h"
+#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/file.h"
 #include "validation/sweep/sweep_promises.h"
