@@ -1,13 +1,10 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 
-#include "colorimetry/rgb_space.h"
-#include "validation/compare/field.h"
-#include "validation/compare/outline.h"
+#include "validation/compare/outline_file.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -54,56 +51,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   default:
     return ARGP_ERR_UNKNOWN;
   }
-}
-
-/* Adds factor times the field's caustic, or its colour where it has none apart, in Rec.709. */
-static abbe_result add_picture(const abbe_field *field, const char *name, double factor,
-                               bool caustic, double (*rgb)[3], abbe_error *error) {
-  const bool apart = caustic && field->caustic.channels == 3;
-  const abbe_field_samples *samples = apart ? &field->caustic : &field->colour;
-  if (samples->channels != 3)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: there is no colour in it; R, G, B or X, Y, Z are wanted", name);
-  double from_xyz[9];
-  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
-  for (size_t i = 0; i < field->width * field->height; i++) {
-    double v[3] = {samples->value[3 * i], samples->value[3 * i + 1], samples->value[3 * i + 2]};
-    abbe_rgb_space_apply(field->to_xyz, v, v);
-    abbe_rgb_space_apply(from_xyz, v, v);
-    for (int c = 0; c < 3; c++) rgb[i][c] += factor * v[c];
-  }
-  return ABBE_OK;
-}
-
-/* `place` gets the picture's display window, for the comparison. */
-static abbe_result load(const request *q, const char *path, const char *minus, abbe_outline *out,
-                        abbe_image *place, abbe_error *error) {
-  abbe_field field = {0}, dark = {0};
-  double(*rgb)[3] = NULL;
-  abbe_result result = abbe_field_load(path, &field, error);
-  if (result == ABBE_OK && minus != NULL) result = abbe_field_load(minus, &dark, error);
-  if (result == ABBE_OK && minus != NULL &&
-      (field.width != dark.width || field.height != dark.height))
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "%s has %zu x %zu pixels and %s %zu x %zu; they must be of one size",
-                            path, field.width, field.height, minus, dark.width, dark.height);
-  if (result == ABBE_OK && minus != NULL)
-    result = abbe_image_check_place(&field.header, path, &dark.header, minus, error);
-  place->display_window = field.header.display_window;
-  if (result == ABBE_OK) {
-    rgb = calloc(field.width * field.height, sizeof *rgb);
-    if (rgb == NULL)
-      result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its pixels", path);
-  }
-  if (result == ABBE_OK) result = add_picture(&field, path, 1, minus == NULL, rgb, error);
-  if (result == ABBE_OK && minus != NULL) result = add_picture(&dark, minus, -1, false, rgb, error);
-  if (result == ABBE_OK)
-    result = abbe_outline_make((const double(*)[3])rgb, field.width, field.height, &q->outline, out,
-                               error);
-  free(rgb);
-  abbe_field_free(&field);
-  abbe_field_free(&dark);
-  return result;
 }
 
 static void print_text(const abbe_outline o[2], int count, const abbe_outline_agreement *a) {
@@ -197,7 +144,8 @@ int abbe_command_outline(int argc, char **argv) {
   abbe_image place[2] = {{0}};
   abbe_result result = ABBE_OK;
   for (int i = 0; i < q.files && result == ABBE_OK; i++)
-    result = load(&q, q.file[i], i == q.files - 1 ? q.minus : NULL, &outline[i], &place[i], &error);
+    result = abbe_outline_load(q.file[i], i == q.files - 1 ? q.minus : NULL, &q.outline,
+                               &outline[i], &place[i], &error);
   if (result == ABBE_OK && q.files == 2)
     result = abbe_image_check_place(&place[0], q.file[0], &place[1], q.file[1], &error);
   if (result == ABBE_OK && q.files == 2)

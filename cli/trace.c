@@ -5,21 +5,19 @@
 #include "cli/base/scene_input.h"
 
 #include "base/file.h"
-#include "colorimetry/image/display_ocio.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/png_file.h"
-#include "gl/plan/plan.h"
+#include "colorimetry/image/screen_png.h"
 #include "scenes/import/scene_file.h"
+#include "validation/sweep/matched_physics.h"
 #include "validation/tracer/checkpoint.h"
+#include "validation/tracer/trace_run.h"
 #include "validation/tracer/tracer.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum {
@@ -245,68 +243,18 @@ static abbe_result name_checkpoint(request *q, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* What matched physics leaves out is read off the renderer's plan. */
-static abbe_result match_plan(const abbe_scene *scene, abbe_trace_desc *desc, abbe_error *error) {
-  if (!desc->physics.matched) return ABBE_OK;
-  abbe_plan plan;
-  abbe_render_desc render = {.min_nm = desc->min_nm, .max_nm = desc->max_nm};
-  abbe_result result = abbe_plan_make(scene, &render, &plan, error);
-  if (result != ABBE_OK) return result;
-  desc->physics.orders = plan.desc.exits;
-  desc->physics.energy_share = plan.desc.energy_share;
-  desc->physics.eye_orders = plan.eye_exits;
-  desc->physics.eye_share = plan.eye_share;
-  abbe_plan_free(&plan);
-  return ABBE_OK;
-}
-
 /* ---- the work ---- */
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* How far the run is by what stops it first. Errors fall as one over the root of the passes. */
-static double progress_made(const request *q, size_t passes, double spent, double error) {
-  double done = q->passes > 0 ? (double)passes / (double)q->passes : 0;
-  if (q->seconds > 0) done = fmax(done, spent / q->seconds);
-  if (q->until > 0 && isfinite(error)) done = fmax(done, pow(q->until / error, 2));
-  return fmin(done, 1);
-}
-
-static bool finished(const request *q, size_t passes, double spent, double error) {
-  if (q->passes > 0 && passes >= q->passes) return true;
-  if (q->seconds > 0 && spent >= q->seconds && passes >= 2) return true;
-  return q->until > 0 && passes >= 4 && error <= q->until;
-}
-
-static abbe_result save_checkpoint(const request *q, const abbe_tracer *tracer, abbe_error *error) {
-  if (q->checkpoint_path == NULL || abbe_tracer_passes(tracer) == 0) return ABBE_OK;
-  return abbe_checkpoint_save(tracer, q->checkpoint_path, error);
-}
-
 /* ABBE_CANCELLED where the user stopped it: what is done is to be saved all the same. */
-static abbe_result run_passes(const request *q, abbe_tracer *tracer, abbe_error *error) {
+static abbe_result run_passes(const request *q, const abbe_trace_run_desc *run, abbe_tracer *tracer,
+                              abbe_error *error) {
   abbe_progress progress;
+  abbe_trace_run_desc own = *run;
+  own.progress = abbe_progress_update;
+  own.user = &progress;
+  own.stop = abbe_progress_stopped();
   abbe_progress_begin(&progress, "trace", q->quiet);
-  double start = now(), saved = start, estimate = INFINITY;
-  abbe_result result = ABBE_OK;
-  for (;;) {
-    size_t passes = abbe_tracer_passes(tracer);
-    double spent = now() - start;
-    if (q->until > 0) estimate = abbe_tracer_error(tracer);
-    bool goes_on = abbe_progress_update(&progress, progress_made(q, passes, spent, estimate));
-    if (finished(q, passes, spent, estimate)) break;
-    if (!goes_on) result = abbe_error_set(error, ABBE_CANCELLED, "stopped");
-    if (result == ABBE_OK) result = abbe_tracer_pass(tracer, abbe_progress_stopped(), error);
-    if (result != ABBE_OK) break;
-    if (now() - saved < q->every) continue;
-    result = save_checkpoint(q, tracer, error);
-    if (result != ABBE_OK) break;
-    saved = now();
-  }
+  abbe_result result = abbe_trace_run(tracer, &own, error);
   abbe_progress_end(&progress);
   return result;
 }
@@ -316,12 +264,12 @@ static abbe_result run_passes(const request *q, abbe_tracer *tracer, abbe_error 
 static void add_ledger(cJSON *root, const abbe_light_ledger *l) {
   cJSON *energy = cJSON_AddObjectToObject(root, "energy");
   cJSON_AddNumberToObject(energy, "reached", l->reached);
-  cJSON_AddNumberToObject(energy, "landed", l->landed);
+  cJSON_AddNumberToObject(energy, "deposited", l->deposited);
   cJSON_AddNumberToObject(energy, "contact", l->contact);
   cJSON_AddNumberToObject(energy, "hidden", l->hidden);
   cJSON_AddNumberToObject(energy, "absorbed", l->absorbed);
-  cJSON_AddNumberToObject(energy, "escaped", l->escaped);
-  cJSON_AddNumberToObject(energy, "dropped", l->dropped);
+  cJSON_AddNumberToObject(energy, "missed", l->missed);
+  cJSON_AddNumberToObject(energy, "trapped", l->trapped);
   cJSON_AddNumberToObject(energy, "lost", l->lost);
 }
 
@@ -350,26 +298,10 @@ static abbe_result write_stats(const request *q, const abbe_tracer *tracer, abbe
   return result;
 }
 
-static abbe_result write_png(const request *q, abbe_image *image, abbe_error *error) {
-  abbe_display *display = NULL;
-  abbe_display_desc desc = q->display;
-  desc.source_space = abbe_rgb_space_ocio_name(q->desc.space);
-  /* the display takes the first three channels: the picture's own must stand there */
-  static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
-  const char *const *name = q->desc.space == ABBE_RGB_SPACE_XYZ ? xyz : rgb;
-  abbe_image plain = {0};
-  abbe_result result = abbe_image_make(image->width, image->height, 3, name, &plain, error);
-  for (size_t k = 0; k < 3 && result == ABBE_OK; k++) {
-    size_t from = abbe_image_find_channel(image, name[k]);
-    for (size_t i = 0; i < image->width * image->height; i++)
-      plain.data[3 * i + k] = image->data[i * image->channels + from];
-  }
-  if (result == ABBE_OK) result = abbe_display_make(&desc, &display, error);
-  if (result == ABBE_OK) result = abbe_display_apply(display, &plain, error);
-  if (result == ABBE_OK) result = abbe_png_write(q->png, &plain, 8, error);
-  abbe_display_free(display);
-  abbe_image_free(&plain);
-  return result;
+static abbe_result write_png(const request *q, const abbe_image *image, abbe_error *error) {
+  abbe_screen_png_desc desc = {.display = q->display};
+  desc.display.source_space = abbe_rgb_space_ocio_name(q->desc.space);
+  return abbe_screen_png_write(q->png, image, &desc, error);
 }
 
 static abbe_result write_exr(const request *q, const char *path, const abbe_image *image,
@@ -411,15 +343,15 @@ static void summarise(const request *q, const abbe_tracer *tracer) {
   if (s.ledger.reached > 0) {
     double whole = 100 / s.ledger.reached;
     fprintf(stderr,
-            "; of the light that met refractors %.2f %% landed, %.2f %% was absorbed, %.2f %% "
-            "escaped, %.2g %% was lost",
-            whole * s.ledger.landed, whole * s.ledger.absorbed, whole * s.ledger.escaped,
+            "; of the light that met refractors %.2f %% is on receivers, %.2f %% absorbed, %.2f %% "
+            "missed, %.2g %% lost",
+            whole * s.ledger.deposited, whole * s.ledger.absorbed, whole * s.ledger.missed,
             whole * s.ledger.lost);
     if (s.ledger.hidden > 0)
-      fprintf(stderr, ", %.2f %% landed where receivers hide it from its lamp, in no map",
+      fprintf(stderr, ", %.2f %% where receivers hide it from its lamp, in no map",
               whole * s.ledger.hidden);
-    if (s.ledger.dropped > 0)
-      fprintf(stderr, ", %.2f %% is not modelled", whole * s.ledger.dropped);
+    if (s.ledger.trapped > 0)
+      fprintf(stderr, ", %.2f %% trapped, which is not modelled", whole * s.ledger.trapped);
   }
   fprintf(stderr, "\n");
   if (s.cuts > 0)
@@ -453,9 +385,14 @@ static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *err
 
 /* A user's stop keeps what is done: results are written, and the checkpoint to go on from. */
 static abbe_result trace(const request *q, abbe_tracer *tracer, abbe_error *error) {
+  const abbe_trace_run_desc run = {.passes = q->passes,
+                                   .seconds = q->seconds,
+                                   .error = q->until,
+                                   .checkpoint = q->checkpoint_path,
+                                   .checkpoint_s = q->every};
   abbe_result result = resume(q, tracer, error);
   if (result != ABBE_OK) return result;
-  result = run_passes(q, tracer, error);
+  result = run_passes(q, &run, tracer, error);
   bool stopped = result == ABBE_CANCELLED;
   if (result != ABBE_OK && !stopped) return result;
   size_t passes = abbe_tracer_passes(tracer);
@@ -465,7 +402,7 @@ static abbe_result trace(const request *q, abbe_tracer *tracer, abbe_error *erro
                           "was written");
   result = write_results(q, tracer, error);
   if (result == ABBE_OK && (stopped || q->checkpoint != NULL))
-    result = save_checkpoint(q, tracer, error);
+    result = abbe_trace_keep(tracer, &run, error);
   else if (result == ABBE_OK && q->checkpoint_path != NULL)
     unlink(q->checkpoint_path);
   if (result == ABBE_OK) summarise(q, tracer);
@@ -488,7 +425,8 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   }
   q->desc.no_picture = q->exr == NULL && q->png == NULL && q->map.save != NULL;
   q->desc.no_map = q->map.save == NULL && !q->desc.no_picture;
-  result = match_plan(scene, &q->desc, error);
+  if (q->desc.physics.matched)
+    result = abbe_matched_physics(scene, q->desc.min_nm, q->desc.max_nm, &q->desc.physics, error);
   if (result == ABBE_OK) result = abbe_tracer_make(scene, &q->desc, &tracer, error);
   if (result == ABBE_OK) result = print_rates(q, tracer, error);
   if (result == ABBE_OK && (q->exr || q->png || q->map.save || q->stats || q->json))

@@ -1,16 +1,18 @@
 set(validation_rooms abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name
     accumulator
-    aim
     bands
     camera
     checkpoint
     closed_form
     compare
     difference_picture
+    baseline_comparison
+    error_decomposition
     eye_walk
+    pareto_front
     field
-    front
+    file_comparison
     geometry
     interface
     light_walk
@@ -22,25 +24,30 @@ foreach(name
     rings
     outline
     photon_grid
+    projection_map
     random
     reflectance
     route
+    scatter
     spectral_sampling
     reference
     sphere_quadrature
+    trace_run
     tracer
-    sweep_duel
     sweep_plot
     sweep_presets
-    sweep_split
     sweep_table
     ztest
     )
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-abbe_test(sweep gl abbe_sweep abbe_gl ${validation_rooms})
-abbe_test(sweep_growth gl abbe_sweep abbe_gl ${validation_rooms})
+foreach(name matched_physics sweep_grid sweep_hash sweep_promises sweep_reference sweep_setting)
+  abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
+endforeach()
+foreach(name scaling_study sweep_measure sweep_page sweep_run)
+  abbe_test(${name} gl abbe_sweep abbe_gl ${validation_rooms})
+endforeach()
 abbe_test(compare_command program ${validation_rooms} PkgConfig::CJSON)
 abbe_test(preset_command program ${validation_rooms} PkgConfig::CJSON)
 abbe_test(sweep_command program ${validation_rooms} PkgConfig::CJSON)

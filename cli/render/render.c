@@ -8,16 +8,13 @@
 #include "cli/render/render_options.h"
 
 #include "base/file.h"
-#include "colorimetry/image/display_ocio.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/png_file.h"
-#include "gl/device/context.h"
-#include "gl/renderer.h"
+#include "colorimetry/image/screen_png.h"
+#include "gl/accuracy/frame_times.h"
 #include "scenes/import/scene_file.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +40,7 @@ typedef struct request {
   abbe_render_options render;
   abbe_map_options map;
   abbe_preset_options preset;
+  abbe_preset_choice choice;
   abbe_error_options errors;
   const char *exr, *png, *stats;
   const char *of_png; /* an option that the PNG alone has */
@@ -197,7 +195,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddStringToObject(root, "device", abbe_context_description(context));
   abbe_error_options_describe(&q->errors, bars, root);
   double estimate = bars->caustic.pixels > 0 ? bars->caustic.ciede2000 : -1;
-  abbe_preset_options_describe(&q->preset, s, estimate, root);
+  abbe_preset_options_describe(&q->choice, s, estimate, root);
   return root;
 }
 
@@ -216,53 +214,24 @@ static abbe_result write_stats(const request *q, const abbe_statistics *s,
   return result;
 }
 
-static int by_time(const void *a, const void *b) {
-  double x = ((const abbe_statistics *)a)->frame_ms, y = ((const abbe_statistics *)b)->frame_ms;
-  return (x > y) - (x < y);
-}
-
-static int by_value(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-static abbe_result measure_floor(abbe_renderer *renderer, size_t count, double *ms,
-                                 abbe_error *error) {
-  double all[16];
-  if (count > 16) count = 16;
-  for (size_t i = 0; i < count; i++) {
-    abbe_result result = abbe_renderer_floor(renderer, &all[i], error);
-    if (result != ABBE_OK) return result;
-  }
-  qsort(all, count, sizeof *all, by_value);
-  *ms = all[count / 2];
-  return ABBE_OK;
-}
-
 /* One frame, or the median of several after a warm-up, and the floor under them. */
 static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_statistics *out,
                               abbe_error *error) {
   abbe_progress progress;
-  size_t count = q->frames > 0 ? q->frames : 1;
-  bool once = q->frames == 0;
-  abbe_statistics *all = calloc(count, sizeof *all);
-  if (all == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
+  abbe_frame_times times;
+  const abbe_frame_times_desc desc = {
+      .frames = q->frames, .progress = abbe_progress_update, .user = &progress};
   abbe_progress_begin(&progress, "render", q->quiet);
   abbe_result result = ABBE_OK;
-  if (!once) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
-    result = abbe_renderer_frame(renderer, once ? abbe_progress_update : NULL, &progress, &all[i],
-                                 error);
-    if (result == ABBE_OK && !once &&
-        !abbe_progress_update(&progress, (double)(i + 1) / (double)count))
-      result = abbe_error_set(error, ABBE_CANCELLED, "stopped; nothing was written");
+  if (q->frames == 0) {
+    result = abbe_renderer_frame(renderer, abbe_progress_update, &progress, out, error);
+  } else {
+    result = abbe_frame_times_measure(renderer, &desc, &times, error);
+    if (result == ABBE_OK) *out = times.median;
   }
   abbe_progress_end(&progress);
-  qsort(all, count, sizeof *all, by_time);
-  *out = all[count / 2];
-  if (result == ABBE_OK && !once && !abbe_profile_is_thesis(q->render.desc.profile))
-    result = measure_floor(renderer, count, &out->floor_ms, error);
-  free(all);
+  if (result == ABBE_OK && q->frames > 0 && !abbe_profile_is_thesis(q->render.desc.profile))
+    result = abbe_frame_times_floor(renderer, q->frames, &out->floor_ms, error);
   return result;
 }
 
@@ -288,18 +257,9 @@ static abbe_result annotate(const request *q, const abbe_renderer *renderer,
   return result;
 }
 
-static abbe_result write_png(const request *q, abbe_image *image, abbe_error *error) {
-  abbe_display_desc desc = q->display;
-  abbe_display *display = NULL;
-  const char *space = abbe_image_attribute_text(image, "abbe:space");
-  for (int i = 0; space != NULL && i < ABBE_RGB_SPACE_COUNT; i++)
-    if (strcmp(space, abbe_rgb_space_name((abbe_rgb_space)i)) == 0)
-      desc.source_space = abbe_rgb_space_ocio_name((abbe_rgb_space)i);
-  abbe_result result = abbe_display_make(&desc, &display, error);
-  if (result == ABBE_OK) result = abbe_display_apply(display, image, error);
-  if (result == ABBE_OK) result = abbe_png_write(q->png, image, q->bits, error);
-  abbe_display_free(display);
-  return result;
+static abbe_result write_png(const request *q, const abbe_image *image, abbe_error *error) {
+  const abbe_screen_png_desc desc = {.display = q->display, .bits = q->bits};
+  return abbe_screen_png_write(q->png, image, &desc, error);
 }
 
 static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
@@ -339,23 +299,6 @@ static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
   for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
 }
 
-/* The picture is there; but a bound that was asked for and is not kept is told by the exit code. */
-static abbe_result judge(const abbe_preset_options *o, const abbe_statistics *s,
-                         abbe_error *error) {
-  if (o->budget_ms > 0 && s->frame_ms > o->budget_ms)
-    return abbe_error_set(error, ABBE_TOLERANCE,
-                          "the frame took %.0f ms and %.0f were promised: the budget of %g ms is "
-                          "not kept%s; what was asked for is written all the same",
-                          s->frame_ms, o->promised_ms, o->budget_ms,
-                          o->kept ? "" : ", for no faster settings are known");
-  if (o->max_error > 0 && !o->kept)
-    return abbe_error_set(error, ABBE_TOLERANCE,
-                          "no settings are known to keep an error of %g; the most accurate ones "
-                          "were taken, and what was asked for is written all the same",
-                          o->max_error);
-  return ABBE_OK;
-}
-
 static abbe_result render(const request *q, const abbe_scene *scene, abbe_context *context,
                           abbe_error *error) {
   abbe_renderer *renderer = NULL;
@@ -377,7 +320,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   abbe_progress_end(&progress);
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
-    if (!q->quiet) abbe_preset_options_note(&q->preset);
+    if (!q->quiet) abbe_preset_options_note(&q->choice);
     if (q->map.save != NULL && !abbe_renderer_plan(renderer)->caustics)
       result = abbe_error_set(error, ABBE_UNSUPPORTED,
                               "%s has no refractor, so there is no spectral map to save",
@@ -396,7 +339,9 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   if (result == ABBE_OK) result = write_stats(q, &statistics, &bars, context, error);
   if (result == ABBE_OK) summarise(q, &statistics, prepared_s);
   if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
-  if (result == ABBE_OK && q->preset.chosen) result = judge(&q->preset, &statistics, error);
+  /* The picture is there; but a bound that was asked for and is not kept is told by the exit code.
+   */
+  if (result == ABBE_OK) result = abbe_preset_choice_check(&q->choice, statistics.frame_ms, error);
   abbe_error_bars_free(&bars);
   abbe_image_free(&image);
   abbe_renderer_free(renderer);
@@ -445,11 +390,12 @@ int abbe_command_render(int argc, char **argv) {
   if (result == ABBE_OK)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
   if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
-  bool timed = q.stats != NULL || q.json;
+  q.preset.request.timed = q.stats != NULL || q.json;
   if (result == ABBE_OK)
-    result = abbe_preset_options_resolve(&q.preset, context, &scene, timed, &q.render.desc, &error);
+    result =
+        abbe_preset_choose(&q.preset.request, context, &scene, &q.render.desc, &q.choice, &error);
   if (result == ABBE_OK) result = render(&q, &scene, context, &error);
-  abbe_preset_options_free(&q.preset);
+  abbe_preset_choice_free(&q.choice);
   abbe_context_free(context);
   abbe_scene_free(&scene);
   return abbe_render_options_end(&q.render, loaded, result, &error);

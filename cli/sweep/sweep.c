@@ -1,383 +1,161 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/progress.h"
+#include "cli/base/scene_input.h"
+#include "cli/sweep/sweep_options.h"
 #include "cli/sweep/sweep_report.h"
-#include "cli/sweep/sweep_work.h"
 
-#include "base/file.h"
-#include "base/nearest.h"
-#include "gl/accuracy/preset.h"
-#include "validation/sweep/sweep.h"
-#include "validation/sweep/sweep_plot.h"
-#include "validation/sweep/sweep_presets.h"
-#include "validation/tracer/tracer.h"
+#include "validation/sweep/scaling_study.h"
+#include "validation/sweep/sweep_page.h"
+#include "validation/sweep/sweep_setting.h"
+#include "validation/tradeoff/sweep_plot.h"
+#include "validation/tradeoff/sweep_presets.h"
 
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  OPTION_PLOT = 0x500,
-  OPTION_REPORT,
-  OPTION_WRITE_PRESETS,
-  OPTION_PRESETS,
-  OPTION_GROWTH,
-  OPTION_GRID,
-  OPTION_PROFILES,
-  OPTION_WAVELENGTHS,
-  OPTION_PHOTONS,
-  OPTION_MAP,
-  OPTION_SAMPLES,
-  OPTION_UPSAMPLE,
-  OPTION_FILL,
-  OPTION_EXITS,
-  OPTION_MODEL,
-  OPTION_SHARE,
-  OPTION_FRAMES,
-  OPTION_SIZE,
-  OPTION_ERROR,
-  OPTION_REFERENCE,
-  OPTION_REFERENCE_MAP,
-  OPTION_SPP,
-  OPTION_TRACED_PHOTONS,
-  OPTION_TEXELS,
-  OPTION_PHYSICS,
-  OPTION_SPLIT,
-  OPTION_TRACE_ONLY,
-  OPTION_MATERIALS,
-  OPTION_GL,
-  OPTION_LIST,
-  OPTION_JSON
-};
+#ifndef ABBE_VERSION
+#error "the build defines ABBE_VERSION"
+#endif
 
-enum { MAX_ARGUMENTS = 64 };
+/* One bar after another, for what is under way. */
+typedef struct bar {
+  abbe_progress progress;
+  const char *what;
+  bool quiet;
+} bar;
 
-typedef struct request {
-  abbe_sweep_request work;
-  int grid;             /* abbe_sweep_grid_name, or -1 */
-  abbe_sweep_grid list; /* of the options' lists */
-  bool listed, traced;  /* a list, or something of the reference that is traced, was given */
-  const char *presets;  /* file to write */
-  size_t argument_count;
-  const char *argument[MAX_ARGUMENTS];
-} request;
+static bool update(void *user, const char *what, double done) {
+  bar *b = user;
+  if (b->what == NULL || strcmp(b->what, what) != 0) {
+    if (b->what != NULL) abbe_progress_end(&b->progress);
+    abbe_progress_begin(&b->progress, what, b->quiet);
+    b->what = what;
+  }
+  return abbe_progress_update(&b->progress, done);
+}
 
-static const struct argp_option options[] = {
-    {"output", 'o', "FILE.csv", ABBE_ARGUMENT_WRITES,
-     "the table; rows that it holds are not measured again", 0},
-    {"plot", OPTION_PLOT, "FILE", ABBE_ARGUMENT_WRITES,
-     "error against time, log-log: a .png or .svg", 0},
-    {"report", OPTION_REPORT, "FILE.md", ABBE_ARGUMENT_WRITES,
-     "a page with the front and pictures beside it", 0},
-    {"write-presets", OPTION_WRITE_PRESETS, "FILE.yaml", ABBE_ARGUMENT_WRITES,
-     "presets off the fronts of the given tables", 0},
-    {"presets", OPTION_PRESETS, "FILE.yaml", ABBE_ARGUMENT_READS,
-     "say what these promise beside what was met (the shipped ones)", 0},
-    {"growth", OPTION_GROWTH, NULL, 0,
-     "instead: how the time grows with photons, wavelengths, pixels, faces, share of the view", 0},
-    {"error", OPTION_ERROR, "COLUMN", 0,
-     "that makes the front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
-    {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
-    {"quiet", 'q', NULL, 0, "no progress", 0},
-    {"grid", OPTION_GRID, "quick|full|thin|presets", 0,
-     "a named set of settings; presets: do they keep their promise here? (quick)", 1},
-    {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis,thesis-cie (all)", 1},
-    {"wavelengths", OPTION_WAVELENGTHS, "LIST", 0, "such as 3,7,21", 1},
-    {"photons", OPTION_PHOTONS, "LIST", 0, "sides of the photon grid", 1},
-    {"map", OPTION_MAP, "LIST", 0, "sides of the spectral map", 1},
-    {"samples", OPTION_SAMPLES, "LIST", 0, "a pixel side", 1},
-    {"upsample", OPTION_UPSAMPLE, "LIST", 0, "pixels a sample side", 1},
-    {"fill", OPTION_FILL, "LIST", 0, "auto,none", 1},
-    {"model", OPTION_MODEL, "LIST", 0, "of transport: auto, layers, hierarchy, ...", 1},
-    {"exits", OPTION_EXITS, "LIST", 0, "followed at the most", 1},
-    {"share", OPTION_SHARE, "LIST", 0, "of their light below which paths end", 1},
-    {"frames", OPTION_FRAMES, "N", 0, "warm up, then the median of N (5)", 1},
-    {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
-    {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 1},
-    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS, "a table instead of the scene's",
-     1},
-    {"list", OPTION_LIST, NULL, 0, "only say which settings the grid has", 1},
-    {"reference", OPTION_REFERENCE, "FILE.exr", ABBE_ARGUMENT_READS,
-     "a traced picture (traced and kept beside it)", 2},
-    {"reference-map", OPTION_REFERENCE_MAP, "FILE.exr", ABBE_ARGUMENT_READS,
-     "a traced receiver map", 2},
-    {"spp", OPTION_SPP, "N", 0, "passes of the reference (64)", 2},
-    {"traced-photons", OPTION_TRACED_PHOTONS, "N", 0, "photons a pass (1048576)", 2},
-    {"texels", OPTION_TEXELS, "N", 0, "side of the reference's map (256)", 2},
-    {"split", OPTION_SPLIT, NULL, 0,
-     "trace matched physics too: what is the model's, and what is sampling's?", 2},
-    {"trace-only", OPTION_TRACE_ONLY, NULL, 0,
-     "trace the references, for sweeps to come, and measure nothing", 2},
-    {"physics", OPTION_PHYSICS, "NAME", 0, "of the reference: full or matched (full)", 2},
-    {0}};
+/* ---- a scene ---- */
 
-/* Lists */
+static abbe_result get_settings(const abbe_sweep_options *q, const abbe_scene *scene,
+                                abbe_sweep_setting **out, size_t *count, abbe_error *error) {
+  const abbe_sweep_grid *part = &q->list;
+  size_t parts = 1, refused;
+  abbe_error why = {0};
+  const char *grid = q->grid != NULL ? q->grid : "quick";
+  if (strcmp(grid, "presets") == 0)
+    return abbe_sweep_preset_settings(scene, q->presets, out, count, error);
+  for (size_t i = 0; !q->listed && i < q->grids->count; i++) {
+    if (strcmp(q->grids->grid[i].name, grid) != 0) continue;
+    part = q->grids->grid[i].part;
+    parts = q->grids->grid[i].count;
+  }
+  abbe_result result =
+      abbe_sweep_grid_expand(scene, part, parts, out, count, &refused, &why, error);
+  if (result == ABBE_OK && refused > 0 && !q->quiet)
+    fprintf(stderr, "note: %zu settings of the grid are left out; the first: %s\n", refused,
+            why.text);
+  return result;
+}
 
-/* Calls take for every word of a list such as "3,7,21". */
-static void each_word(const request *q, const char *option, const char *text, size_t *count,
-                      void (*take)(const request *q, const char *option, const char *word,
-                                   size_t at, void *out),
-                      void *out) {
-  *count = 0;
-  for (const char *at = text; at != NULL;) {
-    size_t length = strcspn(at, ",");
-    char word[32];
-    if (length == 0 || length >= sizeof word || *count == ABBE_SWEEP_MAX_VALUES) {
-      fprintf(stderr, "%s: %s '%s' is not a list such as 3,7,21 of at most %d values\n",
-              q->work.program, option, text, ABBE_SWEEP_MAX_VALUES);
-      exit(ABBE_EXIT_USAGE);
-    }
-    snprintf(word, sizeof word, "%.*s", (int)length, at);
-    take(q, option, word, (*count)++, out);
-    at = at[length] == ',' ? at + length + 1 : NULL;
+/* Files that are written beside the table may be none that is read or written for something else.
+ */
+static abbe_result claim_references(const abbe_sweep_options *q, abbe_error *error) {
+  const abbe_sweep_request *w = &q->work;
+  for (int i = w->reference != NULL || w->reference_map != NULL; i < (w->decompose ? 2 : 1); i++) {
+    abbe_sweep_reference r = {0};
+    abbe_result result = abbe_sweep_reference_name(w->table, i == 1, &r, error);
+    if (result != ABBE_OK) return result;
+    const char *const kept[] = {r.picture_path, r.map_path, r.checkpoint_path};
+    for (int k = 0; k < 3; k++)
+      abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the traced file", kept[k]);
+  }
+  return ABBE_OK;
+}
+
+static void print_settings(const abbe_sweep_setting *setting, size_t count) {
+  char text[200];
+  for (size_t i = 0; i < count; i++) {
+    abbe_sweep_setting_describe(&setting[i], text, sizeof text);
+    printf("%s\n", text);
   }
 }
 
-static void take_count(const request *q, const char *option, const char *word, size_t at,
-                       void *out) {
-  size_t most = strcmp(option, "--samples") == 0       ? 4
-                : strcmp(option, "--upsample") == 0    ? 4
-                : strcmp(option, "--exits") == 0       ? ABBE_RENDER_MAX_EXITS
-                : strcmp(option, "--wavelengths") == 0 ? ABBE_RENDER_MAX_WAVELENGTHS
-                                                       : ABBE_RENDER_MAX_PHOTONS;
-  ((abbe_sweep_values *)out)->value[at] =
-      abbe_command_count(q->work.program, option, word, 1, most);
+static abbe_result measure(const abbe_sweep_options *q, const abbe_scene *scene,
+                           const abbe_sweep_setting *setting, size_t count, abbe_sweep_table *out,
+                           abbe_error *error) {
+  bar b = {.quiet = q->quiet};
+  abbe_context *context = NULL;
+  abbe_sweep_request work = q->work;
+  work.program = "abbe " ABBE_VERSION;
+  work.scene_path = q->scene;
+  work.setting = setting;
+  work.setting_count = count;
+  work.progress = update;
+  work.user = &b;
+  work.stop = abbe_progress_stopped();
+  abbe_result result = claim_references(q, error);
+  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) result = abbe_sweep_run(context, scene, &work, out, error);
+  if (b.what != NULL) abbe_progress_end(&b.progress);
+  abbe_context_free(context);
+  return result;
 }
 
-static void take_share(const request *q, const char *option, const char *word, size_t at,
-                       void *out) {
-  ((double *)out)[at] = abbe_command_number(q->work.program, option, word, 1e-9, 1);
+static abbe_result sweep_scene(const abbe_sweep_options *q, abbe_sweep_table *out,
+                               abbe_error *error) {
+  abbe_scene scene = {0};
+  abbe_sweep_setting *setting = NULL;
+  size_t count = 0;
+  abbe_result result = abbe_scene_input_load(q->program, q->scene, q->materials, &scene, error);
+  if (result == ABBE_OK) result = get_settings(q, &scene, &setting, &count, error);
+  if (result == ABBE_OK && q->list_only)
+    print_settings(setting, count);
+  else if (result == ABBE_OK)
+    result = measure(q, &scene, setting, count, out, error);
+  free(setting);
+  abbe_scene_free(&scene);
+  return result;
 }
 
-#define ABBE_NAME_OF(code, name) name,
-static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF)};
-static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF)};
-static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF)};
-static const char *const grids[] = {ABBE_SWEEP_GRIDS(ABBE_NAME_OF) "presets"};
-static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(ABBE_NAME_OF)};
-
-static void take_name(const request *q, const char *option, const char *word, size_t at,
-                      void *out) {
-  const bool profile = strcmp(option, "--profiles") == 0, model = strcmp(option, "--model") == 0;
-  ((abbe_sweep_values *)out)->value[at] = (size_t)abbe_command_choice(q->work.program, option, word,
-                                                                      profile ? profiles
-                                                                      : model ? models
-                                                                              : fills,
-                                                                      profile ? ABBE_PROFILE_COUNT
-                                                                      : model ? ABBE_MODEL_COUNT
-                                                                              : ABBE_FILL_COUNT);
-}
-
-static void parse_error(request *q, const char *text, struct argp_state *state) {
-  const char *names[ABBE_SWEEP_NUMBER_COUNT];
-  char list[400] = "";
-  size_t count = 0, used = 0;
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
-    if (!abbe_sweep_number_is_error((abbe_sweep_number)i)) continue;
-    names[count] = abbe_sweep_number_name((abbe_sweep_number)i);
-    used += (size_t)snprintf(list + used, sizeof list - used, " %s", names[count++]);
+static abbe_result study_scaling(const abbe_sweep_options *q, abbe_error *error) {
+  abbe_scene scene = {0};
+  abbe_context *context = NULL;
+  abbe_scaling_study study;
+  abbe_progress progress;
+  abbe_result result = abbe_scene_input_load(q->program, q->scene, q->materials, &scene, error);
+  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK) {
+    const size_t width = q->work.traced.width;
+    const abbe_sweep sweep = {.context = context, .scene = &scene, .frames = q->work.frames};
+    abbe_progress_begin(&progress, "scaling", q->quiet);
+    result = abbe_scaling_study_measure(&sweep, &scene, width > 0 ? width : 256,
+                                        abbe_progress_update, &progress, &study, error);
+    abbe_progress_end(&progress);
   }
-  q->work.error = abbe_sweep_number_find(text);
-  if (abbe_sweep_number_is_error(q->work.error)) return;
-  const char *near = abbe_nearest_word(text, names, count);
-  argp_error(state, "--error '%s' is no error%s%s%s; one is:%s", text,
-             near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-             near != NULL ? "'?" : "", list);
+  if (result == ABBE_OK) result = abbe_scaling_study_save(&study, q->work.table, error);
+  if (result == ABBE_OK && q->plot != NULL)
+    result = abbe_scaling_study_plot(&study, q->plot, error);
+  if (result == ABBE_OK) abbe_scaling_study_print(&study, stdout);
+  abbe_context_free(context);
+  abbe_scene_free(&scene);
+  return result;
 }
 
-static error_t parse_list(int key, const char *text, request *q) {
-  abbe_sweep_grid *g = &q->list;
-  const struct {
-    int key;
-    const char *option;
-    abbe_sweep_values *values;
-  } lists[] = {{OPTION_WAVELENGTHS, "--wavelengths", &g->wavelengths},
-               {OPTION_PHOTONS, "--photons", &g->photons},
-               {OPTION_MAP, "--map", &g->map},
-               {OPTION_SAMPLES, "--samples", &g->samples},
-               {OPTION_UPSAMPLE, "--upsample", &g->upsample},
-               {OPTION_EXITS, "--exits", &g->exits},
-               {OPTION_PROFILES, "--profiles", &g->profiles},
-               {OPTION_MODEL, "--model", &g->models},
-               {OPTION_FILL, "--fill", &g->fills}};
-  for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
-    if (lists[i].key != key) continue;
-    bool words = key == OPTION_PROFILES || key == OPTION_FILL || key == OPTION_MODEL;
-    each_word(q, lists[i].option, text, &lists[i].values->count, words ? take_name : take_count,
-              lists[i].values);
-    q->listed = true;
-    return 0;
-  }
-  if (key != OPTION_SHARE) return ARGP_ERR_UNKNOWN;
-  each_word(q, "--share", text, &g->share_count, take_share, g->share);
-  q->listed = true;
-  return 0;
-}
-
-static error_t parse_reference(int key, char *text, request *q) {
-  static const char *const physics[] = {"full", "matched"};
-  abbe_sweep_request *w = &q->work;
-  switch (key) {
-  case OPTION_REFERENCE:
-    w->reference = text;
-    return 0;
-  case OPTION_REFERENCE_MAP:
-    w->reference_map = text;
-    return 0;
-  case OPTION_SPP:
-    w->passes = abbe_command_count(w->program, "--spp", text, 2, 1000000);
-    break;
-  case OPTION_TRACED_PHOTONS:
-    w->photons =
-        abbe_command_count(w->program, "--traced-photons", text, 1, ABBE_TRACER_MAX_PHOTONS);
-    break;
-  case OPTION_TEXELS:
-    w->texels = abbe_command_count(w->program, "--texels", text, 1, ABBE_RENDER_MAX_MAP);
-    break;
-  case OPTION_PHYSICS:
-    w->matched = abbe_command_choice(w->program, "--physics", text, physics, 2) == 1;
-    break;
-  case OPTION_TRACE_ONLY:
-    w->trace_only = true;
-    break;
-  case OPTION_SPLIT:
-    w->split = true;
-    break;
-  default:
-    return parse_list(key, text, q);
-  }
-  q->traced = true;
-  return 0;
-}
-
-static bool is_table(const char *path) {
-  size_t length = strlen(path);
-  return length > 4 && strcmp(path + length - 4, ".csv") == 0;
-}
-
-static void finish(request *q, struct argp_state *state) {
-  abbe_sweep_request *w = &q->work;
-  if (q->argument_count == 0) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
-  if (is_table(q->argument[0])) {
-    if (w->csv != NULL || q->listed || q->grid >= 0 || w->growth)
-      argp_error(state, "'%s' is a table: it is shown, and nothing is measured", q->argument[0]);
-    return;
-  }
-  if (q->presets != NULL)
-    argp_error(state, "--write-presets reads tables: give SWEEP.csv..., and no scene");
-  w->scene = q->argument[0];
-  if (q->argument_count > 1)
-    argp_error(state, "one scene at a time: '%s' and '%s'", w->scene, q->argument[1]);
-  if (w->csv == NULL && !w->list) argp_error(state, "where to? Give -o FILE.csv");
-  if (q->listed && q->grid >= 0)
-    argp_error(state, "--grid and lists such as --wavelengths 3,7: one or the other");
-  if (w->growth && (q->listed || q->grid >= 0 || q->traced || w->report != NULL || w->json ||
-                    w->width != w->height || w->list))
-    argp_error(state, "--growth times frames: it goes with -o, --plot, --frames, --gl, --materials "
-                      "and a square --size alone");
-  bool named = w->reference != NULL || w->reference_map != NULL;
-  if (named && q->traced)
-    argp_error(state, "--spp, --texels, --physics, --split, --trace-only and --traced-photons are "
-                      "for a reference "
-                      "that is traced, and one is given");
-  if (w->split && w->matched)
-    argp_error(state, "--split traces full and matched physics; --physics asks for one of them");
-  if (w->reference != NULL && w->width != 0)
-    argp_error(state, "--size goes with a reference that is traced; the given one has its own");
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  request *q = state->input;
-  abbe_sweep_request *w = &q->work;
-  switch (key) {
-  case 'o':
-    w->csv = abbe_command_target(state->name, "-o", text, ".csv");
-    return 0;
-  case OPTION_PLOT:
-    w->plot = text;
-    return 0;
-  case OPTION_REPORT:
-    w->report = text;
-    return 0;
-  case OPTION_WRITE_PRESETS:
-    q->presets = text;
-    return 0;
-  case OPTION_GROWTH:
-    w->growth = true;
-    return 0;
-  case OPTION_PRESETS:
-    w->presets_file = text;
-    return 0;
-  case OPTION_ERROR:
-    parse_error(q, text, state);
-    return 0;
-  case OPTION_JSON:
-    w->json = true;
-    return 0;
-  case 'q':
-    w->quiet = true;
-    return 0;
-  case OPTION_GRID:
-    q->grid = abbe_command_choice(w->program, "--grid", text, grids, ABBE_SWEEP_GRID_COUNT + 1);
-    w->presets = q->grid == ABBE_SWEEP_GRID_COUNT;
-    return 0;
-  case OPTION_FRAMES:
-    w->frames = abbe_command_count(w->program, "--frames", text, 1, 1000);
-    return 0;
-  case OPTION_SIZE:
-    abbe_command_size(w->program, "--size", text, ABBE_RENDER_MAX_SIDE, &w->width, &w->height);
-    return 0;
-  case OPTION_GL:
-    w->backend = (abbe_context_backend)abbe_command_choice(w->program, "--gl", text, backends,
-                                                           ABBE_CONTEXT_BACKEND_COUNT);
-    return 0;
-  case OPTION_MATERIALS:
-    w->materials = text;
-    return 0;
-  case OPTION_LIST:
-    w->list = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (q->argument_count == MAX_ARGUMENTS)
-      argp_error(state, "at most %d tables at a time", MAX_ARGUMENTS);
-    q->argument[q->argument_count++] = text;
-    return 0;
-  case ARGP_KEY_END:
-    finish(q, state);
-    return 0;
-  default:
-    return parse_reference(key, text, q);
-  }
-}
-
-/* The work */
-
-static void choose_grid(request *q) {
-  abbe_sweep_request *w = &q->work;
-  if (w->presets) return;
-  if (!q->listed) {
-    abbe_sweep_grid_name name =
-        q->grid >= 0 ? (abbe_sweep_grid_name)q->grid : ABBE_SWEEP_GRID_QUICK;
-    w->grid_count = abbe_sweep_grid_make(name, w->grid);
-    return;
-  }
-  if (q->list.profiles.count == 0)
-    q->list.profiles = (abbe_sweep_values){
-        3, {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE}};
-  w->grid[0] = q->list;
-  w->grid_count = 1;
-}
+/* ---- tables ---- */
 
 /* What a report draws again. */
-static void protect_sources(const request *q, const abbe_sweep_table *table) {
+static void protect_sources(const abbe_sweep_options *q, const abbe_sweep_table *table) {
   static const abbe_sweep_fact sources[] = {ABBE_SWEEP_FACT_SCENE, ABBE_SWEEP_FACT_REFERENCE,
                                             ABBE_SWEEP_FACT_REFERENCE_MAP};
   for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
-    abbe_arguments_add(q->work.program, ABBE_ARGUMENT_READS, "the table's source",
+    abbe_arguments_add(q->program, ABBE_ARGUMENT_READS, "the table's source",
                        table->fact[sources[i]]);
 }
 
-static abbe_result load_tables(const request *q, abbe_sweep_table *tables, abbe_error *error) {
+static abbe_result load_tables(const abbe_sweep_options *q, abbe_sweep_table *tables,
+                               abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < q->argument_count && result == ABBE_OK; i++) {
     result = abbe_sweep_table_load(q->argument[i], &tables[i], error);
@@ -387,51 +165,72 @@ static abbe_result load_tables(const request *q, abbe_sweep_table *tables, abbe_
   return result;
 }
 
-static bool is_fine(const abbe_sweep_setting *setting) {
-  abbe_render_desc desc;
-  return abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK && abbe_preset_is_fine(&desc);
-}
+/* ---- what is shown of both ---- */
 
-static abbe_result show(const request *q, const abbe_sweep_table *tables, size_t count,
-                        abbe_error *error) {
-  const abbe_sweep_request *w = &q->work;
-  abbe_result result = ABBE_OK;
-  if (w->plot != NULL && count > 1)
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "--plot draws one table at a time");
-  else if (w->plot != NULL)
-    result = abbe_sweep_plot(w->plot, &tables[0], &w->error, 1, error);
-  if (result == ABBE_OK && w->report != NULL)
-    result = abbe_sweep_report_write(w->report, tables, count, w->error, w->backend, error);
-  if (result == ABBE_OK && q->presets != NULL)
-    result =
-        abbe_sweep_presets_write(q->presets, tables, q->argument, count, w->error, is_fine, error);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
-    if (w->json)
-      result = abbe_sweep_report_print_json(&tables[i], w->error, error);
-    else
-      result = abbe_sweep_report_print(&tables[i], w->error, error);
-  }
-  bool promised = (w->presets || w->presets_file != NULL) && !w->json;
-  for (size_t i = 0; i < count && promised && result == ABBE_OK; i++)
-    result = abbe_sweep_report_print_promises(&tables[i], w->presets_file, error);
+static abbe_result write_page(const abbe_sweep_options *q, const abbe_sweep_table *tables,
+                              size_t count, abbe_error *error) {
+  abbe_context *context = NULL;
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < ABBE_SWEEP_PAGE_PICTURES; k++) {
+      char own[ABBE_SWEEP_PATH];
+      abbe_sweep_page_picture(q->report, tables, i, k, own);
+      abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the report's picture", own);
+    }
+  abbe_result result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK)
+    result = abbe_sweep_page_write(context, q->report, tables, count, q->work.error, error);
+  abbe_context_free(context);
   return result;
 }
 
-static abbe_result run(request *q, abbe_error *error) {
-  const char *const grown[] = {q->work.csv, q->work.plot};
-  if (q->work.growth) {
-    abbe_result result = abbe_command_check_targets(grown, 2, error);
-    return result == ABBE_OK ? abbe_sweep_grow(&q->work, error) : result;
-  }
-  bool shown = is_table(q->argument[0]);
-  size_t count = shown ? q->argument_count : 1;
+static abbe_result write_files(const abbe_sweep_options *q, const abbe_sweep_table *tables,
+                               size_t count, abbe_error *error) {
+  const abbe_sweep_number number = q->work.error;
+  abbe_result result = ABBE_OK;
+  if (q->plot != NULL && count > 1)
+    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "--plot draws one table at a time");
+  else if (q->plot != NULL)
+    result = abbe_sweep_plot(q->plot, &tables[0], &number, 1, error);
+  if (result == ABBE_OK && q->report != NULL) result = write_page(q, tables, count, error);
+  if (result == ABBE_OK && q->write_presets != NULL)
+    result = abbe_sweep_presets_write(q->write_presets, tables, q->argument, count, number,
+                                      abbe_sweep_setting_is_fine, error);
+  return result;
+}
+
+static abbe_result print_promises(const abbe_sweep_options *q, const abbe_sweep_table *table,
+                                  abbe_error *error) {
+  abbe_sweep_promises promises;
+  abbe_result result = abbe_sweep_promises_make(table, q->presets, &promises, error);
+  if (result != ABBE_OK) return result;
+  abbe_sweep_report_print_promises(&promises);
+  abbe_sweep_promises_free(&promises);
+  return ABBE_OK;
+}
+
+static abbe_result show(const abbe_sweep_options *q, const abbe_sweep_table *tables, size_t count,
+                        abbe_error *error) {
+  abbe_result result = write_files(q, tables, count, error);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    result = q->json ? abbe_sweep_report_print_json(&tables[i], q->work.error, error)
+                     : abbe_sweep_report_print(&tables[i], q->work.error, error);
+  bool of_presets = q->grid != NULL && strcmp(q->grid, "presets") == 0;
+  bool promised = (of_presets || q->presets != NULL) && !q->json;
+  for (size_t i = 0; i < count && promised && result == ABBE_OK; i++)
+    result = print_promises(q, &tables[i], error);
+  return result;
+}
+
+static abbe_result run(const abbe_sweep_options *q, abbe_error *error) {
+  const char *const targets[] = {q->work.table, q->plot, q->report};
+  abbe_result result = abbe_command_check_targets(targets, 3, error);
+  if (result != ABBE_OK) return result;
+  if (q->scaling) return study_scaling(q, error);
+  size_t count = q->scene == NULL ? q->argument_count : 1;
   abbe_sweep_table *tables = calloc(count, sizeof *tables);
   if (tables == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the tables");
-  const char *const targets[] = {q->work.csv, q->work.plot, q->work.report};
-  abbe_result result = abbe_command_check_targets(targets, 3, error);
-  if (result == ABBE_OK)
-    result = shown ? load_tables(q, tables, error) : abbe_sweep_work(&q->work, &tables[0], error);
-  if (result == ABBE_OK && !q->work.list && !q->work.trace_only)
+  result = q->scene == NULL ? load_tables(q, tables, error) : sweep_scene(q, &tables[0], error);
+  if (result == ABBE_OK && !q->list_only && !q->work.trace_only)
     result = show(q, tables, count, error);
   for (size_t i = 0; i < count; i++) abbe_sweep_table_free(&tables[i]);
   free(tables);
@@ -439,34 +238,19 @@ static abbe_result run(request *q, abbe_error *error) {
 }
 
 int abbe_command_sweep(int argc, char **argv) {
-  static const struct argp argp = {
-      options,
-      parse,
-      "SCENE.yaml -o FILE.csv\nFILE.csv...",
-      "Draws a scene with many settings and says what each costs, in time, and how far it is from "
-      "a traced reference: which settings are worth their time, and what the thesis's method "
-      "gives for it.\v"
-      "The same command goes on where it was stopped. Given tables, it shows them.\n\n"
-      "Examples:\n"
-      "  abbe sweep scenes/gem.yaml -o gem.csv --plot gem.png\n"
-      "  abbe sweep scenes/gem.yaml -o gem.csv --grid full --frames 9 --spp 256\n"
-      "  abbe sweep scenes/prism.yaml -o slit.csv --wavelengths 3,7,21 --photons 64,256\n"
-      "  abbe sweep scenes/gem.yaml -o gem.csv --reference gem.exr --reference-map map.exr\n"
-      "  abbe sweep gem.csv sphere.csv --report trade.md\n"
-      "  abbe sweep scenes/gem.yaml -o gem.csv --split --report gem.md\n"
-      "  abbe sweep scenes/gem.yaml -o grows.csv --growth --plot grows.png\n"
-      "  abbe sweep *.csv --write-presets presets.yaml\n",
-      NULL,
-      NULL,
-      NULL};
-  static request q; /* its grids are large for a small stack */
-  q.grid = -1;
-  q.work.program = argv[0];
+  abbe_error error = {0};
+  abbe_sweep_grids grids;
+  abbe_sweep_options q = {.program = argv[0], .grids = &grids};
   q.work.frames = 5;
   q.work.error = ABBE_SWEEP_CAUSTIC_DE;
-  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-  choose_grid(&q);
-  abbe_error error = {0};
-  abbe_result result = run(&q, &error);
-  return abbe_command_end(q.work.program, result, &error);
+  abbe_result result = abbe_sweep_grids_load(NULL, &grids, &error);
+  if (result == ABBE_OK) {
+    abbe_arguments_parse(&abbe_sweep_options_argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+    if (q.listed && q.list.profiles.count == 0)
+      q.list.profiles = (abbe_sweep_values){
+          3, {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE}};
+    result = run(&q, &error);
+  }
+  abbe_sweep_grids_free(&grids);
+  return abbe_command_end(argv[0], result, &error);
 }

@@ -3,7 +3,7 @@
 #include "tests/decimal_comma.h"
 #include "tests/fontconfig.h"
 #include "tests/scenes/scene_text.h"
-#include "tests/validation/sweep/sweep_row.h"
+#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/number.h"
 #include "colorimetry/image/display_ocio.h"
@@ -23,9 +23,9 @@
 #include "spectral/formats/shader_export.h"
 #include "validation/compare/field.h"
 #include "validation/known/known_answers.h"
-#include "validation/sweep/sweep_growth.h"
-#include "validation/sweep/sweep_presets.h"
-#include "validation/sweep/sweep_split.h"
+#include "validation/tradeoff/error_decomposition.h"
+#include "validation/sweep/scaling_study.h"
+#include "validation/tradeoff/sweep_presets.h"
 #include "validation/tracer/reference.h"
 
 static abbe_error error;
@@ -311,9 +311,9 @@ static void with_sweeps(FILE *to) {
   model = (abbe_sweep_model){0};
   assert_true(abbe_sweep_model_read(&back, &model));
   note(to, "model", &model, sizeof model);
-  abbe_sweep_split split;
-  abbe_sweep_split_make(&back, &split);
-  abbe_sweep_split_say(&split, text, sizeof text);
+  abbe_error_decomposition split;
+  abbe_error_decomposition_make(&back, &split);
+  abbe_error_decomposition_say(&split, text, sizeof text);
   fprintf(to, "%s\n", text);
   const char *const name[] = {"sweep.csv"};
   in_folder("presets.yaml", path);
@@ -322,15 +322,15 @@ static void with_sweeps(FILE *to) {
   abbe_presets presets;
   ok(abbe_presets_load(path, &presets, &error));
   abbe_presets_free(&presets);
-  abbe_sweep_growth growth = {
+  abbe_scaling_study growth = {
       .scene = "a.yaml",
       .count = 2,
       .point = {{.x = 0.5, .frame_ms = 1.5, .light_ms = 0.25, .eye_ms = 1, .floor_ms = 0.125},
                 {.x = 1.5, .frame_ms = 2.5, .light_ms = 0.75, .eye_ms = 2, .floor_ms = 0.375}}};
   in_folder("growth.csv", path);
-  ok(abbe_sweep_growth_save(&growth, path, &error));
+  ok(abbe_scaling_study_save(&growth, path, &error));
   note_file(to, "growth.csv");
-  abbe_sweep_growth_print(&growth, to);
+  abbe_scaling_study_print(&growth, to);
   abbe_sweep_table_free(&table);
   abbe_sweep_table_free(&back);
 }

@@ -80,8 +80,8 @@ static void test_numbers(void **state) {
   assert_near(number(json, "photons"), 3 * 4000, 0);
   assert_true(number(json, "relative_error") > 0);
   const cJSON *energy = cJSON_GetObjectItemCaseSensitive(json, "energy");
-  double sum = number(energy, "landed") + number(energy, "absorbed") + number(energy, "escaped") +
-               number(energy, "dropped") + number(energy, "lost");
+  double sum = number(energy, "deposited") + number(energy, "absorbed") + number(energy, "missed") +
+               number(energy, "trapped") + number(energy, "lost");
   assert_near(sum / number(energy, "reached"), 1, 1e-4);
   cJSON_Delete(json);
   assert_true(run_left() == 0);

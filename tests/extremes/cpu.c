@@ -76,7 +76,7 @@ static void check_ledger(const abbe_tracer *tracer, extreme_row *row) {
   abbe_trace_statistics s;
   abbe_tracer_statistics(tracer, &s);
   const abbe_light_ledger *l = &s.ledger;
-  double parts = l->landed + l->absorbed + l->escaped + l->dropped + l->lost;
+  double parts = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
   double open = l->reached > 0 ? fabs(l->reached - parts) / l->reached : fabs(parts);
   double lost = l->reached > 0 ? l->lost / l->reached : 0;
   extreme_row_add(row, "traced ledger %.1e, lost %.1e, cuts %llu", open, lost,

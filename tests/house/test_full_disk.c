@@ -3,7 +3,7 @@
 #include "tests/check.h"
 #include "tests/faults/disk.h"
 #include "tests/fontconfig.h"
-#include "tests/validation/sweep/sweep_row.h"
+#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
@@ -12,7 +12,7 @@
 #include "scenes/export/pov_file.h"
 #include "scenes/import/scene_file.h"
 #include "spectral/editing/table_edit.h"
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 #include "validation/tracer/checkpoint.h"
 
 #include <dirent.h>

@@ -2,7 +2,7 @@
  */
 #include "tests/faults/operations.h"
 #include "tests/fontconfig.h"
-#include "tests/validation/sweep/sweep_row.h"
+#include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/file.h"
 #include "scenes/export/pov_file.h"
@@ -13,9 +13,9 @@
 #include "validation/known/known_answers.h"
 #include "validation/known/known_chart.h"
 #include "validation/known/rings.h"
-#include "validation/sweep/sweep_plot.h"
-#include "validation/sweep/sweep_presets.h"
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_plot.h"
+#include "validation/tradeoff/sweep_presets.h"
+#include "validation/tradeoff/sweep_table.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/reference.h"
 

@@ -7,7 +7,7 @@
 #include "scenes/scene.h"
 #include "validation/known/known_answers.h"
 #include "validation/transport/geometry.h"
-#include "validation/transport/route.h"
+#include "validation/walks/route.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,9 +1,14 @@
 /* sweep_grid.h: the settings that a sweep measures, as lists of values for each axis.
  *
- * The named grids are here; what a scene makes of one is sweep.h's.
+ * Named grids are read from grids.yaml, which is compiled in; what a scene makes of one is found by
+ * its plan.
  */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_GRID_H
 #define ABBE_VALIDATION_SWEEP_SWEEP_GRID_H
+
+#include "base/error.h"
+#include "scenes/scene.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -13,7 +18,6 @@ extern "C" {
 #endif
 
 #define ABBE_SWEEP_MAX_VALUES 16 /* of one axis */
-#define ABBE_SWEEP_MAX_GRIDS 28
 
 /* Values of one axis; none: the profile's default. */
 typedef struct abbe_sweep_values {
@@ -25,25 +29,40 @@ typedef struct abbe_sweep_values {
 typedef struct abbe_sweep_grid {
   abbe_sweep_values profiles; /* abbe_profile */
   abbe_sweep_values wavelengths, photons, map, samples, upsample, exits;
-  abbe_sweep_values fills;    /* abbe_fill */
-  abbe_sweep_values models;   /* abbe_model */
-  bool meshes; /* only where a refractor is a general mesh */
+  abbe_sweep_values fills;  /* abbe_fill */
+  abbe_sweep_values models; /* abbe_model */
+  bool meshes;              /* only where a refractor is a general mesh */
   size_t share_count;
   double share[ABBE_SWEEP_MAX_VALUES];
 } abbe_sweep_grid;
 
-/* X(code, name): quick shows the shape of the front in a few minutes; full has all axes; thin has
- * what many scenes in one run leave time for, with exits and shares that do not differ by scene. */
-#define ABBE_SWEEP_GRIDS(X) X(QUICK, "quick") X(FULL, "full") X(THIN, "thin")
-typedef enum abbe_sweep_grid_name {
-#define ABBE_SWEEP_ENUM(code, name) ABBE_SWEEP_GRID_##code,
-  ABBE_SWEEP_GRIDS(ABBE_SWEEP_ENUM)
-#undef ABBE_SWEEP_ENUM
-      ABBE_SWEEP_GRID_COUNT
-} abbe_sweep_grid_name;
+#define ABBE_SWEEP_MAX_GRIDS 8  /* of a file */
+#define ABBE_SWEEP_MAX_PARTS 64 /* of a named grid */
 
-/* The parts of a named grid, at most ABBE_SWEEP_MAX_GRIDS; how many. */
-size_t abbe_sweep_grid_make(abbe_sweep_grid_name name, abbe_sweep_grid *out);
+typedef struct abbe_sweep_named_grid {
+  char name[16];
+  size_t count;
+  abbe_sweep_grid *part; /* [count] */
+} abbe_sweep_named_grid;
+
+/* A zeroed struct is empty. */
+typedef struct abbe_sweep_grids {
+  size_t count;
+  abbe_sweep_named_grid grid[ABBE_SWEEP_MAX_GRIDS];
+} abbe_sweep_grids;
+
+/* From a file, or with NULL the shipped ones. ABBE_SCHEMA, ABBE_PARSE and ABBE_IO name file, line
+ * and key. */
+abbe_result abbe_sweep_grids_load(const char *path, abbe_sweep_grids *out, abbe_error *error);
+void abbe_sweep_grids_free(abbe_sweep_grids *grids);
+
+/* What is to be drawn: every setting of the grids once, resolved by the scene's plan, in order.
+ * Those that a profile does not know for this scene are left out: *refused counts them and `why`
+ * (may be NULL) says of the first. ABBE_INVALID_ARGUMENT where none remains or they are too many.
+ * *out is malloc'd. */
+abbe_result abbe_sweep_grid_expand(const abbe_scene *scene, const abbe_sweep_grid *grids,
+                                   size_t count, abbe_sweep_setting **out, size_t *out_count,
+                                   size_t *refused, abbe_error *why, abbe_error *error);
 
 #ifdef __cplusplus
 }

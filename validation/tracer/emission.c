@@ -8,31 +8,31 @@ enum { SALT = 0x6c6967 };
 
 abbe_result abbe_emission_make(const abbe_tracer *t, size_t light, size_t count, uint32_t pass,
                                uint32_t seed, abbe_emission *e, abbe_error *error) {
-  const abbe_aim *aim = &t->aim[light];
+  const abbe_projection_map *map = &t->projection[light];
   *e = (abbe_emission){.t = t,
                        .light = light,
-                       .count = aim->count > 0 ? count : 0,
+                       .count = map->count > 0 ? count : 0,
                        .pass = pass,
                        .seed = seed ^ SALT};
-  e->first = malloc((aim->count + 1) * sizeof *e->first);
+  e->first = malloc((map->count + 1) * sizeof *e->first);
   if (e->first == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
   float random[4];
   abbe_random4((uint32_t)light, 0, pass, e->seed, random);
   /* every cell gets its share, rounded up or down so that the mean is right */
   double sum = 0, shift = (double)random[0];
-  for (size_t i = 0; i < aim->count; i++) {
+  for (size_t i = 0; i < map->count; i++) {
     e->first[i] = (uint32_t)floor(sum * (double)e->count + shift);
-    sum += (double)aim->cell[i].share;
+    sum += (double)map->cell[i].share;
   }
-  e->first[aim->count] = (uint32_t)e->count;
+  e->first[map->count] = (uint32_t)e->count;
   e->first[0] = 0;
-  for (size_t i = aim->count; i > 0 && e->first[i - 1] > e->first[i]; i--)
+  for (size_t i = map->count; i > 0 && e->first[i - 1] > e->first[i]; i--)
     e->first[i - 1] = e->first[i];
   return ABBE_OK;
 }
 
 static size_t cell_of(const abbe_emission *e, uint32_t photon) {
-  size_t low = 0, high = e->t->aim[e->light].count;
+  size_t low = 0, high = e->t->projection[e->light].count;
   while (high - low > 1) {
     size_t middle = low + (high - low) / 2;
     if (e->first[middle] <= photon)
@@ -63,20 +63,20 @@ static void place_in_cell(uint32_t q, uint32_t n, float random, float uv[2]) {
 /* Along the curve the wavelengths are the fractional parts of
  * multiples of the golden ratio, shifted at random: every patch of neighbours has them all. */
 static size_t emit(const abbe_emission *e, uint32_t from, uint32_t to, abbe_photon *photon) {
-  const abbe_aim *aim = &e->t->aim[e->light];
+  const abbe_projection_map *map = &e->t->projection[e->light];
   const uint32_t golden = 2654435769u;
   const float(*xyz)[3] = (const float(*)[3])e->t->sampling.xyz + e->light * e->t->sampling.steps;
   uint32_t shift[4], light = (uint32_t)e->light + 1, seed = e->seed;
   size_t cell = cell_of(e, from);
   abbe_random_bits(0, light, e->pass, seed, shift);
   for (uint32_t j = from; j < to; j++) {
-    while (cell + 1 < aim->count && e->first[cell + 1] <= j) cell++;
+    while (cell + 1 < map->count && e->first[cell + 1] <= j) cell++;
     float random[4], at[2];
     abbe_random4(j, light, e->pass, seed, random);
     place_in_cell(j - e->first[cell], e->first[cell + 1] - e->first[cell], random[0], at);
     abbe_photon *p = photon++;
-    float flux = abbe_aim_ray(aim, &aim->cell[cell], at, random + 1, p->o, p->d);
-    p->flux = flux / ((float)e->count * aim->cell[cell].share);
+    float flux = abbe_projection_map_ray(map, &map->cell[cell], at, random + 1, p->o, p->d);
+    p->flux = flux / ((float)e->count * map->cell[cell].share);
     p->step = abbe_spectral_sampling_step(abbe_random_float(j * golden + shift[0]), &p->within);
     p->y = xyz[p->step][1];
     p->id = j | (uint32_t)e->light << 27;

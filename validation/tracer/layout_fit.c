@@ -13,22 +13,22 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Window coordinates of trial landings, along right (0) and up (1); their number. */
-static size_t try_landings(const abbe_tracer *t, abbe_light_walk *walk, const abbe_view *view,
-                           const abbe_emission *e, double *at[2], double *near, double *far) {
+/* Window coordinates of a trial's photons, along right (0) and up (1); their number. */
+static size_t try_photons(const abbe_tracer *t, abbe_light_walk *walk, const abbe_view *view,
+                          const abbe_emission *e, double *at[2], double *near, double *far) {
   abbe_light_walk_room *room = abbe_light_walk_get_room(walk);
   abbe_photon *photon = room->photon;
-  abbe_landing *landing = room->landing;
+  abbe_photon_hit *hit = room->hit;
   abbe_light_ledger ledger = {0};
   size_t found = 0;
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
-    size_t landed = abbe_light_walk_run(walk, &t->scene->light[e->light], e->pass, photon, count,
-                                        landing, &ledger);
+    size_t landed =
+        abbe_light_walk_run(walk, &t->scene->light[e->light], e->pass, photon, count, hit, &ledger);
     for (size_t i = 0; i < landed; i++) {
       double p[3], from[3], z;
-      if (landing[i].hidden) continue;
-      abbe_geometry_to_world(&t->geometry, landing[i].p, p);
+      if (hit[i].hidden) continue;
+      abbe_geometry_to_world(&t->geometry, hit[i].p, p);
       abbe_vector_subtract(p, view->origin, from);
       z = abbe_vector_dot(from, view->forward);
       double scale = view->orthographic ? 1 : z;
@@ -47,11 +47,11 @@ static size_t try_landings(const abbe_tracer *t, abbe_light_walk *walk, const ab
 
 abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
   const abbe_light *light = &t->scene->light[t->desc.map_light];
-  const abbe_aim *aim = &t->aim[t->desc.map_light];
+  const abbe_projection_map *map = &t->projection[t->desc.map_light];
   bool parallel = light->kind == ABBE_LIGHT_DIRECTIONAL;
   double origin[3], way[3], up[3] = {0, 0, 1};
-  abbe_geometry_to_world(&t->geometry, aim->origin, origin);
-  for (int k = 0; k < 3; k++) way[k] = (double)aim->way[k];
+  abbe_geometry_to_world(&t->geometry, map->origin, origin);
+  for (int k = 0; k < 3; k++) way[k] = (double)map->way[k];
   /* From the very place of the light: the renderer takes a map of no other. */
   memcpy(parallel ? way : origin, parallel ? light->direction : light->position, sizeof way);
   abbe_view view;
@@ -70,7 +70,7 @@ abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for trial photons");
   if (result == ABBE_OK) {
     double near = view.near, far = view.far;
-    size_t found = try_landings(t, walk, &view, &e, at, &near, &far);
+    size_t found = try_photons(t, walk, &view, &e, at, &near, &far);
     for (int k = 0; k < 2 && found > 0; k++) {
       qsort(at[k], found, sizeof *at[k], by_value);
       view.window[2 * k] = at[k][found / 1000];

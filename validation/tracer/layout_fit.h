@@ -1,5 +1,6 @@
 /* layout_fit.h: the layout of a receiver map for which none is given: as large as where a trial's
  * photons land.
+ *
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRACER_LAYOUT_FIT_H

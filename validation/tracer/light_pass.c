@@ -6,16 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TASK = 16384, PART_TRIALS = 16384 };
+enum { TASK = 16384, SPLIT_TRIALS = 16384 };
 
-/* ---- landings ---- */
+/* ---- where photons land ---- */
 
 typedef struct sink {
   abbe_tracer *t;
   size_t thread, light;
 } sink;
 
-void abbe_tracer_add_to_map(abbe_tracer *t, size_t thread, size_t light, const abbe_landing *l) {
+void abbe_tracer_add_to_map(abbe_tracer *t, size_t thread, size_t light, const abbe_photon_hit *l) {
   if (t->desc.no_map || light != t->desc.map_light || l->hidden) return;
   double p[3];
   size_t column, row;
@@ -31,15 +31,15 @@ void abbe_tracer_add_to_map(abbe_tracer *t, size_t thread, size_t light, const a
                              (float)t->bands.width_nm);
 }
 
-/* What a landing adds to the pixel that sees it straight. */
+/* What a photon adds to the pixel that sees it straight. */
 typedef struct splat {
-  const abbe_landing *landing;
+  const abbe_photon_hit *hit;
   size_t pixel;
   float value; /* radiance of the pixel, for a reflectance of pi */
 } splat;
 
-/* The ray from the landing to the eye in lane k of the packet; false where it cannot be seen. */
-static bool prepare_splat(const abbe_tracer *t, const abbe_landing *l, struct RTCRay16 *packet,
+/* The ray from the photon to the eye in lane k of the packet; false where it cannot be seen. */
+static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct RTCRay16 *packet,
                           size_t k, splat *out) {
   float d[3], distance, per_pixel, o[3];
   size_t pixel;
@@ -50,9 +50,8 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_landing *l, struct RT
   float facing = d[0] * hit.ng[0] + d[1] * hit.ng[1] + d[2] * hit.ng[2];
   if (facing * l->side <= 0) return false;
   float metres = distance * (float)t->geometry.unit;
-  *out = (splat){.landing = l,
-                 .pixel = pixel,
-                 .value = l->flux * fabsf(facing) * per_pixel / (metres * metres)};
+  *out = (splat){
+      .hit = l, .pixel = pixel, .value = l->flux * fabsf(facing) * per_pixel / (metres * metres)};
   abbe_geometry_leave(&hit, d, o);
   packet->org_x[k] = o[0];
   packet->org_y[k] = o[1];
@@ -69,7 +68,7 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_landing *l, struct RT
 
 static void add_splat(const sink *s, const splat *p) {
   abbe_tracer *t = s->t;
-  const abbe_landing *l = p->landing;
+  const abbe_photon_hit *l = p->hit;
   float rgb[3];
   abbe_reflectance_at(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
   size_t colour = s->light * t->sampling.steps + l->step, at = p->pixel * t->picture_channels;
@@ -102,7 +101,7 @@ static uint64_t flush_splats(const sink *s, struct RTCRay16 *packet, const splat
   return count;
 }
 
-static uint64_t add_to_picture(const sink *s, const abbe_landing *landing, size_t count) {
+static uint64_t add_to_picture(const sink *s, const abbe_photon_hit *hit, size_t count) {
   if (s->t->desc.no_picture) return 0;
   struct RTCRay16 packet;
   memset(&packet, 0, sizeof packet);
@@ -110,7 +109,7 @@ static uint64_t add_to_picture(const sink *s, const abbe_landing *landing, size_
   size_t waiting = 0;
   uint64_t rays = 0;
   for (size_t i = 0; i < count; i++) {
-    waiting += prepare_splat(s->t, &landing[i], &packet, waiting, &splats[waiting]);
+    waiting += prepare_splat(s->t, &hit[i], &packet, waiting, &splats[waiting]);
     if (waiting < 16) continue;
     rays += flush_splats(s, &packet, splats, waiting);
     waiting = 0;
@@ -123,7 +122,7 @@ static uint64_t add_to_picture(const sink *s, const abbe_landing *landing, size_
 typedef struct task_result {
   abbe_light_ledger ledger;
   uint64_t splat_rays;
-  size_t kept; /* landings for the eye's gathers, from the task's first photon on */
+  size_t kept; /* photons for the eye's gathers, from the task's first photon on */
 } task_result;
 
 static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t thread,
@@ -131,18 +130,18 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t 
   abbe_tracer *t = (abbe_tracer *)e->t;
   abbe_light_walk_room *room = abbe_light_walk_get_room(t->walk[thread]);
   abbe_photon *photon = room->photon;
-  abbe_landing *landing = room->landing;
+  abbe_photon_hit *hit = room->hit;
   sink s = {.t = t, .thread = thread, .light = e->light};
   *out = (task_result){0};
-  abbe_light_walk_part(t->walk[thread], t->parts[e->light]);
+  abbe_light_walk_split(t->walk[thread], t->splits[e->light]);
   for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, to, photon);
     size_t landed = abbe_light_walk_run(t->walk[thread], &t->scene->light[e->light], e->pass,
-                                        photon, count, landing, &out->ledger);
-    for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, thread, e->light, &landing[i]);
-    out->splat_rays += add_to_picture(&s, landing, landed);
+                                        photon, count, hit, &out->ledger);
+    for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, thread, e->light, &hit[i]);
+    out->splat_rays += add_to_picture(&s, hit, landed);
     for (size_t i = 0; keep != NULL && i < landed; i++) {
-      const abbe_landing *l = &landing[i];
+      const abbe_photon_hit *l = &hit[i];
       abbe_grid_photon *g = &keep[out->kept++];
       *g = (abbe_grid_photon){.flux = l->side * l->flux,
                               .surface = l->surface,
@@ -154,12 +153,12 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t 
 
 static void add_ledger(abbe_light_ledger *to, const abbe_light_ledger *from) {
   to->reached += from->reached;
-  to->landed += from->landed;
+  to->deposited += from->deposited;
   to->contact += from->contact;
   to->hidden += from->hidden;
   to->absorbed += from->absorbed;
-  to->escaped += from->escaped;
-  to->dropped += from->dropped;
+  to->missed += from->missed;
+  to->trapped += from->trapped;
   to->lost += from->lost;
 }
 
@@ -178,15 +177,14 @@ static abbe_result run_light(abbe_tracer *t, const abbe_emission *e, const volat
     uint32_t from = (uint32_t)(i * TASK);
     uint32_t to = (uint32_t)(e->count - from < TASK ? e->count : from + TASK);
     run_task(e, from, to, (size_t)omp_get_thread_num(),
-             keeps ? t->landed + base + abbe_tracer_most_landings(t, e->light, from) : NULL,
+             keeps ? t->landed + base + abbe_tracer_most_hits(t, e->light, from) : NULL,
              &result[i]);
   }
   for (size_t i = 0; i < tasks; i++) {
     add_ledger(&t->statistics.ledger, &result[i].ledger);
     t->statistics.light_rays += result[i].splat_rays;
     if (keeps && result[i].kept > 0)
-      memmove(t->landed + *landed,
-              t->landed + base + abbe_tracer_most_landings(t, e->light, i * TASK),
+      memmove(t->landed + *landed, t->landed + base + abbe_tracer_most_hits(t, e->light, i * TASK),
               result[i].kept * sizeof *t->landed);
     *landed += result[i].kept;
   }
@@ -219,13 +217,14 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
   double total = 0;
   for (size_t l = 0; l < t->scene->light_count; l++) {
     bool wanted = !t->desc.no_picture || l == t->desc.map_light;
-    abbe_result result = wanted ? abbe_aim_make(&t->geometry, l, &t->aim[l], error) : ABBE_OK;
+    abbe_result result =
+        wanted ? abbe_projection_map_make(&t->geometry, l, &t->projection[l], error) : ABBE_OK;
     if (result != ABBE_OK) return result;
-    total += t->aim[l].reach;
+    total += t->projection[l].reach;
   }
   for (size_t l = 0; l < t->scene->light_count && total > 0; l++) {
-    if (t->aim[l].count == 0 || !(t->aim[l].reach > 0)) continue;
-    t->photons[l] = (size_t)((double)t->desc.photons * t->aim[l].reach / total);
+    if (t->projection[l].count == 0 || !(t->projection[l].reach > 0)) continue;
+    t->photons[l] = (size_t)((double)t->desc.photons * t->projection[l].reach / total);
     /* a faint light still needs enough of them to show where it goes */
     if (t->photons[l] < t->desc.photons / 16) t->photons[l] = t->desc.photons / 16;
     if (t->photons[l] < 64) t->photons[l] = 64;
@@ -233,32 +232,31 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* The trial's photons, followed without parting. */
-static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_landing *landing) {
+/* The trial's photons, followed without splitting. */
+static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_photon_hit *hit) {
   abbe_photon *photon = abbe_light_walk_get_room(t->walk[0])->photon;
   abbe_light_ledger ledger = {0};
   size_t landed = 0;
-  abbe_light_walk_part(t->walk[0], 0);
+  abbe_light_walk_split(t->walk[0], 0);
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
     landed += abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon, count,
-                                  landing + landed, &ledger);
+                                  hit + landed, &ledger);
   }
   return landed;
 }
 
-abbe_result abbe_tracer_choose_parts(abbe_tracer *t, abbe_error *error) {
-  abbe_landing *landing = malloc(PART_TRIALS * sizeof *landing);
+abbe_result abbe_tracer_choose_splits(abbe_tracer *t, abbe_error *error) {
+  abbe_photon_hit *hit = malloc(SPLIT_TRIALS * sizeof *hit);
   abbe_result result =
-      landing != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a trial");
+      hit != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a trial");
   for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
     if (t->photons[l] == 0) continue;
     abbe_emission e;
-    result = abbe_emission_make(t, l, PART_TRIALS, 0, t->desc.seed, &e, error);
-    if (result == ABBE_OK)
-      t->parts[l] = abbe_light_walk_best_parts(landing, land_trial(t, &e, landing));
+    result = abbe_emission_make(t, l, SPLIT_TRIALS, 0, t->desc.seed, &e, error);
+    if (result == ABBE_OK) t->splits[l] = abbe_light_walk_best_splits(hit, land_trial(t, &e, hit));
     abbe_emission_free(&e);
   }
-  free(landing);
+  free(hit);
   return result;
 }

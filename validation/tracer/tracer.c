@@ -95,11 +95,11 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   size_t lights = t->scene->light_count;
   t->colour = calloc(lights * t->sampling.steps, sizeof *t->colour);
   t->white = calloc(lights, sizeof *t->white);
-  t->aim = calloc(lights, sizeof *t->aim);
+  t->projection = calloc(lights, sizeof *t->projection);
   t->photons = calloc(lights, sizeof *t->photons);
-  t->parts = calloc(lights, sizeof *t->parts);
+  t->splits = calloc(lights, sizeof *t->splits);
   t->walk = calloc(d->threads, sizeof *t->walk);
-  if (!t->colour || !t->white || !t->aim || !t->photons || !t->parts || !t->walk)
+  if (!t->colour || !t->white || !t->projection || !t->photons || !t->splits || !t->walk)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the lights' tables");
   abbe_spectral_sampling_colours(&t->sampling, t->mixing, t->colour);
   double matrix[9], white[3];
@@ -160,7 +160,7 @@ static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
   }
   if (result == ABBE_OK && !d->no_map) {
     t->map_channels = 3 + t->bands.count;
-    double reach = t->aim[d->map_light].reach;
+    double reach = t->projection[d->map_light].reach;
     result = abbe_accumulator_make(d->map_width * d->map_height * t->map_channels, d->threads,
                                    (reach > 0 ? reach : 1) * 0x1p14, &t->map, error);
   }
@@ -186,10 +186,10 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
   }
   if (!t->eye_gathers) return ABBE_OK;
   for (size_t l = 0; l < t->scene->light_count; l++)
-    t->landed_room += abbe_tracer_most_landings(t, l, t->photons[l]);
+    t->landed_room += abbe_tracer_most_hits(t, l, t->photons[l]);
   t->landed = malloc((t->landed_room + 1) * sizeof *t->landed);
   if (t->landed == NULL)
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu landings a pass",
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu photons of a pass",
                           t->landed_room);
   /* four pixels of the receivers as far away as the refractors */
   float eye[3], far = 0;
@@ -210,7 +210,7 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
   abbe_result result = resolve(scene, &t->desc, error);
   if (result == ABBE_OK) result = make_tables(t, error);
   if (result == ABBE_OK) result = abbe_tracer_share_photons(t, error);
-  if (result == ABBE_OK) result = abbe_tracer_choose_parts(t, error);
+  if (result == ABBE_OK) result = abbe_tracer_choose_splits(t, error);
   if (result == ABBE_OK && !t->desc.no_map) {
     if (t->desc.layout != NULL)
       t->layout = *t->desc.layout;
@@ -232,7 +232,8 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
 void abbe_tracer_free(abbe_tracer *t) {
   if (t == NULL) return;
   for (size_t i = 0; t->walk != NULL && i < t->desc.threads; i++) abbe_light_walk_free(t->walk[i]);
-  for (size_t l = 0; t->aim != NULL && l < t->scene->light_count; l++) abbe_aim_free(&t->aim[l]);
+  for (size_t l = 0; t->projection != NULL && l < t->scene->light_count; l++)
+    abbe_projection_map_free(&t->projection[l]);
   abbe_accumulator_free(&t->picture);
   abbe_accumulator_free(&t->map);
   abbe_photon_grid_free(&t->grid);
@@ -243,9 +244,9 @@ void abbe_tracer_free(abbe_tracer *t) {
   free(t->landed);
   free(t->colour);
   free(t->white);
-  free(t->aim);
+  free(t->projection);
   free(t->photons);
-  free(t->parts);
+  free(t->splits);
   free(t->walk);
   free(t);
 }

@@ -17,8 +17,8 @@
 #include "colorimetry/rgb_space.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
-#include "validation/transport/light_walk.h"
 #include "validation/transport/physics.h"
+#include "validation/walks/light_walk.h"
 
 #include <stdbool.h>
 #include <stddef.h>

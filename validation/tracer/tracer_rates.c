@@ -14,14 +14,14 @@ static double now(void) {
 static double walk_seconds(abbe_tracer *t, const abbe_emission *e) {
   abbe_light_walk_room *room = abbe_light_walk_get_room(t->walk[0]);
   abbe_photon *photon = room->photon;
-  abbe_landing *landing = room->landing;
+  abbe_photon_hit *hit = room->hit;
   abbe_light_ledger ledger = {0};
   double start = now();
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
     size_t landed = abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon,
-                                        count, landing, &ledger);
-    for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, 0, e->light, &landing[i]);
+                                        count, hit, &ledger);
+    for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, 0, e->light, &hit[i]);
   }
   double end = now();
   if (!t->desc.no_map) abbe_accumulator_drop_pass(&t->map);
@@ -34,7 +34,7 @@ abbe_result abbe_tracer_rates(abbe_tracer *t, double *walk, double *embree, abbe
   enum { TURNS = 5, PHOTONS = 131072, PACKETS = 65536 };
   *walk = *embree = 0;
   size_t light = 0;
-  while (light < t->scene->light_count && t->aim[light].count == 0) light++;
+  while (light < t->scene->light_count && t->projection[light].count == 0) light++;
   if (light == t->scene->light_count)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "no light reaches a refractor, so there is no walk to time");

@@ -1,4 +1,5 @@
 /* tracer_state.h: the insides of a tracer, for the files of this folder alone.
+ *
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_TRACER_TRACER_STATE_H
@@ -6,8 +7,8 @@
 
 #include "validation/tracer/accumulator.h"
 #include "validation/tracer/tracer.h"
-#include "validation/transport/aim.h"
-#include "validation/transport/eye_walk.h"
+#include "validation/walks/eye_walk.h"
+#include "validation/walks/projection_map.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -28,9 +29,9 @@ struct abbe_tracer {
   abbe_rgb_space mixing; /* light times reflectance: the picture's space, ACEScg for XYZ */
   float to_xyz[9];       /* from there, for XYZ pictures; row-major */
   float (*colour)[3], (*white)[3]; /* in that space */
-  abbe_aim *aim;                   /* [lights] */
+  abbe_projection_map *projection; /* [lights] */
   size_t *photons;                 /* [lights] a pass */
-  unsigned *parts;                 /* [lights] interfaces at which its photons go both ways */
+  unsigned *splits;                /* [lights] interfaces at which its paths are split */
   abbe_light_walk **walk;          /* [threads] */
   abbe_accumulator picture, map;
   size_t picture_channels, map_channels; /* a pixel, a texel */
@@ -53,9 +54,9 @@ static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3]
                  : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
                        t->to_xyz[3 * k + 2] * mixed[2];
 }
-/* Most landings of so many photons of the light. */
-static inline size_t abbe_tracer_most_landings(const abbe_tracer *t, size_t light, size_t photons) {
-  for (int k = 0; k < ABBE_LIGHT_WALK_SPLITS; k++) photons <<= t->parts[light] >> k & 1;
+/* Most hits of so many photons of the light. */
+static inline size_t abbe_tracer_most_hits(const abbe_tracer *t, size_t light, size_t photons) {
+  for (int k = 0; k < ABBE_PHOTON_SPLITS; k++) photons <<= t->splits[light] >> k & 1;
   return photons;
 }
 

@@ -1,7 +1,7 @@
 /* `abbe sweep` as people meet it: rows, going on, stopping, the report, and what it refuses. */
 #include "tests/cli/run_program.h"
 
-#include "validation/sweep/sweep_table.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #include <cjson/cJSON.h>
 
@@ -72,7 +72,7 @@ static void test_the_thesis_beside_it(void **state) {
   cJSON_Delete(json);
   /* Tables are shown again, with another error, and reported together. */
   run_well("cp s.csv t.csv && \"$abbe\" sweep s.csv t.csv --error map_rmse --report both.md");
-  assert_contains(run_output, "the front of time and map_rmse");
+  assert_contains(run_output, "the Pareto front of time and map_rmse");
   run_well("grep -c '^## gem' both.md && rm both*");
   assert_contains(run_output, "2");
   run_well("\"$abbe\" sweep s.csv --plot s.svg --json && rm s.svg s.csv t.csv s-reference*.exr");
@@ -80,29 +80,29 @@ static void test_the_thesis_beside_it(void **state) {
 }
 
 /* Full and matched physics: what the model leaves out is a fact of the table, and said. */
-static void test_the_error_is_split(void **state) {
+static void test_the_error_is_decomposed(void **state) {
   (void)state;
   /* The references alone first: the sweep takes them as they are. */
-  run_well(SWEEP "-o s.csv --split --trace-only && ! test -e s.csv && sha1sum s-*.exr >sums");
-  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --split");
+  run_well(SWEEP "-o s.csv --decompose --trace-only && ! test -e s.csv && sha1sum s-*.exr >sums");
+  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --decompose");
   run_well("sha1sum -c --quiet sums && rm sums");
-  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --split");
+  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --decompose");
   assert_contains(run_output, "What is left: w3 p16 m64 s1 share 0.005 has ");
   run_well("grep -c '^# model: caustic_de ' s.csv && ls s-matched.exr s-matched-map.exr");
-  /* Rows of another split are not mixed. */
+  /* Rows of another decomposition are not mixed. */
   assert_int_equal(run_line(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv"),
                    1);
   assert_contains(run_errors, "its rows were measured with the model 'caustic_de");
-  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv --split --json");
+  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv --decompose --json");
   cJSON *json = cJSON_Parse(run_output);
-  const cJSON *split = cJSON_GetObjectItemCaseSensitive(json, "split");
+  const cJSON *parts_of = cJSON_GetObjectItemCaseSensitive(json, "decomposition");
   static const char *const parts[] = {"total", "model", "sampling_and_reconstruction"};
   for (int i = 0; i < 3; i++)
-    assert_true(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(split, parts[i])) > 0);
+    assert_true(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(parts_of, parts[i])) > 0);
   cJSON_Delete(json);
   run_well("rm s.csv s-reference*.exr s-matched*.exr");
-  assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --split --physics matched", 2,
-                          "--split traces full and matched physics"));
+  assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --decompose --physics matched", 2,
+                          "--decompose traces full and matched physics"));
 }
 
 static void test_given_references(void **state) {
@@ -154,10 +154,10 @@ static void test_what_is_refused(void **state) {
       {"\"$abbe\" sweep a.yaml -o s.csv --error caustic_da", "did you mean 'caustic_de'?", 2},
       {"\"$abbe\" sweep a.yaml -o s.csv --error frame_ms", "is no error", 2},
       {"\"$abbe\" sweep a.yaml -o s.csv --reference r.exr --spp 9", "and one is given", 2},
-      {"\"$abbe\" sweep a.yaml -o s.csv --growth --spp 3", "--growth times frames", 2},
-      {"\"$abbe\" sweep a.yaml -o s.csv --growth --size 16x8", "a square --size", 2},
-      {"\"$abbe\" sweep a.yaml -o s.csv --growth", "a.yaml", 1},
-      {"\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q -o s.csv --growth --size 20x20", "in eights",
+      {"\"$abbe\" sweep a.yaml -o s.csv --scaling --spp 3", "--scaling times frames", 2},
+      {"\"$abbe\" sweep a.yaml -o s.csv --scaling --size 16x8", "a square --size", 2},
+      {"\"$abbe\" sweep a.yaml -o s.csv --scaling", "a.yaml", 1},
+      {"\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q -o s.csv --scaling --size 20x20", "in eights",
        1},
       {"\"$abbe\" sweep a.yaml -o s.csv", "a.yaml", 1},
       {"\"$abbe\" sweep a.csv", "a.csv", 1},
@@ -209,7 +209,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(test_rows_are_measured_once, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_the_thesis_beside_it, run_setup, run_teardown),
-      cmocka_unit_test_setup_teardown(test_the_error_is_split, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_the_error_is_decomposed, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_given_references, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_ctrl_c_keeps_what_is_done, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),

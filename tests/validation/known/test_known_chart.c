@@ -21,29 +21,81 @@ static char *draw(abbe_known_answer *row, size_t count) {
   return text;
 }
 
-static void rows_are_drawn_even_broken_ones(void **state) {
+/* A round mark: the middle of a filled path of curves alone, and its colour. */
+typedef struct mark {
+  double x, y, red;
+} mark;
+
+enum { MOST = 32, LEGEND = 850 }; /* marks of the legend stand right of that */
+
+/* The marks of the data, from left to right. */
+static size_t find_marks(const char *text, mark *out) {
+  size_t count = 0;
+  for (const char *at = text; (at = strstr(at, "fill:rgb(")) != NULL; at++) {
+    double red, green, blue, x0, y0, c[6];
+    if (sscanf(
+            at,
+            "fill:rgb(%lf%%,%lf%%,%lf%%);fill-opacity:1;\" d=\"M %lf %lf C %lf %lf %lf %lf %lf %lf",
+            &red, &green, &blue, &x0, &y0, &c[0], &c[1], &c[2], &c[3], &c[4], &c[5]) != 11)
+      continue;
+    mark m = {0.5 * (x0 + c[4]), y0, red};
+    if (m.x > LEGEND) continue;
+    assert_true(count < MOST);
+    size_t k = count++;
+    for (; k > 0 && out[k - 1].x > m.x; k--) out[k] = out[k - 1];
+    out[k] = m;
+  }
+  return count;
+}
+
+static void errors_stand_over_their_rows_in_their_groups_colour(void **state) {
   (void)state;
   abbe_known_answer rows[] = {{.group = "a", .error = 0.5, .tolerance = 1},
-                              {.group = "a", .error = -7, .tolerance = 1},
+                              {.group = "a", .error = -1, .tolerance = 2},
                               {.group = "b", .error = NAN, .tolerance = 1},
-                              {.group = "b", .error = 1, .tolerance = NAN},
-                              {.group = "b", .error = 0, .tolerance = 0},
-                              {.group = "b", .error = 3, .tolerance = 0},
-                              {.group = "c", .error = 1e300, .tolerance = 1e-300}};
-  char *text = draw(rows, 7);
-  assert_contains(text, "<svg");
+                              {.group = "b", .error = 0, .tolerance = 0}};
+  char *text = draw(rows, 4);
+  mark m[MOST];
+  assert_int_equal(find_marks(text, m), 3); /* nothing is drawn of what is no number */
+  assert_near(m[2].x - m[1].x, 2 * (m[1].x - m[0].x), 0.01);
+  assert_near(m[0].y + m[1].y, 2 * m[2].y, 0.01); /* 0.5, -0.5, 0; downwards */
+  assert_near(m[1].y - m[0].y, 200, 1);           /* half of what -1 to 1 take up */
+  assert_near(m[0].red, m[1].red, 0);
+  assert_true(m[2].red != m[0].red);
   free(text);
 }
 
-/* Two rows that stand over photons make the second chart: a taller picture. */
+static void rows_out_of_tolerance_are_seen(void **state) {
+  (void)state;
+  abbe_known_answer rows[] = {{.group = "a", .error = 0, .tolerance = 1},
+                              {.group = "a", .error = -7, .tolerance = 1},
+                              {.group = "b", .error = 1, .tolerance = NAN},
+                              {.group = "b", .error = 3, .tolerance = 0},
+                              {.group = "c", .error = 1e300, .tolerance = 1e-300}};
+  char *text = draw(rows, 5);
+  mark m[MOST];
+  assert_int_equal(find_marks(text, m), 2);
+  assert_near(m[1].y - m[0].y, 200 * 7 / 7.7,
+              1); /* 1.1 times the furthest reach the frame's edge */
+  assert_contains(text, "</svg>");
+  free(text);
+}
+
+/* Two rows that stand over photons make a second chart above, with their errors. */
 static void photons_make_a_chart_of_their_own(void **state) {
   (void)state;
   abbe_known_answer rows[] = {
       {.group = "a", .exact = 0.1, .traced = 0.11, .tolerance = 0.1, .photons = 1000},
       {.group = "a", .exact = 0.05, .traced = 0.04, .tolerance = 0.1, .photons = 4000}};
   char *both = draw(rows, 2), *one = draw(rows, 1);
-  assert_contains(both, "900");
-  assert_contains(one, "480");
+  mark m[MOST], upper[MOST];
+  size_t count = find_marks(both, m), above = 0;
+  for (size_t i = 0; i < count; i++)
+    if (m[i].y < 450) upper[above++] = m[i];
+  assert_int_equal(count - above, 2);
+  assert_true(above >= 2); /* and the legend's, which stands inside */
+  assert_true(upper[0].x < upper[1].x && upper[0].y < upper[1].y); /* more photons, less error */
+  assert_int_equal(find_marks(one, m), 1);
   free(both);
   free(one);
 }
@@ -61,7 +113,8 @@ static void nothing_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rows_are_drawn_even_broken_ones),
+      cmocka_unit_test(errors_stand_over_their_rows_in_their_groups_colour),
+      cmocka_unit_test(rows_out_of_tolerance_are_seen),
       cmocka_unit_test(photons_make_a_chart_of_their_own),
       cmocka_unit_test(nothing_is_refused),
   };

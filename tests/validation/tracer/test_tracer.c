@@ -233,12 +233,12 @@ static void the_map_holds_what_landed(void **state) {
   double away = sqrt(0.05 * 0.05 + 0.03 * 0.03 + 0.4 * 0.4);
   double cone = 2 * 3.14159265358979 * (1 - cos(asin(0.08 / away)));
   assert_near(s.ledger.reached / cone, 1, 0.01);
-  double books = s.ledger.landed + s.ledger.escaped + s.ledger.absorbed + s.ledger.dropped;
-  assert_near((books + s.ledger.lost) / s.ledger.reached, 1, 1e-3);
+  double parts = s.ledger.deposited + s.ledger.missed + s.ledger.absorbed + s.ledger.trapped;
+  assert_near((parts + s.ledger.lost) / s.ledger.reached, 1, 1e-3);
   assert_true(s.ledger.lost < 1e-4 * s.ledger.reached);
   abbe_image map;
   assert_int_equal(abbe_tracer_map(tracer, &map, NULL), ABBE_OK);
-  double held = channel_sum(&map, "Y") / s.ledger.landed;
+  double held = channel_sum(&map, "Y") / s.ledger.deposited;
   assert_true(held > 0.9 && held < 1.001);
   assert_string_equal(abbe_image_attribute_text(&map, "abbe:kind"), "receiver map");
   assert_string_equal(abbe_image_attribute_text(&map, "abbe:physics"), "full");

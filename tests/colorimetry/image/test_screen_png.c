@@ -1,0 +1,100 @@
+/* Pictures for a screen: which channels are shown, and in which space they are taken to be. */
+#include "tests/check.h"
+
+#include "colorimetry/image/png_file.h"
+#include "colorimetry/image/screen_png.h"
+#include "colorimetry/rgb_space.h"
+
+#include <unistd.h>
+
+static char path[64];
+
+/* A pixel of `rgb` in the space (ABBE_RGB_SPACE_COUNT: none is stated), as that PNG shows it. */
+static void show(const char *const *channel, size_t channels, const float *value,
+                 const char *attribute, const double *xy, const char *layer, float out[3]) {
+  const abbe_screen_png_desc desc = {.display.view = "Plain", .layer = layer, .bits = 16};
+  abbe_image image = {0}, shown = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(1, 1, channels, channel, &image, NULL), ABBE_OK);
+  for (size_t i = 0; i < channels; i++) image.data[i] = value[i];
+  if (xy != NULL) memcpy(image.xy, xy, sizeof image.xy);
+  if (attribute != NULL) abbe_image_set_attribute(&image, "abbe:space", attribute, NULL);
+  if (abbe_screen_png_write(path, &image, &desc, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(abbe_png_read(path, &shown, NULL), ABBE_OK);
+  for (size_t k = 0; k < 3; k++) out[k] = shown.data[k];
+  abbe_image_free(&shown);
+  abbe_image_free(&image);
+  unlink(path);
+}
+
+static void test_a_space_by_word_by_channels_and_by_chromaticities(void **state) {
+  (void)state;
+  static const char *const rgb[] = {"R", "G", "B"}, *const xyz[] = {"X", "Y", "Z"};
+  static const float ap1[] = {0.2f, 0.4f, 0.1f};
+  double to_xyz[9], from_xyz[9], v[3] = {0.2, 0.4, 0.1}, xy[8];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, to_xyz);
+  abbe_rgb_space_apply(to_xyz, v, v);
+  const float in_xyz[] = {(float)v[0], (float)v[1], (float)v[2]};
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
+  abbe_rgb_space_apply(from_xyz, v, v);
+  const float rec709[] = {(float)v[0], (float)v[1], (float)v[2]};
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_REC709, xy);
+  float want[3], got[4][3];
+  show(rgb, 3, ap1, "acescg", NULL, NULL, want);
+  show(rgb, 3, rec709, "rec709", NULL, NULL, got[0]);
+  show(rgb, 3, rec709, NULL, xy, NULL, got[1]);
+  show(xyz, 3, in_xyz, NULL, NULL, NULL, got[2]);
+  show(rgb, 3, ap1, NULL, NULL, NULL, got[3]); /* nothing is stated: the role scene_linear */
+  for (int i = 0; i < 4; i++)
+    for (int k = 0; k < 3; k++) assert_near((double)got[i][k], (double)want[k], 2e-4);
+  assert_true(want[1] > want[0] && want[0] > want[2]);
+}
+
+static void test_layers_and_greys(void **state) {
+  (void)state;
+  static const char *const names[] = {"B", "caustic.B", "caustic.G", "caustic.R", "G", "R"};
+  static const float value[] = {0.1f, 0.3f, 0.2f, 0.5f, 0.4f, 0.6f};
+  static const char *const rgb[] = {"R", "G", "B"}, *const y[] = {"Y"};
+  float want[3], got[3];
+  show(rgb, 3, (const float[]){0.6f, 0.4f, 0.1f}, NULL, NULL, NULL, want);
+  show(names, 6, value, NULL, NULL, NULL, got);
+  assert_memory_equal(got, want, sizeof want);
+  show(rgb, 3, (const float[]){0.5f, 0.2f, 0.3f}, NULL, NULL, NULL, want);
+  show(names, 6, value, NULL, NULL, "caustic", got);
+  assert_memory_equal(got, want, sizeof want);
+  show(y, 1, value, NULL, NULL, NULL, got);
+  assert_near((double)got[0], (double)got[2], 2e-4);
+}
+
+static void test_what_cannot_be_shown_is_refused(void **state) {
+  (void)state;
+  static const char *const names[] = {"U", "V", "R"}, *const rgb[] = {"R", "G", "B"};
+  const abbe_screen_png_desc desc = {.name = "it.exr"};
+  abbe_image image = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(1, 1, 3, names, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_screen_png_write(path, &image, &desc, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "it.exr: it has no channels R, G, B");
+  assert_contains(error.text, "it has: U, V, R");
+  abbe_image_free(&image);
+  assert_int_equal(abbe_image_make(1, 1, 3, rgb, &image, NULL), ABBE_OK);
+  const double odd[] = {0.5, 0.3, 0.2, 0.7, 0.1, 0.1, 0.3, 0.3};
+  memcpy(image.xy, odd, sizeof image.xy);
+  assert_int_equal(abbe_screen_png_write(path, &image, &desc, &error), ABBE_COLOUR);
+  assert_contains(error.text, "of no known space");
+  abbe_image_set_attribute(&image, "abbe:space", "p3", NULL);
+  assert_int_equal(abbe_screen_png_write(path, &image, &desc, &error), ABBE_COLOUR);
+  assert_contains(error.text, "abbe:space is 'p3'");
+  abbe_image_free(&image);
+  assert_int_equal(access(path, F_OK), -1);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_space_by_word_by_channels_and_by_chromaticities),
+      cmocka_unit_test(test_layers_and_greys),
+      cmocka_unit_test(test_what_cannot_be_shown_is_refused),
+  };
+  snprintf(path, sizeof path, "/tmp/abbe_test_screen_png_%ld.png", (long)getpid());
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,50 @@
+/* Times of frames: medians, when enough were drawn, and a stop. */
+#include "tests/gl/frame.h"
+
+#include "gl/accuracy/frame_times.h"
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BALL("crown")
+
+typedef struct watch {
+  size_t asked, most;
+} watch;
+
+static bool watch_frames(void *user, double done) {
+  watch *w = user;
+  assert_true(done >= 0 && done < 1);
+  return ++w->asked <= w->most;
+}
+
+static void test_times(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  abbe_frame_times times;
+  load_text(SCENE, &scene);
+  const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
+  abbe_renderer *renderer = make_renderer(&scene, &small);
+  watch w = {.most = 4};
+  abbe_frame_times_desc desc = {.frames = 4, .progress = watch_frames, .user = &w};
+  assert_ok(abbe_frame_times_measure(renderer, &desc, &times, &error), &error);
+  assert_int_equal(w.asked, 4);
+  assert_true(times.fastest_ms > 0 && times.fastest_ms <= times.median.frame_ms);
+  assert_true(times.median.energy.reached > 0);
+  /* Three are enough of frames that are slow by that measure. */
+  w = (watch){.most = 9};
+  desc.frames = 9;
+  desc.enough_ms = 1e-9;
+  assert_ok(abbe_frame_times_measure(renderer, &desc, &times, &error), &error);
+  assert_int_equal(w.asked, 3);
+  w = (watch){.most = 2};
+  assert_int_equal(abbe_frame_times_measure(renderer, &desc, &times, &error), ABBE_CANCELLED);
+  double ms = 0;
+  assert_ok(abbe_frame_times_floor(renderer, 3, &ms, &error), &error);
+  assert_true(ms > 0);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_times)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

@@ -1,0 +1,30 @@
+/* Physics that match the plan: what it follows, and no more. */
+#include "tests/scenes/scene_text.h"
+
+#include "gl/plan/plan.h"
+#include "validation/sweep/matched_physics.h"
+
+static void test_what_the_plan_follows(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  abbe_physics physics = {0};
+  load_shipped("gem", &scene);
+  assert_int_equal(abbe_matched_physics(&scene, 0, 0, &physics, NULL), ABBE_OK);
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, NULL), ABBE_OK);
+  assert_true(physics.matched);
+  assert_int_equal(physics.orders, plan.desc.exits);
+  assert_int_equal(physics.eye_orders, plan.eye_exits);
+  assert_near(physics.energy_share, plan.desc.energy_share, 0);
+  assert_near(physics.eye_share, plan.eye_share, 0);
+  assert_true(physics.orders > 1 && physics.energy_share > 0);
+  abbe_plan_free(&plan);
+  /* A request that the renderer refuses has no plan to match. */
+  assert_int_not_equal(abbe_matched_physics(&scene, 500, 400, &physics, NULL), ABBE_OK);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_the_plan_follows)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

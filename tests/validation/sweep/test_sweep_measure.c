@@ -1,0 +1,246 @@
+/* Settings held against references: errors that are known beforehand. */
+#include "tests/gl/frame.h"
+
+#include "validation/sweep/sweep_grid.h"
+#include "validation/sweep/sweep_measure.h"
+#include "validation/sweep/sweep_setting.h"
+#include "validation/tracer/reference.h"
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BALL("crown")
+#define SPOT                                                                                       \
+  "lights:\n- {name: lamp, kind: spot, position: [0.05, 0.03, 0.6], direction: [0, 0, -1], "       \
+  "intensity: 1, cone: 40}\n"
+
+/* A setting of the default profile, small. */
+static abbe_sweep_setting small_setting(const abbe_scene *scene, abbe_profile profile) {
+  abbe_sweep_setting *list, setting;
+  size_t count, refused;
+  abbe_error error = {0};
+  const abbe_sweep_grid grid = {.profiles = {1, {(size_t)profile}},
+                                .photons = {1, {64}},
+                                .map = {1, {128}},
+                                .samples = {1, {1}}};
+  assert_ok(abbe_sweep_grid_expand(scene, &grid, 1, &list, &count, &refused, NULL, &error), &error);
+  assert_int_equal(count, 1);
+  setting = list[0];
+  free(list);
+  return setting;
+}
+
+/* The renderer's own picture and map as the reference: no error at all, and a known factor. */
+static void own_reference(const abbe_scene *scene, const abbe_sweep_setting *setting,
+                          abbe_image *picture, abbe_image *map) {
+  abbe_render_desc desc;
+  assert_int_equal(abbe_sweep_setting_desc(setting, &desc, NULL), ABBE_OK);
+  desc.width = desc.height = 32;
+  desc.layers = true;
+  abbe_renderer *renderer = make_renderer(scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, true, picture);
+  read_map(renderer, 0, map);
+  abbe_renderer_free(renderer);
+}
+
+static abbe_sweep_row measure(const abbe_sweep *sweep, const abbe_sweep_setting *setting) {
+  abbe_sweep_row row;
+  abbe_error error = {0};
+  assert_ok(abbe_sweep_measure(sweep, setting, NULL, NULL, &row, NULL, &error), &error);
+  return row;
+}
+
+static void test_the_same_picture_has_no_error(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture, map;
+  load_text(SCENE, &scene);
+  abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
+  own_reference(&scene, &setting, &picture, &map);
+  abbe_sweep sweep = {
+      .context = context, .scene = &scene, .frames = 3, .picture = &picture, .map = &map};
+  abbe_sweep_row row = measure(&sweep, &setting);
+  static const abbe_sweep_number none[] = {ABBE_SWEEP_MAP_RMSE,   ABBE_SWEEP_MAP_UV,
+                                           ABBE_SWEEP_CAUSTIC_DE, ABBE_SWEEP_CAUSTIC_RMSE,
+                                           ABBE_SWEEP_PICTURE_DE, ABBE_SWEEP_PICTURE_RMSE};
+  for (size_t i = 0; i < 6; i++) assert_near(row.number[none[i]], 0, 1e-6);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 1e-6);
+  assert_near(row.number[ABBE_SWEEP_SCALE], 1, 0);
+  assert_true(row.number[ABBE_SWEEP_FRAME_MS] >= row.number[ABBE_SWEEP_FASTEST_MS]);
+  assert_true(row.number[ABBE_SWEEP_FASTEST_MS] > 0);
+  double parts = row.number[ABBE_SWEEP_LIGHT_MS] + row.number[ABBE_SWEEP_EYE_MS];
+  assert_true(row.number[ABBE_SWEEP_LIGHT_MS] > 0 && row.number[ABBE_SWEEP_EYE_MS] > 0);
+  assert_true(parts <= row.number[ABBE_SWEEP_FRAME_MS] * 1.01);
+  /* A reference of twice the light: the default profile is told so, and not scaled. */
+  for (size_t i = 0; i < 128 * 128 * 3; i++) map.data[i] *= 2;
+  for (size_t i = 0; i < 32 * 32 * picture.channels; i++) picture.data[i] *= 2;
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 0.5, 1e-6);
+  assert_near(row.number[ABBE_SWEEP_SCALE], 1, 0);
+  assert_true(row.number[ABBE_SWEEP_PICTURE_RMSE] > 0.4);
+  /* Without a picture and without a map only the other is compared. */
+  sweep.picture = NULL;
+  row = measure(&sweep, &setting);
+  assert_true(isnan(row.number[ABBE_SWEEP_PICTURE_DE]));
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 0.5, 1e-6);
+  sweep.map = NULL;
+  assert_true(isnan(measure(&sweep, &setting).number[ABBE_SWEEP_MAP_RMSE]));
+  abbe_image_free(&picture);
+  abbe_image_free(&map);
+  abbe_scene_free(&scene);
+}
+
+/* The thesis profile against itself, but in another brightness: the best factor finds it back. */
+static void test_the_thesis_gets_its_best_brightness(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture, map;
+  load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
+  abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_THESIS);
+  own_reference(&scene, &setting, &picture, &map);
+  for (size_t i = 0; i < 128 * 128 * 3; i++) map.data[i] *= 0.125f;
+  for (size_t i = 0; i < 32 * 32 * 3; i++) picture.data[i] *= 4;
+  const abbe_sweep sweep = {
+      .context = context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
+  abbe_sweep_row row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_SCALE], 4, 1e-5);
+  assert_near(row.number[ABBE_SWEEP_MAP_SCALE], 0.125, 1e-6);
+  assert_near(row.number[ABBE_SWEEP_PICTURE_RMSE], 0, 1e-5);
+  assert_near(row.number[ABBE_SWEEP_MAP_RMSE], 0, 1e-5);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 1e-5);
+  /* Light only where it has none: no factor helps but 0, and then all of it is missing. */
+  for (size_t i = 0; i < 128 * 128; i++) {
+    bool dark = map.data[3 * i] == 0 && map.data[3 * i + 1] == 0 && map.data[3 * i + 2] == 0;
+    for (size_t c = 0; c < 3; c++) map.data[3 * i + c] = dark ? 1 : 0;
+  }
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_MAP_SCALE], 0, 0);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 0, 0);
+  assert_true(row.number[ABBE_SWEEP_MAP_RMSE] >= 1);
+  abbe_image_free(&picture);
+  abbe_image_free(&map);
+  abbe_scene_free(&scene);
+}
+
+/* The same method in physical units is judged in them, and its fill's light is counted. */
+static void test_the_method_in_units_gets_no_factor(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture, map;
+  load_text(CAMERA SPOT FLOOR BALL("crown"), &scene);
+  abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_THESIS_CIE);
+  own_reference(&scene, &setting, &picture, &map);
+  abbe_sweep sweep = {
+      .context = context, .scene = &scene, .frames = 1, .picture = &picture, .map = &map};
+  abbe_sweep_row row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_PICTURE_RMSE], 0, 1e-6);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 1e-6);
+  assert_true(isnan(row.number[ABBE_SWEEP_FLOOR_MS]));
+  double added = row.number[ABBE_SWEEP_FILL_INVENTED] - row.number[ABBE_SWEEP_FILL_LOST];
+  assert_true(row.number[ABBE_SWEEP_FILL_INVENTED] > 0 && row.number[ABBE_SWEEP_FILL_LOST] > 0);
+  /* Without the fill: nothing is added, and the map has that much less. */
+  snprintf(setting.fill, sizeof setting.fill, "none");
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_FILL_INVENTED], 0, 0);
+  assert_near(row.number[ABBE_SWEEP_FILL_LOST], 0, 0);
+  assert_near(row.number[ABBE_SWEEP_MAP_ENERGY] * (1 + added), 1, 1e-4);
+  /* Against twice the light it stays what it is. */
+  for (size_t i = 0; i < 32 * 32 * 3; i++) picture.data[i] *= 2;
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_SCALE], 1, 0);
+  assert_true(row.number[ABBE_SWEEP_PICTURE_RMSE] > 0.4);
+  /* The default profile's bridge adds nothing: its ledger closes. */
+  setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
+  sweep.picture = sweep.map = NULL;
+  row = measure(&sweep, &setting);
+  assert_near(row.number[ABBE_SWEEP_FILL_INVENTED], 0, 1e-4);
+  assert_near(row.number[ABBE_SWEEP_FILL_LOST], 0, 1e-4);
+  abbe_image_free(&picture);
+  abbe_image_free(&map);
+  abbe_scene_free(&scene);
+}
+
+static bool never(void *user, double done) {
+  (void)user;
+  (void)done;
+  return false;
+}
+
+/* Against a traced reference: the numbers are there with their noise, maps of other sizes too. */
+static void test_against_a_traced_reference(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture, map, drawn;
+  abbe_map_layout layout;
+  abbe_error error = {0};
+  load_text(SCENE, &scene);
+  assert_ok(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error), &error);
+  /* What the renderer models and no more, so that what is left is sampling. */
+  const abbe_reference_desc desc = {.trace = {.physics = {true, 8, 0.01},
+                                              .width = 32,
+                                              .height = 32,
+                                              .map_width = 64,
+                                              .map_height = 64,
+                                              .layout = &layout,
+                                              .photons = 1 << 16,
+                                              .threads = 2},
+                                    .passes = 4};
+  assert_ok(abbe_reference_trace(&scene, &desc, &picture, &map, &error), &error);
+  /* The same against itself: the model leaves out nothing. */
+  const abbe_sweep sweep = {.context = context,
+                            .scene = &scene,
+                            .frames = 1,
+                            .picture = &picture,
+                            .map = &map,
+                            .matched_picture = &picture,
+                            .matched_map = &map};
+  abbe_sweep_model model;
+  assert_ok(abbe_sweep_model_measure(&sweep, &model, &error), &error);
+  assert_near(model.de, 0, 1e-6);
+  assert_near(model.energy, 1, 1e-9);
+  assert_true(model.map_noise > 0);
+  abbe_sweep_setting setting = small_setting(&scene, ABBE_PROFILE_DEFAULT);
+  static const size_t sides[] = {128, 96, 32}; /* summed down, resampled, and coarser */
+  for (size_t i = 0; i < 3; i++) {
+    setting.map = sides[i];
+    abbe_sweep_row row = measure(&sweep, &setting);
+    for (int k = ABBE_SWEEP_MAP_RMSE; k < ABBE_SWEEP_MATCHED_DE; k++)
+      if (k != ABBE_SWEEP_MAP_BANDS && k != ABBE_SWEEP_MAP_BANDS_NOISE)
+        assert_true(isfinite(row.number[k]));
+    assert_near(row.number[ABBE_SWEEP_MATCHED_DE], row.number[ABBE_SWEEP_CAUSTIC_DE], 1e-9);
+    assert_near(row.number[ABBE_SWEEP_MATCHED_MAP], row.number[ABBE_SWEEP_MAP_RMSE], 1e-9);
+    assert_true(row.number[ABBE_SWEEP_MAP_RMSE_NOISE] > 0);
+    assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 0.02);
+    assert_true(row.number[ABBE_SWEEP_CAUSTIC_DE] < 10);
+  }
+  abbe_sweep_row row;
+  assert_int_equal(abbe_sweep_measure(&sweep, &setting, never, NULL, &row, &drawn, &error),
+                   ABBE_CANCELLED);
+  assert_null(drawn.data);
+  assert_int_equal(abbe_sweep_measure(&sweep, &setting, NULL, NULL, &row, &drawn, &error), ABBE_OK);
+  assert_int_equal(drawn.width, 32);
+  abbe_image_free(&drawn);
+  abbe_image_free(&picture);
+  abbe_image_free(&map);
+  abbe_scene_free(&scene);
+}
+
+static void test_a_scene_without_refractors_has_no_map(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_map_layout layout;
+  abbe_error error = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR, &scene);
+  assert_int_equal(abbe_sweep_fit_layout(context, &scene, 0, &layout, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "no refractor");
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_same_picture_has_no_error),
+      cmocka_unit_test(test_the_thesis_gets_its_best_brightness),
+      cmocka_unit_test(test_the_method_in_units_gets_no_factor),
+      cmocka_unit_test(test_against_a_traced_reference),
+      cmocka_unit_test(test_a_scene_without_refractors_has_no_map),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

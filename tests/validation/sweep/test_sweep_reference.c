@@ -1,0 +1,62 @@
+/* Where a sweep's references are kept, and references that are given. */
+#include "tests/scenes/scene_text.h"
+
+#include "colorimetry/image/exr.h"
+#include "validation/sweep/sweep_reference.h"
+
+#include <unistd.h>
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BALL("crown")
+
+static void test_names(void **state) {
+  (void)state;
+  abbe_sweep_reference r = {0};
+  abbe_error error = {0};
+  char path[2000];
+  assert_int_equal(abbe_sweep_reference_name("a.b/gem.csv", false, &r, NULL), ABBE_OK);
+  assert_string_equal(r.picture_path, "a.b/gem-reference.exr");
+  assert_string_equal(r.map_path, "a.b/gem-reference-map.exr");
+  assert_int_equal(abbe_sweep_reference_name("a.b/gem", true, &r, NULL), ABBE_OK);
+  assert_string_equal(r.checkpoint_path, "a.b/gem-matched.checkpoint");
+  memset(path, 'x', sizeof path);
+  path[sizeof path - 1] = '\0';
+  assert_int_equal(abbe_sweep_reference_name(path, false, &r, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "is too long");
+}
+
+static void test_given_files(void **state) {
+  (void)state;
+  static const char *const names[] = {"R", "G", "B"};
+  abbe_scene scene = {0};
+  abbe_sweep_reference r;
+  abbe_image image = {0};
+  abbe_error error = {0};
+  size_t light = 7;
+  char path[64];
+  load_text(SCENE, &scene);
+  snprintf(path, sizeof path, "/tmp/abbe_test_sweep_reference_%ld.exr", (long)getpid());
+  assert_int_equal(abbe_image_make(2, 2, 3, names, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_sweep_reference_load(&scene, path, NULL, &r, &light, &error), ABBE_OK);
+  assert_int_equal(light, 0);
+  assert_int_equal(r.picture.width, 2);
+  assert_null(r.map.data);
+  assert_string_equal(r.map_path, "");
+  abbe_sweep_reference_free(&r);
+  /* A picture is no map: it has no layout. */
+  assert_int_not_equal(abbe_sweep_reference_load(&scene, NULL, path, &r, &light, &error), ABBE_OK);
+  assert_contains(error.text, path);
+  abbe_sweep_reference_free(&r);
+  unlink(path);
+  assert_int_equal(abbe_sweep_reference_load(&scene, path, NULL, &r, &light, &error), ABBE_IO);
+  abbe_image_free(&image);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_names),
+      cmocka_unit_test(test_given_files),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

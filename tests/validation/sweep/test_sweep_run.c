@@ -1,0 +1,110 @@
+/* A sweep from start to end: stopped and taken up again, its references, and whose rows it takes.
+ */
+#include "tests/gl/frame.h"
+
+#include "colorimetry/image/exr.h"
+#include "validation/sweep/sweep_grid.h"
+#include "validation/sweep/sweep_run.h"
+
+#include <unistd.h>
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BALL("crown")
+
+static char folder[] = "/tmp/abbe-test-sweep-run-XXXXXX";
+
+/* Says yes so often. */
+static bool tick(void *user, const char *what, double done) {
+  size_t *left = user;
+  assert_string_equal(what, "sweep");
+  assert_true(done >= 0 && done <= 1);
+  return *left > 0 && (*left)-- > 0;
+}
+
+/* With a picture that is given: tracing one is tested through the program. */
+static void test_a_sweep_goes_on_where_it_was_stopped(void **state) {
+  (void)state;
+  static const char *const names[] = {"X", "Y", "Z"};
+  abbe_scene scene = {0};
+  abbe_image image;
+  abbe_sweep_setting *setting;
+  size_t count, refused, left = 0;
+  abbe_error error = {0};
+  char path[96], picture[96];
+  snprintf(path, sizeof path, "%s/s.csv", folder);
+  snprintf(picture, sizeof picture, "%s/r.exr", folder);
+  load_text(SCENE, &scene);
+  assert_ok(abbe_image_make(16, 16, 3, names, &image, &error), &error);
+  for (size_t i = 0; i < 16 * 16 * 3; i++) image.data[i] = 0.01f;
+  assert_ok(abbe_exr_write(picture, &image, &error), &error);
+  abbe_image_free(&image);
+  const abbe_sweep_grid grid = {
+      .wavelengths = {1, {3}}, .photons = {1, {8}}, .map = {1, {32}}, .samples = {1, {1}}};
+  assert_ok(abbe_sweep_grid_expand(&scene, &grid, 1, &setting, &count, &refused, NULL, &error),
+            &error);
+  abbe_sweep_request q = {.program = "abbe test",
+                          .scene_path = "ball.yaml",
+                          .table = path,
+                          .reference = picture,
+                          .frames = 1,
+                          .setting = setting,
+                          .setting_count = count,
+                          .error = ABBE_SWEEP_PICTURE_DE,
+                          .progress = tick,
+                          .user = &left};
+  abbe_sweep_table t;
+  assert_int_equal(abbe_sweep_run(context, &scene, &q, &t, &error), ABBE_CANCELLED);
+  assert_contains(error.text, "0 of 1 settings are in ");
+  left = 99;
+  assert_ok(abbe_sweep_run(context, &scene, &q, &t, &error), &error);
+  assert_int_equal(left, 98);
+  assert_int_equal(t.count, 1);
+  assert_string_equal(t.fact[ABBE_SWEEP_FACT_SIZE], "16x16");
+  assert_string_equal(t.fact[ABBE_SWEEP_FACT_CLASS], "spheres");
+  assert_true(t.row[0].number[ABBE_SWEEP_PICTURE_DE] > 0 && t.row[0].front);
+  abbe_sweep_table_free(&t);
+  /* Nothing is left to measure. */
+  assert_ok(abbe_sweep_run(context, &scene, &q, &t, &error), &error);
+  assert_int_equal(left, 98);
+  abbe_sweep_table_free(&t);
+  /* Of another program these rows are not. */
+  q.program = "abbe other";
+  assert_int_equal(abbe_sweep_run(context, &scene, &q, &t, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "were measured with the program 'abbe test'");
+  free(setting);
+  abbe_scene_free(&scene);
+}
+
+static void test_settings_of_presets(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_sweep_setting *setting;
+  size_t count;
+  abbe_error error = {0};
+  load_text(SCENE, &scene);
+  assert_ok(abbe_sweep_preset_settings(&scene, NULL, &setting, &count, &error), &error);
+  assert_true(count >= 3);
+  assert_true(setting[0].photons < setting[count - 1].photons);
+  free(setting);
+  abbe_scene_free(&scene);
+  load_text(CAMERA POINT_LIGHT FLOOR, &scene);
+  assert_int_equal(abbe_sweep_preset_settings(&scene, NULL, &setting, &count, &error),
+                   ABBE_UNSUPPORTED);
+  assert_null(setting);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_sweep_goes_on_where_it_was_stopped),
+      cmocka_unit_test(test_settings_of_presets),
+  };
+  if (mkdtemp(folder) == NULL) return 1;
+  int failed = cmocka_run_group_tests(tests, make_context, free_context);
+  static const char *const files[] = {"s.csv", "r.exr"};
+  for (size_t i = 0; i < 2; i++) {
+    char path[96];
+    snprintf(path, sizeof path, "%s/%s", folder, files[i]);
+    unlink(path);
+  }
+  return rmdir(folder) != 0 ? 1 : failed;
+}

@@ -1,0 +1,53 @@
+/* Settings of tables as the renderer's requests, and in words. */
+#include "tests/check.h"
+
+#include "validation/sweep/sweep_setting.h"
+
+static const abbe_render_desc fine = {.wavelengths = 21,
+                                      .photons = 512,
+                                      .map_size = 1024,
+                                      .supersample = 2,
+                                      .upsample = 1,
+                                      .fill = ABBE_FILL_BRIDGE,
+                                      .energy_share = 0.01,
+                                      .orders = 8};
+
+static void test_there_and_back(void **state) {
+  (void)state;
+  abbe_sweep_setting setting;
+  abbe_render_desc desc;
+  abbe_sweep_setting_of(&fine, &setting);
+  assert_int_equal(abbe_sweep_setting_desc(&setting, &desc, NULL), ABBE_OK);
+  assert_memory_equal(&desc, &fine, sizeof desc);
+  assert_true(abbe_sweep_setting_is_fine(&setting));
+  setting.photons = 64;
+  assert_false(abbe_sweep_setting_is_fine(&setting));
+  /* What is without effect in a thesis profile makes one setting of all. */
+  desc.profile = ABBE_PROFILE_THESIS;
+  desc.energy_share = 0.5;
+  abbe_sweep_setting_of(&desc, &setting);
+  assert_int_equal(setting.samples, 1);
+  assert_near(setting.share, 0.01, 0);
+}
+
+static void test_unknown_names(void **state) {
+  (void)state;
+  static const abbe_sweep_setting wrong = {
+      .profile = "default", .fill = "glue", .model = "auto", .wavelengths = 3, .share = 0.01};
+  abbe_render_desc desc;
+  abbe_error error = {0};
+  char text[200];
+  assert_int_equal(abbe_sweep_setting_desc(&wrong, &desc, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "'glue'");
+  assert_false(abbe_sweep_setting_is_fine(&wrong));
+  abbe_sweep_setting_describe(&wrong, text, sizeof text);
+  assert_contains(text, "w3 p0");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_there_and_back),
+      cmocka_unit_test(test_unknown_names),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

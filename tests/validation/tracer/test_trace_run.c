@@ -1,0 +1,84 @@
+/* Passes until enough are done: by number, by error, by time, and by whoever stops them. */
+#include "tests/validation/trace_scene.h"
+
+#include "validation/tracer/checkpoint.h"
+#include "validation/tracer/trace_run.h"
+
+#include <unistd.h>
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
+static const abbe_trace_desc small = {
+    .width = 8, .height = 8, .map_width = 8, .map_height = 8, .photons = 4096, .threads = 2};
+
+typedef struct watch {
+  size_t left;
+  double last;
+} watch;
+
+static bool look(void *user, double done) {
+  watch *w = user;
+  assert_true(done >= w->last && done <= 1);
+  w->last = done;
+  return w->left > 0 && w->left-- > 0;
+}
+
+static void test_what_ends_a_run(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  load_text(SCENE, &scene);
+  abbe_tracer *t = make_tracer(&scene, &small);
+  watch w = {.left = 2};
+  abbe_trace_run_desc run = {.passes = 5, .checkpoint_s = 1e9, .progress = look, .user = &w};
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_CANCELLED);
+  assert_contains(error.text, "stopped after 2 of 5 passes");
+  w = (watch){.left = 99};
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_OK);
+  assert_int_equal(abbe_tracer_passes(t), 5);
+  /* Any error is reached by four passes, any time is over after two: there are more already. */
+  run = (abbe_trace_run_desc){.error = 1e9, .checkpoint_s = 1e9};
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_OK);
+  run = (abbe_trace_run_desc){.seconds = 1e-9, .checkpoint_s = 1e9};
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_OK);
+  assert_int_equal(abbe_tracer_passes(t), 5);
+  abbe_tracer_free(t);
+  t = make_tracer(&scene, &small);
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_OK);
+  assert_int_equal(abbe_tracer_passes(t), 2);
+  run = (abbe_trace_run_desc){.error = 1e9, .checkpoint_s = 1e9};
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_OK);
+  assert_int_equal(abbe_tracer_passes(t), 4);
+  abbe_tracer_free(t);
+  abbe_scene_free(&scene);
+}
+
+static void test_checkpoints(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  char path[64];
+  snprintf(path, sizeof path, "/tmp/abbe_test_trace_run_%ld", (long)getpid());
+  load_text(SCENE, &scene);
+  abbe_tracer *t = make_tracer(&scene, &small), *again = make_tracer(&scene, &small);
+  abbe_trace_run_desc run = {.passes = 2, .checkpoint = path};
+  assert_int_equal(abbe_trace_keep(t, &run, &error), ABBE_OK); /* no pass: nothing to keep */
+  assert_int_equal(access(path, F_OK), -1);
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_OK);
+  assert_int_equal(abbe_checkpoint_load(again, path, &error), ABBE_OK);
+  assert_int_equal(abbe_tracer_passes(again), 2);
+  unlink(path);
+  run.checkpoint = "/no/such/folder/c";
+  run.passes = 3;
+  assert_int_equal(abbe_trace_run(t, &run, &error), ABBE_IO);
+  abbe_tracer_free(t);
+  abbe_tracer_free(again);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_ends_a_run),
+      cmocka_unit_test(test_checkpoints),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,53 @@
+/* A sweep's chart: the file's texts say what is drawn, and what cannot be drawn is refused. */
+#include "tests/fontconfig.h"
+#include "tests/validation/tradeoff/sweep_row.h"
+
+#include "base/file.h"
+#include "validation/tradeoff/sweep_plot.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static void add(abbe_sweep_table *table, const char *profile, size_t photons, double ms, double e) {
+  abbe_sweep_row row = sweep_row(profile, photons);
+  row.number[ABBE_SWEEP_FRAME_MS] = ms;
+  row.number[ABBE_SWEEP_CAUSTIC_DE] = e;
+  row.number[ABBE_SWEEP_CAUSTIC_DE_NOISE] = 0.05;
+  assert_int_equal(abbe_sweep_table_add(table, &row, NULL), ABBE_OK);
+}
+
+static void test_the_chart(void **state) {
+  (void)state;
+  char folder[] = "/tmp/abbe-test-sweep-plot-XXXXXX", path[64], *text;
+  size_t size;
+  abbe_sweep_table table = {0};
+  abbe_error error = {0};
+  static const abbe_sweep_number numbers[] = {ABBE_SWEEP_CAUSTIC_DE, ABBE_SWEEP_FRAME_MS,
+                                              ABBE_SWEEP_PICTURE_DE};
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/a.png", folder);
+  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 1, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no setting has a known 'caustic_de'");
+  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "gem.yaml");
+  add(&table, "default", 64, 10, 3);
+  add(&table, "default", 256, 100, 0.3);
+  add(&table, "default", 128, 120, 2);
+  add(&table, "thesis", 512, 90, 20);
+  add(&table, "thesis", 1024, 0.0 / 0.0, 20);
+  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 1, &error), ABBE_OK);
+  assert_int_equal(abbe_file_read(path, 1 << 22, &text, &size, NULL), ABBE_OK);
+  assert_memory_equal(text + 1, "PNG", 3);
+  free(text);
+  unlink(path);
+  assert_int_equal(abbe_sweep_plot(path, &table, numbers + 1, 1, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "'frame_ms' is no error");
+  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 3, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 0, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(rmdir(folder), 0);
+  abbe_sweep_table_free(&table);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_chart)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,223 @@
+/* Sweeps as tables: every bit written is read again, broken ones are named, fronts are marked. */
+#include "tests/validation/tradeoff/sweep_row.h"
+
+#include "tests/random.h"
+#include "validation/tradeoff/sweep_table.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static abbe_sweep_row row_of(const char *profile, size_t wavelengths, double ms, double error) {
+  abbe_sweep_row row = sweep_row(profile, 128);
+  row.setting.wavelengths = wavelengths;
+  row.setting.samples = 2;
+  row.number[ABBE_SWEEP_FRAME_MS] = ms;
+  row.number[ABBE_SWEEP_CAUSTIC_DE] = error;
+  return row;
+}
+
+static void add(abbe_sweep_table *table, abbe_sweep_row row) {
+  abbe_error error = {0};
+  if (abbe_sweep_table_add(table, &row, &error) != ABBE_OK) fail_msg("%s", error.text);
+}
+
+static void test_what_is_saved_is_loaded(void **state) {
+  (void)state;
+  char path[] = "/tmp/abbe-test-sweep-XXXXXX";
+  abbe_sweep_table table = {0}, read = {0};
+  uint64_t random = 3;
+  abbe_error error = {0};
+  int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "scenes/gem.yaml");
+  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_DEVICE,
+                       "osmesa: llvmpipe,\nwith a break: and so on");
+  for (size_t i = 0; i < 100; i++) {
+    abbe_sweep_row row = row_of(i % 3 == 0 ? "thesis" : "default", i + 1, 1, 1);
+    for (int k = 0; k < ABBE_SWEEP_NUMBER_COUNT; k++)
+      row.number[k] = i % 7 == 0 && k > 3 ? NAN : exp(random_between(&random, -20, 20));
+    row.setting.share = random_between(&random, 1e-6, 1);
+    row.front = i % 5 == 0;
+    add(&table, row);
+  }
+  assert_int_equal(abbe_sweep_table_save(&table, path, &error), ABBE_OK);
+  if (abbe_sweep_table_load(path, &read, &error) != ABBE_OK) fail_msg("%s", error.text);
+  unlink(path);
+  assert_int_equal(read.count, 100);
+  for (int i = 0; i < ABBE_SWEEP_FACT_COUNT; i++) assert_string_equal(read.fact[i], table.fact[i]);
+  assert_string_equal(read.fact[ABBE_SWEEP_FACT_DEVICE],
+                      "osmesa: llvmpipe, with a break: and so on");
+  for (size_t i = 0; i < 100; i++) {
+    const abbe_sweep_row *a = &table.row[i], *b = &read.row[i];
+    assert_true(abbe_sweep_setting_same(&a->setting, &b->setting));
+    assert_int_equal(a->front, b->front);
+    for (int k = 0; k < ABBE_SWEEP_NUMBER_COUNT; k++)
+      assert_true(a->number[k] == b->number[k] || (isnan(a->number[k]) && isnan(b->number[k])));
+  }
+  abbe_sweep_table_free(&table);
+  abbe_sweep_table_free(&read);
+}
+
+static void test_settings_are_told_apart(void **state) {
+  (void)state;
+  abbe_sweep_table table = {0};
+  abbe_sweep_row row = row_of("default", 7, 10, 1);
+  abbe_error error = {0};
+  char text[160];
+  add(&table, row);
+  assert_ptr_equal(abbe_sweep_table_find(&table, &row.setting), &table.row[0]);
+  assert_int_equal(abbe_sweep_table_add(&table, &row, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "w7 p128 m512 s2");
+  size_t *const counts[] = {&row.setting.wavelengths, &row.setting.photons,  &row.setting.map,
+                            &row.setting.samples,     &row.setting.upsample, &row.setting.exits};
+  for (int i = 0; i < 6; i++) {
+    ++*counts[i];
+    assert_null(abbe_sweep_table_find(&table, &row.setting));
+    --*counts[i];
+  }
+  row.setting.share = 0.02;
+  assert_null(abbe_sweep_table_find(&table, &row.setting));
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s2 share 0.02");
+  row.setting.samples = 1;
+  row.setting.upsample = 3;
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s1/3 share 0.02");
+  row.setting.samples = 2;
+  row.setting.upsample = 1;
+  row.setting.share = 0.01;
+  row.setting.exits = 1;
+  snprintf(row.setting.fill, sizeof row.setting.fill, "none");
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s2 no fill e1");
+  snprintf(row.setting.model, sizeof row.setting.model, "layers");
+  assert_null(abbe_sweep_table_find(&table, &row.setting));
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "w7 p128 m512 s2 no fill e1 layers");
+  snprintf(row.setting.profile, sizeof row.setting.profile, "thesis");
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "thesis w7 p128 m512 s2 no fill");
+  abbe_sweep_table_free(&table);
+}
+
+static void test_the_front_of_all_and_of_a_profile(void **state) {
+  (void)state;
+  abbe_sweep_table table = {0};
+  add(&table, row_of("default", 3, 10, 5));
+  add(&table, row_of("default", 7, 20, 2));
+  add(&table, row_of("default", 21, 40, NAN));
+  add(&table, row_of("thesis", 7, 30, 8));
+  add(&table, row_of("thesis", 21, 50, 7));
+  assert_int_equal(abbe_sweep_table_mark(&table, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL), ABBE_OK);
+  static const bool all[] = {true, true, false, false, false};
+  for (int i = 0; i < 5; i++) assert_int_equal(table.row[i].front, all[i]);
+  assert_int_equal(abbe_sweep_table_mark(&table, ABBE_SWEEP_CAUSTIC_DE, "thesis", NULL), ABBE_OK);
+  static const bool thesis[] = {false, false, false, true, true};
+  for (int i = 0; i < 5; i++) assert_int_equal(table.row[i].front, thesis[i]);
+  abbe_sweep_table_free(&table);
+}
+
+/* The saved text of a table of one row, for breaking. */
+static char *text_of_one_row(void) {
+  char path[] = "/tmp/abbe-test-sweep-XXXXXX", *text = calloc(1, 8192);
+  abbe_sweep_table table = {0};
+  close(mkstemp(path));
+  abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "a.yaml");
+  add(&table, row_of("default", 7, 10, 5));
+  assert_int_equal(abbe_sweep_table_save(&table, path, NULL), ABBE_OK);
+  FILE *file = fopen(path, "rb");
+  assert_true(fread(text, 1, 8191, file) > 0);
+  fclose(file);
+  unlink(path);
+  abbe_sweep_table_free(&table);
+  return text;
+}
+
+static void refuse(const char *text, size_t size, const char *part) {
+  abbe_sweep_table read = {0};
+  abbe_error error = {0};
+  assert_int_equal(abbe_sweep_table_parse(text, size, "s.csv", &read, &error), ABBE_PARSE);
+  assert_contains(error.text, part);
+  assert_null(read.row);
+}
+
+static void test_broken_tables_are_named(void **state) {
+  (void)state;
+  static const struct {
+    const char *from, *to, *part;
+  } broken[] = {
+      {"default,7,", "default,7.5,", "s.csv:3: wavelengths '7.5' is not a whole number"},
+      {"default,7,", "default,-7,", "is not a whole number"},
+      {"default,7,", ",7,", "s.csv:3: profile '' is not a word"},
+      {"default,7,", "a-profile-of-a-long-name,7,", "is not a word of 1 to 15 letters"},
+      {"auto,1,10,", "auto,1,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
+      {"auto,1,10,", "auto,1,1e999,", "is not a number"},
+      {"0.01,auto,1,10,", "0,auto,1,10,", "is not a share above 0"},
+      {"auto,1,10,", "auto,1,10,,", "the row has 45 cells, not 44"},
+      {"frame_ms", "frame_s", "column 11 is 'frame_s' where a sweep has 'frame_ms'"},
+      {"front\n", "front,more\n", "where a sweep has ''"},
+  };
+  char *text = text_of_one_row(), changed[8300];
+  for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+    const char *at = strstr(text, broken[i].from);
+    assert_non_null(at);
+    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, broken[i].to,
+             at + strlen(broken[i].from));
+    refuse(changed, strlen(changed), broken[i].part);
+  }
+  const char *row = strchr(strchr(text, '\n') + 1, '\n') + 1;
+  snprintf(changed, sizeof changed, "%s%s", text, row);
+  refuse(changed, strlen(changed), "s.csv:4: the setting");
+  refuse(text, strlen(text) + 1, "a zero byte");
+  refuse("", 0, "no line of column names");
+  refuse("# scene: a\n", 11, "no line of column names");
+  /* Cut anywhere it is refused, or is a table with no row and no half of one. */
+  for (size_t size = 0; size < strlen(text) - 1; size++) {
+    abbe_sweep_table read = {0};
+    if (abbe_sweep_table_parse(text, size, "s.csv", &read, NULL) == ABBE_OK)
+      assert_true(read.count == 0 || size + 1 >= strlen(text) - 1);
+    abbe_sweep_table_free(&read);
+  }
+  free(text);
+}
+
+static void test_tables_of_different_things_do_not_agree(void **state) {
+  (void)state;
+  abbe_sweep_table a = {0}, b = {0};
+  abbe_error error = {0};
+  abbe_sweep_table_set(&a, ABBE_SWEEP_FACT_MACHINE, "one processor");
+  abbe_sweep_table_set(&b, ABBE_SWEEP_FACT_MACHINE, "one processor");
+  abbe_sweep_table_set(&a, ABBE_SWEEP_FACT_DATE, "yesterday");
+  assert_int_equal(abbe_sweep_table_agree(&a, "s.csv", &b, &error), ABBE_OK);
+  abbe_sweep_table_set(&b, ABBE_SWEEP_FACT_MACHINE, "another");
+  assert_int_equal(abbe_sweep_table_agree(&a, "s.csv", &b, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "the machine 'one processor', and now it is 'another'");
+}
+
+static void test_names(void **state) {
+  (void)state;
+  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
+    abbe_sweep_number number = (abbe_sweep_number)i;
+    assert_int_equal(abbe_sweep_number_find(abbe_sweep_number_name(number)), i);
+    if (!abbe_sweep_number_is_error(number)) continue;
+    char noise[64];
+    snprintf(noise, sizeof noise, "%s_noise", abbe_sweep_number_name(number));
+    assert_int_equal(abbe_sweep_number_find(noise), i + 1);
+  }
+  assert_true(abbe_sweep_number_is_error(ABBE_SWEEP_CAUSTIC_DE));
+  assert_false(abbe_sweep_number_is_error(ABBE_SWEEP_FRAME_MS));
+  assert_int_equal(abbe_sweep_number_find("beauty"), ABBE_SWEEP_NUMBER_COUNT);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_is_saved_is_loaded),
+      cmocka_unit_test(test_settings_are_told_apart),
+      cmocka_unit_test(test_the_front_of_all_and_of_a_profile),
+      cmocka_unit_test(test_broken_tables_are_named),
+      cmocka_unit_test(test_tables_of_different_things_do_not_agree),
+      cmocka_unit_test(test_names),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

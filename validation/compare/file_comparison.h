@@ -1,0 +1,72 @@
+/* file_comparison.h: two files held against each other: loaded, aligned, masked, compared, and
+ * judged by tolerances.
+ */
+#ifndef ABBE_VALIDATION_COMPARE_FILE_COMPARISON_H
+#define ABBE_VALIDATION_COMPARE_FILE_COMPARISON_H
+
+#include "validation/compare/compare.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_file_comparison_desc {
+  const char *path[2];          /* REF, TEST */
+  const char *mask;             /* "caustic", a picture whose first channel is above 0.5; or NULL */
+  double mask_share;            /* of the caustic's light */
+  abbe_compare_options options; /* its mask is not looked at */
+} abbe_file_comparison_desc;
+
+typedef struct abbe_file_comparison {
+  const char *path[2]; /* the request's */
+  abbe_field field[2];
+  size_t size[2][2];     /* width and height as read */
+  const char *mask_name; /* NULL: none */
+  double mask_share;     /* of the caustic's light; 0: the mask was drawn */
+  abbe_mask mask;
+  abbe_comparison comparison;
+} abbe_file_comparison;
+
+/* The texts of the request outlive it. On failure *out is empty. Errors of abbe_field_load,
+ * abbe_field_align and abbe_compare; ABBE_INVALID_ARGUMENT for a mask of another size or place. */
+abbe_result abbe_file_comparison_make(const abbe_file_comparison_desc *desc,
+                                      abbe_file_comparison *out, abbe_error *error);
+void abbe_file_comparison_free(abbe_file_comparison *comparison);
+
+/* An attribute of a side's file, or NULL; a region's metrics; whether a side has standard errors.
+ */
+const char *abbe_file_comparison_attribute(const abbe_file_comparison *comparison, int side,
+                                           const char *key);
+const abbe_compare_region *abbe_file_comparison_region(const abbe_file_comparison *comparison,
+                                                       bool mask);
+bool abbe_file_comparison_has_errors(const abbe_file_comparison *comparison, int side);
+
+/* The largest deviation (abbe_compare_deviation) that passes. */
+typedef struct abbe_compare_tolerance {
+  abbe_compare_metric metric;
+  bool mask; /* of the masked region, else of the whole field */
+  double tolerance;
+} abbe_compare_tolerance;
+
+/* ABBE_INVALID_ARGUMENT where a tolerance bounds what is not known of the two: it would be kept for
+ * ever. */
+abbe_result abbe_file_comparison_check(const abbe_file_comparison *comparison,
+                                       const abbe_compare_tolerance *tolerance, size_t count,
+                                       abbe_error *error);
+/* Whether one is kept. A region with pixels of TEST that are not finite keeps none. */
+bool abbe_file_comparison_keeps(const abbe_file_comparison *comparison,
+                                const abbe_compare_tolerance *tolerance);
+/* ABBE_TOLERANCE, with the first that is not kept, and how many more. */
+abbe_result abbe_file_comparison_judge(const abbe_file_comparison *comparison,
+                                       const abbe_compare_tolerance *tolerance, size_t count,
+                                       abbe_error *error);
+
+/* Where TEST is brighter or darker, in colours from -range to range (0: 99 % of what there is), as
+ * a .png or .svg. */
+abbe_result abbe_file_comparison_draw(const abbe_file_comparison *comparison, const char *path,
+                                      double range, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,62 @@
+#include "validation/sweep/sweep_hash.h"
+
+enum { INDEX_STEPS = 9 };
+
+/* FNV-1a, 64 bits. */
+static unsigned long long hash(unsigned long long h, const void *data, size_t size) {
+  const unsigned char *byte = data;
+  for (size_t i = 0; i < size; i++) h = (h ^ byte[i]) * 1099511628211u;
+  return h & 0xffffffffffffffffu;
+}
+
+static const unsigned long long hash_start = 14695981039346656037u;
+
+static unsigned long long hash_object(unsigned long long h, const abbe_object *o) {
+  h = hash(h, o->mesh.position, o->mesh.vertex_count * sizeof *o->mesh.position);
+  h = hash(h, o->mesh.face, o->mesh.face_count * sizeof *o->mesh.face);
+  h = hash(h, o->reflectance, sizeof o->reflectance);
+  h = hash(h, o->texture.data,
+           o->texture.width * o->texture.height * o->texture.channels * sizeof *o->texture.data);
+  for (int i = 0; i < INDEX_STEPS && o->material != NULL; i++) {
+    double lambda_nm = 380 + 50.0 * i, n = 0;
+    abbe_material_n(o->material, lambda_nm, &n, NULL);
+    double numbers[] = {n, abbe_material_attenuation(o->material, lambda_nm)};
+    h = hash(h, numbers, sizeof numbers);
+  }
+  return h;
+}
+
+unsigned long long abbe_sweep_hash_scene(const abbe_scene *s) {
+  unsigned long long h = hash_start;
+  h = hash(h, s->camera.eye, sizeof s->camera.eye);
+  h = hash(h, s->camera.target, sizeof s->camera.target);
+  h = hash(h, s->camera.up, sizeof s->camera.up);
+  const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
+  h = hash(h, loose, sizeof loose);
+  for (size_t i = 0; i < s->light_count; i++) {
+    const abbe_light *l = &s->light[i];
+    const double numbers[] = {l->kind,         l->position[0],  l->position[1],
+                              l->position[2],  l->direction[0], l->direction[1],
+                              l->direction[2], l->radius,       l->cone_rad,
+                              l->soft_rad,     l->power,        l->illuminant.kind};
+    h = hash(h, numbers, sizeof numbers);
+    for (int k = 0; k < INDEX_STEPS; k++) {
+      double power = abbe_illuminant_power(&l->illuminant, 380 + 50.0 * k);
+      h = hash(h, &power, sizeof power);
+    }
+  }
+  for (size_t i = 0; i < s->object_count; i++) h = hash_object(h, &s->object[i]);
+  return h;
+}
+
+unsigned long long abbe_sweep_hash_images(const abbe_image *picture, const abbe_image *map) {
+  const abbe_image *const images[] = {picture, map};
+  unsigned long long h = hash_start;
+  for (int i = 0; i < 2; i++) {
+    if (images[i] == NULL) continue;
+    const size_t sizes[] = {images[i]->width, images[i]->height, images[i]->channels};
+    h = hash(h, sizes, sizeof sizes);
+    h = hash(h, images[i]->data, sizes[0] * sizes[1] * sizes[2] * sizeof *images[i]->data);
+  }
+  return h;
+}

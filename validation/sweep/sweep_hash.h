@@ -1,0 +1,20 @@
+/* sweep_hash.h: numbers that tell whether two sweeps saw one scene, and one reference. */
+#ifndef ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_HASH_H
+#define ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_HASH_H
+
+#include "colorimetry/image/image.h"
+#include "scenes/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Of all that light meets: camera, lights, meshes, surfaces and materials. */
+unsigned long long abbe_sweep_hash_scene(const abbe_scene *scene);
+/* Either may be NULL. */
+unsigned long long abbe_sweep_hash_images(const abbe_image *picture, const abbe_image *map);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,64 @@
+#include "validation/sweep/sweep_setting.h"
+
+#include "gl/accuracy/preset_choice.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
+  bool thesis = abbe_profile_is_thesis(d->profile);
+  *out = (abbe_sweep_setting){.wavelengths = d->wavelengths,
+                              .photons = d->photons,
+                              .map = d->map_size,
+                              /* without effect there: one setting whatever was asked */
+                              .samples = thesis ? 1 : d->supersample,
+                              .upsample = d->upsample,
+                              .share = thesis ? 0.01 : d->energy_share,
+                              .exits = d->exits};
+  snprintf(out->profile, sizeof out->profile, "%s", abbe_profile_name(d->profile));
+  snprintf(out->fill, sizeof out->fill, "%s", abbe_fill_name(d->fill));
+  snprintf(out->model, sizeof out->model, "%s", abbe_model_name(d->model));
+}
+
+abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(setting && out, error);
+  int profile = 0, fill = 0, model = 0;
+  while (profile < ABBE_PROFILE_COUNT &&
+         strcmp(abbe_profile_name((abbe_profile)profile), setting->profile) != 0)
+    profile++;
+  while (fill < ABBE_FILL_COUNT && strcmp(abbe_fill_name((abbe_fill)fill), setting->fill) != 0)
+    fill++;
+  while (model < ABBE_MODEL_COUNT &&
+         strcmp(abbe_model_name((abbe_model)model), setting->model) != 0)
+    model++;
+  *out = (abbe_render_desc){0};
+  if (profile == ABBE_PROFILE_COUNT || fill == ABBE_FILL_COUNT || model == ABBE_MODEL_COUNT)
+    return abbe_error_set(error, ABBE_NOT_FOUND,
+                          "the renderer has no profile '%s' with a fill '%s' and a model '%s'",
+                          setting->profile, setting->fill, setting->model);
+  *out = (abbe_render_desc){.profile = (abbe_profile)profile,
+                            .wavelengths = setting->wavelengths,
+                            .photons = setting->photons,
+                            .map_size = setting->map,
+                            .supersample = setting->samples,
+                            .upsample = setting->upsample,
+                            .fill = (abbe_fill)fill,
+                            .model = (abbe_model)model,
+                            .energy_share = setting->share,
+                            .exits = setting->exits};
+  return ABBE_OK;
+}
+
+void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, size_t size) {
+  abbe_render_desc desc;
+  if (abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK)
+    abbe_preset_describe(&desc, out, size);
+  else
+    abbe_sweep_setting_label(setting, out, size);
+}
+
+bool abbe_sweep_setting_is_fine(const abbe_sweep_setting *setting) {
+  abbe_render_desc desc;
+  return abbe_sweep_setting_desc(setting, &desc, NULL) == ABBE_OK && abbe_preset_is_fine(&desc);
+}

@@ -1,0 +1,27 @@
+/* sweep_setting.h: a table's settings as the renderer's requests, and the other way round. */
+#ifndef ABBE_VALIDATION_SWEEP_SWEEP_SETTING_H
+#define ABBE_VALIDATION_SWEEP_SWEEP_SETTING_H
+
+#include "gl/plan/plan.h"
+#include "validation/tradeoff/sweep_table.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The setting of a resolved request, and the request of a setting (size and space left 0).
+ * ABBE_NOT_FOUND for a profile, fill or model of an unknown name. */
+void abbe_sweep_setting_of(const abbe_render_desc *desc, abbe_sweep_setting *out);
+abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
+                                    abbe_error *error);
+
+/* In words, as abbe_preset_describe has them; its label where the renderer does not know it. */
+void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, size_t size);
+
+/* abbe_preset_is_fine. */
+bool abbe_sweep_setting_is_fine(const abbe_sweep_setting *setting);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,44 @@
+/* baseline_comparison.h: the default profile held against a baseline's rows of the same sweep.
+ *
+ * Two questions: how much sooner does the default profile have the baseline's error, and how much
+ * of its error is left in its time? Both are asked of the baseline's own settings, those of the
+ * thesis, and of every point of its own Pareto front, where the hardest answer counts. Points are
+ * measured ones; nothing is interpolated.
+ */
+#ifndef ABBE_VALIDATION_TRADEOFF_BASELINE_COMPARISON_H
+#define ABBE_VALIDATION_TRADEOFF_BASELINE_COMPARISON_H
+
+#include "validation/tradeoff/sweep_table.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* X(profile, text): against whom. */
+#define ABBE_BASELINES(X)                                                                          \
+  X("thesis", "thesis profile, with the best factor on its brightness")                            \
+  X("thesis-cie", "thesis's method with CIE weights, in physical units")
+enum { ABBE_BASELINE_COUNT = 2 };
+extern const char *const abbe_baselines[ABBE_BASELINE_COUNT];
+const char *abbe_baseline_text(const char *profile);
+
+/* NaN: not known, or never reached. */
+typedef struct abbe_baseline_comparison {
+  const abbe_sweep_row *baseline; /* 7 wavelengths, 512 photons, map 1024, smear; NULL: no row */
+  double equal_error_speedup;     /* its time over the least time of an error no larger */
+  double equal_time_error_ratio;  /* the least error in a time no longer, over its error */
+  size_t front;                   /* points of the baseline's front; 0: no rows */
+  size_t beaten;                  /* of them, those that a setting beats in time and in error */
+  double front_speedup;           /* the least equal-error speedup over the front */
+  double front_ratio;             /* the largest equal-time error ratio over it */
+} abbe_baseline_comparison;
+
+/* ABBE_NO_MEMORY. */
+abbe_result abbe_baseline_comparison_make(const abbe_sweep_table *table, const char *profile,
+                                          abbe_sweep_number number, abbe_baseline_comparison *out,
+                                          abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,25 @@
+/* sweep_plot.h: a sweep as a picture: error against time in logarithms, and the Pareto front.
+ *
+ * Every setting is a point, a profile a colour; the front is a line with its settings' names,
+ * and each other profile's own front a line without; the
+ * reference's own noise is a dashed line, below which an error is not known. It marks no front.
+ */
+#ifndef ABBE_VALIDATION_TRADEOFF_SWEEP_PLOT_H
+#define ABBE_VALIDATION_TRADEOFF_SWEEP_PLOT_H
+
+#include "validation/tradeoff/sweep_table.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Draws the charts of the errors named, one above the other, to path (.png or .svg); the fronts are
+ * found anew for each. ABBE_INVALID_ARGUMENT for a number that is no error or where no row has it;
+ * errors of abbe_chart_write. */
+abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table,
+                            const abbe_sweep_number *errors, size_t count, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

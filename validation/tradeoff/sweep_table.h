@@ -1,0 +1,176 @@
+/* sweep_table.h: what a sweep has measured so far: settings, times, errors, and the Pareto front.
+ *
+ * A table of one scene at one size against one reference on one machine, kept as CSV: comments
+ * "# fact: text" say what it belongs to, then a line of column names, then a row a setting. A cell
+ * that is empty is not known. It runs nothing, and knows of settings no more than their names.
+ */
+#ifndef ABBE_VALIDATION_TRADEOFF_SWEEP_TABLE_H
+#define ABBE_VALIDATION_TRADEOFF_SWEEP_TABLE_H
+
+#include "base/error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_SWEEP_MAX_ROWS 4096
+#define ABBE_SWEEP_WORD 16
+
+/* One renderer's setting, every field resolved. */
+typedef struct abbe_sweep_setting {
+  char profile[ABBE_SWEEP_WORD];
+  size_t wavelengths, photons, map, samples, upsample;
+  char fill[ABBE_SWEEP_WORD];
+  char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */
+  double share;
+  size_t exits;
+} abbe_sweep_setting;
+
+/* X(code, column, text). Errors are against the reference; beside each stands what the reference's
+ * own noise alone would make of it. Caustic: the brightest pixels (texels) that hold 95 % of the
+ * reference's caustic light. */
+#define ABBE_SWEEP_NUMBERS(X)                                                                      \
+  X(FRAME_MS, "frame_ms", "frame, ms")             /* median of the frames */                      \
+  X(FASTEST_MS, "fastest_ms", "fastest frame, ms") /* of them */                                   \
+  X(LIGHT_MS, "light_ms", "light's passes, ms")    /* of the median frame */                       \
+  X(EYE_MS, "eye_ms", "eye's passes, ms")                                                          \
+  X(FLOOR_MS, "floor_ms", "surfaces alone, ms") /* default profile */                              \
+  X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
+  X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
+  X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \
+  X(MAP_RMSE, "map_rmse", "map's caustic, relative RMSE") /* X, Y, Z together */                   \
+  X(MAP_RMSE_NOISE, "map_rmse_noise", "noise of it")                                               \
+  X(MAP_UV, "map_uv", "map's caustic, u'v' distance")                                              \
+  X(MAP_UV_NOISE, "map_uv_noise", "noise of it")                                                   \
+  X(MAP_BANDS, "map_bands", "map's caustic, relative RMSE of the bands")                           \
+  X(MAP_BANDS_NOISE, "map_bands_noise", "noise of it")                                             \
+  X(MAP_ENERGY, "map_energy", "map's energy ratio") /* of all its Y */                             \
+  X(MAP_ENERGY_NOISE, "map_energy_noise", "noise of it")                                           \
+  X(SCALE, "scale", "factor on the picture")                                                       \
+  X(CAUSTIC_DE, "caustic_de", "caustic, mean CIEDE2000") /* of the picture */                      \
+  X(CAUSTIC_DE_NOISE, "caustic_de_noise", "noise of it")                                           \
+  X(CAUSTIC_DE95, "caustic_de95", "caustic, 95 % CIEDE2000")                                       \
+  X(CAUSTIC_DE95_NOISE, "caustic_de95_noise", "noise of it")                                       \
+  X(CAUSTIC_RMSE, "caustic_rmse", "caustic, relative RMSE")                                        \
+  X(CAUSTIC_RMSE_NOISE, "caustic_rmse_noise", "noise of it")                                       \
+  X(PICTURE_DE, "picture_de", "picture, mean CIEDE2000") /* all pixels */                          \
+  X(PICTURE_DE_NOISE, "picture_de_noise", "noise of it")                                           \
+  X(PICTURE_DE95, "picture_de95", "picture, 95 % CIEDE2000")                                       \
+  X(PICTURE_DE95_NOISE, "picture_de95_noise", "noise of it")                                       \
+  X(PICTURE_RMSE, "picture_rmse", "picture, relative RMSE")                                        \
+  X(PICTURE_RMSE_NOISE, "picture_rmse_noise", "noise of it")                                       \
+  X(MATCHED_DE, "matched_de", "caustic against matched physics, mean CIEDE2000")                   \
+  X(MATCHED_DE_NOISE, "matched_de_noise", "noise of it")                                           \
+  X(MATCHED_MAP, "matched_map", "map's caustic against matched physics, relative RMSE")            \
+  X(MATCHED_MAP_NOISE, "matched_map_noise", "noise of it")
+
+typedef enum abbe_sweep_number {
+#define ABBE_SWEEP_ENUM(code, column, text) ABBE_SWEEP_##code,
+  ABBE_SWEEP_NUMBERS(ABBE_SWEEP_ENUM)
+#undef ABBE_SWEEP_ENUM
+      ABBE_SWEEP_NUMBER_COUNT
+} abbe_sweep_number;
+
+/* X(code, name): what a table belongs to. */
+#define ABBE_SWEEP_FACTS(X)                                                                        \
+  X(PROGRAM, "program") /* with its version */                                                     \
+  X(SCENE, "scene")     /* path */                                                                 \
+  X(SCENE_HASH, "scene hash")                                                                      \
+  X(CLASS, "class")         /* of the scene: its hardest refractor */                              \
+  X(SIZE, "size")           /* of the picture, "512x512" */                                        \
+  X(REFERENCE, "reference") /* path of the picture */                                              \
+  X(REFERENCE_MAP, "reference map")                                                                \
+  X(REFERENCE_HASH, "reference hash")                                                              \
+  X(MODEL, "model")     /* errors of matched physics: abbe_sweep_model */                          \
+  X(FRAMES, "frames")   /* behind each median */                                                   \
+  X(DEVICE, "device")   /* what draws */                                                           \
+  X(MACHINE, "machine") /* the processor, and how many of its threads */                           \
+  X(DATE, "date")       /* of the first row */
+
+typedef enum abbe_sweep_fact {
+#define ABBE_SWEEP_ENUM(code, name) ABBE_SWEEP_FACT_##code,
+  ABBE_SWEEP_FACTS(ABBE_SWEEP_ENUM)
+#undef ABBE_SWEEP_ENUM
+      ABBE_SWEEP_FACT_COUNT
+} abbe_sweep_fact;
+
+typedef struct abbe_sweep_row {
+  abbe_sweep_setting setting;
+  double number[ABBE_SWEEP_NUMBER_COUNT]; /* NaN: not known */
+  bool front;                             /* on the Pareto front */
+} abbe_sweep_row;
+
+/* A zeroed table is empty. */
+typedef struct abbe_sweep_table {
+  char fact[ABBE_SWEEP_FACT_COUNT][256]; /* "": not stated; one line each */
+  size_t count, room;
+  abbe_sweep_row *row; /* [count] */
+} abbe_sweep_table;
+
+const char *abbe_sweep_number_name(abbe_sweep_number number);
+const char *abbe_sweep_number_text(abbe_sweep_number number);
+/* The number of that column, or ABBE_SWEEP_NUMBER_COUNT. */
+abbe_sweep_number abbe_sweep_number_find(const char *column);
+/* Whether it is an error against the reference, whose noise is the next number. */
+bool abbe_sweep_number_is_error(abbe_sweep_number number);
+const char *abbe_sweep_fact_name(abbe_sweep_fact fact);
+
+/* What tables for people show beside a setting, and a number for them: three digits, "-" where it
+ * is not known. */
+#define ABBE_SWEEP_SHOWN 6
+#define ABBE_SWEEP_SHORT 24
+extern const abbe_sweep_number abbe_sweep_shown[ABBE_SWEEP_SHOWN];
+const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]);
+
+bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setting *b);
+/* For charts: "w7 p256 m1024 s2", with what else is unusual. */
+void abbe_sweep_setting_label(const abbe_sweep_setting *setting, char *out, size_t size);
+
+void abbe_sweep_table_free(abbe_sweep_table *table);
+/* Sets a fact; what would break a line becomes a blank, what is too long is cut. */
+void abbe_sweep_table_set(abbe_sweep_table *table, abbe_sweep_fact fact, const char *text);
+/* The row of that setting, or NULL. */
+const abbe_sweep_row *abbe_sweep_table_find(const abbe_sweep_table *table,
+                                            const abbe_sweep_setting *setting);
+/* Adds a row. ABBE_INVALID_ARGUMENT where its setting is there already or the table is full. */
+abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *row,
+                                 abbe_error *error);
+/* Marks the Pareto front of the frame's time against that error: over all rows, or (with a
+ * profile's name) over that profile's rows alone. ABBE_NO_MEMORY. */
+abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number number,
+                                  const char *profile, abbe_error *error);
+/* The rows on the front in the order of time, as malloc'd indices; NULL for want of memory. */
+size_t *abbe_sweep_table_front(const abbe_sweep_table *table, size_t *out_count);
+
+/* The table as text, and beside its target and renamed. ABBE_IO, ABBE_NO_MEMORY. */
+abbe_result abbe_sweep_table_save(const abbe_sweep_table *table, const char *path,
+                                  abbe_error *error);
+/* ABBE_PARSE names line and cell of what is no such table; facts that are not known are passed
+ * over. */
+abbe_result abbe_sweep_table_parse(const char *text, size_t size, const char *name,
+                                   abbe_sweep_table *out, abbe_error *error);
+abbe_result abbe_sweep_table_load(const char *path, abbe_sweep_table *out, abbe_error *error);
+
+/* Errors of matched physics against full, as the fact `model` has them: "caustic_de 1.2 (0.3),
+ * map_rmse 0.1 (0.02), map_energy 0.93", noise in brackets. */
+typedef struct abbe_sweep_model {
+  double de, de_noise; /* caustic, mean CIEDE2000 */
+  double map, map_noise, energy;
+} abbe_sweep_model;
+
+void abbe_sweep_model_write(const abbe_sweep_model *model, abbe_sweep_table *table);
+/* False where the table has no such fact. */
+bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out);
+
+/* ABBE_INVALID_ARGUMENT names the first fact in which two tables differ, so that rows of the two
+ * do not belong together. The date, paths of references and the count of frames may differ. */
+abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
+                                   const abbe_sweep_table *b, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,67 @@
+/* camera.h: the scene's pinhole camera in the tracer's frame.
+ *
+ * Pixels are counted from the top left; a pixel's value is the mean radiance over its area on the
+ * film. Film coordinates are tangents at distance 1.
+ */
+#ifndef ABBE_VALIDATION_WALKS_CAMERA_H
+#define ABBE_VALIDATION_WALKS_CAMERA_H
+
+#include "validation/transport/geometry.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_trace_camera {
+  float eye[3], right[3], up[3], forward[3]; /* frame; unit */
+  float half_width, half_height;             /* of the film */
+  size_t width, height;                      /* pixels */
+  float pixel_area;                          /* on the film */
+} abbe_trace_camera;
+
+/* The scene's camera with width x height pixels; its vertical angle holds for the height. */
+void abbe_trace_camera_make(const abbe_geometry *geometry, size_t width, size_t height,
+                            abbe_trace_camera *out);
+
+/* Unit direction through the place (x, y) in pixels, fractions included. */
+static inline void abbe_trace_camera_ray(const abbe_trace_camera *c, float x, float y, float d[3]) {
+  float a = (2 * x / (float)c->width - 1) * c->half_width;
+  float b = (1 - 2 * y / (float)c->height) * c->half_height;
+  float scale = 1 / sqrtf(1 + a * a + b * b);
+  for (int k = 0; k < 3; k++) d[k] = scale * (c->forward[k] + a * c->right[k] + b * c->up[k]);
+}
+
+/* The pixel that a point (frame) is seen in; false where it is behind the eye or outside the
+ * picture. *distance to the eye (frame), d the unit direction from the eye, *per_pixel: what a
+ * pixel's mean radiance gains, for an isotropic radiance towards the eye of 1 from a unit of
+ * projected area at unit distance (1 / the film's area and cosine^3). */
+static inline bool abbe_trace_camera_pixel(const abbe_trace_camera *c, const float p[3],
+                                           size_t *pixel, float *distance, float d[3],
+                                           float *per_pixel) {
+  float x = 0, y = 0, z = 0, square = 0;
+  for (int k = 0; k < 3; k++) {
+    d[k] = p[k] - c->eye[k];
+    x += d[k] * c->right[k];
+    y += d[k] * c->up[k];
+    z += d[k] * c->forward[k];
+    square += d[k] * d[k];
+  }
+  if (!(z > 0)) return false;
+  float a = 0.5f * (x / z / c->half_width + 1) * (float)c->width;
+  float b = 0.5f * (1 - y / z / c->half_height) * (float)c->height;
+  if (!(a >= 0 && b >= 0 && a < (float)c->width && b < (float)c->height)) return false;
+  *distance = sqrtf(square);
+  float cosine = z / *distance;
+  for (int k = 0; k < 3; k++) d[k] /= *distance;
+  *pixel = (size_t)b * c->width + (size_t)a;
+  *per_pixel = 1 / (c->pixel_area * cosine * cosine * cosine);
+  return true;
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

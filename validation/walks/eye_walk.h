@@ -1,0 +1,57 @@
+/* eye_walk.h: what one pixel sees in one pass: paths from the eye through glass to what shows.
+ *
+ * Receivers are lit directly, with shadows, by point, spot, directional and disk lights. A pixel
+ * that shows a refractor is split: the mirror image on its outside, and a few wavelengths that go
+ * through it, each reflected or transmitted at random at every further interface. The caustic on a
+ * receiver seen that way comes from the photons around the place (consistent); on a receiver that
+ * the eye sees straight it is left out, for the photons themselves find the eye (unbiased).
+ */
+#ifndef ABBE_VALIDATION_WALKS_EYE_WALK_H
+#define ABBE_VALIDATION_WALKS_EYE_WALK_H
+
+#include "validation/transport/bands.h"
+#include "validation/transport/geometry.h"
+#include "validation/transport/media.h"
+#include "validation/transport/physics.h"
+#include "validation/transport/reflectance.h"
+#include "validation/transport/spectral_sampling.h"
+#include "validation/walks/camera.h"
+#include "validation/walks/photon_grid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* All that a walk reads; nothing is written. */
+typedef struct abbe_eye_walk {
+  const abbe_geometry *geometry;
+  const abbe_media *media;
+  const abbe_spectral_sampling *sampling;
+  const abbe_bands *bands;
+  const abbe_trace_camera *camera;
+  const abbe_reflectance *reflectance;
+  const float (*colour)[3]; /* [lights][steps] in the picture's space, mean: white */
+  const float (*white)[3];  /* [lights] in the picture's space */
+  abbe_physics physics;
+  uint32_t seed;
+  const abbe_photon_grid *grid; /* NULL: no photons */
+  float radius;                 /* of the gather, frame */
+  double window_nm;             /* half the range of wavelengths that a dispersed path gathers */
+} abbe_eye_walk;
+
+typedef struct abbe_eye_sample {
+  float rgb[3];               /* radiance, W/(m2 sr), white Y = 1 */
+  float caustic[3];           /* the part that came to its receiver through a refractor */
+  float band[ABBE_BANDS_MAX]; /* W/(m2 sr nm) */
+  bool refractor;             /* the pixel's ray met one first */
+  uint32_t rays;
+} abbe_eye_sample;
+
+/* One sample of the pixel (row * width + column) in a pass. */
+void abbe_eye_walk_pixel(const abbe_eye_walk *walk, size_t pixel, uint32_t pass,
+                         abbe_eye_sample *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

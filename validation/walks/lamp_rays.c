@@ -1,0 +1,104 @@
+#include "validation/walks/lamp_rays.h"
+
+enum { FEW_FACES = 256 /* of receivers, held against each other */ };
+
+static float above(const float n[3], const float a[3], const float p[3]) {
+  return n[0] * (p[0] - a[0]) + n[1] * (p[1] - a[1]) + n[2] * (p[2] - a[2]);
+}
+
+/* Whether a corner of a receiver lies on the other side of a face's plane than the lamp. */
+static bool stands_before(const abbe_geometry *g, const abbe_light *light, const float corner[3],
+                          const float n[3]) {
+  float lamp[3], toward = 0;
+  for (int k = 0; k < 3; k++) toward -= n[k] * (float)light->direction[k];
+  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
+    abbe_geometry_to_frame(g, light->position, lamp);
+    toward = above(n, corner, lamp);
+  }
+  for (size_t i = 0; i < g->surface_count; i++) {
+    const abbe_surface *s = &g->surface[i];
+    if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
+    size_t count = s->sphere ? 0 : g->scene->object[s->object].mesh.vertex_count;
+    for (size_t v = 0; v < count; v++) {
+      float behind = above(n, corner, s->position[v]), size = 0;
+      for (int k = 0; k < 3; k++)
+        size = fmaxf(size, fmaxf(fabsf(s->position[v][k]), fabsf(corner[k])));
+      if (toward > 0 ? behind < -1e-5f * size : behind > 1e-5f * size) return true;
+    }
+  }
+  return false;
+}
+
+/* Receivers that are the walls of a convex room around the lamp hide nothing. */
+bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
+  size_t faces = 0;
+  for (size_t i = 0; i < g->surface_count; i++) {
+    const abbe_surface *s = &g->surface[i];
+    if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
+    faces += g->scene->object[s->object].mesh.face_count;
+    if (s->sphere || faces > FEW_FACES) return true;
+  }
+  for (size_t i = 0; i < g->surface_count; i++) {
+    const abbe_surface *s = &g->surface[i];
+    if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
+    for (size_t f = 0; f < g->scene->object[s->object].mesh.face_count; f++) {
+      const float *a = s->position[s->face[f][0]], *b = s->position[s->face[f][1]],
+                  *c = s->position[s->face[f][2]];
+      float e[3], h[3];
+      for (int k = 0; k < 3; k++) {
+        e[k] = b[k] - a[k];
+        h[k] = c[k] - a[k];
+      }
+      float n[3] = {e[1] * h[2] - e[2] * h[1], e[2] * h[0] - e[0] * h[2],
+                    e[0] * h[1] - e[1] * h[0]};
+      float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+      if (!(length > 0)) return true;
+      for (int k = 0; k < 3; k++) n[k] /= length;
+      if (stands_before(g, light, a, n)) return true;
+    }
+  }
+  return false;
+}
+
+void abbe_lamp_rays_trace(abbe_lamp_rays *s, const abbe_geometry *g, abbe_light_ledger *ledger) {
+  struct RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  _Alignas(64) int valid[ABBE_RAY_LANES];
+  for (size_t k = 0; k < ABBE_RAY_LANES; k++) valid[k] = k < s->count ? -1 : 0;
+  if (s->count > 0) rtcOccluded16(valid, g->embree, &context, &s->ray);
+  for (size_t k = 0; k < s->count; k++) {
+    s->photon[k]->hidden = s->ray.tfar[k] < 0;
+    if (s->photon[k]->hidden) ledger->hidden += s->flux[k];
+  }
+  s->count = 0;
+}
+
+void abbe_lamp_rays_add(abbe_lamp_rays *s, const abbe_geometry *g, const abbe_light *light,
+                        const abbe_hit *hit, abbe_photon_hit *photon, double flux,
+                        abbe_light_ledger *ledger) {
+  size_t at = s->count++;
+  float from[3], d[3], o[3], limit = INFINITY;
+  for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
+  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
+    abbe_geometry_to_frame(g, light->position, from);
+    for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
+    limit = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int k = 0; k < 3; k++) d[k] /= limit;
+  }
+  abbe_geometry_leave(hit, d, o);
+  struct RTCRay16 *ray = &s->ray;
+  ray->org_x[at] = o[0];
+  ray->org_y[at] = o[1];
+  ray->org_z[at] = o[2];
+  ray->dir_x[at] = d[0];
+  ray->dir_y[at] = d[1];
+  ray->dir_z[at] = d[2];
+  ray->tnear[at] = 0;
+  ray->tfar[at] = limit;
+  ray->mask[at] = ABBE_GEOMETRY_RECEIVERS;
+  ray->flags[at] = 0;
+  s->photon[at] = photon;
+  s->flux[at] = flux;
+  if (s->count == ABBE_RAY_LANES) abbe_lamp_rays_trace(s, g, ledger);
+}

@@ -1,0 +1,429 @@
+#include "validation/walks/light_walk.h"
+
+#include "validation/transport/random.h"
+#include "validation/walks/lamp_rays.h"
+#include "validation/walks/ray_batch.h"
+#include "validation/walks/scatter.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  LANES = ABBE_RAY_LANES,
+  PACKETS = ABBE_LIGHT_WALK_HITS / LANES,
+  MAX_STEPS = 10000,
+  EVEN_STEPS = 3,      /* whose decisions are spread evenly */
+  SMALL_SCENE = 4096,  /* faces */
+  COHERENT_BOUNCES = 2 /* how often rays of a packet are scattered before they are told apart */
+};
+
+typedef struct path {
+  abbe_media_set inside;
+  uint32_t id, step;
+  float within;
+  float flux, full; /* W, and W at the start */
+  float y;          /* Y of a watt, for the ledger */
+  float carried;    /* matched: share of the light that a splitting path would carry */
+  float chance[ABBE_PHOTON_SPLITS];
+  uint16_t steps, inner; /* interfaces met; matched: of them, after the first */
+  bool begun;            /* has met its first interface */
+} path;
+
+/* Paths that are followed side by side, and the ray of each. */
+typedef struct ray_batch {
+  size_t count;
+  struct RTCRayHit16 ray[PACKETS];
+  path path[ABBE_LIGHT_WALK_HITS];
+} ray_batch;
+
+struct abbe_light_walk {
+  abbe_lamp_rays lamp_rays;
+  const abbe_geometry *g;
+  const abbe_media *media;
+  abbe_physics physics;
+  uint32_t seed;
+  uint64_t rays;
+  ray_batch *batch, *next; /* of this bounce and of the next */
+  uint32_t shift[4];       /* of the pass's even decisions */
+  unsigned splits;         /* interfaces at which paths are split, a bit each */
+  bool small;              /* so few faces that packets stay together wherever their rays go */
+  bool *hidden;            /* [lights] abbe_lamp_is_hidden */
+  abbe_ray_record record;
+  abbe_light_walk_room room;
+};
+
+abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
+                                 const abbe_physics *physics, uint32_t seed, abbe_light_walk **out,
+                                 abbe_error *error) {
+  ABBE_REQUIRE(geometry && geometry->scene && media && physics && out, error);
+  *out = NULL;
+  abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
+  size_t lights = geometry->scene->light_count;
+  if (w != NULL) {
+    memset(w, 0, sizeof *w);
+    w->g = geometry;
+    w->media = media;
+    w->physics = *physics;
+    w->seed = seed;
+    w->batch = aligned_alloc(64, (sizeof *w->batch + 63) / 64 * 64);
+    w->next = aligned_alloc(64, (sizeof *w->next + 63) / 64 * 64);
+    w->hidden = calloc(lights + 1, sizeof *w->hidden);
+  }
+  if (w == NULL || w->batch == NULL || w->next == NULL || w->hidden == NULL) {
+    abbe_light_walk_free(w);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a batch of photons");
+  }
+  size_t faces = 0;
+  for (size_t i = 0; i < geometry->scene->object_count; i++)
+    faces += geometry->scene->object[i].mesh.face_count;
+  w->small = faces < SMALL_SCENE;
+  for (size_t i = 0; i < lights; i++)
+    w->hidden[i] = abbe_lamp_is_hidden(geometry, &geometry->scene->light[i]);
+  memset(w->batch, 0, sizeof *w->batch);
+  memset(w->next, 0, sizeof *w->next);
+  *out = w;
+  return ABBE_OK;
+}
+
+void abbe_light_walk_free(abbe_light_walk *walk) {
+  if (walk == NULL) return;
+  free(walk->batch);
+  free(walk->next);
+  abbe_ray_record_free(&walk->record);
+  free(walk->hidden);
+  free(walk);
+}
+
+abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk) {
+  return &walk->room;
+}
+
+uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {
+  return walk->rays;
+}
+
+void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces) {
+  walk->splits = interfaces & ((1u << ABBE_PHOTON_SPLITS) - 1);
+}
+
+unsigned abbe_light_walk_best_splits(const abbe_photon_hit *hit, size_t count) {
+  unsigned best = 0;
+  double least = INFINITY;
+  for (unsigned splits = 0; splits < 1u << ABBE_PHOTON_SPLITS; splits++) {
+    double squares = 0, rays = 1;
+    for (int k = 0; k < ABBE_PHOTON_SPLITS; k++) rays *= splits >> k & 1 ? 2 : 1;
+    for (size_t i = 0; i < count; i++) {
+      double weight = 1;
+      for (int k = 0; k < ABBE_PHOTON_SPLITS; k++)
+        weight *= splits >> k & 1 ? (double)hit[i].chance[k] : 1;
+      squares += weight * (double)hit[i].flux * (double)hit[i].flux;
+    }
+    if (squares * rays < least) {
+      least = squares * rays;
+      best = splits;
+    }
+  }
+  return best;
+}
+
+void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets) {
+  abbe_ray_record_free(&walk->record);
+  abbe_ray_record_make(packets, &walk->record);
+}
+
+bool abbe_light_walk_replay(abbe_light_walk *w, double *seconds, uint64_t *rays) {
+  return abbe_ray_record_replay(&w->record, w->g->embree, seconds, rays);
+}
+
+/* ---- one bounce of sixteen paths ---- */
+
+/* What becomes of a path at what its ray met. */
+typedef enum path_state {
+  SCATTERS,   /* at an interface */
+  DEPOSITED,  /* on a receiver */
+  MISSED,     /* met nothing any more */
+  TRAPPED,    /* matched: as long as the renderer follows one, and not out yet */
+  LOST,       /* inside of nothing, or too long */
+  NOT_COUNTED /* never met a refractor, or has no light left */
+} path_state;
+
+/* A packet of paths between their rays of this bounce and those of the next. */
+typedef struct packet {
+  abbe_scatter scatter;
+  abbe_media_set before[LANES], after[LANES];
+  bool straight[LANES]; /* media of one index: no interface */
+  path_state state[LANES];
+  abbe_hit hit[LANES];
+} packet;
+
+/* A batch under way: what the photons of one light have in common. */
+typedef struct run {
+  abbe_light_walk *w;
+  const abbe_light *light;
+  uint32_t pass;
+  bool hidden;
+  packet packet;
+  size_t hits;
+  abbe_photon_hit *hit;
+  abbe_light_ledger *ledger;
+} run;
+
+static float dot(const float a[3], const float b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The number that decides at a path's next interface. Neighbouring photons have neighbouring
+ * numbers, so the first decisions are spread evenly over them: the fractional parts of multiples
+ * of generalised golden ratios, shifted at random in every pass [Roberts2018]. */
+static float next_chance(const abbe_light_walk *w, const path *s, uint32_t pass) {
+  static const uint32_t ratio[EVEN_STEPS] = {3242174889u, 2447445414u, 3679390609u};
+  if (s->steps < EVEN_STEPS) return abbe_random_float(s->id * ratio[s->steps] + w->shift[s->steps]);
+  float random[4];
+  abbe_random4(s->id, s->steps, pass, w->seed, random);
+  return random[0];
+}
+
+/* Absorption on the way, and the roulette that ends paths with little left. */
+static bool absorb(const abbe_light_walk *w, path *s, float length, uint32_t pass,
+                   abbe_light_ledger *ledger) {
+  if (w->media->attenuation == NULL) return true;
+  int medium = abbe_media_of(s->inside);
+  float left = expf(-length * abbe_media_attenuation(w->media, medium, s->step, s->within));
+  ledger->absorbed += (double)(s->y * s->flux * (1 - left));
+  s->flux *= left;
+  s->carried *= left;
+  const float least = 0.05f;
+  if (s->flux >= least * s->full) return true;
+  float chance = s->flux / (least * s->full), random[4];
+  abbe_random4(s->id, s->steps, pass, ~w->seed, random);
+  /* what the roulette takes from some it gives to others: the mean stays */
+  float before = s->flux;
+  s->flux = random[0] < chance ? least * s->full : 0;
+  ledger->absorbed += (double)(s->y * (before - s->flux));
+  return s->flux > 0;
+}
+
+/* Matched physics: whether the renderer would still follow the path. */
+static bool is_followed(const abbe_light_walk *w, path *s, bool reflects, float share) {
+  if (!w->physics.matched) return true;
+  s->carried *= reflects ? share : 1 - share;
+  if (s->begun) s->inner++;
+  if (!s->begun || !reflects) {
+    s->begun = true;
+    return true;
+  }
+  return s->inner < w->physics.orders && (double)s->carried >= w->physics.energy_share;
+}
+
+/* What a path meets at a refractor: normals, indices, media. */
+static void meet_interface(const abbe_light_walk *w, const path *s, const float d[3], packet *p,
+                           size_t k) {
+  const abbe_hit *hit = &p->hit[k];
+  float along = dot(d, hit->ng), shaded = dot(d, hit->n);
+  bool entering = along < 0;
+  float side = entering ? 1 : -1;
+  const float *outside = (shaded < 0) == entering ? hit->n : hit->ng;
+  for (int i = 0; i < 3; i++) {
+    p->scatter.n[i][k] = side * outside[i];
+    p->scatter.ng[i][k] = side * hit->ng[i];
+    p->scatter.p[i][k] = hit->p[i];
+  }
+  p->scatter.size[k] = hit->surface->sphere ? hit->surface->radius : 0;
+  abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
+  int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
+  p->straight[k] = abbe_media_same(w->media, from, to);
+  p->scatter.eta[k] = p->straight[k] ? 1
+                                     : abbe_media_n(w->media, from, s->step, s->within) /
+                                           abbe_media_n(w->media, to, s->step, s->within);
+}
+
+/* Lane k of a packet of rays that Embree has been through: where the path is, and what becomes of
+ * it there. */
+static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, path *s) {
+  packet *p = &r->packet;
+  bool first = s->steps == 0;
+  unsigned id = rays->hit.geomID[k];
+  float o[3] = {rays->ray.org_x[k], rays->ray.org_y[k], rays->ray.org_z[k]};
+  float d[3] = {rays->ray.dir_x[k], rays->ray.dir_y[k], rays->ray.dir_z[k]};
+  for (int i = 0; i < 3; i++) p->scatter.d[i][k] = d[i];
+  if (id == RTC_INVALID_GEOMETRY_ID) return first ? NOT_COUNTED : s->inside != 0 ? LOST : MISSED;
+  abbe_hit *hit = &p->hit[k];
+  abbe_geometry_place(&r->w->g->surface[id], rays->hit.primID[k], rays->hit.u[k], rays->hit.v[k], o,
+                      d, rays->ray.tfar[k], hit);
+  if (hit->surface->kind != ABBE_GEOMETRY_REFRACTORS) {
+    if (first) return NOT_COUNTED;
+    if (s->inside != 0) r->ledger->contact += (double)(s->y * s->flux);
+    return DEPOSITED;
+  }
+  if (first) r->ledger->reached += (double)(s->y * s->flux);
+  bool absorbed = s->inside != 0 && !absorb(r->w, s, rays->ray.tfar[k], r->pass, r->ledger);
+  p->scatter.chance[k] = next_chance(r->w, s, r->pass);
+  bool too_long = ++s->steps >= MAX_STEPS;
+  meet_interface(r->w, s, d, p, k);
+  return too_long ? LOST : absorbed ? NOT_COUNTED : SCATTERS;
+}
+
+/* Numbers that decide for one branch at any share, but for total reflection's. */
+static const float REFLECT = -1, TRANSMIT = 2;
+
+/* What the path carries on the branch that was chosen, or on one of both; false for no light. */
+static bool take_branch(const packet *p, size_t k, size_t bounce, bool split, path *s) {
+  const bool reflects = p->scatter.reflects[k] && !p->straight[k];
+  const float share = p->straight[k] ? 0 : p->scatter.share[k];
+  const float part = reflects ? share : 1 - share;
+  if (!split) {
+    if (bounce < ABBE_PHOTON_SPLITS) s->chance[bounce] = part;
+    return true;
+  }
+  const bool reflecting = p->scatter.chance[k] < 0;
+  if (reflecting != reflects) return false; /* nothing is mirrored where it goes straight on */
+  s->flux *= part;
+  s->full *= part;
+  return part > 0;
+}
+
+/* The path after the interface, into the next batch; what matched physics does not follow ends. */
+static path_state go_on(const run *r, size_t k, path *s) {
+  const packet *p = &r->packet;
+  ray_batch *next = r->w->next;
+  float o[3], d[3];
+  for (int i = 0; i < 3; i++) {
+    o[i] = p->scatter.from[i][k];
+    d[i] = p->straight[k] ? p->scatter.d[i][k] : p->scatter.out[i][k];
+  }
+  bool reflects = p->scatter.reflects[k] && !p->straight[k];
+  if (!p->straight[k] && !is_followed(r->w, s, reflects, p->scatter.share[k])) return TRAPPED;
+  s->inside = reflects ? p->before[k] : p->after[k];
+  abbe_ray_put(next->ray, next->count, o, d);
+  next->path[next->count++] = *s;
+  return SCATTERS;
+}
+
+static void deposit(run *r, size_t k, const path *s) {
+  const abbe_hit *hit = &r->packet.hit[k];
+  abbe_photon_hit *out = &r->hit[r->hits++];
+  const double flux = (double)(s->y * s->flux);
+  float d[3];
+  for (int i = 0; i < 3; i++) d[i] = r->packet.scatter.d[i][k];
+  *out = (abbe_photon_hit){.surface = hit->surface->object,
+                           .face = hit->face,
+                           .u = hit->u,
+                           .v = hit->v,
+                           .side = dot(d, hit->ng) < 0 ? 1 : -1,
+                           .flux = s->flux,
+                           .step = s->step,
+                           .chance = {s->chance[0], s->chance[1]}};
+  memcpy(out->p, hit->p, sizeof out->p);
+  r->ledger->deposited += flux;
+  if (r->hidden) abbe_lamp_rays_add(&r->w->lamp_rays, r->w->g, r->light, hit, out, flux, r->ledger);
+}
+
+static void end_path(run *r, size_t k, path_state state, const path *s) {
+  const double flux = (double)(s->y * s->flux);
+  switch (state) {
+  case DEPOSITED:
+    deposit(r, k, s);
+    break;
+  case MISSED:
+    r->ledger->missed += flux;
+    break;
+  case TRAPPED:
+    r->ledger->trapped += flux;
+    break;
+  case LOST:
+    r->ledger->lost += flux;
+    break;
+  case SCATTERS:
+  case NOT_COUNTED:
+    break;
+  }
+}
+
+/* The paths of a packet on the branches that its lanes have taken; with `ends` those too that do
+ * not scatter. */
+static void advance(run *r, const path *paths, size_t count, size_t bounce, bool split, bool ends) {
+  for (size_t k = 0; k < count; k++) {
+    path s = paths[k];
+    path_state state = r->packet.state[k];
+    if (state == SCATTERS) {
+      if (!take_branch(&r->packet, k, bounce, split, &s)) continue;
+      state = go_on(r, k, &s);
+    } else if (!ends) {
+      continue;
+    }
+    end_path(r, k, state, &s);
+  }
+}
+
+/* Reflection for all lanes, and then transmission, or for each what its number decides. */
+static void scatter(run *r, const path *paths, size_t count, size_t bounce) {
+  abbe_scatter *s = &r->packet.scatter;
+  if (bounce >= ABBE_PHOTON_SPLITS || (r->w->splits >> bounce & 1) == 0) {
+    abbe_scatter_packet(s);
+    advance(r, paths, count, bounce, false, true);
+    return;
+  }
+  for (size_t k = 0; k < count; k++) s->chance[k] = REFLECT;
+  abbe_scatter_packet(s);
+  advance(r, paths, count, bounce, true, false);
+  for (size_t k = 0; k < count; k++) s->chance[k] = TRANSMIT;
+  abbe_scatter_packet(s);
+  advance(r, paths, count, bounce, true, true);
+}
+
+/* ---- the batch ---- */
+
+static void begin(ray_batch *b, const abbe_photon *photon, size_t count) {
+  b->count = 0;
+  for (size_t i = 0; i < count; i++) {
+    const abbe_photon *p = &photon[i];
+    if (!(p->flux > 0)) continue;
+    abbe_ray_put(b->ray, b->count, p->o, p->d);
+    b->path[b->count++] = (path){.id = p->id,
+                                 .step = p->step,
+                                 .within = p->within,
+                                 .flux = p->flux,
+                                 .full = p->flux,
+                                 .y = p->y,
+                                 .carried = 1,
+                                 .chance = {1, 1}};
+  }
+}
+
+/* Traces the rays of a bounce and puts those of the next into w->next. */
+static void follow(run *r, size_t bounce) {
+  abbe_light_walk *w = r->w;
+  ray_batch *b = w->batch;
+  abbe_ray_batch_trace(b->ray, b->count, w->small || bounce < COHERENT_BOUNCES, w->g->embree,
+                       &w->record);
+  w->rays += b->count;
+  w->next->count = 0;
+  for (size_t first = 0; first < b->count; first += LANES) {
+    const size_t used = b->count - first < LANES ? b->count - first : LANES;
+    path *paths = &b->path[first];
+    for (size_t k = 0; k < used; k++)
+      r->packet.state[k] = read_hit(r, &b->ray[first / LANES], k, &paths[k]);
+    scatter(r, paths, used, bounce);
+  }
+}
+
+size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t pass,
+                           const abbe_photon *photon, size_t count, abbe_photon_hit *hit,
+                           abbe_light_ledger *ledger) {
+  run r = {.w = w,
+           .light = light,
+           .pass = pass,
+           .hidden = w->hidden[light - w->g->scene->light],
+           .hit = hit,
+           .ledger = ledger};
+  abbe_random_bits(0x73686966, 0, pass, w->seed, w->shift);
+  begin(w->batch, photon, count);
+  for (size_t bounce = 0; w->batch->count > 0; bounce++) {
+    follow(&r, bounce);
+    ray_batch *done = w->batch;
+    w->batch = w->next;
+    w->next = done;
+  }
+  abbe_lamp_rays_trace(&w->lamp_rays, w->g, ledger);
+  return r.hits;
+}

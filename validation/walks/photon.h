@@ -1,0 +1,55 @@
+/* photon.h: photons on their way from a light, where they land, and where their light went. */
+#ifndef ABBE_VALIDATION_WALKS_PHOTON_H
+#define ABBE_VALIDATION_WALKS_PHOTON_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_PHOTON_SPLITS 2 /* first interfaces that a path may be split at */
+
+typedef struct abbe_photon {
+  float o[3], d[3]; /* frame; d unit */
+  float flux;       /* W */
+  float y;          /* Y of a watt at its wavelength, for the ledger; mean 1 */
+  uint32_t step;    /* of the spectral sampling */
+  float within;     /* place in the step, [0, 1) */
+  uint32_t id;      /* its random numbers; unique in its pass, and next to its neighbours' */
+} abbe_photon;
+
+/* Where a photon landed on a receiver. */
+typedef struct abbe_photon_hit {
+  uint32_t surface, face;
+  float u, v;
+  float p[3]; /* frame */
+  float side; /* +1: on the side of the face's normal, -1: on the other */
+  float flux; /* W */
+  uint32_t step;
+  /* Chance with which the first interfaces sent it where they did; 1 where its path was split
+   * there, or where there was no choice. */
+  float chance[ABBE_PHOTON_SPLITS];
+  bool hidden; /* from the lamp by other receivers, so that its map has no place for it */
+} abbe_photon_hit;
+
+/* Where the light of the photons went: W, each wavelength with its share of Y. The words are those
+ * of the renderer's ledger (gl/statistics.h). */
+typedef struct abbe_light_ledger {
+  double reached;   /* brought to a refractor, before anything else */
+  double deposited; /* on receivers */
+  double contact;   /* the part of it that came from inside a refractor that touches the receiver */
+  double hidden;    /* the part of it that other receivers hide from the lamp: in no map */
+  double absorbed;  /* along inner paths */
+  double missed;    /* met no receiver; with it what the renderer's ledger has as reflected */
+  double trapped;   /* matched physics: the path was as long as the renderer follows one, and still
+                       reflected; 0 with full physics */
+  double lost;      /* where single precision lost track of inside and outside, or the path was
+                       longer than 10000 interfaces; the renderer has no such light */
+} abbe_light_ledger;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

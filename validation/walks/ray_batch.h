@@ -1,0 +1,63 @@
+/* ray_batch.h: the rays of many paths, sixteen a packet, as Embree traces them side by side.
+ *
+ * It knows no light: a ray has a place in its batch, and what it meets is read there.
+ *
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_WALKS_RAY_BATCH_H
+#define ABBE_VALIDATION_WALKS_RAY_BATCH_H
+
+#include "validation/transport/geometry.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_RAY_LANES 16 /* of a packet */
+
+/* Ray i to be traced: lane i % ABBE_RAY_LANES of its packet. */
+static inline void abbe_ray_put(struct RTCRayHit16 *packets, size_t i, const float o[3],
+                                const float d[3]) {
+  struct RTCRayHit16 *p = &packets[i / ABBE_RAY_LANES];
+  size_t k = i % ABBE_RAY_LANES;
+  p->ray.org_x[k] = o[0];
+  p->ray.org_y[k] = o[1];
+  p->ray.org_z[k] = o[2];
+  p->ray.dir_x[k] = d[0];
+  p->ray.dir_y[k] = d[1];
+  p->ray.dir_z[k] = d[2];
+  p->ray.tnear[k] = 0;
+  p->ray.tfar[k] = INFINITY;
+  p->ray.mask[k] = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  p->ray.flags[k] = 0;
+  p->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+  p->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+}
+
+/* Packets that were traced, to be traced again for the sake of the time. A zeroed one keeps none.
+ */
+typedef struct abbe_ray_record {
+  struct RTCRayHit16 *packet;
+  size_t count, room;
+} abbe_ray_record;
+
+/* Room for so many packets; 0: none from now on. */
+void abbe_ray_record_make(size_t packets, abbe_ray_record *out);
+void abbe_ray_record_free(abbe_ray_record *record);
+/* Seconds that Embree alone takes for what was kept, and the number of rays; forgets them. False
+ * where there are none. */
+bool abbe_ray_record_replay(abbe_ray_record *record, RTCScene scene, double *seconds,
+                            uint64_t *rays);
+
+/* Traces rays [0, count). coherent: rays of a packet go to neighbouring places. */
+void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool coherent, RTCScene scene,
+                          abbe_ray_record *record);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,118 @@
+#include "validation/walks/route.h"
+
+#include "validation/transport/interface.h"
+#include "validation/transport/media.h"
+
+#include <string.h>
+
+typedef struct walker {
+  const abbe_geometry *g;
+  double lambda_nm;
+  abbe_media_set inside;
+  float o[3], d[3];
+} walker;
+
+static abbe_result index_of(const walker *w, abbe_media_set set, double *n, abbe_error *error) {
+  int medium = abbe_media_of(set);
+  *n = 1;
+  if (medium < 0) return ABBE_OK;
+  uint32_t object = w->g->refractor_object[medium];
+  return abbe_material_n(w->g->scene->object[object].material, w->lambda_nm, n, error);
+}
+
+static void record(const walker *w, const abbe_hit *hit, abbe_route_event event, double distance,
+                   abbe_route_vertex *out) {
+  out->event = event;
+  out->object = hit->surface->object;
+  out->distance = distance;
+  abbe_geometry_to_world(w->g, hit->p, out->position);
+  for (int k = 0; k < 3; k++) {
+    out->normal[k] = (double)hit->n[k];
+    out->direction[k] = (double)w->d[k];
+  }
+}
+
+/* The interface at the hit: turns w->d and w->inside. */
+static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abbe_route_vertex *out,
+                        abbe_error *error) {
+  float along = w->d[0] * hit->n[0] + w->d[1] * hit->n[1] + w->d[2] * hit->n[2];
+  bool entering = along < 0;
+  float n[3], cos_i = fminf(fabsf(along), 1), cos_t = 0;
+  for (int k = 0; k < 3; k++) n[k] = entering ? hit->n[k] : -hit->n[k];
+  abbe_media_set before, after;
+  abbe_media_cross(w->inside, hit->surface->index, entering, &before, &after);
+  double n_i, n_t;
+  abbe_result result = index_of(w, before, &n_i, error);
+  if (result == ABBE_OK) result = index_of(w, after, &n_t, error);
+  if (result != ABBE_OK) return result;
+  float eta = (float)(n_i / n_t), d[3];
+  float share = abbe_media_of(before) == abbe_media_of(after)
+                    ? 0
+                    : abbe_interface_reflectance(cos_i, eta, &cos_t);
+  bool reflects = share >= 1;
+  if (!reflects && **choice != '\0') reflects = *(*choice)++ == 'r';
+  if (reflects)
+    abbe_interface_reflect(w->d, n, cos_i, d);
+  else if (abbe_media_of(before) == abbe_media_of(after))
+    memcpy(d, w->d, sizeof d);
+  else
+    abbe_interface_refract(w->d, n, eta, cos_i, cos_t, d);
+  memcpy(w->d, d, sizeof d);
+  w->inside = reflects ? before : after;
+  out->event = reflects ? ABBE_ROUTE_REFLECTED : ABBE_ROUTE_TRANSMITTED;
+  out->cos_in = (double)cos_i;
+  out->reflectance = (double)share;
+  out->inside_n = n_i;
+  return ABBE_OK;
+}
+
+static abbe_result step(walker *w, const char **choice, abbe_route_vertex *out, bool *ended,
+                        abbe_error *error) {
+  *out = (abbe_route_vertex){
+      .event = ABBE_ROUTE_ESCAPED, .object = (size_t)-1, .distance = INFINITY, .inside_n = 1};
+  abbe_hit hit;
+  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  *ended = !abbe_geometry_hit(w->g, mask, w->o, w->d, INFINITY, &hit);
+  if (*ended) {
+    abbe_geometry_to_world(w->g, w->o, out->position);
+    for (int k = 0; k < 3; k++) out->direction[k] = (double)w->d[k];
+    return ABBE_OK;
+  }
+  double length = 0;
+  for (int k = 0; k < 3; k++) length += pow((double)hit.p[k] - (double)w->o[k], 2);
+  length = sqrt(length) * w->g->unit;
+  *ended = hit.surface->kind != ABBE_GEOMETRY_REFRACTORS;
+  abbe_result result = ABBE_OK;
+  abbe_route_event event = ABBE_ROUTE_LANDED;
+  if (*ended)
+    out->cos_in = fabs((double)(w->d[0] * hit.n[0] + w->d[1] * hit.n[1] + w->d[2] * hit.n[2]));
+  else
+    result = meet(w, &hit, choice, out, error);
+  if (!*ended) event = out->event;
+  record(w, &hit, event, length, out);
+  abbe_geometry_leave(&hit, w->d, w->o);
+  return result;
+}
+
+abbe_result abbe_route_follow(const abbe_geometry *geometry, const double from[3],
+                              const double direction[3], double lambda_nm, const char *choices,
+                              abbe_route_vertex *vertex, size_t room, size_t *count,
+                              abbe_error *error) {
+  ABBE_REQUIRE(geometry && from && direction && choices && (vertex || room == 0) && count, error);
+  *count = 0;
+  size_t known = strspn(choices, "tr");
+  if (choices[known] != '\0')
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "'%c' is no choice at an interface: t (transmit) and r (reflect) are",
+                          choices[known]);
+  walker w = {.g = geometry, .lambda_nm = lambda_nm};
+  abbe_geometry_to_frame(geometry, from, w.o);
+  for (int k = 0; k < 3; k++) w.d[k] = (float)direction[k];
+  bool ended = false;
+  while (!ended && *count < room) {
+    abbe_result result = step(&w, &choices, &vertex[*count], &ended, error);
+    if (result != ABBE_OK) return result;
+    ++*count;
+  }
+  return ABBE_OK;
+}
