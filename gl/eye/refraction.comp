@@ -131,61 +131,7 @@ float wanted_bands(Hit front, vec3 d, int first, int last) {
 #ifdef WALK
 #include "refraction_walk.glsl"
 #else
-// What lies behind a wall is looked up by all lanes of a software rasteriser, whether they show it or not,
-// so each goes on to its next wall that lets enough out first; but not where walls cost more than that.
-#ifdef LAYERS
-const bool GO_ON = false;
-#else
-const bool GO_ON = true;
-#endif
-
-// Through the refractor alone, from wall to wall: the light of one band. What is left when the way ends
-// shows what the rest has shown. Its loops have two ways out, with values of their own for what is used
-// after them: of what the last turn alone has made, lanes that took fewer turns may find another's
-// (Mesa 22's llvmpipe).
-vec3 through(Hit front, vec3 d, int band) {
-  float n = bands[band].weight_n.w, attenuation = bands[band].attenuation.x;
-  vec3 inner, p = front.p, light = vec3(0);
-  if (!refract_direction(d, front.n, 1.0 / n, inner)) return light;
-  float share = 1.0 - fresnel(-dot(d, front.n), 1.0 / n), shown = 0.0, left = 0.0;
-  int facet = front.facet;
-  bool met;
-  for (int order = 0; order < EXITS;) {
-    vec3 wall = p, outer = inner;
-    float out_share = 0.0;
-    bool shows = false;
-    while (order < EXITS) {
-      vec3 wall_n;
-      int next;
-      inner_hit(refractor, facet, p, inner,
-#ifdef LAYERS
-                eye_as_view(), eye_layers, 0.0,
-#endif
-                wall, wall_n, next);
-#ifdef ABSORBING
-      share *= exp(-attenuation * distance(wall, p));
-#endif
-      float kept = fresnel(dot(inner, wall_n), n);
-      bool leaves = refract_direction(inner, -wall_n, n, outer);
-      out_share = leaves ? share * (1.0 - kept) : 0.0;
-      shows = out_share > 0.5 * share_limit;
-      left += shows ? 0.0 : out_share;
-      share *= leaves ? kept : 1.0;
-      p = wall;
-      facet = next;
-      inner = reflect(inner, wall_n);
-      order++;
-      left += share < share_limit || order == EXITS ? share : 0.0;
-      if (!GO_ON || shows || share < share_limit) break;
-    }
-    if (shows) {
-      light += out_share * seen(wall, outer, -touch * refractor_bounds.w, 1e30, met);
-      shown += out_share;
-    }
-    if (share < share_limit) break;
-  }
-  return light * (shown > 0.0 ? 1.0 + left / shown : 0.0);
-}
+#include "refraction_inner.glsl"
 #endif
 
 // What the pixel's ray meets first.

@@ -216,3 +216,22 @@ Way take_pending(inout Way pending[PENDING]) {
 bool reflects_on(Way mirrored) {
   return mirrored.walls <= 0 || (mirrored.walls < EXITS && mirrored.share >= share_limit);
 }
+
+// At an interface: the stronger branch is left in w, the other waits, and of both only what carries
+// `least`. Of what is not followed: the share that ends here, and the one that gives its place up.
+void branch(inout Way w, Interface h, float least, inout Way pending[PENDING], out float ended,
+            out float dropped) {
+  Way mirrored;
+  ended = dropped = 0.0;
+  if (!split(w, h, mirrored)) return;
+  bool reflects = reflects_on(mirrored), passes = w.share >= least;
+  ended = (reflects ? 0.0 : mirrored.share) + (passes ? 0.0 : w.share);
+  if (!reflects) mirrored.share = 0.0;
+  if (!passes) w.share = 0.0;
+  Way weaker = mirrored;
+  if (mirrored.share > w.share) {
+    weaker = w;
+    w = mirrored;
+  }
+  dropped = keep_pending(weaker, pending);
+}
