@@ -41,3 +41,22 @@ vec3 through(Hit front, vec3 d, int band) {
   }
   return light * (shown > 0.0 ? 1.0 + left / shown : 0.0);
 }
+
+// Of a refractor without an exact surface the ray meets what the front layer shows.
+void look_at_layer(ivec2 at) {
+  vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
+  found = true;
+  front.t = layer.w;
+  front.p = eye + layer.w * sight;
+  front.n = normalize(layer.xyz);
+  float c = dot(front.n, sight);
+  if (c > -1e-3) front.n = normalize(front.n - (c + 1e-3) * sight);
+  front.facet = -1;
+}
+
+void look(ivec2 at) {
+  aim_at(at);
+  front.t = 1e30;
+  found = exact_front(eye, sight, front) && front.refractor == refractor;
+  if (refractors[refractor].info.x == MODEL_LAYERS) look_at_layer(at);
+}

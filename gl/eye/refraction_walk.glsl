@@ -57,3 +57,15 @@ vec3 shown(Way w) {
   }
   return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0);
 }
+
+Way start;
+Interface first;
+
+void look(ivec2 at) {
+  aim_at(at);
+  start = Way(eye, sight, 1.0, 0u, 0u, -1, -1, -1);
+  first.hit.t = 1e30;
+  found = next_interface(start, first);
+  front = first.hit;
+  if (found) refractor = front.refractor;
+}

@@ -13,19 +13,33 @@ struct Hit {
 };
 
 #ifdef SPHERES
-// First hit of a ray from outside. The nearer root without cancellation.
-bool sphere_front(vec4 s, vec3 o, vec3 d, inout Hit h) {
+// What of the ray lies in the sphere: from `middle` on it half its length each way; across: from the centre
+// to there.
+bool sphere_chord(vec4 s, vec3 o, vec3 d, out vec3 across, out float middle, out float half_length) {
   vec3 oc = o - s.xyz;
   float b = dot(oc, d);
-  vec3 across = oc - b * d;
+  across = oc - b * d;
   float disc = s.w * s.w - dot(across, across);
-  if (disc <= 0.0 || b >= 0.0) return false;
-  float t = -b - sqrt(disc);
-  if (t <= 0.0 || t >= h.t) return false;
+  middle = -b;
+  half_length = sqrt(max(disc, 0.0));
+  return disc > 0.0;
+}
+
+void set_sphere_hit(vec4 s, float t, vec3 radius, inout Hit h) {
   h.t = t;
-  h.n = normalize(across - sqrt(disc) * d);
+  h.n = normalize(radius);
   h.p = s.xyz + s.w * h.n;
   h.facet = 0;
+}
+
+// First hit of a ray from outside. The nearer root without cancellation.
+bool sphere_front(vec4 s, vec3 o, vec3 d, inout Hit h) {
+  vec3 across;
+  float middle, half_length;
+  bool meets = sphere_chord(s, o, d, across, middle, half_length);
+  float t = middle - half_length;
+  if (!meets || middle <= 0.0 || t <= 0.0 || t >= h.t) return false;
+  set_sphere_hit(s, t, across - half_length * d, h);
   return true;
 }
 #endif

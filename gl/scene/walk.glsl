@@ -41,16 +41,12 @@ float medium_n(uint inside) {
 #ifdef SPHERES
 // The wall of a sphere that p is in.
 bool sphere_wall(vec4 s, vec3 p, vec3 d, inout Hit h) {
-  vec3 oc = p - s.xyz;
-  float b = dot(oc, d);
-  vec3 across = oc - b * d;
-  float disc = s.w * s.w - dot(across, across);
-  float t = sqrt(max(disc, 0.0)) - b;
-  if (disc <= 0.0 || t >= h.t) return false;
-  h.t = max(t, 0.0);
-  h.n = normalize(across + sqrt(disc) * d);
-  h.p = s.xyz + s.w * h.n;
-  h.facet = 0;
+  vec3 across;
+  float middle, half_length;
+  bool meets = sphere_chord(s, p, d, across, middle, half_length);
+  float t = half_length + middle;
+  if (!meets || t >= h.t) return false;
+  set_sphere_hit(s, max(t, 0.0), across + half_length * d, h);
   return true;
 }
 #endif
