@@ -61,7 +61,7 @@ bool moves_likewise(Path path, Interval i, Node b, vec2 step, vec2 step_before) 
   bool has_c = i.has_b && i.number - 1 > path.node_first;
   int hit_c = has_c ? i.hit_b - 1 : i.hit_b;
   uint path_c = has_c ? texelFetch(NODE_SIGNATURES, hit_c).x : 0u;
-  vec2 at_c = map_position(texelFetch(NODE_HITS, LANDING_TEXELS * hit_c).xyz, b.tile);
+  vec2 at_c = map_position(texelFetch(NODE_HITS, HIT_TEXELS * hit_c).xyz, b.tile);
   vec2 step_after = path_c != 0u && path_c == b.path ? at_c - b.at : vec2(0);
   return min(distance(step, step_before), distance(step, step_after)) < 0.75 * length(step);
 }
@@ -74,7 +74,7 @@ int parts_of(float way, float size, int least, int most_parts) {
 
 // How many parts, by the way that the light takes and where the path ends.
 void divide(inout Span s, Trail t, bool taken, float way, float size) {
-  // Where the wall reflects all before b, the path ends there, and not halfway.
+  // Where the interface reflects all before b, the path ends there, and not halfway.
   float cosine = cosine_between(s.from.left, s.to.left, s.fan, (s.index_b - s.from.index) * s.per_index);
   bool ends = s.follows && !s.bridges && s.to.left.transmits && cosine == 0.0;
   float way_along = s.bridges ? way : s.follows ? t.way : 0.0;

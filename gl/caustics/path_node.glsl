@@ -5,18 +5,18 @@ struct Node {
   float index, flux;
   vec2 at;
   int tile;
-  Exit left;
+  Segment left;
   float way;  // TINTING: inside, m
 };
 
 Node node_at(int at, bool there, float index, vec2 elsewhere) {
   Node n;
-  vec4 to = texelFetch(NODE_HITS, LANDING_TEXELS * at);
-  vec4 wall = texelFetch(NODE_HITS, LANDING_TEXELS * at + 1);
+  vec4 to = texelFetch(NODE_HITS, HIT_TEXELS * at);
+  vec4 interface_at = texelFetch(NODE_HITS, HIT_TEXELS * at + 1);
   n.path = there ? texelFetch(NODE_SIGNATURES, at).x : 0u;
   n.index = index;
-  n.left = exit_of(to, wall, index);
-  n.tile = n.path != 0u ? wall_page(wall.w) : NO_TILE;
+  n.left = segment_of(to, interface_at, index);
+  n.tile = n.path != 0u ? interface_tile(interface_at.w) : NO_TILE;
   n.at = n.path != 0u ? map_position(to.xyz, n.tile) : elsewhere;
   n.flux = n.path != 0u ? to.w : 0.0;
   n.way = 0.0;

@@ -1,10 +1,10 @@
-// From landings to pieces of light for the spectral map. Between two neighbouring wavelengths of one
-// path the light is laid where the index between theirs sends it (exit_wall.glsl), each piece with the
+// From hits to splats of light for the spectral map. Between two neighbouring wavelengths of one
+// path the light is laid where the index between theirs sends it (outgoing_segment.glsl), each splat with the
 // colour of its own part of the band. Where the paths differ each wavelength keeps its half of the band.
 // Intervals go from long waves to short ones: in short waves the index changes fastest, and there two
 // intervals before tell the curve. Pieces closer together than photons are added first; X, Y and Z have
-// each a place of their own, or dispersion narrower than that would be lost. A piece is spread over the
-// parallelogram that the neighbouring photons' landings span: where that is wide, in a coarser level of
+// each a place of their own, or dispersion narrower than that would be lost. A splat is spread over the
+// parallelogram that the neighbouring photons' hits span: where that is wide, in a coarser level of
 // the map. REFINED: the intervals on the list, by all their wavelengths; else those of the coarse set
 // that are not on it. No branch saves time on a software rasteriser, so there are few.
 layout(local_size_x = 256) in;
@@ -14,8 +14,8 @@ layout(local_size_x = 256) in;
 #include "optics.glsl"
 #include "wide_sum.glsl"
 #include "thread.glsl"
-#define FOLLOWS_EXITS
-#include "exit_wall.glsl"
+#define FOLLOWS_SEGMENTS
+#include "outgoing_segment.glsl"
 
 struct Photon {  // as in photon_start.glsl
   uint cell;
@@ -29,7 +29,7 @@ layout(std430, binding = 6) readonly buffer Photons {
 };
 layout(std430, binding = 8) readonly buffer Slots { uint slot[]; };
 // As textures: a software rasteriser fetches a texel in one load, and storage number by number.
-uniform samplerBuffer landings;     // LANDING_TEXELS each
+uniform samplerBuffer landings;     // HIT_TEXELS each
 uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the way inside
 layout(std430, binding = 13) readonly buffer PathList {
   uint path_count, path_groups[3];
@@ -57,10 +57,10 @@ uniform int lane_first;
 uniform int lane_count;
 uniform int interval_first;
 uniform int interval_end;
-uniform int nodes;  // of the set whose landings these are
+uniform int nodes;  // of the set whose hits these are
 uniform int table_first;
 uniform uint chunks, chunk;  // only paths of this chunk
-uniform uint most;           // pieces that the list has room for
+uniform uint most;           // splats that the list has room for
 
 #ifdef REFINED
 #define NODE_HITS fine_landings
@@ -83,7 +83,7 @@ struct Path {
   uint signature;  // at a node where it hits something; 0: it never does
 };
 
-#include "landing_place.glsl"
+#include "map_position.glsl"
 #include "photon_footprint.glsl"
 #include "splat_collect.glsl"
 #include "interval_table.glsl"
@@ -140,8 +140,8 @@ Reference reference_of(Path path) {
       r.sample_number = i;
     }
   }
-  int at = LANDING_TEXELS * (path.coarse_first + r.sample_number);
-  r.tile = r.signature != 0u ? wall_page(texelFetch(landings, at + 1).w) : NO_TILE;
+  int at = HIT_TEXELS * (path.coarse_first + r.sample_number);
+  r.tile = r.signature != 0u ? interface_tile(texelFetch(landings, at + 1).w) : NO_TILE;
   r.at = map_position(texelFetch(landings, at).xyz, r.tile);
   return r;
 }

@@ -1,5 +1,5 @@
 // Where a photon's light is spread on the map: over the parallelogram that its neighbours' hits span.
-// Who includes this gives the photons, their hits and signatures, `grid` and landing_place.glsl.
+// Who includes this gives the photons, their hits and signatures, `grid` and map_position.glsl.
 
 const int NO_TILE = -1;
 const int MAX_ACROSS = 12;  // texels of its level that a footprint may be long
@@ -32,7 +32,7 @@ vec2 neighbour_step(ivec2 cell, ivec2 to, vec2 start, Reference r) {
   uint other = there ? at - 1u : 0u;
   uint index = (other * SLOTS + r.order) * LANES + r.sample_number;
   there = there && r.signature != 0u && texelFetch(signatures, int(index)).x == r.signature;
-  vec4 hit = texelFetch(landings, LANDING_TEXELS * int(index));
+  vec4 hit = texelFetch(landings, HIT_TEXELS * int(index));
   vec2 way = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
   float apart = max(dot(way, vec2(to)), 0.25);
   return there ? (map_position(hit.xyz, r.tile) - r.at) / apart : vec2(0);

@@ -6,7 +6,7 @@ layout(local_size_x = 256) in;
 #include "splat_list.glsl"
 #include "wide_sum.glsl"
 #include "thread.glsl"
-#include "receiver_pages.glsl"
+#include "receiver_atlas.glsl"
 // Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each. PAGES: then the same of their
 // layer.
 layout(std430, binding = 13) buffer MapSums { uint map_sum[]; };
@@ -61,7 +61,7 @@ Splat splat_at(uint word) {
   s.tile = (splat[word] & 31u) << 2 | y_level >> 3 & 3u;
   s.rect = vec4(0);
 #ifdef PAGES
-  s.rect = page_rect(light, max(int(s.tile), 1) - 1);
+  s.rect = tile_rect(light, max(int(s.tile), 1) - 1);
 #endif
   for (int c = 0; c < 3; c++) s.off[c] = unpackHalf2x16(splat[word + 6u + uint(c)]);
   vec3 leads = vec3(dot(s.off[0], s.way), dot(s.off[1], s.way), dot(s.off[2], s.way));

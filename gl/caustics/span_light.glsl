@@ -43,7 +43,7 @@ vec2 said_of(Span s, Part p, Sums before, Sums upto) {
 // Before it is absorbed.
 Glint light_of(Span s, Part p, Sums upto, inout Front front) {
   // Where the path changes somewhere between two nodes, its light changes evenly in the mean.
-  Exit first = s.a.left, second = s.b.left;
+  Segment first = s.a.left, second = s.b.left;
   if (p.owed) {
     first = s.z.left;
     second = s.a.left;
@@ -80,7 +80,7 @@ vec3 left_of(Span s, Part p, Sums before, Sums upto) {
   return exp(-way * per_m);
 }
 
-// By how much more than the nodes' own, W: light leaves the last walls, and is absorbed (both may be
+// By how much more than the nodes' own, W: light leaves the last interfaces, and is absorbed (both may be
 // below 0); and what would lie beyond the map.
 vec3 entry_of(vec2 said, float flux, float left, bool lands) {
   float left_said = said.x > 0.0 ? said.y / said.x : 1.0;

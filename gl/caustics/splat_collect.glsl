@@ -21,7 +21,7 @@ Splat no_splat() { return Splat(vec3(0), vec3(0), vec3(0), vec2(0), vec2(0), vec
 vec4 map_rect(int tile) {
   vec4 rect = vec4(0, 0, vec2(map_size));
 #ifdef PAGES
-  if (tile != NO_TILE) rect = page_rect(light, tile);
+  if (tile != NO_TILE) rect = tile_rect(light, tile);
 #endif
   return rect;
 }

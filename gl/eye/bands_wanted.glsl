@@ -2,25 +2,25 @@
 // level on. Level 0 holds every sample, level k every 2^k as one; levels stand one after another.
 
 #ifdef SPHERES
-// How far apart in pixels the ends of the spectrum leave the first back wall, as the eye would see
+// How far apart in pixels the ends of the spectrum leave the first back interface, as the eye would see
 // what they show; large where they show different things.
 float sphere_spread(Hit front, vec3 d, int first, int last) {
   vec3 at[2];
   int what[2];
   for (int k = 0; k < 2; k++) {
     float n = bands[k == 0 ? first : last].weight_n.w;
-    vec3 inner, wall_n, outer;
+    vec3 inner, interface_n, outer;
     refract_direction(d, front.n, 1.0 / n, inner);
     vec4 s = refractors[refractor].sphere;
-    wall_n = normalize(front.n - 2.0 * dot(front.n, inner) * inner);
-    refract_direction(inner, -wall_n, n, outer);
-    vec3 wall = s.xyz + s.w * wall_n;
-    at[k] = wall + scene_size * outer;
+    interface_n = normalize(front.n - 2.0 * dot(front.n, inner) * inner);
+    refract_direction(inner, -interface_n, n, outer);
+    vec3 interface_at = s.xyz + s.w * interface_n;
+    at[k] = interface_at + scene_size * outer;
     what[k] = 0;
     float t;
-    what[k] = receiver_hit(wall, outer, -touch * refractor_bounds.w, 1e30, t);
+    what[k] = receiver_hit(interface_at, outer, -touch * refractor_bounds.w, 1e30, t);
     if (what[k] >= 0) what[k] = receiver_part(what[k]);
-    at[k] = wall + min(t, scene_size) * outer;
+    at[k] = interface_at + min(t, scene_size) * outer;
   }
   return what[0] != what[1] ? 1e9 : distance(at[0], at[1]) / (pixel_angle * distance(eye, at[0]));
 }

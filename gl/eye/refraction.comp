@@ -56,7 +56,7 @@ ivec2 pixel_of(uint listed) {
   return ivec2(listed & 0xffffu, listed >> 16);
 }
 
-View eye_as_view() {
+View camera_view() {
   return View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);
 }
 
@@ -98,7 +98,7 @@ void look(ivec2 at);
 void aim_at(ivec2 at) {
   vec3 o;
   refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
-  view_ray(eye_as_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, sight);
+  view_ray(camera_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, sight);
 }
 
 #ifdef WALK

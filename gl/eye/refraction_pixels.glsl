@@ -47,7 +47,8 @@ void main() {
 #endif
   }
   bool met;
-  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met));
+  vec3 mirrored = seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met);
+  sum += mirror * (xyz_from_rgb * mirrored);
   write_pixel(pixel[listed], base, count, sum);
 }
 #endif

@@ -20,8 +20,8 @@ vec2 refractor_spectrum(int r) {
 }
 
 // What w shows, times its share. What is not followed shows what the rest has shown.
-vec3 shown(Way w) {
-  Way pending[PENDING];
+vec3 shown(PathState w) {
+  PathState pending[PENDING];
   for (int k = 0; k < PENDING; k++) {
     pending[k] = w;
     pending[k].share = 0.0;
@@ -58,12 +58,12 @@ vec3 shown(Way w) {
   return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0);
 }
 
-Way start;
+PathState start;
 Interface first;
 
 void look(ivec2 at) {
   aim_at(at);
-  start = Way(eye, sight, 1.0, 0u, 0u, -1, -1, -1);
+  start = PathState(eye, sight, 1.0, 0u, 0u, -1, -1, -1);
   first.hit.t = 1e30;
   found = next_interface(start, first);
   front = first.hit;

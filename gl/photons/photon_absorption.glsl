@@ -1,5 +1,5 @@
 // What is left of a photon's light after its way inside, in the parts of its wavelength's band below
-// and above the node. TINTING: what attenuates does so by wavelength, and landings keep the length of
+// and above the node. TINTING: what attenuates does so by wavelength, and hits keep the length of
 // their way, which has it at all wavelengths; else all shares are the node's own.
 
 #ifdef TINTING

@@ -18,21 +18,21 @@ void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
 float mirror(PhotonRay photon, uint path, float reflected) {
   if (reflected <= 0.0) return 0.0;
   Hit front = photon.front;
-  Landing to = land(front.p, reflect(photon.d, front.n), -touch * refractor_bounds.w, 1e30);
+  ReceiverHit to = meet_receiver(front.p, reflect(photon.d, front.n), -touch * refractor_bounds.w, 1e30);
   if (to.state < HELD) return reflected;
   keep_hit(photon, PhotonHit(EXITS, to.place, reflected * photon.flux,
                              signature_of(path * 17u + to.receiver, to, uint(front.refractor)), 0.0,
-                             vec4(front.p, wall_word(front.n, false, to.page))));
+                             vec4(front.p, interface_word(front.n, false, to.tile))));
   return 0.0;
 }
 
 // What leaves at interface `order`. Returns the share that is lost.
 float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, float way) {
-  Landing to = land(o.p, o.d, -touch * refractor_bounds.w, 1e30);
+  ReceiverHit to = meet_receiver(o.p, o.d, -touch * refractor_bounds.w, 1e30);
   if (to.state < HELD) return o.share;
   keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux,
                              signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor)), way,
-                             vec4(o.p, wall_word(o.n, true, to.page))));
+                             vec4(o.p, interface_word(o.n, true, to.tile))));
   return 0.0;
 }
 

@@ -22,18 +22,18 @@ struct PhotonHit {
   float flux;  // W, without what is absorbed where hits keep the length of their way inside
   uint signature;
   float way;  // that length, m
-  vec4 wall;  // as in exit_wall.glsl
+  vec4 interface_at;  // as in outgoing_segment.glsl
 };
 
 void keep_hit(PhotonRay ray, PhotonHit hit);
 
-// Where light comes to a receiver, and whether the light's map or a page of it holds that.
-const int NO_RECEIVER = 0, NOT_HELD = 1, HELD = 2, HELD_ON_PAGE = 3;
+// Where light comes to a receiver, and whether the light's map or a tile of it holds that.
+const int NO_RECEIVER = 0, NOT_HELD = 1, HELD = 2, HELD_ON_TILE = 3;
 
-struct Landing {
+struct ReceiverHit {
   int state;
   vec3 at, place;  // place: what is kept of it
-  int page;
+  int tile;
   uint receiver;
 };
 
@@ -41,24 +41,24 @@ struct Landing {
 uniform bool fits_pages;  // they are yet to be chosen: coordinates of any chart will do
 layout(binding = 12) uniform samplerBuffer chart_rows;  // two a chart: from a place to its u, and v
 
-// Where the light's map does not hold a place: the page of a chart's side on which it lies; false where
+// Where the light's map does not hold a place: the tile of a chart's side on which it lies; false where
 // there is none.
-bool beside_map(int side, inout vec3 place, out int page) {
+bool beside_map(int side, inout vec3 place, out int tile) {
   vec3 at = place;
-  page = page_of_side(light, side);
+  tile = tile_of_side(light, side);
   if (fits_pages) {
     vec4 to_u = texelFetch(chart_rows, side >> 1 << 1), to_v = texelFetch(chart_rows, side | 1);
     place = vec3(dot(to_u.xyz, at) + to_u.w, dot(to_v.xyz, at) + to_v.w, side);
     return true;
   }
-  return page >= 0 && is_within(page_rect(light, max(page, 0)), place_on_page(light, max(page, 0), at));
+  return tile >= 0 && is_within(tile_rect(light, max(tile, 0)), place_on_tile(light, max(tile, 0), at));
 }
 #endif
 
 // The first receiver on the ray.
-Landing land(vec3 p, vec3 d, float t_min, float t_max) {
+ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
   Light l = lights[light];
-  Landing to = Landing(NO_RECEIVER, p, p, -1, 1u);
+  ReceiverHit to = ReceiverHit(NO_RECEIVER, p, p, -1, 1u);
   vec3 uvz;
   float t;
   int r = receiver_hit(p, d, t_min, t_max, t);
@@ -73,20 +73,20 @@ Landing land(vec3 p, vec3 d, float t_min, float t_max) {
   to.state = held ? HELD : NOT_HELD;
 #ifdef PAGES
   int side = chart_side(r, d);
-  if (!held && beside_map(side, to.place, to.page)) {
+  if (!held && beside_map(side, to.place, to.tile)) {
     to.receiver += 7919u * (uint(side) + 1u);  // parts of a mesh go on across its charts, places do not
-    to.state = HELD_ON_PAGE;
+    to.state = HELD_ON_TILE;
     return to;
   }
-  to.page = -1;
+  to.tile = -1;
 #endif
   return to;
 }
 
 // A hit's signature; `path` counts the receiver too.
-uint signature_of(uint path, Landing to, uint owner) {
+uint signature_of(uint path, ReceiverHit to, uint owner) {
 #ifdef PAGES
-  return (path << 8 & ~ON_A_PAGE) | 0x80000000u | (to.state == HELD_ON_PAGE ? ON_A_PAGE : 0u) | owner;
+  return (path << 8 & ~ON_A_TILE) | 0x80000000u | (to.state == HELD_ON_TILE ? ON_A_TILE : 0u) | owner;
 #else
   return path << 8 | 0x80000000u | owner;
 #endif

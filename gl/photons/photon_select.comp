@@ -51,9 +51,9 @@ const float MOST_WRONG = 0.05;
 const float OFF_CURVE = 0.1, OFF_LINE = 0.25, OFF_ALONE = 2e-3;
 
 #include "optics.glsl"
-#define FOLLOWS_EXITS
-#include "exit_wall.glsl"
-#include "landing_place.glsl"
+#define FOLLOWS_SEGMENTS
+#include "outgoing_segment.glsl"
+#include "map_position.glsl"
 
 // A photon's path at the coarse wavelengths.
 struct Samples {
@@ -61,7 +61,7 @@ struct Samples {
   vec2 at[NODES];
   float flux[NODES], index[NODES];
   int tile[NODES];
-  Exit left[NODES];
+  Segment left[NODES];
 #ifdef TINTING
   float way[NODES], per_m[NODES];
 #endif
@@ -74,14 +74,14 @@ int read_samples(uint first) {
   int reference = 0;
   for (int k = 0; k < NODES; k++) {
     uint found = SIGNATURE(first + uint(k));
-    vec4 to = landing[LANDING_TEXELS * (first + uint(k))];
-    vec4 wall = landing[LANDING_TEXELS * (first + uint(k)) + 1u];
+    vec4 to = landing[HIT_TEXELS * (first + uint(k))];
+    vec4 interface_at = landing[HIT_TEXELS * (first + uint(k)) + 1u];
     vec2 spectrum = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].xy;
     samples.path[k] = found;
-    samples.tile[k] = found != 0u ? wall_page(wall.w) : -1;
+    samples.tile[k] = found != 0u ? interface_tile(interface_at.w) : -1;
     samples.at[k] = found != 0u ? map_position(to.xyz, samples.tile[k]) : vec2(0);
     samples.index[k] = spectrum.x;
-    samples.left[k] = exit_of(to, wall, spectrum.x);
+    samples.left[k] = segment_of(to, interface_at, spectrum.x);
     samples.flux[k] = found != 0u ? samples.left[k].arrives : 0.0;
 #ifdef TINTING
     samples.way[k] = uintBitsToFloat(signature[first + uint(k)].y);
@@ -99,13 +99,13 @@ float step_to(ivec2 c, uint order, uint lane, uint path, int tile, vec2 here) {
   there = there && at != 0u;
   uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
   there = there && SIGNATURE(index) == path;
-  return there ? distance(map_position(landing[LANDING_TEXELS * index].xyz, tile), here) : 0.0;
+  return there ? distance(map_position(landing[HIT_TEXELS * index].xyz, tile), here) : 0.0;
 }
 
 // What the map resolves of this photon, in texels.
 float resolved(ivec2 cell, uint order, uint first, uint reference) {
-  uint path = SIGNATURE(first + reference), at = LANDING_TEXELS * (first + reference);
-  int tile = path != 0u ? wall_page(landing[at + 1u].w) : -1;
+  uint path = SIGNATURE(first + reference), at = HIT_TEXELS * (first + reference);
+  int tile = path != 0u ? interface_tile(landing[at + 1u].w) : -1;
   vec2 here = map_position(landing[at].xyz, tile);
   float a = path != 0u ? step_to(cell + ivec2(1, 0), order, reference, path, tile, here) : 0.0;
   float b = path != 0u ? step_to(cell + ivec2(0, 1), order, reference, path, tile, here) : 0.0;
@@ -120,7 +120,7 @@ float bend_at(int k) {
                  samples.path[k] == samples.path[after];
   float span = samples.index[after] - samples.index[before];
   float t = span != 0.0 ? (samples.index[k] - samples.index[before]) / span : 0.5;
-  Exit a = samples.left[before], b = samples.left[after];
+  Segment a = samples.left[before], b = samples.left[after];
   vec3 straight = place_between(a, b, fan_between(a, b, vec3(0)), t);
   return on_path ? distance(samples.at[k], map_position(straight, samples.tile[k])) : -1.0;
 }

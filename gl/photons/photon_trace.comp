@@ -5,14 +5,14 @@ layout(local_size_x = 256) in;
 #include "wide_sum.glsl"
 #include "thread.glsl"
 #include "receiver.glsl"
-#include "exit_wall.glsl"
+#include "outgoing_segment.glsl"
 
-// [((photon * SLOTS + order) * LANES + lane) * LANDING_TEXELS]: where it lands, and w: flux for unit
-// weight, W; then where it left its last refractor, and w: wall_word(). While pages are chosen: chart
+// [((photon * SLOTS + order) * LANES + lane) * HIT_TEXELS]: where it lands, and w: flux for unit
+// weight, W; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
 // coordinates, and the chart's side.
 layout(std430, binding = 9) writeonly buffer Landings { vec4 landing[]; };
-// Receiver, facets along the way and whether on a page, equal for paths that vary continuously;
-// refractor in the low eight bits; 0: no landing. TINTING: and the length of its way inside, m.
+// Receiver, facets along the way and whether on a tile, equal for paths that vary continuously;
+// refractor in the low eight bits; 0: no hit. TINTING: and the length of its way inside, m.
 #ifdef TINTING
 layout(std430, binding = 10) writeonly buffer Signatures { uvec2 signature[]; };
 #else
@@ -37,7 +37,7 @@ uniform int lane_first;  // wavelengths lane_first .. lane_first + LANES - 1 in 
 uniform int lane_count;
 uniform int ledger_first;  // wavelengths before this one are in the ledger already
 // ALL: consecutive wavelengths of all photons; COARSE: the coarse set of all photons; REFINED: all
-// wavelengths of the intervals on the list, landings by their place on it.
+// wavelengths of the intervals on the list, hits by their place on it.
 const int ALL = 0, COARSE = 1, REFINED = 2;
 uniform int set;
 uniform int lane_stride;
@@ -59,8 +59,8 @@ shared uint more_sum[5], less_sum[5];
 
 void keep_hit(PhotonRay photon, PhotonHit hit) {
   uint path = photon.item * SLOTS + hit.slot, index = path * lane_stride + photon.lane;
-  landing[LANDING_TEXELS * index] = vec4(hit.place, hit.flux);
-  landing[LANDING_TEXELS * index + 1u] = hit.wall;
+  landing[HIT_TEXELS * index] = vec4(hit.place, hit.flux);
+  landing[HIT_TEXELS * index + 1u] = hit.interface_at;
   path_mark[path] = 1u;
 #ifdef TINTING
   signature[index] = uvec2(hit.signature, floatBitsToUint(hit.way));

@@ -1,8 +1,8 @@
 // A photon's light at wavelength i on the general way (walk.glsl): at each interface the stronger
-// branch goes on and the other waits. A landing's slot follows from its path, so that neighbouring
+// branch goes on and the other waits. A hit's slot follows from its path, so that neighbouring
 // photons and wavelengths have the same path in the same slot.
 
-#define KEEPS_WALL
+#define KEEPS_INTERFACE
 #include "walk.glsl"
 
 const int MOST_SEGMENTS = 128;  // of one photon's light; fewer are met but in a hall of mirrors
@@ -29,17 +29,17 @@ struct Ends {
   float reflected, absorbed, trapped, missed;
 };
 
-void end_way(PhotonRay photon, Way w, Landing to, uint owner, inout uint used, inout Ends e) {
+void end_way(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout uint used, inout Ends e) {
   int slot = to.state >= HELD ? take_slot(w.path, used) : -1;
   if (slot >= 0) {
     bool last = w.transmitted && w.inside == 0u && w.refractor == int(owner);
-    vec3 n = dot(w.wall_n, w.d) < 0.0 ? -w.wall_n : w.wall_n;
+    vec3 n = dot(w.interface_n, w.d) < 0.0 ? -w.interface_n : w.interface_n;
     keep_hit(photon, PhotonHit(slot, to.place, w.share * photon.flux,
                                signature_of(w.path * 31u + to.receiver, to, owner), 0.0,
-                               vec4(w.p, wall_word(n, last, to.page))));
+                               vec4(w.p, interface_word(n, last, to.tile))));
   } else if (to.state >= HELD || (to.state == NO_RECEIVER && w.inside != 0u)) {
     e.trapped += w.share;
-  } else if (w.walls == 0 && w.inside == 0u) {
+  } else if (w.interfaces == 0 && w.inside == 0u) {
     e.reflected += w.share;
   } else {
     e.missed += w.share;
@@ -50,9 +50,9 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
   wavelength = photon.wavelength;
   vec3 o = photon.o, d = photon.d;
-  Way pending[PENDING];
-  Way w = Way(o, d, 1.0, 0u, 0u, -1, -1, -1, d, false);
-  for (int k = 0; k < PENDING; k++) pending[k] = Way(o, d, 0.0, 0u, 0u, 0, -1, -1, d, false);
+  PathState pending[PENDING];
+  PathState w = PathState(o, d, 1.0, 0u, 0u, -1, -1, -1, d, false);
+  for (int k = 0; k < PENDING; k++) pending[k] = PathState(o, d, 0.0, 0u, 0u, 0, -1, -1, d, false);
   Interface h;
   h.hit.t = 1e30;
   bool going = photon.reached && next_interface(w, h);
@@ -69,7 +69,7 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     bool met = next_interface(w, h);
     // What leaves a refractor that touches a receiver lands there.
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
-    Landing to = land(w.p, w.d, t_min, met ? h.hit.t : 1e30);
+    ReceiverHit to = meet_receiver(w.p, w.d, t_min, met ? h.hit.t : 1e30);
 #ifdef ABSORBING
     if (w.inside != 0u && (met || to.state != NO_RECEIVER)) {
       float way = to.state != NO_RECEIVER ? distance(to.at, w.p) : h.hit.t;

@@ -1,4 +1,4 @@
-// The light that refractors send to a place on a receiver, as the spectral map and its pages hold it.
+// The light that refractors send to a place on a receiver, as the spectral map and its tiles hold it.
 
 const float MOST_TAPS = 4.0;
 
@@ -58,23 +58,23 @@ vec2 step_above(vec2 at) { return vec2(0); }
 #endif
 
 #ifdef PAGES
-// rgb irradiance of the page on that side of a chart: it holds what reaches that side, whatever the light
+// rgb irradiance of the tile on that side of a chart: it holds what reaches that side, whatever the light
 // sees of it. lit: the light meets a refractor.
-vec3 page_irradiance(int light, vec3 p, int side, bool lit) {
-  int page = page_of_side(light, side);
-  vec4 rect = page_rect(light, max(page, 0)), across = page_across(light, max(page, 0));
-  vec2 texels = place_on_page(light, max(page, 0), p);
+vec3 tile_irradiance(int light, vec3 p, int side, bool lit) {
+  int tile = tile_of_side(light, side);
+  vec4 rect = tile_rect(light, max(tile, 0)), across = tile_across(light, max(tile, 0));
+  vec2 texels = place_on_tile(light, max(tile, 0), p);
   float layer_side = float(textureSize(spectral_map, 0).x);
   vec2 at = texels / layer_side, to_right = step_right(at), to_above = step_above(at);
   vec3 irradiance = vec3(0);
-  if (lit && page >= 0 && is_within(rect, texels)) {
+  if (lit && tile >= 0 && is_within(rect, texels)) {
 #ifdef RECEIVER_HIERARCHY
     float steep = abs(dot(face_n, across.xyz));
 #else
     const float steep = 1.0;
 #endif
     irradiance = rgb_from_xyz *
-                 layer_mean(page_layer(light), at, to_right, to_above, rect / layer_side, false) * steep;
+                 layer_mean(atlas_layer(light), at, to_right, to_above, rect / layer_side, false) * steep;
   }
   return irradiance;
 }

@@ -1,9 +1,9 @@
 // Receivers and the light on them.
 
-#include "receiver_pages.glsl"
+#include "receiver_atlas.glsl"
 
 uniform sampler2DArray spectral_map;   // XYZ flux over window area, one layer a light; then irradiance
-                                       // on receivers, one layer for the pages of a light
+                                       // on receivers, one layer for the tiles of a light
 #ifdef TEXTURED
 uniform sampler2DArray surface_texture;
 #endif
@@ -17,7 +17,7 @@ uniform vec3 background;  // rgb radiance
 uniform vec4 refractor_bounds;  // centre, radius of all refractors
 uniform float scene_size;
 
-// How far behind a refractor's wall a receiver may lie to be lit by what leaves there: a refractor
+// How far behind a refractor's interface a receiver may lie to be lit by what leaves there: a refractor
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
 
@@ -41,7 +41,7 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
   // Before any pixel of the four goes its own way.
   vec2 at = warp(light, uvz.xy), to_right = step_right(at), to_above = step_above(at);
 #ifdef PAGES
-  caustic = page_irradiance(light, p, side, l.misc.w != 0.0);
+  caustic = tile_irradiance(light, p, side, l.misc.w != 0.0);
 #endif
 #endif
   if (!receiver_lit(light, p, d, distance_m)) return;

@@ -56,7 +56,7 @@ int receiver_part(int receiver) {
 }
 
 #ifdef PAGES
-// The side of a receiver's chart at which light of direction d arrives, as pages are found by it.
+// The side of a receiver's chart at which light of direction d arrives, as tiles are found by it.
 int chart_side(int receiver, vec3 d) {
   int chart = receiver;
   vec3 n = receivers[min(receiver, RECEIVER_ROOM - 1)].normal.xyz;
