@@ -1,10 +1,10 @@
 // One coarser picture of a finished map, for eyes that see many texels at once: the flux of four over
-// their window area; where texels are alike, as those of a page are, their mean.
+// their window area; where texels are alike, as those of a tile are, their mean.
 layout(local_size_x = 32, local_size_y = 16) in;
 uniform sampler2DArray map_levels;
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 uniform int light;
-uniform int layer;  // another than the light's: of its pages
+uniform int layer;  // another than the light's: of its tiles
 uniform int map_size;
 uniform int level;
 #include "texel_sizes.glsl"

@@ -1,15 +1,15 @@
 // Fixed-point sums to XYZ flux over window area: one level of the map, with what the coarser levels hold laid
 // over it. On those it is flux over the area that a texel lights through the bilinear filter, of finer texels
-// by their own areas: which keeps the sum, and shows no texel to be narrower than the next. A layer of pages
-// comes to irradiance, each page by itself.
+// by their own areas: which keeps the sum, and shows no texel to be narrower than the next. A layer of tiles
+// comes to irradiance, each tile by itself.
 layout(local_size_x = 32, local_size_y = 16) in;
 #include "common.glsl"
-#include "receiver_pages.glsl"
+#include "receiver_atlas.glsl"
 layout(std430, binding = BINDING_MAP_SUMS) readonly buffer MapSums { uint map_sum[]; };
 uniform sampler2DArray coarser_map;  // the same texture: its next level is done
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 uniform int light;
-uniform int layer;  // LIGHTS or more: of the light's pages
+uniform int layer;  // LIGHTS or more: of the light's tiles
 uniform uint map_texels;
 uniform int map_size;
 uniform int level;
@@ -36,15 +36,15 @@ uint level_offset(int l) {
 
 #ifdef PAGES
 void resolve_page(ivec2 texel, vec3 flux) {
-  int page = page_of_block(light, (texel << level) / (map_size / PAGE_BLOCKS));
-  vec4 rect = page_rect(light, max(page, 0)) * exp2(-float(level));
-  // At its edges a page's coarser texels have no neighbours but themselves.
+  int tile = tile_of_block(light, (texel << level) / (map_size / PAGE_BLOCKS));
+  vec4 rect = tile_rect(light, max(tile, 0)) * exp2(-float(level));
+  // At its edges a tile's coarser texels have no neighbours but themselves.
   vec2 at = clamp(0.5 * (vec2(texel) + 0.5), 0.5 * rect.xy + 0.5, 0.5 * rect.zw - 0.5);
   if (level + 1 < levels)
     flux += 0.25 * textureLod(coarser_map, vec3(at / float(map_size >> (level + 1)), layer),
                               float(level + 1)).xyz;
-  if (level == 0) flux /= page_across(light, max(page, 0)).w;
-  imageStore(map, ivec3(texel, layer), page < 0 ? vec4(0) : vec4(flux, 1));
+  if (level == 0) flux /= tile_across(light, max(tile, 0)).w;
+  imageStore(map, ivec3(texel, layer), tile < 0 ? vec4(0) : vec4(flux, 1));
 }
 #endif
 

@@ -1,11 +1,12 @@
-// Adds listed pieces to their level of the map, part by part and each over four texels, which together get
+// Adds listed splats to their level of the map, part by part and each over four texels, which together get
 // all of it, to the last unit. Y goes by what a box of the part's extent covers of them, so that parts
 // which lie side by side make an even light, whatever their distance; X and Z beside it by how far they lie
 // from it, however little.
 layout(local_size_x = 256) in;
 #include "splat_list.glsl"
 #include "wide_sum.glsl"
-#include "receiver_pages.glsl"
+#include "thread.glsl"
+#include "receiver_atlas.glsl"
 // Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each. PAGES: then the same of their
 // layer.
 layout(std430, binding = BINDING_MAP_SUMS) buffer MapSums { uint map_sum[]; };
@@ -32,7 +33,43 @@ void add(uint texel, int channel, uint v) {
 #endif
 }
 
-// Of a piece in one level.
+// As listed (splat_list.glsl), texels.
+struct Splat {
+  uvec3 units;
+  vec2 centre, across, way, skew;
+  vec2 aside;   // half of its width beside the way across
+  vec2 off[3];  // of X, Y and Z from the middle
+  vec3 slope;   // along the way X, Y and Z grow or fall evenly, as their means tell
+  int level;
+  float next_share;
+  uint tile;  // and one more; 0: the map
+  vec4 rect;  // of the tile
+};
+
+Splat splat_at(uint word) {
+  Splat s;
+  uint y_level = splat[word + 1u];
+  s.units = uvec3(splat[word + 3u], splat[word + 4u], splat[word + 5u]);
+  s.across = unpackHalf2x16(splat[word + 2u]);
+  s.way = unpackHalf2x16(splat[word + 9u]);
+  s.skew = unpackHalf2x16(splat[word + 10u]);
+  vec2 rest = unpackHalf2x16(splat[word + 11u]);
+  s.aside = rest.x * abs(s.across.yx) / max(length(s.across), 1e-20);
+  s.next_share = rest.y;
+  s.level = int(y_level & 7u);
+  s.centre = vec2(splat[word] >> 5, y_level >> 5) / 32768.0;
+  s.tile = (splat[word] & 31u) << 2 | y_level >> 3 & 3u;
+  s.rect = vec4(0);
+#ifdef PAGES
+  s.rect = tile_rect(light, max(int(s.tile), 1) - 1);
+#endif
+  for (int c = 0; c < 3; c++) s.off[c] = unpackHalf2x16(splat[word + 6u + uint(c)]);
+  vec3 leads = vec3(dot(s.off[0], s.way), dot(s.off[1], s.way), dot(s.off[2], s.way));
+  s.slope = clamp(leads / max(dot(s.way, s.way), 1e-20), -1.0 / 6.0, 1.0 / 6.0);
+  return s;
+}
+
+// Of a splat in one level.
 struct Grid {
   int level, across, along;
   float size;
@@ -47,85 +84,100 @@ Grid grid_of(int level, float wide, float way) {
   return g;
 }
 
-void main() {
-  uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
-         gl_LocalInvocationID.x;
-  if (i >= min(splat_count, most)) return;
-  uint word = i * SPLAT_WORDS, y_level = splat[word + 1u];
-  uvec3 units = uvec3(splat[word + 3u], splat[word + 4u], splat[word + 5u]), given = uvec3(0);
-  vec2 across = unpackHalf2x16(splat[word + 2u]), way = unpackHalf2x16(splat[word + 9u]);
-  vec2 skew = unpackHalf2x16(splat[word + 10u]), rest = unpackHalf2x16(splat[word + 11u]);
-  vec2 to_x = unpackHalf2x16(splat[word + 6u]), to_y = unpackHalf2x16(splat[word + 7u]);
-  vec2 to_z = unpackHalf2x16(splat[word + 8u]);
-  float next_share = rest.y;
-  int level = int(y_level & 7u);
-  vec2 centre = vec2(splat[word] >> 5, y_level >> 5) / 32768.0, whole_high = vec2(float(map_size) - 0.01);
+// A cell of a grid: its number along and across, from 0.
+struct Cell {
+  float row, column;
+};
+
+Cell cell_of(Grid g, int k) {
+  float row = floor((float(k) + 0.5) / float(g.across));
+  return Cell(row, float(k) - row * float(g.across));
+}
+
+// Shares of X, Y and Z that have been given when the cell is.
+vec3 given_upto(Splat s, Grid g, Cell c) {
+  if (g.along == 1) return vec3((c.column + 1.0) / float(g.across));
+  float per_row = 1.0 / float(g.along), t = c.row * per_row;
+  vec3 upto = t + 6.0 * s.slope * t * (t - 1.0);
+  return upto +
+         (c.column + 1.0) / float(g.across) * per_row * (1.0 + 6.0 * s.slope * (2.0 * t + per_row - 1.0));
+}
+
+// Where the middle of the cell's Y lies. Y's parts share among texels what they cover of them.
+vec2 middle_of(Splat s, Grid g, Cell c, vec2 off_y) {
+  float at_part = (c.column + 0.5) / float(g.across) - 0.5, per_row = 1.0 / float(g.along);
+  vec2 middle =
+      s.centre + s.across * at_part + s.skew * abs(at_part) + s.way * ((c.row + 0.5) * per_row - 0.5);
+  vec2 part = (s.across + sign(at_part) * s.skew) / float(g.across);
+  vec2 extent = clamp((s.aside + abs(part) + abs(s.way) * per_row) / g.size, LEAST_EXTENT, 1.0);
+  vec2 exact = (middle + off_y) / g.size - 0.5, whole_texels = floor(exact);
+  return (whole_texels + clamp((exact - whole_texels - 0.5) / extent + 0.5, 0.0, 1.0) + 0.5) * g.size;
+}
+
+// Where in its texels a level takes light, and where it begins.
+struct Target {
+  vec2 low, high;
+  uint first;
+  int side;
+};
+
+Target target_of(Splat s, Grid g) {
+  Target t = Target(vec2(0), vec2(float(map_size) - 0.01), level_offset(g.level), map_size >> g.level);
 #ifdef PAGES
-  uint page = (splat[word] & 31u) << 2 | y_level >> 3 & 3u;  // and one more; 0: the map
-  vec4 rect = page_rect(light, max(int(page), 1) - 1);
-  uint layer_first = page > 0u ? map_texels : 0u;
-#else
-  const uint layer_first = 0u;
+  t.low = s.tile > 0u ? s.rect.xy + 0.5 * g.size : t.low;
+  t.high = s.tile > 0u ? s.rect.zw - 0.5 * g.size : t.high;
+  t.first += s.tile > 0u ? map_texels : 0u;
 #endif
-  float wide = length(across) + length(skew), way_length = max(abs(way.x), abs(way.y));
-  vec2 aside = rest.x * abs(across.yx) / max(length(across), 1e-20);
-  Grid fine = grid_of(level, wide, way_length), next = grid_of(level + 1, wide, way_length);
+  return t;
+}
+
+// Shares one of X, Y and Z among the four texels around its place, to the last unit.
+void add_around(Target t, Splat s, float size, vec2 p, int channel, uint units) {
+#ifdef PAGES
+  // What would lie beyond a tile's edge, where the receiver ends, is folded back.
+  p = s.tile > 0u ? min(max(p, 2.0 * s.rect.xy - p), max(2.0 * s.rect.zw - p, s.rect.xy)) : p;
+#endif
+  vec2 at = clamp(p, t.low, t.high) / size - 0.5;
+  ivec2 base = ivec2(floor(at)), last = ivec2(t.side - 1);
+  vec2 f = at - vec2(base);
+  ivec2 lo = clamp(base, ivec2(0), last), hi = clamp(base + 1, ivec2(0), last);
+  uint row_lo = t.first + uint(lo.y * t.side), row_hi = t.first + uint(hi.y * t.side);
+  float whole = float(units);
+  uint part_0 = min(uint(whole * ((1.0 - f.x) * (1.0 - f.y))), units);
+  uint part_1 = min(uint(whole * (f.x * (1.0 - f.y))), units - part_0);
+  uint part_2 = min(uint(whole * ((1.0 - f.x) * f.y)), units - part_0 - part_1);
+  add(row_lo + uint(lo.x), channel, part_0);
+  add(row_lo + uint(hi.x), channel, part_1);
+  add(row_hi + uint(lo.x), channel, part_2);
+  add(row_hi + uint(hi.x), channel, units - part_0 - part_1 - part_2);
+}
+
+void main() {
+  uint listed = thread_number();
+  if (listed >= min(splat_count, most)) return;
+  Splat s = splat_at(listed * SPLAT_WORDS);
+  float wide = length(s.across) + length(s.skew), way = max(abs(s.way.x), abs(s.way.y));
+  Grid fine = grid_of(s.level, wide, way), next = grid_of(s.level + 1, wide, way);
   int fine_count = fine.across * fine.along;
-  int count = fine_count + (next_share > 0.0 ? next.across * next.along : 0);
-  // Along the way X, Y and Z grow or fall evenly, as their means tell.
-  vec3 slope = clamp(vec3(dot(to_x, way), dot(to_y, way), dot(to_z, way)) / max(dot(way, way), 1e-20),
-                     -1.0 / 6.0, 1.0 / 6.0);
+  int count = fine_count + (s.next_share > 0.0 ? next.across * next.along : 0);
+  uvec3 given = uvec3(0);
   for (int n = 0; n < count; n++) {
     bool coarse = n >= fine_count;
     Grid g = fine;
     if (coarse) g = next;
-    int k = n - (coarse ? fine_count : 0);
-    float row = floor((float(k) + 0.5) / float(g.across)), column = float(k) - row * float(g.across);
-    float at_part = (column + 0.5) / float(g.across) - 0.5, per_row = 1.0 / float(g.along);
-    vec2 middle = centre + across * at_part + skew * abs(at_part) + way * ((row + 0.5) * per_row - 0.5);
-    vec2 part = (across + sign(at_part) * skew) / float(g.across);
-    vec2 extent = clamp((aside + abs(part) + abs(way) * per_row) / g.size, LEAST_EXTENT, 1.0);
-    // So much of each has been given when this part is.
-    float t = row * per_row;
-    vec3 upto = t + 6.0 * slope * t * (t - 1.0);
-    upto += (column + 1.0) / float(g.across) * per_row * (1.0 + 6.0 * slope * (2.0 * t + per_row - 1.0));
-    if (g.along == 1) upto = vec3((column + 1.0) / float(g.across));
-    upto = coarse ? 1.0 - next_share * (1.0 - upto) : (1.0 - next_share) * upto;
-    uvec3 upto_units = n + 1 == count ? units : clamp(uvec3(vec3(units) * upto), given, units);
+    Cell cell = cell_of(g, n - (coarse ? fine_count : 0));
+    vec3 upto = given_upto(s, g, cell);
+    upto = coarse ? 1.0 - s.next_share * (1.0 - upto) : (1.0 - s.next_share) * upto;
+    uvec3 upto_units = n + 1 == count ? s.units : clamp(uvec3(vec3(s.units) * upto), given, s.units);
     uvec3 here = upto_units - given;
     given = upto_units;
-    uint first = level_offset(g.level) + layer_first;
-    int side = map_size >> g.level;
-    vec2 low = vec2(0), high = whole_high;
-#ifdef PAGES
-    low = page > 0u ? rect.xy + 0.5 * g.size : low;
-    high = page > 0u ? rect.zw - 0.5 * g.size : high;
-#endif
-    // Y's parts share among texels what they cover of them; X and Z lie beside it.
-    vec2 off[3] = vec2[3](to_x, to_y, to_z);
-    for (int c = 0; c < 3; c++) off[c] -= (1.0 - per_row * per_row) * slope[c] * way;
-    middle += off[1];
-    vec2 exact = middle / g.size - 0.5, whole_texels = floor(exact);
-    middle = (whole_texels + clamp((exact - whole_texels - 0.5) / extent + 0.5, 0.0, 1.0) + 0.5) * g.size;
-    for (int c = 0; c < 3; c++) {
-      vec2 p = middle + (off[c] - off[1]);
-#ifdef PAGES
-      // What would lie beyond a page's edge, where the receiver ends, is folded back.
-      p = page > 0u ? min(max(p, 2.0 * rect.xy - p), max(2.0 * rect.zw - p, rect.xy)) : p;
-#endif
-      vec2 at = clamp(p, low, high) / g.size - 0.5;
-      ivec2 base = ivec2(floor(at));
-      vec2 f = at - vec2(base);
-      ivec2 lo = clamp(base, ivec2(0), ivec2(side - 1)), hi = clamp(base + 1, ivec2(0), ivec2(side - 1));
-      uint row_lo = first + uint(lo.y * side), row_hi = first + uint(hi.y * side);
-      float whole = float(here[c]);
-      uint part_0 = min(uint(whole * ((1.0 - f.x) * (1.0 - f.y))), here[c]);
-      uint part_1 = min(uint(whole * (f.x * (1.0 - f.y))), here[c] - part_0);
-      uint part_2 = min(uint(whole * ((1.0 - f.x) * f.y)), here[c] - part_0 - part_1);
-      add(row_lo + uint(lo.x), c, part_0);
-      add(row_lo + uint(hi.x), c, part_1);
-      add(row_hi + uint(lo.x), c, part_2);
-      add(row_hi + uint(hi.x), c, here[c] - part_0 - part_1 - part_2);
-    }
+    // X and Z lie beside Y, however little.
+    float per_row = 1.0 / float(g.along);
+    vec2 off[3] = s.off;
+    for (int c = 0; c < 3; c++) off[c] -= (1.0 - per_row * per_row) * s.slope[c] * s.way;
+    vec2 middle = middle_of(s, g, cell, off[1]);
+    Target target = target_of(s, g);
+    for (int c = 0; c < 3; c++)
+      add_around(target, s, g.size, middle + (off[c] - off[1]), c, here[c]);
   }
 }

@@ -1,5 +1,5 @@
 // Pieces of light on their way to the map: the place of the middle in texels (12.15 fixed point; below x the
-// high five bits of the page's number from 1, 0 for the map; below y the low two, then the level in three),
+// high five bits of the tile's number from 1, 0 for the map; below y the low two, then the level in three),
 // the way across the footprint (two halves), XYZ in map units, so that the list is what is
 // summed, and the ways from that place to where X, Y and Z lie in the mean; the way that leads from one
 // colour to the next, and by how much more the footprint's second half is than its first; its width

@@ -56,7 +56,7 @@ ivec2 pixel_of(uint listed) {
   return ivec2(listed & 0xffffu, listed >> 16);
 }
 
-View eye_as_view() {
+View camera_view() {
   return View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);
 }
 
@@ -89,197 +89,31 @@ vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   return s.direct + s.caustic + s.fill;
 }
 
-#ifdef SPHERES
-// How far apart in pixels the ends of the spectrum leave the first back wall, as the eye would see
-// what they show; large where they show different things.
-float sphere_spread(Hit front, vec3 d, int first, int last) {
-  vec3 at[2];
-  int what[2];
-  for (int k = 0; k < 2; k++) {
-    float n = bands[k == 0 ? first : last].weight_n.w;
-    vec3 inner, wall_n, outer;
-    refract_direction(d, front.n, 1.0 / n, inner);
-    vec4 s = refractors[refractor].sphere;
-    wall_n = normalize(front.n - 2.0 * dot(front.n, inner) * inner);
-    refract_direction(inner, -wall_n, n, outer);
-    vec3 wall = s.xyz + s.w * wall_n;
-    at[k] = wall + scene_size * outer;
-    what[k] = 0;
-    float t;
-    what[k] = receiver_hit(wall, outer, -touch * refractor_bounds.w, 1e30, t);
-    if (what[k] >= 0) what[k] = receiver_part(what[k]);
-    at[k] = wall + min(t, scene_size) * outer;
-  }
-  return what[0] != what[1] ? 1e9 : distance(at[0], at[1]) / (pixel_angle * distance(eye, at[0]));
-}
-#endif
+// What the pixel's ray meets first; look() says.
+bool found;
+vec3 sight;
+Hit front;
+void look(ivec2 at);
 
-// As many bands as the spread asks for, one for every pixel and a half of it. For layers it is
-// estimated from the first interface alone; in facets inner reflections spread light further than
-// the first exit shows, so a convex solid gets every sample.
-float wanted_bands(Hit front, vec3 d, int first, int last) {
-  int model = refractors[refractor].info.x;
-#ifdef SPHERES
-  if (model == MODEL_SPHERE) return sphere_spread(front, d, first, last) / 1.5;
-#endif
-  if (model == MODEL_CONVEX) return 1e9;
-  float c = clamp(-dot(d, front.n), 0.05, 1.0), n = bands[last].weight_n.w;
-  float turn = abs(bands[first].weight_n.w - n) * (0.2 + sqrt(1.0 - c * c) / c) / n;
-  return turn * scene_size / (4.0 * front.t * pixel_angle) / 1.5;
+void aim_at(ivec2 at) {
+  vec3 o;
+  refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
+  view_ray(camera_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, sight);
 }
 
 #ifdef WALK
 #include "refraction_walk.glsl"
 #else
-// What lies behind a wall is looked up by all lanes of a software rasteriser, whether they show it or not,
-// so each goes on to its next wall that lets enough out first; but not where walls cost more than that.
-#ifdef LAYERS
-const bool GO_ON = false;
-#else
-const bool GO_ON = true;
+#include "refraction_inner.glsl"
 #endif
-
-// Through the refractor alone, from wall to wall: the light of one band. What is left when the way ends
-// shows what the rest has shown. Its loops have two ways out, with values of their own for what is used
-// after them: of what the last turn alone has made, lanes that took fewer turns may find another's
-// (Mesa 22's llvmpipe).
-vec3 through(Hit front, vec3 d, int band) {
-  float n = bands[band].weight_n.w, attenuation = bands[band].attenuation.x;
-  vec3 inner, p = front.p, light = vec3(0);
-  if (!refract_direction(d, front.n, 1.0 / n, inner)) return light;
-  float share = 1.0 - fresnel(-dot(d, front.n), 1.0 / n), shown = 0.0, left = 0.0;
-  int facet = front.facet;
-  bool met;
-  for (int order = 0; order < EXITS;) {
-    vec3 wall = p, outer = inner;
-    float out_share = 0.0;
-    bool shows = false;
-    while (order < EXITS) {
-      vec3 wall_n;
-      int next;
-      inner_hit(refractor, facet, p, inner,
-#ifdef LAYERS
-                eye_as_view(), eye_layers, 0.0,
-#endif
-                wall, wall_n, next);
-#ifdef ABSORBING
-      share *= exp(-attenuation * distance(wall, p));
-#endif
-      float kept = fresnel(dot(inner, wall_n), n);
-      bool leaves = refract_direction(inner, -wall_n, n, outer);
-      out_share = leaves ? share * (1.0 - kept) : 0.0;
-      shows = out_share > 0.5 * share_limit;
-      left += shows ? 0.0 : out_share;
-      share *= leaves ? kept : 1.0;
-      p = wall;
-      facet = next;
-      inner = reflect(inner, wall_n);
-      order++;
-      left += share < share_limit || order == EXITS ? share : 0.0;
-      if (!GO_ON || shows || share < share_limit) break;
-    }
-    if (shows) {
-      light += out_share * seen(wall, outer, -touch * refractor_bounds.w, 1e30, met);
-      shown += out_share;
-    }
-    if (share < share_limit) break;
-  }
-  return light * (shown > 0.0 ? 1.0 + left / shown : 0.0);
-}
-#endif
-
-// What the pixel's ray meets first.
-bool found;
-vec3 sight;
-Hit front;
-#ifdef WALK
-Way start;
-Interface first;
-#endif
-
-void look(ivec2 at) {
-  vec3 o;
-  refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
-  vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
-  view_ray(eye_as_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, sight);
-#ifdef WALK
-  start = Way(eye, sight, 1.0, 0u, 0u, -1, -1, -1);
-  first.hit.t = 1e30;
-  found = next_interface(start, first);
-  front = first.hit;
-  if (found) refractor = front.refractor;
-#else
-  front.t = 1e30;
-  found = exact_front(eye, sight, front) && front.refractor == refractor;
-  if (refractors[refractor].info.x == MODEL_LAYERS) {
-    found = true;
-    front.t = layer.w;
-    front.p = eye + layer.w * sight;
-    front.n = normalize(layer.xyz);
-    float c = dot(front.n, sight);
-    if (c > -1e-3) front.n = normalize(front.n - (c + 1e-3) * sight);
-    front.facet = -1;
-  }
-#endif
-}
-
-#ifndef WALK
-// XYZ of what a band shows through the first interface; the share that is mirrored there.
-vec3 band_light(int band, out float mirrored) {
-  mirrored = fresnel(-dot(sight, front.n), 1.0 / bands[band].weight_n.w);
-  return xyz_from_rgb * through(front, sight, band);
-}
-#endif
-
-// The first band of the next level, where each of `count` is two of this one's.
-void coarsen(bool coarser, inout int base, inout int count) {
-  base += coarser ? count : 0;
-  count = coarser ? (count + 1) / 2 : count;
-}
+#include "bands_wanted.glsl"
 
 #ifdef REFINED
-// Where the bands that a list entry wants begin, and how many there are on its level.
-void wanted_level(uint what, out int base, out int count) {
-  int level = int(what >> 8 & 15u);
-  base = refractor * BAND_COUNT;
-  count = WAVELENGTHS;
-  for (int k = 0; k < BAND_LEVELS - 1; k++) coarsen(k < level, base, count);
-}
-
 void add_to_picture(ivec2 at, vec3 sum) {
   vec4 others = imageLoad(picture, at);
   imageStore(picture, at, vec4(others.rgb + rgb_from_xyz * sum, others.w));
 }
 #else
-#ifdef REFINES
-// Of a pixel's light, what a joined band may show wrong.
-const float MOST_WRONG = 0.05;
-
-int level = 0, joined = 0;
-vec3 shown_by[COARSE_BANDS];
-#endif
-
-// Those that the pixel takes: `count` from `base` on.
-void choose_bands(out int base, out int count) {
-  base = refractor * BAND_COUNT;
-  count = WAVELENGTHS;
-  float wanted = wanted_bands(front, sight, base, base + WAVELENGTHS - 1);
-  for (int k = 0; k < BAND_LEVELS - 1; k++) {
-    bool coarser = float((count + 1) / 2) >= wanted;
-    coarsen(coarser, base, count);
-#ifdef REFINES
-    level += coarser ? 1 : 0;
-#endif
-  }
-#ifdef REFINES
-  for (int k = 0; k < BAND_LEVELS - 1; k++) {
-    bool coarser = count > COARSE_BANDS;
-    coarsen(coarser, base, count);
-    joined += coarser ? 1 : 0;
-  }
-#endif
-}
-
 // XYZ that all of the pixel's bands show.
 void write_pixel(uint where, int base, int count, vec3 sum) {
 #ifdef REFINES
@@ -306,48 +140,6 @@ void write_pixel(uint where, int base, int count, vec3 sum) {
 
 #ifdef WALK
 #include "refraction_ways.glsl"
-#elif defined(REFINED)
-void main() {
-  copy_tables();
-  uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
-  if (listed >= refine_count) return;
-  uint what = refine[listed].y;
-  ivec2 at = pixel_of(refine[listed].x);
-  look(at);
-  int base, count, joined = int(what >> 12 & 15u);
-  wanted_level(what, base, count);
-  vec3 sum = vec3(0);
-  uint wanted = what & 255u;
-  while (wanted != 0u) {
-    int band = findLSB(wanted), end = min((band + 1) << joined, count);
-    for (int i = band << joined; i < end; i++) {
-      float mirrored;
-      sum += band_light(base + i, mirrored) * bands[base + i].weight_n.xyz;
-    }
-    wanted &= wanted - 1u;
-  }
-  add_to_picture(at, sum);
-}
 #else
-void main() {
-  copy_tables();
-  uint listed = pixel_first + gl_GlobalInvocationID.x;
-  if (listed >= pixel_count) return;
-  look(pixel_of(pixel[listed]));
-  int base, count;
-  choose_bands(base, count);
-  vec3 sum = vec3(0), mirror = vec3(0);
-  for (int i = 0; i < count; i++) {
-    float mirrored;
-    vec3 light = band_light(base + i, mirrored), weight = bands[base + i].weight_n.xyz;
-    mirror += mirrored * weight;
-    sum += light * weight;
-#ifdef REFINES
-    shown_by[i] = light;
-#endif
-  }
-  bool met;
-  sum += mirror * (xyz_from_rgb * seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met));
-  write_pixel(pixel[listed], base, count, sum);
-}
+#include "refraction_pixels.glsl"
 #endif

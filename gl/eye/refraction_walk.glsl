@@ -13,39 +13,21 @@ const int BANDS_OF_THREAD = (WAVELENGTHS + WAYS) / WAYS;
 const int MOST_SEGMENTS = max(8, min(224, 49152 / (PLANE_ROOM + 64)) / BANDS_OF_THREAD);
 
 int band_of_refractor;  // that is followed, among one refractor's
-float left;             // share of what is not followed
 
 vec2 refractor_spectrum(int r) {
   Band band = bands[r * BAND_COUNT + band_of_refractor];
   return vec2(band.weight_n.w, band.attenuation.x);
 }
 
-// At an interface: the stronger branch is left in w, and of both what carries enough.
-void branch(inout Way w, Interface h, inout Way pending[PENDING]) {
-  Way mirrored;
-  if (!split(w, h, mirrored)) return;
-  bool reflects = reflects_on(mirrored), passes = w.share >= 0.5 * share_limit;
-  left += (reflects ? 0.0 : mirrored.share) + (passes ? 0.0 : w.share);
-  if (!reflects) mirrored.share = 0.0;
-  if (!passes) w.share = 0.0;
-  Way weaker = mirrored;
-  if (mirrored.share > w.share) {
-    weaker = w;
-    w = mirrored;
-  }
-  left += keep_pending(weaker, pending);
-}
-
 // What w shows, times its share. What is not followed shows what the rest has shown.
-vec3 shown(Way w) {
-  Way pending[PENDING];
+vec3 shown(PathState w) {
+  PathState pending[PENDING];
   for (int k = 0; k < PENDING; k++) {
     pending[k] = w;
     pending[k].share = 0.0;
   }
   vec3 light = vec3(0);
-  float seen_share = 0.0;
-  left = 0.0;
+  float seen_share = 0.0, left = 0.0;  // left: share of what is not followed
   bool going = w.share > 0.0;
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
     Interface h;
@@ -58,7 +40,10 @@ vec3 shown(Way w) {
       w.share *= exp(-h.hit.t * refractor_spectrum(medium_of(w.inside)).y);
 #endif
     if (met && !receiver) {
-      branch(w, h, pending);
+      float ended, dropped;
+      branch(w, h, 0.5 * share_limit, pending, ended, dropped);
+      left += ended;
+      left += dropped;
     } else {
       light += w.share * radiance;
       seen_share += w.share;
@@ -71,4 +56,16 @@ vec3 shown(Way w) {
     for (int k = 0; k < PENDING; k++) left += last ? pending[k].share : 0.0;
   }
   return light * (seen_share > 0.0 ? 1.0 + left / seen_share : 0.0);
+}
+
+PathState start;
+Interface first;
+
+void look(ivec2 at) {
+  aim_at(at);
+  start = PathState(eye, sight, 1.0, 0u, 0u, -1, -1, -1);
+  first.hit.t = 1e30;
+  found = next_interface(start, first);
+  front = first.hit;
+  if (found) refractor = front.refractor;
 }

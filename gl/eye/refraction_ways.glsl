@@ -3,7 +3,7 @@
 
 const int PIXELS = int(gl_WorkGroupSize.x) / WAYS;
 
-shared vec3 way_sum[PIXELS * WAYS];
+shared vec3 path_sum[PIXELS * WAYS];
 
 #ifdef HIERARCHY
 // A search is dear: a pixel's first thread finds out for all what its ray meets first. The first threads
@@ -11,7 +11,7 @@ shared vec3 way_sum[PIXELS * WAYS];
 int place = int(gl_LocalInvocationID.x) % PIXELS, way = int(gl_LocalInvocationID.x) / PIXELS;
 
 shared ivec4 task[PIXELS];  // refractor, first band, how many, and whether something is met
-shared Way task_start[PIXELS];
+shared PathState task_start[PIXELS];
 shared Interface task_first[PIXELS];
 
 void give_task(int base, int count) {
@@ -40,7 +40,7 @@ int place = int(gl_LocalInvocationID.x) / WAYS, way = int(gl_LocalInvocationID.x
 // there; mirrored: the share that is.
 vec3 band_light(int band, bool in_mirror, out float mirrored) {
   band_of_refractor = band - refractor * BAND_COUNT;
-  Way w = start, reflected = start;
+  PathState w = start, reflected = start;
   if (!split(w, first, reflected)) reflected.share = 0.0;
   mirrored = reflected.share;
   reflected.share = mirrored > 0.0 ? 1.0 : 0.0;
@@ -80,17 +80,17 @@ void main() {
     vec3 light = band_light(base + min(i, count - 1), false, mirrored);
     sum += i < count ? light * bands[base + i].weight_n.xyz : vec3(0);
   }
-  way_sum[place * WAYS + way] = sum;
+  path_sum[place * WAYS + way] = sum;
   barrier();
   if (way > 0 || !there) return;
   vec3 all = vec3(0);
-  for (int k = 0; k < WAYS; k++) all += way_sum[place * WAYS + k];
+  for (int k = 0; k < WAYS; k++) all += path_sum[place * WAYS + k];
   add_to_picture(at, all);
 }
 #else
-shared vec3 way_mirror[PIXELS * WAYS], in_the_mirror[PIXELS];
+shared vec3 path_mirror[PIXELS * WAYS], in_the_mirror[PIXELS];
 #ifdef REFINES
-shared vec3 way_shown[PIXELS * COARSE_BANDS];
+shared vec3 path_shown[PIXELS * COARSE_BANDS];
 #endif
 
 void main() {
@@ -122,21 +122,21 @@ void main() {
     sum += light * weight;
     if (in_mirror) in_the_mirror[place] = light;
 #ifdef REFINES
-    if (!in_mirror) way_shown[place * COARSE_BANDS + i] = light;
+    if (!in_mirror) path_shown[place * COARSE_BANDS + i] = light;
 #endif
   }
-  way_sum[place * WAYS + way] = sum;
-  way_mirror[place * WAYS + way] = mirror;
+  path_sum[place * WAYS + way] = sum;
+  path_mirror[place * WAYS + way] = mirror;
   barrier();
   if (way > 0 || !there) return;
   vec3 all = vec3(0), all_mirror = vec3(0);
   for (int k = 0; k < WAYS; k++) {
-    all += way_sum[place * WAYS + k];
-    all_mirror += way_mirror[place * WAYS + k];
+    all += path_sum[place * WAYS + k];
+    all_mirror += path_mirror[place * WAYS + k];
   }
 #ifdef REFINES
   for (int i = 0; i < COARSE_BANDS; i++)
-    shown_by[i] = i < count ? way_shown[place * COARSE_BANDS + i] : vec3(0);
+    shown_by[i] = i < count ? path_shown[place * COARSE_BANDS + i] : vec3(0);
 #endif
   write_pixel(where, base, count, all + all_mirror * in_the_mirror[place]);
 }

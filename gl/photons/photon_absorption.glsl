@@ -1,14 +1,10 @@
 // What is left of a photon's light after its way inside, in the parts of its wavelength's band below
-// and above the node. TINTING: what attenuates does so by wavelength, and landings keep the length of
+// and above the node. TINTING: what attenuates does so by wavelength, and hits keep the length of
 // their way, which has it at all wavelengths; else all shares are the node's own.
 
 #ifdef TINTING
 #define Shares vec2
-#else
-#define Shares float
-#endif
 
-#ifdef TINTING
 // Of the halves of a node's band, below it and above, at 2 * (2 * ((light * REFRACTORS + refractor) *
 // nodes + node) + (above ? 1 : 0)), the coarse set's before those of all wavelengths: attenuation of
 // four parts, 1/m, in order of wavelength, and what of the half's Y each is.
@@ -31,4 +27,29 @@ vec2 left_after(float way) {
   return vec2(dot(part_of_half[0], exp(-way * attenuation[0])),
               dot(part_of_half[1], exp(-way * attenuation[1])));
 }
+
+// What a way inside takes of light, of which so much was left before; way: all of it.
+Shares absorb(float metres, float per_m, inout float share, inout float way, inout Shares left) {
+  Shares before = left;
+  way += metres;
+  left = left_after(way);
+  return share * (before - left);
+}
+
+// At the node itself.
+float left_at_node(float share, float per_m, float way) { return share * exp(-per_m * way); }
+#else
+#define Shares float
+
+Shares absorb(float metres, float per_m, inout float share, inout float way, inout Shares left) {
+#ifdef ABSORBING
+  float before = share, passed = exp(-per_m * metres);
+  share *= passed;
+  return before * (1.0 - passed);
+#else
+  return 0.0;
+#endif
+}
+
+float left_at_node(float share, float per_m, float way) { return share; }
 #endif

@@ -4,6 +4,7 @@
 layout(local_size_x = 256) in;
 #include "common.glsl"
 #include "photon_nodes.glsl"
+#include "thread.glsl"
 
 struct Photon {  // as in photon_start.glsl
   uint cell;
@@ -50,106 +51,130 @@ const float MOST_WRONG = 0.05;
 const float OFF_CURVE = 0.1, OFF_LINE = 0.25, OFF_ALONE = 2e-3;
 
 #include "optics.glsl"
-#define FOLLOWS_EXITS
-#include "exit_wall.glsl"
-#include "landing_place.glsl"
+#define FOLLOWS_SEGMENTS
+#include "outgoing_segment.glsl"
+#include "map_position.glsl"
 
-// Texels to the landing of the next photon on the same path; 0 if there is none.
-float step_to(ivec2 c, uint order, uint lane, uint path, int page, vec2 here) {
+// A photon's path at the coarse wavelengths.
+struct Samples {
+  uint path[NODES];  // signature; 0: no hit
+  vec2 at[NODES];
+  float flux[NODES], index[NODES];
+  int tile[NODES];
+  Segment left[NODES];
+#ifdef TINTING
+  float way[NODES], per_m[NODES];
+#endif
+};
+
+Samples samples;
+
+// Reads them; returns which hits something nearest the middle.
+int read_samples(uint first) {
+  int reference = 0;
+  for (int k = 0; k < NODES; k++) {
+    uint found = SIGNATURE(first + uint(k));
+    vec4 to = landing[HIT_TEXELS * (first + uint(k))];
+    vec4 interface_at = landing[HIT_TEXELS * (first + uint(k)) + 1u];
+    vec2 spectrum = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].xy;
+    samples.path[k] = found;
+    samples.tile[k] = found != 0u ? interface_tile(interface_at.w) : -1;
+    samples.at[k] = found != 0u ? map_position(to.xyz, samples.tile[k]) : vec2(0);
+    samples.index[k] = spectrum.x;
+    samples.left[k] = segment_of(to, interface_at, spectrum.x);
+    samples.flux[k] = found != 0u ? samples.left[k].arrives : 0.0;
+#ifdef TINTING
+    samples.way[k] = uintBitsToFloat(signature[first + uint(k)].y);
+    samples.per_m[k] = spectrum.y;
+#endif
+    if (found != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
+  }
+  return reference;
+}
+
+// Texels to the hit of the photon in cell c on the same path; 0 if there is none.
+float step_to(ivec2 c, uint order, uint lane, uint path, int tile, vec2 here) {
   bool there = all(lessThan(c, grid));
   uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
   uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
   there = there && SIGNATURE(index) == path;
-  return there ? distance(map_position(landing[LANDING_TEXELS * index].xyz, page), here) : 0.0;
+  return there ? distance(map_position(landing[HIT_TEXELS * index].xyz, tile), here) : 0.0;
+}
+
+// What the map resolves of this photon, in texels.
+float resolved(ivec2 cell, uint order, uint first, uint reference) {
+  uint path = SIGNATURE(first + reference), at = HIT_TEXELS * (first + reference);
+  int tile = path != 0u ? interface_tile(landing[at + 1u].w) : -1;
+  vec2 here = map_position(landing[at].xyz, tile);
+  float a = path != 0u ? step_to(cell + ivec2(1, 0), order, reference, path, tile, here) : 0.0;
+  float b = path != 0u ? step_to(cell + ivec2(0, 1), order, reference, path, tile, here) : 0.0;
+  return max(a > 0.0 && b > 0.0 ? min(a, b) : max(a, b), 1.0);
+}
+
+// How far node k lies from where its neighbours alone would put it; -1: they are of other paths.
+float bend_at(int k) {
+  bool there = k > 0 && k + 1 < NODES;
+  int before = max(k - 1, 0), after = min(k + 1, NODES - 1);
+  bool on_path = there && samples.path[k] != 0u && samples.path[k] == samples.path[before] &&
+                 samples.path[k] == samples.path[after];
+  float span = samples.index[after] - samples.index[before];
+  float t = span != 0.0 ? (samples.index[k] - samples.index[before]) / span : 0.5;
+  Segment a = samples.left[before], b = samples.left[after];
+  vec3 straight = place_between(a, b, fan_between(a, b, vec3(0)), t);
+  return on_path ? distance(samples.at[k], map_position(straight, samples.tile[k])) : -1.0;
+}
+
+// How far off light is laid in interval k, in texels; its nodes lie so far off.
+float misplaced(int k, float bend_a, float bend_b, float size) {
+  if (samples.path[k] == samples.path[k + 1])
+    return bend_b >= 0.0   ? OFF_CURVE * bend_b
+           : bend_a >= 0.0 ? OFF_LINE * bend_a
+                           : OFF_ALONE * distance(samples.at[k], samples.at[k + 1]);
+  // Where a path ends on the way, its hits would have moved on as before.
+  int before = max(k - 1, 0), after = min(k + 2, NODES - 1);
+  bool known_a = k > 0 && samples.path[before] == samples.path[k],
+       known_b = k + 2 < NODES && samples.path[after] == samples.path[k + 1];
+  float moves_a = samples.path[k] == 0u ? 0.0 : known_a ? distance(samples.at[before], samples.at[k]) : size;
+  float moves_b =
+      samples.path[k + 1] == 0u ? 0.0 : known_b ? distance(samples.at[after], samples.at[k + 1]) : size;
+  return 0.25 * max(moves_a, moves_b);
+}
+
+// Of the photon's light, what may lie wrong in interval k.
+float wrong_in(int k, float misplaced_by, float size, float photon_flux) {
+  float flux_a = samples.flux[k], flux_b = samples.flux[k + 1], left = 1.0;
+#ifdef TINTING
+  // What is left at both ends, and, to tell what changes, of the same glass.
+  float per_m_a = samples.per_m[k], per_m_b = samples.per_m[k + 1];
+  left = 0.5 * (exp(-per_m_a * samples.way[k]) + exp(-per_m_b * samples.way[k + 1]));
+#endif
+  float most = left * max(flux_a, flux_b) / photon_flux * interval_weight[k];
+#ifdef TINTING
+  flux_b *= exp(-0.5 * (per_m_a + per_m_b) * (samples.way[k + 1] - samples.way[k]));
+#endif
+  float change = (flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30);
+  float changed = samples.path[k] == samples.path[k + 1] ? 0.125 * change * change : 0.0;
+  return most * max(min(misplaced_by / size, 1.0), changed);
 }
 
 void main() {
-  uint listed = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
-         gl_LocalInvocationID.x;
+  uint listed = thread_number();
   if (listed >= path_count) return;
   uint photon_path = path_list[listed];
   uint photon = photon_path / SLOTS, order = photon_path % SLOTS, first = photon_path * LANES;
   Photon from_cell = photon_at[photon];
-  // Other bits than those that choose the chunks of pieces, or one of these would get all.
+  // Other bits than those that choose the chunks of splats, or one of these would get all.
   if ((from_cell.cell * 2654435761u >> 16) % chunks != chunk) return;
   ivec2 cell = ivec2(from_cell.cell & 0xffffu, from_cell.cell >> 16);
-
-  uint path[NODES];
-  vec2 at[NODES];
-  float flux[NODES], index[NODES];
-  int pages[NODES];
-  Exit left[NODES];
-#ifdef TINTING
-  float way[NODES], per_m[NODES];
-#endif
-  int reference = 0;
-  for (int k = 0; k < NODES; k++) {
-    uint found = SIGNATURE(first + uint(k));
-    vec4 to = landing[LANDING_TEXELS * (first + uint(k))];
-    vec4 wall = landing[LANDING_TEXELS * (first + uint(k)) + 1u];
-    vec2 spectrum = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].xy;
-    path[k] = found;
-    pages[k] = found != 0u ? wall_page(wall.w) : -1;
-    at[k] = found != 0u ? map_position(to.xyz, pages[k]) : vec2(0);
-    index[k] = spectrum.x;
-    left[k] = exit_of(to, wall, spectrum.x);
-    flux[k] = found != 0u ? left[k].arrives : 0.0;
-#ifdef TINTING
-    way[k] = uintBitsToFloat(signature[first + uint(k)].y);
-    per_m[k] = spectrum.y;
-#endif
-    if (found != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
-  }
-  uint path_here = SIGNATURE(first + uint(reference));
-  uint reference_at = LANDING_TEXELS * (first + uint(reference));
-  int page = path_here != 0u ? wall_page(landing[reference_at + 1u].w) : -1;
-  vec2 here = map_position(landing[reference_at].xyz, page);
-  float a =
-      path_here != 0u ? step_to(cell + ivec2(1, 0), order, uint(reference), path_here, page, here) : 0.0;
-  float b =
-      path_here != 0u ? step_to(cell + ivec2(0, 1), order, uint(reference), path_here, page, here) : 0.0;
-  // What the map resolves of this photon, in texels.
-  float size = max(a > 0.0 && b > 0.0 ? min(a, b) : max(a, b), 1.0);
-
-  // How far node k lies from where its neighbours alone would put it.
+  int reference = read_samples(first);
+  float size = resolved(cell, order, first, uint(reference));
   float bend[NODES];
-  for (int k = 0; k < NODES; k++) {
-    bool there = k > 0 && k + 1 < NODES;
-    int before = max(k - 1, 0), after = min(k + 1, NODES - 1);
-    bool on_path = there && path[k] != 0u && path[k] == path[before] && path[k] == path[after];
-    float span = index[after] - index[before];
-    float t = span != 0.0 ? (index[k] - index[before]) / span : 0.5;
-    vec3 straight =
-        place_between(left[before], left[after], fan_between(left[before], left[after], vec3(0)), t);
-    bend[k] = on_path ? distance(at[k], map_position(straight, pages[k])) : -1.0;
-  }
+  for (int k = 0; k < NODES; k++) bend[k] = bend_at(k);
   uint wanted = 0u;
   for (int k = 0; k + 1 < NODES; k++) {
-    float flux_a = flux[k], flux_b = flux[k + 1];
-#ifdef TINTING
-    // What is left at both ends, and, to tell what changes, of the same glass.
-    float left = 0.5 * (exp(-per_m[k] * way[k]) + exp(-per_m[k + 1] * way[k + 1]));
-    float per_m_between = 0.5 * (per_m[k] + per_m[k + 1]);
-    float most = left * max(flux_a, flux_b) / from_cell.flux * interval_weight[k];
-    flux_b *= exp(-per_m_between * (way[k + 1] - way[k]));
-#else
-    float most = max(flux_a, flux_b) / from_cell.flux * interval_weight[k];
-#endif
-    bool same = path[k] == path[k + 1];
-    float wrong = bend[k + 1] >= 0.0 ? OFF_CURVE * bend[k + 1]
-                  : bend[k] >= 0.0   ? OFF_LINE * bend[k]
-                                     : OFF_ALONE * distance(at[k], at[k + 1]);
-    // Where a path ends on the way, its landings would have moved on as before.
-    int before = max(k - 1, 0), after = min(k + 2, NODES - 1);
-    bool known_a = k > 0 && path[before] == path[k],
-         known_b = k + 2 < NODES && path[after] == path[k + 1];
-    float moves_a = path[k] == 0u ? 0.0 : known_a ? distance(at[before], at[k]) : size;
-    float moves_b = path[k + 1] == 0u ? 0.0 : known_b ? distance(at[after], at[k + 1]) : size;
-    if (!same) wrong = 0.25 * max(moves_a, moves_b);
-    float change = (flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30);
-    float changed = same ? 0.125 * change * change : 0.0;
-    if (most * max(min(wrong / size, 1.0), changed) > MOST_WRONG) wanted |= 1u << uint(k);
+    float misplaced_by = misplaced(k, bend[k], bend[k + 1], size);
+    if (wrong_in(k, misplaced_by, size, from_cell.flux) > MOST_WRONG) wanted |= 1u << uint(k);
   }
   if (wanted == 0u) return;
   uint added = wanted & ~atomicOr(want[photon], wanted);

@@ -3,15 +3,16 @@
 layout(local_size_x = 256) in;
 #include "refractor.glsl"
 #include "wide_sum.glsl"
+#include "thread.glsl"
 #include "receiver.glsl"
-#include "exit_wall.glsl"
+#include "outgoing_segment.glsl"
 
-// [((photon * SLOTS + order) * LANES + lane) * LANDING_TEXELS]: where it lands, and w: flux for unit
-// weight, W; then where it left its last refractor, and w: wall_word(). While pages are chosen: chart
+// [((photon * SLOTS + order) * LANES + lane) * HIT_TEXELS]: where it lands, and w: flux for unit
+// weight, W; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
 // coordinates, and the chart's side.
 layout(std430, binding = BINDING_HITS) writeonly buffer Landings { vec4 landing[]; };
-// Receiver, facets along the way and whether on a page, equal for paths that vary continuously;
-// refractor in the low eight bits; 0: no landing. TINTING: and the length of its way inside, m.
+// Receiver, facets along the way and whether on a tile, equal for paths that vary continuously;
+// refractor in the low eight bits; 0: no hit. TINTING: and the length of its way inside, m.
 #ifdef TINTING
 layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uvec2 signature[]; };
 #else
@@ -36,7 +37,7 @@ uniform int lane_first;  // wavelengths lane_first .. lane_first + LANES - 1 in 
 uniform int lane_count;
 uniform int ledger_first;  // wavelengths before this one are in the ledger already
 // ALL: consecutive wavelengths of all photons; COARSE: the coarse set of all photons; REFINED: all
-// wavelengths of the intervals on the list, landings by their place on it.
+// wavelengths of the intervals on the list, hits by their place on it.
 const int ALL = 0, COARSE = 1, REFINED = 2;
 uniform int set;
 uniform int lane_stride;
@@ -52,82 +53,112 @@ layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
 
 #include "photon_nodes.glsl"
 
-shared uint book[5], unbook[5];
-
-// A landing of the photon at lane's wavelength, in the path's slot; wall: as in exit_wall.glsl.
-void keep_landing(uint photon, int order, int lane, vec3 at, float flux, uint path, float way, vec4 wall) {
-  uint listed = photon * SLOTS + order, index = listed * lane_stride + lane;
-  landing[LANDING_TEXELS * index] = vec4(at, flux);
-  landing[LANDING_TEXELS * index + 1u] = wall;
-  path_mark[listed] = 1u;
-#ifdef TINTING
-  signature[index] = uvec2(path, floatBitsToUint(way));
-#else
-  signature[index] = path;
-#endif
-}
+shared uint more_sum[5], less_sum[5];
 
 #include "photon_path.glsl"
 
+void keep_hit(PhotonRay photon, PhotonHit hit) {
+  uint path = photon.item * SLOTS + hit.slot, index = path * lane_stride + photon.lane;
+  landing[HIT_TEXELS * index] = vec4(hit.place, hit.flux);
+  landing[HIT_TEXELS * index + 1u] = hit.interface_at;
+  path_mark[path] = 1u;
+#ifdef TINTING
+  signature[index] = uvec2(hit.signature, floatBitsToUint(hit.way));
+#else
+  signature[index] = hit.signature;
+#endif
+}
+
+// What a thread traces: one wavelength of a photon, or of one in a refined interval from low to high.
+struct Task {
+  bool there;
+  uint item, photon;
+  int lane, wavelength;
+  int interval, low, high;  // -1: no interval
+};
+
+Task task_of(uint thread) {
+  Task t;
+  // A photon's wavelengths side by side: they take the same ways for longer than its neighbours.
+  t.item = t.photon = thread / uint(lane_count);
+  t.lane = int(thread % uint(lane_count));
+  t.there = t.item < (set == REFINED ? min(pair_count, most_pairs) : photon_count);
+  t.wavelength = set == COARSE ? coarse_node(t.lane) : lane_first + t.lane;
+  t.interval = 0;
+  t.low = t.high = -1;
+  if (set == REFINED && t.there) {
+    uint pair = pair_at[t.item];
+    t.interval = int(pair % PAIR_INTERVALS);
+    t.photon = pair / PAIR_INTERVALS;
+    t.low = coarse_node(t.interval);
+    t.high = coarse_node(t.interval + 1);
+    t.wavelength = t.low + t.lane;
+    t.there = t.wavelength <= t.high;
+  }
+  return t;
+}
+
+PhotonRay ray_of(Task t) {
+  Photon from = photon_at[t.photon];
+  vec2 cell = vec2(from.cell & 0xffffu, from.cell >> 16);
+  vec2 uv = (cell + 0.5 + unpackSnorm2x16(from.offset)) / vec2(grid);
+  PhotonRay ray;
+  float flux;
+  ray.reached = photon_start(uv, ray.o, ray.d, ray.front, flux);
+  ray.flux = from.flux;
+  ray.item = t.item;
+  ray.lane = t.lane;
+  ray.wavelength = t.wavelength;
+  return ray;
+}
+
+#ifdef TINTING
+// A refined interval's ends give back halves of coarse bands; their own outer ones are not its.
+void load_attenuation(Task t, PhotonRay ray) {
+  int row = light * REFRACTORS + (ray.reached ? ray.front.refractor : 0);
+  int node = set == COARSE ? row * NODES + t.lane : all_bands(row) + t.wavelength;
+  int coarse = row * NODES + t.interval;
+  load_halves(t.wavelength == t.low ? 2 * coarse + 1 : 2 * node,
+              t.wavelength == t.high ? 2 * (coarse + 1) : 2 * node + 1);
+}
+#endif
+
+// A refined interval's ends give back what the coarse set entered for it.
+void enter(Task t, float flux, Shares entry[5]) {
+  vec4 weight = sample_weight[light * WAVELENGTHS + t.wavelength];
+  bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
+  float below = set == COARSE ? weight.z : at_low ? 0.0 : weight.x;
+  float above = set == COARSE ? weight.w : at_high ? 0.0 : weight.y;
+  float back = at_low ? weight.w : at_high ? weight.z : 0.0;
+  float scale = flux / ledger_unit;
+  for (int k = 0; k < 5; k++) {
+    vec2 part = vec2(entry[k]);
+    if (max(part.x, part.y) <= 0.0 || t.wavelength < ledger_first) continue;
+    atomicAdd(more_sum[k], uint(part.x * (below * scale) + 0.5) + uint(part.y * (above * scale) + 0.5));
+    if (back > 0.0) atomicAdd(less_sum[k], uint((at_low ? part.x : part.y) * (back * scale) + 0.5));
+  }
+}
+
 void main() {
   if (gl_LocalInvocationID.x < 5u) {
-    book[gl_LocalInvocationID.x] = 0u;
-    unbook[gl_LocalInvocationID.x] = 0u;
+    more_sum[gl_LocalInvocationID.x] = 0u;
+    less_sum[gl_LocalInvocationID.x] = 0u;
   }
   barrier();
-  // A photon's wavelengths side by side: they take the same ways for longer than its neighbours.
-  uint id = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +
-            gl_LocalInvocationID.x;
-  uint item = id / uint(lane_count), photon = item;
-  int lane = int(id % uint(lane_count));
-  bool there = item < (set == REFINED ? min(pair_count, most_pairs) : photon_count);
-  int i = set == COARSE ? coarse_node(lane) : lane_first + lane;
-  int low = -1, high = -1;  // ends of the interval
-  int interval = 0;
-  if (set == REFINED && there) {
-    uint pair = pair_at[item];
-    interval = int(pair % PAIR_INTERVALS);
-    photon = pair / PAIR_INTERVALS;
-    low = coarse_node(interval);
-    high = coarse_node(interval + 1);
-    i = low + lane;
-    there = i <= high;
-  }
-  if (there) {
-    Photon from = photon_at[photon];
-    vec2 cell = vec2(from.cell & 0xffffu, from.cell >> 16);
-    vec2 uv = (cell + 0.5 + unpackSnorm2x16(from.offset)) / vec2(grid);
-    vec3 o, d;
-    Hit front;
-    float flux;
-    bool reached = photon_start(uv, o, d, front, flux);
-    flux = from.flux;
+  Task task = task_of(thread_number());
+  if (task.there) {
+    PhotonRay ray = ray_of(task);
 #ifdef TINTING
-    int row = light * REFRACTORS + (reached ? front.refractor : 0);
-    int node = set == COARSE ? row * NODES + lane : all_bands(row) + i;
-    // A refined interval's ends give back halves of coarse bands; their own outer ones are not its.
-    int coarse_a = row * NODES + interval;
-    load_halves(i == low ? 2 * coarse_a + 1 : 2 * node, i == high ? 2 * (coarse_a + 1) : 2 * node + 1);
+    load_attenuation(task, ray);
 #endif
     Shares entry[5];
-    trace(item, lane, i, flux, o, d, front, reached, entry);
-    // A refined interval's ends give back what the coarse set entered for it.
-    vec4 weight = sample_weight[light * WAVELENGTHS + i];
-    float below = set == COARSE ? weight.z : i == low ? 0.0 : weight.x;
-    float above = set == COARSE ? weight.w : i == high ? 0.0 : weight.y;
-    float back = i == low ? weight.w : i == high ? weight.z : 0.0;
-    float scale = flux / ledger_unit;
-    for (int k = 0; k < 5; k++) {
-      vec2 part = vec2(entry[k]);
-      if (max(part.x, part.y) <= 0.0 || i < ledger_first) continue;
-      atomicAdd(book[k], uint(part.x * (below * scale) + 0.5) + uint(part.y * (above * scale) + 0.5));
-      if (back > 0.0) atomicAdd(unbook[k], uint((i == low ? part.x : part.y) * (back * scale) + 0.5));
-    }
+    trace(ray, entry);
+    enter(task, ray.flux, entry);
   }
   barrier();
   if (gl_LocalInvocationID.x < 5u) {
     uint k = gl_LocalInvocationID.x;
-    WIDE_ADD(ledger, 2u * k, 2u * k + 1u, book[k])
-    WIDE_SUBTRACT(ledger, 2u * k, 2u * k + 1u, unbook[k])
+    WIDE_ADD(ledger, 2u * k, 2u * k + 1u, more_sum[k])
+    WIDE_SUBTRACT(ledger, 2u * k, 2u * k + 1u, less_sum[k])
   }
 }

@@ -1,8 +1,8 @@
 // A photon's light at wavelength i on the general way (walk.glsl): at each interface the stronger
-// branch goes on and the other waits. A landing's slot follows from its path, so that neighbouring
+// branch goes on and the other waits. A hit's slot follows from its path, so that neighbouring
 // photons and wavelengths have the same path in the same slot.
 
-#define KEEPS_WALL
+#define KEEPS_INTERFACE
 #include "walk.glsl"
 
 const int MOST_SEGMENTS = 128;  // of one photon's light; fewer are met but in a hall of mirrors
@@ -11,20 +11,6 @@ int wavelength;
 
 vec2 refractor_spectrum(int r) {
   return spectra[r * WAVELENGTHS + wavelength].xy;
-}
-
-// At an interface: the stronger branch is left in w. Returns the share that is not followed.
-float branch(inout Way w, Interface h, inout Way pending[PENDING]) {
-  Way mirrored;
-  if (!split(w, h, mirrored)) return 0.0;
-  float ended = reflects_on(mirrored) ? 0.0 : mirrored.share;
-  mirrored.share -= ended;
-  Way weaker = mirrored;
-  if (mirrored.share > w.share) {
-    weaker = w;
-    w = mirrored;
-  }
-  return ended + keep_pending(weaker, pending);
 }
 
 // A free slot, the path's own if it can be; -1: all are used.
@@ -38,66 +24,76 @@ int take_slot(uint path, inout uint used) {
   return slot;
 }
 
-void trace(uint photon, int lane, int i, float flux, vec3 o, vec3 d, Hit front, bool reached,
-           out Shares entry[5]) {
+// What a way that ends comes to, in shares of the light.
+struct Ends {
+  float reflected, absorbed, trapped, missed;
+};
+
+void end_way(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout uint used, inout Ends e) {
+  int slot = to.state >= HELD ? take_slot(w.path, used) : -1;
+  if (slot >= 0) {
+    bool last = w.transmitted && w.inside == 0u && w.refractor == int(owner);
+    vec3 n = dot(w.interface_n, w.d) < 0.0 ? -w.interface_n : w.interface_n;
+    keep_hit(photon, PhotonHit(slot, to.place, w.share * photon.flux,
+                               signature_of(w.path * 31u + to.receiver, to, owner), 0.0,
+                               vec4(w.p, interface_word(n, last, to.tile))));
+  } else if (to.state >= HELD || (to.state == NO_RECEIVER && w.inside != 0u)) {
+    e.trapped += w.share;
+  } else if (w.interfaces == 0 && w.inside == 0u) {
+    e.reflected += w.share;
+  } else {
+    e.missed += w.share;
+  }
+}
+
+void trace(PhotonRay photon, out Shares entry[5]) {
   for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
-  wavelength = i;
-  Way pending[PENDING];
-  Way w = Way(o, d, 1.0, 0u, 0u, -1, -1, -1, d, false);
-  for (int k = 0; k < PENDING; k++) pending[k] = Way(o, d, 0.0, 0u, 0u, 0, -1, -1, d, false);
+  wavelength = photon.wavelength;
+  vec3 o = photon.o, d = photon.d;
+  PathState pending[PENDING];
+  PathState w = PathState(o, d, 1.0, 0u, 0u, -1, -1, -1, d, false);
+  for (int k = 0; k < PENDING; k++) pending[k] = PathState(o, d, 0.0, 0u, 0u, 0, -1, -1, d, false);
   Interface h;
   h.hit.t = 1e30;
-  bool going = reached && next_interface(w, h);
+  bool going = photon.reached && next_interface(w, h);
   uint owner = uint(h.hit.refractor), used = 0u;
-  float missed = 0.0, reflected = 0.0, absorbed = 0.0, trapped = 0.0;
+  Ends e = Ends(0.0, 0.0, 0.0, 0.0);
+  float ended, dropped;
   if (going) {
     entry[REACHED] = Shares(1.0);
-    trapped = branch(w, h, pending);
+    branch(w, h, 0.0, pending, ended, dropped);
+    e.trapped = ended + dropped;
   }
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
     h.hit.t = 1e30;
     bool met = next_interface(w, h);
-    vec3 at, place;
-    int page;
-    uint receiver;
     // What leaves a refractor that touches a receiver lands there.
     float t_min = w.inside == 0u ? -touch * refractor_bounds.w : 0.0;
-    int landed = land(w.p, w.d, t_min, met ? h.hit.t : 1e30, at, place, page, receiver);
+    ReceiverHit to = meet_receiver(w.p, w.d, t_min, met ? h.hit.t : 1e30);
 #ifdef ABSORBING
-    if (w.inside != 0u && (met || landed != NO_RECEIVER)) {
-      float way = landed != NO_RECEIVER ? distance(at, w.p) : h.hit.t;
+    if (w.inside != 0u && (met || to.state != NO_RECEIVER)) {
+      float way = to.state != NO_RECEIVER ? distance(to.at, w.p) : h.hit.t;
       float left = exp(-way * refractor_spectrum(medium_of(w.inside)).y);
-      absorbed += w.share * (1.0 - left);
+      e.absorbed += w.share * (1.0 - left);
       w.share *= left;
     }
 #endif
-    if (landed == NO_RECEIVER && met) {
-      trapped += branch(w, h, pending);
+    if (to.state == NO_RECEIVER && met) {
+      branch(w, h, 0.0, pending, ended, dropped);
+      e.trapped += ended + dropped;
     } else {
-      int slot = landed >= LANDED ? take_slot(w.path, used) : -1;
-      if (slot >= 0)
-        keep_landing(
-            photon, slot, lane, place, w.share * flux,
-            signature_of(w.path * 31u + receiver, landed, owner), 0.0,
-            vec4(w.p, wall_word(dot(w.wall_n, w.d) < 0.0 ? -w.wall_n : w.wall_n,
-                                w.transmitted && w.inside == 0u && w.refractor == int(owner), page)));
-      else if (landed >= LANDED || (landed == NO_RECEIVER && w.inside != 0u))
-        trapped += w.share;
-      else if (w.walls == 0 && w.inside == 0u)
-        reflected += w.share;
-      else
-        missed += w.share;
+      end_way(photon, w, to, owner, used, e);
       w.share = 0.0;
     }
     if (w.share <= 0.0) w = take_pending(pending);
     going = w.share > 0.0;
   }
   if (going) {
-    trapped += w.share;
-    for (int k = 0; k < PENDING; k++) trapped += pending[k].share;
+    e.trapped += w.share;
+    for (int k = 0; k < PENDING; k++) e.trapped += pending[k].share;
   }
-  entry[REFLECTED] = Shares(reflected);
-  entry[ABSORBED] = Shares(absorbed);
-  entry[TRAPPED] = Shares(trapped);
-  entry[MISSED] = Shares(missed);
+  entry[REFLECTED] = Shares(e.reflected);
+  entry[ABSORBED] = Shares(e.absorbed);
+  entry[TRAPPED] = Shares(e.trapped);
+  entry[MISSED] = Shares(e.missed);
 }

@@ -38,6 +38,23 @@ bool hierarchy_turned(uvec2 cone, vec3 away) {
   return dot(vec3(word.xyz), away) > float(word.w);
 }
 
+// Makes the triangle the best so far if it is nearer.
+void meet_triangle(int i, vec3 o, vec3 d, float side, float t_min, inout TriangleHit best) {
+  vec3 corner = hierarchy_triangle(3 * i).xyz;
+  vec3 e1 = hierarchy_triangle(3 * i + 1).xyz, e2 = hierarchy_triangle(3 * i + 2).xyz;
+  vec3 across = cross(d, e2), from = o - corner;
+  float det = dot(e1, across);
+  vec3 q = cross(from, e1);
+  float scale = 1.0 / det;
+  float u = dot(from, across) * scale, v = dot(d, q) * scale, t = dot(e2, q) * scale;
+  bool hit = det != 0.0 && det * side >= 0.0 && min(u, v) >= -2e-6 && u + v <= 1.000002 && t > t_min &&
+             t < best.t;
+  best.triangle = hit ? i : best.triangle;
+  best.t = hit ? t : best.t;
+  best.u = hit ? u : best.u;
+  best.v = hit ? v : best.v;
+}
+
 // Nearest triangle of the tree at `root` with t_min < t < h.t. side 1: only those that the ray meets
 // against their normal, -1: along it, 0: all. any: the first that is found will do.
 bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
@@ -60,18 +77,18 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   o += start * d;
   base = (uintBitsToFloat(low.xyz) - o) * inverse;
   t_min -= start;
-  float nearest = h.t - start, hit_u = 0.0, hit_v = 0.0;
+  TriangleHit best = TriangleHit(h.t - start, 0.0, 0.0, -1);
   vec3 away = side * d;
   uvec3 turn = mix(uvec3(16), uvec3(0), greaterThanEqual(d, vec3(0)));
   int code = meets ? int(low.w) : -1;
-  int waiting = 0, found = -1, leaf = ~code;
+  int waiting = 0, leaf = ~code;
   int node = code, next = code < 0 ? leaf >> 3 : 0, end = next + (code < 0 ? leaf & 7 : 0);
   while (node >= 0 || next < end) {
     while (node >= 0) {
       uvec4 first_child = hierarchy_node(node), second_child = hierarchy_node(node + 1);
       uvec4 cones = hierarchy_node(node + 2);
-      float a = hierarchy_enter(first_child.xyz, turn, base, step, t_min, nearest);
-      float b = hierarchy_enter(second_child.xyz, turn, base, step, t_min, nearest);
+      float a = hierarchy_enter(first_child.xyz, turn, base, step, t_min, best.t);
+      float b = hierarchy_enter(second_child.xyz, turn, base, step, t_min, best.t);
       int code_a = a < 1e30 && !hierarchy_turned(cones.xy, away) ? int(first_child.w) : -1;
       int code_b = b < 1e30 && !hierarchy_turned(cones.zw, away) ? int(second_child.w) : -1;
       bool both = code_a != -1 && code_b != -1;
@@ -90,22 +107,10 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
     next = leaf >> 3;
     end = next + (leaf & 7);
     while (next < end) {
-      vec3 corner = hierarchy_triangle(3 * next).xyz;
-      vec3 e1 = hierarchy_triangle(3 * next + 1).xyz, e2 = hierarchy_triangle(3 * next + 2).xyz;
-      vec3 across = cross(d, e2), from = o - corner;
-      float det = dot(e1, across);
-      vec3 q = cross(from, e1);
-      float scale = 1.0 / det;
-      float u = dot(from, across) * scale, v = dot(d, q) * scale, t = dot(e2, q) * scale;
-      bool hit = det != 0.0 && det * side >= 0.0 && min(u, v) >= -2e-6 && u + v <= 1.000002 &&
-                 t > t_min && t < nearest;
-      found = hit ? next : found;
-      nearest = hit ? t : nearest;
-      hit_u = hit ? u : hit_u;
-      hit_v = hit ? v : hit_v;
+      meet_triangle(next, o, d, side, t_min, best);
       next++;
     }
-    bool pop = waiting > 0 && !(any && found >= 0);
+    bool pop = waiting > 0 && !(any && best.triangle >= 0);
     code = pop ? top.x : -1;
     ivec4 popped = ivec4(top.yzw, 0);
     if (pop && waiting > 4) popped.w = deep[waiting - 5];
@@ -116,9 +121,7 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
     next = code < 0 ? leaf >> 3 : 0;
     end = code < 0 ? next + (leaf & 7) : 0;
   }
-  h.t = nearest + start;
-  h.u = hit_u;
-  h.v = hit_v;
-  h.triangle = found;
-  return found >= 0;
+  h = best;
+  h.t = best.t + start;
+  return best.triangle >= 0;
 }

@@ -1,5 +1,4 @@
-// Rays meeting refractors: the exact quadric of a sphere, the planes of a convex solid, or the
-// front and back layers that a view sees of any other closed mesh.
+// Rays meeting refractors with an exact surface: the quadric of a sphere, the planes of a convex solid.
 
 #include "common.glsl"
 #include "optics.glsl"
@@ -14,19 +13,33 @@ struct Hit {
 };
 
 #ifdef SPHERES
-// First hit of a ray from outside. The nearer root without cancellation.
-bool sphere_front(vec4 s, vec3 o, vec3 d, inout Hit h) {
+// What of the ray lies in the sphere: from `middle` on it half its length each way; across: from the centre
+// to there.
+bool sphere_chord(vec4 s, vec3 o, vec3 d, out vec3 across, out float middle, out float half_length) {
   vec3 oc = o - s.xyz;
   float b = dot(oc, d);
-  vec3 across = oc - b * d;
+  across = oc - b * d;
   float disc = s.w * s.w - dot(across, across);
-  if (disc <= 0.0 || b >= 0.0) return false;
-  float t = -b - sqrt(disc);
-  if (t <= 0.0 || t >= h.t) return false;
+  middle = -b;
+  half_length = sqrt(max(disc, 0.0));
+  return disc > 0.0;
+}
+
+void set_sphere_hit(vec4 s, float t, vec3 radius, inout Hit h) {
   h.t = t;
-  h.n = normalize(across - sqrt(disc) * d);
+  h.n = normalize(radius);
   h.p = s.xyz + s.w * h.n;
   h.facet = 0;
+}
+
+// First hit of a ray from outside. The nearer root without cancellation.
+bool sphere_front(vec4 s, vec3 o, vec3 d, inout Hit h) {
+  vec3 across;
+  float middle, half_length;
+  bool meets = sphere_chord(s, o, d, across, middle, half_length);
+  float t = middle - half_length;
+  if (!meets || middle <= 0.0 || t <= 0.0 || t >= h.t) return false;
+  set_sphere_hit(s, t, across - half_length * d, h);
   return true;
 }
 #endif
@@ -84,94 +97,9 @@ bool exact_front(vec3 o, vec3 d, inout Hit h) {
   return found;
 }
 
-#ifdef LAYERS
-// Layers are sampled at their nearest texel, not fetched by its number: for that a software rasteriser
-// works out the sizes of the level for each lane.
-
-// Normal of a layer at the point's projection, bilinear over texels on the same surface.
-vec3 layer_normal(View v, sampler2DArray layers, float layer, vec3 p, vec3 fallback) {
-  vec3 uvz;
-  project(v, p, uvz);
-  ivec2 size = textureSize(layers, 0).xy;
-  vec2 at = uvz.xy * vec2(size) - 0.5;
-  ivec2 base = ivec2(floor(at));
-  vec2 f = at - vec2(base);
-  vec3 sum = vec3(0);
-  for (int k = 0; k < 4; k++) {
-    ivec2 o = ivec2(k & 1, k >> 1);
-    vec4 texel = textureLod(layers, vec3((vec2(base + o) + 0.5) / vec2(size), layer), 0.0);
-    if (texel.w <= 0.0 || abs(texel.w - uvz.z) > 0.02 * uvz.z) continue;
-    sum += texel.xyz * ((o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y));
-  }
-  return dot(sum, sum) > 1e-8 ? normalize(sum) : fallback;
-}
-
-#ifndef LAYER_STEPS
-#define LAYER_STEPS 14
-#endif
-#ifndef LAYER_BISECTIONS
-#define LAYER_BISECTIONS 3
-#endif
-
-// How deep x lies between front and back (layers front, front + 1), along the view's ray; negative
-// outside, and behind the rim of what the view sees.
-float layer_depth(View v, sampler2DArray layers, float front, vec3 x, out bool at_front) {
-  vec3 uvz;
-  at_front = false;
-  if (!project(v, x, uvz) || !inside(uvz.xy)) return -1e9;
-  float near = textureLod(layers, vec3(uvz.xy, front), 0.0).w;
-  float far = textureLod(layers, vec3(uvz.xy, front + 1.0), 0.0).w;
-  if (near <= 0.0 || far <= 0.0) return -1e9;
-  at_front = uvz.z - near < far - uvz.z;
-  return min(uvz.z - near, far - uvz.z);
-}
-
-// The next wall of a solid known by its front and back layers; `size` bounds the search. The ray
-// starts on a wall, so a little outside counts as inside.
-void layers_inner(View v, sampler2DArray layers, float front, float size, vec3 p, vec3 d,
-                  out vec3 q, out vec3 n) {
-  float slack = 2e-3 * size, low = 0.0, high = -1.0;
-  float above = slack, below = -1e9;  // depths there, from -slack on
-  bool at_front;
-  for (int i = 1; i <= LAYER_STEPS && high < 0.0; i++) {
-    // Short steps first: thin parts are crossed near the start.
-    float t = size * float(i * i) / float(LAYER_STEPS * LAYER_STEPS);
-    float depth = layer_depth(v, layers, front, p + t * d, at_front) + slack;
-    bool out_now = depth < 0.0;
-    high = out_now ? t : high;
-    low = out_now ? low : t;
-    below = out_now ? depth : below;
-    above = out_now ? above : depth;
-  }
-  if (high < 0.0) high = size;
-  for (int k = 0; k < LAYER_BISECTIONS; k++) {
-    float m = 0.5 * (low + high);
-    float depth = layer_depth(v, layers, front, p + m * d, at_front) + slack;
-    bool out_now = depth < 0.0;
-    high = out_now ? m : high;
-    low = out_now ? low : m;
-    below = out_now ? depth : below;
-    above = out_now ? above : depth;
-  }
-  // The last step is along a line, unless the ray is lost behind the rim.
-  low += below < -1e8 ? 0.0 : (high - low) * clamp(above / (above - below), 0.0, 1.0);
-  q = p + low * d;
-  layer_depth(v, layers, front, q, at_front);
-  // Past the rim the ray leaves through the side.
-  vec3 side = d - dot(d, v.forward.xyz) * v.forward.xyz;
-  n = layer_normal(v, layers, at_front ? front : front + 1.0, q,
-                   dot(side, side) > 1e-8 ? normalize(side) : d);
-  float c = dot(n, d);
-  if (c < 1e-3) n = normalize(n + (1e-3 - c) * d);
-}
-#endif
-
-// From p on refractor r (facet: the one that p lies on) along d inside it to the next wall.
-void inner_hit(int r, int facet, vec3 p, vec3 d,
-#ifdef LAYERS
-               View v, sampler2DArray layers, float front_layer,
-#endif
-               out vec3 q, out vec3 n, out int next) {
+// From p on refractor r (facet: the one that p lies on) along d inside it to the next interface.
+// False where r has no exact surface.
+bool inner_hit(int r, int facet, vec3 p, vec3 d, out vec3 q, out vec3 n, out int next) {
   q = p;
   n = d;
   next = 0;
@@ -181,7 +109,7 @@ void inner_hit(int r, int facet, vec3 p, vec3 d,
     vec3 from = (p - s.xyz) / s.w;
     n = normalize(from - 2.0 * dot(from, d) * d);
     q = s.xyz + s.w * n;
-    return;
+    return true;
   }
 #endif
 #ifdef CONVEX
@@ -192,10 +120,8 @@ void inner_hit(int r, int facet, vec3 p, vec3 d,
     OF_PLANES(LEAVE)
     q = p + (most > 0.0 ? 1.0 / most : 0.0) * d;
     n = planes[PLANE_FIRST + next].xyz;
-    return;
+    return true;
   }
 #endif
-#ifdef LAYERS
-  layers_inner(v, layers, front_layer, 2.0 * refractors[r].sphere.w, p, d, q, n);
-#endif
+  return false;
 }

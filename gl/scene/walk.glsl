@@ -3,15 +3,15 @@
 // last is there. Who includes this gives refractor_spectrum(r): n and attenuation (1/m) of refractor
 // r at the wavelength that is followed.
 
-struct Way {
+struct PathState {
   vec3 p, d;
   float share;    // of the light that it began with
   uint inside;    // bit r: within refractor r
   uint path;      // what it met and did on its way, as one number
-  int walls;      // interfaces since the first; -1: none yet
+  int interfaces;  // met since the first; -1: none yet
   int refractor, facet;  // that p lies on
-#ifdef KEEPS_WALL
-  vec3 wall_n;           // the normal there, and whether it came through
+#ifdef KEEPS_INTERFACE
+  vec3 interface_n;      // the normal there, and whether it came through
   bool transmitted;
 #endif
 };
@@ -39,25 +39,21 @@ float medium_n(uint inside) {
 }
 
 #ifdef SPHERES
-// The wall of a sphere that p is in.
-bool sphere_wall(vec4 s, vec3 p, vec3 d, inout Hit h) {
-  vec3 oc = p - s.xyz;
-  float b = dot(oc, d);
-  vec3 across = oc - b * d;
-  float disc = s.w * s.w - dot(across, across);
-  float t = sqrt(max(disc, 0.0)) - b;
-  if (disc <= 0.0 || t >= h.t) return false;
-  h.t = max(t, 0.0);
-  h.n = normalize(across + sqrt(disc) * d);
-  h.p = s.xyz + s.w * h.n;
-  h.facet = 0;
+// The interface of a sphere that p is in.
+bool sphere_inside(vec4 s, vec3 p, vec3 d, inout Hit h) {
+  vec3 across;
+  float middle, half_length;
+  bool meets = sphere_chord(s, p, d, across, middle, half_length);
+  float t = half_length + middle;
+  if (!meets || t >= h.t) return false;
+  set_sphere_hit(s, max(t, 0.0), across + half_length * d, h);
   return true;
 }
 #endif
 
 #ifdef CONVEX
-// The wall of a convex solid that p is in; p lies on `facet`, or on none (-1).
-bool convex_wall(ivec4 info, int facet, vec3 p, vec3 d, inout Hit h) {
+// The interface of a convex solid that p is in; p lies on `facet`, or on none (-1).
+bool convex_inside(ivec4 info, int facet, vec3 p, vec3 d, inout Hit h) {
   float nearest = h.t;
   int next = -1;
   for (int i = 0; i < PLANE_COUNT; i++) {
@@ -80,7 +76,7 @@ bool convex_wall(ivec4 info, int facet, vec3 p, vec3 d, inout Hit h) {
 // The next surface of a refractor on the way, no farther than h.hit.t. Of each refractor only those
 // faces count that lead in where the way is outside, and out where it is inside: so no way meets the
 // face that it leaves, however it is rounded.
-bool next_interface(Way w, inout Interface h) {
+bool next_interface(PathState w, inout Interface h) {
   bool found = false;
 #ifdef HIERARCHY
   TriangleHit triangle;
@@ -93,12 +89,12 @@ bool next_interface(Way w, inout Interface h) {
     ivec4 info = refractors[r].info;
 #ifdef SPHERES
     if (info.x == MODEL_SPHERE)
-      hit = within ? sphere_wall(refractors[r].sphere, w.p, w.d, h.hit)
+      hit = within ? sphere_inside(refractors[r].sphere, w.p, w.d, h.hit)
                    : sphere_front(refractors[r].sphere, w.p, w.d, h.hit);
 #endif
 #ifdef CONVEX
     if (info.x == MODEL_CONVEX)
-      hit = within ? convex_wall(info, w.refractor == r ? w.facet : -1, w.p, w.d, h.hit)
+      hit = within ? convex_inside(info, w.refractor == r ? w.facet : -1, w.p, w.d, h.hit)
                    : convex_front(info, w.p, w.d, h.hit);
 #endif
     if (hit) {
@@ -150,7 +146,7 @@ vec3 keep_side(vec3 face_n, vec3 d) {
 
 // Both ways on from an interface that w comes to; their shares add up to w's. False where the
 // medium does not change: w goes on behind it.
-bool split(inout Way w, Interface h, out Way mirrored) {
+bool split(inout PathState w, Interface h, out PathState mirrored) {
   int r = h.hit.refractor;
   uint after = w.inside ^ 1u << r;
   bool entering = (w.inside >> r & 1u) == 0u;
@@ -170,9 +166,9 @@ bool split(inout Way w, Interface h, out Way mirrored) {
   w.d = keep_side(-face_n, through);
   mirrored.share *= reflected;
   w.share -= mirrored.share;
-  w.walls = mirrored.walls = w.walls + 1;
-#ifdef KEEPS_WALL
-  w.wall_n = mirrored.wall_n = n;
+  w.interfaces = mirrored.interfaces = w.interfaces + 1;
+#ifdef KEEPS_INTERFACE
+  w.interface_n = mirrored.interface_n = n;
   w.transmitted = true;
   mirrored.transmitted = false;
 #endif
@@ -183,7 +179,7 @@ bool split(inout Way w, Interface h, out Way mirrored) {
 
 // Keeps a branch for later, in the place of the weakest where there is none free; returns the share
 // that is given up.
-float keep_pending(Way w, inout Way pending[PENDING]) {
+float keep_pending(PathState w, inout PathState pending[PENDING]) {
   int weakest = 0;
   float least = pending[0].share;
   for (int k = 1; k < PENDING; k++) {
@@ -198,9 +194,9 @@ float keep_pending(Way w, inout Way pending[PENDING]) {
 }
 
 // The strongest branch that waits; share 0: none does.
-Way take_pending(inout Way pending[PENDING]) {
+PathState take_pending(inout PathState pending[PENDING]) {
   int strongest = 0;
-  Way w = pending[0];
+  PathState w = pending[0];
   for (int k = 1; k < PENDING; k++) {
     bool stronger = pending[k].share > w.share;
     strongest = stronger ? k : strongest;
@@ -213,6 +209,25 @@ Way take_pending(inout Way pending[PENDING]) {
 
 // What may be reflected further: always at the first interface, then until too little is left or
 // too many interfaces are met.
-bool reflects_on(Way mirrored) {
-  return mirrored.walls <= 0 || (mirrored.walls < EXITS && mirrored.share >= share_limit);
+bool reflects_on(PathState mirrored) {
+  return mirrored.interfaces <= 0 || (mirrored.interfaces < EXITS && mirrored.share >= share_limit);
+}
+
+// At an interface: the stronger branch is left in w, the other waits, and of both only what carries
+// `least`. Of what is not followed: the share that ends here, and the one that gives its place up.
+void branch(inout PathState w, Interface h, float least, inout PathState pending[PENDING], out float ended,
+            out float dropped) {
+  PathState mirrored;
+  ended = dropped = 0.0;
+  if (!split(w, h, mirrored)) return;
+  bool reflects = reflects_on(mirrored), passes = w.share >= least;
+  ended = (reflects ? 0.0 : mirrored.share) + (passes ? 0.0 : w.share);
+  if (!reflects) mirrored.share = 0.0;
+  if (!passes) w.share = 0.0;
+  PathState weaker = mirrored;
+  if (mirrored.share > w.share) {
+    weaker = w;
+    w = mirrored;
+  }
+  dropped = keep_pending(weaker, pending);
 }

@@ -1,0 +1,108 @@
+// Lays the light of a span part by part, each with the colour of its own part of the band.
+
+// How far the light is laid.
+struct Front {
+  Sums sums;
+  vec2 at;
+};
+
+struct Part {
+  bool owed;
+  vec3 xyz, middles;  // X, Y and Z have each a middle of its own, along the row
+  float middle, index;
+  float along;  // from the span's beginning to its end, by the index
+};
+
+int last_step(Span s, int k) {
+  int step = k < s.owed ? STEPS - (k + 1) * (STEPS / 2) / max(s.owed, 1)
+                        : (k + 1 - s.owed) * s.steps / max(s.parts, 1);
+  return min(step, STEPS);
+}
+
+Part part_of(Span s, bool owed, Sums before, Sums upto) {
+  Part p;
+  p.owed = owed;
+  p.xyz = abs(upto.xyz - before.xyz);
+  p.middles = clamp(abs(upto.moment - before.moment) / max(p.xyz, vec3(1e-20)),
+                    vec3(min(before.along, upto.along)), vec3(max(before.along, upto.along)));
+  p.middle = dot(p.middles, p.xyz) / max(p.xyz.x + p.xyz.y + p.xyz.z, 1e-20);
+  float row_index = owed ? s.z.index : s.a.index, row_span = (owed ? s.a.index : s.index_b) - row_index;
+  p.index = row_index + p.middle * row_span;
+  p.along = (p.index - s.from.index) * s.per_index;
+  return p;
+}
+
+// What the nodes say of its light, and what they say is left of that.
+vec2 said_of(Span s, Part p, Sums before, Sums upto) {
+  float first_half = min(upto.xyz.y, s.half_xyz.y) - min(before.xyz.y, s.half_xyz.y);
+  float share_a = p.owed ? p.xyz.y : first_half;
+  vec2 said = vec2(s.a.flux * share_a, s.bridges ? s.b.flux * (p.xyz.y - share_a) : 0.0);
+  return vec2(said.x + said.y, dot(said, vec2(p.owed ? s.owed_left : s.left.a, s.left.b)));
+}
+
+// Before it is absorbed.
+Glint light_of(Span s, Part p, Sums upto, inout Front front) {
+  // Where the path changes somewhere between two nodes, its light changes evenly in the mean.
+  Segment first = s.a.left, second = s.b.left;
+  if (p.owed) {
+    first = s.z.left;
+    second = s.a.left;
+  }
+  bool both = (p.owed ? s.z.flux : s.a.flux) > 0.0 && (p.owed ? s.a.flux : s.b.flux) > 0.0;
+  vec3 arrives = both ? first.arrives + p.middles * (second.arrives - first.arrives) : vec3(s.a.left.arrives);
+  Glint g;
+  g.flux = s.a.left.passes * arrives * p.xyz;
+  g.at = s.a.at;
+  g.way = vec2(0);
+  g.tile = s.a.tile;
+  if (s.follows && (s.bridges || !p.owed)) {
+    vec2 at_upto = map_position(
+        place_between(s.from.left, s.to.left, s.fan, (upto.index - s.from.index) * s.per_index), s.a.tile);
+    if (s.bridges && !p.owed) arrives += p.middles * (p.middles - 1.0) * s.curve.w;
+    float passes =
+        transmission(s.to.left.transmits, cosine_between(s.from.left, s.to.left, s.fan, p.along), p.index);
+    vec3 passes_each = passes + (p.middles - p.middle) * (both ? second.passes - first.passes : 0.0);
+    g.flux = max(passes_each * arrives, 0.0) * p.xyz;
+    g.at = 0.5 * (front.at + at_upto);
+    g.way = at_upto - front.at;
+    front.at = at_upto;
+  }
+  float length = upto.along - front.sums.along;
+  g.along = (p.middles - front.sums.along) / (length == 0.0 ? 1.0 : length) - 0.5;
+  return g;
+}
+
+// As the mean over the part attenuates each of the three.
+vec3 left_of(Span s, Part p, Sums before, Sums upto) {
+  if (!TINTS) return vec3(1);
+  vec3 per_m = abs(upto.attenuation - before.attenuation) / max(p.xyz, vec3(1e-30));
+  float way = s.bridges ? mix(s.from.way, s.to.way, clamp(p.along, 0.0, 1.0)) : s.a.way;
+  return exp(-way * per_m);
+}
+
+// By how much more than the nodes' own, W: light leaves the last interfaces, and is absorbed (both may be
+// below 0); and what would lie beyond the map.
+vec3 entry_of(vec2 said, float flux, float left, bool lands) {
+  float left_said = said.x > 0.0 ? said.y / said.x : 1.0;
+  return vec3(flux * left_said - said.y, flux * (left_said - left), lands ? 0.0 : flux * left);
+}
+
+// last: after what is owed nothing follows, and what is collected is listed.
+void lay(Span s, bool last, Footprint f, inout Splat collected, inout vec3 entry) {
+  Front front = Front(sums_at(s.owed_row, STEPS), s.a.at);
+  int count = s.owed + s.parts + (last ? 1 : 0);
+  for (int k = 0; k < count; k++) {
+    bool done = last && k == s.owed;
+    if (k == s.owed) front = Front(no_sums(), s.a.at);  // the row's first step has nothing before it
+    Sums upto = sums_at(k < s.owed ? s.owed_row : s.row, last_step(s, k));
+    Part p = part_of(s, k < s.owed, front.sums, upto);
+    vec2 said = said_of(s, p, front.sums, upto);
+    Glint g = light_of(s, p, upto, front);
+    vec3 left = left_of(s, p, front.sums, upto);
+    front.sums = upto;
+    bool lands = (p.along >= 0.0 && p.along <= 1.0) || on_the_map(g.at, g.tile);
+    if (!done) entry += entry_of(said, g.flux.y, left.y, lands);
+    g.flux *= left;
+    collect(g, lands, done, f, collected);
+  }
+}

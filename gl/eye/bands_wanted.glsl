@@ -1,0 +1,86 @@
+// Which bands a pixel takes: as many as tell what the spectrum spreads over, joined by twos from the finest
+// level on. Level 0 holds every sample, level k every 2^k as one; levels stand one after another.
+
+#ifdef SPHERES
+// How far apart in pixels the ends of the spectrum leave the first back interface, as the eye would see
+// what they show; large where they show different things.
+float sphere_spread(Hit front, vec3 d, int first, int last) {
+  vec3 at[2];
+  int what[2];
+  for (int k = 0; k < 2; k++) {
+    float n = bands[k == 0 ? first : last].weight_n.w;
+    vec3 inner, interface_n, outer;
+    refract_direction(d, front.n, 1.0 / n, inner);
+    vec4 s = refractors[refractor].sphere;
+    interface_n = normalize(front.n - 2.0 * dot(front.n, inner) * inner);
+    refract_direction(inner, -interface_n, n, outer);
+    vec3 interface_at = s.xyz + s.w * interface_n;
+    at[k] = interface_at + scene_size * outer;
+    what[k] = 0;
+    float t;
+    what[k] = receiver_hit(interface_at, outer, -touch * refractor_bounds.w, 1e30, t);
+    if (what[k] >= 0) what[k] = receiver_part(what[k]);
+    at[k] = interface_at + min(t, scene_size) * outer;
+  }
+  return what[0] != what[1] ? 1e9 : distance(at[0], at[1]) / (pixel_angle * distance(eye, at[0]));
+}
+#endif
+
+// As many bands as the spread asks for, one for every pixel and a half of it. For layers it is
+// estimated from the first interface alone; in facets inner reflections spread light further than
+// the first exit shows, so a convex solid gets every sample.
+float wanted_bands(Hit front, vec3 d, int first, int last) {
+  int model = refractors[refractor].info.x;
+#ifdef SPHERES
+  if (model == MODEL_SPHERE) return sphere_spread(front, d, first, last) / 1.5;
+#endif
+  if (model == MODEL_CONVEX) return 1e9;
+  float c = clamp(-dot(d, front.n), 0.05, 1.0), n = bands[last].weight_n.w;
+  float turn = abs(bands[first].weight_n.w - n) * (0.2 + sqrt(1.0 - c * c) / c) / n;
+  return turn * scene_size / (4.0 * front.t * pixel_angle) / 1.5;
+}
+
+// The first band of the next level, where each of `count` is two of this one's.
+void coarsen(bool coarser, inout int base, inout int count) {
+  base += coarser ? count : 0;
+  count = coarser ? (count + 1) / 2 : count;
+}
+
+#ifdef REFINED
+// Where the bands that a list entry wants begin, and how many there are on its level.
+void wanted_level(uint what, out int base, out int count) {
+  int level = int(what >> 8 & 15u);
+  base = refractor * BAND_COUNT;
+  count = WAVELENGTHS;
+  for (int k = 0; k < BAND_LEVELS - 1; k++) coarsen(k < level, base, count);
+}
+#else
+#ifdef REFINES
+// Of a pixel's light, what a joined band may show wrong.
+const float MOST_WRONG = 0.05;
+
+int level = 0, joined = 0;
+vec3 shown_by[COARSE_BANDS];
+#endif
+
+// Those that the pixel takes: `count` from `base` on.
+void choose_bands(out int base, out int count) {
+  base = refractor * BAND_COUNT;
+  count = WAVELENGTHS;
+  float wanted = wanted_bands(front, sight, base, base + WAVELENGTHS - 1);
+  for (int k = 0; k < BAND_LEVELS - 1; k++) {
+    bool coarser = float((count + 1) / 2) >= wanted;
+    coarsen(coarser, base, count);
+#ifdef REFINES
+    level += coarser ? 1 : 0;
+#endif
+  }
+#ifdef REFINES
+  for (int k = 0; k < BAND_LEVELS - 1; k++) {
+    bool coarser = count > COARSE_BANDS;
+    coarsen(coarser, base, count);
+    joined += coarser ? 1 : 0;
+  }
+#endif
+}
+#endif

@@ -1,0 +1,62 @@
+// The camera's rays through one refractor alone.
+
+#include "inner_path.glsl"
+
+#ifdef LAYERS
+void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
+  layers_inner(camera_view(), eye_layers, 0.0, 2.0 * refractors[r].sphere.w, p, d, q, n);
+}
+#endif
+
+// The light of one band, from interface to interface. What is left when the path ends shows what the rest
+// has shown. Its loops have two ways out, with values of their own for what is used after them: of what the
+// last turn alone has made, lanes that took fewer turns may find another's (Mesa 22's llvmpipe).
+vec3 through(Hit front, vec3 d, int band) {
+  float n = bands[band].weight_n.w, attenuation = bands[band].attenuation.x;
+  InnerRay ray = InnerRay(front.p, d, front.facet, 1.0 - fresnel(-dot(d, front.n), 1.0 / n));
+  vec3 light = vec3(0);
+  if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
+  float shown = 0.0, left = 0.0;
+  bool met;
+  for (int order = 0; order < EXITS;) {
+    Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
+    bool shows = false;
+    while (order < EXITS) {
+      InnerHit h = next_inner_hit(refractor, ray);
+#ifdef ABSORBING
+      ray.share *= exp(-attenuation * distance(h.p, ray.p));
+#endif
+      leaving = leave(h, n, ray);
+      shows = leaving.share > 0.5 * share_limit;
+      left += shows ? 0.0 : leaving.share;
+      order++;
+      left += ray.share < share_limit || order == EXITS ? ray.share : 0.0;
+      if (!CHEAP_INTERFACES || shows || ray.share < share_limit) break;
+    }
+    if (shows) {
+      light += leaving.share * seen(leaving.p, leaving.d, -touch * refractor_bounds.w, 1e30, met);
+      shown += leaving.share;
+    }
+    if (ray.share < share_limit) break;
+  }
+  return light * (shown > 0.0 ? 1.0 + left / shown : 0.0);
+}
+
+// Of a refractor without an exact surface the ray meets what the front layer shows.
+void look_at_layer(ivec2 at) {
+  vec4 layer = texelFetch(eye_layers, ivec3(at, 0), 0);
+  found = true;
+  front.t = layer.w;
+  front.p = eye + layer.w * sight;
+  front.n = normalize(layer.xyz);
+  float c = dot(front.n, sight);
+  if (c > -1e-3) front.n = normalize(front.n - (c + 1e-3) * sight);
+  front.facet = -1;
+}
+
+void look(ivec2 at) {
+  aim_at(at);
+  front.t = 1e30;
+  found = exact_front(eye, sight, front) && front.refractor == refractor;
+  if (refractors[refractor].info.x == MODEL_LAYERS) look_at_layer(at);
+}

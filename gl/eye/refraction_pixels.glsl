@@ -1,0 +1,54 @@
+// The camera's rays through one refractor alone, a thread a pixel.
+
+// XYZ of what a band shows through the first interface; the share that is mirrored there.
+vec3 band_light(int band, out float mirrored) {
+  mirrored = fresnel(-dot(sight, front.n), 1.0 / bands[band].weight_n.w);
+  return xyz_from_rgb * through(front, sight, band);
+}
+
+#ifdef REFINED
+void main() {
+  copy_tables();
+  uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  if (listed >= refine_count) return;
+  uint what = refine[listed].y;
+  ivec2 at = pixel_of(refine[listed].x);
+  look(at);
+  int base, count, joined = int(what >> 12 & 15u);
+  wanted_level(what, base, count);
+  vec3 sum = vec3(0);
+  uint wanted = what & 255u;
+  while (wanted != 0u) {
+    int band = findLSB(wanted), end = min((band + 1) << joined, count);
+    for (int i = band << joined; i < end; i++) {
+      float mirrored;
+      sum += band_light(base + i, mirrored) * bands[base + i].weight_n.xyz;
+    }
+    wanted &= wanted - 1u;
+  }
+  add_to_picture(at, sum);
+}
+#else
+void main() {
+  copy_tables();
+  uint listed = pixel_first + gl_GlobalInvocationID.x;
+  if (listed >= pixel_count) return;
+  look(pixel_of(pixel[listed]));
+  int base, count;
+  choose_bands(base, count);
+  vec3 sum = vec3(0), mirror = vec3(0);
+  for (int i = 0; i < count; i++) {
+    float mirrored;
+    vec3 light = band_light(base + i, mirrored), weight = bands[base + i].weight_n.xyz;
+    mirror += mirrored * weight;
+    sum += light * weight;
+#ifdef REFINES
+    shown_by[i] = light;
+#endif
+  }
+  bool met;
+  vec3 mirrored = seen(front.p, reflect(sight, front.n), -touch * refractor_bounds.w, 1e30, met);
+  sum += mirror * (xyz_from_rgb * mirrored);
+  write_pixel(pixel[listed], base, count, sum);
+}
+#endif

@@ -1,0 +1,71 @@
+// A photon's light through one refractor alone: light that leaves it meets none again.
+
+#include "inner_path.glsl"
+
+// To look for the next outgoing segment first pays in solids that keep light inside for long, which have
+// more of them than others.
+const bool GO_ON = CHEAP_INTERFACES && EXITS > 8;
+
+#ifdef LAYERS
+void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
+  layers_inner(lights[light].near_view, light_layers, 2.0 * float(light), 2.0 * refractors[r].sphere.w, p, d,
+               q, n);
+}
+#endif
+
+// The mirror on the outside takes the slot behind the outgoing segments'; it is the same for all colours.
+// Returns the share that is lost.
+float mirror(PhotonRay photon, uint path, float reflected) {
+  if (reflected <= 0.0) return 0.0;
+  Hit front = photon.front;
+  ReceiverHit to = meet_receiver(front.p, reflect(photon.d, front.n), -touch * refractor_bounds.w, 1e30);
+  if (to.state < HELD) return reflected;
+  keep_hit(photon, PhotonHit(EXITS, to.place, reflected * photon.flux,
+                             signature_of(path * 17u + to.receiver, to, uint(front.refractor)), 0.0,
+                             vec4(front.p, interface_word(front.n, false, to.tile))));
+  return 0.0;
+}
+
+// What leaves at interface `order`. Returns the share that is lost.
+float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, float way) {
+  ReceiverHit to = meet_receiver(o.p, o.d, -touch * refractor_bounds.w, 1e30);
+  if (to.state < HELD) return o.share;
+  keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux,
+                             signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor)), way,
+                             vec4(o.p, interface_word(o.n, true, to.tile))));
+  return 0.0;
+}
+
+// Each hit is handed on with its slot; `entry` takes the shares of the light that go elsewhere. Loops have
+// two ways out, as in refraction_inner.glsl.
+void trace(PhotonRay photon, out Shares entry[5]) {
+  for (int k = 0; k < 5; k++) entry[k] = Shares(0.0);
+  if (!photon.reached) return;
+  Hit front = photon.front;
+  int r = front.refractor;
+  vec2 spectrum = spectra[r * WAVELENGTHS + photon.wavelength].xy;
+  float n = spectrum.x, per_m = spectrum.y, reflected = fresnel(-dot(photon.d, front.n), 1.0 / n);
+  uint path = uint(r) * 131u + uint(front.facet);
+  entry[REACHED] = Shares(1.0);
+  entry[REFLECTED] = Shares(mirror(photon, path, reflected));
+  InnerRay ray = InnerRay(front.p, photon.d, front.facet, 1.0 - reflected);
+  if (!refract_direction(photon.d, front.n, 1.0 / n, ray.d)) return;
+  float way = 0.0;
+  Shares left = Shares(1.0);
+  for (int order = 0; order < EXITS;) {
+    Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
+    bool ends = false;
+    while (order < EXITS) {
+      InnerHit h = next_inner_hit(r, ray);
+      entry[ABSORBED] += absorb(distance(h.p, ray.p), per_m, ray.share, way, left);
+      path = path * 31u + uint(h.facet) + 1u;
+      leaving = leave(h, n, ray);
+      ends = left_at_node(ray.share, per_m, way) < share_limit;
+      order++;
+      if (!GO_ON || leaving.share > 0.0 || ends) break;
+    }
+    if (leaving.share > 0.0) entry[MISSED] += keep_outgoing(photon, leaving, order - 1, path, way) * left;
+    if (ends) break;
+  }
+  entry[TRAPPED] += ray.share * left;
+}

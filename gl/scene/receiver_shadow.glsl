@@ -1,0 +1,88 @@
+// What stands between a light and a place on a receiver.
+
+// Light's direction of travel to p and its distance (directional: far beyond the scene).
+void light_to(Light l, vec3 p, out vec3 d, out float distance_m) {
+  if (int(l.position.w) == 2) {
+    d = l.direction.xyz;
+    distance_m = 4.0 * scene_size;
+  } else {
+    d = p - l.position.xyz;
+    distance_m = length(d);
+    d /= distance_m;
+  }
+}
+
+// No other receiver stands between the light and p.
+bool receiver_lit(int light, vec3 p, vec3 d, float distance_m) {
+#ifndef RECEIVER_SHADOWS
+  return true;
+#else
+  return !receiver_between(p - distance_m * d, d, 0.0, distance_m * (1.0 - 2e-5));
+#endif
+}
+
+#ifdef SHADOW_PLANES
+// In the shadow of a convex refractor: within all its planes.
+bool convex_shadow(int light, int refractor, vec3 p) {
+  vec3 x = int(LIGHT(light).position.w) == 2 ? p : p - LIGHT(light).position.xyz;
+#ifdef ONE_SHADOW
+  const int first = 0, count = SHADOW_PLANES;
+#else
+  ivec2 range = shadow_range[light * REFRACTORS + refractor].xy;
+  int first = range.x, count = range.y;
+#endif
+  float most = -1e30;
+#define CROSS(i) most = max(most, dot(SHADOW_PLANE(i).xyz, x) - SHADOW_PLANE(i).w);
+  OF_SHADOW_PLANES(CROSS)
+  return count > 0 && most < 0.0;
+}
+#endif
+
+// A refractor with an exact surface stands between the light and p, or around p.
+bool exact_shadow(int light, vec3 p, vec3 d, float distance_m) {
+  Hit h;
+  h.t = distance_m;
+#ifndef SHADOW_PLANES
+  return exact_front(p - distance_m * d, d, h);
+#else
+  bool hidden = false;
+  for (int r = 0; r < REFRACTORS; r++) {
+    hidden = convex_shadow(light, r, p) || hidden;
+#ifdef SPHERES
+    if (refractors[r].info.x == MODEL_SPHERE)
+      hidden = sphere_front(refractors[r].sphere, p - distance_m * d, d, h) || hidden;
+#endif
+  }
+  return hidden;
+#endif
+}
+
+// Share of direct light that no refractor takes away on its way to p.
+float refractor_shadow(int light, vec3 p, vec3 d, float distance_m) {
+  if (LIGHT(light).misc.w == 0.0) return 1.0;
+  if (exact_shadow(light, p, d, distance_m)) return 0.0;
+#ifdef FRONT_LAYER
+  vec3 uvz;
+  View v = LIGHT(light).near_view;
+  if (!project(v, p, uvz)) return 1.0;
+  ivec2 size = textureSize(light_layers, 0).xy;
+  vec2 at = uvz.xy * vec2(size) - 0.5;
+#ifdef CUBES
+  // What a refractor shows beyond the seam of two faces is another face's.
+  if (int(LIGHT(light).cube.x) != ALL_FACES && inside(uvz.xy)) at = clamp(at, vec2(0), vec2(size - 1));
+#endif
+  ivec2 base = ivec2(floor(at));
+  vec2 f = at - vec2(base);
+  float lit = 0.0;
+  for (int k = 0; k < 4; k++) {
+    ivec2 o = ivec2(k & 1, k >> 1), texel = base + o;
+    bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size));
+    float front = outside ? 0.0 : textureLod(light_layers, vec3((vec2(texel) + 0.5) / vec2(size), float(2 * light)), 0.0).w;
+    float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
+    lit += front <= 0.0 || front > uvz.z ? w : 0.0;
+  }
+  return lit;
+#else
+  return 1.0;
+#endif
+}
