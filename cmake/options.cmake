@@ -29,7 +29,8 @@ target_compile_options(abbe_build INTERFACE
   $<$<BOOL:${ABBE_WERROR}>:-Werror>)
 if(ABBE_SANITIZE)
   target_compile_options(abbe_build INTERFACE
-    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+    -Wno-format-truncation) # which needs the ranges of numbers, and those -O2
   target_link_options(abbe_build INTERFACE -fsanitize=address,undefined)
 endif()
 

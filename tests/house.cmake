@@ -58,9 +58,8 @@ add_executable(test_headers ${sources} ${CMAKE_CURRENT_BINARY_DIR}/headers/main.
 target_link_libraries(test_headers PRIVATE abbe_build)
 target_include_directories(test_headers PRIVATE
   $<TARGET_PROPERTY:abbe_gl,INTERFACE_INCLUDE_DIRECTORIES>)
-add_dependencies(cpu_tests test_headers)
 add_test(NAME headers COMMAND test_headers)
-set_tests_properties(headers PROPERTIES LABELS cpu TIMEOUT ${hang_s})
+set_tests_properties(headers PROPERTIES LABELS program TIMEOUT ${hang_s})
 
 # Every function of the headers that returns a result, called with NULL and with zeros.
 list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE header_files)
