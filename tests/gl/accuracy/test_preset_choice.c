@@ -93,7 +93,7 @@ static void test_settings_in_words(void **state) {
                         .supersample = 1,
                         .upsample = 2,
                         .fill = ABBE_FILL_BRIDGE,
-                        .orders = 8,
+                        .exits = 8,
                         .energy_share = 0.01};
   abbe_preset_describe(&d, text, sizeof text);
   assert_string_equal(text,

@@ -10,7 +10,7 @@ static const abbe_render_desc fine = {.wavelengths = 21,
                                       .upsample = 1,
                                       .fill = ABBE_FILL_BRIDGE,
                                       .energy_share = 0.01,
-                                      .orders = 8};
+                                      .exits = 8};
 
 static void test_there_and_back(void **state) {
   (void)state;
