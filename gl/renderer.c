@@ -1,7 +1,7 @@
 #include "gl/renderer.h"
 
 #include "gl/caustics/map_bands.h"
-#include "gl/plan/layer_detail.h"
+#include "gl/plan/examine/layer_detail.h"
 #include "gl/renderer_state.h"
 
 #include <math.h>

@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "colorimetry/image/image.h"
 #include "gl/device/context.h"
-#include "gl/plan/plan.h"
 #include "gl/device/statistics.h"
+#include "gl/plan/plan.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
 

@@ -2,7 +2,7 @@
 #ifndef ABBE_GL_DEVICE_STATISTICS_H
 #define ABBE_GL_DEVICE_STATISTICS_H
 
-#include "gl/plan/passes.h"
+#include "gl/plan/facts/passes.h"
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 #include "gl/eye/receivers_pass.h"
 
-#include "gl/plan/lit_window.h"
+#include "gl/plan/examine/lit_window.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
-#include "gl/plan/light_cube.h"
+#include "gl/plan/examine/light_cube.h"
 #include "scenes/geometry/vector.h"
 
 #include <float.h>

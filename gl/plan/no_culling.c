@@ -1,6 +1,6 @@
 #include "gl/plan/no_culling.h"
 
-#include "gl/plan/light_views.h"
+#include "gl/plan/examine/light_views.h"
 
 #include <stdio.h>
 

@@ -7,7 +7,7 @@
 #ifndef ABBE_GL_PLAN_NO_CULLING_H
 #define ABBE_GL_PLAN_NO_CULLING_H
 
-#include "gl/plan/plan_facts.h"
+#include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
 #ifdef __cplusplus

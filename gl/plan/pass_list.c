@@ -1,6 +1,6 @@
 #include "gl/plan/pass_list.h"
 
-#include "gl/plan/layer_detail.h"
+#include "gl/plan/examine/layer_detail.h"
 
 static const char unlit[] = "no light meets a refractor";
 

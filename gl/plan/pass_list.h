@@ -1,11 +1,11 @@
 /* pass_list.h: the plan's entries of a frame's passes, each with the fact that asks for it.
  *
- * Written when all facts are known; whether a pass runs is the table's to say (gl/plan/passes.h).
+ * Written when all facts are known; whether a pass runs is the table's to say (gl/plan/facts/passes.h).
  */
 #ifndef ABBE_GL_PLAN_PASS_LIST_H
 #define ABBE_GL_PLAN_PASS_LIST_H
 
-#include "gl/plan/plan_facts.h"
+#include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
 #ifdef __cplusplus

@@ -1,13 +1,13 @@
 #include "gl/plan/plan.h"
 
-#include "gl/plan/light_views.h"
+#include "gl/plan/examine/light_views.h"
+#include "gl/plan/examine/path_limits.h"
+#include "gl/plan/examine/precision.h"
+#include "gl/plan/examine/receiver_model.h"
+#include "gl/plan/examine/refractor_model.h"
+#include "gl/plan/examine/spectral_needs.h"
 #include "gl/plan/no_culling.h"
 #include "gl/plan/pass_list.h"
-#include "gl/plan/path_limits.h"
-#include "gl/plan/precision.h"
-#include "gl/plan/receiver_model.h"
-#include "gl/plan/refractor_model.h"
-#include "gl/plan/spectral_needs.h"
 #include "gl/plan/support.h"
 
 #include <stdlib.h>

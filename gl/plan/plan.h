@@ -8,8 +8,8 @@
 #define ABBE_GL_PLAN_PLAN_H
 
 #include "base/error.h"
-#include "gl/plan/plan_facts.h"
-#include "gl/plan/render_desc.h"
+#include "gl/plan/facts/plan_facts.h"
+#include "gl/plan/facts/render_desc.h"
 #include "scenes/scene.h"
 
 #ifdef __cplusplus

@@ -1,12 +1,12 @@
 /* support.h: what the renderer does not model, refused by name.
  *
- * Of scenes whose refractors single precision does not resolve, see gl/plan/precision.h.
+ * Of scenes whose refractors single precision does not resolve, see gl/plan/examine/precision.h.
  */
 #ifndef ABBE_GL_PLAN_SUPPORT_H
 #define ABBE_GL_PLAN_SUPPORT_H
 
 #include "base/error.h"
-#include "gl/plan/plan_facts.h"
+#include "gl/plan/facts/plan_facts.h"
 #include "scenes/scene.h"
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 #include "gl/scene/gpu_scene.h"
 
-#include "gl/plan/layer_detail.h"
+#include "gl/plan/examine/layer_detail.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -23,10 +23,10 @@
 #include "spectral/formats/shader_export.h"
 #include "validation/compare/field.h"
 #include "validation/known/known_answers.h"
-#include "validation/tradeoff/error_decomposition.h"
 #include "validation/sweep/scaling_study.h"
-#include "validation/tradeoff/sweep_presets.h"
 #include "validation/tracer/reference.h"
+#include "validation/tradeoff/error_decomposition.h"
+#include "validation/tradeoff/sweep_presets.h"
 
 static abbe_error error;
 

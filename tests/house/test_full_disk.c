@@ -12,8 +12,8 @@
 #include "scenes/export/pov_file.h"
 #include "scenes/import/scene_file.h"
 #include "spectral/editing/table_edit.h"
-#include "validation/tradeoff/sweep_table.h"
 #include "validation/tracer/checkpoint.h"
+#include "validation/tradeoff/sweep_table.h"
 
 #include <dirent.h>
 #include <errno.h>

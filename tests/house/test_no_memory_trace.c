@@ -13,11 +13,11 @@
 #include "validation/known/known_answers.h"
 #include "validation/known/known_chart.h"
 #include "validation/known/rings.h"
+#include "validation/tracer/checkpoint.h"
+#include "validation/tracer/reference.h"
 #include "validation/tradeoff/sweep_plot.h"
 #include "validation/tradeoff/sweep_presets.h"
 #include "validation/tradeoff/sweep_table.h"
-#include "validation/tracer/checkpoint.h"
-#include "validation/tracer/reference.h"
 
 #define FUZZ ABBE_SOURCE_DIR "/tests/fuzz/"
 

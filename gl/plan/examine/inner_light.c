@@ -1,0 +1,183 @@
+#include "gl/plan/examine/inner_light.h"
+
+#include "gl/plan/examine/reach.h"
+#include "scenes/geometry/vector.h"
+#include "spectral/optics.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { GRID = 64 }; /* rays a side */
+
+/* Where the ray enters the solid: how far along it, and by which plane; -1: it misses. */
+static int entry_of(const abbe_exact *solid, const double p[3], const double d[3], double *at) {
+  double enter = 0, leave = INFINITY;
+  int facet = -1;
+  for (size_t i = 0; i < solid->count; i++) {
+    const double *plane = solid->plane[i];
+    const double slope = abbe_vector_dot(plane, d), gap = plane[3] - abbe_vector_dot(plane, p);
+    if (slope == 0 && gap < 0) return -1;
+    if (slope > 0) leave = fmin(leave, gap / slope);
+    if (slope < 0 && gap / slope > enter) {
+      enter = gap / slope;
+      facet = (int)i;
+    }
+  }
+  *at = enter;
+  return enter < leave ? facet : -1;
+}
+
+/* The wall that a ray inside meets next, from a point on the facet `from`; -1: none. */
+static int wall_of(const abbe_exact *solid, int from, const double p[3], const double d[3],
+                   double *at) {
+  double nearest = INFINITY;
+  int facet = -1;
+  for (size_t i = 0; i < solid->count; i++) {
+    const double *plane = solid->plane[i];
+    const double slope = abbe_vector_dot(plane, d);
+    if ((int)i == from || !(slope > 0)) continue;
+    const double t = fmax((plane[3] - abbe_vector_dot(plane, p)) / slope, 0);
+    if (t >= nearest) continue;
+    nearest = t;
+    facet = (int)i;
+  }
+  *at = nearest;
+  return facet;
+}
+
+static void move(double p[3], double along, const double d[3]) {
+  for (int k = 0; k < 3; k++) p[k] += along * d[k];
+}
+
+typedef struct matter {
+  double n, attenuation_per_m, energy_share;
+} matter;
+
+/* One ray of that weight, from p along d; returns its weight where it meets the solid. */
+static double follow(const abbe_exact *solid, const matter *m, double weight, double p[3],
+                     const double d[3], abbe_inner_light *out) {
+  const double back[3] = {-d[0], -d[1], -d[2]};
+  double along, inner[3];
+  int facet = entry_of(solid, p, d, &along);
+  if (facet < 0) return 0;
+  const double *plane = solid->plane[facet];
+  double share = 1 - abbe_optics_fresnel(abbe_vector_dot(plane, back), 1 / m->n);
+  if (!abbe_optics_refract(back, plane, 1 / m->n, inner)) return weight;
+  move(p, along, d);
+  out->kept[0] += weight * share;
+  for (size_t exits = 1; exits <= ABBE_RENDER_MAX_EXITS; exits++) {
+    facet = wall_of(solid, facet, p, inner, &along);
+    if (facet < 0) return weight;
+    plane = solid->plane[facet];
+    const double cosine = abbe_vector_dot(plane, inner);
+    share *= abbe_optics_transmittance(m->attenuation_per_m, along);
+    share *= abbe_optics_fresnel(fmin(cosine, 1), m->n);
+    if (share < m->energy_share) {
+      for (size_t k = exits; k <= ABBE_RENDER_MAX_EXITS; k++) out->faint[k] += weight * share;
+      return weight;
+    }
+    out->kept[exits] += weight * share;
+    move(p, along, inner);
+    move(inner, -2 * cosine, plane);
+  }
+  return weight;
+}
+
+bool abbe_inner_light_follow(const abbe_exact *solid, const abbe_view *view,
+                             const abbe_light *light, double n, double attenuation_per_m,
+                             double energy_share, abbe_inner_light *out) {
+  const matter m = {n, attenuation_per_m, energy_share};
+  double total = 0;
+  memset(out, 0, sizeof *out);
+  for (int i = 0; i < GRID * GRID; i++) {
+    const double uv[2] = {(i % GRID + 0.5) / GRID, (i / GRID + 0.5) / GRID};
+    double p[3], d[3];
+    abbe_view_ray(view, uv, p, d);
+    /* of a window of tangents, a part's solid angle goes with the cube of the cosine */
+    const double cosine = view->orthographic ? 1 : abbe_vector_dot(d, view->forward);
+    const double weight =
+        cosine * cosine * cosine * (light != NULL ? abbe_light_profile(light, d) : 1);
+    if (weight > 0) total += follow(solid, &m, weight, p, d, out);
+  }
+  for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS && total > 0; k++) {
+    out->kept[k] /= total;
+    out->faint[k] /= total;
+  }
+  return total > 0;
+}
+
+size_t abbe_inner_light_exits(const abbe_inner_light *inside, size_t least, size_t most) {
+  size_t exits = least;
+  while (exits < most &&
+         inside->kept[exits] + fmin(inside->faint[exits], ABBE_INNER_LIGHT_MOST_FAINT) >
+             ABBE_INNER_LIGHT_MOST)
+    exits++;
+  return exits;
+}
+
+/* The worst of what the scene's lights keep inside, in every entry; else what the eye sees there.
+ */
+static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inner_light *out) {
+  static const double up[3] = {0, 0, 1};
+  const abbe_object *object = &scene->object[plan->refractor_object[0]];
+  const double middle_nm = 0.5 * (plan->desc.min_nm + plan->desc.max_nm);
+  const double per_m = abbe_material_attenuation(object->material, middle_nm);
+  double n = 1, centre[3], size[3];
+  bool met = false;
+  memset(out, 0, sizeof *out);
+  if (abbe_material_n(object->material, middle_nm, &n, NULL) != ABBE_OK) return;
+  for (int k = 0; k < 3; k++) centre[k] = 0.5 * (object->min[k] + object->max[k]);
+  abbe_vector_subtract(object->max, object->min, size);
+  for (size_t i = 0; i <= scene->light_count; i++) {
+    const abbe_light *light = i < scene->light_count ? &scene->light[i] : NULL;
+    if (light != NULL ? !abbe_reach_light(light, object) : met || !plan->camera_sees_refractor)
+      continue;
+    const bool parallel = light != NULL && light->kind == ABBE_LIGHT_DIRECTIONAL;
+    double from[3], forward[3];
+    memcpy(from, light != NULL ? light->position : scene->camera.eye, sizeof from);
+    for (int k = 0; k < 3 && parallel; k++)
+      from[k] = centre[k] - light->direction[k] * abbe_vector_length(size);
+    abbe_vector_subtract(centre, from, forward);
+    abbe_view view;
+    abbe_view_look(from, forward, up, parallel, &view);
+    abbe_view_fit(&view, (const double(*)[3])object->mesh.position, object->mesh.vertex_count);
+    abbe_inner_light one;
+    /* A cone so narrow that it passes between the rays is taken for a wide one. */
+    for (int narrow = 0; narrow < 2; narrow++)
+      if (abbe_inner_light_follow(&object->exact, &view, narrow ? NULL : light, n, per_m,
+                                  plan->desc.energy_share, &one))
+        break;
+    met = true;
+    for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) {
+      out->kept[k] = fmax(out->kept[k], one.kept[k]);
+      out->faint[k] = fmax(out->faint[k], one.faint[k]);
+    }
+  }
+}
+
+static bool is_little(const abbe_inner_light *inside, size_t exits) {
+  return inside->kept[exits] + inside->faint[exits] <= ABBE_INNER_LIGHT_MOST;
+}
+
+double abbe_inner_light_plan(const abbe_scene *scene, const abbe_render_desc *asked,
+                             abbe_plan *plan) {
+  const bool share_is_open = asked == NULL || asked->energy_share == 0;
+  const bool exits_are_open = asked == NULL || asked->exits == 0;
+  abbe_inner_light inside, lower;
+  follow_all(scene, plan, &inside);
+  if (exits_are_open)
+    plan->desc.exits = abbe_inner_light_exits(&inside, ABBE_PLAN_EXITS, ABBE_PLAN_MOST_EXITS);
+  if (share_is_open && exits_are_open && !is_little(&inside, plan->desc.exits)) {
+    plan->desc.energy_share = ABBE_PLAN_LOW_SHARE;
+    follow_all(scene, plan, &lower);
+    const size_t exits = abbe_inner_light_exits(&lower, ABBE_PLAN_EXITS, ABBE_PLAN_MOST_EXITS);
+    /* Where no exits are enough, faint paths are not what keeps the light. */
+    if (is_little(&lower, exits)) {
+      plan->desc.exits = exits;
+      inside = lower;
+    } else {
+      plan->desc.energy_share = ABBE_PLAN_SHARE;
+    }
+  }
+  return inside.kept[plan->desc.exits] + inside.faint[plan->desc.exits];
+}

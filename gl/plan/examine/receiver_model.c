@@ -1,0 +1,94 @@
+#include "gl/plan/examine/receiver_model.h"
+
+#include "gl/plan/examine/reach.h"
+
+#include <math.h>
+
+enum { MAX_PARALLELOGRAMS = 96 };
+
+void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan) {
+  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  const abbe_object *general = NULL, *beyond = NULL;
+  plan->receivers = thesis ? ABBE_RECEIVER_DEPTH : ABBE_RECEIVER_EXACT;
+  for (size_t i = 0; i < plan->receiver_count; i++) {
+    const abbe_object *object = &scene->object[plan->receiver_object[i]];
+    const bool flat = object->exact.kind == ABBE_EXACT_PARALLELOGRAMS;
+    const bool room = flat && object->exact.count <= MAX_PARALLELOGRAMS - plan->parallelogram_count;
+    plan->receiver_model[i] = thesis ? ABBE_RECEIVER_DEPTH
+                              : room ? ABBE_RECEIVER_EXACT
+                                     : ABBE_RECEIVER_BVH;
+    if (plan->receiver_model[i] == ABBE_RECEIVER_EXACT)
+      plan->parallelogram_count += object->exact.count;
+    if (!flat && general == NULL) general = object;
+    if (flat && !room && beyond == NULL) beyond = object;
+  }
+  if (!thesis && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_BVH;
+  const char *model = abbe_receiver_model_name(plan->receivers);
+  if (thesis)
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: the thesis profile knows no other model",
+                  model);
+  else if (general != NULL)
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: '%.50s' is a general mesh", model,
+                  general->name);
+  else if (beyond != NULL)
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL,
+                  "%s: with '%.50s' there are more than %d parallelograms", model, beyond->name,
+                  MAX_PARALLELOGRAMS);
+  else
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: every receiver is a rectangle or a box",
+                  model);
+}
+
+/* Whether the parallelogram's plane has everything on one side of it: all other corners, those of
+ * the refractors' bounds, and the places that light comes from. */
+static bool bounds_all(const abbe_scene *scene, const abbe_plan *plan, const double p[9],
+                       double tolerance) {
+  double low = 0, high = 0;
+  for (size_t i = 0; i < plan->receiver_count; i++) {
+    const abbe_exact *exact = &scene->object[plan->receiver_object[i]].exact;
+    for (size_t k = 0; k < exact->count; k++)
+      for (int c = 0; c < 4; c++) {
+        const double *q = exact->parallelogram[k];
+        double corner[3];
+        for (int x = 0; x < 3; x++)
+          corner[x] = q[x] + (c & 1 ? q[3 + x] : 0) + (c & 2 ? q[6 + x] : 0);
+        double side = abbe_reach_side(p, corner);
+        low = fmin(low, side);
+        high = fmax(high, side);
+      }
+  }
+  for (size_t i = 0; i < 8 * plan->refractor_count; i++) {
+    const abbe_object *object = &scene->object[plan->refractor_object[i / 8]];
+    double corner[3];
+    for (int x = 0; x < 3; x++) corner[x] = i >> x & 1 ? object->max[x] : object->min[x];
+    double side = abbe_reach_side(p, corner);
+    low = fmin(low, side);
+    high = fmax(high, side);
+  }
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    double from[3];
+    for (int x = 0; x < 3; x++)
+      from[x] = light->kind == ABBE_LIGHT_DIRECTIONAL ? p[x] - light->direction[x] * 1e6
+                                                      : light->position[x];
+    double side = abbe_reach_side(p, from);
+    low = fmin(low, side);
+    high = fmax(high, side);
+  }
+  return low > -tolerance || high < tolerance;
+}
+
+void abbe_receiver_model_shadows(const abbe_scene *scene, abbe_plan *plan) {
+  double min[3], max[3], size = 0;
+  abbe_scene_bounds(scene, true, true, min, max);
+  for (int k = 0; k < 3; k++) size = fmax(size, max[k] - min[k]);
+  plan->receiver_shadows = plan->receivers != ABBE_RECEIVER_EXACT;
+  for (size_t i = 0; i < plan->receiver_count && !plan->receiver_shadows; i++) {
+    const abbe_exact *exact = &scene->object[plan->receiver_object[i]].exact;
+    for (size_t k = 0; k < exact->count && !plan->receiver_shadows; k++)
+      plan->receiver_shadows = !bounds_all(scene, plan, exact->parallelogram[k], 1e-6 * size);
+  }
+  abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_SHADOWS,
+                plan->receiver_shadows ? "a receiver may stand between a light and another"
+                                       : "the receivers bound a convex room around the lights");
+}

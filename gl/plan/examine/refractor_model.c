@@ -1,0 +1,210 @@
+#include "gl/plan/examine/refractor_model.h"
+
+#include "gl/plan/examine/material_range.h"
+#include "gl/plan/examine/reach.h"
+#include "gl/plan/examine/spectral_needs.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { MAX_FOLLOWED = 32, MAX_REFRACTORS = 255, MAX_LISTED = 48 };
+
+/* An index as near to air's as this bends no ray by more than that, a few grazing ones aside. */
+static const double invisible = 2e-6;
+
+/* Whether light goes through the object as through air: clear, of air's index, and no bubble. */
+static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
+                         const abbe_plan *plan) {
+  abbe_material_range range;
+  if (plan->desc.profile == ABBE_PROFILE_THESIS ||
+      abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
+                               NULL) != ABBE_OK)
+    return false;
+  if (!(range.least_n >= 1 - invisible && range.most_n <= 1 + invisible) || range.most_per_m > 0)
+    return false;
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (&scene->object[i] != object && scene->object[i].material != NULL &&
+        abbe_reach_overlap(&scene->object[i], object))
+      return false;
+  return true;
+}
+
+/* Whether a receiver may reach into it. */
+static bool is_entered(const abbe_scene *scene, const abbe_object *refractor) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].material == NULL && abbe_reach_into(&scene->object[i], refractor))
+      return true;
+  return false;
+}
+
+/* Why light that has left a refractor may meet one again, or a receiver within; NULL: it cannot. */
+static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
+  const abbe_object *only = NULL;
+  size_t refractors = 0;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (o->material == NULL || is_invisible(scene, o, plan)) continue;
+    only = o;
+    refractors++;
+  }
+  if (abbe_profile_is_thesis(plan->desc.profile) || refractors == 0) return NULL;
+  if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
+  if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
+  if (refractors > 1) return "there is more than one refractor";
+  if (only->exact.kind != ABBE_EXACT_SPHERE && only->exact.kind != ABBE_EXACT_CONVEX &&
+      !abbe_mesh_is_convex(&only->mesh))
+    return "the refractor is not convex";
+  if (is_entered(scene, only)) return "a receiver may reach into the refractor";
+  return NULL;
+}
+
+/* Whether a model that is asked for can serve the object. */
+static abbe_result check_asked(const abbe_object *object, const abbe_plan *plan,
+                               abbe_error *error) {
+  abbe_model asked = plan->desc.model;
+  char why[128];
+  abbe_convex_reason(&object->exact.convex, why, sizeof why);
+  if (asked == ABBE_MODEL_SPHERE && object->exact.kind != ABBE_EXACT_SPHERE)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the model 'sphere' cannot serve '%s', which is no sphere", object->name);
+  if (asked == ABBE_MODEL_CONVEX && object->exact.kind != ABBE_EXACT_CONVEX)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the model 'convex' cannot serve '%s', which is no convex solid of at "
+                          "most %d faces%s%s",
+                          object->name, ABBE_SCENE_MAX_PLANES, why[0] != '\0' ? ": " : "", why);
+  if (asked == ABBE_MODEL_BVH && !plan->multi_refractor_paths)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the model 'hierarchy' follows light through at most %d refractors; the "
+                          "scene has more",
+                          MAX_FOLLOWED);
+  return ABBE_OK;
+}
+
+static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan *plan) {
+  if (abbe_profile_is_thesis(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
+  if (plan->desc.model != ABBE_MODEL_AUTO)
+    return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
+  if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
+  if (object->exact.kind == ABBE_EXACT_CONVEX) return ABBE_REFRACTOR_CONVEX;
+  return plan->multi_refractor_paths ? ABBE_REFRACTOR_BVH : ABBE_REFRACTOR_LAYERS;
+}
+
+/* The object's model, why, and why it is no better one. */
+static void write_reason(const abbe_object *object, const abbe_plan *plan, char *text,
+                         size_t size) {
+  const char *model = abbe_refractor_model_name(model_of(object, plan));
+  const char *because, *joint = NULL; /* before what the mesh itself tells */
+  char why[128];
+  abbe_convex_reason(&object->exact.convex, why, sizeof why);
+  if (abbe_profile_is_thesis(plan->desc.profile)) {
+    because = "the thesis profile knows no other model";
+  } else if (plan->desc.model != ABBE_MODEL_AUTO) {
+    because = "as asked";
+  } else if (object->exact.kind == ABBE_EXACT_SPHERE) {
+    because = "the object is a sphere";
+  } else if (object->exact.kind == ABBE_EXACT_CONVEX) {
+    because = "the object is a convex faceted solid";
+    joint = ": ";
+  } else if (plan->multi_refractor_paths) {
+    because = "the object is a general mesh, and light may meet it more than twice";
+    joint = ": ";
+  } else {
+    because = "the object is a convex mesh and stands alone: a view sees all of it, front and back";
+    joint = "; ";
+  }
+  const bool tells = joint != NULL && why[0] != '\0';
+  snprintf(text, size, "%s: %s%s%s", model, because, tells ? joint : "", tells ? why : "");
+}
+
+/* Refractors beyond those that the plan has room for are counted. */
+static void list_model(abbe_plan *plan, size_t object, const char *name, const char *reason,
+                       size_t *unlisted) {
+  if (plan->entry_count < MAX_LISTED)
+    abbe_plan_add_about(plan, ABBE_CHOICE_REFRACTOR_MODEL, object, name, "%s", reason);
+  else
+    ++*unlisted;
+}
+
+static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *plan,
+                                 abbe_error *error) {
+  const abbe_object *object = &scene->object[i];
+  abbe_result result = abbe_spectral_needs_examine(scene, object->material, plan, error);
+  if (result == ABBE_OK) result = check_asked(object, plan, error);
+  if (result != ABBE_OK) return result;
+  const abbe_refractor_model model = model_of(object, plan);
+  plan->refractor_object[plan->refractor_count] = i;
+  plan->model[plan->refractor_count++] = model;
+  plan->spheres = plan->spheres || model == ABBE_REFRACTOR_SPHERE;
+  plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
+  plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
+  plan->bvh = plan->bvh || model == ABBE_REFRACTOR_BVH;
+  return ABBE_OK;
+}
+
+static void list_in_turn(abbe_plan *plan, const char *why) {
+  abbe_plan_add(plan, ABBE_CHOICE_MULTI_REFRACTOR_PATHS, "%s",
+                plan->refractor_count == 0    ? "nothing refracts"
+                : plan->multi_refractor_paths ? why
+                : abbe_profile_is_thesis(plan->desc.profile)
+                    ? "the thesis profile follows two interfaces"
+                : plan->desc.model == ABBE_MODEL_LAYERS
+                    ? "light goes through two layers and no further, as asked"
+                : plan->refractor_count < 2 ? "light that leaves the refractor cannot meet it again"
+                                            : "there are more refractors than are followed");
+}
+
+abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan,
+                                        abbe_error *error) {
+  ABBE_REQUIRE(scene && plan, error);
+  const char *in_turn = why_in_turn(scene, plan);
+  size_t unlisted = 0;
+  plan->multi_refractor_paths = in_turn != NULL;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    if (object->material == NULL) continue;
+    if (plan->refractor_count == MAX_REFRACTORS)
+      return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than %d refractors",
+                            MAX_REFRACTORS);
+    if (is_invisible(scene, object, plan)) {
+      list_model(plan, i, object->name,
+                 "clear, and its index is that of air: light does not notice it", &unlisted);
+      continue;
+    }
+    abbe_result result = add_refractor(scene, i, plan, error);
+    if (result != ABBE_OK) return result;
+    char reason[288];
+    write_reason(object, plan, reason, sizeof reason);
+    list_model(plan, i, object->name, reason, &unlisted);
+  }
+  if (unlisted > 0)
+    abbe_plan_add(plan, ABBE_CHOICE_MORE_REFRACTORS, "and %zu refractors more", unlisted);
+  list_in_turn(plan, in_turn);
+  return ABBE_OK;
+}
+
+/* The scene's rule, that the later object wins, is not the renderer's. */
+void abbe_refractor_model_note(const abbe_scene *scene, abbe_plan *plan) {
+  const abbe_object *first[2] = {NULL, NULL};
+  size_t pairs = 0;
+  if (plan->multi_refractor_paths) return;
+  if (plan->refractor_count > 1)
+    abbe_plan_note(plan, "light that leaves one refractor and meets another goes on unrefracted");
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    for (size_t k = i + 1; k < plan->refractor_count; k++) {
+      const abbe_object *a = &scene->object[plan->refractor_object[i]];
+      const abbe_object *b = &scene->object[plan->refractor_object[k]];
+      if (!abbe_reach_overlap(a, b)) continue;
+      if (pairs++ > 0) continue;
+      first[0] = a;
+      first[1] = b;
+    }
+  if (pairs == 0) return;
+  char more[48] = "";
+  if (pairs > 1)
+    snprintf(more, sizeof more, " (and %zu pair%s more)", pairs - 1, pairs > 2 ? "s" : "");
+  abbe_plan_note(
+      plan,
+      "the refractors '%.50s' and '%.50s'%s overlap, to judge by their bounds; each is taken as if "
+      "it stood in air alone",
+      first[0]->name, first[1]->name, more);
+}

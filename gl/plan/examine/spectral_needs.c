@@ -1,0 +1,87 @@
+#include "gl/plan/examine/spectral_needs.h"
+
+#include "colorimetry/weights.h"
+#include "gl/plan/examine/material_range.h"
+
+#include <math.h>
+
+/* Of a light's white: what is less is seen by nobody, as the diamond's 760 to 780 nm. */
+#define LEAST_EXTRAPOLATED 1e-3
+
+enum { RANGE_STEPS = 81 };
+
+/* The most that a material's wavelengths outside its valid range are of a light's white. */
+static double extrapolated_share(const abbe_scene *scene, const abbe_material *material, double min,
+                                 double max) {
+  double most = 0;
+  const double edges[2][2] = {{min, fmin(material->min_nm, max)},
+                              {fmax(material->max_nm, min), max}};
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_illuminant *light = &scene->light[i].illuminant;
+    double outside = 0, xyz[3], white[3];
+    abbe_weights_band_xyz(light, min, max, min, max, white);
+    for (int k = 0; k < 2; k++) {
+      if (!(edges[k][0] < edges[k][1])) continue;
+      abbe_weights_band_xyz(light, min, max, edges[k][0], edges[k][1], xyz);
+      outside += xyz[0] + xyz[1] + xyz[2];
+    }
+    const double all = white[0] + white[1] + white[2];
+    most = fmax(most, all > 0 ? outside / all : 1);
+  }
+  return most;
+}
+
+abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
+                                        abbe_plan *plan, abbe_error *error) {
+  ABBE_REQUIRE(scene && material && plan, error);
+  const double min = plan->desc.min_nm, max = plan->desc.max_nm;
+  bool outside = extrapolated_share(scene, material, min, max) > LEAST_EXTRAPOLATED;
+  abbe_material_range range;
+  abbe_result result = abbe_material_range_make(material, min, max, &range, error);
+  if (result != ABBE_OK) return result;
+  /* as floats: the shaders hold it so */
+  if ((float)range.least_n != (float)range.most_n) plan->dispersive = true;
+  if (range.least_per_m != range.most_per_m) plan->tinting = true;
+  if (range.most_per_m > 0) plan->absorbing = true;
+  for (size_t i = 0; i < plan->refractor_count && outside; i++)
+    if (scene->object[plan->refractor_object[i]].material == material) outside = false;
+  if (outside)
+    abbe_plan_note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm",
+                   material->name, material->min_nm, material->max_nm);
+  return ABBE_OK;
+}
+
+static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
+  return abbe_plan_no_refraction(plan) != NULL ? abbe_plan_no_refraction(plan)
+         : asked                               ? "as asked"
+         : plan->dispersive                    ? "the index varies with wavelength"
+         : plan->tinting                       ? "the attenuation varies with wavelength"
+                         : "all indices are constant, one geometry serves all";
+}
+
+void abbe_spectral_needs_count(abbe_plan *plan) {
+  bool asked = plan->desc.wavelengths != 0;
+  if (!asked)
+    plan->desc.wavelengths = plan->dispersive || plan->tinting ? ABBE_PLAN_WAVELENGTHS : 1;
+  if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
+  abbe_plan_add(plan, ABBE_CHOICE_WAVELENGTHS, "%zu from %g to %g nm: %s", plan->desc.wavelengths,
+                plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));
+}
+
+/* Whether all lights are of one spectrum, up to a factor. */
+static bool shine_alike(const abbe_scene *scene, double min, double max) {
+  const abbe_illuminant *first = &scene->light[0].illuminant;
+  for (size_t k = 1; k < scene->light_count; k++)
+    for (int i = 0; i < RANGE_STEPS; i++) {
+      const double from = min + (max - min) * i / RANGE_STEPS,
+                   to = min + (max - min) * (i + 1) / RANGE_STEPS;
+      const double share = abbe_weights_band_power(&scene->light[k].illuminant, min, max, from, to);
+      if (fabs(share - abbe_weights_band_power(first, min, max, from, to)) > 1e-6) return false;
+    }
+  return true;
+}
+
+void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan) {
+  if (plan->camera_sees_refractor && !shine_alike(scene, plan->desc.min_nm, plan->desc.max_nm))
+    abbe_plan_note(plan, "through refractors, colours are split by the first light's illuminant");
+}

@@ -1,0 +1,31 @@
+/* spectral_needs.h: what index, attenuation and light over the wavelengths ask of the plan.
+ *
+ * What varies, how many wavelengths that takes, and what is extrapolated or taken for one.
+ */
+#ifndef ABBE_GL_PLAN_EXAMINE_SPECTRAL_NEEDS_H
+#define ABBE_GL_PLAN_EXAMINE_SPECTRAL_NEEDS_H
+
+#include "base/error.h"
+#include "gl/plan/facts/plan_facts.h"
+#include "scenes/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A refractor's material over the range: whether its index varies, whether it attenuates, and that
+ * by wavelength; ABBE_OUT_OF_RANGE where its index is not known, and a note where what is seen of
+ * it is extrapolated. Before the material's first refractor is added. */
+abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
+                                        abbe_plan *plan, abbe_error *error);
+
+/* How many wavelengths, where the request leaves it open, and why. */
+void abbe_spectral_needs_count(abbe_plan *plan);
+
+/* A note where lights of several spectra are taken for one. */
+void abbe_spectral_needs_note(const abbe_scene *scene, abbe_plan *plan);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,143 @@
+/* plan_facts.h: what a plan holds: facts of the scene, models, entries and notes.
+ *
+ * What the plan's rooms fill in and the renderer reads. It examines nothing (gl/plan/plan.h).
+ */
+#ifndef ABBE_GL_PLAN_FACTS_PLAN_FACTS_H
+#define ABBE_GL_PLAN_FACTS_PLAN_FACTS_H
+
+#include "gl/plan/facts/passes.h"
+#include "gl/plan/facts/render_desc.h"
+#include "scenes/scene.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum abbe_refractor_model {
+  ABBE_REFRACTOR_SPHERE, /* exact quadric */
+  ABBE_REFRACTOR_CONVEX, /* plane tests */
+  ABBE_REFRACTOR_LAYERS, /* front and back as a view sees them */
+  ABBE_REFRACTOR_BVH,    /* triangles, traversed */
+  ABBE_REFRACTOR_MODEL_COUNT
+} abbe_refractor_model;
+
+typedef enum abbe_receiver_model {
+  ABBE_RECEIVER_EXACT, /* parallelograms, hit exactly */
+  ABBE_RECEIVER_BVH,   /* triangles, traversed */
+  ABBE_RECEIVER_DEPTH  /* iterated image-space intersection */
+} abbe_receiver_model;
+
+typedef struct abbe_plan_entry {
+  abbe_plan_item item;
+  unsigned index; /* the scene's object or light, of the items that are about one; else 0 */
+  char name[60];
+  char reason[224];
+  bool runs;
+} abbe_plan_entry;
+
+#define ABBE_PLAN_MAX_ENTRIES 96
+
+/* A light, or a face of the cube around one whose refractors do not fit one view. */
+typedef struct abbe_light_view {
+  size_t light;   /* the scene's */
+  int face;       /* that it looks through (gl/plan/examine/light_cube.h); -1: it is no part of a cube */
+  unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
+                     those through which no light reaches a refractor; without a cube, all */
+} abbe_light_view;
+
+typedef struct abbe_plan {
+  abbe_render_desc desc; /* every field resolved, none zero */
+
+  /* Objects, by their index in the scene, each with its model. */
+  size_t refractor_count;
+  size_t *refractor_object;
+  abbe_refractor_model *model; /* [refractor_count] */
+  size_t receiver_count;
+  size_t *receiver_object;
+  abbe_receiver_model *receiver_model; /* [receiver_count] */
+  /* Models of refractors in use; the most general of receivers, and parallelograms hit exactly. */
+  bool spheres, convex, layers, bvh;
+  abbe_receiver_model receivers;
+  size_t parallelogram_count;
+
+  /* Where light and looks meet what. */
+  bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
+  bool caustics;                       /* some light may */
+  bool camera_sees_refractor;          /* the eye may */
+  bool
+      multi_refractor_paths; /* light that leaves a refractor may meet one again, and is followed */
+  bool forward_transmission; /* some receiver may lie where light goes on nearly straight through a
+                                refractor */
+  bool outside_map_view;     /* some receiver lies beyond a light's map view */
+  bool receiver_shadows;     /* some receiver may hide another from a light */
+
+  /* The scene's lights, and after them the views that cubes have more than one of. */
+  size_t light_view_count;
+  abbe_light_view light_view[ABBE_SCENE_MAX_LIGHTS];
+  bool cubes;                             /* some light has one */
+  size_t off_view[ABBE_SCENE_MAX_LIGHTS]; /* of a light with a cube: an object that asks for it */
+
+  /* Over the range of wavelengths, of some refractor. */
+  bool dispersive; /* its index varies */
+  bool absorbing;  /* its attenuation is above zero somewhere */
+  bool tinting;    /* its attenuation varies */
+
+  size_t eye_exits; /* that the eye's rays are followed for, at the most */
+  double eye_share; /* and the share of their light at which they end */
+  size_t hit_slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
+
+  /* What follows from the facts above. */
+  bool pages;       /* light may land where its light's map cannot hold it: receivers have pages */
+  bool fills;       /* light is laid between wavelengths */
+  bool lengths;     /* landings keep the length of their way inside, which tells a tint anywhere */
+  bool draw_back;   /* the back of refractors is drawn */
+  bool fewer_faces; /* some mesh is drawn with fewer (gl/plan/examine/layer_detail.h) */
+  bool textured;
+
+  size_t entry_count; /* models and passes, in the order in which they run */
+  abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];
+  size_t note_count; /* what is not modelled, or extrapolated */
+  char note[16][256];
+} abbe_plan;
+
+void abbe_plan_free(abbe_plan *plan);
+
+/* Wavelengths that every photon is traced at; more, up to the plan's, where its landings ask. */
+size_t abbe_plan_least_wavelengths(const abbe_plan *plan);
+/* Why nothing refracts, as a sentence's part, or NULL. */
+const char *abbe_plan_no_refraction(const abbe_plan *plan);
+const char *abbe_refractor_model_name(abbe_refractor_model model);
+const char *abbe_receiver_model_name(abbe_receiver_model model);
+
+/* Whether the plan, as it stands, runs the item, by the table's condition. */
+bool abbe_plan_runs(const abbe_plan *plan, abbe_plan_item item, size_t index);
+
+/* Adds an entry that runs or does not by its condition, with its reason; one about an object or a
+ * light by its index and name; or a note. More than there is room for are left out. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+void
+abbe_plan_add(abbe_plan *plan, abbe_plan_item item, const char *reason, ...);
+#if defined(__GNUC__)
+__attribute__((format(printf, 5, 6)))
+#endif
+void
+abbe_plan_add_about(abbe_plan *plan, abbe_plan_item item, size_t index, const char *name,
+                    const char *reason, ...);
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+void
+abbe_plan_note(abbe_plan *plan, const char *format, ...);
+
+/* The entry of that item, and of that object or light (0 where it is about none); or NULL. */
+const abbe_plan_entry *abbe_plan_find(const abbe_plan *plan, abbe_plan_item item, size_t index);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

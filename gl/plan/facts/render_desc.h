@@ -1,0 +1,126 @@
+/* render_desc.h: what a caller asks of the renderer: the request, its limits, defaults and names.
+ *
+ * It knows no scene: what a request leaves open and only a scene can tell is the plan's to say.
+ */
+#ifndef ABBE_GL_PLAN_FACTS_RENDER_DESC_H
+#define ABBE_GL_PLAN_FACTS_RENDER_DESC_H
+
+#include "base/error.h"
+#include "colorimetry/rgb_space.h"
+#include "scenes/view/map_layout.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* thesis: the thesis's method with its constants; thesis-cie: the same passes with the default
+ * profile's wavelengths, CIE weights, indices, Fresnel's law and units. */
+#define ABBE_PROFILES(X) X(DEFAULT, "default") X(THESIS, "thesis") X(THESIS_CIE, "thesis-cie")
+typedef enum abbe_profile {
+#define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
+  ABBE_PROFILES(ABBE_PROFILE_ENUM)
+#undef ABBE_PROFILE_ENUM
+      ABBE_PROFILE_COUNT
+} abbe_profile;
+
+/* bridge: light is laid between neighbouring wavelengths' landings; none: each wavelength lands
+ * on its own; smear: the thesis's 20-step fill. AUTO is bridge, and smear in the thesis profile. */
+#define ABBE_FILLS(X) X(AUTO, "auto") X(NONE, "none") X(BRIDGE, "bridge") X(SMEAR, "smear")
+typedef enum abbe_fill {
+#define ABBE_FILL_ENUM(code, name) ABBE_FILL_##code,
+  ABBE_FILLS(ABBE_FILL_ENUM)
+#undef ABBE_FILL_ENUM
+      ABBE_FILL_COUNT
+} abbe_fill;
+
+/* How light is followed through refractors. AUTO: by the scene; the others ask for one model for
+ * all refractors. */
+#define ABBE_MODELS(X)                                                                             \
+  X(AUTO, "auto")                                                                                  \
+  X(SPHERE, "sphere") X(CONVEX, "convex") X(LAYERS, "layers") X(BVH, "hierarchy")
+typedef enum abbe_model {
+#define ABBE_MODEL_ENUM(code, name) ABBE_MODEL_##code,
+  ABBE_MODELS(ABBE_MODEL_ENUM)
+#undef ABBE_MODEL_ENUM
+      ABBE_MODEL_COUNT
+} abbe_model;
+
+#define ABBE_RENDER_MAX_SIDE 8192
+#define ABBE_RENDER_MAX_PHOTONS 4096 /* a side */
+#define ABBE_RENDER_MAX_MAP 4096     /* a side */
+#define ABBE_RENDER_MAX_WAVELENGTHS 1000
+#define ABBE_RENDER_MAX_EXITS 32
+
+/* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
+typedef bool (*abbe_render_progress)(void *user, double done);
+
+/* What a request of the default profile leaves open, where a scene disperses. */
+#define ABBE_PLAN_WAVELENGTHS 7
+#define ABBE_PLAN_PHOTONS 256
+#define ABBE_PLAN_MAP 1024
+#define ABBE_PLAN_SAMPLES 2
+/* Exits that are followed at the most, and the share of its light below which a path ends, where
+ * the request leaves them open. */
+#define ABBE_PLAN_EXITS 8
+#define ABBE_PLAN_LAYER_EXITS 4 /* where a refractor is known by its layers */
+#define ABBE_PLAN_SHARE 0.01
+/* As far as they go where a convex solid keeps light inside (gl/plan/examine/inner_light.h). */
+#define ABBE_PLAN_MOST_EXITS 24
+#define ABBE_PLAN_LOW_SHARE 0.005
+/* Of the eye's rays through exact surfaces, the share of one solid alone; what light is left
+ * inside then is too little to show. */
+#define ABBE_PLAN_EYE_EXITS 256
+#define ABBE_PLAN_EYE_SHARE 0.001
+
+/* A request; zero means the default in every field. */
+typedef struct abbe_render_desc {
+  abbe_profile profile;
+  size_t width, height; /* pixels; 0: the scene's */
+  /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
+  size_t wavelengths;
+  double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
+  size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
+  size_t map_size;       /* side of the spectral map; 0: 1024 */
+  size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
+  size_t upsample;       /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
+  abbe_fill fill;
+  abbe_model model;
+  /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too
+   * much light inside a convex solid */
+  double energy_share;
+  /* exits followed at the most; 0: as many as carry energy, at most 8, or up to 24 where a convex
+   * solid keeps light inside (4 where a mesh is known by its layers) */
+  size_t exits;
+  abbe_rgb_space space; /* of the picture */
+  /* Layout of one light's map, and which light's; it lives as long as the plan. NULL: each map is
+   * fitted to where its light lands. */
+  const abbe_map_layout *map_layout;
+  size_t map_layout_light;
+  /* Of the photon grid in cells and of the eye's samples in their distance, x and y, -0.5 to 0.5:
+   * other pictures that the same request could have given (gl/accuracy/error_bars.h). */
+  double photon_shift[2], sample_shift[2];
+  bool everything;               /* all on, to measure what the plan saves (gl/plan/no_culling.h) */
+  bool layers;                   /* keep direct and caustic light of the receivers apart as well */
+  abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
+  void *progress_user;
+} abbe_render_desc;
+
+/* The request with its defaults filled in, for a picture of width x height pixels unless it says
+ * otherwise; what the scene has to tell stays 0: wavelengths and exits. desc may be NULL.
+ * ABBE_INVALID_ARGUMENT, with a sentence, for what is outside the limits above. */
+abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width, size_t height,
+                                     abbe_render_desc *out, abbe_error *error);
+
+const char *abbe_profile_name(abbe_profile profile);
+/* Whether it draws with the thesis's passes. */
+bool abbe_profile_is_thesis(abbe_profile profile);
+const char *abbe_fill_name(abbe_fill fill);
+const char *abbe_model_name(abbe_model model);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

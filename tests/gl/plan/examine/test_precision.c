@@ -1,0 +1,110 @@
+/* What single precision or the photon grid would lose is refused, with what would be right. */
+#include "tests/scenes/scene_text.h"
+
+#include "gl/plan/examine/precision.h"
+#include "gl/plan/plan.h"
+
+static abbe_result check(const char *text, size_t photons, abbe_error *error) {
+  abbe_scene scene;
+  abbe_plan plan;
+  const abbe_render_desc desc = {.photons = photons};
+  load_text(text, &scene);
+  abbe_result result = abbe_plan_make(&scene, &desc, &plan, error);
+  abbe_plan_free(&plan);
+  abbe_scene_free(&scene);
+  return result;
+}
+
+static void ordinary_scenes_are_fine(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      CAMERA POINT_LIGHT FLOOR,
+      CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("flat"),
+      CAMERA SUN FLOOR HILL RING("crown"),
+  };
+  abbe_error error = {0};
+  for (size_t i = 0; i < 3; i++)
+    for (size_t photons = 1; photons <= 4096; photons *= 8)
+      assert_int_equal(check(texts[i], photons, &error), ABBE_OK);
+}
+
+static void a_light_too_far_away_is_directional(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  /* 65536 times 0.08 m is 5243 m. */
+  assert_int_equal(check(CAMERA "lights:\n- {name: star, kind: point, position: [0, 0, 5000], "
+                                "intensity: 1}\n" FLOOR BALL("flat"),
+                         0, &error),
+                   ABBE_OK);
+  assert_int_equal(check(CAMERA "lights:\n- {name: star, kind: point, position: [0, 0, 5500.2], "
+                                "intensity: 30250000}\n" FLOOR BALL("flat"),
+                         0, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'star' is 5.5e+03 m from the refractor 'ball'");
+  assert_contains(error.text, "a directional light of 1 W/m2");
+}
+
+static void a_refractor_lost_in_its_scene_is_told(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  assert_int_equal(check(CAMERA SUN "objects:\n- {name: plain, shape: rectangle, width: 100000, "
+                                    "height: 100000, reflectance: 0.5}\n" BALL("flat"),
+                         0, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "make the receivers smaller");
+}
+
+#define PANE(thick)                                                                                \
+  "- {name: pane, shape: box, size: [0.2, 0.2, " thick "], material: flat, transform: [{rotate: "  \
+  "{axis: [1, 2, 3], angle: 40}}, {translate: [0, 0, 0.2]}]}\n"
+
+static void a_skin_has_no_inside(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  assert_int_equal(check(CAMERA POINT_LIGHT FLOOR PANE("1e-6"), 0, &error), ABBE_OK);
+  assert_int_equal(check(CAMERA POINT_LIGHT FLOOR PANE("3e-7"), 0, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'pane' is 3e-07 m thin");
+}
+
+#define SPECK(radius)                                                                              \
+  "- {name: speck, shape: sphere, radius: " radius ", levels: 2, material: flat, transform: "      \
+  "[{translate: [0.4, 0, 0.2]}]}\n"
+
+static void specks_between_photons_are_told(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  assert_int_equal(check(CAMERA POINT_LIGHT FLOOR BALL("flat") SPECK("1e-3"), 64, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'speck' is 0.2");
+  assert_contains(error.text, "photons a side");
+  assert_int_equal(check(CAMERA POINT_LIGHT FLOOR BALL("flat") SPECK("1e-3"), 512, &error),
+                   ABBE_OK);
+}
+
+#define CLOSE(at)                                                                                  \
+  CAMERA "lights:\n- {name: lamp, kind: point, position: [" at "], intensity: 1}\n" FLOOR
+
+/* Half the ball's diagonal is 0.1386 m, a 4096th of it 3.4e-5 m. */
+static void a_light_that_touches_is_told(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  assert_int_equal(check(CLOSE("0, 0, 0.28004") BALL("flat"), 0, &error), ABBE_OK);
+  assert_int_equal(check(CLOSE("0, 0, 0.28003") BALL("flat"), 0, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'lamp' is 3e-05 m from the surface of the refractor 'ball'");
+  assert_contains(error.text, "at least 3.38e-05 m away");
+  /* Over the middle of a box's side: its corners are no measure of the way. */
+  assert_int_equal(check(CLOSE("0.2, 0, 0.23002") BRICK("flat"), 0, &error), ABBE_OK);
+  assert_int_equal(check(CLOSE("0.2, 0, 0.23001") BRICK("flat"), 0, &error), ABBE_UNSUPPORTED);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(ordinary_scenes_are_fine),
+      cmocka_unit_test(a_light_too_far_away_is_directional),
+      cmocka_unit_test(a_refractor_lost_in_its_scene_is_told),
+      cmocka_unit_test(a_skin_has_no_inside),
+      cmocka_unit_test(specks_between_photons_are_told),
+      cmocka_unit_test(a_light_that_touches_is_told),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,133 @@
+/* Which model follows light through a refractor, which serve when asked for, and what is noted. */
+#include "tests/gl/plan/planned.h"
+
+#include "gl/plan/examine/refractor_model.h"
+#include "scenes/shapes/shape.h"
+
+/* What is asked for is taken where it can serve, and refused by name where it cannot. */
+static void a_model_that_is_asked_for(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    abbe_model model;
+    abbe_refractor_model expected;
+    bool walk;
+    const char *refusal; /* NULL: none */
+  } rows[] = {
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_SPHERE, ABBE_REFRACTOR_SPHERE, false,
+       NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
+       NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_BVH, ABBE_REFRACTOR_BVH, true, NULL},
+      {CAMERA POINT_LIGHT FLOOR RING("crown"), ABBE_MODEL_LAYERS, ABBE_REFRACTOR_LAYERS, false,
+       NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown") RING("crown"), ABBE_MODEL_SPHERE,
+       ABBE_REFRACTOR_SPHERE, false, "'sphere' cannot serve 'ring'"},
+      {CAMERA POINT_LIGHT FLOOR BALL("crown"), ABBE_MODEL_CONVEX, ABBE_REFRACTOR_CONVEX, false,
+       "'convex' cannot serve 'ball'"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene = {0};
+    abbe_plan plan;
+    abbe_error error = {0};
+    load_text(rows[i].text, &scene);
+    abbe_result result =
+        abbe_plan_make(&scene, &(abbe_render_desc){.model = rows[i].model}, &plan, &error);
+    assert_int_equal(result, rows[i].refusal != NULL ? ABBE_UNSUPPORTED : ABBE_OK);
+    if (rows[i].refusal != NULL) {
+      assert_contains(error.text, rows[i].refusal);
+    } else {
+      assert_int_equal(plan.model[0], rows[i].expected);
+      assert_true(plan.multi_refractor_paths == rows[i].walk);
+      abbe_plan_free(&plan);
+    }
+    abbe_scene_free(&scene);
+  }
+}
+
+static void too_many_refractors_are_unsupported(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_plan plan;
+  abbe_error error = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_object *object = scene.object, *many = calloc(256, sizeof *many);
+  assert_non_null(many);
+  for (size_t i = 0; i < 256; i++) many[i] = object[1];
+  scene.object = many;
+  scene.object_count = 255;
+  plan_scene(&scene, NULL, &plan);
+  assert_int_equal(plan.refractor_count, 255);
+  assert_contains(abbe_plan_find(&plan, ABBE_CHOICE_MORE_REFRACTORS, 0)->reason,
+                  "and 207 refractors more");
+  assert_true(abbe_plan_find(&plan, ABBE_PASS_EYE_PICTURE, 0)->runs);
+  abbe_plan_free(&plan);
+  scene.object_count = 256;
+  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "255 refractors");
+  scene.object = object;
+  scene.object_count = 2;
+  free(many);
+  abbe_scene_free(&scene);
+}
+
+#define DROP(name, radius, z)                                                                      \
+  "- {name: " name ", shape: sphere, radius: " radius ", levels: 2, "                              \
+  "transform: [{translate: [0.09, 0.09, " z "]}], material: flat}\n"
+
+static void refractors_that_overlap_are_noted(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *part; /* NULL: none overlap */
+  } rows[] = {
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") BRICK("flat"), NULL},
+      /* the boxes around these two overlap at a corner, the balls do not */
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.04", "0.26"), NULL},
+      {CAMERA POINT_LIGHT FLOOR BALL("flat") DROP("drop", "0.08", "0.26"),
+       "'ball' and 'drop' over"},
+      {CAMERA POINT_LIGHT FLOOR DROP("shell", "0.05", "0.2") DROP("bubble", "0.04", "0.2"),
+       "'shell' and 'bubble' overlap"},
+      {CAMERA POINT_LIGHT FLOOR DROP("a", "0.05", "0.2") DROP("b", "0.04", "0.2")
+           DROP("c", "0.03", "0.2"),
+       "'a' and 'b' (and 2 pairs more) overlap"},
+      {CAMERA POINT_LIGHT FLOOR RING("flat") BALL("flat"), "'ring' and 'ball' overlap"},
+  };
+  /* walked light keeps the scene's rule; two layers know one refractor at a time */
+  const abbe_render_desc apart = {.model = ABBE_MODEL_LAYERS};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_scene scene;
+    abbe_plan plan;
+    load_text(rows[i].text, &scene);
+    assert_int_equal(abbe_plan_make(&scene, &apart, &plan, NULL), ABBE_OK);
+    if (is_noted(&plan, "overlap") != (rows[i].part != NULL) ||
+        (rows[i].part != NULL && !is_noted(&plan, rows[i].part)))
+      fail_msg("scene %zu: %s", i,
+               plan.note_count > 0 ? plan.note[plan.note_count - 1] : "no note");
+    abbe_plan_free(&plan);
+    abbe_scene_free(&scene);
+  }
+}
+
+static void convex_meshes_are_known(void **state) {
+  (void)state;
+  abbe_mesh mesh = {0};
+  assert_int_equal(abbe_shape_sphere(2, 3, &mesh, NULL), ABBE_OK);
+  assert_true(abbe_mesh_is_convex(&mesh));
+  /* one corner drawn in by a tenth */
+  for (int k = 0; k < 3; k++) mesh.position[0][k] *= 0.9;
+  assert_false(abbe_mesh_is_convex(&mesh));
+  abbe_mesh_free(&mesh);
+  assert_int_equal(abbe_shape_ring(0.08, 0.02, 32, 16, &mesh, NULL), ABBE_OK);
+  assert_false(abbe_mesh_is_convex(&mesh));
+  abbe_mesh_free(&mesh);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_model_that_is_asked_for),
+      cmocka_unit_test(too_many_refractors_are_unsupported),
+      cmocka_unit_test(refractors_that_overlap_are_noted),
+      cmocka_unit_test(convex_meshes_are_known),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,29 @@
+/* Indices that are not known are refused, those that are extrapolated noted. */
+#include "tests/gl/plan/planned.h"
+
+#include "gl/plan/examine/spectral_needs.h"
+
+static void an_index_that_is_not_known_is_refused_or_noted(void **state) {
+  (void)state;
+  abbe_plan plan;
+  refuse_plan(CAMERA POINT_LIGHT FLOOR BALL("narrow"), NULL, ABBE_OUT_OF_RANGE, "narrow");
+  plan_text(CAMERA POINT_LIGHT FLOOR BALL("loose"), NULL, &plan);
+  assert_true(is_noted(&plan, "loose: the index is extrapolated"));
+  abbe_plan_free(&plan);
+  /* of a diamond's wavelengths 760 to 780 nm are not known, in which there is nothing to see */
+  plan_text("camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR BALL("diamond"),
+            NULL, &plan);
+  assert_false(is_noted(&plan, "extrapolated"));
+  abbe_plan_free(&plan);
+  const abbe_render_desc inside = {.min_nm = 420, .max_nm = 680};
+  plan_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &inside, &plan);
+  assert_false(is_noted(&plan, "extrapolated"));
+  abbe_plan_free(&plan);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_index_that_is_not_known_is_refused_or_noted),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,90 @@
+/* A request alone: its defaults, its names, and what is outside its limits. */
+#include "tests/check.h"
+
+#include "gl/plan/facts/render_desc.h"
+
+static abbe_render_desc resolve(const abbe_render_desc *desc) {
+  abbe_render_desc out;
+  abbe_error error = {0};
+  if (abbe_render_desc_resolve(desc, 320, 200, &out, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return out;
+}
+
+static void what_is_left_open_gets_its_default(void **state) {
+  (void)state;
+  abbe_render_desc d = resolve(NULL);
+  assert_true(d.width == 320 && d.height == 200 && d.photons == 256 && d.map_size == 1024);
+  assert_true(d.supersample == 2 && d.upsample == 1 && d.fill == ABBE_FILL_BRIDGE);
+  assert_true(d.wavelengths == 0 && d.exits == 0); /* the scene tells */
+  assert_true(d.min_nm == 380 && d.max_nm == 780 && d.energy_share == 0.01);
+  d = resolve(&(abbe_render_desc){.upsample = 3, .width = 7});
+  assert_true(d.supersample == 1 && d.width == 7);
+  d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS});
+  assert_true(d.photons == 512 && d.supersample == 1 && d.fill == ABBE_FILL_SMEAR);
+  assert_true(d.max_nm == 680);
+  d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS_CIE});
+  assert_true(d.photons == 512 && d.fill == ABBE_FILL_SMEAR && d.max_nm == 780);
+}
+
+static void names_are_the_options(void **state) {
+  (void)state;
+  assert_string_equal(abbe_profile_name(ABBE_PROFILE_THESIS_CIE), "thesis-cie");
+  assert_string_equal(abbe_fill_name(ABBE_FILL_SMEAR), "smear");
+  assert_string_equal(abbe_model_name(ABBE_MODEL_CONVEX), "convex");
+  assert_string_equal(abbe_profile_name((abbe_profile)-1), "unknown");
+  assert_string_equal(abbe_fill_name(ABBE_FILL_COUNT), "unknown");
+  assert_string_equal(abbe_model_name(ABBE_MODEL_COUNT), "unknown");
+  assert_true(abbe_profile_is_thesis(ABBE_PROFILE_THESIS_CIE));
+  assert_false(abbe_profile_is_thesis(ABBE_PROFILE_DEFAULT));
+}
+
+static void limits_are_kept(void **state) {
+  (void)state;
+  const struct {
+    abbe_render_desc desc;
+    const char *part;
+  } rows[] = {
+      {{.width = ABBE_RENDER_MAX_SIDE + 1}, "8193"},
+      {{.height = ABBE_RENDER_MAX_SIDE + 1}, "height"},
+      {{.photons = ABBE_RENDER_MAX_PHOTONS + 1}, "photon grid is 4097"},
+      {{.map_size = ABBE_RENDER_MAX_MAP + 1}, "spectral map is 4097"},
+      {{.supersample = 5}, "supersampling is 5"},
+      {{.upsample = 5}, "upsampling is 5"},
+      {{.supersample = 2, .upsample = 2}, "a sample for 2 x 2 pixels and 2 samples"},
+      {{.profile = ABBE_PROFILE_THESIS, .upsample = 2}, "cannot be upsampled"},
+      {{.wavelengths = ABBE_RENDER_MAX_WAVELENGTHS + 1}, "wavelengths is 1001"},
+      {{.profile = ABBE_PROFILE_THESIS, .wavelengths = 65}, "wavelengths is 65"},
+      {{.exits = ABBE_RENDER_MAX_EXITS + 1}, "exits is 33"},
+      {{.width = (size_t)-1}, "width"},
+      {{.min_nm = 700, .max_nm = 400}, "700 to 400"},
+      {{.min_nm = -1}, "-1 to 780"},
+      {{.min_nm = NAN}, "nan"},
+      {{.max_nm = INFINITY}, "inf"},
+      {{.energy_share = -0.1}, "-0.1"},
+      {{.energy_share = 1.5}, "1.5"},
+      {{.energy_share = NAN}, "nan"},
+      {{.photon_shift = {0, 0.6}}, "photons are shifted by 0.6"},
+      {{.sample_shift = {NAN, 0}}, "samples are shifted by nan"},
+      {{.model = ABBE_MODEL_COUNT}, "model 'unknown'"},
+      {{.profile = ABBE_PROFILE_THESIS, .model = ABBE_MODEL_SPHERE}, "model 'sphere'"},
+      {{.fill = ABBE_FILL_SMEAR}, "'smear'"},
+      {{.profile = ABBE_PROFILE_THESIS, .fill = ABBE_FILL_BRIDGE}, "'thesis'"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_render_desc out;
+    abbe_error error = {0};
+    assert_int_equal(abbe_render_desc_resolve(&rows[i].desc, 320, 200, &out, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_int_equal(error.code, ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, rows[i].part);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_is_left_open_gets_its_default),
+      cmocka_unit_test(names_are_the_options),
+      cmocka_unit_test(limits_are_kept),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
