@@ -1,0 +1,61 @@
+#include "tests/check.h"
+#include "tests/scenes/scene_text.h"
+
+#include "gl/scene/camera_view.h"
+
+#include <math.h>
+
+static void fit(const abbe_render_desc *desc, double fov_y_rad, abbe_camera_view *out) {
+  abbe_scene scene = {0};
+  load_shipped("sphere", &scene);
+  scene.camera.fov_y_rad = fov_y_rad;
+  abbe_camera_view_fit(&scene, desc, out);
+  abbe_scene_free(&scene);
+}
+
+/* A quarter turn up: tangents of 1 up and of the picture's shape across. */
+static void the_window_is_the_field_of_view(void **state) {
+  (void)state;
+  const abbe_render_desc desc = {.width = 200, .height = 100, .supersample = 2, .upsample = 1};
+  abbe_camera_view camera;
+  fit(&desc, acos(0), &camera);
+  assert_int_equal(camera.samples[0], 400);
+  assert_int_equal(camera.samples[1], 200);
+  const double window[4] = {-2, 2, -1, 1};
+  for (int k = 0; k < 4; k++) assert_near(camera.view.window[k], window[k], 1e-12);
+  assert_true(camera.view.near > 0 && camera.view.near < camera.view.far);
+}
+
+/* 34 samples of three pixels cover 100, and two more on the right; rows likewise at the top. */
+static void the_last_sample_may_stand_out(void **state) {
+  (void)state;
+  const abbe_render_desc desc = {.width = 100, .height = 100, .supersample = 1, .upsample = 3};
+  abbe_camera_view camera;
+  fit(&desc, acos(0), &camera);
+  for (int axis = 0; axis < 2; axis++) {
+    assert_int_equal(camera.samples[axis], 34);
+    assert_near(camera.view.window[2 * axis], -1, 1e-12);
+    assert_near(camera.view.window[2 * axis + 1], -1 + 2 * 1.02, 1e-12);
+  }
+}
+
+/* By a part of a sample, of which two make a pixel; nothing else moves. */
+static void a_shift_moves_the_window(void **state) {
+  (void)state;
+  const abbe_render_desc desc = {
+      .width = 50, .height = 50, .supersample = 2, .upsample = 1, .sample_shift = {0.5, -0.25}};
+  abbe_camera_view camera;
+  fit(&desc, acos(0), &camera);
+  const double sample = 2.0 / 100;
+  assert_near(camera.view.window[0], -1 + 0.5 * sample, 1e-12);
+  assert_near(camera.view.window[1], 1 + 0.5 * sample, 1e-12);
+  assert_near(camera.view.window[2], -1 - 0.25 * sample, 1e-12);
+  assert_near(camera.view.window[3], 1 - 0.25 * sample, 1e-12);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_window_is_the_field_of_view),
+                                     cmocka_unit_test(the_last_sample_may_stand_out),
+                                     cmocka_unit_test(a_shift_moves_the_window)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

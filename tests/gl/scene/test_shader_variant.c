@@ -1,0 +1,108 @@
+#include "tests/check.h"
+
+#include "gl/scene/shader_variant.h"
+
+#include <stdlib.h>
+
+static bool has(const char *text, const char *line) {
+  const size_t size = strlen(line);
+  for (const char *at = text; (at = strstr(at, line)) != NULL; at += size)
+    if ((at == text || at[-1] == '\n') && at[size] == '\n') return true;
+  return false;
+}
+
+static char *text_of(const abbe_shader_variant *variant, const char *more) {
+  char *text = abbe_shader_variant_text(variant, more);
+  assert_non_null(text);
+  return text;
+}
+
+static void counts_and_flags_are_told(void **state) {
+  (void)state;
+  const abbe_shader_variant v = {.lights = 2,
+                                 .refractors = 3,
+                                 .planes = 57,
+                                 .wavelengths = 7,
+                                 .bands = 14,
+                                 .convex = true,
+                                 .wide = true,
+                                 .shadow_planes = 9,
+                                 .one_shadow = true,
+                                 .ways = 8};
+  char *text = text_of(&v, "#define MORE 1\n");
+  assert_true(has(text, "#define LIGHTS 2"));
+  assert_true(has(text, "#define SPECTRUM_ROOM 21"));
+  assert_true(has(text, "#define PLANE_ROOM 57"));
+  assert_true(has(text, "#define CONVEX"));
+  assert_true(has(text, "#define WIDE"));
+  assert_true(has(text, "#define SHADOW_PLANES 9"));
+  assert_true(has(text, "#define ONE_SHADOW"));
+  assert_true(has(text, "#define WAYS 8"));
+  assert_string_equal(text + strlen(text) - 15, "#define MORE 1\n");
+  free(text);
+}
+
+/* A block may not be empty; what is not there is not told. */
+static void nothing_has_room_for_one(void **state) {
+  (void)state;
+  const abbe_shader_variant v = {0};
+  char *text = text_of(&v, NULL);
+  assert_true(has(text, "#define REFRACTORS 0"));
+  assert_true(has(text, "#define REFRACTOR_ROOM 1"));
+  static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "PAGES", "LANES",
+                                       "MAP_LEVELS",    "REFINED",    "WIDE",  "IN_STORAGE"};
+  for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) assert_null(strstr(text, absent[i]));
+  free(text);
+}
+
+/* A table of exactly a block is a block; one element more is storage. */
+static void tables_beyond_a_block_are_storage(void **state) {
+  (void)state;
+  abbe_shader_variant v = {.planes = ABBE_GPU_BLOCK_BYTES / 16, .refractors = 1};
+  v.bands = ABBE_GPU_BLOCK_BYTES / 32;
+  v.surfaces = ABBE_GPU_BLOCK_BYTES / 32;
+  v.wavelengths = ABBE_GPU_BLOCK_BYTES / 16;
+  char *text = text_of(&v, NULL);
+  assert_null(strstr(text, "IN_STORAGE"));
+  free(text);
+  v.planes++;
+  v.bands++;
+  v.surfaces++;
+  v.wavelengths++;
+  text = text_of(&v, NULL);
+  assert_true(has(text, "#define PLANES_IN_STORAGE"));
+  assert_true(has(text, "#define BANDS_IN_STORAGE"));
+  assert_true(has(text, "#define SURFACES_IN_STORAGE"));
+  assert_true(has(text, "#define SPECTRA_IN_STORAGE"));
+  free(text);
+}
+
+static void photons_are_told_where_there_are_any(void **state) {
+  (void)state;
+  abbe_shader_variant v = {.lanes = 7, .steps = 128, .nodes = 7, .map_levels = 6, .bridge = true};
+  char *text = text_of(&v, NULL);
+  assert_true(has(text, "#define LANES 7") && has(text, "#define STEPS 128"));
+  assert_true(has(text, "#define BRIDGE") && has(text, "#define MAP_LEVELS 6"));
+  assert_null(strstr(text, "FINE_NODES"));
+  free(text);
+  v.refined = true;
+  v.fine_nodes = 4;
+  v.pages = 3;
+  v.page_blocks = 32;
+  v.chart_sides = 12;
+  text = text_of(&v, NULL);
+  assert_true(has(text, "#define REFINED") && has(text, "#define FINE_NODES 4"));
+  assert_true(has(text, "#define PAGES") && has(text, "#define MOST_PAGES 3"));
+  assert_true(has(text, "#define PAGE_BLOCKS 32") && has(text, "#define CHART_SIDES 12"));
+  free(text);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(counts_and_flags_are_told),
+      cmocka_unit_test(nothing_has_room_for_one),
+      cmocka_unit_test(tables_beyond_a_block_are_storage),
+      cmocka_unit_test(photons_are_told_where_there_are_any),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
