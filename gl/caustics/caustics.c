@@ -118,7 +118,7 @@ static abbe_shader_variant photon_variant(const abbe_caustics *c,
   const abbe_plan *plan = plan_of(c);
   abbe_shader_variant v = *scene;
   v.lanes = c->trace.hits.stride;
-  v.steps = c->spectra.steps;
+  v.steps = c->views->scene->tables.steps;
   v.nodes = c->spectra.nodes;
   v.map_levels = c->views->map_levels;
   v.bridge = plan->fills;

@@ -220,6 +220,7 @@ abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const ab
   if (plan->pages) result = abbe_receiver_charts_make(local, plan, &out->charts, error);
   if (result == ABBE_OK) result = abbe_gpu_bvh_make(out, error);
   if (result == ABBE_OK) result = abbe_gpu_shadows_make(out, error);
+  if (result == ABBE_OK) result = abbe_spectral_tables_make(local, plan, &out->tables, error);
   return result;
 }
 
@@ -244,7 +245,7 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene) {
   gl->DeleteTextures(3, scene->bvh_texture);
   gl->DeleteBuffers(3, scene->bvh);
   abbe_receiver_charts_free(&scene->charts);
-  free(scene->lambda_nm);
+  abbe_spectral_tables_free(&scene->tables);
   free(scene->refractor_root);
   free(scene->shadow_row);
 }

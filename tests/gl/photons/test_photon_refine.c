@@ -2,18 +2,7 @@
 #include "tests/gl/frame.h"
 
 #include "colorimetry/weights.h"
-#include "gl/photons/photon_spectra.h"
 #include "spectral/optics.h"
-
-static void coarse_nodes_reach_both_ends_in_order(void **state) {
-  (void)state;
-  for (size_t n = 5; n <= ABBE_RENDER_MAX_WAVELENGTHS; n++) {
-    assert_int_equal(abbe_photon_spectra_node(n, 5, 0), 0);
-    assert_int_equal(abbe_photon_spectra_node(n, 5, 4), n - 1);
-    for (size_t k = 0; k < 4; k++)
-      assert_true(abbe_photon_spectra_node(n, 5, k) < abbe_photon_spectra_node(n, 5, k + 1));
-  }
-}
 
 static abbe_ledger draw(const char *name, size_t wavelengths, abbe_fill fill, abbe_image *map) {
   abbe_scene scene = {0};
@@ -179,7 +168,6 @@ static void a_mesh_is_refined_alike_every_time(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(coarse_nodes_reach_both_ends_in_order),
       cmocka_unit_test(every_photon_is_entered_once),
       cmocka_unit_test(absorption_is_that_of_all_wavelengths),
       cmocka_unit_test(a_pane_leaves_what_the_law_says),
