@@ -33,7 +33,7 @@ typedef struct abbe_gpu_scene {
   abbe_gpu *gpu;
   const abbe_scene *local; /* whose coordinates all below are in */
   const abbe_plan *plan;
-  abbe_receiver_charts charts; /* where the plan has pages */
+  abbe_receiver_charts charts; /* where the plan has tiles */
 
   double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
   double refractor_centre[3], refractor_radius;

@@ -28,9 +28,9 @@ static int entry_of(const abbe_exact *solid, const double p[3], const double d[3
   return enter < leave ? facet : -1;
 }
 
-/* The wall that a ray inside meets next, from a point on the facet `from`; -1: none. */
-static int wall_of(const abbe_exact *solid, int from, const double p[3], const double d[3],
-                   double *at) {
+/* The inner face that a ray inside meets next, from a point on the facet `from`; -1: none. */
+static int inner_face_of(const abbe_exact *solid, int from, const double p[3], const double d[3],
+                         double *at) {
   double nearest = INFINITY;
   int facet = -1;
   for (size_t i = 0; i < solid->count; i++) {
@@ -67,7 +67,7 @@ static double follow(const abbe_exact *solid, const matter *m, double weight, do
   move(p, along, d);
   out->kept[0] += weight * share;
   for (size_t exits = 1; exits <= ABBE_RENDER_MAX_EXITS; exits++) {
-    facet = wall_of(solid, facet, p, inner, &along);
+    facet = inner_face_of(solid, facet, p, inner, &along);
     if (facet < 0) return weight;
     plane = solid->plane[facet];
     const double cosine = abbe_vector_dot(plane, inner);

@@ -1,4 +1,4 @@
-/* Photons that take more wavelengths only where their landings ask for them. */
+/* Photons that take more wavelengths only where their hits ask for them. */
 #include "tests/gl/frame.h"
 
 #include "colorimetry/weights.h"
@@ -34,7 +34,7 @@ static void every_photon_is_entered_once(void **state) {
 }
 
 /* N-SF11 absorbs violet by tens in a metre and green by ones. What few wavelengths leave of it, and
- * 21 that are traced only where landings ask, is what 61 of all photons do, to one in a thousand of
+ * 21 that are traced only where hits ask, is what 61 of all photons do, to one in a thousand of
  * the light: attenuation at the seven nodes alone would take three more. */
 static void absorption_is_that_of_all_wavelengths(void **state) {
   (void)state;
@@ -150,7 +150,7 @@ static void refined_maps_are_those_of_all_wavelengths(void **state) {
 }
 
 /* More wavelengths in an interval than in the coarse set, and paths that few of them take: what is
- * read of the coarse landings is the photon's own, in whatever order photons stand. */
+ * read of the coarse hits is the photon's own, in whatever order photons stand. */
 static void a_mesh_is_refined_alike_every_time(void **state) {
   (void)state;
   abbe_scene scene = {0};
