@@ -231,7 +231,7 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   }
   abbe_progress_end(&progress);
   if (result == ABBE_OK && q->frames > 0 && !abbe_profile_is_thesis(q->render.desc.profile))
-    result = abbe_frame_times_floor(renderer, q->frames, &out->floor_ms, error);
+    result = abbe_frame_times_baseline(renderer, q->frames, &out->floor_ms, error);
   return result;
 }
 

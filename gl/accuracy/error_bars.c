@@ -1,8 +1,9 @@
 #include "gl/accuracy/error_bars.h"
 
+#include "base/clock.h"
+#include "base/order.h"
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
-#include "gl/device/gpu.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -202,16 +203,11 @@ static void estimate(const work *w, abbe_error_bars *out) {
 
 /* Summaries */
 
-static int descending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x < y) - (x > y);
-}
-
 /* Of the brightest pixels: the one where `share` of the light is reached, or of the lit pixels. */
 static double threshold(double *light, size_t count, double share, bool of_pixels) {
   double total = 0, held = 0;
   size_t i = 0;
-  qsort(light, count, sizeof *light, descending);
+  qsort(light, count, sizeof *light, abbe_order_descending);
   while (i < count && light[i] > 0) total += of_pixels ? 1 : light[i], i++;
   for (size_t k = 0; k < i; k++) {
     held += of_pixels ? 1 : light[k];
@@ -325,7 +321,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
   static const abbe_error_bars_desc defaults = {0};
   *out = (abbe_error_bars){0};
   if (desc == NULL) desc = &defaults;
-  double start_ms = abbe_gpu_now_ms();
+  double start_ms = 1e3 * abbe_clock_seconds();
   size_t variants = desc->variants > 0 ? desc->variants : ABBE_ERROR_BARS_VARIANTS;
   work w = {.context = context, .scene = scene, .desc = desc};
   abbe_result result =
@@ -343,7 +339,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
     out->frames = w.frames;
     estimate(&w, out);
     result = summarise_all(&w, out, error);
-    out->ms = abbe_gpu_now_ms() - start_ms;
+    out->ms = 1e3 * abbe_clock_seconds() - start_ms;
   }
   free(w.difference);
   free(w.squares);

@@ -1,16 +1,13 @@
 #include "gl/accuracy/frame_times.h"
 
+#include "base/order.h"
+
 #include <stdlib.h>
 
-enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_FLOORS = 16 };
+enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_BASELINES = 16 };
 
 static int by_time(const void *a, const void *b) {
   double x = ((const abbe_statistics *)a)->frame_ms, y = ((const abbe_statistics *)b)->frame_ms;
-  return (x > y) - (x < y);
-}
-
-static int by_value(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
@@ -38,16 +35,16 @@ abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_t
   return result;
 }
 
-abbe_result abbe_frame_times_floor(abbe_renderer *renderer, size_t count, double *ms,
-                                   abbe_error *error) {
+abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, double *ms,
+                                      abbe_error *error) {
   ABBE_REQUIRE(renderer && ms, error);
-  double all[MAX_FLOORS];
-  if (count < 1 || count > MAX_FLOORS) count = count < 1 ? 1 : MAX_FLOORS;
+  double all[MAX_BASELINES];
+  if (count < 1 || count > MAX_BASELINES) count = count < 1 ? 1 : MAX_BASELINES;
   for (size_t i = 0; i < count; i++) {
     abbe_result result = abbe_renderer_baseline(renderer, &all[i], error);
     if (result != ABBE_OK) return result;
   }
-  qsort(all, count, sizeof *all, by_value);
+  qsort(all, count, sizeof *all, abbe_order_ascending);
   *ms = all[count / 2];
   return ABBE_OK;
 }

@@ -1,9 +1,8 @@
 #include "gl/device/gpu.h"
 
+#include "base/clock.h"
 #include "gl/device/bindings.h"
 #include "gl/device/program.h"
-
-#include <time.h>
 
 abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
   out->gl = gl;
@@ -19,12 +18,6 @@ void abbe_gpu_free(abbe_gpu *gpu) {
   gpu->gl->DeleteFramebuffers(1, &gpu->framebuffer);
   gpu->gl->DeleteVertexArrays(1, &gpu->empty_array);
   *gpu = (abbe_gpu){0};
-}
-
-double abbe_gpu_now_ms(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
@@ -193,13 +186,13 @@ void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height) {
 void abbe_gpu_begin_pass(abbe_gpu *gpu) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
-  gpu->pass_start_ms = abbe_gpu_now_ms();
+  gpu->pass_start_ms = 1e3 * abbe_clock_seconds();
 }
 
 void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
-  const double now_ms = abbe_gpu_now_ms();
+  const double now_ms = 1e3 * abbe_clock_seconds();
   abbe_statistics_add_ms(gpu->statistics, pass, now_ms - gpu->pass_start_ms);
   gpu->pass_start_ms = now_ms;
 }

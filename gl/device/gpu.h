@@ -79,7 +79,6 @@ void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height);
 void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t most,
                             size_t threads);
 
-double abbe_gpu_now_ms(void);
 void abbe_gpu_begin_pass(abbe_gpu *gpu);
 /* What was done since the pass began, or since the last one's end, is of this pass; several ends of
  * one pass add up. */

@@ -2,6 +2,7 @@
 
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
+#include "gl/device/float4.h"
 #include "gl/plan/examine/light_cube.h"
 #include "scenes/geometry/vector.h"
 
@@ -17,11 +18,6 @@ enum { MAX_NARROW_PHOTONS = 1 << 20, MAX_MAP_LEVELS = 6 };
 typedef struct gpu_light {
   float near_view[24], map_view[24], position[4], direction[4], white[4], misc[4], cube[4];
 } gpu_light;
-
-static void store(const double v[3], double w, float out[4]) {
-  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
-  out[3] = (float)w;
-}
 
 bool abbe_photon_lights_is_face(const abbe_photon_lights *views, size_t light) {
   return views->scene->plan->light_view[light].face >= 0;
@@ -247,9 +243,9 @@ void abbe_photon_lights_upload(abbe_photon_lights *views) {
     state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);
     abbe_view_pack(&state->map.view, g.map_view);
-    store(light->position, (double)light->kind, g.position);
-    store(light->direction, cos(light->cone_rad), g.direction);
-    store(rgb, light->power, g.white);
+    abbe_float4_store(light->position, (double)light->kind, g.position);
+    abbe_float4_store(light->direction, cos(light->cone_rad), g.direction);
+    abbe_float4_store(rgb, light->power, g.white);
     g.misc[0] = (float)cos(fmax(light->cone_rad - light->soft_rad, 0));
     g.misc[1] = (float)abbe_photon_lights_map_unit(views, i);
     g.misc[2] = (float)(1 / cell_area);

@@ -1,6 +1,8 @@
 #include "gl/scene/gpu_scene.h"
 
 #include "gl/device/bindings.h"
+#include "gl/device/float4.h"
+#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,15 +20,6 @@ typedef struct gpu_receiver {
 typedef struct gpu_surface {
   float reflectance[4], texture_info[4];
 } gpu_surface;
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void store(const double v[3], double w, float out[4]) {
-  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
-  out[3] = (float)w;
-}
 
 /* Refractors and the planes of the convex ones. */
 static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
@@ -49,8 +42,8 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
       half += pow(0.5 * (object->max[k] - object->min[k]), 2);
     }
     bool sphere = plan->model[i] == ABBE_REFRACTOR_SPHERE;
-    store(sphere ? object->exact.centre : centre, sphere ? object->exact.radius : sqrt(half),
-          refractor[i].sphere);
+    abbe_float4_store(sphere ? object->exact.centre : centre,
+                      sphere ? object->exact.radius : sqrt(half), refractor[i].sphere);
     refractor[i].info[0] = (int)plan->model[i];
     for (size_t k = 0; k <= i; k++) { /* the first of the same material */
       refractor[i].info[3] = (int)k;
@@ -61,7 +54,7 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
     if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;
     refractor[i].info[2] = (int)object->exact.count;
     for (size_t k = 0; k < object->exact.count; k++)
-      store(object->exact.plane[k], object->exact.plane[k][3], plane[next++]);
+      abbe_float4_store(object->exact.plane[k], object->exact.plane[k][3], plane[next++]);
   }
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(scene->gpu, plan->refractor_count * sizeof *refractor, refractor,
@@ -76,7 +69,7 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
 static void store_parallelogram(const double p[9], size_t surface, gpu_receiver *out) {
   const double *u = p + 3, *v = p + 6;
   double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  double area2 = dot(n, n), du[3], dv[3];
+  double area2 = abbe_vector_dot(n, n), du[3], dv[3];
   /* Dual edges within the plane: du = (v x n) / |n|^2, dv = (n x u) / |n|^2. */
   for (int k = 0; k < 3; k++) {
     int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -84,12 +77,12 @@ static void store_parallelogram(const double p[9], size_t surface, gpu_receiver 
     dv[k] = (n[a] * u[b] - n[b] * u[a]) / area2;
   }
   for (int k = 0; k < 3; k++) n[k] /= sqrt(area2);
-  store(p, (double)surface, out->corner);
-  store(u, 0, out->u);
-  store(v, 0, out->v);
-  store(n, 0, out->normal);
-  store(du, 0, out->du);
-  store(dv, 0, out->dv);
+  abbe_float4_store(p, (double)surface, out->corner);
+  abbe_float4_store(u, 0, out->u);
+  abbe_float4_store(v, 0, out->v);
+  abbe_float4_store(n, 0, out->normal);
+  abbe_float4_store(du, 0, out->du);
+  abbe_float4_store(dv, 0, out->dv);
 }
 
 static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
@@ -152,7 +145,7 @@ static abbe_result upload_textures(abbe_gpu_scene *scene, gpu_surface *surface, 
             ((height - 1 - y) * t->height / height * t->width + x * t->width / width) * t->channels;
         double rgb[3] = {from[0], from[1], from[2]};
         abbe_gpu_scene_to_working(scene, rgb, rgb);
-        store(rgb, 1, texel + 4 * (y * width + x));
+        abbe_float4_store(rgb, 1, texel + 4 * (y * width + x));
       }
     scene->gpu->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width,
                                   (GLsizei)height, 1, GL_RGBA, GL_FLOAT, texel);
@@ -169,7 +162,7 @@ static abbe_result upload_surfaces(abbe_gpu_scene *scene, abbe_error *error) {
     const abbe_object *object = &scene->local->object[scene->plan->receiver_object[i]];
     double rgb[3];
     abbe_gpu_scene_to_working(scene, object->reflectance, rgb);
-    store(rgb, 1, surface[i].reflectance);
+    abbe_float4_store(rgb, 1, surface[i].reflectance);
     surface[i].texture_info[0] = -1.0f;
     surface[i].texture_info[1] = (float)object->texture_repeat[0];
     surface[i].texture_info[2] = (float)object->texture_repeat[1];

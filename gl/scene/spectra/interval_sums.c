@@ -1,6 +1,7 @@
 #include "gl/scene/spectra/interval_sums.h"
 
 #include "colorimetry/weights.h"
+#include "gl/device/float4.h"
 #include "gl/scene/spectra/band_attenuation.h"
 
 #include <math.h>
@@ -32,11 +33,6 @@ static void weigh_part(const abbe_interval_sums *of, const abbe_illuminant *illu
     if (of->bands > 0)
       out->light[c] = b > a ? abbe_weights_band_power(illuminant, min, max, a, b) : 0;
   }
-}
-
-static void store(const double v[3], double w, float out[4]) {
-  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
-  out[3] = (float)w;
 }
 
 /* One interval from node b = i down to node a = i - 1, step by step. Where the index stays, the
@@ -78,9 +74,9 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
           fmin(abbe_material_attenuation(material, at[1 + c]), ABBE_BAND_MOST_PER_M);
       taken[c] += part.light[c] * per_m;
     }
-    store(sum, t[0], out[0]);
-    store(moment, n[0], out[1]);
-    if (of->plan->lengths) store(taken, 0, out[2]);
+    abbe_float4_store(sum, t[0], out[0]);
+    abbe_float4_store(moment, n[0], out[1]);
+    if (of->plan->lengths) abbe_float4_store(taken, 0, out[2]);
     before = lambda_nm;
   }
 }
