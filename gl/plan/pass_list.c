@@ -52,7 +52,7 @@ static void list_photons(abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT,
                 "at most %zu a side, where light meets a refractor", plan->desc.photons);
   if (least < most)
-    abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu to %zu wavelengths, as each photon's landings ask",
+    abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu to %zu wavelengths, as each photon's hits ask",
                   least, most);
   else
     abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu wavelengths through the refractors", most);
@@ -83,7 +83,7 @@ static void list_absorption(abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_CHOICE_ABSORPTION, "%s",
                 none != NULL ? none
                 : plan->lengths
-                    ? "a material attenuates by wavelength: landings keep the length inside"
+                    ? "a material attenuates by wavelength: hits keep the length inside"
                 : plan->absorbing ? "a material attenuates; path lengths are kept"
                                   : "every material is clear");
 }

@@ -83,7 +83,7 @@ typedef struct pair {
       RUNS(PASS_LIGHT_FRONT, "photons start where the light sees a refractor"),                    \
       RESTS(PASS_LIGHT_BACK, "every refractor has an exact surface"),                              \
       RUNS(PASS_PHOTON_PLACEMENT, "at most 256 a side, where light meets a refractor"),            \
-      RUNS(PASS_PHOTONS, "4 to 7 wavelengths, as each photon's landings ask"),                     \
+      RUNS(PASS_PHOTONS, "4 to 7 wavelengths, as each photon's hits ask"),                     \
       RUNS(PASS_SPECTRAL_MAP, "1024 x 1024 texels"),                                               \
       RUNS(PASS_GAP_FILL, "bridge: wavelengths land apart"),                                       \
       RESTS(CHOICE_ABSORPTION, "every material is clear"),                                         \
@@ -167,7 +167,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {0},
      {RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: landings keep the length inside"),
+           "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"a material that absorbs outside the range alone",
      ball,
@@ -182,7 +182,7 @@ static const pair pairs[] = {
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the attenuation varies with wavelength"),
       RUNS(PASS_PHOTONS, "7 wavelengths through the refractors"),
       RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: landings keep the length inside"),
+           "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"a constant index, and an attenuation that is constant",
      flat,
@@ -419,9 +419,9 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {.wavelengths = 21},
      {COUNTS(21, 8, 9), RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
-      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's landings ask"),
+      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"),
       RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: landings keep the length inside"),
+           "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"many wavelengths of a glass that tints, from wall to wall of a mesh",
      ball,
@@ -439,7 +439,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
      {.wavelengths = 21},
      {COUNTS(21, 8, 9), RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
-      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's landings ask"), END}},
+      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"), END}},
     {"no fill, as asked",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
