@@ -2,10 +2,8 @@
 
 #include "base/clock.h"
 #include "gl/caustics/map_bands.h"
-#include "gl/plan/examine/layer_detail.h"
 #include "gl/renderer_state.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,29 +27,8 @@ static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, a
   return ABBE_OK;
 }
 
-/* Refractors' faces as coarse as their layers can tell. */
-static abbe_result simplify_layers(abbe_renderer *r, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < r->plan.refractor_count && result == ABBE_OK; i++) {
-    const size_t object = r->plan.refractor_object[i];
-    const abbe_mesh *mesh = &r->scene.local->object[object].mesh;
-    double cell = INFINITY, sample = INFINITY;
-    if (!abbe_layer_detail_asks(r->scene.local, &r->plan, i)) continue;
-    for (size_t k = 0; k < r->plan.light_view_count; k++)
-      if (r->plan.reaches[k])
-        cell = fmin(cell, abbe_layer_detail_step(&r->views.light[k].near_view,
-                                                 r->views.light[k].cells, mesh));
-    if (r->plan.camera_sees_refractor)
-      sample = abbe_layer_detail_step(&r->camera.view, r->camera.samples, mesh);
-    result = abbe_gpu_meshes_simplify(&r->scene, object, abbe_layer_detail_distance(cell, sample),
-                                      error);
-  }
-  return result;
-}
-
 static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
-  abbe_result result = simplify_layers(r, error);
-  if (result == ABBE_OK) result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
+  abbe_result result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
   if (result == ABBE_OK) result = abbe_light_layers_make(&r->views, &r->faces, &r->layers, error);
   r->atlas.views = &r->views;
   if (result != ABBE_OK) return result;
@@ -149,7 +126,6 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
   size_t first = r->thesis.photon_count;
   if (!is_thesis(r)) {
-    s->layer_faces = abbe_gpu_meshes_layer_faces(&r->scene);
     for (size_t i = 0; i < r->plan.light_view_count; i++)
       s->photons += r->views.light[i].photon_count;
     cells = (double)r->views.light[0].cells[0] * (double)r->views.light[0].cells[1];

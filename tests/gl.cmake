@@ -1,5 +1,5 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-foreach(name bindings camera_view layer_detail light_cube light_views local_scene material_range
+foreach(name bindings camera_view light_cube light_views local_scene material_range
     passes plan plan_facts precision reach receiver_charts receiver_model refractor_model render_desc
     shader_variant spectral_needs spectral_tables statistics support)
   abbe_test(${name} cpu ${gl_rooms})
@@ -16,7 +16,6 @@ abbe_test(refraction_bands gl ${gl_rooms})
 abbe_test(refractors_traced gl abbe_validation ${gl_rooms})
 abbe_test(inner_light gl ${gl_rooms})
 abbe_test(no_culling gl ${gl_rooms})
-abbe_test(layer_faces gl ${gl_rooms})
 abbe_test(lit_window gl ${gl_rooms})
 abbe_test(renderer gl ${gl_rooms})
 abbe_test(receiver_tiles gl ${gl_rooms})

@@ -187,7 +187,6 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_tiles);
   cJSON_AddNumberToObject(energy, "interpolated", s->energy.interpolated);
   cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
-  if (s->layer_faces > 0) cJSON_AddNumberToObject(root, "layer_faces", (double)s->layer_faces);
   cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);
   struct rusage usage;
   if (getrusage(RUSAGE_SELF, &usage) == 0)

@@ -43,7 +43,6 @@ typedef struct abbe_statistics {
   size_t photons; /* cells that hold a refractor, all lights */
   size_t wavelengths;
   double refractor_share; /* of the first light's photon grid */
-  size_t layer_faces;     /* of all refractors, as layers are drawn; 0 by the thesis's passes */
   size_t device_bytes;    /* buffers and textures */
   abbe_ledger energy;
 } abbe_statistics;

@@ -19,8 +19,6 @@ enum { ABBE_GPU_BLOCK_BYTES = 65536 };
 typedef struct abbe_gpu_mesh {
   GLuint array, vertices, indices;
   GLsizei index_count;
-  GLuint layer_array, layer_indices; /* of fewer faces, where layers are drawn with them; else 0 */
-  GLsizei layer_index_count;
 } abbe_gpu_mesh;
 
 /* A row of the shaders' block of shadows. */
@@ -67,15 +65,8 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* gpu_meshes.c */
 void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);
-/* With the faces that layers have. */
-void abbe_gpu_meshes_draw_refractor(const abbe_gpu_scene *scene, size_t refractor);
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
-/* Fewer faces for what is drawn as layers: `within` m of the mesh. */
-abbe_result abbe_gpu_meshes_simplify(abbe_gpu_scene *scene, size_t object, double within,
-                                     abbe_error *error);
-/* Of all refractors, as layers draw them. */
-size_t abbe_gpu_meshes_layer_faces(const abbe_gpu_scene *scene);
 
 /* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths, from the tables.
  */

@@ -52,7 +52,7 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
   gl->CullFace(target->back ? GL_FRONT : GL_BACK);
   for (size_t i = 0; i < scene->plan->refractor_count; i++) {
     abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);
-    abbe_gpu_meshes_draw_refractor(scene, i);
+    abbe_gpu_meshes_draw(scene, scene->plan->refractor_object[i]);
   }
   gl->Disable(GL_CULL_FACE);
   return ABBE_OK;

@@ -45,7 +45,6 @@ extern "C" {
   X(LIGHT_MAP, "map: ", p->reaches[i])                                                             \
   X(RECEIVER_MAPS, "maps on receivers", p->tiles)                                                  \
   X(ABSORPTION, "absorption", p->absorbing)                                                        \
-  X(FEWER_FACES, "simplified layers", p->fewer_faces)                                              \
   X(TEXTURES, "textures", p->textured)
 
 /* Passes first, so that arrays can be indexed by them. */

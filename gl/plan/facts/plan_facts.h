@@ -94,7 +94,6 @@ typedef struct abbe_plan {
   bool fills;       /* light is laid between wavelengths */
   bool lengths;     /* hits keep the length of their path inside, which tells a tint anywhere */
   bool draw_back;   /* the back of refractors is drawn */
-  bool fewer_faces; /* some mesh is drawn with fewer (gl/plan/examine/layer_detail.h) */
   bool textured;
 
   size_t entry_count; /* models and passes, in the order in which they run */

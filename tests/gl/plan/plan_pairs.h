@@ -251,7 +251,6 @@ static const pair pairs[] = {
            "followed until less than 0.01 of the light is left, 4 exits at most"),
       RUNS(PASS_LIGHT_BACK, "a mesh without an exact surface ends at its back layer"),
       RUNS(PASS_EYE_BACK, "a mesh without an exact surface ends at its back layer"),
-      RUNS(CHOICE_FEWER_FACES, "'ball' has 5120 faces: fewer, where no cell or sample tells"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.001 of its light is left, 4 exits at most"),
       END}},
     {"a mesh with a hole for the ball",
