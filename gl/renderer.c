@@ -93,10 +93,8 @@ void abbe_renderer_free(abbe_renderer *r) {
   abbe_spectral_map_free(&r->map);
   abbe_receiver_atlas_free(&r->atlas);
   abbe_light_layers_free(&r->layers);
-  abbe_refractor_faces_free(&r->faces);
   abbe_photon_lights_free(&r->views);
   abbe_gpu_scene_free(&r->scene);
-  if (r->gpu.gl != NULL) r->gpu.gl->DeleteTextures(1, &r->baseline);
   abbe_gpu_free(&r->gpu);
   abbe_local_scene_free(&r->local);
   abbe_plan_free(&r->plan);
@@ -122,7 +120,7 @@ static abbe_result run_passes(abbe_renderer *r, abbe_render_progress progress, v
 static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
   s->frame_ms = 1e3 * abbe_clock_seconds() - start_ms - r->untimed_ms;
   s->wavelengths = r->plan.desc.wavelengths;
-  s->device_bytes = r->gpu.bytes;
+  s->device_bytes = abbe_gpu_bytes(&r->gpu) + r->scene.mesh_bytes;
   double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
   size_t first = r->thesis.photon_count;
   if (!is_thesis(r)) {

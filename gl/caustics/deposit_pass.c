@@ -13,19 +13,18 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
                                    const abbe_shader_variant *scene, abbe_deposit_pass *out,
                                    abbe_error *error) {
   abbe_gpu *gpu = trace->spectra->scene->gpu;
-  const abbe_gl *gl = gpu->gl;
   *out = (abbe_deposit_pass){.trace = trace, .refine = refine, .map = map, .chunks = 1};
   abbe_result result =
-      abbe_shader_variant_compute(photons, gl, "photon_deposit.comp", NULL, &out->list, error);
+      abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
   if (result == ABBE_OK && abbe_photon_spectra_refines(trace->spectra)) {
     abbe_shader_variant refined = *photons;
     refined.refined = true;
     refined.fine_nodes = refine->fine_nodes;
-    result = abbe_shader_variant_compute(&refined, gl, "photon_deposit.comp", NULL,
+    result = abbe_shader_variant_compute(&refined, gpu, "photon_deposit.comp", NULL,
                                          &out->list_refined, error);
   }
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(scene, gl, "photon_splat.comp", NULL, &out->add, error);
+    result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
   if (result == ABBE_OK)
     result =
         abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + SPLAT_BYTES, NULL, &out->splats, error);
@@ -34,11 +33,7 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
 
 void abbe_deposit_pass_free(abbe_deposit_pass *pass) {
   if (pass->trace == NULL || pass->trace->spectra == NULL) return;
-  const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  gl->DeleteProgram(pass->list);
-  gl->DeleteProgram(pass->list_refined);
-  gl->DeleteProgram(pass->add);
-  gl->DeleteBuffers(1, &pass->splats);
+  abbe_gpu_drop_buffers(scene_of(pass)->gpu, 1, &pass->splats);
 }
 
 /* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
@@ -50,7 +45,7 @@ abbe_result abbe_deposit_pass_make_room(abbe_deposit_pass *pass, size_t most, ab
   abbe_gpu *gpu = scene_of(pass)->gpu;
   pass->chunks = abbe_deposit_pass_chunks(most, MAX_SPLATS);
   pass->splat_room = most > MAX_SPLATS ? MAX_SPLATS : most;
-  gpu->gl->DeleteBuffers(1, &pass->splats);
+  abbe_gpu_drop_buffers(gpu, 1, &pass->splats);
   return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + (pass->splat_room + 1) * SPLAT_BYTES,
                               NULL, &pass->splats, error);
 }

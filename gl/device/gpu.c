@@ -2,19 +2,22 @@
 
 #include "base/clock.h"
 #include "gl/device/bindings.h"
-#include "gl/device/program.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
   out->gl = gl;
   gl->GenFramebuffers(1, &out->framebuffer);
   gl->GenVertexArrays(1, &out->empty_array);
-  return abbe_program_make_compute(gl, "list_groups.comp", NULL, &out->list_groups, error);
+  return abbe_gpu_compute(out, "list_groups.comp", NULL, &out->list_groups, error);
 }
 
 void abbe_gpu_free(abbe_gpu *gpu) {
   if (gpu->gl == NULL) return;
   gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels);
-  gpu->gl->DeleteProgram(gpu->list_groups);
+  abbe_gpu_store_free(&gpu->store, gpu->gl);
   gpu->gl->DeleteFramebuffers(1, &gpu->framebuffer);
   gpu->gl->DeleteVertexArrays(1, &gpu->empty_array);
   *gpu = (abbe_gpu){0};
@@ -23,12 +26,25 @@ void abbe_gpu_free(abbe_gpu *gpu) {
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  if (size == 0) size = 16; /* a bound buffer may not be empty */
+  const size_t room = size > 0 ? size : 16; /* a bound buffer may not be empty */
+  const abbe_stored_key key = {.kind = ABBE_STORED_BUFFER, .bytes = room};
+  *out = abbe_gpu_store_take(&gpu->store, &key);
+  if (*out != 0) {
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
+    if (data != NULL && size > 0)
+      gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
+    return ABBE_OK;
+  }
   gl->GenBuffers(1, out);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
-  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
-  gpu->bytes += size;
-  return abbe_gl_check(gl, "the allocation of a buffer", error);
+  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)room, size > 0 ? data : NULL,
+                 GL_DYNAMIC_COPY);
+  abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
+  if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteBuffers(1, out);
+  *out = 0;
+  return result;
 }
 
 static size_t texel_bytes(GLenum format) {
@@ -44,22 +60,130 @@ static size_t texel_bytes(GLenum format) {
   }
 }
 
-abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
-                                  size_t layers, bool linear, GLuint *out, abbe_error *error) {
+/* Takes up or makes the storage; it is bound then. */
+static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_key *key,
+                                GLuint *out, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  const GLsizei levels = (GLsizei)key->levels, w = (GLsizei)key->width, h = (GLsizei)key->height;
+  *out = abbe_gpu_store_take(&gpu->store, key);
+  if (*out != 0) {
+    gl->BindTexture(target, *out);
+    return ABBE_OK;
+  }
   gl->GenTextures(1, out);
   gl->BindTexture(target, *out);
-  if (layers > 0)
-    gl->TexStorage3D(target, 1, format, (GLsizei)width, (GLsizei)height, (GLsizei)layers);
+  if (key->layers > 0)
+    gl->TexStorage3D(target, levels, key->format, w, h, (GLsizei)key->layers);
   else
-    gl->TexStorage2D(target, 1, format, (GLsizei)width, (GLsizei)height);
-  gl->TexParameteri(target, GL_TEXTURE_MIN_FILTER, linear ? GL_LINEAR : GL_NEAREST);
-  gl->TexParameteri(target, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
+    gl->TexStorage2D(target, levels, key->format, w, h);
+  abbe_result result = abbe_gl_check(gl, "the allocation of a texture", error);
+  if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, key, *out, error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteTextures(1, out);
+  *out = 0;
+  return result;
+}
+
+static void set_filter(const abbe_gl *gl, GLenum target, GLint small, GLint large) {
+  gl->TexParameteri(target, GL_TEXTURE_MIN_FILTER, small);
+  gl->TexParameteri(target, GL_TEXTURE_MAG_FILTER, large);
   gl->TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   gl->TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gpu->bytes += width * height * (layers > 0 ? layers : 1) * texel_bytes(format);
-  return abbe_gl_check(gl, "the allocation of a texture", error);
+}
+
+abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
+                                  size_t layers, bool linear, GLuint *out, abbe_error *error) {
+  const GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
+  const abbe_stored_key key = {
+      .kind = ABBE_STORED_TEXTURE,
+      .format = format,
+      .bytes = width * height * (layers > 0 ? layers : 1) * texel_bytes(format),
+      .width = width,
+      .height = height,
+      .layers = layers,
+      .levels = 1};
+  abbe_result result = make_storage(gpu, target, &key, out, error);
+  if (result == ABBE_OK) set_filter(gpu->gl, target, filter, filter);
+  return result;
+}
+
+abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size_t layers,
+                                 size_t levels, GLuint *out, abbe_error *error) {
+  size_t texels = 0;
+  for (size_t i = 0; i < levels; i++) texels += (side >> i) * (side >> i);
+  const abbe_stored_key key = {.kind = ABBE_STORED_TEXTURE,
+                               .format = format,
+                               .bytes = texels * layers * texel_bytes(format),
+                               .width = side,
+                               .height = side,
+                               .layers = layers,
+                               .levels = levels};
+  abbe_result result = make_storage(gpu, GL_TEXTURE_2D_ARRAY, &key, out, error);
+  if (result == ABBE_OK)
+    set_filter(gpu->gl, GL_TEXTURE_2D_ARRAY, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+  return result;
+}
+
+void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer) {
+  for (size_t i = 0; i < count; i++) {
+    if (buffer[i] != 0) abbe_gpu_store_put_back(&gpu->store, ABBE_STORED_BUFFER, buffer[i]);
+    buffer[i] = 0;
+  }
+}
+
+void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture) {
+  for (size_t i = 0; i < count; i++) {
+    if (texture[i] != 0) abbe_gpu_store_put_back(&gpu->store, ABBE_STORED_TEXTURE, texture[i]);
+    texture[i] = 0;
+  }
+}
+
+void abbe_gpu_trim(abbe_gpu *gpu) {
+  abbe_gpu_store_trim(&gpu->store, gpu->gl);
+}
+
+size_t abbe_gpu_bytes(const abbe_gpu *gpu) {
+  return abbe_gpu_store_bytes(&gpu->store);
+}
+
+/* Files and definitions; malloc'd. */
+static char *program_text(const abbe_program_stage *stages, size_t count, const char *defines) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  if (to == NULL) return NULL;
+  for (size_t i = 0; i < count; i++) fprintf(to, "%s\n", stages[i].file);
+  if (defines != NULL) fputs(defines, to);
+  const bool failed = ferror(to) != 0;
+  if (fclose(to) == 0 && !failed) return text;
+  free(text);
+  return NULL;
+}
+
+abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, size_t count,
+                             const char *defines, GLuint *out, abbe_error *error) {
+  char *text = program_text(stages, count, defines);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
+  const abbe_stored_key key = {.kind = ABBE_STORED_PROGRAM, .text = text};
+  *out = abbe_gpu_store_take(&gpu->store, &key);
+  abbe_result result = ABBE_OK;
+  if (*out == 0) {
+    result = abbe_program_make(gpu->gl, stages, count, defines, out, error);
+    if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
+    if (result != ABBE_OK) {
+      gpu->gl->DeleteProgram(*out);
+      *out = 0;
+    }
+  }
+  free(text);
+  return result;
+}
+
+abbe_result abbe_gpu_compute(abbe_gpu *gpu, const char *file, const char *defines, GLuint *out,
+                             abbe_error *error) {
+  const abbe_program_stage stage = {GL_COMPUTE_SHADER, file};
+  return abbe_gpu_program(gpu, &stage, 1, defines, out, error);
 }
 
 /* A layer of -1 attaches the whole texture: a 2D one, or every layer of an array. */
@@ -88,8 +212,7 @@ abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *
 abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  gl->DeleteBuffers(1, buffer);
-  *buffer = 0;
+  abbe_gpu_drop_buffers(gpu, 1, buffer);
   abbe_result result = abbe_gpu_make_buffer(gpu, size, data, buffer, error);
   if (result != ABBE_OK) return result;
   if (*texture == 0) gl->GenTextures(1, texture);

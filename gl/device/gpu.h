@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "gl/device/api.h"
+#include "gl/device/gpu_store.h"
+#include "gl/device/program.h"
 #include "gl/device/statistics.h"
 
 #include <stdbool.h>
@@ -27,7 +29,7 @@ typedef struct abbe_gpu {
   GLuint framebuffer, empty_array;
   GLuint list_groups;                  /* program */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
-  size_t bytes;                        /* of all buffers and textures made so far */
+  abbe_gpu_store store;
   abbe_statistics *statistics;         /* of the frame that runs, or NULL: no pass is waited for */
   double pass_start_ms;
 } abbe_gpu;
@@ -36,14 +38,33 @@ typedef struct abbe_gpu {
 abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error);
 void abbe_gpu_free(abbe_gpu *gpu);
 
-/* A storage buffer; data may be NULL. ABBE_GL. */
+/* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
+ * abbe_gpu_drop_*, and taken up by what is made alike; so of textures. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error);
 /* A texture of one level, an array where layers > 0. ABBE_GL. */
 abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
                                   size_t layers, bool linear, GLuint *out, abbe_error *error);
+/* A square array with levels, trilinear. */
+abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size_t layers,
+                                 size_t levels, GLuint *out, abbe_error *error);
+/* Back to the device's store; each becomes 0, those that are 0 are left alone. */
+void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer);
+void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture);
+/* Deletes what was dropped and not taken up since. */
+void abbe_gpu_trim(abbe_gpu *gpu);
+/* Of buffers and textures in use. */
+size_t abbe_gpu_bytes(const abbe_gpu *gpu);
+
+/* Programs, which are the device's: the same stages and definitions are compiled once. Uniforms
+ * keep what another user has set. Errors as of abbe_program_make. */
+abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, size_t count,
+                             const char *defines, GLuint *out, abbe_error *error);
+abbe_result abbe_gpu_compute(abbe_gpu *gpu, const char *file, const char *defines, GLuint *out,
+                             abbe_error *error);
+
 /* A buffer of `size` bytes that shaders read as texels of `format`, and its texture, at a unit of
- * its own; what *buffer was is deleted, *texture is made where it is 0. ABBE_GL. */
+ * its own; what *buffer was is dropped, *texture is made where it is 0. ABBE_GL. */
 abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error);
 

@@ -1,7 +1,5 @@
 #include "gl/eye/picture.h"
 
-#include "gl/device/program.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,15 +19,13 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
                                              &out->pixels, error);
   const char *file = desc->upsample > 1 ? "eye_enlarge.comp" : "eye_resolve.comp";
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(gpu->gl, file, NULL, &out->program, error);
+    result = abbe_gpu_compute(gpu, file, NULL, &out->program, error);
   return result;
 }
 
 void abbe_picture_free(abbe_picture *picture) {
   if (picture->receivers == NULL) return;
-  const abbe_gl *gl = picture->receivers->lighting->scene->gpu->gl;
-  gl->DeleteTextures(1, &picture->pixels);
-  gl->DeleteProgram(picture->program);
+  abbe_gpu_drop_textures(picture->receivers->lighting->scene->gpu, 1, &picture->pixels);
 }
 
 void abbe_picture_run(abbe_picture *picture) {

@@ -71,7 +71,7 @@ static abbe_result make_unlit(abbe_receivers_pass *pass, const abbe_shader_varia
     }
   }
   if (!pays(pass)) return ABBE_OK;
-  return abbe_shader_variant_program(variant, scene->gpu->gl, stages, 2, "#define UNLIT\n",
+  return abbe_shader_variant_program(variant, scene->gpu, stages, 2, "#define UNLIT\n",
                                      &pass->unlit, error);
 }
 
@@ -153,17 +153,14 @@ abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
   out->lighting = lighting;
   abbe_result result = make_targets(out, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_program(variant, lighting->scene->gpu->gl, stages, 2, NULL,
+    result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL,
                                          &out->lit, error);
   return result == ABBE_OK ? make_unlit(out, variant, error) : result;
 }
 
 void abbe_receivers_pass_free(abbe_receivers_pass *pass) {
   if (pass->lighting == NULL) return;
-  const abbe_gl *gl = pass->lighting->scene->gpu->gl;
-  const GLuint textures[] = {pass->colour, pass->direct, pass->caustic, pass->depth};
-  gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  gl->DeleteProgram(pass->lit);
-  gl->DeleteProgram(pass->unlit);
+  GLuint textures[] = {pass->colour, pass->direct, pass->caustic, pass->depth};
+  abbe_gpu_drop_textures(pass->lighting->scene->gpu, sizeof textures / sizeof *textures, textures);
   free(pass->part);
 }

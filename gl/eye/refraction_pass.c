@@ -1,7 +1,6 @@
 #include "gl/eye/refraction_pass.h"
 
 #include "gl/device/bindings.h"
-#include "gl/device/program.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,7 +60,7 @@ static abbe_result compile(const abbe_refraction_pass *pass, const abbe_shader_v
   char *more = malloc(size);
   if (more == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
   snprintf(more, size, "%s%s", what, copies);
-  const abbe_result result = abbe_shader_variant_compute(variant, scene_of(pass)->gpu->gl,
+  const abbe_result result = abbe_shader_variant_compute(variant, scene_of(pass)->gpu,
                                                          "refraction.comp", more, out, error);
   free(more);
   return result;
@@ -81,7 +80,7 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
     result = compile(pass, &camera, "#define REFINED\n", copies, &pass->refract_refined, error);
   free(copies);
   if (result != ABBE_OK) return result;
-  return abbe_program_make_compute(scene_of(pass)->gpu->gl, "refraction_list.comp", NULL,
+  return abbe_gpu_compute(scene_of(pass)->gpu, "refraction_list.comp", NULL,
                                    &pass->list, error);
 }
 
@@ -126,14 +125,11 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
 
 void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
   if (pass->lighting == NULL) return;
-  const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  const GLuint textures[] = {pass->layers, pass->owner, pass->depth, pass->colour};
-  const GLuint buffers[] = {pass->pixels, pass->refined_pixels};
-  gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
-  gl->DeleteProgram(pass->list);
-  gl->DeleteProgram(pass->refract);
-  gl->DeleteProgram(pass->refract_refined);
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  GLuint textures[] = {pass->layers, pass->owner, pass->depth, pass->colour};
+  GLuint buffers[] = {pass->pixels, pass->refined_pixels};
+  abbe_gpu_drop_textures(gpu, sizeof textures / sizeof *textures, textures);
+  abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
 }
 
 /* Front with its owner, and, where a mesh ends at its back layer, the back. */

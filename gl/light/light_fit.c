@@ -65,11 +65,10 @@ abbe_result abbe_light_fit_run(abbe_photon_lights *views, abbe_light_layers *lay
   abbe_light_fit fit = {.views = views, .layers = layers};
   if (plan->layers) return ABBE_OK; /* a mesh's inside is what the near view sees of it */
   abbe_result result =
-      abbe_shader_variant_compute(variant, gpu->gl, "light_fit.comp", NULL, &fit.program, error);
+      abbe_shader_variant_compute(variant, gpu, "light_fit.comp", NULL, &fit.program, error);
   if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, 4 * 4, NULL, &fit.found, error);
   for (size_t i = 0; i < plan->light_view_count && result == ABBE_OK; i++)
     if (plan->reaches[i]) result = fit_near_view(&fit, i, error);
-  gpu->gl->DeleteBuffers(1, &fit.found);
-  gpu->gl->DeleteProgram(fit.program);
+  abbe_gpu_drop_buffers(gpu, 1, &fit.found);
   return result != ABBE_OK ? result : abbe_gl_check(gpu->gl, "the fit of the light's view", error);
 }

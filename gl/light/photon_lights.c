@@ -291,8 +291,8 @@ abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lig
 
 void abbe_photon_lights_free(abbe_photon_lights *views) {
   if (views->scene == NULL) return;
-  const GLuint buffers[] = {views->lights, views->warps, views->texel_sizes};
-  views->scene->gpu->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+  GLuint buffers[] = {views->lights, views->warps, views->texel_sizes};
+  abbe_gpu_drop_buffers(views->scene->gpu, sizeof buffers / sizeof *buffers, buffers);
 }
 
 void abbe_photon_lights_bind(const abbe_photon_lights *views) {

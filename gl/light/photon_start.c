@@ -1,15 +1,14 @@
 #include "gl/light/photon_start.h"
 
 #include "gl/device/bindings.h"
-#include "gl/device/program.h"
 
 abbe_result abbe_photon_cells_make(abbe_gpu *gpu, size_t side, abbe_photon_cells *out,
                                    abbe_error *error) {
   out->gpu = gpu;
   abbe_result result =
-      abbe_program_make_compute(gpu->gl, "photon_place.comp", NULL, &out->place, error);
+      abbe_gpu_compute(gpu, "photon_place.comp", NULL, &out->place, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(gpu->gl, "photon_groups.comp", NULL, &out->groups, error);
+    result = abbe_gpu_compute(gpu, "photon_groups.comp", NULL, &out->groups, error);
   for (int level = 0; level < ABBE_CELL_LEVELS && result == ABBE_OK; level++) {
     /* The finer level's cells: four for each of this one's, rounded up at the rim. */
     const size_t across = (side >> (ABBE_CELL_LEVELS - 1 - level)) + 2;
@@ -22,9 +21,7 @@ abbe_result abbe_photon_cells_make(abbe_gpu *gpu, size_t side, abbe_photon_cells
 
 void abbe_photon_cells_free(abbe_photon_cells *cells) {
   if (cells->gpu == NULL) return;
-  cells->gpu->gl->DeleteProgram(cells->place);
-  cells->gpu->gl->DeleteProgram(cells->groups);
-  cells->gpu->gl->DeleteBuffers(ABBE_CELL_LEVELS, cells->list);
+  abbe_gpu_drop_buffers(cells->gpu, ABBE_CELL_LEVELS, cells->list);
 }
 
 static void clear_header(abbe_gpu *gpu, GLuint list) {
@@ -92,17 +89,16 @@ abbe_result abbe_photon_start_make(const abbe_photon_lights *views, const abbe_l
     result = abbe_gpu_make_buffer(gpu, ABBE_PHOTON_HEADER + cells * ABBE_PHOTON_BYTES, NULL,
                                   &out->photons, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gpu->gl, "photon_cover.comp", NULL, &out->cover,
+    result = abbe_shader_variant_compute(variant, gpu, "photon_cover.comp", NULL, &out->cover,
                                          error);
   return result;
 }
 
 void abbe_photon_start_free(abbe_photon_start *start) {
   if (start->views == NULL) return;
-  const GLuint buffers[] = {start->photons, start->photon_of_cell};
+  GLuint buffers[] = {start->photons, start->photon_of_cell};
   abbe_photon_cells_free(&start->cells);
-  start->views->scene->gpu->gl->DeleteProgram(start->cover);
-  start->views->scene->gpu->gl->DeleteBuffers(2, buffers);
+  abbe_gpu_drop_buffers(start->views->scene->gpu, 2, buffers);
 }
 
 static void use(const abbe_photon_lights *views, const abbe_light_layers *layers, GLuint program,

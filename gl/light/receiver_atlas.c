@@ -210,9 +210,8 @@ abbe_result abbe_receiver_atlas_make(const abbe_photon_lights *views, abbe_shade
 
 void abbe_receiver_atlas_free(abbe_receiver_atlas *atlas) {
   if (atlas->views == NULL) return;
-  const abbe_gl *gl = atlas->views->scene->gpu->gl;
-  gl->DeleteTextures(ABBE_TILE_TABLES, atlas->texture);
-  gl->DeleteBuffers(ABBE_TILE_TABLES, atlas->table);
+  atlas->views->scene->gpu->gl->DeleteTextures(ABBE_TILE_TABLES, atlas->texture);
+  abbe_gpu_drop_buffers(atlas->views->scene->gpu, ABBE_TILE_TABLES, atlas->table);
 }
 
 void abbe_receiver_atlas_bind(const abbe_receiver_atlas *atlas) {

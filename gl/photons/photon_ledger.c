@@ -13,7 +13,7 @@ abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon
 }
 
 void abbe_photon_ledger_free(abbe_photon_ledger *ledger) {
-  if (ledger->views != NULL) ledger->views->scene->gpu->gl->DeleteBuffers(1, &ledger->sums);
+  if (ledger->views != NULL) abbe_gpu_drop_buffers(ledger->views->scene->gpu, 1, &ledger->sums);
 }
 
 void abbe_photon_ledger_clear(abbe_photon_ledger *ledger) {

@@ -73,8 +73,8 @@ abbe_result abbe_photon_spectra_make(const abbe_gpu_scene *scene, abbe_photon_sp
 
 void abbe_photon_spectra_free(abbe_photon_spectra *spectra) {
   if (spectra->scene == NULL) return;
-  const GLuint buffers[] = {spectra->intervals, spectra->attenuation, spectra->sample_weights};
-  spectra->scene->gpu->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+  GLuint buffers[] = {spectra->intervals, spectra->attenuation, spectra->sample_weights};
+  abbe_gpu_drop_buffers(spectra->scene->gpu, sizeof buffers / sizeof *buffers, buffers);
 }
 
 abbe_result abbe_photon_spectra_take_all(abbe_photon_spectra *spectra, abbe_error *error) {

@@ -43,9 +43,8 @@ abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out,
 void abbe_refine_pass_free(abbe_refine_pass *pass) {
   if (pass->trace == NULL || pass->trace->spectra == NULL) return;
   abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
-  const GLuint buffers[] = {pass->wants, pass->pairs};
-  gpu->gl->DeleteBuffers(2, buffers);
-  gpu->gl->DeleteProgram(pass->select);
+  GLuint buffers[] = {pass->wants, pass->pairs};
+  abbe_gpu_drop_buffers(gpu, 2, buffers);
   abbe_hits_free(gpu, &pass->hits);
 }
 
@@ -53,7 +52,7 @@ abbe_result abbe_refine_pass_compile(abbe_refine_pass *pass, const abbe_shader_v
                                      abbe_error *error) {
   const abbe_photon_spectra *spectra = pass->trace->spectra;
   if (!abbe_photon_spectra_refines(spectra)) return ABBE_OK;
-  return abbe_shader_variant_compute(variant, spectra->scene->gpu->gl, "photon_select.comp", NULL,
+  return abbe_shader_variant_compute(variant, spectra->scene->gpu, "photon_select.comp", NULL,
                                      &pass->select, error);
 }
 

@@ -87,28 +87,23 @@ abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t str
 }
 
 void abbe_hits_free(abbe_gpu *gpu, abbe_hits *hits) {
-  const GLuint buffers[] = {hits->hits, hits->signatures, hits->marks, hits->paths};
-  gpu->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+  GLuint buffers[] = {hits->hits, hits->signatures, hits->marks, hits->paths};
+  abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
 }
 
 void abbe_trace_pass_free(abbe_trace_pass *pass) {
   if (pass->spectra == NULL) return;
   abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_hits_free(gpu, &pass->hits);
-  gpu->gl->DeleteProgram(pass->program);
-  gpu->gl->DeleteProgram(pass->list_paths);
 }
 
 abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
                                     abbe_error *error) {
-  const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  gl->DeleteProgram(pass->program);
-  gl->DeleteProgram(pass->list_paths);
-  pass->list_paths = 0;
+  abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_result result =
-      abbe_shader_variant_compute(variant, gl, "photon_trace.comp", NULL, &pass->program, error);
+      abbe_shader_variant_compute(variant, gpu, "photon_trace.comp", NULL, &pass->program, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gl, "photon_paths.comp", NULL, &pass->list_paths,
+    result = abbe_shader_variant_compute(variant, gpu, "photon_paths.comp", NULL, &pass->list_paths,
                                          error);
   return result;
 }

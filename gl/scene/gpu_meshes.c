@@ -42,7 +42,7 @@ static abbe_result upload_mesh(abbe_gpu_scene *scene, const abbe_mesh *mesh, abb
   gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_size, mesh->face, GL_STATIC_DRAW);
   point_to_vertices(scene);
   out->index_count = (GLsizei)(3 * mesh->face_count);
-  scene->gpu->bytes += size + index_size;
+  scene->mesh_bytes += size + index_size;
   return abbe_gl_check(gl, "the upload of a mesh", error);
 }
 

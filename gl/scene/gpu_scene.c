@@ -230,13 +230,13 @@ abbe_result abbe_gpu_scene_upload(abbe_gpu_scene *scene, abbe_error *error) {
 void abbe_gpu_scene_free(abbe_gpu_scene *scene) {
   if (scene->gpu == NULL) return;
   const abbe_gl *gl = scene->gpu->gl;
-  const GLuint buffers[] = {scene->refractors, scene->planes, scene->receivers, scene->surfaces,
+  GLuint buffers[] = {scene->refractors, scene->planes, scene->receivers, scene->surfaces,
                             scene->spectra,    scene->bands,  scene->shadows};
   abbe_gpu_meshes_free(scene);
-  gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
-  gl->DeleteTextures(1, &scene->surface_texture);
+  abbe_gpu_drop_buffers(scene->gpu, sizeof buffers / sizeof *buffers, buffers);
+  abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
   gl->DeleteTextures(3, scene->bvh_texture);
-  gl->DeleteBuffers(3, scene->bvh);
+  abbe_gpu_drop_buffers(scene->gpu, 3, scene->bvh);
   abbe_receiver_charts_free(&scene->charts);
   abbe_spectral_tables_free(&scene->tables);
   free(scene->refractor_root);

@@ -39,6 +39,7 @@ typedef struct abbe_gpu_scene {
   abbe_spectral_tables tables;
 
   abbe_gpu_mesh *mesh; /* [object_count] */
+  size_t mesh_bytes;   /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
   GLuint surface_texture;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */

@@ -140,19 +140,19 @@ char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *m
   return NULL;
 }
 
-abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, const abbe_gl *gl,
+abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const abbe_program_stage *stages, size_t count,
                                         const char *more, GLuint *out, abbe_error *error) {
   char *text = abbe_shader_variant_text(variant, more);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
-  const abbe_result result = abbe_program_make(gl, stages, count, text, out, error);
+  const abbe_result result = abbe_gpu_program(gpu, stages, count, text, out, error);
   free(text);
   return result;
 }
 
-abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, const abbe_gl *gl,
+abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const char *file, const char *more, GLuint *out,
                                         abbe_error *error) {
   const abbe_program_stage stage = {GL_COMPUTE_SHADER, file};
-  return abbe_shader_variant_program(variant, gl, &stage, 1, more, out, error);
+  return abbe_shader_variant_program(variant, gpu, &stage, 1, more, out, error);
 }

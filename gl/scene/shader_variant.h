@@ -4,7 +4,6 @@
 #ifndef ABBE_GL_SCENE_SHADER_VARIANT_H
 #define ABBE_GL_SCENE_SHADER_VARIANT_H
 
-#include "gl/device/program.h"
 #include "gl/scene/gpu_scene.h"
 
 #include <stdbool.h>
@@ -35,11 +34,11 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
 /* The #defines, and `more` after them (may be NULL); malloc'd. NULL: no memory. */
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more);
 
-/* A program of one compute shader, or of so many stages. Errors as of abbe_program_make. */
-abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, const abbe_gl *gl,
+/* A program of one compute shader, or of so many stages; the device's, as of abbe_gpu_program. */
+abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const char *file, const char *more, GLuint *out,
                                         abbe_error *error);
-abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, const abbe_gl *gl,
+abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const abbe_program_stage *stages, size_t count,
                                         const char *more, GLuint *out, abbe_error *error);
 
