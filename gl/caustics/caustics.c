@@ -11,6 +11,9 @@ static const abbe_plan *plan_of(const abbe_caustics *c) {
   return c->views->scene->plan;
 }
 
+/* What is fitted is fitted to no more photons than this a side. */
+enum { FIT_PHOTONS = 128 };
+
 static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
@@ -34,10 +37,16 @@ static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
   return true;
 }
 
+/* Room for the refined intervals of the coarse set that is traced now. */
+static abbe_result measure_pairs(abbe_caustics *c, size_t light, abbe_error *error) {
+  return abbe_refine_pass_make_pairs(&c->refine, abbe_refine_pass_count(&c->refine, light), error);
+}
+
 /* Traces what next_batch() would, or the coarse set and then its refined intervals; deposited in
  * another order: the coarse set last, when it is known what is refined. Returns false after the
- * last. */
-static bool trace_next(abbe_caustics *c, size_t light, abbe_hit_batch *b) {
+ * last, or with what failed in *result. */
+static bool trace_next(abbe_caustics *c, size_t light, abbe_hit_batch *b, abbe_result *result,
+                       abbe_error *error) {
   if (!abbe_photon_spectra_refines(&c->spectra)) {
     const size_t done = b->first + b->count;
     if (!next_batch(c, b)) return false;
@@ -46,7 +55,11 @@ static bool trace_next(abbe_caustics *c, size_t light, abbe_hit_batch *b) {
   }
   if (b->set == ABBE_TRACE_COARSE) return false;
   const size_t chunk = b->set == ABBE_TRACE_ALL ? 0 : b->pair_chunk + 1;
-  if (b->set == ABBE_TRACE_ALL) abbe_refine_pass_coarse(&c->refine, light);
+  if (b->set == ABBE_TRACE_ALL) {
+    abbe_refine_pass_coarse(&c->refine, light);
+    if (!c->measured[light]) *result = measure_pairs(c, light, error);
+    if (*result != ABBE_OK) return false;
+  }
   *b = (abbe_hit_batch){
       .set = ABBE_TRACE_REFINED, .pair_chunk = chunk, .count = c->refine.fine_nodes};
   if (chunk < c->refine.chunks) {
@@ -67,22 +80,33 @@ static double share_done(const abbe_caustics *c, const abbe_hit_batch *b) {
   return (double)(b->pair_chunk + 1) / (double)(c->refine.chunks + 1);
 }
 
-/* Hits of all wavelengths into the fit of the map, and of the tiles. */
+/* The hits that were traced last into the fit of the map, and of the tiles. */
+static abbe_result sort_batch(abbe_caustics *c, size_t light, size_t first, abbe_map_fit *fit,
+                              abbe_tile_light **beside, abbe_error *error) {
+  float *hit = NULL;
+  GLuint *path = NULL;
+  const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
+  abbe_result result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
+  if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
+  if (result == ABBE_OK && fit->part > 0)
+    result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
+  free(hit);
+  free(path);
+  return result;
+}
+
+/* The coarse set's, or those of all wavelengths where every photon takes them. */
 static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
                              abbe_tile_light **beside, abbe_error *error) {
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
   abbe_hit_batch b = {0};
+  if (result == ABBE_OK && abbe_photon_spectra_refines(&c->spectra)) {
+    abbe_trace_pass_coarse(&c->trace, light);
+    return sort_batch(c, light, ABBE_PHOTON_COARSE, fit, beside, error);
+  }
   while (result == ABBE_OK && next_batch(c, &b)) {
-    float *hit = NULL;
-    GLuint *path = NULL;
-    const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
     abbe_trace_pass_batch(&c->trace, light, b.first, b.count, plan_of(c)->desc.wavelengths);
-    result = abbe_trace_pass_read(&c->trace, light, b.first, &hit, &path, error);
-    if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
-    if (result == ABBE_OK && fit->part > 0)
-      result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
-    free(hit);
-    free(path);
+    result = sort_batch(c, light, b.first, fit, beside, error);
   }
   return result;
 }
@@ -134,20 +158,46 @@ static abbe_result compile_trace(abbe_caustics *c, const abbe_shader_variant *va
   return abbe_trace_pass_compile(&c->trace, &photons, error);
 }
 
-/* Photons are traced once to see where light falls: maps and tiles are fitted to that. */
+static abbe_result show_making(const abbe_caustics *c, size_t light, abbe_error *error) {
+  const abbe_render_desc *d = &plan_of(c)->desc;
+  const double done = (double)(light + 1) / (double)plan_of(c)->light_view_count;
+  if (d->progress == NULL || d->progress(d->progress_user, done)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+}
+
+/* A few photons are traced to see where light falls: maps and tiles are fitted to that. */
 static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe_error *error) {
   abbe_result result = compile_trace(c, variant, error);
-  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (plan_of(c)->reaches[light] &&
         (c->atlas->used || !abbe_photon_lights_map_is_given(c->views, light)))
       result = fit_map(c, light, error);
+    if (result == ABBE_OK) result = show_making(c, light, error);
+  }
   if (result != ABBE_OK || !c->atlas->used) return result;
   result = abbe_receiver_atlas_keep(c->atlas, variant, error);
   return result == ABBE_OK ? compile_trace(c, variant, error) : result;
 }
 
+/* The grids that lights have now: their photons, and room for them. */
+static abbe_result use_grids(abbe_caustics *c, abbe_error *error) {
+  abbe_result result = count_photons(c, error);
+  abbe_photon_lights_upload(c->views); /* the unit of sums goes by photons */
+  if (result == ABBE_OK) result = abbe_trace_pass_make_room(&c->trace, error);
+  return result == ABBE_OK ? abbe_refine_pass_make_room(&c->refine, error) : result;
+}
+
+static abbe_result start_fit(abbe_caustics *c, abbe_error *error) {
+  const size_t most = plan_of(c)->desc.photons, side = most < FIT_PHOTONS ? most : FIT_PHOTONS;
+  for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
+    c->views->light[light].cells[0] = c->views->light[light].cells[1] = side;
+  abbe_photon_lights_upload(c->views);
+  return use_grids(c, error);
+}
+
 static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
+  abbe_photon_lights_upload(c->views); /* the maps that were fitted */
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)
     if (plan_of(c)->reaches[light]) result = abbe_cell_fit_run(&c->trace, c->views, light, error);
   for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
@@ -155,55 +205,7 @@ static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
   if (result != ABBE_OK) return result;
   abbe_photon_lights_upload(c->views);
   result = abbe_light_layers_run(c->layers, error);
-  return result == ABBE_OK ? count_photons(c, error) : result;
-}
-
-/* Counts the refined intervals, the same in every frame. */
-static abbe_result count_pairs(abbe_caustics *c, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  size_t most = 0;
-  if (!abbe_photon_spectra_refines(&c->spectra)) return ABBE_OK;
-  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
-    if (!plan_of(c)->reaches[light]) continue;
-    result = abbe_photon_start_run(&c->start, light, error);
-    abbe_refine_pass_coarse(&c->refine, light);
-    const size_t count = abbe_refine_pass_count(&c->refine, light);
-    if (count > most) most = count;
-  }
-  c->refine.chunks = abbe_deposit_pass_chunks(most, c->refine.pair_room);
-  return result;
-}
-
-/* The fit of the maps is the first half of what is traced, the count of splats the second. */
-static abbe_result show_making(const abbe_caustics *c, size_t light, const abbe_hit_batch *b,
-                               abbe_error *error) {
-  const abbe_render_desc *d = &plan_of(c)->desc;
-  if (d->progress == NULL) return ABBE_OK;
-  const double share = ((double)light + share_done(c, b)) / (double)plan_of(c)->light_view_count;
-  if (d->progress(d->progress_user, 0.5 + 0.5 * share)) return ABBE_OK;
-  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-}
-
-/* Counts the splats, the same in every frame, and makes room for them. */
-static abbe_result count_splats(abbe_caustics *c, abbe_error *error) {
-  size_t most = 1;
-  abbe_result result = count_pairs(c, error);
-  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
-    abbe_hit_batch b = {0};
-    abbe_ledger ledger = {0};
-    if (!plan_of(c)->reaches[light]) continue;
-    result = abbe_photon_start_run(&c->start, light, error);
-    abbe_photon_ledger_clear(&c->ledger);
-    while (result == ABBE_OK && trace_next(c, light, &b)) {
-      const size_t count = abbe_deposit_pass_count(&c->deposit, light, &b);
-      if (count > most) most = count;
-      result = show_making(c, light, &b, error);
-    }
-    abbe_photon_ledger_read(&c->ledger, light, &ledger);
-    c->views->light[light].reached_flux = ledger.reached;
-  }
-  abbe_photon_lights_upload(c->views);
-  return result == ABBE_OK ? abbe_deposit_pass_make_room(&c->deposit, most, error) : result;
+  return result == ABBE_OK ? use_grids(c, error) : result;
 }
 
 static abbe_result make_passes(abbe_caustics *c, const abbe_shader_variant *variant,
@@ -234,11 +236,10 @@ abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *lay
     result = abbe_trace_pass_make(&c->start, &c->spectra, atlas, &c->ledger, &c->trace, error);
   if (result == ABBE_OK) result = abbe_refine_pass_make(&c->trace, &c->refine, error);
   if (result == ABBE_OK) result = abbe_receiver_atlas_make(views, variant, atlas, error);
+  if (result == ABBE_OK) result = start_fit(c, error);
   if (result == ABBE_OK) result = fit_maps(c, variant, error);
-  if (result == ABBE_OK) result = make_passes(c, variant, error);
   if (result == ABBE_OK) result = fit_grids(c, error);
-  if (result == ABBE_OK) result = count_splats(c, error);
-  return result;
+  return result == ABBE_OK ? make_passes(c, variant, error) : result;
 }
 
 void abbe_caustics_free(abbe_caustics *c) {
@@ -256,9 +257,9 @@ static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_render
   abbe_hit_batch b = {0};
   abbe_result result = ABBE_OK;
   abbe_gpu_begin_pass(gpu);
-  while (result == ABBE_OK && trace_next(c, light, &b)) {
+  while (result == ABBE_OK && trace_next(c, light, &b, &result, error)) {
     abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
-    result = abbe_deposit_pass_run(&c->deposit, light, &b, error);
+    result = abbe_deposit_pass_run(&c->deposit, light, &b, !c->measured[light], error);
     const double share = ((double)light + share_done(c, &b)) / (double)plan_of(c)->light_view_count;
     if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
       result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
@@ -278,6 +279,7 @@ static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progres
   abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
   if (result == ABBE_OK) result = trace_and_deposit(c, light, progress, user, error);
   if (result != ABBE_OK) return result;
+  c->measured[light] = true;
   abbe_gpu_begin_pass(gpu);
   abbe_spectral_map_resolve(c->map, light);
   abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
@@ -317,6 +319,7 @@ static abbe_result read_cells(const abbe_caustics *c, size_t count, unsigned **c
 abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, const double origin[3],
                                     float **data, unsigned **cells, size_t *count,
                                     abbe_error *error) {
+  const double power = c->views->scene->local->light[light].power;
   GLuint *path = NULL;
   abbe_result result = abbe_light_layers_run(c->layers, error);
   if (result == ABBE_OK) result = abbe_photon_start_run(&c->start, light, error);
@@ -329,6 +332,7 @@ abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, const double
     float *at = *data + 4 * i;
     double place[3] = {at[0], at[1], at[2]};
     if (!(at[3] > 0)) continue;
+    at[3] = (float)(at[3] * power);
     if (abbe_receiver_atlas_holds(c->atlas, path[i]))
       abbe_receiver_atlas_world(c->atlas, light, at, place);
     for (size_t k = 0; k < 3; k++) at[k] = (float)(place[k] + origin[k]);

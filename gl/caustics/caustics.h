@@ -1,4 +1,4 @@
-/* caustics.h: light through refractors to the spectral map: what is fitted and counted once, and
+/* caustics.h: light through refractors to the spectral map: what is fitted once, and
  * the passes of every frame. Internal to gl/.
  */
 #ifndef ABBE_GL_CAUSTICS_CAUSTICS_H
@@ -25,6 +25,7 @@ typedef struct abbe_caustics {
   abbe_trace_pass trace;
   abbe_refine_pass refine;
   abbe_deposit_pass deposit;
+  bool measured[ABBE_SCENE_MAX_LIGHTS]; /* lists have room for the light, as a frame has found */
 } abbe_caustics;
 
 /* Fits views, maps, tiles and grids by tracing photons, makes the atlas and the map, completes the

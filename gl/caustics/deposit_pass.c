@@ -2,10 +2,18 @@
 
 #include "gl/device/bindings.h"
 
-enum { SPLAT_BYTES = 48, MAX_SPLATS = 4 << 20 };
+enum { SPLAT_BYTES = 48, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
   return pass->trace->spectra->scene;
+}
+
+static abbe_result make_room(abbe_deposit_pass *pass, size_t splats, abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  pass->splat_room = splats;
+  abbe_gpu_drop_buffers(gpu, 1, &pass->splats);
+  return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + splats * SPLAT_BYTES, NULL, &pass->splats,
+                              error);
 }
 
 abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refine_pass *refine,
@@ -25,29 +33,12 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
   }
   if (result == ABBE_OK)
     result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + SPLAT_BYTES, NULL, &out->splats, error);
-  return result;
+  return result == ABBE_OK ? make_room(out, FIRST_SPLATS, error) : result;
 }
 
 void abbe_deposit_pass_free(abbe_deposit_pass *pass) {
   if (pass->trace == NULL || pass->trace->spectra == NULL) return;
   abbe_gpu_drop_buffers(scene_of(pass)->gpu, 1, &pass->splats);
-}
-
-/* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
-size_t abbe_deposit_pass_chunks(size_t count, size_t room) {
-  return count > room ? count / (room * 4 / 5) + 1 : 1;
-}
-
-abbe_result abbe_deposit_pass_make_room(abbe_deposit_pass *pass, size_t most, abbe_error *error) {
-  abbe_gpu *gpu = scene_of(pass)->gpu;
-  pass->chunks = abbe_deposit_pass_chunks(most, MAX_SPLATS);
-  pass->splat_room = most > MAX_SPLATS ? MAX_SPLATS : most;
-  abbe_gpu_drop_buffers(gpu, 1, &pass->splats);
-  return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + (pass->splat_room + 1) * SPLAT_BYTES,
-                              NULL, &pass->splats, error);
 }
 
 static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t light,
@@ -121,9 +112,23 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   abbe_gpu_dispatch_list(gpu, program, paths, items * scene->plan->hit_slots, 1);
 }
 
-size_t abbe_deposit_pass_count(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch) {
-  list_splats(pass, light, batch, 0);
-  return abbe_gpu_read_count(scene_of(pass)->gpu, pass->splats);
+/* Lists a chunk; again where it has more splats than there is room for, with more room, or in
+ * more chunks as long as it is the first one. */
+static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch,
+                                 size_t chunk, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  abbe_photon_ledger_save(pass->trace->ledger);
+  while (result == ABBE_OK) {
+    list_splats(pass, light, batch, chunk);
+    const size_t count = abbe_gpu_read_count(scene_of(pass)->gpu, pass->splats);
+    if (count <= pass->splat_room) return ABBE_OK;
+    abbe_photon_ledger_restore(pass->trace->ledger); /* a batch is entered once */
+    if (chunk == 0 && count > MAX_SPLATS)
+      pass->chunks = abbe_refine_pass_chunks(count * pass->chunks, MAX_SPLATS);
+    const size_t more = count + count / 4;
+    result = make_room(pass, chunk == 0 && more > MAX_SPLATS ? MAX_SPLATS : more, error);
+  }
+  return result;
 }
 
 static void add_splats(abbe_deposit_pass *pass, size_t light) {
@@ -138,20 +143,18 @@ static void add_splats(abbe_deposit_pass *pass, size_t light) {
 }
 
 abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
-                                  const abbe_hit_batch *batch, abbe_error *error) {
+                                  const abbe_hit_batch *batch, bool measures, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  for (size_t chunk = 0; chunk < pass->chunks; chunk++) {
-    list_splats(pass, light, batch, chunk);
+  abbe_result result = ABBE_OK;
+  for (size_t chunk = 0; chunk < pass->chunks && result == ABBE_OK; chunk++) {
+    if (measures)
+      result = list_measured(pass, light, batch, chunk, error);
+    else
+      list_splats(pass, light, batch, chunk);
     abbe_gpu_end_pass(gpu,
                       scene_of(pass)->plan->fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
-    const bool look = pass->chunks > 1 || gpu->statistics != NULL;
-    if (look && abbe_gpu_read_count(gpu, pass->splats) > pass->splat_room)
-      return abbe_error_set(error, ABBE_GL,
-                            "the photons' light falls into more than %zu splats; "
-                            "use fewer photons or wavelengths",
-                            pass->splat_room * pass->chunks);
-    add_splats(pass, light);
+    if (result == ABBE_OK) add_splats(pass, light);
     abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
   }
-  return ABBE_OK;
+  return result;
 }

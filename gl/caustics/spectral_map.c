@@ -124,7 +124,8 @@ abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t l
     deposited[i / layer] +=
         map->views->wide ? abbe_photon_ledger_wide(sum + 6 * i + 2) : sum[3 * i + 1];
   free(sum);
-  const double unit = abbe_photon_lights_map_unit(map->views, light);
+  const double power = scene_of(map)->local->light[light].power;
+  const double unit = abbe_photon_lights_map_unit(map->views, light) * power;
   out->deposited += (deposited[0] + deposited[1]) * unit;
   out->on_tiles += deposited[1] * unit;
   return abbe_gl_check(gl, "the reading of the ledger", error);
@@ -143,7 +144,9 @@ abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, d
     for (size_t k = 0; k < layer; k++) data[light * layer + k] += data[i * layer + k];
   }
   abbe_result result = abbe_map_picture_flux(data + light * layer, side,
-                                             &map->views->light[light].map, unit, out, error);
+                                             &map->views->light[light].map,
+                                             unit * scene_of(map)->local->light[light].power, out,
+                                             error);
   free(data);
   return result;
 }

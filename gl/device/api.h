@@ -17,7 +17,7 @@ extern "C" {
 /* X(pointer type's middle, name without gl) */
 #define ABBE_GL_FUNCTIONS(X)                                                                       \
   X(ACTIVETEXTURE, ActiveTexture)                                                                  \
-  X(ATTACHSHADER, AttachShader)                                                                    \
+  X(COPYBUFFERSUBDATA, CopyBufferSubData) X(ATTACHSHADER, AttachShader)                            \
   X(BINDBUFFER, BindBuffer)                                                                        \
   X(BINDBUFFERBASE, BindBufferBase)                                                                \
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \

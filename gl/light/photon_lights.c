@@ -155,11 +155,12 @@ void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program
 }
 
 /* Wide sums have room for 2^36 full photons of 2^28 units; narrow ones share 2^31 units among all
- * the light that reaches refractors. Both count the largest of the white's X, Y and Z. */
+ * photons that there are. Both count the largest of the white's X, Y and Z. */
 double abbe_photon_lights_map_unit(const abbe_photon_lights *views, size_t light) {
   const abbe_photon_light *state = &views->light[light];
-  bool known = !views->wide && state->reached_flux > 0;
-  double unit = known ? ldexp(state->reached_flux, -31) : ldexp(state->cell_flux, -28);
+  bool known = !views->wide && state->photon_count > 0;
+  double unit = known ? ldexp((double)state->photon_count * state->cell_flux, -31)
+                      : ldexp(state->cell_flux, -28);
   return (double)(float)(unit * state->white_peak);
 }
 
@@ -240,7 +241,7 @@ void abbe_photon_lights_upload(abbe_photon_lights *views) {
     state->white_peak = fmax(white[0], fmax(white[1], white[2])) / white[1];
     double cell_area =
         abbe_view_area(&state->near_view) / ((double)state->cells[0] * (double)state->cells[1]);
-    state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
+    state->cell_flux = fmax(cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);
     abbe_view_pack(&state->map.view, g.map_view);
     abbe_float4_store(light->position, (double)light->kind, g.position);

@@ -9,11 +9,17 @@ enum { WORDS = 12 };
 abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
                                     abbe_error *error) {
   out->views = views;
-  return abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error);
+  abbe_result result =
+      abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->saved, error);
+  return result;
 }
 
 void abbe_photon_ledger_free(abbe_photon_ledger *ledger) {
-  if (ledger->views != NULL) abbe_gpu_drop_buffers(ledger->views->scene->gpu, 1, &ledger->sums);
+  if (ledger->views == NULL) return;
+  abbe_gpu_drop_buffers(ledger->views->scene->gpu, 1, &ledger->sums);
+  abbe_gpu_drop_buffers(ledger->views->scene->gpu, 1, &ledger->saved);
 }
 
 void abbe_photon_ledger_clear(abbe_photon_ledger *ledger) {
@@ -33,6 +39,21 @@ void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, si
   abbe_gpu_set_float(ledger->views->scene->gpu, program, "ledger_unit", unit_of(ledger, light));
 }
 
+static void copy(const abbe_photon_ledger *ledger, GLuint from, GLuint to) {
+  const abbe_gl *gl = ledger->views->scene->gpu->gl;
+  gl->BindBuffer(GL_COPY_READ_BUFFER, from);
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, to);
+  gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, (GLsizeiptr)(WORDS * 4));
+}
+
+void abbe_photon_ledger_save(const abbe_photon_ledger *ledger) {
+  copy(ledger, ledger->sums, ledger->saved);
+}
+
+void abbe_photon_ledger_restore(const abbe_photon_ledger *ledger) {
+  copy(ledger, ledger->saved, ledger->sums);
+}
+
 /* What is taken back may come to a little more than what was entered, by what is known only between
  * two wavelengths. */
 double abbe_photon_ledger_wide(const GLuint *lo_hi) {
@@ -41,11 +62,12 @@ double abbe_photon_ledger_wide(const GLuint *lo_hi) {
 
 void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out) {
   const abbe_gl *gl = ledger->views->scene->gpu->gl;
+  const double power = ledger->views->scene->local->light[light].power;
   GLuint word[WORDS];
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, ledger->sums);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
   double *const entry[WORDS / 2] = {&out->reached, &out->reflected, &out->absorbed,
                                     &out->trapped, &out->missed,    &out->interpolated};
   for (size_t i = 0; i < WORDS / 2; i++)
-    *entry[i] += abbe_photon_ledger_wide(word + 2 * i) * unit_of(ledger, light);
+    *entry[i] += abbe_photon_ledger_wide(word + 2 * i) * unit_of(ledger, light) * power;
 }

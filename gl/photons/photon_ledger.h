@@ -9,7 +9,7 @@
 
 typedef struct abbe_photon_ledger {
   const abbe_photon_lights *views;
-  GLuint sums;
+  GLuint sums, saved;
 } abbe_photon_ledger;
 
 abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
@@ -20,6 +20,10 @@ void abbe_photon_ledger_clear(abbe_photon_ledger *ledger);
 void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger);
 /* Of the light that is traced now: its unit, W, into the program that is in use. */
 void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light);
+
+/* The entries as they are, and back to those. */
+void abbe_photon_ledger_save(const abbe_photon_ledger *ledger);
+void abbe_photon_ledger_restore(const abbe_photon_ledger *ledger);
 
 /* Waits for the device. Adds the light's entries but for what is deposited. */
 void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out);

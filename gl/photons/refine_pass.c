@@ -17,26 +17,46 @@ static size_t widest_interval(const abbe_photon_spectra *spectra) {
 
 abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out,
                                   abbe_error *error) {
-  const abbe_photon_spectra *spectra = trace->spectra;
+  ABBE_REQUIRE(trace && out, error);
+  out->trace = trace;
+  out->chunks = 1;
+  if (abbe_photon_spectra_refines(trace->spectra))
+    out->fine_nodes = widest_interval(trace->spectra) + 1;
+  return ABBE_OK;
+}
+
+abbe_result abbe_refine_pass_make_room(abbe_refine_pass *pass, abbe_error *error) {
+  abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
+  abbe_gpu_drop_buffers(gpu, 1, &pass->wants);
+  abbe_result result =
+      abbe_gpu_make_buffer(gpu, pass->trace->most_photons * 4, NULL, &pass->wants, error);
+  if (result == ABBE_OK) abbe_gpu_clear_buffer(gpu, pass->wants);
+  return result == ABBE_OK ? abbe_refine_pass_make_pairs(pass, 1, error) : result;
+}
+
+/* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
+size_t abbe_refine_pass_chunks(size_t count, size_t room) {
+  return count > room ? count / (room * 4 / 5) + 1 : 1;
+}
+
+abbe_result abbe_refine_pass_make_pairs(abbe_refine_pass *pass, size_t pairs, abbe_error *error) {
+  const abbe_photon_spectra *spectra = pass->trace->spectra;
   abbe_gpu *gpu = spectra->scene->gpu;
   const size_t slots = spectra->scene->plan->hit_slots;
   const size_t signature_bytes = abbe_photon_signature_bytes(spectra);
-  out->trace = trace;
-  out->chunks = 1;
-  abbe_result result = abbe_gpu_make_buffer(gpu, trace->most_photons * 4, NULL, &out->wants, error);
-  if (result == ABBE_OK) abbe_gpu_clear_buffer(gpu, out->wants);
-  if (result != ABBE_OK || !abbe_photon_spectra_refines(spectra)) return result;
-  out->fine_nodes = widest_interval(spectra) + 1;
-  const size_t a_pair = slots * out->fine_nodes;
-  const size_t most = trace->most_photons * (spectra->nodes - 1);
-  out->pair_room = MAX_FINE_BYTES / (ABBE_HIT_BYTES + signature_bytes) / a_pair;
-  if (out->pair_room < LEAST_PAIRS) out->pair_room = LEAST_PAIRS;
-  if (out->pair_room > most) out->pair_room = most;
-  result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + out->pair_room * 4, NULL, &out->pairs,
-                                error);
+  if (!abbe_photon_spectra_refines(spectra)) return ABBE_OK;
+  size_t most = MAX_FINE_BYTES / (ABBE_HIT_BYTES + signature_bytes) / (slots * pass->fine_nodes);
+  if (most < LEAST_PAIRS) most = LEAST_PAIRS;
+  const size_t room = pairs < most ? pairs : most, chunks = abbe_refine_pass_chunks(pairs, room);
+  if (chunks > pass->chunks) pass->chunks = chunks;
+  if (pass->pair_room >= room) return ABBE_OK;
+  abbe_gpu_drop_buffers(gpu, 1, &pass->pairs);
+  abbe_hits_free(gpu, &pass->hits);
+  pass->pair_room = room;
+  abbe_result result =
+      abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + room * 4, NULL, &pass->pairs, error);
   if (result == ABBE_OK)
-    result = abbe_hits_make(gpu, out->pair_room, slots, out->fine_nodes, signature_bytes,
-                            &out->hits, error);
+    result = abbe_hits_make(gpu, room, slots, pass->fine_nodes, signature_bytes, &pass->hits, error);
   return result;
 }
 
@@ -61,7 +81,7 @@ void abbe_refine_pass_coarse(abbe_refine_pass *pass, size_t light) {
   abbe_trace_pass_coarse(pass->trace, light);
 }
 
-static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk) {
+static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk, size_t chunks) {
   const abbe_trace_pass *trace = pass->trace;
   const abbe_gpu_scene *scene = trace->spectra->scene;
   abbe_gpu *gpu = scene->gpu;
@@ -78,7 +98,7 @@ static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_gpu_set_int(gpu, program, "map_size", (int)scene->plan->desc.map_size);
   gpu->gl->Uniform1fv(gpu->gl->GetUniformLocation(program, "interval_weight"), (GLsizei)intervals,
                       scene->tables.interval_weight + light * intervals);
-  abbe_gpu_set_uint(gpu, program, "chunks", pass->chunks);
+  abbe_gpu_set_uint(gpu, program, "chunks", chunks);
   abbe_gpu_set_uint(gpu, program, "chunk", chunk);
   abbe_gpu_set_uint(gpu, program, "most_pairs", pass->pair_room);
   abbe_gpu_bind_storage(gpu, BINDING_HITS, trace->hits.hits);
@@ -92,14 +112,16 @@ static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk) {
 }
 
 size_t abbe_refine_pass_count(abbe_refine_pass *pass, size_t light) {
-  select_pairs(pass, light, 0);
-  return abbe_gpu_read_count(pass->trace->spectra->scene->gpu, pass->pairs);
+  abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
+  select_pairs(pass, light, 0, 1);
+  abbe_gpu_clear_buffer(gpu, pass->wants);
+  return abbe_gpu_read_count(gpu, pass->pairs);
 }
 
 void abbe_refine_pass_run(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_trace_pass *trace = pass->trace;
   abbe_gpu *gpu = trace->spectra->scene->gpu;
-  select_pairs(pass, light, chunk);
+  select_pairs(pass, light, chunk, pass->chunks);
   abbe_trace_pass_begin(trace, light, ABBE_TRACE_REFINED, &pass->hits, pass->fine_nodes);
   abbe_gpu_set_uint(gpu, trace->program, "most_pairs", pass->pair_room);
   abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->pairs);

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, LEAST_SAMPLES = 7 };
+enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, MOST_SAMPLES = 64 };
 
 static const abbe_gpu_scene *scene_of(const abbe_trace_pass *pass) {
   return pass->spectra->scene;
@@ -22,13 +22,11 @@ static size_t most_hits(const abbe_trace_pass *pass) {
 
 static size_t most_photons(const abbe_trace_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  const size_t side = plan->desc.photons, cells = side * side, rim = 8 * side;
   size_t most = 1;
   for (size_t i = 0; i < plan->light_view_count; i++)
     if (pass->start->views->light[i].photon_count > most)
       most = pass->start->views->light[i].photon_count;
-  /* A grid that is moved or made coarser may show a little more: a rim of cells. */
-  return most + rim < cells ? most + rim : cells;
+  return most;
 }
 
 /* Wavelengths of a batch. */
@@ -42,7 +40,7 @@ static size_t choose_samples(const abbe_trace_pass *pass, size_t room) {
   const size_t a_hit = ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra);
   size_t samples = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
   if (samples > room / a_sample) samples = room / a_sample;
-  return samples < 2 ? 2 : samples > 64 ? 64 : samples;
+  return samples < 2 ? 2 : samples > MOST_SAMPLES ? MOST_SAMPLES : samples;
 }
 
 abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *spectra,
@@ -62,13 +60,17 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
   abbe_result result = ABBE_OK;
   /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
   if (a_sample * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
-  const bool refines = abbe_photon_spectra_refines(spectra);
-  const size_t enough = refines ? LEAST_SAMPLES : n;
-  if (samples > enough) samples = enough < n ? enough : n;
-  if (samples < spectra->nodes && refines) samples = spectra->nodes;
-  if (result != ABBE_OK) return result;
-  return abbe_hits_make(scene_of(out)->gpu, out->most_photons, plan->hit_slots, samples,
-                        abbe_photon_signature_bytes(spectra), &out->hits, error);
+  out->hits.stride = abbe_photon_spectra_refines(spectra) ? spectra->nodes : samples < n ? samples : n;
+  return result;
+}
+
+abbe_result abbe_trace_pass_make_room(abbe_trace_pass *pass, abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t stride = pass->hits.stride;
+  pass->most_photons = most_photons(pass);
+  abbe_hits_free(gpu, &pass->hits);
+  return abbe_hits_make(gpu, pass->most_photons, scene_of(pass)->plan->hit_slots, stride,
+                        abbe_photon_signature_bytes(pass->spectra), &pass->hits, error);
 }
 
 abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t stride,
@@ -89,6 +91,7 @@ abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t str
 void abbe_hits_free(abbe_gpu *gpu, abbe_hits *hits) {
   GLuint buffers[] = {hits->hits, hits->signatures, hits->marks, hits->paths};
   abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
+  *hits = (abbe_hits){0};
 }
 
 void abbe_trace_pass_free(abbe_trace_pass *pass) {

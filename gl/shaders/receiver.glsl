@@ -91,7 +91,7 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   {                                                          \
     light_irradiance(i, p, n, side, direct, caustic);        \
     s.direct += brdf * direct;                               \
-    s.caustic += brdf * caustic;                             \
+    s.caustic += brdf * (LIGHT(i).white.w * caustic);        \
   }
   OF_LIGHTS(SHINE)
 #endif
