@@ -1,6 +1,6 @@
 /* spectral_map.h: where light lies that refractors have bent: X, Y, Z flux over window area, of unit
- * power of the light, a layer a light, and a layer of tiles for each that has any; summed in whole units, in levels.
- * Internal to gl/.
+ * power of the light; a layer a light, and a layer of tiles for each that has any; summed in whole
+ * units, in levels. Internal to gl/.
  */
 #ifndef ABBE_GL_CAUSTICS_SPECTRAL_MAP_H
 #define ABBE_GL_CAUSTICS_SPECTRAL_MAP_H
