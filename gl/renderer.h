@@ -1,7 +1,8 @@
 /* renderer.h: pictures of a scene by adaptive spectral mapping, pass by pass as the plan says.
  *
- * A renderer belongs to one context and one scene, both of which outlive it; a frame runs every
- * pass anew. Pictures are scene-linear radiance, W/(m2 sr) with each light's power shared out by
+ * A renderer belongs to one context, which outlives it. It may be changed: to another camera, other
+ * lights, objects, materials or settings, or to another scene; what does not depend on what differs
+ * is kept, and a frame draws what it draws of a renderer made anew, bit for bit. Pictures are scene-linear radiance, W/(m2 sr) with each light's power shared out by
  * its illuminant, in the plan's colour space. Single-threaded, as the context is.
  */
 #ifndef ABBE_GL_RENDERER_H
@@ -31,10 +32,24 @@ abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                abbe_error *error);
 void abbe_renderer_free(abbe_renderer *renderer);
 
+/* Takes over the scene as it is now, the same one or another, and the request. It finds out itself
+ * what differs: a camera that has moved asks for the camera's passes alone; a light that is dimmed,
+ * for those and a table; another material, for tables, photons and the camera's passes; an object
+ * that has moved, for its bounds and all that follows. The scene must stay as it is until it is
+ * handed over again, or the renderer is freed. Errors as of abbe_renderer_make. Where the scene
+ * cannot be planned the renderer stays as it was, for the scene as it was; after another failure
+ * it draws nothing until a change succeeds. */
+abbe_result abbe_renderer_change(abbe_renderer *renderer, const abbe_scene *scene,
+                                 const abbe_render_desc *desc, abbe_error *error);
+
+/* The next frame runs every pass, whatever could be kept: to measure it. */
+void abbe_renderer_redraw(abbe_renderer *renderer);
+
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
 
-/* One frame. With statistics every pass is finished and timed by itself; without, none is waited
- * for but the last. progress and statistics may be NULL. */
+/* One frame: the passes whose result is not there yet, none where nothing has changed since the last
+ * one. With statistics every pass is finished and timed by itself; without, none is waited
+ * for but the last. progress and statistics may be NULL. A cancelled frame may be drawn again. */
 abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error);
 

@@ -23,6 +23,7 @@ abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_t
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     if (desc->progress != NULL && !desc->progress(desc->user, (double)i / (double)count))
       result = abbe_error_set(error, ABBE_CANCELLED, "stopped; nothing was written");
+    abbe_renderer_redraw(renderer);
     if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, &all[i], error);
     spent_ms += all[i].frame_ms;
     if (desc->enough_ms > 0 && i + 1 >= ENOUGH_FRAMES && spent_ms > desc->enough_ms) count = i + 1;

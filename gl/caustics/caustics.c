@@ -6,6 +6,7 @@
 #include "gl/light/light_fit.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const abbe_plan *plan_of(const abbe_caustics *c) {
   return c->views->scene->plan;
@@ -290,16 +291,35 @@ abbe_result abbe_caustics_run(abbe_caustics *c, abbe_render_progress progress, v
                               double *untimed_ms, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_result result = ABBE_OK;
+  c->energy_known = gpu->statistics != NULL;
+  memset(c->energy, 0, sizeof c->energy);
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (!plan_of(c)->reaches[light]) continue;
     result = run_light(c, light, progress, user, error);
     if (result != ABBE_OK || gpu->statistics == NULL) continue;
     const double start_ms = 1e3 * abbe_clock_seconds();
-    abbe_photon_ledger_read(&c->ledger, light, &gpu->statistics->energy);
-    result = abbe_spectral_map_read_ledger(c->map, light, &gpu->statistics->energy, error);
+    abbe_photon_ledger_read(&c->ledger, light, &c->energy[light]);
+    result = abbe_spectral_map_read_ledger(c->map, light, &c->energy[light], error);
     *untimed_ms += 1e3 * abbe_clock_seconds() - start_ms;
   }
-  return result != ABBE_OK ? result : abbe_gl_check(gpu->gl, "the photon passes", error);
+  if (result == ABBE_OK) result = abbe_gl_check(gpu->gl, "the photon passes", error);
+  if (result != ABBE_OK) c->energy_known = false;
+  return result;
+}
+
+bool abbe_caustics_know_energy(const abbe_caustics *c) {
+  return c->energy_known;
+}
+
+void abbe_caustics_energy(const abbe_caustics *c, abbe_ledger *out) {
+  enum { ENTRIES = sizeof(abbe_ledger) / sizeof(double) };
+  double sum[ENTRIES] = {0}, entry[ENTRIES];
+  for (size_t light = 0; light < plan_of(c)->light_view_count; light++) {
+    memcpy(entry, &c->energy[light], sizeof entry);
+    for (size_t i = 0; i < ENTRIES; i++)
+      sum[i] += entry[i] * c->views->scene->local->light[light].power;
+  }
+  memcpy(out, sum, sizeof sum);
 }
 
 /* x | y << 16 of each photon that there is now. */

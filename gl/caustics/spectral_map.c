@@ -124,8 +124,7 @@ abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t l
     deposited[i / layer] +=
         map->views->wide ? abbe_photon_ledger_wide(sum + 6 * i + 2) : sum[3 * i + 1];
   free(sum);
-  const double power = scene_of(map)->local->light[light].power;
-  const double unit = abbe_photon_lights_map_unit(map->views, light) * power;
+  const double unit = abbe_photon_lights_map_unit(map->views, light);
   out->deposited += (deposited[0] + deposited[1]) * unit;
   out->on_tiles += deposited[1] * unit;
   return abbe_gl_check(gl, "the reading of the ledger", error);

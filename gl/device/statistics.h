@@ -4,6 +4,7 @@
 
 #include "gl/plan/facts/passes.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -40,6 +41,7 @@ typedef struct abbe_statistics {
   double floor_ms;   /* the baseline: drawing the surfaces alone, where it was measured; else 0 */
   size_t pass_count; /* of those that ran, as they first ended */
   abbe_pass_time pass[ABBE_PASS_COUNT];
+  bool kept[ABBE_PASS_COUNT]; /* of those that the plan runs: what they drew before still holds */
   size_t photons; /* cells that hold a refractor, all lights */
   size_t wavelengths;
   double refractor_share; /* of the first light's photon grid */
@@ -48,6 +50,7 @@ typedef struct abbe_statistics {
 } abbe_statistics;
 
 void abbe_statistics_add_ms(abbe_statistics *s, abbe_pass pass, double ms);
+bool abbe_statistics_ran(const abbe_statistics *s, abbe_pass pass);
 /* Of all passes of the light's side of the frame, or of the eye's. */
 double abbe_statistics_stage_ms(const abbe_statistics *s, abbe_pass_stage stage);
 

@@ -62,12 +62,11 @@ double abbe_photon_ledger_wide(const GLuint *lo_hi) {
 
 void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out) {
   const abbe_gl *gl = ledger->views->scene->gpu->gl;
-  const double power = ledger->views->scene->local->light[light].power;
   GLuint word[WORDS];
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, ledger->sums);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof word, word);
   double *const entry[WORDS / 2] = {&out->reached, &out->reflected, &out->absorbed,
                                     &out->trapped, &out->missed,    &out->interpolated};
   for (size_t i = 0; i < WORDS / 2; i++)
-    *entry[i] += abbe_photon_ledger_wide(word + 2 * i) * unit_of(ledger, light) * power;
+    *entry[i] += abbe_photon_ledger_wide(word + 2 * i) * unit_of(ledger, light);
 }

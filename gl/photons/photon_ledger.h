@@ -25,7 +25,7 @@ void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, si
 void abbe_photon_ledger_save(const abbe_photon_ledger *ledger);
 void abbe_photon_ledger_restore(const abbe_photon_ledger *ledger);
 
-/* Waits for the device. Adds the light's entries but for what is deposited. */
+/* Waits for the device. Adds the light's entries but for what is deposited, of unit power. */
 void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out);
 
 /* A sum of two words, which may be below zero. */

@@ -49,6 +49,7 @@ static abbe_result upload_mesh(abbe_gpu_scene *scene, const abbe_mesh *mesh, abb
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error) {
   scene->mesh = calloc(scene->local->object_count + 1, sizeof *scene->mesh);
   if (scene->mesh == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for meshes");
+  scene->mesh_count = scene->local->object_count;
   for (size_t i = 0; i < scene->local->object_count; i++) {
     abbe_result result = upload_mesh(scene, &scene->local->object[i].mesh, &scene->mesh[i], error);
     if (result != ABBE_OK) return result;
@@ -64,11 +65,13 @@ void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object) {
 
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene) {
   const abbe_gl *gl = scene->gpu->gl;
-  for (size_t i = 0; scene->mesh != NULL && i < scene->local->object_count; i++) {
+  for (size_t i = 0; i < scene->mesh_count; i++) {
     abbe_gpu_mesh *mesh = &scene->mesh[i];
     gl->DeleteVertexArrays(1, &mesh->array);
     gl->DeleteBuffers(1, &mesh->vertices);
     gl->DeleteBuffers(1, &mesh->indices);
   }
   free(scene->mesh);
+  scene->mesh = NULL;
+  scene->mesh_count = scene->mesh_bytes = 0;
 }

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Float copies of the shaders' structs (common.glsl). */
 typedef struct gpu_refractor {
@@ -194,8 +195,8 @@ static void store_matrix(const double matrix[9], float out[9]) {
       out[3 * column + row] = (float)matrix[3 * row + column];
 }
 
-abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                                abbe_gpu_scene *out, abbe_error *error) {
+void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
+                          abbe_gpu_scene *out) {
   out->gpu = gpu;
   out->local = local;
   out->plan = plan;
@@ -209,38 +210,59 @@ abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const ab
   store_matrix(matrix, out->rgb_from_xyz);
   abbe_rgb_space_to_xyz(abbe_gpu_scene_working_space(out), matrix);
   store_matrix(matrix, out->xyz_from_rgb);
+}
+
+static abbe_result make_geometry(abbe_gpu_scene *scene, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (plan->tiles) result = abbe_receiver_charts_make(local, plan, &out->charts, error);
-  if (result == ABBE_OK) result = abbe_gpu_bvh_make(out, error);
-  if (result == ABBE_OK) result = abbe_gpu_shadows_make(out, error);
-  if (result == ABBE_OK) result = abbe_spectral_tables_make(local, plan, &out->tables, error);
-  return result;
-}
-
-abbe_result abbe_gpu_scene_upload(abbe_gpu_scene *scene, abbe_error *error) {
-  abbe_result result = abbe_gpu_meshes_upload(scene, error);
+  if (scene->plan->tiles)
+    result = abbe_receiver_charts_make(scene->local, scene->plan, &scene->charts, error);
+  if (result == ABBE_OK) result = abbe_gpu_bvh_make(scene, error);
+  if (result == ABBE_OK) result = abbe_gpu_meshes_upload(scene, error);
   if (result == ABBE_OK) result = upload_refractors(scene, error);
-  if (result == ABBE_OK) result = abbe_gpu_shadows_upload(scene, error);
-  if (result == ABBE_OK) result = upload_receivers(scene, error);
-  if (result == ABBE_OK) result = upload_surfaces(scene, error);
-  if (result == ABBE_OK) result = abbe_gpu_spectra_upload(scene, error);
+  return result == ABBE_OK ? upload_receivers(scene, error) : result;
+}
+
+abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (parts & ABBE_SCENE_GEOMETRY) result = make_geometry(scene, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SHADOWS) != 0)
+    result = abbe_gpu_shadows_make(scene, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SURFACES) != 0)
+    result = upload_surfaces(scene, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
+    result = abbe_spectral_tables_make(scene->local, scene->plan, &scene->tables, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
+    result = abbe_gpu_spectra_upload(scene, error);
   return result;
 }
 
-void abbe_gpu_scene_free(abbe_gpu_scene *scene) {
-  if (scene->gpu == NULL) return;
-  const abbe_gl *gl = scene->gpu->gl;
-  GLuint buffers[] = {scene->refractors, scene->planes, scene->receivers, scene->surfaces,
-                            scene->spectra,    scene->bands,  scene->shadows};
+static void free_geometry(abbe_gpu_scene *scene) {
   abbe_gpu_meshes_free(scene);
-  abbe_gpu_drop_buffers(scene->gpu, sizeof buffers / sizeof *buffers, buffers);
-  abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
-  gl->DeleteTextures(3, scene->bvh_texture);
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->refractors);
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->planes);
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->receivers);
   abbe_gpu_drop_buffers(scene->gpu, 3, scene->bvh);
+  scene->gpu->gl->DeleteTextures(3, scene->bvh_texture);
+  memset(scene->bvh_texture, 0, sizeof scene->bvh_texture);
   abbe_receiver_charts_free(&scene->charts);
-  abbe_spectral_tables_free(&scene->tables);
   free(scene->refractor_root);
-  free(scene->shadow_row);
+  scene->refractor_root = NULL;
+  scene->receiver_root = scene->bvh_depth = 0;
+}
+
+void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
+  if (scene->gpu == NULL) return;
+  if (parts & ABBE_SCENE_GEOMETRY) free_geometry(scene);
+  if (parts & ABBE_SCENE_SHADOWS) abbe_gpu_shadows_free(scene);
+  if (parts & ABBE_SCENE_SURFACES) {
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->surfaces);
+    abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
+  }
+  if (parts & ABBE_SCENE_SPECTRA) {
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->spectra);
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->bands);
+    abbe_spectral_tables_free(&scene->tables);
+  }
 }
 
 void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {

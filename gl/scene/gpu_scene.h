@@ -1,5 +1,5 @@
 /* gpu_scene.h: the scene on the device, as the plan asks for it: meshes, tables, triangles to be
- * traversed, shadows' planes. Made once; every pass reads it as const. Internal to gl/.
+ * traversed, shadows' planes. Every pass reads it as const. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_GPU_SCENE_H
 #define ABBE_GL_SCENE_GPU_SCENE_H
@@ -38,7 +38,8 @@ typedef struct abbe_gpu_scene {
   float rgb_from_xyz[9], xyz_from_rgb[9]; /* column-major, for uniforms */
   abbe_spectral_tables tables;
 
-  abbe_gpu_mesh *mesh; /* [object_count] */
+  abbe_gpu_mesh *mesh; /* [mesh_count], of each object */
+  size_t mesh_count;
   size_t mesh_bytes;   /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
   GLuint surface_texture;
@@ -52,12 +53,21 @@ typedef struct abbe_gpu_scene {
   size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
 } abbe_gpu_scene;
 
-/* Measures and sorts; what the shaders' variants must know is known after it. Errors as of
- * abbe_renderer_make. */
-abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                                abbe_gpu_scene *out, abbe_error *error);
-abbe_result abbe_gpu_scene_upload(abbe_gpu_scene *scene, abbe_error *error);
-void abbe_gpu_scene_free(abbe_gpu_scene *scene);
+/* Parts of it, that may be made anew by themselves; a set of them is a sum of bits. */
+enum {
+  ABBE_SCENE_GEOMETRY = 1, /* meshes, planes, triangles to be traversed, receivers, charts */
+  ABBE_SCENE_SURFACES = 2, /* reflectances and textures */
+  ABBE_SCENE_SPECTRA = 4,  /* tables over wavelength */
+  ABBE_SCENE_SHADOWS = 8,  /* planes of refractors' shadows: of geometry and lights */
+  ABBE_SCENE_ALL = 15
+};
+
+/* Of this scene and plan from now on: measures them, makes nothing. */
+void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
+                          abbe_gpu_scene *out);
+/* Parts that are not there, or that were freed. Errors as of abbe_renderer_make. */
+abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error);
+void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts);
 
 /* Every table where the shaders expect it. */
 void abbe_gpu_scene_bind(const abbe_gpu_scene *scene);
@@ -78,7 +88,7 @@ abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);
 
 /* gpu_shadows.c: the planes of convex refractors' shadows. */
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error);
-abbe_result abbe_gpu_shadows_upload(abbe_gpu_scene *scene, abbe_error *error);
+void abbe_gpu_shadows_free(abbe_gpu_scene *scene);
 
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]);

@@ -62,6 +62,13 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
   return ABBE_OK;
 }
 
+static abbe_result upload(abbe_gpu_scene *scene, size_t pairs, abbe_error *error) {
+  if (scene->shadow_planes == 0) return ABBE_OK;
+  return abbe_gpu_make_buffer(scene->gpu,
+                              (pairs + scene->shadow_planes) * sizeof *scene->shadow_row,
+                              scene->shadow_row, &scene->shadows, error);
+}
+
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error) {
   const size_t refractors = scene->plan->convex ? scene->plan->refractor_count : 0;
   const size_t pairs = scene->plan->light_view_count * refractors;
@@ -73,13 +80,12 @@ abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error) {
     result = make_shadow(scene, i / refractors, i % refractors, &found[i], error);
   if (result == ABBE_OK) result = keep_shadows(scene, found, pairs, error);
   free(found);
-  return result;
+  return result == ABBE_OK ? upload(scene, pairs, error) : result;
 }
 
-abbe_result abbe_gpu_shadows_upload(abbe_gpu_scene *scene, abbe_error *error) {
-  const size_t pairs = scene->plan->light_view_count * scene->plan->refractor_count;
-  if (scene->shadow_planes == 0) return ABBE_OK;
-  return abbe_gpu_make_buffer(scene->gpu,
-                              (pairs + scene->shadow_planes) * sizeof *scene->shadow_row,
-                              scene->shadow_row, &scene->shadows, error);
+void abbe_gpu_shadows_free(abbe_gpu_scene *scene) {
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->shadows);
+  free(scene->shadow_row);
+  scene->shadow_row = NULL;
+  scene->shadow_planes = 0;
 }

@@ -31,7 +31,6 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .caustics = p->caustics,
       .walk = p->multi_refractor_paths,
       .cubes = p->cubes,
-      .layers_out = p->desc.layers,
       .pixel_threads = !p->multi_refractor_paths ? 1
                        : p->desc.wavelengths > 1 ? 8
                                                  : 2,
