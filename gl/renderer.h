@@ -2,7 +2,19 @@
  *
  * A renderer belongs to one context and one scene, both of which outlive it; a frame runs every
  * pass anew. Pictures are scene-linear radiance, W/(m2 sr) with each light's power shared out by
- * its illuminant, in the plan's colour space. Single-threaded, as the context is.
+ * its illuminant, in the plan's colour space. A process may have many renderers, on one context or
+ * on several; those of one context are used by one thread at a time.
+ *
+ * Every function that takes a renderer and gives a result, abbe_renderer_make and
+ * abbe_renderer_free make its context current and leave it so; ABBE_GL where it cannot be. They
+ * take OpenGL's state in the context as they find it, except that no query, conditional rendering
+ * or transform feedback may be active; errors that are pending are dropped. They leave framebuffer
+ * 0, no program, no vertex array, texture unit 0 active, no pixel buffers, no samplers at units 0
+ * to 15, glPixelStore's values and all enables of drawing as GL begins with them (not its debug
+ * output and seamless cube maps), and so also blend function and equation, clip control, colour and
+ * depth mask, cull face, depth function and range, front face, polygon mode, provoking vertex and
+ * the hint for derivatives. Viewport, scissor box and the bindings of textures, images and indexed
+ * buffers are left as they fall.
  */
 #ifndef ABBE_GL_RENDERER_H
 #define ABBE_GL_RENDERER_H
@@ -29,17 +41,23 @@ typedef struct abbe_renderer abbe_renderer;
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                const abbe_render_desc *desc, abbe_renderer **out,
                                abbe_error *error);
+/* Before its context is freed. Where that cannot be made current, what it holds in it stays there.
+ */
 void abbe_renderer_free(abbe_renderer *renderer);
 
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
 
 /* One frame. With statistics every pass is finished and timed by itself; without, none is waited
- * for but the last. progress and statistics may be NULL. */
+ * for but the last. progress and statistics may be NULL. progress may make another context current
+ * and use another renderer there, and leaves this context as it is. ABBE_CANCELLED by progress;
+ * ABBE_GL. */
 abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error);
 
 /* The time of drawing all surfaces once into the eye's picture, normals and distances alone, ms:
- * the floor under any frame. Default profile only. */
+ * the floor under any frame. The picture stays. ABBE_UNSUPPORTED but of the default profile;
+ * ABBE_GL.
+ */
 abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error *error);
 
 /* The picture: R, G, B (X, Y, Z in that space); with layers (which the request must have
@@ -51,8 +69,8 @@ abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image 
 
 /* A light's spectral map: channels X, Y, Z, flux a texel in W, with its layout and the light's name
  * in its attributes (abbe_map_layout_read). Of a light with a cube of maps only where the request
- * gives one layout for all, else ABBE_UNSUPPORTED. filled: after the gap fill, where the fill is a pass of
- * its own (smear). */
+ * gives one layout for all, else ABBE_UNSUPPORTED. filled: after the gap fill, where the fill is a
+ * pass of its own (smear). */
 abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool filled,
                                    abbe_image *out, abbe_error *error);
 

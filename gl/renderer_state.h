@@ -11,6 +11,7 @@
 #include "gl/thesis/thesis.h"
 
 struct abbe_renderer {
+  abbe_context *context;
   abbe_gpu gpu;
   abbe_local_scene local;
   abbe_map_layout given; /* the request's layout there, where the scene is moved */
