@@ -299,6 +299,18 @@ static abbe_result read_landings(abbe_renderer *r, size_t light, float **data, u
   return abbe_caustics_read_hits(&r->caustics, light, r->local.origin, data, cells, count, error);
 }
 
+static abbe_result find_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
+  abbe_result result = check_drawn(r, error);
+  if (result != ABBE_OK) return result;
+  out->texture = is_thesis(r) ? r->thesis.picture : abbe_picture_texture(&r->picture);
+  out->width = r->plan.desc.width;
+  out->height = r->plan.desc.height;
+  out->scale = is_thesis(r) ? 1 : r->local.unit;
+  out->space = space_of(r) == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : space_of(r);
+  r->gpu.gl->MemoryBarrier(GL_ALL_BARRIER_BITS);
+  return abbe_gl_check(r->gpu.gl, "the handing out of the picture", error);
+}
+
 /* What is public and draws or reads: on the renderer's context, in a state of its own. */
 
 static abbe_result enter(abbe_context *context, abbe_error *error) {
@@ -379,6 +391,13 @@ abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error)
   ABBE_REQUIRE(r && ms, error);
   const abbe_result result = enter(r->context, error);
   return result == ABBE_OK ? leave(r->context, measure_floor(r, ms, error)) : result;
+}
+
+abbe_result abbe_renderer_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
+  *out = (abbe_renderer_picture){0};
+  const abbe_result result = enter(r->context, error);
+  return result == ABBE_OK ? leave(r->context, find_texture(r, out, error)) : result;
 }
 
 abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {

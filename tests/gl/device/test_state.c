@@ -252,6 +252,7 @@ static void free_taken(taken *t) {
 static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awkward, taken *out) {
   const bool thesis = abbe_profile_is_thesis(desc->profile);
   abbe_renderer *renderer = NULL;
+  abbe_renderer_picture p;
   abbe_error error = {0};
   size_t count = 0, orders = 0, lanes = 0;
   double ms = 0;
@@ -265,6 +266,7 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
   ENTRY("frame", draw_frame(renderer));
   if (!thesis) ENTRY("floor", assert_ok(abbe_renderer_floor(renderer, &ms, &error), &error));
   ENTRY("read", read_picture(renderer, true, &out->picture));
+  ENTRY("texture", assert_ok(abbe_renderer_texture(renderer, &p, &error), &error));
   ENTRY("read_map", read_map(renderer, 0, &out->map));
   if (!thesis) {
     ENTRY("read_map_bands",
