@@ -281,15 +281,26 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
   ENTRY("free", abbe_renderer_free(renderer));
 }
 
+/* The thesis's splats are blended, as floats, in the order in which threads put them on a list. */
+static void assert_alike(const abbe_image *a, const abbe_image *b) {
+  const size_t count = a->width * a->height * a->channels;
+  assert_int_equal(count, b->width * b->height * b->channels);
+  for (size_t i = 0; i < count; i++)
+    assert_near((double)a->data[i], (double)b->data[i], 1e-5 * image_max(b, i % b->channels));
+}
+
 static void assert_same_in_any_state(const char *text, const abbe_render_desc *desc) {
   abbe_scene scene = {0};
   taken calm = {{0}, {0}, {0}, NULL, 0}, awkward = {{0}, {0}, {0}, NULL, 0};
   load_text(text, &scene);
   take(&scene, desc, false, &calm);
   take(&scene, desc, true, &awkward);
-  assert_same_pixels(&calm.picture, &awkward.picture);
-  assert_same_pixels(&calm.map, &awkward.map);
-  if (calm.landings != NULL) {
+  if (abbe_profile_is_thesis(desc->profile)) {
+    assert_alike(&awkward.picture, &calm.picture);
+    assert_alike(&awkward.map, &calm.map);
+  } else {
+    assert_same_pixels(&calm.picture, &awkward.picture);
+    assert_same_pixels(&calm.map, &awkward.map);
     assert_same_pixels(&calm.bands, &awkward.bands);
     assert_int_equal(calm.floats, awkward.floats);
     assert_memory_equal(calm.landings, awkward.landings, calm.floats * sizeof *calm.landings);
