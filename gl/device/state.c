@@ -1,6 +1,10 @@
 #include "gl/device/state.h"
 
+#include "gl/device/bindings.h"
+
 #include <stddef.h>
+
+_Static_assert(UNIT_SIDE_OF_FACE < ABBE_GL_STATE_UNITS, "the last unit keeps a caller's sampler");
 
 static void set_enables(const abbe_gl *gl) {
   static const GLenum off[] = {
