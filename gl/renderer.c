@@ -177,14 +177,14 @@ static abbe_result draw_frame(abbe_renderer *r, abbe_render_progress progress, v
   return result;
 }
 
-static abbe_result measure_floor(abbe_renderer *r, double *ms, abbe_error *error) {
+static abbe_result measure_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
   static const int first = 0;
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
   const size_t *samples = r->camera.samples;
   const abbe_gl *gl = r->gpu.gl;
   abbe_result result = ABBE_OK;
   if (is_thesis(r))
-    return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no floor of its own");
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no baseline of its own");
   if (r->baseline == 0) /* the picture may be what lies in the receivers' colour, and stays */
     result = abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, samples[0], samples[1], 1, false,
                                    &r->baseline, error);
@@ -290,12 +290,12 @@ void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *
   abbe_local_scene_to_world(&r->local, out);
 }
 
-static abbe_result read_landings(abbe_renderer *r, size_t light, float **data, unsigned **cells,
-                                 size_t *count, size_t *orders, size_t *lanes, abbe_error *error) {
+static abbe_result read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
+                             size_t *count, size_t *slots, size_t *samples, abbe_error *error) {
   if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_thesis(r))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
-  *orders = r->plan.hit_slots;
-  *lanes = r->caustics.trace.hits.stride;
+  *slots = r->plan.hit_slots;
+  *samples = r->caustics.trace.hits.stride;
   return abbe_caustics_read_hits(&r->caustics, light, r->local.origin, data, cells, count, error);
 }
 
@@ -387,10 +387,10 @@ abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress,
   return leave(r->context, result);
 }
 
-abbe_result abbe_renderer_floor(abbe_renderer *r, double *ms, abbe_error *error) {
+abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
   ABBE_REQUIRE(r && ms, error);
   const abbe_result result = enter(r->context, error);
-  return result == ABBE_OK ? leave(r->context, measure_floor(r, ms, error)) : result;
+  return result == ABBE_OK ? leave(r->context, measure_baseline(r, ms, error)) : result;
 }
 
 abbe_result abbe_renderer_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
@@ -424,12 +424,12 @@ abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t 
   return leave(r->context, read_map_bands(r, light, bands, out, error));
 }
 
-abbe_result abbe_renderer_read_landings(abbe_renderer *r, size_t light, float **data,
-                                        unsigned **cells, size_t *count, size_t *orders,
-                                        size_t *lanes, abbe_error *error) {
-  ABBE_REQUIRE(r && data && count && orders && lanes, error);
+abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
+                                    size_t *count, size_t *slots, size_t *samples,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(r && data && count && slots && samples, error);
   *data = NULL;
   const abbe_result result = enter(r->context, error);
   if (result != ABBE_OK) return result;
-  return leave(r->context, read_landings(r, light, data, cells, count, orders, lanes, error));
+  return leave(r->context, read_hits(r, light, data, cells, count, slots, samples, error));
 }

@@ -55,10 +55,9 @@ abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress pr
                                 abbe_statistics *statistics, abbe_error *error);
 
 /* The time of drawing all surfaces once into the eye's picture, normals and distances alone, ms:
- * the floor under any frame. The picture stays. ABBE_UNSUPPORTED but of the default profile;
- * ABBE_GL.
- */
-abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error *error);
+ * the baseline of any frame. The picture stays. ABBE_UNSUPPORTED but of the default profile;
+ * ABBE_GL. */
+abbe_result abbe_renderer_baseline(abbe_renderer *renderer, double *ms, abbe_error *error);
 
 /* The picture: R, G, B (X, Y, Z in that space); with layers (which the request must have
  * asked for) also direct.*, caustic.* (radiance of
@@ -98,17 +97,17 @@ abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool f
 abbe_result abbe_renderer_read_map_bands(abbe_renderer *renderer, size_t light, size_t bands,
                                          abbe_image *out, abbe_error *error);
 
-/* The layout of a light's map: fitted to its landings, or the request's; of the first face of a
+/* The layout of a light's map: fitted to its hits, or the request's; of the first face of a
  * light with a cube. */
 void abbe_renderer_map_layout(const abbe_renderer *renderer, size_t light, abbe_map_layout *out);
 
-/* Landings of the first batch of wavelengths, for tests: [count][orders][lanes] x 4 floats, world
+/* Hits of the first batch of wavelengths, for tests: [count][slots][samples] x 4 floats, world
  * position in m and flux for unit weight in W, all 0 where nothing lands. *data and *cells (x | y
  * << 16 of each photon; cells may be NULL) are malloc'd, the caller frees them.
  * ABBE_INVALID_ARGUMENT where no photons start from that light. */
-abbe_result abbe_renderer_read_landings(abbe_renderer *renderer, size_t light, float **data,
-                                        unsigned **cells, size_t *count, size_t *orders,
-                                        size_t *lanes, abbe_error *error);
+abbe_result abbe_renderer_read_hits(abbe_renderer *renderer, size_t light, float **data,
+                                    unsigned **cells, size_t *count, size_t *slots, size_t *samples,
+                                    abbe_error *error);
 /* The view through which a light's photons start: the middle of cell (x, y) of a grid of N is at
  * uv = ((x + 0.5) / N, (y + 0.5) / N). */
 void abbe_renderer_photon_view(const abbe_renderer *renderer, size_t light, abbe_view *out);

@@ -32,7 +32,7 @@ struct abbe_renderer {
   abbe_picture picture;
   abbe_thesis thesis; /* in place of all from the camera on */
 
-  GLuint baseline;   /* what abbe_renderer_floor draws into */
+  GLuint baseline;   /* what abbe_renderer_baseline draws into */
   bool drawn;        /* the last frame was, to its end */
   double untimed_ms; /* of this frame, spent on its ledger */
 };

@@ -1,7 +1,7 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name bindings camera_view layer_detail light_cube light_views local_scene material_range
     passes plan plan_facts precision reach receiver_charts receiver_model refractor_model render_desc
-    shader_variant spectral_needs statistics support)
+    shader_variant spectral_needs spectral_tables statistics support)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()
 abbe_test(context gl ${gl_rooms})
@@ -22,7 +22,7 @@ abbe_test(lit_window gl ${gl_rooms})
 abbe_test(renderer gl ${gl_rooms})
 abbe_test(two_contexts gl ${gl_rooms})
 abbe_test(picture_texture gl ${gl_rooms})
-abbe_test(receiver_pages gl ${gl_rooms})
+abbe_test(receiver_tiles gl ${gl_rooms})
 abbe_test(cube_maps gl abbe_validation ${gl_rooms})
 abbe_test(photon_refine gl ${gl_rooms})
 abbe_test(photons gl ${gl_rooms})

@@ -184,7 +184,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddNumberToObject(energy, "trapped", s->energy.trapped);
   cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
   cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
-  cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_pages);
+  cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_tiles);
   cJSON_AddNumberToObject(energy, "interpolated", s->energy.interpolated);
   cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
   if (s->layer_faces > 0) cJSON_AddNumberToObject(root, "layer_faces", (double)s->layer_faces);
@@ -214,7 +214,7 @@ static abbe_result write_stats(const request *q, const abbe_statistics *s,
   return result;
 }
 
-/* One frame, or the median of several after a warm-up, and the floor under them. */
+/* One frame, or the median of several after a warm-up, and the baseline under them. */
 static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_statistics *out,
                               abbe_error *error) {
   abbe_progress progress;

@@ -44,7 +44,7 @@ abbe_result abbe_frame_times_floor(abbe_renderer *renderer, size_t count, double
   double all[MAX_FLOORS];
   if (count < 1 || count > MAX_FLOORS) count = count < 1 ? 1 : MAX_FLOORS;
   for (size_t i = 0; i < count; i++) {
-    abbe_result result = abbe_renderer_floor(renderer, &all[i], error);
+    abbe_result result = abbe_renderer_baseline(renderer, &all[i], error);
     if (result != ABBE_OK) return result;
   }
   qsort(all, count, sizeof *all, by_value);

@@ -24,10 +24,10 @@ static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
  * in exactly one of them. (A single node has its light in the one before it.) False after the last.
  */
 static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
-  const size_t n = plan_of(c)->desc.wavelengths, lanes = c->trace.hits.stride;
+  const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
   if (b->count > 0 && b->first + b->count == n) return false;
   b->first = b->count == 0 ? 0 : b->first + b->count - 1;
-  b->count = n - b->first < lanes ? n - b->first : lanes;
+  b->count = n - b->first < most ? n - b->first : most;
   b->interval_first = n > 1 ? b->first + 1 : 0;
   b->interval_end = b->first + b->count;
   return true;
@@ -66,9 +66,9 @@ static double share_done(const abbe_caustics *c, const abbe_hit_batch *b) {
   return (double)(b->pair_chunk + 1) / (double)(c->refine.chunks + 1);
 }
 
-/* Hits of all wavelengths into the fit of the map, and of the pages. */
+/* Hits of all wavelengths into the fit of the map, and of the tiles. */
 static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
-                             abbe_page_light **beside, abbe_error *error) {
+                             abbe_tile_light **beside, abbe_error *error) {
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
   abbe_hit_batch b = {0};
   while (result == ABBE_OK && next_batch(c, &b)) {
@@ -90,11 +90,11 @@ static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_map_layout *map = &c->views->light[light].map;
   const size_t sides = c->atlas->used ? 2 * c->views->scene->charts.count : 0;
   abbe_map_fit *fit = calloc(1, sizeof *fit);
-  abbe_page_light **beside = calloc(sides + 1, sizeof *beside);
+  abbe_tile_light **beside = calloc(sides + 1, sizeof *beside);
   abbe_result result = fit != NULL && beside != NULL
                            ? ABBE_OK
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
-  /* Pages are for what no map of the light could hold, whichever window is given. */
+  /* Tiles are for what no map of the light could hold, whichever window is given. */
   const bool given = abbe_photon_lights_map_is_given(c->views, light);
   const abbe_map_layout layout = *map;
   if (result == ABBE_OK && given) {
@@ -117,8 +117,8 @@ static abbe_shader_variant photon_variant(const abbe_caustics *c,
                                           const abbe_shader_variant *scene) {
   const abbe_plan *plan = plan_of(c);
   abbe_shader_variant v = *scene;
-  v.lanes = c->trace.hits.stride;
-  v.steps = c->spectra.steps;
+  v.hit_stride = c->trace.hits.stride;
+  v.steps = c->views->scene->tables.steps;
   v.nodes = c->spectra.nodes;
   v.map_levels = c->views->map_levels;
   v.bridge = plan->fills;
@@ -133,7 +133,7 @@ static abbe_result compile_trace(abbe_caustics *c, const abbe_shader_variant *va
   return abbe_trace_pass_compile(&c->trace, &photons, error);
 }
 
-/* Photons are traced once to see where light falls: maps and pages are fitted to that. */
+/* Photons are traced once to see where light falls: maps and tiles are fitted to that. */
 static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe_error *error) {
   abbe_result result = compile_trace(c, variant, error);
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)

@@ -27,8 +27,8 @@ typedef struct abbe_caustics {
   abbe_deposit_pass deposit;
 } abbe_caustics;
 
-/* Fits views, maps, pages and grids by tracing photons, makes the atlas and the map, completes the
- * scene's variant by the pages that there are. Of a plan with caustics. Calls the request's
+/* Fits views, maps, tiles and grids by tracing photons, makes the atlas and the map, completes the
+ * scene's variant by the tiles that there are. Of a plan with caustics. Calls the request's
  * progress. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
 abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *layers,
                                abbe_receiver_atlas *atlas, abbe_spectral_map *map,
@@ -40,7 +40,7 @@ void abbe_caustics_free(abbe_caustics *caustics);
 abbe_result abbe_caustics_run(abbe_caustics *caustics, abbe_render_progress progress, void *user,
                               double *untimed_ms, abbe_error *error);
 
-/* Hits of the first batch of wavelengths, as of abbe_renderer_read_landings; places move by
+/* Hits of the first batch of wavelengths, as of abbe_renderer_read_hits; places move by
  * `origin`. */
 abbe_result abbe_caustics_read_hits(abbe_caustics *caustics, size_t light, const double origin[3],
                                     float **data, unsigned **cells, size_t *count,

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* A light's photon cells no finer than its map can tell: where the images of nearly all cells are
- * thinner than this, a coarser grid lays the same light with fewer pieces. In texels, and the
+ * thinner than this, a coarser grid lays the same light with fewer splats. In texels, and the
  * share of the light whose cells count. */
 static const double least_image = 2, counted_share = 0.95;
 enum { LEAST_CELLS = 16, STEP_BINS = 256 };
@@ -14,10 +14,10 @@ typedef struct batch_view {
   const abbe_receiver_atlas *atlas;
   const abbe_map_layout *map;
   double texels;
-  const float *hit;     /* [photons][orders][lanes][4] */
+  const float *hit;     /* [photons][orders][samples][4] */
   const GLuint *path;   /* the same without the last */
   const GLuint *photon; /* [photons][ABBE_PHOTON_BYTES / 4] */
-  size_t photons, orders, lanes, lane;
+  size_t photons, orders, samples, sample;
   const GLuint *slot; /* [cells], photon + 1 */
   size_t cells[2];
 } batch_view;
@@ -50,7 +50,7 @@ static int step_bin(double texels) {
  * the order in which photons are listed. */
 static double part_of(const batch_view *b) {
   float most = 0;
-  for (size_t i = 0; i < b->photons * b->orders * b->lanes; i++)
+  for (size_t i = 0; i < b->photons * b->orders * b->samples; i++)
     most = fmaxf(most, b->hit[4 * i + 3]);
   return most > 0 ? (double)most / (1 << 24) : 1;
 }
@@ -66,8 +66,8 @@ static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS
     GLuint next = b->slot[at[1] * b->cells[0] + at[0]];
     if (next == 0) continue;
     for (size_t order = 0; order < b->orders; order++) {
-      size_t here = (i * b->orders + order) * b->lanes + b->lane;
-      size_t there = ((next - 1) * b->orders + order) * b->lanes + b->lane;
+      size_t here = (i * b->orders + order) * b->samples + b->sample;
+      size_t there = ((next - 1) * b->orders + order) * b->samples + b->sample;
       double from[2], to[2];
       if (b->path[here] == 0 || b->path[here] != b->path[there] ||
           !texel_of(b, b->hit + 4 * here, b->path[here], from) ||
@@ -112,13 +112,13 @@ abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views,
   const abbe_plan *plan = views->scene->plan;
   const abbe_gl *gl = views->scene->gpu->gl;
   abbe_photon_light *view = &views->light[light];
-  const size_t lanes = trace->hits.stride;
-  const size_t middle = plan->desc.wavelengths / 2, first = middle - lanes / 2;
+  const size_t samples = trace->hits.stride;
+  const size_t middle = plan->desc.wavelengths / 2, first = middle - samples / 2;
   float *hit = NULL;
   GLuint *path = NULL;
   abbe_result result = abbe_photon_start_run(trace->start, light, error);
   if (result != ABBE_OK) return result;
-  abbe_trace_pass_batch(trace, light, first, lanes, plan->desc.wavelengths);
+  abbe_trace_pass_batch(trace, light, first, samples, plan->desc.wavelengths);
   result = abbe_trace_pass_read(trace, light, first, &hit, &path, error);
   GLuint *photon = read_words(gl, trace->start->photons, ABBE_PHOTON_HEADER,
                               view->photon_count * (ABBE_PHOTON_BYTES / 4));
@@ -134,8 +134,8 @@ abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views,
                     .photon = photon,
                     .photons = view->photon_count,
                     .orders = plan->hit_slots,
-                    .lanes = lanes,
-                    .lane = middle - first,
+                    .samples = samples,
+                    .sample = middle - first,
                     .slot = slot,
                     .cells = {view->cells[0], view->cells[1]}};
     choose_cells(&b, view->cells);

@@ -65,9 +65,9 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_photon_lights_set_grid(pass->map->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)plan->desc.map_size);
-  abbe_gpu_set_int(gpu, program, "lane_first", (int)b->first);
+  abbe_gpu_set_int(gpu, program, "sample_first", (int)b->first);
   /* of the hits that photons have; a refined interval may have more of its own */
-  abbe_gpu_set_int(gpu, program, "lane_count", (int)(fine ? spectra->nodes : b->count));
+  abbe_gpu_set_int(gpu, program, "sample_count", (int)(fine ? spectra->nodes : b->count));
   abbe_gpu_set_int(gpu, program, "interval_first", (int)b->interval_first);
   abbe_gpu_set_int(gpu, program, "interval_end", (int)b->interval_end);
   abbe_gpu_set_int(gpu, program, "nodes", (int)(fine ? plan->desc.wavelengths : spectra->nodes));
@@ -86,11 +86,11 @@ static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) 
   const bool lengths = spectra->scene->plan->lengths;
   const GLenum signature = lengths ? GL_RG32UI : GL_R32UI;
   const abbe_hits *hits = &pass->trace->hits, *refined = &pass->refine->hits;
-  abbe_gpu_bind_texels(gpu, program, "landings", 0, GL_RGBA32F, hits->hits);
+  abbe_gpu_bind_texels(gpu, program, "hits", 0, GL_RGBA32F, hits->hits);
   abbe_gpu_bind_texels(gpu, program, "signatures", 1, signature, hits->signatures);
   abbe_gpu_bind_texels(gpu, program, "interval_sums", 2, GL_RGBA32F, spectra->intervals);
   if (fine) {
-    abbe_gpu_bind_texels(gpu, program, "fine_landings", 3, GL_RGBA32F, refined->hits);
+    abbe_gpu_bind_texels(gpu, program, "fine_hits", 3, GL_RGBA32F, refined->hits);
     abbe_gpu_bind_texels(gpu, program, "fine_signatures", 4, signature, refined->signatures);
   }
   if (lengths)
@@ -152,7 +152,7 @@ abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
     const bool look = pass->chunks > 1 || gpu->statistics != NULL;
     if (look && abbe_gpu_read_count(gpu, pass->splats) > pass->splat_room)
       return abbe_error_set(error, ABBE_GL,
-                            "the photons' light falls into more than %zu pieces; "
+                            "the photons' light falls into more than %zu splats; "
                             "use fewer photons or wavelengths",
                             pass->splat_room * pass->chunks);
     add_splats(pass, light);

@@ -34,9 +34,9 @@ uint level_offset(int l) {
   return (texels - (texels >> (2 * l))) / 3u * 4u;
 }
 
-#ifdef PAGES
-void resolve_page(ivec2 texel, vec3 flux) {
-  int tile = tile_of_block(light, (texel << level) / (map_size / PAGE_BLOCKS));
+#ifdef TILES
+void resolve_tile(ivec2 texel, vec3 flux) {
+  int tile = tile_of_block(light, (texel << level) / (map_size / TILE_BLOCKS));
   vec4 rect = tile_rect(light, max(tile, 0)) * exp2(-float(level));
   // At its edges a tile's coarser texels have no neighbours but themselves.
   vec2 at = clamp(0.5 * (vec2(texel) + 0.5), 0.5 * rect.xy + 0.5, 0.5 * rect.zw - 0.5);
@@ -53,9 +53,9 @@ void main() {
   int side = map_size >> level;
   if (texel.x >= side || texel.y >= side) return;
   uint at = level_offset(level) + uint(texel.y * side + texel.x);
-#ifdef PAGES
+#ifdef TILES
   if (layer >= LIGHTS) {
-    resolve_page(texel, units_at(map_texels + at) * lights[light].misc.y);
+    resolve_tile(texel, units_at(map_texels + at) * lights[light].misc.y);
     return;
   }
 #endif

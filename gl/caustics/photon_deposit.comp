@@ -2,7 +2,7 @@
 // path the light is laid where the index between theirs sends it (outgoing_segment.glsl), each splat with the
 // colour of its own part of the band. Where the paths differ each wavelength keeps its half of the band.
 // Intervals go from long waves to short ones: in short waves the index changes fastest, and there two
-// intervals before tell the curve. Pieces closer together than photons are added first; X, Y and Z have
+// intervals before tell the curve. Splats closer together than photons are added first; X, Y and Z have
 // each a place of their own, or dispersion narrower than that would be lost. A splat is spread over the
 // parallelogram that the neighbouring photons' hits span: where that is wide, in a coarser level of
 // the map. REFINED: the intervals on the list, by all their wavelengths; else those of the coarse set
@@ -14,33 +14,18 @@ layout(local_size_x = 256) in;
 #include "optics.glsl"
 #include "wide_sum.glsl"
 #include "thread.glsl"
+#include "photons.glsl"
+#include "path_list.glsl"
+#include "pair_list.glsl"
 #define FOLLOWS_SEGMENTS
 #include "outgoing_segment.glsl"
 
-struct Photon {  // as in photon_start.glsl
-  uint cell;
-  float flux;
-  uint offset, extent;
-};
-layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
-  uint photon_count, groups_x, groups_y, groups_z;
-  uint draw[4];
-  Photon photon_at[];
-};
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 // As textures: a software rasteriser fetches a texel in one load, and storage number by number.
-uniform samplerBuffer landings;     // HIT_TEXELS each
-uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the way inside
-layout(std430, binding = BINDING_PATHS) readonly buffer PathList {
-  uint path_count, path_groups[3];
-  uint path_list[];
-};
+uniform samplerBuffer hits;     // HIT_TEXELS each
+uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the path inside
 #ifdef REFINED
-layout(std430, binding = BINDING_PAIRS) readonly buffer PairList {
-  uint pair_count, pair_groups[3];
-  uint pair_at[];
-};
-uniform samplerBuffer fine_landings;
+uniform samplerBuffer fine_hits;
 uniform usamplerBuffer fine_signatures;
 #else
 layout(std430, binding = BINDING_WANTS) readonly buffer Wants { uint want[]; };  // a bit a refined interval
@@ -53,8 +38,8 @@ const uint ABSORBED = 2u, MISSED = 4u, INTERPOLATED = 5u;
 uniform int light;
 uniform ivec2 grid;
 uniform int map_size;
-uniform int lane_first;
-uniform int lane_count;
+uniform int sample_first;
+uniform int sample_count;
 uniform int interval_first;
 uniform int interval_end;
 uniform int nodes;  // of the set whose hits these are
@@ -63,10 +48,10 @@ uniform uint chunks, chunk;  // only paths of this chunk
 uniform uint most;           // splats that the list has room for
 
 #ifdef REFINED
-#define NODE_HITS fine_landings
+#define NODE_HITS fine_hits
 #define NODE_SIGNATURES fine_signatures
 #else
-#define NODE_HITS landings
+#define NODE_HITS hits
 #define NODE_SIGNATURES signatures
 #endif
 
@@ -76,7 +61,7 @@ struct Path {
   int order;
   int node_first, node_last;  // those that it is known at
   int hit_first;              // NODE_HITS of the first of them
-  int coarse_first;           // `landings` at the first coarse node
+  int coarse_first;           // `hits` at the first coarse node
   int middle_twice;           // twice the coarse node in their middle
   int interval_last, intervals;
   uint refined;    // intervals that are laid by another pass, a bit each
@@ -101,7 +86,7 @@ Path path_at(uint listed) {
   p.node_first = coarse_node(interval);
   p.node_last = coarse_node(interval + 1);
   p.hit_first = int(listed) * FINE_NODES;
-  p.coarse_first = int((p.photon * SLOTS + uint(p.order)) * LANES);
+  p.coarse_first = int((p.photon * SLOTS + uint(p.order)) * HIT_STRIDE);
   p.middle_twice = 2 * interval + 1;
   p.interval_last = p.node_last;
   p.intervals = p.node_last - p.node_first;
@@ -113,10 +98,10 @@ Path path_at(uint listed) {
   Path p;
   p.photon = listed / SLOTS;
   p.order = int(listed % SLOTS);
-  p.node_first = lane_first;
-  p.node_last = lane_first + lane_count - 1;
-  p.hit_first = p.coarse_first = int(listed * LANES);
-  p.middle_twice = lane_count;
+  p.node_first = sample_first;
+  p.node_last = sample_first + sample_count - 1;
+  p.hit_first = p.coarse_first = int(listed * HIT_STRIDE);
+  p.middle_twice = sample_count;
   p.interval_last = interval_end - 1;
   p.intervals = interval_end - interval_first;
   p.refined = want[p.photon] << 1;
@@ -131,7 +116,7 @@ Reference reference_of(Path path) {
   r.order = path.order;
   r.sample_number = 0;
   r.signature = 0u;
-  for (int i = 0; i < lane_count; i++) {
+  for (int i = 0; i < sample_count; i++) {
     uint found = texelFetch(signatures, path.coarse_first + i).x;
     bool nearer = r.signature == 0u ||
                   abs(2 * i - path.middle_twice) < abs(2 * r.sample_number - path.middle_twice);
@@ -141,8 +126,8 @@ Reference reference_of(Path path) {
     }
   }
   int at = HIT_TEXELS * (path.coarse_first + r.sample_number);
-  r.tile = r.signature != 0u ? interface_tile(texelFetch(landings, at + 1).w) : NO_TILE;
-  r.at = map_position(texelFetch(landings, at).xyz, r.tile);
+  r.tile = r.signature != 0u ? interface_tile(texelFetch(hits, at + 1).w) : NO_TILE;
+  r.at = map_position(texelFetch(hits, at).xyz, r.tile);
   return r;
 }
 

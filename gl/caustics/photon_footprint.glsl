@@ -30,11 +30,11 @@ vec2 neighbour_step(ivec2 cell, ivec2 to, vec2 start, Reference r) {
   uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
   uint other = there ? at - 1u : 0u;
-  uint index = (other * SLOTS + r.order) * LANES + r.sample_number;
+  uint index = (other * SLOTS + r.order) * HIT_STRIDE + r.sample_number;
   there = there && r.signature != 0u && texelFetch(signatures, int(index)).x == r.signature;
-  vec4 hit = texelFetch(landings, HIT_TEXELS * int(index));
-  vec2 way = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
-  float apart = max(dot(way, vec2(to)), 0.25);
+  vec4 hit = texelFetch(hits, HIT_TEXELS * int(index));
+  vec2 between = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
+  float apart = max(dot(between, vec2(to)), 0.25);
   return there ? (map_position(hit.xyz, r.tile) - r.at) / apart : vec2(0);
 }
 

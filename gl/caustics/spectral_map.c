@@ -110,12 +110,12 @@ static void make_mips(abbe_spectral_map *map, size_t light, size_t layer, size_t
 
 void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light) {
   const size_t side = scene_of(map)->plan->desc.map_size;
-  const abbe_receiver_pages *pages = &map->atlas->pages[light];
+  const abbe_receiver_tiles *tiles = &map->atlas->tiles[light];
   resolve_layer(map, light, light, side);
   make_mips(map, light, light, side);
-  if (pages->count == 0) return;
-  resolve_layer(map, light, map->atlas->layer[light], pages->rows);
-  make_mips(map, light, map->atlas->layer[light], pages->rows);
+  if (tiles->count == 0) return;
+  resolve_layer(map, light, map->atlas->layer[light], tiles->rows);
+  make_mips(map, light, map->atlas->layer[light], tiles->rows);
 }
 
 abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t light,
@@ -135,7 +135,7 @@ abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t l
   free(sum);
   const double unit = abbe_photon_lights_map_unit(map->views, light);
   out->deposited += (deposited[0] + deposited[1]) * unit;
-  out->on_pages += deposited[1] * unit;
+  out->on_tiles += deposited[1] * unit;
   return abbe_gl_check(gl, "the reading of the ledger", error);
 }
 

@@ -1,5 +1,5 @@
 /* spectral_map.h: where light lies that refractors have bent: X, Y, Z flux over window area, a
- * layer a light, and a layer of pages for each that has any; summed in whole units, in levels.
+ * layer a light, and a layer of tiles for each that has any; summed in whole units, in levels.
  * Internal to gl/.
  */
 #ifndef ABBE_GL_CAUSTICS_SPECTRAL_MAP_H

@@ -81,7 +81,7 @@ vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   face_n = n;
   if (r >= RECEIVERS) triangle_at(r - RECEIVERS, x, -d, n, surface, uv);
 #endif
-#ifdef PAGES
+#ifdef TILES
   Shading s = shade(x, n, surface, uv, chart_side(r, d));
 #else
   Shading s = shade(x, n, surface, uv, 0);
@@ -139,7 +139,7 @@ void write_pixel(uint where, int base, int count, vec3 sum) {
 #endif
 
 #ifdef WALK
-#include "refraction_ways.glsl"
+#include "refraction_threads.glsl"
 #else
 #include "refraction_pixels.glsl"
 #endif

@@ -114,8 +114,10 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                       const abbe_receivers_pass *receivers,
                                       const abbe_shader_variant *variant, bool software,
                                       abbe_refraction_pass *out, abbe_error *error) {
-  *out = (abbe_refraction_pass){
-      .lighting = lighting, .faces = faces, .receivers = receivers, .ways = variant->ways};
+  *out = (abbe_refraction_pass){.lighting = lighting,
+                                .faces = faces,
+                                .receivers = receivers,
+                                .pixel_threads = variant->pixel_threads};
   abbe_result result = make_targets(out, error);
   if (result == ABBE_OK && lighting->scene->plan->camera_sees_refractor)
     result = make_programs(out, variant, software, error);
@@ -190,11 +192,12 @@ static void refract_strip(abbe_refraction_pass *pass, size_t first, size_t size)
     abbe_gpu_clear_list(gpu, pass->refined_pixels);
     abbe_gpu_bind_storage(gpu, BINDING_REFINED_PIXELS, pass->refined_pixels);
   }
-  const size_t groups = (size * pass->ways + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
+  const size_t groups = (size * pass->pixel_threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
   gpu->gl->DispatchCompute((GLuint)groups, 1, 1);
   if (!refines(pass)) return;
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  abbe_gpu_dispatch_list(gpu, pass->refract_refined, pass->refined_pixels, REFINE_ROOM, pass->ways);
+  abbe_gpu_dispatch_list(gpu, pass->refract_refined, pass->refined_pixels, REFINE_ROOM,
+                         pass->pixel_threads);
 }
 
 /* In strips where somebody watches, so that a long frame shows its progress and can be stopped. */
@@ -202,7 +205,7 @@ static abbe_result refract_pixels(abbe_refraction_pass *pass, abbe_render_progre
                                   void *user, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t count = abbe_gpu_read_count(gpu, pass->pixels), strips = progress != NULL ? 16 : 1;
-  const size_t most = 65535 * (ABBE_GPU_GROUP / pass->ways); /* that a dispatch takes */
+  const size_t most = 65535 * (ABBE_GPU_GROUP / pass->pixel_threads); /* that a dispatch takes */
   size_t step = (count / strips / ABBE_GPU_GROUP + 1) * ABBE_GPU_GROUP;
   if (step > most) step = most;
   if (refines(pass) && step > REFINE_ROOM) step = REFINE_ROOM;

@@ -19,7 +19,7 @@ typedef struct abbe_refraction_pass {
   GLuint layers, owner, depth;           /* front, and back where meshes end at it */
   GLuint colour; /* where samples are resolved; else refractors are written over receivers */
   GLuint pixels, refined_pixels; /* lists */
-  size_t ways;                   /* threads of a pixel */
+  size_t pixel_threads;          /* threads of a pixel */
 } abbe_refraction_pass;
 
 /* software: what runs shaders copies tables into registers. Of a plan whose camera sees no

@@ -7,12 +7,9 @@ layout(local_size_x = 256) in;
 uniform int light;
 uniform ivec2 grid;
 #include "photon_start.glsl"
+#define MAKES_PHOTONS
+#include "photons.glsl"
 
-layout(std430, binding = BINDING_PHOTONS) buffer Photons {
-  uint photon_count, groups_x, groups_y, groups_z;
-  uint draw[4];
-  Photon photon[];
-};
 layout(std430, binding = BINDING_CELLS) readonly buffer Cells {
   uint in_count, in_x, in_y, in_z;
   uint in_draw[4];
@@ -80,7 +77,7 @@ void main() {
   uint at = 0xffffffffu;
   if (flux > 0.0) {
     at = atomicAdd(photon_count, 1u);
-    photon[at] = Photon(packed_cell, flux, packSnorm2x16(start), packUnorm2x16(extent));
+    photon_at[at] = Photon(packed_cell, flux, packSnorm2x16(start), packUnorm2x16(extent));
   }
   slot[c.y * grid.x + c.x] = at + 1u;
 }

@@ -117,7 +117,7 @@ static void fit_face(const abbe_photon_lights *views, size_t light, abbe_view *v
 }
 
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
- * to the photons' landings later where the request does not give it. */
+ * to the photons' hits later where the request does not give it. */
 static void fit_views(abbe_photon_lights *views) {
   for (size_t i = 0; i < views->scene->plan->light_view_count; i++) {
     abbe_photon_light *state = &views->light[i];

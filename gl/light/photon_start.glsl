@@ -1,14 +1,6 @@
 // Where photons start: rays from the light through its near view, to the refractor that each meets
 // first. Who includes this gives `light`.
 
-// A cell's photon. It starts in the middle of the part of the cell that is lit and shows a refractor.
-struct Photon {
-  uint cell;    // x | y << 16
-  float flux;   // that the lit part carries, W
-  uint offset;  // from the cell's middle, in cells, packSnorm2x16
-  uint extent;  // of the lit part, in cells, packUnorm2x16
-};
-
 #ifdef FRONT_LAYER
 uniform usampler2DArray layer_owner;  // refractor + 1 of the front layer, one layer a light
 

@@ -5,20 +5,14 @@ layout(local_size_x = 256) in;
 #include "common.glsl"
 #include "photon_nodes.glsl"
 #include "thread.glsl"
+#include "photons.glsl"
+#include "path_list.glsl"
+#define LISTS_PAIRS
+#include "pair_list.glsl"
 
-struct Photon {  // as in photon_start.glsl
-  uint cell;
-  float flux;
-  uint offset, extent;
-};
-layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
-  uint photon_count, groups_x, groups_y, groups_z;
-  uint draw[4];
-  Photon photon_at[];
-};
 layout(std430, binding = BINDING_WANTS) buffer Wants { uint want[]; };  // a bit an interval
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
-layout(std430, binding = BINDING_HITS) readonly buffer Landings { vec4 landing[]; };
+layout(std430, binding = BINDING_HITS) readonly buffer Hits { vec4 hits[]; };
 #ifdef TINTING
 layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uvec2 signature[]; };  // length inside in y
 #define SIGNATURE(i) signature[i].x
@@ -26,14 +20,6 @@ layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uvec2 
 layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uint signature[]; };
 #define SIGNATURE(i) signature[i]
 #endif
-layout(std430, binding = BINDING_PAIRS) buffer PairList {
-  uint pair_count, pair_groups[3];
-  uint pair_at[];
-};
-layout(std430, binding = BINDING_PATHS) readonly buffer PathList {
-  uint path_count, path_groups[3];
-  uint path_list[];
-};
 
 uniform int light;
 uniform ivec2 grid;
@@ -47,7 +33,7 @@ uniform float interval_weight[NODES];  // of the light, by the intervals' mean
 const float MOST_WRONG = 0.05;
 
 // How far off the deposit's light is: of a node's distance from where its neighbours put it along a line,
-// with and without the node before; and of the way between two nodes of which no more is known.
+// with and without the node before; and of the stretch between two nodes of which no more is known.
 const float OFF_CURVE = 0.1, OFF_LINE = 0.25, OFF_ALONE = 2e-3;
 
 #include "optics.glsl"
@@ -63,7 +49,7 @@ struct Samples {
   int tile[NODES];
   Segment left[NODES];
 #ifdef TINTING
-  float way[NODES], per_m[NODES];
+  float path_m[NODES], per_m[NODES];
 #endif
 };
 
@@ -74,8 +60,8 @@ int read_samples(uint first) {
   int reference = 0;
   for (int k = 0; k < NODES; k++) {
     uint found = SIGNATURE(first + uint(k));
-    vec4 to = landing[HIT_TEXELS * (first + uint(k))];
-    vec4 interface_at = landing[HIT_TEXELS * (first + uint(k)) + 1u];
+    vec4 to = hits[HIT_TEXELS * (first + uint(k))];
+    vec4 interface_at = hits[HIT_TEXELS * (first + uint(k)) + 1u];
     vec2 spectrum = spectra[int(found & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(k)].xy;
     samples.path[k] = found;
     samples.tile[k] = found != 0u ? interface_tile(interface_at.w) : -1;
@@ -84,7 +70,7 @@ int read_samples(uint first) {
     samples.left[k] = segment_of(to, interface_at, spectrum.x);
     samples.flux[k] = found != 0u ? samples.left[k].arrives : 0.0;
 #ifdef TINTING
-    samples.way[k] = uintBitsToFloat(signature[first + uint(k)].y);
+    samples.path_m[k] = uintBitsToFloat(signature[first + uint(k)].y);
     samples.per_m[k] = spectrum.y;
 #endif
     if (found != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
@@ -93,20 +79,20 @@ int read_samples(uint first) {
 }
 
 // Texels to the hit of the photon in cell c on the same path; 0 if there is none.
-float step_to(ivec2 c, uint order, uint lane, uint path, int tile, vec2 here) {
+float step_to(ivec2 c, uint order, uint sample_number, uint path, int tile, vec2 here) {
   bool there = all(lessThan(c, grid));
   uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
-  uint index = ((there ? at - 1u : 0u) * SLOTS + order) * LANES + lane;
+  uint index = ((there ? at - 1u : 0u) * SLOTS + order) * HIT_STRIDE + sample_number;
   there = there && SIGNATURE(index) == path;
-  return there ? distance(map_position(landing[HIT_TEXELS * index].xyz, tile), here) : 0.0;
+  return there ? distance(map_position(hits[HIT_TEXELS * index].xyz, tile), here) : 0.0;
 }
 
 // What the map resolves of this photon, in texels.
 float resolved(ivec2 cell, uint order, uint first, uint reference) {
   uint path = SIGNATURE(first + reference), at = HIT_TEXELS * (first + reference);
-  int tile = path != 0u ? interface_tile(landing[at + 1u].w) : -1;
-  vec2 here = map_position(landing[at].xyz, tile);
+  int tile = path != 0u ? interface_tile(hits[at + 1u].w) : -1;
+  vec2 here = map_position(hits[at].xyz, tile);
   float a = path != 0u ? step_to(cell + ivec2(1, 0), order, reference, path, tile, here) : 0.0;
   float b = path != 0u ? step_to(cell + ivec2(0, 1), order, reference, path, tile, here) : 0.0;
   return max(a > 0.0 && b > 0.0 ? min(a, b) : max(a, b), 1.0);
@@ -131,7 +117,7 @@ float misplaced(int k, float bend_a, float bend_b, float size) {
     return bend_b >= 0.0   ? OFF_CURVE * bend_b
            : bend_a >= 0.0 ? OFF_LINE * bend_a
                            : OFF_ALONE * distance(samples.at[k], samples.at[k + 1]);
-  // Where a path ends on the way, its hits would have moved on as before.
+  // Where a path ends in between, its hits would have moved on as before.
   int before = max(k - 1, 0), after = min(k + 2, NODES - 1);
   bool known_a = k > 0 && samples.path[before] == samples.path[k],
        known_b = k + 2 < NODES && samples.path[after] == samples.path[k + 1];
@@ -147,11 +133,11 @@ float wrong_in(int k, float misplaced_by, float size, float photon_flux) {
 #ifdef TINTING
   // What is left at both ends, and, to tell what changes, of the same glass.
   float per_m_a = samples.per_m[k], per_m_b = samples.per_m[k + 1];
-  left = 0.5 * (exp(-per_m_a * samples.way[k]) + exp(-per_m_b * samples.way[k + 1]));
+  left = 0.5 * (exp(-per_m_a * samples.path_m[k]) + exp(-per_m_b * samples.path_m[k + 1]));
 #endif
   float most = left * max(flux_a, flux_b) / photon_flux * interval_weight[k];
 #ifdef TINTING
-  flux_b *= exp(-0.5 * (per_m_a + per_m_b) * (samples.way[k + 1] - samples.way[k]));
+  flux_b *= exp(-0.5 * (per_m_a + per_m_b) * (samples.path_m[k + 1] - samples.path_m[k]));
 #endif
   float change = (flux_a - flux_b) / max(max(flux_a, flux_b), 1e-30);
   float changed = samples.path[k] == samples.path[k + 1] ? 0.125 * change * change : 0.0;
@@ -162,7 +148,7 @@ void main() {
   uint listed = thread_number();
   if (listed >= path_count) return;
   uint photon_path = path_list[listed];
-  uint photon = photon_path / SLOTS, order = photon_path % SLOTS, first = photon_path * LANES;
+  uint photon = photon_path / SLOTS, order = photon_path % SLOTS, first = photon_path * HIT_STRIDE;
   Photon from_cell = photon_at[photon];
   // Other bits than those that choose the chunks of splats, or one of these would get all.
   if ((from_cell.cell * 2654435761u >> 16) % chunks != chunk) return;

@@ -1,16 +1,15 @@
 #include "gl/photons/refine_pass.h"
 
-#include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
 
-enum { MOST_NODES = 9, MAX_FINE_BYTES = 128 << 20, LEAST_PAIRS = 256 };
+enum { MAX_FINE_BYTES = 128 << 20, LEAST_PAIRS = 256 };
 
 static size_t widest_interval(const abbe_photon_spectra *spectra) {
   const size_t n = spectra->scene->plan->desc.wavelengths, nodes = spectra->nodes;
   size_t most = 0;
   for (size_t k = 0; k + 1 < nodes; k++) {
     const size_t steps =
-        abbe_photon_spectra_node(n, nodes, k + 1) - abbe_photon_spectra_node(n, nodes, k);
+        abbe_spectral_tables_node(n, nodes, k + 1) - abbe_spectral_tables_node(n, nodes, k);
     if (steps > most) most = steps;
   }
   return most;
@@ -63,31 +62,11 @@ void abbe_refine_pass_coarse(abbe_refine_pass *pass, size_t light) {
   abbe_trace_pass_coarse(pass->trace, light);
 }
 
-/* The intervals' shares of the light, of X, Y and Z alike, by their mean. */
-static void set_weights(const abbe_refine_pass *pass, size_t light) {
-  const abbe_photon_spectra *spectra = pass->trace->spectra;
-  const abbe_gpu_scene *scene = spectra->scene;
-  const abbe_gl *gl = scene->gpu->gl;
-  const double min = scene->plan->desc.min_nm, max = scene->plan->desc.max_nm;
-  const size_t n = scene->plan->desc.wavelengths, nodes = spectra->nodes, intervals = nodes - 1;
-  double xyz[3], total = 0;
-  GLfloat weight[MOST_NODES] = {0};
-  for (size_t k = 0; k < intervals; k++) {
-    abbe_weights_band_xyz(&scene->local->light[light].illuminant, min, max,
-                          scene->lambda_nm[abbe_photon_spectra_node(n, nodes, k)],
-                          scene->lambda_nm[abbe_photon_spectra_node(n, nodes, k + 1)], xyz);
-    weight[k] = (GLfloat)(xyz[0] + xyz[1] + xyz[2]);
-    total += (double)weight[k];
-  }
-  for (size_t k = 0; k < intervals; k++)
-    weight[k] = total > 0 ? (GLfloat)((double)weight[k] * (double)intervals / total) : 1;
-  gl->Uniform1fv(gl->GetUniformLocation(pass->select, "interval_weight"), (GLsizei)nodes, weight);
-}
-
 static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk) {
   const abbe_trace_pass *trace = pass->trace;
   const abbe_gpu_scene *scene = trace->spectra->scene;
   abbe_gpu *gpu = scene->gpu;
+  const size_t intervals = trace->spectra->nodes - 1;
   const GLuint program = pass->select;
   abbe_gpu_scene_bind(scene);
   abbe_photon_lights_bind(trace->start->views);
@@ -98,7 +77,8 @@ static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_photon_lights_set_grid(trace->start->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)scene->plan->desc.map_size);
-  set_weights(pass, light);
+  gpu->gl->Uniform1fv(gpu->gl->GetUniformLocation(program, "interval_weight"), (GLsizei)intervals,
+                      scene->tables.interval_weight + light * intervals);
   abbe_gpu_set_uint(gpu, program, "chunks", pass->chunks);
   abbe_gpu_set_uint(gpu, program, "chunk", chunk);
   abbe_gpu_set_uint(gpu, program, "most_pairs", pass->pair_room);

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, LEAST_LANES = 7 };
+enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, LEAST_SAMPLES = 7 };
 
 static const abbe_gpu_scene *scene_of(const abbe_trace_pass *pass) {
   return pass->spectra->scene;
@@ -32,17 +32,17 @@ static size_t most_photons(const abbe_trace_pass *pass) {
 }
 
 /* Wavelengths of a batch. */
-static size_t choose_lanes(const abbe_trace_pass *pass, size_t room) {
+static size_t choose_samples(const abbe_trace_pass *pass, size_t room) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  const size_t a_lane = pass->most_photons * plan->hit_slots;
+  const size_t a_sample = pass->most_photons * plan->hit_slots;
   /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
   const size_t usual = ABBE_PLAN_EXITS + 1;
   const size_t slots =
       !plan->multi_refractor_paths && plan->hit_slots > usual ? usual : plan->hit_slots;
   const size_t a_hit = ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra);
-  size_t lanes = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
-  if (lanes > room / a_lane) lanes = room / a_lane;
-  return lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
+  size_t samples = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
+  if (samples > room / a_sample) samples = room / a_sample;
+  return samples < 2 ? 2 : samples > 64 ? 64 : samples;
 }
 
 abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *spectra,
@@ -51,23 +51,23 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
   *out = (abbe_trace_pass){.start = start, .spectra = spectra, .atlas = atlas, .ledger = ledger};
   const abbe_plan *plan = scene_of(out)->plan;
   out->most_photons = most_photons(out);
-  const size_t a_lane = out->most_photons * plan->hit_slots, n = plan->desc.wavelengths;
+  const size_t a_sample = out->most_photons * plan->hit_slots, n = plan->desc.wavelengths;
   const size_t room = most_hits(out);
-  if (a_lane * (n > 1 ? 2 : 1) > room)
+  if (a_sample * (n > 1 ? 2 : 1) > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "
                           "time; use a grid below %zu or fewer exits",
                           out->most_photons, plan->desc.exits, plan->desc.photons);
-  size_t lanes = choose_lanes(out, room);
+  size_t samples = choose_samples(out, room);
   abbe_result result = ABBE_OK;
   /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
-  if (a_lane * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
+  if (a_sample * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
   const bool refines = abbe_photon_spectra_refines(spectra);
-  const size_t enough = refines ? LEAST_LANES : n;
-  if (lanes > enough) lanes = enough < n ? enough : n;
-  if (lanes < spectra->nodes && refines) lanes = spectra->nodes;
+  const size_t enough = refines ? LEAST_SAMPLES : n;
+  if (samples > enough) samples = enough < n ? enough : n;
+  if (samples < spectra->nodes && refines) samples = spectra->nodes;
   if (result != ABBE_OK) return result;
-  return abbe_hits_make(scene_of(out)->gpu, out->most_photons, plan->hit_slots, lanes,
+  return abbe_hits_make(scene_of(out)->gpu, out->most_photons, plan->hit_slots, samples,
                         abbe_photon_signature_bytes(spectra), &out->hits, error);
 }
 
@@ -130,12 +130,12 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_photon_ledger_set(pass->ledger, program, light);
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_gpu_set_int(gpu, program, "set", (int)set);
-  abbe_gpu_set_int(gpu, program, "lane_first", 0);
-  abbe_gpu_set_int(gpu, program, "lane_count", (int)count);
-  abbe_gpu_set_int(gpu, program, "lane_stride", (int)hits->stride);
+  abbe_gpu_set_int(gpu, program, "sample_first", 0);
+  abbe_gpu_set_int(gpu, program, "sample_count", (int)count);
+  abbe_gpu_set_int(gpu, program, "hit_stride", (int)hits->stride);
   abbe_gpu_set_int(gpu, program, "ledger_first", 0);
   abbe_gpu_set_float(gpu, program, "share_limit", scene->plan->desc.energy_share);
-  abbe_gpu_set_int(gpu, program, "fits_pages", pass->atlas->fits ? 1 : 0);
+  abbe_gpu_set_int(gpu, program, "fits_tiles", pass->atlas->fits ? 1 : 0);
   if (scene->plan->lengths)
     abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F,
                          pass->spectra->attenuation);
@@ -173,7 +173,7 @@ void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, si
   const size_t photons = pass->start->views->light[light].photon_count;
   const size_t groups = (photons + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
   abbe_trace_pass_begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
-  abbe_gpu_set_int(gpu, pass->program, "lane_first", (int)first);
+  abbe_gpu_set_int(gpu, pass->program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, pass->program, "ledger_first", (int)ledger_first);
   if (groups > 0) gpu->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
   abbe_trace_pass_end(pass, &pass->hits, photons);

@@ -66,7 +66,7 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items);
 
 /* The hits of the last batch, from wavelength `first` on: [photons][slots][stride] x 4 floats,
- * place (on pages: texels and number) and flux, zero where there is none, and their paths (may be
+ * place (on tiles: texels and number) and flux, zero where there is none, and their paths (may be
  * NULL); malloc'd. Waits for the device. */
 abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
                                  GLuint **paths, abbe_error *error);

@@ -217,9 +217,10 @@ abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const ab
   abbe_rgb_space_to_xyz(abbe_gpu_scene_working_space(out), matrix);
   store_matrix(matrix, out->xyz_from_rgb);
   abbe_result result = ABBE_OK;
-  if (plan->pages) result = abbe_receiver_charts_make(local, plan, &out->charts, error);
+  if (plan->tiles) result = abbe_receiver_charts_make(local, plan, &out->charts, error);
   if (result == ABBE_OK) result = abbe_gpu_bvh_make(out, error);
   if (result == ABBE_OK) result = abbe_gpu_shadows_make(out, error);
+  if (result == ABBE_OK) result = abbe_spectral_tables_make(local, plan, &out->tables, error);
   return result;
 }
 
@@ -244,7 +245,7 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene) {
   gl->DeleteTextures(3, scene->bvh_texture);
   gl->DeleteBuffers(3, scene->bvh);
   abbe_receiver_charts_free(&scene->charts);
-  free(scene->lambda_nm);
+  abbe_spectral_tables_free(&scene->tables);
   free(scene->refractor_root);
   free(scene->shadow_row);
 }

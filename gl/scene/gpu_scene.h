@@ -7,6 +7,7 @@
 #include "gl/device/gpu.h"
 #include "gl/plan/plan.h"
 #include "gl/scene/receiver_charts.h"
+#include "gl/scene/spectra/spectral_tables.h"
 #include "scenes/scene.h"
 
 #include <stdbool.h>
@@ -32,12 +33,12 @@ typedef struct abbe_gpu_scene {
   abbe_gpu *gpu;
   const abbe_scene *local; /* whose coordinates all below are in */
   const abbe_plan *plan;
-  abbe_receiver_charts charts; /* where the plan has pages */
+  abbe_receiver_charts charts; /* where the plan has tiles */
 
   double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
   double refractor_centre[3], refractor_radius;
   float rgb_from_xyz[9], xyz_from_rgb[9]; /* column-major, for uniforms */
-  double *lambda_nm;                      /* [wavelengths] */
+  abbe_spectral_tables tables;
 
   abbe_gpu_mesh *mesh; /* [object_count] */
   GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
@@ -76,7 +77,8 @@ abbe_result abbe_gpu_meshes_simplify(abbe_gpu_scene *scene, size_t object, doubl
 /* Of all refractors, as layers draw them. */
 size_t abbe_gpu_meshes_layer_faces(const abbe_gpu_scene *scene);
 
-/* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths. */
+/* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths, from the tables.
+ */
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
 
 /* gpu_bvh.c: the triangles of what is traversed. */

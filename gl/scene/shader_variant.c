@@ -32,9 +32,9 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .walk = p->multi_refractor_paths,
       .cubes = p->cubes,
       .layers_out = p->desc.layers,
-      .ways = !p->multi_refractor_paths ? 1
-              : p->desc.wavelengths > 1 ? 8
-                                        : 2,
+      .pixel_threads = !p->multi_refractor_paths ? 1
+                       : p->desc.wavelengths > 1 ? 8
+                                                 : 2,
   };
   for (size_t i = 0; i < p->refractor_count; i++)
     if (p->model[i] == ABBE_REFRACTOR_CONVEX)
@@ -102,19 +102,19 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "CAUSTICS", v->caustics);
   print_flag(to, "WALK", v->walk);
   print_flag(to, "CUBES", v->cubes);
-  print_count(to, "WAYS", v->ways);
+  print_count(to, "PIXEL_THREADS", v->pixel_threads);
 }
 
 static void print_photons(FILE *to, const abbe_shader_variant *v) {
-  if (v->pages > 0) {
-    print_flag(to, "PAGES", true);
-    print_count(to, "MOST_PAGES", v->pages);
-    print_count(to, "PAGE_BLOCKS", v->page_blocks);
+  if (v->tiles > 0) {
+    print_flag(to, "TILES", true);
+    print_count(to, "MOST_TILES", v->tiles);
+    print_count(to, "TILE_BLOCKS", v->tile_blocks);
     print_count(to, "CHART_SIDES", v->chart_sides);
   }
   if (v->map_levels > 0) print_count(to, "MAP_LEVELS", v->map_levels);
-  if (v->lanes == 0) return;
-  print_count(to, "LANES", v->lanes);
+  if (v->hit_stride == 0) return;
+  print_count(to, "HIT_STRIDE", v->hit_stride);
   print_count(to, "STEPS", v->steps);
   print_count(to, "NODES", v->nodes);
   print_flag(to, "BRIDGE", v->bridge);

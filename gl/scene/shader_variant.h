@@ -20,13 +20,13 @@ typedef struct abbe_shader_variant {
   bool receiver_shadows, absorbing, textured, caustics, walk, cubes;
   /* the picture */
   bool layers_out;
-  size_t ways; /* threads of a pixel (refraction_ways.glsl) */
+  size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
   bool wide;
   size_t map_levels;                      /* 0: not told */
-  size_t pages, page_blocks, chart_sides; /* pages of a light at the most; 0: none has any */
-  /* photons; lanes 0: not told */
-  size_t lanes, steps, nodes, fine_nodes;
+  size_t tiles, tile_blocks, chart_sides; /* tiles of a light at the most; 0: none has any */
+  /* photons; hit_stride 0: not told */
+  size_t hit_stride, steps, nodes, fine_nodes;
   bool bridge, doubts_bridges, tinting, refined;
 } abbe_shader_variant;
 

@@ -3,7 +3,7 @@
 #include "receiver_atlas.glsl"
 
 vec2 map_position(vec3 at, int tile) {
-#ifdef PAGES
+#ifdef TILES
   if (tile >= 0) return place_on_tile(light, tile, at);
 #endif
   vec3 uvz;

@@ -40,7 +40,7 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
   bool held = project(l.map_view, p, uvz) && inside(uvz.xy);
   // Before any pixel of the four goes its own way.
   vec2 at = warp(light, uvz.xy), to_right = step_right(at), to_above = step_above(at);
-#ifdef PAGES
+#ifdef TILES
   caustic = tile_irradiance(light, p, side, l.misc.w != 0.0);
 #endif
 #endif
@@ -80,7 +80,7 @@ struct Shading {
   vec3 direct, caustic, fill;  // radiance towards the viewer, by origin
 };
 
-// side: chart_side, where there are PAGES.
+// side: chart_side, where there are TILES.
 Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   Shading s;
   s.direct = s.caustic = vec3(0);

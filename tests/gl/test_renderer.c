@@ -19,9 +19,9 @@ static void assert_balance(const abbe_statistics *s, const char *name) {
   assert_true(s->energy.reflected > 0);
 }
 
-/* The map read as a picture holds what the ledger says was deposited, but on receivers' pages. */
+/* The map read as a picture holds what the ledger says was deposited, but on receivers' tiles. */
 static void assert_map_holds(abbe_renderer *renderer, const abbe_ledger *l) {
-  const double deposited = l->deposited - l->on_pages;
+  const double deposited = l->deposited - l->on_tiles;
   abbe_image map = {0};
   read_map(renderer, 0, &map);
   assert_finite(&map);
@@ -360,7 +360,7 @@ static void test_the_floor_leaves_the_picture(void **state) {
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
     read_picture(renderer, false, &before);
-    assert_int_equal(abbe_renderer_floor(renderer, &ms, NULL), ABBE_OK);
+    assert_int_equal(abbe_renderer_baseline(renderer, &ms, NULL), ABBE_OK);
     assert_true(ms > 0);
     read_picture(renderer, false, &after);
     assert_same_pixels(&before, &after);

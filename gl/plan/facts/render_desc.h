@@ -26,7 +26,7 @@ typedef enum abbe_profile {
       ABBE_PROFILE_COUNT
 } abbe_profile;
 
-/* bridge: light is laid between neighbouring wavelengths' landings; none: each wavelength lands
+/* bridge: light is laid between neighbouring wavelengths' hits; none: each wavelength lands
  * on its own; smear: the thesis's 20-step fill. AUTO is bridge, and smear in the thesis profile. */
 #define ABBE_FILLS(X) X(AUTO, "auto") X(NONE, "none") X(BRIDGE, "bridge") X(SMEAR, "smear")
 typedef enum abbe_fill {

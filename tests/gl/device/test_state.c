@@ -236,7 +236,7 @@ static void assert_after(const char *what) {
 /* All that a renderer gives. */
 typedef struct taken {
   abbe_image picture, map, bands;
-  float *landings;
+  float *hits;
   size_t floats;
 } taken;
 
@@ -244,7 +244,7 @@ static void free_taken(taken *t) {
   abbe_image_free(&t->picture);
   abbe_image_free(&t->map);
   abbe_image_free(&t->bands);
-  free(t->landings);
+  free(t->hits);
 }
 
 /* Makes a renderer and calls each of its entries, each in a state that is awkward or as it comes.
@@ -254,7 +254,7 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
   abbe_renderer *renderer = NULL;
   abbe_renderer_picture p;
   abbe_error error = {0};
-  size_t count = 0, orders = 0, lanes = 0;
+  size_t count = 0, slots = 0, samples = 0;
   double ms = 0;
 #define ENTRY(what, call)                                                                          \
   do {                                                                                             \
@@ -264,17 +264,17 @@ static void take(const abbe_scene *scene, const abbe_render_desc *desc, bool awk
   } while (0)
   ENTRY("make", assert_ok(abbe_renderer_make(context, scene, desc, &renderer, &error), &error));
   ENTRY("frame", draw_frame(renderer));
-  if (!thesis) ENTRY("floor", assert_ok(abbe_renderer_floor(renderer, &ms, &error), &error));
+  if (!thesis) ENTRY("baseline", assert_ok(abbe_renderer_baseline(renderer, &ms, &error), &error));
   ENTRY("read", read_picture(renderer, true, &out->picture));
   ENTRY("texture", assert_ok(abbe_renderer_texture(renderer, &p, &error), &error));
   ENTRY("read_map", read_map(renderer, 0, &out->map));
   if (!thesis) {
     ENTRY("read_map_bands",
           assert_ok(abbe_renderer_read_map_bands(renderer, 0, 4, &out->bands, &error), &error));
-    ENTRY("read_landings", assert_ok(abbe_renderer_read_landings(renderer, 0, &out->landings, NULL,
-                                                                 &count, &orders, &lanes, &error),
-                                     &error));
-    out->floats = count * orders * lanes * 4;
+    ENTRY("read_hits", assert_ok(abbe_renderer_read_hits(renderer, 0, &out->hits, NULL, &count,
+                                                         &slots, &samples, &error),
+                                 &error));
+    out->floats = count * slots * samples * 4;
     assert_true(out->floats > 0);
   }
   assert_true(image_max(&out->picture, 1) > 0 && image_max(&out->map, 1) > 0);
@@ -303,7 +303,7 @@ static void assert_same_in_any_state(const char *text, const abbe_render_desc *d
     assert_same_pixels(&calm.map, &awkward.map);
     assert_same_pixels(&calm.bands, &awkward.bands);
     assert_int_equal(calm.floats, awkward.floats);
-    assert_memory_equal(calm.landings, awkward.landings, calm.floats * sizeof *calm.landings);
+    assert_memory_equal(calm.hits, awkward.hits, calm.floats * sizeof *calm.hits);
   }
   free_taken(&calm);
   free_taken(&awkward);

@@ -69,7 +69,7 @@ typedef struct pair {
 } pair;
 
 /* The plan of one ball on a floor. */
-#define BALL_ROWS(pages)                                                                           \
+#define BALL_ROWS(tiles)                                                                           \
   COUNTS(7, 8, 9),                                                                                 \
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball", "exact sphere: the object is a sphere"),             \
       RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "light that leaves the refractor cannot meet it again"), \
@@ -78,7 +78,7 @@ typedef struct pair {
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the index varies with wavelength"),          \
       RUNS(CHOICE_INNER_REFLECTIONS,                                                               \
            "followed until less than 0.01 of the light is left, 8 exits at most"),                 \
-      RUNS_OF(CHOICE_LIGHT_MAP, "lamp", "the light may meet a refractor"), pages,                  \
+      RUNS_OF(CHOICE_LIGHT_MAP, "lamp", "the light may meet a refractor"), tiles,                  \
       RESTS(PASS_RECEIVER_DEPTH, "receivers are hit exactly"),                                     \
       RUNS(PASS_LIGHT_FRONT, "photons start where the light sees a refractor"),                    \
       RESTS(PASS_LIGHT_BACK, "every refractor has an exact surface"),                              \
