@@ -1,6 +1,7 @@
 #include "gl/renderer.h"
 
 #include "gl/caustics/map_bands.h"
+#include "gl/device/state.h"
 #include "gl/renderer_parts.h"
 
 #include <stdlib.h>
@@ -10,53 +11,30 @@ static bool is_thesis(const abbe_renderer *r) {
   return abbe_profile_is_thesis(r->plan.desc.profile);
 }
 
-abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
-                               const abbe_render_desc *desc, abbe_renderer **out,
-                               abbe_error *error) {
-  ABBE_REQUIRE(context && scene && out, error);
-  *out = NULL;
+static void free_renderer(abbe_renderer *r) {
+  abbe_renderer_parts_free(r);
+  free(r);
+}
+
+static abbe_result make_renderer(abbe_context *context, const abbe_scene *scene,
+                                 const abbe_render_desc *desc, abbe_renderer **out,
+                                 abbe_error *error) {
   abbe_renderer *r = calloc(1, sizeof *r);
   if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
+  r->context = context;
   r->software = strstr(abbe_context_description(context), "llvmpipe") != NULL;
   abbe_result result = abbe_gpu_make(abbe_context_gl(context), &r->gpu, error);
   if (result == ABBE_OK) result = abbe_renderer_parts_change(r, scene, desc, error);
   if (result != ABBE_OK) {
-    abbe_renderer_free(r);
+    free_renderer(r);
     return result;
   }
   *out = r;
   return ABBE_OK;
 }
 
-void abbe_renderer_free(abbe_renderer *r) {
-  if (r == NULL) return;
-  abbe_renderer_parts_free(r);
-  free(r);
-}
-
-abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
-                                 const abbe_render_desc *desc, abbe_error *error) {
-  ABBE_REQUIRE(r && scene, error);
-  return abbe_renderer_parts_change(r, scene, desc, error);
-}
-
-void abbe_renderer_redraw(abbe_renderer *r) {
-  r->lit = r->seen = false;
-}
-
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *r) {
   return &r->plan;
-}
-
-abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
-                                abbe_statistics *statistics, abbe_error *error) {
-  ABBE_REQUIRE(r, error);
-  return abbe_renderer_parts_draw(r, progress, user, statistics, error);
-}
-
-abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
-  ABBE_REQUIRE(r && ms, error);
-  return abbe_renderer_parts_baseline(r, ms, error);
 }
 
 static abbe_result check_drawn(const abbe_renderer *r, abbe_error *error) {
@@ -66,16 +44,17 @@ static abbe_result check_drawn(const abbe_renderer *r, abbe_error *error) {
                         "abbe_renderer_frame comes first");
 }
 
-abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
-  *out = (abbe_image){0};
+static abbe_rgb_space space_of(const abbe_renderer *r) {
+  return r->plan.desc.profile == ABBE_PROFILE_THESIS ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
+}
+
+static abbe_result read_picture(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
   result = is_thesis(r) ? abbe_thesis_read(&r->thesis, out, error)
                         : abbe_picture_read(&r->picture, layers, r->local.unit, out, error);
   if (result != ABBE_OK) return result;
-  const abbe_rgb_space space =
-      r->plan.desc.profile == ABBE_PROFILE_THESIS ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
+  const abbe_rgb_space space = space_of(r);
   abbe_rgb_space_chromaticities(space, out->xy);
   result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
   if (result == ABBE_OK) result = abbe_gl_check(r->gpu.gl, "the reading of the picture", error);
@@ -99,10 +78,8 @@ static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *e
                         r->scene.local->light[light].name);
 }
 
-abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
-                                   abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
-  *out = (abbe_image){0};
+static abbe_result read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
+                            abbe_error *error) {
   abbe_result result = check_map(r, light, error);
   if (result != ABBE_OK) return result;
   result = is_thesis(r) ? abbe_thesis_read_map(&r->thesis, filled, out, error)
@@ -117,10 +94,8 @@ abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, 
   return result;
 }
 
-abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t bands,
-                                         abbe_image *out, abbe_error *error) {
-  ABBE_REQUIRE(r && out, error);
-  *out = (abbe_image){0};
+static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, abbe_image *out,
+                                  abbe_error *error) {
   if (bands < 1 || bands > ABBE_RENDER_MAX_BANDS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a map of %zu bands; it may have 1 to %d",
                           bands, ABBE_RENDER_MAX_BANDS);
@@ -148,14 +123,158 @@ void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *
   abbe_local_scene_to_world(&r->local, out);
 }
 
-abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
-                                    size_t *count, size_t *slots, size_t *samples,
-                                    abbe_error *error) {
-  ABBE_REQUIRE(r && data && count && slots && samples, error);
-  *data = NULL;
+static abbe_result read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
+                             size_t *count, size_t *slots, size_t *samples, abbe_error *error) {
   if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_thesis(r))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
   *slots = r->plan.hit_slots;
   *samples = r->caustics.trace.hits.stride;
   return abbe_caustics_read_hits(&r->caustics, light, r->local.origin, data, cells, count, error);
+}
+
+static abbe_result find_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
+  abbe_result result = check_drawn(r, error);
+  if (result != ABBE_OK) return result;
+  out->texture = is_thesis(r) ? r->thesis.picture : abbe_picture_texture(&r->picture);
+  out->width = r->plan.desc.width;
+  out->height = r->plan.desc.height;
+  out->scale = is_thesis(r) ? 1 : r->local.unit;
+  out->space = space_of(r) == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : space_of(r);
+  r->gpu.gl->MemoryBarrier(GL_ALL_BARRIER_BITS);
+  return abbe_gl_check(r->gpu.gl, "the handing out of the picture", error);
+}
+
+/* What is public and draws or reads: on the renderer's context, in a state of its own. */
+
+static abbe_result enter(abbe_context *context, abbe_error *error) {
+  const abbe_result result = abbe_context_make_current(context, error);
+  if (result == ABBE_OK) abbe_gl_state_begin(abbe_context_gl(context));
+  return result;
+}
+
+static abbe_result leave(abbe_context *context, abbe_result result) {
+  abbe_gl_state_end(abbe_context_gl(context));
+  return result;
+}
+
+abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
+                               const abbe_render_desc *desc, abbe_renderer **out,
+                               abbe_error *error) {
+  ABBE_REQUIRE(context && scene && out, error);
+  *out = NULL;
+  const abbe_result result = enter(context, error);
+  if (result != ABBE_OK) return result;
+  return leave(context, make_renderer(context, scene, desc, out, error));
+}
+
+abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
+                                 const abbe_render_desc *desc, abbe_error *error) {
+  ABBE_REQUIRE(r && scene, error);
+  const abbe_result result = enter(r->context, error);
+  if (result != ABBE_OK) return result;
+  return leave(r->context, abbe_renderer_parts_change(r, scene, desc, error));
+}
+
+void abbe_renderer_redraw(abbe_renderer *r) {
+  r->lit = r->seen = false;
+}
+
+static void delete_none(GLsizei count, const GLuint *names) {
+  (void)count;
+  (void)names;
+}
+
+static void delete_no_program(GLuint program) {
+  (void)program;
+}
+
+/* In another context the names would be those of other things. */
+static const abbe_gl no_gl = {.DeleteBuffers = delete_none,
+                              .DeleteFramebuffers = delete_none,
+                              .DeleteProgram = delete_no_program,
+                              .DeleteTextures = delete_none,
+                              .DeleteVertexArrays = delete_none};
+
+void abbe_renderer_free(abbe_renderer *r) {
+  if (r == NULL) return;
+  abbe_context *context = r->context;
+  const bool entered = enter(context, NULL) == ABBE_OK;
+  if (!entered) r->gpu.gl = &no_gl;
+  free_renderer(r);
+  if (entered) leave(context, ABBE_OK);
+}
+
+/* A caller's progress may make another context current. */
+typedef struct watched {
+  abbe_context *context;
+  abbe_render_progress progress;
+  void *user;
+  abbe_result result;
+  abbe_error *error;
+} watched;
+
+static bool watch(void *user, double done) {
+  watched *w = user;
+  const bool goes_on = w->progress(w->user, done);
+  w->result = abbe_context_make_current(w->context, w->error);
+  return goes_on && w->result == ABBE_OK;
+}
+
+abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
+                                abbe_statistics *statistics, abbe_error *error) {
+  ABBE_REQUIRE(r, error);
+  abbe_error lost = {0};
+  watched w = {r->context, progress, user, ABBE_OK, &lost};
+  abbe_result result = enter(r->context, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_renderer_parts_draw(r, progress != NULL ? watch : NULL, &w, statistics, error);
+  if (w.result != ABBE_OK) return abbe_error_set(error, w.result, "%s", lost.text);
+  return leave(r->context, result);
+}
+
+abbe_result abbe_renderer_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
+  ABBE_REQUIRE(r && ms, error);
+  const abbe_result result = enter(r->context, error);
+  return result == ABBE_OK ? leave(r->context, abbe_renderer_parts_baseline(r, ms, error)) : result;
+}
+
+abbe_result abbe_renderer_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
+  *out = (abbe_renderer_picture){0};
+  const abbe_result result = enter(r->context, error);
+  return result == ABBE_OK ? leave(r->context, find_texture(r, out, error)) : result;
+}
+
+abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
+  *out = (abbe_image){0};
+  const abbe_result result = enter(r->context, error);
+  return result == ABBE_OK ? leave(r->context, read_picture(r, layers, out, error)) : result;
+}
+
+abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
+                                   abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
+  *out = (abbe_image){0};
+  const abbe_result result = enter(r->context, error);
+  return result == ABBE_OK ? leave(r->context, read_map(r, light, filled, out, error)) : result;
+}
+
+abbe_result abbe_renderer_read_map_bands(abbe_renderer *r, size_t light, size_t bands,
+                                         abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
+  *out = (abbe_image){0};
+  const abbe_result result = enter(r->context, error);
+  if (result != ABBE_OK) return result;
+  return leave(r->context, read_map_bands(r, light, bands, out, error));
+}
+
+abbe_result abbe_renderer_read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
+                                    size_t *count, size_t *slots, size_t *samples,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(r && data && count && slots && samples, error);
+  *data = NULL;
+  const abbe_result result = enter(r->context, error);
+  if (result != ABBE_OK) return result;
+  return leave(r->context, read_hits(r, light, data, cells, count, slots, samples, error));
 }

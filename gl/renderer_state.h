@@ -12,6 +12,7 @@
 #include "gl/thesis/thesis.h"
 
 struct abbe_renderer {
+  abbe_context *context;
   abbe_gpu gpu;
   bool software; /* what runs the shaders is a processor */
   abbe_local_scene local;

@@ -20,7 +20,7 @@ static bool is_motion(const double m[16], double *scale) {
 }
 
 static void move_exact(abbe_exact *e, const double m[16], double scale) {
-  abbe_transform_point(m, e->centre, e->centre);
+  if (e->kind == ABBE_EXACT_SPHERE) abbe_transform_point(m, e->centre, e->centre);
   e->radius *= scale;
   for (size_t i = 0; e->plane != NULL && i < e->count; i++) {
     double *p = e->plane[i], on[3];

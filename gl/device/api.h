@@ -22,10 +22,20 @@ extern "C" {
   X(BINDBUFFERBASE, BindBufferBase)                                                                \
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \
   X(BINDIMAGETEXTURE, BindImageTexture)                                                            \
+  X(BINDSAMPLERS, BindSamplers)                                                                    \
   X(BINDTEXTURE, BindTexture)                                                                      \
   X(BINDVERTEXARRAY, BindVertexArray)                                                              \
+  X(BLENDEQUATION, BlendEquation)                                                                  \
   X(BLENDFUNC, BlendFunc)                                                                          \
   X(BUFFERDATA, BufferData)                                                                        \
+  X(CLIPCONTROL, ClipControl)                                                                      \
+  X(COLORMASK, ColorMask)                                                                          \
+  X(DEPTHRANGE, DepthRange)                                                                        \
+  X(FRONTFACE, FrontFace)                                                                          \
+  X(HINT, Hint)                                                                                    \
+  X(POLYGONMODE, PolygonMode)                                                                      \
+  X(PROVOKINGVERTEX, ProvokingVertex)                                                              \
+  X(TEXTUREVIEW, TextureView)                                                                      \
   X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(             \
       CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV,                                              \
                                       ClearBufferuiv) X(CLEARBUFFERDATA,                           \

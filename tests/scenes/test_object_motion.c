@@ -13,7 +13,7 @@
   "- {name: ball, shape: sphere, radius: 0.05, levels: 3, material: flat, transform: [" steps      \
   "]}\n"
 #define CARD_AT(steps)                                                                             \
-  "- {name: card, shape: rectangle, width: 0.1, height: 0.2, transform: [" steps "]}\n"
+  "- {name: card, shape: rectangle, width: 0.1, height: 0.2, reflectance: 0.5, transform: [" steps "]}\n"
 #define FIRST "{translate: [0.2, 0.1, 0.2]}"
 #define THEN                                                                                       \
   ", {scale: 1.5}, {rotate: {axis: [1, 2, 3], angle: 40}}, {translate: [0.1, -0.2, 0.3]}"
