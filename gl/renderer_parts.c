@@ -129,7 +129,10 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
   if (abbe_profile_is_thesis(plan.desc.profile) && parts != 0) parts = ALL; /* its tables hold all */
+  const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
+  if (crowded && (parts & LIGHT) != 0) parts = ALL;
   free_parts(r, parts);
+  if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
   abbe_plan_free(&r->plan);
   r->plan = plan;
   r->inputs = inputs;

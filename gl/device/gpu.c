@@ -143,6 +143,18 @@ void abbe_gpu_trim(abbe_gpu *gpu) {
   abbe_gpu_store_trim(&gpu->store, gpu->gl);
 }
 
+size_t abbe_gpu_program_count(const abbe_gpu *gpu) {
+  return abbe_gpu_store_count(&gpu->store, ABBE_STORED_PROGRAM);
+}
+
+void abbe_gpu_drop_programs(abbe_gpu *gpu) {
+  for (size_t i = 0; i < gpu->store.count; i++) {
+    abbe_stored *item = &gpu->store.item[i];
+    if (item->key.kind == ABBE_STORED_PROGRAM && item->name != gpu->list_groups) item->used = false;
+  }
+  abbe_gpu_trim(gpu);
+}
+
 size_t abbe_gpu_bytes(const abbe_gpu *gpu) {
   return abbe_gpu_store_bytes(&gpu->store);
 }

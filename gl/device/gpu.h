@@ -57,7 +57,12 @@ void abbe_gpu_trim(abbe_gpu *gpu);
 size_t abbe_gpu_bytes(const abbe_gpu *gpu);
 
 /* Programs, which are the device's: the same stages and definitions are compiled once. Uniforms
- * keep what another user has set. Errors as of abbe_program_make. */
+ * keep what another user has set. Errors as of abbe_program_make. More than
+ * ABBE_GPU_MOST_PROGRAMS are many: who makes all programs anew drops them before. */
+#define ABBE_GPU_MOST_PROGRAMS 200
+size_t abbe_gpu_program_count(const abbe_gpu *gpu);
+/* Those of all users. */
+void abbe_gpu_drop_programs(abbe_gpu *gpu);
 abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, size_t count,
                              const char *defines, GLuint *out, abbe_error *error);
 abbe_result abbe_gpu_compute(abbe_gpu *gpu, const char *file, const char *defines, GLuint *out,

@@ -15,7 +15,6 @@ GLuint abbe_gpu_store_take(abbe_gpu_store *store, const abbe_stored_key *key) {
     abbe_stored *item = &store->item[i];
     if ((item->used && key->kind != ABBE_STORED_PROGRAM) || !same(&item->key, key)) continue;
     item->used = true;
-    item->last_used = store->trimmings;
     return item->name;
   }
   return 0;
@@ -23,7 +22,7 @@ GLuint abbe_gpu_store_take(abbe_gpu_store *store, const abbe_stored_key *key) {
 
 abbe_result abbe_gpu_store_add(abbe_gpu_store *store, const abbe_stored_key *key, GLuint name,
                                abbe_error *error) {
-  abbe_stored item = {.key = *key, .name = name, .used = true, .last_used = store->trimmings};
+  abbe_stored item = {.key = *key, .name = name, .used = true};
   if (store->count == store->room) {
     const size_t room = 2 * store->room + 64;
     abbe_stored *grown = realloc(store->item, room * sizeof *grown);
@@ -52,15 +51,12 @@ static void delete_item(abbe_stored *item, const abbe_gl *gl) {
 void abbe_gpu_store_trim(abbe_gpu_store *store, const abbe_gl *gl) {
   size_t kept = 0;
   for (size_t i = 0; i < store->count; i++) {
-    abbe_stored *item = &store->item[i];
-    const bool program = item->key.kind == ABBE_STORED_PROGRAM;
-    if (program ? item->last_used + ABBE_STORE_KEPT > store->trimmings : item->used)
-      store->item[kept++] = *item;
+    if (store->item[i].used)
+      store->item[kept++] = store->item[i];
     else
-      delete_item(item, gl);
+      delete_item(&store->item[i], gl);
   }
   store->count = kept;
-  store->trimmings++;
 }
 
 void abbe_gpu_store_free(abbe_gpu_store *store, const abbe_gl *gl) {
@@ -74,4 +70,10 @@ size_t abbe_gpu_store_bytes(const abbe_gpu_store *store) {
   for (size_t i = 0; i < store->count; i++)
     if (store->item[i].used) bytes += store->item[i].key.bytes;
   return bytes;
+}
+
+size_t abbe_gpu_store_count(const abbe_gpu_store *store, abbe_stored_kind kind) {
+  size_t count = 0;
+  for (size_t i = 0; i < store->count; i++) count += store->item[i].key.kind == kind;
+  return count;
 }

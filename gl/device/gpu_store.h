@@ -30,12 +30,11 @@ typedef struct abbe_stored {
   abbe_stored_key key;
   GLuint name;
   bool used;
-  size_t last_used; /* which trimming it was in use before */
 } abbe_stored;
 
 typedef struct abbe_gpu_store {
   abbe_stored *item;
-  size_t count, room, trimmings;
+  size_t count, room;
 } abbe_gpu_store;
 
 /* Something that was made so and is not in use, which then is; 0: there is none. A program may be
@@ -47,13 +46,13 @@ abbe_result abbe_gpu_store_add(abbe_gpu_store *store, const abbe_stored_key *key
 /* Not in use any more; 0 and what the store does not know are left alone. */
 void abbe_gpu_store_put_back(abbe_gpu_store *store, abbe_stored_kind kind, GLuint name);
 
-/* Deletes buffers and textures that are not in use, and programs that no making has asked for since
- * the last ABBE_STORE_KEPT trimmings. */
-#define ABBE_STORE_KEPT 32
+/* Deletes what is not in use. */
 void abbe_gpu_store_trim(abbe_gpu_store *store, const abbe_gl *gl);
 void abbe_gpu_store_free(abbe_gpu_store *store, const abbe_gl *gl);
 
 /* Bytes of buffers and textures in use. */
 size_t abbe_gpu_store_bytes(const abbe_gpu_store *store);
+/* How many there are of a kind. */
+size_t abbe_gpu_store_count(const abbe_gpu_store *store, abbe_stored_kind kind);
 
 #endif
