@@ -60,12 +60,12 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   return abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
 }
 
-static abbe_result make_eye(abbe_renderer *r, bool software, abbe_error *error) {
+static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &r->variant, &r->receivers, error);
   if (result == ABBE_OK)
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &r->variant,
-                                       software, &r->refraction, error);
+                                       &r->refraction, error);
   if (result == ABBE_OK)
     result = abbe_picture_make(&r->receivers, &r->refraction, &r->picture, error);
   return result;
@@ -74,13 +74,14 @@ static abbe_result make_eye(abbe_renderer *r, bool software, abbe_error *error) 
 static abbe_result make_passes(abbe_renderer *r, bool software, abbe_error *error) {
   abbe_result result = abbe_gpu_scene_upload(&r->scene, error);
   abbe_shader_variant_make(&r->scene, &r->variant);
+  r->variant.copies = software;
   if (result == ABBE_OK && is_thesis(r))
     return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
   if (result == ABBE_OK) result = abbe_photon_lights_make(&r->scene, &r->views, error);
   r->variant.wide = r->views.wide;
   if (result == ABBE_OK) result = make_light(r, error);
-  return result == ABBE_OK ? make_eye(r, software, error) : result;
+  return result == ABBE_OK ? make_eye(r, error) : result;
 }
 
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,

@@ -35,7 +35,7 @@ layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 uniform float ledger_unit;  // W
 shared uint more_sum[3], less_sum[3];
 const uint ABSORBED = 2u, MISSED = 4u, INTERPOLATED = 5u;
-uniform int light;
+#include "pass_light.glsl"
 uniform ivec2 grid;
 uniform int map_size;
 uniform int sample_first;
@@ -184,6 +184,7 @@ void main() {
     less_sum[gl_LocalInvocationID.x] = 0u;
   }
   barrier();
+  copy_light();
   vec3 entry = deposit() / ledger_unit;
   for (int k = 0; k < 3; k++) {
     if (entry[k] > 0.0) atomicAdd(more_sum[k], uint(entry[k] + 0.5));

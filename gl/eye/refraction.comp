@@ -4,6 +4,7 @@
 // REFINES: bands are joined first, and listed where what they show differs from what their neighbours
 // show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
+#define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
 

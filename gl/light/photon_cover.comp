@@ -1,10 +1,11 @@
 // What of each cell is lit and shows a refractor: a photon carries the light of that part, and starts
 // in its middle. Cells without any become no photons.
 layout(local_size_x = 256) in;
+#define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
 
-uniform int light;
+#include "pass_light.glsl"
 uniform ivec2 grid;
 #include "photon_start.glsl"
 #define MAKES_PHOTONS
@@ -33,6 +34,8 @@ vec2 ray_offset(int k) {
 }
 
 void main() {
+  copy_tables();
+  copy_light();
   uint i = gl_GlobalInvocationID.x;
   if (i >= in_count) return;
   uint packed_cell = in_cell[i];

@@ -21,7 +21,7 @@ layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uint s
 #define SIGNATURE(i) signature[i]
 #endif
 
-uniform int light;
+#include "pass_light.glsl"
 uniform ivec2 grid;
 uniform int map_size;
 uniform uint chunks, chunk;  // only photons of this chunk
@@ -145,6 +145,7 @@ float wrong_in(int k, float misplaced_by, float size, float photon_flux) {
 }
 
 void main() {
+  copy_light();
   uint listed = thread_number();
   if (listed >= path_count) return;
   uint photon_path = path_list[listed];

@@ -18,6 +18,7 @@ typedef struct abbe_shader_variant {
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
   bool receiver_shadows, absorbing, textured, caustics, walk, cubes;
+  bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool layers_out;
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */

@@ -55,6 +55,29 @@ static void nothing_has_room_for_one(void **state) {
   free(text);
 }
 
+/* Where tables are copied, so are those that are known by their numbers, up to a count that is
+ * worth it. */
+static void copies_are_told_where_they_are_made(void **state) {
+  (void)state;
+  abbe_shader_variant v = {.lights = 1, .receivers = 3, .planes = 2, .one_convex = true};
+  char *text = text_of(&v, NULL);
+  assert_null(strstr(text, "EACH_"));
+  free(text);
+  v.copies = true;
+  text = text_of(&v, NULL);
+  assert_true(has(text, "#define EACH_LIGHT(DO) DO(0)"));
+  assert_true(has(text, "#define EACH_RECEIVER(DO) DO(0) DO(1) DO(2)"));
+  assert_true(has(text, "#define EACH_PLANE(DO) DO(0) DO(1)"));
+  assert_null(strstr(text, "EACH_SHADOW_PLANE"));
+  free(text);
+  v.receivers = 33;
+  v.walk = true;
+  text = text_of(&v, NULL);
+  assert_null(strstr(text, "EACH_RECEIVER"));
+  assert_null(strstr(text, "EACH_PLANE"));
+  free(text);
+}
+
 /* A table of exactly a block is a block; one element more is storage. */
 static void tables_beyond_a_block_are_storage(void **state) {
   (void)state;
@@ -102,6 +125,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(counts_and_flags_are_told),
       cmocka_unit_test(nothing_has_room_for_one),
+      cmocka_unit_test(copies_are_told_where_they_are_made),
       cmocka_unit_test(tables_beyond_a_block_are_storage),
       cmocka_unit_test(photons_are_told_where_there_are_any),
   };
