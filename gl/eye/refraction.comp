@@ -51,6 +51,28 @@ uniform float share_limit;
 uniform mat3 xyz_from_rgb;
 uniform float pixel_angle;  // rad
 
+// As in receiver.glsl.
+vec4 own_eye_view[6];
+vec3 own_eye;
+float own_share_limit, own_pixel_angle;
+mat3 own_xyz_from_rgb;
+
+void copy_all() {
+  copy_tables();
+  copy_surroundings();
+  for (int i = 0; i < 6; i++) own_eye_view[i] = read_now(eye_view[i]);
+  own_eye = read_now(eye);
+  own_share_limit = read_now(share_limit);
+  own_pixel_angle = read_now(pixel_angle);
+  own_xyz_from_rgb = read_now(xyz_from_rgb);
+}
+
+#define eye_view own_eye_view
+#define eye own_eye
+#define share_limit own_share_limit
+#define pixel_angle own_pixel_angle
+#define xyz_from_rgb own_xyz_from_rgb
+
 int refractor;  // that this thread's pixel shows
 
 ivec2 pixel_of(uint listed) {

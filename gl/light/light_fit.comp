@@ -13,6 +13,7 @@ layout(std430, binding = BINDING_FOUND_BOX) buffer Box { uint box[4]; };  // lef
 
 void main() {
   copy_tables();
+  copy_surroundings();
   copy_light();
   uvec2 at = gl_GlobalInvocationID.xy;
   if (max(at.x, at.y) >= uint(side)) return;

@@ -35,6 +35,7 @@ vec2 ray_offset(int k) {
 
 void main() {
   copy_tables();
+  copy_surroundings();
   copy_light();
   uint i = gl_GlobalInvocationID.x;
   if (i >= in_count) return;

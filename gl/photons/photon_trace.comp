@@ -138,6 +138,7 @@ void main() {
   }
   barrier();
   copy_tables();
+  copy_surroundings();
   copy_light();
   Task task = task_of(thread_number());
   if (task.there) {
