@@ -142,7 +142,8 @@ static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe
       result = fit_map(c, light, error);
   if (result != ABBE_OK || !c->atlas->used) return result;
   result = abbe_receiver_atlas_keep(c->atlas, variant, error);
-  return result == ABBE_OK ? compile_trace(c, variant, error) : result;
+  /* where tiles are kept, what is compiled is the same */
+  return result == ABBE_OK && !c->atlas->used ? compile_trace(c, variant, error) : result;
 }
 
 static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
