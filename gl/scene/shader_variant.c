@@ -138,9 +138,6 @@ static void print_photons(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "BRIDGE", v->bridge);
   print_flag(to, "DOUBTS_BRIDGES", v->doubts_bridges);
   print_flag(to, "TINTING", v->tinting);
-  if (!v->refined) return;
-  print_flag(to, "REFINED", true);
-  print_count(to, "FINE_NODES", v->fine_nodes);
 }
 
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more) {

@@ -49,8 +49,8 @@ static void nothing_has_room_for_one(void **state) {
   char *text = text_of(&v, NULL);
   assert_true(has(text, "#define REFRACTORS 0"));
   assert_true(has(text, "#define REFRACTOR_ROOM 1"));
-  static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "TILES", "HIT_STRIDE",
-                                       "MAP_LEVELS",    "REFINED",    "WIDE",  "IN_STORAGE"};
+  static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "TILES",     "HIT_STRIDE",
+                                       "MAP_LEVELS",    "WIDE",       "IN_STORAGE"};
   for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) assert_null(strstr(text, absent[i]));
   free(text);
 }
@@ -107,15 +107,11 @@ static void photons_are_told_where_there_are_any(void **state) {
   char *text = text_of(&v, NULL);
   assert_true(has(text, "#define HIT_STRIDE 7") && has(text, "#define STEPS 128"));
   assert_true(has(text, "#define BRIDGE") && has(text, "#define MAP_LEVELS 6"));
-  assert_null(strstr(text, "FINE_NODES"));
   free(text);
-  v.refined = true;
-  v.fine_nodes = 4;
   v.tiles = 3;
   v.tile_blocks = 32;
   v.chart_sides = 12;
   text = text_of(&v, NULL);
-  assert_true(has(text, "#define REFINED") && has(text, "#define FINE_NODES 4"));
   assert_true(has(text, "#define TILES") && has(text, "#define MOST_TILES 3"));
   assert_true(has(text, "#define TILE_BLOCKS 32") && has(text, "#define CHART_SIDES 12"));
   free(text);
