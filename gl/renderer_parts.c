@@ -81,6 +81,7 @@ static void free_parts(abbe_renderer *r, unsigned parts) {
 
 static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant_make(&r->scene, &r->variant);
+  r->variant.copies = r->software;
   if (is_thesis(r)) return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
   abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
   r->variant.wide = r->views.wide;
@@ -102,7 +103,7 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
   if (result == ABBE_OK)
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant,
-                                       r->software, &r->refraction, error);
+                                       &r->refraction, error);
   if (result == ABBE_OK)
     result = abbe_picture_make(&r->receivers, &r->refraction, &r->picture, error);
   return result;

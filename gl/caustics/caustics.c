@@ -177,7 +177,8 @@ static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe
   }
   if (result != ABBE_OK || !c->atlas->used) return result;
   result = abbe_receiver_atlas_keep(c->atlas, variant, error);
-  return result == ABBE_OK ? compile_trace(c, variant, error) : result;
+  /* where tiles are kept, what is compiled is the same */
+  return result == ABBE_OK && !c->atlas->used ? compile_trace(c, variant, error) : result;
 }
 
 /* The grids that lights have now: their photons, and room for them. */

@@ -24,13 +24,6 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
   *out = (abbe_deposit_pass){.trace = trace, .refine = refine, .map = map, .chunks = 1};
   abbe_result result =
       abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
-  if (result == ABBE_OK && abbe_photon_spectra_refines(trace->spectra)) {
-    abbe_shader_variant refined = *photons;
-    refined.refined = true;
-    refined.fine_nodes = refine->fine_nodes;
-    result = abbe_shader_variant_compute(&refined, gpu, "photon_deposit.comp", NULL,
-                                         &out->list_refined, error);
-  }
   if (result == ABBE_OK)
     result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
   return result == ABBE_OK ? make_room(out, FIRST_SPLATS, error) : result;
@@ -71,14 +64,13 @@ static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) 
   abbe_gpu *gpu = spectra->scene->gpu;
   const bool lengths = spectra->scene->plan->lengths;
   const GLenum signature = lengths ? GL_RG32UI : GL_R32UI;
-  const abbe_hits *hits = &pass->trace->hits, *refined = &pass->refine->hits;
+  const abbe_hits *hits = &pass->trace->hits, *nodes = fine ? &pass->refine->hits : hits;
   abbe_gpu_bind_texels(gpu, program, "hits", 0, GL_RGBA32F, hits->hits);
   abbe_gpu_bind_texels(gpu, program, "signatures", 1, signature, hits->signatures);
   abbe_gpu_bind_texels(gpu, program, "interval_sums", 2, GL_RGBA32F, spectra->intervals);
-  if (fine) {
-    abbe_gpu_bind_texels(gpu, program, "fine_hits", 3, GL_RGBA32F, refined->hits);
-    abbe_gpu_bind_texels(gpu, program, "fine_signatures", 4, signature, refined->signatures);
-  }
+  abbe_gpu_bind_texels(gpu, program, "node_hits", 3, GL_RGBA32F, nodes->hits);
+  abbe_gpu_bind_texels(gpu, program, "node_signatures", 4, signature, nodes->signatures);
+  abbe_gpu_set_int(gpu, program, "fine_nodes", fine ? (int)pass->refine->fine_nodes : 0);
   if (lengths)
     abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F, spectra->attenuation);
 }
@@ -90,7 +82,7 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   const abbe_gpu_scene *scene = scene_of(pass);
   abbe_gpu *gpu = scene->gpu;
   const bool fine = b->set == ABBE_TRACE_REFINED;
-  const GLuint program = fine ? pass->list_refined : pass->list;
+  const GLuint program = pass->list;
   const GLuint paths = fine ? pass->refine->hits.paths : trace->hits.paths;
   const size_t items =
       fine ? pass->refine->pair_room : trace->start->views->light[light].photon_count;
@@ -102,10 +94,8 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   gpu->gl->UseProgram(program);
   set_batch(pass, program, light, b, chunk);
   abbe_gpu_clear_list(gpu, pass->splats);
-  if (fine)
-    abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->refine->pairs);
-  else
-    abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->refine->wants);
+  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->refine->pairs);
+  abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->refine->wants);
   abbe_gpu_bind_storage(gpu, BINDING_SPLATS, pass->splats);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, paths);
   bind_hits(pass, program, fine);

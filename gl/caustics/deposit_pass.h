@@ -19,7 +19,7 @@ typedef struct abbe_deposit_pass {
   const abbe_trace_pass *trace;
   const abbe_refine_pass *refine;
   abbe_spectral_map *map;
-  GLuint list, list_refined, add; /* programs */
+  GLuint list, add; /* programs */
   GLuint splats;
   size_t splat_room, chunks; /* splats that are listed at a time; chunks of the photons */
 } abbe_deposit_pass;

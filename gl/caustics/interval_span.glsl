@@ -60,8 +60,8 @@ Trail trail_from(Node a, int row) {
 bool moves_likewise(Path path, Interval i, Node b, vec2 step, vec2 step_before) {
   bool has_c = i.has_b && i.number - 1 > path.node_first;
   int hit_c = has_c ? i.hit_b - 1 : i.hit_b;
-  uint path_c = has_c ? texelFetch(NODE_SIGNATURES, hit_c).x : 0u;
-  vec2 at_c = map_position(texelFetch(NODE_HITS, HIT_TEXELS * hit_c).xyz, b.tile);
+  uint path_c = has_c ? texelFetch(node_signatures, hit_c).x : 0u;
+  vec2 at_c = map_position(texelFetch(node_hits, HIT_TEXELS * hit_c).xyz, b.tile);
   vec2 step_after = path_c != 0u && path_c == b.path ? at_c - b.at : vec2(0);
   return min(distance(step, step_before), distance(step, step_after)) < 0.75 * length(step);
 }

@@ -8,7 +8,7 @@ layout(local_size_x = 32, local_size_y = 16) in;
 layout(std430, binding = BINDING_MAP_SUMS) readonly buffer MapSums { uint map_sum[]; };
 uniform sampler2DArray coarser_map;  // the same texture: its next level is done
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
-uniform int light;
+#include "light_number.glsl"
 uniform int layer;  // LIGHTS or more: of the light's tiles
 uniform uint map_texels;
 uniform int map_size;

@@ -11,9 +11,9 @@ struct Node {
 
 Node node_at(int at, bool there, float index, vec2 elsewhere) {
   Node n;
-  vec4 to = texelFetch(NODE_HITS, HIT_TEXELS * at);
-  vec4 interface_at = texelFetch(NODE_HITS, HIT_TEXELS * at + 1);
-  n.path = there ? texelFetch(NODE_SIGNATURES, at).x : 0u;
+  vec4 to = texelFetch(node_hits, HIT_TEXELS * at);
+  vec4 interface_at = texelFetch(node_hits, HIT_TEXELS * at + 1);
+  n.path = there ? texelFetch(node_signatures, at).x : 0u;
   n.index = index;
   n.left = segment_of(to, interface_at, index);
   n.tile = n.path != 0u ? interface_tile(interface_at.w) : NO_TILE;
@@ -21,7 +21,7 @@ Node node_at(int at, bool there, float index, vec2 elsewhere) {
   n.flux = n.path != 0u ? to.w : 0.0;
   n.path_m = 0.0;
 #ifdef TINTING
-  n.path_m = there ? uintBitsToFloat(texelFetch(NODE_SIGNATURES, at).y) : 0.0;
+  n.path_m = there ? uintBitsToFloat(texelFetch(node_signatures, at).y) : 0.0;
 #endif
   return n;
 }

@@ -5,8 +5,8 @@
 // intervals before tell the curve. Splats closer together than photons are added first; X, Y and Z have
 // each a place of their own, or dispersion narrower than that would be lost. A splat is spread over the
 // parallelogram that the neighbouring photons' hits span: where that is wide, in a coarser level of
-// the map. REFINED: the intervals on the list, by all their wavelengths; else those of the coarse set
-// that are not on it. No branch saves time on a software rasteriser, so there are few.
+// the map. fine_nodes: the intervals on the list, by all their wavelengths; 0: those of the coarse set that
+// are not on it. No branch saves time on a software rasteriser, so there are few.
 layout(local_size_x = 256) in;
 #include "common.glsl"
 #include "photon_nodes.glsl"
@@ -24,18 +24,17 @@ layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint sl
 // As textures: a software rasteriser fetches a texel in one load, and storage number by number.
 uniform samplerBuffer hits;     // HIT_TEXELS each
 uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the path inside
-#ifdef REFINED
-uniform samplerBuffer fine_hits;
-uniform usamplerBuffer fine_signatures;
-#else
+// The same of the intervals on the list; of the coarse set again where that is laid.
+uniform samplerBuffer node_hits;
+uniform usamplerBuffer node_signatures;
+uniform int fine_nodes;  // wavelengths of an interval on the list
 layout(std430, binding = BINDING_WANTS) readonly buffer Wants { uint want[]; };  // a bit a refined interval
-#endif
 // lo and hi of each, as in photon_path.glsl and behind them what is interpolated.
 layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 uniform float ledger_unit;  // W
 shared uint more_sum[3], less_sum[3];
 const uint ABSORBED = 2u, MISSED = 4u, INTERPOLATED = 5u;
-uniform int light;
+#include "pass_light.glsl"
 uniform ivec2 grid;
 uniform int map_size;
 uniform int sample_first;
@@ -47,20 +46,12 @@ uniform int table_first;
 uniform uint chunks, chunk;  // only paths of this chunk
 uniform uint most;           // splats that the list has room for
 
-#ifdef REFINED
-#define NODE_HITS fine_hits
-#define NODE_SIGNATURES fine_signatures
-#else
-#define NODE_HITS hits
-#define NODE_SIGNATURES signatures
-#endif
-
 // A path whose light this thread lays.
 struct Path {
   uint photon;
   int order;
   int node_first, node_last;  // those that it is known at
-  int hit_first;              // NODE_HITS of the first of them
+  int hit_first;              // node_hits of the first of them
   int coarse_first;           // `hits` at the first coarse node
   int middle_twice;           // twice the coarse node in their middle
   int interval_last, intervals;
@@ -76,8 +67,7 @@ struct Path {
 #include "interval_span.glsl"
 #include "span_light.glsl"
 
-#ifdef REFINED
-Path path_at(uint listed) {
+Path refined_path_at(uint listed) {
   uint pair = pair_at[listed / SLOTS];
   int interval = int(pair % PAIR_INTERVALS);
   Path p;
@@ -85,7 +75,7 @@ Path path_at(uint listed) {
   p.order = int(listed % SLOTS);
   p.node_first = coarse_node(interval);
   p.node_last = coarse_node(interval + 1);
-  p.hit_first = int(listed) * FINE_NODES;
+  p.hit_first = int(listed) * fine_nodes;
   p.coarse_first = int((p.photon * SLOTS + uint(p.order)) * HIT_STRIDE);
   p.middle_twice = 2 * interval + 1;
   p.interval_last = p.node_last;
@@ -93,8 +83,8 @@ Path path_at(uint listed) {
   p.refined = 0u;
   return p;
 }
-#else
-Path path_at(uint listed) {
+
+Path coarse_path_at(uint listed) {
   Path p;
   p.photon = listed / SLOTS;
   p.order = int(listed % SLOTS);
@@ -107,7 +97,15 @@ Path path_at(uint listed) {
   p.refined = want[p.photon] << 1;
   return p;
 }
-#endif
+
+Path path_at(uint listed) {
+  Path p;
+  if (fine_nodes > 0)
+    p = refined_path_at(listed);
+  else
+    p = coarse_path_at(listed);
+  return p;
+}
 
 // Of the wavelengths at which it hits something, that nearest the middle. (A loop that ended early would
 // do less, but Mesa 22's llvmpipe clobbers a load that is repeated after one.)
@@ -133,10 +131,8 @@ Reference reference_of(Path path) {
 
 uint signature_of(Path path, Reference r) {
   uint signature = r.signature;
-#ifdef REFINED
-  for (int i = 0; i < FINE_NODES; i++)
-    signature = max(signature, texelFetch(fine_signatures, path.hit_first + i).x);
-#endif
+  for (int i = 0; i < fine_nodes; i++)
+    signature = max(signature, texelFetch(node_signatures, path.hit_first + i).x);
   return signature;
 }
 
@@ -184,6 +180,7 @@ void main() {
     less_sum[gl_LocalInvocationID.x] = 0u;
   }
   barrier();
+  copy_light();
   vec3 entry = deposit() / ledger_unit;
   for (int k = 0; k < 3; k++) {
     if (entry[k] > 0.0) atomicAdd(more_sum[k], uint(entry[k] + 0.5));

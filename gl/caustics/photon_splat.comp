@@ -10,7 +10,7 @@ layout(local_size_x = 256) in;
 // Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each. TILES: then the same of their
 // layer.
 layout(std430, binding = BINDING_MAP_SUMS) buffer MapSums { uint map_sum[]; };
-uniform int light;
+#include "light_number.glsl"
 uniform int map_size;
 uniform uint most;
 uniform uint map_texels;  // of all levels

@@ -4,6 +4,7 @@
 // REFINES: bands are joined first, and listed where what they show differs from what their neighbours
 // show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
+#define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
 
@@ -49,6 +50,28 @@ uniform vec3 eye;
 uniform float share_limit;
 uniform mat3 xyz_from_rgb;
 uniform float pixel_angle;  // rad
+
+// As in receiver.glsl.
+vec4 own_eye_view[6];
+vec3 own_eye;
+float own_share_limit, own_pixel_angle;
+mat3 own_xyz_from_rgb;
+
+void copy_all() {
+  copy_tables();
+  copy_surroundings();
+  for (int i = 0; i < 6; i++) own_eye_view[i] = read_now(eye_view[i]);
+  own_eye = read_now(eye);
+  own_share_limit = read_now(share_limit);
+  own_pixel_angle = read_now(pixel_angle);
+  own_xyz_from_rgb = read_now(xyz_from_rgb);
+}
+
+#define eye_view own_eye_view
+#define eye own_eye
+#define share_limit own_share_limit
+#define pixel_angle own_pixel_angle
+#define xyz_from_rgb own_xyz_from_rgb
 
 int refractor;  // that this thread's pixel shows
 

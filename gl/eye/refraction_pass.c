@@ -10,8 +10,6 @@
 enum { COARSE_BANDS = 7, FINE_FROM = 9 };
 /* Pixels at a time whose bands may ask for all their samples. */
 enum { REFINE_ROOM = 1 << 20 };
-/* A loop that the shader has unrolled, up to so many turns; more are no longer worth their code. */
-enum { MOST_COPIES = 256, MOST_COPIED_LIGHTS = 4, MOST_COPIED_RECEIVERS = 32 };
 
 static const abbe_gpu_scene *scene_of(const abbe_refraction_pass *pass) {
   return pass->lighting->scene;
@@ -27,61 +25,20 @@ static bool refines(const abbe_refraction_pass *pass) {
   return desc->wavelengths >= FINE_FROM && !desc->everything;
 }
 
-static void write_each(FILE *to, const char *name, size_t count, size_t most) {
-  if (count == 0 || count > most) return;
-  fprintf(to, "#define EACH_%s(DO)", name);
-  for (size_t i = 0; i < count; i++) fprintf(to, " DO(%zu)", i);
-  fprintf(to, "\n");
-}
-
-/* What a software rasteriser copies (copies.glsl). NULL: no memory. */
-static char *write_copies(const abbe_gpu_scene *scene) {
-  const abbe_plan *p = scene->plan;
-  const bool convex = p->convex && p->refractor_count == 1 && !p->multi_refractor_paths;
-  char *text = NULL;
-  size_t size = 0;
-  FILE *to = open_memstream(&text, &size);
-  if (to == NULL) return NULL;
-  write_each(to, "LIGHT", p->light_view_count, MOST_COPIED_LIGHTS);
-  write_each(to, "RECEIVER", p->parallelogram_count, MOST_COPIED_RECEIVERS);
-  write_each(to, "PLANE", convex ? scene->local->object[p->refractor_object[0]].exact.count : 0,
-             MOST_COPIES);
-  write_each(to, "SHADOW_PLANE",
-             p->light_view_count * p->refractor_count == 1 ? scene->shadow_planes : 0, MOST_COPIES);
-  const bool failed = ferror(to) != 0;
-  if (fclose(to) == 0 && !failed) return text;
-  free(text);
-  return NULL;
-}
-
-static abbe_result compile(const abbe_refraction_pass *pass, const abbe_shader_variant *variant,
-                           const char *what, const char *copies, GLuint *out, abbe_error *error) {
-  const size_t size = strlen(what) + strlen(copies) + 1;
-  char *more = malloc(size);
-  if (more == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
-  snprintf(more, size, "%s%s", what, copies);
-  const abbe_result result = abbe_shader_variant_compute(variant, scene_of(pass)->gpu,
-                                                         "refraction.comp", more, out, error);
-  free(more);
-  return result;
-}
-
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
-                                 bool software, abbe_error *error) {
+                                 abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
   char coarse[64];
   abbe_shader_variant camera = *variant;
   camera.exits = scene_of(pass)->plan->eye_exits;
-  char *copies = software ? write_copies(scene_of(pass)) : calloc(1, 1);
-  if (copies == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
   snprintf(coarse, sizeof coarse, "#define REFINES\n#define COARSE_BANDS %d\n", COARSE_BANDS);
-  abbe_result result =
-      compile(pass, &camera, refines(pass) ? coarse : "", copies, &pass->refract, error);
+  abbe_result result = abbe_shader_variant_compute(
+      &camera, gpu, "refraction.comp", refines(pass) ? coarse : NULL, &pass->refract, error);
   if (result == ABBE_OK && refines(pass))
-    result = compile(pass, &camera, "#define REFINED\n", copies, &pass->refract_refined, error);
-  free(copies);
+    result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", "#define REFINED\n",
+                                         &pass->refract_refined, error);
   if (result != ABBE_OK) return result;
-  return abbe_gpu_compute(scene_of(pass)->gpu, "refraction_list.comp", NULL,
-                                   &pass->list, error);
+  return abbe_gpu_compute(gpu, "refraction_list.comp", NULL, &pass->list, error);
 }
 
 static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
@@ -111,15 +68,15 @@ static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
 abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                       const abbe_refractor_faces *faces,
                                       const abbe_receivers_pass *receivers,
-                                      const abbe_shader_variant *variant, bool software,
-                                      abbe_refraction_pass *out, abbe_error *error) {
+                                      const abbe_shader_variant *variant, abbe_refraction_pass *out,
+                                      abbe_error *error) {
   *out = (abbe_refraction_pass){.lighting = lighting,
                                 .faces = faces,
                                 .receivers = receivers,
                                 .pixel_threads = variant->pixel_threads};
   abbe_result result = make_targets(out, error);
   if (result == ABBE_OK && lighting->scene->plan->camera_sees_refractor)
-    result = make_programs(out, variant, software, error);
+    result = make_programs(out, variant, error);
   return result;
 }
 

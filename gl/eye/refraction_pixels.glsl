@@ -8,7 +8,7 @@ vec3 band_light(int band, out float mirrored) {
 
 #ifdef REFINED
 void main() {
-  copy_tables();
+  copy_all();
   uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
   if (listed >= refine_count) return;
   uint what = refine[listed].y;
@@ -30,7 +30,7 @@ void main() {
 }
 #else
 void main() {
-  copy_tables();
+  copy_all();
   uint listed = pixel_first + gl_GlobalInvocationID.x;
   if (listed >= pixel_count) return;
   look(pixel_of(pixel[listed]));

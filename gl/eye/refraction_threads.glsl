@@ -51,7 +51,7 @@ vec3 band_light(int band, bool in_mirror, out float mirrored) {
 
 #ifdef REFINED
 void main() {
-  copy_tables();
+  copy_all();
   uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   uint listed = group * uint(PIXELS) + uint(place);
   bool there = listed < refine_count;
@@ -95,7 +95,7 @@ shared vec3 path_shown[PIXELS * COARSE_BANDS];
 #endif
 
 void main() {
-  copy_tables();
+  copy_all();
   uint listed = pixel_first + gl_WorkGroupID.x * uint(PIXELS) + uint(place);
   bool there = listed < pixel_count;
   uint where = there ? pixel[listed] : 0u;

@@ -215,10 +215,10 @@ static void upload_texel_sizes(const abbe_photon_lights *views, size_t light, in
 }
 
 static void upload_warps(abbe_photon_lights *views, size_t light) {
-  float row[ABBE_WARP_STEPS + 1][4] = {{0}};
-  for (int k = 0; k <= ABBE_WARP_STEPS; k++)
-    for (int axis = 0; axis < 2; axis++)
-      row[k][axis] = (float)views->light[light].map.knot[axis][k];
+  float row[ABBE_WARP_STEPS][4];
+  for (int k = 0; k < ABBE_WARP_STEPS; k++)
+    for (int i = 0; i < 4; i++)
+      row[k][i] = (float)views->light[light].map.knot[i % 2][k + i / 2];
   views->scene->gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, views->warps);
   views->scene->gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row),
                                        sizeof row, row);
@@ -278,8 +278,9 @@ abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lig
   out->wide = desc->photons * desc->photons * desc->wavelengths > MAX_NARROW_PHOTONS;
   size_map(out, scene->plan->caustics ? desc->map_size : 1);
   fit_views(out);
-  abbe_result result = abbe_gpu_make_buffer(scene->gpu, lights * (ABBE_WARP_STEPS + 1) * 16, NULL,
-                                            &out->warps, error);
+  abbe_result result =
+      abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, lights * ABBE_WARP_STEPS * 16, NULL, UNIT_WARPS,
+                           &out->warps, &out->warp_texels, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(scene->gpu, lights * desc->map_size * 8 * 4, NULL,
                                   &out->texel_sizes, error);
@@ -294,10 +295,12 @@ void abbe_photon_lights_free(abbe_photon_lights *views) {
   if (views->scene == NULL) return;
   GLuint buffers[] = {views->lights, views->warps, views->texel_sizes};
   abbe_gpu_drop_buffers(views->scene->gpu, sizeof buffers / sizeof *buffers, buffers);
+  views->scene->gpu->gl->DeleteTextures(1, &views->warp_texels);
 }
 
 void abbe_photon_lights_bind(const abbe_photon_lights *views) {
   const abbe_gl *gl = views->scene->gpu->gl;
   gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_LIGHTS, views->lights);
-  gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_WARPS, views->warps);
+  gl->ActiveTexture(GL_TEXTURE0 + UNIT_WARPS);
+  gl->BindTexture(GL_TEXTURE_BUFFER, views->warp_texels);
 }

@@ -26,7 +26,7 @@ typedef struct abbe_photon_light {
 typedef struct abbe_photon_lights {
   const abbe_gpu_scene *scene;
   abbe_photon_light light[ABBE_SCENE_MAX_LIGHTS];
-  GLuint lights, warps, texel_sizes;
+  GLuint lights, warps, warp_texels, texel_sizes;
   size_t map_levels, map_texels; /* halved as long as sides are even; texels of all levels */
   bool wide;                     /* the map's sums have 64 bits, else 32 */
 } abbe_photon_lights;

@@ -27,7 +27,7 @@ bool layers_front(vec2 uv, vec3 o, vec3 d, inout Hit h) {
 // and what it meets. False
 // where that is no refractor, or one that a receiver hides.
 bool photon_start(vec2 uv, out vec3 o, out vec3 d, out Hit front, out float flux) {
-  Light l = lights[light];
+  Light l = pass_light;
   view_ray(l.near_view, uv, o, d);
   flux = light_profile(l, d) * window_measure(l.near_view, d) / l.misc.z;
   front.t = 1e30;

@@ -50,14 +50,16 @@ static void write_index(const abbe_receiver_atlas *atlas, size_t light, size_t b
   }
 }
 
-/* The shaders' tables, `most` tiles a light, and what they are told of them. */
-static abbe_result tell_shaders(abbe_receiver_atlas *atlas, size_t most,
-                                abbe_shader_variant *variant, abbe_error *error) {
+/* The shaders' tables and what they are told of them: the same however many tiles a light has, so
+ * that what is compiled before these are chosen need not be compiled again. */
+static abbe_result tell_shaders(abbe_receiver_atlas *atlas, abbe_shader_variant *variant,
+                                abbe_error *error) {
+  enum { MOST = ABBE_RECEIVER_TILES };
   const size_t lights = atlas->views->scene->plan->light_view_count,
                sides = 2 * atlas->views->scene->charts.count;
   const size_t blocks = atlas->views->scene->plan->desc.map_size / block_side(atlas);
   const size_t words = 1 + blocks * blocks + sides;
-  float(*row)[ABBE_TILE_FLOATS] = calloc(lights * most, sizeof *row);
+  float(*row)[ABBE_TILE_FLOATS] = calloc(lights * MOST, sizeof *row);
   GLint *index = calloc(lights * words, sizeof *index);
   abbe_result result = row != NULL && index != NULL
                            ? ABBE_OK
@@ -67,16 +69,16 @@ static abbe_result tell_shaders(abbe_receiver_atlas *atlas, size_t most,
     for (size_t k = 0; k < tiles->count; k++)
       abbe_receiver_tile_pack(
           &tiles->tile[k], atlas->views->scene->charts.parallelogram[tiles->tile[k].chart_side / 2],
-          row[i * most + k]);
+          row[i * MOST + k]);
     write_index(atlas, i, blocks, index + i * words);
   }
   if (result == ABBE_OK)
-    result = upload(atlas, ABBE_TILE_ROWS, GL_RGBA32F, lights * most * sizeof *row, row, error);
+    result = upload(atlas, ABBE_TILE_ROWS, GL_RGBA32F, lights * MOST * sizeof *row, row, error);
   if (result == ABBE_OK)
     result = upload(atlas, ABBE_TILE_INDEX, GL_R32I, lights * words * sizeof *index, index, error);
   free(row);
   free(index);
-  variant->tiles = most;
+  variant->tiles = MOST;
   variant->tile_blocks = blocks;
   variant->chart_sides = sides;
   return result;
@@ -205,7 +207,7 @@ abbe_result abbe_receiver_atlas_make(const abbe_photon_lights *views, abbe_shade
   if (!views->scene->plan->tiles) return ABBE_OK;
   out->used = out->fits = true;
   abbe_result result = upload_charts(out, error);
-  return result == ABBE_OK ? tell_shaders(out, 1, variant, error) : result;
+  return result == ABBE_OK ? tell_shaders(out, variant, error) : result;
 }
 
 void abbe_receiver_atlas_free(abbe_receiver_atlas *atlas) {
@@ -227,14 +229,13 @@ void abbe_receiver_atlas_bind(const abbe_receiver_atlas *atlas) {
 abbe_result abbe_receiver_atlas_keep(abbe_receiver_atlas *atlas, abbe_shader_variant *variant,
                                      abbe_error *error) {
   const size_t lights = atlas->views->scene->plan->light_view_count;
-  size_t layer = lights, most = 0;
+  size_t layer = lights;
   for (size_t i = 0; i < lights; i++) {
-    if (atlas->tiles[i].count > most) most = atlas->tiles[i].count;
     if (atlas->tiles[i].count > 0) atlas->layer[i] = layer++;
   }
   atlas->fits = false;
-  atlas->used = most > 0;
-  if (atlas->used) return tell_shaders(atlas, most, variant, error);
+  atlas->used = layer > lights;
+  if (atlas->used) return tell_shaders(atlas, variant, error);
   variant->tiles = 0;
   return ABBE_OK;
 }

@@ -8,7 +8,7 @@ const bool GO_ON = CHEAP_INTERFACES && EXITS > 8;
 
 #ifdef LAYERS
 void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
-  layers_inner(lights[light].near_view, light_layers, 2.0 * float(light), 2.0 * refractors[r].sphere.w, p, d,
+  layers_inner(pass_light.near_view, light_layers, 2.0 * float(light), 2.0 * refractors[r].sphere.w, p, d,
                q, n);
 }
 #endif

@@ -57,7 +57,7 @@ bool beside_map(int side, inout vec3 place, out int tile) {
 
 // The first receiver on the ray.
 ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
-  Light l = lights[light];
+  Light l = pass_light;
   ReceiverHit to = ReceiverHit(NO_RECEIVER, p, p, -1, 1u);
   vec3 uvz;
   float t;

@@ -1,6 +1,7 @@
 // A photon a wavelength, on the paths of photon_path.glsl; what leaves a path is entered in the
 // ledger.
 layout(local_size_x = 256) in;
+#define COPIES_TABLES
 #include "refractor.glsl"
 #include "wide_sum.glsl"
 #include "thread.glsl"
@@ -29,7 +30,7 @@ layout(std430, binding = BINDING_PATH_MARKS) writeonly buffer PathMarks { uint p
 // lo and hi of reached, reflected, absorbed, trapped, missed.
 layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 
-uniform int light;
+#include "pass_light.glsl"
 uniform ivec2 grid;
 #include "photon_start.glsl"
 uniform int sample_first;  // wavelengths sample_first .. sample_first + HIT_STRIDE - 1 in this batch
@@ -136,6 +137,9 @@ void main() {
     less_sum[gl_LocalInvocationID.x] = 0u;
   }
   barrier();
+  copy_tables();
+  copy_surroundings();
+  copy_light();
   Task task = task_of(thread_number());
   if (task.there) {
     PhotonRay ray = ray_of(task);

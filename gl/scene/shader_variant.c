@@ -85,6 +85,24 @@ static void print_tables(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ONE_SHADOW", v->one_shadow);
 }
 
+/* A loop that the shader has unrolled, up to so many turns; more are no longer worth their code. */
+enum { MOST_COPIES = 256, MOST_COPIED_LIGHTS = 4, MOST_COPIED_RECEIVERS = 32 };
+
+static void print_each(FILE *to, const char *name, size_t count, size_t most) {
+  if (count == 0 || count > most) return;
+  fprintf(to, "#define EACH_%s(DO)", name);
+  for (size_t i = 0; i < count; i++) fprintf(to, " DO(%zu)", i);
+  fprintf(to, "\n");
+}
+
+static void print_copies(FILE *to, const abbe_shader_variant *v) {
+  if (!v->copies) return;
+  print_each(to, "LIGHT", v->lights, MOST_COPIED_LIGHTS);
+  print_each(to, "RECEIVER", v->receivers, MOST_COPIED_RECEIVERS);
+  print_each(to, "PLANE", v->one_convex && !v->walk ? v->planes : 0, MOST_COPIES);
+  print_each(to, "SHADOW_PLANE", v->one_shadow ? v->shadow_planes : 0, MOST_COPIES);
+}
+
 static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "RECEIVER_SHADOWS", v->receiver_shadows);
   print_flag(to, "WIDE", v->wide);
@@ -119,9 +137,6 @@ static void print_photons(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "BRIDGE", v->bridge);
   print_flag(to, "DOUBTS_BRIDGES", v->doubts_bridges);
   print_flag(to, "TINTING", v->tinting);
-  if (!v->refined) return;
-  print_flag(to, "REFINED", true);
-  print_count(to, "FINE_NODES", v->fine_nodes);
 }
 
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more) {
@@ -130,6 +145,7 @@ char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *m
   FILE *to = open_memstream(&text, &size);
   if (to == NULL) return NULL;
   print_tables(to, variant);
+  print_copies(to, variant);
   print_facts(to, variant);
   print_photons(to, variant);
   if (more != NULL) fputs(more, to);

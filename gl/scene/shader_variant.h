@@ -17,6 +17,7 @@ typedef struct abbe_shader_variant {
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
   bool receiver_shadows, absorbing, textured, caustics, walk, cubes;
+  bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool layers_out;
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
@@ -25,8 +26,8 @@ typedef struct abbe_shader_variant {
   size_t map_levels;                      /* 0: not told */
   size_t tiles, tile_blocks, chart_sides; /* tiles of a light at the most; 0: none has any */
   /* photons; hit_stride 0: not told */
-  size_t hit_stride, steps, nodes, fine_nodes;
-  bool bridge, doubts_bridges, tinting, refined;
+  size_t hit_stride, steps, nodes;
+  bool bridge, doubts_bridges, tinting;
 } abbe_shader_variant;
 
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out);

@@ -59,17 +59,17 @@ layout(std140, binding = BINDING_SPECTRA) uniform Spectra { vec4 spectra[SPECTRU
 #include "copies.glsl"
 
 // The map's texels are finer where more light lands: each axis of its window is warped by a
-// monotone polygon. x and y at [light * (WARP_STEPS + 1) + k], from 0 to 1.
+// monotone polygon. Its corners at light * WARP_STEPS + k, and what follows them, from 0 to 1: x, y, x, y.
+// As texels: a software rasteriser fetches four numbers at once, and blocks number by number.
 const int WARP_STEPS = 128;
-layout(std140, binding = BINDING_WARPS) uniform Warps { vec4 warps[LIGHT_ROOM * (WARP_STEPS + 1)]; };
+layout(binding = UNIT_WARPS) uniform samplerBuffer warps;
 
 vec2 warp(int light, vec2 uv) {
   vec2 s = clamp(uv, vec2(0), vec2(1)) * float(WARP_STEPS);
   ivec2 k = min(ivec2(s), ivec2(WARP_STEPS - 1));
   vec2 f = s - vec2(k);
-  int row = light * (WARP_STEPS + 1);
-  return vec2(mix(warps[row + k.x].x, warps[row + k.x + 1].x, f.x),
-              mix(warps[row + k.y].y, warps[row + k.y + 1].y, f.y));
+  vec4 x = texelFetch(warps, light * WARP_STEPS + k.x), y = texelFetch(warps, light * WARP_STEPS + k.y);
+  return vec2(mix(x.x, x.z, f.x), mix(y.y, y.w, f.y));
 }
 
 #ifdef CUBES

@@ -17,6 +17,28 @@ uniform vec3 background;  // rgb radiance
 uniform vec4 refractor_bounds;  // centre, radius of all refractors
 uniform float scene_size;
 
+#ifdef COPIES_TABLES
+// Read as late as these are asked for, numbers cost as much as tables (copies.glsl).
+mat3 own_rgb_from_xyz;
+vec3 own_ambient, own_background;
+vec4 own_refractor_bounds;
+float own_scene_size;
+
+void copy_surroundings() {
+  own_rgb_from_xyz = read_now(rgb_from_xyz);
+  own_ambient = read_now(ambient);
+  own_background = read_now(background);
+  own_refractor_bounds = read_now(refractor_bounds);
+  own_scene_size = read_now(scene_size);
+}
+
+#define rgb_from_xyz own_rgb_from_xyz
+#define ambient own_ambient
+#define background own_background
+#define refractor_bounds own_refractor_bounds
+#define scene_size own_scene_size
+#endif
+
 // How far behind a refractor's interface a receiver may lie to be lit by what leaves there: a refractor
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
