@@ -121,6 +121,14 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
   return (parts & EYE) != 0 ? make_eye(r, error) : ABBE_OK;
 }
 
+/* What was dispatched after a cancel was not, so that a result without it is none. */
+static abbe_result end_watch(abbe_renderer *r, abbe_result result, abbe_error *error) {
+  const bool stopped = r->gpu.stopped;
+  abbe_gpu_watch(&r->gpu, NULL, NULL);
+  if (!stopped || result != ABBE_OK) return result;
+  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+}
+
 abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene,
                                        const abbe_render_desc *desc, abbe_error *error) {
   abbe_renderer_inputs inputs;
@@ -138,7 +146,8 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   r->plan = plan;
   r->inputs = inputs;
   if (parts != 0) r->seen = false;
-  result = make_parts(r, scene, parts, error);
+  abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
+  result = end_watch(r, make_parts(r, scene, parts, error), error);
   r->made = result == ABBE_OK;
   if (!r->made) free_parts(r, ALL);
   abbe_gpu_trim(&r->gpu);
@@ -152,32 +161,30 @@ void abbe_renderer_parts_free(abbe_renderer *r) {
   abbe_plan_free(&r->plan);
 }
 
-static abbe_result draw_light(abbe_renderer *r, abbe_render_progress progress, void *user,
-                              abbe_error *error) {
+static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_light_layers_run(&r->layers, error);
   if (result == ABBE_OK && r->plan.caustics)
-    result = abbe_caustics_run(&r->caustics, progress, user, &r->untimed_ms, error);
+    result = abbe_caustics_run(&r->caustics, &r->untimed_ms, error);
   return result;
 }
 
-static abbe_result draw_eye(abbe_renderer *r, abbe_render_progress progress, void *user,
-                            abbe_error *error) {
+static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_receivers_pass_run(&r->receivers, error);
-  if (result == ABBE_OK) result = abbe_refraction_pass_run(&r->refraction, progress, user, error);
+  if (result == ABBE_OK) result = abbe_refraction_pass_run(&r->refraction, error);
   if (result == ABBE_OK) abbe_picture_run(&r->picture);
   return result;
 }
 
 /* The frame: the light's passes, then the camera's; those that were run and depend on nothing that
  * has changed since are left out. */
-static abbe_result run_passes(abbe_renderer *r, abbe_render_progress progress, void *user,
-                              abbe_error *error) {
+static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (is_thesis(r)) {
     if (!r->seen) result = abbe_thesis_run(&r->thesis, error);
   } else {
-    if (!r->lit) result = draw_light(r, progress, user, error);
-    if (result == ABBE_OK && !r->seen) result = draw_eye(r, progress, user, error);
+    if (!r->lit) result = draw_light(r, error);
+    r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped);
+    if (result == ABBE_OK && !r->seen) result = draw_eye(r, error);
   }
   return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the frame's passes", error);
 }
@@ -218,9 +225,10 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
   r->untimed_ms = 0;
   if (!r->lit) r->seen = false;
   const double start_ms = 1e3 * abbe_clock_seconds();
-  const abbe_result result = run_passes(r, progress, user, error);
+  abbe_gpu_watch(&r->gpu, progress, user);
+  abbe_result result = run_passes(r, error);
   r->gpu.gl->Finish();
-  r->lit = r->lit || result == ABBE_OK;
+  result = end_watch(r, result, error);
   r->seen = result == ABBE_OK;
   if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
   r->gpu.statistics = NULL;

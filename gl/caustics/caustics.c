@@ -159,13 +159,6 @@ static abbe_result compile_trace(abbe_caustics *c, const abbe_shader_variant *va
   return abbe_trace_pass_compile(&c->trace, &photons, error);
 }
 
-static abbe_result show_making(const abbe_caustics *c, size_t light, abbe_error *error) {
-  const abbe_render_desc *d = &plan_of(c)->desc;
-  const double done = (double)(light + 1) / (double)plan_of(c)->light_view_count;
-  if (d->progress == NULL || d->progress(d->progress_user, done)) return ABBE_OK;
-  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-}
-
 /* A few photons are traced to see where light falls: maps and tiles are fitted to that. */
 static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe_error *error) {
   abbe_result result = compile_trace(c, variant, error);
@@ -173,7 +166,8 @@ static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe
     if (plan_of(c)->reaches[light] &&
         (c->atlas->used || !abbe_photon_lights_map_is_given(c->views, light)))
       result = fit_map(c, light, error);
-    if (result == ABBE_OK) result = show_making(c, light, error);
+    const double done = (double)(light + 1) / (double)plan_of(c)->light_view_count;
+    if (result == ABBE_OK) result = abbe_gpu_tell(c->views->scene->gpu, done, error);
   }
   if (result != ABBE_OK || !c->atlas->used) return result;
   result = abbe_receiver_atlas_keep(c->atlas, variant, error);
@@ -253,8 +247,7 @@ void abbe_caustics_free(abbe_caustics *c) {
   abbe_photon_start_free(&c->start);
 }
 
-static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_render_progress progress,
-                                     void *user, abbe_error *error) {
+static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_hit_batch b = {0};
   abbe_result result = ABBE_OK;
@@ -263,15 +256,13 @@ static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_render
     abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
     result = abbe_deposit_pass_run(&c->deposit, light, &b, !c->measured[light], error);
     const double share = ((double)light + share_done(c, &b)) / (double)plan_of(c)->light_view_count;
-    if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
-      result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+    if (result == ABBE_OK) result = abbe_gpu_tell(gpu, 0.5 * share, error);
     abbe_gpu_begin_pass(gpu);
   }
   return result;
 }
 
-static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progress progress,
-                             void *user, abbe_error *error) {
+static abbe_result run_light(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_gpu_begin_pass(gpu);
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
@@ -279,7 +270,7 @@ static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progres
   abbe_spectral_map_clear(c->map);
   abbe_photon_ledger_clear(&c->ledger);
   abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
-  if (result == ABBE_OK) result = trace_and_deposit(c, light, progress, user, error);
+  if (result == ABBE_OK) result = trace_and_deposit(c, light, error);
   if (result != ABBE_OK) return result;
   c->measured[light] = true;
   abbe_gpu_begin_pass(gpu);
@@ -288,15 +279,14 @@ static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progres
   return ABBE_OK;
 }
 
-abbe_result abbe_caustics_run(abbe_caustics *c, abbe_render_progress progress, void *user,
-                              double *untimed_ms, abbe_error *error) {
+abbe_result abbe_caustics_run(abbe_caustics *c, double *untimed_ms, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_result result = ABBE_OK;
   c->energy_known = gpu->statistics != NULL;
   memset(c->energy, 0, sizeof c->energy);
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (!plan_of(c)->reaches[light]) continue;
-    result = run_light(c, light, progress, user, error);
+    result = run_light(c, light, error);
     if (result != ABBE_OK || gpu->statistics == NULL) continue;
     const double start_ms = 1e3 * abbe_clock_seconds();
     abbe_photon_ledger_read(&c->ledger, light, &c->energy[light]);

@@ -31,8 +31,8 @@ typedef struct abbe_caustics {
 } abbe_caustics;
 
 /* Fits views, maps, tiles and grids by tracing photons, makes the atlas and the map, completes the
- * scene's variant by the tiles that there are. Of a plan with caustics. Calls the request's
- * progress. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
+ * scene's variant by the tiles that there are. Of a plan with caustics. Tells who
+ * watches. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
 abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *layers,
                                abbe_receiver_atlas *atlas, abbe_spectral_map *map,
                                abbe_shader_variant *variant, abbe_caustics *out, abbe_error *error);
@@ -40,8 +40,7 @@ void abbe_caustics_free(abbe_caustics *caustics);
 
 /* Photons of every light to its map; where the frame has statistics, also their ledger. untimed_ms:
  * grows by what reading that took. ABBE_CANCELLED, ABBE_GL. */
-abbe_result abbe_caustics_run(abbe_caustics *caustics, abbe_render_progress progress, void *user,
-                              double *untimed_ms, abbe_error *error);
+abbe_result abbe_caustics_run(abbe_caustics *caustics, double *untimed_ms, abbe_error *error);
 
 /* Where the light went in the last run, of lights as they are now. Known where that run had
  * statistics. */

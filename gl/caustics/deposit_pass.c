@@ -99,7 +99,7 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   abbe_gpu_bind_storage(gpu, BINDING_SPLATS, pass->splats);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, paths);
   bind_hits(pass, program, fine);
-  abbe_gpu_dispatch_list(gpu, program, paths, items * scene->plan->hit_slots, 1);
+  abbe_gpu_dispatch_list(gpu, program, paths, 0, items * scene->plan->hit_slots, 1);
 }
 
 /* Lists a chunk; again where it has more splats than there is room for, with more room, or in
@@ -111,7 +111,7 @@ static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const ab
   while (result == ABBE_OK) {
     list_splats(pass, light, batch, chunk);
     const size_t count = abbe_gpu_read_count(scene_of(pass)->gpu, pass->splats);
-    if (count <= pass->splat_room) return ABBE_OK;
+    if (count <= pass->splat_room || scene_of(pass)->gpu->stopped) return ABBE_OK;
     abbe_photon_ledger_restore(pass->trace->ledger); /* a batch is entered once */
     if (chunk == 0 && count > MAX_SPLATS)
       pass->chunks = abbe_refine_pass_chunks(count * pass->chunks, MAX_SPLATS);
@@ -129,7 +129,7 @@ static void add_splats(abbe_deposit_pass *pass, size_t light) {
   abbe_gpu_set_uint(gpu, pass->add, "most", pass->splat_room);
   abbe_gpu_set_uint(gpu, pass->add, "map_texels", pass->map->views->map_texels);
   abbe_gpu_bind_storage(gpu, BINDING_MAP_SUMS, pass->map->sums);
-  abbe_gpu_dispatch_list(gpu, pass->add, pass->splats, pass->splat_room, 1);
+  abbe_gpu_dispatch_list(gpu, pass->add, pass->splats, 0, pass->splat_room, 1);
 }
 
 abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,

@@ -46,7 +46,7 @@ static abbe_result sum_again(abbe_caustics *c, size_t bands, size_t first, abbe_
   double untimed_ms = 0;
   abbe_result result = abbe_photon_spectra_weigh(&c->spectra, bands, first, error);
   memset(c->measured, 0, sizeof c->measured);
-  return result == ABBE_OK ? abbe_caustics_run(c, NULL, NULL, &untimed_ms, error) : result;
+  return result == ABBE_OK ? abbe_caustics_run(c, &untimed_ms, error) : result;
 }
 
 abbe_result abbe_map_bands_read(abbe_caustics *c, size_t light, size_t bands, double unit,

@@ -3,6 +3,7 @@
 // by their own areas: which keeps the sum, and shows no texel to be narrower than the next. A layer of tiles
 // comes to irradiance, each tile by itself.
 layout(local_size_x = 32, local_size_y = 16) in;
+#include "thread.glsl"
 #include "common.glsl"
 #include "receiver_atlas.glsl"
 layout(std430, binding = BINDING_MAP_SUMS) readonly buffer MapSums { uint map_sum[]; };
@@ -49,7 +50,7 @@ void resolve_tile(ivec2 texel, vec3 flux) {
 #endif
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 texel = ivec2(texel_number());
   int side = map_size >> level;
   if (texel.x >= side || texel.y >= side) return;
   uint at = level_offset(level) + uint(texel.y * side + texel.x);

@@ -10,6 +10,7 @@
 #include "gl/device/gpu_store.h"
 #include "gl/device/program.h"
 #include "gl/device/statistics.h"
+#include "gl/plan/facts/render_desc.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -32,6 +33,10 @@ typedef struct abbe_gpu {
   abbe_gpu_store store;
   abbe_statistics *statistics;         /* of the frame that runs, or NULL: no pass is waited for */
   double pass_start_ms;
+  abbe_render_progress progress; /* of whoever watches; NULL: nobody does */
+  void *progress_user;
+  double done;  /* what they were told last */
+  bool stopped; /* they want no more: nothing is dispatched */
 } abbe_gpu;
 
 /* *out is zero or made before; free it also where this fails. ABBE_GL, ABBE_NO_MEMORY. */
@@ -98,12 +103,24 @@ void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list);
 /* Waits for the device: elements of a list, also beyond its room. */
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
 
-/* One thread a texel, in groups of 32 x 16. */
-void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height);
-/* So many threads an element of the list, which has room for `most`; the program is set up by then.
- */
-void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t most,
+/* From now on somebody watches, or nobody (progress is NULL): work is then done in parts of some
+ * milliseconds, and between them they are asked whether it goes on. It waits for the device. */
+void abbe_gpu_watch(abbe_gpu *gpu, abbe_render_progress progress, void *user);
+/* Tells them what is done, 0 to 1. ABBE_CANCELLED where they have stopped it. */
+abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error);
+/* Asks them, where there are any; whether they go on. */
+bool abbe_gpu_ask(abbe_gpu *gpu);
+
+/* Of the program that is in use, whose shader takes its number from thread.glsl: so many groups of
+ * ABBE_GPU_GROUP threads; one thread a texel, in groups of 32 x 16. */
+void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups);
+void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t height);
+/* So many threads for each of `most` elements of a list from the first on, as far as there are any;
+ * the program is set up by then. */
+void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
                             size_t threads);
+/* The groups that stand in the list's words 1 to 3, as another program has written them. */
+void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list);
 
 void abbe_gpu_begin_pass(abbe_gpu *gpu);
 /* What was done since the pass began, or since the last one's end, is of this pass; several ends of

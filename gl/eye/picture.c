@@ -46,7 +46,7 @@ void abbe_picture_run(abbe_picture *picture) {
   }
   gl->BindImageTexture(0, picture->pixels, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   gl->Uniform2i(gl->GetUniformLocation(program, "size"), (GLint)desc->width, (GLint)desc->height);
-  abbe_gpu_dispatch_2d(gpu, desc->width, desc->height);
+  abbe_gpu_dispatch_2d(gpu, program, desc->width, desc->height);
   gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_PICTURE);
 }

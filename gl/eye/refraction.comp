@@ -4,6 +4,7 @@
 // REFINES: bands are joined first, and listed where what they show differs from what their neighbours
 // show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
+#include "thread.glsl"
 #define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
@@ -32,7 +33,7 @@ layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distanc
 uniform sampler2DArray eye_layers;    // 0: front, 1: back; normal, distance
 uniform usampler2D eye_owner;         // refractor + 1
 uniform vec4 eye_view[6];
-uniform uint pixel_first;
+uniform uint pixel_first, pixel_end;  // those of the list that are looked at
 
 // The samples grouped, and grouped again by twos: level 0 holds every sample, level k every 2^k as
 // one. XYZ weight (sum 1) and mean index; attenuation at [i].y of the row after. Levels one after

@@ -120,7 +120,7 @@ static void list_pixels(abbe_refraction_pass *pass) {
   abbe_gpu_bind_array(gpu, pass->list, "eye_layers", 4, pass->layers);
   abbe_gpu_bind_array(gpu, pass->list, "eye_receivers", 5, pass->receivers->colour);
   abbe_gpu_bind_texture(gpu, pass->list, "eye_owner", 6, pass->owner);
-  abbe_gpu_dispatch_2d(gpu, samples[0], samples[1]);
+  abbe_gpu_dispatch_2d(gpu, pass->list, samples[0], samples[1]);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                          GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -137,42 +137,40 @@ static void use(abbe_refraction_pass *pass, GLuint program) {
   abbe_gpu_set_float(gpu, program, "pixel_angle", angle);
 }
 
+/* Those of the listed pixels, as far as there are any. */
 static void refract_strip(abbe_refraction_pass *pass, size_t first, size_t size) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   gpu->gl->UseProgram(pass->refract);
   abbe_gpu_set_uint(gpu, pass->refract, "pixel_first", first);
+  abbe_gpu_set_uint(gpu, pass->refract, "pixel_end", first + size);
   if (refines(pass)) {
     abbe_gpu_clear_list(gpu, pass->refined_pixels);
     abbe_gpu_bind_storage(gpu, BINDING_REFINED_PIXELS, pass->refined_pixels);
   }
-  const size_t groups = (size * pass->pixel_threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
-  gpu->gl->DispatchCompute((GLuint)groups, 1, 1);
-  if (!refines(pass)) return;
-  gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  abbe_gpu_dispatch_list(gpu, pass->refract_refined, pass->refined_pixels, REFINE_ROOM,
-                         pass->pixel_threads);
+  abbe_gpu_dispatch_list(gpu, pass->refract, pass->pixels, first, size, pass->pixel_threads);
+  gpu->gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  if (refines(pass))
+    abbe_gpu_dispatch_list(gpu, pass->refract_refined, pass->refined_pixels, 0, size,
+                           pass->pixel_threads);
 }
 
-/* In strips where somebody watches, so that a long frame shows its progress and can be stopped. */
-static abbe_result refract_pixels(abbe_refraction_pass *pass, abbe_render_progress progress,
-                                  void *user, abbe_error *error) {
+/* In strips of what has room to be refined; in more where somebody watches, who sees it go on. */
+static abbe_result refract_pixels(abbe_refraction_pass *pass, abbe_error *error) {
+  enum { WATCHED_STRIPS = 16 };
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const size_t count = abbe_gpu_read_count(gpu, pass->pixels), strips = progress != NULL ? 16 : 1;
-  const size_t most = 65535 * (ABBE_GPU_GROUP / pass->pixel_threads); /* that a dispatch takes */
-  size_t step = (count / strips / ABBE_GPU_GROUP + 1) * ABBE_GPU_GROUP;
-  if (step > most) step = most;
+  const size_t *samples = pass->lighting->camera->samples, room = samples[0] * samples[1];
+  const size_t count = gpu->progress != NULL ? abbe_gpu_read_count(gpu, pass->pixels) : room;
+  size_t step = gpu->progress != NULL ? count / WATCHED_STRIPS + 1 : count;
+  abbe_result result = ABBE_OK;
   if (refines(pass) && step > REFINE_ROOM) step = REFINE_ROOM;
-  for (size_t first = 0; first < count; first += step) {
+  for (size_t first = 0; first < count && result == ABBE_OK; first += step) {
     const size_t size = count - first < step ? count - first : step;
     refract_strip(pass, first, size);
-    if (progress == NULL) continue;
-    gpu->gl->Finish();
-    if (!progress(user, 0.5 + 0.5 * (double)(first + size) / (double)count))
-      return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+    result = abbe_gpu_tell(gpu, 0.5 + 0.5 * (double)(first + size) / (double)count, error);
   }
   gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                          GL_TEXTURE_UPDATE_BARRIER_BIT);
-  return ABBE_OK;
+  return result;
 }
 
 static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
@@ -185,8 +183,7 @@ static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
   return result;
 }
 
-abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_progress progress,
-                                     void *user, abbe_error *error) {
+abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const bool seen = scene_of(pass)->plan->camera_sees_refractor;
   abbe_result result = seen ? draw_faces(pass, error) : ABBE_OK;
@@ -198,7 +195,7 @@ abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_pro
   use(pass, pass->refract);
   gpu->gl->BindImageTexture(0, resolves(pass) ? pass->colour : pass->receivers->colour, 0, GL_FALSE,
                             0, GL_READ_WRITE, GL_RGBA32F);
-  result = refract_pixels(pass, progress, user, error);
+  result = refract_pixels(pass, error);
   abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

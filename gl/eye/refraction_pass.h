@@ -29,8 +29,7 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                       const abbe_shader_variant *variant, abbe_refraction_pass *out,
                                       abbe_error *error);
 void abbe_refraction_pass_free(abbe_refraction_pass *pass);
-/* progress from a half to the whole; it may be NULL. ABBE_CANCELLED, ABBE_GL. */
-abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_progress progress,
-                                     void *user, abbe_error *error);
+/* Tells who watches from a half to the whole. ABBE_CANCELLED, ABBE_GL. */
+abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error);
 
 #endif

@@ -52,8 +52,7 @@ vec3 band_light(int band, bool in_mirror, out float mirrored) {
 #ifdef REFINED
 void main() {
   copy_all();
-  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  uint listed = group * uint(PIXELS) + uint(place);
+  uint listed = group_number() * uint(PIXELS) + uint(place);
   bool there = listed < refine_count;
   uvec2 entry = there ? refine[listed] : uvec2(0);
   ivec2 at = pixel_of(entry.x);
@@ -96,8 +95,8 @@ shared vec3 path_shown[PIXELS * COARSE_BANDS];
 
 void main() {
   copy_all();
-  uint listed = pixel_first + gl_WorkGroupID.x * uint(PIXELS) + uint(place);
-  bool there = listed < pixel_count;
+  uint listed = pixel_first + group_number() * uint(PIXELS) + uint(place);
+  bool there = listed < min(pixel_count, pixel_end);
   uint where = there ? pixel[listed] : 0u;
   int base, count;
 #ifdef HIERARCHY

@@ -22,7 +22,7 @@ static void find_lit(const abbe_light_fit *fit, size_t light, GLuint found[4]) {
   abbe_gpu_set_int(scene->gpu, fit->program, "light", (int)light);
   abbe_gpu_set_int(scene->gpu, fit->program, "side", SIDE);
   abbe_gpu_bind_storage(scene->gpu, BINDING_FOUND_BOX, fit->found);
-  abbe_gpu_dispatch_2d(scene->gpu, SIDE, SIDE);
+  abbe_gpu_dispatch_2d(scene->gpu, fit->program, SIDE, SIDE);
   gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 4 * sizeof *found, found);
 }

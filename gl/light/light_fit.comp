@@ -1,6 +1,7 @@
 // The part of a light's near view through which light reaches refractors: the least and greatest
 // column and row of a lattice of rays that do.
 layout(local_size_x = 32, local_size_y = 16) in;
+#include "thread.glsl"
 #define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
@@ -15,7 +16,7 @@ void main() {
   copy_tables();
   copy_surroundings();
   copy_light();
-  uvec2 at = gl_GlobalInvocationID.xy;
+  uvec2 at = texel_number();
   if (max(at.x, at.y) >= uint(side)) return;
   vec3 o, d;
   Hit front;

@@ -1,6 +1,7 @@
 // What of each cell is lit and shows a refractor: a photon carries the light of that part, and starts
 // in its middle. Cells without any become no photons.
 layout(local_size_x = 256) in;
+#include "thread.glsl"
 #define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
@@ -37,7 +38,7 @@ void main() {
   copy_tables();
   copy_surroundings();
   copy_light();
-  uint i = gl_GlobalInvocationID.x;
+  uint i = thread_number();
   if (i >= in_count) return;
   uint packed_cell = in_cell[i];
   ivec2 c = ivec2(packed_cell & 0xffffu, packed_cell >> 16);

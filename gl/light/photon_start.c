@@ -34,7 +34,6 @@ static void count_groups(abbe_photon_cells *cells, GLuint list) {
   const abbe_gl *gl = cells->gpu->gl;
   gl->UseProgram(cells->groups);
   abbe_gpu_set_uint(cells->gpu, cells->groups, "group_size", ABBE_GPU_GROUP);
-  abbe_gpu_set_uint(cells->gpu, cells->groups, "rows", 1);
   abbe_gpu_bind_storage(cells->gpu, BINDING_CELLS, list);
   gl->DispatchCompute(1, 1, 1);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
@@ -54,10 +53,9 @@ static void list_level(abbe_photon_cells *cells, const size_t grid[2], int level
   abbe_gpu_bind_storage(cells->gpu, BINDING_COARSER_CELLS, cells->list[level > 0 ? level - 1 : 1]);
   if (level == 0) {
     const size_t groups = (across * down + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
-    gl->DispatchCompute((GLuint)groups, 1, 1);
+    abbe_gpu_dispatch(cells->gpu, cells->place, groups);
   } else {
-    gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, cells->list[level - 1]);
-    gl->DispatchComputeIndirect(4);
+    abbe_gpu_dispatch_counted(cells->gpu, cells->place, cells->list[level - 1]);
   }
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -132,8 +130,7 @@ abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_e
   abbe_photon_start_bind(start);
   abbe_photon_lights_set_grid(start->views, start->cover, light);
   abbe_gpu_bind_storage(gpu, BINDING_CELLS, lit);
-  gpu->gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, lit);
-  gpu->gl->DispatchComputeIndirect(4);
+  abbe_gpu_dispatch_counted(gpu, start->cover, lit);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return abbe_gl_check(gpu->gl, "the start of photons", error);
 }

@@ -106,7 +106,7 @@ static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk, siz
   abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->wants);
   abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->pairs);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, trace->hits.paths);
-  abbe_gpu_dispatch_list(gpu, program, trace->hits.paths,
+  abbe_gpu_dispatch_list(gpu, program, trace->hits.paths, 0,
                          trace->start->views->light[light].photon_count * scene->plan->hit_slots,
                          1);
 }
@@ -125,6 +125,6 @@ void abbe_refine_pass_run(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_trace_pass_begin(trace, light, ABBE_TRACE_REFINED, &pass->hits, pass->fine_nodes);
   abbe_gpu_set_uint(gpu, trace->program, "most_pairs", pass->pair_room);
   abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->pairs);
-  abbe_gpu_dispatch_list(gpu, trace->program, pass->pairs, pass->pair_room, pass->fine_nodes);
+  abbe_gpu_dispatch_list(gpu, trace->program, pass->pairs, 0, pass->pair_room, pass->fine_nodes);
   abbe_trace_pass_end(trace, &pass->hits, pass->pair_room);
 }

@@ -154,11 +154,8 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_gpu_bind_storage(gpu, BINDING_PATH_MARKS, hits->marks);
 }
 
-/* Groups in rows of at most as many as a dispatch takes. */
-static void dispatch(abbe_gpu *gpu, size_t threads) {
-  const size_t groups = (threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
-  const size_t rows = (groups + 65534) / 65535;
-  if (groups > 0) gpu->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
+static size_t groups_of(size_t threads) {
+  return (threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
 }
 
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items) {
@@ -169,7 +166,7 @@ void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t it
   gpu->gl->UseProgram(pass->list_paths);
   abbe_gpu_set_uint(gpu, pass->list_paths, "items", items);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, hits->paths);
-  dispatch(gpu, paths);
+  abbe_gpu_dispatch(gpu, pass->list_paths, groups_of(paths));
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -177,18 +174,17 @@ void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, si
                            size_t ledger_first) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t photons = pass->start->views->light[light].photon_count;
-  const size_t groups = (photons + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
   abbe_trace_pass_begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
   abbe_gpu_set_int(gpu, pass->program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, pass->program, "ledger_first", (int)ledger_first);
-  if (groups > 0) gpu->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
+  abbe_gpu_dispatch(gpu, pass->program, groups_of(photons * count));
   abbe_trace_pass_end(pass, &pass->hits, photons);
 }
 
 void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light) {
   const size_t photons = pass->start->views->light[light].photon_count;
   abbe_trace_pass_begin(pass, light, ABBE_TRACE_COARSE, &pass->hits, pass->spectra->nodes);
-  dispatch(scene_of(pass)->gpu, photons * pass->spectra->nodes);
+  abbe_gpu_dispatch(scene_of(pass)->gpu, pass->program, groups_of(photons * pass->spectra->nodes));
   abbe_trace_pass_end(pass, &pass->hits, photons);
 }
 
