@@ -36,3 +36,7 @@ abbe_test(frame_times gl ${gl_rooms})
 abbe_test(map_bands gl ${gl_rooms})
 abbe_test(error_bars gl abbe_validation ${gl_rooms})
 abbe_test(error_picture cpu ${gl_rooms})
+
+# For script/bench-changes.
+add_executable(bench_changes gl/bench_changes.c)
+target_link_libraries(bench_changes PRIVATE ${gl_rooms})
