@@ -81,33 +81,22 @@ static double share_done(const abbe_caustics *c, const abbe_hit_batch *b) {
   return (double)(b->pair_chunk + 1) / (double)(c->refine.chunks + 1);
 }
 
-/* The hits that were traced last into the fit of the map, and of the tiles. */
-static abbe_result sort_batch(abbe_caustics *c, size_t light, size_t first, abbe_map_fit *fit,
-                              abbe_tile_light **beside, abbe_error *error) {
-  float *hit = NULL;
-  GLuint *path = NULL;
-  const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
-  abbe_result result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
-  if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
-  if (result == ABBE_OK && fit->part > 0)
-    result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
-  free(hit);
-  free(path);
-  return result;
-}
-
-/* The coarse set's, or those of all wavelengths where every photon takes them. */
+/* Hits of all wavelengths into the fit of the map, and of the tiles. */
 static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
                              abbe_tile_light **beside, abbe_error *error) {
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
   abbe_hit_batch b = {0};
-  if (result == ABBE_OK && abbe_photon_spectra_refines(&c->spectra)) {
-    abbe_trace_pass_coarse(&c->trace, light);
-    return sort_batch(c, light, ABBE_PHOTON_COARSE, fit, beside, error);
-  }
   while (result == ABBE_OK && next_batch(c, &b)) {
+    float *hit = NULL;
+    GLuint *path = NULL;
+    const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
     abbe_trace_pass_batch(&c->trace, light, b.first, b.count, plan_of(c)->desc.wavelengths);
-    result = sort_batch(c, light, b.first, fit, beside, error);
+    result = abbe_trace_pass_read(&c->trace, light, b.first, &hit, &path, error);
+    if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
+    if (result == ABBE_OK && fit->part > 0)
+      result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
+    free(hit);
+    free(path);
   }
   return result;
 }

@@ -318,12 +318,12 @@ abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error) {
 
 /* What a part of the work takes where somebody watches, and how many groups, or rows of groups, the
  * first has. */
-static const double part_ms = 10;
+static const double part_ms = 6;
 enum { FIRST_PART = 4, MOST_GROUPS = 65535 };
 
 /* The next part's size, after one of so many units took so long. */
 static size_t next_part(size_t units, double ms) {
-  const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 4);
+  const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2);
   return (size_t)fmin(fmax((double)units * factor, 1), MOST_GROUPS);
 }
 

@@ -93,10 +93,7 @@ void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, siz
   if (!spectra->scene->plan->lengths) return;
   for (size_t i = 0; i < count; i++) {
     const GLuint path = signature[2 * i], refractor = path & 255u;
-    const size_t k = i % stride;
-    const size_t node = first == ABBE_PHOTON_COARSE
-                            ? abbe_spectral_tables_node(t->all.count, spectra->nodes, k)
-                            : first + k;
+    const size_t node = first + i % stride;
     float path_m = 0;
     memcpy(&path_m, &signature[2 * i + 1], sizeof path_m);
     signature[i] = path;

@@ -31,10 +31,8 @@ bool abbe_photon_spectra_refines(const abbe_photon_spectra *spectra);
 
 /* Bytes of a hit's signature, with the length of its path where it is kept. */
 size_t abbe_photon_signature_bytes(const abbe_photon_spectra *spectra);
-/* Of a batch of so many hits as read, whose wavelengths stand `stride` apart side by side, from
- * `first` on, or of the coarse set: takes off what is absorbed at their wavelengths, and leaves paths
- * alone in `signature`. */
-#define ABBE_PHOTON_COARSE SIZE_MAX
+/* Of a batch of so many hits, `stride` wavelengths from `first` on side by side, as read: takes off
+ * what is absorbed at their wavelengths, and leaves paths alone in `signature`. */
 void abbe_photon_attenuate(const abbe_photon_spectra *spectra, size_t first, size_t stride,
                            size_t count, float *hit, GLuint *signature);
 

@@ -67,7 +67,7 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
 /* Lists the paths of so many photons or intervals that hit anywhere. */
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items);
 
-/* The hits of the last batch, from wavelength `first` on or of the coarse set (ABBE_PHOTON_COARSE):
+/* The hits of the last batch, from wavelength `first` on:
  * [photons][slots][stride] x 4 floats, place (on tiles: texels and number) and flux of unit power of
  * the light, zero where there is none, and their paths (may be NULL); malloc'd. Waits for the device.
  */

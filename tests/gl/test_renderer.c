@@ -34,6 +34,7 @@ static void assert_repeats(abbe_renderer *renderer) {
   abbe_image first = {0}, second = {0}, map[2] = {{0}, {0}};
   read_picture(renderer, false, &first);
   read_map(renderer, 0, &map[0]);
+  abbe_renderer_redraw(renderer);
   draw_frame(renderer);
   read_picture(renderer, false, &second);
   read_map(renderer, 0, &map[1]);
@@ -330,6 +331,7 @@ static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);
   read_picture(renderer, false, &before);
+  abbe_renderer_redraw(renderer);
   assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
   assert_int_equal(calls, 1);
   assert_ok(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error), &error);
@@ -518,6 +520,7 @@ static void test_nothing_is_read_before_a_frame(void **state) {
     read_picture(renderer, false, &image);
     abbe_image_free(&image);
     /* Nor what a frame that was stopped has left. */
+    abbe_renderer_redraw(renderer);
     assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
   }
   abbe_renderer_free(renderer);
