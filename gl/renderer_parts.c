@@ -125,6 +125,7 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
 static abbe_result end_watch(abbe_renderer *r, abbe_result result, abbe_error *error) {
   const bool stopped = r->gpu.stopped;
   abbe_gpu_watch(&r->gpu, NULL, NULL);
+  r->gpu.compiling = NULL;
   if (!stopped || result != ABBE_OK) return result;
   return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
 }
@@ -147,6 +148,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   r->inputs = inputs;
   if (parts != 0) r->seen = false;
   abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
+  r->gpu.compiling = plan.desc.compiling;
   result = end_watch(r, make_parts(r, scene, parts, error), error);
   r->made = result == ABBE_OK;
   if (!r->made) free_parts(r, ALL);

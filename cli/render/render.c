@@ -293,6 +293,11 @@ static void summarise(const request *q, const abbe_statistics *s, double prepare
   fprintf(stderr, "\n");
 }
 
+static void say_compiling(void *user) {
+  (void)user;
+  fprintf(stderr, "compiling this scene's shaders: some seconds, once on this machine\n");
+}
+
 static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
   abbe_scene_input_note(scene);
   for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
@@ -313,6 +318,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   }
   desc.progress = abbe_progress_update;
   desc.progress_user = &progress;
+  desc.compiling = q->quiet ? NULL : say_compiling;
   abbe_progress_begin(&progress, "prepare", q->quiet);
   abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);
   const double prepared_s = abbe_progress_seconds(&progress);

@@ -174,6 +174,14 @@ static char *program_text(const abbe_program_stage *stages, size_t count, const 
   return NULL;
 }
 
+/* A driver that knows the program takes a millisecond or so. The first one starts its compiler. */
+static void tell_compiling(abbe_gpu *gpu, double ms) {
+  static const double known_ms = 15;
+  if (gpu->compiling == NULL || ms < known_ms || abbe_gpu_program_count(gpu) == 0) return;
+  gpu->compiling(gpu->progress_user);
+  gpu->compiling = NULL;
+}
+
 abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, size_t count,
                              const char *defines, GLuint *out, abbe_error *error) {
   char *text = program_text(stages, count, defines);
@@ -182,7 +190,9 @@ abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, si
   *out = abbe_gpu_store_take(&gpu->store, &key);
   abbe_result result = ABBE_OK;
   if (*out == 0) {
+    const double start_ms = 1e3 * abbe_clock_seconds();
     result = abbe_program_make(gpu->gl, stages, count, defines, out, error);
+    tell_compiling(gpu, 1e3 * abbe_clock_seconds() - start_ms);
     if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
     if (result != ABBE_OK) {
       gpu->gl->DeleteProgram(*out);

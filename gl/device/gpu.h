@@ -37,6 +37,7 @@ typedef struct abbe_gpu {
   void *progress_user;
   double done;  /* what they were told last */
   bool stopped; /* they want no more: nothing is dispatched */
+  void (*compiling)(void *user); /* told once, with progress_user, that shaders are compiled */
 } abbe_gpu;
 
 /* *out is zero or made before; free it also where this fails. ABBE_GL, ABBE_NO_MEMORY. */

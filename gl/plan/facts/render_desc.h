@@ -106,6 +106,9 @@ typedef struct abbe_render_desc {
   bool layers;                   /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
   void *progress_user;
+  /* Told once, with progress_user, when the driver compiles shaders that it does not know: it takes
+   * seconds, the first time on a machine. May be NULL. */
+  void (*compiling)(void *user);
 } abbe_render_desc;
 
 /* The request with its defaults filled in, for a picture of width x height pixels unless it says
