@@ -121,7 +121,7 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
   return (parts & EYE) != 0 ? make_eye(r, error) : ABBE_OK;
 }
 
-/* What was dispatched after a cancel was not, so that a result without it is none. */
+/* After a cancel nothing more was dispatched: whatever the passes say, there is no result. */
 static abbe_result end_watch(abbe_renderer *r, abbe_result result, abbe_error *error) {
   const bool stopped = r->gpu.stopped;
   abbe_gpu_watch(&r->gpu, NULL, NULL);
@@ -146,7 +146,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   abbe_plan_free(&r->plan);
   r->plan = plan;
   r->inputs = inputs;
-  if (parts != 0) r->seen = false;
+  if (parts != 0) r->seen = false; /* all parts show, those of which nothing is made too */
   abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
   r->gpu.compiling = plan.desc.compiling;
   result = end_watch(r, make_parts(r, scene, parts, error), error);
@@ -183,6 +183,7 @@ static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
   if (is_thesis(r)) {
     if (!r->seen) result = abbe_thesis_run(&r->thesis, error);
+    r->lit = result == ABBE_OK;
   } else {
     if (!r->lit) result = draw_light(r, error);
     r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped);
@@ -209,7 +210,7 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   if (r->plan.caustics && !is_thesis(r)) abbe_caustics_energy(&r->caustics, &s->energy);
   double *part = &s->energy.reached;
   for (size_t i = 0; i < sizeof s->energy / sizeof *part; i++) part[i] *= r->local.unit;
-  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT; pass++)
+  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (!is_thesis(r) || s->pass_count == 0); pass++)
     s->kept[pass] = abbe_plan_runs(&r->plan, pass, 0) && !abbe_statistics_ran(s, pass);
 }
 

@@ -1,5 +1,5 @@
-/* renderer_state.h: what a renderer is made of. Internal to gl/: renderer.c alone and its tests
- * look inside.
+/* renderer_state.h: what a renderer is made of. Internal to gl/: only renderer.c, renderer_parts.c and
+ * their tests look inside.
  */
 #ifndef ABBE_GL_RENDERER_STATE_H
 #define ABBE_GL_RENDERER_STATE_H
@@ -31,7 +31,7 @@ struct abbe_renderer {
   abbe_spectral_map map;
   abbe_caustics caustics;
   abbe_thesis thesis; /* in place of these and those below */
-  bool lit;           /* maps hold the light */
+  bool lit;           /* all of that is drawn: the maps hold the light as it is now */
 
   /* eye */
   abbe_camera_view camera;

@@ -38,49 +38,6 @@ static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
   return true;
 }
 
-/* Room for the refined intervals of the coarse set that is traced now. */
-static abbe_result measure_pairs(abbe_caustics *c, size_t light, abbe_error *error) {
-  return abbe_refine_pass_make_pairs(&c->refine, abbe_refine_pass_count(&c->refine, light), error);
-}
-
-/* Traces what next_batch() would, or the coarse set and then its refined intervals; deposited in
- * another order: the coarse set last, when it is known what is refined. Returns false after the
- * last, or with what failed in *result. */
-static bool trace_next(abbe_caustics *c, size_t light, abbe_hit_batch *b, abbe_result *result,
-                       abbe_error *error) {
-  if (!abbe_photon_spectra_refines(&c->spectra)) {
-    const size_t done = b->first + b->count;
-    if (!next_batch(c, b)) return false;
-    abbe_trace_pass_batch(&c->trace, light, b->first, b->count, done);
-    return true;
-  }
-  if (b->set == ABBE_TRACE_COARSE) return false;
-  const size_t chunk = b->set == ABBE_TRACE_ALL ? 0 : b->pair_chunk + 1;
-  if (b->set == ABBE_TRACE_ALL) {
-    abbe_refine_pass_coarse(&c->refine, light);
-    if (!c->measured[light]) *result = measure_pairs(c, light, error);
-    if (*result != ABBE_OK) return false;
-  }
-  *b = (abbe_hit_batch){
-      .set = ABBE_TRACE_REFINED, .pair_chunk = chunk, .count = c->refine.fine_nodes};
-  if (chunk < c->refine.chunks) {
-    abbe_refine_pass_run(&c->refine, light, chunk);
-    return true;
-  }
-  *b = (abbe_hit_batch){.set = ABBE_TRACE_COARSE,
-                        .count = c->spectra.nodes,
-                        .interval_first = 1,
-                        .interval_end = c->spectra.nodes};
-  return true;
-}
-
-static double share_done(const abbe_caustics *c, const abbe_hit_batch *b) {
-  if (b->set == ABBE_TRACE_ALL)
-    return (double)(b->first + b->count) / (double)plan_of(c)->desc.wavelengths;
-  if (b->set == ABBE_TRACE_COARSE) return 1;
-  return (double)(b->pair_chunk + 1) / (double)(c->refine.chunks + 1);
-}
-
 /* Hits of all wavelengths into the fit of the map, and of the tiles. */
 static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
                              abbe_tile_light **beside, abbe_error *error) {
@@ -138,7 +95,7 @@ static abbe_shader_variant photon_variant(const abbe_caustics *c,
   v.map_levels = c->views->map_levels;
   v.bridge = plan->fills;
   v.doubts_bridges = plan->layers || plan->bvh;
-  v.tinting = plan->lengths;
+  v.keeps_lengths = plan->lengths;
   return v;
 }
 
@@ -236,19 +193,55 @@ void abbe_caustics_free(abbe_caustics *c) {
   abbe_photon_start_free(&c->start);
 }
 
-static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_error *error) {
+/* What was traced, and how much of the light's work is done by then, 0 to 1. */
+static abbe_result deposit(abbe_caustics *c, size_t light, const abbe_hit_batch *b, double done,
+                           abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
-  abbe_hit_batch b = {0};
-  abbe_result result = ABBE_OK;
+  abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
+  abbe_result result = abbe_deposit_pass_run(&c->deposit, light, b, !c->measured[light], error);
+  const double share = ((double)light + done) / (double)plan_of(c)->light_view_count;
+  if (result == ABBE_OK) result = abbe_gpu_tell(gpu, 0.5 * share, error);
   abbe_gpu_begin_pass(gpu);
-  while (result == ABBE_OK && trace_next(c, light, &b, &result, error)) {
-    abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
-    result = abbe_deposit_pass_run(&c->deposit, light, &b, !c->measured[light], error);
-    const double share = ((double)light + share_done(c, &b)) / (double)plan_of(c)->light_view_count;
-    if (result == ABBE_OK) result = abbe_gpu_tell(gpu, 0.5 * share, error);
-    abbe_gpu_begin_pass(gpu);
+  return result;
+}
+
+/* Every photon takes all wavelengths, batch by batch. */
+static abbe_result trace_all(abbe_caustics *c, size_t light, abbe_error *error) {
+  const size_t n = plan_of(c)->desc.wavelengths;
+  abbe_result result = ABBE_OK;
+  abbe_hit_batch b = {0};
+  for (size_t done = 0; result == ABBE_OK && next_batch(c, &b); done = b.first + b.count) {
+    abbe_trace_pass_batch(&c->trace, light, b.first, b.count, done);
+    result = deposit(c, light, &b, (double)(b.first + b.count) / (double)n, error);
   }
   return result;
+}
+
+/* A coarse set of wavelengths, and all those of the intervals that ask for them. The coarse set is
+ * deposited last, when it is known which of its intervals are refined. */
+static abbe_result trace_refined(abbe_caustics *c, size_t light, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  abbe_refine_pass_coarse(&c->refine, light);
+  if (!c->measured[light])
+    result = abbe_refine_pass_make_pairs(&c->refine, abbe_refine_pass_count(&c->refine, light),
+                                         error);
+  for (size_t chunk = 0; result == ABBE_OK && chunk < c->refine.chunks; chunk++) {
+    const abbe_hit_batch b = {
+        .set = ABBE_TRACE_REFINED, .pair_chunk = chunk, .count = c->refine.fine_nodes};
+    abbe_refine_pass_run(&c->refine, light, chunk);
+    result = deposit(c, light, &b, (double)(chunk + 1) / (double)(c->refine.chunks + 1), error);
+  }
+  const abbe_hit_batch b = {.set = ABBE_TRACE_COARSE,
+                            .count = c->spectra.nodes,
+                            .interval_first = 1,
+                            .interval_end = c->spectra.nodes};
+  return result == ABBE_OK ? deposit(c, light, &b, 1, error) : result;
+}
+
+static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_error *error) {
+  abbe_gpu_begin_pass(c->views->scene->gpu);
+  return abbe_photon_spectra_refines(&c->spectra) ? trace_refined(c, light, error)
+                                                  : trace_all(c, light, error);
 }
 
 static abbe_result run_light(abbe_caustics *c, size_t light, abbe_error *error) {

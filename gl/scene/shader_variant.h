@@ -27,7 +27,7 @@ typedef struct abbe_shader_variant {
   size_t tiles, tile_blocks, chart_sides; /* tiles of a light at the most; 0: none has any */
   /* photons; hit_stride 0: not told */
   size_t hit_stride, steps, nodes;
-  bool bridge, doubts_bridges, tinting;
+  bool bridge, doubts_bridges, keeps_lengths;
 } abbe_shader_variant;
 
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out);
