@@ -3,7 +3,7 @@
 // A cell's photon. It starts in the middle of the part of the cell that is lit and shows a refractor.
 struct Photon {
   uint cell;    // x | y << 16
-  float flux;   // that the lit part carries, W
+  float flux;   // that the lit part carries, of unit power of its light
   uint offset;  // from the cell's middle, in cells, packSnorm2x16
   uint extent;  // of the lit part, in cells, packUnorm2x16
 };

@@ -1,7 +1,7 @@
 // The interface at which light left its last refractor, kept with every hit: behind it light of any
 // wavelength between two nodes is known nearly exactly, for it follows the index so evenly before.
 
-// Of a hit: its place and flux, W; then the place on the interface and interface_word().
+// Of a hit: its place and flux, of unit power of its light; then the place on the interface and interface_word().
 const int HIT_TEXELS = 2;
 
 // The interface's normal along the path out (11 bits each of its two octahedral coordinates, and the sign
@@ -35,7 +35,7 @@ struct Segment {
   vec3 along;         // part of its unit direction along the interface
   vec3 n;             // of the interface, along its direction
   float passes;       // share that the interface lets through
-  float arrives;      // flux before that, W
+  float arrives;      // flux before that, of unit power
   bool transmits, far;  // far: place and interface tell its direction
 };
 

@@ -12,7 +12,7 @@ layout(local_size_x = 256) in;
 #include "pair_list.glsl"
 
 // [((photon * SLOTS + order) * HIT_STRIDE + sample) * HIT_TEXELS]: where it lands, and w: flux for unit
-// weight, W; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
+// weight and power; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
 // coordinates, and the chart's side.
 layout(std430, binding = BINDING_HITS) writeonly buffer Hits { vec4 hits[]; };
 // Receiver, facets along the path and whether on a tile, equal for paths that vary continuously;

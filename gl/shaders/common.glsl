@@ -10,7 +10,7 @@ struct Light {
   vec4 position;   // w: 0 point, 1 spot, 2 directional
   vec4 direction;  // w: cosine of the cone's half angle
   vec4 white;      // rgb of unit power; w: power, W/sr or W/m2
-  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, W; photons by window area;
+  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, of unit power; photons by window area;
                    // whether it meets a refractor
   vec4 cube;       // faces of the cube around it whose light this is, a bit each
 };

@@ -283,12 +283,12 @@ static void walk_at_random(const char *text, unsigned seed, int steps) {
 
 static void random_changes_of_a_solid(void **state) {
   (void)state;
-  walk_at_random(GLASS_SCENE, 1, 40);
+  walk_at_random(GLASS_SCENE, 1, 20);
 }
 
 static void random_changes_of_meshes(void **state) {
   (void)state;
-  walk_at_random(MESH_SCENE, 2, 24);
+  walk_at_random(MESH_SCENE, 2, 8);
 }
 
 /* From one scene to another and back, and to the thesis's passes. */
