@@ -11,6 +11,45 @@ static bool is_thesis(const abbe_renderer *r) {
   return abbe_profile_is_thesis(r->plan.desc.profile);
 }
 
+/* A caller's progress may make another context current. */
+typedef struct watched {
+  abbe_context *context;
+  abbe_render_progress progress;
+  void *user;
+  abbe_result result;
+  abbe_error *error;
+  void (*compiling)(void *user);
+} watched;
+
+static bool watch(void *user, double done) {
+  watched *w = user;
+  const bool goes_on = w->progress(w->user, done);
+  w->result = abbe_context_make_current(w->context, w->error);
+  return goes_on && w->result == ABBE_OK;
+}
+
+static void tell_compiling(void *user) {
+  const watched *w = user;
+  w->compiling(w->user);
+}
+
+/* The scene and the request taken over, with whoever watches that. */
+static abbe_result change_watched(abbe_renderer *r, const abbe_scene *scene,
+                                  const abbe_render_desc *desc, abbe_error *error) {
+  abbe_error lost = {0};
+  abbe_render_desc request = desc != NULL ? *desc : (abbe_render_desc){0};
+  watched w = {r->context,        request.progress, request.progress_user, ABBE_OK, &lost,
+               request.compiling};
+  if (request.progress != NULL) request.progress = watch;
+  if (request.compiling != NULL) request.compiling = tell_compiling;
+  request.progress_user = &w;
+  const abbe_result result = abbe_renderer_parts_change(r, scene, &request, error);
+  r->plan.desc.progress = NULL;
+  r->plan.desc.compiling = NULL;
+  return w.result == ABBE_OK ? result : abbe_error_set(error, w.result, "%s", lost.text);
+}
+
+
 static void free_renderer(abbe_renderer *r) {
   abbe_renderer_parts_free(r);
   free(r);
@@ -24,7 +63,7 @@ static abbe_result make_renderer(abbe_context *context, const abbe_scene *scene,
   r->context = context;
   r->software = strstr(abbe_context_description(context), "llvmpipe") != NULL;
   abbe_result result = abbe_gpu_make(abbe_context_gl(context), &r->gpu, error);
-  if (result == ABBE_OK) result = abbe_renderer_parts_change(r, scene, desc, error);
+  if (result == ABBE_OK) result = change_watched(r, scene, desc, error);
   if (result != ABBE_OK) {
     free_renderer(r);
     return result;
@@ -105,6 +144,7 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
   abbe_result result = check_map(r, light, error);
   if (result != ABBE_OK) return result;
   result = abbe_map_bands_read(&r->caustics, light, bands, r->local.unit, out, error);
+  if (result != ABBE_OK) r->lit = r->seen = false; /* the map may hold bands */
   abbe_map_layout layout;
   abbe_renderer_map_layout(r, light, &layout);
   if (result == ABBE_OK)
@@ -125,6 +165,8 @@ void abbe_renderer_photon_view(const abbe_renderer *r, size_t light, abbe_view *
 
 static abbe_result read_hits(abbe_renderer *r, size_t light, float **data, unsigned **cells,
                              size_t *count, size_t *slots, size_t *samples, abbe_error *error) {
+  const abbe_result made = abbe_renderer_parts_check(r, error);
+  if (made != ABBE_OK) return made;
   if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_thesis(r))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
   *slots = r->plan.hit_slots;
@@ -172,7 +214,7 @@ abbe_result abbe_renderer_change(abbe_renderer *r, const abbe_scene *scene,
   ABBE_REQUIRE(r && scene, error);
   const abbe_result result = enter(r->context, error);
   if (result != ABBE_OK) return result;
-  return leave(r->context, abbe_renderer_parts_change(r, scene, desc, error));
+  return leave(r->context, change_watched(r, scene, desc, error));
 }
 
 void abbe_renderer_redraw(abbe_renderer *r) {
@@ -204,27 +246,11 @@ void abbe_renderer_free(abbe_renderer *r) {
   if (entered) leave(context, ABBE_OK);
 }
 
-/* A caller's progress may make another context current. */
-typedef struct watched {
-  abbe_context *context;
-  abbe_render_progress progress;
-  void *user;
-  abbe_result result;
-  abbe_error *error;
-} watched;
-
-static bool watch(void *user, double done) {
-  watched *w = user;
-  const bool goes_on = w->progress(w->user, done);
-  w->result = abbe_context_make_current(w->context, w->error);
-  return goes_on && w->result == ABBE_OK;
-}
-
 abbe_result abbe_renderer_frame(abbe_renderer *r, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error) {
   ABBE_REQUIRE(r, error);
   abbe_error lost = {0};
-  watched w = {r->context, progress, user, ABBE_OK, &lost};
+  watched w = {r->context, progress, user, ABBE_OK, &lost, NULL};
   abbe_result result = enter(r->context, error);
   if (result != ABBE_OK) return result;
   result = abbe_renderer_parts_draw(r, progress != NULL ? watch : NULL, &w, statistics, error);

@@ -51,8 +51,9 @@ void abbe_renderer_free(abbe_renderer *renderer);
  * for those and a table; another material, for tables, photons and the camera's passes; an object
  * that has moved, for its bounds and all that follows. The scene must stay as it is until it is
  * handed over again, or the renderer is freed. Errors as of abbe_renderer_make. Where the scene
- * cannot be planned the renderer stays as it was, for the scene as it was; after another failure
- * it draws nothing until a change succeeds. */
+ * cannot be planned the renderer stays as it was; a caller that has edited the scene in place puts
+ * it back, or changes on, before it draws. After another failure it draws nothing until a change
+ * succeeds. */
 abbe_result abbe_renderer_change(abbe_renderer *renderer, const abbe_scene *scene,
                                  const abbe_render_desc *desc, abbe_error *error);
 
@@ -93,7 +94,7 @@ typedef struct abbe_renderer_picture {
 } abbe_renderer_picture;
 
 /* For drawing on without a copy. The texture is the renderer's, of its context and those that share
- * with it; it is read, not written, and holds until the next frame or the renderer's end.
+ * with it; it is read, not written, and holds until the next change, the next frame or the renderer's end.
  * ABBE_INVALID_ARGUMENT before a whole frame was drawn. */
 abbe_result abbe_renderer_texture(abbe_renderer *renderer, abbe_renderer_picture *out,
                                   abbe_error *error);

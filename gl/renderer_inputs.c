@@ -85,10 +85,11 @@ static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
   return h;
 }
 
-static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan, uint64_t geometry) {
-  uint64_t h = mix(geometry, &plan->desc.space, sizeof plan->desc.space);
-  for (size_t i = 0; i < scene->object_count; i++) {
-    const abbe_object *o = &scene->object[i];
+static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
+  uint64_t h = 4;
+  MIX(h, plan->desc.space);
+  for (size_t i = 0; i < plan->receiver_count; i++) {
+    const abbe_object *o = &scene->object[plan->receiver_object[i]];
     const size_t texels = o->texture.width * o->texture.height * o->texture.channels;
     MIX(h, o->reflectance);
     MIX(h, o->texture_repeat);
@@ -116,7 +117,6 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, d->wavelengths);
   MIX(h, d->min_nm);
   MIX(h, d->max_nm);
-  MIX(h, d->space);
   MIX(h, plan->caustics);
   MIX(h, plan->lengths);
   MIX(h, plan->fills);
@@ -207,18 +207,19 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
                              abbe_renderer_inputs *out) {
   uint64_t *part = out->part, light;
   part[ABBE_PART_GEOMETRY] = of_geometry(scene, plan);
-  part[ABBE_PART_SURFACES] = of_surfaces(scene, plan, part[ABBE_PART_GEOMETRY]);
+  part[ABBE_PART_SURFACES] = of_surfaces(scene, plan);
   part[ABBE_PART_SPECTRA] = of_spectra(scene, plan);
   part[ABBE_PART_SHADOWS] = mix_lights(part[ABBE_PART_GEOMETRY], scene, plan);
   light = mix_light_plan(part[ABBE_PART_SHADOWS], plan);
   MIX(light, part[ABBE_PART_SPECTRA]);
   part[ABBE_PART_LIGHT] = light;
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);
-  part[ABBE_PART_POWERS] = part[ABBE_PART_DRAWN] = 3;
+  part[ABBE_PART_POWERS] = 3;
   for (size_t i = 0; i < scene->light_count; i++)
     MIX(part[ABBE_PART_POWERS], scene->light[i].power);
-  MIX(part[ABBE_PART_DRAWN], scene->ambient);
-  MIX(part[ABBE_PART_DRAWN], scene->background);
+  MIX(part[ABBE_PART_POWERS], scene->ambient); /* the unit of power goes by the greatest of all */
+  MIX(part[ABBE_PART_POWERS], scene->background);
+  MIX(part[ABBE_PART_POWERS], plan->desc.space);
 }
 
 unsigned abbe_renderer_inputs_differ(const abbe_renderer_inputs *a, const abbe_renderer_inputs *b) {

@@ -20,8 +20,8 @@ typedef enum abbe_renderer_part {
   ABBE_PART_SHADOWS,  /* planes of refractors' shadows */
   ABBE_PART_LIGHT,    /* light views, photons, maps: of geometry, spectra, shadows and lights' places */
   ABBE_PART_EYE,      /* targets and programs of the camera's passes */
-  ABBE_PART_POWERS,   /* how strong lights are: nothing is made of it but a table */
-  ABBE_PART_DRAWN,    /* what else a picture shows: ambient light and background */
+  ABBE_PART_POWERS,   /* how strong lights, ambient light and background are, and the picture's space:
+                         nothing is made of it but a table */
   ABBE_PART_COUNT
 } abbe_renderer_part;
 

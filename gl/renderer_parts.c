@@ -20,6 +20,13 @@ static bool is_thesis(const abbe_renderer *r) {
   return abbe_profile_is_thesis(r->plan.desc.profile);
 }
 
+abbe_result abbe_renderer_parts_check(const abbe_renderer *r, abbe_error *error) {
+  if (r->made) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the renderer's last change or frame failed, so there is nothing to draw; "
+                        "abbe_renderer_change comes first");
+}
+
 /* The scene where floats serve it, with a light for each further face of a cube. */
 static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, abbe_error *error) {
   const size_t own = scene->light_count;
@@ -126,7 +133,7 @@ static abbe_result end_watch(abbe_renderer *r, abbe_result result, abbe_error *e
   const bool stopped = r->gpu.stopped;
   abbe_gpu_watch(&r->gpu, NULL, NULL);
   r->gpu.compiling = NULL;
-  if (!stopped || result != ABBE_OK) return result;
+  if (!stopped) return result;
   return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
 }
 
@@ -152,6 +159,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   result = end_watch(r, make_parts(r, scene, parts, error), error);
   r->made = result == ABBE_OK;
   if (!r->made) free_parts(r, ALL);
+  if (!r->made) r->lit = r->seen = false;
   abbe_gpu_trim(&r->gpu);
   return result;
 }
@@ -216,23 +224,22 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
 
 abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress progress, void *user,
                                      abbe_statistics *statistics, abbe_error *error) {
-  if (!r->made)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the renderer's last change failed, so there is nothing to draw; "
-                          "abbe_renderer_change comes first");
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
+  if (abbe_renderer_parts_check(r, error) != ABBE_OK) return ABBE_INVALID_ARGUMENT;
   if (statistics != NULL && r->plan.caustics && !is_thesis(r) &&
       !abbe_caustics_know_energy(&r->caustics))
     r->lit = false; /* no frame with statistics has followed this light */
   r->gpu.statistics = statistics;
   r->untimed_ms = 0;
-  if (!r->lit) r->seen = false;
+  if (!r->lit || (is_thesis(r) && statistics != NULL)) r->seen = false; /* it counts as it draws */
   const double start_ms = 1e3 * abbe_clock_seconds();
   abbe_gpu_watch(&r->gpu, progress, user);
   abbe_result result = run_passes(r, error);
   r->gpu.gl->Finish();
   result = end_watch(r, result, error);
   r->seen = result == ABBE_OK;
+  r->made = result == ABBE_OK || result == ABBE_CANCELLED; /* else lists may be without room */
+  abbe_gpu_trim(&r->gpu); /* what was outgrown */
   if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
   r->gpu.statistics = NULL;
   return result;
@@ -243,7 +250,8 @@ abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_erro
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
   const size_t *samples = r->camera.samples;
   const abbe_gl *gl = r->gpu.gl;
-  abbe_result result = ABBE_OK;
+  abbe_result result = abbe_renderer_parts_check(r, error);
+  if (result != ABBE_OK) return result;
   if (is_thesis(r))
     return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no baseline of its own");
   if (r->baseline == 0) /* the picture may be what lies in the receivers' colour, and stays */

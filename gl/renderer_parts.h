@@ -19,6 +19,9 @@ void abbe_renderer_parts_free(abbe_renderer *r);
 abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress progress, void *user,
                                      abbe_statistics *statistics, abbe_error *error);
 
+/* ABBE_INVALID_ARGUMENT where the parts are not all there. */
+abbe_result abbe_renderer_parts_check(const abbe_renderer *r, abbe_error *error);
+
 /* As abbe_renderer_baseline. */
 abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_error *error);
 

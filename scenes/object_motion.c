@@ -27,7 +27,8 @@ static void move_exact(abbe_exact *e, const double m[16], double scale) {
     for (int k = 0; k < 3; k++) on[k] = p[3] * p[k];
     abbe_transform_point(m, on, on);
     abbe_transform_direction(m, p, p);
-    for (int k = 0; k < 3; k++) p[k] /= scale;
+    const double length = abbe_vector_length(p);
+    for (int k = 0; k < 3; k++) p[k] /= length;
     p[3] = abbe_vector_dot(p, on);
   }
   for (size_t i = 0; e->parallelogram != NULL && i < e->count; i++) {
@@ -38,6 +39,7 @@ static void move_exact(abbe_exact *e, const double m[16], double scale) {
   }
   abbe_transform_point(m, e->convex.place, e->convex.place);
   e->convex.size *= scale;
+  if (e->convex.verdict == ABBE_CONVEX_DENTED) e->convex.off *= scale;
 }
 
 abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_error *error) {

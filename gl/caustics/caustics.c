@@ -38,17 +38,17 @@ static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
   return true;
 }
 
-/* Hits of all wavelengths into the fit of the map, and of the tiles. */
+/* Hits of all wavelengths, each once, into the fit of the map, and of the tiles. */
 static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
                              abbe_tile_light **beside, abbe_error *error) {
+  const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
-  abbe_hit_batch b = {0};
-  while (result == ABBE_OK && next_batch(c, &b)) {
+  for (size_t first = 0; first < n && result == ABBE_OK; first += most) {
     float *hit = NULL;
     GLuint *path = NULL;
     const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
-    abbe_trace_pass_batch(&c->trace, light, b.first, b.count, plan_of(c)->desc.wavelengths);
-    result = abbe_trace_pass_read(&c->trace, light, b.first, &hit, &path, error);
+    abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
+    result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
     if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
     if (result == ABBE_OK && fit->part > 0)
       result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
@@ -147,7 +147,8 @@ static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
   if (result != ABBE_OK) return result;
   abbe_photon_lights_upload(c->views);
   result = abbe_light_layers_run(c->layers, error);
-  return result == ABBE_OK ? use_grids(c, error) : result;
+  if (result == ABBE_OK) result = use_grids(c, error);
+  return result == ABBE_OK ? abbe_gpu_tell(c->views->scene->gpu, 1, error) : result;
 }
 
 static abbe_result make_passes(abbe_caustics *c, const abbe_shader_variant *variant,
@@ -170,6 +171,7 @@ abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *lay
   *c = (abbe_caustics){.views = views, .layers = layers, .atlas = atlas, .map = map};
   abbe_result result = abbe_photon_start_make(views, layers, variant, &c->start, error);
   if (result == ABBE_OK) result = abbe_light_fit_run(views, layers, variant, error);
+  if (result == ABBE_OK) result = abbe_gpu_tell(views->scene->gpu, 0, error);
   if (result == ABBE_OK) result = abbe_light_layers_run(layers, error);
   if (result == ABBE_OK) result = count_photons(c, error);
   if (result == ABBE_OK) result = abbe_photon_spectra_make(views->scene, &c->spectra, error);

@@ -10,8 +10,8 @@ static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
 
 static abbe_result make_room(abbe_deposit_pass *pass, size_t splats, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  pass->splat_room = splats;
   abbe_gpu_drop_buffers(gpu, 1, &pass->splats);
+  pass->splat_room = splats;
   return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + splats * SPLAT_BYTES, NULL, &pass->splats,
                               error);
 }
@@ -116,7 +116,9 @@ static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const ab
     if (chunk == 0 && count > MAX_SPLATS)
       pass->chunks = abbe_refine_pass_chunks(count * pass->chunks, MAX_SPLATS);
     const size_t more = count + count / 4;
-    result = make_room(pass, chunk == 0 && more > MAX_SPLATS ? MAX_SPLATS : more, error);
+    size_t room = chunk == 0 && more > MAX_SPLATS ? MAX_SPLATS : more;
+    if (room < pass->splat_room) room = pass->splat_room; /* others may need what there is */
+    result = make_room(pass, room, error);
   }
   return result;
 }

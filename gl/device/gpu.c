@@ -342,10 +342,11 @@ static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t w
   const char *first = width > 0 ? "first_row" : "first_group";
   const size_t step = width > 0 ? 16 : 1;
   size_t part = FIRST_PART, at = 0;
+  gpu->gl->UseProgram(program);
   while (at < units && abbe_gpu_ask(gpu)) {
     const double start_ms = 1e3 * abbe_clock_seconds();
     const size_t count = units - at < part ? units - at : part;
-    gpu->gl->UseProgram(program);
+    gpu->gl->UseProgram(program); /* whoever was asked may have drawn */
     abbe_gpu_set_uint(gpu, program, first, at * step);
     if (width > 0)
       gpu->gl->DispatchCompute((GLuint)width, (GLuint)count, 1);

@@ -21,6 +21,12 @@ static const abbe_render_desc tiny = {
          "- {name: spot, kind: spot, position: [-0.4, 0, 0.7], target: [0, 0, 0.2], intensity: 2," \
          " cone: 40}\n" FLOOR RING("crown") HILL
 
+static bool stop_at(void *user, double done) {
+  int *left = user;
+  (void)done;
+  return --*left > 0;
+}
+
 static abbe_result change(abbe_renderer *renderer, const abbe_scene *scene,
                           const abbe_render_desc *desc) {
   abbe_error error = {0};
@@ -142,6 +148,59 @@ static void what_the_camera_sees_comes_and_goes(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* What all powers are measured by goes by the greatest of lights, ambient light and background. */
+static void the_unit_of_power_comes_and_goes(void **state) {
+  (void)state;
+  static const double powers[] = {1e-20, 1e-20, 1e-20, 1, 1}, background[] = {0, 0.1, 0, 0, 1e30};
+  abbe_scene scene = {0};
+  load_text(GLASS_SCENE, &scene);
+  scene.ambient = scene.background = 0;
+  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  for (size_t i = 0; i < sizeof powers / sizeof *powers; i++) {
+    scene.light[0].power = powers[i];
+    scene.background = background[i];
+    assert_int_equal(change(renderer, &scene, &tiny), ABBE_OK);
+    assert_as_made_anew(renderer, &scene, &tiny, "another unit of power");
+  }
+  abbe_render_desc other = tiny;
+  other.space = ABBE_RGB_SPACE_REC709;
+  assert_int_equal(change(renderer, &scene, &other), ABBE_OK);
+  const abbe_statistics s = draw_frame(renderer);
+  assert_ran(&s, false, true);
+  assert_as_made_anew(renderer, &scene, &other, "another space");
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* Watched and not, with more wavelengths than a pixel's coarse bands. */
+static void a_watched_frame_is_the_same(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image alone = {0}, watched = {0};
+  abbe_error error = {0};
+  int left = 1 << 30;
+  load_text(GLASS_SCENE, &scene);
+  abbe_render_desc desc = tiny;
+  desc.wavelengths = 12;
+  abbe_renderer *renderer = make_renderer(&scene, &desc);
+  draw_frame(renderer);
+  read_picture(renderer, false, &alone);
+  for (int turn = 0; turn < 2; turn++) { /* then of a camera that sees no refractor */
+    if (turn == 1) scene.camera.target[0] = -3, scene.camera.target[1] = -0.5;
+    assert_int_equal(change(renderer, &scene, &desc), ABBE_OK);
+    abbe_renderer_redraw(renderer);
+    assert_ok(abbe_renderer_frame(renderer, stop_at, &left, NULL, &error), &error);
+    assert_as_made_anew(renderer, &scene, &desc, "a watched frame");
+    if (turn == 1) continue;
+    read_picture(renderer, false, &watched);
+    assert_same_pixels(&alone, &watched);
+  }
+  abbe_image_free(&alone);
+  abbe_image_free(&watched);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 /* The scene that cannot be planned leaves the renderer as it was. */
 static void a_refused_change_changes_nothing(void **state) {
   (void)state;
@@ -163,12 +222,6 @@ static void a_refused_change_changes_nothing(void **state) {
   abbe_image_free(&after);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
-}
-
-static bool stop_at(void *user, double done) {
-  int *left = user;
-  (void)done;
-  return --*left > 0;
 }
 
 /* Wherever a frame or a change is cancelled, the renderer goes on. */
@@ -195,7 +248,13 @@ static void a_cancelled_renderer_goes_on(void **state) {
   watched.progress_user = &left;
   scene.light[0].position[0] += 0.02;
   assert_int_equal(change(renderer, &scene, &watched), ABBE_CANCELLED);
+  double ms;
+  float *hits = NULL;
+  size_t count, slots, samples;
   assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_renderer_baseline(renderer, &ms, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_renderer_read_hits(renderer, 0, &hits, NULL, &count, &slots, &samples, &error),
+                   ABBE_INVALID_ARGUMENT);
   assert_int_equal(change(renderer, &scene, &tiny), ABBE_OK);
   assert_as_made_anew(renderer, &scene, &tiny, "a cancelled change");
   abbe_renderer_free(renderer);
@@ -304,7 +363,8 @@ static void another_scene_is_a_change_too(void **state) {
   abbe_render_desc thesis = tiny;
   thesis.profile = ABBE_PROFILE_THESIS;
   assert_int_equal(change(renderer, &solid, &thesis), ABBE_OK);
-  draw_frame(renderer);
+  abbe_statistics s = draw_frame(renderer);
+  assert_true(s.pass_count > 0 && s.photons > 0);
   assert_int_equal(change(renderer, &solid, &tiny), ABBE_OK);
   assert_as_made_anew(renderer, &solid, &tiny, "the thesis's profile");
   abbe_renderer_free(renderer);
@@ -316,6 +376,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_change_runs_what_depends_on_it),
       cmocka_unit_test(what_the_camera_sees_comes_and_goes),
+      cmocka_unit_test(the_unit_of_power_comes_and_goes),
+      cmocka_unit_test(a_watched_frame_is_the_same),
       cmocka_unit_test(a_refused_change_changes_nothing),
       cmocka_unit_test(a_cancelled_renderer_goes_on),
       cmocka_unit_test(random_changes_of_a_solid),
