@@ -17,6 +17,11 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
+const char *abbe_file_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash == NULL ? path : slash + 1;
+}
+
 static abbe_result fail_io(abbe_error *error, const char *path, const char *what, int number) {
   return abbe_error_set(error, ABBE_IO, "%s: %s: %s", path, what, strerror(number));
 }

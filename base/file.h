@@ -19,6 +19,9 @@
 extern "C" {
 #endif
 
+/* What comes after the path's last slash. */
+const char *abbe_file_name(const char *path);
+
 /* Opens a regular file to be read (binary); the caller closes *stream. *size (may be NULL): its
  * bytes. ABBE_IO if it is missing, unreadable or of another kind, which is named, ABBE_NO_MEMORY.
  */

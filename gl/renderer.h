@@ -1,8 +1,21 @@
 /* renderer.h: pictures of a scene by adaptive spectral mapping, pass by pass as the plan says.
  *
- * A renderer belongs to one context and one scene, both of which outlive it; a frame runs every
- * pass anew. Pictures are scene-linear radiance, W/(m2 sr) with each light's power shared out by
- * its illuminant, in the plan's colour space. Single-threaded, as the context is.
+ * A renderer belongs to one context, which outlives it. It may be changed: to another camera, other
+ * lights, objects, materials or settings, or to another scene; what does not depend on what differs
+ * is kept, and a frame draws what it draws of a renderer made anew, bit for bit. Pictures are scene-linear radiance, W/(m2 sr) with each light's power shared out by
+ * its illuminant, in the plan's colour space. A process may have many renderers, on one context or
+ * on several; those of one context are used by one thread at a time.
+ *
+ * Every function that takes a renderer and gives a result, abbe_renderer_make and
+ * abbe_renderer_free make its context current and leave it so; ABBE_GL where it cannot be. They
+ * take OpenGL's state in the context as they find it, except that no query, conditional rendering
+ * or transform feedback may be active; errors that are pending are dropped. They leave framebuffer
+ * 0, no program, no vertex array, texture unit 0 active, no pixel buffers, no samplers at units 0
+ * to 15, glPixelStore's values and all enables of drawing as GL begins with them (not its debug
+ * output and seamless cube maps), and so also blend function and equation, clip control, colour and
+ * depth mask, cull face, depth function and range, front face, polygon mode, provoking vertex and
+ * the hint for derivatives. Viewport, scissor box and the bindings of textures, images and indexed
+ * buffers are left as they fall.
  */
 #ifndef ABBE_GL_RENDERER_H
 #define ABBE_GL_RENDERER_H
@@ -29,18 +42,38 @@ typedef struct abbe_renderer abbe_renderer;
 abbe_result abbe_renderer_make(abbe_context *context, const abbe_scene *scene,
                                const abbe_render_desc *desc, abbe_renderer **out,
                                abbe_error *error);
+/* Before its context is freed. Where that cannot be made current, what it holds in it stays there.
+ */
 void abbe_renderer_free(abbe_renderer *renderer);
+
+/* Takes over the scene as it is now, the same one or another, and the request. It finds out itself
+ * what differs: a camera that has moved asks for the camera's passes alone; a light that is dimmed,
+ * for those and a table; another material, for tables, photons and the camera's passes; an object
+ * that has moved, for its bounds and all that follows. The scene must stay as it is until it is
+ * handed over again, or the renderer is freed. Errors as of abbe_renderer_make. Where the scene
+ * cannot be planned the renderer stays as it was; a caller that has edited the scene in place puts
+ * it back, or changes on, before it draws. After another failure it draws nothing until a change
+ * succeeds. */
+abbe_result abbe_renderer_change(abbe_renderer *renderer, const abbe_scene *scene,
+                                 const abbe_render_desc *desc, abbe_error *error);
+
+/* The next frame runs every pass, whatever could be kept: to measure it. */
+void abbe_renderer_redraw(abbe_renderer *renderer);
 
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
 
-/* One frame. With statistics every pass is finished and timed by itself; without, none is waited
- * for but the last. progress and statistics may be NULL. */
+/* One frame: the passes whose result is not there yet, none where nothing has changed since the last
+ * one. With statistics every pass is finished and timed by itself; without, none is waited
+ * for but the last. progress and statistics may be NULL. progress may make another
+ * context current and use another renderer there, and leaves this context as it is. ABBE_CANCELLED by
+ * progress: the frame may be drawn again; ABBE_GL. */
 abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error);
 
 /* The time of drawing all surfaces once into the eye's picture, normals and distances alone, ms:
- * the floor under any frame. Default profile only. */
-abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error *error);
+ * the baseline of any frame. The picture stays. ABBE_UNSUPPORTED but of the default profile;
+ * ABBE_GL. */
+abbe_result abbe_renderer_baseline(abbe_renderer *renderer, double *ms, abbe_error *error);
 
 /* The picture: R, G, B (X, Y, Z in that space); with layers (which the request must have
  * asked for) also direct.*, caustic.* (radiance of
@@ -49,10 +82,27 @@ abbe_result abbe_renderer_floor(abbe_renderer *renderer, double *ms, abbe_error 
 abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image *out,
                                abbe_error *error);
 
+/* The picture where it was drawn. */
+typedef struct abbe_renderer_picture {
+  GLuint texture; /* GL_TEXTURE_2D of one level, GL_RGBA32F, rows upward */
+  size_t width, height;
+  /* R, G, B times this are those of abbe_renderer_read: 1, or a power of two where the scene's
+   * light would leave the range of floats. A is the distance from the eye in m, 0 where nothing is
+   * seen; of the thesis's profiles it has no meaning. */
+  double scale;
+  abbe_rgb_space space; /* of the texels: the plan's; ACEScg where that is XYZ */
+} abbe_renderer_picture;
+
+/* For drawing on without a copy. The texture is the renderer's, of its context and those that share
+ * with it; it is read, not written, and holds until the next change, the next frame or the renderer's end.
+ * ABBE_INVALID_ARGUMENT before a whole frame was drawn. */
+abbe_result abbe_renderer_texture(abbe_renderer *renderer, abbe_renderer_picture *out,
+                                  abbe_error *error);
+
 /* A light's spectral map: channels X, Y, Z, flux a texel in W, with its layout and the light's name
  * in its attributes (abbe_map_layout_read). Of a light with a cube of maps only where the request
- * gives one layout for all, else ABBE_UNSUPPORTED. filled: after the gap fill, where the fill is a pass of
- * its own (smear). */
+ * gives one layout for all, else ABBE_UNSUPPORTED. filled: after the gap fill, where the fill is a
+ * pass of its own (smear). */
 abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool filled,
                                    abbe_image *out, abbe_error *error);
 
@@ -63,17 +113,17 @@ abbe_result abbe_renderer_read_map(abbe_renderer *renderer, size_t light, bool f
 abbe_result abbe_renderer_read_map_bands(abbe_renderer *renderer, size_t light, size_t bands,
                                          abbe_image *out, abbe_error *error);
 
-/* The layout of a light's map: fitted to its landings, or the request's; of the first face of a
+/* The layout of a light's map: fitted to its hits, or the request's; of the first face of a
  * light with a cube. */
 void abbe_renderer_map_layout(const abbe_renderer *renderer, size_t light, abbe_map_layout *out);
 
-/* Landings of the first batch of wavelengths, for tests: [count][orders][lanes] x 4 floats, world
+/* Hits of the first batch of wavelengths, for tests: [count][slots][samples] x 4 floats, world
  * position in m and flux for unit weight in W, all 0 where nothing lands. *data and *cells (x | y
  * << 16 of each photon; cells may be NULL) are malloc'd, the caller frees them.
  * ABBE_INVALID_ARGUMENT where no photons start from that light. */
-abbe_result abbe_renderer_read_landings(abbe_renderer *renderer, size_t light, float **data,
-                                        unsigned **cells, size_t *count, size_t *orders,
-                                        size_t *lanes, abbe_error *error);
+abbe_result abbe_renderer_read_hits(abbe_renderer *renderer, size_t light, float **data,
+                                    unsigned **cells, size_t *count, size_t *slots, size_t *samples,
+                                    abbe_error *error);
 /* The view through which a light's photons start: the middle of cell (x, y) of a grid of N is at
  * uv = ((x + 0.5) / N, (y + 0.5) / N). */
 void abbe_renderer_photon_view(const abbe_renderer *renderer, size_t light, abbe_view *out);

@@ -1,5 +1,5 @@
-/* renderer_state.h: what a renderer is made of. Internal to gl/: renderer.c alone and its tests
- * look inside.
+/* renderer_state.h: what a renderer is made of. Internal to gl/: only renderer.c, renderer_parts.c and
+ * their tests look inside.
  */
 #ifndef ABBE_GL_RENDERER_STATE_H
 #define ABBE_GL_RENDERER_STATE_H
@@ -7,32 +7,41 @@
 #include "gl/caustics/caustics.h"
 #include "gl/eye/picture.h"
 #include "gl/renderer.h"
+#include "gl/renderer_inputs.h"
 #include "gl/scene/local_scene.h"
 #include "gl/thesis/thesis.h"
 
 struct abbe_renderer {
+  abbe_context *context;
   abbe_gpu gpu;
+  bool software; /* what runs the shaders is a processor */
   abbe_local_scene local;
-  abbe_map_layout given; /* the request's layout there, where the scene is moved */
+  abbe_map_layout given; /* the request's layout there */
   abbe_plan plan;
+  abbe_renderer_inputs inputs; /* what the parts below were made from */
+  bool made;                   /* they are all there */
   abbe_gpu_scene scene;
   abbe_shader_variant variant;
 
-  abbe_camera_view camera;
+  /* light */
   abbe_photon_lights views;
   abbe_refractor_faces faces;
   abbe_light_layers layers;
   abbe_receiver_atlas atlas;
   abbe_spectral_map map;
   abbe_caustics caustics;
+  abbe_thesis thesis; /* in place of these and those below */
+  bool lit;           /* all of that is drawn: the maps hold the light as it is now */
+
+  /* eye */
+  abbe_camera_view camera;
   abbe_lighting lighting;
   abbe_receivers_pass receivers;
   abbe_refraction_pass refraction;
   abbe_picture picture;
-  abbe_thesis thesis; /* in place of all from the camera on */
+  bool seen; /* the picture is drawn */
 
-  GLuint baseline;   /* what abbe_renderer_floor draws into */
-  bool drawn;        /* the last frame was, to its end */
+  GLuint baseline;   /* what abbe_renderer_baseline draws into; 0 before */
   double untimed_ms; /* of this frame, spent on its ledger */
 };
 

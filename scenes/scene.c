@@ -463,3 +463,17 @@ abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
                           path_of(scene), receivers);
   return ABBE_OK;
 }
+
+void abbe_object_bound(abbe_object *o) {
+  for (int k = 0; k < 3; k++) {
+    o->min[k] = INFINITY;
+    o->max[k] = -INFINITY;
+    for (size_t v = 0; v < o->mesh.vertex_count; v++) {
+      o->min[k] = fmin(o->min[k], o->mesh.position[v][k]);
+      o->max[k] = fmax(o->max[k], o->mesh.position[v][k]);
+    }
+    if (o->exact.kind != ABBE_EXACT_SPHERE) continue;
+    o->min[k] = o->exact.centre[k] - o->exact.radius;
+    o->max[k] = o->exact.centre[k] + o->exact.radius;
+  }
+}

@@ -121,6 +121,9 @@ abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
                        double max[3]);
 
+/* Sets its bounds by its vertices, or its exact sphere. */
+void abbe_object_bound(abbe_object *object);
+
 /* From a point to the object's surface, m; to a sphere's exact one, negative inside it. */
 double abbe_object_distance(const abbe_object *object, const double point[3]);
 /* Its least width, m, among those of its bounds, across its largest face and, of a convex solid,

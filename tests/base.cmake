@@ -1,5 +1,5 @@
-foreach(name encoding error file html_text nearest number report summary text_cursor text_diff utf8
-        yaml yaml_edit yaml_quote)
+foreach(name clock encoding error file html_text nearest number order report summary text_cursor
+        text_diff utf8 yaml yaml_edit yaml_quote)
   abbe_test(${name} cpu abbe_base)
 endforeach()
 target_link_options(test_file PRIVATE LINKER:--wrap=poll)

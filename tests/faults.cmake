@@ -23,6 +23,7 @@ foreach(name open linkat fdopen fchmod fsync fclose rename pwrite)
   target_link_options(faults_disk INTERFACE LINKER:--wrap=${name})
 endforeach()
 abbe_test(full_disk cpu faults_disk abbe_validation abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+abbe_label(cpu memory NAMES no_memory_tables no_memory_scenes no_memory_trace full_disk)
 
 # Kills the program, or starves it, at a chosen call (faults/preload.c).
 add_library(faults_preload MODULE faults/preload.c)

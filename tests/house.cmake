@@ -59,7 +59,7 @@ target_link_libraries(test_headers PRIVATE abbe_build)
 target_include_directories(test_headers PRIVATE
   $<TARGET_PROPERTY:abbe_gl,INTERFACE_INCLUDE_DIRECTORIES>)
 add_test(NAME headers COMMAND test_headers)
-set_tests_properties(headers PROPERTIES LABELS program TIMEOUT ${hang_s})
+abbe_label(program NAMES headers)
 
 # Every function of the headers that returns a result, called with NULL and with zeros.
 list(TRANSFORM headers PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE header_files)
@@ -72,3 +72,4 @@ add_custom_command(OUTPUT ${calls}
 abbe_test(null_arguments cpu abbe_sweep abbe_gl abbe_validation abbe_scenes abbe_colorimetry
   abbe_spectral abbe_base)
 target_sources(test_null_arguments PRIVATE ${calls})
+abbe_label(cpu memory NAMES null_arguments)

@@ -5,14 +5,14 @@ add_test(NAME install
 if(ABBE_HARDEN AND NOT ABBE_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   add_test(NAME hardened COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/hardened $<TARGET_FILE:abbe>
            $<TARGET_FILE:abbe_library>)
-  set_tests_properties(hardened PROPERTIES LABELS program TIMEOUT ${hang_s})
+  abbe_label(program NAMES hardened)
 endif()
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
 add_test(NAME measuring_scripts
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/measure $<TARGET_FILE:abbe>)
 add_test(NAME slits
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/slits $<TARGET_FILE:abbe>)
-set_tests_properties(install scripts measuring_scripts slits PROPERTIES LABELS program TIMEOUT ${hang_s})
+abbe_label(program NAMES install scripts measuring_scripts slits)
 
 foreach(name
     arguments
@@ -36,20 +36,23 @@ endforeach()
 
 add_test(NAME readme_commands
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/readme_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
-set_tests_properties(readme_commands PROPERTIES LABELS program TIMEOUT ${hang_s})
+abbe_label(program NAMES readme_commands)
 
 add_test(NAME materials_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           docs/materials.md)
-set_tests_properties(materials_page PROPERTIES LABELS program TIMEOUT ${hang_s})
+abbe_label(program NAMES materials_page)
 
-# All known answers at full size: it keeps both cores busy for a minute or so.
+# All known answers at full size keep both cores busy for minutes. With fewer samples, the tests of
+# known_answers, known_light and validate_command have the groups but this one.
 add_test(NAME known_answers_whole COMMAND abbe validate --quiet)
-set_tests_properties(known_answers_whole PROPERTIES LABELS program TIMEOUT ${hang_s})
+add_test(NAME known_answers_white COMMAND abbe validate --quiet --only white --samples 262144)
+abbe_label(program long NAMES known_answers_whole)
+abbe_label(program NAMES known_answers_white)
 foreach(scene sphere ring gem bunny glass prism rainbow)
   add_test(NAME reference_${scene}
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})
-  set_tests_properties(reference_${scene} PROPERTIES LABELS program TIMEOUT ${hang_s})
+  abbe_label(program NAMES reference_${scene})
 endforeach()
 # Tolerances that catch nothing are none.
 add_test(NAME reference_broken_exits
@@ -58,5 +61,4 @@ add_test(NAME reference_broken_exits
 add_test(NAME reference_broken_wavelengths
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           --broken prism --wavelengths 1)
-set_tests_properties(reference_broken_exits reference_broken_wavelengths
-  PROPERTIES LABELS program TIMEOUT ${hang_s})
+abbe_label(program NAMES reference_broken_exits reference_broken_wavelengths)

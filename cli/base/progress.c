@@ -1,5 +1,6 @@
 #include "cli/base/progress.h"
 
+#include "base/clock.h"
 #include "cli/base/output.h"
 
 #include <signal.h>
@@ -21,12 +22,6 @@ static void interrupt(int signal_number) {
   interrupted = 1;
 }
 
-static double now_s(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Whoever asks for the end, a user or a machine that goes down: what is done is saved. A terminal
  * that hangs up ends nothing where the parent said so (nohup). */
 static void catch_interrupts(void) {
@@ -43,13 +38,13 @@ void abbe_progress_begin(abbe_progress *progress, const char *what, bool quiet) 
   memset(progress, 0, sizeof *progress);
   progress->what = what;
   progress->silent = quiet || !isatty(STDERR_FILENO);
-  progress->start_s = now_s();
+  progress->start_s = abbe_clock_seconds();
   catch_interrupts();
 }
 
 bool abbe_progress_update(void *user, double done) {
   abbe_progress *progress = user;
-  double now = now_s(), spent = now - progress->start_s;
+  double now = abbe_clock_seconds(), spent = now - progress->start_s;
   double left = done > 0 ? spent * (1 - done) / done : 0;
   /* Work that will be over within a second needs no bar. */
   if (!progress->silent && (spent > 0.3 && spent + left > 1.0) && now - progress->last_s > 0.1) {
@@ -70,7 +65,7 @@ const volatile int *abbe_progress_stopped(void) {
 }
 
 double abbe_progress_seconds(const abbe_progress *progress) {
-  return now_s() - progress->start_s;
+  return abbe_clock_seconds() - progress->start_s;
 }
 
 void abbe_progress_end(abbe_progress *progress) {

@@ -184,10 +184,9 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddNumberToObject(energy, "trapped", s->energy.trapped);
   cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
   cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
-  cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_pages);
+  cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_tiles);
   cJSON_AddNumberToObject(energy, "interpolated", s->energy.interpolated);
   cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
-  if (s->layer_faces > 0) cJSON_AddNumberToObject(root, "layer_faces", (double)s->layer_faces);
   cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);
   struct rusage usage;
   if (getrusage(RUSAGE_SELF, &usage) == 0)
@@ -214,7 +213,7 @@ static abbe_result write_stats(const request *q, const abbe_statistics *s,
   return result;
 }
 
-/* One frame, or the median of several after a warm-up, and the floor under them. */
+/* One frame, or the median of several after a warm-up, and the baseline under them. */
 static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_statistics *out,
                               abbe_error *error) {
   abbe_progress progress;
@@ -231,7 +230,7 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   }
   abbe_progress_end(&progress);
   if (result == ABBE_OK && q->frames > 0 && !abbe_profile_is_thesis(q->render.desc.profile))
-    result = abbe_frame_times_floor(renderer, q->frames, &out->floor_ms, error);
+    result = abbe_frame_times_baseline(renderer, q->frames, &out->floor_ms, error);
   return result;
 }
 
@@ -294,6 +293,11 @@ static void summarise(const request *q, const abbe_statistics *s, double prepare
   fprintf(stderr, "\n");
 }
 
+static void say_compiling(void *user) {
+  (void)user;
+  fprintf(stderr, "compiling this scene's shaders: some seconds, once on this machine\n");
+}
+
 static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
   abbe_scene_input_note(scene);
   for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
@@ -314,6 +318,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   }
   desc.progress = abbe_progress_update;
   desc.progress_user = &progress;
+  desc.compiling = q->quiet ? NULL : say_compiling;
   abbe_progress_begin(&progress, "prepare", q->quiet);
   abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);
   const double prepared_s = abbe_progress_seconds(&progress);

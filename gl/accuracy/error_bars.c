@@ -1,8 +1,9 @@
 #include "gl/accuracy/error_bars.h"
 
+#include "base/clock.h"
+#include "base/order.h"
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
-#include "gl/device/gpu.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -101,6 +102,7 @@ typedef struct work {
   abbe_context *context;
   const abbe_scene *scene;
   const abbe_error_bars_desc *desc;
+  abbe_renderer *renderer; /* of all variants, one after another; NULL before the first */
   abbe_render_desc request; /* resolved, without what only the picture needs */
   abbe_map_layout map;
   bool has_map;
@@ -116,24 +118,25 @@ static bool show_frame(void *user, double done) {
   return w->desc->progress(w->desc->user, ((double)w->done + done) / (double)w->frames);
 }
 
-/* Making a renderer, which traces all photons once, is about half of the work. */
+/* Fitting maps to a variant is about a tenth of its work. */
 static bool show_making(void *user, double done) {
-  return show_frame(user, 0.5 * done);
+  return show_frame(user, 0.1 * done);
 }
 
 static bool show_drawing(void *user, double done) {
-  return show_frame(user, 0.5 + 0.5 * done);
+  return show_frame(user, 0.1 + 0.9 * done);
 }
 
 static abbe_result draw(work *w, abbe_render_desc request, abbe_image *out, abbe_error *error) {
-  abbe_renderer *renderer = NULL;
   if (!w->has_map) request.map_layout = NULL;
   request.progress = show_making;
   request.progress_user = w;
-  abbe_result result = abbe_renderer_make(w->context, w->scene, &request, &renderer, error);
-  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, show_drawing, w, NULL, error);
-  if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, out, error);
-  abbe_renderer_free(renderer);
+  abbe_result result =
+      w->renderer == NULL
+          ? abbe_renderer_make(w->context, w->scene, &request, &w->renderer, error)
+          : abbe_renderer_change(w->renderer, w->scene, &request, error);
+  if (result == ABBE_OK) result = abbe_renderer_frame(w->renderer, show_drawing, w, NULL, error);
+  if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, false, out, error);
   w->done++;
   if (result == ABBE_OK && !show_frame(w, 0)) {
     abbe_image_free(out);
@@ -202,16 +205,11 @@ static void estimate(const work *w, abbe_error_bars *out) {
 
 /* Summaries */
 
-static int descending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x < y) - (x > y);
-}
-
 /* Of the brightest pixels: the one where `share` of the light is reached, or of the lit pixels. */
 static double threshold(double *light, size_t count, double share, bool of_pixels) {
   double total = 0, held = 0;
   size_t i = 0;
-  qsort(light, count, sizeof *light, descending);
+  qsort(light, count, sizeof *light, abbe_order_descending);
   while (i < count && light[i] > 0) total += of_pixels ? 1 : light[i], i++;
   for (size_t k = 0; k < i; k++) {
     held += of_pixels ? 1 : light[k];
@@ -325,7 +323,7 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
   static const abbe_error_bars_desc defaults = {0};
   *out = (abbe_error_bars){0};
   if (desc == NULL) desc = &defaults;
-  double start_ms = abbe_gpu_now_ms();
+  double start_ms = 1e3 * abbe_clock_seconds();
   size_t variants = desc->variants > 0 ? desc->variants : ABBE_ERROR_BARS_VARIANTS;
   work w = {.context = context, .scene = scene, .desc = desc};
   abbe_result result =
@@ -343,8 +341,9 @@ abbe_result abbe_error_bars_make(abbe_context *context, const abbe_scene *scene,
     out->frames = w.frames;
     estimate(&w, out);
     result = summarise_all(&w, out, error);
-    out->ms = abbe_gpu_now_ms() - start_ms;
+    out->ms = 1e3 * abbe_clock_seconds() - start_ms;
   }
+  abbe_renderer_free(w.renderer);
   free(w.difference);
   free(w.squares);
   abbe_image_free(&w.picture);

@@ -1,5 +1,6 @@
 #include "gl/accuracy/error_picture.h"
 
+#include "base/order.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/rgb_space.h"
 
@@ -8,11 +9,6 @@
 #include <string.h>
 
 enum { SIDE = 512, BESIDE = 190, ABOVE = 34, BELOW = 12 };
-
-static int ascending(const void *a, const void *b) {
-  float x = *(const float *)a, y = *(const float *)b;
-  return (x > y) - (x < y);
-}
 
 static double round_up(double x) {
   static const double step[] = {1, 2, 5, 10};
@@ -24,7 +20,7 @@ static double round_up(double x) {
 
 static double scale_end(const float *value, size_t count, float *sorted) {
   memcpy(sorted, value, count * sizeof *value);
-  qsort(sorted, count, sizeof *sorted, ascending);
+  qsort(sorted, count, sizeof *sorted, abbe_order_ascending_floats);
   double most = (double)sorted[(size_t)(0.999 * (double)(count - 1))];
   if (!(most > 0)) most = (double)sorted[count - 1];
   return most > 0 ? round_up(most) : 1;

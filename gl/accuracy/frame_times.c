@@ -1,16 +1,13 @@
 #include "gl/accuracy/frame_times.h"
 
+#include "base/order.h"
+
 #include <stdlib.h>
 
-enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_FLOORS = 16 };
+enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_BASELINES = 16 };
 
 static int by_time(const void *a, const void *b) {
   double x = ((const abbe_statistics *)a)->frame_ms, y = ((const abbe_statistics *)b)->frame_ms;
-  return (x > y) - (x < y);
-}
-
-static int by_value(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
@@ -26,6 +23,7 @@ abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_t
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     if (desc->progress != NULL && !desc->progress(desc->user, (double)i / (double)count))
       result = abbe_error_set(error, ABBE_CANCELLED, "stopped; nothing was written");
+    abbe_renderer_redraw(renderer);
     if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, &all[i], error);
     spent_ms += all[i].frame_ms;
     if (desc->enough_ms > 0 && i + 1 >= ENOUGH_FRAMES && spent_ms > desc->enough_ms) count = i + 1;
@@ -38,16 +36,16 @@ abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_t
   return result;
 }
 
-abbe_result abbe_frame_times_floor(abbe_renderer *renderer, size_t count, double *ms,
-                                   abbe_error *error) {
+abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, double *ms,
+                                      abbe_error *error) {
   ABBE_REQUIRE(renderer && ms, error);
-  double all[MAX_FLOORS];
-  if (count < 1 || count > MAX_FLOORS) count = count < 1 ? 1 : MAX_FLOORS;
+  double all[MAX_BASELINES];
+  if (count < 1 || count > MAX_BASELINES) count = count < 1 ? 1 : MAX_BASELINES;
   for (size_t i = 0; i < count; i++) {
-    abbe_result result = abbe_renderer_floor(renderer, &all[i], error);
+    abbe_result result = abbe_renderer_baseline(renderer, &all[i], error);
     if (result != ABBE_OK) return result;
   }
-  qsort(all, count, sizeof *all, by_value);
+  qsort(all, count, sizeof *all, abbe_order_ascending);
   *ms = all[count / 2];
   return ABBE_OK;
 }

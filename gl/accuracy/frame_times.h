@@ -30,8 +30,8 @@ abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_t
 
 /* The median of `count` (1 to 16) times of drawing the surfaces alone, which the default profile
  * knows. */
-abbe_result abbe_frame_times_floor(abbe_renderer *renderer, size_t count, double *ms,
-                                   abbe_error *error);
+abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, double *ms,
+                                      abbe_error *error);
 
 #ifdef __cplusplus
 }

@@ -276,6 +276,7 @@ abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene
   abbe_preset_apply(point, &quick);
   abbe_result result = abbe_renderer_make(context, scene, &quick, &renderer, error);
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
+  if (result == ABBE_OK) abbe_renderer_redraw(renderer);
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, &statistics, error);
   abbe_renderer_free(renderer);
   if (result != ABBE_OK) return result;

@@ -1,14 +1,19 @@
 #include "gl/caustics/caustics.h"
 
+#include "base/clock.h"
 #include "gl/caustics/cell_fit.h"
 #include "gl/caustics/map_fit.h"
 #include "gl/light/light_fit.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const abbe_plan *plan_of(const abbe_caustics *c) {
   return c->views->scene->plan;
 }
+
+/* What is fitted is fitted to no more photons than this a side. */
+enum { FIT_PHOTONS = 128 };
 
 static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
@@ -24,59 +29,26 @@ static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
  * in exactly one of them. (A single node has its light in the one before it.) False after the last.
  */
 static bool next_batch(const abbe_caustics *c, abbe_hit_batch *b) {
-  const size_t n = plan_of(c)->desc.wavelengths, lanes = c->trace.hits.stride;
+  const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
   if (b->count > 0 && b->first + b->count == n) return false;
   b->first = b->count == 0 ? 0 : b->first + b->count - 1;
-  b->count = n - b->first < lanes ? n - b->first : lanes;
+  b->count = n - b->first < most ? n - b->first : most;
   b->interval_first = n > 1 ? b->first + 1 : 0;
   b->interval_end = b->first + b->count;
   return true;
 }
 
-/* Traces what next_batch() would, or the coarse set and then its refined intervals; deposited in
- * another order: the coarse set last, when it is known what is refined. Returns false after the
- * last. */
-static bool trace_next(abbe_caustics *c, size_t light, abbe_hit_batch *b) {
-  if (!abbe_photon_spectra_refines(&c->spectra)) {
-    const size_t done = b->first + b->count;
-    if (!next_batch(c, b)) return false;
-    abbe_trace_pass_batch(&c->trace, light, b->first, b->count, done);
-    return true;
-  }
-  if (b->set == ABBE_TRACE_COARSE) return false;
-  const size_t chunk = b->set == ABBE_TRACE_ALL ? 0 : b->pair_chunk + 1;
-  if (b->set == ABBE_TRACE_ALL) abbe_refine_pass_coarse(&c->refine, light);
-  *b = (abbe_hit_batch){
-      .set = ABBE_TRACE_REFINED, .pair_chunk = chunk, .count = c->refine.fine_nodes};
-  if (chunk < c->refine.chunks) {
-    abbe_refine_pass_run(&c->refine, light, chunk);
-    return true;
-  }
-  *b = (abbe_hit_batch){.set = ABBE_TRACE_COARSE,
-                        .count = c->spectra.nodes,
-                        .interval_first = 1,
-                        .interval_end = c->spectra.nodes};
-  return true;
-}
-
-static double share_done(const abbe_caustics *c, const abbe_hit_batch *b) {
-  if (b->set == ABBE_TRACE_ALL)
-    return (double)(b->first + b->count) / (double)plan_of(c)->desc.wavelengths;
-  if (b->set == ABBE_TRACE_COARSE) return 1;
-  return (double)(b->pair_chunk + 1) / (double)(c->refine.chunks + 1);
-}
-
-/* Hits of all wavelengths into the fit of the map, and of the pages. */
+/* Hits of all wavelengths, each once, into the fit of the map, and of the tiles. */
 static abbe_result sort_hits(abbe_caustics *c, size_t light, abbe_map_fit *fit,
-                             abbe_page_light **beside, abbe_error *error) {
+                             abbe_tile_light **beside, abbe_error *error) {
+  const size_t n = plan_of(c)->desc.wavelengths, most = c->trace.hits.stride;
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
-  abbe_hit_batch b = {0};
-  while (result == ABBE_OK && next_batch(c, &b)) {
+  for (size_t first = 0; first < n && result == ABBE_OK; first += most) {
     float *hit = NULL;
     GLuint *path = NULL;
     const size_t count = abbe_trace_pass_hit_count(&c->trace, light);
-    abbe_trace_pass_batch(&c->trace, light, b.first, b.count, plan_of(c)->desc.wavelengths);
-    result = abbe_trace_pass_read(&c->trace, light, b.first, &hit, &path, error);
+    abbe_trace_pass_batch(&c->trace, light, first, n - first < most ? n - first : most, n);
+    result = abbe_trace_pass_read(&c->trace, light, first, &hit, &path, error);
     if (result == ABBE_OK) abbe_map_fit_add(fit, c->atlas, light, hit, path, count);
     if (result == ABBE_OK && fit->part > 0)
       result = abbe_receiver_atlas_sort(c->atlas, hit, path, count, fit->part, beside, error);
@@ -90,11 +62,11 @@ static abbe_result fit_map(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_map_layout *map = &c->views->light[light].map;
   const size_t sides = c->atlas->used ? 2 * c->views->scene->charts.count : 0;
   abbe_map_fit *fit = calloc(1, sizeof *fit);
-  abbe_page_light **beside = calloc(sides + 1, sizeof *beside);
+  abbe_tile_light **beside = calloc(sides + 1, sizeof *beside);
   abbe_result result = fit != NULL && beside != NULL
                            ? ABBE_OK
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit the map");
-  /* Pages are for what no map of the light could hold, whichever window is given. */
+  /* Tiles are for what no map of the light could hold, whichever window is given. */
   const bool given = abbe_photon_lights_map_is_given(c->views, light);
   const abbe_map_layout layout = *map;
   if (result == ABBE_OK && given) {
@@ -117,13 +89,13 @@ static abbe_shader_variant photon_variant(const abbe_caustics *c,
                                           const abbe_shader_variant *scene) {
   const abbe_plan *plan = plan_of(c);
   abbe_shader_variant v = *scene;
-  v.lanes = c->trace.hits.stride;
-  v.steps = c->spectra.steps;
+  v.hit_stride = c->trace.hits.stride;
+  v.steps = c->views->scene->tables.steps;
   v.nodes = c->spectra.nodes;
   v.map_levels = c->views->map_levels;
   v.bridge = plan->fills;
   v.doubts_bridges = plan->layers || plan->bvh;
-  v.tinting = plan->lengths;
+  v.keeps_lengths = plan->lengths;
   return v;
 }
 
@@ -133,20 +105,41 @@ static abbe_result compile_trace(abbe_caustics *c, const abbe_shader_variant *va
   return abbe_trace_pass_compile(&c->trace, &photons, error);
 }
 
-/* Photons are traced once to see where light falls: maps and pages are fitted to that. */
+/* A few photons are traced to see where light falls: maps and tiles are fitted to that. */
 static abbe_result fit_maps(abbe_caustics *c, abbe_shader_variant *variant, abbe_error *error) {
   abbe_result result = compile_trace(c, variant, error);
-  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)
+  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (plan_of(c)->reaches[light] &&
         (c->atlas->used || !abbe_photon_lights_map_is_given(c->views, light)))
       result = fit_map(c, light, error);
+    const double done = (double)(light + 1) / (double)plan_of(c)->light_view_count;
+    if (result == ABBE_OK) result = abbe_gpu_tell(c->views->scene->gpu, done, error);
+  }
   if (result != ABBE_OK || !c->atlas->used) return result;
   result = abbe_receiver_atlas_keep(c->atlas, variant, error);
-  return result == ABBE_OK ? compile_trace(c, variant, error) : result;
+  /* where tiles are kept, what is compiled is the same */
+  return result == ABBE_OK && !c->atlas->used ? compile_trace(c, variant, error) : result;
+}
+
+/* The grids that lights have now: their photons, and room for them. */
+static abbe_result use_grids(abbe_caustics *c, abbe_error *error) {
+  abbe_result result = count_photons(c, error);
+  abbe_photon_lights_upload(c->views); /* the unit of sums goes by photons */
+  if (result == ABBE_OK) result = abbe_trace_pass_make_room(&c->trace, error);
+  return result == ABBE_OK ? abbe_refine_pass_make_room(&c->refine, error) : result;
+}
+
+static abbe_result start_fit(abbe_caustics *c, abbe_error *error) {
+  const size_t most = plan_of(c)->desc.photons, side = most < FIT_PHOTONS ? most : FIT_PHOTONS;
+  for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
+    c->views->light[light].cells[0] = c->views->light[light].cells[1] = side;
+  abbe_photon_lights_upload(c->views);
+  return use_grids(c, error);
 }
 
 static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;
+  abbe_photon_lights_upload(c->views); /* the maps that were fitted */
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++)
     if (plan_of(c)->reaches[light]) result = abbe_cell_fit_run(&c->trace, c->views, light, error);
   for (size_t light = 0; light < plan_of(c)->light_view_count; light++)
@@ -154,55 +147,8 @@ static abbe_result fit_grids(abbe_caustics *c, abbe_error *error) {
   if (result != ABBE_OK) return result;
   abbe_photon_lights_upload(c->views);
   result = abbe_light_layers_run(c->layers, error);
-  return result == ABBE_OK ? count_photons(c, error) : result;
-}
-
-/* Counts the refined intervals, the same in every frame. */
-static abbe_result count_pairs(abbe_caustics *c, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  size_t most = 0;
-  if (!abbe_photon_spectra_refines(&c->spectra)) return ABBE_OK;
-  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
-    if (!plan_of(c)->reaches[light]) continue;
-    result = abbe_photon_start_run(&c->start, light, error);
-    abbe_refine_pass_coarse(&c->refine, light);
-    const size_t count = abbe_refine_pass_count(&c->refine, light);
-    if (count > most) most = count;
-  }
-  c->refine.chunks = abbe_deposit_pass_chunks(most, c->refine.pair_room);
-  return result;
-}
-
-/* The fit of the maps is the first half of what is traced, the count of splats the second. */
-static abbe_result show_making(const abbe_caustics *c, size_t light, const abbe_hit_batch *b,
-                               abbe_error *error) {
-  const abbe_render_desc *d = &plan_of(c)->desc;
-  if (d->progress == NULL) return ABBE_OK;
-  const double share = ((double)light + share_done(c, b)) / (double)plan_of(c)->light_view_count;
-  if (d->progress(d->progress_user, 0.5 + 0.5 * share)) return ABBE_OK;
-  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-}
-
-/* Counts the splats, the same in every frame, and makes room for them. */
-static abbe_result count_splats(abbe_caustics *c, abbe_error *error) {
-  size_t most = 1;
-  abbe_result result = count_pairs(c, error);
-  for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
-    abbe_hit_batch b = {0};
-    abbe_ledger ledger = {0};
-    if (!plan_of(c)->reaches[light]) continue;
-    result = abbe_photon_start_run(&c->start, light, error);
-    abbe_photon_ledger_clear(&c->ledger);
-    while (result == ABBE_OK && trace_next(c, light, &b)) {
-      const size_t count = abbe_deposit_pass_count(&c->deposit, light, &b);
-      if (count > most) most = count;
-      result = show_making(c, light, &b, error);
-    }
-    abbe_photon_ledger_read(&c->ledger, light, &ledger);
-    c->views->light[light].reached_flux = ledger.reached;
-  }
-  abbe_photon_lights_upload(c->views);
-  return result == ABBE_OK ? abbe_deposit_pass_make_room(&c->deposit, most, error) : result;
+  if (result == ABBE_OK) result = use_grids(c, error);
+  return result == ABBE_OK ? abbe_gpu_tell(c->views->scene->gpu, 1, error) : result;
 }
 
 static abbe_result make_passes(abbe_caustics *c, const abbe_shader_variant *variant,
@@ -225,6 +171,7 @@ abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *lay
   *c = (abbe_caustics){.views = views, .layers = layers, .atlas = atlas, .map = map};
   abbe_result result = abbe_photon_start_make(views, layers, variant, &c->start, error);
   if (result == ABBE_OK) result = abbe_light_fit_run(views, layers, variant, error);
+  if (result == ABBE_OK) result = abbe_gpu_tell(views->scene->gpu, 0, error);
   if (result == ABBE_OK) result = abbe_light_layers_run(layers, error);
   if (result == ABBE_OK) result = count_photons(c, error);
   if (result == ABBE_OK) result = abbe_photon_spectra_make(views->scene, &c->spectra, error);
@@ -233,11 +180,10 @@ abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *lay
     result = abbe_trace_pass_make(&c->start, &c->spectra, atlas, &c->ledger, &c->trace, error);
   if (result == ABBE_OK) result = abbe_refine_pass_make(&c->trace, &c->refine, error);
   if (result == ABBE_OK) result = abbe_receiver_atlas_make(views, variant, atlas, error);
+  if (result == ABBE_OK) result = start_fit(c, error);
   if (result == ABBE_OK) result = fit_maps(c, variant, error);
-  if (result == ABBE_OK) result = make_passes(c, variant, error);
   if (result == ABBE_OK) result = fit_grids(c, error);
-  if (result == ABBE_OK) result = count_splats(c, error);
-  return result;
+  return result == ABBE_OK ? make_passes(c, variant, error) : result;
 }
 
 void abbe_caustics_free(abbe_caustics *c) {
@@ -249,25 +195,58 @@ void abbe_caustics_free(abbe_caustics *c) {
   abbe_photon_start_free(&c->start);
 }
 
-static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_render_progress progress,
-                                     void *user, abbe_error *error) {
+/* What was traced, and how much of the light's work is done by then, 0 to 1. */
+static abbe_result deposit(abbe_caustics *c, size_t light, const abbe_hit_batch *b, double done,
+                           abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
-  abbe_hit_batch b = {0};
-  abbe_result result = ABBE_OK;
+  abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
+  abbe_result result = abbe_deposit_pass_run(&c->deposit, light, b, !c->measured[light], error);
+  const double share = ((double)light + done) / (double)plan_of(c)->light_view_count;
+  if (result == ABBE_OK) result = abbe_gpu_tell(gpu, 0.5 * share, error);
   abbe_gpu_begin_pass(gpu);
-  while (result == ABBE_OK && trace_next(c, light, &b)) {
-    abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
-    result = abbe_deposit_pass_run(&c->deposit, light, &b, error);
-    const double share = ((double)light + share_done(c, &b)) / (double)plan_of(c)->light_view_count;
-    if (result == ABBE_OK && progress != NULL && !progress(user, 0.5 * share))
-      result = abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
-    abbe_gpu_begin_pass(gpu);
+  return result;
+}
+
+/* Every photon takes all wavelengths, batch by batch. */
+static abbe_result trace_all(abbe_caustics *c, size_t light, abbe_error *error) {
+  const size_t n = plan_of(c)->desc.wavelengths;
+  abbe_result result = ABBE_OK;
+  abbe_hit_batch b = {0};
+  for (size_t done = 0; result == ABBE_OK && next_batch(c, &b); done = b.first + b.count) {
+    abbe_trace_pass_batch(&c->trace, light, b.first, b.count, done);
+    result = deposit(c, light, &b, (double)(b.first + b.count) / (double)n, error);
   }
   return result;
 }
 
-static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progress progress,
-                             void *user, abbe_error *error) {
+/* A coarse set of wavelengths, and all those of the intervals that ask for them. The coarse set is
+ * deposited last, when it is known which of its intervals are refined. */
+static abbe_result trace_refined(abbe_caustics *c, size_t light, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  abbe_refine_pass_coarse(&c->refine, light);
+  if (!c->measured[light])
+    result = abbe_refine_pass_make_pairs(&c->refine, abbe_refine_pass_count(&c->refine, light),
+                                         error);
+  for (size_t chunk = 0; result == ABBE_OK && chunk < c->refine.chunks; chunk++) {
+    const abbe_hit_batch b = {
+        .set = ABBE_TRACE_REFINED, .pair_chunk = chunk, .count = c->refine.fine_nodes};
+    abbe_refine_pass_run(&c->refine, light, chunk);
+    result = deposit(c, light, &b, (double)(chunk + 1) / (double)(c->refine.chunks + 1), error);
+  }
+  const abbe_hit_batch b = {.set = ABBE_TRACE_COARSE,
+                            .count = c->spectra.nodes,
+                            .interval_first = 1,
+                            .interval_end = c->spectra.nodes};
+  return result == ABBE_OK ? deposit(c, light, &b, 1, error) : result;
+}
+
+static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_error *error) {
+  abbe_gpu_begin_pass(c->views->scene->gpu);
+  return abbe_photon_spectra_refines(&c->spectra) ? trace_refined(c, light, error)
+                                                  : trace_all(c, light, error);
+}
+
+static abbe_result run_light(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_gpu_begin_pass(gpu);
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
@@ -275,28 +254,47 @@ static abbe_result run_light(abbe_caustics *c, size_t light, abbe_render_progres
   abbe_spectral_map_clear(c->map);
   abbe_photon_ledger_clear(&c->ledger);
   abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
-  if (result == ABBE_OK) result = trace_and_deposit(c, light, progress, user, error);
+  if (result == ABBE_OK) result = trace_and_deposit(c, light, error);
   if (result != ABBE_OK) return result;
+  c->measured[light] = true;
   abbe_gpu_begin_pass(gpu);
   abbe_spectral_map_resolve(c->map, light);
   abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
   return ABBE_OK;
 }
 
-abbe_result abbe_caustics_run(abbe_caustics *c, abbe_render_progress progress, void *user,
-                              double *untimed_ms, abbe_error *error) {
+abbe_result abbe_caustics_run(abbe_caustics *c, double *untimed_ms, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
   abbe_result result = ABBE_OK;
+  c->energy_known = gpu->statistics != NULL;
+  memset(c->energy, 0, sizeof c->energy);
   for (size_t light = 0; light < plan_of(c)->light_view_count && result == ABBE_OK; light++) {
     if (!plan_of(c)->reaches[light]) continue;
-    result = run_light(c, light, progress, user, error);
+    result = run_light(c, light, error);
     if (result != ABBE_OK || gpu->statistics == NULL) continue;
-    const double start_ms = abbe_gpu_now_ms();
-    abbe_photon_ledger_read(&c->ledger, light, &gpu->statistics->energy);
-    result = abbe_spectral_map_read_ledger(c->map, light, &gpu->statistics->energy, error);
-    *untimed_ms += abbe_gpu_now_ms() - start_ms;
+    const double start_ms = 1e3 * abbe_clock_seconds();
+    abbe_photon_ledger_read(&c->ledger, light, &c->energy[light]);
+    result = abbe_spectral_map_read_ledger(c->map, light, &c->energy[light], error);
+    *untimed_ms += 1e3 * abbe_clock_seconds() - start_ms;
   }
-  return result != ABBE_OK ? result : abbe_gl_check(gpu->gl, "the photon passes", error);
+  if (result == ABBE_OK) result = abbe_gl_check(gpu->gl, "the photon passes", error);
+  if (result != ABBE_OK) c->energy_known = false;
+  return result;
+}
+
+bool abbe_caustics_know_energy(const abbe_caustics *c) {
+  return c->energy_known;
+}
+
+void abbe_caustics_energy(const abbe_caustics *c, abbe_ledger *out) {
+  enum { ENTRIES = sizeof(abbe_ledger) / sizeof(double) };
+  double sum[ENTRIES] = {0}, entry[ENTRIES];
+  for (size_t light = 0; light < plan_of(c)->light_view_count; light++) {
+    memcpy(entry, &c->energy[light], sizeof entry);
+    for (size_t i = 0; i < ENTRIES; i++)
+      sum[i] += entry[i] * c->views->scene->local->light[light].power;
+  }
+  memcpy(out, sum, sizeof sum);
 }
 
 /* x | y << 16 of each photon that there is now. */
@@ -316,6 +314,7 @@ static abbe_result read_cells(const abbe_caustics *c, size_t count, unsigned **c
 abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, const double origin[3],
                                     float **data, unsigned **cells, size_t *count,
                                     abbe_error *error) {
+  const double power = c->views->scene->local->light[light].power;
   GLuint *path = NULL;
   abbe_result result = abbe_light_layers_run(c->layers, error);
   if (result == ABBE_OK) result = abbe_photon_start_run(&c->start, light, error);
@@ -328,6 +327,7 @@ abbe_result abbe_caustics_read_hits(abbe_caustics *c, size_t light, const double
     float *at = *data + 4 * i;
     double place[3] = {at[0], at[1], at[2]};
     if (!(at[3] > 0)) continue;
+    at[3] = (float)(at[3] * power);
     if (abbe_receiver_atlas_holds(c->atlas, path[i]))
       abbe_receiver_atlas_world(c->atlas, light, at, place);
     for (size_t k = 0; k < 3; k++) at[k] = (float)(place[k] + origin[k]);

@@ -1,4 +1,4 @@
-/* caustics.h: light through refractors to the spectral map: what is fitted and counted once, and
+/* caustics.h: light through refractors to the spectral map: what is fitted once, and
  * the passes of every frame. Internal to gl/.
  */
 #ifndef ABBE_GL_CAUSTICS_CAUSTICS_H
@@ -25,22 +25,29 @@ typedef struct abbe_caustics {
   abbe_trace_pass trace;
   abbe_refine_pass refine;
   abbe_deposit_pass deposit;
+  bool measured[ABBE_SCENE_MAX_LIGHTS]; /* lists have room for the light, as a frame has found */
+  abbe_ledger energy[ABBE_SCENE_MAX_LIGHTS]; /* of unit power of each, as the last run found */
+  bool energy_known;                         /* it had statistics */
 } abbe_caustics;
 
-/* Fits views, maps, pages and grids by tracing photons, makes the atlas and the map, completes the
- * scene's variant by the pages that there are. Of a plan with caustics. Calls the request's
- * progress. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
+/* Fits views, maps, tiles and grids by tracing photons, makes the atlas and the map, completes the
+ * scene's variant by the tiles that there are. Of a plan with caustics. Tells who
+ * watches. Errors as of abbe_renderer_make; abbe_caustics_free also then. */
 abbe_result abbe_caustics_make(abbe_photon_lights *views, abbe_light_layers *layers,
                                abbe_receiver_atlas *atlas, abbe_spectral_map *map,
                                abbe_shader_variant *variant, abbe_caustics *out, abbe_error *error);
 void abbe_caustics_free(abbe_caustics *caustics);
 
-/* Photons of every light to its map; their entries into the ledger of the frame's statistics, where
- * there are any. untimed_ms: grows by what reading the ledger took. ABBE_CANCELLED, ABBE_GL. */
-abbe_result abbe_caustics_run(abbe_caustics *caustics, abbe_render_progress progress, void *user,
-                              double *untimed_ms, abbe_error *error);
+/* Photons of every light to its map; where the frame has statistics, also their ledger. untimed_ms:
+ * grows by what reading that took. ABBE_CANCELLED, ABBE_GL. */
+abbe_result abbe_caustics_run(abbe_caustics *caustics, double *untimed_ms, abbe_error *error);
 
-/* Hits of the first batch of wavelengths, as of abbe_renderer_read_landings; places move by
+/* Where the light went in the last run, of lights as they are now. Known where that run had
+ * statistics. */
+bool abbe_caustics_know_energy(const abbe_caustics *caustics);
+void abbe_caustics_energy(const abbe_caustics *caustics, abbe_ledger *out);
+
+/* Hits of the first batch of wavelengths, as of abbe_renderer_read_hits; places move by
  * `origin`. */
 abbe_result abbe_caustics_read_hits(abbe_caustics *caustics, size_t light, const double origin[3],
                                     float **data, unsigned **cells, size_t *count,

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* A light's photon cells no finer than its map can tell: where the images of nearly all cells are
- * thinner than this, a coarser grid lays the same light with fewer pieces. In texels, and the
+ * thinner than this, a coarser grid lays the same light with fewer splats. In texels, and the
  * share of the light whose cells count. */
 static const double least_image = 2, counted_share = 0.95;
 enum { LEAST_CELLS = 16, STEP_BINS = 256 };
@@ -14,10 +14,10 @@ typedef struct batch_view {
   const abbe_receiver_atlas *atlas;
   const abbe_map_layout *map;
   double texels;
-  const float *hit;     /* [photons][orders][lanes][4] */
+  const float *hit;     /* [photons][orders][stride][4] */
   const GLuint *path;   /* the same without the last */
   const GLuint *photon; /* [photons][ABBE_PHOTON_BYTES / 4] */
-  size_t photons, orders, lanes, lane;
+  size_t photons, orders, stride; /* of which the first is traced */
   const GLuint *slot; /* [cells], photon + 1 */
   size_t cells[2];
 } batch_view;
@@ -50,7 +50,7 @@ static int step_bin(double texels) {
  * the order in which photons are listed. */
 static double part_of(const batch_view *b) {
   float most = 0;
-  for (size_t i = 0; i < b->photons * b->orders * b->lanes; i++)
+  for (size_t i = 0; i < b->photons * b->orders * b->stride; i++)
     most = fmaxf(most, b->hit[4 * i + 3]);
   return most > 0 ? (double)most / (1 << 24) : 1;
 }
@@ -66,8 +66,8 @@ static void sort_steps(const batch_view *b, int axis, double histogram[STEP_BINS
     GLuint next = b->slot[at[1] * b->cells[0] + at[0]];
     if (next == 0) continue;
     for (size_t order = 0; order < b->orders; order++) {
-      size_t here = (i * b->orders + order) * b->lanes + b->lane;
-      size_t there = ((next - 1) * b->orders + order) * b->lanes + b->lane;
+      size_t here = (i * b->orders + order) * b->stride;
+      size_t there = ((next - 1) * b->orders + order) * b->stride;
       double from[2], to[2];
       if (b->path[here] == 0 || b->path[here] != b->path[there] ||
           !texel_of(b, b->hit + 4 * here, b->path[here], from) ||
@@ -88,13 +88,14 @@ static double common_step(const double histogram[STEP_BINS]) {
   return total > 0 ? exp2((bin + 1) / 16.0 - 8) : 0;
 }
 
-static void choose_cells(const batch_view *b, size_t out[2]) {
+static void choose_cells(const batch_view *b, size_t most, size_t out[2]) {
   for (int axis = 0; axis < 2; axis++) {
     double histogram[STEP_BINS] = {0};
     sort_steps(b, axis, histogram);
     double step = common_step(histogram), cells = ceil((double)b->cells[axis] * step / least_image);
-    size_t least = b->cells[axis] < LEAST_CELLS ? b->cells[axis] : LEAST_CELLS;
-    if (step > 0 && cells < (double)b->cells[axis])
+    size_t least = most < LEAST_CELLS ? most : LEAST_CELLS;
+    out[axis] = most;
+    if (step > 0 && cells < (double)most)
       out[axis] = cells < (double)least ? least : (size_t)cells;
   }
 }
@@ -112,14 +113,13 @@ abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views,
   const abbe_plan *plan = views->scene->plan;
   const abbe_gl *gl = views->scene->gpu->gl;
   abbe_photon_light *view = &views->light[light];
-  const size_t lanes = trace->hits.stride;
-  const size_t middle = plan->desc.wavelengths / 2, first = middle - lanes / 2;
+  const size_t middle = plan->desc.wavelengths / 2;
   float *hit = NULL;
   GLuint *path = NULL;
   abbe_result result = abbe_photon_start_run(trace->start, light, error);
   if (result != ABBE_OK) return result;
-  abbe_trace_pass_batch(trace, light, first, lanes, plan->desc.wavelengths);
-  result = abbe_trace_pass_read(trace, light, first, &hit, &path, error);
+  abbe_trace_pass_batch(trace, light, middle, 1, plan->desc.wavelengths);
+  result = abbe_trace_pass_read(trace, light, middle, &hit, &path, error);
   GLuint *photon = read_words(gl, trace->start->photons, ABBE_PHOTON_HEADER,
                               view->photon_count * (ABBE_PHOTON_BYTES / 4));
   GLuint *slot = read_words(gl, trace->start->photon_of_cell, 0, view->cells[0] * view->cells[1]);
@@ -134,11 +134,10 @@ abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views,
                     .photon = photon,
                     .photons = view->photon_count,
                     .orders = plan->hit_slots,
-                    .lanes = lanes,
-                    .lane = middle - first,
+                    .stride = trace->hits.stride,
                     .slot = slot,
                     .cells = {view->cells[0], view->cells[1]}};
-    choose_cells(&b, view->cells);
+    choose_cells(&b, plan->desc.photons, view->cells);
   }
   free(hit);
   free(path);

@@ -2,10 +2,18 @@
 
 #include "gl/device/bindings.h"
 
-enum { SPLAT_BYTES = 48, MAX_SPLATS = 4 << 20 };
+enum { SPLAT_BYTES = 48, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
   return pass->trace->spectra->scene;
+}
+
+static abbe_result make_room(abbe_deposit_pass *pass, size_t splats, abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  abbe_gpu_drop_buffers(gpu, 1, &pass->splats);
+  pass->splat_room = splats;
+  return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + splats * SPLAT_BYTES, NULL, &pass->splats,
+                              error);
 }
 
 abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refine_pass *refine,
@@ -13,46 +21,17 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
                                    const abbe_shader_variant *scene, abbe_deposit_pass *out,
                                    abbe_error *error) {
   abbe_gpu *gpu = trace->spectra->scene->gpu;
-  const abbe_gl *gl = gpu->gl;
   *out = (abbe_deposit_pass){.trace = trace, .refine = refine, .map = map, .chunks = 1};
   abbe_result result =
-      abbe_shader_variant_compute(photons, gl, "photon_deposit.comp", NULL, &out->list, error);
-  if (result == ABBE_OK && abbe_photon_spectra_refines(trace->spectra)) {
-    abbe_shader_variant refined = *photons;
-    refined.refined = true;
-    refined.fine_nodes = refine->fine_nodes;
-    result = abbe_shader_variant_compute(&refined, gl, "photon_deposit.comp", NULL,
-                                         &out->list_refined, error);
-  }
+      abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(scene, gl, "photon_splat.comp", NULL, &out->add, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + SPLAT_BYTES, NULL, &out->splats, error);
-  return result;
+    result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
+  return result == ABBE_OK ? make_room(out, FIRST_SPLATS, error) : result;
 }
 
 void abbe_deposit_pass_free(abbe_deposit_pass *pass) {
   if (pass->trace == NULL || pass->trace->spectra == NULL) return;
-  const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  gl->DeleteProgram(pass->list);
-  gl->DeleteProgram(pass->list_refined);
-  gl->DeleteProgram(pass->add);
-  gl->DeleteBuffers(1, &pass->splats);
-}
-
-/* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
-size_t abbe_deposit_pass_chunks(size_t count, size_t room) {
-  return count > room ? count / (room * 4 / 5) + 1 : 1;
-}
-
-abbe_result abbe_deposit_pass_make_room(abbe_deposit_pass *pass, size_t most, abbe_error *error) {
-  abbe_gpu *gpu = scene_of(pass)->gpu;
-  pass->chunks = abbe_deposit_pass_chunks(most, MAX_SPLATS);
-  pass->splat_room = most > MAX_SPLATS ? MAX_SPLATS : most;
-  gpu->gl->DeleteBuffers(1, &pass->splats);
-  return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + (pass->splat_room + 1) * SPLAT_BYTES,
-                              NULL, &pass->splats, error);
+  abbe_gpu_drop_buffers(scene_of(pass)->gpu, 1, &pass->splats);
 }
 
 static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t light,
@@ -65,9 +44,9 @@ static void set_batch(const abbe_deposit_pass *pass, GLuint program, size_t ligh
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_photon_lights_set_grid(pass->map->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)plan->desc.map_size);
-  abbe_gpu_set_int(gpu, program, "lane_first", (int)b->first);
+  abbe_gpu_set_int(gpu, program, "sample_first", (int)b->first);
   /* of the hits that photons have; a refined interval may have more of its own */
-  abbe_gpu_set_int(gpu, program, "lane_count", (int)(fine ? spectra->nodes : b->count));
+  abbe_gpu_set_int(gpu, program, "sample_count", (int)(fine ? spectra->nodes : b->count));
   abbe_gpu_set_int(gpu, program, "interval_first", (int)b->interval_first);
   abbe_gpu_set_int(gpu, program, "interval_end", (int)b->interval_end);
   abbe_gpu_set_int(gpu, program, "nodes", (int)(fine ? plan->desc.wavelengths : spectra->nodes));
@@ -85,14 +64,13 @@ static void bind_hits(const abbe_deposit_pass *pass, GLuint program, bool fine) 
   abbe_gpu *gpu = spectra->scene->gpu;
   const bool lengths = spectra->scene->plan->lengths;
   const GLenum signature = lengths ? GL_RG32UI : GL_R32UI;
-  const abbe_hits *hits = &pass->trace->hits, *refined = &pass->refine->hits;
-  abbe_gpu_bind_texels(gpu, program, "landings", 0, GL_RGBA32F, hits->hits);
+  const abbe_hits *hits = &pass->trace->hits, *nodes = fine ? &pass->refine->hits : hits;
+  abbe_gpu_bind_texels(gpu, program, "hits", 0, GL_RGBA32F, hits->hits);
   abbe_gpu_bind_texels(gpu, program, "signatures", 1, signature, hits->signatures);
   abbe_gpu_bind_texels(gpu, program, "interval_sums", 2, GL_RGBA32F, spectra->intervals);
-  if (fine) {
-    abbe_gpu_bind_texels(gpu, program, "fine_landings", 3, GL_RGBA32F, refined->hits);
-    abbe_gpu_bind_texels(gpu, program, "fine_signatures", 4, signature, refined->signatures);
-  }
+  abbe_gpu_bind_texels(gpu, program, "node_hits", 3, GL_RGBA32F, nodes->hits);
+  abbe_gpu_bind_texels(gpu, program, "node_signatures", 4, signature, nodes->signatures);
+  abbe_gpu_set_int(gpu, program, "fine_nodes", fine ? (int)pass->refine->fine_nodes : 0);
   if (lengths)
     abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F, spectra->attenuation);
 }
@@ -104,7 +82,7 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   const abbe_gpu_scene *scene = scene_of(pass);
   abbe_gpu *gpu = scene->gpu;
   const bool fine = b->set == ABBE_TRACE_REFINED;
-  const GLuint program = fine ? pass->list_refined : pass->list;
+  const GLuint program = pass->list;
   const GLuint paths = fine ? pass->refine->hits.paths : trace->hits.paths;
   const size_t items =
       fine ? pass->refine->pair_room : trace->start->views->light[light].photon_count;
@@ -116,19 +94,33 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   gpu->gl->UseProgram(program);
   set_batch(pass, program, light, b, chunk);
   abbe_gpu_clear_list(gpu, pass->splats);
-  if (fine)
-    abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->refine->pairs);
-  else
-    abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->refine->wants);
+  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->refine->pairs);
+  abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->refine->wants);
   abbe_gpu_bind_storage(gpu, BINDING_SPLATS, pass->splats);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, paths);
   bind_hits(pass, program, fine);
-  abbe_gpu_dispatch_list(gpu, program, paths, items * scene->plan->hit_slots, 1);
+  abbe_gpu_dispatch_list(gpu, program, paths, 0, items * scene->plan->hit_slots, 1);
 }
 
-size_t abbe_deposit_pass_count(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch) {
-  list_splats(pass, light, batch, 0);
-  return abbe_gpu_read_count(scene_of(pass)->gpu, pass->splats);
+/* Lists a chunk; again where it has more splats than there is room for, with more room, or in
+ * more chunks as long as it is the first one. */
+static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch,
+                                 size_t chunk, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  abbe_photon_ledger_save(pass->trace->ledger);
+  while (result == ABBE_OK) {
+    list_splats(pass, light, batch, chunk);
+    const size_t count = abbe_gpu_read_count(scene_of(pass)->gpu, pass->splats);
+    if (count <= pass->splat_room || scene_of(pass)->gpu->stopped) return ABBE_OK;
+    abbe_photon_ledger_restore(pass->trace->ledger); /* a batch is entered once */
+    if (chunk == 0 && count > MAX_SPLATS)
+      pass->chunks = abbe_refine_pass_chunks(count * pass->chunks, MAX_SPLATS);
+    const size_t more = count + count / 4;
+    size_t room = chunk == 0 && more > MAX_SPLATS ? MAX_SPLATS : more;
+    if (room < pass->splat_room) room = pass->splat_room; /* others may need what there is */
+    result = make_room(pass, room, error);
+  }
+  return result;
 }
 
 static void add_splats(abbe_deposit_pass *pass, size_t light) {
@@ -139,24 +131,22 @@ static void add_splats(abbe_deposit_pass *pass, size_t light) {
   abbe_gpu_set_uint(gpu, pass->add, "most", pass->splat_room);
   abbe_gpu_set_uint(gpu, pass->add, "map_texels", pass->map->views->map_texels);
   abbe_gpu_bind_storage(gpu, BINDING_MAP_SUMS, pass->map->sums);
-  abbe_gpu_dispatch_list(gpu, pass->add, pass->splats, pass->splat_room, 1);
+  abbe_gpu_dispatch_list(gpu, pass->add, pass->splats, 0, pass->splat_room, 1);
 }
 
 abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
-                                  const abbe_hit_batch *batch, abbe_error *error) {
+                                  const abbe_hit_batch *batch, bool measures, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  for (size_t chunk = 0; chunk < pass->chunks; chunk++) {
-    list_splats(pass, light, batch, chunk);
+  abbe_result result = ABBE_OK;
+  for (size_t chunk = 0; chunk < pass->chunks && result == ABBE_OK; chunk++) {
+    if (measures)
+      result = list_measured(pass, light, batch, chunk, error);
+    else
+      list_splats(pass, light, batch, chunk);
     abbe_gpu_end_pass(gpu,
                       scene_of(pass)->plan->fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
-    const bool look = pass->chunks > 1 || gpu->statistics != NULL;
-    if (look && abbe_gpu_read_count(gpu, pass->splats) > pass->splat_room)
-      return abbe_error_set(error, ABBE_GL,
-                            "the photons' light falls into more than %zu pieces; "
-                            "use fewer photons or wavelengths",
-                            pass->splat_room * pass->chunks);
-    add_splats(pass, light);
+    if (result == ABBE_OK) add_splats(pass, light);
     abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
   }
-  return ABBE_OK;
+  return result;
 }

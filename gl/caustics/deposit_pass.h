@@ -19,29 +19,21 @@ typedef struct abbe_deposit_pass {
   const abbe_trace_pass *trace;
   const abbe_refine_pass *refine;
   abbe_spectral_map *map;
-  GLuint list, list_refined, add; /* programs */
+  GLuint list, add; /* programs */
   GLuint splats;
   size_t splat_room, chunks; /* splats that are listed at a time; chunks of the photons */
 } abbe_deposit_pass;
 
-/* photons: the variant of the trace. With room for one splat: abbe_deposit_pass_make_room follows
- * once they are counted. */
+/* photons: the variant of the trace. */
 abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refine_pass *refine,
                                    abbe_spectral_map *map, const abbe_shader_variant *photons,
                                    const abbe_shader_variant *scene, abbe_deposit_pass *out,
                                    abbe_error *error);
 void abbe_deposit_pass_free(abbe_deposit_pass *pass);
-/* For up to `most` splats of a batch, in as many chunks as that takes. */
-abbe_result abbe_deposit_pass_make_room(abbe_deposit_pass *pass, size_t most, abbe_error *error);
-
-/* Chunks of photons for lists of `room`, if all together come to `count`. */
-size_t abbe_deposit_pass_chunks(size_t count, size_t room);
-
-/* Waits for the device: the splats of a batch, in one chunk. */
-size_t abbe_deposit_pass_count(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch);
-/* Deposits a batch. ABBE_GL where a chunk has more splats than there is room for; that is looked at
- * where there are several chunks, or statistics. */
+/* Deposits a batch. measures: it waits for the device and makes room for what it finds; a batch that
+ * is deposited anew finds the same, so that no frame has to measure again. ABBE_GL, ABBE_NO_MEMORY.
+ */
 abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
-                                  const abbe_hit_batch *batch, abbe_error *error);
+                                  const abbe_hit_batch *batch, bool measures, abbe_error *error);
 
 #endif

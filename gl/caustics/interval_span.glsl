@@ -12,7 +12,7 @@ const bool DOUBTS = true;
 const bool DOUBTS = false;
 #endif
 
-const float SEGMENT = 2.0;  // of a span's way, at the most, in texels of its level
+const float SEGMENT = 2.0;  // of a span's length, at the most, in texels of its level
 
 // From node `number` to the one before it, which is b.
 struct Interval {
@@ -28,7 +28,7 @@ struct Trail {
   Node z, a;      // the last two nodes
   bool followed;  // they are of one path
   vec2 step;      // from z to a
-  float way;      // the longer of its coordinates
+  float moved;    // the longer of its coordinates
   vec4 curve;     // second differences
   bool owes;      // a's half of the interval before is not laid yet: on that row, with so much left
   int owed_row;
@@ -55,32 +55,32 @@ Trail trail_from(Node a, int row) {
   return Trail(a, a, false, vec2(0), 0.0, vec4(0), false, row, 1.0);
 }
 
-// Paths through a mesh may be alike and yet part: a long way is a spectrum's where the light moves on
+// Paths through a mesh may be alike and yet part: a long move is a spectrum's where the light moves on
 // likewise in the interval before or after it.
 bool moves_likewise(Path path, Interval i, Node b, vec2 step, vec2 step_before) {
   bool has_c = i.has_b && i.number - 1 > path.node_first;
   int hit_c = has_c ? i.hit_b - 1 : i.hit_b;
-  uint path_c = has_c ? texelFetch(NODE_SIGNATURES, hit_c).x : 0u;
-  vec2 at_c = map_position(texelFetch(NODE_HITS, HIT_TEXELS * hit_c).xyz, b.tile);
+  uint path_c = has_c ? texelFetch(node_signatures, hit_c).x : 0u;
+  vec2 at_c = map_position(texelFetch(node_hits, HIT_TEXELS * hit_c).xyz, b.tile);
   vec2 step_after = path_c != 0u && path_c == b.path ? at_c - b.at : vec2(0);
   return min(distance(step, step_before), distance(step, step_after)) < 0.75 * length(step);
 }
 
 // A power of two, so that parts end at steps of the interval.
-int parts_of(float way, float size, int least, int most_parts) {
-  int needed = int(ceil(log2(max(way / (SEGMENT * size), 1.0))));
+int parts_of(float moved, float size, int least, int most_parts) {
+  int needed = int(ceil(log2(max(moved / (SEGMENT * size), 1.0))));
   return min(max(1 << needed, least), most_parts);
 }
 
-// How many parts, by the way that the light takes and where the path ends.
-void divide(inout Span s, Trail t, bool taken, float way, float size) {
+// How many parts, by how far the light moves and where the path ends.
+void divide(inout Span s, Trail t, bool taken, float moved, float size) {
   // Where the interface reflects all before b, the path ends there, and not halfway.
   float cosine = cosine_between(s.from.left, s.to.left, s.fan, (s.index_b - s.from.index) * s.per_index);
   bool ends = s.follows && !s.bridges && s.to.left.transmits && cosine == 0.0;
-  float way_along = s.bridges ? way : s.follows ? t.way : 0.0;
+  float moved_along = s.bridges ? moved : s.follows ? t.moved : 0.0;
   s.steps = s.bridges || ends ? STEPS : STEPS / 2;
-  s.parts = taken && s.a.flux > 0.0 ? parts_of(way_along, size, s.left.parts, s.steps) : 0;
-  s.owed = t.owes ? parts_of(s.bridges ? way : 0.0, size, s.left.parts, STEPS / 2) : 0;
+  s.parts = taken && s.a.flux > 0.0 ? parts_of(moved_along, size, s.left.parts, s.steps) : 0;
+  s.owed = t.owes ? parts_of(s.bridges ? moved : 0.0, size, s.left.parts, STEPS / 2) : 0;
 }
 
 Span span_of(inout Trail t, Path path, Interval i, Node b, float size) {
@@ -90,11 +90,11 @@ Span span_of(inout Trail t, Path path, Interval i, Node b, float size) {
   s.b = b;
   s.left = left_at_nodes(t.a, b, path.signature, i.number);
   vec2 step = b.at - t.a.at;
-  float way = max(abs(step.x), abs(step.y));
+  float moved = max(abs(step.x), abs(step.y));
   bool one_path = BRIDGES && t.a.path != 0u && t.a.path == b.path;
   bool likewise = !DOUBTS || moves_likewise(path, i, b, step, t.step);
   t.step = one_path ? step : vec2(0);
-  one_path = one_path && (way < float(map_size) / 16.0 || likewise);
+  one_path = one_path && (moved < float(map_size) / 16.0 || likewise);
 
   s.bridges = i.taken && one_path;
   s.follows = s.bridges || (i.taken && t.followed);
@@ -115,14 +115,14 @@ Span span_of(inout Trail t, Path path, Interval i, Node b, float size) {
   s.row = i.row;
   s.index_b = i.index_b;
   s.half_xyz = sums_at(i.row, STEPS / 2).xyz;
-  divide(s, t, i.taken, way, size);
+  divide(s, t, i.taken, moved, size);
 
   t.owes = i.taken && !s.bridges && b.path != 0u;
   t.owed_row = i.row;
   t.owed_left = s.left.b;
   t.followed = one_path;
   t.curve = s.curve;
-  t.way = way;
+  t.moved = moved;
   t.z = t.a;
   t.a = b;
   return s;

@@ -1,6 +1,7 @@
 #include "gl/caustics/map_bands.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { NAME_SIZE = 32 };
 
@@ -44,7 +45,8 @@ static abbe_result read_three(const abbe_caustics *c, size_t light, double unit,
 static abbe_result sum_again(abbe_caustics *c, size_t bands, size_t first, abbe_error *error) {
   double untimed_ms = 0;
   abbe_result result = abbe_photon_spectra_weigh(&c->spectra, bands, first, error);
-  return result == ABBE_OK ? abbe_caustics_run(c, NULL, NULL, &untimed_ms, error) : result;
+  memset(c->measured, 0, sizeof c->measured);
+  return result == ABBE_OK ? abbe_caustics_run(c, &untimed_ms, error) : result;
 }
 
 abbe_result abbe_map_bands_read(abbe_caustics *c, size_t light, size_t bands, double unit,

@@ -17,7 +17,7 @@ typedef struct abbe_map_fit {
   double bin[2][ABBE_FIT_BINS];
 } abbe_map_fit;
 
-/* Adds the hits in the light's map as it is now, not those on pages; [count][4], with their paths.
+/* Adds the hits in the light's map as it is now, not those on tiles; [count][4], with their paths.
  */
 void abbe_map_fit_add(abbe_map_fit *fit, const abbe_receiver_atlas *atlas, size_t light,
                       const float *hit, const GLuint *path, size_t count);

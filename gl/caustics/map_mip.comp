@@ -1,6 +1,7 @@
 // One coarser picture of a finished map, for eyes that see many texels at once: the flux of four over
 // their window area; where texels are alike, as those of a tile are, their mean.
 layout(local_size_x = 32, local_size_y = 16) in;
+#include "thread.glsl"
 uniform sampler2DArray map_levels;
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
 uniform int light;
@@ -10,7 +11,7 @@ uniform int level;
 #include "texel_sizes.glsl"
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 texel = ivec2(texel_number());
   if (max(texel.x, texel.y) >= map_size >> level) return;
   vec4 sum = vec4(0);
   float area = 0.0;

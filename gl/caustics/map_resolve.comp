@@ -3,12 +3,13 @@
 // by their own areas: which keeps the sum, and shows no texel to be narrower than the next. A layer of tiles
 // comes to irradiance, each tile by itself.
 layout(local_size_x = 32, local_size_y = 16) in;
+#include "thread.glsl"
 #include "common.glsl"
 #include "receiver_atlas.glsl"
 layout(std430, binding = BINDING_MAP_SUMS) readonly buffer MapSums { uint map_sum[]; };
 uniform sampler2DArray coarser_map;  // the same texture: its next level is done
 layout(rgba32f, binding = 0) writeonly uniform image2DArray map;  // this level
-uniform int light;
+#include "light_number.glsl"
 uniform int layer;  // LIGHTS or more: of the light's tiles
 uniform uint map_texels;
 uniform int map_size;
@@ -34,9 +35,9 @@ uint level_offset(int l) {
   return (texels - (texels >> (2 * l))) / 3u * 4u;
 }
 
-#ifdef PAGES
-void resolve_page(ivec2 texel, vec3 flux) {
-  int tile = tile_of_block(light, (texel << level) / (map_size / PAGE_BLOCKS));
+#ifdef TILES
+void resolve_tile(ivec2 texel, vec3 flux) {
+  int tile = tile_of_block(light, (texel << level) / (map_size / TILE_BLOCKS));
   vec4 rect = tile_rect(light, max(tile, 0)) * exp2(-float(level));
   // At its edges a tile's coarser texels have no neighbours but themselves.
   vec2 at = clamp(0.5 * (vec2(texel) + 0.5), 0.5 * rect.xy + 0.5, 0.5 * rect.zw - 0.5);
@@ -49,13 +50,13 @@ void resolve_page(ivec2 texel, vec3 flux) {
 #endif
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 texel = ivec2(texel_number());
   int side = map_size >> level;
   if (texel.x >= side || texel.y >= side) return;
   uint at = level_offset(level) + uint(texel.y * side + texel.x);
-#ifdef PAGES
+#ifdef TILES
   if (layer >= LIGHTS) {
-    resolve_page(texel, units_at(map_texels + at) * lights[light].misc.y);
+    resolve_tile(texel, units_at(map_texels + at) * lights[light].misc.y);
     return;
   }
 #endif

@@ -2,11 +2,11 @@
 // path the light is laid where the index between theirs sends it (outgoing_segment.glsl), each splat with the
 // colour of its own part of the band. Where the paths differ each wavelength keeps its half of the band.
 // Intervals go from long waves to short ones: in short waves the index changes fastest, and there two
-// intervals before tell the curve. Pieces closer together than photons are added first; X, Y and Z have
+// intervals before tell the curve. Splats closer together than photons are added first; X, Y and Z have
 // each a place of their own, or dispersion narrower than that would be lost. A splat is spread over the
 // parallelogram that the neighbouring photons' hits span: where that is wide, in a coarser level of
-// the map. REFINED: the intervals on the list, by all their wavelengths; else those of the coarse set
-// that are not on it. No branch saves time on a software rasteriser, so there are few.
+// the map. fine_nodes: the intervals on the list, by all their wavelengths; 0: those of the coarse set that
+// are not on it. No branch saves time on a software rasteriser, so there are few.
 layout(local_size_x = 256) in;
 #include "common.glsl"
 #include "photon_nodes.glsl"
@@ -14,47 +14,31 @@ layout(local_size_x = 256) in;
 #include "optics.glsl"
 #include "wide_sum.glsl"
 #include "thread.glsl"
+#include "photons.glsl"
+#include "path_list.glsl"
+#include "pair_list.glsl"
 #define FOLLOWS_SEGMENTS
 #include "outgoing_segment.glsl"
 
-struct Photon {  // as in photon_start.glsl
-  uint cell;
-  float flux;
-  uint offset, extent;
-};
-layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
-  uint photon_count, groups_x, groups_y, groups_z;
-  uint draw[4];
-  Photon photon_at[];
-};
 layout(std430, binding = BINDING_PHOTON_OF_CELL) readonly buffer Slots { uint slot[]; };
 // As textures: a software rasteriser fetches a texel in one load, and storage number by number.
-uniform samplerBuffer landings;     // HIT_TEXELS each
-uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the way inside
-layout(std430, binding = BINDING_PATHS) readonly buffer PathList {
-  uint path_count, path_groups[3];
-  uint path_list[];
-};
-#ifdef REFINED
-layout(std430, binding = BINDING_PAIRS) readonly buffer PairList {
-  uint pair_count, pair_groups[3];
-  uint pair_at[];
-};
-uniform samplerBuffer fine_landings;
-uniform usamplerBuffer fine_signatures;
-#else
+uniform samplerBuffer hits;     // HIT_TEXELS each
+uniform usamplerBuffer signatures;  // 0: none; TINTING: and the length of the path inside
+// The same of the intervals on the list; of the coarse set again where that is laid.
+uniform samplerBuffer node_hits;
+uniform usamplerBuffer node_signatures;
+uniform int fine_nodes;  // wavelengths of an interval on the list
 layout(std430, binding = BINDING_WANTS) readonly buffer Wants { uint want[]; };  // a bit a refined interval
-#endif
 // lo and hi of each, as in photon_path.glsl and behind them what is interpolated.
 layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 uniform float ledger_unit;  // W
 shared uint more_sum[3], less_sum[3];
 const uint ABSORBED = 2u, MISSED = 4u, INTERPOLATED = 5u;
-uniform int light;
+#include "pass_light.glsl"
 uniform ivec2 grid;
 uniform int map_size;
-uniform int lane_first;
-uniform int lane_count;
+uniform int sample_first;
+uniform int sample_count;
 uniform int interval_first;
 uniform int interval_end;
 uniform int nodes;  // of the set whose hits these are
@@ -62,21 +46,13 @@ uniform int table_first;
 uniform uint chunks, chunk;  // only paths of this chunk
 uniform uint most;           // splats that the list has room for
 
-#ifdef REFINED
-#define NODE_HITS fine_landings
-#define NODE_SIGNATURES fine_signatures
-#else
-#define NODE_HITS landings
-#define NODE_SIGNATURES signatures
-#endif
-
 // A path whose light this thread lays.
 struct Path {
   uint photon;
   int order;
   int node_first, node_last;  // those that it is known at
-  int hit_first;              // NODE_HITS of the first of them
-  int coarse_first;           // `landings` at the first coarse node
+  int hit_first;              // node_hits of the first of them
+  int coarse_first;           // `hits` at the first coarse node
   int middle_twice;           // twice the coarse node in their middle
   int interval_last, intervals;
   uint refined;    // intervals that are laid by another pass, a bit each
@@ -91,8 +67,7 @@ struct Path {
 #include "interval_span.glsl"
 #include "span_light.glsl"
 
-#ifdef REFINED
-Path path_at(uint listed) {
+Path refined_path_at(uint listed) {
   uint pair = pair_at[listed / SLOTS];
   int interval = int(pair % PAIR_INTERVALS);
   Path p;
@@ -100,29 +75,37 @@ Path path_at(uint listed) {
   p.order = int(listed % SLOTS);
   p.node_first = coarse_node(interval);
   p.node_last = coarse_node(interval + 1);
-  p.hit_first = int(listed) * FINE_NODES;
-  p.coarse_first = int((p.photon * SLOTS + uint(p.order)) * LANES);
+  p.hit_first = int(listed) * fine_nodes;
+  p.coarse_first = int((p.photon * SLOTS + uint(p.order)) * HIT_STRIDE);
   p.middle_twice = 2 * interval + 1;
   p.interval_last = p.node_last;
   p.intervals = p.node_last - p.node_first;
   p.refined = 0u;
   return p;
 }
-#else
-Path path_at(uint listed) {
+
+Path coarse_path_at(uint listed) {
   Path p;
   p.photon = listed / SLOTS;
   p.order = int(listed % SLOTS);
-  p.node_first = lane_first;
-  p.node_last = lane_first + lane_count - 1;
-  p.hit_first = p.coarse_first = int(listed * LANES);
-  p.middle_twice = lane_count;
+  p.node_first = sample_first;
+  p.node_last = sample_first + sample_count - 1;
+  p.hit_first = p.coarse_first = int(listed * HIT_STRIDE);
+  p.middle_twice = sample_count;
   p.interval_last = interval_end - 1;
   p.intervals = interval_end - interval_first;
   p.refined = want[p.photon] << 1;
   return p;
 }
-#endif
+
+Path path_at(uint listed) {
+  Path p;
+  if (fine_nodes > 0)
+    p = refined_path_at(listed);
+  else
+    p = coarse_path_at(listed);
+  return p;
+}
 
 // Of the wavelengths at which it hits something, that nearest the middle. (A loop that ended early would
 // do less, but Mesa 22's llvmpipe clobbers a load that is repeated after one.)
@@ -131,7 +114,7 @@ Reference reference_of(Path path) {
   r.order = path.order;
   r.sample_number = 0;
   r.signature = 0u;
-  for (int i = 0; i < lane_count; i++) {
+  for (int i = 0; i < sample_count; i++) {
     uint found = texelFetch(signatures, path.coarse_first + i).x;
     bool nearer = r.signature == 0u ||
                   abs(2 * i - path.middle_twice) < abs(2 * r.sample_number - path.middle_twice);
@@ -141,17 +124,15 @@ Reference reference_of(Path path) {
     }
   }
   int at = HIT_TEXELS * (path.coarse_first + r.sample_number);
-  r.tile = r.signature != 0u ? interface_tile(texelFetch(landings, at + 1).w) : NO_TILE;
-  r.at = map_position(texelFetch(landings, at).xyz, r.tile);
+  r.tile = r.signature != 0u ? interface_tile(texelFetch(hits, at + 1).w) : NO_TILE;
+  r.at = map_position(texelFetch(hits, at).xyz, r.tile);
   return r;
 }
 
 uint signature_of(Path path, Reference r) {
   uint signature = r.signature;
-#ifdef REFINED
-  for (int i = 0; i < FINE_NODES; i++)
-    signature = max(signature, texelFetch(fine_signatures, path.hit_first + i).x);
-#endif
+  for (int i = 0; i < fine_nodes; i++)
+    signature = max(signature, texelFetch(node_signatures, path.hit_first + i).x);
   return signature;
 }
 
@@ -199,6 +180,7 @@ void main() {
     less_sum[gl_LocalInvocationID.x] = 0u;
   }
   barrier();
+  copy_light();
   vec3 entry = deposit() / ledger_unit;
   for (int k = 0; k < 3; k++) {
     if (entry[k] > 0.0) atomicAdd(more_sum[k], uint(entry[k] + 0.5));

@@ -30,11 +30,11 @@ vec2 neighbour_step(ivec2 cell, ivec2 to, vec2 start, Reference r) {
   uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
   uint other = there ? at - 1u : 0u;
-  uint index = (other * SLOTS + r.order) * LANES + r.sample_number;
+  uint index = (other * SLOTS + r.order) * HIT_STRIDE + r.sample_number;
   there = there && r.signature != 0u && texelFetch(signatures, int(index)).x == r.signature;
-  vec4 hit = texelFetch(landings, HIT_TEXELS * int(index));
-  vec2 way = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
-  float apart = max(dot(way, vec2(to)), 0.25);
+  vec4 hit = texelFetch(hits, HIT_TEXELS * int(index));
+  vec2 between = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
+  float apart = max(dot(between, vec2(to)), 0.25);
   return there ? (map_position(hit.xyz, r.tile) - r.at) / apart : vec2(0);
 }
 
@@ -51,11 +51,17 @@ vec2 image_of_side(vec2 to_next, vec2 to_last, out vec2 skew) {
 Footprint footprint_of(Photon photon, Reference r) {
   ivec2 cell = ivec2(photon.cell & 0xffffu, photon.cell >> 16);
   vec2 start = unpackSnorm2x16(photon.offset), extent = unpackUnorm2x16(photon.extent);
-  vec2 skew_a, skew_b;
-  vec2 a = extent.x * image_of_side(neighbour_step(cell, ivec2(1, 0), start, r),
-                                    neighbour_step(cell, ivec2(-1, 0), start, r), skew_a);
-  vec2 b = extent.y * image_of_side(neighbour_step(cell, ivec2(0, 1), start, r),
-                                    neighbour_step(cell, ivec2(0, -1), start, r), skew_b);
+  vec2 right = vec2(0), left = vec2(0), above = vec2(0), below = vec2(0), skew_a, skew_b;
+  int sides = grid.x > 0 ? 4 : 0;  // so that no compiler unrolls this
+  for (int k = 0; k < sides; k++) {
+    int on = 1 - (k & 2);
+    vec2 step = neighbour_step(cell, (k & 1) == 0 ? ivec2(on, 0) : ivec2(0, on), start, r);
+    right = k == 0 ? step : right;
+    above = k == 1 ? step : above;
+    left = k == 2 ? step : left;
+    below = k == 3 ? step : below;
+  }
+  vec2 a = extent.x * image_of_side(right, left, skew_a), b = extent.y * image_of_side(above, below, skew_b);
   // Principal axes of the cell's image: a fold makes it thin, whatever way the cell's sides point.
   float xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y;
   float half_trace = 0.5 * (xx + yy), root = length(vec2(0.5 * (xx - yy), xy));

@@ -7,10 +7,10 @@ layout(local_size_x = 256) in;
 #include "wide_sum.glsl"
 #include "thread.glsl"
 #include "receiver_atlas.glsl"
-// Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each. PAGES: then the same of their
+// Levels one after another, each texel X, Y, Z; WIDE: lo, hi of each. TILES: then the same of their
 // layer.
 layout(std430, binding = BINDING_MAP_SUMS) buffer MapSums { uint map_sum[]; };
-uniform int light;
+#include "light_number.glsl"
 uniform int map_size;
 uniform uint most;
 uniform uint map_texels;  // of all levels
@@ -34,24 +34,24 @@ void add(uint texel, int channel, uint v) {
 }
 
 // As listed (splat_list.glsl), texels.
-struct Splat {
+struct ListedSplat {
   uvec3 units;
-  vec2 centre, across, way, skew;
-  vec2 aside;   // half of its width beside the way across
+  vec2 centre, across, shift, skew;
+  vec2 aside;   // half of its width beside `across`
   vec2 off[3];  // of X, Y and Z from the middle
-  vec3 slope;   // along the way X, Y and Z grow or fall evenly, as their means tell
+  vec3 slope;   // along the shift X, Y and Z grow or fall evenly, as their means tell
   int level;
   float next_share;
   uint tile;  // and one more; 0: the map
   vec4 rect;  // of the tile
 };
 
-Splat splat_at(uint word) {
-  Splat s;
+ListedSplat splat_at(uint word) {
+  ListedSplat s;
   uint y_level = splat[word + 1u];
   s.units = uvec3(splat[word + 3u], splat[word + 4u], splat[word + 5u]);
   s.across = unpackHalf2x16(splat[word + 2u]);
-  s.way = unpackHalf2x16(splat[word + 9u]);
+  s.shift = unpackHalf2x16(splat[word + 9u]);
   s.skew = unpackHalf2x16(splat[word + 10u]);
   vec2 rest = unpackHalf2x16(splat[word + 11u]);
   s.aside = rest.x * abs(s.across.yx) / max(length(s.across), 1e-20);
@@ -60,12 +60,12 @@ Splat splat_at(uint word) {
   s.centre = vec2(splat[word] >> 5, y_level >> 5) / 32768.0;
   s.tile = (splat[word] & 31u) << 2 | y_level >> 3 & 3u;
   s.rect = vec4(0);
-#ifdef PAGES
+#ifdef TILES
   s.rect = tile_rect(light, max(int(s.tile), 1) - 1);
 #endif
   for (int c = 0; c < 3; c++) s.off[c] = unpackHalf2x16(splat[word + 6u + uint(c)]);
-  vec3 leads = vec3(dot(s.off[0], s.way), dot(s.off[1], s.way), dot(s.off[2], s.way));
-  s.slope = clamp(leads / max(dot(s.way, s.way), 1e-20), -1.0 / 6.0, 1.0 / 6.0);
+  vec3 leads = vec3(dot(s.off[0], s.shift), dot(s.off[1], s.shift), dot(s.off[2], s.shift));
+  s.slope = clamp(leads / max(dot(s.shift, s.shift), 1e-20), -1.0 / 6.0, 1.0 / 6.0);
   return s;
 }
 
@@ -75,12 +75,12 @@ struct Grid {
   float size;
 };
 
-Grid grid_of(int level, float wide, float way) {
+Grid grid_of(int level, float wide, float shifted) {
   Grid g;
   g.level = level;
   g.size = exp2(float(level));
   g.across = clamp(int(ceil(wide / g.size)), 1, MOST_ACROSS);
-  g.along = clamp(int(ceil(way / g.size - 0.25)), 1, MOST_ALONG);
+  g.along = clamp(int(ceil(shifted / g.size - 0.25)), 1, MOST_ALONG);
   return g;
 }
 
@@ -95,7 +95,7 @@ Cell cell_of(Grid g, int k) {
 }
 
 // Shares of X, Y and Z that have been given when the cell is.
-vec3 given_upto(Splat s, Grid g, Cell c) {
+vec3 given_upto(ListedSplat s, Grid g, Cell c) {
   if (g.along == 1) return vec3((c.column + 1.0) / float(g.across));
   float per_row = 1.0 / float(g.along), t = c.row * per_row;
   vec3 upto = t + 6.0 * s.slope * t * (t - 1.0);
@@ -104,12 +104,12 @@ vec3 given_upto(Splat s, Grid g, Cell c) {
 }
 
 // Where the middle of the cell's Y lies. Y's parts share among texels what they cover of them.
-vec2 middle_of(Splat s, Grid g, Cell c, vec2 off_y) {
+vec2 middle_of(ListedSplat s, Grid g, Cell c, vec2 off_y) {
   float at_part = (c.column + 0.5) / float(g.across) - 0.5, per_row = 1.0 / float(g.along);
   vec2 middle =
-      s.centre + s.across * at_part + s.skew * abs(at_part) + s.way * ((c.row + 0.5) * per_row - 0.5);
+      s.centre + s.across * at_part + s.skew * abs(at_part) + s.shift * ((c.row + 0.5) * per_row - 0.5);
   vec2 part = (s.across + sign(at_part) * s.skew) / float(g.across);
-  vec2 extent = clamp((s.aside + abs(part) + abs(s.way) * per_row) / g.size, LEAST_EXTENT, 1.0);
+  vec2 extent = clamp((s.aside + abs(part) + abs(s.shift) * per_row) / g.size, LEAST_EXTENT, 1.0);
   vec2 exact = (middle + off_y) / g.size - 0.5, whole_texels = floor(exact);
   return (whole_texels + clamp((exact - whole_texels - 0.5) / extent + 0.5, 0.0, 1.0) + 0.5) * g.size;
 }
@@ -121,9 +121,9 @@ struct Target {
   int side;
 };
 
-Target target_of(Splat s, Grid g) {
+Target target_of(ListedSplat s, Grid g) {
   Target t = Target(vec2(0), vec2(float(map_size) - 0.01), level_offset(g.level), map_size >> g.level);
-#ifdef PAGES
+#ifdef TILES
   t.low = s.tile > 0u ? s.rect.xy + 0.5 * g.size : t.low;
   t.high = s.tile > 0u ? s.rect.zw - 0.5 * g.size : t.high;
   t.first += s.tile > 0u ? map_texels : 0u;
@@ -132,8 +132,8 @@ Target target_of(Splat s, Grid g) {
 }
 
 // Shares one of X, Y and Z among the four texels around its place, to the last unit.
-void add_around(Target t, Splat s, float size, vec2 p, int channel, uint units) {
-#ifdef PAGES
+void add_around(Target t, ListedSplat s, float size, vec2 p, int channel, uint units) {
+#ifdef TILES
   // What would lie beyond a tile's edge, where the receiver ends, is folded back.
   p = s.tile > 0u ? min(max(p, 2.0 * s.rect.xy - p), max(2.0 * s.rect.zw - p, s.rect.xy)) : p;
 #endif
@@ -155,9 +155,9 @@ void add_around(Target t, Splat s, float size, vec2 p, int channel, uint units) 
 void main() {
   uint listed = thread_number();
   if (listed >= min(splat_count, most)) return;
-  Splat s = splat_at(listed * SPLAT_WORDS);
-  float wide = length(s.across) + length(s.skew), way = max(abs(s.way.x), abs(s.way.y));
-  Grid fine = grid_of(s.level, wide, way), next = grid_of(s.level + 1, wide, way);
+  ListedSplat s = splat_at(listed * SPLAT_WORDS);
+  float wide = length(s.across) + length(s.skew), shifted = max(abs(s.shift.x), abs(s.shift.y));
+  Grid fine = grid_of(s.level, wide, shifted), next = grid_of(s.level + 1, wide, shifted);
   int fine_count = fine.across * fine.along;
   int count = fine_count + (s.next_share > 0.0 ? next.across * next.along : 0);
   uvec3 given = uvec3(0);
@@ -174,7 +174,7 @@ void main() {
     // X and Z lie beside Y, however little.
     float per_row = 1.0 / float(g.along);
     vec2 off[3] = s.off;
-    for (int c = 0; c < 3; c++) off[c] -= (1.0 - per_row * per_row) * s.slope[c] * s.way;
+    for (int c = 0; c < 3; c++) off[c] -= (1.0 - per_row * per_row) * s.slope[c] * s.shift;
     vec2 middle = middle_of(s, g, cell, off[1]);
     Target target = target_of(s, g);
     for (int c = 0; c < 3; c++)

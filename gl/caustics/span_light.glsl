@@ -53,7 +53,7 @@ Glint light_of(Span s, Part p, Sums upto, inout Front front) {
   Glint g;
   g.flux = s.a.left.passes * arrives * p.xyz;
   g.at = s.a.at;
-  g.way = vec2(0);
+  g.shift = vec2(0);
   g.tile = s.a.tile;
   if (s.follows && (s.bridges || !p.owed)) {
     vec2 at_upto = map_position(
@@ -64,7 +64,7 @@ Glint light_of(Span s, Part p, Sums upto, inout Front front) {
     vec3 passes_each = passes + (p.middles - p.middle) * (both ? second.passes - first.passes : 0.0);
     g.flux = max(passes_each * arrives, 0.0) * p.xyz;
     g.at = 0.5 * (front.at + at_upto);
-    g.way = at_upto - front.at;
+    g.shift = at_upto - front.at;
     front.at = at_upto;
   }
   float length = upto.along - front.sums.along;
@@ -76,8 +76,8 @@ Glint light_of(Span s, Part p, Sums upto, inout Front front) {
 vec3 left_of(Span s, Part p, Sums before, Sums upto) {
   if (!TINTS) return vec3(1);
   vec3 per_m = abs(upto.attenuation - before.attenuation) / max(p.xyz, vec3(1e-30));
-  float way = s.bridges ? mix(s.from.way, s.to.way, clamp(p.along, 0.0, 1.0)) : s.a.way;
-  return exp(-way * per_m);
+  float path_m = s.bridges ? mix(s.from.path_m, s.to.path_m, clamp(p.along, 0.0, 1.0)) : s.a.path_m;
+  return exp(-path_m * per_m);
 }
 
 // By how much more than the nodes' own, W: light leaves the last interfaces, and is absorbed (both may be

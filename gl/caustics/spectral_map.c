@@ -2,7 +2,6 @@
 
 #include "gl/caustics/map_picture.h"
 #include "gl/device/bindings.h"
-#include "gl/device/program.h"
 #include "gl/photons/photon_ledger.h"
 
 #include <stdlib.h>
@@ -16,15 +15,10 @@ static abbe_result make_texture(abbe_spectral_map *map, abbe_error *error) {
   const abbe_gl *gl = scene_of(map)->gpu->gl;
   const bool caustics = scene_of(map)->plan->caustics;
   const size_t side = caustics ? scene_of(map)->plan->desc.map_size : 1;
-  gl->GenTextures(1, &map->texture);
-  gl->BindTexture(GL_TEXTURE_2D_ARRAY, map->texture);
-  gl->TexStorage3D(GL_TEXTURE_2D_ARRAY, (GLsizei)map->views->map_levels, GL_RGBA32F, (GLsizei)side,
-                   (GLsizei)side, (GLsizei)map->layers);
-  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  scene_of(map)->gpu->bytes += map->views->map_texels * map->layers * 16;
+  abbe_result result =
+      abbe_gpu_make_levels(scene_of(map)->gpu, GL_RGBA32F, side, map->layers,
+                           map->views->map_levels, &map->texture, error);
+  if (result != ABBE_OK) return result;
   for (size_t i = 0; i < map->layers && !caustics; i++)
     gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, (GLint)i, 1, 1, 1, GL_RGBA, GL_FLOAT, black);
   return abbe_gl_check(gl, "the allocation of the map", error);
@@ -44,20 +38,17 @@ abbe_result abbe_spectral_map_make(const abbe_photon_lights *views,
   result = abbe_gpu_make_buffer(gpu, texels * abbe_photon_lights_map_words(views) * 4, NULL,
                                 &out->sums, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gpu->gl, "map_resolve.comp", NULL, &out->resolve,
+    result = abbe_shader_variant_compute(variant, gpu, "map_resolve.comp", NULL, &out->resolve,
                                          error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(gpu->gl, "map_mip.comp", NULL, &out->mip, error);
+    result = abbe_gpu_compute(gpu, "map_mip.comp", NULL, &out->mip, error);
   return result;
 }
 
 void abbe_spectral_map_free(abbe_spectral_map *map) {
   if (map->views == NULL) return;
-  const abbe_gl *gl = scene_of(map)->gpu->gl;
-  gl->DeleteTextures(1, &map->texture);
-  gl->DeleteBuffers(1, &map->sums);
-  gl->DeleteProgram(map->resolve);
-  gl->DeleteProgram(map->mip);
+  abbe_gpu_drop_textures(scene_of(map)->gpu, 1, &map->texture);
+  abbe_gpu_drop_buffers(scene_of(map)->gpu, 1, &map->sums);
 }
 
 void abbe_spectral_map_clear(abbe_spectral_map *map) {
@@ -83,7 +74,7 @@ static void write_level(abbe_spectral_map *map, GLuint program, size_t level, si
   abbe_gpu *gpu = scene_of(map)->gpu;
   abbe_gpu_set_int(gpu, program, "level", (int)level);
   gpu->gl->BindImageTexture(0, map->texture, (GLint)level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA32F);
-  abbe_gpu_dispatch_2d(gpu, scene_of(map)->plan->desc.map_size >> level, rows >> level);
+  abbe_gpu_dispatch_2d(gpu, program, scene_of(map)->plan->desc.map_size >> level, rows >> level);
   gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
@@ -110,12 +101,12 @@ static void make_mips(abbe_spectral_map *map, size_t light, size_t layer, size_t
 
 void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light) {
   const size_t side = scene_of(map)->plan->desc.map_size;
-  const abbe_receiver_pages *pages = &map->atlas->pages[light];
+  const abbe_receiver_tiles *tiles = &map->atlas->tiles[light];
   resolve_layer(map, light, light, side);
   make_mips(map, light, light, side);
-  if (pages->count == 0) return;
-  resolve_layer(map, light, map->atlas->layer[light], pages->rows);
-  make_mips(map, light, map->atlas->layer[light], pages->rows);
+  if (tiles->count == 0) return;
+  resolve_layer(map, light, map->atlas->layer[light], tiles->rows);
+  make_mips(map, light, map->atlas->layer[light], tiles->rows);
 }
 
 abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t light,
@@ -135,7 +126,7 @@ abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t l
   free(sum);
   const double unit = abbe_photon_lights_map_unit(map->views, light);
   out->deposited += (deposited[0] + deposited[1]) * unit;
-  out->on_pages += deposited[1] * unit;
+  out->on_tiles += deposited[1] * unit;
   return abbe_gl_check(gl, "the reading of the ledger", error);
 }
 
@@ -152,7 +143,9 @@ abbe_result abbe_spectral_map_read(const abbe_spectral_map *map, size_t light, d
     for (size_t k = 0; k < layer; k++) data[light * layer + k] += data[i * layer + k];
   }
   abbe_result result = abbe_map_picture_flux(data + light * layer, side,
-                                             &map->views->light[light].map, unit, out, error);
+                                             &map->views->light[light].map,
+                                             unit * scene_of(map)->local->light[light].power, out,
+                                             error);
   free(data);
   return result;
 }

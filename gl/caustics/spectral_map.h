@@ -1,6 +1,6 @@
-/* spectral_map.h: where light lies that refractors have bent: X, Y, Z flux over window area, a
- * layer a light, and a layer of pages for each that has any; summed in whole units, in levels.
- * Internal to gl/.
+/* spectral_map.h: where light lies that refractors have bent: X, Y, Z flux over window area, of unit
+ * power of the light; a layer a light, and a layer of tiles for each that has any; summed in whole
+ * units, in levels. Internal to gl/.
  */
 #ifndef ABBE_GL_CAUSTICS_SPECTRAL_MAP_H
 #define ABBE_GL_CAUSTICS_SPECTRAL_MAP_H
@@ -34,7 +34,8 @@ void abbe_spectral_map_resolve(abbe_spectral_map *map, size_t light);
 /* The texture, into the program that is in use. */
 void abbe_spectral_map_set(const abbe_spectral_map *map, GLuint program);
 
-/* Waits for the device: adds what lies in the sums, weighted by ybar, W, to the ledger.
+/* Waits for the device: adds what lies in the sums, weighted by ybar, of unit power, to the
+ * ledger.
  * ABBE_NO_MEMORY.
  */
 abbe_result abbe_spectral_map_read_ledger(const abbe_spectral_map *map, size_t light,

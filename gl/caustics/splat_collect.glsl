@@ -3,16 +3,16 @@
 
 struct Splat {
   vec3 flux, x, y;  // X, Y and Z; and times how far they lie from there
-  vec2 from, way;   // way: that its colours lead along, from back to front
-  vec2 middle;      // of that way, from there
+  vec2 from, shift;  // shift: along which its colours lie, from back to front
+  vec2 middle;      // of that shift, from there
   int tile;
   float weight;
 };
 
-// Light at one place, to be added: X, Y and Z, and where they lie along the way, from -1/2 to 1/2.
+// Light at one place, to be added: X, Y and Z, and where they lie along the shift, from -1/2 to 1/2.
 struct Glint {
   vec3 flux, along;
-  vec2 at, way;
+  vec2 at, shift;
   int tile;
 };
 
@@ -20,7 +20,7 @@ Splat no_splat() { return Splat(vec3(0), vec3(0), vec3(0), vec2(0), vec2(0), vec
 
 vec4 map_rect(int tile) {
   vec4 rect = vec4(0, 0, vec2(map_size));
-#ifdef PAGES
+#ifdef TILES
   if (tile != NO_TILE) rect = tile_rect(light, tile);
 #endif
   return rect;
@@ -42,7 +42,7 @@ uvec2 packed_place(vec2 at, int tile, int level) {
 void list_splat(Splat s, Footprint f) {
   vec3 x = s.x / max(s.flux, vec3(1e-30)) - s.middle.x, y = s.y / max(s.flux, vec3(1e-30)) - s.middle.y;
   uvec2 place = packed_place(s.from + s.middle, s.tile, f.level);
-  uvec3 units = uvec3(s.flux / lights[light].misc.y + 0.5);
+  uvec3 units = uvec3(s.flux / pass_light.misc.y + 0.5);
   uint word = min(atomicAdd(splat_count, 1u), most) * SPLAT_WORDS;
   splat[word] = place.x;
   splat[word + 1u] = place.y;
@@ -53,7 +53,7 @@ void list_splat(Splat s, Footprint f) {
   splat[word + 6u] = packHalf2x16(vec2(x.x, y.x));
   splat[word + 7u] = packHalf2x16(vec2(x.y, y.y));
   splat[word + 8u] = packHalf2x16(vec2(x.z, y.z));
-  splat[word + 9u] = packHalf2x16(s.way);
+  splat[word + 9u] = packHalf2x16(s.shift);
   splat[word + 10u] = packHalf2x16(f.skew);
   splat[word + 11u] = packHalf2x16(vec2(f.narrow, f.next_share));
 }
@@ -71,15 +71,15 @@ void collect(Glint g, bool lands, bool done, Footprint f, inout Splat s) {
   if (weight > 0.0) {
     if (s.weight == 0.0) {
       s.from = g.at;
-      s.way = s.middle = vec2(0);
+      s.shift = s.middle = vec2(0);
       s.tile = g.tile;
     }
     vec2 off_here = g.at - s.from;
     s.flux += g.flux;
-    s.x += g.flux * (off_here.x + g.along * g.way.x);
-    s.y += g.flux * (off_here.y + g.along * g.way.y);
-    s.way += g.way;
-    s.middle += s.weight == 0.0 ? vec2(0) : 0.5 * g.way;
+    s.x += g.flux * (off_here.x + g.along * g.shift.x);
+    s.y += g.flux * (off_here.y + g.along * g.shift.y);
+    s.shift += g.shift;
+    s.middle += s.weight == 0.0 ? vec2(0) : 0.5 * g.shift;
     s.weight += weight;
   }
 }

@@ -1,9 +1,9 @@
-// Pieces of light on their way to the map: the place of the middle in texels (12.15 fixed point; below x the
+// Splats of light on their way to the map: the place of the middle in texels (12.15 fixed point; below x the
 // high five bits of the tile's number from 1, 0 for the map; below y the low two, then the level in three),
-// the way across the footprint (two halves), XYZ in map units, so that the list is what is
-// summed, and the ways from that place to where X, Y and Z lie in the mean; the way that leads from one
+// from edge to edge across the footprint (two halves), XYZ in map units, so that the list is what is
+// summed, and from that place to where X, Y and Z lie in the mean; the shift from one
 // colour to the next, and by how much more the footprint's second half is than its first; its width
-// beside the way across, and the share of the next coarser level (two halves each, texels).
+// beside that across, and the share of the next coarser level (two halves each, texels).
 const uint SPLAT_WORDS = 12u;
 layout(std430, binding = BINDING_SPLATS) buffer SplatList {
   uint splat_count, splat_groups_x, splat_groups_y, splat_groups_z;

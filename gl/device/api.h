@@ -17,15 +17,25 @@ extern "C" {
 /* X(pointer type's middle, name without gl) */
 #define ABBE_GL_FUNCTIONS(X)                                                                       \
   X(ACTIVETEXTURE, ActiveTexture)                                                                  \
-  X(ATTACHSHADER, AttachShader)                                                                    \
+  X(COPYBUFFERSUBDATA, CopyBufferSubData) X(ATTACHSHADER, AttachShader)                            \
   X(BINDBUFFER, BindBuffer)                                                                        \
   X(BINDBUFFERBASE, BindBufferBase)                                                                \
   X(BINDFRAMEBUFFER, BindFramebuffer)                                                              \
   X(BINDIMAGETEXTURE, BindImageTexture)                                                            \
+  X(BINDSAMPLERS, BindSamplers)                                                                    \
   X(BINDTEXTURE, BindTexture)                                                                      \
   X(BINDVERTEXARRAY, BindVertexArray)                                                              \
+  X(BLENDEQUATION, BlendEquation)                                                                  \
   X(BLENDFUNC, BlendFunc)                                                                          \
   X(BUFFERDATA, BufferData)                                                                        \
+  X(CLIPCONTROL, ClipControl)                                                                      \
+  X(COLORMASK, ColorMask)                                                                          \
+  X(DEPTHRANGE, DepthRange)                                                                        \
+  X(FRONTFACE, FrontFace)                                                                          \
+  X(HINT, Hint)                                                                                    \
+  X(POLYGONMODE, PolygonMode)                                                                      \
+  X(PROVOKINGVERTEX, ProvokingVertex)                                                              \
+  X(TEXTUREVIEW, TextureView)                                                                      \
   X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(             \
       CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV,                                              \
                                       ClearBufferuiv) X(CLEARBUFFERDATA,                           \

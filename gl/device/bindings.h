@@ -11,48 +11,48 @@
 #define BINDING_SURFACES 4
 #define BINDING_SPECTRA 5
 #define BINDING_BANDS 6
-#define BINDING_WARPS 7
-#define BINDING_SHADOW_PLANES 8
+#define BINDING_SHADOW_PLANES 7
 
 /* Photons: cells of the grid that may show a refractor, those of the coarser level, the photons
  * and which one each cell has. */
-#define BINDING_CELLS 9
-#define BINDING_COARSER_CELLS 10
-#define BINDING_PHOTONS 11
-#define BINDING_PHOTON_OF_CELL 12
-#define BINDING_FOUND_BOX 13
+#define BINDING_CELLS 8
+#define BINDING_COARSER_CELLS 9
+#define BINDING_PHOTONS 10
+#define BINDING_PHOTON_OF_CELL 11
+#define BINDING_FOUND_BOX 12
 
 /* Their hits: places, path signatures, which paths there are, what the ledger weighs them by. */
-#define BINDING_HITS 14
-#define BINDING_SIGNATURES 15
-#define BINDING_PATH_MARKS 16
-#define BINDING_PATHS 17
-#define BINDING_SAMPLE_WEIGHTS 18
-#define BINDING_LEDGER 19
+#define BINDING_HITS 13
+#define BINDING_SIGNATURES 14
+#define BINDING_PATH_MARKS 15
+#define BINDING_PATHS 16
+#define BINDING_SAMPLE_WEIGHTS 17
+#define BINDING_LEDGER 18
 
 /* Intervals between wavelengths that ask for all theirs. */
-#define BINDING_WANTS 20
-#define BINDING_PAIRS 21
+#define BINDING_WANTS 19
+#define BINDING_PAIRS 20
 
 /* The spectral map. */
-#define BINDING_SPLATS 22
-#define BINDING_MAP_SUMS 23
-#define BINDING_TEXEL_SIZES 24
+#define BINDING_SPLATS 21
+#define BINDING_MAP_SUMS 22
+#define BINDING_TEXEL_SIZES 23
 
 /* The camera's picture: pixels that show a refractor, and those that ask for all bands. */
-#define BINDING_PIXELS 25
-#define BINDING_REFINED_PIXELS 26
+#define BINDING_PIXELS 24
+#define BINDING_REFINED_PIXELS 25
 
 /* A list that becomes the size of a dispatch. */
-#define BINDING_DISPATCH 27
+#define BINDING_DISPATCH 26
 
 /* Texture units that keep what they show; passes bind theirs below and say so. */
 #define UNIT_BVH_NODES 7
 #define UNIT_BVH_TRIANGLES 8
 #define UNIT_BVH_CORNERS 9
-#define UNIT_PAGE_ROWS 10
-#define UNIT_PAGE_INDEX 11
+#define UNIT_TILE_ROWS 10
+#define UNIT_TILE_INDEX 11
 #define UNIT_CHART_ROWS 12
 #define UNIT_SIDE_OF_FACE 13
+#define UNIT_WARPS 14
 
 #endif

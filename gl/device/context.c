@@ -6,7 +6,9 @@
 #include <stdlib.h>
 
 struct abbe_context {
-  abbe_context_native native;
+  abbe_context_native native; /* of an own one; zero of an adopted one */
+  abbe_context_host host;     /* of an adopted one */
+  const char *name, *remedy;
   abbe_gl gl;
   char description[256];
 };
@@ -21,31 +23,28 @@ const char *abbe_context_backend_name(abbe_context_backend backend) {
   return (int)backend >= 0 && backend < ABBE_CONTEXT_BACKEND_COUNT ? names[backend] : "unknown";
 }
 
-static const char *other_name(abbe_context_backend backend) {
-  return names[backend == ABBE_CONTEXT_EGL ? ABBE_CONTEXT_OSMESA : ABBE_CONTEXT_EGL];
-}
+static const char *const remedies[] = {"use --gl egl, or a newer driver",
+                                       "use --gl osmesa, or a newer driver"};
+static const char adopted_remedy[] = "have a context of 4.5 or later current when it is adopted";
 
 /* A name that a driver does not tell. */
 static const char *told(const GLubyte *text) {
   return text != NULL ? (const char *)text : "unnamed";
 }
 
-static abbe_result check_version(abbe_context *context, abbe_context_backend backend,
-                                 abbe_error *error) {
+static abbe_result check_version(abbe_context *context, abbe_error *error) {
   GLint major = 0, minor = 0;
   context->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
   context->gl.GetIntegerv(GL_MINOR_VERSION, &minor);
-  snprintf(context->description, sizeof context->description, "%s: %s, OpenGL %s", names[backend],
+  snprintf(context->description, sizeof context->description, "%s: %s, OpenGL %s", context->name,
            told(context->gl.GetString(GL_RENDERER)), told(context->gl.GetString(GL_VERSION)));
   if (major * 10 + minor >= 45) return ABBE_OK;
-  return abbe_error_set(error, ABBE_GL,
-                        "%s offers OpenGL %d.%d; Abbe needs 4.5: use --gl %s, or a newer driver",
-                        names[backend], major, minor, other_name(backend));
+  return abbe_error_set(error, ABBE_GL, "%s offers OpenGL %d.%d; Abbe needs 4.5: %s", context->name,
+                        major, minor, context->remedy);
 }
 
 /* What the passes take for granted beyond, or as much as, OpenGL 4.5 promises. */
-static abbe_result check_limits(const abbe_context *context, abbe_context_backend backend,
-                                abbe_error *error) {
+static abbe_result check_limits(const abbe_context *context, abbe_error *error) {
   static const struct {
     GLenum limit;
     GLint least;
@@ -61,11 +60,24 @@ static abbe_result check_limits(const abbe_context *context, abbe_context_backen
     GLint there = 0;
     context->gl.GetIntegerv(limits[i].limit, &there);
     if (there < limits[i].least)
-      return abbe_error_set(
-          error, ABBE_GL, "%s has %d %s; Abbe needs %d: use --gl %s, or a newer driver",
-          context->description, there, limits[i].what, limits[i].least, other_name(backend));
+      return abbe_error_set(error, ABBE_GL, "%s has %d %s; Abbe needs %d: %s", context->description,
+                            there, limits[i].what, limits[i].least, context->remedy);
   }
   return ABBE_OK;
+}
+
+/* Loads and checks the context, which is current where the result says so; *out is it, or nothing.
+ */
+static abbe_result finish(abbe_context *context, abbe_gl_lookup lookup, abbe_result result,
+                          abbe_context **out, abbe_error *error) {
+  if (result == ABBE_OK) result = abbe_gl_load(lookup, &context->gl, error);
+  if (result == ABBE_OK) result = check_version(context, error);
+  if (result == ABBE_OK) result = check_limits(context, error);
+  if (result == ABBE_OK)
+    *out = context;
+  else
+    abbe_context_free(context);
+  return result;
 }
 
 abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, abbe_error *error) {
@@ -75,25 +87,47 @@ abbe_result abbe_context_make(abbe_context_backend backend, abbe_context **out, 
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no GL back end %d", (int)backend);
   abbe_context *context = calloc(1, sizeof *context);
   if (context == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a GL context");
-  abbe_result result = backend == ABBE_CONTEXT_EGL ? abbe_context_egl(&context->native, error)
-                                                   : abbe_context_osmesa(&context->native, error);
-  if (result == ABBE_OK) result = abbe_gl_load(context->native.lookup, &context->gl, error);
-  if (result == ABBE_OK) result = check_version(context, backend, error);
-  if (result == ABBE_OK) result = check_limits(context, backend, error);
-  if (result != ABBE_OK) {
-    abbe_context_free(context);
-    return result;
-  }
-  context->gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  context->gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  *out = context;
-  return ABBE_OK;
+  context->name = names[backend];
+  context->remedy = remedies[backend];
+  const abbe_result result = backend == ABBE_CONTEXT_EGL
+                                 ? abbe_context_egl(&context->native, error)
+                                 : abbe_context_osmesa(&context->native, error);
+  return finish(context, context->native.lookup, result, out, error);
+}
+
+abbe_result abbe_context_adopt(const abbe_context_host *host, abbe_context **out,
+                               abbe_error *error) {
+  ABBE_REQUIRE(host && out, error);
+  *out = NULL;
+  if (host->lookup == NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a context is adopted with a lookup of its functions; it has none");
+  abbe_context *context = calloc(1, sizeof *context);
+  if (context == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a GL context");
+  context->host = *host;
+  context->name = "adopted";
+  context->remedy = adopted_remedy;
+  const abbe_result result = abbe_context_make_current(context, error);
+  return finish(context, host->lookup, result, out, error);
 }
 
 void abbe_context_free(abbe_context *context) {
   if (context == NULL) return;
   if (context->native.destroy != NULL) context->native.destroy(&context->native);
   free(context);
+}
+
+abbe_result abbe_context_make_current(abbe_context *context, abbe_error *error) {
+  ABBE_REQUIRE(context, error);
+  bool current = true;
+  if (context->native.make_current != NULL)
+    current = context->native.make_current(&context->native);
+  else if (context->host.make_current != NULL)
+    current = context->host.make_current(context->host.user);
+  if (current) return ABBE_OK;
+  return abbe_error_set(error, ABBE_GL,
+                        "the context '%s' cannot be made current; is it current on another thread?",
+                        context->description[0] != '\0' ? context->description : context->name);
 }
 
 const abbe_gl *abbe_context_gl(const abbe_context *context) {

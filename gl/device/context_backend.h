@@ -4,9 +4,13 @@
 
 #include "gl/device/api.h"
 
+#include <stdbool.h>
+
 typedef struct abbe_context_native {
   void *handle[4]; /* the back end's own */
   abbe_gl_lookup lookup;
+  bool (*make_current)(struct abbe_context_native *native); /* on this thread */
+  /* Leaves the thread's current context alone where that is another. */
   void (*destroy)(struct abbe_context_native *native);
 } abbe_context_native;
 

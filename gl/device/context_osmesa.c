@@ -10,8 +10,21 @@ static abbe_gl_function lookup(const char *name) {
   return (abbe_gl_function)OSMesaGetProcAddress(name);
 }
 
+static bool is_current(const abbe_context_native *native) {
+  return OSMesaGetCurrentContext() == (OSMesaContext)native->handle[0];
+}
+
+static bool make_current(abbe_context_native *native) {
+  return is_current(native) ||
+         OSMesaMakeCurrent((OSMesaContext)native->handle[0], native->handle[1], GL_UNSIGNED_BYTE,
+                           BUFFER_SIDE, BUFFER_SIDE);
+}
+
 static void destroy(abbe_context_native *native) {
-  if (native->handle[0] != NULL) OSMesaDestroyContext((OSMesaContext)native->handle[0]);
+  if (native->handle[0] != NULL) {
+    if (is_current(native)) OSMesaMakeCurrent(NULL, NULL, GL_UNSIGNED_BYTE, 0, 0);
+    OSMesaDestroyContext((OSMesaContext)native->handle[0]);
+  }
   free(native->handle[1]);
 }
 
@@ -27,6 +40,7 @@ abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
                             0,
                             0};
   out->lookup = lookup;
+  out->make_current = make_current;
   out->destroy = destroy;
   out->handle[1] = malloc(BUFFER_SIDE * BUFFER_SIDE * 4);
   if (out->handle[1] == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for OSMesa");
@@ -36,7 +50,7 @@ abbe_result abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
                           "OSMesa gives no OpenGL 4.5 core context; use Mesa 22 "
                           "or try --gl egl");
   out->handle[0] = context;
-  if (!OSMesaMakeCurrent(context, out->handle[1], GL_UNSIGNED_BYTE, BUFFER_SIDE, BUFFER_SIDE))
+  if (!make_current(out))
     return abbe_error_set(error, ABBE_GL, "OSMesa's context cannot be made current; try --gl egl");
   return ABBE_OK;
 }

@@ -1,41 +1,51 @@
 #include "gl/device/gpu.h"
 
+#include "base/clock.h"
 #include "gl/device/bindings.h"
-#include "gl/device/program.h"
 
-#include <time.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error) {
   out->gl = gl;
   gl->GenFramebuffers(1, &out->framebuffer);
   gl->GenVertexArrays(1, &out->empty_array);
-  return abbe_program_make_compute(gl, "list_groups.comp", NULL, &out->list_groups, error);
+  return abbe_gpu_compute(out, "list_groups.comp", NULL, &out->list_groups, error);
 }
 
 void abbe_gpu_free(abbe_gpu *gpu) {
   if (gpu->gl == NULL) return;
   gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels);
-  gpu->gl->DeleteProgram(gpu->list_groups);
+  abbe_gpu_store_free(&gpu->store, gpu->gl);
   gpu->gl->DeleteFramebuffers(1, &gpu->framebuffer);
   gpu->gl->DeleteVertexArrays(1, &gpu->empty_array);
   *gpu = (abbe_gpu){0};
 }
 
-double abbe_gpu_now_ms(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
-
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  if (size == 0) size = 16; /* a bound buffer may not be empty */
+  const size_t room = size > 0 ? size : 16; /* a bound buffer may not be empty */
+  const abbe_stored_key key = {.kind = ABBE_STORED_BUFFER, .bytes = room};
+  *out = abbe_gpu_store_take(&gpu->store, &key);
+  if (*out != 0) {
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
+    if (data != NULL && size > 0)
+      gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
+    return ABBE_OK;
+  }
   gl->GenBuffers(1, out);
   gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
-  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
-  gpu->bytes += size;
-  return abbe_gl_check(gl, "the allocation of a buffer", error);
+  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)room, size > 0 ? data : NULL,
+                 GL_DYNAMIC_COPY);
+  abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
+  if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteBuffers(1, out);
+  *out = 0;
+  return result;
 }
 
 static size_t texel_bytes(GLenum format) {
@@ -51,22 +61,152 @@ static size_t texel_bytes(GLenum format) {
   }
 }
 
-abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
-                                  size_t layers, bool linear, GLuint *out, abbe_error *error) {
+/* Takes up or makes the storage; it is bound then. */
+static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_key *key,
+                                GLuint *out, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  const GLsizei levels = (GLsizei)key->levels, w = (GLsizei)key->width, h = (GLsizei)key->height;
+  *out = abbe_gpu_store_take(&gpu->store, key);
+  if (*out != 0) {
+    gl->BindTexture(target, *out);
+    return ABBE_OK;
+  }
   gl->GenTextures(1, out);
   gl->BindTexture(target, *out);
-  if (layers > 0)
-    gl->TexStorage3D(target, 1, format, (GLsizei)width, (GLsizei)height, (GLsizei)layers);
+  if (key->layers > 0)
+    gl->TexStorage3D(target, levels, key->format, w, h, (GLsizei)key->layers);
   else
-    gl->TexStorage2D(target, 1, format, (GLsizei)width, (GLsizei)height);
-  gl->TexParameteri(target, GL_TEXTURE_MIN_FILTER, linear ? GL_LINEAR : GL_NEAREST);
-  gl->TexParameteri(target, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
+    gl->TexStorage2D(target, levels, key->format, w, h);
+  abbe_result result = abbe_gl_check(gl, "the allocation of a texture", error);
+  if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, key, *out, error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteTextures(1, out);
+  *out = 0;
+  return result;
+}
+
+static void set_filter(const abbe_gl *gl, GLenum target, GLint small, GLint large) {
+  gl->TexParameteri(target, GL_TEXTURE_MIN_FILTER, small);
+  gl->TexParameteri(target, GL_TEXTURE_MAG_FILTER, large);
   gl->TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   gl->TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gpu->bytes += width * height * (layers > 0 ? layers : 1) * texel_bytes(format);
-  return abbe_gl_check(gl, "the allocation of a texture", error);
+}
+
+abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
+                                  size_t layers, bool linear, GLuint *out, abbe_error *error) {
+  const GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
+  const abbe_stored_key key = {
+      .kind = ABBE_STORED_TEXTURE,
+      .format = format,
+      .bytes = width * height * (layers > 0 ? layers : 1) * texel_bytes(format),
+      .width = width,
+      .height = height,
+      .layers = layers,
+      .levels = 1};
+  abbe_result result = make_storage(gpu, target, &key, out, error);
+  if (result == ABBE_OK) set_filter(gpu->gl, target, filter, filter);
+  return result;
+}
+
+abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size_t layers,
+                                 size_t levels, GLuint *out, abbe_error *error) {
+  size_t texels = 0;
+  for (size_t i = 0; i < levels; i++) texels += (side >> i) * (side >> i);
+  const abbe_stored_key key = {.kind = ABBE_STORED_TEXTURE,
+                               .format = format,
+                               .bytes = texels * layers * texel_bytes(format),
+                               .width = side,
+                               .height = side,
+                               .layers = layers,
+                               .levels = levels};
+  abbe_result result = make_storage(gpu, GL_TEXTURE_2D_ARRAY, &key, out, error);
+  if (result == ABBE_OK)
+    set_filter(gpu->gl, GL_TEXTURE_2D_ARRAY, GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+  return result;
+}
+
+void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer) {
+  for (size_t i = 0; i < count; i++) {
+    if (buffer[i] != 0) abbe_gpu_store_put_back(&gpu->store, ABBE_STORED_BUFFER, buffer[i]);
+    buffer[i] = 0;
+  }
+}
+
+void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture) {
+  for (size_t i = 0; i < count; i++) {
+    if (texture[i] != 0) abbe_gpu_store_put_back(&gpu->store, ABBE_STORED_TEXTURE, texture[i]);
+    texture[i] = 0;
+  }
+}
+
+void abbe_gpu_trim(abbe_gpu *gpu) {
+  abbe_gpu_store_trim(&gpu->store, gpu->gl);
+}
+
+size_t abbe_gpu_program_count(const abbe_gpu *gpu) {
+  return abbe_gpu_store_count(&gpu->store, ABBE_STORED_PROGRAM);
+}
+
+void abbe_gpu_drop_programs(abbe_gpu *gpu) {
+  for (size_t i = 0; i < gpu->store.count; i++) {
+    abbe_stored *item = &gpu->store.item[i];
+    if (item->key.kind == ABBE_STORED_PROGRAM && item->name != gpu->list_groups) item->used = false;
+  }
+  abbe_gpu_trim(gpu);
+}
+
+size_t abbe_gpu_bytes(const abbe_gpu *gpu) {
+  return abbe_gpu_store_bytes(&gpu->store);
+}
+
+/* Files and definitions; malloc'd. */
+static char *program_text(const abbe_program_stage *stages, size_t count, const char *defines) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *to = open_memstream(&text, &size);
+  if (to == NULL) return NULL;
+  for (size_t i = 0; i < count; i++) fprintf(to, "%s\n", stages[i].file);
+  if (defines != NULL) fputs(defines, to);
+  const bool failed = ferror(to) != 0;
+  if (fclose(to) == 0 && !failed) return text;
+  free(text);
+  return NULL;
+}
+
+/* A driver that knows the program takes a millisecond or so. The first one starts its compiler. */
+static void tell_compiling(abbe_gpu *gpu, double ms) {
+  static const double known_ms = 15;
+  if (gpu->compiling == NULL || ms < known_ms || abbe_gpu_program_count(gpu) == 0) return;
+  gpu->compiling(gpu->progress_user);
+  gpu->compiling = NULL;
+}
+
+abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, size_t count,
+                             const char *defines, GLuint *out, abbe_error *error) {
+  char *text = program_text(stages, count, defines);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
+  const abbe_stored_key key = {.kind = ABBE_STORED_PROGRAM, .text = text};
+  *out = abbe_gpu_store_take(&gpu->store, &key);
+  abbe_result result = ABBE_OK;
+  if (*out == 0) {
+    const double start_ms = 1e3 * abbe_clock_seconds();
+    result = abbe_program_make(gpu->gl, stages, count, defines, out, error);
+    tell_compiling(gpu, 1e3 * abbe_clock_seconds() - start_ms);
+    if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
+    if (result != ABBE_OK) {
+      gpu->gl->DeleteProgram(*out);
+      *out = 0;
+    }
+  }
+  free(text);
+  return result;
+}
+
+abbe_result abbe_gpu_compute(abbe_gpu *gpu, const char *file, const char *defines, GLuint *out,
+                             abbe_error *error) {
+  const abbe_program_stage stage = {GL_COMPUTE_SHADER, file};
+  return abbe_gpu_program(gpu, &stage, 1, defines, out, error);
 }
 
 /* A layer of -1 attaches the whole texture: a 2D one, or every layer of an array. */
@@ -95,8 +235,7 @@ abbe_result abbe_gpu_set_target(abbe_gpu *gpu, const GLuint *colour, const int *
 abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
-  gl->DeleteBuffers(1, buffer);
-  *buffer = 0;
+  abbe_gpu_drop_buffers(gpu, 1, buffer);
   abbe_result result = abbe_gpu_make_buffer(gpu, size, data, buffer, error);
   if (result != ABBE_OK) return result;
   if (*texture == 0) gl->GenTextures(1, texture);
@@ -168,38 +307,121 @@ size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list) {
   return count;
 }
 
-void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t most,
-                            size_t threads) {
-  const abbe_gl *gl = gpu->gl;
-  gl->UseProgram(gpu->list_groups);
-  abbe_gpu_set_uint(gpu, gpu->list_groups, "group_size", ABBE_GPU_GROUP);
-  abbe_gpu_set_uint(gpu, gpu->list_groups, "most", most);
-  abbe_gpu_set_uint(gpu, gpu->list_groups, "threads", threads);
-  abbe_gpu_bind_storage(gpu, BINDING_DISPATCH, list);
-  gl->DispatchCompute(1, 1, 1);
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-  gl->UseProgram(program);
-  gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
-  gl->DispatchComputeIndirect(4);
-  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+void abbe_gpu_watch(abbe_gpu *gpu, abbe_render_progress progress, void *user) {
+  gpu->progress = progress;
+  gpu->progress_user = user;
+  gpu->done = 0;
+  gpu->stopped = false;
+}
+
+bool abbe_gpu_ask(abbe_gpu *gpu) {
+  if (gpu->progress != NULL && !gpu->stopped)
+    gpu->stopped = !gpu->progress(gpu->progress_user, gpu->done);
+  return !gpu->stopped;
+}
+
+abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error) {
+  gpu->done = done;
+  if (abbe_gpu_ask(gpu)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+}
+
+/* What a part of the work takes where somebody watches, and how many groups, or rows of groups, the
+ * first has. */
+static const double part_ms = 6;
+enum { FIRST_PART = 4, MOST_GROUPS = 65535 };
+
+/* The next part's size, after one of so many units took so long. */
+static size_t next_part(size_t units, double ms) {
+  const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2);
+  return (size_t)fmin(fmax((double)units * factor, 1), MOST_GROUPS);
+}
+
+/* width: groups of a row, of which there are so many; 0: they are groups one after another. */
+static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t width) {
+  const char *first = width > 0 ? "first_row" : "first_group";
+  const size_t step = width > 0 ? 16 : 1;
+  size_t part = FIRST_PART, at = 0;
+  gpu->gl->UseProgram(program);
+  while (at < units && abbe_gpu_ask(gpu)) {
+    const double start_ms = 1e3 * abbe_clock_seconds();
+    const size_t count = units - at < part ? units - at : part;
+    gpu->gl->UseProgram(program); /* whoever was asked may have drawn */
+    abbe_gpu_set_uint(gpu, program, first, at * step);
+    if (width > 0)
+      gpu->gl->DispatchCompute((GLuint)width, (GLuint)count, 1);
+    else
+      gpu->gl->DispatchCompute((GLuint)count, 1, 1);
+    gpu->gl->Finish();
+    at += count;
+    part = next_part(count, 1e3 * abbe_clock_seconds() - start_ms);
+  }
+  abbe_gpu_set_uint(gpu, program, first, 0);
+}
+
+void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups) {
+  const size_t rows = (groups + MOST_GROUPS - 1) / MOST_GROUPS;
+  if (gpu->progress != NULL)
+    dispatch_parts(gpu, program, groups, 0);
+  else if (groups > 0)
+    gpu->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
 }
 
 /* One thread a texel; the shaders' groups are 32 x 16, large because a software rasteriser pays
  * for each. */
-void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height) {
-  gpu->gl->DispatchCompute((GLuint)((width + 31) / 32), (GLuint)((height + 15) / 16), 1);
+void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t height) {
+  const size_t across = (width + 31) / 32, down = (height + 15) / 16;
+  if (gpu->progress != NULL)
+    dispatch_parts(gpu, program, down, across);
+  else
+    gpu->gl->DispatchCompute((GLuint)across, (GLuint)down, 1);
+}
+
+void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
+                            size_t threads) {
+  const abbe_gl *gl = gpu->gl;
+  if (gpu->progress != NULL) {
+    const size_t count = abbe_gpu_read_count(gpu, list), left = count > first ? count - first : 0;
+    const size_t elements = left < most ? left : most;
+    dispatch_parts(gpu, program, (elements * threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP, 0);
+  } else {
+    gl->UseProgram(gpu->list_groups);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "group_size", ABBE_GPU_GROUP);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "first", first);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "most", most);
+    abbe_gpu_set_uint(gpu, gpu->list_groups, "threads", threads);
+    abbe_gpu_bind_storage(gpu, BINDING_DISPATCH, list);
+    gl->DispatchCompute(1, 1, 1);
+    gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    gl->UseProgram(program);
+    gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+    gl->DispatchComputeIndirect(4);
+  }
+  gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list) {
+  GLuint groups[2] = {0, 0};
+  if (gpu->progress == NULL) {
+    gpu->gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list);
+    gpu->gl->DispatchComputeIndirect(4);
+    return;
+  }
+  gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
+  gpu->gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 4, sizeof groups, groups);
+  dispatch_parts(gpu, program, (size_t)groups[0] * groups[1], 0);
 }
 
 void abbe_gpu_begin_pass(abbe_gpu *gpu) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
-  gpu->pass_start_ms = abbe_gpu_now_ms();
+  gpu->pass_start_ms = 1e3 * abbe_clock_seconds();
 }
 
 void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
-  const double now_ms = abbe_gpu_now_ms();
+  const double now_ms = 1e3 * abbe_clock_seconds();
   abbe_statistics_add_ms(gpu->statistics, pass, now_ms - gpu->pass_start_ms);
   gpu->pass_start_ms = now_ms;
 }

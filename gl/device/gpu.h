@@ -7,7 +7,10 @@
 
 #include "base/error.h"
 #include "gl/device/api.h"
+#include "gl/device/gpu_store.h"
+#include "gl/device/program.h"
 #include "gl/device/statistics.h"
+#include "gl/plan/facts/render_desc.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,23 +30,52 @@ typedef struct abbe_gpu {
   GLuint framebuffer, empty_array;
   GLuint list_groups;                  /* program */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
-  size_t bytes;                        /* of all buffers and textures made so far */
+  abbe_gpu_store store;
   abbe_statistics *statistics;         /* of the frame that runs, or NULL: no pass is waited for */
   double pass_start_ms;
+  abbe_render_progress progress; /* of whoever watches; NULL: nobody does */
+  void *progress_user;
+  double done;  /* what they were told last */
+  bool stopped; /* they want no more: nothing is dispatched */
+  void (*compiling)(void *user); /* told once, with progress_user, that shaders are compiled */
 } abbe_gpu;
 
 /* *out is zero or made before; free it also where this fails. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error);
 void abbe_gpu_free(abbe_gpu *gpu);
 
-/* A storage buffer; data may be NULL. ABBE_GL. */
+/* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
+ * abbe_gpu_drop_*, and taken up by what is made alike; so of textures. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error);
 /* A texture of one level, an array where layers > 0. ABBE_GL. */
 abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
                                   size_t layers, bool linear, GLuint *out, abbe_error *error);
+/* A square array with levels, trilinear. */
+abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size_t layers,
+                                 size_t levels, GLuint *out, abbe_error *error);
+/* Back to the device's store; each becomes 0, those that are 0 are left alone. */
+void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer);
+void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture);
+/* Deletes what was dropped and not taken up since. */
+void abbe_gpu_trim(abbe_gpu *gpu);
+/* Of buffers and textures in use. */
+size_t abbe_gpu_bytes(const abbe_gpu *gpu);
+
+/* Programs, which are the device's: the same stages and definitions are compiled once. Uniforms
+ * keep what another user has set. Errors as of abbe_program_make. More than
+ * ABBE_GPU_MOST_PROGRAMS are many: who makes all programs anew drops them before. */
+#define ABBE_GPU_MOST_PROGRAMS 200
+size_t abbe_gpu_program_count(const abbe_gpu *gpu);
+/* Those of all users. */
+void abbe_gpu_drop_programs(abbe_gpu *gpu);
+abbe_result abbe_gpu_program(abbe_gpu *gpu, const abbe_program_stage *stages, size_t count,
+                             const char *defines, GLuint *out, abbe_error *error);
+abbe_result abbe_gpu_compute(abbe_gpu *gpu, const char *file, const char *defines, GLuint *out,
+                             abbe_error *error);
+
 /* A buffer of `size` bytes that shaders read as texels of `format`, and its texture, at a unit of
- * its own; what *buffer was is deleted, *texture is made where it is 0. ABBE_GL. */
+ * its own; what *buffer was is dropped, *texture is made where it is 0. ABBE_GL. */
 abbe_result abbe_gpu_make_texels(abbe_gpu *gpu, GLenum format, size_t size, const void *data,
                                  int unit, GLuint *buffer, GLuint *texture, abbe_error *error);
 
@@ -72,14 +104,25 @@ void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list);
 /* Waits for the device: elements of a list, also beyond its room. */
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
 
-/* One thread a texel, in groups of 32 x 16. */
-void abbe_gpu_dispatch_2d(abbe_gpu *gpu, size_t width, size_t height);
-/* So many threads an element of the list, which has room for `most`; the program is set up by then.
- */
-void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t most,
-                            size_t threads);
+/* From now on somebody watches, or nobody (progress is NULL): work is then done in parts of some
+ * milliseconds, and between them they are asked whether it goes on. It waits for the device. */
+void abbe_gpu_watch(abbe_gpu *gpu, abbe_render_progress progress, void *user);
+/* Tells them what is done, 0 to 1. ABBE_CANCELLED where they have stopped it. */
+abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error);
+/* Asks them, where there are any; whether they go on. */
+bool abbe_gpu_ask(abbe_gpu *gpu);
 
-double abbe_gpu_now_ms(void);
+/* Of the program that is in use, whose shader takes its number from thread.glsl: so many groups of
+ * ABBE_GPU_GROUP threads; one thread a texel, in groups of 32 x 16. */
+void abbe_gpu_dispatch(abbe_gpu *gpu, GLuint program, size_t groups);
+void abbe_gpu_dispatch_2d(abbe_gpu *gpu, GLuint program, size_t width, size_t height);
+/* So many threads for each of `most` elements of a list from the first on, as far as there are any;
+ * the program is set up by then. */
+void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t first, size_t most,
+                            size_t threads);
+/* The groups that stand in the list's words 1 to 3, as another program has written them. */
+void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list);
+
 void abbe_gpu_begin_pass(abbe_gpu *gpu);
 /* What was done since the pass began, or since the last one's end, is of this pass; several ends of
  * one pass add up. */

@@ -22,3 +22,9 @@ double abbe_statistics_stage_ms(const abbe_statistics *s, abbe_pass_stage stage)
     if (abbe_pass_stage_of(s->pass[i].pass) == stage) sum += s->pass[i].ms;
   return sum;
 }
+
+bool abbe_statistics_ran(const abbe_statistics *s, abbe_pass pass) {
+  for (size_t i = 0; i < s->pass_count; i++)
+    if (s->pass[i].pass == pass) return true;
+  return false;
+}

@@ -4,6 +4,7 @@
 
 #include "gl/plan/facts/passes.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -18,9 +19,9 @@ typedef struct abbe_ledger {
   double reflected; /* on the outside, at the first interface, and landed nowhere */
   double absorbed;  /* along inner paths */
   double trapped;   /* still inside when the path ended: total or repeated internal reflection */
-  double missed;    /* met no receiver, or one where neither map nor page holds it */
-  double deposited; /* in the spectral map and on receivers' pages */
-  double on_pages;  /* of what is deposited */
+  double missed;    /* met no receiver, or one where neither map nor tile holds it */
+  double deposited; /* in the spectral map and on receivers' tiles */
+  double on_tiles;  /* of what is deposited */
   /* What leaves refractors between the wavelengths that are traced, by the index there, less what
    * those have for it by themselves: the quadrature error over wavelengths that this takes away.
    * May be below 0. */
@@ -37,18 +38,19 @@ typedef struct abbe_pass_time {
 
 typedef struct abbe_statistics {
   double frame_ms;   /* all passes, finished */
-  double floor_ms;   /* drawing the surfaces alone, where it was measured; else 0 */
+  double floor_ms;   /* the baseline: drawing the surfaces alone, where it was measured; else 0 */
   size_t pass_count; /* of those that ran, as they first ended */
   abbe_pass_time pass[ABBE_PASS_COUNT];
+  bool kept[ABBE_PASS_COUNT]; /* of those that the plan runs: what they drew before still holds */
   size_t photons; /* cells that hold a refractor, all lights */
   size_t wavelengths;
   double refractor_share; /* of the first light's photon grid */
-  size_t layer_faces;     /* of all refractors, as layers are drawn; 0 by the thesis's passes */
   size_t device_bytes;    /* buffers and textures */
   abbe_ledger energy;
 } abbe_statistics;
 
 void abbe_statistics_add_ms(abbe_statistics *s, abbe_pass pass, double ms);
+bool abbe_statistics_ran(const abbe_statistics *s, abbe_pass pass);
 /* Of all passes of the light's side of the frame, or of the eye's. */
 double abbe_statistics_stage_ms(const abbe_statistics *s, abbe_pass_stage stage);
 

@@ -1,13 +1,14 @@
 // The picture, of more pixels than samples: light between the four samples around a pixel, distance of
 // the nearest.
 layout(local_size_x = 32, local_size_y = 16) in;
+#include "thread.glsl"
 layout(binding = 0) uniform sampler2DArray receivers;  // and refractors over them
 layout(rgba32f, binding = 0) writeonly uniform image2D picture;
 uniform int pixels;  // a sample side
 uniform ivec2 size;  // pixels
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = ivec2(texel_number());
   if (any(greaterThanEqual(pixel, size))) return;
   vec2 at = (vec2(pixel) + 0.5) / float(pixels) - 0.5;
   ivec2 last = textureSize(receivers, 0).xy - 1;

@@ -1,5 +1,6 @@
 // The picture: refractors over receivers, samples averaged to pixels.
 layout(local_size_x = 32, local_size_y = 16) in;
+#include "thread.glsl"
 layout(binding = 0) uniform sampler2DArray receivers;
 layout(binding = 1) uniform sampler2D refraction;
 layout(rgba32f, binding = 0) writeonly uniform image2D picture;
@@ -7,7 +8,7 @@ uniform int samples;  // a pixel side
 uniform ivec2 size;   // pixels
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = ivec2(texel_number());
   if (any(greaterThanEqual(pixel, size))) return;
   vec3 sum = vec3(0);
   float nearest = 0.0;

@@ -1,5 +1,5 @@
 /* lighting.h: all that shaders ask for to light a receiver (receiver.glsl): tables, light layers,
- * spectral map, pages. Internal to gl/.
+ * spectral map, tiles. Internal to gl/.
  */
 #ifndef ABBE_GL_EYE_LIGHTING_H
 #define ABBE_GL_EYE_LIGHTING_H

@@ -1,7 +1,5 @@
 #include "gl/eye/picture.h"
 
-#include "gl/device/program.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,15 +19,14 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
                                              &out->pixels, error);
   const char *file = desc->upsample > 1 ? "eye_enlarge.comp" : "eye_resolve.comp";
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(gpu->gl, file, NULL, &out->program, error);
+    result = abbe_gpu_compute(gpu, file, NULL, &out->program, error);
   return result;
 }
 
 void abbe_picture_free(abbe_picture *picture) {
   if (picture->receivers == NULL) return;
-  const abbe_gl *gl = picture->receivers->lighting->scene->gpu->gl;
-  gl->DeleteTextures(1, &picture->pixels);
-  gl->DeleteProgram(picture->program);
+  abbe_gpu_drop_textures(picture->receivers->lighting->scene->gpu, 1, &picture->pixels);
+  picture->receivers->lighting->scene->gpu->gl->DeleteTextures(1, &picture->view);
 }
 
 void abbe_picture_run(abbe_picture *picture) {
@@ -49,9 +46,23 @@ void abbe_picture_run(abbe_picture *picture) {
   }
   gl->BindImageTexture(0, picture->pixels, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   gl->Uniform2i(gl->GetUniformLocation(program, "size"), (GLint)desc->width, (GLint)desc->height);
-  abbe_gpu_dispatch_2d(gpu, desc->width, desc->height);
+  abbe_gpu_dispatch_2d(gpu, program, desc->width, desc->height);
   gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_PICTURE);
+}
+
+GLuint abbe_picture_texture(abbe_picture *picture) {
+  const abbe_gl *gl = picture->receivers->lighting->scene->gpu->gl;
+  if (picture->pixels != 0 || picture->view != 0)
+    return picture->pixels != 0 ? picture->pixels : picture->view;
+  gl->GenTextures(1, &picture->view);
+  gl->TextureView(picture->view, GL_TEXTURE_2D, picture->receivers->colour, GL_RGBA32F, 0, 1, 0, 1);
+  gl->BindTexture(GL_TEXTURE_2D, picture->view);
+  gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return picture->view;
 }
 
 void abbe_picture_copy_flipped(const float *from, size_t first, abbe_image *image, size_t to,

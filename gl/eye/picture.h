@@ -14,6 +14,7 @@ typedef struct abbe_picture {
   const abbe_receivers_pass *receivers;
   const abbe_refraction_pass *refraction;
   GLuint program, pixels; /* 0: a sample a pixel, and the receivers' colour is the picture */
+  GLuint view;            /* of that colour as a 2D texture, once it was asked for */
 } abbe_picture;
 
 abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
@@ -21,6 +22,9 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
                               abbe_error *error);
 void abbe_picture_free(abbe_picture *picture);
 void abbe_picture_run(abbe_picture *picture);
+
+/* The picture as a 2D texture, rows upward, in the space of the passes; the picture keeps it. */
+GLuint abbe_picture_texture(abbe_picture *picture);
 
 /* Channels as abbe_renderer_read, in the plan's space; all but distances times `unit`. */
 abbe_result abbe_picture_read(const abbe_picture *picture, bool layers, double unit,

@@ -71,7 +71,7 @@ static abbe_result make_unlit(abbe_receivers_pass *pass, const abbe_shader_varia
     }
   }
   if (!pays(pass)) return ABBE_OK;
-  return abbe_shader_variant_program(variant, scene->gpu->gl, stages, 2, "#define UNLIT\n",
+  return abbe_shader_variant_program(variant, scene->gpu, stages, 2, "#define UNLIT\n",
                                      &pass->unlit, error);
 }
 
@@ -83,21 +83,42 @@ static void draw_receiver(abbe_receivers_pass *pass, GLuint program, size_t rece
   abbe_gpu_meshes_draw(scene, scene->plan->receiver_object[receiver]);
 }
 
-/* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here.
- */
-static void draw_lit_parts(abbe_receivers_pass *pass) {
-  const abbe_gpu_scene *scene = pass->lighting->scene;
-  const abbe_gl *gl = scene->gpu->gl;
+/* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here. */
+static void draw_lit_parts(abbe_receivers_pass *pass, int bottom, int top) {
+  const abbe_gl *gl = pass->lighting->scene->gpu->gl;
   abbe_lighting_use(pass->lighting, pass->lit);
-  gl->Enable(GL_SCISSOR_TEST);
   gl->DepthFunc(GL_EQUAL);
   for (size_t i = pass->part_count; i-- > 0;) {
     const int *rect = pass->part[i].rect;
-    gl->Scissor(rect[0], rect[1], rect[2] - rect[0], rect[3] - rect[1]);
+    const int low = rect[1] > bottom ? rect[1] : bottom, high = rect[3] < top ? rect[3] : top;
+    if (low >= high) continue;
+    gl->Scissor(rect[0], low, rect[2] - rect[0], high - low);
     draw_receiver(pass, pass->lit, pass->part[i].receiver);
   }
   gl->DepthFunc(GL_LESS);
-  gl->Disable(GL_SCISSOR_TEST);
+}
+
+static void draw_rows(abbe_receivers_pass *pass, int bottom, int top) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  const GLuint whole = pass->unlit != 0 ? pass->unlit : pass->lit;
+  abbe_lighting_use(pass->lighting, whole);
+  scene->gpu->gl->Scissor(0, bottom, (GLsizei)pass->lighting->camera->samples[0], top - bottom);
+  for (size_t i = 0; i < scene->plan->receiver_count; i++) draw_receiver(pass, whole, i);
+  if (pass->unlit != 0) draw_lit_parts(pass, bottom, top);
+}
+
+/* All at once, or a few rows of tiles at a time where somebody watches. */
+static void draw_receivers(abbe_receivers_pass *pass) {
+  enum { BAND_SAMPLES = 1 << 16, TILE = 64 };
+  abbe_gpu *gpu = pass->lighting->scene->gpu;
+  const size_t w = pass->lighting->camera->samples[0], h = pass->lighting->camera->samples[1];
+  const size_t band = gpu->progress != NULL ? (BAND_SAMPLES / w / TILE + 1) * TILE : h;
+  gpu->gl->Enable(GL_SCISSOR_TEST);
+  for (size_t at = 0; at < h && abbe_gpu_ask(gpu); at += band) {
+    draw_rows(pass, (int)at, (int)(at + band < h ? at + band : h));
+    if (gpu->progress != NULL) gpu->gl->Finish();
+  }
+  gpu->gl->Disable(GL_SCISSOR_TEST);
 }
 
 abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error) {
@@ -116,10 +137,7 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   for (GLint k = 1; k < 3 && scene->plan->desc.layers; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
-  const GLuint whole = pass->unlit != 0 ? pass->unlit : pass->lit;
-  abbe_lighting_use(pass->lighting, whole);
-  for (size_t i = 0; i < scene->plan->receiver_count; i++) draw_receiver(pass, whole, i);
-  if (pass->unlit != 0) draw_lit_parts(pass);
+  draw_receivers(pass);
   abbe_gpu_end_pass(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
@@ -153,17 +171,14 @@ abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
   out->lighting = lighting;
   abbe_result result = make_targets(out, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_program(variant, lighting->scene->gpu->gl, stages, 2, NULL,
+    result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL,
                                          &out->lit, error);
   return result == ABBE_OK ? make_unlit(out, variant, error) : result;
 }
 
 void abbe_receivers_pass_free(abbe_receivers_pass *pass) {
   if (pass->lighting == NULL) return;
-  const abbe_gl *gl = pass->lighting->scene->gpu->gl;
-  const GLuint textures[] = {pass->colour, pass->direct, pass->caustic, pass->depth};
-  gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  gl->DeleteProgram(pass->lit);
-  gl->DeleteProgram(pass->unlit);
+  GLuint textures[] = {pass->colour, pass->direct, pass->caustic, pass->depth};
+  abbe_gpu_drop_textures(pass->lighting->scene->gpu, sizeof textures / sizeof *textures, textures);
   free(pass->part);
 }

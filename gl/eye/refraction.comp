@@ -4,6 +4,8 @@
 // REFINES: bands are joined first, and listed where what they show differs from what their neighbours
 // show; REFINED: the listed bands by all their samples, added to the picture.
 layout(local_size_x = 256) in;
+#include "thread.glsl"
+#define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
 
@@ -31,7 +33,7 @@ layout(rgba32f, binding = 0) writeonly uniform image2D picture;  // rgb, distanc
 uniform sampler2DArray eye_layers;    // 0: front, 1: back; normal, distance
 uniform usampler2D eye_owner;         // refractor + 1
 uniform vec4 eye_view[6];
-uniform uint pixel_first;
+uniform uint pixel_first, pixel_end;  // those of the list that are looked at
 
 // The samples grouped, and grouped again by twos: level 0 holds every sample, level k every 2^k as
 // one. XYZ weight (sum 1) and mean index; attenuation at [i].y of the row after. Levels one after
@@ -49,6 +51,28 @@ uniform vec3 eye;
 uniform float share_limit;
 uniform mat3 xyz_from_rgb;
 uniform float pixel_angle;  // rad
+
+// As in receiver.glsl.
+vec4 own_eye_view[6];
+vec3 own_eye;
+float own_share_limit, own_pixel_angle;
+mat3 own_xyz_from_rgb;
+
+void copy_all() {
+  copy_tables();
+  copy_surroundings();
+  for (int i = 0; i < 6; i++) own_eye_view[i] = read_now(eye_view[i]);
+  own_eye = read_now(eye);
+  own_share_limit = read_now(share_limit);
+  own_pixel_angle = read_now(pixel_angle);
+  own_xyz_from_rgb = read_now(xyz_from_rgb);
+}
+
+#define eye_view own_eye_view
+#define eye own_eye
+#define share_limit own_share_limit
+#define pixel_angle own_pixel_angle
+#define xyz_from_rgb own_xyz_from_rgb
 
 int refractor;  // that this thread's pixel shows
 
@@ -81,7 +105,7 @@ vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   face_n = n;
   if (r >= RECEIVERS) triangle_at(r - RECEIVERS, x, -d, n, surface, uv);
 #endif
-#ifdef PAGES
+#ifdef TILES
   Shading s = shade(x, n, surface, uv, chart_side(r, d));
 #else
   Shading s = shade(x, n, surface, uv, 0);
@@ -139,7 +163,7 @@ void write_pixel(uint where, int base, int count, vec3 sum) {
 #endif
 
 #ifdef WALK
-#include "refraction_ways.glsl"
+#include "refraction_threads.glsl"
 #else
 #include "refraction_pixels.glsl"
 #endif

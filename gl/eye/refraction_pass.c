@@ -1,7 +1,6 @@
 #include "gl/eye/refraction_pass.h"
 
 #include "gl/device/bindings.h"
-#include "gl/device/program.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,8 +10,6 @@
 enum { COARSE_BANDS = 7, FINE_FROM = 9 };
 /* Pixels at a time whose bands may ask for all their samples. */
 enum { REFINE_ROOM = 1 << 20 };
-/* A loop that the shader has unrolled, up to so many turns; more are no longer worth their code. */
-enum { MOST_COPIES = 256, MOST_COPIED_LIGHTS = 4, MOST_COPIED_RECEIVERS = 32 };
 
 static const abbe_gpu_scene *scene_of(const abbe_refraction_pass *pass) {
   return pass->lighting->scene;
@@ -28,61 +25,20 @@ static bool refines(const abbe_refraction_pass *pass) {
   return desc->wavelengths >= FINE_FROM && !desc->everything;
 }
 
-static void write_each(FILE *to, const char *name, size_t count, size_t most) {
-  if (count == 0 || count > most) return;
-  fprintf(to, "#define EACH_%s(DO)", name);
-  for (size_t i = 0; i < count; i++) fprintf(to, " DO(%zu)", i);
-  fprintf(to, "\n");
-}
-
-/* What a software rasteriser copies (copies.glsl). NULL: no memory. */
-static char *write_copies(const abbe_gpu_scene *scene) {
-  const abbe_plan *p = scene->plan;
-  const bool convex = p->convex && p->refractor_count == 1 && !p->multi_refractor_paths;
-  char *text = NULL;
-  size_t size = 0;
-  FILE *to = open_memstream(&text, &size);
-  if (to == NULL) return NULL;
-  write_each(to, "LIGHT", p->light_view_count, MOST_COPIED_LIGHTS);
-  write_each(to, "RECEIVER", p->parallelogram_count, MOST_COPIED_RECEIVERS);
-  write_each(to, "PLANE", convex ? scene->local->object[p->refractor_object[0]].exact.count : 0,
-             MOST_COPIES);
-  write_each(to, "SHADOW_PLANE",
-             p->light_view_count * p->refractor_count == 1 ? scene->shadow_planes : 0, MOST_COPIES);
-  const bool failed = ferror(to) != 0;
-  if (fclose(to) == 0 && !failed) return text;
-  free(text);
-  return NULL;
-}
-
-static abbe_result compile(const abbe_refraction_pass *pass, const abbe_shader_variant *variant,
-                           const char *what, const char *copies, GLuint *out, abbe_error *error) {
-  const size_t size = strlen(what) + strlen(copies) + 1;
-  char *more = malloc(size);
-  if (more == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
-  snprintf(more, size, "%s%s", what, copies);
-  const abbe_result result = abbe_shader_variant_compute(variant, scene_of(pass)->gpu->gl,
-                                                         "refraction.comp", more, out, error);
-  free(more);
-  return result;
-}
-
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
-                                 bool software, abbe_error *error) {
+                                 abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
   char coarse[64];
   abbe_shader_variant camera = *variant;
   camera.exits = scene_of(pass)->plan->eye_exits;
-  char *copies = software ? write_copies(scene_of(pass)) : calloc(1, 1);
-  if (copies == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
   snprintf(coarse, sizeof coarse, "#define REFINES\n#define COARSE_BANDS %d\n", COARSE_BANDS);
-  abbe_result result =
-      compile(pass, &camera, refines(pass) ? coarse : "", copies, &pass->refract, error);
+  abbe_result result = abbe_shader_variant_compute(
+      &camera, gpu, "refraction.comp", refines(pass) ? coarse : NULL, &pass->refract, error);
   if (result == ABBE_OK && refines(pass))
-    result = compile(pass, &camera, "#define REFINED\n", copies, &pass->refract_refined, error);
-  free(copies);
+    result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", "#define REFINED\n",
+                                         &pass->refract_refined, error);
   if (result != ABBE_OK) return result;
-  return abbe_program_make_compute(scene_of(pass)->gpu->gl, "refraction_list.comp", NULL,
-                                   &pass->list, error);
+  return abbe_gpu_compute(gpu, "refraction_list.comp", NULL, &pass->list, error);
 }
 
 static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
@@ -112,26 +68,25 @@ static abbe_result make_targets(abbe_refraction_pass *pass, abbe_error *error) {
 abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                       const abbe_refractor_faces *faces,
                                       const abbe_receivers_pass *receivers,
-                                      const abbe_shader_variant *variant, bool software,
-                                      abbe_refraction_pass *out, abbe_error *error) {
-  *out = (abbe_refraction_pass){
-      .lighting = lighting, .faces = faces, .receivers = receivers, .ways = variant->ways};
+                                      const abbe_shader_variant *variant, abbe_refraction_pass *out,
+                                      abbe_error *error) {
+  *out = (abbe_refraction_pass){.lighting = lighting,
+                                .faces = faces,
+                                .receivers = receivers,
+                                .pixel_threads = variant->pixel_threads};
   abbe_result result = make_targets(out, error);
   if (result == ABBE_OK && lighting->scene->plan->camera_sees_refractor)
-    result = make_programs(out, variant, software, error);
+    result = make_programs(out, variant, error);
   return result;
 }
 
 void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
   if (pass->lighting == NULL) return;
-  const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  const GLuint textures[] = {pass->layers, pass->owner, pass->depth, pass->colour};
-  const GLuint buffers[] = {pass->pixels, pass->refined_pixels};
-  gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
-  gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
-  gl->DeleteProgram(pass->list);
-  gl->DeleteProgram(pass->refract);
-  gl->DeleteProgram(pass->refract_refined);
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  GLuint textures[] = {pass->layers, pass->owner, pass->depth, pass->colour};
+  GLuint buffers[] = {pass->pixels, pass->refined_pixels};
+  abbe_gpu_drop_textures(gpu, sizeof textures / sizeof *textures, textures);
+  abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
 }
 
 /* Front with its owner, and, where a mesh ends at its back layer, the back. */
@@ -165,7 +120,7 @@ static void list_pixels(abbe_refraction_pass *pass) {
   abbe_gpu_bind_array(gpu, pass->list, "eye_layers", 4, pass->layers);
   abbe_gpu_bind_array(gpu, pass->list, "eye_receivers", 5, pass->receivers->colour);
   abbe_gpu_bind_texture(gpu, pass->list, "eye_owner", 6, pass->owner);
-  abbe_gpu_dispatch_2d(gpu, samples[0], samples[1]);
+  abbe_gpu_dispatch_2d(gpu, pass->list, samples[0], samples[1]);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                          GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -182,41 +137,40 @@ static void use(abbe_refraction_pass *pass, GLuint program) {
   abbe_gpu_set_float(gpu, program, "pixel_angle", angle);
 }
 
+/* Those of the listed pixels, as far as there are any. */
 static void refract_strip(abbe_refraction_pass *pass, size_t first, size_t size) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   gpu->gl->UseProgram(pass->refract);
   abbe_gpu_set_uint(gpu, pass->refract, "pixel_first", first);
+  abbe_gpu_set_uint(gpu, pass->refract, "pixel_end", first + size);
   if (refines(pass)) {
     abbe_gpu_clear_list(gpu, pass->refined_pixels);
     abbe_gpu_bind_storage(gpu, BINDING_REFINED_PIXELS, pass->refined_pixels);
   }
-  const size_t groups = (size * pass->ways + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
-  gpu->gl->DispatchCompute((GLuint)groups, 1, 1);
-  if (!refines(pass)) return;
-  gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  abbe_gpu_dispatch_list(gpu, pass->refract_refined, pass->refined_pixels, REFINE_ROOM, pass->ways);
+  abbe_gpu_dispatch_list(gpu, pass->refract, pass->pixels, first, size, pass->pixel_threads);
+  gpu->gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  if (refines(pass))
+    abbe_gpu_dispatch_list(gpu, pass->refract_refined, pass->refined_pixels, 0, size,
+                           pass->pixel_threads);
 }
 
-/* In strips where somebody watches, so that a long frame shows its progress and can be stopped. */
-static abbe_result refract_pixels(abbe_refraction_pass *pass, abbe_render_progress progress,
-                                  void *user, abbe_error *error) {
+/* In strips of what has room to be refined; in more where somebody watches, who sees it go on. */
+static abbe_result refract_pixels(abbe_refraction_pass *pass, abbe_error *error) {
+  enum { WATCHED_STRIPS = 16 };
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  const size_t count = abbe_gpu_read_count(gpu, pass->pixels), strips = progress != NULL ? 16 : 1;
-  const size_t most = 65535 * (ABBE_GPU_GROUP / pass->ways); /* that a dispatch takes */
-  size_t step = (count / strips / ABBE_GPU_GROUP + 1) * ABBE_GPU_GROUP;
-  if (step > most) step = most;
+  const size_t *samples = pass->lighting->camera->samples, room = samples[0] * samples[1];
+  const size_t count = gpu->progress != NULL ? abbe_gpu_read_count(gpu, pass->pixels) : room;
+  size_t step = gpu->progress != NULL ? count / WATCHED_STRIPS + 1 : count;
+  abbe_result result = ABBE_OK;
   if (refines(pass) && step > REFINE_ROOM) step = REFINE_ROOM;
-  for (size_t first = 0; first < count; first += step) {
+  for (size_t first = 0; first < count && result == ABBE_OK; first += step) {
     const size_t size = count - first < step ? count - first : step;
     refract_strip(pass, first, size);
-    if (progress == NULL) continue;
-    gpu->gl->Finish();
-    if (!progress(user, 0.5 + 0.5 * (double)(first + size) / (double)count))
-      return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+    result = abbe_gpu_tell(gpu, 0.5 + 0.5 * (double)(first + size) / (double)count, error);
   }
   gpu->gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
                          GL_TEXTURE_UPDATE_BARRIER_BIT);
-  return ABBE_OK;
+  return result;
 }
 
 static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
@@ -229,8 +183,7 @@ static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
   return result;
 }
 
-abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_progress progress,
-                                     void *user, abbe_error *error) {
+abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const bool seen = scene_of(pass)->plan->camera_sees_refractor;
   abbe_result result = seen ? draw_faces(pass, error) : ABBE_OK;
@@ -242,7 +195,7 @@ abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_pro
   use(pass, pass->refract);
   gpu->gl->BindImageTexture(0, resolves(pass) ? pass->colour : pass->receivers->colour, 0, GL_FALSE,
                             0, GL_READ_WRITE, GL_RGBA32F);
-  result = refract_pixels(pass, progress, user, error);
+  result = refract_pixels(pass, error);
   abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

@@ -19,19 +19,17 @@ typedef struct abbe_refraction_pass {
   GLuint layers, owner, depth;           /* front, and back where meshes end at it */
   GLuint colour; /* where samples are resolved; else refractors are written over receivers */
   GLuint pixels, refined_pixels; /* lists */
-  size_t ways;                   /* threads of a pixel */
+  size_t pixel_threads;          /* threads of a pixel */
 } abbe_refraction_pass;
 
-/* software: what runs shaders copies tables into registers. Of a plan whose camera sees no
- * refractor it has only the picture that is resolved. */
+/* Of a plan whose camera sees no refractor it has only the picture that is resolved. */
 abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                       const abbe_refractor_faces *faces,
                                       const abbe_receivers_pass *receivers,
-                                      const abbe_shader_variant *variant, bool software,
-                                      abbe_refraction_pass *out, abbe_error *error);
+                                      const abbe_shader_variant *variant, abbe_refraction_pass *out,
+                                      abbe_error *error);
 void abbe_refraction_pass_free(abbe_refraction_pass *pass);
-/* progress from a half to the whole; it may be NULL. ABBE_CANCELLED, ABBE_GL. */
-abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_render_progress progress,
-                                     void *user, abbe_error *error);
+/* Tells who watches from a half to the whole. ABBE_CANCELLED, ABBE_GL. */
+abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error);
 
 #endif

@@ -8,8 +8,8 @@ vec3 band_light(int band, out float mirrored) {
 
 #ifdef REFINED
 void main() {
-  copy_tables();
-  uint listed = gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x + gl_GlobalInvocationID.x;
+  copy_all();
+  uint listed = thread_number();
   if (listed >= refine_count) return;
   uint what = refine[listed].y;
   ivec2 at = pixel_of(refine[listed].x);
@@ -30,9 +30,9 @@ void main() {
 }
 #else
 void main() {
-  copy_tables();
-  uint listed = pixel_first + gl_GlobalInvocationID.x;
-  if (listed >= pixel_count) return;
+  copy_all();
+  uint listed = pixel_first + thread_number();
+  if (listed >= min(pixel_count, pixel_end)) return;
   look(pixel_of(pixel[listed]));
   int base, count;
   choose_bands(base, count);

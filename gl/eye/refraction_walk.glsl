@@ -1,14 +1,14 @@
-// The eye's rays on the general way (walk.glsl): what the branches show, by their shares.
+// The eye's rays on multi-refractor paths (walk.glsl): what the branches show, by their shares.
 
 #include "walk.glsl"
 
-// Of one band: the strongest ways come first. Mesa 22's llvmpipe ends every loop of a thread that has
+// Of one band: the strongest paths come first. Mesa 22's llvmpipe ends every loop of a thread that has
 // been through 65535 turns of any loops; a stretch takes one for each plane and some for the hierarchy,
-// and a thread takes every WAYS-th band (refraction_ways.glsl).
+// and a thread takes every PIXEL_THREADS-th band (refraction_threads.glsl).
 #ifdef REFINES
-const int BANDS_OF_THREAD = (COARSE_BANDS + WAYS) / WAYS;
+const int BANDS_OF_THREAD = (COARSE_BANDS + PIXEL_THREADS) / PIXEL_THREADS;
 #else
-const int BANDS_OF_THREAD = (WAVELENGTHS + WAYS) / WAYS;
+const int BANDS_OF_THREAD = (WAVELENGTHS + PIXEL_THREADS) / PIXEL_THREADS;
 #endif
 const int MOST_SEGMENTS = max(8, min(224, 49152 / (PLANE_ROOM + 64)) / BANDS_OF_THREAD);
 

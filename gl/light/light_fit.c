@@ -22,7 +22,7 @@ static void find_lit(const abbe_light_fit *fit, size_t light, GLuint found[4]) {
   abbe_gpu_set_int(scene->gpu, fit->program, "light", (int)light);
   abbe_gpu_set_int(scene->gpu, fit->program, "side", SIDE);
   abbe_gpu_bind_storage(scene->gpu, BINDING_FOUND_BOX, fit->found);
-  abbe_gpu_dispatch_2d(scene->gpu, SIDE, SIDE);
+  abbe_gpu_dispatch_2d(scene->gpu, fit->program, SIDE, SIDE);
   gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 4 * sizeof *found, found);
 }
@@ -65,11 +65,10 @@ abbe_result abbe_light_fit_run(abbe_photon_lights *views, abbe_light_layers *lay
   abbe_light_fit fit = {.views = views, .layers = layers};
   if (plan->layers) return ABBE_OK; /* a mesh's inside is what the near view sees of it */
   abbe_result result =
-      abbe_shader_variant_compute(variant, gpu->gl, "light_fit.comp", NULL, &fit.program, error);
+      abbe_shader_variant_compute(variant, gpu, "light_fit.comp", NULL, &fit.program, error);
   if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, 4 * 4, NULL, &fit.found, error);
   for (size_t i = 0; i < plan->light_view_count && result == ABBE_OK; i++)
     if (plan->reaches[i]) result = fit_near_view(&fit, i, error);
-  gpu->gl->DeleteBuffers(1, &fit.found);
-  gpu->gl->DeleteProgram(fit.program);
+  abbe_gpu_drop_buffers(gpu, 1, &fit.found);
   return result != ABBE_OK ? result : abbe_gl_check(gpu->gl, "the fit of the light's view", error);
 }

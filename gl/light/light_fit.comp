@@ -1,17 +1,22 @@
 // The part of a light's near view through which light reaches refractors: the least and greatest
 // column and row of a lattice of rays that do.
 layout(local_size_x = 32, local_size_y = 16) in;
+#include "thread.glsl"
+#define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
 
-uniform int light;
+#include "pass_light.glsl"
 #include "photon_start.glsl"
 
 uniform int side;  // rays
 layout(std430, binding = BINDING_FOUND_BOX) buffer Box { uint box[4]; };  // left, right, bottom, top
 
 void main() {
-  uvec2 at = gl_GlobalInvocationID.xy;
+  copy_tables();
+  copy_surroundings();
+  copy_light();
+  uvec2 at = texel_number();
   if (max(at.x, at.y) >= uint(side)) return;
   vec3 o, d;
   Hit front;

@@ -31,8 +31,8 @@ abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
 
 void abbe_light_layers_free(abbe_light_layers *layers) {
   if (layers->views == NULL) return;
-  const GLuint textures[] = {layers->layers, layers->owner, layers->depth};
-  layers->views->scene->gpu->gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
+  GLuint textures[] = {layers->layers, layers->owner, layers->depth};
+  abbe_gpu_drop_textures(layers->views->scene->gpu, sizeof textures / sizeof *textures, textures);
 }
 
 abbe_result abbe_light_layers_draw(abbe_light_layers *layers, size_t light, abbe_error *error) {

@@ -1,5 +1,5 @@
 /* light_layers.h: what each light's near view shows of the refractors: front and back faces. A pass
- * of every frame; the fit of the near views uses it too. Internal to gl/.
+ * of frames that follow the light; the fit of the near views uses it too. Internal to gl/.
  */
 #ifndef ABBE_GL_LIGHT_LIGHT_LAYERS_H
 #define ABBE_GL_LIGHT_LIGHT_LAYERS_H

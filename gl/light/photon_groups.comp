@@ -2,11 +2,12 @@
 layout(local_size_x = 1) in;
 #include "photon_list.glsl"
 uniform uint group_size;
-uniform uint rows;
 
 void main() {
-  groups_x = (photon_count + group_size - 1u) / group_size;
-  groups_y = rows;
+  // No dimension may have more than 65535 groups.
+  uint groups = (photon_count + group_size - 1u) / group_size;
+  groups_y = (groups + 65534u) / 65535u;
+  groups_x = groups_y > 0u ? (groups + groups_y - 1u) / groups_y : 0u;
   groups_z = 1u;
   draw_count = photon_count;
   draw_instances = 1u;

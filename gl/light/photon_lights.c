@@ -2,6 +2,7 @@
 
 #include "colorimetry/weights.h"
 #include "gl/device/bindings.h"
+#include "gl/device/float4.h"
 #include "gl/plan/examine/light_cube.h"
 #include "scenes/geometry/vector.h"
 
@@ -17,11 +18,6 @@ enum { MAX_NARROW_PHOTONS = 1 << 20, MAX_MAP_LEVELS = 6 };
 typedef struct gpu_light {
   float near_view[24], map_view[24], position[4], direction[4], white[4], misc[4], cube[4];
 } gpu_light;
-
-static void store(const double v[3], double w, float out[4]) {
-  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
-  out[3] = (float)w;
-}
 
 bool abbe_photon_lights_is_face(const abbe_photon_lights *views, size_t light) {
   return views->scene->plan->light_view[light].face >= 0;
@@ -117,7 +113,7 @@ static void fit_face(const abbe_photon_lights *views, size_t light, abbe_view *v
 }
 
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
- * to the photons' landings later where the request does not give it. */
+ * to the photons' hits later where the request does not give it. */
 static void fit_views(abbe_photon_lights *views) {
   for (size_t i = 0; i < views->scene->plan->light_view_count; i++) {
     abbe_photon_light *state = &views->light[i];
@@ -159,11 +155,12 @@ void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program
 }
 
 /* Wide sums have room for 2^36 full photons of 2^28 units; narrow ones share 2^31 units among all
- * the light that reaches refractors. Both count the largest of the white's X, Y and Z. */
+ * photons that there are. Both count the largest of the white's X, Y and Z. */
 double abbe_photon_lights_map_unit(const abbe_photon_lights *views, size_t light) {
   const abbe_photon_light *state = &views->light[light];
-  bool known = !views->wide && state->reached_flux > 0;
-  double unit = known ? ldexp(state->reached_flux, -31) : ldexp(state->cell_flux, -28);
+  bool known = !views->wide && state->photon_count > 0;
+  double unit = known ? ldexp((double)state->photon_count * state->cell_flux, -31)
+                      : ldexp(state->cell_flux, -28);
   return (double)(float)(unit * state->white_peak);
 }
 
@@ -218,10 +215,10 @@ static void upload_texel_sizes(const abbe_photon_lights *views, size_t light, in
 }
 
 static void upload_warps(abbe_photon_lights *views, size_t light) {
-  float row[ABBE_WARP_STEPS + 1][4] = {{0}};
-  for (int k = 0; k <= ABBE_WARP_STEPS; k++)
-    for (int axis = 0; axis < 2; axis++)
-      row[k][axis] = (float)views->light[light].map.knot[axis][k];
+  float row[ABBE_WARP_STEPS][4];
+  for (int k = 0; k < ABBE_WARP_STEPS; k++)
+    for (int i = 0; i < 4; i++)
+      row[k][i] = (float)views->light[light].map.knot[i % 2][k + i / 2];
   views->scene->gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, views->warps);
   views->scene->gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, (GLintptr)(light * sizeof row),
                                        sizeof row, row);
@@ -244,12 +241,12 @@ void abbe_photon_lights_upload(abbe_photon_lights *views) {
     state->white_peak = fmax(white[0], fmax(white[1], white[2])) / white[1];
     double cell_area =
         abbe_view_area(&state->near_view) / ((double)state->cells[0] * (double)state->cells[1]);
-    state->cell_flux = fmax(light->power * cell_area, DBL_MIN);
+    state->cell_flux = fmax(cell_area, DBL_MIN);
     abbe_view_pack(&state->near_view, g.near_view);
     abbe_view_pack(&state->map.view, g.map_view);
-    store(light->position, (double)light->kind, g.position);
-    store(light->direction, cos(light->cone_rad), g.direction);
-    store(rgb, light->power, g.white);
+    abbe_float4_store(light->position, (double)light->kind, g.position);
+    abbe_float4_store(light->direction, cos(light->cone_rad), g.direction);
+    abbe_float4_store(rgb, light->power, g.white);
     g.misc[0] = (float)cos(fmax(light->cone_rad - light->soft_rad, 0));
     g.misc[1] = (float)abbe_photon_lights_map_unit(views, i);
     g.misc[2] = (float)(1 / cell_area);
@@ -281,8 +278,9 @@ abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lig
   out->wide = desc->photons * desc->photons * desc->wavelengths > MAX_NARROW_PHOTONS;
   size_map(out, scene->plan->caustics ? desc->map_size : 1);
   fit_views(out);
-  abbe_result result = abbe_gpu_make_buffer(scene->gpu, lights * (ABBE_WARP_STEPS + 1) * 16, NULL,
-                                            &out->warps, error);
+  abbe_result result =
+      abbe_gpu_make_texels(scene->gpu, GL_RGBA32F, lights * ABBE_WARP_STEPS * 16, NULL, UNIT_WARPS,
+                           &out->warps, &out->warp_texels, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(scene->gpu, lights * desc->map_size * 8 * 4, NULL,
                                   &out->texel_sizes, error);
@@ -295,12 +293,14 @@ abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lig
 
 void abbe_photon_lights_free(abbe_photon_lights *views) {
   if (views->scene == NULL) return;
-  const GLuint buffers[] = {views->lights, views->warps, views->texel_sizes};
-  views->scene->gpu->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+  GLuint buffers[] = {views->lights, views->warps, views->texel_sizes};
+  abbe_gpu_drop_buffers(views->scene->gpu, sizeof buffers / sizeof *buffers, buffers);
+  views->scene->gpu->gl->DeleteTextures(1, &views->warp_texels);
 }
 
 void abbe_photon_lights_bind(const abbe_photon_lights *views) {
   const abbe_gl *gl = views->scene->gpu->gl;
   gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_LIGHTS, views->lights);
-  gl->BindBufferBase(GL_UNIFORM_BUFFER, BINDING_WARPS, views->warps);
+  gl->ActiveTexture(GL_TEXTURE0 + UNIT_WARPS);
+  gl->BindTexture(GL_TEXTURE_BUFFER, views->warp_texels);
 }

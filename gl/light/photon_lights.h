@@ -19,15 +19,14 @@ typedef struct abbe_photon_light {
   abbe_map_layout map;
   size_t cells[2]; /* of the photon grid, across and up */
   size_t photon_count;
-  double cell_flux;    /* most that one photon cell can carry, W */
-  double white_peak;   /* largest of X, Y, Z of the light's white, by its Y */
-  double reached_flux; /* that all cells together bring to refractors, weighted by ybar, W */
+  double cell_flux;  /* most that one photon cell can carry, of unit power of the light */
+  double white_peak; /* largest of X, Y, Z of the light's white, by its Y */
 } abbe_photon_light;
 
 typedef struct abbe_photon_lights {
   const abbe_gpu_scene *scene;
   abbe_photon_light light[ABBE_SCENE_MAX_LIGHTS];
-  GLuint lights, warps, texel_sizes;
+  GLuint lights, warps, warp_texels, texel_sizes;
   size_t map_levels, map_texels; /* halved as long as sides are even; texels of all levels */
   bool wide;                     /* the map's sums have 64 bits, else 32 */
 } abbe_photon_lights;
@@ -55,7 +54,8 @@ void abbe_photon_lights_whole_map(const abbe_photon_lights *views, size_t light,
 void abbe_photon_lights_shift_cells(abbe_photon_lights *views, size_t light);
 void abbe_photon_lights_set_grid(const abbe_photon_lights *views, GLuint program, size_t light);
 
-/* Flux of one unit of a light's map sums, W. */
+/* Flux of one unit of a light's map sums, of unit power of the light: what photons carry and maps
+ * hold is, so that a light may be dimmed without tracing it again. */
 double abbe_photon_lights_map_unit(const abbe_photon_lights *views, size_t light);
 /* 32-bit words of a map texel's sums. */
 size_t abbe_photon_lights_map_words(const abbe_photon_lights *views);

@@ -3,6 +3,7 @@
 // of the refractors' front shows, grown by a texel: exact surfaces reach a little beyond their
 // triangles.
 layout(local_size_x = 256) in;
+#include "thread.glsl"
 #include "photon_list.glsl"
 layout(std430, binding = BINDING_COARSER_CELLS) readonly buffer InputList {
   uint in_count, in_x, in_y, in_z;
@@ -28,7 +29,7 @@ bool covered(ivec2 from) {
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = thread_number();
   ivec2 side = (grid + cell - 1) / cell;
   uint total = first ? uint(side.x * side.y) : in_count;
   if (i >= total) return;

@@ -1,15 +1,14 @@
 #include "gl/light/photon_start.h"
 
 #include "gl/device/bindings.h"
-#include "gl/device/program.h"
 
 abbe_result abbe_photon_cells_make(abbe_gpu *gpu, size_t side, abbe_photon_cells *out,
                                    abbe_error *error) {
   out->gpu = gpu;
   abbe_result result =
-      abbe_program_make_compute(gpu->gl, "photon_place.comp", NULL, &out->place, error);
+      abbe_gpu_compute(gpu, "photon_place.comp", NULL, &out->place, error);
   if (result == ABBE_OK)
-    result = abbe_program_make_compute(gpu->gl, "photon_groups.comp", NULL, &out->groups, error);
+    result = abbe_gpu_compute(gpu, "photon_groups.comp", NULL, &out->groups, error);
   for (int level = 0; level < ABBE_CELL_LEVELS && result == ABBE_OK; level++) {
     /* The finer level's cells: four for each of this one's, rounded up at the rim. */
     const size_t across = (side >> (ABBE_CELL_LEVELS - 1 - level)) + 2;
@@ -22,9 +21,7 @@ abbe_result abbe_photon_cells_make(abbe_gpu *gpu, size_t side, abbe_photon_cells
 
 void abbe_photon_cells_free(abbe_photon_cells *cells) {
   if (cells->gpu == NULL) return;
-  cells->gpu->gl->DeleteProgram(cells->place);
-  cells->gpu->gl->DeleteProgram(cells->groups);
-  cells->gpu->gl->DeleteBuffers(ABBE_CELL_LEVELS, cells->list);
+  abbe_gpu_drop_buffers(cells->gpu, ABBE_CELL_LEVELS, cells->list);
 }
 
 static void clear_header(abbe_gpu *gpu, GLuint list) {
@@ -37,7 +34,6 @@ static void count_groups(abbe_photon_cells *cells, GLuint list) {
   const abbe_gl *gl = cells->gpu->gl;
   gl->UseProgram(cells->groups);
   abbe_gpu_set_uint(cells->gpu, cells->groups, "group_size", ABBE_GPU_GROUP);
-  abbe_gpu_set_uint(cells->gpu, cells->groups, "rows", 1);
   abbe_gpu_bind_storage(cells->gpu, BINDING_CELLS, list);
   gl->DispatchCompute(1, 1, 1);
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
@@ -57,10 +53,9 @@ static void list_level(abbe_photon_cells *cells, const size_t grid[2], int level
   abbe_gpu_bind_storage(cells->gpu, BINDING_COARSER_CELLS, cells->list[level > 0 ? level - 1 : 1]);
   if (level == 0) {
     const size_t groups = (across * down + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
-    gl->DispatchCompute((GLuint)groups, 1, 1);
+    abbe_gpu_dispatch(cells->gpu, cells->place, groups);
   } else {
-    gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, cells->list[level - 1]);
-    gl->DispatchComputeIndirect(4);
+    abbe_gpu_dispatch_counted(cells->gpu, cells->place, cells->list[level - 1]);
   }
   gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -92,17 +87,16 @@ abbe_result abbe_photon_start_make(const abbe_photon_lights *views, const abbe_l
     result = abbe_gpu_make_buffer(gpu, ABBE_PHOTON_HEADER + cells * ABBE_PHOTON_BYTES, NULL,
                                   &out->photons, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gpu->gl, "photon_cover.comp", NULL, &out->cover,
+    result = abbe_shader_variant_compute(variant, gpu, "photon_cover.comp", NULL, &out->cover,
                                          error);
   return result;
 }
 
 void abbe_photon_start_free(abbe_photon_start *start) {
   if (start->views == NULL) return;
-  const GLuint buffers[] = {start->photons, start->photon_of_cell};
+  GLuint buffers[] = {start->photons, start->photon_of_cell};
   abbe_photon_cells_free(&start->cells);
-  start->views->scene->gpu->gl->DeleteProgram(start->cover);
-  start->views->scene->gpu->gl->DeleteBuffers(2, buffers);
+  abbe_gpu_drop_buffers(start->views->scene->gpu, 2, buffers);
 }
 
 static void use(const abbe_photon_lights *views, const abbe_light_layers *layers, GLuint program,
@@ -136,8 +130,7 @@ abbe_result abbe_photon_start_run(abbe_photon_start *start, size_t light, abbe_e
   abbe_photon_start_bind(start);
   abbe_photon_lights_set_grid(start->views, start->cover, light);
   abbe_gpu_bind_storage(gpu, BINDING_CELLS, lit);
-  gpu->gl->BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, lit);
-  gpu->gl->DispatchComputeIndirect(4);
+  abbe_gpu_dispatch_counted(gpu, start->cover, lit);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   return abbe_gl_check(gpu->gl, "the start of photons", error);
 }

@@ -1,14 +1,6 @@
 // Where photons start: rays from the light through its near view, to the refractor that each meets
 // first. Who includes this gives `light`.
 
-// A cell's photon. It starts in the middle of the part of the cell that is lit and shows a refractor.
-struct Photon {
-  uint cell;    // x | y << 16
-  float flux;   // that the lit part carries, W
-  uint offset;  // from the cell's middle, in cells, packSnorm2x16
-  uint extent;  // of the lit part, in cells, packUnorm2x16
-};
-
 #ifdef FRONT_LAYER
 uniform usampler2DArray layer_owner;  // refractor + 1 of the front layer, one layer a light
 
@@ -31,12 +23,13 @@ bool layers_front(vec2 uv, vec3 o, vec3 d, inout Hit h) {
 }
 #endif
 
-// The ray at uv of the near view, the flux of a whole cell of such rays, W, and what it meets. False
+// The ray at uv of the near view, the flux of a whole cell of such rays per unit power of the light,
+// and what it meets. False
 // where that is no refractor, or one that a receiver hides.
 bool photon_start(vec2 uv, out vec3 o, out vec3 d, out Hit front, out float flux) {
-  Light l = lights[light];
+  Light l = pass_light;
   view_ray(l.near_view, uv, o, d);
-  flux = l.white.w * light_profile(l, d) * window_measure(l.near_view, d) / l.misc.z;
+  flux = light_profile(l, d) * window_measure(l.near_view, d) / l.misc.z;
   front.t = 1e30;
   bool reached = exact_front(o, d, front);
 #ifdef FRONT_LAYER

@@ -1,5 +1,5 @@
 /* photon_start.h: where photons start: cells of each light's grid that may show a refractor, coarse
- * levels first, and of those what is lit. A pass of every frame. Internal to gl/.
+ * levels first, and of those what is lit. A pass of frames that follow the light, and of the fits. Internal to gl/.
  */
 #ifndef ABBE_GL_LIGHT_PHOTON_START_H
 #define ABBE_GL_LIGHT_PHOTON_START_H

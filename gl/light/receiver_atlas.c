@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The shaders' ON_A_PAGE. */
-static const GLuint on_a_page = 0x40000000u;
+/* The shaders' ON_A_TILE. */
+static const GLuint on_a_tile = 0x40000000u;
 
-/* A page costs as much as a map: what lands beside the map is given up below so many times the
+/* A tile costs as much as a map: what lands beside the map is given up below so many times the
  * share below which paths end. */
 static const double least_share = 1.5;
 
-/* The texels of a block: rectangles of pages are of whole ones, in all levels. */
+/* The texels of a block: rectangles of tiles are of whole ones, in all levels. */
 static size_t block_side(const abbe_receiver_atlas *atlas) {
   return (size_t)1 << (atlas->views->map_levels - 1);
 }
@@ -29,67 +29,69 @@ static abbe_result upload(abbe_receiver_atlas *atlas, int table, GLenum format, 
                           "reads in a buffer; use smaller meshes",
                           atlas->views->scene->charts.face_count,
                           atlas->views->scene->charts.count);
-  return abbe_gpu_make_texels(atlas->views->scene->gpu, format, size, data, UNIT_PAGE_ROWS + table,
+  return abbe_gpu_make_texels(atlas->views->scene->gpu, format, size, data, UNIT_TILE_ROWS + table,
                               &atlas->table[table], &atlas->texture[table], error);
 }
 
-/* Of one light, as receiver_pages.glsl reads it: its layer, blocks of texels, sides of charts. */
+/* Of one light, as receiver_atlas.glsl reads it: its layer, blocks of texels, sides of charts. */
 static void write_index(const abbe_receiver_atlas *atlas, size_t light, size_t blocks,
                         GLint *index) {
-  const abbe_receiver_pages *pages = &atlas->pages[light];
+  const abbe_receiver_tiles *tiles = &atlas->tiles[light];
   const size_t align = block_side(atlas), sides = 2 * atlas->views->scene->charts.count;
   GLint *of_block = index + 1, *of_side = of_block + blocks * blocks;
   index[0] = (GLint)atlas->layer[light];
   for (size_t i = 0; i < blocks * blocks + sides; i++) of_block[i] = -1;
-  for (size_t k = 0; k < pages->count; k++) {
-    const abbe_receiver_page *page = &pages->page[k];
-    of_side[page->chart_side] = (GLint)k;
-    for (size_t y = page->rect[2] / align; y < page->rect[3] / align; y++)
-      for (size_t x = page->rect[0] / align; x < page->rect[1] / align; x++)
+  for (size_t k = 0; k < tiles->count; k++) {
+    const abbe_receiver_tile *tile = &tiles->tile[k];
+    of_side[tile->chart_side] = (GLint)k;
+    for (size_t y = tile->rect[2] / align; y < tile->rect[3] / align; y++)
+      for (size_t x = tile->rect[0] / align; x < tile->rect[1] / align; x++)
         of_block[y * blocks + x] = (GLint)k;
   }
 }
 
-/* The shaders' tables, `most` pages a light, and what they are told of them. */
-static abbe_result tell_shaders(abbe_receiver_atlas *atlas, size_t most,
-                                abbe_shader_variant *variant, abbe_error *error) {
+/* The shaders' tables and what they are told of them: the same however many tiles a light has, so
+ * that what is compiled before these are chosen need not be compiled again. */
+static abbe_result tell_shaders(abbe_receiver_atlas *atlas, abbe_shader_variant *variant,
+                                abbe_error *error) {
+  enum { MOST = ABBE_RECEIVER_TILES };
   const size_t lights = atlas->views->scene->plan->light_view_count,
                sides = 2 * atlas->views->scene->charts.count;
   const size_t blocks = atlas->views->scene->plan->desc.map_size / block_side(atlas);
   const size_t words = 1 + blocks * blocks + sides;
-  float(*row)[ABBE_PAGE_FLOATS] = calloc(lights * most, sizeof *row);
+  float(*row)[ABBE_TILE_FLOATS] = calloc(lights * MOST, sizeof *row);
   GLint *index = calloc(lights * words, sizeof *index);
   abbe_result result = row != NULL && index != NULL
                            ? ABBE_OK
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for pages");
+                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tiles");
   for (size_t i = 0; i < lights && result == ABBE_OK; i++) {
-    const abbe_receiver_pages *pages = &atlas->pages[i];
-    for (size_t k = 0; k < pages->count; k++)
-      abbe_receiver_page_pack(
-          &pages->page[k], atlas->views->scene->charts.parallelogram[pages->page[k].chart_side / 2],
-          row[i * most + k]);
+    const abbe_receiver_tiles *tiles = &atlas->tiles[i];
+    for (size_t k = 0; k < tiles->count; k++)
+      abbe_receiver_tile_pack(
+          &tiles->tile[k], atlas->views->scene->charts.parallelogram[tiles->tile[k].chart_side / 2],
+          row[i * MOST + k]);
     write_index(atlas, i, blocks, index + i * words);
   }
   if (result == ABBE_OK)
-    result = upload(atlas, ABBE_PAGE_ROWS, GL_RGBA32F, lights * most * sizeof *row, row, error);
+    result = upload(atlas, ABBE_TILE_ROWS, GL_RGBA32F, lights * MOST * sizeof *row, row, error);
   if (result == ABBE_OK)
-    result = upload(atlas, ABBE_PAGE_INDEX, GL_R32I, lights * words * sizeof *index, index, error);
+    result = upload(atlas, ABBE_TILE_INDEX, GL_R32I, lights * words * sizeof *index, index, error);
   free(row);
   free(index);
-  variant->pages = most;
-  variant->page_blocks = blocks;
+  variant->tiles = MOST;
+  variant->tile_blocks = blocks;
   variant->chart_sides = sides;
   return result;
 }
 
-/* From a place to a chart's u, then v: a page of one texel of all of it. */
+/* From a place to a chart's u, then v: a tile of one texel of all of it. */
 static abbe_result upload_charts(abbe_receiver_atlas *atlas, abbe_error *error) {
-  static const abbe_receiver_page whole = {.window = {0, 1, 0, 1}, .rect = {0, 1, 0, 1}};
+  static const abbe_receiver_tile whole = {.window = {0, 1, 0, 1}, .rect = {0, 1, 0, 1}};
   float(*row)[8] = calloc(atlas->views->scene->charts.count + 1, sizeof *row);
   if (row == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for charts");
   for (size_t i = 0; i < atlas->views->scene->charts.count; i++) {
-    float packed[ABBE_PAGE_FLOATS];
-    abbe_receiver_page_pack(&whole, atlas->views->scene->charts.parallelogram[i], packed);
+    float packed[ABBE_TILE_FLOATS];
+    abbe_receiver_tile_pack(&whole, atlas->views->scene->charts.parallelogram[i], packed);
     memcpy(row[i], packed, sizeof row[i]);
   }
   abbe_result result = upload(atlas, ABBE_CHART_ROWS, GL_RGBA32F,
@@ -102,8 +104,8 @@ static abbe_result upload_charts(abbe_receiver_atlas *atlas, abbe_error *error) 
                 atlas->views->scene->charts.face_side, error);
 }
 
-/* As exit_wall.glsl packs it. */
-static size_t page_of_wall(float word) {
+/* As outgoing_segment.glsl packs it. */
+static size_t tile_of_interface(float word) {
   GLuint bits = 0;
   memcpy(&bits, &word, sizeof bits);
   const GLuint exponent = bits >> 23 & 255u;
@@ -112,15 +114,15 @@ static size_t page_of_wall(float word) {
 
 void abbe_receiver_atlas_place(const abbe_receiver_atlas *atlas, size_t light, float *hit,
                                const GLuint *signature, size_t words, size_t count) {
-  const abbe_receiver_pages *pages = &atlas->pages[light];
+  const abbe_receiver_tiles *tiles = &atlas->tiles[light];
   for (size_t i = 0; i < count; i++) {
     const float *from = hit + ABBE_HIT_BYTES / sizeof *hit * i;
-    float at[4] = {from[0], from[1], from[2], from[3]}, packed[ABBE_PAGE_FLOATS];
-    const size_t k = page_of_wall(from[7]);
+    float at[4] = {from[0], from[1], from[2], from[3]}, packed[ABBE_TILE_FLOATS];
+    const size_t k = tile_of_interface(from[7]);
     if (!atlas->fits && abbe_receiver_atlas_holds(atlas, signature[words * i]) &&
-        k < pages->count) {
-      const abbe_receiver_page *page = &pages->page[k];
-      abbe_receiver_page_pack(page, atlas->views->scene->charts.parallelogram[page->chart_side / 2],
+        k < tiles->count) {
+      const abbe_receiver_tile *tile = &tiles->tile[k];
+      abbe_receiver_tile_pack(tile, atlas->views->scene->charts.parallelogram[tile->chart_side / 2],
                               packed);
       for (int axis = 0; axis < 2; axis++) {
         const float *to = packed + 4 * axis;
@@ -133,35 +135,35 @@ void abbe_receiver_atlas_place(const abbe_receiver_atlas *atlas, size_t light, f
 }
 
 bool abbe_receiver_atlas_holds(const abbe_receiver_atlas *atlas, GLuint path) {
-  return atlas->used && (path & on_a_page) != 0;
+  return atlas->used && (path & on_a_tile) != 0;
 }
 
 abbe_result abbe_receiver_atlas_sort(const abbe_receiver_atlas *atlas, const float *hit,
                                      const GLuint *path, size_t count, double part,
-                                     abbe_page_light **light, abbe_error *error) {
+                                     abbe_tile_light **light, abbe_error *error) {
   for (size_t i = 0; i < count; i++) {
     const float *at = hit + 4 * i;
     if (!(at[3] > 0) || !abbe_receiver_atlas_holds(atlas, path[i])) continue;
     const size_t side = (size_t)fmax(at[2], 0);
     if (side >= 2 * atlas->views->scene->charts.count) continue;
     if (light[side] == NULL) light[side] = calloc(1, sizeof **light);
-    if (light[side] == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit pages");
-    abbe_page_light_add(light[side], at[0], at[1], rint((double)at[3] / part));
+    if (light[side] == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to fit tiles");
+    abbe_tile_light_add(light[side], at[0], at[1], rint((double)at[3] / part));
   }
   return ABBE_OK;
 }
 
-static bool has_page(const abbe_receiver_pages *pages, size_t side) {
-  for (size_t k = 0; k < pages->count; k++)
-    if (pages->page[k].chart_side == side) return true;
+static bool has_tile(const abbe_receiver_tiles *tiles, size_t side) {
+  for (size_t k = 0; k < tiles->count; k++)
+    if (tiles->tile[k].chart_side == side) return true;
   return false;
 }
 
 abbe_result abbe_receiver_atlas_choose(abbe_receiver_atlas *atlas, size_t light,
-                                       abbe_page_light *const *found, double held,
+                                       abbe_tile_light *const *found, double held,
                                        abbe_error *error) {
   const size_t sides = 2 * atlas->views->scene->charts.count;
-  abbe_receiver_pages *pages = &atlas->pages[light];
+  abbe_receiver_tiles *tiles = &atlas->tiles[light];
   double beside = 0, left = 0, most = 0;
   size_t worst = 0;
   if (!atlas->used) return ABBE_OK;
@@ -169,11 +171,11 @@ abbe_result abbe_receiver_atlas_choose(abbe_receiver_atlas *atlas, size_t light,
   const double total = held + beside,
                enough = least_share * atlas->views->scene->plan->desc.energy_share * total;
   if (!(beside > 0) || beside < enough) return ABBE_OK;
-  abbe_receiver_pages_lay_out(found, (const double(*)[9])atlas->views->scene->charts.parallelogram,
+  abbe_receiver_tiles_lay_out(found, (const double(*)[9])atlas->views->scene->charts.parallelogram,
                               sides, total, atlas->views->scene->plan->desc.map_size,
-                              block_side(atlas), pages);
+                              block_side(atlas), tiles);
   for (size_t i = 0; i < sides; i++) {
-    if (found[i] == NULL || has_page(pages, i)) continue;
+    if (found[i] == NULL || has_tile(tiles, i)) continue;
     left += found[i]->flux;
     if (found[i]->flux > most) worst = i;
     most = fmax(most, found[i]->flux);
@@ -186,41 +188,40 @@ abbe_result abbe_receiver_atlas_choose(abbe_receiver_atlas *atlas, size_t light,
       "'%.40s'; give that a smoother mesh, ask for a larger --map, or allow a larger --share",
       100 * left / total,
       atlas->views->scene->local->light[atlas->views->scene->plan->light_view[light].light].name,
-      pages->count,
+      tiles->count,
       atlas->views->scene->local->object[atlas->views->scene->charts.object[worst / 2]].name);
 }
 
 void abbe_receiver_atlas_world(const abbe_receiver_atlas *atlas, size_t light, const float *hit,
                                double out[3]) {
-  const abbe_receiver_pages *pages = &atlas->pages[light];
-  const size_t k = (size_t)fmin(fmax(hit[2], 0), ABBE_RECEIVER_PAGES - 1);
-  const abbe_receiver_page *page = &pages->page[k];
-  abbe_receiver_page_place(page, atlas->views->scene->charts.parallelogram[page->chart_side / 2],
+  const abbe_receiver_tiles *tiles = &atlas->tiles[light];
+  const size_t k = (size_t)fmin(fmax(hit[2], 0), ABBE_RECEIVER_TILES - 1);
+  const abbe_receiver_tile *tile = &tiles->tile[k];
+  abbe_receiver_tile_place(tile, atlas->views->scene->charts.parallelogram[tile->chart_side / 2],
                            hit[0], hit[1], out);
 }
 
 abbe_result abbe_receiver_atlas_make(const abbe_photon_lights *views, abbe_shader_variant *variant,
                                      abbe_receiver_atlas *out, abbe_error *error) {
   out->views = views;
-  if (!views->scene->plan->pages) return ABBE_OK;
+  if (!views->scene->plan->tiles) return ABBE_OK;
   out->used = out->fits = true;
   abbe_result result = upload_charts(out, error);
-  return result == ABBE_OK ? tell_shaders(out, 1, variant, error) : result;
+  return result == ABBE_OK ? tell_shaders(out, variant, error) : result;
 }
 
 void abbe_receiver_atlas_free(abbe_receiver_atlas *atlas) {
   if (atlas->views == NULL) return;
-  const abbe_gl *gl = atlas->views->scene->gpu->gl;
-  gl->DeleteTextures(ABBE_PAGE_TABLES, atlas->texture);
-  gl->DeleteBuffers(ABBE_PAGE_TABLES, atlas->table);
+  atlas->views->scene->gpu->gl->DeleteTextures(ABBE_TILE_TABLES, atlas->texture);
+  abbe_gpu_drop_buffers(atlas->views->scene->gpu, ABBE_TILE_TABLES, atlas->table);
 }
 
 void abbe_receiver_atlas_bind(const abbe_receiver_atlas *atlas) {
   if (atlas->views == NULL) return;
   const abbe_gl *gl = atlas->views->scene->gpu->gl;
-  for (GLenum k = 0; k < ABBE_PAGE_TABLES; k++) {
+  for (GLenum k = 0; k < ABBE_TILE_TABLES; k++) {
     if (atlas->texture[k] == 0) continue;
-    gl->ActiveTexture(GL_TEXTURE0 + UNIT_PAGE_ROWS + k);
+    gl->ActiveTexture(GL_TEXTURE0 + UNIT_TILE_ROWS + k);
     gl->BindTexture(GL_TEXTURE_BUFFER, atlas->texture[k]);
   }
 }
@@ -228,21 +229,20 @@ void abbe_receiver_atlas_bind(const abbe_receiver_atlas *atlas) {
 abbe_result abbe_receiver_atlas_keep(abbe_receiver_atlas *atlas, abbe_shader_variant *variant,
                                      abbe_error *error) {
   const size_t lights = atlas->views->scene->plan->light_view_count;
-  size_t layer = lights, most = 0;
+  size_t layer = lights;
   for (size_t i = 0; i < lights; i++) {
-    if (atlas->pages[i].count > most) most = atlas->pages[i].count;
-    if (atlas->pages[i].count > 0) atlas->layer[i] = layer++;
+    if (atlas->tiles[i].count > 0) atlas->layer[i] = layer++;
   }
   atlas->fits = false;
-  atlas->used = most > 0;
-  if (atlas->used) return tell_shaders(atlas, most, variant, error);
-  variant->pages = 0;
+  atlas->used = layer > lights;
+  if (atlas->used) return tell_shaders(atlas, variant, error);
+  variant->tiles = 0;
   return ABBE_OK;
 }
 
 size_t abbe_receiver_atlas_layers(const abbe_receiver_atlas *atlas) {
   size_t layers = atlas->views->scene->plan->light_view_count;
   for (size_t i = 0, lights = layers; i < lights; i++)
-    if (atlas->pages[i].count > 0) layers++;
+    if (atlas->tiles[i].count > 0) layers++;
   return layers;
 }

@@ -1,10 +1,10 @@
 // The interface at which light left its last refractor, kept with every hit: behind it light of any
 // wavelength between two nodes is known nearly exactly, for it follows the index so evenly before.
 
-// Of a hit: its place and flux, W; then the place on the interface and interface_word().
+// Of a hit: its place and flux, of unit power of its light; then the place on the interface and interface_word().
 const int HIT_TEXELS = 2;
 
-// The interface's normal along the way out (11 bits each of its two octahedral coordinates, and the sign
+// The interface's normal along the path out (11 bits each of its two octahedral coordinates, and the sign
 // of z), whether its transmission is part of the flux, and the tile on which the light lands (-1:
 // none), as a float that no device takes for a NaN or rounds to zero.
 float interface_word(vec3 n, bool transmits, int tile) {
@@ -35,7 +35,7 @@ struct Segment {
   vec3 along;         // part of its unit direction along the interface
   vec3 n;             // of the interface, along its direction
   float passes;       // share that the interface lets through
-  float arrives;      // flux before that, W
+  float arrives;      // flux before that, of unit power
   bool transmits, far;  // far: place and interface tell its direction
 };
 
@@ -48,11 +48,11 @@ Segment segment_of(vec4 landed, vec4 left, float index) {
   e.place = landed.xyz;
   e.interface_at = left.xyz;
   e.n = interface_normal(left.w);
-  vec3 way = e.place - e.interface_at;
-  float length_m = length(way);
+  vec3 outward = e.place - e.interface_at;
+  float length_m = length(outward);
   e.far = length_m > 1e-4 * (length(e.place) + length(e.interface_at));
   e.transmits = e.far && interface_transmits(left.w);
-  vec3 d = way / max(length_m, 1e-30);
+  vec3 d = outward / max(length_m, 1e-30);
   float cosine = dot(d, e.n);
   e.along = d - cosine * e.n;
   e.passes = max(transmission(e.transmits, cosine, index), 1e-6);

@@ -1,6 +1,6 @@
-// What is left of a photon's light after its way inside, in the parts of its wavelength's band below
+// What is left of a photon's light after its path inside, in the parts of its wavelength's band below
 // and above the node. TINTING: what attenuates does so by wavelength, and hits keep the length of
-// their way, which has it at all wavelengths; else all shares are the node's own.
+// their path inside, which has it at all wavelengths; else all shares are the node's own.
 
 #ifdef TINTING
 #define Shares vec2
@@ -23,25 +23,25 @@ void load_halves(int below, int above) {
                          texelFetch(band_attenuation, 2 * above + 1));
 }
 
-vec2 left_after(float way) {
-  return vec2(dot(part_of_half[0], exp(-way * attenuation[0])),
-              dot(part_of_half[1], exp(-way * attenuation[1])));
+vec2 left_after(float path_m) {
+  return vec2(dot(part_of_half[0], exp(-path_m * attenuation[0])),
+              dot(part_of_half[1], exp(-path_m * attenuation[1])));
 }
 
-// What a way inside takes of light, of which so much was left before; way: all of it.
-Shares absorb(float metres, float per_m, inout float share, inout float way, inout Shares left) {
+// What a stretch inside takes of light, of which so much was left before; path_m: all of the path.
+Shares absorb(float metres, float per_m, inout float share, inout float path_m, inout Shares left) {
   Shares before = left;
-  way += metres;
-  left = left_after(way);
+  path_m += metres;
+  left = left_after(path_m);
   return share * (before - left);
 }
 
 // At the node itself.
-float left_at_node(float share, float per_m, float way) { return share * exp(-per_m * way); }
+float left_at_node(float share, float per_m, float path_m) { return share * exp(-per_m * path_m); }
 #else
 #define Shares float
 
-Shares absorb(float metres, float per_m, inout float share, inout float way, inout Shares left) {
+Shares absorb(float metres, float per_m, inout float share, inout float path_m, inout Shares left) {
 #ifdef ABSORBING
   float before = share, passed = exp(-per_m * metres);
   share *= passed;
@@ -51,5 +51,5 @@ Shares absorb(float metres, float per_m, inout float share, inout float way, ino
 #endif
 }
 
-float left_at_node(float share, float per_m, float way) { return share; }
+float left_at_node(float share, float per_m, float path_m) { return share; }
 #endif

@@ -8,7 +8,7 @@ const bool GO_ON = CHEAP_INTERFACES && EXITS > 8;
 
 #ifdef LAYERS
 void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
-  layers_inner(lights[light].near_view, light_layers, 2.0 * float(light), 2.0 * refractors[r].sphere.w, p, d,
+  layers_inner(pass_light.near_view, light_layers, 2.0 * float(light), 2.0 * refractors[r].sphere.w, p, d,
                q, n);
 }
 #endif
@@ -27,11 +27,11 @@ float mirror(PhotonRay photon, uint path, float reflected) {
 }
 
 // What leaves at interface `order`. Returns the share that is lost.
-float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, float way) {
+float keep_outgoing(PhotonRay photon, Outgoing o, int order, uint path, float path_m) {
   ReceiverHit to = meet_receiver(o.p, o.d, -touch * refractor_bounds.w, 1e30);
   if (to.state < HELD) return o.share;
   keep_hit(photon, PhotonHit(order, to.place, o.share * photon.flux,
-                             signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor)), way,
+                             signature_of(path * 31u + to.receiver, to, uint(photon.front.refractor)), path_m,
                              vec4(o.p, interface_word(o.n, true, to.tile))));
   return 0.0;
 }
@@ -50,21 +50,21 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   entry[REFLECTED] = Shares(mirror(photon, path, reflected));
   InnerRay ray = InnerRay(front.p, photon.d, front.facet, 1.0 - reflected);
   if (!refract_direction(photon.d, front.n, 1.0 / n, ray.d)) return;
-  float way = 0.0;
+  float path_m = 0.0;
   Shares left = Shares(1.0);
   for (int order = 0; order < EXITS;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
     bool ends = false;
     while (order < EXITS) {
       InnerHit h = next_inner_hit(r, ray);
-      entry[ABSORBED] += absorb(distance(h.p, ray.p), per_m, ray.share, way, left);
+      entry[ABSORBED] += absorb(distance(h.p, ray.p), per_m, ray.share, path_m, left);
       path = path * 31u + uint(h.facet) + 1u;
       leaving = leave(h, n, ray);
-      ends = left_at_node(ray.share, per_m, way) < share_limit;
+      ends = left_at_node(ray.share, per_m, path_m) < share_limit;
       order++;
       if (!GO_ON || leaving.share > 0.0 || ends) break;
     }
-    if (leaving.share > 0.0) entry[MISSED] += keep_outgoing(photon, leaving, order - 1, path, way) * left;
+    if (leaving.share > 0.0) entry[MISSED] += keep_outgoing(photon, leaving, order - 1, path, path_m) * left;
     if (ends) break;
   }
   entry[TRAPPED] += ray.share * left;

@@ -9,11 +9,17 @@ enum { WORDS = 12 };
 abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
                                     abbe_error *error) {
   out->views = views;
-  return abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error);
+  abbe_result result =
+      abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->sums, error);
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(views->scene->gpu, WORDS * 4, NULL, &out->saved, error);
+  return result;
 }
 
 void abbe_photon_ledger_free(abbe_photon_ledger *ledger) {
-  if (ledger->views != NULL) ledger->views->scene->gpu->gl->DeleteBuffers(1, &ledger->sums);
+  if (ledger->views == NULL) return;
+  abbe_gpu_drop_buffers(ledger->views->scene->gpu, 1, &ledger->sums);
+  abbe_gpu_drop_buffers(ledger->views->scene->gpu, 1, &ledger->saved);
 }
 
 void abbe_photon_ledger_clear(abbe_photon_ledger *ledger) {
@@ -31,6 +37,21 @@ static double unit_of(const abbe_photon_ledger *ledger, size_t light) {
 
 void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light) {
   abbe_gpu_set_float(ledger->views->scene->gpu, program, "ledger_unit", unit_of(ledger, light));
+}
+
+static void copy(const abbe_photon_ledger *ledger, GLuint from, GLuint to) {
+  const abbe_gl *gl = ledger->views->scene->gpu->gl;
+  gl->BindBuffer(GL_COPY_READ_BUFFER, from);
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, to);
+  gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, (GLsizeiptr)(WORDS * 4));
+}
+
+void abbe_photon_ledger_save(const abbe_photon_ledger *ledger) {
+  copy(ledger, ledger->sums, ledger->saved);
+}
+
+void abbe_photon_ledger_restore(const abbe_photon_ledger *ledger) {
+  copy(ledger, ledger->saved, ledger->sums);
 }
 
 /* What is taken back may come to a little more than what was entered, by what is known only between

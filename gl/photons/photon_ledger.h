@@ -9,7 +9,7 @@
 
 typedef struct abbe_photon_ledger {
   const abbe_photon_lights *views;
-  GLuint sums;
+  GLuint sums, saved;
 } abbe_photon_ledger;
 
 abbe_result abbe_photon_ledger_make(const abbe_photon_lights *views, abbe_photon_ledger *out,
@@ -21,7 +21,11 @@ void abbe_photon_ledger_bind(const abbe_photon_ledger *ledger);
 /* Of the light that is traced now: its unit, W, into the program that is in use. */
 void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, size_t light);
 
-/* Waits for the device. Adds the light's entries but for what is deposited. */
+/* The entries as they are, and back to those. */
+void abbe_photon_ledger_save(const abbe_photon_ledger *ledger);
+void abbe_photon_ledger_restore(const abbe_photon_ledger *ledger);
+
+/* Waits for the device. Adds the light's entries but for what is deposited, of unit power. */
 void abbe_photon_ledger_read(const abbe_photon_ledger *ledger, size_t light, abbe_ledger *out);
 
 /* A sum of two words, which may be below zero. */

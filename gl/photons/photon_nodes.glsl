@@ -1,5 +1,2 @@
 // The coarse set of wavelengths: node k of the NODES that every photon takes, among all of them.
 int coarse_node(int k) { return (k * (WAVELENGTHS - 1) + (NODES - 1) / 2) / max(NODES - 1, 1); }
-
-// An element of the list of refined intervals: photon, and which of the coarse intervals.
-const uint PAIR_INTERVALS = 8u;

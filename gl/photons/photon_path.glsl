@@ -9,7 +9,7 @@ const int REACHED = 0, REFLECTED = 1, ABSORBED = 2, TRAPPED = 3, MISSED = 4;
 // What its light is handed on as, and what it meets first.
 struct PhotonRay {
   uint item;  // of the list that is worked on
-  int lane, wavelength;
+  int sample_number, wavelength;
   float flux;  // W
   vec3 o, d;
   bool reached;  // front: the refractor
@@ -19,9 +19,9 @@ struct PhotonRay {
 struct PhotonHit {
   int slot;
   vec3 place;
-  float flux;  // W, without what is absorbed where hits keep the length of their way inside
+  float flux;  // W, without what is absorbed where hits keep the length of their path inside
   uint signature;
-  float way;  // that length, m
+  float path_m;  // that length
   vec4 interface_at;  // as in outgoing_segment.glsl
 };
 
@@ -37,8 +37,8 @@ struct ReceiverHit {
   uint receiver;
 };
 
-#ifdef PAGES
-uniform bool fits_pages;  // they are yet to be chosen: coordinates of any chart will do
+#ifdef TILES
+uniform bool fits_tiles;  // they are yet to be chosen: coordinates of any chart will do
 layout(binding = UNIT_CHART_ROWS) uniform samplerBuffer chart_rows;  // two a chart: from a place to its u, and v
 
 // Where the light's map does not hold a place: the tile of a chart's side on which it lies; false where
@@ -46,7 +46,7 @@ layout(binding = UNIT_CHART_ROWS) uniform samplerBuffer chart_rows;  // two a ch
 bool beside_map(int side, inout vec3 place, out int tile) {
   vec3 at = place;
   tile = tile_of_side(light, side);
-  if (fits_pages) {
+  if (fits_tiles) {
     vec4 to_u = texelFetch(chart_rows, side >> 1 << 1), to_v = texelFetch(chart_rows, side | 1);
     place = vec3(dot(to_u.xyz, at) + to_u.w, dot(to_v.xyz, at) + to_v.w, side);
     return true;
@@ -57,7 +57,7 @@ bool beside_map(int side, inout vec3 place, out int tile) {
 
 // The first receiver on the ray.
 ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
-  Light l = lights[light];
+  Light l = pass_light;
   ReceiverHit to = ReceiverHit(NO_RECEIVER, p, p, -1, 1u);
   vec3 uvz;
   float t;
@@ -71,7 +71,7 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
   bool held =
       project(l.map_view, to.at, uvz) && inside(uvz.xy) && receiver_lit(light, to.at, from, distance_m);
   to.state = held ? HELD : NOT_HELD;
-#ifdef PAGES
+#ifdef TILES
   int side = chart_side(r, d);
   if (!held && beside_map(side, to.place, to.tile)) {
     to.receiver += 7919u * (uint(side) + 1u);  // parts of a mesh go on across its charts, places do not
@@ -85,7 +85,7 @@ ReceiverHit meet_receiver(vec3 p, vec3 d, float t_min, float t_max) {
 
 // A hit's signature; `path` counts the receiver too.
 uint signature_of(uint path, ReceiverHit to, uint owner) {
-#ifdef PAGES
+#ifdef TILES
   return (path << 8 & ~ON_A_TILE) | 0x80000000u | (to.state == HELD_ON_TILE ? ON_A_TILE : 0u) | owner;
 #else
   return path << 8 | 0x80000000u | owner;

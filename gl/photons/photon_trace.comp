@@ -1,18 +1,22 @@
 // A photon a wavelength, on the paths of photon_path.glsl; what leaves a path is entered in the
 // ledger.
 layout(local_size_x = 256) in;
+#define COPIES_TABLES
 #include "refractor.glsl"
 #include "wide_sum.glsl"
 #include "thread.glsl"
 #include "receiver.glsl"
 #include "outgoing_segment.glsl"
+#include "photons.glsl"
+#include "photon_nodes.glsl"
+#include "pair_list.glsl"
 
-// [((photon * SLOTS + order) * LANES + lane) * HIT_TEXELS]: where it lands, and w: flux for unit
-// weight, W; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
+// [((photon * SLOTS + order) * HIT_STRIDE + sample) * HIT_TEXELS]: where it lands, and w: flux for unit
+// weight and power; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
 // coordinates, and the chart's side.
-layout(std430, binding = BINDING_HITS) writeonly buffer Landings { vec4 landing[]; };
-// Receiver, facets along the way and whether on a tile, equal for paths that vary continuously;
-// refractor in the low eight bits; 0: no hit. TINTING: and the length of its way inside, m.
+layout(std430, binding = BINDING_HITS) writeonly buffer Hits { vec4 hits[]; };
+// Receiver, facets along the path and whether on a tile, equal for paths that vary continuously;
+// refractor in the low eight bits; 0: no hit. TINTING: and the length of its path inside, m.
 #ifdef TINTING
 layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uvec2 signature[]; };
 #else
@@ -23,47 +27,35 @@ layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uint 
 layout(std430, binding = BINDING_SAMPLE_WEIGHTS) readonly buffer SampleWeights { vec4 sample_weight[]; };
 // 1 where the path (photon * SLOTS + order) lands at some wavelength.
 layout(std430, binding = BINDING_PATH_MARKS) writeonly buffer PathMarks { uint path_mark[]; };
-layout(std430, binding = BINDING_PAIRS) readonly buffer PairList {
-  uint pair_count, pair_groups[3];
-  uint pair_at[];
-};
 // lo and hi of reached, reflected, absorbed, trapped, missed.
 layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 
-uniform int light;
+#include "pass_light.glsl"
 uniform ivec2 grid;
 #include "photon_start.glsl"
-uniform int lane_first;  // wavelengths lane_first .. lane_first + LANES - 1 in this batch
-uniform int lane_count;
+uniform int sample_first;  // wavelengths sample_first .. sample_first + HIT_STRIDE - 1 in this batch
+uniform int sample_count;
 uniform int ledger_first;  // wavelengths before this one are in the ledger already
 // ALL: consecutive wavelengths of all photons; COARSE: the coarse set of all photons; REFINED: all
 // wavelengths of the intervals on the list, hits by their place on it.
 const int ALL = 0, COARSE = 1, REFINED = 2;
 uniform int set;
-uniform int lane_stride;
+uniform int hit_stride;
 uniform uint most_pairs;
 uniform float share_limit;   // paths below this share of their light end
 uniform float ledger_unit;   // W
-
-layout(std430, binding = BINDING_PHOTONS) readonly buffer Photons {
-  uint photon_count, groups_x, groups_y, groups_z;
-  uint draw[4];
-  Photon photon_at[];
-};
-
-#include "photon_nodes.glsl"
 
 shared uint more_sum[5], less_sum[5];
 
 #include "photon_path.glsl"
 
 void keep_hit(PhotonRay photon, PhotonHit hit) {
-  uint path = photon.item * SLOTS + hit.slot, index = path * lane_stride + photon.lane;
-  landing[HIT_TEXELS * index] = vec4(hit.place, hit.flux);
-  landing[HIT_TEXELS * index + 1u] = hit.interface_at;
+  uint path = photon.item * SLOTS + hit.slot, index = path * hit_stride + photon.sample_number;
+  hits[HIT_TEXELS * index] = vec4(hit.place, hit.flux);
+  hits[HIT_TEXELS * index + 1u] = hit.interface_at;
   path_mark[path] = 1u;
 #ifdef TINTING
-  signature[index] = uvec2(hit.signature, floatBitsToUint(hit.way));
+  signature[index] = uvec2(hit.signature, floatBitsToUint(hit.path_m));
 #else
   signature[index] = hit.signature;
 #endif
@@ -73,17 +65,17 @@ void keep_hit(PhotonRay photon, PhotonHit hit) {
 struct Task {
   bool there;
   uint item, photon;
-  int lane, wavelength;
+  int sample_number, wavelength;
   int interval, low, high;  // -1: no interval
 };
 
 Task task_of(uint thread) {
   Task t;
-  // A photon's wavelengths side by side: they take the same ways for longer than its neighbours.
-  t.item = t.photon = thread / uint(lane_count);
-  t.lane = int(thread % uint(lane_count));
+  // A photon's wavelengths side by side: they take the same paths for longer than its neighbours.
+  t.item = t.photon = thread / uint(sample_count);
+  t.sample_number = int(thread % uint(sample_count));
   t.there = t.item < (set == REFINED ? min(pair_count, most_pairs) : photon_count);
-  t.wavelength = set == COARSE ? coarse_node(t.lane) : lane_first + t.lane;
+  t.wavelength = set == COARSE ? coarse_node(t.sample_number) : sample_first + t.sample_number;
   t.interval = 0;
   t.low = t.high = -1;
   if (set == REFINED && t.there) {
@@ -92,7 +84,7 @@ Task task_of(uint thread) {
     t.photon = pair / PAIR_INTERVALS;
     t.low = coarse_node(t.interval);
     t.high = coarse_node(t.interval + 1);
-    t.wavelength = t.low + t.lane;
+    t.wavelength = t.low + t.sample_number;
     t.there = t.wavelength <= t.high;
   }
   return t;
@@ -107,7 +99,7 @@ PhotonRay ray_of(Task t) {
   ray.reached = photon_start(uv, ray.o, ray.d, ray.front, flux);
   ray.flux = from.flux;
   ray.item = t.item;
-  ray.lane = t.lane;
+  ray.sample_number = t.sample_number;
   ray.wavelength = t.wavelength;
   return ray;
 }
@@ -116,7 +108,7 @@ PhotonRay ray_of(Task t) {
 // A refined interval's ends give back halves of coarse bands; their own outer ones are not its.
 void load_attenuation(Task t, PhotonRay ray) {
   int row = light * REFRACTORS + (ray.reached ? ray.front.refractor : 0);
-  int node = set == COARSE ? row * NODES + t.lane : all_bands(row) + t.wavelength;
+  int node = set == COARSE ? row * NODES + t.sample_number : all_bands(row) + t.wavelength;
   int coarse = row * NODES + t.interval;
   load_halves(t.wavelength == t.low ? 2 * coarse + 1 : 2 * node,
               t.wavelength == t.high ? 2 * (coarse + 1) : 2 * node + 1);
@@ -145,6 +137,9 @@ void main() {
     less_sum[gl_LocalInvocationID.x] = 0u;
   }
   barrier();
+  copy_tables();
+  copy_surroundings();
+  copy_light();
   Task task = task_of(thread_number());
   if (task.there) {
     PhotonRay ray = ray_of(task);

@@ -1,4 +1,4 @@
-// A photon's light at wavelength i on the general way (walk.glsl): at each interface the stronger
+// A photon's light at wavelength i on multi-refractor paths (walk.glsl): at each interface the stronger
 // branch goes on and the other waits. A hit's slot follows from its path, so that neighbouring
 // photons and wavelengths have the same path in the same slot.
 
@@ -24,12 +24,12 @@ int take_slot(uint path, inout uint used) {
   return slot;
 }
 
-// What a way that ends comes to, in shares of the light.
+// What a path that ends comes to, in shares of the light.
 struct Ends {
   float reflected, absorbed, trapped, missed;
 };
 
-void end_way(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout uint used, inout Ends e) {
+void end_path(PhotonRay photon, PathState w, ReceiverHit to, uint owner, inout uint used, inout Ends e) {
   int slot = to.state >= HELD ? take_slot(w.path, used) : -1;
   if (slot >= 0) {
     bool last = w.transmitted && w.inside == 0u && w.refractor == int(owner);
@@ -72,8 +72,8 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     ReceiverHit to = meet_receiver(w.p, w.d, t_min, met ? h.hit.t : 1e30);
 #ifdef ABSORBING
     if (w.inside != 0u && (met || to.state != NO_RECEIVER)) {
-      float way = to.state != NO_RECEIVER ? distance(to.at, w.p) : h.hit.t;
-      float left = exp(-way * refractor_spectrum(medium_of(w.inside)).y);
+      float path_m = to.state != NO_RECEIVER ? distance(to.at, w.p) : h.hit.t;
+      float left = exp(-path_m * refractor_spectrum(medium_of(w.inside)).y);
       e.absorbed += w.share * (1.0 - left);
       w.share *= left;
     }
@@ -82,7 +82,7 @@ void trace(PhotonRay photon, out Shares entry[5]) {
       branch(w, h, 0.0, pending, ended, dropped);
       e.trapped += ended + dropped;
     } else {
-      end_way(photon, w, to, owner, used, e);
+      end_path(photon, w, to, owner, used, e);
       w.share = 0.0;
     }
     if (w.share <= 0.0) w = take_pending(pending);

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, LEAST_LANES = 7 };
+enum { MOST_HIT_BYTES = 1 << 30, MAX_HIT_BYTES = 96 << 20, MOST_SAMPLES = 64 };
 
 static const abbe_gpu_scene *scene_of(const abbe_trace_pass *pass) {
   return pass->spectra->scene;
@@ -22,27 +22,25 @@ static size_t most_hits(const abbe_trace_pass *pass) {
 
 static size_t most_photons(const abbe_trace_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  const size_t side = plan->desc.photons, cells = side * side, rim = 8 * side;
   size_t most = 1;
   for (size_t i = 0; i < plan->light_view_count; i++)
     if (pass->start->views->light[i].photon_count > most)
       most = pass->start->views->light[i].photon_count;
-  /* A grid that is moved or made coarser may show a little more: a rim of cells. */
-  return most + rim < cells ? most + rim : cells;
+  return most;
 }
 
 /* Wavelengths of a batch. */
-static size_t choose_lanes(const abbe_trace_pass *pass, size_t room) {
+static size_t choose_samples(const abbe_trace_pass *pass, size_t room) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  const size_t a_lane = pass->most_photons * plan->hit_slots;
+  const size_t a_sample = pass->most_photons * plan->hit_slots;
   /* A stone that keeps light inside has more slots, not fewer wavelengths at a time. */
   const size_t usual = ABBE_PLAN_EXITS + 1;
   const size_t slots =
       !plan->multi_refractor_paths && plan->hit_slots > usual ? usual : plan->hit_slots;
   const size_t a_hit = ABBE_HIT_BYTES + abbe_photon_signature_bytes(pass->spectra);
-  size_t lanes = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
-  if (lanes > room / a_lane) lanes = room / a_lane;
-  return lanes < 2 ? 2 : lanes > 64 ? 64 : lanes;
+  size_t samples = MAX_HIT_BYTES / a_hit / (pass->most_photons * slots);
+  if (samples > room / a_sample) samples = room / a_sample;
+  return samples < 2 ? 2 : samples > MOST_SAMPLES ? MOST_SAMPLES : samples;
 }
 
 abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *spectra,
@@ -51,35 +49,47 @@ abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *
   *out = (abbe_trace_pass){.start = start, .spectra = spectra, .atlas = atlas, .ledger = ledger};
   const abbe_plan *plan = scene_of(out)->plan;
   out->most_photons = most_photons(out);
-  const size_t a_lane = out->most_photons * plan->hit_slots, n = plan->desc.wavelengths;
+  const size_t a_sample = out->most_photons * plan->hit_slots, n = plan->desc.wavelengths;
   const size_t room = most_hits(out);
-  if (a_lane * (n > 1 ? 2 : 1) > room)
+  if (a_sample * (n > 1 ? 2 : 1) > room)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%zu photons with %zu exits each are more than the device takes at a "
                           "time; use a grid below %zu or fewer exits",
                           out->most_photons, plan->desc.exits, plan->desc.photons);
-  size_t lanes = choose_lanes(out, room);
+  size_t samples = choose_samples(out, room);
   abbe_result result = ABBE_OK;
   /* No room to keep all of the coarse set: every photon takes all wavelengths, in batches. */
-  if (a_lane * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
-  const bool refines = abbe_photon_spectra_refines(spectra);
-  const size_t enough = refines ? LEAST_LANES : n;
-  if (lanes > enough) lanes = enough < n ? enough : n;
-  if (lanes < spectra->nodes && refines) lanes = spectra->nodes;
-  if (result != ABBE_OK) return result;
-  return abbe_hits_make(scene_of(out)->gpu, out->most_photons, plan->hit_slots, lanes,
-                        abbe_photon_signature_bytes(spectra), &out->hits, error);
+  if (a_sample * spectra->nodes > room) result = abbe_photon_spectra_take_all(spectra, error);
+  out->hits.stride = abbe_photon_spectra_refines(spectra) ? spectra->nodes : samples < n ? samples : n;
+  return result;
+}
+
+abbe_result abbe_trace_pass_make_room(abbe_trace_pass *pass, abbe_error *error) {
+  abbe_gpu *gpu = scene_of(pass)->gpu;
+  const size_t stride = pass->hits.stride;
+  pass->most_photons = most_photons(pass);
+  abbe_hits_free(gpu, &pass->hits);
+  return abbe_hits_make(gpu, pass->most_photons, scene_of(pass)->plan->hit_slots, stride,
+                        abbe_photon_signature_bytes(pass->spectra), &pass->hits, error);
+}
+
+/* Mesa 22's llvmpipe takes the second byte of a size for levels of a texture, and a power of two
+ * for a fact of its own: it compiles what reads texels again where another buffer differs in
+ * either. */
+static size_t padded(size_t size) {
+  return (size & (size - 1)) == 0 || (size >> 8 & 255) == 0 ? size + 256 : size;
 }
 
 abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t stride,
                            size_t signature_bytes, abbe_hits *out, abbe_error *error) {
   const size_t paths = items * slots;
   out->stride = stride;
+  const size_t hits = paths * stride;
   abbe_result result =
-      abbe_gpu_make_buffer(gpu, paths * stride * ABBE_HIT_BYTES, NULL, &out->hits, error);
+      abbe_gpu_make_buffer(gpu, padded(hits * ABBE_HIT_BYTES), NULL, &out->hits, error);
   if (result == ABBE_OK)
     result =
-        abbe_gpu_make_buffer(gpu, paths * stride * signature_bytes, NULL, &out->signatures, error);
+        abbe_gpu_make_buffer(gpu, padded(hits * signature_bytes), NULL, &out->signatures, error);
   if (result == ABBE_OK) result = abbe_gpu_make_buffer(gpu, paths * 4, NULL, &out->marks, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + paths * 4, NULL, &out->paths, error);
@@ -87,28 +97,24 @@ abbe_result abbe_hits_make(abbe_gpu *gpu, size_t items, size_t slots, size_t str
 }
 
 void abbe_hits_free(abbe_gpu *gpu, abbe_hits *hits) {
-  const GLuint buffers[] = {hits->hits, hits->signatures, hits->marks, hits->paths};
-  gpu->gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+  GLuint buffers[] = {hits->hits, hits->signatures, hits->marks, hits->paths};
+  abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
+  *hits = (abbe_hits){0};
 }
 
 void abbe_trace_pass_free(abbe_trace_pass *pass) {
   if (pass->spectra == NULL) return;
   abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_hits_free(gpu, &pass->hits);
-  gpu->gl->DeleteProgram(pass->program);
-  gpu->gl->DeleteProgram(pass->list_paths);
 }
 
 abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
                                     abbe_error *error) {
-  const abbe_gl *gl = scene_of(pass)->gpu->gl;
-  gl->DeleteProgram(pass->program);
-  gl->DeleteProgram(pass->list_paths);
-  pass->list_paths = 0;
+  abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_result result =
-      abbe_shader_variant_compute(variant, gl, "photon_trace.comp", NULL, &pass->program, error);
+      abbe_shader_variant_compute(variant, gpu, "photon_trace.comp", NULL, &pass->program, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_compute(variant, gl, "photon_paths.comp", NULL, &pass->list_paths,
+    result = abbe_shader_variant_compute(variant, gpu, "photon_paths.comp", NULL, &pass->list_paths,
                                          error);
   return result;
 }
@@ -130,12 +136,12 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_photon_ledger_set(pass->ledger, program, light);
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_gpu_set_int(gpu, program, "set", (int)set);
-  abbe_gpu_set_int(gpu, program, "lane_first", 0);
-  abbe_gpu_set_int(gpu, program, "lane_count", (int)count);
-  abbe_gpu_set_int(gpu, program, "lane_stride", (int)hits->stride);
+  abbe_gpu_set_int(gpu, program, "sample_first", 0);
+  abbe_gpu_set_int(gpu, program, "sample_count", (int)count);
+  abbe_gpu_set_int(gpu, program, "hit_stride", (int)hits->stride);
   abbe_gpu_set_int(gpu, program, "ledger_first", 0);
   abbe_gpu_set_float(gpu, program, "share_limit", scene->plan->desc.energy_share);
-  abbe_gpu_set_int(gpu, program, "fits_pages", pass->atlas->fits ? 1 : 0);
+  abbe_gpu_set_int(gpu, program, "fits_tiles", pass->atlas->fits ? 1 : 0);
   if (scene->plan->lengths)
     abbe_gpu_bind_texels(gpu, program, "band_attenuation", 5, GL_RGBA32F,
                          pass->spectra->attenuation);
@@ -148,11 +154,8 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
   abbe_gpu_bind_storage(gpu, BINDING_PATH_MARKS, hits->marks);
 }
 
-/* Groups in rows of at most as many as a dispatch takes. */
-static void dispatch(abbe_gpu *gpu, size_t threads) {
-  const size_t groups = (threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
-  const size_t rows = (groups + 65534) / 65535;
-  if (groups > 0) gpu->gl->DispatchCompute((GLuint)((groups + rows - 1) / rows), (GLuint)rows, 1);
+static size_t groups_of(size_t threads) {
+  return (threads + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
 }
 
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items) {
@@ -163,7 +166,7 @@ void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t it
   gpu->gl->UseProgram(pass->list_paths);
   abbe_gpu_set_uint(gpu, pass->list_paths, "items", items);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, hits->paths);
-  dispatch(gpu, paths);
+  abbe_gpu_dispatch(gpu, pass->list_paths, groups_of(paths));
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -171,18 +174,17 @@ void abbe_trace_pass_batch(abbe_trace_pass *pass, size_t light, size_t first, si
                            size_t ledger_first) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t photons = pass->start->views->light[light].photon_count;
-  const size_t groups = (photons + ABBE_GPU_GROUP - 1) / ABBE_GPU_GROUP;
   abbe_trace_pass_begin(pass, light, ABBE_TRACE_ALL, &pass->hits, count);
-  abbe_gpu_set_int(gpu, pass->program, "lane_first", (int)first);
+  abbe_gpu_set_int(gpu, pass->program, "sample_first", (int)first);
   abbe_gpu_set_int(gpu, pass->program, "ledger_first", (int)ledger_first);
-  if (groups > 0) gpu->gl->DispatchCompute((GLuint)groups, (GLuint)count, 1);
+  abbe_gpu_dispatch(gpu, pass->program, groups_of(photons * count));
   abbe_trace_pass_end(pass, &pass->hits, photons);
 }
 
 void abbe_trace_pass_coarse(abbe_trace_pass *pass, size_t light) {
   const size_t photons = pass->start->views->light[light].photon_count;
   abbe_trace_pass_begin(pass, light, ABBE_TRACE_COARSE, &pass->hits, pass->spectra->nodes);
-  dispatch(scene_of(pass)->gpu, photons * pass->spectra->nodes);
+  abbe_gpu_dispatch(scene_of(pass)->gpu, pass->program, groups_of(photons * pass->spectra->nodes));
   abbe_trace_pass_end(pass, &pass->hits, photons);
 }
 

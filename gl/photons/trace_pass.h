@@ -38,12 +38,14 @@ typedef struct abbe_trace_pass {
   size_t most_photons; /* that there is room for */
 } abbe_trace_pass;
 
-/* Room for the photons that lights have now, and a few more; decides how many wavelengths a batch
- * has, and whether every photon takes all. ABBE_UNSUPPORTED for more than the device takes. */
+/* Decides for the photons that lights have now how many wavelengths a batch has, and whether every
+ * photon takes all. ABBE_UNSUPPORTED for more than the device takes. */
 abbe_result abbe_trace_pass_make(abbe_photon_start *start, abbe_photon_spectra *spectra,
                                  const abbe_receiver_atlas *atlas, abbe_photon_ledger *ledger,
                                  abbe_trace_pass *out, abbe_error *error);
 void abbe_trace_pass_free(abbe_trace_pass *pass);
+/* Room for the photons that lights have now, fewer than at first or as many. */
+abbe_result abbe_trace_pass_make_room(abbe_trace_pass *pass, abbe_error *error);
 /* Also where the variant has changed. */
 abbe_result abbe_trace_pass_compile(abbe_trace_pass *pass, const abbe_shader_variant *variant,
                                     abbe_error *error);
@@ -65,9 +67,10 @@ void abbe_trace_pass_begin(abbe_trace_pass *pass, size_t light, abbe_trace_set s
 /* Lists the paths of so many photons or intervals that hit anywhere. */
 void abbe_trace_pass_end(abbe_trace_pass *pass, const abbe_hits *hits, size_t items);
 
-/* The hits of the last batch, from wavelength `first` on: [photons][slots][stride] x 4 floats,
- * place (on pages: texels and number) and flux, zero where there is none, and their paths (may be
- * NULL); malloc'd. Waits for the device. */
+/* The hits of the last batch, from wavelength `first` on:
+ * [photons][slots][stride] x 4 floats, place (on tiles: texels and number) and flux of unit power of
+ * the light, zero where there is none, and their paths (may be NULL); malloc'd. Waits for the device.
+ */
 abbe_result abbe_trace_pass_read(abbe_trace_pass *pass, size_t light, size_t first, float **hits,
                                  GLuint **paths, abbe_error *error);
 size_t abbe_trace_pass_hit_count(const abbe_trace_pass *pass, size_t light);

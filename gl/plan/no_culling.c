@@ -31,7 +31,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
     if (plan->reaches[i] || abbe_light_views_fit(scene, &scene->light[i], plan, &view, NULL))
       plan->reaches[i] = plan->caustics = true;
   plan->camera_sees_refractor = plan->draw_back = plan->absorbing = true;
-  plan->pages = plan->caustics && plan->receiver_count > 0;
+  plan->tiles = plan->caustics && plan->receiver_count > 0;
   if (plan->desc.wavelengths < 7 && (asked == NULL || asked->wavelengths == 0)) {
     plan->desc.wavelengths = 7;
     rewrite(plan, ABBE_CHOICE_WAVELENGTHS, 7, "wavelengths");

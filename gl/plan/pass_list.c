@@ -1,7 +1,5 @@
 #include "gl/plan/pass_list.h"
 
-#include "gl/plan/examine/layer_detail.h"
-
 static const char unlit[] = "no light meets a refractor";
 
 static int count_faces(const abbe_plan *plan, size_t light) {
@@ -52,7 +50,7 @@ static void list_photons(abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT,
                 "at most %zu a side, where light meets a refractor", plan->desc.photons);
   if (least < most)
-    abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu to %zu wavelengths, as each photon's landings ask",
+    abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu to %zu wavelengths, as each photon's hits ask",
                   least, most);
   else
     abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu wavelengths through the refractors", most);
@@ -83,7 +81,7 @@ static void list_absorption(abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_CHOICE_ABSORPTION, "%s",
                 none != NULL ? none
                 : plan->lengths
-                    ? "a material attenuates by wavelength: landings keep the length inside"
+                    ? "a material attenuates by wavelength: hits keep the length inside"
                 : plan->absorbing ? "a material attenuates; path lengths are kept"
                                   : "every material is clear");
 }
@@ -98,17 +96,12 @@ static void list_picture(abbe_plan *plan) {
     abbe_plan_add(plan, ABBE_PASS_EYE_PICTURE, "one sample a pixel: nothing is averaged");
 }
 
-static void list_eye(const abbe_scene *scene, abbe_plan *plan) {
+static void list_eye(abbe_plan *plan) {
   const char *unseen = plan->refractor_count > 0 ? "the eye sees no refractor" : "nothing refracts";
-  char fewer[160];
   abbe_plan_add(plan, ABBE_PASS_EYE_RECEIVERS, "light, shadow and spectral map");
   abbe_plan_add(plan, ABBE_PASS_EYE_FRONT, "%s",
                 plan->camera_sees_refractor ? "the pixels that show a refractor" : unseen);
   list_back(plan, ABBE_PASS_EYE_BACK, plan->camera_sees_refractor, unseen);
-  if (plan->layers && !abbe_profile_is_thesis(plan->desc.profile)) {
-    plan->fewer_faces = abbe_layer_detail_reason(scene, plan, fewer);
-    abbe_plan_add(plan, ABBE_CHOICE_FEWER_FACES, "%s", fewer);
-  }
   if (plan->camera_sees_refractor && plan->eye_exits > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,
                   "one direction a wavelength, until less than %g of its light is left, %zu exits "
@@ -125,5 +118,5 @@ void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan) {
   list_maps(scene, plan);
   list_light(plan);
   list_absorption(plan);
-  list_eye(scene, plan);
+  list_eye(plan);
 }

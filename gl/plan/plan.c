@@ -35,7 +35,7 @@ static void combine(abbe_plan *plan) {
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
   const bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
   plan->draw_back = plan->layers;
-  plan->pages = caustics && !thesis && (plan->receiver_shadows || plan->outside_map_view);
+  plan->tiles = caustics && !thesis && (plan->receiver_shadows || plan->outside_map_view);
   plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
   plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !thesis;
 }

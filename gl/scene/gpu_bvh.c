@@ -1,6 +1,7 @@
 #include "gl/scene/gpu_scene.h"
 
 #include "gl/device/bindings.h"
+#include "gl/device/float4.h"
 #include "gl/scene/bvh_nodes.h"
 #include "scenes/mesh/bvh.h"
 
@@ -22,11 +23,6 @@ typedef struct forest {
   gpu_corners *corners;
   size_t texel_count, triangle_count;
 } forest;
-
-static void store(const double v[3], float w, float out[4]) {
-  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
-  out[3] = w;
-}
 
 static bool make_room(forest *f, size_t texels, size_t triangles) {
   void *texel = realloc(f->texel, (f->texel_count + texels) * sizeof *f->texel);
@@ -56,11 +52,11 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
   const abbe_mesh *mesh = g->mesh[m];
   const uint32_t *f = mesh->face[face - g->face_first[m]];
   const double *a = mesh->position[f[0]];
-  store(a, 0, t->corner);
+  abbe_float4_store(a, 0, t->corner);
   for (int e = 0; e < 2; e++) {
     double edge[3];
     for (int k = 0; k < 3; k++) edge[k] = mesh->position[f[e + 1]][k] - a[k];
-    store(edge, 0, t->edge[e]);
+    abbe_float4_store(edge, 0, t->edge[e]);
   }
   store_bits(g->part[face], &t->corner[3]);
   store_bits(g->surface[m], &t->edge[0][3]);
@@ -68,7 +64,8 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
     store_bits((uint32_t)g->side[m][face - g->face_first[m]] / 2, &t->edge[1][3]);
   memset(c->v_part, 0, sizeof c->v_part);
   for (int k = 0; k < 3; k++) {
-    store(mesh->normal[f[k]], mesh->uv != NULL ? (float)mesh->uv[f[k]][0] : 0, c->normal[k]);
+    abbe_float4_store(mesh->normal[f[k]], mesh->uv != NULL ? (float)mesh->uv[f[k]][0] : 0,
+                      c->normal[k]);
     if (mesh->uv != NULL) c->v_part[k] = (float)mesh->uv[f[k]][1];
   }
 }

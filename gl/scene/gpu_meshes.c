@@ -1,8 +1,5 @@
 #include "gl/scene/gpu_scene.h"
 
-#include "gl/plan/examine/layer_detail.h"
-
-#include <math.h>
 #include <stdlib.h>
 
 /* The attributes of surface.vert, in the bound array from the bound buffer. */
@@ -45,57 +42,19 @@ static abbe_result upload_mesh(abbe_gpu_scene *scene, const abbe_mesh *mesh, abb
   gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_size, mesh->face, GL_STATIC_DRAW);
   point_to_vertices(scene);
   out->index_count = (GLsizei)(3 * mesh->face_count);
-  scene->gpu->bytes += size + index_size;
+  scene->mesh_bytes += size + index_size;
   return abbe_gl_check(gl, "the upload of a mesh", error);
 }
 
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error) {
   scene->mesh = calloc(scene->local->object_count + 1, sizeof *scene->mesh);
   if (scene->mesh == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for meshes");
+  scene->mesh_count = scene->local->object_count;
   for (size_t i = 0; i < scene->local->object_count; i++) {
     abbe_result result = upload_mesh(scene, &scene->local->object[i].mesh, &scene->mesh[i], error);
     if (result != ABBE_OK) return result;
   }
   return ABBE_OK;
-}
-
-/* The mesh's vertices, under another list of faces. */
-static abbe_result upload_faces(abbe_gpu_scene *scene, abbe_gpu_mesh *mesh,
-                                const uint32_t (*face)[3], size_t count, abbe_error *error) {
-  const abbe_gl *gl = scene->gpu->gl;
-  const size_t size = count * sizeof *face;
-  gl->GenVertexArrays(1, &mesh->layer_array);
-  gl->BindVertexArray(mesh->layer_array);
-  gl->BindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
-  point_to_vertices(scene);
-  gl->GenBuffers(1, &mesh->layer_indices);
-  gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->layer_indices);
-  gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)size, face, GL_STATIC_DRAW);
-  mesh->layer_index_count = (GLsizei)(3 * count);
-  scene->gpu->bytes += size;
-  return abbe_gl_check(gl, "the upload of a simplified mesh", error);
-}
-
-abbe_result abbe_gpu_meshes_simplify(abbe_gpu_scene *scene, size_t object, double within,
-                                     abbe_error *error) {
-  const abbe_mesh *mesh = &scene->local->object[object].mesh;
-  uint32_t(*face)[3] = NULL;
-  size_t count = 0;
-  if (!(within > 0) || !isfinite(within)) return ABBE_OK;
-  abbe_result result = abbe_mesh_simplify(mesh, within, &face, &count, error);
-  if (result == ABBE_OK && abbe_layer_detail_saves(count, mesh->face_count))
-    result = upload_faces(scene, &scene->mesh[object], (const uint32_t(*)[3])face, count, error);
-  free(face);
-  return result;
-}
-
-size_t abbe_gpu_meshes_layer_faces(const abbe_gpu_scene *scene) {
-  size_t faces = 0;
-  for (size_t i = 0; i < scene->plan->refractor_count; i++) {
-    const abbe_gpu_mesh *mesh = &scene->mesh[scene->plan->refractor_object[i]];
-    faces += (size_t)(mesh->layer_array != 0 ? mesh->layer_index_count : mesh->index_count) / 3;
-  }
-  return faces;
 }
 
 void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object) {
@@ -104,26 +63,15 @@ void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object) {
   scene->gpu->gl->DrawElements(GL_TRIANGLES, mesh->index_count, GL_UNSIGNED_INT, NULL);
 }
 
-void abbe_gpu_meshes_draw_refractor(const abbe_gpu_scene *scene, size_t refractor) {
-  const size_t object = scene->plan->refractor_object[refractor];
-  const abbe_gpu_mesh *mesh = &scene->mesh[object];
-  if (mesh->layer_array == 0) {
-    abbe_gpu_meshes_draw(scene, object);
-    return;
-  }
-  scene->gpu->gl->BindVertexArray(mesh->layer_array);
-  scene->gpu->gl->DrawElements(GL_TRIANGLES, mesh->layer_index_count, GL_UNSIGNED_INT, NULL);
-}
-
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene) {
   const abbe_gl *gl = scene->gpu->gl;
-  for (size_t i = 0; scene->mesh != NULL && i < scene->local->object_count; i++) {
+  for (size_t i = 0; i < scene->mesh_count; i++) {
     abbe_gpu_mesh *mesh = &scene->mesh[i];
     gl->DeleteVertexArrays(1, &mesh->array);
     gl->DeleteBuffers(1, &mesh->vertices);
     gl->DeleteBuffers(1, &mesh->indices);
-    gl->DeleteVertexArrays(1, &mesh->layer_array);
-    gl->DeleteBuffers(1, &mesh->layer_indices);
   }
   free(scene->mesh);
+  scene->mesh = NULL;
+  scene->mesh_count = scene->mesh_bytes = 0;
 }

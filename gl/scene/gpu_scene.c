@@ -1,9 +1,12 @@
 #include "gl/scene/gpu_scene.h"
 
 #include "gl/device/bindings.h"
+#include "gl/device/float4.h"
+#include "scenes/geometry/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Float copies of the shaders' structs (common.glsl). */
 typedef struct gpu_refractor {
@@ -18,15 +21,6 @@ typedef struct gpu_receiver {
 typedef struct gpu_surface {
   float reflectance[4], texture_info[4];
 } gpu_surface;
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void store(const double v[3], double w, float out[4]) {
-  for (int k = 0; k < 3; k++) out[k] = (float)v[k];
-  out[3] = (float)w;
-}
 
 /* Refractors and the planes of the convex ones. */
 static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
@@ -49,8 +43,8 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
       half += pow(0.5 * (object->max[k] - object->min[k]), 2);
     }
     bool sphere = plan->model[i] == ABBE_REFRACTOR_SPHERE;
-    store(sphere ? object->exact.centre : centre, sphere ? object->exact.radius : sqrt(half),
-          refractor[i].sphere);
+    abbe_float4_store(sphere ? object->exact.centre : centre,
+                      sphere ? object->exact.radius : sqrt(half), refractor[i].sphere);
     refractor[i].info[0] = (int)plan->model[i];
     for (size_t k = 0; k <= i; k++) { /* the first of the same material */
       refractor[i].info[3] = (int)k;
@@ -61,7 +55,7 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
     if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;
     refractor[i].info[2] = (int)object->exact.count;
     for (size_t k = 0; k < object->exact.count; k++)
-      store(object->exact.plane[k], object->exact.plane[k][3], plane[next++]);
+      abbe_float4_store(object->exact.plane[k], object->exact.plane[k][3], plane[next++]);
   }
   if (result == ABBE_OK)
     result = abbe_gpu_make_buffer(scene->gpu, plan->refractor_count * sizeof *refractor, refractor,
@@ -76,7 +70,7 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
 static void store_parallelogram(const double p[9], size_t surface, gpu_receiver *out) {
   const double *u = p + 3, *v = p + 6;
   double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  double area2 = dot(n, n), du[3], dv[3];
+  double area2 = abbe_vector_dot(n, n), du[3], dv[3];
   /* Dual edges within the plane: du = (v x n) / |n|^2, dv = (n x u) / |n|^2. */
   for (int k = 0; k < 3; k++) {
     int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -84,12 +78,12 @@ static void store_parallelogram(const double p[9], size_t surface, gpu_receiver 
     dv[k] = (n[a] * u[b] - n[b] * u[a]) / area2;
   }
   for (int k = 0; k < 3; k++) n[k] /= sqrt(area2);
-  store(p, (double)surface, out->corner);
-  store(u, 0, out->u);
-  store(v, 0, out->v);
-  store(n, 0, out->normal);
-  store(du, 0, out->du);
-  store(dv, 0, out->dv);
+  abbe_float4_store(p, (double)surface, out->corner);
+  abbe_float4_store(u, 0, out->u);
+  abbe_float4_store(v, 0, out->v);
+  abbe_float4_store(n, 0, out->normal);
+  abbe_float4_store(du, 0, out->du);
+  abbe_float4_store(dv, 0, out->dv);
 }
 
 static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
@@ -152,7 +146,7 @@ static abbe_result upload_textures(abbe_gpu_scene *scene, gpu_surface *surface, 
             ((height - 1 - y) * t->height / height * t->width + x * t->width / width) * t->channels;
         double rgb[3] = {from[0], from[1], from[2]};
         abbe_gpu_scene_to_working(scene, rgb, rgb);
-        store(rgb, 1, texel + 4 * (y * width + x));
+        abbe_float4_store(rgb, 1, texel + 4 * (y * width + x));
       }
     scene->gpu->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width,
                                   (GLsizei)height, 1, GL_RGBA, GL_FLOAT, texel);
@@ -169,7 +163,7 @@ static abbe_result upload_surfaces(abbe_gpu_scene *scene, abbe_error *error) {
     const abbe_object *object = &scene->local->object[scene->plan->receiver_object[i]];
     double rgb[3];
     abbe_gpu_scene_to_working(scene, object->reflectance, rgb);
-    store(rgb, 1, surface[i].reflectance);
+    abbe_float4_store(rgb, 1, surface[i].reflectance);
     surface[i].texture_info[0] = -1.0f;
     surface[i].texture_info[1] = (float)object->texture_repeat[0];
     surface[i].texture_info[2] = (float)object->texture_repeat[1];
@@ -201,8 +195,8 @@ static void store_matrix(const double matrix[9], float out[9]) {
       out[3 * column + row] = (float)matrix[3 * row + column];
 }
 
-abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                                abbe_gpu_scene *out, abbe_error *error) {
+void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
+                          abbe_gpu_scene *out) {
   out->gpu = gpu;
   out->local = local;
   out->plan = plan;
@@ -216,37 +210,59 @@ abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const ab
   store_matrix(matrix, out->rgb_from_xyz);
   abbe_rgb_space_to_xyz(abbe_gpu_scene_working_space(out), matrix);
   store_matrix(matrix, out->xyz_from_rgb);
+}
+
+static abbe_result make_geometry(abbe_gpu_scene *scene, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (plan->pages) result = abbe_receiver_charts_make(local, plan, &out->charts, error);
-  if (result == ABBE_OK) result = abbe_gpu_bvh_make(out, error);
-  if (result == ABBE_OK) result = abbe_gpu_shadows_make(out, error);
-  return result;
-}
-
-abbe_result abbe_gpu_scene_upload(abbe_gpu_scene *scene, abbe_error *error) {
-  abbe_result result = abbe_gpu_meshes_upload(scene, error);
+  if (scene->plan->tiles)
+    result = abbe_receiver_charts_make(scene->local, scene->plan, &scene->charts, error);
+  if (result == ABBE_OK) result = abbe_gpu_bvh_make(scene, error);
+  if (result == ABBE_OK) result = abbe_gpu_meshes_upload(scene, error);
   if (result == ABBE_OK) result = upload_refractors(scene, error);
-  if (result == ABBE_OK) result = abbe_gpu_shadows_upload(scene, error);
-  if (result == ABBE_OK) result = upload_receivers(scene, error);
-  if (result == ABBE_OK) result = upload_surfaces(scene, error);
-  if (result == ABBE_OK) result = abbe_gpu_spectra_upload(scene, error);
+  return result == ABBE_OK ? upload_receivers(scene, error) : result;
+}
+
+abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (parts & ABBE_SCENE_GEOMETRY) result = make_geometry(scene, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SHADOWS) != 0)
+    result = abbe_gpu_shadows_make(scene, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SURFACES) != 0)
+    result = upload_surfaces(scene, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
+    result = abbe_spectral_tables_make(scene->local, scene->plan, &scene->tables, error);
+  if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
+    result = abbe_gpu_spectra_upload(scene, error);
   return result;
 }
 
-void abbe_gpu_scene_free(abbe_gpu_scene *scene) {
-  if (scene->gpu == NULL) return;
-  const abbe_gl *gl = scene->gpu->gl;
-  const GLuint buffers[] = {scene->refractors, scene->planes, scene->receivers, scene->surfaces,
-                            scene->spectra,    scene->bands,  scene->shadows};
+static void free_geometry(abbe_gpu_scene *scene) {
   abbe_gpu_meshes_free(scene);
-  gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
-  gl->DeleteTextures(1, &scene->surface_texture);
-  gl->DeleteTextures(3, scene->bvh_texture);
-  gl->DeleteBuffers(3, scene->bvh);
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->refractors);
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->planes);
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->receivers);
+  abbe_gpu_drop_buffers(scene->gpu, 3, scene->bvh);
+  scene->gpu->gl->DeleteTextures(3, scene->bvh_texture);
+  memset(scene->bvh_texture, 0, sizeof scene->bvh_texture);
   abbe_receiver_charts_free(&scene->charts);
-  free(scene->lambda_nm);
   free(scene->refractor_root);
-  free(scene->shadow_row);
+  scene->refractor_root = NULL;
+  scene->receiver_root = scene->bvh_depth = 0;
+}
+
+void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
+  if (scene->gpu == NULL) return;
+  if (parts & ABBE_SCENE_GEOMETRY) free_geometry(scene);
+  if (parts & ABBE_SCENE_SHADOWS) abbe_gpu_shadows_free(scene);
+  if (parts & ABBE_SCENE_SURFACES) {
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->surfaces);
+    abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
+  }
+  if (parts & ABBE_SCENE_SPECTRA) {
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->spectra);
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->bands);
+    abbe_spectral_tables_free(&scene->tables);
+  }
 }
 
 void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {

@@ -1,5 +1,5 @@
 /* gpu_scene.h: the scene on the device, as the plan asks for it: meshes, tables, triangles to be
- * traversed, shadows' planes. Made once; every pass reads it as const. Internal to gl/.
+ * traversed, shadows' planes. Every pass reads it as const. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_GPU_SCENE_H
 #define ABBE_GL_SCENE_GPU_SCENE_H
@@ -7,6 +7,7 @@
 #include "gl/device/gpu.h"
 #include "gl/plan/plan.h"
 #include "gl/scene/receiver_charts.h"
+#include "gl/scene/spectra/spectral_tables.h"
 #include "scenes/scene.h"
 
 #include <stdbool.h>
@@ -18,8 +19,6 @@ enum { ABBE_GPU_BLOCK_BYTES = 65536 };
 typedef struct abbe_gpu_mesh {
   GLuint array, vertices, indices;
   GLsizei index_count;
-  GLuint layer_array, layer_indices; /* of fewer faces, where layers are drawn with them; else 0 */
-  GLsizei layer_index_count;
 } abbe_gpu_mesh;
 
 /* A row of the shaders' block of shadows. */
@@ -32,14 +31,16 @@ typedef struct abbe_gpu_scene {
   abbe_gpu *gpu;
   const abbe_scene *local; /* whose coordinates all below are in */
   const abbe_plan *plan;
-  abbe_receiver_charts charts; /* where the plan has pages */
+  abbe_receiver_charts charts; /* where the plan has tiles */
 
   double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
   double refractor_centre[3], refractor_radius;
   float rgb_from_xyz[9], xyz_from_rgb[9]; /* column-major, for uniforms */
-  double *lambda_nm;                      /* [wavelengths] */
+  abbe_spectral_tables tables;
 
-  abbe_gpu_mesh *mesh; /* [object_count] */
+  abbe_gpu_mesh *mesh; /* [mesh_count], of each object */
+  size_t mesh_count;
+  size_t mesh_bytes;   /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
   GLuint surface_texture;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
@@ -52,12 +53,21 @@ typedef struct abbe_gpu_scene {
   size_t shadow_planes; /* 0: none, or more than a block holds: faces are asked one by one */
 } abbe_gpu_scene;
 
-/* Measures and sorts; what the shaders' variants must know is known after it. Errors as of
- * abbe_renderer_make. */
-abbe_result abbe_gpu_scene_make(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                                abbe_gpu_scene *out, abbe_error *error);
-abbe_result abbe_gpu_scene_upload(abbe_gpu_scene *scene, abbe_error *error);
-void abbe_gpu_scene_free(abbe_gpu_scene *scene);
+/* Parts of it, that may be made anew by themselves; a set of them is a sum of bits. */
+enum {
+  ABBE_SCENE_GEOMETRY = 1, /* meshes, planes, triangles to be traversed, receivers, charts */
+  ABBE_SCENE_SURFACES = 2, /* reflectances and textures */
+  ABBE_SCENE_SPECTRA = 4,  /* tables over wavelength */
+  ABBE_SCENE_SHADOWS = 8,  /* planes of refractors' shadows: of geometry and lights */
+  ABBE_SCENE_ALL = 15
+};
+
+/* Of this scene and plan from now on: measures them, makes nothing. */
+void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
+                          abbe_gpu_scene *out);
+/* Parts that are not there, or that were freed. Errors as of abbe_renderer_make. */
+abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error);
+void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts);
 
 /* Every table where the shaders expect it. */
 void abbe_gpu_scene_bind(const abbe_gpu_scene *scene);
@@ -66,17 +76,11 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* gpu_meshes.c */
 void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);
-/* With the faces that layers have. */
-void abbe_gpu_meshes_draw_refractor(const abbe_gpu_scene *scene, size_t refractor);
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
-/* Fewer faces for what is drawn as layers: `within` m of the mesh. */
-abbe_result abbe_gpu_meshes_simplify(abbe_gpu_scene *scene, size_t object, double within,
-                                     abbe_error *error);
-/* Of all refractors, as layers draw them. */
-size_t abbe_gpu_meshes_layer_faces(const abbe_gpu_scene *scene);
 
-/* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths. */
+/* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths, from the tables.
+ */
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
 
 /* gpu_bvh.c: the triangles of what is traversed. */
@@ -84,7 +88,7 @@ abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);
 
 /* gpu_shadows.c: the planes of convex refractors' shadows. */
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error);
-abbe_result abbe_gpu_shadows_upload(abbe_gpu_scene *scene, abbe_error *error);
+void abbe_gpu_shadows_free(abbe_gpu_scene *scene);
 
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]);

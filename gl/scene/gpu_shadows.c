@@ -4,6 +4,7 @@
 #include "scenes/geometry/vector.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct shadow {
   double plane[2 * ABBE_SCENE_MAX_PLANES + 1][4];
@@ -42,16 +43,24 @@ static abbe_result make_shadow(abbe_gpu_scene *scene, size_t light, size_t refra
                                  out->plane, &out->count, error);
 }
 
+/* A few counts for all: shaders are compiled for so many, and a light that moves changes its own. */
+static size_t padded(size_t planes) {
+  enum { STEP = 8 };
+  return (planes + STEP - 1) / STEP * STEP;
+}
+
 static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size_t pairs,
                                 abbe_error *error) {
+  static const float on_no_side[4] = {0, 0, 0, 1e30f}; /* whatever is asked lies within it */
   size_t planes = 0, next = 0;
   for (size_t i = 0; i < pairs; i++) planes += found[i].count;
-  if (planes == 0 || (pairs + planes) * sizeof *scene->shadow_row > ABBE_GPU_BLOCK_BYTES)
+  const size_t rows = padded(planes);
+  if (planes == 0 || (pairs + rows) * sizeof *scene->shadow_row > ABBE_GPU_BLOCK_BYTES)
     return ABBE_OK;
-  scene->shadow_row = calloc(pairs + planes, sizeof *scene->shadow_row);
+  scene->shadow_row = calloc(pairs + rows, sizeof *scene->shadow_row);
   if (scene->shadow_row == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for shadows");
-  scene->shadow_planes = planes;
+  scene->shadow_planes = rows;
   for (size_t i = 0; i < pairs; i++) {
     scene->shadow_row[i].range[0] = (int)next;
     scene->shadow_row[i].range[1] = (int)found[i].count;
@@ -59,7 +68,16 @@ static abbe_result keep_shadows(abbe_gpu_scene *scene, const shadow *found, size
       for (int c = 0; c < 4; c++)
         scene->shadow_row[pairs + next].plane[c] = (float)found[i].plane[k][c];
   }
+  for (; next < rows; next++)
+    memcpy(scene->shadow_row[pairs + next].plane, on_no_side, sizeof on_no_side);
   return ABBE_OK;
+}
+
+static abbe_result upload(abbe_gpu_scene *scene, size_t pairs, abbe_error *error) {
+  if (scene->shadow_planes == 0) return ABBE_OK;
+  return abbe_gpu_make_buffer(scene->gpu,
+                              (pairs + scene->shadow_planes) * sizeof *scene->shadow_row,
+                              scene->shadow_row, &scene->shadows, error);
 }
 
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error) {
@@ -73,13 +91,12 @@ abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error) {
     result = make_shadow(scene, i / refractors, i % refractors, &found[i], error);
   if (result == ABBE_OK) result = keep_shadows(scene, found, pairs, error);
   free(found);
-  return result;
+  return result == ABBE_OK ? upload(scene, pairs, error) : result;
 }
 
-abbe_result abbe_gpu_shadows_upload(abbe_gpu_scene *scene, abbe_error *error) {
-  const size_t pairs = scene->plan->light_view_count * scene->plan->refractor_count;
-  if (scene->shadow_planes == 0) return ABBE_OK;
-  return abbe_gpu_make_buffer(scene->gpu,
-                              (pairs + scene->shadow_planes) * sizeof *scene->shadow_row,
-                              scene->shadow_row, &scene->shadows, error);
+void abbe_gpu_shadows_free(abbe_gpu_scene *scene) {
+  abbe_gpu_drop_buffers(scene->gpu, 1, &scene->shadows);
+  free(scene->shadow_row);
+  scene->shadow_row = NULL;
+  scene->shadow_planes = 0;
 }

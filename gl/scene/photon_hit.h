@@ -1,5 +1,5 @@
-/* photon_hit.h: where a photon meets a receiver, as shaders keep it (exit_wall.glsl): place and
- * flux in four floats, then the interface that the light left. Internal to gl/.
+/* photon_hit.h: where a photon meets a receiver, as shaders keep it (outgoing_segment.glsl): place
+ * and flux in four floats, then the interface that the light left. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_PHOTON_HIT_H
 #define ABBE_GL_SCENE_PHOTON_HIT_H

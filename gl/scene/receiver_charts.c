@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The numbers of landings are floats, which count so far. */
+/* The numbers of hits are floats, which count so far. */
 enum { MOST_CHARTS = 1 << 22 };
 
 static bool add_charts(abbe_receiver_charts *c, const double (*parallelogram)[9], size_t count,

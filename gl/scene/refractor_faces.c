@@ -1,17 +1,12 @@
 #include "gl/scene/refractor_faces.h"
 
-#include "gl/device/program.h"
 
 abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,
                                       abbe_error *error) {
   static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
                                               {GL_FRAGMENT_SHADER, "layer.frag"}};
   out->scene = scene;
-  return abbe_program_make(scene->gpu->gl, stages, 2, NULL, &out->program, error);
-}
-
-void abbe_refractor_faces_free(abbe_refractor_faces *faces) {
-  if (faces->scene != NULL) faces->scene->gpu->gl->DeleteProgram(faces->program);
+  return abbe_gpu_program(scene->gpu, stages, 2, NULL, &out->program, error);
 }
 
 void abbe_refractor_faces_use(const abbe_refractor_faces *faces, const abbe_view *view) {
@@ -52,7 +47,7 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
   gl->CullFace(target->back ? GL_FRONT : GL_BACK);
   for (size_t i = 0; i < scene->plan->refractor_count; i++) {
     abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);
-    abbe_gpu_meshes_draw_refractor(scene, i);
+    abbe_gpu_meshes_draw(scene, scene->plan->refractor_object[i]);
   }
   gl->Disable(GL_CULL_FACE);
   return ABBE_OK;

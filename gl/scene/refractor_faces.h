@@ -25,7 +25,6 @@ typedef struct abbe_faces_target {
 
 abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,
                                       abbe_error *error);
-void abbe_refractor_faces_free(abbe_refractor_faces *faces);
 
 void abbe_refractor_faces_use(const abbe_refractor_faces *faces, const abbe_view *view);
 /* Clears the target and draws into it, or clears it alone. The view is in use. ABBE_GL. */

@@ -31,10 +31,9 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .caustics = p->caustics,
       .walk = p->multi_refractor_paths,
       .cubes = p->cubes,
-      .layers_out = p->desc.layers,
-      .ways = !p->multi_refractor_paths ? 1
-              : p->desc.wavelengths > 1 ? 8
-                                        : 2,
+      .pixel_threads = !p->multi_refractor_paths ? 1
+                       : p->desc.wavelengths > 1 ? 8
+                                                 : 2,
   };
   for (size_t i = 0; i < p->refractor_count; i++)
     if (p->model[i] == ABBE_REFRACTOR_CONVEX)
@@ -86,6 +85,24 @@ static void print_tables(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ONE_SHADOW", v->one_shadow);
 }
 
+/* A loop that the shader has unrolled, up to so many turns; more are no longer worth their code. */
+enum { MOST_COPIES = 256, MOST_COPIED_LIGHTS = 4, MOST_COPIED_RECEIVERS = 32 };
+
+static void print_each(FILE *to, const char *name, size_t count, size_t most) {
+  if (count == 0 || count > most) return;
+  fprintf(to, "#define EACH_%s(DO)", name);
+  for (size_t i = 0; i < count; i++) fprintf(to, " DO(%zu)", i);
+  fprintf(to, "\n");
+}
+
+static void print_copies(FILE *to, const abbe_shader_variant *v) {
+  if (!v->copies) return;
+  print_each(to, "LIGHT", v->lights, MOST_COPIED_LIGHTS);
+  print_each(to, "RECEIVER", v->receivers, MOST_COPIED_RECEIVERS);
+  print_each(to, "PLANE", v->one_convex && !v->walk ? v->planes : 0, MOST_COPIES);
+  print_each(to, "SHADOW_PLANE", v->one_shadow ? v->shadow_planes : 0, MOST_COPIES);
+}
+
 static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "RECEIVER_SHADOWS", v->receiver_shadows);
   print_flag(to, "WIDE", v->wide);
@@ -102,27 +119,24 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "CAUSTICS", v->caustics);
   print_flag(to, "WALK", v->walk);
   print_flag(to, "CUBES", v->cubes);
-  print_count(to, "WAYS", v->ways);
+  print_count(to, "PIXEL_THREADS", v->pixel_threads);
 }
 
 static void print_photons(FILE *to, const abbe_shader_variant *v) {
-  if (v->pages > 0) {
-    print_flag(to, "PAGES", true);
-    print_count(to, "MOST_PAGES", v->pages);
-    print_count(to, "PAGE_BLOCKS", v->page_blocks);
+  if (v->tiles > 0) {
+    print_flag(to, "TILES", true);
+    print_count(to, "MOST_TILES", v->tiles);
+    print_count(to, "TILE_BLOCKS", v->tile_blocks);
     print_count(to, "CHART_SIDES", v->chart_sides);
   }
   if (v->map_levels > 0) print_count(to, "MAP_LEVELS", v->map_levels);
-  if (v->lanes == 0) return;
-  print_count(to, "LANES", v->lanes);
+  if (v->hit_stride == 0) return;
+  print_count(to, "HIT_STRIDE", v->hit_stride);
   print_count(to, "STEPS", v->steps);
   print_count(to, "NODES", v->nodes);
   print_flag(to, "BRIDGE", v->bridge);
   print_flag(to, "DOUBTS_BRIDGES", v->doubts_bridges);
-  print_flag(to, "TINTING", v->tinting);
-  if (!v->refined) return;
-  print_flag(to, "REFINED", true);
-  print_count(to, "FINE_NODES", v->fine_nodes);
+  print_flag(to, "TINTING", v->keeps_lengths);
 }
 
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more) {
@@ -131,6 +145,7 @@ char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *m
   FILE *to = open_memstream(&text, &size);
   if (to == NULL) return NULL;
   print_tables(to, variant);
+  print_copies(to, variant);
   print_facts(to, variant);
   print_photons(to, variant);
   if (more != NULL) fputs(more, to);
@@ -140,19 +155,19 @@ char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *m
   return NULL;
 }
 
-abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, const abbe_gl *gl,
+abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const abbe_program_stage *stages, size_t count,
                                         const char *more, GLuint *out, abbe_error *error) {
   char *text = abbe_shader_variant_text(variant, more);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
-  const abbe_result result = abbe_program_make(gl, stages, count, text, out, error);
+  const abbe_result result = abbe_gpu_program(gpu, stages, count, text, out, error);
   free(text);
   return result;
 }
 
-abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, const abbe_gl *gl,
+abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const char *file, const char *more, GLuint *out,
                                         abbe_error *error) {
   const abbe_program_stage stage = {GL_COMPUTE_SHADER, file};
-  return abbe_shader_variant_program(variant, gl, &stage, 1, more, out, error);
+  return abbe_shader_variant_program(variant, gpu, &stage, 1, more, out, error);
 }

@@ -4,7 +4,6 @@
 #ifndef ABBE_GL_SCENE_SHADER_VARIANT_H
 #define ABBE_GL_SCENE_SHADER_VARIANT_H
 
-#include "gl/device/program.h"
 #include "gl/scene/gpu_scene.h"
 
 #include <stdbool.h>
@@ -18,16 +17,17 @@ typedef struct abbe_shader_variant {
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
   bool receiver_shadows, absorbing, textured, caustics, walk, cubes;
+  bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool layers_out;
-  size_t ways; /* threads of a pixel (refraction_ways.glsl) */
+  size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
   bool wide;
   size_t map_levels;                      /* 0: not told */
-  size_t pages, page_blocks, chart_sides; /* pages of a light at the most; 0: none has any */
-  /* photons; lanes 0: not told */
-  size_t lanes, steps, nodes, fine_nodes;
-  bool bridge, doubts_bridges, tinting, refined;
+  size_t tiles, tile_blocks, chart_sides; /* tiles of a light at the most; 0: none has any */
+  /* photons; hit_stride 0: not told */
+  size_t hit_stride, steps, nodes;
+  bool bridge, doubts_bridges, keeps_lengths;
 } abbe_shader_variant;
 
 void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *out);
@@ -35,11 +35,11 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
 /* The #defines, and `more` after them (may be NULL); malloc'd. NULL: no memory. */
 char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *more);
 
-/* A program of one compute shader, or of so many stages. Errors as of abbe_program_make. */
-abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, const abbe_gl *gl,
+/* A program of one compute shader, or of so many stages; the device's, as of abbe_gpu_program. */
+abbe_result abbe_shader_variant_compute(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const char *file, const char *more, GLuint *out,
                                         abbe_error *error);
-abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, const abbe_gl *gl,
+abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const abbe_program_stage *stages, size_t count,
                                         const char *more, GLuint *out, abbe_error *error);
 

@@ -57,7 +57,7 @@ vec2 step_right(vec2 at) { return vec2(0); }
 vec2 step_above(vec2 at) { return vec2(0); }
 #endif
 
-#ifdef PAGES
+#ifdef TILES
 // rgb irradiance of the tile on that side of a chart: it holds what reaches that side, whatever the light
 // sees of it. lit: the light meets a refractor.
 vec3 tile_irradiance(int light, vec3 p, int side, bool lit) {

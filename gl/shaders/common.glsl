@@ -10,7 +10,7 @@ struct Light {
   vec4 position;   // w: 0 point, 1 spot, 2 directional
   vec4 direction;  // w: cosine of the cone's half angle
   vec4 white;      // rgb of unit power; w: power, W/sr or W/m2
-  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, W; photons by window area;
+  vec4 misc;       // cosine where the soft edge starts; flux of one map unit, of unit power; photons by window area;
                    // whether it meets a refractor
   vec4 cube;       // faces of the cube around it whose light this is, a bit each
 };
@@ -59,17 +59,17 @@ layout(std140, binding = BINDING_SPECTRA) uniform Spectra { vec4 spectra[SPECTRU
 #include "copies.glsl"
 
 // The map's texels are finer where more light lands: each axis of its window is warped by a
-// monotone polygon. x and y at [light * (WARP_STEPS + 1) + k], from 0 to 1.
+// monotone polygon. Its corners at light * WARP_STEPS + k, and what follows them, from 0 to 1: x, y, x, y.
+// As texels: a software rasteriser fetches four numbers at once, and blocks number by number.
 const int WARP_STEPS = 128;
-layout(std140, binding = BINDING_WARPS) uniform Warps { vec4 warps[LIGHT_ROOM * (WARP_STEPS + 1)]; };
+layout(binding = UNIT_WARPS) uniform samplerBuffer warps;
 
 vec2 warp(int light, vec2 uv) {
   vec2 s = clamp(uv, vec2(0), vec2(1)) * float(WARP_STEPS);
   ivec2 k = min(ivec2(s), ivec2(WARP_STEPS - 1));
   vec2 f = s - vec2(k);
-  int row = light * (WARP_STEPS + 1);
-  return vec2(mix(warps[row + k.x].x, warps[row + k.x + 1].x, f.x),
-              mix(warps[row + k.y].y, warps[row + k.y + 1].y, f.y));
+  vec4 x = texelFetch(warps, light * WARP_STEPS + k.x), y = texelFetch(warps, light * WARP_STEPS + k.y);
+  return vec2(mix(x.x, x.z, f.x), mix(y.y, y.w, f.y));
 }
 
 #ifdef CUBES

@@ -1,8 +1,17 @@
 // Tables that a shader reads over and over, copied before anything else. A software rasteriser reads a
-// uniform block once for all lanes only where it is sure of all of them, and else lane by lane, which
-// costs several times what is done with what is read. EACH_PLANE(DO) is DO(0) DO(1) and so on, as loops
+// uniform block once for all lanes only where it is sure of all of them: before any branch or loop of
+// main(), or behind all. Within, it reads lane by lane, whatever the place, which costs several times what
+// is done with what is read, and forty instructions to compile for every number. EACH_PLANE(DO) is DO(0) DO(1) and so on, as loops
 // of more than 32 turns are not unrolled; so are EACH_LIGHT, EACH_RECEIVER and EACH_SHADOW_PLANE. Who is
-// given one of them calls copy_tables() in the first line of its main(); without, tables are read.
+// copies says COPIES_TABLES and calls copy_tables() in the first line of main(), or behind a barrier there;
+// all others read.
+
+#ifndef COPIES_TABLES
+#undef EACH_LIGHT
+#undef EACH_RECEIVER
+#undef EACH_PLANE
+#undef EACH_SHADOW_PLANE
+#endif
 
 #ifdef EACH_LIGHT
 Light own_light[LIGHT_ROOM];
@@ -55,6 +64,12 @@ vec4 own_shadow_plane[SHADOW_PLANES];
 #define OF_SHADOW_PLANES(DO) for (int i = 0; i < count; i++) DO(i)
 #endif
 #endif
+
+// Uniforms by themselves cost as much, and a plain copy of one is taken for another name of it. This is none.
+float read_now(float x) { return max(x, x); }
+vec3 read_now(vec3 x) { return max(x, x); }
+vec4 read_now(vec4 x) { return max(x, x); }
+mat3 read_now(mat3 m) { return mat3(read_now(m[0]), read_now(m[1]), read_now(m[2])); }
 
 void copy_tables() {
 #ifdef EACH_LIGHT

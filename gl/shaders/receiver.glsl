@@ -17,6 +17,28 @@ uniform vec3 background;  // rgb radiance
 uniform vec4 refractor_bounds;  // centre, radius of all refractors
 uniform float scene_size;
 
+#ifdef COPIES_TABLES
+// Read as late as these are asked for, numbers cost as much as tables (copies.glsl).
+mat3 own_rgb_from_xyz;
+vec3 own_ambient, own_background;
+vec4 own_refractor_bounds;
+float own_scene_size;
+
+void copy_surroundings() {
+  own_rgb_from_xyz = read_now(rgb_from_xyz);
+  own_ambient = read_now(ambient);
+  own_background = read_now(background);
+  own_refractor_bounds = read_now(refractor_bounds);
+  own_scene_size = read_now(scene_size);
+}
+
+#define rgb_from_xyz own_rgb_from_xyz
+#define ambient own_ambient
+#define background own_background
+#define refractor_bounds own_refractor_bounds
+#define scene_size own_scene_size
+#endif
+
 // How far behind a refractor's interface a receiver may lie to be lit by what leaves there: a refractor
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;
@@ -40,7 +62,7 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
   bool held = project(l.map_view, p, uvz) && inside(uvz.xy);
   // Before any pixel of the four goes its own way.
   vec2 at = warp(light, uvz.xy), to_right = step_right(at), to_above = step_above(at);
-#ifdef PAGES
+#ifdef TILES
   caustic = tile_irradiance(light, p, side, l.misc.w != 0.0);
 #endif
 #endif
@@ -80,7 +102,7 @@ struct Shading {
   vec3 direct, caustic, fill;  // radiance towards the viewer, by origin
 };
 
-// side: chart_side, where there are PAGES.
+// side: chart_side, where there are TILES.
 Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   Shading s;
   s.direct = s.caustic = vec3(0);
@@ -91,7 +113,7 @@ Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   {                                                          \
     light_irradiance(i, p, n, side, direct, caustic);        \
     s.direct += brdf * direct;                               \
-    s.caustic += brdf * caustic;                             \
+    s.caustic += brdf * (LIGHT(i).white.w * caustic);        \
   }
   OF_LIGHTS(SHINE)
 #endif

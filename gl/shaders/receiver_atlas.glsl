@@ -1,39 +1,39 @@
-// Maps on receivers, for light that the light's own map cannot hold. PAGES: some light has any. Tables
+// Maps on receivers, for light that the light's own map cannot hold. TILES: some light has any. Tables
 // are textures: a software rasteriser fetches from those what differs from lane to lane.
-#ifdef PAGES
-layout(binding = UNIT_PAGE_ROWS) uniform samplerBuffer page_rows;    // PAGE_ROWS a page, MOST_PAGES a light
-layout(binding = UNIT_PAGE_INDEX) uniform isamplerBuffer page_index;  // PAGE_WORDS a light, of the three parts below
+#ifdef TILES
+layout(binding = UNIT_TILE_ROWS) uniform samplerBuffer tile_rows;    // TILE_ROWS a tile, MOST_TILES a light
+layout(binding = UNIT_TILE_INDEX) uniform isamplerBuffer tile_index;  // ATLAS_WORDS a light, of the three parts below
 const int TILE_ROWS = 4;
-const int ATLAS_WORDS = 1 + PAGE_BLOCKS * PAGE_BLOCKS + CHART_SIDES;
+const int ATLAS_WORDS = 1 + TILE_BLOCKS * TILE_BLOCKS + CHART_SIDES;
 
 // Of a hit's path: it lies on a tile. Its place is then texels of the layer and the tile.
 const uint ON_A_TILE = 0x40000000u;
 
-int tile_row(int light, int tile) { return TILE_ROWS * (light * MOST_PAGES + tile); }
+int tile_row(int light, int tile) { return TILE_ROWS * (light * MOST_TILES + tile); }
 
 // The layer of the map that the light's tiles share.
-int atlas_layer(int light) { return texelFetch(page_index, light * ATLAS_WORDS).x; }
+int atlas_layer(int light) { return texelFetch(tile_index, light * ATLAS_WORDS).x; }
 
-// The tile of a block of the layer's texels, PAGE_BLOCKS a side; -1: of none.
+// The tile of a block of the layer's texels, TILE_BLOCKS a side; -1: of none.
 int tile_of_block(int light, ivec2 block) {
-  return texelFetch(page_index, light * ATLAS_WORDS + 1 + block.y * PAGE_BLOCKS + block.x).x;
+  return texelFetch(tile_index, light * ATLAS_WORDS + 1 + block.y * TILE_BLOCKS + block.x).x;
 }
 
 // The tile of one side of a chart: 2 * chart, + 1 behind; -1: it has none.
 int tile_of_side(int light, int chart_side) {
-  return texelFetch(page_index, light * ATLAS_WORDS + 1 + PAGE_BLOCKS * PAGE_BLOCKS + chart_side).x;
+  return texelFetch(tile_index, light * ATLAS_WORDS + 1 + TILE_BLOCKS * TILE_BLOCKS + chart_side).x;
 }
 
 // In the layer's texels: left, bottom, right, top.
-vec4 tile_rect(int light, int tile) { return texelFetch(page_rows, tile_row(light, tile) + 2); }
+vec4 tile_rect(int light, int tile) { return texelFetch(tile_rows, tile_row(light, tile) + 2); }
 
 // The chart's normal; area of a texel across it, m2.
-vec4 tile_across(int light, int tile) { return texelFetch(page_rows, tile_row(light, tile) + 3); }
+vec4 tile_across(int light, int tile) { return texelFetch(tile_rows, tile_row(light, tile) + 3); }
 
 // In the layer's texels.
 vec2 place_on_tile(int light, int tile, vec3 p) {
-  vec4 to_x = texelFetch(page_rows, tile_row(light, tile));
-  vec4 to_y = texelFetch(page_rows, tile_row(light, tile) + 1);
+  vec4 to_x = texelFetch(tile_rows, tile_row(light, tile));
+  vec4 to_y = texelFetch(tile_rows, tile_row(light, tile) + 1);
   return vec2(dot(to_x.xyz, p) + to_x.w, dot(to_y.xyz, p) + to_y.w);
 }
 

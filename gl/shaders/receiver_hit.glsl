@@ -55,7 +55,7 @@ int receiver_part(int receiver) {
   return receiver;
 }
 
-#ifdef PAGES
+#ifdef TILES
 // The side of a receiver's chart at which light of direction d arrives, as tiles are found by it.
 int chart_side(int receiver, vec3 d) {
   int chart = receiver;

@@ -56,7 +56,7 @@ void enter_plane(int i, vec4 plane, vec3 o, vec3 d, inout float enter, inout flo
 }
 
 // From within the solid, on its facet `from`: how much of the way to the plane is done in a metre, and
-// the plane for which that is most. No way has that much of a plane that it goes away from.
+// the plane for which that is most. No ray has that much of a plane that it goes away from.
 void leave_plane(int i, vec4 plane, int from, vec3 p, vec3 d, inout float most, inout int facet) {
   float rate = dot(plane.xyz, d) / max(plane.w - dot(plane.xyz, p), 1e-30);
   bool nearer = rate > most && i != from;

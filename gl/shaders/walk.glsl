@@ -1,4 +1,4 @@
-// The general way of light through a scene: from interface to interface of all refractors, each
+// Multi-refractor paths: light goes on from interface to interface of all refractors, each
 // known by its own model, reflected and refracted at each. Where refractors overlap the one listed
 // last is there. Who includes this gives refractor_spectrum(r): n and attenuation (1/m) of refractor
 // r at the wavelength that is followed.
@@ -7,7 +7,7 @@ struct PathState {
   vec3 p, d;
   float share;    // of the light that it began with
   uint inside;    // bit r: within refractor r
-  uint path;      // what it met and did on its way, as one number
+  uint path;      // what it met and did so far, as one number
   int interfaces;  // met since the first; -1: none yet
   int refractor, facet;  // that p lies on
 #ifdef KEEPS_INTERFACE
@@ -73,8 +73,8 @@ bool convex_inside(ivec4 info, int facet, vec3 p, vec3 d, inout Hit h) {
 }
 #endif
 
-// The next surface of a refractor on the way, no farther than h.hit.t. Of each refractor only those
-// faces count that lead in where the way is outside, and out where it is inside: so no way meets the
+// The next surface of a refractor on the path, no farther than h.hit.t. Of each refractor only those
+// faces count that lead in where the path is outside, and out where it is inside: so no path meets the
 // face that it leaves, however it is rounded.
 bool next_interface(PathState w, inout Interface h) {
   bool found = false;
@@ -144,7 +144,7 @@ vec3 keep_side(vec3 face_n, vec3 d) {
   return along > 0.0 ? d : normalize(d + (1e-3 - along) * face_n);
 }
 
-// Both ways on from an interface that w comes to; their shares add up to w's. False where the
+// Both branches from an interface that w comes to; their shares add up to w's. False where the
 // medium does not change: w goes on behind it.
 bool split(inout PathState w, Interface h, out PathState mirrored) {
   int r = h.hit.refractor;

@@ -85,7 +85,7 @@ static abbe_result make_programs(abbe_thesis *t, const abbe_shader_variant *vari
              {fill, 2, &t->fill},     {lit, 2, &t->receivers},    {refracted, 2, &t->refraction}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_shader_variant_program(variant, t->scene->gpu->gl, all[i].stages, all[i].count,
+    result = abbe_shader_variant_program(variant, t->scene->gpu, all[i].stages, all[i].count,
                                          t->cie ? "#define CIE\n" : NULL, all[i].out, error);
   return result;
 }
@@ -425,14 +425,10 @@ abbe_result abbe_thesis_run(abbe_thesis *t, abbe_error *error) {
 void abbe_thesis_free(abbe_thesis *t) {
   if (t->scene == NULL) return;
   abbe_photon_cells_free(&t->cells);
-  const GLuint programs[] = {t->layers, t->depth_only, t->splat,
-                             t->fill,   t->receivers,  t->refraction};
-  for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
-    t->scene->gpu->gl->DeleteProgram(programs[i]);
-  const GLuint textures[] = {
+  GLuint textures[] = {
       t->light_normals, t->light_depths, t->light_receiver_depth, t->map,           t->filled,
       t->eye_normals,   t->eye_depths,   t->eye_receiver_depth,   t->eye_receivers, t->picture};
-  t->scene->gpu->gl->DeleteTextures(sizeof textures / sizeof *textures, textures);
+  abbe_gpu_drop_textures(t->scene->gpu, sizeof textures / sizeof *textures, textures);
   abbe_thesis_tables_free(&t->tables);
 }
 

@@ -28,9 +28,9 @@ void main() {
   float beam = spot_inner > spot.w ? smoothstep(spot.w, spot_inner, c) : step(spot.w, c);
   for (int i = 0; i < WAVELENGTHS; i++) {
     float passes;
-    vec4 landing =
+    vec4 hit =
         find_receiver(p1, n1, ahead - back, index[i], normals, receiver_depth, 5, passes);
-    vec4 clip = projection * vec4(landing.xyz, 1);
+    vec4 clip = projection * vec4(hit.xyz, 1);
     clip /= clip.w;
     gl_Position = clip;
     gl_PointSize = 3.0;

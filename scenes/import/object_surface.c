@@ -136,20 +136,6 @@ static abbe_result find_exact(const abbe_object_surface *s, const double matrix[
   return s->rectangles ? parallelograms(out, error) : ABBE_OK;
 }
 
-static void find_bounds(abbe_object *out) {
-  for (int k = 0; k < 3; k++) {
-    out->min[k] = INFINITY;
-    out->max[k] = -INFINITY;
-    for (size_t v = 0; v < out->mesh.vertex_count; v++) {
-      out->min[k] = fmin(out->min[k], out->mesh.position[v][k]);
-      out->max[k] = fmax(out->max[k], out->mesh.position[v][k]);
-    }
-    if (out->exact.kind != ABBE_EXACT_SPHERE) continue;
-    out->min[k] = out->exact.centre[k] - out->exact.radius;
-    out->max[k] = out->exact.centre[k] + out->exact.radius;
-  }
-}
-
 /* ---- one object, or several ---- */
 
 static abbe_result has_crease(const abbe_mesh *mesh, bool *creased, abbe_error *error) {
@@ -275,7 +261,7 @@ static abbe_result place_one(const abbe_object_surface *s, const double matrix[1
                              abbe_object *out, abbe_error *error) {
   abbe_result result = abbe_mesh_transform(&out->mesh, matrix, error);
   if (result == ABBE_OK) result = find_exact(s, matrix, out, error);
-  if (result == ABBE_OK) find_bounds(out);
+  if (result == ABBE_OK) abbe_object_bound(out);
   if (result == ABBE_OK && !(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))
     result = abbe_error_set(error, ABBE_GEOMETRY, "the placed object has no finite size");
   return result;

@@ -106,15 +106,6 @@ bool abbe_mesh_contains(const abbe_mesh *mesh, const double point[3]);
 /* Loop subdivision [Loop1987], `levels` times (x4 faces each); smooth normals, no uv. */
 abbe_result abbe_mesh_subdivide(abbe_mesh *mesh, size_t levels, abbe_error *error);
 
-/* Fewer faces between vertices of the mesh, which keep their normals: edges are collapsed as long
- * as the mean distance to the planes of the faces that were there stays below distance_m, by
- * quadrics [GarlandHeckbert1997]. What is closed stays closed, but folds may come to share an edge;
- * where vertices are split, as a faceted mesh's are, they hold their edges. To be drawn, not to be
- * traced. *face is malloc'd, *count of them; distance_m = 0 gives the mesh's own.
- * ABBE_INVALID_ARGUMENT, ABBE_NO_MEMORY. */
-abbe_result abbe_mesh_simplify(const abbe_mesh *mesh, double distance_m, uint32_t (**face)[3],
-                               size_t *count, abbe_error *error);
-
 /* Recomputes normals; AUTO goes by the angles alone. Vertices are split where normals are. */
 abbe_result abbe_mesh_compute_normals(abbe_mesh *mesh, abbe_mesh_normals normals,
                                       abbe_error *error);

@@ -401,8 +401,7 @@ abbe_result abbe_agf_parse(const char *bytes, size_t size, const char *name,
   size_t length = 0;
   abbe_result result = abbe_encoding_decode(bytes, size, &text, &length, error);
   if (result != ABBE_OK) return result;
-  const char *slash = strrchr(name, '/');
-  reader r = {.file = slash != NULL ? slash + 1 : name,
+  reader r = {.file = abbe_file_name(name),
               .table = out,
               .report = report,
               .error = error,

@@ -93,8 +93,7 @@ abbe_import_format abbe_import_detect(const char *text, size_t size) {
 /* ---- points ---- */
 
 static char *text_of(const char *before, const char *path, bool stem) {
-  const char *slash = strrchr(path, '/'), *file = slash != NULL ? slash + 1 : path;
-  const char *dot = strrchr(file, '.');
+  const char *file = abbe_file_name(path), *dot = strrchr(file, '.');
   size_t length = stem && dot != NULL && dot > file ? (size_t)(dot - file) : strlen(file);
   size_t size = strlen(before) + length + 1;
   char *text = malloc(size);

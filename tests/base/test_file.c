@@ -257,8 +257,16 @@ static void a_full_disk_leaves_the_old_file(void **state) {
   assert_int_equal(entries(), before);
 }
 
+static void test_name_follows_the_last_slash(void **state) {
+  (void)state;
+  assert_string_equal(abbe_file_name("a/b.exr"), "b.exr");
+  assert_string_equal(abbe_file_name("b.exr"), "b.exr");
+  assert_string_equal(abbe_file_name("/"), "");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_name_follows_the_last_slash),
       cmocka_unit_test(what_is_written_is_read),
       cmocka_unit_test(what_cannot_be_read_says_why),
       cmocka_unit_test(a_file_without_a_size_is_read),

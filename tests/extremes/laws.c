@@ -135,7 +135,7 @@ static bool white_of(const extreme *e, const extreme_frame *f, double white[3]) 
  * its small parts. */
 static void check_map(const extreme *e, const extreme_frame *f, extreme_row *row) {
   const abbe_ledger *energy = &f->statistics.energy;
-  double deposited = energy->deposited - energy->on_pages, white[3], worst = 0;
+  double deposited = energy->deposited - energy->on_tiles, white[3], worst = 0;
   if (f->map.data == NULL || f->scene.light_count > 1 || !(deposited > 0)) return;
   if (!white_of(e, f, white)) {
     extreme_row_break(row, "the light has no white");

@@ -8,7 +8,7 @@
 
 static abbe_context *context;
 
-static int make_context(void **state) {
+static inline int make_context(void **state) {
   abbe_error error = {0};
   (void)state;
   if (abbe_context_make(ABBE_CONTEXT_OSMESA, &context, &error) == ABBE_OK) return 0;
@@ -16,7 +16,7 @@ static int make_context(void **state) {
   return 1;
 }
 
-static int free_context(void **state) {
+static inline int free_context(void **state) {
   (void)state;
   abbe_context_free(context);
   return 0;

@@ -224,8 +224,9 @@ static double apart(const abbe_image *a, const abbe_image *b) {
   "angle: 20}}, {translate: [-0.3, 0.4, 0.04]}], reflectance: [0.6, 0.5, 0.2]}\n"
 
 /* A rectangle and a box beside a hill, by their parallelograms and by their triangles: through a
- * ball, which sees both, and through a ring, whose light goes the general way. The box hides none
- * of that light from the lamp: places that it hides have maps where they are parallelograms. */
+ * ball, which sees both, and through a ring, whose light takes multi-refractor paths. The box hides
+ * none of that light from the lamp: places that it hides have maps where they are parallelograms.
+ */
 static void triangles_do_as_parallelograms_do(void **state) {
   (void)state;
   static const char *const texts[] = {CAMERA POINT_LIGHT TEXTURED_FLOOR CRATE HILL BALL("crown"),
@@ -308,15 +309,15 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
   abbe_image picture = {0};
   abbe_error error = {0};
   float *at = NULL;
-  size_t count, orders, lanes, on_globe = 0, seen = 0;
+  size_t count, orders, samples, on_globe = 0, seen = 0;
   load_text(UNDER_A_PANE, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   const abbe_ledger e = draw_frame(renderer).energy;
   assert_true(abbe_ledger_imbalance(&e) < 1e-4);
   assert_near(e.deposited / e.reached, pane_passes, 1e-3);
-  assert_ok(abbe_renderer_read_landings(renderer, 0, &at, NULL, &count, &orders, &lanes, &error),
+  assert_ok(abbe_renderer_read_hits(renderer, 0, &at, NULL, &count, &orders, &samples, &error),
             &error);
-  for (size_t i = 0; i < count * orders * lanes; i++) {
+  for (size_t i = 0; i < count * orders * samples; i++) {
     const float *p = at + 4 * i;
     if (p[3] <= 0) continue;
     const double aside = hypot((double)p[0], (double)p[1]);
@@ -355,7 +356,8 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
 }
 
 /* The eye looks along y into a pane; a moon in its back is all that the pane can mirror, and
- * nothing lies behind. By its planes, and by its triangles, which asks for the general way. */
+ * nothing lies behind. By its planes, and by its triangles, which asks for multi-refractor paths.
+ */
 #define MOON_BEHIND_THE_EYE                                                                        \
   "materials: glass.yaml\ncamera: {eye: [0, -1, 0.3], target: [0, 0, 0.3], fov: 12}\n"             \
   "ambient: 0.2\nlights:\n- {name: sun, kind: directional, direction: [0, 1, -1], "                \

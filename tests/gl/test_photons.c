@@ -1,21 +1,21 @@
-/* Photons' landings against optics in double precision: a sphere, a prism, a slit. */
+/* Photons' hits against optics in double precision: a sphere, a prism, a slit. */
 #include "tests/gl/frame.h"
 
 #include "spectral/optics.h"
 
-typedef struct landings {
-  float *at; /* [count][orders][lanes][4] */
+typedef struct hits {
+  float *at; /* [count][orders][samples][4] */
   unsigned *cell;
-  size_t count, orders, lanes, grid;
+  size_t count, orders, samples, grid;
   abbe_view view;
-} landings;
+} hits;
 
-static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc, landings *l) {
+static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc, hits *l) {
   abbe_renderer *renderer = make_renderer(scene, desc);
   abbe_error error = {0};
   draw_frame(renderer);
-  assert_ok(abbe_renderer_read_landings(renderer, 0, &l->at, &l->cell, &l->count, &l->orders,
-                                        &l->lanes, &error),
+  assert_ok(abbe_renderer_read_hits(renderer, 0, &l->at, &l->cell, &l->count, &l->orders,
+                                    &l->samples, &error),
             &error);
   abbe_renderer_photon_view(renderer, 0, &l->view);
   l->grid = abbe_renderer_plan(renderer)->desc.photons;
@@ -23,16 +23,16 @@ static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc,
   assert_true(l->count > 0);
 }
 
-static void landings_free(landings *l) {
+static void hits_free(hits *l) {
   free(l->at);
   free(l->cell);
 }
 
-static const float *landing(const landings *l, size_t photon, size_t order, size_t lane) {
-  return l->at + 4 * ((photon * l->orders + order) * l->lanes + lane);
+static const float *hit(const hits *l, size_t photon, size_t order, size_t sample) {
+  return l->at + 4 * ((photon * l->orders + order) * l->samples + sample);
 }
 
-static void photon_ray(const landings *l, size_t photon, double o[3], double d[3]) {
+static void photon_ray(const hits *l, size_t photon, double o[3], double d[3]) {
   unsigned cell = l->cell[photon];
   double uv[2] = {((cell & 0xffffu) + 0.5) / (double)l->grid,
                   ((cell >> 16) + 0.5) / (double)l->grid};
@@ -84,7 +84,7 @@ static void step(sphere_path *path, double out[3], double *out_share) {
 /* Floats of about 1 carry 6e-8; each passage of the sphere stretches small differences by up to
  * its radius over its focal length, and 1 / cosine at the floor: a hundredfold in all, for rays
  * that do not graze. */
-static void compare_path(const landings *l, size_t photon, sphere_path path, size_t *compared) {
+static void compare_path(const hits *l, size_t photon, sphere_path path, size_t *compared) {
   double o[3], d[3], out[3], share, power = 1;
   photon_ray(l, photon, o, d);
   if (!enter(&path, o, d) || -dot(d, path.normal) < 0.3) return;
@@ -93,7 +93,7 @@ static void compare_path(const landings *l, size_t photon, sphere_path path, siz
   for (size_t order = 0; order < 3; order++) {
     step(&path, out, &share);
     double t = -path.p[2] / out[2];
-    const float *at = landing(l, photon, order, 0);
+    const float *at = hit(l, photon, order, 0);
     if (out[2] > -0.3 || fabs(path.p[0] + t * out[0]) > 0.99 || fabs(path.p[1] + t * out[1]) > 0.99)
       continue;
     if (share < 0.02) continue; /* the path may have ended */
@@ -109,7 +109,7 @@ static void compare_path(const landings *l, size_t photon, sphere_path path, siz
 static void test_a_sphere_lands_as_double_precision_says(void **state) {
   (void)state;
   abbe_scene scene = {0};
-  landings l = {0};
+  hits l = {0};
   abbe_error error = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
   abbe_render_desc desc = small_frame;
@@ -122,7 +122,7 @@ static void test_a_sphere_lands_as_double_precision_says(void **state) {
   size_t compared = 0;
   for (size_t i = 0; i < l.count; i++) compare_path(&l, i, path, &compared);
   assert_true(compared > l.count / 2);
-  landings_free(&l);
+  hits_free(&l);
   abbe_scene_free(&scene);
 }
 
@@ -138,7 +138,7 @@ static void test_a_sphere_lands_as_double_precision_says(void **state) {
   "- {name: prism, shape: prism, apex: 60, side: 0.2, length: 0.2, material: %s,\n"                \
   "   transform: [{translate: [0, 0, 1]}]}\n"
 
-static void trace_prism(const char *glass, double wall_x, landings *l) {
+static void trace_prism(const char *glass, double wall_x, hits *l) {
   char text[1024];
   double pi = acos(-1), up = asin(1.5 * sin(pi / 6)) - pi / 6;
   abbe_scene scene = {0};
@@ -150,7 +150,7 @@ static void trace_prism(const char *glass, double wall_x, landings *l) {
 
 /* Whether the photon meets the entrance face well above the prism's middle: then it leaves through
  * the other face, and not through the base. */
-static bool enters_high(const landings *l, size_t photon) {
+static bool enters_high(const hits *l, size_t photon) {
   double o[3], d[3], normal[3] = {-cos(acos(-1) / 6), 0, 0.5};
   photon_ray(l, photon, o, d);
   double inradius = 0.2 / (2 * sqrt(3)), apex_z = 1 + 0.2 / sqrt(3);
@@ -162,7 +162,7 @@ static bool enters_high(const landings *l, size_t photon) {
 
 static void test_a_prism_deviates_least_as_the_formula_says(void **state) {
   (void)state;
-  landings near = {0}, far = {0};
+  hits near = {0}, far = {0};
   double expected;
   trace_prism("flat", 1, &near);
   trace_prism("flat", 1.5, &far);
@@ -178,21 +178,21 @@ static void test_a_prism_deviates_least_as_the_formula_says(void **state) {
     if (!enters_high(&near, i)) continue;
     photon_ray(&near, i, o, d);
     for (int c = 0; c < 3; c++)
-      way[c] = (double)landing(&far, k, 0, 0)[c] - (double)landing(&near, i, 0, 0)[c];
-    /* Two landings half a metre apart, each a float's few 1e-7 m off. */
+      way[c] = (double)hit(&far, k, 0, 0)[c] - (double)hit(&near, i, 0, 0)[c];
+    /* Two hits half a metre apart, each a float's few 1e-7 m off. */
     double cosine = dot(way, d) / sqrt(dot(way, way));
     assert_near(acos(cosine), expected, 4e-6);
     compared++;
   }
   assert_true(compared > 100);
-  landings_free(&near);
-  landings_free(&far);
+  hits_free(&near);
+  hits_free(&far);
 }
 
-static double mean_height(const landings *l, size_t lane) {
+static double mean_height(const hits *l, size_t sample) {
   double sum = 0, flux = 0;
   for (size_t i = 0; i < l->count; i++) {
-    const float *at = landing(l, i, 0, lane);
+    const float *at = hit(l, i, 0, sample);
     if (!enters_high(l, i)) continue;
     assert_true(at[3] > 0);
     sum += (double)at[3] * (double)at[2];
@@ -205,46 +205,46 @@ static double mean_height(const landings *l, size_t lane) {
 /* The beam comes from below and is bent down: the more, the lower on the wall. */
 static void test_violet_is_bent_more_than_red(void **state) {
   (void)state;
-  landings l = {0};
+  hits l = {0};
   trace_prism("crown", 1, &l);
-  assert_int_equal(l.lanes, 7);
-  for (size_t lane = 1; lane < 7; lane++)
-    assert_true(mean_height(&l, lane) > mean_height(&l, lane - 1) + 1e-3);
-  landings_free(&l);
+  assert_true(l.samples >= 4);
+  for (size_t sample = 1; sample < l.samples; sample++)
+    assert_true(mean_height(&l, sample) > mean_height(&l, sample - 1) + 1e-3);
+  hits_free(&l);
 }
 
 /* The shipped prism's spectrum on its wall runs from violet, deviated most, to red. */
 static void test_the_shipped_prism_makes_a_spectrum(void **state) {
   (void)state;
   abbe_scene scene = {0};
-  landings l = {0};
+  hits l = {0};
   load_shipped("prism", &scene);
   trace_photons(&scene, &small_frame, &l);
   double before = 0;
-  for (size_t lane = 0; lane < l.lanes; lane++) {
+  for (size_t sample = 0; sample < l.samples; sample++) {
     double sum = 0, flux = 0;
     for (size_t i = 0; i < l.count; i++) {
-      const float *at = landing(&l, i, 0, lane);
+      const float *at = hit(&l, i, 0, sample);
       if (at[3] <= 0 || at[1] < 0.2f) continue; /* not on the wall, which stands behind */
       sum += (double)at[3] * atan2((double)at[1], (double)at[0]);
       flux += (double)at[3];
     }
     assert_true(flux > 0);
-    if (lane > 0) assert_true(sum / flux < before);
+    if (sample > 0) assert_true(sum / flux < before);
     before = sum / flux;
   }
-  landings_free(&l);
+  hits_free(&l);
   abbe_scene_free(&scene);
 }
 
 /* A hill far away is traversed; what lands on the floor beside it lands in the same place. */
-static void test_a_hill_moves_no_landing_on_the_floor(void **state) {
+static void test_a_hill_moves_no_hit_on_the_floor(void **state) {
   (void)state;
   static const char *const balls[] = {BALL("flat"), RING("flat")};
   size_t on_hill = 0;
   for (int k = 0; k < 2; k++) {
     char text[1024];
-    landings alone = {0}, beside = {0};
+    hits alone = {0}, beside = {0};
     abbe_scene scene = {0};
     snprintf(text, sizeof text, "%s%s", CAMERA POINT_LIGHT FLOOR, balls[k]);
     load_text(text, &scene);
@@ -262,7 +262,7 @@ static void test_a_hill_moves_no_landing_on_the_floor(void **state) {
       while (j < beside.count && beside.cell[j] != alone.cell[i]) j++;
       assert_true(j < beside.count);
       for (size_t slot = 0; slot < alone.orders; slot++) {
-        const float *a = landing(&alone, i, slot, 0), *b = landing(&beside, j, slot, 0);
+        const float *a = hit(&alone, i, slot, 0), *b = hit(&beside, j, slot, 0);
         if (b[3] <= 0) continue; /* nothing, or in the hill's shadow */
         on_hill += b[2] > 1e-4f;
         if (b[2] > 1e-4f) continue;
@@ -272,8 +272,8 @@ static void test_a_hill_moves_no_landing_on_the_floor(void **state) {
       }
     }
     assert_true(on_floor > alone.count);
-    landings_free(&alone);
-    landings_free(&beside);
+    hits_free(&alone);
+    hits_free(&beside);
   }
   assert_true(on_hill > 0);
 }
@@ -305,7 +305,7 @@ int main(void) {
       cmocka_unit_test(test_a_prism_deviates_least_as_the_formula_says),
       cmocka_unit_test(test_violet_is_bent_more_than_red),
       cmocka_unit_test(test_the_shipped_prism_makes_a_spectrum),
-      cmocka_unit_test(test_a_hill_moves_no_landing_on_the_floor),
+      cmocka_unit_test(test_a_hill_moves_no_hit_on_the_floor),
       cmocka_unit_test(test_a_slit_lets_its_light_through_whatever_the_grid),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);

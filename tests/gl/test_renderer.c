@@ -19,9 +19,9 @@ static void assert_balance(const abbe_statistics *s, const char *name) {
   assert_true(s->energy.reflected > 0);
 }
 
-/* The map read as a picture holds what the ledger says was deposited, but on receivers' pages. */
+/* The map read as a picture holds what the ledger says was deposited, but on receivers' tiles. */
 static void assert_map_holds(abbe_renderer *renderer, const abbe_ledger *l) {
-  const double deposited = l->deposited - l->on_pages;
+  const double deposited = l->deposited - l->on_tiles;
   abbe_image map = {0};
   read_map(renderer, 0, &map);
   assert_finite(&map);
@@ -34,6 +34,7 @@ static void assert_repeats(abbe_renderer *renderer) {
   abbe_image first = {0}, second = {0}, map[2] = {{0}, {0}};
   read_picture(renderer, false, &first);
   read_map(renderer, 0, &map[0]);
+  abbe_renderer_redraw(renderer);
   draw_frame(renderer);
   read_picture(renderer, false, &second);
   read_map(renderer, 0, &map[1]);
@@ -330,6 +331,7 @@ static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);
   read_picture(renderer, false, &before);
+  abbe_renderer_redraw(renderer);
   assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
   assert_int_equal(calls, 1);
   assert_ok(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error), &error);
@@ -360,7 +362,7 @@ static void test_the_floor_leaves_the_picture(void **state) {
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     draw_frame(renderer);
     read_picture(renderer, false, &before);
-    assert_int_equal(abbe_renderer_floor(renderer, &ms, NULL), ABBE_OK);
+    assert_int_equal(abbe_renderer_baseline(renderer, &ms, NULL), ABBE_OK);
     assert_true(ms > 0);
     read_picture(renderer, false, &after);
     assert_same_pixels(&before, &after);
@@ -518,6 +520,7 @@ static void test_nothing_is_read_before_a_frame(void **state) {
     read_picture(renderer, false, &image);
     abbe_image_free(&image);
     /* Nor what a frame that was stopped has left. */
+    abbe_renderer_redraw(renderer);
     assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
   }
   abbe_renderer_free(renderer);

@@ -25,7 +25,7 @@ static const struct {
 static const char *const exception_files = "validation/sweep/", *const exception_room = "gl";
 static const char *const bridges[] = {
     "colorimetry/image/display_ocio.cpp", "scenes/geometry/transform.cpp",
-    "scenes/mesh/edge_collapse.cpp", "tests/colorimetry/image/exr_library.cpp"};
+    "tests/colorimetry/image/exr_library.cpp"};
 
 static bool may_use(const char *file, const char *used) {
   const char *from = sources_room(file), *to = sources_room(used);

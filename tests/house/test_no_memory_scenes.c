@@ -180,7 +180,6 @@ static abbe_result meshes(abbe_error *error) {
     abbe_mesh mesh = {0};
     char *what = NULL;
     double plane[16][4];
-    size_t count = 0;
     abbe_convex found = {0};
     result = abbe_mesh_load(paths[i], i == 0 ? ABBE_NORMALS_AUTO : ABBE_NORMALS_FLAT, &mesh, NULL,
                             error);
@@ -195,10 +194,6 @@ static abbe_result meshes(abbe_error *error) {
     if (result == ABBE_OK) digest_mesh(&mesh);
     if (result == ABBE_OK) result = abbe_mesh_subdivide(&mesh, 1, error);
     if (result == ABBE_OK) digest_mesh(&mesh);
-    uint32_t(*few)[3] = NULL;
-    if (result == ABBE_OK) result = abbe_mesh_simplify(&mesh, 0.1, &few, &count, error);
-    if (result == ABBE_OK) digest(few, count * sizeof *few);
-    free(few);
     if (result == ABBE_OK) digest_text(what);
     free(what);
     abbe_mesh_free(&mesh);

@@ -222,7 +222,7 @@ static int teardown(void **state) {
 static void test_traces(void **state) {
   (void)state;
   static const operation list[] = {
-      {"trace", trace, 40}, {"reference", reference, 8}, {"checkpoint", checkpoint, 0}};
+      {"trace", trace, 20}, {"reference", reference, 5}, {"checkpoint", checkpoint, 0}};
   operation_check_all(list, sizeof list / sizeof *list);
 }
 

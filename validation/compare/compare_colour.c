@@ -1,6 +1,7 @@
 /* The metrics of colour: CIEDE2000 and u'v', and what REF's noise alone makes of them. */
 #include "validation/compare/compare_state.h"
 
+#include "base/order.h"
 #include "colorimetry/difference.h"
 
 #include <math.h>
@@ -147,18 +148,13 @@ static mean weighted_mean(double sum, double weights, double weighted_squares) {
   return (mean){value, value + 2 * sqrt(spread * weighted_squares) / weights};
 }
 
-static int ascending(const void *a, const void *b) {
-  float x = *(const float *)a, y = *(const float *)b;
-  return (x > y) - (x < y);
-}
-
 /* Mean, 95th percentile and greatest of the region's CIEDE2000; sorted is room for them. */
 static size_t order(const abbe_compare_state *s, const abbe_mask *mask, const float *values,
                     float *sorted) {
   size_t count = 0;
   for (size_t p = 0; p < s->pixels; p++)
     if (abbe_compare_has(s, mask, p) && !isnan(values[p])) sorted[count++] = values[p];
-  qsort(sorted, count, sizeof *sorted, ascending);
+  qsort(sorted, count, sizeof *sorted, abbe_order_ascending_floats);
   return count;
 }
 

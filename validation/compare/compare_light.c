@@ -2,6 +2,7 @@
 #include "validation/compare/compare_state.h"
 
 #include "base/number.h"
+#include "base/order.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -283,11 +284,6 @@ static abbe_result find_scale(const abbe_compare_state *s, double *scale, abbe_e
   return ABBE_OK;
 }
 
-static int descending(const void *a, const void *b) {
-  float x = *(const float *)a, y = *(const float *)b;
-  return (x < y) - (x > y);
-}
-
 /* D65 at the Y that the brightest 1 % of the lit pixels reach. */
 static abbe_result find_white(const abbe_compare_state *s, double white[3], abbe_error *error) {
   float *lit = malloc(s->pixels * sizeof *lit);
@@ -300,7 +296,7 @@ static abbe_result find_white(const abbe_compare_state *s, double white[3], abbe
     abbe_field_xyz(s->reference, p, xyz, NULL);
     if (s->bad[p] == 0 && xyz[1] > 0) lit[count++] = (float)xyz[1];
   }
-  qsort(lit, count, sizeof *lit, descending);
+  qsort(lit, count, sizeof *lit, abbe_order_descending_floats);
   double y = count > 0 ? (double)lit[count / 100] : 0;
   free(lit);
   const double d65[3] = {0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};

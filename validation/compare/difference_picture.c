@@ -1,5 +1,6 @@
 #include "validation/compare/difference_picture.h"
 
+#include "base/order.h"
 #include "colorimetry/plot/chart.h"
 
 #include <math.h>
@@ -37,11 +38,6 @@ static abbe_result check(const abbe_field *reference, const abbe_field *test, ab
                         reference->width, reference->height, test->width, test->height);
 }
 
-static int ascending(const void *a, const void *b) {
-  float x = *(const float *)a, y = *(const float *)b;
-  return (x > y) - (x < y);
-}
-
 static double round_up(double value) {
   if (!(value > 0)) return 0;
   double power = pow(10, floor(log10(value)));
@@ -65,7 +61,7 @@ abbe_result abbe_difference_picture_range(const abbe_field *reference, const abb
     double d = fabs(difference(reference, test, scale, p));
     if (isfinite(d)) sizes[count++] = (float)d;
   }
-  qsort(sizes, count, sizeof *sizes, ascending);
+  qsort(sizes, count, sizeof *sizes, abbe_order_ascending_floats);
   if (count > 0) {
     double most = (double)sizes[(99 * count + 99) / 100 - 1];
     *range = round_up(most > 0 ? most : (double)sizes[count - 1]);

@@ -1,5 +1,6 @@
 #include "validation/compare/file_comparison.h"
 
+#include "base/file.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/png_file.h"
 #include "validation/compare/difference_picture.h"
@@ -143,17 +144,13 @@ abbe_result abbe_file_comparison_judge(const abbe_file_comparison *c,
       region->metric[first->metric].value, bad, first->tolerance, more);
 }
 
-static const char *base_of(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash == NULL ? path : slash + 1;
-}
-
 abbe_result abbe_file_comparison_draw(const abbe_file_comparison *c, const char *path, double range,
                                       abbe_error *error) {
   ABBE_REQUIRE(c && c->path[0] && c->path[1] && path, error);
   const double scale = c->comparison.scale;
   char title[160];
-  snprintf(title, sizeof title, "%.70s less %.70s", base_of(c->path[1]), base_of(c->path[0]));
+  snprintf(title, sizeof title, "%.70s less %.70s", abbe_file_name(c->path[1]),
+           abbe_file_name(c->path[0]));
   abbe_result result = ABBE_OK;
   if (range == 0)
     result = abbe_difference_picture_range(&c->field[0], &c->field[1], scale, &range, error);

@@ -1,5 +1,6 @@
 #include "validation/compare/mask.h"
 
+#include "base/order.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>
@@ -9,11 +10,6 @@
 
 static double light_of(double value) {
   return value > 0 && isfinite(value) ? value : 0;
-}
-
-static int descending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x < y) - (x > y);
 }
 
 static abbe_result make_empty(size_t count, abbe_mask *mask, abbe_error *error) {
@@ -67,7 +63,7 @@ abbe_result abbe_mask_make_brightest(const double *light, size_t count, double s
   if (sorted == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory to sort %zu pixels", count);
   for (size_t i = 0; i < count; i++) sorted[i] = light_of(light[i]);
-  qsort(sorted, count, sizeof *sorted, descending);
+  qsort(sorted, count, sizeof *sorted, abbe_order_descending);
   threshold t = find_threshold(sorted, count, share);
   free(sorted);
   if (t.inside == 0)

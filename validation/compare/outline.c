@@ -1,5 +1,6 @@
 #include "validation/compare/outline.h"
 
+#include "base/order.h"
 #include "colorimetry/image/image.h"
 #include "colorimetry/rgb_space.h"
 
@@ -227,11 +228,6 @@ static size_t add_distances(const abbe_outline *a, const double *rows_of_b, doub
   return count;
 }
 
-static int ascending(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static abbe_result compare_rims(const abbe_outline *a, const abbe_outline *b,
                                 abbe_outline_agreement *out, abbe_error *error) {
   double *rows_a = column_distances(a), *rows_b = column_distances(b);
@@ -241,7 +237,7 @@ static abbe_result compare_rims(const abbe_outline *a, const abbe_outline *b,
     size_t count = add_distances(a, rows_b, apart);
     count += add_distances(b, rows_a, apart + count);
     for (size_t i = 0; i < count; i++) out->mean_apart += apart[i] / (double)count;
-    qsort(apart, count, sizeof *apart, ascending);
+    qsort(apart, count, sizeof *apart, abbe_order_ascending);
     out->p95_apart = apart[(size_t)(0.95 * (double)(count - 1))];
   }
   free(rows_a);

@@ -56,17 +56,12 @@ typedef struct page {
   int turn; /* of the table, among those of scenes of one name; from 1 */
 } page;
 
-static const char *base_of(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash == NULL ? path : slash + 1;
-}
-
 static const char *const names[PICTURES] = {"reference", "cheapest", "middle",
                                             "accurate",  "thesis",   "thesis-cie"};
 
 /* "PAGE-SCENE-what.png", beside the page; "PAGE-SCENE-2-what.png" for a second one of that name. */
 static void name_shot(const page *p, const abbe_sweep_table *t, const char *what, shot *out) {
-  const char *scene = base_of(t->fact[ABBE_SWEEP_FACT_SCENE]);
+  const char *scene = abbe_file_name(t->fact[ABBE_SWEEP_FACT_SCENE]);
   const char *dot = strrchr(p->path, '.');
   int stem = dot != NULL && strchr(dot, '/') == NULL ? (int)(dot - p->path) : (int)strlen(p->path);
   char turn[16] = "";
@@ -145,7 +140,7 @@ static void write_pictures(FILE *out, const shot *shots) {
     fprintf(out, "|");
     for (int i = 0; i < PICTURES; i++) {
       if (!shots[i].there) continue;
-      if (line == 0) fprintf(out, " ![%s](%s) |", shots[i].text, base_of(shots[i].file));
+      if (line == 0) fprintf(out, " ![%s](%s) |", shots[i].text, abbe_file_name(shots[i].file));
       if (line == 1) fprintf(out, "---|");
       if (line == 2) fprintf(out, " %s |", shots[i].text);
     }
@@ -232,7 +227,7 @@ static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_er
   if (shots == NULL || order == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the report");
   if (result == ABBE_OK) {
-    fprintf(p->out, "## %s\n\n", base_of(t->fact[ABBE_SWEEP_FACT_SCENE]));
+    fprintf(p->out, "## %s\n\n", abbe_file_name(t->fact[ABBE_SWEEP_FACT_SCENE]));
     take_shots(p, t, order, count, shots);
     write_pictures(p->out, shots);
     fprintf(p->out, "%s pixels, medians of %s frames. %s. %s. %s.\n\n",
@@ -260,10 +255,10 @@ static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_er
 
 /* Which table of its scene's name it is. */
 static int turn_of(const abbe_sweep_table *tables, size_t index) {
-  const char *scene = base_of(tables[index].fact[ABBE_SWEEP_FACT_SCENE]);
+  const char *scene = abbe_file_name(tables[index].fact[ABBE_SWEEP_FACT_SCENE]);
   int turn = 1;
   for (size_t i = 0; i < index; i++)
-    turn += strcmp(base_of(tables[i].fact[ABBE_SWEEP_FACT_SCENE]), scene) == 0;
+    turn += strcmp(abbe_file_name(tables[i].fact[ABBE_SWEEP_FACT_SCENE]), scene) == 0;
   return turn;
 }
 

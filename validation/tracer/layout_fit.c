@@ -1,5 +1,6 @@
 #include "validation/tracer/layout_fit.h"
 
+#include "base/order.h"
 #include "scenes/geometry/vector.h"
 #include "validation/tracer/emission.h"
 
@@ -7,11 +8,6 @@
 #include <string.h>
 
 enum { TRIALS = 65536 };
-
-static int by_value(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 /* Window coordinates of a trial's photons, along right (0) and up (1); their number. */
 static size_t try_photons(const abbe_tracer *t, abbe_light_walk *walk, const abbe_view *view,
@@ -72,7 +68,7 @@ abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
     double near = view.near, far = view.far;
     size_t found = try_photons(t, walk, &view, &e, at, &near, &far);
     for (int k = 0; k < 2 && found > 0; k++) {
-      qsort(at[k], found, sizeof *at[k], by_value);
+      qsort(at[k], found, sizeof *at[k], abbe_order_ascending);
       view.window[2 * k] = at[k][found / 1000];
       view.window[2 * k + 1] = at[k][found - 1 - found / 1000];
     }

@@ -1,15 +1,10 @@
 #include "validation/tracer/trace_run.h"
 
+#include "base/clock.h"
 #include "validation/tracer/checkpoint.h"
 
 #include <math.h>
 #include <time.h>
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* How far the run is by what ends it first. Errors fall as one over the root of the passes. */
 static double progress_made(const abbe_trace_run_desc *d, size_t passes, double spent,
@@ -35,10 +30,10 @@ abbe_result abbe_trace_keep(const abbe_tracer *tracer, const abbe_trace_run_desc
 
 abbe_result abbe_trace_run(abbe_tracer *tracer, const abbe_trace_run_desc *d, abbe_error *error) {
   ABBE_REQUIRE(tracer && d, error);
-  double start = now(), saved = start, estimate = INFINITY;
+  double start = abbe_clock_seconds(), saved = start, estimate = INFINITY;
   for (;;) {
     size_t passes = abbe_tracer_passes(tracer);
-    double spent = now() - start;
+    double spent = abbe_clock_seconds() - start;
     if (d->error > 0) estimate = abbe_tracer_error(tracer);
     bool goes_on =
         d->progress == NULL || d->progress(d->user, progress_made(d, passes, spent, estimate));
@@ -48,9 +43,9 @@ abbe_result abbe_trace_run(abbe_tracer *tracer, const abbe_trace_run_desc *d, ab
                             d->passes);
     if (!goes_on) return abbe_error_set(error, ABBE_CANCELLED, "stopped after %zu passes", passes);
     abbe_result result = abbe_tracer_pass(tracer, d->stop, error);
-    if (result == ABBE_OK && now() - saved >= d->checkpoint_s) {
+    if (result == ABBE_OK && abbe_clock_seconds() - saved >= d->checkpoint_s) {
       result = abbe_trace_keep(tracer, d, error);
-      saved = now();
+      saved = abbe_clock_seconds();
     }
     if (result != ABBE_OK) return result;
   }

@@ -1,5 +1,6 @@
 #include "validation/tracer/tracer.h"
 
+#include "base/clock.h"
 #include "spectral/wavelengths.h"
 #include "validation/tracer/layout_fit.h"
 #include "validation/tracer/light_pass.h"
@@ -18,12 +19,6 @@
  * variance, in three dimensions (place and wavelength) [KnausZwicker2011]. */
 static const double shrink = 1.0 / 7;
 static const double first_window_nm = 25;
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* ---- the request ---- */
 
@@ -325,11 +320,11 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   unsigned mode = flush_tiny_numbers(t);
   abbe_trace_statistics before = t->statistics;
   size_t landed = 0;
-  double start = now();
+  double start = abbe_clock_seconds();
   abbe_result result = abbe_tracer_light_pass(t, stop, &landed, error);
-  double middle = now();
+  double middle = abbe_clock_seconds();
   if (result == ABBE_OK && !t->desc.no_picture) result = eye_pass(t, landed, stop, error);
-  double end = now();
+  double end = abbe_clock_seconds();
   restore_mode(mode);
   if (result != ABBE_OK) {
     t->statistics = before;

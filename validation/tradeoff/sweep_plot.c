@@ -1,5 +1,6 @@
 #include "validation/tradeoff/sweep_plot.h"
 
+#include "base/file.h"
 #include "colorimetry/plot/chart.h"
 #include "validation/tradeoff/pareto_front.h"
 
@@ -183,8 +184,7 @@ abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table,
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < count && result == ABBE_OK; i++)
     result = make_chart(table, errors[i], &f[i], &charts[i], error);
-  const char *scene = table->fact[ABBE_SWEEP_FACT_SCENE], *slash = strrchr(scene, '/');
-  snprintf(title, sizeof title, "%s, %s", slash != NULL ? slash + 1 : scene,
+  snprintf(title, sizeof title, "%s, %s", abbe_file_name(table->fact[ABBE_SWEEP_FACT_SCENE]),
            table->fact[ABBE_SWEEP_FACT_SIZE]);
   charts[0].title = title;
   if (result == ABBE_OK) result = abbe_chart_write(path, charts, count, 1100, 560 * count, error);

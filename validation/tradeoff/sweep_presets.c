@@ -201,11 +201,6 @@ static void write_point(FILE *out, const point *p) {
       abbe_number_text(s->share, share), s->model, p->light_ms, p->eye_ms, p->error, p->least);
 }
 
-static const char *base_of(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash == NULL ? path : slash + 1;
-}
-
 /* Of the front's points that are finer than the defaults, the cheapest that is as good as the best;
  * on_front where there is none. */
 static size_t find_accurate(const front *f) {
@@ -225,7 +220,7 @@ static void write_class(FILE *out, const front *f, const margins *widest) {
   size_t used = 0;
   for (size_t i = 0; i < f->count && used < sizeof scenes / 2; i++) {
     if (!is_of(f, i)) continue;
-    const char *scene = base_of(f->tables[i].fact[ABBE_SWEEP_FACT_SCENE]);
+    const char *scene = abbe_file_name(f->tables[i].fact[ABBE_SWEEP_FACT_SCENE]);
     used += (size_t)snprintf(scenes + used, sizeof scenes - used, "%s%.*s", used > 0 ? ", " : "",
                              (int)strcspn(scene, "."), scene);
   }
@@ -284,7 +279,7 @@ static void write_noisy(FILE *out, const abbe_sweep_table *tables, size_t count,
   for (size_t i = 0; i < count; i++)
     if (!tells(&tables[i], number))
       fprintf(out, "# left out, for its reference's noise explains its errors: %s\n",
-              base_of(tables[i].fact[ABBE_SWEEP_FACT_SCENE]));
+              abbe_file_name(tables[i].fact[ABBE_SWEEP_FACT_SCENE]));
   fprintf(out, "classes:\n");
 }
 

@@ -1,7 +1,8 @@
 #include "validation/walks/ray_batch.h"
 
+#include "base/clock.h"
+
 #include <stdlib.h>
-#include <time.h>
 
 /* Kept packets say in a lane's flags whether it holds a ray, and how packets were traced. */
 enum { LANES = ABBE_RAY_LANES, KEPT = 1, KEPT_COHERENT = 2 };
@@ -45,9 +46,8 @@ void abbe_ray_record_free(abbe_ray_record *record) {
 
 bool abbe_ray_record_replay(abbe_ray_record *r, RTCScene scene, double *seconds, uint64_t *rays) {
   if (r->count == 0) return false;
-  struct timespec from, to;
   *rays = 0;
-  clock_gettime(CLOCK_MONOTONIC, &from);
+  const double start_s = abbe_clock_seconds();
   for (size_t i = 0; i < r->count; i++) {
     struct RTCRayHit16 *packet = &r->packet[i];
     bool coherent = (packet->ray.flags[0] & KEPT_COHERENT) != 0;
@@ -59,8 +59,7 @@ bool abbe_ray_record_replay(abbe_ray_record *r, RTCScene scene, double *seconds,
     trace_packet(scene, packet, lanes, coherent);
     *rays += lanes;
   }
-  clock_gettime(CLOCK_MONOTONIC, &to);
-  *seconds = (double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec);
+  *seconds = abbe_clock_seconds() - start_s;
   r->count = 0;
   return true;
 }

@@ -1,5 +1,6 @@
 #include "gl/plan/examine/inner_light.h"
 
+#include "gl/plan/examine/material_range.h"
 #include "gl/plan/examine/reach.h"
 #include "scenes/geometry/vector.h"
 #include "spectral/optics.h"
@@ -27,9 +28,9 @@ static int entry_of(const abbe_exact *solid, const double p[3], const double d[3
   return enter < leave ? facet : -1;
 }
 
-/* The wall that a ray inside meets next, from a point on the facet `from`; -1: none. */
-static int wall_of(const abbe_exact *solid, int from, const double p[3], const double d[3],
-                   double *at) {
+/* The inner face that a ray inside meets next, from a point on the facet `from`; -1: none. */
+static int inner_face_of(const abbe_exact *solid, int from, const double p[3], const double d[3],
+                         double *at) {
   double nearest = INFINITY;
   int facet = -1;
   for (size_t i = 0; i < solid->count; i++) {
@@ -66,7 +67,7 @@ static double follow(const abbe_exact *solid, const matter *m, double weight, do
   move(p, along, d);
   out->kept[0] += weight * share;
   for (size_t exits = 1; exits <= ABBE_RENDER_MAX_EXITS; exits++) {
-    facet = wall_of(solid, facet, p, inner, &along);
+    facet = inner_face_of(solid, facet, p, inner, &along);
     if (facet < 0) return weight;
     plane = solid->plane[facet];
     const double cosine = abbe_vector_dot(plane, inner);
@@ -120,12 +121,13 @@ size_t abbe_inner_light_exits(const abbe_inner_light *inside, size_t least, size
 static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inner_light *out) {
   static const double up[3] = {0, 0, 1};
   const abbe_object *object = &scene->object[plan->refractor_object[0]];
-  const double middle_nm = 0.5 * (plan->desc.min_nm + plan->desc.max_nm);
-  const double per_m = abbe_material_attenuation(object->material, middle_nm);
-  double n = 1, centre[3], size[3];
+  abbe_material_range range;
+  double centre[3], size[3];
   bool met = false;
   memset(out, 0, sizeof *out);
-  if (abbe_material_n(object->material, middle_nm, &n, NULL) != ABBE_OK) return;
+  if (abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
+                               NULL) != ABBE_OK)
+    return;
   for (int k = 0; k < 3; k++) centre[k] = 0.5 * (object->min[k] + object->max[k]);
   abbe_vector_subtract(object->max, object->min, size);
   for (size_t i = 0; i <= scene->light_count; i++) {
@@ -144,8 +146,8 @@ static void follow_all(const abbe_scene *scene, const abbe_plan *plan, abbe_inne
     abbe_inner_light one;
     /* A cone so narrow that it passes between the rays is taken for a wide one. */
     for (int narrow = 0; narrow < 2; narrow++)
-      if (abbe_inner_light_follow(&object->exact, &view, narrow ? NULL : light, n, per_m,
-                                  plan->desc.energy_share, &one))
+      if (abbe_inner_light_follow(&object->exact, &view, narrow ? NULL : light, range.middle_n,
+                                  range.middle_per_m, plan->desc.energy_share, &one))
         break;
     met = true;
     for (size_t k = 0; k <= ABBE_RENDER_MAX_EXITS; k++) {

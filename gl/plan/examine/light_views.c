@@ -24,7 +24,7 @@ void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
   plan->dispersive = plan->absorbing = plan->tinting = false;
 }
 
-/* Receivers outside the view have pages. */
+/* Receivers outside the view have tiles. */
 static void find_aside(const abbe_scene *scene, abbe_plan *plan, abbe_view *view) {
   for (size_t k = 0; k < plan->receiver_count; k++) {
     const abbe_mesh *mesh = &scene->object[plan->receiver_object[k]].mesh;

@@ -7,7 +7,12 @@ enum { STEPS = 81 };
 abbe_result abbe_material_range_make(const abbe_material *material, double min_nm, double max_nm,
                                      abbe_material_range *out, abbe_error *error) {
   ABBE_REQUIRE(material && out, error);
-  *out = (abbe_material_range){INFINITY, -INFINITY, INFINITY, -INFINITY};
+  const double middle_nm = 0.5 * (min_nm + max_nm);
+  *out = (abbe_material_range){.least_n = INFINITY,
+                               .most_n = -INFINITY,
+                               .least_per_m = INFINITY,
+                               .most_per_m = -INFINITY,
+                               .middle_per_m = abbe_material_attenuation(material, middle_nm)};
   for (int i = 0; i < STEPS; i++) {
     const double lambda_nm = min_nm + (max_nm - min_nm) * i / (STEPS - 1);
     double n = 0;
@@ -19,5 +24,5 @@ abbe_result abbe_material_range_make(const abbe_material *material, double min_n
     out->least_per_m = fmin(out->least_per_m, per_m);
     out->most_per_m = fmax(out->most_per_m, per_m);
   }
-  return ABBE_OK;
+  return abbe_material_n(material, middle_nm, &out->middle_n, error);
 }

@@ -43,9 +43,8 @@ extern "C" {
   X(INNER_REFLECTIONS, "inner reflections",                                                        \
     (p->caustics || p->camera_sees_refractor) && p->desc.exits > 1)                                \
   X(LIGHT_MAP, "map: ", p->reaches[i])                                                             \
-  X(RECEIVER_MAPS, "maps on receivers", p->pages)                                                  \
+  X(RECEIVER_MAPS, "maps on receivers", p->tiles)                                                  \
   X(ABSORPTION, "absorption", p->absorbing)                                                        \
-  X(FEWER_FACES, "simplified layers", p->fewer_faces)                                              \
   X(TEXTURES, "textures", p->textured)
 
 /* Passes first, so that arrays can be indexed by them. */

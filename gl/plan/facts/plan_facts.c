@@ -27,10 +27,11 @@ const char *abbe_plan_no_refraction(const abbe_plan *plan) {
 }
 
 size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
-  /* What lies between these is followed from the wall where light leaves (exit_wall.glsl). */
+  /* What lies between these is followed from the interface where light leaves
+   * (outgoing_segment.glsl). */
   static const size_t coarse = 4;
   const size_t n = plan->desc.wavelengths;
-  /* Without lengths landings do not know what absorption changes between two wavelengths. */
+  /* Without lengths hits do not know what absorption changes between two wavelengths. */
   const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
   return apart && plan->tinting == plan->lengths && n > coarse ? coarse : n;
 }

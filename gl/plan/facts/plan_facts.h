@@ -87,14 +87,13 @@ typedef struct abbe_plan {
 
   size_t eye_exits; /* that the eye's rays are followed for, at the most */
   double eye_share; /* and the share of their light at which they end */
-  size_t hit_slots; /* landings of a photon at the most: its exits, and the mirror on the outside */
+  size_t hit_slots; /* hits of a photon at the most: its exits, and the mirror on the outside */
 
   /* What follows from the facts above. */
-  bool pages;       /* light may land where its light's map cannot hold it: receivers have pages */
+  bool tiles;       /* light may land where its light's map cannot hold it: receivers have tiles */
   bool fills;       /* light is laid between wavelengths */
-  bool lengths;     /* landings keep the length of their way inside, which tells a tint anywhere */
+  bool lengths;     /* hits keep the length of their path inside, which tells a tint anywhere */
   bool draw_back;   /* the back of refractors is drawn */
-  bool fewer_faces; /* some mesh is drawn with fewer (gl/plan/examine/layer_detail.h) */
   bool textured;
 
   size_t entry_count; /* models and passes, in the order in which they run */
@@ -105,7 +104,7 @@ typedef struct abbe_plan {
 
 void abbe_plan_free(abbe_plan *plan);
 
-/* Wavelengths that every photon is traced at; more, up to the plan's, where its landings ask. */
+/* Wavelengths that every photon is traced at; more, up to the plan's, where its hits ask. */
 size_t abbe_plan_least_wavelengths(const abbe_plan *plan);
 /* Why nothing refracts, as a sentence's part, or NULL. */
 const char *abbe_plan_no_refraction(const abbe_plan *plan);

@@ -26,7 +26,7 @@ typedef enum abbe_profile {
       ABBE_PROFILE_COUNT
 } abbe_profile;
 
-/* bridge: light is laid between neighbouring wavelengths' landings; none: each wavelength lands
+/* bridge: light is laid between neighbouring wavelengths' hits; none: each wavelength lands
  * on its own; smear: the thesis's 20-step fill. AUTO is bridge, and smear in the thesis profile. */
 #define ABBE_FILLS(X) X(AUTO, "auto") X(NONE, "none") X(BRIDGE, "bridge") X(SMEAR, "smear")
 typedef enum abbe_fill {
@@ -106,6 +106,9 @@ typedef struct abbe_render_desc {
   bool layers;                   /* keep direct and caustic light of the receivers apart as well */
   abbe_render_progress progress; /* while the renderer is made: photons are traced once to fit */
   void *progress_user;
+  /* Told once, with progress_user, when the driver compiles shaders that it does not know: it takes
+   * seconds, the first time on a machine. May be NULL. */
+  void (*compiling)(void *user);
 } abbe_render_desc;
 
 /* The request with its defaults filled in, for a picture of width x height pixels unless it says

@@ -80,11 +80,126 @@ static void test_unknown_back_ends_are_refused(void **state) {
   assert_string_equal(abbe_context_backend_name(ABBE_CONTEXT_EGL), "egl");
 }
 
+static GLint major_of_host = 4, limit_of_host = 1 << 14;
+static bool host_refuses;
+static size_t host_calls;
+
+static void host_integer(GLenum name, GLint *out) {
+  *out = name == GL_MAJOR_VERSION ? major_of_host : name == GL_MINOR_VERSION ? 6 : limit_of_host;
+}
+
+static const GLubyte *host_string(GLenum name) {
+  return (const GLubyte *)(name == GL_RENDERER ? "a made-up one" : "4.6");
+}
+
+static void nothing(void) {}
+
+static abbe_gl_function host_lookup(const char *name) {
+  if (strcmp(name, "glGetIntegerv") == 0) return (abbe_gl_function)host_integer;
+  if (strcmp(name, "glGetString") == 0) return (abbe_gl_function)host_string;
+  return nothing;
+}
+
+static abbe_gl_function empty_lookup(const char *name) {
+  return strcmp(name, "glFinish") == 0 ? NULL : nothing;
+}
+
+static bool host_make_current(void *user) {
+  assert_ptr_equal(user, &host_calls);
+  host_calls++;
+  return !host_refuses;
+}
+
+static void assert_not_adopted(const abbe_context_host *host, abbe_result expected,
+                               const char *part) {
+  abbe_context *context = NULL;
+  abbe_error error = {0};
+  assert_int_equal(abbe_context_adopt(host, &context, &error), expected);
+  assert_null(context);
+  assert_contains(error.text, part);
+}
+
+/* What is adopted is checked as an own one; nothing but what the host gives is called. */
+static void test_a_host_is_adopted_or_told_why_not(void **state) {
+  (void)state;
+  const abbe_context_host host = {host_lookup, host_make_current, &host_calls};
+  abbe_context *context = NULL;
+  abbe_error error = {0};
+  assert_not_adopted(&(abbe_context_host){0}, ABBE_INVALID_ARGUMENT, "lookup");
+  assert_not_adopted(&(abbe_context_host){.lookup = empty_lookup}, ABBE_GL, "has no glFinish;");
+  major_of_host = 3;
+  assert_not_adopted(&host, ABBE_GL, "adopted offers OpenGL 3.6; Abbe needs 4.5");
+  major_of_host = 4;
+  limit_of_host = 4;
+  assert_not_adopted(&host, ABBE_GL, "adopted: a made-up one, OpenGL 4.6 has 4 storage buffers");
+  limit_of_host = 1 << 14;
+  host_refuses = true;
+  assert_not_adopted(&host, ABBE_GL, "'adopted' cannot be made current");
+  host_refuses = false;
+  assert_int_equal(abbe_context_adopt(&host, &context, &error), ABBE_OK);
+  assert_string_equal(abbe_context_description(context), "adopted: a made-up one, OpenGL 4.6");
+  const size_t before = host_calls;
+  assert_int_equal(abbe_context_make_current(context, &error), ABBE_OK);
+  assert_int_equal(host_calls, before + 1);
+  host_refuses = true;
+  assert_int_equal(abbe_context_make_current(context, &error), ABBE_GL);
+  assert_contains(error.text, "a made-up one");
+  abbe_context_free(context);
+  assert_int_equal(host_calls, before + 2);
+}
+
+/* What each holds, it holds by itself: a buffer of so many bytes under the first name. */
+static void assert_has(abbe_context *context, GLint size) {
+  const abbe_gl *gl = abbe_context_gl(context);
+  abbe_error error = {0};
+  GLint bound = 0;
+  assert_int_equal(abbe_context_make_current(context, &error), ABBE_OK);
+  gl->GetIntegerv(GL_UNIFORM_BUFFER_BINDING, &bound);
+  assert_int_equal(bound, 1);
+  char bytes[8] = {0};
+  gl->GetBufferSubData(GL_UNIFORM_BUFFER, 0, size, bytes);
+  assert_int_equal(abbe_gl_check(gl, "the test", &error), ABBE_OK);
+  assert_int_equal(bytes[0], size);
+  gl->GetBufferSubData(GL_UNIFORM_BUFFER, 0, size + 1, bytes);
+  assert_int_equal(abbe_gl_check(gl, "the test", &error), ABBE_GL);
+}
+
+static void make_two(const abbe_context_backend backend[2]) {
+  abbe_context *made[2] = {NULL, NULL};
+  for (GLint i = 0; i < 2; i++) {
+    const char bytes[2] = {(char)(i + 1), 0};
+    GLuint buffer = 0;
+    assert_int_equal(abbe_context_make(backend[i], &made[i], NULL), ABBE_OK);
+    const abbe_gl *gl = abbe_context_gl(made[i]);
+    gl->GenBuffers(1, &buffer);
+    assert_int_equal(buffer, 1);
+    gl->BindBuffer(GL_UNIFORM_BUFFER, buffer);
+    gl->BufferData(GL_UNIFORM_BUFFER, i + 1, bytes, GL_STATIC_DRAW);
+  }
+  for (int k = 0; k < 5; k++) assert_has(made[k % 2], k % 2 + 1);
+  abbe_context_free(made[0]);
+  assert_has(made[1], 2);
+  abbe_context_free(made[1]);
+}
+
+static void test_two_are_two(void **state) {
+  (void)state;
+  abbe_context *egl = NULL;
+  make_two((abbe_context_backend[]){ABBE_CONTEXT_OSMESA, ABBE_CONTEXT_OSMESA});
+  if (abbe_context_make(ABBE_CONTEXT_EGL, &egl, NULL) != ABBE_OK) return;
+  abbe_context_free(egl);
+  make_two((abbe_context_backend[]){ABBE_CONTEXT_EGL, ABBE_CONTEXT_EGL});
+  make_two((abbe_context_backend[]){ABBE_CONTEXT_OSMESA, ABBE_CONTEXT_EGL});
+  make_two((abbe_context_backend[]){ABBE_CONTEXT_EGL, ABBE_CONTEXT_OSMESA});
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_osmesa_makes_4_5),
                                      cmocka_unit_test(test_egl_makes_one_or_says_why),
                                      cmocka_unit_test(test_contexts_follow_each_other),
                                      cmocka_unit_test(test_gl_errors_are_named_and_cleared),
-                                     cmocka_unit_test(test_unknown_back_ends_are_refused)};
+                                     cmocka_unit_test(test_unknown_back_ends_are_refused),
+                                     cmocka_unit_test(test_a_host_is_adopted_or_told_why_not),
+                                     cmocka_unit_test(test_two_are_two)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

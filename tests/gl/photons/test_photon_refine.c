@@ -1,19 +1,8 @@
-/* Photons that take more wavelengths only where their landings ask for them. */
+/* Photons that take more wavelengths only where their hits ask for them. */
 #include "tests/gl/frame.h"
 
 #include "colorimetry/weights.h"
-#include "gl/photons/photon_spectra.h"
 #include "spectral/optics.h"
-
-static void coarse_nodes_reach_both_ends_in_order(void **state) {
-  (void)state;
-  for (size_t n = 5; n <= ABBE_RENDER_MAX_WAVELENGTHS; n++) {
-    assert_int_equal(abbe_photon_spectra_node(n, 5, 0), 0);
-    assert_int_equal(abbe_photon_spectra_node(n, 5, 4), n - 1);
-    for (size_t k = 0; k < 4; k++)
-      assert_true(abbe_photon_spectra_node(n, 5, k) < abbe_photon_spectra_node(n, 5, k + 1));
-  }
-}
 
 static abbe_ledger draw(const char *name, size_t wavelengths, abbe_fill fill, abbe_image *map) {
   abbe_scene scene = {0};
@@ -45,7 +34,7 @@ static void every_photon_is_entered_once(void **state) {
 }
 
 /* N-SF11 absorbs violet by tens in a metre and green by ones. What few wavelengths leave of it, and
- * 21 that are traced only where landings ask, is what 61 of all photons do, to one in a thousand of
+ * 21 that are traced only where hits ask, is what 61 of all photons do, to one in a thousand of
  * the light: attenuation at the seven nodes alone would take three more. */
 static void absorption_is_that_of_all_wavelengths(void **state) {
   (void)state;
@@ -161,7 +150,7 @@ static void refined_maps_are_those_of_all_wavelengths(void **state) {
 }
 
 /* More wavelengths in an interval than in the coarse set, and paths that few of them take: what is
- * read of the coarse landings is the photon's own, in whatever order photons stand. */
+ * read of the coarse hits is the photon's own, in whatever order photons stand. */
 static void a_mesh_is_refined_alike_every_time(void **state) {
   (void)state;
   abbe_scene scene = {0};
@@ -179,7 +168,6 @@ static void a_mesh_is_refined_alike_every_time(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(coarse_nodes_reach_both_ends_in_order),
       cmocka_unit_test(every_photon_is_entered_once),
       cmocka_unit_test(absorption_is_that_of_all_wavelengths),
       cmocka_unit_test(a_pane_leaves_what_the_law_says),

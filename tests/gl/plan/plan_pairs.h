@@ -69,7 +69,7 @@ typedef struct pair {
 } pair;
 
 /* The plan of one ball on a floor. */
-#define BALL_ROWS(pages)                                                                           \
+#define BALL_ROWS(tiles)                                                                           \
   COUNTS(7, 8, 9),                                                                                 \
       RUNS_OF(CHOICE_REFRACTOR_MODEL, "ball", "exact sphere: the object is a sphere"),             \
       RESTS(CHOICE_MULTI_REFRACTOR_PATHS, "light that leaves the refractor cannot meet it again"), \
@@ -78,12 +78,12 @@ typedef struct pair {
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the index varies with wavelength"),          \
       RUNS(CHOICE_INNER_REFLECTIONS,                                                               \
            "followed until less than 0.01 of the light is left, 8 exits at most"),                 \
-      RUNS_OF(CHOICE_LIGHT_MAP, "lamp", "the light may meet a refractor"), pages,                  \
+      RUNS_OF(CHOICE_LIGHT_MAP, "lamp", "the light may meet a refractor"), tiles,                  \
       RESTS(PASS_RECEIVER_DEPTH, "receivers are hit exactly"),                                     \
       RUNS(PASS_LIGHT_FRONT, "photons start where the light sees a refractor"),                    \
       RESTS(PASS_LIGHT_BACK, "every refractor has an exact surface"),                              \
       RUNS(PASS_PHOTON_PLACEMENT, "at most 256 a side, where light meets a refractor"),            \
-      RUNS(PASS_PHOTONS, "4 to 7 wavelengths, as each photon's landings ask"),                     \
+      RUNS(PASS_PHOTONS, "4 to 7 wavelengths, as each photon's hits ask"),                     \
       RUNS(PASS_SPECTRAL_MAP, "1024 x 1024 texels"),                                               \
       RUNS(PASS_GAP_FILL, "bridge: wavelengths land apart"),                                       \
       RESTS(CHOICE_ABSORPTION, "every material is clear"),                                         \
@@ -167,7 +167,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {0},
      {RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: landings keep the length inside"),
+           "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"a material that absorbs outside the range alone",
      ball,
@@ -182,7 +182,7 @@ static const pair pairs[] = {
       RUNS(CHOICE_WAVELENGTHS, "7 from 380 to 780 nm: the attenuation varies with wavelength"),
       RUNS(PASS_PHOTONS, "7 wavelengths through the refractors"),
       RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: landings keep the length inside"),
+           "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"a constant index, and an attenuation that is constant",
      flat,
@@ -251,7 +251,6 @@ static const pair pairs[] = {
            "followed until less than 0.01 of the light is left, 4 exits at most"),
       RUNS(PASS_LIGHT_BACK, "a mesh without an exact surface ends at its back layer"),
       RUNS(PASS_EYE_BACK, "a mesh without an exact surface ends at its back layer"),
-      RUNS(CHOICE_FEWER_FACES, "'ball' has 5120 faces: fewer, where no cell or sample tells"),
       RUNS(PASS_EYE_REFRACTION, "until less than 0.001 of its light is left, 4 exits at most"),
       END}},
     {"a mesh with a hole for the ball",
@@ -419,9 +418,9 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("murk"),
      {.wavelengths = 21},
      {COUNTS(21, 8, 9), RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
-      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's landings ask"),
+      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"),
       RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: landings keep the length inside"),
+           "a material attenuates by wavelength: hits keep the length inside"),
       END}},
     {"many wavelengths of a glass that tints, from wall to wall of a mesh",
      ball,
@@ -439,7 +438,7 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT FLOOR BALL("crown"),
      {.wavelengths = 21},
      {COUNTS(21, 8, 9), RUNS(CHOICE_WAVELENGTHS, "21 from 380 to 780 nm: as asked"),
-      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's landings ask"), END}},
+      RUNS(PASS_PHOTONS, "4 to 21 wavelengths, as each photon's hits ask"), END}},
     {"no fill, as asked",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown"),

@@ -16,11 +16,11 @@ typedef struct row {
   size_t count[3];
 } row;
 
-/* Wavelengths, exits, and landings of a photon. */
-#define COUNTS(wavelengths, exits, landings)                                                       \
+/* Wavelengths, exits, and hits of a photon. */
+#define COUNTS(wavelengths, exits, hits)                                                           \
   {                                                                                                \
     ROW_COUNTS, 0, "", "", {                                                                       \
-      wavelengths, exits, landings                                                                 \
+      wavelengths, exits, hits                                                                     \
     }                                                                                              \
   }
 #define RUNS_OF(item, about, part)                                                                 \

@@ -20,7 +20,7 @@ static const struct {
       RUNS(CHOICE_INNER_REFLECTIONS, "followed until less than 0.005 of the light is left, 20 "
                                      "exits at most; 0.4 % of it is still inside then"),
       RUNS(CHOICE_ABSORPTION,
-           "a material attenuates by wavelength: landings keep the length inside"),
+           "a material attenuates by wavelength: hits keep the length inside"),
       GONE(CHOICE_REFRACTOR_MODEL, "ball"), END}},
     {"prism",
      {RUNS_OF(CHOICE_REFRACTOR_MODEL, "prism",

@@ -28,7 +28,7 @@ static void counts_and_flags_are_told(void **state) {
                                  .wide = true,
                                  .shadow_planes = 9,
                                  .one_shadow = true,
-                                 .ways = 8};
+                                 .pixel_threads = 8};
   char *text = text_of(&v, "#define MORE 1\n");
   assert_true(has(text, "#define LIGHTS 2"));
   assert_true(has(text, "#define SPECTRUM_ROOM 21"));
@@ -37,7 +37,7 @@ static void counts_and_flags_are_told(void **state) {
   assert_true(has(text, "#define WIDE"));
   assert_true(has(text, "#define SHADOW_PLANES 9"));
   assert_true(has(text, "#define ONE_SHADOW"));
-  assert_true(has(text, "#define WAYS 8"));
+  assert_true(has(text, "#define PIXEL_THREADS 8"));
   assert_string_equal(text + strlen(text) - 15, "#define MORE 1\n");
   free(text);
 }
@@ -49,9 +49,32 @@ static void nothing_has_room_for_one(void **state) {
   char *text = text_of(&v, NULL);
   assert_true(has(text, "#define REFRACTORS 0"));
   assert_true(has(text, "#define REFRACTOR_ROOM 1"));
-  static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "PAGES", "LANES",
-                                       "MAP_LEVELS",    "REFINED",    "WIDE",  "IN_STORAGE"};
+  static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "TILES",     "HIT_STRIDE",
+                                       "MAP_LEVELS",    "WIDE",       "IN_STORAGE"};
   for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) assert_null(strstr(text, absent[i]));
+  free(text);
+}
+
+/* Where tables are copied, so are those that are known by their numbers, up to a count that is
+ * worth it. */
+static void copies_are_told_where_they_are_made(void **state) {
+  (void)state;
+  abbe_shader_variant v = {.lights = 1, .receivers = 3, .planes = 2, .one_convex = true};
+  char *text = text_of(&v, NULL);
+  assert_null(strstr(text, "EACH_"));
+  free(text);
+  v.copies = true;
+  text = text_of(&v, NULL);
+  assert_true(has(text, "#define EACH_LIGHT(DO) DO(0)"));
+  assert_true(has(text, "#define EACH_RECEIVER(DO) DO(0) DO(1) DO(2)"));
+  assert_true(has(text, "#define EACH_PLANE(DO) DO(0) DO(1)"));
+  assert_null(strstr(text, "EACH_SHADOW_PLANE"));
+  free(text);
+  v.receivers = 33;
+  v.walk = true;
+  text = text_of(&v, NULL);
+  assert_null(strstr(text, "EACH_RECEIVER"));
+  assert_null(strstr(text, "EACH_PLANE"));
   free(text);
 }
 
@@ -79,21 +102,18 @@ static void tables_beyond_a_block_are_storage(void **state) {
 
 static void photons_are_told_where_there_are_any(void **state) {
   (void)state;
-  abbe_shader_variant v = {.lanes = 7, .steps = 128, .nodes = 7, .map_levels = 6, .bridge = true};
+  abbe_shader_variant v = {
+      .hit_stride = 7, .steps = 128, .nodes = 7, .map_levels = 6, .bridge = true};
   char *text = text_of(&v, NULL);
-  assert_true(has(text, "#define LANES 7") && has(text, "#define STEPS 128"));
+  assert_true(has(text, "#define HIT_STRIDE 7") && has(text, "#define STEPS 128"));
   assert_true(has(text, "#define BRIDGE") && has(text, "#define MAP_LEVELS 6"));
-  assert_null(strstr(text, "FINE_NODES"));
   free(text);
-  v.refined = true;
-  v.fine_nodes = 4;
-  v.pages = 3;
-  v.page_blocks = 32;
+  v.tiles = 3;
+  v.tile_blocks = 32;
   v.chart_sides = 12;
   text = text_of(&v, NULL);
-  assert_true(has(text, "#define REFINED") && has(text, "#define FINE_NODES 4"));
-  assert_true(has(text, "#define PAGES") && has(text, "#define MOST_PAGES 3"));
-  assert_true(has(text, "#define PAGE_BLOCKS 32") && has(text, "#define CHART_SIDES 12"));
+  assert_true(has(text, "#define TILES") && has(text, "#define MOST_TILES 3"));
+  assert_true(has(text, "#define TILE_BLOCKS 32") && has(text, "#define CHART_SIDES 12"));
   free(text);
 }
 
@@ -101,6 +121,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(counts_and_flags_are_told),
       cmocka_unit_test(nothing_has_room_for_one),
+      cmocka_unit_test(copies_are_told_where_they_are_made),
       cmocka_unit_test(tables_beyond_a_block_are_storage),
       cmocka_unit_test(photons_are_told_where_there_are_any),
   };

@@ -58,61 +58,6 @@ static void subdivision_keeps_a_mesh_closed_and_smooth(void **state) {
   abbe_mesh_free(&m);
 }
 
-/* Every vertex that is left lies on the sphere, so what is off are the faces' middles. */
-static void simplifying_keeps_within_the_distance(void **state) {
-  (void)state;
-  abbe_mesh m = test_sphere(6), few;
-  size_t last = m.face_count;
-  for (double within = 1e-3; within < 0.05; within *= 10) {
-    uint32_t(*face)[3] = NULL;
-    size_t count = 0;
-    double farthest = 0;
-    assert_int_equal(abbe_mesh_simplify(&m, within, &face, &count, NULL), ABBE_OK);
-    assert_true(count > 20 && 3 * count < 2 * last);
-    last = count;
-    for (size_t f = 0; f < count; f++) {
-      double middle[3] = {0};
-      for (int k = 0; k < 9; k++) {
-        assert_true(face[f][k / 3] < m.vertex_count);
-        middle[k % 3] += m.position[face[f][k / 3]][k % 3] / 3;
-      }
-      farthest = fmax(farthest, 1 - abbe_vector_length(middle));
-    }
-    assert_true(farthest > 0.1 * within && farthest < 4 * within);
-    assert_int_equal(abbe_mesh_make(m.vertex_count, count, false, &few, NULL), ABBE_OK);
-    memcpy(few.position, m.position, m.vertex_count * sizeof *m.position);
-    memcpy(few.face, face, count * sizeof *face);
-    const abbe_mesh_report r = test_mesh_faults(&few);
-    assert_int_equal(r.open_edges + r.flipped_edges + r.degenerate_faces, 0);
-    assert_true(1000 * r.crowded_edges < count);
-    assert_true(r.volume > 0 && fabs(r.volume - 4.18879) < 4 * 12.6 * within + 0.01);
-    abbe_mesh_free(&few);
-    free(face);
-  }
-  abbe_mesh_free(&m);
-}
-
-static void simplifying_a_faceted_mesh_holds_its_edges(void **state) {
-  (void)state;
-  const double size[3] = {1, 2, 3};
-  abbe_mesh m;
-  uint32_t(*face)[3] = NULL;
-  size_t count = 0;
-  abbe_error error;
-  assert_int_equal(abbe_shape_box(size, &m, NULL), ABBE_OK);
-  assert_int_equal(abbe_mesh_simplify(&m, 0.01, &face, &count, NULL), ABBE_OK);
-  assert_int_equal(count, m.face_count);
-  free(face);
-  assert_int_equal(abbe_mesh_simplify(&m, 0, &face, &count, NULL), ABBE_OK);
-  assert_int_equal(count, m.face_count);
-  assert_memory_equal(face, m.face, count * sizeof *face);
-  free(face);
-  assert_int_equal(abbe_mesh_simplify(&m, -1, &face, &count, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_mesh_simplify(&m, NAN, &face, &count, &error), ABBE_INVALID_ARGUMENT);
-  assert_null(face);
-  abbe_mesh_free(&m);
-}
-
 static void subdividing_an_octahedron_weights_the_limit_right(void **state) {
   (void)state;
   /* Loop on a regular octahedron by hand: a corner (valence 4, beta 3/32) goes from 1 to 5/8 */
@@ -337,8 +282,6 @@ int main(void) {
       cmocka_unit_test(subdivision_keeps_a_mesh_closed_and_smooth),
       cmocka_unit_test(subdividing_an_octahedron_weights_the_limit_right),
       cmocka_unit_test(transforms_mirror_and_keep_outwards),
-      cmocka_unit_test(simplifying_keeps_within_the_distance),
-      cmocka_unit_test(simplifying_a_faceted_mesh_holds_its_edges),
       cmocka_unit_test(loads_tetrahedra),
       cmocka_unit_test(bad_files_are_refused),
       cmocka_unit_test(points_without_faces_are_left_out),

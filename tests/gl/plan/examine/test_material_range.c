@@ -16,6 +16,9 @@ static void extremes_are_those_of_the_range(void **state) {
   assert_true(range.most_n == first && range.least_n == last && last < first);
   assert_near(range.most_per_m, 20, 1e-12);
   assert_near(range.least_per_m, 0, 0);
+  assert_int_equal(abbe_material_n(murk, 550, &first, NULL), ABBE_OK);
+  assert_near(range.middle_n, first, 0);
+  assert_near(range.middle_per_m, 0, 0);
   assert_int_equal(abbe_material_range_make(murk, 500, 700, &range, NULL), ABBE_OK);
   assert_near(range.most_per_m, 0, 0);
   abbe_scene_free(&scene);

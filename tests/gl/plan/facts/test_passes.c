@@ -29,7 +29,6 @@ static const char *const texts[] = {
     [ABBE_CHOICE_LIGHT_MAP] = "map: ",
     [ABBE_CHOICE_RECEIVER_MAPS] = "maps on receivers",
     [ABBE_CHOICE_ABSORPTION] = "absorption",
-    [ABBE_CHOICE_FEWER_FACES] = "simplified layers",
     [ABBE_CHOICE_TEXTURES] = "textures",
 };
 

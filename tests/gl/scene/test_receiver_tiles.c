@@ -3,7 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "gl/renderer_state.h"
-#include "gl/scene/receiver_pages.h"
+#include "gl/scene/receiver_tiles.h"
 
 enum { SIDE = 256, ALIGN = 32 };
 
@@ -11,8 +11,8 @@ static const double square[9] = {0, 0, 0, 2, 0, 0, 0, 1, 0};
 static const double slanted[9] = {1, 2, 3, 1, 1, 0, 0, 1, 2};
 
 /* Of one side each of so many charts, the other one dark. */
-static abbe_page_light **make_light(size_t count) {
-  abbe_page_light **light = calloc(2 * count, sizeof *light);
+static abbe_tile_light **make_light(size_t count) {
+  abbe_tile_light **light = calloc(2 * count, sizeof *light);
   assert_non_null(light);
   for (size_t i = 0; i < count; i++) {
     light[2 * i] = calloc(1, sizeof **light);
@@ -21,41 +21,41 @@ static abbe_page_light **make_light(size_t count) {
   return light;
 }
 
-static void free_light(abbe_page_light **light, size_t count) {
+static void free_light(abbe_tile_light **light, size_t count) {
   for (size_t i = 0; i < count; i++) free(light[2 * i]);
   free(light);
 }
 
 /* Evenly over a part of the parallelogram. */
-static void shine(abbe_page_light *light, double low, double high, double flux) {
+static void shine(abbe_tile_light *light, double low, double high, double flux) {
   for (int i = 0; i < 10000; i++) {
     const double u = low + (high - low) * (i + 0.5) / 10000;
-    abbe_page_light_add(light, u, 1 - u, flux / 10000);
+    abbe_tile_light_add(light, u, 1 - u, flux / 10000);
   }
 }
 
 static void test_windows_hold_the_light(void **state) {
   (void)state;
-  abbe_page_light **light = make_light(1);
-  abbe_receiver_pages pages;
+  abbe_tile_light **light = make_light(1);
+  abbe_receiver_tiles tiles;
   shine(light[0], 0.25, 0.5, 1);
-  abbe_page_light_add(light[0], 0.9, 0.1, 1e-5); /* a stray photon */
-  abbe_receiver_pages_lay_out(light, &square, 2, 4, SIDE, ALIGN, &pages);
-  assert_int_equal(pages.count, 1);
-  const double *window = pages.page[0].window;
+  abbe_tile_light_add(light[0], 0.9, 0.1, 1e-5); /* a stray photon */
+  abbe_receiver_tiles_lay_out(light, &square, 2, 4, SIDE, ALIGN, &tiles);
+  assert_int_equal(tiles.count, 1);
+  const double *window = tiles.tile[0].window;
   assert_true(window[0] < 0.25 && window[0] > 0.24 && window[1] > 0.4999 && window[1] < 0.51);
   assert_true(window[2] < 0.5001 && window[2] > 0.49 && window[3] > 0.75 && window[3] < 0.76);
   free_light(light, 1);
 }
 
 /* Brightest first, until a thousandth is left. */
-static void test_pages_of_what_is_worth_one(void **state) {
+static void test_tiles_of_what_is_worth_one(void **state) {
   (void)state;
-  enum { COUNT = ABBE_RECEIVER_PAGES + 4 };
-  abbe_page_light **light = make_light(COUNT);
+  enum { COUNT = ABBE_RECEIVER_TILES + 4 };
+  abbe_tile_light **light = make_light(COUNT);
   double parallelogram[COUNT][9];
   const double(*all)[9] = (const double(*)[9])parallelogram;
-  abbe_receiver_pages pages;
+  abbe_receiver_tiles tiles;
   double total = 0;
   for (size_t i = 0; i < COUNT; i++) {
     const double flux = i == 5 ? 1e-4 : (double)(1 + (7 * i) % COUNT);
@@ -63,27 +63,27 @@ static void test_pages_of_what_is_worth_one(void **state) {
     shine(light[2 * i], 0.1, 0.9, flux);
     total += flux;
   }
-  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, 1001 * total, 1024, ALIGN, &pages);
-  assert_int_equal(pages.count, 0);
-  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, total, 1024, ALIGN, &pages);
-  assert_int_equal(pages.count, ABBE_RECEIVER_PAGES);
-  for (size_t i = 0; i + 1 < pages.count; i++)
-    assert_true(light[pages.page[i].chart_side]->flux >= light[pages.page[i + 1].chart_side]->flux);
+  abbe_receiver_tiles_lay_out(light, all, 2 * COUNT, 1001 * total, 1024, ALIGN, &tiles);
+  assert_int_equal(tiles.count, 0);
+  abbe_receiver_tiles_lay_out(light, all, 2 * COUNT, total, 1024, ALIGN, &tiles);
+  assert_int_equal(tiles.count, ABBE_RECEIVER_TILES);
+  for (size_t i = 0; i + 1 < tiles.count; i++)
+    assert_true(light[tiles.tile[i].chart_side]->flux >= light[tiles.tile[i + 1].chart_side]->flux);
   for (size_t i = 0; i < COUNT; i++) light[2 * i]->flux = i == 3 ? 1 : i == 4 ? 9e-4 : 0;
-  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, 1, SIDE, ALIGN, &pages);
-  assert_int_equal(pages.count, 1);
-  assert_int_equal(pages.page[0].chart_side, 6);
+  abbe_receiver_tiles_lay_out(light, all, 2 * COUNT, 1, SIDE, ALIGN, &tiles);
+  assert_int_equal(tiles.count, 1);
+  assert_int_equal(tiles.tile[0].chart_side, 6);
   light[8]->flux = 1.1e-3;
-  abbe_receiver_pages_lay_out(light, all, 2 * COUNT, 1, SIDE, ALIGN, &pages);
-  assert_int_equal(pages.count, 2);
+  abbe_receiver_tiles_lay_out(light, all, 2 * COUNT, 1, SIDE, ALIGN, &tiles);
+  assert_int_equal(tiles.count, 2);
   free_light(light, COUNT);
 }
 
 /* Whatever the receivers' shapes: aligned, within the layer, none over another. */
 static void test_rectangles_are_apart(void **state) {
   (void)state;
-  enum { COUNT = ABBE_RECEIVER_PAGES };
-  abbe_page_light **light = make_light(COUNT);
+  enum { COUNT = ABBE_RECEIVER_TILES };
+  abbe_tile_light **light = make_light(COUNT);
   double parallelogram[COUNT][9] = {{0}};
   static const size_t sides[] = {32, 64, 128, 1024};
   for (size_t i = 0; i < COUNT; i++) {
@@ -92,21 +92,21 @@ static void test_rectangles_are_apart(void **state) {
     parallelogram[i][7] = pow(10, 1 - (double)(i % 4));
   }
   for (size_t s = 0; s < sizeof sides / sizeof *sides; s++) {
-    abbe_receiver_pages pages;
-    abbe_receiver_pages_lay_out(light, (const double(*)[9])parallelogram, 2 * COUNT, 36, sides[s],
-                                ALIGN, &pages);
+    abbe_receiver_tiles tiles;
+    abbe_receiver_tiles_lay_out(light, (const double(*)[9])parallelogram, 2 * COUNT, 36, sides[s],
+                                ALIGN, &tiles);
     const size_t blocks = (sides[s] / ALIGN) * (sides[s] / ALIGN);
-    assert_int_equal(pages.count, blocks < COUNT ? blocks : COUNT);
-    for (size_t i = 0; i < pages.count; i++) {
-      const size_t *a = pages.page[i].rect;
+    assert_int_equal(tiles.count, blocks < COUNT ? blocks : COUNT);
+    for (size_t i = 0; i < tiles.count; i++) {
+      const size_t *a = tiles.tile[i].rect;
       for (int k = 0; k < 4; k++) assert_true(a[k] % ALIGN == 0);
-      assert_true(a[0] < a[1] && a[1] <= sides[s] && a[2] < a[3] && a[3] <= pages.rows);
+      assert_true(a[0] < a[1] && a[1] <= sides[s] && a[2] < a[3] && a[3] <= tiles.rows);
       for (size_t j = 0; j < i; j++) {
-        const size_t *b = pages.page[j].rect;
+        const size_t *b = tiles.tile[j].rect;
         assert_true(a[1] <= b[0] || b[1] <= a[0] || a[3] <= b[2] || b[3] <= a[2]);
       }
     }
-    assert_true(pages.rows <= sides[s]);
+    assert_true(tiles.rows <= sides[s]);
   }
   free_light(light, COUNT);
 }
@@ -114,14 +114,14 @@ static void test_rectangles_are_apart(void **state) {
 /* The shaders' affine map undoes the place of a texel, and texels fill the window's area. */
 static void test_places_and_texels(void **state) {
   (void)state;
-  const abbe_receiver_page page = {.window = {0.25, 0.5, 0.1, 0.6}, .rect = {32, 96, 64, 128}};
-  float packed[ABBE_PAGE_FLOATS];
+  const abbe_receiver_tile tile = {.window = {0.25, 0.5, 0.1, 0.6}, .rect = {32, 96, 64, 128}};
+  float packed[ABBE_TILE_FLOATS];
   double place[3];
-  abbe_receiver_page_pack(&page, slanted, packed);
+  abbe_receiver_tile_pack(&tile, slanted, packed);
   assert_true(packed[8] == 32 && packed[9] == 64 && packed[10] == 96 && packed[11] == 128);
   for (double x = 32; x <= 96; x += 16)
     for (double y = 64; y <= 128; y += 16) {
-      abbe_receiver_page_place(&page, slanted, x, y, place);
+      abbe_receiver_tile_place(&tile, slanted, x, y, place);
       double on[3] = {packed[3], packed[7], 0};
       for (int k = 0; k < 3; k++) {
         on[0] += (double)packed[k] * place[k];
@@ -131,7 +131,7 @@ static void test_places_and_texels(void **state) {
       assert_true(fabs(on[0] - x) < 1e-3 && fabs(on[1] - y) < 1e-3 && fabs(on[2]) < 1e-6);
     }
   const double area = sqrt(4 + 4 + 1) * 0.25 * 0.5; /* |(1,1,0) x (0,1,2)| = |(2,-2,1)| */
-  assert_true(fabs(abbe_receiver_page_texel(&page, slanted) * 64 * 64 - area) < 1e-12);
+  assert_true(fabs(abbe_receiver_tile_texel(&tile, slanted) * 64 * 64 - area) < 1e-12);
 }
 
 #define FACING_DOWN(height)                                                                        \
@@ -169,13 +169,13 @@ static size_t channel_of(const abbe_image *image, const char *name) {
 }
 
 static abbe_statistics draw(const char *text, const abbe_render_desc *desc, abbe_image *picture,
-                            size_t *pages) {
+                            size_t *tiles) {
   abbe_scene scene = {0};
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, desc);
   abbe_statistics statistics = draw_frame(renderer);
   if (picture != NULL) read_picture(renderer, true, picture);
-  *pages = renderer->atlas.used ? renderer->atlas.pages[0].count : 0;
+  *tiles = renderer->atlas.used ? renderer->atlas.tiles[0].count : 0;
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
   return statistics;
@@ -185,12 +185,12 @@ static abbe_statistics draw(const char *text, const abbe_render_desc *desc, abbe
 static void test_what_the_lamp_does_not_see(void **state) {
   (void)state;
   abbe_image open = {0}, hidden = {0};
-  size_t pages = 9;
-  const abbe_statistics all = draw(LOW_EYE LAMP FLOOR GREAT_BALL, &one_exit, &open, &pages);
-  assert_int_equal(pages, 0);
+  size_t tiles = 9;
+  const abbe_statistics all = draw(LOW_EYE LAMP FLOOR GREAT_BALL, &one_exit, &open, &tiles);
+  assert_int_equal(tiles, 0);
   const abbe_statistics some =
-      draw(LOW_EYE LAMP FLOOR GREAT_BALL SCREEN, &one_exit, &hidden, &pages);
-  assert_int_equal(pages, 1);
+      draw(LOW_EYE LAMP FLOOR GREAT_BALL SCREEN, &one_exit, &hidden, &tiles);
+  assert_int_equal(tiles, 1);
   assert_true(abbe_ledger_imbalance(&some.energy) < 1e-4);
   const double reached = all.energy.reached;
   assert_true(fabs(some.energy.deposited - all.energy.deposited) < 1e-3 * reached);
@@ -235,12 +235,12 @@ static void test_meshes_show_what_rectangles_do(void **state) {
     abbe_image picture[2] = {{0}, {0}};
     abbe_statistics s[2];
     for (int k = 0; k < 2; k++) {
-      size_t pages = 0;
-      s[k] = draw(texts[i][k], &one_exit, &picture[k], &pages);
-      assert_int_equal(pages, 1);
+      size_t tiles = 0;
+      s[k] = draw(texts[i][k], &one_exit, &picture[k], &tiles);
+      assert_int_equal(tiles, 1);
     }
-    assert_true(s[1].energy.on_pages > 0.05 * s[1].energy.reached);
-    assert_true(fabs(s[1].energy.on_pages - s[0].energy.on_pages) < 1e-3 * s[0].energy.reached);
+    assert_true(s[1].energy.on_tiles > 0.05 * s[1].energy.reached);
+    assert_true(fabs(s[1].energy.on_tiles - s[0].energy.on_tiles) < 1e-3 * s[0].energy.reached);
     const size_t y = channel_of(&picture[0], "caustic.Y");
     double sum = 0, difference = 0;
     for (size_t k = 0; k < picture[0].width * picture[0].height; k++) {
@@ -249,9 +249,9 @@ static void test_meshes_show_what_rectangles_do(void **state) {
       sum += a * a;
       difference += (a - b) * (a - b);
     }
-    print_message("leaning %zu: %.4f and %.4f on pages, RMS %.4f\n", i,
-                  s[0].energy.on_pages / s[0].energy.reached,
-                  s[1].energy.on_pages / s[1].energy.reached, sqrt(difference / sum));
+    print_message("leaning %zu: %.4f and %.4f on tiles, RMS %.4f\n", i,
+                  s[0].energy.on_tiles / s[0].energy.reached,
+                  s[1].energy.on_tiles / s[1].energy.reached, sqrt(difference / sum));
     assert_true(sum > 0);
     assert_true(sqrt(difference / sum) < 0.03); /* their texels differ */
     abbe_image_free(&picture[0]);
@@ -286,12 +286,12 @@ static void test_behind_the_lamp(void **state) {
   (void)state;
   abbe_image picture = {0};
   abbe_render_desc desc = one_exit;
-  size_t pages = 0;
+  size_t tiles = 0;
   desc.width = desc.height = 16;
   desc.photons = 512;
-  desc.energy_share = 1e-3; /* little light asks for pages then */
-  draw(CEILING_EYE BULB ROOM GREAT_BALL, &desc, &picture, &pages);
-  assert_true(pages >= 1);
+  desc.energy_share = 1e-3; /* little light asks for tiles then */
+  draw(CEILING_EYE BULB ROOM GREAT_BALL, &desc, &picture, &tiles);
+  assert_true(tiles >= 1);
   const double n = 1.5, d = 0.3, l = 0.6, radius = 0.1;
   const double spread = d + l * (1 + 2 * d / radius);
   const double e = pow((n - 1) / (n + 1) / spread, 2), radiance = 0.5 * e / 3.14159265358979;
@@ -302,7 +302,7 @@ static void test_behind_the_lamp(void **state) {
   abbe_image_free(&picture);
 }
 
-static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_receiver_pages *pages,
+static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_receiver_tiles *tiles,
                            double *outside) {
   const size_t side = r->plan.desc.map_size;
   float *texel = calloc(r->map.layers * side * side * 4, sizeof *texel);
@@ -311,14 +311,15 @@ static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_rece
   r->gpu.gl->BindTexture(GL_TEXTURE_2D_ARRAY, r->map.texture);
   r->gpu.gl->GetTexImage(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA, GL_FLOAT, texel);
   *outside = 0;
-  for (size_t y = 0; y < pages->rows; y++)
+  for (size_t y = 0; y < tiles->rows; y++)
     for (size_t x = 0; x < side; x++) {
       const double value = (double)texel[((layer * side + y) * side + x) * 4 + 1];
       double area = 0;
-      for (size_t k = 0; k < pages->count; k++) {
-        const abbe_receiver_page *page = &pages->page[k];
-        if (x >= page->rect[0] && x < page->rect[1] && y >= page->rect[2] && y < page->rect[3])
-          area = abbe_receiver_page_texel(page, r->scene.charts.parallelogram[page->chart_side / 2]);
+      for (size_t k = 0; k < tiles->count; k++) {
+        const abbe_receiver_tile *tile = &tiles->tile[k];
+        if (x >= tile->rect[0] && x < tile->rect[1] && y >= tile->rect[2] && y < tile->rect[3])
+          area =
+              abbe_receiver_tile_texel(tile, r->scene.charts.parallelogram[tile->chart_side / 2]);
       }
       sum += value * area;
       *outside += area == 0 ? fabs(value) : 0;
@@ -327,7 +328,7 @@ static double sum_of_layer(const abbe_renderer *r, size_t layer, const abbe_rece
   return sum;
 }
 
-/* In a closed room everything lands; map and pages hold it, each once, and nothing beside them. */
+/* In a closed room everything lands; map and tiles hold it, each once, and nothing beside them. */
 static void test_a_closed_room(void **state) {
   (void)state;
   static const struct {
@@ -343,27 +344,27 @@ static void test_a_closed_room(void **state) {
     abbe_scene scene = {0};
     abbe_render_desc desc = small_frame;
     desc.wavelengths = rooms[i].wavelengths;
-    desc.energy_share = 1e-3; /* little light asks for pages then */
+    desc.energy_share = 1e-3; /* little light asks for tiles then */
     load_text(rooms[i].text, &scene);
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     const abbe_statistics s = draw_frame(renderer);
     const abbe_ledger *e = &s.energy;
-    const abbe_receiver_pages *pages = &renderer->atlas.pages[0];
+    const abbe_receiver_tiles *tiles = &renderer->atlas.tiles[0];
     abbe_image map = {0};
     double outside = 0;
     assert_true(renderer->atlas.used);
     read_map(renderer, 0, &map);
-    const double beside = sum_of_layer(renderer, renderer->atlas.layer[0], pages, &outside);
+    const double beside = sum_of_layer(renderer, renderer->atlas.layer[0], tiles, &outside);
     const double both = image_sum(&map, 1) + beside;
-    print_message("%s: %zu pages, %.3f of all, missed %.2g, imbalance %.2g, open by %.2g\n",
-                  rooms[i].what, pages->count, beside / e->reached,
+    print_message("%s: %zu tiles, %.3f of all, missed %.2g, imbalance %.2g, open by %.2g\n",
+                  rooms[i].what, tiles->count, beside / e->reached,
                   (e->missed + e->reflected) / e->reached, abbe_ledger_imbalance(e),
                   both / e->deposited - 1);
     assert_true(abbe_ledger_imbalance(e) < 1e-4);
     assert_true(e->missed + e->reflected < 2e-3 * e->reached);
     assert_true(beside > 0.01 * e->reached);
     assert_true(fabs(both - e->deposited) < 1e-4 * e->deposited);
-    assert_true(fabs(beside - e->on_pages) < 1e-4 * beside);
+    assert_true(fabs(beside - e->on_tiles) < 1e-4 * beside);
     assert_true(outside == 0);
     abbe_image_free(&map);
     abbe_renderer_free(renderer);
@@ -371,18 +372,18 @@ static void test_a_closed_room(void **state) {
   }
 }
 
-/* No page where none is worth it, whatever the plan expects. */
-static void test_no_pages(void **state) {
+/* No tile where none is worth it, whatever the plan expects. */
+static void test_no_tiles(void **state) {
   (void)state;
-  size_t pages = 9;
+  size_t tiles = 9;
   abbe_render_desc desc = one_exit;
   desc.width = desc.height = 16;
-  draw(LOW_EYE LAMP FLOOR GREAT_BALL SHELF, &desc, NULL, &pages);
-  assert_int_equal(pages, 0);
-  draw(LOW_EYE LAMP "objects:\n" GREAT_BALL PEBBLE HILL, &desc, NULL, &pages);
-  assert_int_equal(pages, 0);
-  draw(LOW_EYE LAMP FLOOR GREAT_BALL SCREEN HILL, &desc, NULL, &pages);
-  assert_int_equal(pages, 1);
+  draw(LOW_EYE LAMP FLOOR GREAT_BALL SHELF, &desc, NULL, &tiles);
+  assert_int_equal(tiles, 0);
+  draw(LOW_EYE LAMP "objects:\n" GREAT_BALL PEBBLE HILL, &desc, NULL, &tiles);
+  assert_int_equal(tiles, 0);
+  draw(LOW_EYE LAMP FLOOR GREAT_BALL SCREEN HILL, &desc, NULL, &tiles);
+  assert_int_equal(tiles, 1);
 }
 
 /* More parts take light than there is room for maps: said, not left dark. */
@@ -405,14 +406,14 @@ static void test_too_many_parts(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_windows_hold_the_light),
-      cmocka_unit_test(test_pages_of_what_is_worth_one),
+      cmocka_unit_test(test_tiles_of_what_is_worth_one),
       cmocka_unit_test(test_rectangles_are_apart),
       cmocka_unit_test(test_places_and_texels),
       cmocka_unit_test(test_what_the_lamp_does_not_see),
       cmocka_unit_test(test_meshes_show_what_rectangles_do),
       cmocka_unit_test(test_behind_the_lamp),
       cmocka_unit_test(test_a_closed_room),
-      cmocka_unit_test(test_no_pages),
+      cmocka_unit_test(test_no_tiles),
       cmocka_unit_test(test_too_many_parts),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);

@@ -1,14 +1,14 @@
-// The eye's rays on the general way, by WAYS threads a pixel: so each band's are followed as far however
-// many bands there are.
+// The eye's rays on multi-refractor paths, by PIXEL_THREADS threads a pixel: so each band's are followed
+// as far however many bands there are.
 
-const int PIXELS = int(gl_WorkGroupSize.x) / WAYS;
+const int PIXELS = int(gl_WorkGroupSize.x) / PIXEL_THREADS;
 
-shared vec3 path_sum[PIXELS * WAYS];
+shared vec3 path_sum[PIXELS * PIXEL_THREADS];
 
 #ifdef HIERARCHY
 // A search is dear: a pixel's first thread finds out for all what its ray meets first. The first threads
 // of all pixels come first, then the second ones: where few bands are wanted, whole lanes are done early.
-int place = int(gl_LocalInvocationID.x) % PIXELS, way = int(gl_LocalInvocationID.x) / PIXELS;
+int place = int(gl_LocalInvocationID.x) % PIXELS, pixel_thread = int(gl_LocalInvocationID.x) / PIXELS;
 
 shared ivec4 task[PIXELS];  // refractor, first band, how many, and whether something is met
 shared PathState task_start[PIXELS];
@@ -32,8 +32,9 @@ void take_task(out int base, out int count) {
 #else
 // Short loops are dear where what they change is kept in memory, as Mesa 22's llvmpipe does with what is
 // written before a barrier and read behind it: each thread looks for itself. Neighbouring lanes have a
-// pixel's bands, which take the same ways for longer than its neighbours do.
-int place = int(gl_LocalInvocationID.x) / WAYS, way = int(gl_LocalInvocationID.x) % WAYS;
+// pixel's bands, which take the same paths for longer than its neighbours do.
+int place = int(gl_LocalInvocationID.x) / PIXEL_THREADS;
+int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 #endif
 
 // XYZ of what a band shows through the first interface, or in_mirror: of what it shows in the mirror
@@ -50,15 +51,14 @@ vec3 band_light(int band, bool in_mirror, out float mirrored) {
 
 #ifdef REFINED
 void main() {
-  copy_tables();
-  uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  uint listed = group * uint(PIXELS) + uint(place);
+  copy_all();
+  uint listed = group_number() * uint(PIXELS) + uint(place);
   bool there = listed < refine_count;
   uvec2 entry = there ? refine[listed] : uvec2(0);
   ivec2 at = pixel_of(entry.x);
   int base, count;
 #ifdef HIERARCHY
-  if (way == 0) {
+  if (pixel_thread == 0) {
     look(at);
     wanted_level(entry.y, base, count);
     give_task(base, count);
@@ -72,7 +72,7 @@ void main() {
   uint wanted = entry.y & 255u;
   int joined = int(entry.y >> 12 & 15u), most = bitCount(wanted) << joined;
   vec3 sum = vec3(0);
-  for (int k = way; k < most; k += WAYS) {
+  for (int k = pixel_thread; k < most; k += PIXEL_THREADS) {
     uint rest = wanted;
     for (int before = k >> joined; before > 0; before--) rest &= rest - 1u;
     int i = (findLSB(rest) << joined) + (k & ((1 << joined) - 1));
@@ -80,27 +80,27 @@ void main() {
     vec3 light = band_light(base + min(i, count - 1), false, mirrored);
     sum += i < count ? light * bands[base + i].weight_n.xyz : vec3(0);
   }
-  path_sum[place * WAYS + way] = sum;
+  path_sum[place * PIXEL_THREADS + pixel_thread] = sum;
   barrier();
-  if (way > 0 || !there) return;
+  if (pixel_thread > 0 || !there) return;
   vec3 all = vec3(0);
-  for (int k = 0; k < WAYS; k++) all += path_sum[place * WAYS + k];
+  for (int k = 0; k < PIXEL_THREADS; k++) all += path_sum[place * PIXEL_THREADS + k];
   add_to_picture(at, all);
 }
 #else
-shared vec3 path_mirror[PIXELS * WAYS], in_the_mirror[PIXELS];
+shared vec3 path_mirror[PIXELS * PIXEL_THREADS], in_the_mirror[PIXELS];
 #ifdef REFINES
 shared vec3 path_shown[PIXELS * COARSE_BANDS];
 #endif
 
 void main() {
-  copy_tables();
-  uint listed = pixel_first + gl_WorkGroupID.x * uint(PIXELS) + uint(place);
-  bool there = listed < pixel_count;
+  copy_all();
+  uint listed = pixel_first + group_number() * uint(PIXELS) + uint(place);
+  bool there = listed < min(pixel_count, pixel_end);
   uint where = there ? pixel[listed] : 0u;
   int base, count;
 #ifdef HIERARCHY
-  if (way == 0) {
+  if (pixel_thread == 0) {
     look(pixel_of(where));
     choose_bands(base, count);
     give_task(base, count);
@@ -112,7 +112,7 @@ void main() {
   choose_bands(base, count);
 #endif
   vec3 sum = vec3(0), mirror = vec3(0);
-  for (int i = there ? way : count + 1; i <= count; i += WAYS) {
+  for (int i = there ? pixel_thread : count + 1; i <= count; i += PIXEL_THREADS) {
     bool in_mirror = i == count;
     int band = base + (in_mirror ? count / 2 : i);
     float mirrored;
@@ -125,14 +125,14 @@ void main() {
     if (!in_mirror) path_shown[place * COARSE_BANDS + i] = light;
 #endif
   }
-  path_sum[place * WAYS + way] = sum;
-  path_mirror[place * WAYS + way] = mirror;
+  path_sum[place * PIXEL_THREADS + pixel_thread] = sum;
+  path_mirror[place * PIXEL_THREADS + pixel_thread] = mirror;
   barrier();
-  if (way > 0 || !there) return;
+  if (pixel_thread > 0 || !there) return;
   vec3 all = vec3(0), all_mirror = vec3(0);
-  for (int k = 0; k < WAYS; k++) {
-    all += path_sum[place * WAYS + k];
-    all_mirror += path_mirror[place * WAYS + k];
+  for (int k = 0; k < PIXEL_THREADS; k++) {
+    all += path_sum[place * PIXEL_THREADS + k];
+    all_mirror += path_mirror[place * PIXEL_THREADS + k];
   }
 #ifdef REFINES
   for (int i = 0; i < COARSE_BANDS; i++)

@@ -1,0 +1,16 @@
+/* clock.h: how long something takes. It tells no date. */
+#ifndef ABBE_BASE_CLOCK_H
+#define ABBE_BASE_CLOCK_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Seconds since some moment before the program began: they only ever grow, whoever sets the
+ * machine's time. */
+double abbe_clock_seconds(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,230 @@
+#include "gl/renderer_inputs.h"
+
+#include <string.h>
+
+/* Of a run of bytes: words are mixed in one after another, by a multiplication and a shift. */
+static uint64_t mix(uint64_t h, const void *data, size_t size) {
+  const unsigned char *at = data;
+  for (; size > 0;) {
+    uint64_t word = 0;
+    const size_t n = size < sizeof word ? size : sizeof word;
+    memcpy(&word, at, n);
+    h = (h ^ word) * 0x9e3779b97f4a7c15u;
+    h ^= h >> 29;
+    at += n;
+    size -= n;
+  }
+  return h;
+}
+
+#define MIX(h, value) ((h) = mix((h), &(value), sizeof(value)))
+
+static uint64_t mix_array(uint64_t h, const void *data, size_t count, size_t size) {
+  const bool there = data != NULL;
+  MIX(h, there);
+  MIX(h, count);
+  return there ? mix(h, data, count * size) : h;
+}
+
+static uint64_t mix_spectrum(uint64_t h, const abbe_spectrum *s) {
+  const bool there = s != NULL;
+  MIX(h, there);
+  if (!there) return h;
+  const size_t count = abbe_spectrum_count(s);
+  const abbe_interpolation interpolation = abbe_spectrum_interpolation(s);
+  MIX(h, interpolation);
+  h = mix_array(h, abbe_spectrum_lambda_nm(s), count, sizeof(double));
+  return mix_array(h, abbe_spectrum_value(s), count, sizeof(double));
+}
+
+static uint64_t mix_material(uint64_t h, const abbe_material *m) {
+  MIX(h, m->dispersion.model);
+  MIX(h, m->dispersion.count);
+  h = mix(h, m->dispersion.c, sizeof m->dispersion.c);
+  h = mix_spectrum(h, m->dispersion.table);
+  MIX(h, m->min_nm);
+  MIX(h, m->max_nm);
+  MIX(h, m->extrapolate);
+  return mix_spectrum(h, m->attenuation);
+}
+
+static uint64_t mix_shape(uint64_t h, const abbe_object *o) {
+  const abbe_mesh *m = &o->mesh;
+  const abbe_exact *e = &o->exact;
+  h = mix_array(h, m->position, m->vertex_count, sizeof *m->position);
+  h = mix_array(h, m->normal, m->vertex_count, sizeof *m->normal);
+  h = mix_array(h, m->uv, m->vertex_count, sizeof *m->uv);
+  h = mix_array(h, m->face, m->face_count, sizeof *m->face);
+  MIX(h, e->kind);
+  MIX(h, e->centre);
+  MIX(h, e->radius);
+  h = mix_array(h, e->plane, e->count, sizeof *e->plane);
+  h = mix_array(h, e->parallelogram, e->count, sizeof *e->parallelogram);
+  MIX(h, o->min);
+  MIX(h, o->max);
+  return h;
+}
+
+/* Surfaces, which of them refract, which share a material, and the models that the plan chose. */
+static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
+  uint64_t h = 1;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    size_t first = 0;
+    while (scene->object[first].material != scene->object[i].material) first++;
+    const bool refracts = scene->object[i].material != NULL;
+    h = mix_shape(h, &scene->object[i]);
+    MIX(h, first);
+    MIX(h, refracts);
+  }
+  h = mix_array(h, plan->model, plan->refractor_count, sizeof *plan->model);
+  h = mix_array(h, plan->receiver_model, plan->receiver_count, sizeof *plan->receiver_model);
+  MIX(h, plan->desc.profile);
+  MIX(h, plan->receivers);
+  MIX(h, plan->bvh);
+  MIX(h, plan->tiles);
+  return h;
+}
+
+static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
+  uint64_t h = 4;
+  MIX(h, plan->desc.space);
+  for (size_t i = 0; i < plan->receiver_count; i++) {
+    const abbe_object *o = &scene->object[plan->receiver_object[i]];
+    const size_t texels = o->texture.width * o->texture.height * o->texture.channels;
+    MIX(h, o->reflectance);
+    MIX(h, o->texture_repeat);
+    MIX(h, o->texture.width);
+    h = mix_array(h, o->texture.data, texels, sizeof *o->texture.data);
+  }
+  return h;
+}
+
+static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
+  const abbe_render_desc *d = &plan->desc;
+  uint64_t h = 2;
+  for (size_t i = 0; i < plan->refractor_count; i++) {
+    const abbe_object *o = &scene->object[plan->refractor_object[i]];
+    h = mix_material(h, o->material);
+    MIX(h, o->min); /* how long paths through it are */
+    MIX(h, o->max);
+  }
+  for (size_t i = 0; i < plan->light_view_count; i++) {
+    const abbe_illuminant *illuminant = &scene->light[plan->light_view[i].light].illuminant;
+    MIX(h, illuminant->kind);
+    h = mix_spectrum(h, illuminant->spectrum);
+  }
+  MIX(h, d->profile);
+  MIX(h, d->wavelengths);
+  MIX(h, d->min_nm);
+  MIX(h, d->max_nm);
+  MIX(h, plan->caustics);
+  MIX(h, plan->lengths);
+  MIX(h, plan->fills);
+  MIX(h, plan->dispersive);
+  MIX(h, plan->absorbing);
+  MIX(h, plan->tinting);
+  return h;
+}
+
+/* Where lights are and how they shine, by unit power. */
+static uint64_t mix_lights(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
+  MIX(h, plan->desc.everything);
+  for (size_t i = 0; i < plan->light_view_count; i++) {
+    const abbe_light_view *view = &plan->light_view[i];
+    const abbe_light *light = &scene->light[view->light];
+    MIX(h, light->kind);
+    MIX(h, light->position);
+    MIX(h, light->direction);
+    MIX(h, light->radius);
+    MIX(h, light->cone_rad);
+    MIX(h, light->soft_rad);
+    MIX(h, view->light);
+    MIX(h, view->face);
+    MIX(h, view->faces);
+    MIX(h, plan->reaches[i]);
+  }
+  MIX(h, plan->light_view_count);
+  return h;
+}
+
+static uint64_t mix_layout(uint64_t h, const abbe_map_layout *layout) {
+  const bool there = layout != NULL;
+  MIX(h, there);
+  if (!there) return h;
+  MIX(h, layout->view.orthographic);
+  MIX(h, layout->view.origin);
+  MIX(h, layout->view.right);
+  MIX(h, layout->view.up);
+  MIX(h, layout->view.forward);
+  MIX(h, layout->view.window);
+  MIX(h, layout->view.near);
+  MIX(h, layout->view.far);
+  MIX(h, layout->knot);
+  return h;
+}
+
+/* What the plan and the request say of light's way from lights to maps. */
+static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
+  const abbe_render_desc *d = &plan->desc;
+  MIX(h, d->photons);
+  MIX(h, d->map_size);
+  MIX(h, d->fill);
+  MIX(h, d->model);
+  MIX(h, d->energy_share);
+  MIX(h, d->exits);
+  MIX(h, d->map_layout_light);
+  MIX(h, d->photon_shift);
+  h = mix_layout(h, d->map_layout);
+  const bool facts[] = {plan->spheres,  plan->convex,
+                        plan->layers,   plan->multi_refractor_paths,
+                        plan->cubes,    plan->forward_transmission,
+                        plan->textured, plan->outside_map_view,
+                        plan->draw_back, plan->receiver_shadows};
+  MIX(h, facts);
+  MIX(h, plan->hit_slots);
+  return h;
+}
+
+static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
+  const abbe_render_desc *d = &plan->desc;
+  MIX(h, scene->camera.eye);
+  MIX(h, scene->camera.target);
+  MIX(h, scene->camera.up);
+  MIX(h, scene->camera.fov_y_rad);
+  MIX(h, d->width);
+  MIX(h, d->height);
+  MIX(h, d->supersample);
+  MIX(h, d->upsample);
+  MIX(h, d->sample_shift);
+  MIX(h, d->layers);
+  MIX(h, plan->camera_sees_refractor);
+  MIX(h, plan->eye_exits);
+  MIX(h, plan->eye_share);
+  return h;
+}
+
+void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
+                             abbe_renderer_inputs *out) {
+  uint64_t *part = out->part, light;
+  part[ABBE_PART_GEOMETRY] = of_geometry(scene, plan);
+  part[ABBE_PART_SURFACES] = of_surfaces(scene, plan);
+  part[ABBE_PART_SPECTRA] = of_spectra(scene, plan);
+  part[ABBE_PART_SHADOWS] = mix_lights(part[ABBE_PART_GEOMETRY], scene, plan);
+  light = mix_light_plan(part[ABBE_PART_SHADOWS], plan);
+  MIX(light, part[ABBE_PART_SPECTRA]);
+  part[ABBE_PART_LIGHT] = light;
+  part[ABBE_PART_EYE] = mix_eye(light, scene, plan);
+  part[ABBE_PART_POWERS] = 3;
+  for (size_t i = 0; i < scene->light_count; i++)
+    MIX(part[ABBE_PART_POWERS], scene->light[i].power);
+  MIX(part[ABBE_PART_POWERS], scene->ambient); /* the unit of power goes by the greatest of all */
+  MIX(part[ABBE_PART_POWERS], scene->background);
+  MIX(part[ABBE_PART_POWERS], plan->desc.space);
+}
+
+unsigned abbe_renderer_inputs_differ(const abbe_renderer_inputs *a, const abbe_renderer_inputs *b) {
+  unsigned parts = 0;
+  for (unsigned i = 0; i < ABBE_PART_COUNT; i++)
+    if (a->part[i] != b->part[i]) parts |= 1u << i;
+  return parts;
+}

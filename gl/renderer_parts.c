@@ -1,0 +1,274 @@
+#include "gl/renderer_parts.h"
+
+#include "base/clock.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  GEOMETRY = 1 << ABBE_PART_GEOMETRY,
+  SURFACES = 1 << ABBE_PART_SURFACES,
+  SPECTRA = 1 << ABBE_PART_SPECTRA,
+  SHADOWS = 1 << ABBE_PART_SHADOWS,
+  LIGHT = 1 << ABBE_PART_LIGHT,
+  EYE = 1 << ABBE_PART_EYE,
+  POWERS = 1 << ABBE_PART_POWERS,
+  ALL = (1 << ABBE_PART_COUNT) - 1
+};
+
+static bool is_thesis(const abbe_renderer *r) {
+  return abbe_profile_is_thesis(r->plan.desc.profile);
+}
+
+abbe_result abbe_renderer_parts_check(const abbe_renderer *r, abbe_error *error) {
+  if (r->made) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the renderer's last change or frame failed, so there is nothing to draw; "
+                        "abbe_renderer_change comes first");
+}
+
+/* The scene where floats serve it, with a light for each further face of a cube. */
+static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, abbe_error *error) {
+  const size_t own = scene->light_count;
+  size_t of[ABBE_SCENE_MAX_LIGHTS] = {0};
+  abbe_local_scene_free(&r->local);
+  abbe_result result = abbe_local_scene_make(scene, &r->local, error);
+  if (result == ABBE_OK && !is_thesis(r)) result = abbe_local_scene_scale_light(&r->local, error);
+  for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
+  if (result == ABBE_OK && r->plan.cubes)
+    result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
+  if (result != ABBE_OK || r->plan.desc.map_layout == NULL) return result;
+  r->given = *r->plan.desc.map_layout; /* the caller's may go */
+  abbe_local_scene_from_world(&r->local, &r->given.view);
+  r->plan.desc.map_layout = &r->given;
+  return ABBE_OK;
+}
+
+static unsigned scene_parts(unsigned parts) {
+  unsigned of_scene = 0;
+  if (parts & GEOMETRY) of_scene |= ABBE_SCENE_GEOMETRY;
+  if (parts & SURFACES) of_scene |= ABBE_SCENE_SURFACES;
+  if (parts & SPECTRA) of_scene |= ABBE_SCENE_SPECTRA;
+  if (parts & SHADOWS) of_scene |= ABBE_SCENE_SHADOWS;
+  return of_scene;
+}
+
+static void free_eye(abbe_renderer *r) {
+  abbe_picture_free(&r->picture);
+  abbe_refraction_pass_free(&r->refraction);
+  abbe_receivers_pass_free(&r->receivers);
+  r->picture = (abbe_picture){0};
+  r->refraction = (abbe_refraction_pass){0};
+  r->receivers = (abbe_receivers_pass){0};
+  abbe_gpu_drop_textures(&r->gpu, 1, &r->baseline);
+  r->seen = false;
+}
+
+static void free_light(abbe_renderer *r) {
+  abbe_thesis_free(&r->thesis);
+  abbe_caustics_free(&r->caustics);
+  abbe_spectral_map_free(&r->map);
+  abbe_receiver_atlas_free(&r->atlas);
+  abbe_light_layers_free(&r->layers);
+  abbe_photon_lights_free(&r->views);
+  r->thesis = (abbe_thesis){0};
+  r->caustics = (abbe_caustics){0};
+  r->map = (abbe_spectral_map){0};
+  r->atlas = (abbe_receiver_atlas){0};
+  r->layers = (abbe_light_layers){0};
+  r->views = (abbe_photon_lights){0};
+  r->lit = false;
+}
+
+static void free_parts(abbe_renderer *r, unsigned parts) {
+  if (parts & EYE) free_eye(r);
+  if (parts & LIGHT) free_light(r);
+  abbe_gpu_scene_free(&r->scene, scene_parts(parts));
+}
+
+static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
+  abbe_shader_variant_make(&r->scene, &r->variant);
+  r->variant.copies = r->software;
+  if (is_thesis(r)) return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
+  abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
+  r->variant.wide = r->views.wide;
+  if (result == ABBE_OK) result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
+  if (result == ABBE_OK) result = abbe_light_layers_make(&r->views, &r->faces, &r->layers, error);
+  r->atlas.views = &r->views;
+  if (result != ABBE_OK) return result;
+  if (r->plan.caustics)
+    return abbe_caustics_make(&r->views, &r->layers, &r->atlas, &r->map, &r->variant, &r->caustics,
+                              error);
+  return abbe_spectral_map_make(&r->views, &r->atlas, &r->variant, &r->map, error);
+}
+
+static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
+  abbe_shader_variant variant = r->variant;
+  variant.layers_out = r->plan.desc.layers;
+  abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
+  r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera};
+  abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
+  if (result == ABBE_OK)
+    result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant,
+                                       &r->refraction, error);
+  if (result == ABBE_OK)
+    result = abbe_picture_make(&r->receivers, &r->refraction, &r->picture, error);
+  return result;
+}
+
+static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigned parts,
+                              abbe_error *error) {
+  abbe_result result = make_local_scene(r, scene, error);
+  if (result != ABBE_OK) return result;
+  abbe_gpu_scene_begin(&r->gpu, r->local.scene, &r->plan, &r->scene);
+  result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
+  if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
+  if (result != ABBE_OK || is_thesis(r)) return result;
+  if ((parts & (LIGHT | POWERS)) == POWERS) abbe_photon_lights_upload(&r->views);
+  return (parts & EYE) != 0 ? make_eye(r, error) : ABBE_OK;
+}
+
+/* After a cancel nothing more was dispatched: whatever the passes say, there is no result. */
+static abbe_result end_watch(abbe_renderer *r, abbe_result result, abbe_error *error) {
+  const bool stopped = r->gpu.stopped;
+  abbe_gpu_watch(&r->gpu, NULL, NULL);
+  r->gpu.compiling = NULL;
+  if (!stopped) return result;
+  return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
+}
+
+abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene,
+                                       const abbe_render_desc *desc, abbe_error *error) {
+  abbe_renderer_inputs inputs;
+  abbe_plan plan;
+  abbe_result result = abbe_plan_make(scene, desc, &plan, error);
+  if (result != ABBE_OK) return result;
+  abbe_renderer_inputs_of(scene, &plan, &inputs);
+  unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
+  if (abbe_profile_is_thesis(plan.desc.profile) && parts != 0) parts = ALL; /* its tables hold all */
+  const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
+  if (crowded && (parts & LIGHT) != 0) parts = ALL;
+  free_parts(r, parts);
+  if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
+  abbe_plan_free(&r->plan);
+  r->plan = plan;
+  r->inputs = inputs;
+  if (parts != 0) r->seen = false; /* all parts show, those of which nothing is made too */
+  abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
+  r->gpu.compiling = plan.desc.compiling;
+  result = end_watch(r, make_parts(r, scene, parts, error), error);
+  r->made = result == ABBE_OK;
+  if (!r->made) free_parts(r, ALL);
+  if (!r->made) r->lit = r->seen = false;
+  abbe_gpu_trim(&r->gpu);
+  return result;
+}
+
+void abbe_renderer_parts_free(abbe_renderer *r) {
+  free_parts(r, ALL);
+  abbe_gpu_free(&r->gpu);
+  abbe_local_scene_free(&r->local);
+  abbe_plan_free(&r->plan);
+}
+
+static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = abbe_light_layers_run(&r->layers, error);
+  if (result == ABBE_OK && r->plan.caustics)
+    result = abbe_caustics_run(&r->caustics, &r->untimed_ms, error);
+  return result;
+}
+
+static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = abbe_receivers_pass_run(&r->receivers, error);
+  if (result == ABBE_OK) result = abbe_refraction_pass_run(&r->refraction, error);
+  if (result == ABBE_OK) abbe_picture_run(&r->picture);
+  return result;
+}
+
+/* The frame: the light's passes, then the camera's; those that were run and depend on nothing that
+ * has changed since are left out. */
+static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (is_thesis(r)) {
+    if (!r->seen) result = abbe_thesis_run(&r->thesis, error);
+    r->lit = result == ABBE_OK;
+  } else {
+    if (!r->lit) result = draw_light(r, error);
+    r->lit = r->lit || (result == ABBE_OK && !r->gpu.stopped);
+    if (result == ABBE_OK && !r->seen) result = draw_eye(r, error);
+  }
+  return result != ABBE_OK ? result : abbe_gl_check(r->gpu.gl, "the frame's passes", error);
+}
+
+static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *s) {
+  s->frame_ms = 1e3 * abbe_clock_seconds() - start_ms - r->untimed_ms;
+  s->wavelengths = r->plan.desc.wavelengths;
+  s->device_bytes = abbe_gpu_bytes(&r->gpu) + r->scene.mesh_bytes;
+  double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
+  size_t first = r->thesis.photon_count;
+  if (!is_thesis(r)) {
+    for (size_t i = 0; i < r->plan.light_view_count; i++)
+      s->photons += r->views.light[i].photon_count;
+    cells = (double)r->views.light[0].cells[0] * (double)r->views.light[0].cells[1];
+    first = r->views.light[0].photon_count;
+  } else {
+    s->photons = first;
+  }
+  s->refractor_share = (double)first / cells;
+  if (r->plan.caustics && !is_thesis(r)) abbe_caustics_energy(&r->caustics, &s->energy);
+  double *part = &s->energy.reached;
+  for (size_t i = 0; i < sizeof s->energy / sizeof *part; i++) part[i] *= r->local.unit;
+  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (!is_thesis(r) || s->pass_count == 0); pass++)
+    s->kept[pass] = abbe_plan_runs(&r->plan, pass, 0) && !abbe_statistics_ran(s, pass);
+}
+
+abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress progress, void *user,
+                                     abbe_statistics *statistics, abbe_error *error) {
+  if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
+  if (abbe_renderer_parts_check(r, error) != ABBE_OK) return ABBE_INVALID_ARGUMENT;
+  if (statistics != NULL && r->plan.caustics && !is_thesis(r) &&
+      !abbe_caustics_know_energy(&r->caustics))
+    r->lit = false; /* no frame with statistics has followed this light */
+  r->gpu.statistics = statistics;
+  r->untimed_ms = 0;
+  if (!r->lit || (is_thesis(r) && statistics != NULL)) r->seen = false; /* it counts as it draws */
+  const double start_ms = 1e3 * abbe_clock_seconds();
+  abbe_gpu_watch(&r->gpu, progress, user);
+  abbe_result result = run_passes(r, error);
+  r->gpu.gl->Finish();
+  result = end_watch(r, result, error);
+  r->seen = result == ABBE_OK;
+  r->made = result == ABBE_OK || result == ABBE_CANCELLED; /* else lists may be without room */
+  abbe_gpu_trim(&r->gpu); /* what was outgrown */
+  if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
+  r->gpu.statistics = NULL;
+  return result;
+}
+
+abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_error *error) {
+  static const int first = 0;
+  static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
+  const size_t *samples = r->camera.samples;
+  const abbe_gl *gl = r->gpu.gl;
+  abbe_result result = abbe_renderer_parts_check(r, error);
+  if (result != ABBE_OK) return result;
+  if (is_thesis(r))
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no baseline of its own");
+  if (r->baseline == 0) /* the picture may be what lies in the receivers' colour, and stays */
+    result = abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, samples[0], samples[1], 1, false,
+                                   &r->baseline, error);
+  if (result != ABBE_OK) return result;
+  gl->Finish();
+  const double start_ms = 1e3 * abbe_clock_seconds();
+  abbe_refractor_faces_use(&r->faces, &r->camera.view);
+  gl->Enable(GL_DEPTH_TEST);
+  result = abbe_gpu_set_target(&r->gpu, &r->baseline, &first, 1, r->receivers.depth, samples[0],
+                               samples[1], error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  for (size_t i = 0; i < r->scene.local->object_count; i++) abbe_gpu_meshes_draw(&r->scene, i);
+  gl->Finish();
+  *ms = 1e3 * abbe_clock_seconds() - start_ms;
+  return abbe_gl_check(gl, "the drawing of surfaces", error);
+}

@@ -1,0 +1,157 @@
+#include "gl/scene/spectra/spectral_tables.h"
+
+#include "gl/scene/spectra/interval_sums.h"
+
+#include <stdlib.h>
+
+enum { MOST_STEPS = 128, MOST_SUMS = 1024 };
+
+size_t abbe_spectral_tables_node(size_t wavelengths, size_t nodes, size_t k) {
+  return nodes > 1 ? (k * (wavelengths - 1) + (nodes - 1) / 2) / (nodes - 1) : 0;
+}
+
+/* The nodes that every photon takes, as a sampling of their own. */
+static abbe_result make_coarse(abbe_spectral_tables *t, size_t count, abbe_error *error) {
+  const abbe_wavelengths *all = &t->all;
+  abbe_wavelengths *out = &t->coarse;
+  *out = (abbe_wavelengths){.count = count,
+                            .lambda_nm = calloc(count, sizeof *out->lambda_nm),
+                            .edge_nm = calloc(count + 1, sizeof *out->edge_nm)};
+  if (out->lambda_nm == NULL || out->edge_nm == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  for (size_t k = 0; k < count; k++)
+    out->lambda_nm[k] = all->lambda_nm[abbe_spectral_tables_node(all->count, count, k)];
+  for (size_t k = 1; k < count; k++)
+    out->edge_nm[k] =
+        count == all->count ? all->edge_nm[k] : 0.5 * (out->lambda_nm[k - 1] + out->lambda_nm[k]);
+  out->edge_nm[0] = all->edge_nm[0];
+  out->edge_nm[count] = all->edge_nm[all->count];
+  return ABBE_OK;
+}
+
+static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *plan,
+                                      abbe_spectral_tables *t, abbe_error *error) {
+  const size_t n = t->all.count, refractors = plan->refractor_count;
+  t->index = calloc(refractors * n + 1, sizeof *t->index);
+  t->attenuation = calloc(refractors * n + 1, sizeof *t->attenuation);
+  t->attenuation_550 = calloc(refractors + 1, sizeof *t->attenuation_550);
+  if (t->index == NULL || t->attenuation == NULL || t->attenuation_550 == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
+  for (size_t i = 0; i < refractors; i++) {
+    const abbe_material *material = scene->object[plan->refractor_object[i]].material;
+    t->attenuation_550[i] = abbe_material_attenuation(material, 550.0);
+    for (size_t k = 0; k < n; k++) {
+      const double lambda_nm = t->all.lambda_nm[k];
+      abbe_result result = abbe_material_n(material, lambda_nm, &t->index[i * n + k], error);
+      if (result != ABBE_OK) return result;
+      t->attenuation[i * n + k] = abbe_material_attenuation(material, lambda_nm);
+    }
+  }
+  return ABBE_OK;
+}
+
+/* Y of the light's band below and above each of the set's nodes, from column `first` of every
+ * sample. */
+static void weigh_halves(const abbe_illuminant *illuminant, const abbe_wavelengths *w, size_t all,
+                         int first, float (*sample)[4]) {
+  const double min = w->edge_nm[0], max = w->edge_nm[w->count];
+  for (size_t k = 0; k < w->count; k++) {
+    const size_t i = w->count == all ? k : abbe_spectral_tables_node(all, w->count, k);
+    double below[3], above[3];
+    abbe_weights_band_xyz(illuminant, min, max, w->edge_nm[k], w->lambda_nm[k], below);
+    abbe_weights_band_xyz(illuminant, min, max, w->lambda_nm[k], w->edge_nm[k + 1], above);
+    sample[i][first] = (float)below[1];
+    sample[i][first + 1] = (float)above[1];
+  }
+}
+
+/* The coarse set's intervals' shares of the light, of X, Y and Z alike, by their mean. */
+static void weigh_intervals(const abbe_illuminant *illuminant, const abbe_wavelengths *w,
+                            float *weight) {
+  const double min = w->edge_nm[0], max = w->edge_nm[w->count];
+  const size_t intervals = w->count - 1;
+  double xyz[3], total = 0;
+  for (size_t k = 0; k < intervals; k++) {
+    abbe_weights_band_xyz(illuminant, min, max, w->lambda_nm[k], w->lambda_nm[k + 1], xyz);
+    weight[k] = (float)(xyz[0] + xyz[1] + xyz[2]);
+    total += (double)weight[k];
+  }
+  for (size_t k = 0; k < intervals; k++)
+    weight[k] = total > 0 ? (float)((double)weight[k] * (double)intervals / total) : 1;
+}
+
+static abbe_result weigh_lights(const abbe_scene *scene, const abbe_plan *plan,
+                                abbe_spectral_tables *t, abbe_error *error) {
+  const size_t n = t->all.count, lights = plan->light_view_count;
+  t->sample_weight = calloc(lights * n + 1, sizeof *t->sample_weight);
+  t->interval_weight = calloc(lights * t->coarse.count + 1, sizeof *t->interval_weight);
+  if (t->sample_weight == NULL || t->interval_weight == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
+  for (size_t i = 0; i < lights; i++) {
+    const abbe_illuminant *illuminant = &scene->light[i].illuminant;
+    weigh_halves(illuminant, &t->all, n, 0, t->sample_weight + i * n);
+    weigh_halves(illuminant, &t->coarse, n, 2, t->sample_weight + i * n);
+    weigh_intervals(illuminant, &t->coarse, t->interval_weight + i * (t->coarse.count - 1));
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_spectral_tables_intervals(const abbe_spectral_tables *t, const abbe_scene *scene,
+                                           const abbe_plan *plan, size_t bands, size_t first,
+                                           float (**out)[4], abbe_error *error) {
+  const bool refines = t->coarse.count < t->all.count;
+  const abbe_interval_sums of = {scene, plan, t->steps, bands, first};
+  const size_t coarse = abbe_interval_sums_size(plan, t->steps, t->coarse.count);
+  const size_t all = refines ? abbe_interval_sums_size(plan, t->steps, t->all.count) : 0;
+  *out = calloc(coarse + all + 1, sizeof **out);
+  if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for wavelengths");
+  float(*rest)[4] = abbe_interval_sums_fill(&of, &t->coarse, *out);
+  if (refines) abbe_interval_sums_fill(&of, &t->all, rest);
+  return ABBE_OK;
+}
+
+static abbe_result fill_bands(const abbe_scene *scene, const abbe_plan *plan,
+                              abbe_spectral_tables *t, abbe_error *error) {
+  if (!plan->lengths) return ABBE_OK;
+  const bool refines = t->coarse.count < t->all.count;
+  const size_t nodes = t->coarse.count + (refines ? t->all.count : 0);
+  t->bands = calloc(plan->light_view_count * plan->refractor_count * nodes + 1, sizeof *t->bands);
+  if (t->bands == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for attenuation");
+  abbe_node_bands *rest = abbe_band_attenuation_fill(scene, plan, &t->coarse, t->bands);
+  if (refines) abbe_band_attenuation_fill(scene, plan, &t->all, rest);
+  return ABBE_OK;
+}
+
+abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *plan,
+                                      abbe_spectral_tables *out, abbe_error *error) {
+  const abbe_render_desc *desc = &plan->desc;
+  abbe_spectral_tables *t = out;
+  *t = (abbe_spectral_tables){.steps = MOST_STEPS};
+  abbe_result result =
+      abbe_wavelengths_make(desc->wavelengths, desc->min_nm, desc->max_nm, &t->all, error);
+  if (result == ABBE_OK) result = make_coarse(t, abbe_plan_least_wavelengths(plan), error);
+  while (t->steps > 2 && t->steps * t->coarse.count > MOST_SUMS) t->steps /= 2;
+  if (result == ABBE_OK) result = evaluate_materials(scene, plan, t, error);
+  if (result == ABBE_OK)
+    result = abbe_weights_make(&t->all, &scene->light[0].illuminant, ABBE_RGB_SPACE_XYZ, &t->camera,
+                               error);
+  if (result != ABBE_OK || !plan->caustics || abbe_profile_is_thesis(desc->profile)) return result;
+  result = weigh_lights(scene, plan, t, error);
+  if (result == ABBE_OK)
+    result = abbe_spectral_tables_intervals(t, scene, plan, 0, 0, &t->intervals, error);
+  return result == ABBE_OK ? fill_bands(scene, plan, t, error) : result;
+}
+
+void abbe_spectral_tables_free(abbe_spectral_tables *t) {
+  abbe_wavelengths_free(&t->all);
+  abbe_wavelengths_free(&t->coarse);
+  abbe_weights_free(&t->camera);
+  free(t->index);
+  free(t->attenuation);
+  free(t->attenuation_550);
+  free(t->intervals);
+  free(t->bands);
+  free(t->sample_weight);
+  free(t->interval_weight);
+  *t = (abbe_spectral_tables){0};
+}

@@ -1,0 +1,165 @@
+/* Times what follows a change of a renderer, for script/bench-changes: no test. */
+#include "base/clock.h"
+#include "gl/renderer.h"
+#include "scenes/geometry/transform.h"
+#include "scenes/import/scene_file.h"
+#include "scenes/object_motion.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { REPEATS = 5 };
+
+typedef struct bench {
+  abbe_context *context;
+  abbe_scene scene;
+  abbe_render_desc desc;
+  abbe_renderer *renderer;
+} bench;
+
+static void must(abbe_result result, const abbe_error *error) {
+  if (result == ABBE_OK) return;
+  fprintf(stderr, "bench_changes: %s\n", error->text);
+  exit(1);
+}
+
+static double now_ms(void) {
+  return 1e3 * abbe_clock_seconds();
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static void change_camera(bench *b, int k) {
+  b->scene.camera.eye[0] += k % 2 == 0 ? 0.01 : -0.01;
+}
+
+static void change_power(bench *b, int k) {
+  b->scene.light[0].power *= k % 2 == 0 ? 0.5 : 2;
+}
+
+static void change_light(bench *b, int k) {
+  b->scene.light[0].position[0] += k % 2 == 0 ? 0.002 : -0.002;
+}
+
+static void change_object(bench *b, int k) {
+  const double offset[3] = {k % 2 == 0 ? 0.002 : -0.002, 0, 0};
+  double matrix[16];
+  abbe_error error;
+  abbe_transform_translate(offset, matrix);
+  for (size_t i = 0; i < b->scene.object_count; i++) {
+    if (b->scene.object[i].material == NULL) continue;
+    must(abbe_object_move(&b->scene.object[i], matrix, &error), &error);
+    return;
+  }
+}
+
+static void change_material(bench *b, int k) {
+  for (size_t i = 0; i < b->scene.table.count; i++)
+    b->scene.table.material[i].dispersion.c[0] += k % 2 == 0 ? 1e-3 : -1e-3;
+}
+
+/* The median of what the change and its frame take. */
+static double time_change(bench *b, void (*change)(bench *, int)) {
+  double ms[REPEATS];
+  abbe_error error;
+  for (int k = -2; k < REPEATS; k++) { /* the first two compile what is new */
+    change(b, k + 2);
+    const double start = now_ms();
+    must(abbe_renderer_change(b->renderer, &b->scene, &b->desc, &error), &error);
+    must(abbe_renderer_frame(b->renderer, NULL, NULL, NULL, &error), &error);
+    if (k >= 0) ms[k] = now_ms() - start;
+  }
+  qsort(ms, REPEATS, sizeof *ms, ascending);
+  return ms[REPEATS / 2];
+}
+
+static double time_anew(bench *b) {
+  abbe_renderer *anew = NULL;
+  abbe_error error;
+  const double start = now_ms();
+  must(abbe_renderer_make(b->context, &b->scene, &b->desc, &anew, &error), &error);
+  must(abbe_renderer_frame(anew, NULL, NULL, NULL, &error), &error);
+  const double ms = now_ms() - start;
+  abbe_renderer_free(anew);
+  return ms;
+}
+
+/* When somebody who watches was asked, and the longest time between. */
+typedef struct asked {
+  double last_ms, longest_ms;
+  int calls, stop_at;
+  double stopped_ms;
+} asked;
+
+static bool ask(void *user, double done) {
+  asked *a = user;
+  const double at = now_ms();
+  (void)done;
+  if (a->calls++ > 0 && at - a->last_ms > a->longest_ms) a->longest_ms = at - a->last_ms;
+  a->last_ms = at;
+  if (a->calls != a->stop_at) return true;
+  a->stopped_ms = at;
+  return false;
+}
+
+/* The longest time between two questions in a whole watched frame, and after a no to its end. */
+static void time_cancel(bench *b, double *between_ms, double *after_ms) {
+  asked a = {.stop_at = -1};
+  abbe_error error;
+  abbe_renderer_redraw(b->renderer);
+  must(abbe_renderer_frame(b->renderer, ask, &a, NULL, &error), &error);
+  *between_ms = a.longest_ms;
+  *after_ms = 0;
+  for (int part = 1; part < 8; part++) {
+    asked no = {.stop_at = 1 + a.calls * part / 8};
+    abbe_renderer_redraw(b->renderer);
+    if (abbe_renderer_frame(b->renderer, ask, &no, NULL, &error) != ABBE_CANCELLED) continue;
+    const double ms = now_ms() - no.stopped_ms;
+    if (ms > *after_ms) *after_ms = ms;
+  }
+}
+
+int main(int argc, char **argv) {
+  static const struct {
+    const char *name;
+    void (*change)(bench *, int);
+  } changes[] = {{"camera", change_camera},
+                 {"power", change_power},
+                 {"light", change_light},
+                 {"object", change_object},
+                 {"material", change_material}};
+  bench b = {0};
+  abbe_error error;
+  if (argc < 3) {
+    fprintf(stderr, "Usage: bench_changes SIZE SCENE…\n");
+    return 2;
+  }
+  must(abbe_context_make(ABBE_CONTEXT_OSMESA, &b.context, &error), &error);
+  b.desc.width = b.desc.height = (size_t)strtoul(argv[1], NULL, 10);
+  b.desc.supersample = 1;
+  printf("%zu x %zu, one sample a pixel, %s; ms\n\n", b.desc.width, b.desc.height,
+         abbe_context_description(b.context));
+  printf("| scene | camera | power | light | object | material | made anew | between questions | "
+         "after a no |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (int i = 2; i < argc; i++) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s.yaml", argv[i]);
+    must(abbe_scene_load(path, NULL, &b.scene, &error), &error);
+    must(abbe_renderer_make(b.context, &b.scene, &b.desc, &b.renderer, &error), &error);
+    must(abbe_renderer_frame(b.renderer, NULL, NULL, NULL, &error), &error);
+    printf("| %s", argv[i]);
+    for (size_t k = 0; k < sizeof changes / sizeof *changes; k++)
+      printf(" | %.0f", time_change(&b, changes[k].change));
+    double between, after;
+    time_cancel(&b, &between, &after);
+    printf(" | %.0f | %.0f | %.0f |\n", time_anew(&b), between, after);
+    fflush(stdout);
+    abbe_renderer_free(b.renderer);
+    abbe_scene_free(&b.scene);
+  }
+  abbe_context_free(b.context);
+  return 0;
+}

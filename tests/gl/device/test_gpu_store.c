@@ -1,0 +1,99 @@
+/* What is put back is taken up by what is made alike, and nothing else; no OpenGL is needed. */
+#include "tests/check.h"
+
+#include "gl/device/gpu_store.h"
+
+static GLuint deleted[8];
+static size_t deleted_count;
+
+static void delete_some(GLsizei count, const GLuint *name) {
+  for (GLsizei i = 0; i < count; i++) deleted[deleted_count++] = name[i];
+}
+
+static void delete_program(GLuint name) {
+  deleted[deleted_count++] = name;
+}
+
+static const abbe_gl gl = {
+    .DeleteBuffers = delete_some, .DeleteTextures = delete_some, .DeleteProgram = delete_program};
+
+static void add(abbe_gpu_store *store, abbe_stored_key key, GLuint name) {
+  abbe_error error;
+  assert_int_equal(abbe_gpu_store_add(store, &key, name, &error), ABBE_OK);
+}
+
+static GLuint take(abbe_gpu_store *store, abbe_stored_key key) {
+  return abbe_gpu_store_take(store, &key);
+}
+
+#define BUFFER(size) ((abbe_stored_key){.kind = ABBE_STORED_BUFFER, .bytes = (size)})
+#define TEXTURE(side, count)                                                                       \
+  ((abbe_stored_key){.kind = ABBE_STORED_TEXTURE,                                                  \
+                     .format = GL_RGBA32F,                                                         \
+                     .bytes = 16 * (side) * (side) * (count),                                      \
+                     .width = (side),                                                              \
+                     .height = (side),                                                             \
+                     .layers = (count),                                                            \
+                     .levels = 1})
+#define PROGRAM(words) ((abbe_stored_key){.kind = ABBE_STORED_PROGRAM, .text = (words)})
+
+static void what_is_alike_is_taken_up_once(void **state) {
+  (void)state;
+  abbe_gpu_store store = {0};
+  assert_int_equal(take(&store, BUFFER(64)), 0);
+  add(&store, BUFFER(64), 5);
+  assert_int_equal(take(&store, BUFFER(64)), 0); /* in use */
+  abbe_gpu_store_put_back(&store, ABBE_STORED_TEXTURE, 5);
+  assert_int_equal(take(&store, BUFFER(64)), 0); /* a texture of that name is another thing */
+  abbe_gpu_store_put_back(&store, ABBE_STORED_BUFFER, 5);
+  assert_int_equal(take(&store, BUFFER(65)), 0);
+  assert_int_equal(take(&store, BUFFER(64)), 5);
+  assert_int_equal(take(&store, BUFFER(64)), 0);
+  add(&store, TEXTURE(8, 1), 5);
+  abbe_gpu_store_put_back(&store, ABBE_STORED_TEXTURE, 5);
+  assert_int_equal(take(&store, TEXTURE(8, 2)), 0);
+  assert_int_equal(take(&store, TEXTURE(8, 1)), 5);
+  abbe_gpu_store_free(&store, &gl);
+}
+
+static void programs_are_shared_by_their_text(void **state) {
+  (void)state;
+  abbe_gpu_store store = {0};
+  char text[] = "a.comp\n#define A\n";
+  add(&store, PROGRAM(text), 7);
+  text[0] = 'b'; /* the store has a copy */
+  assert_int_equal(take(&store, PROGRAM("a.comp\n#define A\n")), 7);
+  assert_int_equal(take(&store, PROGRAM("a.comp\n#define A\n")), 7);
+  assert_int_equal(take(&store, PROGRAM("a.comp\n")), 0);
+  assert_int_equal(abbe_gpu_store_count(&store, ABBE_STORED_PROGRAM), 1);
+  abbe_gpu_store_free(&store, &gl);
+}
+
+static void only_what_is_not_in_use_is_deleted(void **state) {
+  (void)state;
+  abbe_gpu_store store = {0};
+  for (GLuint i = 1; i <= 100; i++) add(&store, BUFFER(i), i);
+  assert_int_equal(abbe_gpu_store_bytes(&store), 5050);
+  abbe_gpu_store_put_back(&store, ABBE_STORED_BUFFER, 40);
+  abbe_gpu_store_put_back(&store, ABBE_STORED_BUFFER, 60);
+  assert_int_equal(abbe_gpu_store_bytes(&store), 4950);
+  deleted_count = 0;
+  abbe_gpu_store_trim(&store, &gl);
+  assert_int_equal(deleted_count, 2);
+  assert_int_equal(deleted[0] + deleted[1], 100);
+  assert_int_equal(abbe_gpu_store_count(&store, ABBE_STORED_BUFFER), 98);
+  assert_int_equal(take(&store, BUFFER(40)), 0);
+  while (store.count > 3) store.count--; /* the rest were never there */
+  deleted_count = 0;
+  abbe_gpu_store_free(&store, &gl);
+  assert_int_equal(deleted_count, 3);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_is_alike_is_taken_up_once),
+      cmocka_unit_test(programs_are_shared_by_their_text),
+      cmocka_unit_test(only_what_is_not_in_use_is_deleted),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,146 @@
+/* What is evaluated over the spectrum once for all passes, and again where a material changes. */
+#include "tests/gl/plan/planned.h"
+
+#include "gl/scene/spectra/interval_sums.h"
+#include "gl/scene/spectra/spectral_tables.h"
+
+enum { NODES = 9 };
+
+typedef struct fixture {
+  abbe_scene scene;
+  abbe_plan plan;
+  abbe_spectral_tables tables;
+} fixture;
+
+static void make(const char *text, fixture *f) {
+  const abbe_render_desc desc = {.wavelengths = NODES, .min_nm = 400, .max_nm = 700};
+  load_text(text, &f->scene);
+  plan_scene(&f->scene, &desc, &f->plan);
+  assert_true(f->plan.caustics);
+  assert_int_equal(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, NULL), ABBE_OK);
+}
+
+static void done(fixture *f) {
+  abbe_spectral_tables_free(&f->tables);
+  abbe_spectral_tables_free(&f->tables);
+  abbe_plan_free(&f->plan);
+  abbe_scene_free(&f->scene);
+}
+
+static void check_materials(const fixture *f) {
+  const abbe_spectral_tables *t = &f->tables;
+  for (size_t i = 0; i < f->plan.refractor_count; i++) {
+    const abbe_material *material = f->scene.object[f->plan.refractor_object[i]].material;
+    assert_near(t->attenuation_550[i], abbe_material_attenuation(material, 550), 0);
+    for (size_t k = 0; k < NODES; k++) {
+      double n = 0;
+      const double lambda_nm = t->all.lambda_nm[k];
+      assert_int_equal(abbe_material_n(material, lambda_nm, &n, NULL), ABBE_OK);
+      assert_near(t->index[i * NODES + k], n, 0);
+      assert_near(t->attenuation[i * NODES + k], abbe_material_attenuation(material, lambda_nm), 0);
+    }
+  }
+}
+
+/* Y (channel 1) or a band of all intervals of the first light and refractor. */
+static double sum_of(const fixture *f, const float (*row)[4], size_t nodes, int channel) {
+  const size_t an_interval = abbe_interval_sums_texels(&f->plan) * (f->tables.steps + 1);
+  const size_t last = an_interval - abbe_interval_sums_texels(&f->plan);
+  double sum = 0;
+  for (size_t i = 0; i <= nodes; i++) sum += (double)row[i * an_interval + last][channel];
+  return sum;
+}
+
+static const float (*rows_of_all(const fixture *f, const float (*table)[4]))[4] {
+  return table + abbe_interval_sums_size(&f->plan, f->tables.steps, f->tables.coarse.count);
+}
+
+static void every_sampling_holds_all_of_the_light(void **state) {
+  (void)state;
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("murk"), &f);
+  const abbe_spectral_tables *t = &f.tables;
+  const size_t coarse = t->coarse.count;
+  double all_y = 0, coarse_y = 0, mean = 0;
+  assert_true(coarse < NODES && t->bands != NULL);
+  check_materials(&f);
+  for (size_t i = 0; i < NODES; i++) {
+    all_y += (double)t->sample_weight[i][0] + (double)t->sample_weight[i][1];
+    coarse_y += (double)t->sample_weight[i][2] + (double)t->sample_weight[i][3];
+  }
+  for (size_t i = 0; i + 1 < coarse; i++)
+    mean += (double)t->interval_weight[i] / (double)(coarse - 1);
+  assert_near(all_y, 1, 1e-6);
+  assert_near(coarse_y, 1, 1e-6);
+  assert_near(mean, 1, 1e-6);
+  const float(*table)[4] = (const float(*)[4])t->intervals;
+  assert_near(sum_of(&f, table, coarse, 1), 1, 1e-6);
+  assert_near(sum_of(&f, rows_of_all(&f, table), NODES, 1), 1, 1e-6);
+  done(&f);
+}
+
+/* Four bands of the range, three and then the last. */
+static void bands_tile_the_light(void **state) {
+  (void)state;
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
+  double sum = 0;
+  for (size_t first = 0; first < 4; first += 3) {
+    float(*table)[4] = NULL;
+    assert_int_equal(
+        abbe_spectral_tables_intervals(&f.tables, &f.scene, &f.plan, 4, first, &table, NULL),
+        ABBE_OK);
+    for (int c = 0; c < 3 && first + (size_t)c < 4; c++)
+      sum += sum_of(&f, rows_of_all(&f, (const float(*)[4])table), NODES, c);
+    free(table);
+  }
+  assert_near(sum, 1, 1e-6);
+  done(&f);
+}
+
+static void remade_tables_follow_the_material(void **state) {
+  (void)state;
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("crown") RING("dense"), &f);
+  const double before = f.tables.index[0];
+  f.scene.object[1].material = f.scene.object[2].material;
+  abbe_spectral_tables_free(&f.tables);
+  assert_int_equal(abbe_spectral_tables_make(&f.scene, &f.plan, &f.tables, NULL), ABBE_OK);
+  assert_true(f.tables.index[0] > before + 0.5);
+  check_materials(&f);
+  done(&f);
+}
+
+static void an_unknown_index_is_an_error(void **state) {
+  (void)state;
+  fixture f;
+  abbe_error error = {0};
+  make(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &f);
+  abbe_spectral_tables_free(&f.tables);
+  f.plan.desc.max_nm = 710;
+  assert_int_equal(abbe_spectral_tables_make(&f.scene, &f.plan, &f.tables, &error),
+                   ABBE_OUT_OF_RANGE);
+  assert_contains(error.text, "narrow");
+  done(&f);
+}
+
+static void coarse_nodes_reach_both_ends_in_order(void **state) {
+  (void)state;
+  for (size_t n = 5; n <= ABBE_RENDER_MAX_WAVELENGTHS; n++) {
+    assert_int_equal(abbe_spectral_tables_node(n, 5, 0), 0);
+    assert_int_equal(abbe_spectral_tables_node(n, 5, 4), n - 1);
+    for (size_t k = 0; k < 4; k++)
+      assert_true(abbe_spectral_tables_node(n, 5, k) < abbe_spectral_tables_node(n, 5, k + 1));
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_sampling_holds_all_of_the_light),
+      cmocka_unit_test(bands_tile_the_light),
+      cmocka_unit_test(remade_tables_follow_the_material),
+      cmocka_unit_test(an_unknown_index_is_an_error),
+      cmocka_unit_test(coarse_nodes_reach_both_ends_in_order),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
