@@ -91,12 +91,24 @@ static void integrate(const abbe_illuminant *illuminant, double from, double to,
   sum_get(&sum, xyz);
 }
 
-void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, double max_nm,
-                           double from_nm, double to_nm, double xyz[3]) {
+void abbe_weights_range_make(const abbe_illuminant *illuminant, double min_nm, double max_nm,
+                             abbe_weights_range *out) {
   double white[3];
   integrate(illuminant, min_nm, max_nm, white);
-  integrate(illuminant, fmax(from_nm, min_nm), fmin(to_nm, max_nm), xyz);
-  for (int k = 0; k < 3; k++) xyz[k] = white[1] > 0 ? xyz[k] / white[1] : 0;
+  *out = (abbe_weights_range){illuminant, min_nm, max_nm, white[1]};
+}
+
+void abbe_weights_range_xyz(const abbe_weights_range *range, double from_nm, double to_nm,
+                            double xyz[3]) {
+  integrate(range->illuminant, fmax(from_nm, range->min_nm), fmin(to_nm, range->max_nm), xyz);
+  for (int k = 0; k < 3; k++) xyz[k] = range->white_y > 0 ? xyz[k] / range->white_y : 0;
+}
+
+void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, double max_nm,
+                           double from_nm, double to_nm, double xyz[3]) {
+  abbe_weights_range range;
+  abbe_weights_range_make(illuminant, min_nm, max_nm, &range);
+  abbe_weights_range_xyz(&range, from_nm, to_nm, xyz);
 }
 
 /* The illuminant's power over [from, to], relative, cut where its table has a knot. */

@@ -32,6 +32,20 @@ abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
                               abbe_weights *out, abbe_error *error);
 void abbe_weights_free(abbe_weights *weights);
 
+/* An illuminant over a range of wavelengths, and the Y of its white there, for whoever asks for many
+ * bands of it. The illuminant outlives it. */
+typedef struct abbe_weights_range {
+  const abbe_illuminant *illuminant;
+  double min_nm, max_nm;
+  double white_y; /* relative */
+} abbe_weights_range;
+
+void abbe_weights_range_make(const abbe_illuminant *illuminant, double min_nm, double max_nm,
+                             abbe_weights_range *out);
+/* As abbe_weights_band_xyz. */
+void abbe_weights_range_xyz(const abbe_weights_range *range, double from_nm, double to_nm,
+                            double xyz[3]);
+
 /* XYZ of the band [from_nm, to_nm] alone, normalised as the weights over the range
  * [min_nm, max_nm] are: bands that tile the range add up to its white. */
 void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, double max_nm,

@@ -13,7 +13,7 @@ static const abbe_plan *plan_of(const abbe_caustics *c) {
 }
 
 /* What is fitted is fitted to no more photons than this a side. */
-enum { FIT_PHOTONS = 128 };
+enum { FIT_PHOTONS = 96 };
 
 static abbe_result count_photons(abbe_caustics *c, abbe_error *error) {
   abbe_result result = ABBE_OK;

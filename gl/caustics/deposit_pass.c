@@ -2,7 +2,7 @@
 
 #include "gl/device/bindings.h"
 
-enum { SPLAT_BYTES = 48, FIRST_SPLATS = 1 << 20, MAX_SPLATS = 4 << 20 };
+enum { SPLAT_BYTES = 48, FIRST_SPLATS = 5 << 17, MAX_SPLATS = 4 << 20 };
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
   return pass->trace->spectra->scene;

@@ -8,9 +8,8 @@ enum { STEPS = 12, FEW_NODES = 16 };
 
 /* Light through a material. */
 typedef struct passage {
-  const abbe_illuminant *illuminant;
+  const abbe_weights_range *light;
   const abbe_material *material;
-  double min_nm, max_nm;
   double path_m; /* usual inside */
 } passage;
 
@@ -22,7 +21,7 @@ static double attenuation_of(const passage *p, double from, double to, double *y
   for (int k = 0; k < STEPS; k++) {
     const double a = from + (to - from) * k / STEPS, b = from + (to - from) * (k + 1) / STEPS;
     double xyz[3];
-    abbe_weights_band_xyz(p->illuminant, p->min_nm, p->max_nm, a, b, xyz);
+    abbe_weights_range_xyz(p->light, a, b, xyz);
     weight[k] = xyz[0] + xyz[1] + xyz[2];
     per_m[k] = abbe_material_attenuation(p->material, 0.5 * (a + b));
     total += weight[k];
@@ -64,14 +63,17 @@ static void fill_node(const passage *p, const abbe_wavelengths *w, size_t i, abb
 
 abbe_node_bands *abbe_band_attenuation_fill(const abbe_scene *scene, const abbe_plan *plan,
                                             const abbe_wavelengths *w, abbe_node_bands *out) {
-  for (size_t light = 0; light < plan->light_view_count; light++)
+  for (size_t light = 0; light < plan->light_view_count; light++) {
+    abbe_weights_range range;
+    abbe_weights_range_make(&scene->light[light].illuminant, w->edge_nm[0], w->edge_nm[w->count],
+                            &range);
     for (size_t k = 0; k < plan->refractor_count; k++) {
       const abbe_object *object = &scene->object[plan->refractor_object[k]];
       double square = 0;
       for (int x = 0; x < 3; x++) square += pow(object->max[x] - object->min[x], 2);
-      const passage p = {&scene->light[light].illuminant, object->material, w->edge_nm[0],
-                         w->edge_nm[w->count], fmax(0.5 * sqrt(square), 1e-12)};
+      const passage p = {&range, object->material, fmax(0.5 * sqrt(square), 1e-12)};
       for (size_t i = 0; i < w->count; i++) fill_node(&p, w, i, out++);
     }
+  }
   return out;
 }

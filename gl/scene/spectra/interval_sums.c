@@ -21,10 +21,12 @@ typedef struct spectrum_part {
   double light[3], lambda_nm[3];
 } spectrum_part;
 
-static void weigh_part(const abbe_interval_sums *of, const abbe_illuminant *illuminant, double min,
-                       double max, double from, double to, spectrum_part *out) {
+static void weigh_part(const abbe_interval_sums *of, const abbe_weights_range *range, double from,
+                       double to, spectrum_part *out) {
+  const abbe_illuminant *illuminant = range->illuminant;
+  const double min = range->min_nm, max = range->max_nm;
   const double width = (max - min) / (double)(of->bands > 0 ? of->bands : 1);
-  if (of->bands == 0) abbe_weights_band_xyz(illuminant, min, max, from, to, out->light);
+  if (of->bands == 0) abbe_weights_range_xyz(range, from, to, out->light);
   for (int c = 0; c < 3; c++) {
     const double low = min + width * (double)(of->band + (size_t)c);
     const double a = of->bands == 0 ? from : fmax(from, low);
@@ -37,9 +39,9 @@ static void weigh_part(const abbe_interval_sums *of, const abbe_illuminant *illu
 
 /* One interval from node b = i down to node a = i - 1, step by step. Where the index stays, the
  * place along is by wavelength. */
-static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w, size_t light,
-                          const abbe_material *material, size_t i, float (*out)[4]) {
-  const abbe_illuminant *illuminant = &of->scene->light[light].illuminant;
+static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w,
+                          const abbe_weights_range *range, const abbe_material *material, size_t i,
+                          float (*out)[4]) {
   const size_t texels = abbe_interval_sums_texels(of->plan);
   double min = w->edge_nm[0], max = w->edge_nm[w->count];
   double a = i > 0 ? w->lambda_nm[i - 1] : w->edge_nm[0];
@@ -59,7 +61,7 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
                                  : edge + (a - edge) * (double)(k - half) / (double)half;
     double at[4] = {lambda_nm}, n[4], t[4]; /* here, then the middle of each of the three */
     spectrum_part part;
-    weigh_part(of, illuminant, min, max, lambda_nm, before, &part);
+    weigh_part(of, range, lambda_nm, before, &part);
     for (int c = 0; c < 3; c++) at[1 + c] = part.lambda_nm[c];
     for (int c = 0; c < 4; c++) {
       n[c] = n_b;
@@ -85,9 +87,13 @@ float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelen
                                 float (*out)[4]))[4] {
   const abbe_plan *plan = of->plan;
   const size_t an_interval = abbe_interval_sums_texels(plan) * (of->steps + 1);
-  for (size_t light = 0; light < plan->light_view_count; light++)
+  for (size_t light = 0; light < plan->light_view_count; light++) {
+    abbe_weights_range range;
+    abbe_weights_range_make(&of->scene->light[light].illuminant, w->edge_nm[0],
+                            w->edge_nm[w->count], &range);
     for (size_t k = 0; k < plan->refractor_count; k++)
       for (size_t i = 0; i <= w->count; i++, out += an_interval)
-        fill_interval(of, w, light, of->scene->object[plan->refractor_object[k]].material, i, out);
+        fill_interval(of, w, &range, of->scene->object[plan->refractor_object[k]].material, i, out);
+  }
   return out;
 }
