@@ -38,6 +38,10 @@ add_test(NAME readme_commands
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/readme_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 abbe_label(program NAMES readme_commands)
 
+add_test(NAME thesis_pictures
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/thesis_pictures $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
+abbe_label(program NAMES thesis_pictures)
+
 add_test(NAME materials_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           docs/materials.md)
