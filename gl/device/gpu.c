@@ -331,10 +331,13 @@ abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error) {
 static const double part_ms = 6;
 enum { FIRST_PART = 4, MOST_GROUPS = 65535 };
 
-/* The next part's size, after one of so many units took so long. */
-static size_t next_part(size_t units, double ms) {
+/* The next part's size, after one of so many units of all took so long. One may take far longer
+ * than those before it, so that a part has few; but no dispatch has more than some hundred parts. */
+static size_t next_part(size_t units, size_t all, double ms) {
+  enum { FEW = 8, MOST_PARTS = 512 };
   const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2);
-  return (size_t)fmin(fmax((double)units * factor, 1), MOST_GROUPS);
+  const double most = fmax(FEW, (double)all / MOST_PARTS);
+  return (size_t)fmin(fmax((double)units * factor, 1), fmin(most, MOST_GROUPS));
 }
 
 /* width: groups of a row, of which there are so many; 0: they are groups one after another. */
@@ -354,7 +357,7 @@ static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t w
       gpu->gl->DispatchCompute((GLuint)count, 1, 1);
     gpu->gl->Finish();
     at += count;
-    part = next_part(count, 1e3 * abbe_clock_seconds() - start_ms);
+    part = next_part(count, units, 1e3 * abbe_clock_seconds() - start_ms);
   }
   abbe_gpu_set_uint(gpu, program, first, 0);
 }
