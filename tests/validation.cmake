@@ -5,7 +5,7 @@ foreach(name
     camera
     checkpoint
     closed_form
-    compare
+    compare compare_noise
     difference_picture
     baseline_comparison
     error_decomposition
@@ -15,7 +15,7 @@ foreach(name
     file_comparison
     geometry
     interface
-    light_walk
+    light_walk path_splitting
     known_answers
     known_chart
     known_light

@@ -1,94 +1,4 @@
-#include "tests/scenes/scene_text.h"
-
-#include "tests/random.h"
-#include "validation/walks/light_walk.h"
-
-enum { BATCH = ABBE_LIGHT_WALK_BATCH, STEPS = 8 };
-
-#define SLAB(material)                                                                             \
-  "- {name: slab, shape: box, size: [0.4, 0.4, 0.1], transform: [{translate: [0, 0, 0.3]}], "      \
-  "material: " material "}\n"
-#define SHELL                                                                                      \
-  "- {name: outer, shape: sphere, radius: 0.1, transform: [{translate: [0, 0, 0.3]}], "            \
-  "material: flat}\n"                                                                              \
-  "- {name: inner, shape: sphere, radius: 0.05, transform: [{translate: [0, 0, 0.3]}], "           \
-  "material: crown}\n"
-typedef struct fixture {
-  abbe_scene scene;
-  abbe_geometry geometry;
-  abbe_media media;
-  abbe_light_walk *walk;
-  abbe_light_ledger ledger;
-  abbe_photon photon[BATCH];
-  abbe_photon_hit hit[ABBE_LIGHT_WALK_HITS];
-  size_t photons, hidden; /* hidden: hits of the last rays that the lamp does not see */
-} fixture;
-
-/* Over 500 to 600 nm. */
-static void make(const char *text, const abbe_physics *physics, fixture *f) {
-  static const abbe_physics full = {0};
-  double lambda_nm[STEPS + 1];
-  memset(f, 0, sizeof *f);
-  load_text(text, &f->scene);
-  assert_int_equal(abbe_geometry_make(&f->scene, &f->geometry, NULL), ABBE_OK);
-  for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 500 + 100.0 * k / STEPS;
-  assert_int_equal(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, NULL), ABBE_OK);
-  assert_int_equal(
-      abbe_light_walk_make(&f->geometry, &f->media, physics ? physics : &full, 3, &f->walk, NULL),
-      ABBE_OK);
-}
-
-static void drop(fixture *f) {
-  abbe_light_walk_free(f->walk);
-  abbe_media_free(&f->media);
-  abbe_geometry_free(&f->geometry);
-  abbe_scene_free(&f->scene);
-}
-
-/* A photon of 1 W from `from` along d, world coordinates. */
-static abbe_photon photon_of(const fixture *f, const double from[3], const double d[3],
-                             uint32_t id) {
-  abbe_photon p = {.flux = 1, .y = 1, .step = id % STEPS, .within = 0.5f, .id = id};
-  double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  abbe_geometry_to_frame(&f->geometry, from, p.o);
-  for (int k = 0; k < 3; k++) p.d[k] = (float)(d[k] / length);
-  return p;
-}
-
-/* `batches` of the same ray; returns how many landed. */
-static size_t shoot(fixture *f, const double from[3], const double d[3], uint32_t batches) {
-  size_t landed = 0;
-  f->hidden = 0;
-  for (uint32_t b = 0; b < batches; b++) {
-    for (uint32_t i = 0; i < BATCH; i++) f->photon[i] = photon_of(f, from, d, i);
-    size_t count =
-        abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
-    for (size_t i = 0; i < count; i++) f->hidden += f->hit[i].hidden ? 1 : 0;
-    landed += count;
-    f->photons += BATCH;
-  }
-  return landed;
-}
-
-/* Four standard deviations of a count with that probability. */
-static void check_share(double count, double of, double probability) {
-  assert_near(count / of, probability, 4 * sqrt(probability * (1 - probability) / of) + 1e-12);
-}
-
-/* Photons evenly over the side of a ball or brick that a point light sees. */
-static void flood(fixture *f, uint32_t batches) {
-  uint64_t random = 23;
-  for (uint32_t b = 0; b < batches; b++) {
-    for (uint32_t i = 0; i < BATCH; i++) {
-      double d[3], to[3] = {0, 0, 0.2};
-      for (int k = 0; k < 3; k++)
-        d[k] = to[k] + random_between(&random, -0.1, 0.1) - f->scene.light[0].position[k];
-      f->photon[i] = photon_of(f, f->scene.light[0].position, d, i);
-    }
-    abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
-    f->photons += BATCH;
-  }
-}
+#include "tests/validation/walks/light_walks.h"
 
 /* What reached refractors went somewhere. Photons keep their flux but for absorption, whose
  * roulette is counted as absorbed, gained or lost: the ledger closes to rounding. */
@@ -370,77 +280,6 @@ static void a_walk_repeats_itself(void **state) {
   drop(&g);
 }
 
-/* A photon that goes both ways brings as much to the floor as many that choose, and the books close
- * as before. */
-static void parted_light_is_the_same_light(void **state) {
-  (void)state;
-  static const char *const scenes[] = {CAMERA POINT_LIGHT FLOOR BALL("flat"),
-                                       CAMERA POINT_LIGHT FLOOR BALL("smoke"),
-                                       CAMERA POINT_LIGHT FLOOR SHELL};
-  for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-    double landed[1 << ABBE_PHOTON_SPLITS], reached = 0;
-    for (unsigned parts = 0; parts < 1u << ABBE_PHOTON_SPLITS; parts++) {
-      static fixture f;
-      make(scenes[i], NULL, &f);
-      abbe_light_walk_split(f.walk, parts);
-      flood(&f, 64);
-      const abbe_light_ledger *l = &f.ledger;
-      double sum = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
-      assert_near(sum / l->reached, 1, 1e-6);
-      if (parts == 0) reached = l->reached;
-      assert_true(l->reached == reached);
-      landed[parts] = l->deposited;
-      drop(&f);
-    }
-    /* the share that lands is that of some 20000 photons: four standard deviations, of two means */
-    for (unsigned parts = 1; parts < 1u << ABBE_PHOTON_SPLITS; parts++)
-      assert_near(landed[parts] / reached, landed[0] / reached, 4 * sqrt(2 * 0.25 / reached));
-  }
-}
-
-/* On a slab nothing is left to chance at the two interfaces where photons part. */
-static void parting_gives_fresnels_share_exactly(void **state) {
-  (void)state;
-  static const double down[3] = {0, 0, -1}, above[3] = {0.1, 0.05, 0.9};
-  static fixture f;
-  make(CAMERA POINT_LIGHT FLOOR SLAB("flat"), NULL, &f);
-  abbe_light_walk_split(f.walk, 3);
-  size_t count = shoot(&f, above, down, 1);
-  const double r = 0.04;
-  size_t straight = 0;
-  for (size_t i = 0; i < count; i++) {
-    double flux = (double)f.hit[i].flux;
-    straight += fabs(flux - (1 - r) * (1 - r)) < 1e-5;
-    assert_true(fabs(flux - (1 - r) * (1 - r)) < 1e-5 || flux < r * (1 + 1e-5));
-  }
-  assert_int_equal(straight, BATCH);
-  drop(&f);
-}
-
-static void parts_are_where_the_rare_way_lands(void **state) {
-  (void)state;
-  const struct {
-    float common[2], rare[2];
-    size_t rare_of_100;
-    unsigned parts;
-  } cases[] = {
-      {{0.96f, 0.96f}, {0.04f, 1}, 0, 0},       {{0.96f, 0.96f}, {0.96f, 0.04f}, 10, 0},
-      {{0.96f, 0.96f}, {0.96f, 0.04f}, 100, 2}, {{0.96f, 0.96f}, {0.04f, 1}, 90, 1},
-      {{0.04f, 1}, {0.96f, 0.04f}, 50, 3},      {{1, 1}, {1, 1}, 50, 0},
-  };
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    abbe_photon_hit hit[100];
-    memset(hit, 0, sizeof hit);
-    for (size_t k = 0; k < 100; k++) {
-      hit[k].flux = 2;
-      memcpy(hit[k].chance, k < cases[i].rare_of_100 ? cases[i].rare : cases[i].common,
-             sizeof hit[k].chance);
-    }
-    assert_int_equal(abbe_light_walk_best_splits(hit, 100), cases[i].parts);
-  }
-  assert_int_equal(abbe_light_walk_best_splits(NULL, 0), 0);
-}
-
 /* Straight down through 0.4 m of smoke less than 2 % comes out: paths end by roulette below 5 %,
  * and their mean stays Beer-Lambert's, with the reflections that a slab adds up. */
 static void dark_glass_keeps_its_mean(void **state) {
@@ -527,9 +366,6 @@ int main(void) {
       cmocka_unit_test(walls_hide_nothing),
       cmocka_unit_test(contact_is_told),
       cmocka_unit_test(a_walk_repeats_itself),
-      cmocka_unit_test(parted_light_is_the_same_light),
-      cmocka_unit_test(parting_gives_fresnels_share_exactly),
-      cmocka_unit_test(parts_are_where_the_rare_way_lands),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,234 @@
+/* What a renderer's caller gets: frames that can be stopped, pictures, maps, and refusals. */
+#include "tests/gl/frame.h"
+
+static bool stop(void *user, double done) {
+  assert_true(done >= 0 && done <= 1);
+  ++*(int *)user;
+  return false;
+}
+
+static bool count_calls(void *user, double done) {
+  double *last = user;
+  assert_true(done >= *last && done <= 1);
+  *last = done;
+  return true;
+}
+
+static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  abbe_image before = {0}, after = {0};
+  int calls = 0;
+  double last = 0;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  read_picture(renderer, false, &before);
+  abbe_renderer_redraw(renderer);
+  assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+  assert_int_equal(calls, 1);
+  assert_ok(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error), &error);
+  assert_near(last, 1, 0);
+  read_picture(renderer, false, &after);
+  assert_same_pixels(&before, &after);
+  abbe_image_free(&before);
+  abbe_image_free(&after);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
+ * its energy is the same, and each light has a map of its own. */
+static void test_the_floor_leaves_the_picture(void **state) {
+  (void)state;
+  for (size_t samples = 1; samples <= 2; samples++) {
+    abbe_scene scene = {0};
+    abbe_image before = {0}, after = {0};
+    double ms = 0;
+    load_shipped("sphere", &scene);
+    const abbe_render_desc desc = {.width = 32,
+                                   .height = 32,
+                                   .photons = 32,
+                                   .map_size = 64,
+                                   .wavelengths = 3,
+                                   .supersample = samples};
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, false, &before);
+    assert_int_equal(abbe_renderer_baseline(renderer, &ms, NULL), ABBE_OK);
+    assert_true(ms > 0);
+    read_picture(renderer, false, &after);
+    assert_same_pixels(&before, &after);
+    abbe_image_free(&before);
+    abbe_image_free(&after);
+    abbe_renderer_free(renderer);
+    abbe_scene_free(&scene);
+  }
+}
+
+/* One sample for 2 x 2 pixels is a picture of half the size, and between its pixels what lies
+ * between them; where sides are odd the last sample stands for what is left. */
+static void test_fewer_samples_than_pixels(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image coarse = {0}, half = {0}, odd = {0}, fine = {0};
+  load_shipped("sphere", &scene);
+  abbe_render_desc desc = {.width = 64,
+                           .height = 48,
+                           .photons = 32,
+                           .map_size = 64,
+                           .wavelengths = 3,
+                           .layers = true,
+                           .upsample = 2};
+  abbe_image *const out[] = {&coarse, &half, &odd, &fine};
+  const size_t sizes[][2] = {{64, 48}, {32, 24}, {63, 47}, {63, 47}}, up[] = {2, 1, 2, 1};
+  for (size_t i = 0; i < 4; i++) {
+    desc.width = sizes[i][0];
+    desc.height = sizes[i][1];
+    desc.upsample = up[i];
+    desc.supersample = i == 3 ? 4 : 1;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_picture(renderer, true, out[i]);
+    abbe_renderer_free(renderer);
+  }
+  double worst = 0;
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 64; x++)
+      for (size_t c = 0; c < coarse.channels; c++) {
+        double sum = 0;
+        for (int k = 0; k < 4 && c != 3; k++) { /* not between distances */
+          const size_t beside[2] = {x % 2 == 0 ? x / 2 - (x > 0) : x / 2 + (x < 63),
+                                    y % 2 == 0 ? y / 2 - (y > 0) : y / 2 + (y < 47)};
+          const size_t column = k % 2 == 0 ? x / 2 : beside[0],
+                       row = k / 2 == 0 ? y / 2 : beside[1];
+          sum += (k % 2 == 0 ? 0.75 : 0.25) * (k / 2 == 0 ? 0.75 : 0.25) *
+                 (double)half.data[(row * 32 + column) * half.channels + c];
+        }
+        if (c == 3) sum = (double)half.data[(y / 2 * 32 + x / 2) * half.channels + c];
+        worst = fmax(worst, fabs(sum - (double)coarse.data[(y * 64 + x) * coarse.channels + c]) /
+                                fmax(fabs(sum), 1e-3));
+      }
+  const double mean = image_sum(&odd, 1) / image_sum(&fine, 1);
+  print_message("off by %.2g at the most, odd sides %.4f of the light\n", worst, mean);
+  assert_true(worst < 1e-5);
+  assert_true(fabs(mean - 1) < 0.01);
+  for (size_t i = 0; i < 4; i++) abbe_image_free(out[i]);
+  abbe_scene_free(&scene);
+}
+
+static void test_a_map_takes_a_given_layout(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image fitted, again, half;
+  abbe_map_layout first, layout, given;
+  abbe_error error = {0};
+  load_text(
+      CAMERA POINT_LIGHT
+      "- {name: sun, kind: directional, direction: [0.1, 0.2, -1], irradiance: 1}\n" FLOOR BALL(
+          "crown") HILL,
+      &scene);
+  abbe_render_desc desc = small_frame;
+  for (size_t light = 0; light < 2; light++) {
+    desc.map_layout = NULL;
+    abbe_renderer *renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_map(renderer, light, &fitted);
+    abbe_renderer_map_layout(renderer, light, &layout);
+    abbe_renderer_map_layout(renderer, 1 - light, &first);
+    abbe_renderer_free(renderer);
+    assert_false(abbe_map_layout_same(&first, &layout));
+    assert_string_equal(abbe_image_attribute_text(&fitted, "abbe:map_light"),
+                        scene.light[light].name);
+    assert_ok(abbe_map_layout_read(&fitted, "map", &given, &error), &error);
+    assert_true(abbe_map_layout_same(&layout, &given));
+
+    desc.map_layout = &given;
+    desc.map_layout_light = light;
+    renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_map(renderer, light, &again);
+    assert_same_pixels(&fitted, &again);
+    abbe_renderer_map_layout(renderer, 1 - light, &given);
+    assert_true(abbe_map_layout_same(&first, &given)); /* the other light's is fitted */
+    abbe_renderer_free(renderer);
+
+    desc.map_size /= 2;
+    given = layout;
+    renderer = make_renderer(&scene, &desc);
+    draw_frame(renderer);
+    read_map(renderer, light, &half);
+    /* Light at the rim is spread bilinearly past it from coarser texels: under a thousandth. */
+    assert_near(image_sum(&half, 1) / image_sum(&fitted, 1), 1, 1e-3);
+    abbe_renderer_free(renderer);
+    desc.map_size *= 2;
+    abbe_image_free(&fitted);
+    abbe_image_free(&again);
+    abbe_image_free(&half);
+  }
+  abbe_scene_free(&scene);
+}
+
+static void test_what_is_not_there_is_refused(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map = {0};
+  abbe_error error = {0};
+  abbe_renderer *renderer = NULL;
+  const abbe_render_desc huge = {.photons = ABBE_RENDER_MAX_PHOTONS + 1};
+  load_text(CAMERA POINT_LIGHT FLOOR, &scene);
+  assert_int_equal(abbe_renderer_make(context, &scene, &huge, &renderer, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_null(renderer);
+  renderer = make_renderer(&scene, &small_frame);
+  draw_frame(renderer);
+  assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &map, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no spectral map");
+  assert_null(map.data);
+  abbe_renderer_free(renderer);
+  abbe_renderer_free(NULL);
+  abbe_scene_free(&scene);
+}
+
+/* What was not drawn is not black. */
+static void test_nothing_is_read_before_a_frame(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image image = {0};
+  abbe_error error = {0};
+  int calls = 0;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &small_frame);
+  for (int turn = 0; turn < 2; turn++) {
+    assert_int_equal(abbe_renderer_read(renderer, false, &image, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "no frame has been drawn");
+    assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, "no frame has been drawn");
+    assert_int_equal(abbe_renderer_read_map_bands(renderer, 0, 3, &image, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_null(image.data);
+    if (turn > 0) continue;
+    draw_frame(renderer);
+    read_picture(renderer, false, &image);
+    abbe_image_free(&image);
+    /* Nor what a frame that was stopped has left. */
+    abbe_renderer_redraw(renderer);
+    assert_int_equal(abbe_renderer_frame(renderer, stop, &calls, NULL, &error), ABBE_CANCELLED);
+  }
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
+      cmocka_unit_test(test_the_floor_leaves_the_picture),
+      cmocka_unit_test(test_fewer_samples_than_pixels),
+      cmocka_unit_test(test_a_map_takes_a_given_layout),
+      cmocka_unit_test(test_what_is_not_there_is_refused),
+      cmocka_unit_test(test_nothing_is_read_before_a_frame),
+  };
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
