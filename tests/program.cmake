@@ -12,8 +12,7 @@ add_test(NAME measuring_scripts
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/measure $<TARGET_FILE:abbe>)
 add_test(NAME slits
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/slits $<TARGET_FILE:abbe>)
-abbe_label(program NAMES install scripts slits)
-abbe_label(program long NAMES measuring_scripts)
+abbe_label(program NAMES install scripts measuring_scripts slits)
 
 foreach(name
     arguments
