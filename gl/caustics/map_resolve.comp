@@ -37,7 +37,7 @@ uint level_offset(int l) {
 
 #ifdef TILES
 void resolve_tile(ivec2 texel, vec3 flux) {
-  int tile = tile_of_block(light, (texel << level) / (map_size / TILE_BLOCKS));
+  int tile = tile_of_block(light, (texel << level) / (map_size / counts.tile_blocks));
   vec4 rect = tile_rect(light, max(tile, 0)) * exp2(-float(level));
   // At its edges a tile's coarser texels have no neighbours but themselves.
   vec2 at = clamp(0.5 * (vec2(texel) + 0.5), 0.5 * rect.xy + 0.5, 0.5 * rect.zw - 0.5);

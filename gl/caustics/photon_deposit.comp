@@ -68,15 +68,15 @@ struct Path {
 #include "span_light.glsl"
 
 Path refined_path_at(uint listed) {
-  uint pair = pair_at[listed / SLOTS];
+  uint pair = pair_at[listed / counts.slots];
   int interval = int(pair % PAIR_INTERVALS);
   Path p;
   p.photon = pair / PAIR_INTERVALS;
-  p.order = int(listed % SLOTS);
+  p.order = int(listed % counts.slots);
   p.node_first = coarse_node(interval);
   p.node_last = coarse_node(interval + 1);
   p.hit_first = int(listed) * fine_nodes;
-  p.coarse_first = int((p.photon * SLOTS + uint(p.order)) * HIT_STRIDE);
+  p.coarse_first = int((p.photon * counts.slots + uint(p.order)) * counts.hit_stride);
   p.middle_twice = 2 * interval + 1;
   p.interval_last = p.node_last;
   p.intervals = p.node_last - p.node_first;
@@ -86,11 +86,11 @@ Path refined_path_at(uint listed) {
 
 Path coarse_path_at(uint listed) {
   Path p;
-  p.photon = listed / SLOTS;
-  p.order = int(listed % SLOTS);
+  p.photon = listed / counts.slots;
+  p.order = int(listed % counts.slots);
   p.node_first = sample_first;
   p.node_last = sample_first + sample_count - 1;
-  p.hit_first = p.coarse_first = int(listed * HIT_STRIDE);
+  p.hit_first = p.coarse_first = int(listed * counts.hit_stride);
   p.middle_twice = sample_count;
   p.interval_last = interval_end - 1;
   p.intervals = interval_end - interval_first;

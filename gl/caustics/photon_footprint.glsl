@@ -30,7 +30,7 @@ vec2 neighbour_step(ivec2 cell, ivec2 to, vec2 start, Reference r) {
   uint at = slot[there ? c.y * grid.x + c.x : 0];
   there = there && at != 0u;
   uint other = there ? at - 1u : 0u;
-  uint index = (other * SLOTS + r.order) * HIT_STRIDE + r.sample_number;
+  uint index = (other * counts.slots + r.order) * counts.hit_stride + r.sample_number;
   there = there && r.signature != 0u && texelFetch(signatures, int(index)).x == r.signature;
   vec4 hit = texelFetch(hits, HIT_TEXELS * int(index));
   vec2 between = vec2(to) + unpackSnorm2x16(photon_at[other].offset) - start;
@@ -74,9 +74,9 @@ Footprint footprint_of(Photon photon, Reference r) {
   if (dot(f.across, by_a ? a : b) < 0.0) f.across = -f.across;
   f.skew *= min(1.0, wide / max(length(f.skew), 1e-20));
   float least = max(max(narrow, wide / float(MAX_ACROSS)), 0.5);
-  float fine = max(log2(least) + 1.25, 0.0), whole = min(floor(fine), float(MAP_LEVELS - 1));
+  float fine = max(log2(least) + 1.25, 0.0), whole = min(floor(fine), float(counts.map_levels - 1));
   f.level = int(whole);
-  bool shares = f.level > 0 && f.level + 1 < MAP_LEVELS;
+  bool shares = f.level > 0 && f.level + 1 < counts.map_levels;
   f.next_share = shares ? clamp(2.0 * (fine - whole) - 1.0, 0.0, 1.0) : 0.0;
   // A tear between neighbours is not a footprint: no farther than the texels can cover.
   float most_wide = 2.0 * exp2(whole) * float(MAX_ACROSS);

@@ -50,9 +50,9 @@ void coarsen(bool coarser, inout int base, inout int count) {
 // Where the bands that a list entry wants begin, and how many there are on its level.
 void wanted_level(uint what, out int base, out int count) {
   int level = int(what >> 8 & 15u);
-  base = refractor * BAND_COUNT;
-  count = WAVELENGTHS;
-  for (int k = 0; k < BAND_LEVELS - 1; k++) coarsen(k < level, base, count);
+  base = refractor * counts.bands;
+  count = counts.wavelengths;
+  for (int k = 0; k < counts.band_levels - 1; k++) coarsen(k < level, base, count);
 }
 #else
 #ifdef REFINES
@@ -65,10 +65,10 @@ vec3 shown_by[COARSE_BANDS];
 
 // Those that the pixel takes: `count` from `base` on.
 void choose_bands(out int base, out int count) {
-  base = refractor * BAND_COUNT;
-  count = WAVELENGTHS;
-  float wanted = wanted_bands(front, sight, base, base + WAVELENGTHS - 1);
-  for (int k = 0; k < BAND_LEVELS - 1; k++) {
+  base = refractor * counts.bands;
+  count = counts.wavelengths;
+  float wanted = wanted_bands(front, sight, base, base + counts.wavelengths - 1);
+  for (int k = 0; k < counts.band_levels - 1; k++) {
     bool coarser = float((count + 1) / 2) >= wanted;
     coarsen(coarser, base, count);
 #ifdef REFINES
@@ -76,7 +76,7 @@ void choose_bands(out int base, out int count) {
 #endif
   }
 #ifdef REFINES
-  for (int k = 0; k < BAND_LEVELS - 1; k++) {
+  for (int k = 0; k < counts.band_levels - 1; k++) {
     bool coarser = count > COARSE_BANDS;
     coarsen(coarser, base, count);
     joined += coarser ? 1 : 0;

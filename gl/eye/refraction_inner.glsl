@@ -18,10 +18,10 @@ vec3 through(Hit front, vec3 d, int band) {
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
   float shown = 0.0, left = 0.0;
   bool met;
-  for (int order = 0; order < EXITS;) {
+  for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
     bool shows = false;
-    while (order < EXITS) {
+    while (order < counts.exits) {
       InnerHit h = next_inner_hit(refractor, ray);
 #ifdef ABSORBING
       ray.share *= exp(-attenuation * distance(h.p, ray.p));
@@ -30,7 +30,7 @@ vec3 through(Hit front, vec3 d, int band) {
       shows = leaving.share > 0.5 * share_limit;
       left += shows ? 0.0 : leaving.share;
       order++;
-      left += ray.share < share_limit || order == EXITS ? ray.share : 0.0;
+      left += ray.share < share_limit || order == counts.exits ? ray.share : 0.0;
       if (!CHEAP_INTERFACES || shows || ray.share < share_limit) break;
     }
     if (shows) {

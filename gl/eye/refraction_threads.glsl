@@ -40,7 +40,7 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 // XYZ of what a band shows through the first interface, or in_mirror: of what it shows in the mirror
 // there; mirrored: the share that is.
 vec3 band_light(int band, bool in_mirror, out float mirrored) {
-  band_of_refractor = band - refractor * BAND_COUNT;
+  band_of_refractor = band - refractor * counts.bands;
   PathState w = start, reflected = start;
   if (!split(w, first, reflected)) reflected.share = 0.0;
   mirrored = reflected.share;

@@ -6,16 +6,18 @@
 // been through 65535 turns of any loops; a stretch takes one for each plane and some for the hierarchy,
 // and a thread takes every PIXEL_THREADS-th band (refraction_threads.glsl).
 #ifdef REFINES
-const int BANDS_OF_THREAD = (COARSE_BANDS + PIXEL_THREADS) / PIXEL_THREADS;
+#define BANDS_AT_ONCE COARSE_BANDS
 #else
-const int BANDS_OF_THREAD = (WAVELENGTHS + PIXEL_THREADS) / PIXEL_THREADS;
+#define BANDS_AT_ONCE counts.wavelengths
 #endif
-const int MOST_SEGMENTS = max(8, min(224, 49152 / (PLANE_ROOM + 64)) / BANDS_OF_THREAD);
+int most_segments() {
+  return max(8, min(224, 49152 / (PLANE_ROOM + 64)) / ((BANDS_AT_ONCE + PIXEL_THREADS) / PIXEL_THREADS));
+}
 
 int band_of_refractor;  // that is followed, among one refractor's
 
 vec2 refractor_spectrum(int r) {
-  Band band = bands[r * BAND_COUNT + band_of_refractor];
+  Band band = bands[r * counts.bands + band_of_refractor];
   return vec2(band.weight_n.w, band.attenuation.x);
 }
 
@@ -29,7 +31,8 @@ vec3 shown(PathState w) {
   vec3 light = vec3(0);
   float seen_share = 0.0, left = 0.0;  // left: share of what is not followed
   bool going = w.share > 0.0;
-  for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
+  int most = most_segments();
+  for (int segment = 0; going && segment < most; segment++) {
     Interface h;
     h.hit.t = 1e30;
     bool met = next_interface(w, h), receiver;
@@ -51,7 +54,7 @@ vec3 shown(PathState w) {
     }
     if (w.share <= 0.0) w = take_pending(pending);
     going = w.share > 0.0;
-    bool last = segment == MOST_SEGMENTS - 1;
+    bool last = segment == most - 1;
     left += last ? w.share : 0.0;
     for (int k = 0; k < PENDING; k++) left += last ? pending[k].share : 0.0;
   }

@@ -1,5 +1,6 @@
-// Paths that hit anywhere: (photon, or refined interval) * SLOTS + order. LISTS_PATHS: who includes this
+// Paths that hit anywhere: (photon, or refined interval) * slots + order. LISTS_PATHS: who includes this
 // lists them.
+#include "counts.glsl"
 #ifndef LISTS_PATHS
 readonly
 #endif

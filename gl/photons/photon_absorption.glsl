@@ -14,7 +14,7 @@ vec4 attenuation[2], part_of_half[2];
 
 // The first of all wavelengths'.
 int all_bands(int row) {
-  return (NODES < WAVELENGTHS ? LIGHTS * REFRACTORS * NODES : 0) + row * WAVELENGTHS;
+  return (counts.nodes < counts.wavelengths ? LIGHTS * REFRACTORS * counts.nodes : 0) + row * counts.wavelengths;
 }
 
 void load_halves(int below, int above) {

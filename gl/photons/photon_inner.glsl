@@ -4,7 +4,11 @@
 
 // To look for the next outgoing segment first pays in solids that keep light inside for long, which have
 // more of them than others.
-const bool GO_ON = CHEAP_INTERFACES && EXITS > 8;
+#ifdef MANY_EXITS
+const bool GO_ON = CHEAP_INTERFACES;
+#else
+const bool GO_ON = false;
+#endif
 
 #ifdef LAYERS
 void layers_hit(int r, vec3 p, vec3 d, out vec3 q, out vec3 n) {
@@ -20,7 +24,7 @@ float mirror(PhotonRay photon, uint path, float reflected) {
   Hit front = photon.front;
   ReceiverHit to = meet_receiver(front.p, reflect(photon.d, front.n), -touch * refractor_bounds.w, 1e30);
   if (to.state < HELD) return reflected;
-  keep_hit(photon, PhotonHit(EXITS, to.place, reflected * photon.flux,
+  keep_hit(photon, PhotonHit(counts.exits, to.place, reflected * photon.flux,
                              signature_of(path * 17u + to.receiver, to, uint(front.refractor)), 0.0,
                              vec4(front.p, interface_word(front.n, false, to.tile))));
   return 0.0;
@@ -43,7 +47,7 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   if (!photon.reached) return;
   Hit front = photon.front;
   int r = front.refractor;
-  vec2 spectrum = spectra[r * WAVELENGTHS + photon.wavelength].xy;
+  vec2 spectrum = spectra[r * counts.wavelengths + photon.wavelength].xy;
   float n = spectrum.x, per_m = spectrum.y, reflected = fresnel(-dot(photon.d, front.n), 1.0 / n);
   uint path = uint(r) * 131u + uint(front.facet);
   entry[REACHED] = Shares(1.0);
@@ -52,10 +56,10 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   if (!refract_direction(photon.d, front.n, 1.0 / n, ray.d)) return;
   float path_m = 0.0;
   Shares left = Shares(1.0);
-  for (int order = 0; order < EXITS;) {
+  for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
     bool ends = false;
-    while (order < EXITS) {
+    while (order < counts.exits) {
       InnerHit h = next_inner_hit(r, ray);
       entry[ABSORBED] += absorb(distance(h.p, ray.p), per_m, ray.share, path_m, left);
       path = path * 31u + uint(h.facet) + 1u;

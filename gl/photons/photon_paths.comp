@@ -9,7 +9,7 @@ uniform uint items;  // photons, or refined intervals
 
 void main() {
   uint id = thread_number();
-  if (id >= items * SLOTS) return;
-  uint order = id / items, path = (id - order * items) * SLOTS + order;
+  if (id >= items * counts.slots) return;
+  uint order = id / items, path = (id - order * items) * counts.slots + order;
   if (path_mark[path] != 0u) path_list[atomicAdd(path_count, 1u)] = path;
 }

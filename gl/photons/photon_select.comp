@@ -27,7 +27,7 @@ uniform int map_size;
 uniform uint chunks, chunk;  // only photons of this chunk
 uniform uint most_pairs;     // that the list has room for
 
-uniform float interval_weight[NODES];  // of the light, by the intervals' mean
+uniform float interval_weight[PAIR_INTERVALS];  // of the light, by the intervals' mean
 
 // Of the photon's light in an interval: what may lie wrong by a footprint's width.
 const float MOST_WRONG = 0.05;
@@ -58,7 +58,7 @@ Sample sample_at(uint first, int node) {
   vec4 to = hits[HIT_TEXELS * at], interface_at = hits[HIT_TEXELS * at + 1u];
   Sample s;
   s.path = SIGNATURE(at);
-  vec2 spectrum = spectra[int(s.path & 255u) % REFRACTORS * WAVELENGTHS + coarse_node(node)].xy;
+  vec2 spectrum = spectra[int(s.path & 255u) % REFRACTORS * counts.wavelengths + coarse_node(node)].xy;
   s.tile = s.path != 0u ? interface_tile(interface_at.w) : -1;
   s.at = s.path != 0u ? map_position(to.xyz, s.tile) : vec2(0);
   s.index = spectrum.x;
@@ -74,8 +74,8 @@ Sample sample_at(uint first, int node) {
 // Which hits something nearest the middle.
 int reference_of(uint first) {
   int reference = 0;
-  for (int k = 0; k < NODES; k++)
-    if (SIGNATURE(first + uint(k)) != 0u && abs(2 * k - NODES) < abs(2 * reference - NODES)) reference = k;
+  for (int k = 0; k < counts.nodes; k++)
+    if (SIGNATURE(first + uint(k)) != 0u && abs(2 * k - counts.nodes) < abs(2 * reference - counts.nodes)) reference = k;
   return reference;
 }
 
@@ -91,7 +91,7 @@ float resolved(ivec2 cell, uint order, uint first, uint reference) {
     bool there = path != 0u && all(lessThan(c, grid));
     uint cell_slot = slot[there ? c.y * grid.x + c.x : 0];
     there = there && cell_slot != 0u;
-    uint index = ((there ? cell_slot - 1u : 0u) * SLOTS + order) * HIT_STRIDE + reference;
+    uint index = ((there ? cell_slot - 1u : 0u) * counts.slots + order) * counts.hit_stride + reference;
     there = there && SIGNATURE(index) == path;
     vec2 to = map_position(hits[HIT_TEXELS * index].xyz, tile);
     if (k == 0) here = to;
@@ -146,13 +146,13 @@ uint wrong_intervals(uint first, float size, float photon_flux) {
   uint wanted = 0u;
   Sample before, a, b, after;
   float bend_a = -1.0, bend_b = -1.0;
-  for (int k = -2; k + 1 < NODES; k++) {  // the interval from node k on
+  for (int k = -2; k + 1 < counts.nodes; k++) {  // the interval from node k on
     before = a;
     a = b;
     b = after;
-    after = sample_at(first, min(k + 2, NODES - 1));
+    after = sample_at(first, min(k + 2, counts.nodes - 1));
     if (k == -2) before = a = b = after;
-    bool has_after = k + 2 < NODES;
+    bool has_after = k + 2 < counts.nodes;
     bend_a = bend_b;
     bend_b = k >= 0 && has_after ? bend_of(a, b, after) : -1.0;
     float misplaced_by = misplaced(before, a, b, after, k > 0, has_after, bend_a, bend_b, size);
@@ -167,7 +167,7 @@ void main() {
   uint listed = thread_number();
   if (listed >= path_count) return;
   uint photon_path = path_list[listed];
-  uint photon = photon_path / SLOTS, order = photon_path % SLOTS, first = photon_path * HIT_STRIDE;
+  uint photon = photon_path / counts.slots, order = photon_path % counts.slots, first = photon_path * counts.hit_stride;
   Photon from_cell = photon_at[photon];
   // Other bits than those that choose the chunks of splats, or one of these would get all.
   if ((from_cell.cell * 2654435761u >> 16) % chunks != chunk) return;

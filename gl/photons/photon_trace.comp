@@ -11,7 +11,7 @@ layout(local_size_x = 256) in;
 #include "photon_nodes.glsl"
 #include "pair_list.glsl"
 
-// [((photon * SLOTS + order) * HIT_STRIDE + sample) * HIT_TEXELS]: where it lands, and w: flux for unit
+// [((photon * slots + order) * hit_stride + sample) * HIT_TEXELS]: where it lands, and w: flux for unit
 // weight and power; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
 // coordinates, and the chart's side.
 layout(std430, binding = BINDING_HITS) writeonly buffer Hits { vec4 hits[]; };
@@ -22,10 +22,10 @@ layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uvec2
 #else
 layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uint signature[]; };
 #endif
-// Y weight of the samples at [light * WAVELENGTHS + i]: of the parts of their bands below and above
+// Y weight of the samples at [light * wavelengths + i]: of the parts of their bands below and above
 // the node, then those in the coarse set.
 layout(std430, binding = BINDING_SAMPLE_WEIGHTS) readonly buffer SampleWeights { vec4 sample_weight[]; };
-// 1 where the path (photon * SLOTS + order) lands at some wavelength.
+// 1 where the path (photon * slots + order) lands at some wavelength.
 layout(std430, binding = BINDING_PATH_MARKS) writeonly buffer PathMarks { uint path_mark[]; };
 // lo and hi of reached, reflected, absorbed, trapped, missed.
 layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
@@ -33,7 +33,7 @@ layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 #include "pass_light.glsl"
 uniform ivec2 grid;
 #include "photon_start.glsl"
-uniform int sample_first;  // wavelengths sample_first .. sample_first + HIT_STRIDE - 1 in this batch
+uniform int sample_first;  // wavelengths sample_first .. sample_first + hit_stride - 1 in this batch
 uniform int sample_count;
 uniform int ledger_first;  // wavelengths before this one are in the ledger already
 // ALL: consecutive wavelengths of all photons; COARSE: the coarse set of all photons; REFINED: all
@@ -50,7 +50,7 @@ shared uint more_sum[5], less_sum[5];
 #include "photon_path.glsl"
 
 void keep_hit(PhotonRay photon, PhotonHit hit) {
-  uint path = photon.item * SLOTS + hit.slot, index = path * hit_stride + photon.sample_number;
+  uint path = photon.item * counts.slots + hit.slot, index = path * hit_stride + photon.sample_number;
   hits[HIT_TEXELS * index] = vec4(hit.place, hit.flux);
   hits[HIT_TEXELS * index + 1u] = hit.interface_at;
   path_mark[path] = 1u;
@@ -108,8 +108,8 @@ PhotonRay ray_of(Task t) {
 // A refined interval's ends give back halves of coarse bands; their own outer ones are not its.
 void load_attenuation(Task t, PhotonRay ray) {
   int row = light * REFRACTORS + (ray.reached ? ray.front.refractor : 0);
-  int node = set == COARSE ? row * NODES + t.sample_number : all_bands(row) + t.wavelength;
-  int coarse = row * NODES + t.interval;
+  int node = set == COARSE ? row * counts.nodes + t.sample_number : all_bands(row) + t.wavelength;
+  int coarse = row * counts.nodes + t.interval;
   load_halves(t.wavelength == t.low ? 2 * coarse + 1 : 2 * node,
               t.wavelength == t.high ? 2 * (coarse + 1) : 2 * node + 1);
 }
@@ -117,7 +117,7 @@ void load_attenuation(Task t, PhotonRay ray) {
 
 // A refined interval's ends give back what the coarse set entered for it.
 void enter(Task t, float flux, Shares entry[5]) {
-  vec4 weight = sample_weight[light * WAVELENGTHS + t.wavelength];
+  vec4 weight = sample_weight[light * counts.wavelengths + t.wavelength];
   bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;
   float below = set == COARSE ? weight.z : at_low ? 0.0 : weight.x;
   float above = set == COARSE ? weight.w : at_high ? 0.0 : weight.y;

@@ -10,16 +10,14 @@ const int MOST_SEGMENTS = 128;  // of one photon's light; fewer are met but in a
 int wavelength;
 
 vec2 refractor_spectrum(int r) {
-  return spectra[r * WAVELENGTHS + wavelength].xy;
+  return spectra[r * counts.wavelengths + wavelength].xy;
 }
 
 // A free slot, the path's own if it can be; -1: all are used.
 int take_slot(uint path, inout uint used) {
-  int at = int((path * 2654435761u >> 8) % uint(SLOTS)), slot = -1;
-  for (int k = 0; k < SLOTS; k++) {
-    int here = (at + k) % SLOTS;
-    if (slot < 0 && (used >> here & 1u) == 0u) slot = here;
-  }
+  uint at = (path * 2654435761u >> 8) % uint(counts.slots);
+  uint unused = ~used & (0xffffffffu >> uint(32 - counts.slots)), from_there = unused >> at << at;
+  int slot = findLSB(from_there != 0u ? from_there : unused);
   if (slot >= 0) used |= 1u << slot;
   return slot;
 }

@@ -80,7 +80,8 @@ abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error);
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
 
 /* gpu_spectra.c: n, attenuation and bands of every refractor at all wavelengths, from the tables.
- */
+ * room: elements of a buffer that holds so many, so that tables of like size share programs. */
+size_t abbe_gpu_spectra_room(size_t count);
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
 
 /* gpu_bvh.c: the triangles of what is traversed. */

@@ -8,17 +8,24 @@ typedef struct gpu_band {
   float weight_n[4], attenuation[4];
 } gpu_band;
 
+size_t abbe_gpu_spectra_room(size_t count) {
+  size_t room = 64;
+  while (room < count) room *= 2;
+  return room;
+}
+
 static abbe_result upload_spectra(abbe_gpu_scene *scene, abbe_error *error) {
   const abbe_spectral_tables *tables = &scene->tables;
   const size_t count = scene->plan->refractor_count * tables->all.count;
-  float(*spectrum)[4] = calloc(count + 1, sizeof *spectrum);
+  const size_t room = abbe_gpu_spectra_room(count);
+  float(*spectrum)[4] = calloc(room, sizeof *spectrum);
   if (spectrum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
   for (size_t i = 0; i < count; i++) {
     spectrum[i][0] = (float)tables->index[i];
     spectrum[i][1] = (float)tables->attenuation[i];
   }
   abbe_result result =
-      abbe_gpu_make_buffer(scene->gpu, count * sizeof *spectrum, spectrum, &scene->spectra, error);
+      abbe_gpu_make_buffer(scene->gpu, room * sizeof *spectrum, spectrum, &scene->spectra, error);
   free(spectrum);
   return result;
 }
@@ -55,12 +62,13 @@ static void fill_bands(const abbe_spectral_tables *tables, size_t refractor, gpu
 
 static abbe_result upload_bands(abbe_gpu_scene *scene, abbe_error *error) {
   const size_t refractors = scene->plan->refractor_count;
-  gpu_band *band = calloc(refractors * scene->band_count + 1, sizeof *band);
+  const size_t room = abbe_gpu_spectra_room(refractors * scene->band_count);
+  gpu_band *band = calloc(room, sizeof *band);
   if (band == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
   for (size_t i = 0; i < refractors; i++)
     fill_bands(&scene->tables, i, band + i * scene->band_count);
   abbe_result result = abbe_gpu_make_buffer(
-      scene->gpu, refractors * scene->band_count * sizeof *band, band, &scene->bands, error);
+      scene->gpu, room * sizeof *band, band, &scene->bands, error);
   free(band);
   return result;
 }

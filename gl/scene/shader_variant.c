@@ -58,28 +58,24 @@ static bool too_large(size_t count, size_t element) {
 }
 
 static void print_tables(FILE *to, const abbe_shader_variant *v) {
-  const size_t spectra = v->refractors * v->wavelengths, bands = v->refractors * v->bands;
+  const size_t spectra = abbe_gpu_spectra_room(v->refractors * v->wavelengths);
+  const size_t bands = abbe_gpu_spectra_room(v->refractors * v->bands);
   print_count(to, "LIGHTS", v->lights);
   print_count(to, "REFRACTORS", v->refractors);
   print_count(to, "RECEIVERS", v->receivers);
-  print_count(to, "WAVELENGTHS", v->wavelengths);
-  print_count(to, "EXITS", v->exits);
-  print_count(to, "SLOTS", v->slots);
+  print_flag(to, "MANY_EXITS", v->exits > 8);
   print_room(to, "LIGHT_ROOM", v->lights);
   print_room(to, "REFRACTOR_ROOM", v->refractors);
   print_room(to, "PLANE_ROOM", v->planes);
   print_room(to, "RECEIVER_ROOM", v->receivers);
   print_room(to, "SURFACE_ROOM", v->surfaces);
-  print_room(to, "SPECTRUM_ROOM", spectra);
-  print_count(to, "BAND_COUNT", v->bands);
-  print_count(to, "BAND_LEVELS", v->band_levels);
-  print_room(to, "BAND_ROOM", bands);
+  print_count(to, "SPECTRUM_ROOM", spectra);
+  print_count(to, "BAND_ROOM", bands);
   print_flag(to, "BANDS_IN_STORAGE", too_large(bands, 32));
   print_flag(to, "PLANES_IN_STORAGE", too_large(v->planes, 16));
   print_flag(to, "SURFACES_IN_STORAGE", too_large(v->surfaces, 32));
   print_flag(to, "SPECTRA_IN_STORAGE", too_large(spectra, 16));
-  print_count(to, "HIERARCHY_STACK", v->bvh_stack);
-  print_count(to, "RECEIVER_ROOT", v->receiver_root);
+  print_count(to, "HIERARCHY_STACK", (v->bvh_stack + 7) / 8 * 8);
   if (v->shadow_planes == 0) return;
   print_count(to, "SHADOW_PLANES", v->shadow_planes);
   print_flag(to, "ONE_SHADOW", v->one_shadow);
@@ -126,14 +122,9 @@ static void print_photons(FILE *to, const abbe_shader_variant *v) {
   if (v->tiles > 0) {
     print_flag(to, "TILES", true);
     print_count(to, "MOST_TILES", v->tiles);
-    print_count(to, "TILE_BLOCKS", v->tile_blocks);
-    print_count(to, "CHART_SIDES", v->chart_sides);
   }
-  if (v->map_levels > 0) print_count(to, "MAP_LEVELS", v->map_levels);
   if (v->hit_stride == 0) return;
-  print_count(to, "HIT_STRIDE", v->hit_stride);
   print_count(to, "STEPS", v->steps);
-  print_count(to, "NODES", v->nodes);
   print_flag(to, "BRIDGE", v->bridge);
   print_flag(to, "DOUBTS_BRIDGES", v->doubts_bridges);
   print_flag(to, "TINTING", v->keeps_lengths);
@@ -155,6 +146,29 @@ char *abbe_shader_variant_text(const abbe_shader_variant *variant, const char *m
   return NULL;
 }
 
+/* The shaders' Counts (counts.glsl); a program has those that it reads. */
+static void set_counts(const abbe_shader_variant *v, const abbe_gl *gl, GLuint program) {
+  const struct {
+    const char *name;
+    size_t value;
+  } counts[] = {
+      {"counts.wavelengths", v->wavelengths},
+      {"counts.bands", v->bands},
+      {"counts.band_levels", v->band_levels},
+      {"counts.exits", v->exits},
+      {"counts.slots", v->slots},
+      {"counts.hit_stride", v->hit_stride},
+      {"counts.nodes", v->nodes},
+      {"counts.map_levels", v->map_levels},
+      {"counts.tile_blocks", v->tile_blocks},
+      {"counts.chart_sides", v->chart_sides},
+      {"counts.receiver_root", v->receiver_root},
+  };
+  gl->UseProgram(program);
+  for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    gl->Uniform1i(gl->GetUniformLocation(program, counts[i].name), (GLint)counts[i].value);
+}
+
 abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, abbe_gpu *gpu,
                                         const abbe_program_stage *stages, size_t count,
                                         const char *more, GLuint *out, abbe_error *error) {
@@ -162,6 +176,7 @@ abbe_result abbe_shader_variant_program(const abbe_shader_variant *variant, abbe
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a shader");
   const abbe_result result = abbe_gpu_program(gpu, stages, count, text, out, error);
   free(text);
+  if (result == ABBE_OK) set_counts(variant, gpu->gl, *out);
   return result;
 }
 

@@ -1,5 +1,6 @@
 /* shader_variant.h: what shaders are compiled for: counts and facts of the scene, which each pass
- * may copy and complete. It prints itself as #defines. Internal to gl/.
+ * may copy and complete. Facts become #defines; counts that no array's size depends on become
+ * uniforms of the program (shaders/counts.glsl), so that it serves others too. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_SHADER_VARIANT_H
 #define ABBE_GL_SCENE_SHADER_VARIANT_H

@@ -1,6 +1,7 @@
 // Data that every pass shares. Lengths in metres, directions unit, world space.
 
 #include "view.glsl"
+#include "counts.glsl"
 
 const float PI = 3.14159265358979;
 
@@ -50,7 +51,7 @@ layout(std430, binding = BINDING_SURFACES) readonly buffer Surfaces { Surface su
 #else
 layout(std140, binding = BINDING_SURFACES) uniform Surfaces { Surface surfaces[SURFACE_ROOM]; };
 #endif
-// n and attenuation (1/m) at [refractor * WAVELENGTHS + i].
+// n and attenuation (1/m) at [refractor * wavelengths + i].
 #ifdef SPECTRA_IN_STORAGE
 layout(std430, binding = BINDING_SPECTRA) readonly buffer Spectra { vec4 spectra[]; };
 #else

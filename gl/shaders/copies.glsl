@@ -72,6 +72,9 @@ vec4 read_now(vec4 x) { return max(x, x); }
 mat3 read_now(mat3 m) { return mat3(read_now(m[0]), read_now(m[1]), read_now(m[2])); }
 
 void copy_tables() {
+#ifdef COPIES_TABLES
+  copy_counts();
+#endif
 #ifdef EACH_LIGHT
 #define COPY_LIGHT(i) own_light[i] = lights[i];
   EACH_LIGHT(COPY_LIGHT)

@@ -1,10 +1,13 @@
 // Maps on receivers, for light that the light's own map cannot hold. TILES: some light has any. Tables
 // are textures: a software rasteriser fetches from those what differs from lane to lane.
+#include "counts.glsl"
 #ifdef TILES
 layout(binding = UNIT_TILE_ROWS) uniform samplerBuffer tile_rows;    // TILE_ROWS a tile, MOST_TILES a light
-layout(binding = UNIT_TILE_INDEX) uniform isamplerBuffer tile_index;  // ATLAS_WORDS a light, of the three parts below
+layout(binding = UNIT_TILE_INDEX) uniform isamplerBuffer tile_index;  // words_of(1) a light, of the three parts below
 const int TILE_ROWS = 4;
-const int ATLAS_WORDS = 1 + TILE_BLOCKS * TILE_BLOCKS + CHART_SIDES;
+
+int tiles_word() { return counts.tile_blocks * counts.tile_blocks + 1; }
+int words_of(int lights) { return lights * (tiles_word() + counts.chart_sides); }
 
 // Of a hit's path: it lies on a tile. Its place is then texels of the layer and the tile.
 const uint ON_A_TILE = 0x40000000u;
@@ -12,16 +15,16 @@ const uint ON_A_TILE = 0x40000000u;
 int tile_row(int light, int tile) { return TILE_ROWS * (light * MOST_TILES + tile); }
 
 // The layer of the map that the light's tiles share.
-int atlas_layer(int light) { return texelFetch(tile_index, light * ATLAS_WORDS).x; }
+int atlas_layer(int light) { return texelFetch(tile_index, words_of(light)).x; }
 
-// The tile of a block of the layer's texels, TILE_BLOCKS a side; -1: of none.
+// The tile of a block of the layer's texels, so many a side; -1: of none.
 int tile_of_block(int light, ivec2 block) {
-  return texelFetch(tile_index, light * ATLAS_WORDS + 1 + block.y * TILE_BLOCKS + block.x).x;
+  return texelFetch(tile_index, words_of(light) + 1 + block.y * counts.tile_blocks + block.x).x;
 }
 
 // The tile of one side of a chart: 2 * chart, + 1 behind; -1: it has none.
 int tile_of_side(int light, int chart_side) {
-  return texelFetch(tile_index, light * ATLAS_WORDS + 1 + TILE_BLOCKS * TILE_BLOCKS + chart_side).x;
+  return texelFetch(tile_index, words_of(light) + tiles_word() + chart_side).x;
 }
 
 // In the layer's texels: left, bottom, right, top.

@@ -26,7 +26,7 @@ int receiver_hit(vec3 o, vec3 d, float t_min, float t_max, out float t) {
 #ifdef RECEIVER_HIERARCHY
   TriangleHit h;
   h.t = t;
-  if (hierarchy_hit(RECEIVER_ROOT, o, d, 0.0, t_min, false, h)) {
+  if (hierarchy_hit(counts.receiver_root, o, d, 0.0, t_min, false, h)) {
     t = h.t;
     found = RECEIVERS + h.triangle;
   }
@@ -40,7 +40,7 @@ bool receiver_between(vec3 o, vec3 d, float t_min, float t_max) {
 #ifdef RECEIVER_HIERARCHY
   TriangleHit h;
   h.t = t_max;
-  return hierarchy_hit(RECEIVER_ROOT, o, d, 0.0, t_min, true, h);
+  return hierarchy_hit(counts.receiver_root, o, d, 0.0, t_min, true, h);
 #else
   return false;
 #endif

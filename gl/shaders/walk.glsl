@@ -210,7 +210,7 @@ PathState take_pending(inout PathState pending[PENDING]) {
 // What may be reflected further: always at the first interface, then until too little is left or
 // too many interfaces are met.
 bool reflects_on(PathState mirrored) {
-  return mirrored.interfaces <= 0 || (mirrored.interfaces < EXITS && mirrored.share >= share_limit);
+  return mirrored.interfaces <= 0 || (mirrored.interfaces < counts.exits && mirrored.share >= share_limit);
 }
 
 // At an interface: the stronger branch is left in w, the other waits, and of both only what carries

@@ -84,9 +84,12 @@ static abbe_result make_programs(abbe_thesis *t, const abbe_shader_variant *vari
   } all[] = {{layers, 3, &t->layers}, {depth, 2, &t->depth_only}, {splat, 3, &t->splat},
              {fill, 2, &t->fill},     {lit, 2, &t->receivers},    {refracted, 2, &t->refraction}};
   abbe_result result = ABBE_OK;
+  char more[64];
+  snprintf(more, sizeof more, "#define WAVELENGTHS %zu\n%s", variant->wavelengths,
+           t->cie ? "#define CIE\n" : "");
   for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
-    result = abbe_shader_variant_program(variant, t->scene->gpu, all[i].stages, all[i].count,
-                                         t->cie ? "#define CIE\n" : NULL, all[i].out, error);
+    result = abbe_shader_variant_program(variant, t->scene->gpu, all[i].stages, all[i].count, more,
+                                         all[i].out, error);
   return result;
 }
 
