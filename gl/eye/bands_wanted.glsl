@@ -83,4 +83,23 @@ void choose_bands(out int base, out int count) {
   }
 #endif
 }
+
+// INTERLEAVES: of several samples a pixel each takes every second of its bands, and its neighbour those
+// between; the light of a band that is left out is shared by the two beside it.
+#ifdef INTERLEAVES
+int taken_step(int count) { return count > 2 ? 2 : 1; }
+int first_taken(ivec2 at, int count) { return count > 2 ? (at.x ^ at.y) & 1 : 0; }
+
+vec3 band_weight(int base, int i, int count) {
+  vec3 weight = bands[base + i].weight_n.xyz;
+  if (count <= 2) return weight;
+  if (i > 0) weight += (i == 1 ? 1.0 : 0.5) * bands[base + i - 1].weight_n.xyz;
+  if (i + 1 < count) weight += (i + 2 == count ? 1.0 : 0.5) * bands[base + i + 1].weight_n.xyz;
+  return weight;
+}
+#else
+int taken_step(int count) { return 1; }
+int first_taken(ivec2 at, int count) { return 0; }
+vec3 band_weight(int base, int i, int count) { return bands[base + i].weight_n.xyz; }
+#endif
 #endif

@@ -37,9 +37,9 @@ void main() {
   int base, count;
   choose_bands(base, count);
   vec3 sum = vec3(0), mirror = vec3(0);
-  for (int i = 0; i < count; i++) {
+  for (int i = first_taken(pixel_of(pixel[listed]), count); i < count; i += taken_step(count)) {
     float mirrored;
-    vec3 light = band_light(base + i, mirrored), weight = bands[base + i].weight_n.xyz;
+    vec3 light = band_light(base + i, mirrored), weight = band_weight(base, i, count);
     mirror += mirrored * weight;
     sum += light * weight;
 #ifdef REFINES

@@ -112,12 +112,14 @@ void main() {
   choose_bands(base, count);
 #endif
   vec3 sum = vec3(0), mirror = vec3(0);
-  for (int i = there ? pixel_thread : count + 1; i <= count; i += PIXEL_THREADS) {
-    bool in_mirror = i == count;
-    int band = base + (in_mirror ? count / 2 : i);
+  int taken_first = first_taken(pixel_of(where), count), taken_by = taken_step(count);
+  int taken = (count - taken_first + taken_by - 1) / taken_by;  // and the mirror
+  for (int k = there ? pixel_thread : taken + 1; k <= taken; k += PIXEL_THREADS) {
+    bool in_mirror = k == taken;
+    int i = in_mirror ? count / 2 : taken_first + k * taken_by, band = base + i;
     float mirrored;
     vec3 light = band_light(band, in_mirror, mirrored);
-    vec3 weight = in_mirror ? vec3(0) : bands[band].weight_n.xyz;
+    vec3 weight = in_mirror ? vec3(0) : band_weight(base, i, count);
     mirror += mirrored * weight;
     sum += light * weight;
     if (in_mirror) in_the_mirror[place] = light;
