@@ -295,9 +295,22 @@ void abbe_gpu_clear_buffer(abbe_gpu *gpu, GLuint buffer) {
 }
 
 void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list) {
-  static const GLuint zero[ABBE_GPU_LIST_HEADER / 4] = {0};
+  abbe_gpu_set_list(gpu, list, 0);
+}
+
+void abbe_gpu_set_list(abbe_gpu *gpu, GLuint list, size_t count) {
+  const GLuint header[ABBE_GPU_LIST_HEADER / 4] = {(GLuint)count};
   gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
-  gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+  gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof header, header);
+}
+
+void abbe_gpu_copy(abbe_gpu *gpu, GLuint from, size_t from_byte, GLuint to, size_t to_byte,
+                   size_t bytes) {
+  const abbe_gl *gl = gpu->gl;
+  gl->BindBuffer(GL_COPY_READ_BUFFER, from);
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, to);
+  gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, (GLintptr)from_byte,
+                        (GLintptr)to_byte, (GLsizeiptr)bytes);
 }
 
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list) {

@@ -101,6 +101,11 @@ void abbe_gpu_bind_storage(abbe_gpu *gpu, GLuint binding, GLuint buffer);
 void abbe_gpu_clear_buffer(abbe_gpu *gpu, GLuint buffer);
 /* Empties a list. */
 void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list);
+/* A list has so many elements now, and no groups. */
+void abbe_gpu_set_list(abbe_gpu *gpu, GLuint list, size_t count);
+/* So many bytes from one buffer to another. */
+void abbe_gpu_copy(abbe_gpu *gpu, GLuint from, size_t from_byte, GLuint to, size_t to_byte,
+                   size_t bytes);
 /* Waits for the device: elements of a list, also beyond its room. */
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
 

@@ -24,8 +24,7 @@ layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uint s
 #include "pass_light.glsl"
 uniform ivec2 grid;
 uniform int map_size;
-uniform uint chunks, chunk;  // only photons of this chunk
-uniform uint most_pairs;     // that the list has room for
+uniform uint most_pairs;  // that the list has room for
 
 uniform float interval_weight[NODES];  // of the light, by the intervals' mean
 
@@ -169,8 +168,6 @@ void main() {
   uint photon_path = path_list[listed];
   uint photon = photon_path / SLOTS, order = photon_path % SLOTS, first = photon_path * HIT_STRIDE;
   Photon from_cell = photon_at[photon];
-  // Other bits than those that choose the chunks of splats, or one of these would get all.
-  if ((from_cell.cell * 2654435761u >> 16) % chunks != chunk) return;
   ivec2 cell = ivec2(from_cell.cell & 0xffffu, from_cell.cell >> 16);
   float size = resolved(cell, order, first, uint(reference_of(first)));
   uint wanted = wrong_intervals(first, size, from_cell.flux);
