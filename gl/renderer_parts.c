@@ -37,11 +37,22 @@ static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, a
   for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
   if (result == ABBE_OK && r->plan.cubes)
     result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
-  if (result != ABBE_OK || r->plan.desc.map_layout == NULL) return result;
-  r->given = *r->plan.desc.map_layout; /* the caller's may go */
-  abbe_local_scene_from_world(&r->local, &r->given.view);
+  return result;
+}
+
+static void take_plan(abbe_renderer *r, const abbe_plan *plan) {
+  abbe_plan_free(&r->plan);
+  r->plan = *plan;
+  if (plan->desc.map_layout == NULL) return;
+  r->given = *plan->desc.map_layout; /* the caller's may go */
   r->plan.desc.map_layout = &r->given;
-  return ABBE_OK;
+}
+
+static const abbe_map_layout *local_layout(abbe_renderer *r) {
+  if (r->plan.desc.map_layout == NULL) return NULL;
+  r->local_given = r->given;
+  abbe_local_scene_from_world(&r->local, &r->local_given.view);
+  return &r->local_given;
 }
 
 static unsigned scene_parts(unsigned parts) {
@@ -120,7 +131,7 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
                               abbe_error *error) {
   abbe_result result = make_local_scene(r, scene, error);
   if (result != ABBE_OK) return result;
-  abbe_gpu_scene_begin(&r->gpu, r->local.scene, &r->plan, &r->scene);
+  abbe_gpu_scene_begin(&r->gpu, r->local.scene, &r->plan, local_layout(r), &r->scene);
   result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
   if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
   if (result != ABBE_OK || is_thesis(r)) return result;
@@ -150,8 +161,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
   free_parts(r, parts);
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
-  abbe_plan_free(&r->plan);
-  r->plan = plan;
+  take_plan(r, &plan);
   r->inputs = inputs;
   if (parts != 0) r->seen = false; /* all parts show, those of which nothing is made too */
   abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);
