@@ -24,6 +24,18 @@ void abbe_gpu_free(abbe_gpu *gpu) {
   *gpu = (abbe_gpu){0};
 }
 
+static abbe_result allocate_buffer(const abbe_gl *gl, size_t size, const void *data, GLuint *out,
+                                   abbe_error *error) {
+  gl->GenBuffers(1, out);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
+  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
+  const abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteBuffers(1, out);
+  *out = 0;
+  return result;
+}
+
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
@@ -36,11 +48,11 @@ abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, G
       gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
     return ABBE_OK;
   }
-  gl->GenBuffers(1, out);
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
-  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)room, size > 0 ? data : NULL,
-                 GL_DYNAMIC_COPY);
-  abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
+  abbe_result result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, NULL);
+  if (result != ABBE_OK) {
+    abbe_gpu_make_way(gpu);
+    result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, error);
+  }
   if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
   if (result == ABBE_OK) return ABBE_OK;
   gl->DeleteBuffers(1, out);
@@ -61,23 +73,36 @@ static size_t texel_bytes(GLenum format) {
   }
 }
 
-/* Takes up or makes the storage; it is bound then. */
-static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_key *key,
-                                GLuint *out, abbe_error *error) {
-  const abbe_gl *gl = gpu->gl;
+static abbe_result allocate_storage(const abbe_gl *gl, GLenum target, const abbe_stored_key *key,
+                                    GLuint *out, abbe_error *error) {
   const GLsizei levels = (GLsizei)key->levels, w = (GLsizei)key->width, h = (GLsizei)key->height;
-  *out = abbe_gpu_store_take(&gpu->store, key);
-  if (*out != 0) {
-    gl->BindTexture(target, *out);
-    return ABBE_OK;
-  }
   gl->GenTextures(1, out);
   gl->BindTexture(target, *out);
   if (key->layers > 0)
     gl->TexStorage3D(target, levels, key->format, w, h, (GLsizei)key->layers);
   else
     gl->TexStorage2D(target, levels, key->format, w, h);
-  abbe_result result = abbe_gl_check(gl, "the allocation of a texture", error);
+  const abbe_result result = abbe_gl_check(gl, "the allocation of a texture", error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteTextures(1, out);
+  *out = 0;
+  return result;
+}
+
+/* Takes up or makes the storage; it is bound then. */
+static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_key *key,
+                                GLuint *out, abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  *out = abbe_gpu_store_take(&gpu->store, key);
+  if (*out != 0) {
+    gl->BindTexture(target, *out);
+    return ABBE_OK;
+  }
+  abbe_result result = allocate_storage(gl, target, key, out, NULL);
+  if (result != ABBE_OK) {
+    abbe_gpu_make_way(gpu);
+    result = allocate_storage(gl, target, key, out, error);
+  }
   if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, key, *out, error);
   if (result == ABBE_OK) return ABBE_OK;
   gl->DeleteTextures(1, out);
@@ -141,7 +166,14 @@ void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture) {
 }
 
 void abbe_gpu_trim(abbe_gpu *gpu) {
+  gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels); /* or they hold their buffers */
+  memset(gpu->texels, 0, sizeof gpu->texels);
   abbe_gpu_store_trim(&gpu->store, gpu->gl);
+}
+
+void abbe_gpu_make_way(abbe_gpu *gpu) {
+  gpu->gl->Finish();
+  abbe_gpu_trim(gpu);
 }
 
 size_t abbe_gpu_program_count(const abbe_gpu *gpu) {

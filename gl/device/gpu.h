@@ -45,7 +45,8 @@ abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error);
 void abbe_gpu_free(abbe_gpu *gpu);
 
 /* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
- * abbe_gpu_drop_*, and taken up by what is made alike; so of textures. ABBE_GL, ABBE_NO_MEMORY. */
+ * abbe_gpu_drop_*, and taken up by what is made alike; where there is no room, what is not in use
+ * gives way. So of textures. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error);
 /* A texture of one level, an array where layers > 0. ABBE_GL. */
@@ -57,8 +58,10 @@ abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size
 /* Back to the device's store; each becomes 0, those that are 0 are left alone. */
 void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer);
 void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture);
-/* Deletes what was dropped and not taken up since. */
+/* Deletes what was dropped and not taken up since. Texels are bound anew then. */
 void abbe_gpu_trim(abbe_gpu *gpu);
+/* The same at once, where something has found no room: the device has let go of it then. */
+void abbe_gpu_make_way(abbe_gpu *gpu);
 /* Of buffers and textures in use. */
 size_t abbe_gpu_bytes(const abbe_gpu *gpu);
 
