@@ -101,6 +101,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant_make(&r->scene, &r->variant);
   r->variant.copies = r->software;
   if (is_thesis(r)) return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
+  r->variant.textured = false; /* no light is followed beyond a receiver */
   abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
   r->variant.wide = r->views.wide;
   if (result == ABBE_OK) result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
@@ -116,6 +117,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
 static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant variant = r->variant;
   variant.layers_out = r->plan.desc.layers;
+  variant.textured = r->plan.textured;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
   r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
