@@ -199,11 +199,11 @@ void abbe_caustics_free(abbe_caustics *c) {
 static abbe_result deposit(abbe_caustics *c, size_t light, const abbe_hit_batch *b, bool measures,
                            double done, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
-  abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_PHOTONS);
   abbe_result result = abbe_deposit_pass_run(&c->deposit, light, b, measures, error);
   const double share = ((double)light + done) / (double)plan_of(c)->light_view_count;
   if (result == ABBE_OK) result = abbe_gpu_tell(gpu, 0.5 * share, error);
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   return result;
 }
 
@@ -240,25 +240,25 @@ static abbe_result trace_refined(abbe_caustics *c, size_t light, abbe_error *err
 }
 
 static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_error *error) {
-  abbe_gpu_begin_pass(c->views->scene->gpu);
+  abbe_gpu_start_lap(c->views->scene->gpu);
   return abbe_photon_spectra_refines(&c->spectra) ? trace_refined(c, light, error)
                                                   : trace_all(c, light, error);
 }
 
 static abbe_result run_light(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTON_PLACEMENT);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_PHOTON_PLACEMENT);
   abbe_spectral_map_clear(c->map);
   abbe_photon_ledger_clear(&c->ledger);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   if (result == ABBE_OK) result = trace_and_deposit(c, light, error);
   if (result != ABBE_OK) return result;
   c->measured[light] = true;
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   abbe_spectral_map_resolve(c->map, light);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   return ABBE_OK;
 }
 

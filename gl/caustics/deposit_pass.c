@@ -152,10 +152,10 @@ abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
       result = list_measured(pass, light, batch, chunk, error);
     else
       list_splats(pass, light, batch, chunk);
-    abbe_gpu_end_pass(gpu,
+    abbe_gpu_book_lap(gpu,
                       scene_of(pass)->plan->fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
     if (result == ABBE_OK) add_splats(pass, light);
-    abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
+    abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   }
   return result;
 }

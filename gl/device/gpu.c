@@ -460,16 +460,16 @@ void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list) {
   dispatch_parts(gpu, program, (size_t)groups[0] * groups[1], 0);
 }
 
-void abbe_gpu_begin_pass(abbe_gpu *gpu) {
+void abbe_gpu_start_lap(abbe_gpu *gpu) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
-  gpu->pass_start_ms = 1e3 * abbe_clock_seconds();
+  gpu->lap_start_ms = 1e3 * abbe_clock_seconds();
 }
 
-void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass) {
+void abbe_gpu_book_lap(abbe_gpu *gpu, abbe_pass pass) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
   const double now_ms = 1e3 * abbe_clock_seconds();
-  abbe_statistics_add_ms(gpu->statistics, pass, now_ms - gpu->pass_start_ms);
-  gpu->pass_start_ms = now_ms;
+  abbe_statistics_add_ms(gpu->statistics, pass, now_ms - gpu->lap_start_ms);
+  gpu->lap_start_ms = now_ms;
 }

@@ -32,7 +32,7 @@ typedef struct abbe_gpu {
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
   abbe_gpu_store store;
   abbe_statistics *statistics;         /* of the frame that runs, or NULL: no pass is waited for */
-  double pass_start_ms;
+  double lap_start_ms;
   abbe_render_progress progress; /* of whoever watches; NULL: nobody does */
   void *progress_user;
   double done;  /* what they were told last */
@@ -131,9 +131,9 @@ void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t f
 /* The groups that stand in the list's words 1 to 3, as another program has written them. */
 void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list);
 
-void abbe_gpu_begin_pass(abbe_gpu *gpu);
-/* What was done since the pass began, or since the last one's end, is of this pass; several ends of
- * one pass add up. */
-void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass);
+/* The clock of passes, in a frame with statistics: a lap starts; what was done since is booked to a
+ * pass, and the next lap starts. Several laps of one pass add up. */
+void abbe_gpu_start_lap(abbe_gpu *gpu);
+void abbe_gpu_book_lap(abbe_gpu *gpu, abbe_pass pass);
 
 #endif
