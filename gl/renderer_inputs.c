@@ -185,10 +185,14 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->exits);
   MIX(h, d->photon_shift);
   h = mix_layout(h, d->map_layout, d->map_layout_light);
-  const bool facts[] = {plan->spheres,  plan->convex,
-                        plan->layers,   plan->multi_refractor_paths,
-                        plan->cubes,    plan->forward_transmission,
-                        plan->outside_map_view, plan->draw_back,
+  const bool facts[] = {plan->spheres,
+                        plan->convex,
+                        plan->layers,
+                        plan->multi_refractor_paths,
+                        plan->cubes,
+                        plan->forward_transmission,
+                        plan->outside_map_view,
+                        plan->draw_back,
                         plan->receiver_shadows};
   MIX(h, facts);
   MIX(h, plan->hit_slots);

@@ -214,8 +214,8 @@ static abbe_result trace_all(abbe_caustics *c, size_t light, abbe_error *error) 
   abbe_hit_batch b = {0};
   for (size_t done = 0; result == ABBE_OK && next_batch(c, &b); done = b.first + b.count) {
     abbe_trace_pass_batch(&c->trace, light, b.first, b.count, done);
-    result = deposit(c, light, &b, !c->measured[light], (double)(b.first + b.count) / (double)n,
-                     error);
+    result =
+        deposit(c, light, &b, !c->measured[light], (double)(b.first + b.count) / (double)n, error);
   }
   return result;
 }

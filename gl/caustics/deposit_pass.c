@@ -21,11 +21,8 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
                                    const abbe_shader_variant *scene, abbe_deposit_pass *out,
                                    abbe_error *error) {
   abbe_gpu *gpu = trace->spectra->scene->gpu;
-  *out = (abbe_deposit_pass){.trace = trace,
-                             .refine = refine,
-                             .map = map,
-                             .chunks = 1,
-                             .most_splats = MAX_SPLATS};
+  *out = (abbe_deposit_pass){
+      .trace = trace, .refine = refine, .map = map, .chunks = 1, .most_splats = MAX_SPLATS};
   abbe_result result =
       abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
   if (result == ABBE_OK)

@@ -58,9 +58,9 @@ static abbe_result make_pairs(abbe_refine_pass *pass, size_t pairs, abbe_error *
   pass->pair_room = room;
   abbe_result result = make_list(spectra->scene->gpu, room, &pass->pairs, error);
   if (result == ABBE_OK)
-    result = abbe_hits_make(spectra->scene->gpu, room, spectra->scene->plan->hit_slots,
-                            pass->fine_nodes, abbe_photon_signature_bytes(spectra), &pass->hits,
-                            error);
+    result =
+        abbe_hits_make(spectra->scene->gpu, room, spectra->scene->plan->hit_slots, pass->fine_nodes,
+                       abbe_photon_signature_bytes(spectra), &pass->hits, error);
   return result;
 }
 

@@ -13,7 +13,7 @@ typedef struct abbe_refine_pass {
   GLuint asked, pairs; /* the same listed: all of a light; those of a chunk */
   abbe_hits hits;      /* of a chunk */
   size_t asked_room, pair_room;
-  size_t most_pairs;                    /* of a chunk */
+  size_t most_pairs;                   /* of a chunk */
   size_t count[ABBE_SCENE_MAX_LIGHTS]; /* that ask, of each light, as last found */
   size_t fine_nodes; /* wavelengths of an interval at the most, with both ends */
 } abbe_refine_pass;
@@ -26,10 +26,10 @@ void abbe_refine_pass_free(abbe_refine_pass *pass);
 abbe_result abbe_refine_pass_compile(abbe_refine_pass *pass, const abbe_shader_variant *variant,
                                      abbe_error *error);
 
-/* Traces the coarse set and lists the intervals that ask, once it is known how many there are: where
- * a light is measured, in a frame with statistics, and where they take several chunks, it waits for
- * the device and makes room for as many as it finds. Every time they are the same. ABBE_GL,
- * ABBE_NO_MEMORY. */
+/* Traces the coarse set and lists the intervals that ask, once it is known how many there are:
+ * where a light is measured, in a frame with statistics, and where they take several chunks, it
+ * waits for the device and makes room for as many as it finds. Every time they are the same.
+ * ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_refine_pass_list(abbe_refine_pass *pass, size_t light, bool measures,
                                   abbe_error *error);
 /* Chunks of the light's list; 0 where nobody asks. In which order it has them is not known, so that

@@ -55,7 +55,8 @@ static void buffer_data(GLenum target, GLsizeiptr size, const void *data, GLenum
 }
 
 /* Of a format of sixteen bytes, which most are, and of its first level. */
-static void storage_2d(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height) {
+static void storage_2d(GLenum target, GLsizei levels, GLenum format, GLsizei width,
+                       GLsizei height) {
   if (take(true, bound_texture, (size_t)width * (size_t)height * 16))
     real.TexStorage2D(target, levels, format, width, height);
 }

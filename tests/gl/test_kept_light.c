@@ -1,5 +1,5 @@
-/* Changes that leave light's way to receivers alone: photons and maps are kept, and the picture is that
- * of a renderer made anew. */
+/* Changes that leave light's way to receivers alone: photons and maps are kept, and the picture is
+ * that of a renderer made anew. */
 #include "tests/gl/frame.h"
 
 static const abbe_render_desc tiny = {.width = 24, .height = 20, .photons = 32, .map_size = 64};
@@ -53,8 +53,9 @@ static void another_cone_is_followed_anew(void **state) {
   abbe_scene scene = {0};
   abbe_image kept = {0}, anew = {0};
   abbe_error error = {0};
-  load_text(CAMERA "lights:\n- {name: spot, kind: spot, position: [0.1, 0, 0.7], target: [0.2, 0, 0.2],"
-                   " intensity: 2, cone: 30, soft: 5}\n" FLOOR BRICK("crown"),
+  load_text(CAMERA
+            "lights:\n- {name: spot, kind: spot, position: [0.1, 0, 0.7], target: [0.2, 0, 0.2],"
+            " intensity: 2, cone: 30, soft: 5}\n" FLOOR BRICK("crown"),
             &scene);
   abbe_renderer *renderer = make_renderer(&scene, &tiny);
   draw_frame(renderer);

@@ -1,5 +1,5 @@
-/* What each field of a scene and of a request is part of: edited alone, it differs in those parts of a
- * renderer, and in no other. */
+/* What each field of a scene and of a request is part of: edited alone, it differs in those parts
+ * of a renderer, and in no other. */
 #include "tests/scenes/scene_text.h"
 
 #include "gl/renderer_inputs.h"
@@ -18,13 +18,13 @@ enum {
 };
 
 /* A point light, a spot and a sun; a floor with places for a texture, a ball and a brick. */
-static const char text[] =
-    CAMERA "lights:\n"
-           "- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
-           "- {name: spot, kind: spot, position: [-0.4, 0, 0.7], target: [0, 0, 0.2], intensity: 2,"
-           " cone: 40, soft: 5}\n"
-           "- {name: sun, kind: directional, direction: [0.1, 0.2, -1], irradiance: 1}\n" FLOOR
-               BALL("murk") BRICK("crown");
+static const char text[] = CAMERA
+    "lights:\n"
+    "- {name: lamp, kind: point, position: [0.05, 0.03, 0.6], intensity: 1}\n"
+    "- {name: spot, kind: spot, position: [-0.4, 0, 0.7], target: [0, 0, 0.2], intensity: 2,"
+    " cone: 40, soft: 5}\n"
+    "- {name: sun, kind: directional, direction: [0.1, 0.2, -1], irradiance: 1}\n" FLOOR BALL(
+        "murk") BRICK("crown");
 
 static float texel[2][3] = {{0.5f, 0.25f, 0.75f}, {1, 0.5f, 0.25f}};
 
@@ -101,7 +101,7 @@ static void give_texture(edited *e) {
   X("samples", e->desc.supersample = 3, EYE)                                                       \
   X("their shift", e->desc.sample_shift[1] = 0.25, EYE)                                            \
   X("layers", e->desc.layers = true, EYE)                                                          \
-  X("the space", e->desc.space = ABBE_RGB_SPACE_REC709, SURFACES | POWERS)                        \
+  X("the space", e->desc.space = ABBE_RGB_SPACE_REC709, SURFACES | POWERS)                         \
   X("wavelengths", e->desc.wavelengths = 9, SPECTRA | WAY)                                         \
   X("the range from", e->desc.min_nm = 400, SPECTRA | WAY)                                         \
   X("the range to", e->desc.max_nm = 700, SPECTRA | WAY)                                           \

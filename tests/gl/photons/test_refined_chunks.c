@@ -1,5 +1,5 @@
-/* However little room its lists have, a renderer lays the same light: what does not fit at a time is
- * laid in more parts, and nothing is left out. */
+/* However little room its lists have, a renderer lays the same light: what does not fit at a time
+ * is laid in more parts, and nothing is left out. */
 #include "tests/gl/frame.h"
 
 #include "gl/renderer_state.h"
@@ -24,11 +24,8 @@ static void assert_balanced(const abbe_ledger *l) {
 static void assert_same_light(const char *name, size_t wavelengths, const rooms *r) {
   abbe_scene scene = {0};
   abbe_image map = {0}, kept = {0};
-  abbe_render_desc desc = {.width = 16,
-                           .height = 16,
-                           .photons = 48,
-                           .map_size = 64,
-                           .wavelengths = wavelengths};
+  abbe_render_desc desc = {
+      .width = 16, .height = 16, .photons = 48, .map_size = 64, .wavelengths = wavelengths};
   load_shipped(name, &scene);
   abbe_renderer *ample = make_renderer(&scene, &desc);
   const abbe_statistics all = draw_frame(ample);
