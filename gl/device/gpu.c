@@ -166,13 +166,15 @@ void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture) {
 }
 
 void abbe_gpu_trim(abbe_gpu *gpu) {
-  gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels); /* or they hold their buffers */
-  memset(gpu->texels, 0, sizeof gpu->texels);
   abbe_gpu_store_trim(&gpu->store, gpu->gl);
 }
 
+/* Texels hold their buffers. (Elsewhere they stay: Mesa's llvmpipe compiles what finds other texels
+ * at a unit, or none, once more.) */
 void abbe_gpu_make_way(abbe_gpu *gpu) {
   gpu->gl->Finish();
+  gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels);
+  memset(gpu->texels, 0, sizeof gpu->texels);
   abbe_gpu_trim(gpu);
 }
 

@@ -58,9 +58,10 @@ abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size
 /* Back to the device's store; each becomes 0, those that are 0 are left alone. */
 void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer);
 void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture);
-/* Deletes what was dropped and not taken up since. Texels are bound anew then. */
+/* Deletes what was dropped and not taken up since. */
 void abbe_gpu_trim(abbe_gpu *gpu);
-/* The same at once, where something has found no room: the device has let go of it then. */
+/* The same at once, where something has found no room: the device has let go of it then. Texels are
+ * bound anew. */
 void abbe_gpu_make_way(abbe_gpu *gpu);
 /* Of buffers and textures in use. */
 size_t abbe_gpu_bytes(const abbe_gpu *gpu);
