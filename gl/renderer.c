@@ -117,6 +117,17 @@ static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *e
                         r->scene.local->light[light].name);
 }
 
+/* A map that was read gets its layout and its light's name; of one that was not nothing is left. */
+static abbe_result describe_map(const abbe_renderer *r, size_t light, abbe_result result,
+                                abbe_image *out, abbe_error *error) {
+  abbe_map_layout layout;
+  abbe_renderer_map_layout(r, light, &layout);
+  if (result == ABBE_OK)
+    result = abbe_map_layout_write(&layout, r->scene.local->light[light].name, out, error);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
+}
+
 static abbe_result read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,
                             abbe_error *error) {
   abbe_result result = check_map(r, light, error);
@@ -125,12 +136,7 @@ static abbe_result read_map(abbe_renderer *r, size_t light, bool filled, abbe_im
                         : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error);
   if (result != ABBE_OK) return result;
   result = abbe_gl_check(r->gpu.gl, "the reading of the map", error);
-  abbe_map_layout layout;
-  abbe_renderer_map_layout(r, light, &layout);
-  if (result == ABBE_OK)
-    result = abbe_map_layout_write(&layout, r->scene.local->light[light].name, out, error);
-  if (result != ABBE_OK) abbe_image_free(out);
-  return result;
+  return describe_map(r, light, result, out, error);
 }
 
 static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, abbe_image *out,
@@ -145,12 +151,7 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
   if (result != ABBE_OK) return result;
   result = abbe_map_bands_read(&r->caustics, light, bands, r->local.unit, out, error);
   if (result != ABBE_OK) r->lit = r->seen = false; /* the map may hold bands */
-  abbe_map_layout layout;
-  abbe_renderer_map_layout(r, light, &layout);
-  if (result == ABBE_OK)
-    result = abbe_map_layout_write(&layout, r->scene.local->light[light].name, out, error);
-  if (result != ABBE_OK) abbe_image_free(out);
-  return result;
+  return describe_map(r, light, result, out, error);
 }
 
 void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_layout *out) {

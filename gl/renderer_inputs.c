@@ -94,6 +94,7 @@ static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
     MIX(h, o->reflectance);
     MIX(h, o->texture_repeat);
     MIX(h, o->texture.width);
+    MIX(h, o->texture.height);
     h = mix_array(h, o->texture.data, texels, sizeof *o->texture.data);
   }
   return h;
@@ -126,31 +127,41 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   return h;
 }
 
-/* Where lights are and how they shine, by unit power. */
-static uint64_t mix_lights(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
+/* Where light comes from. */
+static uint64_t mix_places(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->desc.everything);
   for (size_t i = 0; i < plan->light_view_count; i++) {
-    const abbe_light_view *view = &plan->light_view[i];
-    const abbe_light *light = &scene->light[view->light];
+    const abbe_light *light = &scene->light[plan->light_view[i].light];
     MIX(h, light->kind);
     MIX(h, light->position);
-    MIX(h, light->direction);
-    MIX(h, light->radius);
-    MIX(h, light->cone_rad);
-    MIX(h, light->soft_rad);
-    MIX(h, view->light);
-    MIX(h, view->face);
-    MIX(h, view->faces);
+    if (light->kind == ABBE_LIGHT_DIRECTIONAL) MIX(h, light->direction);
+    MIX(h, plan->light_view[i].light);
     MIX(h, plan->reaches[i]);
   }
   MIX(h, plan->light_view_count);
   return h;
 }
 
-static uint64_t mix_layout(uint64_t h, const abbe_map_layout *layout) {
+/* Where it goes to from there, by unit power. */
+static uint64_t mix_beams(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
+  for (size_t i = 0; i < plan->light_view_count; i++) {
+    const abbe_light_view *view = &plan->light_view[i];
+    const abbe_light *light = &scene->light[view->light];
+    MIX(h, light->direction);
+    MIX(h, light->radius);
+    MIX(h, light->cone_rad);
+    MIX(h, light->soft_rad);
+    MIX(h, view->face);
+    MIX(h, view->faces);
+  }
+  return h;
+}
+
+static uint64_t mix_layout(uint64_t h, const abbe_map_layout *layout, size_t light) {
   const bool there = layout != NULL;
   MIX(h, there);
   if (!there) return h;
+  MIX(h, light);
   MIX(h, layout->view.orthographic);
   MIX(h, layout->view.origin);
   MIX(h, layout->view.right);
@@ -172,14 +183,17 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->model);
   MIX(h, d->energy_share);
   MIX(h, d->exits);
-  MIX(h, d->map_layout_light);
   MIX(h, d->photon_shift);
-  h = mix_layout(h, d->map_layout);
-  const bool facts[] = {plan->spheres,  plan->convex,
-                        plan->layers,   plan->multi_refractor_paths,
-                        plan->cubes,    plan->forward_transmission,
-                        plan->textured, plan->outside_map_view,
-                        plan->draw_back, plan->receiver_shadows};
+  h = mix_layout(h, d->map_layout, d->map_layout_light);
+  const bool facts[] = {plan->spheres,
+                        plan->convex,
+                        plan->layers,
+                        plan->multi_refractor_paths,
+                        plan->cubes,
+                        plan->forward_transmission,
+                        plan->outside_map_view,
+                        plan->draw_back,
+                        plan->receiver_shadows};
   MIX(h, facts);
   MIX(h, plan->hit_slots);
   return h;
@@ -197,6 +211,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->upsample);
   MIX(h, d->sample_shift);
   MIX(h, d->layers);
+  MIX(h, plan->textured);
   MIX(h, plan->camera_sees_refractor);
   MIX(h, plan->eye_exits);
   MIX(h, plan->eye_share);
@@ -209,8 +224,8 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   part[ABBE_PART_GEOMETRY] = of_geometry(scene, plan);
   part[ABBE_PART_SURFACES] = of_surfaces(scene, plan);
   part[ABBE_PART_SPECTRA] = of_spectra(scene, plan);
-  part[ABBE_PART_SHADOWS] = mix_lights(part[ABBE_PART_GEOMETRY], scene, plan);
-  light = mix_light_plan(part[ABBE_PART_SHADOWS], plan);
+  part[ABBE_PART_SHADOWS] = mix_places(part[ABBE_PART_GEOMETRY], scene, plan);
+  light = mix_light_plan(mix_beams(part[ABBE_PART_SHADOWS], scene, plan), plan);
   MIX(light, part[ABBE_PART_SPECTRA]);
   part[ABBE_PART_LIGHT] = light;
   part[ABBE_PART_EYE] = mix_eye(light, scene, plan);

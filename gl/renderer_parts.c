@@ -37,11 +37,22 @@ static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, a
   for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
   if (result == ABBE_OK && r->plan.cubes)
     result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
-  if (result != ABBE_OK || r->plan.desc.map_layout == NULL) return result;
-  r->given = *r->plan.desc.map_layout; /* the caller's may go */
-  abbe_local_scene_from_world(&r->local, &r->given.view);
+  return result;
+}
+
+static void take_plan(abbe_renderer *r, const abbe_plan *plan) {
+  abbe_plan_free(&r->plan);
+  r->plan = *plan;
+  if (plan->desc.map_layout == NULL) return;
+  r->given = *plan->desc.map_layout; /* the caller's may go */
   r->plan.desc.map_layout = &r->given;
-  return ABBE_OK;
+}
+
+static const abbe_map_layout *local_layout(abbe_renderer *r) {
+  if (r->plan.desc.map_layout == NULL) return NULL;
+  r->local_given = r->given;
+  abbe_local_scene_from_world(&r->local, &r->local_given.view);
+  return &r->local_given;
 }
 
 static unsigned scene_parts(unsigned parts) {
@@ -90,6 +101,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant_make(&r->scene, &r->variant);
   r->variant.copies = r->software;
   if (is_thesis(r)) return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
+  r->variant.textured = false; /* no light is followed beyond a receiver */
   abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
   r->variant.wide = r->views.wide;
   if (result == ABBE_OK) result = abbe_refractor_faces_make(&r->scene, &r->faces, error);
@@ -105,6 +117,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
 static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant variant = r->variant;
   variant.layers_out = r->plan.desc.layers;
+  variant.textured = r->plan.textured;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
   r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera};
   abbe_result result = abbe_receivers_pass_make(&r->lighting, &variant, &r->receivers, error);
@@ -120,7 +133,7 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
                               abbe_error *error) {
   abbe_result result = make_local_scene(r, scene, error);
   if (result != ABBE_OK) return result;
-  abbe_gpu_scene_begin(&r->gpu, r->local.scene, &r->plan, &r->scene);
+  abbe_gpu_scene_begin(&r->gpu, r->local.scene, &r->plan, local_layout(r), &r->scene);
   result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
   if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
   if (result != ABBE_OK || is_thesis(r)) return result;
@@ -150,8 +163,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
   free_parts(r, parts);
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
-  abbe_plan_free(&r->plan);
-  r->plan = plan;
+  take_plan(r, &plan);
   r->inputs = inputs;
   if (parts != 0) r->seen = false; /* all parts show, those of which nothing is made too */
   abbe_gpu_watch(&r->gpu, plan.desc.progress, plan.desc.progress_user);

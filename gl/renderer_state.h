@@ -16,7 +16,7 @@ struct abbe_renderer {
   abbe_gpu gpu;
   bool software; /* what runs the shaders is a processor */
   abbe_local_scene local;
-  abbe_map_layout given; /* the request's layout there */
+  abbe_map_layout given, local_given; /* the request's layout; the same there */
   abbe_plan plan;
   abbe_renderer_inputs inputs; /* what the parts below were made from */
   bool made;                   /* they are all there */

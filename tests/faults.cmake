@@ -36,4 +36,7 @@ foreach(name killed_command starved_command)
 endforeach()
 
 abbe_test(gl_faults gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
-target_link_options(test_gl_faults PRIVATE LINKER:--wrap=abbe_context_osmesa)
+abbe_test(device_memory gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+foreach(name gl_faults device_memory)
+  target_link_options(test_${name} PRIVATE LINKER:--wrap=abbe_context_osmesa)
+endforeach()

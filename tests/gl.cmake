@@ -1,6 +1,7 @@
 set(gl_rooms abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 foreach(name bindings camera_view gpu_store light_cube light_views local_scene material_range
     passes plan plan_facts precision reach receiver_charts receiver_model refractor_model render_desc
+    renderer_inputs
     shader_variant spectral_needs spectral_tables statistics support)
   abbe_test(${name} cpu ${gl_rooms})
 endforeach()
@@ -22,10 +23,13 @@ abbe_test(renderer gl ${gl_rooms})
 abbe_test(renderer_frames gl ${gl_rooms})
 abbe_test(renderer_change gl ${gl_rooms})
 abbe_test(two_contexts gl ${gl_rooms})
+abbe_test(given_layout gl ${gl_rooms})
+abbe_test(kept_light gl ${gl_rooms})
 abbe_test(picture_texture gl ${gl_rooms})
 abbe_test(receiver_tiles gl ${gl_rooms})
 abbe_test(cube_maps gl abbe_validation ${gl_rooms})
 abbe_test(photon_refine gl ${gl_rooms})
+abbe_test(refined_chunks gl ${gl_rooms})
 abbe_test(photons gl ${gl_rooms})
 abbe_test(colour_places gl ${gl_rooms})
 abbe_test(locale_render gl ${gl_rooms})

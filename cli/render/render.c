@@ -166,7 +166,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
                        const abbe_context *context) {
   cJSON *root = cJSON_CreateObject();
   cJSON_AddNumberToObject(root, "frame_ms", s->frame_ms);
-  if (s->floor_ms > 0) cJSON_AddNumberToObject(root, "floor_ms", s->floor_ms);
+  if (s->baseline_ms > 0) cJSON_AddNumberToObject(root, "baseline_ms", s->baseline_ms);
   cJSON *passes = cJSON_AddArrayToObject(root, "passes");
   for (size_t i = 0; i < s->pass_count; i++) {
     cJSON *pass = cJSON_CreateObject();
@@ -184,7 +184,7 @@ static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_er
   cJSON_AddNumberToObject(energy, "trapped", s->energy.trapped);
   cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
   cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
-  cJSON_AddNumberToObject(energy, "on_pages", s->energy.on_tiles);
+  cJSON_AddNumberToObject(energy, "on_tiles", s->energy.on_tiles);
   cJSON_AddNumberToObject(energy, "interpolated", s->energy.interpolated);
   cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
   cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);
@@ -230,7 +230,7 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   }
   abbe_progress_end(&progress);
   if (result == ABBE_OK && q->frames > 0 && !abbe_profile_is_thesis(q->render.desc.profile))
-    result = abbe_frame_times_baseline(renderer, q->frames, &out->floor_ms, error);
+    result = abbe_frame_times_baseline(renderer, q->frames, &out->baseline_ms, error);
   return result;
 }
 

@@ -196,14 +196,14 @@ void abbe_caustics_free(abbe_caustics *c) {
 }
 
 /* What was traced, and how much of the light's work is done by then, 0 to 1. */
-static abbe_result deposit(abbe_caustics *c, size_t light, const abbe_hit_batch *b, double done,
-                           abbe_error *error) {
+static abbe_result deposit(abbe_caustics *c, size_t light, const abbe_hit_batch *b, bool measures,
+                           double done, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
-  abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTONS);
-  abbe_result result = abbe_deposit_pass_run(&c->deposit, light, b, !c->measured[light], error);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_PHOTONS);
+  abbe_result result = abbe_deposit_pass_run(&c->deposit, light, b, measures, error);
   const double share = ((double)light + done) / (double)plan_of(c)->light_view_count;
   if (result == ABBE_OK) result = abbe_gpu_tell(gpu, 0.5 * share, error);
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   return result;
 }
 
@@ -214,7 +214,8 @@ static abbe_result trace_all(abbe_caustics *c, size_t light, abbe_error *error) 
   abbe_hit_batch b = {0};
   for (size_t done = 0; result == ABBE_OK && next_batch(c, &b); done = b.first + b.count) {
     abbe_trace_pass_batch(&c->trace, light, b.first, b.count, done);
-    result = deposit(c, light, &b, (double)(b.first + b.count) / (double)n, error);
+    result =
+        deposit(c, light, &b, !c->measured[light], (double)(b.first + b.count) / (double)n, error);
   }
   return result;
 }
@@ -222,44 +223,42 @@ static abbe_result trace_all(abbe_caustics *c, size_t light, abbe_error *error) 
 /* A coarse set of wavelengths, and all those of the intervals that ask for them. The coarse set is
  * deposited last, when it is known which of its intervals are refined. */
 static abbe_result trace_refined(abbe_caustics *c, size_t light, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  abbe_refine_pass_coarse(&c->refine, light);
-  if (!c->measured[light])
-    result = abbe_refine_pass_make_pairs(&c->refine, abbe_refine_pass_count(&c->refine, light),
-                                         error);
-  for (size_t chunk = 0; result == ABBE_OK && chunk < c->refine.chunks; chunk++) {
-    const abbe_hit_batch b = {
-        .set = ABBE_TRACE_REFINED, .pair_chunk = chunk, .count = c->refine.fine_nodes};
+  const bool measures = !c->measured[light];
+  abbe_result result = abbe_refine_pass_list(&c->refine, light, measures, error);
+  const size_t chunks = abbe_refine_pass_chunks(&c->refine, light);
+  for (size_t chunk = 0; result == ABBE_OK && chunk < chunks; chunk++) {
+    const abbe_hit_batch b = {.set = ABBE_TRACE_REFINED, .count = c->refine.fine_nodes};
     abbe_refine_pass_run(&c->refine, light, chunk);
-    result = deposit(c, light, &b, (double)(chunk + 1) / (double)(c->refine.chunks + 1), error);
+    result = deposit(c, light, &b, measures || chunks > 1,
+                     (double)(chunk + 1) / (double)(chunks + 1), error);
   }
   const abbe_hit_batch b = {.set = ABBE_TRACE_COARSE,
                             .count = c->spectra.nodes,
                             .interval_first = 1,
                             .interval_end = c->spectra.nodes};
-  return result == ABBE_OK ? deposit(c, light, &b, 1, error) : result;
+  return result == ABBE_OK ? deposit(c, light, &b, measures, 1, error) : result;
 }
 
 static abbe_result trace_and_deposit(abbe_caustics *c, size_t light, abbe_error *error) {
-  abbe_gpu_begin_pass(c->views->scene->gpu);
+  abbe_gpu_start_lap(c->views->scene->gpu);
   return abbe_photon_spectra_refines(&c->spectra) ? trace_refined(c, light, error)
                                                   : trace_all(c, light, error);
 }
 
 static abbe_result run_light(abbe_caustics *c, size_t light, abbe_error *error) {
   abbe_gpu *gpu = c->views->scene->gpu;
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   abbe_result result = abbe_photon_start_run(&c->start, light, error);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_PHOTON_PLACEMENT);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_PHOTON_PLACEMENT);
   abbe_spectral_map_clear(c->map);
   abbe_photon_ledger_clear(&c->ledger);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   if (result == ABBE_OK) result = trace_and_deposit(c, light, error);
   if (result != ABBE_OK) return result;
   c->measured[light] = true;
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   abbe_spectral_map_resolve(c->map, light);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   return ABBE_OK;
 }
 

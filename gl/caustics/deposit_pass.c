@@ -21,7 +21,8 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
                                    const abbe_shader_variant *scene, abbe_deposit_pass *out,
                                    abbe_error *error) {
   abbe_gpu *gpu = trace->spectra->scene->gpu;
-  *out = (abbe_deposit_pass){.trace = trace, .refine = refine, .map = map, .chunks = 1};
+  *out = (abbe_deposit_pass){
+      .trace = trace, .refine = refine, .map = map, .chunks = 1, .most_splats = MAX_SPLATS};
   abbe_result result =
       abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
   if (result == ABBE_OK)
@@ -102,6 +103,12 @@ static void list_splats(abbe_deposit_pass *pass, size_t light, const abbe_hit_ba
   abbe_gpu_dispatch_list(gpu, program, paths, 0, items * scene->plan->hit_slots, 1);
 }
 
+/* More chunks, each a part of one that there was: what fitted a room before fits it still. They are
+ * drawn by a hash of the cell; a quarter more room covers their unevenness. */
+static void part_chunks(abbe_deposit_pass *pass, size_t splats) {
+  pass->chunks *= splats / (pass->most_splats * 4 / 5) + 1;
+}
+
 /* Lists a chunk; again where it has more splats than there is room for, with more room, or in
  * more chunks as long as it is the first one. */
 static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const abbe_hit_batch *batch,
@@ -113,10 +120,9 @@ static abbe_result list_measured(abbe_deposit_pass *pass, size_t light, const ab
     const size_t count = abbe_gpu_read_count(scene_of(pass)->gpu, pass->splats);
     if (count <= pass->splat_room || scene_of(pass)->gpu->stopped) return ABBE_OK;
     abbe_photon_ledger_restore(pass->trace->ledger); /* a batch is entered once */
-    if (chunk == 0 && count > MAX_SPLATS)
-      pass->chunks = abbe_refine_pass_chunks(count * pass->chunks, MAX_SPLATS);
+    if (chunk == 0 && count > pass->most_splats) part_chunks(pass, count);
     const size_t more = count + count / 4;
-    size_t room = chunk == 0 && more > MAX_SPLATS ? MAX_SPLATS : more;
+    size_t room = chunk == 0 && more > pass->most_splats ? pass->most_splats : more;
     if (room < pass->splat_room) room = pass->splat_room; /* others may need what there is */
     result = make_room(pass, room, error);
   }
@@ -143,10 +149,10 @@ abbe_result abbe_deposit_pass_run(abbe_deposit_pass *pass, size_t light,
       result = list_measured(pass, light, batch, chunk, error);
     else
       list_splats(pass, light, batch, chunk);
-    abbe_gpu_end_pass(gpu,
+    abbe_gpu_book_lap(gpu,
                       scene_of(pass)->plan->fills ? ABBE_PASS_GAP_FILL : ABBE_PASS_SPECTRAL_MAP);
     if (result == ABBE_OK) add_splats(pass, light);
-    abbe_gpu_end_pass(gpu, ABBE_PASS_SPECTRAL_MAP);
+    abbe_gpu_book_lap(gpu, ABBE_PASS_SPECTRAL_MAP);
   }
   return result;
 }

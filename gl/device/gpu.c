@@ -24,6 +24,18 @@ void abbe_gpu_free(abbe_gpu *gpu) {
   *gpu = (abbe_gpu){0};
 }
 
+static abbe_result allocate_buffer(const abbe_gl *gl, size_t size, const void *data, GLuint *out,
+                                   abbe_error *error) {
+  gl->GenBuffers(1, out);
+  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
+  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)size, data, GL_DYNAMIC_COPY);
+  const abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteBuffers(1, out);
+  *out = 0;
+  return result;
+}
+
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error) {
   const abbe_gl *gl = gpu->gl;
@@ -36,11 +48,11 @@ abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, G
       gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
     return ABBE_OK;
   }
-  gl->GenBuffers(1, out);
-  gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);
-  gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)room, size > 0 ? data : NULL,
-                 GL_DYNAMIC_COPY);
-  abbe_result result = abbe_gl_check(gl, "the allocation of a buffer", error);
+  abbe_result result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, NULL);
+  if (result != ABBE_OK) {
+    abbe_gpu_make_way(gpu);
+    result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, error);
+  }
   if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, &key, *out, error);
   if (result == ABBE_OK) return ABBE_OK;
   gl->DeleteBuffers(1, out);
@@ -61,23 +73,36 @@ static size_t texel_bytes(GLenum format) {
   }
 }
 
-/* Takes up or makes the storage; it is bound then. */
-static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_key *key,
-                                GLuint *out, abbe_error *error) {
-  const abbe_gl *gl = gpu->gl;
+static abbe_result allocate_storage(const abbe_gl *gl, GLenum target, const abbe_stored_key *key,
+                                    GLuint *out, abbe_error *error) {
   const GLsizei levels = (GLsizei)key->levels, w = (GLsizei)key->width, h = (GLsizei)key->height;
-  *out = abbe_gpu_store_take(&gpu->store, key);
-  if (*out != 0) {
-    gl->BindTexture(target, *out);
-    return ABBE_OK;
-  }
   gl->GenTextures(1, out);
   gl->BindTexture(target, *out);
   if (key->layers > 0)
     gl->TexStorage3D(target, levels, key->format, w, h, (GLsizei)key->layers);
   else
     gl->TexStorage2D(target, levels, key->format, w, h);
-  abbe_result result = abbe_gl_check(gl, "the allocation of a texture", error);
+  const abbe_result result = abbe_gl_check(gl, "the allocation of a texture", error);
+  if (result == ABBE_OK) return ABBE_OK;
+  gl->DeleteTextures(1, out);
+  *out = 0;
+  return result;
+}
+
+/* Takes up or makes the storage; it is bound then. */
+static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_key *key,
+                                GLuint *out, abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  *out = abbe_gpu_store_take(&gpu->store, key);
+  if (*out != 0) {
+    gl->BindTexture(target, *out);
+    return ABBE_OK;
+  }
+  abbe_result result = allocate_storage(gl, target, key, out, NULL);
+  if (result != ABBE_OK) {
+    abbe_gpu_make_way(gpu);
+    result = allocate_storage(gl, target, key, out, error);
+  }
   if (result == ABBE_OK) result = abbe_gpu_store_add(&gpu->store, key, *out, error);
   if (result == ABBE_OK) return ABBE_OK;
   gl->DeleteTextures(1, out);
@@ -142,6 +167,15 @@ void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture) {
 
 void abbe_gpu_trim(abbe_gpu *gpu) {
   abbe_gpu_store_trim(&gpu->store, gpu->gl);
+}
+
+/* Texels hold their buffers. (Elsewhere they stay: Mesa's llvmpipe compiles what finds other texels
+ * at a unit, or none, once more.) */
+void abbe_gpu_make_way(abbe_gpu *gpu) {
+  gpu->gl->Finish();
+  gpu->gl->DeleteTextures(ABBE_GPU_TEXEL_UNITS, gpu->texels);
+  memset(gpu->texels, 0, sizeof gpu->texels);
+  abbe_gpu_trim(gpu);
 }
 
 size_t abbe_gpu_program_count(const abbe_gpu *gpu) {
@@ -295,9 +329,22 @@ void abbe_gpu_clear_buffer(abbe_gpu *gpu, GLuint buffer) {
 }
 
 void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list) {
-  static const GLuint zero[ABBE_GPU_LIST_HEADER / 4] = {0};
+  abbe_gpu_set_list(gpu, list, 0);
+}
+
+void abbe_gpu_set_list(abbe_gpu *gpu, GLuint list, size_t count) {
+  const GLuint header[ABBE_GPU_LIST_HEADER / 4] = {(GLuint)count};
   gpu->gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, list);
-  gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof zero, zero);
+  gpu->gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, sizeof header, header);
+}
+
+void abbe_gpu_copy(abbe_gpu *gpu, GLuint from, size_t from_byte, GLuint to, size_t to_byte,
+                   size_t bytes) {
+  const abbe_gl *gl = gpu->gl;
+  gl->BindBuffer(GL_COPY_READ_BUFFER, from);
+  gl->BindBuffer(GL_COPY_WRITE_BUFFER, to);
+  gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, (GLintptr)from_byte,
+                        (GLintptr)to_byte, (GLsizeiptr)bytes);
 }
 
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list) {
@@ -415,16 +462,16 @@ void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list) {
   dispatch_parts(gpu, program, (size_t)groups[0] * groups[1], 0);
 }
 
-void abbe_gpu_begin_pass(abbe_gpu *gpu) {
+void abbe_gpu_start_lap(abbe_gpu *gpu) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
-  gpu->pass_start_ms = 1e3 * abbe_clock_seconds();
+  gpu->lap_start_ms = 1e3 * abbe_clock_seconds();
 }
 
-void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass) {
+void abbe_gpu_book_lap(abbe_gpu *gpu, abbe_pass pass) {
   if (gpu->statistics == NULL) return;
   gpu->gl->Finish();
   const double now_ms = 1e3 * abbe_clock_seconds();
-  abbe_statistics_add_ms(gpu->statistics, pass, now_ms - gpu->pass_start_ms);
-  gpu->pass_start_ms = now_ms;
+  abbe_statistics_add_ms(gpu->statistics, pass, now_ms - gpu->lap_start_ms);
+  gpu->lap_start_ms = now_ms;
 }

@@ -32,7 +32,7 @@ typedef struct abbe_gpu {
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
   abbe_gpu_store store;
   abbe_statistics *statistics;         /* of the frame that runs, or NULL: no pass is waited for */
-  double pass_start_ms;
+  double lap_start_ms;
   abbe_render_progress progress; /* of whoever watches; NULL: nobody does */
   void *progress_user;
   double done;  /* what they were told last */
@@ -45,7 +45,8 @@ abbe_result abbe_gpu_make(const abbe_gl *gl, abbe_gpu *out, abbe_error *error);
 void abbe_gpu_free(abbe_gpu *gpu);
 
 /* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
- * abbe_gpu_drop_*, and taken up by what is made alike; so of textures. ABBE_GL, ABBE_NO_MEMORY. */
+ * abbe_gpu_drop_*, and taken up by what is made alike; where there is no room, what is not in use
+ * gives way. So of textures. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error);
 /* A texture of one level, an array where layers > 0. ABBE_GL. */
@@ -59,6 +60,9 @@ void abbe_gpu_drop_buffers(abbe_gpu *gpu, size_t count, GLuint *buffer);
 void abbe_gpu_drop_textures(abbe_gpu *gpu, size_t count, GLuint *texture);
 /* Deletes what was dropped and not taken up since. */
 void abbe_gpu_trim(abbe_gpu *gpu);
+/* The same at once, where something has found no room: the device has let go of it then. Texels are
+ * bound anew. */
+void abbe_gpu_make_way(abbe_gpu *gpu);
 /* Of buffers and textures in use. */
 size_t abbe_gpu_bytes(const abbe_gpu *gpu);
 
@@ -101,6 +105,11 @@ void abbe_gpu_bind_storage(abbe_gpu *gpu, GLuint binding, GLuint buffer);
 void abbe_gpu_clear_buffer(abbe_gpu *gpu, GLuint buffer);
 /* Empties a list. */
 void abbe_gpu_clear_list(abbe_gpu *gpu, GLuint list);
+/* A list has so many elements now, and no groups. */
+void abbe_gpu_set_list(abbe_gpu *gpu, GLuint list, size_t count);
+/* So many bytes from one buffer to another. */
+void abbe_gpu_copy(abbe_gpu *gpu, GLuint from, size_t from_byte, GLuint to, size_t to_byte,
+                   size_t bytes);
 /* Waits for the device: elements of a list, also beyond its room. */
 size_t abbe_gpu_read_count(abbe_gpu *gpu, GLuint list);
 
@@ -123,9 +132,9 @@ void abbe_gpu_dispatch_list(abbe_gpu *gpu, GLuint program, GLuint list, size_t f
 /* The groups that stand in the list's words 1 to 3, as another program has written them. */
 void abbe_gpu_dispatch_counted(abbe_gpu *gpu, GLuint program, GLuint list);
 
-void abbe_gpu_begin_pass(abbe_gpu *gpu);
-/* What was done since the pass began, or since the last one's end, is of this pass; several ends of
- * one pass add up. */
-void abbe_gpu_end_pass(abbe_gpu *gpu, abbe_pass pass);
+/* The clock of passes, in a frame with statistics: a lap starts; what was done since is booked to a
+ * pass, and the next lap starts. Several laps of one pass add up. */
+void abbe_gpu_start_lap(abbe_gpu *gpu);
+void abbe_gpu_book_lap(abbe_gpu *gpu, abbe_pass pass);
 
 #endif

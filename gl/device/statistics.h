@@ -38,7 +38,7 @@ typedef struct abbe_pass_time {
 
 typedef struct abbe_statistics {
   double frame_ms;   /* all passes, finished */
-  double floor_ms;   /* the baseline: drawing the surfaces alone, where it was measured; else 0 */
+  double baseline_ms; /* of drawing the surfaces alone, where it was measured; else 0 */
   size_t pass_count; /* of those that ran, as they first ended */
   abbe_pass_time pass[ABBE_PASS_COUNT];
   bool kept[ABBE_PASS_COUNT]; /* of those that the plan runs: what they drew before still holds */

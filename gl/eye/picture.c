@@ -35,7 +35,7 @@ void abbe_picture_run(abbe_picture *picture) {
   const abbe_render_desc *desc = desc_of(picture);
   const GLuint program = picture->program;
   if (program == 0) return;
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   gl->UseProgram(program);
   abbe_gpu_bind_array(gpu, program, "receivers", 0, picture->receivers->colour);
   if (desc->supersample > 1) {
@@ -48,7 +48,7 @@ void abbe_picture_run(abbe_picture *picture) {
   gl->Uniform2i(gl->GetUniformLocation(program, "size"), (GLint)desc->width, (GLint)desc->height);
   abbe_gpu_dispatch_2d(gpu, program, desc->width, desc->height);
   gl->MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_PICTURE);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_PICTURE);
 }
 
 GLuint abbe_picture_texture(abbe_picture *picture) {

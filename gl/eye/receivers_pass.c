@@ -128,7 +128,7 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   GLuint target[3] = {pass->colour, pass->direct, pass->caustic};
   static const int flat[3] = {0, -1, -1};
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
-  abbe_gpu_begin_pass(scene->gpu);
+  abbe_gpu_start_lap(scene->gpu);
   abbe_result result = abbe_gpu_set_target(
       scene->gpu, target, flat, scene->plan->desc.layers ? 3 : 1, pass->depth, w, h, error);
   if (result != ABBE_OK) return result;
@@ -138,7 +138,7 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
   draw_receivers(pass);
-  abbe_gpu_end_pass(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
+  abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
 

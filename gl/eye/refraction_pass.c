@@ -103,7 +103,7 @@ void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
 static abbe_result draw_faces(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_result result = ABBE_OK;
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   abbe_refractor_faces_use(pass->faces, &pass->lighting->camera->view);
   for (int back = 0; back <= (scene_of(pass)->plan->draw_back ? 1 : 0) && result == ABBE_OK;
        back++) {
@@ -116,7 +116,7 @@ static abbe_result draw_faces(abbe_refraction_pass *pass, abbe_error *error) {
                                       .height = pass->lighting->camera->samples[1],
                                       .back = back != 0};
     result = abbe_refractor_faces_draw(pass->faces, &target, false, error);
-    abbe_gpu_end_pass(gpu, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);
+    abbe_gpu_book_lap(gpu, back ? ABBE_PASS_EYE_BACK : ABBE_PASS_EYE_FRONT);
   }
   return result;
 }
@@ -197,7 +197,7 @@ abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *err
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const bool seen = scene_of(pass)->plan->camera_sees_refractor;
   abbe_result result = seen ? draw_faces(pass, error) : ABBE_OK;
-  abbe_gpu_begin_pass(gpu);
+  abbe_gpu_start_lap(gpu);
   if (result == ABBE_OK && resolves(pass)) result = clear_colour(pass, error);
   if (result != ABBE_OK || !seen) return result;
   list_pixels(pass);
@@ -206,6 +206,6 @@ abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *err
   gpu->gl->BindImageTexture(0, resolves(pass) ? pass->colour : pass->receivers->colour, 0, GL_FALSE,
                             0, GL_READ_WRITE, GL_RGBA32F);
   result = refract_pixels(pass, error);
-  abbe_gpu_end_pass(gpu, ABBE_PASS_EYE_REFRACTION);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }

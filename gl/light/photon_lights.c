@@ -53,7 +53,7 @@ static void fit_objects(const abbe_photon_lights *views, const size_t *object, s
 }
 
 bool abbe_photon_lights_map_is_given(const abbe_photon_lights *views, size_t light) {
-  return views->scene->plan->desc.map_layout != NULL &&
+  return views->scene->map_layout != NULL &&
          views->scene->plan->desc.map_layout_light == views->scene->plan->light_view[light].light;
 }
 
@@ -132,7 +132,7 @@ static void fit_views(abbe_photon_lights *views) {
     }
     abbe_photon_lights_whole_map(views, i, &state->map);
     if (abbe_photon_lights_map_is_given(views, i))
-      take_layout(views, views->scene->plan->desc.map_layout, &state->map);
+      take_layout(views, views->scene->map_layout, &state->map);
   }
 }
 

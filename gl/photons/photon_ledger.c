@@ -39,19 +39,12 @@ void abbe_photon_ledger_set(const abbe_photon_ledger *ledger, GLuint program, si
   abbe_gpu_set_float(ledger->views->scene->gpu, program, "ledger_unit", unit_of(ledger, light));
 }
 
-static void copy(const abbe_photon_ledger *ledger, GLuint from, GLuint to) {
-  const abbe_gl *gl = ledger->views->scene->gpu->gl;
-  gl->BindBuffer(GL_COPY_READ_BUFFER, from);
-  gl->BindBuffer(GL_COPY_WRITE_BUFFER, to);
-  gl->CopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, (GLsizeiptr)(WORDS * 4));
-}
-
 void abbe_photon_ledger_save(const abbe_photon_ledger *ledger) {
-  copy(ledger, ledger->sums, ledger->saved);
+  abbe_gpu_copy(ledger->views->scene->gpu, ledger->sums, 0, ledger->saved, 0, WORDS * 4);
 }
 
 void abbe_photon_ledger_restore(const abbe_photon_ledger *ledger) {
-  copy(ledger, ledger->saved, ledger->sums);
+  abbe_gpu_copy(ledger->views->scene->gpu, ledger->saved, 0, ledger->sums, 0, WORDS * 4);
 }
 
 /* What is taken back may come to a little more than what was entered, by what is known only between

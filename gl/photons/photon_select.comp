@@ -24,8 +24,7 @@ layout(std430, binding = BINDING_SIGNATURES) readonly buffer Signatures { uint s
 #include "pass_light.glsl"
 uniform ivec2 grid;
 uniform int map_size;
-uniform uint chunks, chunk;  // only photons of this chunk
-uniform uint most_pairs;     // that the list has room for
+uniform uint most_pairs;  // that the list has room for
 
 uniform float interval_weight[PAIR_INTERVALS];  // of the light, by the intervals' mean
 
@@ -169,8 +168,6 @@ void main() {
   uint photon_path = path_list[listed];
   uint photon = photon_path / counts.slots, order = photon_path % counts.slots, first = photon_path * counts.hit_stride;
   Photon from_cell = photon_at[photon];
-  // Other bits than those that choose the chunks of splats, or one of these would get all.
-  if ((from_cell.cell * 2654435761u >> 16) % chunks != chunk) return;
   ivec2 cell = ivec2(from_cell.cell & 0xffffu, from_cell.cell >> 16);
   float size = resolved(cell, order, first, uint(reference_of(first)));
   uint wanted = wrong_intervals(first, size, from_cell.flux);

@@ -2,7 +2,7 @@
 
 #include "gl/device/bindings.h"
 
-enum { MAX_FINE_BYTES = 128 << 20, LEAST_PAIRS = 256 };
+enum { MAX_FINE_BYTES = 128 << 20, LEAST_PAIRS = 256, PAIR_BYTES = 4 };
 
 static size_t widest_interval(const abbe_photon_spectra *spectra) {
   const size_t n = spectra->scene->plan->desc.wavelengths, nodes = spectra->nodes;
@@ -19,10 +19,18 @@ abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out,
                                   abbe_error *error) {
   ABBE_REQUIRE(trace && out, error);
   out->trace = trace;
-  out->chunks = 1;
-  if (abbe_photon_spectra_refines(trace->spectra))
-    out->fine_nodes = widest_interval(trace->spectra) + 1;
+  if (!abbe_photon_spectra_refines(trace->spectra)) return ABBE_OK;
+  out->fine_nodes = widest_interval(trace->spectra) + 1;
+  const size_t hit_bytes = ABBE_HIT_BYTES + abbe_photon_signature_bytes(trace->spectra);
+  const size_t hits = trace->spectra->scene->plan->hit_slots * out->fine_nodes;
+  out->most_pairs = MAX_FINE_BYTES / hit_bytes / hits;
+  if (out->most_pairs < LEAST_PAIRS) out->most_pairs = LEAST_PAIRS;
   return ABBE_OK;
+}
+
+static abbe_result make_list(abbe_gpu *gpu, size_t pairs, GLuint *list, abbe_error *error) {
+  abbe_gpu_drop_buffers(gpu, 1, list);
+  return abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + pairs * PAIR_BYTES, NULL, list, error);
 }
 
 abbe_result abbe_refine_pass_make_room(abbe_refine_pass *pass, abbe_error *error) {
@@ -31,40 +39,36 @@ abbe_result abbe_refine_pass_make_room(abbe_refine_pass *pass, abbe_error *error
   abbe_result result =
       abbe_gpu_make_buffer(gpu, pass->trace->most_photons * 4, NULL, &pass->wants, error);
   if (result == ABBE_OK) abbe_gpu_clear_buffer(gpu, pass->wants);
-  return result == ABBE_OK ? abbe_refine_pass_make_pairs(pass, 1, error) : result;
+  return result;
 }
 
-/* Chunks are drawn by a hash of the cell; a quarter more room covers their unevenness. */
-size_t abbe_refine_pass_chunks(size_t count, size_t room) {
-  return count > room ? count / (room * 4 / 5) + 1 : 1;
+/* For all that a light's photons ask for. */
+static abbe_result make_asked(abbe_refine_pass *pass, size_t pairs, abbe_error *error) {
+  if (pass->asked != 0 && pairs <= pass->asked_room) return ABBE_OK;
+  pass->asked_room = pairs;
+  return make_list(pass->trace->spectra->scene->gpu, pairs, &pass->asked, error);
 }
 
-abbe_result abbe_refine_pass_make_pairs(abbe_refine_pass *pass, size_t pairs, abbe_error *error) {
+/* For a chunk of so many. */
+static abbe_result make_pairs(abbe_refine_pass *pass, size_t pairs, abbe_error *error) {
   const abbe_photon_spectra *spectra = pass->trace->spectra;
-  abbe_gpu *gpu = spectra->scene->gpu;
-  const size_t slots = spectra->scene->plan->hit_slots;
-  const size_t signature_bytes = abbe_photon_signature_bytes(spectra);
-  if (!abbe_photon_spectra_refines(spectra)) return ABBE_OK;
-  size_t most = MAX_FINE_BYTES / (ABBE_HIT_BYTES + signature_bytes) / (slots * pass->fine_nodes);
-  if (most < LEAST_PAIRS) most = LEAST_PAIRS;
-  const size_t room = pairs < most ? pairs : most, chunks = abbe_refine_pass_chunks(pairs, room);
-  if (chunks > pass->chunks) pass->chunks = chunks;
-  if (pass->pair_room >= room) return ABBE_OK;
-  abbe_gpu_drop_buffers(gpu, 1, &pass->pairs);
-  abbe_hits_free(gpu, &pass->hits);
+  const size_t room = pairs < pass->most_pairs ? pairs : pass->most_pairs;
+  if (room <= pass->pair_room) return ABBE_OK;
+  abbe_hits_free(spectra->scene->gpu, &pass->hits);
   pass->pair_room = room;
-  abbe_result result =
-      abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + room * 4, NULL, &pass->pairs, error);
+  abbe_result result = make_list(spectra->scene->gpu, room, &pass->pairs, error);
   if (result == ABBE_OK)
-    result = abbe_hits_make(gpu, room, slots, pass->fine_nodes, signature_bytes, &pass->hits, error);
+    result =
+        abbe_hits_make(spectra->scene->gpu, room, spectra->scene->plan->hit_slots, pass->fine_nodes,
+                       abbe_photon_signature_bytes(spectra), &pass->hits, error);
   return result;
 }
 
 void abbe_refine_pass_free(abbe_refine_pass *pass) {
   if (pass->trace == NULL || pass->trace->spectra == NULL) return;
   abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
-  GLuint buffers[] = {pass->wants, pass->pairs};
-  abbe_gpu_drop_buffers(gpu, 2, buffers);
+  GLuint buffers[] = {pass->wants, pass->asked, pass->pairs};
+  abbe_gpu_drop_buffers(gpu, sizeof buffers / sizeof *buffers, buffers);
   abbe_hits_free(gpu, &pass->hits);
 }
 
@@ -76,12 +80,8 @@ abbe_result abbe_refine_pass_compile(abbe_refine_pass *pass, const abbe_shader_v
                                      &pass->select, error);
 }
 
-void abbe_refine_pass_coarse(abbe_refine_pass *pass, size_t light) {
-  abbe_gpu_clear_buffer(pass->trace->spectra->scene->gpu, pass->wants);
-  abbe_trace_pass_coarse(pass->trace, light);
-}
-
-static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk, size_t chunks) {
+/* All intervals of the light's coarse set that ask. */
+static void select_pairs(abbe_refine_pass *pass, size_t light) {
   const abbe_trace_pass *trace = pass->trace;
   const abbe_gpu_scene *scene = trace->spectra->scene;
   abbe_gpu *gpu = scene->gpu;
@@ -91,37 +91,64 @@ static void select_pairs(abbe_refine_pass *pass, size_t light, size_t chunk, siz
   abbe_photon_lights_bind(trace->start->views);
   abbe_receiver_atlas_bind(trace->atlas);
   abbe_photon_start_bind(trace->start);
-  abbe_gpu_clear_list(gpu, pass->pairs);
+  abbe_gpu_clear_buffer(gpu, pass->wants);
+  abbe_gpu_clear_list(gpu, pass->asked);
   gpu->gl->UseProgram(program);
   abbe_gpu_set_int(gpu, program, "light", (int)light);
   abbe_photon_lights_set_grid(trace->start->views, program, light);
   abbe_gpu_set_int(gpu, program, "map_size", (int)scene->plan->desc.map_size);
   gpu->gl->Uniform1fv(gpu->gl->GetUniformLocation(program, "interval_weight"), (GLsizei)intervals,
                       scene->tables.interval_weight + light * intervals);
-  abbe_gpu_set_uint(gpu, program, "chunks", chunks);
-  abbe_gpu_set_uint(gpu, program, "chunk", chunk);
-  abbe_gpu_set_uint(gpu, program, "most_pairs", pass->pair_room);
+  abbe_gpu_set_uint(gpu, program, "most_pairs", pass->asked_room);
   abbe_gpu_bind_storage(gpu, BINDING_HITS, trace->hits.hits);
   abbe_gpu_bind_storage(gpu, BINDING_SIGNATURES, trace->hits.signatures);
   abbe_gpu_bind_storage(gpu, BINDING_WANTS, pass->wants);
-  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->pairs);
+  abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->asked);
   abbe_gpu_bind_storage(gpu, BINDING_PATHS, trace->hits.paths);
   abbe_gpu_dispatch_list(gpu, program, trace->hits.paths, 0,
                          trace->start->views->light[light].photon_count * scene->plan->hit_slots,
                          1);
 }
 
-size_t abbe_refine_pass_count(abbe_refine_pass *pass, size_t light) {
+abbe_result abbe_refine_pass_list(abbe_refine_pass *pass, size_t light, bool measures,
+                                  abbe_error *error) {
   abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
-  select_pairs(pass, light, 0, 1);
-  abbe_gpu_clear_buffer(gpu, pass->wants);
-  return abbe_gpu_read_count(gpu, pass->pairs);
+  abbe_trace_pass_coarse(pass->trace, light);
+  abbe_result result = make_asked(pass, LEAST_PAIRS, error);
+  if (result != ABBE_OK) return result;
+  select_pairs(pass, light);
+  if (!measures && gpu->statistics == NULL && abbe_refine_pass_chunks(pass, light) <= 1)
+    return ABBE_OK;
+  const size_t count = abbe_gpu_read_count(gpu, pass->asked);
+  if (gpu->stopped) return ABBE_OK; /* and not all were asked */
+  if (count > pass->asked_room) {
+    result = make_asked(pass, count, error);
+    if (result == ABBE_OK) select_pairs(pass, light);
+  }
+  if (result == ABBE_OK) result = make_pairs(pass, count, error);
+  pass->count[light] = result == ABBE_OK ? count : 0;
+  return result;
+}
+
+size_t abbe_refine_pass_chunks(const abbe_refine_pass *pass, size_t light) {
+  const size_t count = pass->count[light];
+  return count > 0 ? (count + pass->pair_room - 1) / pass->pair_room : 0;
+}
+
+/* A chunk is a stretch of the list. */
+static void take_chunk(abbe_refine_pass *pass, size_t light, size_t chunk) {
+  abbe_gpu *gpu = pass->trace->spectra->scene->gpu;
+  const size_t first = chunk * pass->pair_room, left = pass->count[light] - first;
+  const size_t count = left < pass->pair_room ? left : pass->pair_room;
+  abbe_gpu_set_list(gpu, pass->pairs, count);
+  abbe_gpu_copy(gpu, pass->asked, ABBE_GPU_LIST_HEADER + first * PAIR_BYTES, pass->pairs,
+                ABBE_GPU_LIST_HEADER, count * PAIR_BYTES);
 }
 
 void abbe_refine_pass_run(abbe_refine_pass *pass, size_t light, size_t chunk) {
   abbe_trace_pass *trace = pass->trace;
   abbe_gpu *gpu = trace->spectra->scene->gpu;
-  select_pairs(pass, light, chunk, pass->chunks);
+  take_chunk(pass, light, chunk);
   abbe_trace_pass_begin(trace, light, ABBE_TRACE_REFINED, &pass->hits, pass->fine_nodes);
   abbe_gpu_set_uint(gpu, trace->program, "most_pairs", pass->pair_room);
   abbe_gpu_bind_storage(gpu, BINDING_PAIRS, pass->pairs);

@@ -42,8 +42,16 @@ static abbe_result upload_mesh(abbe_gpu_scene *scene, const abbe_mesh *mesh, abb
   gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_size, mesh->face, GL_STATIC_DRAW);
   point_to_vertices(scene);
   out->index_count = (GLsizei)(3 * mesh->face_count);
-  scene->mesh_bytes += size + index_size;
-  return abbe_gl_check(gl, "the upload of a mesh", error);
+  const abbe_result result = abbe_gl_check(gl, "the upload of a mesh", error);
+  if (result == ABBE_OK) scene->mesh_bytes += size + index_size;
+  return result;
+}
+
+static void free_mesh(const abbe_gl *gl, abbe_gpu_mesh *mesh) {
+  gl->DeleteVertexArrays(1, &mesh->array);
+  gl->DeleteBuffers(1, &mesh->vertices);
+  gl->DeleteBuffers(1, &mesh->indices);
+  *mesh = (abbe_gpu_mesh){0};
 }
 
 abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error) {
@@ -51,7 +59,13 @@ abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error) {
   if (scene->mesh == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for meshes");
   scene->mesh_count = scene->local->object_count;
   for (size_t i = 0; i < scene->local->object_count; i++) {
-    abbe_result result = upload_mesh(scene, &scene->local->object[i].mesh, &scene->mesh[i], error);
+    const abbe_mesh *mesh = &scene->local->object[i].mesh;
+    abbe_result result = upload_mesh(scene, mesh, &scene->mesh[i], NULL);
+    if (result != ABBE_OK) {
+      free_mesh(scene->gpu->gl, &scene->mesh[i]);
+      abbe_gpu_make_way(scene->gpu);
+      result = upload_mesh(scene, mesh, &scene->mesh[i], error);
+    }
     if (result != ABBE_OK) return result;
   }
   return ABBE_OK;
@@ -64,13 +78,7 @@ void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object) {
 }
 
 void abbe_gpu_meshes_free(abbe_gpu_scene *scene) {
-  const abbe_gl *gl = scene->gpu->gl;
-  for (size_t i = 0; i < scene->mesh_count; i++) {
-    abbe_gpu_mesh *mesh = &scene->mesh[i];
-    gl->DeleteVertexArrays(1, &mesh->array);
-    gl->DeleteBuffers(1, &mesh->vertices);
-    gl->DeleteBuffers(1, &mesh->indices);
-  }
+  for (size_t i = 0; i < scene->mesh_count; i++) free_mesh(scene->gpu->gl, &scene->mesh[i]);
   free(scene->mesh);
   scene->mesh = NULL;
   scene->mesh_count = scene->mesh_bytes = 0;

@@ -196,10 +196,11 @@ static void store_matrix(const double matrix[9], float out[9]) {
 }
 
 void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                          abbe_gpu_scene *out) {
+                          const abbe_map_layout *map_layout, abbe_gpu_scene *out) {
   out->gpu = gpu;
   out->local = local;
   out->plan = plan;
+  out->map_layout = map_layout;
   out->band_levels = 1;
   out->band_count = plan->desc.wavelengths;
   for (size_t n = plan->desc.wavelengths; n > 1; out->band_levels++)

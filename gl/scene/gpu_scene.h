@@ -9,6 +9,7 @@
 #include "gl/scene/receiver_charts.h"
 #include "gl/scene/spectra/spectral_tables.h"
 #include "scenes/scene.h"
+#include "scenes/view/map_layout.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,6 +32,7 @@ typedef struct abbe_gpu_scene {
   abbe_gpu *gpu;
   const abbe_scene *local; /* whose coordinates all below are in */
   const abbe_plan *plan;
+  const abbe_map_layout *map_layout; /* the plan's, in these coordinates; NULL: none is given */
   abbe_receiver_charts charts; /* where the plan has tiles */
 
   double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
@@ -64,7 +66,7 @@ enum {
 
 /* Of this scene and plan from now on: measures them, makes nothing. */
 void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                          abbe_gpu_scene *out);
+                          const abbe_map_layout *map_layout, abbe_gpu_scene *out);
 /* Parts that are not there, or that were freed. Errors as of abbe_renderer_make. */
 abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error);
 void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts);

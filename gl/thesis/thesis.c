@@ -221,7 +221,7 @@ static abbe_result light_passes(abbe_thesis *t, abbe_error *error) {
   static const GLfloat far = 1;
   double matrix[16];
   gl->Enable(GL_DEPTH_TEST);
-  abbe_gpu_begin_pass(t->scene->gpu);
+  abbe_gpu_start_lap(t->scene->gpu);
   abbe_result result =
       abbe_gpu_set_target(t->scene->gpu, NULL, NULL, 0, t->light_receiver_depth, map, map, error);
   if (result != ABBE_OK) return result;
@@ -231,10 +231,10 @@ static abbe_result light_passes(abbe_thesis *t, abbe_error *error) {
   set_matrix(t, t->depth_only, "view_projection", matrix);
   for (size_t i = 0; i < t->scene->plan->receiver_count; i++)
     abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_RECEIVER_DEPTH);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_RECEIVER_DEPTH);
   result = draw_layers(t, t->light_normals, t->light_depths, map, map, t->light_look, t->light_clip,
                        error);
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
   return result;
 }
 
@@ -244,9 +244,9 @@ static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
   static const int flat = -1;
   static const GLfloat nothing[4] = {0, 0, 0, 0};
   const size_t grid[2] = {t->scene->plan->desc.photons, t->scene->plan->desc.photons};
-  abbe_gpu_begin_pass(t->scene->gpu);
+  abbe_gpu_start_lap(t->scene->gpu);
   abbe_result result = abbe_photon_cells_run(&t->cells, grid, t->light_normals, 0, error);
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_PHOTON_PLACEMENT);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_PHOTON_PLACEMENT);
   if (result == ABBE_OK)
     result = abbe_gpu_set_target(t->scene->gpu, &t->map, &flat, 1, 0, map, map, error);
   if (result != ABBE_OK) return result;
@@ -274,7 +274,7 @@ static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
   gl->BindBuffer(GL_DRAW_INDIRECT_BUFFER, t->cells.list[ABBE_CELL_LEVELS - 1]);
   gl->DrawArraysIndirect(GL_POINTS, (const char *)NULL + 16);
   gl->Disable(GL_BLEND);
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_PHOTONS);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_PHOTONS);
   return ABBE_OK;
 }
 
@@ -292,11 +292,11 @@ static abbe_result draw_screen(abbe_thesis *t, GLuint target, size_t width, size
 
 static abbe_result fill_gaps(abbe_thesis *t, abbe_error *error) {
   size_t map = t->scene->plan->desc.map_size;
-  abbe_gpu_begin_pass(t->scene->gpu);
+  abbe_gpu_start_lap(t->scene->gpu);
   t->scene->gpu->gl->UseProgram(t->fill);
   abbe_gpu_bind_texture(t->scene->gpu, t->fill, "spectral_map", 0, t->map);
   abbe_result result = draw_screen(t, t->filled, map, map, error);
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_GAP_FILL);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_GAP_FILL);
   return result;
 }
 
@@ -335,7 +335,7 @@ static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
   static const int flat = -1;
   static const GLfloat far = 1;
   double matrix[16];
-  abbe_gpu_begin_pass(t->scene->gpu);
+  abbe_gpu_start_lap(t->scene->gpu);
   abbe_result result =
       abbe_gpu_set_target(t->scene->gpu, &t->eye_receivers, &flat, 1, t->eye_receiver_depth,
                           t->scene->plan->desc.width, t->scene->plan->desc.height, error);
@@ -368,7 +368,7 @@ static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
     set_surface(t, i, &layer);
     abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
   }
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_EYE_RECEIVERS);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_EYE_RECEIVERS);
   return ABBE_OK;
 }
 
@@ -377,10 +377,10 @@ static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
   size_t width = t->scene->plan->desc.width, height = t->scene->plan->desc.height;
   GLsizei n = (GLsizei)t->scene->plan->desc.wavelengths;
   gl->Enable(GL_DEPTH_TEST);
-  abbe_gpu_begin_pass(t->scene->gpu);
+  abbe_gpu_start_lap(t->scene->gpu);
   abbe_result result =
       draw_layers(t, t->eye_normals, t->eye_depths, width, height, t->eye_look, t->eye_clip, error);
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_EYE_FRONT_AND_BACK);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_EYE_FRONT_AND_BACK);
   if (result != ABBE_OK) return result;
   gl->UseProgram(t->refraction);
   set_common(t, t->refraction, &t->camera.view, t->eye_clip);
@@ -404,7 +404,7 @@ static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receivers", 3, t->eye_receivers);
   result = draw_screen(t, t->picture, width, height, error);
-  abbe_gpu_end_pass(t->scene->gpu, ABBE_PASS_EYE_REFRACTION);
+  abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }
 

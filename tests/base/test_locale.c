@@ -325,8 +325,8 @@ static void with_sweeps(FILE *to) {
   abbe_scaling_study growth = {
       .scene = "a.yaml",
       .count = 2,
-      .point = {{.x = 0.5, .frame_ms = 1.5, .light_ms = 0.25, .eye_ms = 1, .floor_ms = 0.125},
-                {.x = 1.5, .frame_ms = 2.5, .light_ms = 0.75, .eye_ms = 2, .floor_ms = 0.375}}};
+      .point = {{.x = 0.5, .frame_ms = 1.5, .light_ms = 0.25, .eye_ms = 1, .baseline_ms = 0.125},
+                {.x = 1.5, .frame_ms = 2.5, .light_ms = 0.75, .eye_ms = 2, .baseline_ms = 0.375}}};
   in_folder("growth.csv", path);
   ok(abbe_scaling_study_save(&growth, path, &error));
   note_file(to, "growth.csv");

@@ -109,7 +109,7 @@ static abbe_result add(work *w, abbe_scaling_study_axis axis, double x,
                                                     row.number[ABBE_SWEEP_FRAME_MS],
                                                     row.number[ABBE_SWEEP_LIGHT_MS],
                                                     row.number[ABBE_SWEEP_EYE_MS],
-                                                    row.number[ABBE_SWEEP_FLOOR_MS]};
+                                                    row.number[ABBE_SWEEP_BASELINE_MS]};
   return ABBE_OK;
 }
 
@@ -231,11 +231,11 @@ abbe_result abbe_scaling_study_save(const abbe_scaling_study *g, const char *pat
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
-  fprintf(writer.stream, "# scene: %s\n# base: %s\naxis,x,frame_ms,light_ms,eye_ms,floor_ms\n",
+  fprintf(writer.stream, "# scene: %s\n# base: %s\naxis,x,frame_ms,light_ms,eye_ms,baseline_ms\n",
           g->scene, g->base);
   for (size_t i = 0; i < g->count; i++) {
     const abbe_scaling_study_point *p = &g->point[i];
-    const double value[] = {p->x, p->frame_ms, p->light_ms, p->eye_ms, p->floor_ms};
+    const double value[] = {p->x, p->frame_ms, p->light_ms, p->eye_ms, p->baseline_ms};
     fprintf(writer.stream, "%s", names[p->axis]);
     for (int k = 0; k < 5; k++) {
       char text[ABBE_NUMBER_TEXT_SIZE];
@@ -248,7 +248,7 @@ abbe_result abbe_scaling_study_save(const abbe_scaling_study *g, const char *pat
 
 void abbe_scaling_study_print(const abbe_scaling_study *g, FILE *out) {
   fprintf(out,
-          "%s; %s\n\n| what grows | | frame, ms | light's passes | eye's passes | floor |\n"
+          "%s; %s\n\n| what grows | | frame, ms | light's passes | eye's passes | baseline |\n"
           "|---|---|---|---|---|---|\n",
           g->scene, g->base);
   for (size_t i = 0; i < g->count; i++) {
@@ -257,7 +257,7 @@ void abbe_scaling_study_print(const abbe_scaling_study *g, FILE *out) {
     fprintf(out, "| %s", first ? texts[p->axis] : "");
     if (first) abbe_number_write(out, " (slope %.2f)", abbe_scaling_study_slope(g, p->axis));
     abbe_number_write(out, " | %.4g | %.1f | %.1f | %.1f | %.1f |\n", p->x, p->frame_ms,
-                      p->light_ms, p->eye_ms, p->floor_ms);
+                      p->light_ms, p->eye_ms, p->baseline_ms);
   }
 }
 

@@ -39,7 +39,7 @@ const char *abbe_scaling_study_text(abbe_scaling_study_axis axis);
 typedef struct abbe_scaling_study_point {
   abbe_scaling_study_axis axis;
   double x;
-  double frame_ms, light_ms, eye_ms, floor_ms; /* medians */
+  double frame_ms, light_ms, eye_ms, baseline_ms; /* medians */
 } abbe_scaling_study_point;
 
 typedef struct abbe_scaling_study {
@@ -61,8 +61,8 @@ abbe_result abbe_scaling_study_measure(const abbe_sweep *sweep, abbe_scene *scen
  * two points. */
 double abbe_scaling_study_slope(const abbe_scaling_study *study, abbe_scaling_study_axis axis);
 
-/* CSV: axis, x, frame_ms, light_ms, eye_ms, floor_ms. A Markdown table on `out`. And a chart (.png
- * or .svg), every x over the base setting's. */
+/* CSV: axis, x, frame_ms, light_ms, eye_ms, baseline_ms. A Markdown table on `out`. And a chart
+ * (.png or .svg), every x over the base setting's. */
 abbe_result abbe_scaling_study_save(const abbe_scaling_study *study, const char *path,
                                     abbe_error *error);
 void abbe_scaling_study_print(const abbe_scaling_study *study, FILE *out);

@@ -38,7 +38,7 @@ static abbe_result time_frames(const abbe_sweep *s, abbe_renderer *renderer,
   out->number[ABBE_SWEEP_LIGHT_MS] = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_LIGHT);
   out->number[ABBE_SWEEP_EYE_MS] = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_EYE);
   if (abbe_profile_is_thesis(abbe_renderer_plan(renderer)->desc.profile)) return ABBE_OK;
-  return abbe_frame_times_baseline(renderer, 3, &out->number[ABBE_SWEEP_FLOOR_MS], error);
+  return abbe_frame_times_baseline(renderer, 3, &out->number[ABBE_SWEEP_BASELINE_MS], error);
 }
 
 /* Errors */

@@ -37,7 +37,7 @@ typedef struct abbe_sweep_setting {
   X(FASTEST_MS, "fastest_ms", "fastest frame, ms") /* of them */                                   \
   X(LIGHT_MS, "light_ms", "light's passes, ms")    /* of the median frame */                       \
   X(EYE_MS, "eye_ms", "eye's passes, ms")                                                          \
-  X(FLOOR_MS, "floor_ms", "surfaces alone, ms") /* default profile */                              \
+  X(BASELINE_MS, "baseline_ms", "surfaces alone, ms") /* default profile */                        \
   X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
   X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \

@@ -66,7 +66,7 @@ static void test_the_thesis_beside_it(void **state) {
                       "thesis");
   /* It knows no units, so it got its best factor; the default profile does and got none. */
   assert_true(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(row, "scale")) != 1);
-  assert_true(cJSON_IsNull(cJSON_GetObjectItemCaseSensitive(row, "floor_ms")));
+  assert_true(cJSON_IsNull(cJSON_GetObjectItemCaseSensitive(row, "baseline_ms")));
   row = cJSON_GetArrayItem(rows, 0);
   assert_near(cJSON_GetNumberValue(cJSON_GetObjectItemCaseSensitive(row, "scale")), 1, 0);
   cJSON_Delete(json);

@@ -63,7 +63,7 @@ static void test_all_axes(void **state) {
   assert_ok(abbe_scaling_study_plot(&g, path, &error), &error);
   assert_ok(abbe_scaling_study_save(&g, path, &error), &error);
   assert_ok(abbe_file_read(path, 1 << 16, &text, &size, &error), &error);
-  assert_contains(text, "axis,x,frame_ms,light_ms,eye_ms,floor_ms\nphotons,16,");
+  assert_contains(text, "axis,x,frame_ms,light_ms,eye_ms,baseline_ms\nphotons,16,");
   free(text);
   unlink(path);
   rmdir(folder);

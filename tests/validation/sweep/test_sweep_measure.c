@@ -133,7 +133,7 @@ static void test_the_method_in_units_gets_no_factor(void **state) {
   abbe_sweep_row row = measure(&sweep, &setting);
   assert_near(row.number[ABBE_SWEEP_PICTURE_RMSE], 0, 1e-6);
   assert_near(row.number[ABBE_SWEEP_MAP_ENERGY], 1, 1e-6);
-  assert_true(isnan(row.number[ABBE_SWEEP_FLOOR_MS]));
+  assert_true(isnan(row.number[ABBE_SWEEP_BASELINE_MS]));
   double added = row.number[ABBE_SWEEP_FILL_INVENTED] - row.number[ABBE_SWEEP_FILL_LOST];
   assert_true(row.number[ABBE_SWEEP_FILL_INVENTED] > 0 && row.number[ABBE_SWEEP_FILL_LOST] > 0);
   /* Without the fill: nothing is added, and the map has that much less. */

@@ -1,0 +1,200 @@
+/* A device with a limit of bytes: a real one, whose allocations beyond the limit fail as
+ * GL_OUT_OF_MEMORY says. What a change makes anew need not fit beside what was there before. */
+#include "tests/gl/frame.h"
+
+#include "gl/device/context_backend.h"
+
+enum { MOST_THINGS = 4096 };
+
+/* Buffers and textures that hold storage, by their name and kind. */
+static struct {
+  GLuint name;
+  bool texture;
+  size_t bytes;
+} held[MOST_THINGS];
+static size_t held_count, held_bytes, most_bytes; /* most_bytes: the limit; 0: none */
+static bool failed;                               /* an error is pending */
+static GLuint bound_buffer, bound_texture;
+
+static abbe_gl_lookup real_lookup;
+static abbe_gl real;
+
+static void drop(bool texture, GLuint name) {
+  for (size_t i = 0; i < held_count; i++) {
+    if (held[i].texture != texture || held[i].name != name) continue;
+    held_bytes -= held[i].bytes;
+    held[i] = held[--held_count];
+    return;
+  }
+}
+
+static bool take(bool texture, GLuint name, size_t bytes) {
+  drop(texture, name);
+  failed = failed || (most_bytes > 0 && held_bytes + bytes > most_bytes);
+  if (failed) return false;
+  assert_true(held_count < MOST_THINGS);
+  held[held_count].name = name;
+  held[held_count].texture = texture;
+  held[held_count++].bytes = bytes;
+  held_bytes += bytes;
+  return true;
+}
+
+static void bind_buffer(GLenum target, GLuint name) {
+  bound_buffer = name;
+  real.BindBuffer(target, name);
+}
+
+static void bind_texture(GLenum target, GLuint name) {
+  bound_texture = name;
+  real.BindTexture(target, name);
+}
+
+static void buffer_data(GLenum target, GLsizeiptr size, const void *data, GLenum usage) {
+  if (take(false, bound_buffer, (size_t)size)) real.BufferData(target, size, data, usage);
+}
+
+/* Of a format of sixteen bytes, which most are, and of its first level. */
+static void storage_2d(GLenum target, GLsizei levels, GLenum format, GLsizei width,
+                       GLsizei height) {
+  if (take(true, bound_texture, (size_t)width * (size_t)height * 16))
+    real.TexStorage2D(target, levels, format, width, height);
+}
+
+static void storage_3d(GLenum target, GLsizei levels, GLenum format, GLsizei width, GLsizei height,
+                       GLsizei depth) {
+  if (take(true, bound_texture, (size_t)width * (size_t)height * (size_t)depth * 16))
+    real.TexStorage3D(target, levels, format, width, height, depth);
+}
+
+static void delete_buffers(GLsizei count, const GLuint *names) {
+  for (GLsizei i = 0; i < count; i++) drop(false, names[i]);
+  real.DeleteBuffers(count, names);
+}
+
+static void delete_textures(GLsizei count, const GLuint *names) {
+  for (GLsizei i = 0; i < count; i++) drop(true, names[i]);
+  real.DeleteTextures(count, names);
+}
+
+static GLenum get_error(void) {
+  const GLenum error = failed ? GL_OUT_OF_MEMORY : real.GetError();
+  failed = false;
+  return error;
+}
+
+static abbe_gl_function lookup(const char *name) {
+#define STANDS_FOR(gl_name, function)                                                              \
+  if (strcmp(name, gl_name) == 0) return (abbe_gl_function)(function);
+  STANDS_FOR("glBindBuffer", bind_buffer)
+  STANDS_FOR("glBindTexture", bind_texture)
+  STANDS_FOR("glBufferData", buffer_data)
+  STANDS_FOR("glTexStorage2D", storage_2d)
+  STANDS_FOR("glTexStorage3D", storage_3d)
+  STANDS_FOR("glDeleteBuffers", delete_buffers)
+  STANDS_FOR("glDeleteTextures", delete_textures)
+  STANDS_FOR("glGetError", get_error)
+#undef STANDS_FOR
+  return real_lookup(name);
+}
+
+abbe_result __real_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
+abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error);
+abbe_result __wrap_abbe_context_osmesa(abbe_context_native *out, abbe_error *error) {
+  abbe_result result = __real_abbe_context_osmesa(out, error);
+  real_lookup = out->lookup;
+  if (result == ABBE_OK) result = abbe_gl_load(real_lookup, &real, error);
+  out->lookup = lookup;
+  return result;
+}
+
+static const abbe_render_desc before = {
+    .width = 32, .height = 32, .photons = 96, .map_size = 640, .wavelengths = 21};
+
+static const char text[] = CAMERA POINT_LIGHT FLOOR BRICK("crown");
+
+static void draw_as_made_anew(abbe_renderer *renderer, const abbe_scene *scene,
+                              const abbe_render_desc *desc) {
+  abbe_image kept = {0}, anew = {0};
+  draw_frame(renderer);
+  read_picture(renderer, false, &kept);
+  most_bytes = 0;
+  abbe_renderer *other = make_renderer(scene, desc);
+  draw_frame(other);
+  read_picture(other, false, &anew);
+  assert_same_pixels(&kept, &anew);
+  abbe_image_free(&kept);
+  abbe_image_free(&anew);
+  abbe_renderer_free(other);
+}
+
+/* Another size of everything, within an eighth more than what it was. */
+static void a_change_needs_no_room_for_both(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  load_text(text, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &before);
+  draw_frame(renderer);
+  const size_t needs = held_bytes;
+  abbe_render_desc after = before;
+  after.photons = 98;
+  after.map_size = 644;
+  after.width = after.height = 33;
+  most_bytes = needs + needs / 8;
+  assert_ok(abbe_renderer_change(renderer, &scene, &after, &error), &error);
+  print_message("%zu KiB before, %zu KiB after\n", needs >> 10, held_bytes >> 10);
+  draw_as_made_anew(renderer, &scene, &after);
+  abbe_renderer_free(renderer);
+  assert_int_equal(held_bytes, 0);
+  abbe_scene_free(&scene);
+}
+
+/* So of a mesh, which is uploaded before the light's buffers are made. */
+static void a_larger_mesh_needs_no_room_beside_them(void **state) {
+  (void)state;
+  abbe_scene scene = {0}, finer = {0};
+  abbe_error error = {0};
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.08, levels: 6, "
+                                     "transform: [{translate: [0, 0, 0.2]}], material: crown}\n",
+            &finer);
+  abbe_renderer *renderer = make_renderer(&scene, &before);
+  draw_frame(renderer);
+  const size_t mesh = finer.object[1].mesh.face_count * sizeof *finer.object[1].mesh.face;
+  abbe_render_desc after = before;
+  after.map_size = 512;
+  most_bytes = held_bytes + mesh / 2;
+  assert_ok(abbe_renderer_change(renderer, &finer, &after, &error), &error);
+  draw_as_made_anew(renderer, &finer, &after);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+  abbe_scene_free(&finer);
+}
+
+/* What does not fit at all is refused, and a smaller change goes on from there. */
+static void what_does_not_fit_is_refused(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  load_text(text, &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &before);
+  draw_frame(renderer);
+  abbe_render_desc large = before;
+  large.map_size = 1600;
+  most_bytes = held_bytes + held_bytes / 8;
+  assert_int_equal(abbe_renderer_change(renderer, &scene, &large, &error), ABBE_NO_MEMORY);
+  assert_contains(error.text, "out of memory");
+  assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, NULL), ABBE_INVALID_ARGUMENT);
+  assert_ok(abbe_renderer_change(renderer, &scene, &before, &error), &error);
+  draw_as_made_anew(renderer, &scene, &before);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_change_needs_no_room_for_both),
+                                     cmocka_unit_test(a_larger_mesh_needs_no_room_beside_them),
+                                     cmocka_unit_test(what_does_not_fit_is_refused)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}

@@ -1,0 +1,86 @@
+/* Changes that leave light's way to receivers alone: photons and maps are kept, and the picture is
+ * that of a renderer made anew. */
+#include "tests/gl/frame.h"
+
+static const abbe_render_desc tiny = {.width = 24, .height = 20, .photons = 32, .map_size = 64};
+
+/* Draws what was changed; its photons are kept, and it draws what another one draws. */
+static void assert_light_kept(abbe_renderer *renderer, const abbe_scene *scene, double before,
+                              abbe_image *picture) {
+  abbe_image anew = {0};
+  abbe_error error = {0};
+  assert_ok(abbe_renderer_change(renderer, scene, &tiny, &error), &error);
+  const abbe_statistics s = draw_frame(renderer);
+  assert_true(s.kept[ABBE_PASS_PHOTONS] && s.kept[ABBE_PASS_SPECTRAL_MAP]);
+  assert_false(s.kept[ABBE_PASS_EYE_RECEIVERS]);
+  assert_true(s.energy.deposited == before);
+  read_picture(renderer, false, picture);
+  abbe_renderer *other = make_renderer(scene, &tiny);
+  draw_frame(other);
+  read_picture(other, false, &anew);
+  assert_same_pixels(picture, &anew);
+  abbe_renderer_free(other);
+  abbe_image_free(&anew);
+}
+
+static void the_first_texture_keeps_photons(void **state) {
+  (void)state;
+  static float texel[2][3] = {{0.5f, 0.25f, 0.75f}, {1, 0.5f, 0.25f}};
+  abbe_scene scene = {0};
+  abbe_image picture[3] = {{0}, {0}, {0}};
+  load_text(CAMERA POINT_LIGHT FLOOR BRICK("crown"), &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  const double deposited = draw_frame(renderer).energy.deposited;
+  read_picture(renderer, false, &picture[0]);
+  abbe_image *texture = &scene.object[0].texture;
+  texture->width = 2;
+  texture->height = 1;
+  texture->channels = 3;
+  texture->data = &texel[0][0];
+  assert_light_kept(renderer, &scene, deposited, &picture[1]);
+  assert_true(image_sum(&picture[1], 0) < 0.9 * image_sum(&picture[0], 0));
+  memset(texture, 0, sizeof *texture); /* and none again */
+  assert_light_kept(renderer, &scene, deposited, &picture[2]);
+  assert_same_pixels(&picture[0], &picture[2]);
+  for (int i = 0; i < 3; i++) abbe_image_free(&picture[i]);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+/* A spot's shadows are those of its place, whatever its cone is. */
+static void another_cone_is_followed_anew(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image kept = {0}, anew = {0};
+  abbe_error error = {0};
+  load_text(CAMERA
+            "lights:\n- {name: spot, kind: spot, position: [0.1, 0, 0.7], target: [0.2, 0, 0.2],"
+            " intensity: 2, cone: 30, soft: 5}\n" FLOOR BRICK("crown"),
+            &scene);
+  abbe_renderer *renderer = make_renderer(&scene, &tiny);
+  draw_frame(renderer);
+  for (int turn = 0; turn < 3; turn++) {
+    if (turn == 0) scene.light[0].cone_rad *= 0.8;
+    if (turn == 1) scene.light[0].soft_rad *= 2;
+    if (turn == 2) scene.light[0].direction[0] = 0, scene.light[0].direction[2] = -1;
+    assert_ok(abbe_renderer_change(renderer, &scene, &tiny, &error), &error);
+    const abbe_statistics s = draw_frame(renderer);
+    assert_false(s.kept[ABBE_PASS_PHOTONS]);
+    read_picture(renderer, false, &kept);
+    abbe_renderer *other = make_renderer(&scene, &tiny);
+    draw_frame(other);
+    read_picture(other, false, &anew);
+    assert_same_pixels(&kept, &anew);
+    abbe_renderer_free(other);
+    abbe_image_free(&kept);
+    abbe_image_free(&anew);
+  }
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_first_texture_keeps_photons),
+                                     cmocka_unit_test(another_cone_is_followed_anew)};
+  return cmocka_run_group_tests(tests, make_context, free_context);
+}
