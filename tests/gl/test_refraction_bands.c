@@ -4,8 +4,14 @@
 
 enum { BARS = 12 };
 
-/* A cut stone high over black bars on white: their edges are drawn out into spectra. */
-static void load_bars(abbe_scene *scene) {
+static const char STONE[] =
+    "- {name: stone, shape: gem, sides: 6, girdle: 0.1, table: 0.06, crown: 0.03,\n"
+    "   pavilion: 0.05, transform: [{translate: [0, 0, 0.1]}], material: crown}\n";
+static const char RING_OF[] = "- {name: ring, shape: ring, major: 0.07, minor: 0.03,\n"
+                              "   transform: [{translate: [0, 0, 0.1]}], material: %s}\n";
+
+/* A refractor high over black bars on white: their edges are drawn out into spectra. */
+static void load_bars(const char *refractor, abbe_scene *scene) {
   char text[4096];
   int used = snprintf(
       text, sizeof text,
@@ -14,10 +20,10 @@ static void load_bars(abbe_scene *scene) {
       "lights:\n"
       "- {name: aside, kind: spot, position: [3, 3, 1], target: [4, 4, 0], cone: 5, intensity: 1}\n"
       "objects:\n"
-      "- {name: stone, shape: gem, sides: 6, girdle: 0.1, table: 0.06, crown: 0.03,\n"
-      "   pavilion: 0.05, transform: [{translate: [0, 0, 0.1]}], material: crown}\n"
+      "%s"
       "- {name: white, shape: rectangle, width: 9, height: 9, reflectance: 0.9,\n"
-      "   transform: [{translate: [0, 1, -1]}]}\n");
+      "   transform: [{translate: [0, 1, -1]}]}\n",
+      refractor);
   for (int i = 0; i < BARS; i++)
     used += snprintf(text + used, sizeof text - (size_t)used,
                      "- {name: bar %d, shape: rectangle, width: 0.2, height: 9, reflectance: 0.02,"
@@ -26,13 +32,14 @@ static void load_bars(abbe_scene *scene) {
   load_text(text, scene);
 }
 
-/* everything: every pixel takes all wavelengths. */
-static abbe_image picture(const abbe_scene *scene, size_t wavelengths, bool everything) {
+/* everything: every sample takes all wavelengths. */
+static abbe_image picture(const abbe_scene *scene, size_t wavelengths, size_t samples,
+                          bool everything) {
   abbe_render_desc desc = small_frame;
   desc.wavelengths = wavelengths;
   desc.everything = everything;
   desc.exits = 8;
-  desc.supersample = 1;
+  desc.supersample = samples;
   desc.width = desc.height = 96;
   abbe_image image;
   abbe_renderer *renderer = make_renderer(scene, &desc);
@@ -57,9 +64,9 @@ static double apart(const abbe_image *a, const abbe_image *b) {
 static void test_joined_bands_come_back(void **state) {
   (void)state;
   abbe_scene scene;
-  load_bars(&scene);
-  abbe_image seven = picture(&scene, 7, true), all = picture(&scene, 21, true);
-  abbe_image asked = picture(&scene, 21, false);
+  load_bars(STONE, &scene);
+  abbe_image seven = picture(&scene, 7, 1, true), all = picture(&scene, 21, 1, true);
+  abbe_image asked = picture(&scene, 21, 1, false);
   double from_seven = apart(&seven, &all), from_asked = apart(&asked, &all);
   print_message("7 wavelengths are %.5f off all of 21, those that are asked for %.5f\n", from_seven,
                 from_asked);
@@ -75,16 +82,58 @@ static void test_joined_bands_come_back(void **state) {
 static void test_few_wavelengths_are_all_taken(void **state) {
   (void)state;
   abbe_scene scene;
-  load_bars(&scene);
-  abbe_image planned = picture(&scene, 8, false), all = picture(&scene, 8, true);
+  load_bars(STONE, &scene);
+  abbe_image planned = picture(&scene, 8, 1, false), all = picture(&scene, 8, 1, true);
   assert_true(apart(&planned, &all) < 1e-6);
   abbe_image_free(&planned);
   abbe_image_free(&all);
   abbe_scene_free(&scene);
 }
 
+static void load_ring(const char *material, abbe_scene *scene) {
+  char ring[256];
+  snprintf(ring, sizeof ring, RING_OF, material);
+  load_bars(ring, scene);
+}
+
+/* Without dispersion all bands show the same: shared or not, their weights add up to white. */
+static void test_shared_bands_add_up(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_ring("flat", &scene);
+  abbe_image seven = picture(&scene, 7, 2, false), four = picture(&scene, 4, 2, false);
+  abbe_image one = picture(&scene, 1, 2, false);
+  assert_true(apart(&seven, &one) < 1e-6);
+  assert_true(apart(&four, &one) < 1e-6);
+  abbe_image_free(&seven);
+  abbe_image_free(&four);
+  abbe_image_free(&one);
+  abbe_scene_free(&scene);
+}
+
+/* The samples of a pixel take every second band each, and lie no farther from many samples that
+ * take all of many wavelengths than if each took all seven. */
+static void test_shared_bands_show_the_spectrum(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_ring("crown", &scene);
+  abbe_image true_to = picture(&scene, 28, 4, true);
+  abbe_image shared = picture(&scene, 7, 2, false), all = picture(&scene, 7, 2, true);
+  double from_shared = apart(&shared, &true_to), from_all = apart(&all, &true_to);
+  print_message("shared bands are %.5f off, all bands %.5f, each other %.5f\n", from_shared,
+                from_all, apart(&shared, &all));
+  assert_true(apart(&shared, &all) > 1e-5);
+  assert_true(from_shared < 1.1 * from_all);
+  abbe_image_free(&true_to);
+  abbe_image_free(&shared);
+  abbe_image_free(&all);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_joined_bands_come_back),
-                                     cmocka_unit_test(test_few_wavelengths_are_all_taken)};
+                                     cmocka_unit_test(test_few_wavelengths_are_all_taken),
+                                     cmocka_unit_test(test_shared_bands_add_up),
+                                     cmocka_unit_test(test_shared_bands_show_the_spectrum)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
