@@ -35,5 +35,8 @@ foreach(name killed_command starved_command)
   add_dependencies(test_${name} abbe faults_preload)
 endforeach()
 
+add_test(NAME killed_command_all COMMAND test_killed_command all)
+abbe_label(program long NAMES killed_command_all)
+
 abbe_test(gl_faults gl abbe_gl abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 target_link_options(test_gl_faults PRIVATE LINKER:--wrap=abbe_context_osmesa)

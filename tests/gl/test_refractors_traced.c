@@ -159,8 +159,8 @@ static void test_parts_of_one_stuff_have_no_wall(void **state) {
 #define HALF(name, x)                                                                              \
   "- {name: " name ", shape: box, size: [0.081, 0.08, 0.06], transform: [{translate: [" x          \
   ", 0, 0.2]}], material: dense}\n"
-  const agreement two = compare(CAMERA POINT_LIGHT FLOOR HALF("a", "-0.04") HALF("b", "0.04"),
-                                MAX_PASSES);
+  const agreement two =
+      compare(CAMERA POINT_LIGHT FLOOR HALF("a", "-0.04") HALF("b", "0.04"), MAX_PASSES);
   const agreement one = compare(CAMERA POINT_LIGHT FLOOR
                                 "- {name: one, shape: box, size: [0.161, 0.08, 0.06], transform: "
                                 "[{translate: [0, 0, 0.2]}], material: dense}\n",

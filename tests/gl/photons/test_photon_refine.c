@@ -32,7 +32,7 @@ static void every_photon_is_entered_once(void **state) {
   (void)state;
   static const char *const names[] = {"gem", "prism", "sphere"};
   for (size_t i = 0; i < 3; i++) {
-    const abbe_ledger l = draw(names[i], 23, ABBE_FILL_BRIDGE, NULL, NULL);
+    const abbe_ledger l = draw(names[i], 25, ABBE_FILL_BRIDGE, NULL, NULL);
     assert_true(l.reached > 0);
     assert_true(abbe_ledger_imbalance(&l) < 1e-4);
     assert_true(fabs(l.interpolated) < 1e-3 * l.reached);
