@@ -12,7 +12,10 @@ add_test(NAME measuring_scripts
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/measure $<TARGET_FILE:abbe>)
 add_test(NAME slits
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/slits $<TARGET_FILE:abbe>)
+add_test(NAME slits_all
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/slits $<TARGET_FILE:abbe> all)
 abbe_label(program NAMES install scripts measuring_scripts slits)
+abbe_label(program long NAMES slits_all)
 
 foreach(name
     arguments

@@ -132,14 +132,14 @@ static void test_targets_that_cannot_be_written(void **state) {
 static void test_a_full_disk(void **state) {
   (void)state;
   static const refusal rows[] = {
-      {"ulimit -f 4; " GEM " --size 256x256 -o picture.exr", "picture.exr"},
-      {"ulimit -f 4; " GEM " --size 256x256 --png picture.png", "picture.png"},
-      {"ulimit -f 4; " GEM " --map 512 --save-map map.exr", "map.exr"},
+      {"ulimit -f 4; " GEM " --size 64x64 -o picture.exr", "picture.exr"},
+      {"ulimit -f 4; " GEM " --size 96x96 --png picture.png", "picture.png"},
+      {"ulimit -f 4; " GEM " --map 64 --save-map map.exr", "map.exr"},
   };
   refuse_all(rows, sizeof rows / sizeof *rows, 1);
   /* What stood there before is as it was. */
   assert_int_equal(run_line("printf before >picture.exr; (ulimit -f 4; " GEM
-                            " --size 256x256 -o picture.exr); echo $?; cat picture.exr;"
+                            " --size 64x64 -o picture.exr); echo $?; cat picture.exr;"
                             "rm picture.exr"),
                    0);
   assert_string_equal(run_output, "1\nbefore");

@@ -7,14 +7,16 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-enum { REPEATS = 5 };
+enum { MAX_REPEATS = 5 };
 
 typedef struct bench {
   abbe_context *context;
   abbe_scene scene;
   abbe_render_desc desc;
   abbe_renderer *renderer;
+  int repeats; /* odd */
 } bench;
 
 static void must(abbe_result result, const abbe_error *error) {
@@ -63,17 +65,17 @@ static void change_material(bench *b, int k) {
 
 /* The median of what the change and its frame take. */
 static double time_change(bench *b, void (*change)(bench *, int)) {
-  double ms[REPEATS];
+  double ms[MAX_REPEATS];
   abbe_error error;
-  for (int k = -2; k < REPEATS; k++) { /* the first two compile what is new */
+  for (int k = -2; k < b->repeats; k++) { /* the first two compile what is new */
     change(b, k + 2);
     const double start = now_ms();
     must(abbe_renderer_change(b->renderer, &b->scene, &b->desc, &error), &error);
     must(abbe_renderer_frame(b->renderer, NULL, NULL, NULL, &error), &error);
     if (k >= 0) ms[k] = now_ms() - start;
   }
-  qsort(ms, REPEATS, sizeof *ms, ascending);
-  return ms[REPEATS / 2];
+  qsort(ms, (size_t)b->repeats, sizeof *ms, ascending);
+  return ms[b->repeats / 2];
 }
 
 static double time_anew(bench *b) {
@@ -131,10 +133,16 @@ int main(int argc, char **argv) {
                  {"light", change_light},
                  {"object", change_object},
                  {"material", change_material}};
-  bench b = {0};
+  bench b = {.repeats = MAX_REPEATS};
   abbe_error error;
+  if (argc > 1 && strcmp(argv[1], "--quick") == 0) { /* few photons, once: to see that it works */
+    b.repeats = 1;
+    b.desc.photons = 16;
+    b.desc.map_size = 64;
+    argc--, argv++;
+  }
   if (argc < 3) {
-    fprintf(stderr, "Usage: bench_changes SIZE SCENE…\n");
+    fprintf(stderr, "Usage: bench_changes [--quick] SIZE SCENE…\n");
     return 2;
   }
   must(abbe_context_make(ABBE_CONTEXT_OSMESA, &b.context, &error), &error);

@@ -132,15 +132,15 @@ static void test_mixed_scenes_balance(void **state) {
     abbe_statistics s = draw_frame(renderer);
     assert_balance(&s, texts[i]);
     assert_int_equal(s.energy.absorbed > 0, abbe_renderer_plan(renderer)->absorbing);
-    abbe_renderer_free(renderer);
     for (size_t k = 0; k < 4; k++) {
+      abbe_error error = {0};
       desc.photons = photons[k % 2];
       desc.map_size = maps[k / 2];
-      renderer = make_renderer(&scene, &desc);
+      assert_ok(abbe_renderer_change(renderer, &scene, &desc, &error), &error);
       s = draw_frame(renderer);
       assert_true(abbe_ledger_imbalance(&s.energy) < 1e-4);
-      abbe_renderer_free(renderer);
     }
+    abbe_renderer_free(renderer);
     abbe_scene_free(&scene);
   }
 }

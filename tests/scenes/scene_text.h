@@ -45,12 +45,12 @@
   "- {name: brick, shape: box, size: [0.1, 0.08, 0.06], transform: [{translate: [0.2, 0, "         \
   "0.2]}], material: " material "}\n"
 #define RING(material)                                                                             \
-  "- {name: ring, shape: ring, major: 0.08, minor: 0.02, transform: [{translate: [0, 0, 0.2]}], "  \
-  "material: " material "}\n"
+  "- {name: ring, shape: ring, major: 0.08, minor: 0.02, around: 64, across: 32, transform: "      \
+  "[{translate: [0, 0, 0.2]}], material: " material "}\n"
 /* A receiver that is no rectangle. */
 #define HILL                                                                                       \
-  "- {name: hill, shape: sphere, radius: 0.05, transform: [{translate: [0.5, 0.5, 0]}], "          \
-  "reflectance: 0.5}\n"
+  "- {name: hill, shape: sphere, radius: 0.05, levels: 3, transform: [{translate: "                \
+  "[0.5, 0.5, 0]}], reflectance: 0.5}\n"
 
 static inline void load_file(const char *path, abbe_scene *scene) {
   abbe_error error = {0};

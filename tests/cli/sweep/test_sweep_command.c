@@ -7,8 +7,8 @@
 
 #define SWEEP                                                                                      \
   "\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --size 24x24 --frames 1 --spp 2 "                 \
-  "--traced-photons 20000 --texels 16 --map 64 --samples 1 "
-#define TWO SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv "
+  "--traced-photons 2000 --texels 16 --map 64 --samples 1 "
+#define TWO SWEEP "--profiles default --wavelengths 7 --photons 16,32 -o s.csv "
 
 static void load(const char *name, abbe_sweep_table *table) {
   char path[128];
@@ -27,7 +27,7 @@ static void test_rows_are_measured_once(void **state) {
   abbe_sweep_table first = {0}, second = {0};
   run_well("ulimit -s 256 && " TWO);
   assert_contains(run_output, "2 settings");
-  assert_contains(run_output, "w3 p"); /* which is on the front is the clock's affair */
+  assert_contains(run_output, "w7 p"); /* which is on the front is the clock's affair */
   load("s.csv", &first);
   assert_int_equal(first.count, 2);
   assert_string_equal(first.fact[ABBE_SWEEP_FACT_SIZE], "24x24");
@@ -38,7 +38,7 @@ static void test_rows_are_measured_once(void **state) {
     assert_true(first.row[k].number[ABBE_SWEEP_MAP_RMSE_NOISE] > 0);
   }
   /* More photons: the two rows stay as they are to the bit, times included, and one comes. */
-  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16,32,48 -o s.csv --plot s.png "
+  run_well(SWEEP "--profiles default --wavelengths 7 --photons 16,32,48 -o s.csv --plot s.png "
                  "--report s.md");
   load("s.csv", &second);
   assert_int_equal(second.count, 3);
@@ -84,16 +84,16 @@ static void test_the_error_is_decomposed(void **state) {
   (void)state;
   /* The references alone first: the sweep takes them as they are. */
   run_well(SWEEP "-o s.csv --decompose --trace-only && ! test -e s.csv && sha1sum s-*.exr >sums");
-  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --decompose");
+  run_well(SWEEP "--profiles default --wavelengths 7 --photons 16 -o s.csv --decompose");
   run_well("sha1sum -c --quiet sums && rm sums");
-  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16 -o s.csv --decompose");
-  assert_contains(run_output, "What is left: w3 p16 m64 s1 share 0.005 has ");
+  run_well(SWEEP "--profiles default --wavelengths 7 --photons 16 -o s.csv --decompose");
+  assert_contains(run_output, "What is left: w7 p16 m64 s1 share 0.005 has ");
   run_well("grep -c '^# model: caustic_de ' s.csv && ls s-matched.exr s-matched-map.exr");
   /* Rows of another decomposition are not mixed. */
-  assert_int_equal(run_line(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv"),
+  assert_int_equal(run_line(SWEEP "--profiles default --wavelengths 7 --photons 16,32 -o s.csv"),
                    1);
   assert_contains(run_errors, "its rows were measured with the model 'caustic_de");
-  run_well(SWEEP "--profiles default --wavelengths 3 --photons 16,32 -o s.csv --decompose --json");
+  run_well(SWEEP "--profiles default --wavelengths 7 --photons 16,32 -o s.csv --decompose --json");
   cJSON *json = cJSON_Parse(run_output);
   const cJSON *parts_of = cJSON_GetObjectItemCaseSensitive(json, "decomposition");
   static const char *const parts[] = {"total", "model", "sampling_and_reconstruction"};
@@ -126,7 +126,7 @@ static void test_ctrl_c_keeps_what_is_done(void **state) {
   (void)state;
   abbe_sweep_table table = {0};
   int code =
-      run_line(SWEEP "--profiles default --wavelengths 3,5,7,9,11,13,15,17 --photons 64,72,80,800 "
+      run_line(SWEEP "--profiles default --wavelengths 7,9,11,13,15,17,19,21 --photons 64,72,80,800 "
                      "-o s.csv & pid=$!; while ! test -s s.csv; do sleep 0.02; done; "
                      "kill -INT $pid; wait $pid");
   assert_int_equal(code, 1);

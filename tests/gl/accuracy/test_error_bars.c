@@ -132,7 +132,7 @@ static void test_errors_are_near_those_of_a_scene_that_is_not_shipped(void **sta
   abbe_image picture = {0}, fine = {0};
   abbe_error_bars bars = {0};
   abbe_render_desc desc = {
-      .width = 64, .height = 64, .photons = 96, .map_size = 256, .wavelengths = 7};
+      .width = 64, .height = 64, .photons = 64, .map_size = 128, .wavelengths = 7};
   load_text("materials: default\nambient: 0.2\n"
             "camera: {eye: [0.1, -0.6, 0.45], target: [0, 0, 0.02], up: [0, 0, 1], fov: 20}\n"
             "lights:\n"
