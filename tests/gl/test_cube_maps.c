@@ -194,7 +194,7 @@ static void direct_light_is_whole(void **state) {
 /* Its faces' maps, laid out as one, hold what the tracer finds there. */
 static void the_tracer_agrees(void **state) {
   (void)state;
-  enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 4 };
+  enum { SIDE = 64, BLOCK = 8, BLOCKS = SIDE / BLOCK, PASSES = 12 };
   static const abbe_model models[] = {ABBE_MODEL_AUTO, ABBE_MODEL_BVH, ABBE_MODEL_LAYERS};
   abbe_scene scene;
   abbe_image traced, drawn;
