@@ -38,8 +38,8 @@ static abbe_result change_watched(abbe_renderer *r, const abbe_scene *scene,
                                   const abbe_render_desc *desc, abbe_error *error) {
   abbe_error lost = {0};
   abbe_render_desc request = desc != NULL ? *desc : (abbe_render_desc){0};
-  watched w = {r->context,        request.progress, request.progress_user, ABBE_OK, &lost,
-               request.compiling};
+  watched w = {r->context, request.progress, request.progress_user, ABBE_OK,
+               &lost,      request.compiling};
   if (request.progress != NULL) request.progress = watch;
   if (request.compiling != NULL) request.compiling = tell_compiling;
   request.progress_user = &w;
@@ -48,7 +48,6 @@ static abbe_result change_watched(abbe_renderer *r, const abbe_scene *scene,
   r->plan.desc.compiling = NULL;
   return w.result == ABBE_OK ? result : abbe_error_set(error, w.result, "%s", lost.text);
 }
-
 
 static void free_renderer(abbe_renderer *r) {
   abbe_renderer_parts_free(r);
@@ -87,11 +86,11 @@ static abbe_rgb_space space_of(const abbe_renderer *r) {
   return r->plan.desc.profile == ABBE_PROFILE_THESIS ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
 }
 
-static abbe_result read_picture(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {
+static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
   result = is_thesis(r) ? abbe_thesis_read(&r->thesis, out, error)
-                        : abbe_picture_read(&r->picture, layers, r->local.unit, out, error);
+                        : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error);
   if (result != ABBE_OK) return result;
   const abbe_rgb_space space = space_of(r);
   abbe_rgb_space_chromaticities(space, out->xy);
@@ -272,11 +271,11 @@ abbe_result abbe_renderer_texture(abbe_renderer *r, abbe_renderer_picture *out, 
   return result == ABBE_OK ? leave(r->context, find_texture(r, out, error)) : result;
 }
 
-abbe_result abbe_renderer_read(abbe_renderer *r, bool layers, abbe_image *out, abbe_error *error) {
+abbe_result abbe_renderer_read(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
   ABBE_REQUIRE(r && out, error);
   *out = (abbe_image){0};
   const abbe_result result = enter(r->context, error);
-  return result == ABBE_OK ? leave(r->context, read_picture(r, layers, out, error)) : result;
+  return result == ABBE_OK ? leave(r->context, read_picture(r, aovs, out, error)) : result;
 }
 
 abbe_result abbe_renderer_read_map(abbe_renderer *r, size_t light, bool filled, abbe_image *out,

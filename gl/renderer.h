@@ -2,9 +2,10 @@
  *
  * A renderer belongs to one context, which outlives it. It may be changed: to another camera, other
  * lights, objects, materials or settings, or to another scene; what does not depend on what differs
- * is kept, and a frame draws what it draws of a renderer made anew, bit for bit. Pictures are scene-linear radiance, W/(m2 sr) with each light's power shared out by
- * its illuminant, in the plan's colour space. A process may have many renderers, on one context or
- * on several; those of one context are used by one thread at a time.
+ * is kept, and a frame draws what it draws of a renderer made anew, bit for bit. Pictures are
+ * scene-linear radiance, W/(m2 sr) with each light's power shared out by its illuminant, in the
+ * plan's colour space. A process may have many renderers, on one context or on several; those of
+ * one context are used by one thread at a time.
  *
  * Every function that takes a renderer and gives a result, abbe_renderer_make and
  * abbe_renderer_free make its context current and leave it so; ABBE_GL where it cannot be. They
@@ -62,11 +63,11 @@ void abbe_renderer_redraw(abbe_renderer *renderer);
 
 const abbe_plan *abbe_renderer_plan(const abbe_renderer *renderer);
 
-/* One frame: the passes whose result is not there yet, none where nothing has changed since the last
- * one. With statistics every pass is finished and timed by itself; without, none is waited
- * for but the last. progress and statistics may be NULL. progress may make another
- * context current and use another renderer there, and leaves this context as it is. ABBE_CANCELLED by
- * progress: the frame may be drawn again; ABBE_GL. */
+/* One frame: the passes whose result is not there yet, none where nothing has changed since the
+ * last one. With statistics every pass is finished and timed by itself; without, none is waited for
+ * but the last. progress and statistics may be NULL. progress may make another context current and
+ * use another renderer there, and leaves this context as it is. ABBE_CANCELLED by progress: the
+ * frame may be drawn again; ABBE_GL. */
 abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress progress, void *user,
                                 abbe_statistics *statistics, abbe_error *error);
 
@@ -75,11 +76,11 @@ abbe_result abbe_renderer_frame(abbe_renderer *renderer, abbe_render_progress pr
  * ABBE_GL. */
 abbe_result abbe_renderer_baseline(abbe_renderer *renderer, double *ms, abbe_error *error);
 
-/* The picture: R, G, B (X, Y, Z in that space); with layers (which the request must have
+/* The picture: R, G, B (X, Y, Z in that space); with AOVs (which the request must have
  * asked for) also direct.*, caustic.* (radiance of
  * the receivers that the eye sees straight) and Z (distance from the eye, m; 0: nothing).
  * ABBE_INVALID_ARGUMENT before a whole frame was drawn; so of maps. */
-abbe_result abbe_renderer_read(abbe_renderer *renderer, bool layers, abbe_image *out,
+abbe_result abbe_renderer_read(abbe_renderer *renderer, bool aovs, abbe_image *out,
                                abbe_error *error);
 
 /* The picture where it was drawn. */
@@ -94,8 +95,8 @@ typedef struct abbe_renderer_picture {
 } abbe_renderer_picture;
 
 /* For drawing on without a copy. The texture is the renderer's, of its context and those that share
- * with it; it is read, not written, and holds until the next change, the next frame or the renderer's end.
- * ABBE_INVALID_ARGUMENT before a whole frame was drawn. */
+ * with it; it is read, not written, and holds until the next change, the next frame or the
+ * renderer's end. ABBE_INVALID_ARGUMENT before a whole frame was drawn. */
 abbe_result abbe_renderer_texture(abbe_renderer *renderer, abbe_renderer_picture *out,
                                   abbe_error *error);
 

@@ -210,7 +210,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->supersample);
   MIX(h, d->upsample);
   MIX(h, d->sample_shift);
-  MIX(h, d->layers);
+  MIX(h, d->aovs);
   MIX(h, plan->textured);
   MIX(h, plan->camera_sees_refractor);
   MIX(h, plan->eye_exits);

@@ -116,7 +116,7 @@ static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
 
 static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant variant = r->variant;
-  variant.layers_out = r->plan.desc.layers;
+  variant.aovs = r->plan.desc.aovs;
   variant.textured = r->plan.textured;
   abbe_camera_view_fit(r->scene.local, &r->plan.desc, &r->camera);
   r->lighting = (abbe_lighting){&r->scene, &r->views, &r->layers, &r->atlas, &r->map, &r->camera};
@@ -158,7 +158,8 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   if (result != ABBE_OK) return result;
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
-  if (abbe_profile_is_thesis(plan.desc.profile) && parts != 0) parts = ALL; /* its tables hold all */
+  if (abbe_profile_is_thesis(plan.desc.profile) && parts != 0)
+    parts = ALL; /* its tables hold all */
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
   free_parts(r, parts);
@@ -251,7 +252,7 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
   result = end_watch(r, result, error);
   r->seen = result == ABBE_OK;
   r->made = result == ABBE_OK || result == ABBE_CANCELLED; /* else lists may be without room */
-  abbe_gpu_trim(&r->gpu); /* what was outgrown */
+  abbe_gpu_trim(&r->gpu);                                  /* what was outgrown */
   if (statistics != NULL && result == ABBE_OK) summarise(r, start_ms, statistics);
   r->gpu.statistics = NULL;
   return result;

@@ -23,7 +23,7 @@
 enum {
   OPTION_PNG = 0x200,
   OPTION_BITS,
-  OPTION_LAYERS,
+  OPTION_AOVS,
   OPTION_UNFILLED,
   OPTION_BANDS,
   OPTION_STATS,
@@ -44,7 +44,7 @@ typedef struct request {
   abbe_error_options errors;
   const char *exr, *png, *stats;
   const char *of_png; /* an option that the PNG alone has */
-  bool layers, unfilled, quiet, json;
+  bool aovs, unfilled, quiet, json;
   int bits;
   size_t frames, bands;
   abbe_context_backend backend;
@@ -56,7 +56,7 @@ static const struct argp_option options[] = {
     {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
      "the picture for a display, through OpenColorIO", 0},
     {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8)", 0},
-    {"layers", OPTION_LAYERS, NULL, 0, "direct, caustic and distance layers in the EXR", 0},
+    {"aovs", OPTION_AOVS, NULL, 0, "direct and caustic light and distance in the EXR too", 0},
     {"bands", OPTION_BANDS, "N", 0, "N bands of wavelengths in the saved map too, in W/nm", 0},
     {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
     {"stats", OPTION_STATS, "FILE", ABBE_ARGUMENT_WRITES,
@@ -93,8 +93,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->of_png = "--bits";
     q->bits = abbe_command_choice(p, "--bits", text, bits, 2) == 0 ? 8 : 16;
     return 0;
-  case OPTION_LAYERS:
-    q->layers = true;
+  case OPTION_AOVS:
+    q->aovs = true;
     return 0;
   case OPTION_BANDS:
     q->bands = abbe_command_count(p, "--bands", text, 1, ABBE_RENDER_MAX_BANDS);
@@ -141,8 +141,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
     if (q->bands > 0 && q->map.save == NULL)
       argp_error(state, "--bands are those of a map: give --save-map FILE.exr too");
-    if (q->errors.mean && q->layers)
-      argp_error(state, "--mean has no --layers: they are of one picture, not of the mean");
+    if (q->errors.mean && q->aovs)
+      argp_error(state, "--mean has no --aovs: they are of one picture, not of the mean");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -239,10 +239,12 @@ static abbe_result annotate(const request *q, const abbe_renderer *renderer,
   const abbe_render_desc *d = &abbe_renderer_plan(renderer)->desc;
   char text[512];
   snprintf(text, sizeof text,
-           "profile %s, %zu wavelengths %g:%g nm, photons %zu, map %zu, samples %zu, upsample %zu, fill %s, "
+           "profile %s, %zu wavelengths %g:%g nm, photons %zu, map %zu, samples %zu, upsample %zu, "
+           "fill %s, "
            "share %g, exits %zu",
            abbe_profile_name(d->profile), d->wavelengths, d->min_nm, d->max_nm, d->photons,
-           d->map_size, d->supersample, d->upsample, abbe_fill_name(d->fill), d->energy_share, d->exits);
+           d->map_size, d->supersample, d->upsample, abbe_fill_name(d->fill), d->energy_share,
+           d->exits);
   abbe_result result = abbe_image_set_attribute(image, "abbe:settings", text, error);
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error);
@@ -333,7 +335,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
     else
       result = run_frames(q, renderer, &statistics, error);
   }
-  if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->layers, &image, error);
+  if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->aovs, &image, error);
   if (result == ABBE_OK) result = annotate(q, renderer, context, &image, error);
   if (result == ABBE_OK)
     result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, &bars,
@@ -383,8 +385,8 @@ int abbe_command_render(int argc, char **argv) {
   abbe_error error = {0};
   abbe_scene scene = {0};
   abbe_context *context = NULL;
-  /* The layers tell where the caustic is, whose error is summed up. */
-  q.render.desc.layers = q.layers || q.errors.asked;
+  /* The AOVs tell where the caustic is, whose error is summed up. */
+  q.render.desc.aovs = q.aovs || q.errors.asked;
   const char *const targets[] = {q.exr, q.png, q.map.save, q.stats, q.errors.png};
   abbe_result result = abbe_command_check_targets(targets, 5, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);

@@ -102,12 +102,12 @@ typedef struct work {
   abbe_context *context;
   const abbe_scene *scene;
   const abbe_error_bars_desc *desc;
-  abbe_renderer *renderer; /* of all variants, one after another; NULL before the first */
+  abbe_renderer *renderer;  /* of all variants, one after another; NULL before the first */
   abbe_render_desc request; /* resolved, without what only the picture needs */
   abbe_map_layout map;
   bool has_map;
   size_t done, frames;
-  abbe_image picture;           /* with its layers, where there are any */
+  abbe_image picture;           /* with its AOVs, where there are any */
   abbe_image coarse;            /* empty where nothing is coarser */
   double *difference, *squares; /* sums over variants of (variant - picture) and its square */
 } work;
@@ -131,10 +131,9 @@ static abbe_result draw(work *w, abbe_render_desc request, abbe_image *out, abbe
   if (!w->has_map) request.map_layout = NULL;
   request.progress = show_making;
   request.progress_user = w;
-  abbe_result result =
-      w->renderer == NULL
-          ? abbe_renderer_make(w->context, w->scene, &request, &w->renderer, error)
-          : abbe_renderer_change(w->renderer, w->scene, &request, error);
+  abbe_result result = w->renderer == NULL
+                           ? abbe_renderer_make(w->context, w->scene, &request, &w->renderer, error)
+                           : abbe_renderer_change(w->renderer, w->scene, &request, error);
   if (result == ABBE_OK) result = abbe_renderer_frame(w->renderer, show_drawing, w, NULL, error);
   if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, false, out, error);
   w->done++;
@@ -299,14 +298,14 @@ static abbe_result summarise_all(const work *w, abbe_error_bars *bars, abbe_erro
 static abbe_result begin(work *w, abbe_renderer *renderer, size_t variants, abbe_error *error) {
   const abbe_plan *plan = abbe_renderer_plan(renderer);
   w->request = plan->desc;
-  w->request.layers = false;
+  w->request.aovs = false;
   w->frames = variants + (plan->refractor_count > 0 ? 1 : 0);
   if (w->request.map_layout == NULL) w->request.map_layout_light = 0;
   /* No layout serves all faces of a cube: each is fitted anew. */
   const bool cube = plan->light_view[w->request.map_layout_light].face >= 0;
   w->has_map = plan->caustics && (w->request.map_layout != NULL || !cube);
   abbe_renderer_map_layout(renderer, w->request.map_layout_light, &w->map);
-  abbe_result result = abbe_renderer_read(renderer, plan->desc.layers, &w->picture, error);
+  abbe_result result = abbe_renderer_read(renderer, plan->desc.aovs, &w->picture, error);
   if (result != ABBE_OK) return result;
   size_t values = 3 * w->picture.width * w->picture.height;
   w->difference = calloc(values, sizeof *w->difference);

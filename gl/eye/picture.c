@@ -18,8 +18,7 @@ abbe_result abbe_picture_make(const abbe_receivers_pass *receivers,
   abbe_result result = abbe_gpu_make_texture(gpu, GL_RGBA32F, desc->width, desc->height, 0, false,
                                              &out->pixels, error);
   const char *file = desc->upsample > 1 ? "eye_enlarge.comp" : "eye_resolve.comp";
-  if (result == ABBE_OK)
-    result = abbe_gpu_compute(gpu, file, NULL, &out->program, error);
+  if (result == ABBE_OK) result = abbe_gpu_compute(gpu, file, NULL, &out->program, error);
   return result;
 }
 
@@ -145,26 +144,26 @@ static void read_layer(const abbe_picture *picture, GLuint texture, float *data,
     abbe_picture_copy_flipped(data, 0, out, to, 3, desc_of(picture)->supersample);
 }
 
-abbe_result abbe_picture_read(const abbe_picture *picture, bool layers, double unit,
-                              abbe_image *out, abbe_error *error) {
+abbe_result abbe_picture_read(const abbe_picture *picture, bool aovs, double unit, abbe_image *out,
+                              abbe_error *error) {
   static const char *const rgb[] = {"R",        "G",        "B",         "Z",         "direct.R",
                                     "direct.G", "direct.B", "caustic.R", "caustic.G", "caustic.B"};
   static const char *const xyz[] = {"X",        "Y",        "Z",         "depth.Z",   "direct.X",
                                     "direct.Y", "direct.Z", "caustic.X", "caustic.Y", "caustic.Z"};
   const abbe_render_desc *desc = desc_of(picture);
   const bool as_xyz = desc->space == ABBE_RGB_SPACE_XYZ;
-  layers = layers && desc->layers;
+  aovs = aovs && desc->aovs;
   abbe_result result =
-      abbe_image_make(desc->width, desc->height, layers ? 10 : 3, as_xyz ? xyz : rgb, out, error);
+      abbe_image_make(desc->width, desc->height, aovs ? 10 : 3, as_xyz ? xyz : rgb, out, error);
   if (result != ABBE_OK) return result;
-  const size_t side = layers ? desc->supersample : 1;
+  const size_t side = aovs ? desc->supersample : 1;
   float *data = malloc(out->width * out->height * side * side * 4 * sizeof *data);
   if (data == NULL) {
     abbe_image_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");
   }
-  read_pixels(picture, layers ? 4 : 3, data, out);
-  if (layers) {
+  read_pixels(picture, aovs ? 4 : 3, data, out);
+  if (aovs) {
     read_layer(picture, picture->receivers->direct, data, 4, out);
     read_layer(picture, picture->receivers->caustic, data, 7, out);
   }

@@ -27,8 +27,8 @@ void abbe_picture_run(abbe_picture *picture);
 GLuint abbe_picture_texture(abbe_picture *picture);
 
 /* Channels as abbe_renderer_read, in the plan's space; all but distances times `unit`. */
-abbe_result abbe_picture_read(const abbe_picture *picture, bool layers, double unit,
-                              abbe_image *out, abbe_error *error);
+abbe_result abbe_picture_read(const abbe_picture *picture, bool aovs, double unit, abbe_image *out,
+                              abbe_error *error);
 
 /* GL's rows run upwards: `count` of four floats a sample from `first` on, the mean of samples x
  * samples a pixel, into the image's channels from `to` on. */

@@ -13,7 +13,7 @@ layout(binding = UNIT_SIDE_OF_FACE) uniform isamplerBuffer side_of_face;  // cha
 uniform int face_first;                                    // of the object that is drawn
 #endif
 layout(location = 0) out vec4 radiance;  // w: distance from the eye
-#ifdef LIGHT_LAYERS_OUT
+#ifdef AOVS
 layout(location = 1) out vec4 direct;
 layout(location = 2) out vec4 caustic;
 #endif
@@ -32,7 +32,7 @@ void main() {
 #endif
   Shading s = shade(world, n, surface, surface_uv, side);
   radiance = vec4(s.direct + s.caustic + s.fill, distance(eye, world));
-#ifdef LIGHT_LAYERS_OUT
+#ifdef AOVS
   direct = vec4(s.direct, 1);
   caustic = vec4(s.caustic, 1);
 #endif

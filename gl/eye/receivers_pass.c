@@ -83,7 +83,8 @@ static void draw_receiver(abbe_receivers_pass *pass, GLuint program, size_t rece
   abbe_gpu_meshes_draw(scene, scene->plan->receiver_object[receiver]);
 }
 
-/* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here. */
+/* Over what is drawn unlit. Of equal depths the first receiver has won there, and so it does here.
+ */
 static void draw_lit_parts(abbe_receivers_pass *pass, int bottom, int top) {
   const abbe_gl *gl = pass->lighting->scene->gpu->gl;
   abbe_lighting_use(pass->lighting, pass->lit);
@@ -129,12 +130,12 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   static const int flat[3] = {0, -1, -1};
   static const GLfloat nothing[4] = {0, 0, 0, 0}, far = 1;
   abbe_gpu_start_lap(scene->gpu);
-  abbe_result result = abbe_gpu_set_target(
-      scene->gpu, target, flat, scene->plan->desc.layers ? 3 : 1, pass->depth, w, h, error);
+  abbe_result result = abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
+                                           pass->depth, w, h, error);
   if (result != ABBE_OK) return result;
   GLfloat b = (GLfloat)scene->local->background, background[4] = {b, b, b, 0};
   gl->ClearBufferfv(GL_COLOR, 0, background);
-  for (GLint k = 1; k < 3 && scene->plan->desc.layers; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
+  for (GLint k = 1; k < 3 && scene->plan->desc.aovs; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
   draw_receivers(pass);
@@ -155,9 +156,9 @@ static abbe_result make_targets(abbe_receivers_pass *pass, abbe_error *error) {
                           desc->width, desc->height, desc->supersample, w, h, most);
   abbe_result result =
       abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 1, false, &pass->colour, error);
-  if (result == ABBE_OK && desc->layers)
+  if (result == ABBE_OK && desc->aovs)
     result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->direct, error);
-  if (result == ABBE_OK && desc->layers)
+  if (result == ABBE_OK && desc->aovs)
     result = abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, w, h, 0, false, &pass->caustic, error);
   if (result == ABBE_OK)
     result = abbe_gpu_make_texture(scene->gpu, GL_DEPTH_COMPONENT32F, w, h, 0, false, &pass->depth,
@@ -171,8 +172,8 @@ abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
   out->lighting = lighting;
   abbe_result result = make_targets(out, error);
   if (result == ABBE_OK)
-    result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL,
-                                         &out->lit, error);
+    result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL, &out->lit,
+                                         error);
   return result == ABBE_OK ? make_unlit(out, variant, error) : result;
 }
 

@@ -102,7 +102,7 @@ static void print_copies(FILE *to, const abbe_shader_variant *v) {
 static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "RECEIVER_SHADOWS", v->receiver_shadows);
   print_flag(to, "WIDE", v->wide);
-  print_flag(to, "LIGHT_LAYERS_OUT", v->layers_out);
+  print_flag(to, "AOVS", v->aovs);
   print_flag(to, "ONE_CONVEX", v->one_convex);
   print_flag(to, "SPHERES", v->spheres);
   print_flag(to, "CONVEX", v->convex);

@@ -20,7 +20,7 @@ typedef struct abbe_shader_variant {
   bool receiver_shadows, absorbing, textured, caustics, walk, cubes;
   bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
-  bool layers_out;
+  bool aovs;
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
   bool wide;

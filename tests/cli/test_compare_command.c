@@ -124,7 +124,7 @@ static void test_a_traced_map_and_a_rendered_one(void **state) {
       run_line(
           "\"$abbe\" trace \"$house\"/scenes/sphere.yaml -q -o t.exr --save-map "
           "ref.exr --size 16x16 --map 32 --spp 8 --photons 20000 --physics matched && \"$abbe\" "
-          "render \"$house\"/scenes/sphere.yaml -q -o r.exr --size 16x16 --layers --photons 64 "
+          "render \"$house\"/scenes/sphere.yaml -q -o r.exr --size 16x16 --aovs --photons 64 "
           "--save-map test.exr --map-like ref.exr"),
       0);
   cJSON *json = compare_json(COMPARE "ref.exr test.exr --json --mask caustic", 0);

@@ -30,9 +30,9 @@ static inline abbe_statistics draw_frame(abbe_renderer *renderer) {
   return statistics;
 }
 
-static inline void read_picture(abbe_renderer *renderer, bool layers, abbe_image *out) {
+static inline void read_picture(abbe_renderer *renderer, bool aovs, abbe_image *out) {
   abbe_error error = {0};
-  assert_ok(abbe_renderer_read(renderer, layers, out, &error), &error);
+  assert_ok(abbe_renderer_read(renderer, aovs, out, &error), &error);
 }
 
 static inline void read_map(abbe_renderer *renderer, size_t light, abbe_image *out) {

@@ -49,7 +49,7 @@ static abbe_statistics draw(const abbe_scene *scene, const abbe_render_desc *des
   abbe_renderer *renderer = make_renderer(scene, desc);
   assert_true(abbe_renderer_plan(renderer)->cubes == cube);
   const abbe_statistics statistics = draw_frame(renderer);
-  if (picture != NULL) read_picture(renderer, desc->layers, picture);
+  if (picture != NULL) read_picture(renderer, desc->aovs, picture);
   abbe_renderer_free(renderer);
   return statistics;
 }
@@ -128,7 +128,7 @@ static void seams_are_not_seen(void **state) {
   double reached[3], light[3] = {0, 0, 0}, apart[3] = {0, 0, 0};
   desc.photons = 128;
   desc.map_size = 256;
-  desc.layers = true;
+  desc.aovs = true;
   for (int i = 0; i < 3; i++) {
     abbe_scene scene;
     load_balls(ball, 2, turn[i], point, &scene);
@@ -161,7 +161,7 @@ static void direct_light_is_whole(void **state) {
     abbe_render_desc desc = small_frame;
     abbe_image both = {0}, one[2] = {{0}, {0}};
     size_t shaded = 0, wrong = 0;
-    desc.layers = true;
+    desc.aovs = true;
     desc.supersample = 1;
     desc.model = models[m];
     desc.width = desc.height = 128;

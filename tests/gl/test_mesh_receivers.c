@@ -193,7 +193,7 @@ static void draw(const abbe_scene *scene, const abbe_render_desc *desc, abbe_map
   abbe_renderer *renderer = make_renderer(scene, desc);
   out->energy = draw_frame(renderer).energy;
   assert_true(out->energy.reached > 0 && abbe_ledger_imbalance(&out->energy) < 1e-4);
-  read_picture(renderer, desc->layers, &out->picture);
+  read_picture(renderer, desc->aovs, &out->picture);
   read_map(renderer, 0, &out->map);
   if (layout != NULL) abbe_renderer_map_layout(renderer, 0, layout);
   abbe_renderer_free(renderer);
@@ -304,7 +304,7 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
                                  .energy_share = 1e-6,
                                  .exits = ABBE_RENDER_MAX_EXITS,
                                  .space = ABBE_RGB_SPACE_XYZ,
-                                 .layers = true};
+                                 .aovs = true};
   abbe_scene scene = {0};
   abbe_image picture = {0};
   abbe_error error = {0};

@@ -54,13 +54,13 @@ static void check(const abbe_render_desc *desc, double power, abbe_rgb_space spa
   assert_contains(error.text, "no frame");
   assert_int_equal(early.texture, 0);
   draw_frame(renderer);
-  assert_is_the_picture(renderer, desc->layers);
+  assert_is_the_picture(renderer, desc->aovs);
   const abbe_renderer_picture p = get_texture(renderer);
   assert_int_equal(p.space, space);
   assert_int_equal(p.scale == 1, power == 1);
   draw_frame(renderer); /* the texture is asked for before the frame that it shows and after it */
   assert_int_equal(get_texture(renderer).texture, p.texture);
-  assert_is_the_picture(renderer, desc->layers);
+  assert_is_the_picture(renderer, desc->aovs);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
 }
@@ -71,7 +71,7 @@ static const abbe_render_desc tiny = {
 static void test_it_is_what_is_read_in_every_space(void **state) {
   (void)state;
   abbe_render_desc desc = tiny;
-  desc.layers = true;
+  desc.aovs = true;
   desc.space = ABBE_RGB_SPACE_REC709;
   check(&desc, 1, ABBE_RGB_SPACE_REC709);
   desc.space = ABBE_RGB_SPACE_ACESCG;

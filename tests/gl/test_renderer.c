@@ -51,8 +51,7 @@ static void assert_repeats(abbe_renderer *renderer) {
 /* What ran is what the plan says. */
 static void assert_as_planned(const abbe_renderer *renderer, const abbe_statistics *s) {
   for (size_t i = 0; i < s->pass_count; i++) {
-    const abbe_plan_entry *entry =
-        abbe_plan_find(abbe_renderer_plan(renderer), s->pass[i].pass, 0);
+    const abbe_plan_entry *entry = abbe_plan_find(abbe_renderer_plan(renderer), s->pass[i].pass, 0);
     if (entry == NULL || !entry->runs)
       print_error("'%s' ran unplanned\n", abbe_plan_item_text(s->pass[i].pass));
     assert_true(entry != NULL && entry->runs);
@@ -185,7 +184,7 @@ static void test_faint_light_is_the_same_light(void **state) {
   abbe_image picture[3], map[3];
   abbe_ledger energy[3];
   abbe_render_desc desc = small_frame;
-  desc.layers = true;
+  desc.aovs = true;
   for (int i = 0; i < 3; i++) {
     abbe_scene scene;
     load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene);

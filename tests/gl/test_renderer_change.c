@@ -10,9 +10,9 @@ static const abbe_render_desc tiny = {
     .width = 24, .height = 20, .photons = 32, .map_size = 64, .supersample = 1};
 
 #define GLASS_SCENE                                                                                \
-  CAMERA POINT_LIGHT FLOOR BRICK("crown")                                                          \
-  "- {name: card, shape: rectangle, width: 0.1, height: 0.1, reflectance: 0.7, transform: "        \
-  "[{translate: [-0.2, 0, 0.1]}]}\n"
+  CAMERA POINT_LIGHT FLOOR BRICK("crown") "- {name: card, shape: rectangle, width: 0.1, height: "  \
+                                          "0.1, reflectance: 0.7, transform: "                     \
+                                          "[{translate: [-0.2, 0, 0.1]}]}\n"
 
 /* Two lights, a mesh that is traversed, and a receiver that is no rectangle. */
 #define MESH_SCENE                                                                                 \
@@ -38,9 +38,10 @@ static void assert_as_made_anew(abbe_renderer *renderer, const abbe_scene *scene
   abbe_image kept = {0}, anew = {0}, kept_map = {0}, anew_map = {0};
   abbe_renderer *other = make_renderer(scene, desc);
   const abbe_statistics a = draw_frame(renderer), b = draw_frame(other);
-  read_picture(renderer, desc->layers, &kept);
-  read_picture(other, desc->layers, &anew);
-  assert_int_equal(kept.width * kept.height * kept.channels, anew.width * anew.height * anew.channels);
+  read_picture(renderer, desc->aovs, &kept);
+  read_picture(other, desc->aovs, &anew);
+  assert_int_equal(kept.width * kept.height * kept.channels,
+                   anew.width * anew.height * anew.channels);
   for (size_t i = 0; i < kept.width * kept.height * kept.channels; i++)
     if (memcmp(&kept.data[i], &anew.data[i], sizeof *kept.data) != 0) {
       print_error("after %s, value %zu: %.9g, and %.9g anew\n", what, i, (double)kept.data[i],
@@ -101,12 +102,12 @@ static void a_change_runs_what_depends_on_it(void **state) {
   const struct {
     const char *what;
     bool light, eye;
-  } cases[] = {{"nothing", false, false},      {"the camera", false, true},
-               {"a light's power", false, true}, {"the picture's size", false, true},
-               {"ambient light", false, true}, {"a reflectance", false, true},
-               {"a material", true, true},     {"a light's place", true, true},
+  } cases[] = {{"nothing", false, false},         {"the camera", false, true},
+               {"a light's power", false, true},  {"the picture's size", false, true},
+               {"ambient light", false, true},    {"a reflectance", false, true},
+               {"a material", true, true},        {"a light's place", true, true},
                {"an object's place", true, true}, {"a receiver's place", true, true},
-               {"photons", true, true},        {"the map", true, true}};
+               {"photons", true, true},           {"the map", true, true}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     const double energy = s.energy.reached;
     if (i == 1) scene.camera.eye[0] += 0.1;
@@ -253,8 +254,9 @@ static void a_cancelled_renderer_goes_on(void **state) {
   size_t count, slots, samples;
   assert_int_equal(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_renderer_baseline(renderer, &ms, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_renderer_read_hits(renderer, 0, &hits, NULL, &count, &slots, &samples, &error),
-                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(
+      abbe_renderer_read_hits(renderer, 0, &hits, NULL, &count, &slots, &samples, &error),
+      ABBE_INVALID_ARGUMENT);
   assert_int_equal(change(renderer, &scene, &tiny), ABBE_OK);
   assert_as_made_anew(renderer, &scene, &tiny, "a cancelled change");
   abbe_renderer_free(renderer);

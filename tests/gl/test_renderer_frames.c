@@ -79,7 +79,7 @@ static void test_fewer_samples_than_pixels(void **state) {
                            .photons = 32,
                            .map_size = 64,
                            .wavelengths = 3,
-                           .layers = true,
+                           .aovs = true,
                            .upsample = 2};
   abbe_image *const out[] = {&coarse, &half, &odd, &fine};
   const size_t sizes[][2] = {{64, 48}, {32, 24}, {63, 47}, {63, 47}}, up[] = {2, 1, 2, 1};

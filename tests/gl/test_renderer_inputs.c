@@ -100,7 +100,7 @@ static void give_texture(edited *e) {
   X("the picture's height", e->desc.height = 40, EYE)                                              \
   X("samples", e->desc.supersample = 3, EYE)                                                       \
   X("their shift", e->desc.sample_shift[1] = 0.25, EYE)                                            \
-  X("layers", e->desc.layers = true, EYE)                                                          \
+  X("aovs", e->desc.aovs = true, EYE)                                                              \
   X("the space", e->desc.space = ABBE_RGB_SPACE_REC709, SURFACES | POWERS)                         \
   X("wavelengths", e->desc.wavelengths = 9, SPECTRA | WAY)                                         \
   X("the range from", e->desc.min_nm = 400, SPECTRA | WAY)                                         \

@@ -176,7 +176,7 @@ static void test_error_bars(void **state) {
       {GEM " -o a.exr --mean", "--mean goes with --error-bars"},
       {GEM " --error-png e.png", "--error-png goes with --error-bars"},
       {GEM " -o a.exr --error-bars=1", "--error-bars"},
-      {GEM " -o a.exr --error-bars --mean --layers", "--mean has no --layers"},
+      {GEM " -o a.exr --error-bars --mean --aovs", "--mean has no --aovs"},
       {GEM " -o a.exr --error-bars --profile thesis", "'thesis' has no error bars"},
   };
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {

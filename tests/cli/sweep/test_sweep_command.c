@@ -108,7 +108,7 @@ static void test_the_error_is_decomposed(void **state) {
 static void test_given_references(void **state) {
   (void)state;
   run_well("\"$abbe\" render \"$house\"/scenes/gem.yaml -q --size 24x24 --photons 32 --map 64 "
-           "--layers -o r.exr --save-map m.exr");
+           "--aovs -o r.exr --save-map m.exr");
   run_well("\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --frames 1 --reference r.exr "
            "--reference-map m.exr --profiles default --photons 32 --map 64 -o s.csv --json");
   cJSON *json = cJSON_Parse(run_output);
@@ -125,10 +125,10 @@ static void test_given_references(void **state) {
 static void test_ctrl_c_keeps_what_is_done(void **state) {
   (void)state;
   abbe_sweep_table table = {0};
-  int code =
-      run_line(SWEEP "--profiles default --wavelengths 7,9,11,13,15,17,19,21 --photons 64,72,80,800 "
-                     "-o s.csv & pid=$!; while ! test -s s.csv; do sleep 0.02; done; "
-                     "kill -INT $pid; wait $pid");
+  int code = run_line(
+      SWEEP "--profiles default --wavelengths 7,9,11,13,15,17,19,21 --photons 64,72,80,800 "
+            "-o s.csv & pid=$!; while ! test -s s.csv; do sleep 0.02; done; "
+            "kill -INT $pid; wait $pid");
   assert_int_equal(code, 1);
   assert_contains(run_errors, "of 32 settings are in s.csv, and the same command goes on");
   load("s.csv", &table);

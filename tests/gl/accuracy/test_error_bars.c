@@ -6,7 +6,7 @@
 #include "validation/compare/compare.h"
 
 static const abbe_render_desc coarse_frame = {
-    .width = 96, .height = 96, .photons = 64, .map_size = 256, .wavelengths = 5, .layers = true};
+    .width = 96, .height = 96, .photons = 64, .map_size = 256, .wavelengths = 5, .aovs = true};
 
 static void make_bars(const abbe_scene *scene, const abbe_render_desc *desc,
                       const abbe_error_bars_desc *bars_desc, abbe_image *picture,

@@ -311,7 +311,7 @@ static void assert_same_in_any_state(const char *text, const abbe_render_desc *d
 }
 
 static const abbe_render_desc tiny = {
-    .width = 16, .height = 12, .photons = 16, .map_size = 32, .wavelengths = 3, .layers = true};
+    .width = 16, .height = 12, .photons = 16, .map_size = 32, .wavelengths = 3, .aovs = true};
 
 static void test_the_default_profile(void **state) {
   (void)state;
@@ -331,7 +331,7 @@ static void test_the_thesis(void **state) {
   abbe_render_desc desc = tiny;
   desc.profile = ABBE_PROFILE_THESIS;
   desc.wavelengths = 7;
-  desc.layers = false;
+  desc.aovs = false;
   desc.photons = desc.map_size = 64;
   assert_same_in_any_state(CAMERA POINT_LIGHT FLOOR BALL("crown"), &desc);
 }

@@ -159,7 +159,7 @@ static const abbe_render_desc one_exit = {.width = 96,
                                           .photons = 128,
                                           .map_size = 512,
                                           .exits = 1,
-                                          .layers = true,
+                                          .aovs = true,
                                           .space = ABBE_RGB_SPACE_XYZ};
 
 static size_t channel_of(const abbe_image *image, const char *name) {

@@ -348,7 +348,7 @@ static void shelves_in_front_are_lit(void **state) {
   abbe_image image = {0};
   load_text(text, &scene);
   abbe_render_desc desc = small_frame;
-  desc.layers = true;
+  desc.aovs = true;
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, true, &image);

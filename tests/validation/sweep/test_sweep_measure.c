@@ -33,7 +33,7 @@ static void own_reference(const abbe_scene *scene, const abbe_sweep_setting *set
   abbe_render_desc desc;
   assert_int_equal(abbe_sweep_setting_desc(setting, &desc, NULL), ABBE_OK);
   desc.width = desc.height = 32;
-  desc.layers = true;
+  desc.aovs = true;
   abbe_renderer *renderer = make_renderer(scene, &desc);
   draw_frame(renderer);
   read_picture(renderer, true, picture);

@@ -109,7 +109,7 @@ static void draw(const char *text, bool unlit, size_t samples, abbe_image *pictu
   abbe_render_desc desc = small_frame;
   desc.width = 96;
   desc.supersample = samples;
-  desc.layers = true;
+  desc.aovs = true;
   load_text(text, &scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   assert_true((renderer->receivers.unlit != 0) == unlit);
