@@ -11,6 +11,45 @@
 static const abbe_render_desc small_frame = {
     .width = 64, .height = 64, .photons = 64, .map_size = 128};
 
+/* How far it is from the view of p to that of the scene's refractors, rad. */
+static inline double angle_to_refractors(const abbe_scene *scene, const double p[3]) {
+  const double *eye = scene->camera.eye;
+  double least = INFINITY;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    if (object->material == NULL) continue;
+    double dot = 0, to_p = 0, to_object = 0;
+    for (int c = 0; c < 3; c++) {
+      const double a = p[c] - eye[c], b = 0.5 * (object->min[c] + object->max[c]) - eye[c];
+      dot += a * b;
+      to_p += a * a;
+      to_object += b * b;
+    }
+    least = fmin(least, acos(fmax(-1, fmin(1, dot / sqrt(to_p * to_object)))));
+  }
+  return least;
+}
+
+/* Turns the camera to the corner of a receiver that is farthest from all refractors: where only
+ * light counts, the camera's rays through them need no shader. */
+static inline void look_aside(abbe_scene *scene) {
+  double farthest = -1;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *object = &scene->object[i];
+    for (size_t k = 0; object->material == NULL && k < object->mesh.vertex_count; k++) {
+      double p[3];
+      for (int c = 0; c < 3; c++)
+        p[c] =
+            0.97 * (double)object->mesh.position[k][c] + 0.015 * (object->min[c] + object->max[c]);
+      const double angle = angle_to_refractors(scene, p);
+      if (angle <= farthest) continue;
+      farthest = angle;
+      memcpy(scene->camera.target, p, sizeof p);
+    }
+  }
+  scene->camera.fov_y_rad = 0.01;
+}
+
 static inline void assert_ok(abbe_result result, const abbe_error *error) {
   if (result != ABBE_OK) print_error("%s\n", error->text);
   assert_int_equal(result, ABBE_OK);
@@ -43,7 +82,9 @@ static inline void read_map(abbe_renderer *renderer, size_t light, abbe_image *o
 /* The map of one frame of a scene. */
 static inline void make_map(const abbe_scene *scene, const abbe_render_desc *desc,
                             abbe_image *out) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
+  abbe_scene aside = *scene;
+  look_aside(&aside);
+  abbe_renderer *renderer = make_renderer(&aside, desc);
   draw_frame(renderer);
   read_map(renderer, 0, out);
   abbe_renderer_free(renderer);

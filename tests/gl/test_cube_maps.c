@@ -77,6 +77,7 @@ static void all_light_goes_in_once(void **state) {
   for (size_t i = 0; i < sizeof crowds / sizeof *crowds; i++) {
     abbe_scene scene;
     load_balls(crowds[i].ball, crowds[i].count, 0, point, &scene);
+    look_aside(&scene);
     const abbe_statistics statistics = draw(&scene, &small_frame, true, NULL);
     const double expected = light_into(crowds[i].ball, crowds[i].count);
     print_message("%zu balls: %.6f of the light, imbalance %.2g\n", crowds[i].count,
@@ -110,6 +111,7 @@ static void a_wide_spot_has_a_cube_too(void **state) {
   static const place ball[2] = {{{-0.3, 0, 0}, 0.08}, {{0.3, 0, 0}, 0.08}};
   abbe_scene scene;
   load_balls(ball, 2, 0, "kind: spot, direction: [0, 0, -1], cone: 85, soft: 0", &scene);
+  look_aside(&scene);
   const abbe_statistics spot = draw(&scene, &small_frame, true, NULL);
   const double expected = light_into_cone(ball, 2, cos(85 * pi / 180));
   print_message("a wide spot: %.6f of the light\n", spot.energy.reached / expected);
@@ -201,6 +203,7 @@ static void the_tracer_agrees(void **state) {
   abbe_map_layout layout;
   abbe_error error = {0};
   load_balls(crowds[3].ball, crowds[3].count, 0, point, &scene);
+  look_aside(&scene);
   static const double down[3] = {0, 0, -1}, up[3] = {0, 1, 0},
                       floor[4][3] = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
   abbe_view view; /* that no face looks through alone */
@@ -255,6 +258,7 @@ static void a_cube_has_no_single_layout(void **state) {
   abbe_image map = {0};
   abbe_error error = {0};
   load_balls(crowds[0].ball, crowds[0].count, 0, point, &scene);
+  look_aside(&scene);
   abbe_renderer *renderer = make_renderer(&scene, &small_frame);
   draw_frame(renderer);
   assert_int_equal(abbe_renderer_read_map(renderer, 0, true, &map, &error), ABBE_UNSUPPORTED);

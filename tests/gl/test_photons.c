@@ -11,7 +11,9 @@ typedef struct hits {
 } hits;
 
 static void trace_photons(const abbe_scene *scene, const abbe_render_desc *desc, hits *l) {
-  abbe_renderer *renderer = make_renderer(scene, desc);
+  abbe_scene aside = *scene;
+  look_aside(&aside);
+  abbe_renderer *renderer = make_renderer(&aside, desc);
   abbe_error error = {0};
   draw_frame(renderer);
   assert_ok(abbe_renderer_read_hits(renderer, 0, &l->at, &l->cell, &l->count, &l->orders,

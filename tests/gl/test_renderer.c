@@ -127,6 +127,7 @@ static void test_mixed_scenes_balance(void **state) {
     desc.photons = photons[2 + i % 2];
     desc.map_size = maps[2];
     load_text(texts[i], &scene);
+    look_aside(&scene);
     abbe_renderer *renderer = make_renderer(&scene, &desc);
     abbe_statistics s = draw_frame(renderer);
     assert_balance(&s, texts[i]);
@@ -150,6 +151,7 @@ static void test_many_wavelengths_add_up(void **state) {
   static const size_t counts[] = {1, 2, 64, 65, 200};
   abbe_scene scene = {0};
   load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  look_aside(&scene);
   double first = 0;
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     abbe_render_desc desc = small_frame;

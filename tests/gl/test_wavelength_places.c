@@ -135,6 +135,7 @@ static void assert_bands_in_place(const setting *s, const abbe_render_desc *desc
   abbe_scene_free(&scene);
   const double width = fabs(ends[1] - ends[0]);
   load_bench(s, &b, 0.5 * (ends[0] + ends[1]), 1.2 * width + 0.02, &scene);
+  look_aside(&scene);
   abbe_renderer *renderer = make_renderer(&scene, desc);
   draw_frame(renderer);
   abbe_renderer_map_layout(renderer, 0, &layout);

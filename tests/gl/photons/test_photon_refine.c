@@ -4,17 +4,19 @@
 #include "colorimetry/weights.h"
 #include "spectral/optics.h"
 
-/* layout: of the map, where it is not all zero; else it is set to the one that was fitted. May be NULL. */
+/* layout: of the map, where it is not all zero; else it is set to the one that was fitted. May be
+ * NULL. */
 static abbe_ledger draw(const char *name, size_t wavelengths, abbe_fill fill,
                         abbe_map_layout *layout, abbe_image *map) {
   abbe_scene scene = {0};
   load_shipped(name, &scene);
+  look_aside(&scene);
   abbe_render_desc desc = {.width = 16,
-                                 .height = 16,
-                                 .photons = 64,
-                                 .map_size = 64,
-                                 .fill = fill,
-                                 .wavelengths = wavelengths};
+                           .height = 16,
+                           .photons = 64,
+                           .map_size = 64,
+                           .fill = fill,
+                           .wavelengths = wavelengths};
   static const abbe_map_layout unknown;
   const bool given = layout != NULL && memcmp(layout, &unknown, sizeof unknown) != 0;
   if (given) desc.map_layout = layout;
@@ -89,6 +91,7 @@ static void a_pane_leaves_what_the_law_says(void **state) {
       "- {name: pane, shape: box, size: [0.2, 0.2, 0.06], material: murk,\n"
       "   transform: [{translate: [0, 0, 0.2]}]}\n",
       &scene);
+  look_aside(&scene);
   const abbe_illuminant *light = &scene.light[0].illuminant;
   double sum[3] = {0}, white[3] = {0}, band[BANDS] = {0};
   for (size_t k = 0; k < BANDS * FINE_STEPS; k++) {
@@ -148,7 +151,8 @@ static void refined_maps_are_those_of_all_wavelengths(void **state) {
     print_message("%s: %g with five, %g refined; of 200 that are bridged too %g and %g\n", names[i],
                   difference(&few, &all), difference(&refined, &all), difference(&few, &bridged),
                   difference(&refined, &bridged));
-    /* What lies between two of 200 is a texel or two, and most of the difference from single ones. */
+    /* What lies between two of 200 is a texel or two, and most of the difference from single ones.
+     */
     assert_true(difference(&refined, &all) < 0.95 * difference(&few, &all));
     assert_true(difference(&refined, &bridged) < 0.2 * difference(&few, &bridged));
     abbe_image_free(&bridged);
@@ -172,6 +176,7 @@ static void a_mesh_is_refined_alike_every_time(void **state) {
   desc.photons = 64;
   desc.wavelengths = 28;
   load_shipped("bunny", &scene);
+  look_aside(&scene);
   abbe_renderer *renderer = make_renderer(&scene, &desc);
   for (int i = 0; i < 2; i++) {
     abbe_renderer_redraw(renderer);
