@@ -14,11 +14,18 @@ static bool count_calls(void *user, double done) {
   return true;
 }
 
+static void assert_picture_again(abbe_renderer *renderer, const abbe_image *before) {
+  abbe_image after = {0};
+  read_picture(renderer, false, &after);
+  assert_same_pixels(before, &after);
+  abbe_image_free(&after);
+}
+
 static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
   (void)state;
   abbe_scene scene = {0};
   abbe_error error = {0};
-  abbe_image before = {0}, after = {0};
+  abbe_image before = {0};
   int calls = 0;
   double last = 0;
   load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
@@ -30,21 +37,17 @@ static void test_a_frame_can_be_stopped_and_drawn_again(void **state) {
   assert_int_equal(calls, 1);
   assert_ok(abbe_renderer_frame(renderer, count_calls, &last, NULL, &error), &error);
   assert_near(last, 1, 0);
-  read_picture(renderer, false, &after);
-  assert_same_pixels(&before, &after);
+  assert_picture_again(renderer, &before);
   abbe_image_free(&before);
-  abbe_image_free(&after);
   abbe_renderer_free(renderer);
   abbe_scene_free(&scene);
 }
 
-/* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
- * its energy is the same, and each light has a map of its own. */
-static void test_the_floor_leaves_the_picture(void **state) {
+static void test_the_baseline_leaves_the_picture(void **state) {
   (void)state;
   for (size_t samples = 1; samples <= 2; samples++) {
     abbe_scene scene = {0};
-    abbe_image before = {0}, after = {0};
+    abbe_image before = {0};
     double ms = 0;
     load_shipped("sphere", &scene);
     const abbe_render_desc desc = {.width = 32,
@@ -58,10 +61,8 @@ static void test_the_floor_leaves_the_picture(void **state) {
     read_picture(renderer, false, &before);
     assert_int_equal(abbe_renderer_baseline(renderer, &ms, NULL), ABBE_OK);
     assert_true(ms > 0);
-    read_picture(renderer, false, &after);
-    assert_same_pixels(&before, &after);
+    assert_picture_again(renderer, &before);
     abbe_image_free(&before);
-    abbe_image_free(&after);
     abbe_renderer_free(renderer);
     abbe_scene_free(&scene);
   }
@@ -118,6 +119,8 @@ static void test_fewer_samples_than_pixels(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* A map laid out as another of the same scene is that map, to the bit; with half the texels a side
+ * its energy is the same, and each light has a map of its own. */
 static void test_a_map_takes_a_given_layout(void **state) {
   (void)state;
   abbe_scene scene;
@@ -224,7 +227,7 @@ static void test_nothing_is_read_before_a_frame(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_frame_can_be_stopped_and_drawn_again),
-      cmocka_unit_test(test_the_floor_leaves_the_picture),
+      cmocka_unit_test(test_the_baseline_leaves_the_picture),
       cmocka_unit_test(test_fewer_samples_than_pixels),
       cmocka_unit_test(test_a_map_takes_a_given_layout),
       cmocka_unit_test(test_what_is_not_there_is_refused),

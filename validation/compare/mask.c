@@ -100,7 +100,7 @@ abbe_result abbe_mask_make_caustic(const abbe_field *field, const char *name, do
   if (field->kind == ABBE_FIELD_PICTURE && field->caustic.channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: a picture without the layers caustic.* does not tell where its "
-                          "caustic is; a picture of 'abbe trace' or of 'abbe render --layers' "
+                          "caustic is; a picture of 'abbe trace' or of 'abbe render --aovs' "
                           "does, and so does a mask that is drawn",
                           name);
   size_t count = field->width * field->height;
