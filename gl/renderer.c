@@ -60,7 +60,7 @@ static abbe_result make_renderer(abbe_context *context, const abbe_scene *scene,
   abbe_renderer *r = calloc(1, sizeof *r);
   if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a renderer");
   r->context = context;
-  r->software = strstr(abbe_context_description(context), "llvmpipe") != NULL;
+  r->gpu.software = strstr(abbe_context_description(context), "llvmpipe") != NULL;
   abbe_result result = abbe_gpu_make(abbe_context_gl(context), &r->gpu, error);
   if (result == ABBE_OK) result = change_watched(r, scene, desc, error);
   if (result != ABBE_OK) {

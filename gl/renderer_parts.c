@@ -99,7 +99,7 @@ static void free_parts(abbe_renderer *r, unsigned parts) {
 
 static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant_make(&r->scene, &r->variant);
-  r->variant.copies = r->software;
+  r->variant.copies = r->gpu.software;
   if (is_thesis(r)) return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
   r->variant.textured = false; /* no light is followed beyond a receiver */
   abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);

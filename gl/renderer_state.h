@@ -14,7 +14,6 @@
 struct abbe_renderer {
   abbe_context *context;
   abbe_gpu gpu;
-  bool software; /* what runs the shaders is a processor */
   abbe_local_scene local;
   abbe_map_layout given, local_given; /* the request's layout; the same there */
   abbe_plan plan;

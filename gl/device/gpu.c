@@ -48,8 +48,10 @@ abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, G
       gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, data);
     return ABBE_OK;
   }
-  abbe_result result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, NULL);
-  if (result != ABBE_OK) {
+  abbe_result result = abbe_gl_check(gl, "what came before a buffer was allocated", error);
+  if (result != ABBE_OK) return result;
+  result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, error);
+  if (result == ABBE_NO_MEMORY) {
     abbe_gpu_make_way(gpu);
     result = allocate_buffer(gl, room, size > 0 ? data : NULL, out, error);
   }
@@ -98,8 +100,10 @@ static abbe_result make_storage(abbe_gpu *gpu, GLenum target, const abbe_stored_
     gl->BindTexture(target, *out);
     return ABBE_OK;
   }
-  abbe_result result = allocate_storage(gl, target, key, out, NULL);
-  if (result != ABBE_OK) {
+  abbe_result result = abbe_gl_check(gl, "what came before a texture was allocated", error);
+  if (result != ABBE_OK) return result;
+  result = allocate_storage(gl, target, key, out, error);
+  if (result == ABBE_NO_MEMORY) {
     abbe_gpu_make_way(gpu);
     result = allocate_storage(gl, target, key, out, error);
   }
@@ -121,14 +125,14 @@ abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, si
                                   size_t layers, bool linear, GLuint *out, abbe_error *error) {
   const GLenum target = layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
   const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
-  const abbe_stored_key key = {
-      .kind = ABBE_STORED_TEXTURE,
-      .format = format,
-      .bytes = width * height * (layers > 0 ? layers : 1) * texel_bytes(format),
-      .width = width,
-      .height = height,
-      .layers = layers,
-      .levels = 1};
+  const abbe_stored_key key = {.kind = ABBE_STORED_TEXTURE,
+                               .format = format,
+                               .bytes =
+                                   width * height * (layers > 0 ? layers : 1) * texel_bytes(format),
+                               .width = width,
+                               .height = height,
+                               .layers = layers,
+                               .levels = 1};
   abbe_result result = make_storage(gpu, target, &key, out, error);
   if (result == ABBE_OK) set_filter(gpu->gl, target, filter, filter);
   return result;
@@ -378,12 +382,13 @@ abbe_result abbe_gpu_tell(abbe_gpu *gpu, double done, abbe_error *error) {
 static const double part_ms = 6;
 enum { FIRST_PART = 4, MOST_GROUPS = 65535 };
 
-/* The next part's size, after one of so many units of all took so long. One may take far longer
- * than those before it, so that a part has few; but no dispatch has more than some hundred parts. */
-static size_t next_part(size_t units, size_t all, double ms) {
+/* The next part's size, after one of so many units of all took so long. By software one may take
+ * far longer than those before it, so that a part has few; but no dispatch has more than some
+ * hundred parts. A GPU runs a few units no faster than many. */
+static size_t next_part(const abbe_gpu *gpu, size_t units, size_t all, double ms) {
   enum { FEW = 8, MOST_PARTS = 512 };
   const double factor = fmin(fmax(part_ms / fmax(ms, 1e-3), 0.25), 2);
-  const double most = fmax(FEW, (double)all / MOST_PARTS);
+  const double most = gpu->software ? fmax(FEW, (double)all / MOST_PARTS) : MOST_GROUPS;
   return (size_t)fmin(fmax((double)units * factor, 1), fmin(most, MOST_GROUPS));
 }
 
@@ -404,7 +409,7 @@ static void dispatch_parts(abbe_gpu *gpu, GLuint program, size_t units, size_t w
       gpu->gl->DispatchCompute((GLuint)count, 1, 1);
     gpu->gl->Finish();
     at += count;
-    part = next_part(count, units, 1e3 * abbe_clock_seconds() - start_ms);
+    part = next_part(gpu, count, units, 1e3 * abbe_clock_seconds() - start_ms);
   }
   abbe_gpu_set_uint(gpu, program, first, 0);
 }

@@ -27,6 +27,7 @@
 
 typedef struct abbe_gpu {
   const abbe_gl *gl;
+  bool software; /* what runs the shaders is a processor; whoever makes the struct says so */
   GLuint framebuffer, empty_array;
   GLuint list_groups;                  /* program */
   GLuint texels[ABBE_GPU_TEXEL_UNITS]; /* textures that show buffers, one a unit */
@@ -46,13 +47,14 @@ void abbe_gpu_free(abbe_gpu *gpu);
 
 /* A storage buffer; data may be NULL: what is in it is then not known. What is made is put back by
  * abbe_gpu_drop_*, and taken up by what is made alike; where there is no room, what is not in use
- * gives way. So of textures. ABBE_GL, ABBE_NO_MEMORY. */
+ * gives way. So of textures. ABBE_GL, also where an older error of OpenGL is pending, which is cleared;
+ * ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_buffer(abbe_gpu *gpu, size_t size, const void *data, GLuint *out,
                                  abbe_error *error);
-/* A texture of one level, an array where layers > 0. ABBE_GL. */
+/* A texture of one level, an array where layers > 0. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_texture(abbe_gpu *gpu, GLenum format, size_t width, size_t height,
                                   size_t layers, bool linear, GLuint *out, abbe_error *error);
-/* A square array with levels, trilinear. */
+/* A square array with levels, trilinear. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_gpu_make_levels(abbe_gpu *gpu, GLenum format, size_t side, size_t layers,
                                  size_t levels, GLuint *out, abbe_error *error);
 /* Back to the device's store; each becomes 0, those that are 0 are left alone. */

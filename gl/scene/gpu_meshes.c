@@ -58,17 +58,18 @@ abbe_result abbe_gpu_meshes_upload(abbe_gpu_scene *scene, abbe_error *error) {
   scene->mesh = calloc(scene->local->object_count + 1, sizeof *scene->mesh);
   if (scene->mesh == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for meshes");
   scene->mesh_count = scene->local->object_count;
-  for (size_t i = 0; i < scene->local->object_count; i++) {
+  abbe_result result =
+      abbe_gl_check(scene->gpu->gl, "what came before meshes were uploaded", error);
+  for (size_t i = 0; i < scene->local->object_count && result == ABBE_OK; i++) {
     const abbe_mesh *mesh = &scene->local->object[i].mesh;
-    abbe_result result = upload_mesh(scene, mesh, &scene->mesh[i], NULL);
-    if (result != ABBE_OK) {
+    result = upload_mesh(scene, mesh, &scene->mesh[i], error);
+    if (result == ABBE_NO_MEMORY) {
       free_mesh(scene->gpu->gl, &scene->mesh[i]);
       abbe_gpu_make_way(scene->gpu);
       result = upload_mesh(scene, mesh, &scene->mesh[i], error);
     }
-    if (result != ABBE_OK) return result;
   }
-  return ABBE_OK;
+  return result;
 }
 
 void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object) {

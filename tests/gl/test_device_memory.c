@@ -3,6 +3,7 @@
 #include "tests/gl/frame.h"
 
 #include "gl/device/context_backend.h"
+#include "gl/scene/gpu_scene.h"
 
 enum { MOST_THINGS = 4096 };
 
@@ -13,7 +14,9 @@ static struct {
   size_t bytes;
 } held[MOST_THINGS];
 static size_t held_count, held_bytes, most_bytes; /* most_bytes: the limit; 0: none */
-static bool failed;                               /* an error is pending */
+static GLenum pending;                            /* an error, or none */
+static GLenum fault;                              /* of every allocation, or none */
+static size_t takes;                              /* allocations that were tried */
 static GLuint bound_buffer, bound_texture;
 
 static abbe_gl_lookup real_lookup;
@@ -30,8 +33,11 @@ static void drop(bool texture, GLuint name) {
 
 static bool take(bool texture, GLuint name, size_t bytes) {
   drop(texture, name);
-  failed = failed || (most_bytes > 0 && held_bytes + bytes > most_bytes);
-  if (failed) return false;
+  takes++;
+  GLenum error = fault;
+  if (most_bytes > 0 && held_bytes + bytes > most_bytes) error = GL_OUT_OF_MEMORY;
+  if (pending == GL_NO_ERROR) pending = error; /* the first one stays, as in OpenGL */
+  if (error != GL_NO_ERROR) return false;
   assert_true(held_count < MOST_THINGS);
   held[held_count].name = name;
   held[held_count].texture = texture;
@@ -78,8 +84,8 @@ static void delete_textures(GLsizei count, const GLuint *names) {
 }
 
 static GLenum get_error(void) {
-  const GLenum error = failed ? GL_OUT_OF_MEMORY : real.GetError();
-  failed = false;
+  const GLenum error = pending != GL_NO_ERROR ? pending : real.GetError();
+  pending = GL_NO_ERROR;
   return error;
 }
 
@@ -113,15 +119,19 @@ static const abbe_render_desc before = {
 
 static const char text[] = CAMERA POINT_LIGHT FLOOR BRICK("crown");
 
+static abbe_image drawn(abbe_renderer *renderer) {
+  abbe_image picture = {0};
+  draw_frame(renderer);
+  read_picture(renderer, false, &picture);
+  return picture;
+}
+
 static void draw_as_made_anew(abbe_renderer *renderer, const abbe_scene *scene,
                               const abbe_render_desc *desc) {
-  abbe_image kept = {0}, anew = {0};
-  draw_frame(renderer);
-  read_picture(renderer, false, &kept);
+  abbe_image kept = drawn(renderer);
   most_bytes = 0;
   abbe_renderer *other = make_renderer(scene, desc);
-  draw_frame(other);
-  read_picture(other, false, &anew);
+  abbe_image anew = drawn(other);
   assert_same_pixels(&kept, &anew);
   abbe_image_free(&kept);
   abbe_image_free(&anew);
@@ -192,9 +202,81 @@ static void what_does_not_fit_is_refused(void **state) {
   abbe_scene_free(&scene);
 }
 
+enum { BUFFER, TEXTURE, LEVELS, MESHES, KINDS, UNUSED_BYTES = 1 << 20 };
+
+/* As by a renderer, of a size that nothing else has. */
+static abbe_result allocate(abbe_gpu_scene *scene, int kind, GLuint *out, abbe_error *error) {
+  abbe_gpu *gpu = scene->gpu;
+  switch (kind) {
+  case BUFFER:
+    return abbe_gpu_make_buffer(gpu, 77, NULL, out, error);
+  case TEXTURE:
+    return abbe_gpu_make_texture(gpu, GL_RGBA32F, 7, 11, 0, false, out, error);
+  case LEVELS:
+    return abbe_gpu_make_levels(gpu, GL_RGBA32F, 16, 3, 2, out, error);
+  default:
+    return abbe_gpu_meshes_upload(scene, error);
+  }
+}
+
+static void give_back(abbe_gpu_scene *scene, int kind, GLuint *out) {
+  if (kind == BUFFER) abbe_gpu_drop_buffers(scene->gpu, 1, out);
+  if (kind == TEXTURE || kind == LEVELS) abbe_gpu_drop_textures(scene->gpu, 1, out);
+  abbe_gpu_meshes_free(scene);
+}
+
+/* What is not in use gives way to what has no room, and to no other error: neither to one of the
+ * allocation itself nor to one that was pending before it, which is told as it is. */
+static void only_a_lack_of_memory_is_tried_again(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_gpu gpu = {0};
+  abbe_error error = {0};
+  load_text(text, &scene);
+  assert_ok(abbe_context_make_current(context, &error), &error);
+  assert_ok(abbe_gpu_make(abbe_context_gl(context), &gpu, &error), &error);
+  abbe_gpu_scene on = {.gpu = &gpu, .local = &scene};
+  for (int kind = 0; kind < KINDS; kind++) {
+    static const GLenum codes[] = {GL_INVALID_OPERATION, GL_OUT_OF_MEMORY};
+    GLuint unused = 0, out = 0;
+    assert_ok(abbe_gpu_make_buffer(&gpu, UNUSED_BYTES, NULL, &unused, &error), &error);
+    const GLuint name = unused;
+    abbe_gpu_drop_buffers(&gpu, 1, &unused);
+
+    for (int k = 0; k < 2; k++) {
+      pending = codes[k];
+      takes = 0;
+      assert_int_equal(allocate(&on, kind, &out, &error), k == 0 ? ABBE_GL : ABBE_NO_MEMORY);
+      assert_contains(error.text, "what came before");
+      assert_int_equal(takes, 0);
+      give_back(&on, kind, &out);
+    }
+    takes = 0;
+    fault = GL_INVALID_VALUE;
+    assert_int_equal(allocate(&on, kind, &out, &error), ABBE_GL);
+    assert_contains(error.text, "invalid value");
+    assert_int_equal(takes, kind == MESHES ? 2 : 1); /* of a mesh: vertices and faces */
+    fault = GL_NO_ERROR;
+    give_back(&on, kind, &out);
+    assert_ok(abbe_gpu_make_buffer(&gpu, UNUSED_BYTES, NULL, &unused, &error), &error);
+    assert_int_equal(unused, name); /* it is still there */
+    abbe_gpu_drop_buffers(&gpu, 1, &unused);
+
+    const size_t with_unused = most_bytes = held_bytes;
+    assert_ok(allocate(&on, kind, &out, &error), &error);
+    assert_true(held_bytes < with_unused);
+    most_bytes = 0;
+    give_back(&on, kind, &out);
+    abbe_gpu_trim(&gpu);
+  }
+  abbe_gpu_free(&gpu);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_change_needs_no_room_for_both),
                                      cmocka_unit_test(a_larger_mesh_needs_no_room_beside_them),
-                                     cmocka_unit_test(what_does_not_fit_is_refused)};
+                                     cmocka_unit_test(what_does_not_fit_is_refused),
+                                     cmocka_unit_test(only_a_lack_of_memory_is_tried_again)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }
