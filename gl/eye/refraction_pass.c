@@ -25,11 +25,11 @@ static bool refines(const abbe_refraction_pass *pass) {
   return desc->wavelengths >= FINE_FROM && !desc->everything;
 }
 
-/* Where a band's path is dear, the samples of a pixel share its bands among them: half the time for the
- * same error. Facets are cheap and show bands apart: there it would cost 5 % in CIEDE2000. */
+/* Where a band's path is dear, the samples of a pixel share its bands among them: half the time for
+ * the same error. Facets are cheap and show bands apart: there it would cost 5 % in CIEDE2000. */
 static bool interleaves(const abbe_refraction_pass *pass) {
   const abbe_plan *plan = scene_of(pass)->plan;
-  const bool dear = plan->multi_refractor_paths || plan->bvh || plan->layers;
+  const bool dear = plan->multi_refractor_paths || plan->layers;
   return dear && plan->desc.supersample > 1 && !plan->desc.everything;
 }
 
@@ -40,10 +40,11 @@ static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_v
   abbe_shader_variant camera = *variant;
   camera.exits = scene_of(pass)->plan->eye_exits;
   snprintf(coarse, sizeof coarse, "#define REFINES\n#define COARSE_BANDS %d\n", COARSE_BANDS);
-  abbe_result result = abbe_shader_variant_compute(
-      &camera, gpu, "refraction.comp",
-      refines(pass) ? coarse : interleaves(pass) ? "#define INTERLEAVES\n" : NULL, &pass->refract,
-      error);
+  abbe_result result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp",
+                                                   refines(pass)       ? coarse
+                                                   : interleaves(pass) ? "#define INTERLEAVES\n"
+                                                                       : NULL,
+                                                   &pass->refract, error);
   if (result == ABBE_OK && refines(pass))
     result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", "#define REFINED\n",
                                          &pass->refract_refined, error);

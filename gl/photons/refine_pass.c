@@ -117,8 +117,7 @@ abbe_result abbe_refine_pass_list(abbe_refine_pass *pass, size_t light, bool mea
   abbe_result result = make_asked(pass, LEAST_PAIRS, error);
   if (result != ABBE_OK) return result;
   select_pairs(pass, light);
-  if (!measures && gpu->statistics == NULL && abbe_refine_pass_chunks(pass, light) <= 1)
-    return ABBE_OK;
+  if (!measures) return ABBE_OK;
   const size_t count = abbe_gpu_read_count(gpu, pass->asked);
   if (gpu->stopped) return ABBE_OK; /* and not all were asked */
   if (count > pass->asked_room) {

@@ -1,5 +1,7 @@
-/* refine_pass.h: intervals between wavelengths of the coarse set whose photons ask for all of
- * theirs, listed, and traced a chunk at a time. Internal to gl/.
+/* refine_pass.h: more wavelengths where a photon's hits ask for them. Every photon is traced at the
+ * wavelengths of the coarse set. An interval between two of these asks, for one photon, to be
+ * traced at all the plan's wavelengths that lie in it. Such intervals are listed, and traced a
+ * chunk of the list at a time. Internal to gl/.
  */
 #ifndef ABBE_GL_PHOTONS_REFINE_PASS_H
 #define ABBE_GL_PHOTONS_REFINE_PASS_H
@@ -9,16 +11,17 @@
 typedef struct abbe_refine_pass {
   abbe_trace_pass *trace;
   GLuint select;       /* program */
-  GLuint wants;        /* intervals that ask, a bit each */
-  GLuint asked, pairs; /* the same listed: all of a light; those of a chunk */
+  GLuint wants;        /* of each photon: its intervals that ask, a bit each */
+  GLuint asked, pairs; /* lists of photon and interval: all that ask, of a light; a chunk's */
   abbe_hits hits;      /* of a chunk */
-  size_t asked_room, pair_room;
-  size_t most_pairs;                   /* of a chunk */
-  size_t count[ABBE_SCENE_MAX_LIGHTS]; /* that ask, of each light, as last found */
-  size_t fine_nodes; /* wavelengths of an interval at the most, with both ends */
+  size_t asked_room, pair_room;        /* elements of the two lists */
+  size_t most_pairs;                   /* of a chunk, at the most */
+  size_t count[ABBE_SCENE_MAX_LIGHTS]; /* intervals that ask, of each light, as last measured */
+  size_t fine_nodes;                   /* wavelengths of an interval at the most, with both ends */
 } abbe_refine_pass;
 
-/* After the trace's own decisions. */
+/* After abbe_trace_pass_make, which may decide that every photon takes all wavelengths: then there
+ * is nothing to refine. */
 abbe_result abbe_refine_pass_make(abbe_trace_pass *trace, abbe_refine_pass *out, abbe_error *error);
 /* For the photons that the trace has room for now. */
 abbe_result abbe_refine_pass_make_room(abbe_refine_pass *pass, abbe_error *error);
@@ -26,16 +29,15 @@ void abbe_refine_pass_free(abbe_refine_pass *pass);
 abbe_result abbe_refine_pass_compile(abbe_refine_pass *pass, const abbe_shader_variant *variant,
                                      abbe_error *error);
 
-/* Traces the coarse set and lists the intervals that ask, once it is known how many there are:
- * where a light is measured, in a frame with statistics, and where they take several chunks, it
- * waits for the device and makes room for as many as it finds. Every time they are the same.
- * ABBE_GL, ABBE_NO_MEMORY. */
+/* Traces the light's photons at the coarse set, then lists the intervals that ask. measures: it
+ * waits for the device, reads how many there are, and makes room for them. That is needed once:
+ * until something is fitted anew the same intervals ask in every frame. ABBE_GL, ABBE_NO_MEMORY. */
 abbe_result abbe_refine_pass_list(abbe_refine_pass *pass, size_t light, bool measures,
                                   abbe_error *error);
-/* Chunks of the light's list; 0 where nobody asks. In which order it has them is not known, so that
- * one of several holds what another held in the frame before. */
+/* Chunks of the light's list, as last measured; 0: no interval asks. The list's order differs from
+ * frame to frame, and so does what each of several chunks holds. */
 size_t abbe_refine_pass_chunks(const abbe_refine_pass *pass, size_t light);
-/* Traces one chunk's intervals. */
+/* Traces one chunk's intervals, at all their wavelengths. */
 void abbe_refine_pass_run(abbe_refine_pass *pass, size_t light, size_t chunk);
 
 #endif

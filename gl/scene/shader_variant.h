@@ -1,6 +1,8 @@
 /* shader_variant.h: what shaders are compiled for: counts and facts of the scene, which each pass
- * may copy and complete. Facts become #defines; counts that no array's size depends on become
- * uniforms of the program (shaders/counts.glsl), so that it serves others too. Internal to gl/.
+ * may copy and complete. Facts become #defines, and so do counts that size an array. The others
+ * become uniforms of the program (shaders/counts.glsl), so that it serves other counts too; of
+ * some, a range is told as well: the room of tables and stacks, whether exits are many. Internal to
+ * gl/.
  */
 #ifndef ABBE_GL_SCENE_SHADER_VARIANT_H
 #define ABBE_GL_SCENE_SHADER_VARIANT_H
@@ -24,9 +26,9 @@ typedef struct abbe_shader_variant {
   size_t pixel_threads; /* threads of a pixel (refraction_threads.glsl) */
   /* the map */
   bool wide;
-  size_t map_levels;                      /* 0: not told */
-  size_t tiles, tile_blocks, chart_sides; /* tiles of a light at the most; 0: none has any */
-  /* photons; hit_stride 0: not told */
+  size_t map_levels;
+  size_t tiles, tile_blocks, chart_sides; /* tiles: room for those of a light; 0: none has any */
+  /* photons; hit_stride 0: the program follows none */
   size_t hit_stride, steps, nodes;
   bool bridge, doubts_bridges, keeps_lengths;
 } abbe_shader_variant;
