@@ -32,26 +32,33 @@ abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
                               abbe_weights *out, abbe_error *error);
 void abbe_weights_free(abbe_weights *weights);
 
-/* An illuminant over a range of wavelengths, and the Y of its white there, for whoever asks for many
- * bands of it. The illuminant outlives it. */
+/* An illuminant over a range of wavelengths, and what the bands of that range are divided by.
+ * Whoever asks for many bands makes it once. */
 typedef struct abbe_weights_range {
-  const abbe_illuminant *illuminant;
+  const abbe_illuminant *illuminant; /* not owned: it outlives the range */
   double min_nm, max_nm;
-  double white_y; /* relative */
+  double white_y; /* integral of ybar x power over the range, nm x the illuminant's unit, >= 0 */
 } abbe_weights_range;
 
+/* Fills *out. Of the range only 360 to 830 nm count, where the observer's tables lie. A range that
+ * is empty (max_nm <= min_nm) or holds no light that the eye sees is no error: its white_y is 0. */
 void abbe_weights_range_make(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                              abbe_weights_range *out);
-/* As abbe_weights_band_xyz. */
+/* CIE XYZ of the light in the band [from_nm, to_nm], over the Y of the whole range: what a weight
+ * of abbe_weights_make is in XYZ, without unit, none negative. Bands that tile the range add up to
+ * its white, whose Y is 1. What of a band lies outside the range is left out. No errors: an empty
+ * band, one outside the range and every band of a range whose white_y is 0 are black. */
 void abbe_weights_range_xyz(const abbe_weights_range *range, double from_nm, double to_nm,
                             double xyz[3]);
 
-/* XYZ of the band [from_nm, to_nm] alone, normalised as the weights over the range
- * [min_nm, max_nm] are: bands that tile the range add up to its white. */
+/* abbe_weights_range_xyz of the range [min_nm, max_nm], for one band alone: it integrates the whole
+ * range, too. */
 void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                            double from_nm, double to_nm, double xyz[3]);
 
-/* Share of the illuminant's power over [min_nm, max_nm] that lies in [from_nm, to_nm]. */
+/* Share, 0 to 1, of the illuminant's power over [min_nm, max_nm] that lies in [from_nm, to_nm],
+ * seen or not. What of the band lies outside the range is left out; 0 where the range holds no
+ * power. */
 double abbe_weights_band_power(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                                double from_nm, double to_nm);
 

@@ -103,6 +103,95 @@ static void test_odd_tilings_add_up(void **state) {
   assert_true(whole[1] == 0);
 }
 
+/* A range is made once for many bands, each the same as by itself. */
+static void test_a_range_serves_many_bands(void **state) {
+  (void)state;
+  for (int kind = 0; kind < ABBE_ILLUMINANT_TABULATED; kind++) {
+    const abbe_illuminant light = {.kind = (abbe_illuminant_kind)kind};
+    abbe_weights samples = make(7, 380, 780, light.kind, ABBE_RGB_SPACE_XYZ);
+    abbe_wavelengths w = {0};
+    abbe_weights_range range;
+    double sum[3] = {0}, alone[3], xyz[3];
+    assert_int_equal(abbe_wavelengths_make(7, 380, 780, &w, NULL), ABBE_OK);
+    abbe_weights_range_make(&light, 380, 780, &range);
+    assert_ptr_equal(range.illuminant, &light);
+    assert_true(range.min_nm == 380 && range.max_nm == 780 && range.white_y > 0);
+    for (size_t i = 0; i < w.count; i++) {
+      abbe_weights_range_xyz(&range, w.edge_nm[i], w.edge_nm[i + 1], xyz);
+      abbe_weights_band_xyz(&light, 380, 780, w.edge_nm[i], w.edge_nm[i + 1], alone);
+      for (int k = 0; k < 3; k++) {
+        assert_true(xyz[k] == alone[k] && xyz[k] >= 0);
+        assert_true(fabs(xyz[k] - samples.weight[i][k]) < 1e-15);
+        sum[k] += xyz[k];
+      }
+    }
+    assert_true(fabs(sum[1] - 1) < 1e-14);
+    abbe_wavelengths_free(&w);
+    abbe_weights_free(&samples);
+  }
+}
+
+/* In nm times the illuminant's own unit, which is what the observer's table adds up to under an
+ * equal power of 1. */
+static void test_a_range_has_a_unit(void **state) {
+  (void)state;
+  const double nm[] = {300, 900}, one[] = {1, 1}, thousand[] = {1000, 1000};
+  abbe_weights_range range, brighter;
+  abbe_illuminant light = {.kind = ABBE_ILLUMINANT_TABULATED}, bright = light;
+  assert_int_equal(abbe_spectrum_make(nm, one, 2, ABBE_INTERPOLATION_LINEAR, &light.spectrum, NULL),
+                   ABBE_OK);
+  assert_int_equal(
+      abbe_spectrum_make(nm, thousand, 2, ABBE_INTERPOLATION_LINEAR, &bright.spectrum, NULL),
+      ABBE_OK);
+  abbe_weights_range_make(&light, 380, 780, &range);
+  abbe_weights_range_make(&bright, 380, 780, &brighter);
+  assert_true(fabs(range.white_y - 106.857) < 0.01); /* sum of ybar at 1 nm [CIE15] */
+  assert_true(fabs(brighter.white_y / range.white_y - 1000) < 1e-9);
+  double a[3], b[3];
+  abbe_weights_range_xyz(&range, 500, 600, a);
+  abbe_weights_range_xyz(&brighter, 500, 600, b);
+  for (int k = 0; k < 3; k++) assert_true(fabs(a[k] - b[k]) < 1e-14);
+  abbe_illuminant_free(&light);
+  abbe_illuminant_free(&bright);
+}
+
+/* What lies outside is left out; what holds nothing is black. */
+static void test_the_ends_of_a_range(void **state) {
+  (void)state;
+  const abbe_illuminant light = {0};
+  abbe_weights_range range, wide, none;
+  double inside[3], over[3];
+  abbe_weights_range_make(&light, 450, 650, &range);
+  abbe_weights_range_xyz(&range, 640, 650, inside);
+  abbe_weights_range_xyz(&range, 640, 1000, over);
+  for (int k = 0; k < 3; k++) assert_true(inside[k] > 0 && inside[k] == over[k]);
+  static const double black[][2] = {{500, 500}, {600, 500}, {300, 450}, {650, 700}};
+  for (size_t i = 0; i < sizeof black / sizeof *black; i++) {
+    abbe_weights_range_xyz(&range, black[i][0], black[i][1], over);
+    for (int k = 0; k < 3; k++) assert_true(over[k] == 0);
+  }
+  abbe_weights_range_make(&light, 360, 830, &range);
+  abbe_weights_range_make(&light, 0, 1e4, &wide);
+  assert_true(wide.white_y == range.white_y);
+  static const double empty[][2] = {{500, 500}, {600, 500}, {900, 1000}};
+  for (size_t i = 0; i < sizeof empty / sizeof *empty; i++) {
+    abbe_weights_range_make(&light, empty[i][0], empty[i][1], &none);
+    assert_true(none.white_y == 0);
+    abbe_weights_range_xyz(&none, 400, 1000, over);
+    for (int k = 0; k < 3; k++) assert_true(over[k] == 0);
+  }
+}
+
+static void test_the_share_of_power(void **state) {
+  (void)state;
+  const abbe_illuminant equal = {.kind = ABBE_ILLUMINANT_E};
+  assert_true(fabs(abbe_weights_band_power(&equal, 400, 800, 500, 600) - 0.25) < 1e-14);
+  assert_true(fabs(abbe_weights_band_power(&equal, 850, 950, 850, 900) - 0.5) < 1e-14);
+  assert_true(fabs(abbe_weights_band_power(&equal, 400, 800, 0, 1e4) - 1) < 1e-14);
+  assert_true(abbe_weights_band_power(&equal, 400, 800, 900, 1000) == 0);
+  assert_true(abbe_weights_band_power(&equal, 500, 500, 400, 600) == 0);
+}
+
 /* Seven nodes taken pointwise tint the white; the bands do not. */
 static void test_pointwise_nodes_tint_the_white(void **state) {
   (void)state;
@@ -212,6 +301,10 @@ int main(void) {
       cmocka_unit_test(test_any_count_adds_up_to_the_same_white),
       cmocka_unit_test(test_a_band_is_an_integral),
       cmocka_unit_test(test_odd_tilings_add_up),
+      cmocka_unit_test(test_a_range_serves_many_bands),
+      cmocka_unit_test(test_a_range_has_a_unit),
+      cmocka_unit_test(test_the_ends_of_a_range),
+      cmocka_unit_test(test_the_share_of_power),
       cmocka_unit_test(test_pointwise_nodes_tint_the_white),
       cmocka_unit_test(test_d65_is_white_in_rgb),
       cmocka_unit_test(test_rgb_keeps_negatives_and_is_the_matrix_times_xyz),

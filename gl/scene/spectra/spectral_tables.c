@@ -52,27 +52,25 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
 
 /* Y of the light's band below and above each of the set's nodes, from column `first` of every
  * sample. */
-static void weigh_halves(const abbe_illuminant *illuminant, const abbe_wavelengths *w, size_t all,
+static void weigh_halves(const abbe_weights_range *range, const abbe_wavelengths *w, size_t all,
                          int first, float (*sample)[4]) {
-  const double min = w->edge_nm[0], max = w->edge_nm[w->count];
   for (size_t k = 0; k < w->count; k++) {
     const size_t i = w->count == all ? k : abbe_spectral_tables_node(all, w->count, k);
     double below[3], above[3];
-    abbe_weights_band_xyz(illuminant, min, max, w->edge_nm[k], w->lambda_nm[k], below);
-    abbe_weights_band_xyz(illuminant, min, max, w->lambda_nm[k], w->edge_nm[k + 1], above);
+    abbe_weights_range_xyz(range, w->edge_nm[k], w->lambda_nm[k], below);
+    abbe_weights_range_xyz(range, w->lambda_nm[k], w->edge_nm[k + 1], above);
     sample[i][first] = (float)below[1];
     sample[i][first + 1] = (float)above[1];
   }
 }
 
 /* The coarse set's intervals' shares of the light, of X, Y and Z alike, by their mean. */
-static void weigh_intervals(const abbe_illuminant *illuminant, const abbe_wavelengths *w,
+static void weigh_intervals(const abbe_weights_range *range, const abbe_wavelengths *w,
                             float *weight) {
-  const double min = w->edge_nm[0], max = w->edge_nm[w->count];
   const size_t intervals = w->count - 1;
   double xyz[3], total = 0;
   for (size_t k = 0; k < intervals; k++) {
-    abbe_weights_band_xyz(illuminant, min, max, w->lambda_nm[k], w->lambda_nm[k + 1], xyz);
+    abbe_weights_range_xyz(range, w->lambda_nm[k], w->lambda_nm[k + 1], xyz);
     weight[k] = (float)(xyz[0] + xyz[1] + xyz[2]);
     total += (double)weight[k];
   }
@@ -88,10 +86,12 @@ static abbe_result weigh_lights(const abbe_scene *scene, const abbe_plan *plan,
   if (t->sample_weight == NULL || t->interval_weight == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
   for (size_t i = 0; i < lights; i++) {
-    const abbe_illuminant *illuminant = &scene->light[i].illuminant;
-    weigh_halves(illuminant, &t->all, n, 0, t->sample_weight + i * n);
-    weigh_halves(illuminant, &t->coarse, n, 2, t->sample_weight + i * n);
-    weigh_intervals(illuminant, &t->coarse, t->interval_weight + i * (t->coarse.count - 1));
+    abbe_weights_range range; /* both sets have the same ends */
+    abbe_weights_range_make(&scene->light[i].illuminant, t->all.edge_nm[0], t->all.edge_nm[n],
+                            &range);
+    weigh_halves(&range, &t->all, n, 0, t->sample_weight + i * n);
+    weigh_halves(&range, &t->coarse, n, 2, t->sample_weight + i * n);
+    weigh_intervals(&range, &t->coarse, t->interval_weight + i * (t->coarse.count - 1));
   }
   return ABBE_OK;
 }
