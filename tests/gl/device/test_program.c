@@ -9,28 +9,26 @@
 /* Those of gl/: one that is added is compiled here, and counted. */
 enum { COMPUTE_SHADERS = 16 };
 
-/* Bits: spheres, convex, layers, exact receivers, absorbing (and caustics), shadows (and textures,
- * and lengths kept of paths inside), hierarchy, walk. */
+/* Bits: spheres, convex, layers, what no model asks for (many exits, further channels, shared
+ * bands), absorbing (and caustics), shadows (and textures, and lengths kept of paths inside),
+ * hierarchy, walk. */
 static void write_defines(unsigned bits, char *out, size_t size) {
   static const char *const names[] = {
       "SPHERES",
       "CONVEX",
       "LAYERS\n#define FRONT_LAYER",
-      "EXACT_RECEIVERS",
+      "MANY_EXITS\n#define AOVS\n#define INTERLEAVES",
       "ABSORBING\n#define CAUSTICS",
       "RECEIVER_SHADOWS\n#define TEXTURED\n#define SHADOW_PLANES 32\n#define TINTING",
       "HIERARCHY",
       "WALK"};
-  int used =
-      snprintf(out, size,
-               "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
-               "#define WAVELENGTHS 7\n#define EXITS 3\n#define SLOTS 4\n#define HIT_STRIDE 7\n"
-               "#define NODES 5\n#define PIXEL_THREADS 8\n"
-               "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
-               "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
-               "#define BAND_COUNT 14\n#define BAND_LEVELS 4\n#define BAND_ROOM 28\n"
-               "#define HIERARCHY_STACK 20\n#define STEPS 64\n#define MAP_LEVELS 6\n#define "
-               "BRIDGE\n#define DOUBTS_BRIDGES\n");
+  int used = snprintf(out, size,
+                      "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
+                      "#define WAVELENGTHS 7\n#define PIXEL_THREADS 8\n"
+                      "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
+                      "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
+                      "#define BAND_ROOM 28\n#define HIERARCHY_STACK 24\n#define STEPS 64\n"
+                      "#define BRIDGE\n#define DOUBTS_BRIDGES\n");
   for (int i = 0; i < 8; i++)
     if (bits >> i & 1) used += snprintf(out + used, size - (size_t)used, "#define %s\n", names[i]);
 }

@@ -24,8 +24,10 @@ static void counts_and_flags_are_told(void **state) {
                                  .planes = 57,
                                  .wavelengths = 7,
                                  .bands = 14,
+                                 .exits = 9,
                                  .convex = true,
                                  .wide = true,
+                                 .aovs = true,
                                  .shadow_planes = 9,
                                  .one_shadow = true,
                                  .pixel_threads = 8};
@@ -34,7 +36,9 @@ static void counts_and_flags_are_told(void **state) {
   assert_true(has(text, "#define SPECTRUM_ROOM 64"));
   assert_true(has(text, "#define PLANE_ROOM 57"));
   assert_true(has(text, "#define CONVEX"));
+  assert_true(has(text, "#define MANY_EXITS"));
   assert_true(has(text, "#define WIDE"));
+  assert_true(has(text, "#define AOVS"));
   assert_true(has(text, "#define SHADOW_PLANES 9"));
   assert_true(has(text, "#define ONE_SHADOW"));
   assert_true(has(text, "#define PIXEL_THREADS 8"));
@@ -45,12 +49,13 @@ static void counts_and_flags_are_told(void **state) {
 /* A block may not be empty; what is not there is not told. */
 static void nothing_has_room_for_one(void **state) {
   (void)state;
-  const abbe_shader_variant v = {0};
+  const abbe_shader_variant v = {.exits = 8};
   char *text = text_of(&v, NULL);
   assert_true(has(text, "#define REFRACTORS 0"));
   assert_true(has(text, "#define REFRACTOR_ROOM 1"));
-  static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "TILES",     "HIT_STRIDE",
-                                       "MAP_LEVELS",    "WIDE",       "IN_STORAGE"};
+  static const char *const absent[] = {"SHADOW_PLANES", "ONE_SHADOW", "TILES",
+                                       "STEPS",         "BRIDGE",     "MANY_EXITS",
+                                       "WIDE",          "AOVS",       "IN_STORAGE"};
   for (size_t i = 0; i < sizeof absent / sizeof *absent; i++) assert_null(strstr(text, absent[i]));
   free(text);
 }
