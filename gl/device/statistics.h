@@ -11,24 +11,25 @@
 extern "C" {
 #endif
 
-/* Light that reached refractors, and its parts, each sample weighted by its ybar (W of the lights'
- * power); deposited is summed from the map itself, so that the balance is a check and no identity.
- */
+/* Light that reached refractors, and what became of it, in W of the lights' power. Each wavelength
+ * counts by its share of the light's Y. What is deposited is summed from the finished map and
+ * tiles, all else while photons are traced and laid: so the balance is a check and no identity. */
 typedef struct abbe_ledger {
   double reached;
   double reflected; /* on the outside, at the first interface, and landed nowhere */
   double absorbed;  /* along inner paths */
-  double trapped;   /* still inside when the path ended: total or repeated internal reflection */
+  double trapped;   /* still inside when the path ended: below the energy share, or out of exits */
   double missed;    /* met no receiver, or one where neither map nor tile holds it */
   double deposited; /* in the spectral map and on receivers' tiles */
-  double on_tiles;  /* of what is deposited */
-  /* What leaves refractors between the wavelengths that are traced, by the index there, less what
-   * those have for it by themselves: the quadrature error over wavelengths that this takes away.
-   * May be below 0. */
+  double on_tiles;  /* the part of deposited that is on tiles */
+  /* Light between two traced wavelengths is laid by the index there, and is not quite the mean of
+   * what these two carry. This is how much more it is: the error of a sum over the traced
+   * wavelengths alone. May be below 0. */
   double interpolated;
 } abbe_ledger;
 
-/* |reached + interpolated - the parts| / reached; 0 where nothing was reached. */
+/* |reached + interpolated - (reflected + absorbed + trapped + missed + deposited)| / reached; 0
+ * where nothing was reached. */
 double abbe_ledger_imbalance(const abbe_ledger *ledger);
 
 typedef struct abbe_pass_time {
@@ -37,21 +38,22 @@ typedef struct abbe_pass_time {
 } abbe_pass_time;
 
 typedef struct abbe_statistics {
-  double frame_ms;   /* all passes, finished */
+  double frame_ms; /* of all passes, until the device had done them; without reading the ledger */
   double baseline_ms; /* of drawing the surfaces alone, where it was measured; else 0 */
-  size_t pass_count; /* of those that ran, as they first ended */
+  size_t pass_count;  /* passes that ran, in the order in which each ended first */
   abbe_pass_time pass[ABBE_PASS_COUNT];
-  bool kept[ABBE_PASS_COUNT]; /* of those that the plan runs: what they drew before still holds */
-  size_t photons; /* cells that hold a refractor, all lights */
-  size_t wavelengths;
-  double refractor_share; /* of the first light's photon grid */
-  size_t device_bytes;    /* buffers and textures */
+  /* Passes of the plan that did not run, for what they drew in an earlier frame still holds. */
+  bool kept[ABBE_PASS_COUNT];
+  size_t photons;         /* lit cells that show a refractor, of all lights */
+  size_t wavelengths;     /* the plan's */
+  double refractor_share; /* of the cells of the first light's grid, those that have a photon */
+  size_t device_bytes;    /* of buffers and textures */
   abbe_ledger energy;
 } abbe_statistics;
 
 void abbe_statistics_add_ms(abbe_statistics *s, abbe_pass pass, double ms);
 bool abbe_statistics_ran(const abbe_statistics *s, abbe_pass pass);
-/* Of all passes of the light's side of the frame, or of the eye's. */
+/* Sum over the passes of a stage: the lights' or the camera's. */
 double abbe_statistics_stage_ms(const abbe_statistics *s, abbe_pass_stage stage);
 
 #ifdef __cplusplus

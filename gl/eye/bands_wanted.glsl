@@ -1,9 +1,10 @@
-// Which bands a pixel takes: as many as tell what the spectrum spreads over, joined by twos from the finest
-// level on. Level 0 holds every sample, level k every 2^k as one; levels stand one after another.
+// Which bands of wavelengths a pixel takes: the fewer, the less the spectrum is spread out in it. Level 0
+// has a band for each wavelength; each further level joins those of the one before by twos. A refractor's
+// levels stand one after another in `bands`.
 
 #ifdef SPHERES
-// How far apart in pixels the ends of the spectrum leave the first back interface, as the eye would see
-// what they show; large where they show different things.
+// The two ends of the spectrum leave a sphere where they first meet it from inside: how far apart, in
+// pixels, lies what they show then; 1e9 where that is on different receivers.
 float sphere_spread(Hit front, vec3 d, int first, int last) {
   vec3 at[2];
   int what[2];
@@ -26,9 +27,9 @@ float sphere_spread(Hit front, vec3 d, int first, int last) {
 }
 #endif
 
-// As many bands as the spread asks for, one for every pixel and a half of it. For layers it is
+// As many bands as the spread asks for, one for every pixel and a half of it. For meshes it is
 // estimated from the first interface alone; in facets inner reflections spread light further than
-// the first exit shows, so a convex solid gets every sample.
+// the first exit shows, so a convex solid gets a band for each wavelength.
 float wanted_bands(Hit front, vec3 d, int first, int last) {
   int model = refractors[refractor].info.x;
 #ifdef SPHERES
@@ -63,7 +64,8 @@ int level = 0, joined = 0;
 vec3 shown_by[COARSE_BANDS];
 #endif
 
-// Those that the pixel takes: `count` from `base` on.
+// Those that the pixel takes: `count` from `base` on, of the coarsest level that has as many as are
+// wanted, or of level 0. REFINES: at most COARSE_BANDS, for which they are joined further.
 void choose_bands(out int base, out int count) {
   base = refractor * counts.bands;
   count = counts.wavelengths;
@@ -84,8 +86,9 @@ void choose_bands(out int base, out int count) {
 #endif
 }
 
-// INTERLEAVES: of several samples a pixel each takes every second of its bands, and its neighbour those
-// between; the light of a band that is left out is shared by the two beside it.
+// INTERLEAVES: the samples of a pixel share its bands, where these are more than two. Each sample takes
+// every second band, its neighbours those between. A band that is left out gives half of its weight to each
+// of the two beside it, or all of it to the one where it is the first or the last.
 #ifdef INTERLEAVES
 int taken_step(int count) { return count > 2 ? 2 : 1; }
 int first_taken(ivec2 at, int count) { return count > 2 ? (at.x ^ at.y) & 1 : 0; }

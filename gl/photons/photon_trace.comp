@@ -1,5 +1,5 @@
-// A photon a wavelength, on the paths of photon_path.glsl; what leaves a path is entered in the
-// ledger.
+// Follows photons, each thread one photon at one wavelength, along the paths of photon_path.glsl. Keeps
+// their hits, and enters in the ledger what becomes of their light otherwise.
 layout(local_size_x = 256) in;
 #define COPIES_TABLES
 #include "refractor.glsl"
@@ -11,9 +11,10 @@ layout(local_size_x = 256) in;
 #include "photon_nodes.glsl"
 #include "pair_list.glsl"
 
-// [((photon * slots + order) * hit_stride + sample) * HIT_TEXELS]: where it lands, and w: flux for unit
-// weight and power; then where it left its last refractor, and w: interface_word(). While tiles are chosen: chart
-// coordinates, and the chart's side.
+// [((item * slots + slot) * hit_stride + sample) * HIT_TEXELS], item: the photon, or where its interval
+// stands on the list of refined ones; sample: its wavelength in this batch, the coarse set or the interval.
+// xyz: where it lands, and w: flux for unit weight and power; then where it left its last refractor, and w:
+// interface_word(). While tiles are chosen: chart coordinates, and the chart's side.
 layout(std430, binding = BINDING_HITS) writeonly buffer Hits { vec4 hits[]; };
 // Receiver, facets along the path and whether on a tile, equal for paths that vary continuously;
 // refractor in the low eight bits; 0: no hit. TINTING: and the length of its path inside, m.
@@ -25,23 +26,23 @@ layout(std430, binding = BINDING_SIGNATURES) writeonly buffer Signatures { uint 
 // Y weight of the samples at [light * wavelengths + i]: of the parts of their bands below and above
 // the node, then those in the coarse set.
 layout(std430, binding = BINDING_SAMPLE_WEIGHTS) readonly buffer SampleWeights { vec4 sample_weight[]; };
-// 1 where the path (photon * slots + order) lands at some wavelength.
+// [item * slots + slot]: 1 where there is a hit at some wavelength.
 layout(std430, binding = BINDING_PATH_MARKS) writeonly buffer PathMarks { uint path_mark[]; };
-// lo and hi of reached, reflected, absorbed, trapped, missed.
+// Of reached, reflected, absorbed, trapped and missed, in ledger_unit: low and high word of the sum.
 layout(std430, binding = BINDING_LEDGER) buffer Ledger { uint ledger[]; };
 
 #include "pass_light.glsl"
 uniform ivec2 grid;
 #include "photon_start.glsl"
-uniform int sample_first;  // wavelengths sample_first .. sample_first + hit_stride - 1 in this batch
-uniform int sample_count;
+uniform int sample_first;  // ALL: the first wavelength of this batch; else 0
+uniform int sample_count;  // samples of an item: of the batch, of the coarse set, or of the widest interval
 uniform int ledger_first;  // wavelengths before this one are in the ledger already
-// ALL: consecutive wavelengths of all photons; COARSE: the coarse set of all photons; REFINED: all
-// wavelengths of the intervals on the list, hits by their place on it.
+// ALL: consecutive wavelengths of all photons; COARSE: of all photons those few that every photon takes;
+// REFINED: all wavelengths of the intervals on the list, with both ends, which are of the coarse set.
 const int ALL = 0, COARSE = 1, REFINED = 2;
 uniform int set;
-uniform int hit_stride;
-uniform uint most_pairs;
+uniform int hit_stride;     // samples that there is room for
+uniform uint most_pairs;    // intervals that the list has room for
 uniform float share_limit;   // paths below this share of their light end
 uniform float ledger_unit;   // W
 
@@ -61,12 +62,12 @@ void keep_hit(PhotonRay photon, PhotonHit hit) {
 #endif
 }
 
-// What a thread traces: one wavelength of a photon, or of one in a refined interval from low to high.
+// What a thread traces: a photon at one wavelength. Of a refined interval, low and high are its ends.
 struct Task {
   bool there;
   uint item, photon;
   int sample_number, wavelength;
-  int interval, low, high;  // -1: no interval
+  int interval, low, high;  // low and high are -1 where there is no interval
 };
 
 Task task_of(uint thread) {
@@ -105,7 +106,8 @@ PhotonRay ray_of(Task t) {
 }
 
 #ifdef TINTING
-// A refined interval's ends give back halves of coarse bands; their own outer ones are not its.
+// Of the band of an interval's end, one half lies in the interval. In place of the other stands the half of
+// the coarse band that covered the interval, which enter() takes back.
 void load_attenuation(Task t, PhotonRay ray) {
   int row = light * REFRACTORS + (ray.reached ? ray.front.refractor : 0);
   int node = set == COARSE ? row * counts.nodes + t.sample_number : all_bands(row) + t.wavelength;
@@ -115,7 +117,7 @@ void load_attenuation(Task t, PhotonRay ray) {
 }
 #endif
 
-// A refined interval's ends give back what the coarse set entered for it.
+// The coarse set entered light for the refined interval, too: its ends take that back.
 void enter(Task t, float flux, Shares entry[5]) {
   vec4 weight = sample_weight[light * counts.wavelengths + t.wavelength];
   bool at_low = t.wavelength == t.low, at_high = t.wavelength == t.high;

@@ -1,16 +1,18 @@
-// How many there are of what a scene and its settings ask for. They are uniforms, so that other counts
-// compile nothing anew; who makes the program sets them (gl/scene/shader_variant.h). COPIES_TABLES: read
-// once, as copies.glsl says.
+// Counts that size no array of a shader. They are uniforms, so that other counts compile nothing anew;
+// gl/scene/shader_variant.h sets them, and defines those that do size one (LIGHTS, REFRACTORS, ...).
+// COPIES_TABLES: they are read once by each thread, as copies.glsl says.
 
 struct Counts {
   int wavelengths;
-  int bands, band_levels;  // of a refractor: those of all levels, and the levels (bands_wanted.glsl)
+  int bands, band_levels;  // of a refractor: bands of all levels together, and levels (bands_wanted.glsl)
   int exits;               // interfaces that a path inside a refractor meets at the most
   int slots;               // hits that a photon has room for at a wavelength
-  int hit_stride, nodes;   // samples of a photon: with room for them, and of the coarse set
-  int map_levels;
-  int tile_blocks, chart_sides;  // of a light's tiles: blocks a side, and sides of charts (receiver_atlas.glsl)
-  int receiver_root;             // of the receivers' hierarchy
+  int hit_stride;          // wavelengths for which a photon's hits have room
+  int nodes;               // wavelengths that every photon takes (photon_nodes.glsl)
+  int map_levels;          // levels of detail of the spectral map
+  int tile_blocks;         // blocks of the layer of a light's tiles, a side (receiver_atlas.glsl)
+  int chart_sides;         // of all charts, two each
+  int receiver_root;       // the first node of the receivers' hierarchy
 };
 uniform Counts counts;
 

@@ -1,6 +1,7 @@
 /* plan_facts.h: what a plan holds: facts of the scene, models, entries and notes.
  *
- * What the plan's rooms fill in and the renderer reads. It examines nothing (gl/plan/plan.h).
+ * gl/plan/examine finds the facts out, gl/plan/plan.h makes the plan of them, the renderer reads
+ * it.
  */
 #ifndef ABBE_GL_PLAN_FACTS_PLAN_FACTS_H
 #define ABBE_GL_PLAN_FACTS_PLAN_FACTS_H
@@ -42,14 +43,14 @@ typedef struct abbe_plan_entry {
 
 /* A light, or a face of the cube around one whose refractors do not fit one view. */
 typedef struct abbe_light_view {
-  size_t light;   /* the scene's */
-  int face;       /* that it looks through (gl/plan/examine/light_cube.h); -1: it is no part of a cube */
+  size_t light; /* the scene's */
+  int face; /* that it looks through (gl/plan/examine/light_cube.h); -1: it is no part of a cube */
   unsigned faces; /* whose light it carries, a bit each: its own; the first of a cube also has all
                      those through which no light reaches a refractor; without a cube, all */
 } abbe_light_view;
 
 typedef struct abbe_plan {
-  abbe_render_desc desc; /* every field resolved, none zero */
+  abbe_render_desc desc; /* the request, with a value for each that it left to the plan */
 
   /* Objects, by their index in the scene, each with its model. */
   size_t refractor_count;
@@ -58,17 +59,19 @@ typedef struct abbe_plan {
   size_t receiver_count;
   size_t *receiver_object;
   abbe_receiver_model *receiver_model; /* [receiver_count] */
-  /* Models of refractors in use; the most general of receivers, and parallelograms hit exactly. */
+  /* Models of refractors in use; the most general model of receivers; parallelograms that are hit
+   * exactly. */
   bool spheres, convex, layers, bvh;
   abbe_receiver_model receivers;
   size_t parallelogram_count;
 
-  /* Where light and looks meet what. */
+  /* What the light and the camera's rays may meet. */
   bool reaches[ABBE_SCENE_MAX_LIGHTS]; /* the light may meet a refractor: it has a map */
-  bool caustics;                       /* some light may */
-  bool camera_sees_refractor;          /* the eye may */
-  bool
-      multi_refractor_paths; /* light that leaves a refractor may meet one again, and is followed */
+  bool caustics;                       /* some light may meet one */
+  bool camera_sees_refractor;          /* the camera may */
+  /* Light is followed from interface to interface of all refractors: what leaves one may meet one
+   * again, or a receiver inside; or the BVH was asked for. Without this no model is the BVH. */
+  bool multi_refractor_paths;
   bool forward_transmission; /* some receiver may lie where light goes on nearly straight through a
                                 refractor */
   bool outside_map_view;     /* some receiver lies beyond a light's map view */
@@ -85,16 +88,18 @@ typedef struct abbe_plan {
   bool absorbing;  /* its attenuation is above zero somewhere */
   bool tinting;    /* its attenuation varies */
 
-  size_t eye_exits; /* that the eye's rays are followed for, at the most */
-  double eye_share; /* and the share of their light at which they end */
-  size_t hit_slots; /* hits of a photon at the most: its exits, and the mirror on the outside */
+  size_t eye_exits; /* of the camera's rays, followed at the most */
+  double eye_share; /* below this share of their light they end */
+  size_t hit_slots; /* hits of a photon at a wavelength, at the most: its exits, and the mirror on
+                       the outside; on multi-refractor paths a number of its own */
 
   /* What follows from the facts above. */
-  bool tiles;       /* light may land where its light's map cannot hold it: receivers have tiles */
-  bool fills;       /* light is laid between wavelengths */
-  bool lengths;     /* hits keep the length of their path inside, which tells a tint anywhere */
-  bool draw_back;   /* the back of refractors is drawn */
-  bool textured;
+  bool tiles;     /* light may land where its light's map cannot hold it: receivers have tiles */
+  bool fills;     /* light is laid between wavelengths */
+  bool lengths;   /* hits keep the length of their path inside: it tells what is absorbed at any
+                     wavelength */
+  bool draw_back; /* views show the back of refractors, too */
+  bool textured;  /* some receiver has a texture */
 
   size_t entry_count; /* models and passes, in the order in which they run */
   abbe_plan_entry entry[ABBE_PLAN_MAX_ENTRIES];
@@ -104,7 +109,8 @@ typedef struct abbe_plan {
 
 void abbe_plan_free(abbe_plan *plan);
 
-/* Wavelengths that every photon is traced at; more, up to the plan's, where its hits ask. */
+/* How many wavelengths every photon is traced at. Where its hits ask for more it takes more, up to
+ * all the plan's. */
 size_t abbe_plan_least_wavelengths(const abbe_plan *plan);
 /* Why nothing refracts, as a sentence's part, or NULL. */
 const char *abbe_plan_no_refraction(const abbe_plan *plan);
