@@ -4,10 +4,12 @@
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/screen_png.h"
 #include "scenes/import/scene_file.h"
+#include "validation/denoise/denoise.h"
 #include "validation/sweep/matched_physics.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/trace_run.h"
@@ -33,6 +35,7 @@ enum {
   OPTION_RANGE,
   OPTION_SPACE,
   OPTION_HALF,
+  OPTION_FILTER,
   OPTION_SEED,
   OPTION_THREADS,
   OPTION_MATERIALS,
@@ -56,7 +59,8 @@ typedef struct request {
   abbe_trace_desc desc;
   size_t passes;
   double seconds, until, every;
-  bool resume, json, quiet, rates, half;
+  bool resume, json, quiet, rates, half, filter;
+  double filter_seconds; /* spent */
   abbe_display_desc display;
   char *checkpoint_path;
 } request;
@@ -83,6 +87,8 @@ static const struct argp_option options[] = {
     {"bands", OPTION_BANDS, "N", 0, "spectral layers too, N bands over the range", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
+    {"filter", OPTION_FILTER, NULL, 0,
+     "take noise off the picture, by non-local means; what was traced is kept as raw.*", 1},
     {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
     {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 1},
     {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 1},
@@ -177,6 +183,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_HALF:
     q->half = true;
     return 0;
+  case OPTION_FILTER:
+    q->filter = q->desc.guides = true;
+    return 0;
   case OPTION_RESUME:
     q->resume = true;
     return 0;
@@ -206,6 +215,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->exr == NULL && q->png == NULL && q->map.save == NULL && q->stats == NULL && !q->json &&
         !q->rates)
       argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
+    if (q->filter && ((q->exr == NULL && q->png == NULL) || q->passes == 1))
+      argp_error(state, "--filter needs a picture (-o, --png) of two passes or more (--spp 2)");
     if (q->of_png != NULL && q->png == NULL)
       argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
     return 0;
@@ -284,6 +295,7 @@ static abbe_result write_stats(const request *q, const abbe_tracer *tracer, abbe
   cJSON_AddNumberToObject(root, "eye_rays", (double)s.eye_rays);
   cJSON_AddNumberToObject(root, "light_seconds", s.light_seconds);
   cJSON_AddNumberToObject(root, "eye_seconds", s.eye_seconds);
+  if (q->filter) cJSON_AddNumberToObject(root, "filter_seconds", q->filter_seconds);
   cJSON_AddNumberToObject(root, "relative_error", abbe_tracer_error(tracer));
   cJSON_AddNumberToObject(root, "cut", (double)s.cuts);
   cJSON_AddNumberToObject(root, "gather_radius_m", s.radius);
@@ -309,11 +321,26 @@ static abbe_result write_exr(const request *q, const char *path, const abbe_imag
   return q->half ? abbe_exr_write_half(path, image, error) : abbe_exr_write(path, image, error);
 }
 
-static abbe_result write_results(const request *q, const abbe_tracer *tracer, abbe_error *error) {
+/* A trace that was stopped after one pass has nothing to go by: its picture stays as it is. */
+static abbe_result filter(request *q, size_t passes, abbe_image *image, abbe_error *error) {
+  if (!q->filter || passes < 2) return ABBE_OK;
+  const abbe_denoise_desc desc = {.threads = q->desc.threads};
+  abbe_image filtered;
+  const double start = abbe_clock_seconds();
+  abbe_result result = abbe_denoise_picture(image, &desc, &filtered, error);
+  q->filter_seconds = abbe_clock_seconds() - start;
+  if (result != ABBE_OK) return result;
+  abbe_image_free(image);
+  *image = filtered;
+  return ABBE_OK;
+}
+
+static abbe_result write_results(request *q, const abbe_tracer *tracer, abbe_error *error) {
   abbe_result result = ABBE_OK;
   abbe_image image = {0};
   if (q->exr != NULL || q->png != NULL) {
     result = abbe_tracer_picture(tracer, &image, error);
+    if (result == ABBE_OK) result = filter(q, abbe_tracer_passes(tracer), &image, error);
     if (result == ABBE_OK && q->exr != NULL) result = write_exr(q, q->exr, &image, error);
     if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
     abbe_image_free(&image);
@@ -339,7 +366,8 @@ static void summarise(const request *q, const abbe_tracer *tracer) {
   if (s.passes < 2)
     fprintf(stderr, "no standard errors, which take two passes or more (--spp 2)");
   else
-    fprintf(stderr, "relative standard error %.2g", abbe_tracer_error(tracer));
+    fprintf(stderr, "%srelative standard error %.2g", q->filter ? "unfiltered " : "",
+            abbe_tracer_error(tracer));
   if (s.ledger.reached > 0) {
     double whole = 100 / s.ledger.reached;
     fprintf(stderr,
@@ -384,7 +412,7 @@ static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *err
 }
 
 /* A user's stop keeps what is done: results are written, and the checkpoint to go on from. */
-static abbe_result trace(const request *q, abbe_tracer *tracer, abbe_error *error) {
+static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
   const abbe_trace_run_desc run = {.passes = q->passes,
                                    .seconds = q->seconds,
                                    .error = q->until,
@@ -447,6 +475,7 @@ int abbe_command_trace(int argc, char **argv) {
       "Examples:\n"
       "  abbe trace scenes/sphere.yaml -o sphere.exr --png sphere.png\n"
       "  abbe trace scenes/gem.yaml -o gem.exr --until-error 0.01\n"
+      "  abbe trace scenes/ring.yaml -o ring.exr --spp 4 --filter\n"
       "  abbe trace scenes/prism.yaml --save-map prism-map.exr --spp 256 --bands 40\n"
       "  abbe trace scenes/bunny.yaml -o bunny.exr --time 600 --resume\n"
       "  abbe trace scenes/gem.yaml -o matched.exr --physics matched\n",

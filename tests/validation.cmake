@@ -6,11 +6,13 @@ foreach(name
     checkpoint
     closed_form
     compare compare_noise
+    denoise
     difference_picture
     baseline_comparison
     error_decomposition
     eye_walk
     pareto_front
+    guide_sums
     field
     file_comparison
     geometry
@@ -22,6 +24,7 @@ foreach(name
     mask
     media
     rings
+    nl_means
     outline
     photon_grid
     projection_map

@@ -10,6 +10,7 @@
 #include "validation/compare/compare.h"
 #include "validation/compare/difference_picture.h"
 #include "validation/compare/outline.h"
+#include "validation/denoise/denoise.h"
 #include "validation/known/known_answers.h"
 #include "validation/known/known_chart.h"
 #include "validation/known/rings.h"
@@ -42,6 +43,7 @@ static const abbe_trace_desc tiny = {.width = 3,
                                      .map_height = 4,
                                      .photons = 64,
                                      .bands = 2,
+                                     .guides = true,
                                      .threads = 1};
 
 static void digest_image(const abbe_image *image) {
@@ -55,13 +57,17 @@ static abbe_scene shared;
 
 static abbe_result trace(abbe_error *error) {
   abbe_tracer *tracer = NULL;
-  abbe_image picture = {0}, map = {0};
+  abbe_image picture = {0}, map = {0}, filtered = {0};
   abbe_result result = abbe_tracer_make(&shared, &tiny, &tracer, error);
   for (int i = 0; i < 2 && result == ABBE_OK; i++) result = abbe_tracer_pass(tracer, NULL, error);
   if (result == ABBE_OK) result = abbe_tracer_picture(tracer, &picture, error);
   if (result == ABBE_OK) result = abbe_tracer_map(tracer, &map, error);
+  if (result == ABBE_OK)
+    result = abbe_denoise_picture(&picture, &(abbe_denoise_desc){.threads = 1}, &filtered, error);
   if (result == ABBE_OK) digest_image(&picture);
   if (result == ABBE_OK) digest_image(&map);
+  if (result == ABBE_OK) digest_image(&filtered);
+  abbe_image_free(&filtered);
   abbe_image_free(&map);
   abbe_image_free(&picture);
   abbe_tracer_free(tracer);

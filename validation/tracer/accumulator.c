@@ -61,6 +61,12 @@ void abbe_accumulator_end_pass(abbe_accumulator *a, double scale) {
   abbe_accumulator_drop_pass(a);
 }
 
+double abbe_accumulator_adding(const abbe_accumulator *a, size_t value) {
+  double sum = 0;
+  for (size_t t = 0; t < a->threads; t++) sum += (double)a->adding[t][value] * a->unit;
+  return sum;
+}
+
 void abbe_accumulator_drop_pass(abbe_accumulator *a) {
   for (size_t t = 0; t < a->threads; t++) memset(a->adding[t], 0, a->values * sizeof **a->adding);
 }

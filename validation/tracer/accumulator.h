@@ -50,6 +50,8 @@ static inline void abbe_accumulator_add(abbe_accumulator *a, size_t thread, size
 
 /* Ends the pass: its sums, times scale, become one sample of every value. */
 void abbe_accumulator_end_pass(abbe_accumulator *a, double scale);
+/* Sum of a value in the pass that is under way. */
+double abbe_accumulator_adding(const abbe_accumulator *a, size_t value);
 /* Forgets the pass that is under way. */
 void abbe_accumulator_drop_pass(abbe_accumulator *a);
 

@@ -10,7 +10,7 @@
 
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
-static const char magic[] = "abbe checkpoint 2\n";
+static const char magic[] = "abbe checkpoint 3\n";
 enum { HEAD = 4096 }; /* bytes that hold all the lines */
 
 /* ---- hash: FNV-1a, 64 bits ---- */
@@ -91,7 +91,7 @@ static uint64_t hash_layout(const abbe_tracer *t) {
 static void describe(const abbe_tracer *t, char *out, size_t size) {
   const abbe_trace_desc *d = &t->desc;
   abbe_number_format(out, size,
-           "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nmap %zu "
+           "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nguides %s\nmap %zu "
            "x %zu of light %zu\n"
            "range %.17g:%.17g\nbands %zu\nspace %s\nphotons %zu\nseed %u\nscene %016llx\n"
            "layout %016llx\n\n",
@@ -99,7 +99,8 @@ static void describe(const abbe_tracer *t, char *out, size_t size) {
            d->physics.matched ? d->physics.energy_share : 0,
            d->physics.matched ? d->physics.eye_orders : 0,
            d->physics.matched ? d->physics.eye_share : 0, d->no_picture ? 0 : d->width,
-           d->no_picture ? 0 : d->height, d->no_map ? 0 : d->map_width,
+           d->no_picture ? 0 : d->height,
+           d->guides ? "for a filter" : "none", d->no_map ? 0 : d->map_width,
            d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light, d->min_nm, d->max_nm,
            d->bands, abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed,
            (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t));
@@ -112,8 +113,13 @@ typedef struct counts {
   abbe_light_ledger ledger;
 } counts;
 
+static size_t guides_size(const abbe_tracer *t) {
+  return sizeof(double) * t->guides.pixels * ABBE_GUIDE_VALUES;
+}
+
 static size_t numbers_size(const abbe_tracer *t) {
-  return sizeof(counts) + 2 * sizeof(double) * (t->picture.values + t->map.values);
+  return sizeof(counts) + 2 * sizeof(double) * (t->picture.values + t->map.values) +
+         guides_size(t);
 }
 
 typedef struct hashed_stream {
@@ -147,6 +153,7 @@ abbe_result abbe_checkpoint_save(const abbe_tracer *t, const char *path, abbe_er
   put(&out, &c, sizeof c);
   put(&out, t->picture.sum, t->picture.values * sizeof(double));
   put(&out, t->picture.square, t->picture.values * sizeof(double));
+  put(&out, t->guides.sum, guides_size(t));
   put(&out, t->map.sum, t->map.values * sizeof(double));
   put(&out, t->map.square, t->map.values * sizeof(double));
   uint64_t sum = out.hash;
@@ -241,6 +248,7 @@ abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *e
     t->statistics.ledger = c.ledger;
     take(&at, t->picture.sum, t->picture.values * sizeof(double));
     take(&at, t->picture.square, t->picture.values * sizeof(double));
+    take(&at, t->guides.sum, guides_size(t));
     take(&at, t->map.sum, t->map.values * sizeof(double));
     take(&at, t->map.square, t->map.values * sizeof(double));
   }

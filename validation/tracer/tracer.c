@@ -55,6 +55,7 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
   if (d->no_picture && d->no_map)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "neither a picture nor a map is asked for: leave one of the two in");
+  d->guides = d->guides && !d->no_picture;
   if (d->layout != NULL) {
     result = abbe_map_layout_check(d->layout, error);
     if (result != ABBE_OK) return result;
@@ -120,6 +121,7 @@ static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
     values += (double)(d->width * d->height) * (double)(ABBE_TRACER_BANDS + t->bands.count);
   if (!d->no_map) values += (double)(d->map_width * d->map_height) * (double)(3 + t->bands.count);
   double needed = values * 8 * (double)(d->threads + 2);
+  if (d->guides) needed += (double)(d->width * d->height) * 8 * (ABBE_GUIDE_VALUES + 5);
   if (!(pages > 0) || !(page > 0) || needed < pages * page) return ABBE_OK;
   return abbe_error_set(
       error, ABBE_NO_MEMORY,
@@ -153,6 +155,8 @@ static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
     result = abbe_accumulator_make(d->width * d->height * t->picture_channels, d->threads,
                                    usual_radiance(t) * 0x1p28, &t->picture, error);
   }
+  if (result == ABBE_OK && d->guides)
+    result = abbe_guide_sums_make(d->width * d->height, &t->guides, error);
   if (result == ABBE_OK && !d->no_map) {
     t->map_channels = 3 + t->bands.count;
     double reach = t->projection[d->map_light].reach;
@@ -230,6 +234,7 @@ void abbe_tracer_free(abbe_tracer *t) {
   for (size_t l = 0; t->projection != NULL && l < t->scene->light_count; l++)
     abbe_projection_map_free(&t->projection[l]);
   abbe_accumulator_free(&t->picture);
+  abbe_guide_sums_free(&t->guides);
   abbe_accumulator_free(&t->map);
   abbe_photon_grid_free(&t->grid);
   abbe_bands_free(&t->bands);
@@ -260,6 +265,7 @@ static void add_sample(abbe_tracer *t, size_t thread, size_t pixel, const abbe_e
   }
   for (size_t i = 0; i < t->bands.count; i++)
     abbe_accumulator_add(&t->picture, thread, at + ABBE_TRACER_BANDS + i, s->band[i]);
+  if (t->desc.guides) abbe_guide_sums_set(&t->guides, pixel, rgb, s);
 }
 
 static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *stop,
@@ -334,6 +340,7 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   }
   t->statistics.light_seconds += middle - start;
   t->statistics.eye_seconds += end - middle;
+  if (t->desc.guides) abbe_guide_sums_end_pass(&t->guides, &t->picture, t->picture_channels);
   if (!t->desc.no_picture) abbe_accumulator_end_pass(&t->picture, 1);
   if (!t->desc.no_map) abbe_accumulator_end_pass(&t->map, 1);
   t->pass++;

@@ -36,6 +36,7 @@ extern "C" {
 typedef struct abbe_trace_desc {
   abbe_physics physics;
   bool no_picture, no_map;       /* leave one of the two out */
+  bool guides;                   /* layers of the picture that a filter needs, too */
   size_t width, height;          /* pixels; 0: the scene's */
   size_t map_width, map_height;  /* texels of the receiver map; 0: 512 */
   size_t map_light;              /* whose light it holds */
@@ -78,7 +79,9 @@ double abbe_tracer_error(const abbe_tracer *tracer);
 
 /* Means so far and, after two passes and more, their standard errors. Picture: R, G, B (X, Y, Z in that space), stderr.R …,
  * caustic.R … (the part that came to its receiver through a refractor), then the bands S0.…nm and
- * stderr.S0.…nm. Map: X, Y, Z, flux a texel in W, stderr.X …, bands in W/nm. Both carry what the
+ * stderr.S0.…nm. With guides, after two passes and more: photons.R … (the caustic that the eye
+ * sees straight), eye.R … (all else), albedo.R …, normal.X …, depth.Z in m (abbe_eye_sample),
+ * stderr. of each, and covariance.photons.RG …, covariance.eye.RG … of the means. Map: X, Y, Z, flux a texel in W, stderr.X …, bands in W/nm. Both carry what the
  * run was as attributes. ABBE_INVALID_ARGUMENT where the request left it out. */
 abbe_result abbe_tracer_picture(const abbe_tracer *tracer, abbe_image *out, abbe_error *error);
 abbe_result abbe_tracer_map(const abbe_tracer *tracer, abbe_image *out, abbe_error *error);

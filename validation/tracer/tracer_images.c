@@ -44,7 +44,11 @@ double abbe_tracer_error(const abbe_tracer *t) {
   return t->desc.no_map ? picture : fmax(picture, map_error(t));
 }
 
-enum { NAME = 64, MAX_CHANNELS = 9 + 2 * ABBE_BANDS_MAX };
+enum {
+  NAME = 64,
+  GUIDES = 2 * ABBE_GUIDE_MEANS + 6,
+  MAX_CHANNELS = 9 + GUIDES + 2 * ABBE_BANDS_MAX
+};
 
 typedef struct channel_list {
   size_t count;
@@ -86,13 +90,13 @@ static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image
 
 static abbe_result read_sums(const abbe_tracer *t, const abbe_accumulator *sums, size_t width,
                              size_t height, size_t channels, const channel_list *list,
-                             const char *kind, abbe_image *out, abbe_error *error) {
+                             size_t summed, const char *kind, abbe_image *out, abbe_error *error) {
   const char *names[MAX_CHANNELS];
   for (size_t i = 0; i < list->count; i++) names[i] = list->name[i];
   abbe_result result = abbe_image_make(width, height, list->count, names, out, error);
   if (result != ABBE_OK) return result;
   for (size_t i = 0; i < width * height; i++)
-    for (size_t k = 0; k < list->count; k++) {
+    for (size_t k = 0; k < summed; k++) {
       size_t value = i * channels + list->value[k];
       out->data[i * list->count + k] = (float)(list->error[k] ? abbe_accumulator_error(sums, value)
                                                               : abbe_accumulator_mean(sums, value));
@@ -111,6 +115,40 @@ static void add_bands(const abbe_tracer *t, size_t first, channel_list *list) {
   }
 }
 
+/* ---- the guides, behind all other channels ---- */
+
+/* Their names are put in the list alone; read_guides has the values, in the same order. */
+static void add_guides(const abbe_tracer *t, const char *const rgb[3], channel_list *list) {
+  static const char *const part[2] = {"photons.", "eye."}, *const axis[3] = {"X", "Y", "Z"};
+  const char *const names[ABBE_GUIDE_MEANS - 6] = {rgb[0],  rgb[1],  rgb[2], axis[0],
+                                                   axis[1], axis[2], "Z"};
+  if (!t->desc.guides || t->pass < 2) return;
+  for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
+    const char *of = k < 6 ? part[k / 3] : k < 9 ? "albedo." : k < 12 ? "normal." : "depth.";
+    const char *name = k < 6 ? rgb[k % 3] : names[k - 6];
+    snprintf(list->name[list->count++], NAME, "%s%s", of, name);
+    snprintf(list->name[list->count++], NAME, "stderr.%s%s", of, name);
+  }
+  for (size_t k = 0; k < 6; k++)
+    snprintf(list->name[list->count++], NAME, "covariance.%s%s%s", part[k / 3],
+             rgb[k % 3 == 2 ? 1 : 0], rgb[k % 3 == 0 ? 1 : 2]);
+}
+
+static void read_guides(const abbe_tracer *t, abbe_image *out) {
+  if (!t->desc.guides || t->pass < 2) return;
+  const abbe_guide_sums *g = &t->guides;
+  const double n = (double)t->pass;
+  for (size_t i = 0; i < g->pixels; i++) {
+    float *to = out->data + (i + 1) * out->channels - GUIDES;
+    for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
+      const double unit = k == ABBE_GUIDE_DEPTH ? t->geometry.unit : 1;
+      *to++ = (float)(unit * g->sum[i * ABBE_GUIDE_VALUES + k] / n);
+      *to++ = (float)(unit * sqrt(abbe_guide_sums_variance(g, t->pass, i, k)));
+    }
+    for (size_t k = 0; k < 6; k++) *to++ = (float)abbe_guide_sums_covariance(g, t->pass, i, k);
+  }
+}
+
 abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_error *error) {
   ABBE_REQUIRE(t && out, error);
   *out = (abbe_image){0};
@@ -126,8 +164,11 @@ abbe_result abbe_tracer_picture(const abbe_tracer *t, abbe_image *out, abbe_erro
     add_channel(t, list, "caustic.", name[k], ABBE_TRACER_CAUSTIC + k, false);
   }
   add_bands(t, ABBE_TRACER_BANDS, list);
+  const size_t summed = list->count;
+  add_guides(t, name, list);
   abbe_result result = read_sums(t, &t->picture, t->desc.width, t->desc.height, t->picture_channels,
-                                 list, "picture", out, error);
+                                 list, summed, "picture", out, error);
+  if (result == ABBE_OK) read_guides(t, out);
   free(list);
   if (result == ABBE_OK) abbe_rgb_space_chromaticities(t->desc.space, out->xy);
   return result;
@@ -146,7 +187,7 @@ abbe_result abbe_tracer_map(const abbe_tracer *t, abbe_image *out, abbe_error *e
   }
   add_bands(t, 3, list);
   abbe_result result = read_sums(t, &t->map, t->desc.map_width, t->desc.map_height, t->map_channels,
-                                 list, "receiver map", out, error);
+                                 list, list->count, "receiver map", out, error);
   free(list);
   if (result == ABBE_OK)
     result = abbe_map_layout_write(&t->layout, t->scene->light[t->desc.map_light].name, out, error);

@@ -6,6 +6,7 @@
 #define ABBE_VALIDATION_TRACER_TRACER_STATE_H
 
 #include "validation/tracer/accumulator.h"
+#include "validation/tracer/guide_sums.h"
 #include "validation/tracer/tracer.h"
 #include "validation/walks/eye_walk.h"
 #include "validation/walks/projection_map.h"
@@ -34,6 +35,7 @@ struct abbe_tracer {
   unsigned *splits;                /* [lights] interfaces at which its paths are split */
   abbe_light_walk **walk;          /* [threads] */
   abbe_accumulator picture, map;
+  abbe_guide_sums guides;
   size_t picture_channels, map_channels; /* a pixel, a texel */
   abbe_eye_walk eye;
   abbe_photon_grid grid;

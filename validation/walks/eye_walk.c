@@ -164,6 +164,7 @@ static void shade(const context *c, const eye_path *p, const abbe_hit *hit, bool
   abbe_reflectance_at(w->reflectance, surface, hit->face, hit->u, hit->v, reflectance);
   if (w->bands->count > 0)
     abbe_reflectance_rec709(w->reflectance, surface, hit->face, hit->u, hit->v, rec709);
+  for (int k = 0; k < 3; k++) c->out->albedo[k] += p->share * p->tint[k] * reflectance[k];
   float side = dot(p->d, hit->ng) < 0 ? 1 : -1;
   const float *normal = dot(hit->n, p->d) * side < 0 ? hit->n : hit->ng;
   for (int k = 0; k < 3; k++) n[k] = side * normal[k];
@@ -354,10 +355,19 @@ static void follow_through(const context *c, const eye_path *first, const abbe_h
   }
 }
 
+static void add_first(const context *c, const eye_path *p, const abbe_hit *hit, float length) {
+  float side = dot(p->d, hit->ng) < 0 ? 1 : -1;
+  for (int k = 0; k < 3; k++) c->out->normal[k] = side * hit->n[k];
+  c->out->depth = length;
+}
+
 void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out) {
   memset(out->rgb, 0, sizeof out->rgb);
   memset(out->caustic, 0, sizeof out->caustic);
+  memset(out->albedo, 0, sizeof out->albedo);
+  memset(out->normal, 0, sizeof out->normal);
+  out->depth = 0;
   memset(out->band, 0, w->bands->count * sizeof *out->band);
   out->refractor = false;
   out->rays = 0;
@@ -372,6 +382,7 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
   abbe_hit hit;
   float length;
   bool met = trace(&c, &p, &hit, &length);
+  if (met) add_first(&c, &p, &hit, length);
   if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
     arrive(&c, &p, met, &hit, true);
     return;

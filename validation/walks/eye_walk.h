@@ -43,6 +43,9 @@ typedef struct abbe_eye_sample {
   float rgb[3];               /* radiance, W/(m2 sr), white Y = 1 */
   float caustic[3];           /* the part that came to its receiver through a refractor */
   float band[ABBE_BANDS_MAX]; /* W/(m2 sr nm) */
+  float albedo[3];            /* reflectance of what shows, by each path's share of the pixel */
+  float normal[3];            /* of what the ray meets first, towards the eye; none: 0 */
+  float depth;                /* along the ray to there, frame; none: 0 */
   bool refractor;             /* the pixel's ray met one first */
   uint32_t rays;
 } abbe_eye_sample;

@@ -81,19 +81,22 @@ static void check_same(const abbe_tracer *a, const abbe_tracer *b) {
 /* Saved after 2, taken up on another number of threads, 3 more: the image of 5. */
 static void resumed_runs_give_the_image_of_unbroken_ones(void **state) {
   (void)state;
-  save(&small, 2);
-  abbe_tracer *whole = make_tracer(&scene, &small);
-  run_passes(whole, 5);
-  abbe_trace_desc desc = small;
-  desc.threads = 2;
-  abbe_tracer *broken = make_tracer(&scene, &desc);
-  abbe_error error;
-  assert_int_equal(load(broken, &error), ABBE_OK);
-  assert_int_equal(abbe_tracer_passes(broken), 2);
-  run_passes(broken, 3);
-  check_same(whole, broken);
-  abbe_tracer_free(whole);
-  abbe_tracer_free(broken);
+  for (int guides = 0; guides < 2; guides++) {
+    abbe_trace_desc desc = small;
+    desc.guides = guides;
+    save(&desc, 2);
+    abbe_tracer *whole = make_tracer(&scene, &desc);
+    run_passes(whole, 5);
+    desc.threads = 2;
+    abbe_tracer *broken = make_tracer(&scene, &desc);
+    abbe_error error;
+    assert_int_equal(load(broken, &error), ABBE_OK);
+    assert_int_equal(abbe_tracer_passes(broken), 2);
+    run_passes(broken, 3);
+    check_same(whole, broken);
+    abbe_tracer_free(whole);
+    abbe_tracer_free(broken);
+  }
 }
 
 /* Refused by a sentence that holds part, and the tracer goes on as if nothing had been. */
@@ -157,6 +160,8 @@ static void another_request_is_named(void **state) {
         .space = ABBE_RGB_SPACE_REC709},
        "space rec709"},
       {{.width = 10, .height = 7, .no_map = true, .photons = 2000, .bands = 2}, "map 0 x 0"},
+      {{.width = 10, .height = 7, .map_width = 8, .photons = 2000, .bands = 2, .guides = true},
+       "guides for a filter"},
   };
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
     abbe_trace_desc desc = others[i].desc;
@@ -268,9 +273,9 @@ static void what_is_no_checkpoint_is_told(void **state) {
   } files[] = {{"", "not a checkpoint"},
                {"description: a scene\n", "not a checkpoint"},
                {"abbe checkpoint 1\nscene 1\n\n", "another version"},
-               {"abbe checkpoint 2\n", "broken"},
-               {"abbe checkpoint 2\nscene 0123", "broken"},
-               {"abbe checkpoint 2\n\n\n", "start anew"}};
+               {"abbe checkpoint 3\n", "broken"},
+               {"abbe checkpoint 3\nscene 0123", "broken"},
+               {"abbe checkpoint 3\n\n\n", "start anew"}};
   abbe_error error;
   abbe_tracer *tracer = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {

@@ -1,0 +1,76 @@
+#include "validation/tracer/guide_sums.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { ADDED = ABBE_GUIDE_MEANS - ABBE_GUIDE_EYE };
+
+abbe_result abbe_guide_sums_make(size_t pixels, abbe_guide_sums *out, abbe_error *error) {
+  *out = (abbe_guide_sums){.pixels = pixels,
+                           .adding = calloc(pixels * ADDED, sizeof *out->adding),
+                           .sum = calloc(pixels * ABBE_GUIDE_VALUES, sizeof *out->sum)};
+  if (out->adding != NULL && out->sum != NULL) return ABBE_OK;
+  abbe_guide_sums_free(out);
+  return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a filter's guides of %zu pixels",
+                        pixels);
+}
+
+void abbe_guide_sums_free(abbe_guide_sums *g) {
+  free(g->adding);
+  free(g->sum);
+  *g = (abbe_guide_sums){0};
+}
+
+void abbe_guide_sums_set(abbe_guide_sums *g, size_t pixel, const float rgb[3],
+                         const abbe_eye_sample *s) {
+  const float values[ADDED] = {rgb[0],       rgb[1],       rgb[2],       s->albedo[0], s->albedo[1],
+                               s->albedo[2], s->normal[0], s->normal[1], s->normal[2], s->depth};
+  for (size_t k = 0; k < ADDED; k++)
+    g->adding[pixel * ADDED + k] = isfinite(values[k]) ? values[k] : 0;
+}
+
+static void end_pixel(const float *adding, const double rgb[3], double *sum) {
+  double x[ABBE_GUIDE_MEANS];
+  for (size_t k = 0; k < ADDED; k++) x[ABBE_GUIDE_EYE + k] = (double)adding[k];
+  for (size_t k = 0; k < 3; k++) x[k] = rgb[k] - x[ABBE_GUIDE_EYE + k];
+  for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
+    sum[k] += x[k];
+    sum[ABBE_GUIDE_SQUARES + k] += x[k] * x[k];
+  }
+  for (size_t part = 0; part < 2; part++) {
+    const double *c = x + 3 * part;
+    double *product = sum + ABBE_GUIDE_PRODUCTS + 3 * part;
+    product[0] += c[0] * c[1];
+    product[1] += c[0] * c[2];
+    product[2] += c[1] * c[2];
+  }
+}
+
+void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *picture,
+                              size_t channels) {
+#pragma omp parallel for num_threads((int)picture->threads)
+  for (size_t i = 0; i < g->pixels; i++) {
+    double rgb[3];
+    for (size_t k = 0; k < 3; k++) rgb[k] = abbe_accumulator_adding(picture, i * channels + k);
+    end_pixel(g->adding + i * ADDED, rgb, g->sum + i * ABBE_GUIDE_VALUES);
+  }
+}
+
+static double of_means(double product, double a, double b, size_t passes) {
+  const double n = (double)passes;
+  return (product / n - a / n * (b / n)) / (n - 1);
+}
+
+double abbe_guide_sums_variance(const abbe_guide_sums *g, size_t passes, size_t pixel,
+                                size_t mean) {
+  const double *sum = g->sum + pixel * ABBE_GUIDE_VALUES;
+  return fmax(of_means(sum[ABBE_GUIDE_SQUARES + mean], sum[mean], sum[mean], passes), 0);
+}
+
+double abbe_guide_sums_covariance(const abbe_guide_sums *g, size_t passes, size_t pixel,
+                                  size_t product) {
+  static const size_t first[3] = {0, 0, 1}, second[3] = {1, 2, 2};
+  const double *sum = g->sum + pixel * ABBE_GUIDE_VALUES, *part = sum + 3 * (product / 3);
+  return of_means(sum[ABBE_GUIDE_PRODUCTS + product], part[first[product % 3]],
+                  part[second[product % 3]], passes);
+}
