@@ -45,7 +45,8 @@ foreach(name
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-foreach(name matched_physics sweep_grid sweep_hash sweep_promises sweep_reference sweep_setting)
+foreach(name matched_physics sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
+    sweep_setting sweep_trace)
   abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
 endforeach()
 foreach(name scaling_study sweep_measure sweep_page sweep_run)

@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #ifndef ABBE_VERSION
 #error "the build defines ABBE_VERSION"
@@ -92,6 +93,10 @@ static abbe_result measure(const abbe_sweep_options *q, const abbe_scene *scene,
   work.scene_path = q->scene;
   work.setting = setting;
   work.setting_count = count;
+  work.materials = q->materials;
+  work.backend = abbe_context_backend_name(q->backend);
+  char own[4096] = "";
+  if (q->processes && readlink("/proc/self/exe", own, sizeof own - 1) > 0) work.run = own;
   work.progress = update;
   work.user = &b;
   work.stop = abbe_progress_stopped();
@@ -160,7 +165,8 @@ static abbe_result load_tables(const abbe_sweep_options *q, abbe_sweep_table *ta
   for (size_t i = 0; i < q->argument_count && result == ABBE_OK; i++) {
     result = abbe_sweep_table_load(q->argument[i], &tables[i], error);
     if (result == ABBE_OK) protect_sources(q, &tables[i]);
-    if (result == ABBE_OK) result = abbe_sweep_table_mark(&tables[i], q->work.error, NULL, error);
+    if (result == ABBE_OK)
+      result = abbe_sweep_table_mark(&tables[i], q->work.time, q->work.error, NULL, error);
   }
   return result;
 }
@@ -178,7 +184,8 @@ static abbe_result write_page(const abbe_sweep_options *q, const abbe_sweep_tabl
     }
   abbe_result result = abbe_context_make(q->backend, &context, error);
   if (result == ABBE_OK)
-    result = abbe_sweep_page_write(context, q->report, tables, count, q->work.error, error);
+    result = abbe_sweep_page_write(context, q->report, tables, count, q->work.time, q->work.error,
+                                   error);
   abbe_context_free(context);
   return result;
 }
@@ -190,7 +197,7 @@ static abbe_result write_files(const abbe_sweep_options *q, const abbe_sweep_tab
   if (q->plot != NULL && count > 1)
     result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "--plot draws one table at a time");
   else if (q->plot != NULL)
-    result = abbe_sweep_plot(q->plot, &tables[0], &number, 1, error);
+    result = abbe_sweep_plot(q->plot, &tables[0], q->work.time, &number, 1, error);
   if (result == ABBE_OK && q->report != NULL) result = write_page(q, tables, count, error);
   if (result == ABBE_OK && q->write_presets != NULL)
     result = abbe_sweep_presets_write(q->write_presets, tables, q->argument, count, number,
@@ -212,8 +219,8 @@ static abbe_result show(const abbe_sweep_options *q, const abbe_sweep_table *tab
                         abbe_error *error) {
   abbe_result result = write_files(q, tables, count, error);
   for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = q->json ? abbe_sweep_report_print_json(&tables[i], q->work.error, error)
-                     : abbe_sweep_report_print(&tables[i], q->work.error, error);
+    result = q->json ? abbe_sweep_report_print_json(&tables[i], q->work.time, q->work.error, error)
+                     : abbe_sweep_report_print(&tables[i], q->work.time, q->work.error, error);
   bool of_presets = q->grid != NULL && strcmp(q->grid, "presets") == 0;
   bool promised = (of_presets || q->presets != NULL) && !q->json;
   for (size_t i = 0; i < count && promised && result == ABBE_OK; i++)
@@ -242,13 +249,15 @@ int abbe_command_sweep(int argc, char **argv) {
   abbe_sweep_grids grids;
   abbe_sweep_options q = {.program = argv[0], .grids = &grids};
   q.work.frames = 5;
+  q.work.time = ABBE_SWEEP_FRAME_MS;
   q.work.error = ABBE_SWEEP_CAUSTIC_DE;
   abbe_result result = abbe_sweep_grids_load(NULL, &grids, &error);
   if (result == ABBE_OK) {
     abbe_arguments_parse(&abbe_sweep_options_argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-    if (q.listed && q.list.profiles.count == 0)
-      q.list.profiles = (abbe_sweep_values){
-          3, {ABBE_PROFILE_DEFAULT, ABBE_PROFILE_THESIS, ABBE_PROFILE_THESIS_CIE}};
+    if (q.listed && q.list.profiles.count == 0) {
+      q.list.profiles.count = ABBE_SWEEP_PROFILE_COUNT;
+      for (size_t i = 0; i < ABBE_SWEEP_PROFILE_COUNT; i++) q.list.profiles.value[i] = i;
+    }
     result = run(&q, &error);
   }
   abbe_sweep_grids_free(&grids);

@@ -31,6 +31,9 @@ enum {
   OPTION_FRAMES,
   OPTION_SIZE,
   OPTION_ERROR,
+  OPTION_TIME,
+  OPTION_PROCESSES,
+  OPTION_PASSES,
   OPTION_REFERENCE,
   OPTION_REFERENCE_MAP,
   OPTION_SPP,
@@ -62,11 +65,16 @@ static const struct argp_option options[] = {
      "instead: how the time scales with photons, wavelengths, pixels, faces, share of the view", 0},
     {"error", OPTION_ERROR, "COLUMN", 0,
      "that makes the Pareto front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
+    {"time", OPTION_TIME, "frame|warm|cold", 0,
+     "that makes the Pareto front: a frame once the scene stands, or a whole process with its "
+     "shaders cached or not (frame)",
+     0},
     {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress", 0},
     {"grid", OPTION_GRID, "quick|full|thin|presets", 0,
      "a named set of settings; presets: do they keep their promise here? (quick)", 1},
-    {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis,thesis-cie (all)", 1},
+    {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis,thesis-cie,trace,trace-filter (all)",
+     1},
     {"wavelengths", OPTION_WAVELENGTHS, "LIST", 0, "such as 3,7,21", 1},
     {"photons", OPTION_PHOTONS, "LIST", 0, "sides of the photon grid", 1},
     {"map", OPTION_MAP, "LIST", 0, "sides of the spectral map", 1},
@@ -76,7 +84,10 @@ static const struct argp_option options[] = {
     {"model", OPTION_MODEL, "LIST", 0, "of transport: auto, layers, hierarchy, ...", 1},
     {"exits", OPTION_EXITS, "LIST", 0, "followed at the most", 1},
     {"share", OPTION_SHARE, "LIST", 0, "of their light below which paths end", 1},
+    {"passes", OPTION_PASSES, "LIST", 0, "of the tracer, each of photons x photons photons", 1},
     {"frames", OPTION_FRAMES, "N", 0, "warm up, then the median of N (5)", 1},
+    {"processes", OPTION_PROCESSES, NULL, 0,
+     "time whole processes too, cold and warm, of the settings on each contestant's front", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS, "a table instead of the scene's",
@@ -124,6 +135,7 @@ static void take_count(const request *q, const char *option, const char *word, s
                 : strcmp(option, "--upsample") == 0    ? 4
                 : strcmp(option, "--exits") == 0       ? ABBE_RENDER_MAX_EXITS
                 : strcmp(option, "--wavelengths") == 0 ? ABBE_RENDER_MAX_WAVELENGTHS
+                : strcmp(option, "--passes") == 0      ? 65536
                                                        : ABBE_RENDER_MAX_PHOTONS;
   ((abbe_sweep_values *)out)->value[at] = abbe_command_count(q->program, option, word, 1, most);
 }
@@ -134,21 +146,22 @@ static void take_share(const request *q, const char *option, const char *word, s
 }
 
 #define ABBE_NAME_OF(code, name) name,
-static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF)};
 static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF)};
+static const char *const times[ABBE_SWEEP_TIMES] = {"frame", "warm", "cold"};
 static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(ABBE_NAME_OF)};
 
 static void take_name(const request *q, const char *option, const char *word, size_t at,
                       void *out) {
   const bool profile = strcmp(option, "--profiles") == 0, model = strcmp(option, "--model") == 0;
-  ((abbe_sweep_values *)out)->value[at] = (size_t)abbe_command_choice(q->program, option, word,
-                                                                      profile ? profiles
-                                                                      : model ? models
-                                                                              : fills,
-                                                                      profile ? ABBE_PROFILE_COUNT
-                                                                      : model ? ABBE_MODEL_COUNT
-                                                                              : ABBE_FILL_COUNT);
+  ((abbe_sweep_values *)out)->value[at] =
+      (size_t)abbe_command_choice(q->program, option, word,
+                                  profile ? abbe_sweep_profiles
+                                  : model ? models
+                                          : fills,
+                                  profile ? ABBE_SWEEP_PROFILE_COUNT
+                                  : model ? ABBE_MODEL_COUNT
+                                          : ABBE_FILL_COUNT);
 }
 
 static void parse_error(request *q, const char *text, struct argp_state *state) {
@@ -180,6 +193,7 @@ static error_t parse_list(int key, const char *text, request *q) {
                {OPTION_SAMPLES, "--samples", &g->samples},
                {OPTION_UPSAMPLE, "--upsample", &g->upsample},
                {OPTION_EXITS, "--exits", &g->exits},
+               {OPTION_PASSES, "--passes", &g->passes},
                {OPTION_PROFILES, "--profiles", &g->profiles},
                {OPTION_MODEL, "--model", &g->models},
                {OPTION_FILL, "--fill", &g->fills}};
@@ -305,6 +319,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_ERROR:
     parse_error(q, text, state);
+    return 0;
+  case OPTION_TIME:
+    w->time =
+        abbe_sweep_times[abbe_command_choice(q->program, "--time", text, times, ABBE_SWEEP_TIMES)];
+    return 0;
+  case OPTION_PROCESSES:
+    q->processes = true;
     return 0;
   case OPTION_JSON:
     q->json = true;

@@ -23,12 +23,13 @@ static void print_row(const abbe_sweep_row *row) {
 }
 
 static abbe_result print_baseline(const abbe_sweep_table *table, const char *profile,
-                                  abbe_sweep_number number, abbe_error *error) {
+                                  abbe_sweep_number time, abbe_sweep_number number,
+                                  abbe_error *error) {
   abbe_baseline_comparison c;
   char a[ABBE_SWEEP_SHORT], b[ABBE_SWEEP_SHORT];
-  abbe_result result = abbe_baseline_comparison_make(table, profile, number, &c, error);
+  abbe_result result = abbe_baseline_comparison_make(table, profile, time, number, &c, error);
   if (result != ABBE_OK || c.front == 0) return result;
-  printf("\n%s", abbe_baseline_text(profile));
+  printf("\n%s, by %s", abbe_baseline_text(profile), abbe_sweep_number_name(time));
   if (c.baseline != NULL) {
     printf(", at its own settings:\n");
     print_row(c.baseline);
@@ -44,14 +45,14 @@ static abbe_result print_baseline(const abbe_sweep_table *table, const char *pro
   return ABBE_OK;
 }
 
-abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number number,
-                                    abbe_error *error) {
-  size_t count, *order = abbe_sweep_table_front(table, &count);
+abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_number time,
+                                    abbe_sweep_number number, abbe_error *error) {
+  size_t count, *order = abbe_sweep_table_front(table, time, &count);
   char text[ABBE_SWEEP_SHORT];
   if (order == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the front");
-  printf("%s, %s: %zu settings, %zu on the Pareto front of time and %s\n\n%-34s",
+  printf("%s, %s: %zu settings, %zu on the Pareto front of %s and %s\n\n%-34s",
          table->fact[ABBE_SWEEP_FACT_SCENE], table->fact[ABBE_SWEEP_FACT_SIZE], table->count, count,
-         abbe_sweep_number_name(number), "");
+         abbe_sweep_number_name(time), abbe_sweep_number_name(number), "");
   for (int k = 0; k < ABBE_SWEEP_SHOWN; k++)
     printf(" %12s", abbe_sweep_number_name(abbe_sweep_shown[k]));
   printf("\n");
@@ -62,8 +63,14 @@ abbe_result abbe_sweep_report_print(const abbe_sweep_table *table, abbe_sweep_nu
            abbe_sweep_number_name(number));
   free(order);
   abbe_result result = ABBE_OK;
-  for (int i = 0; i < ABBE_BASELINE_COUNT && result == ABBE_OK; i++)
-    result = print_baseline(table, abbe_baselines[i], number, error);
+  for (int i = 0; i < ABBE_BASELINE_COUNT; i++)
+    for (int k = 0; k < ABBE_SWEEP_TIMES && result == ABBE_OK; k++)
+      result = print_baseline(table, abbe_baselines[i], abbe_sweep_times[k], number, error);
+  const double unrest = abbe_sweep_table_unrest(table);
+  if (unrest > ABBE_SWEEP_QUIET)
+    printf("\nnote: the machine was busy: the median frame of half of the settings took more than "
+           "%.0f %% longer than their fastest; measure again when it is quiet\n",
+           100 * unrest);
   abbe_error_decomposition d;
   char words[PARAGRAPH];
   abbe_error_decomposition_make(table, &d);
@@ -112,17 +119,20 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
   cJSON_AddNumberToObject(o, "exits", (double)s->exits);
   cJSON_AddNumberToObject(o, "share", s->share);
   cJSON_AddStringToObject(o, "model", s->model);
+  cJSON_AddNumberToObject(o, "passes", (double)s->passes);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++)
     add_number(o, abbe_sweep_number_name((abbe_sweep_number)i), row->number[i]);
   cJSON_AddBoolToObject(o, "front", row->front);
   return o;
 }
 
-/* "equal_error_speedup" against the thesis profile, "vs_fair_..." against its method in units. */
+/* "equal_error_speedup" against the thesis profile, "vs_fair_..." against its method in units,
+ * "vs_trace_..." against the tracer; with "warm_" and "cold_" before it of whole processes. */
 static abbe_result describe_baseline(const abbe_sweep_table *table, const char *profile,
-                                     abbe_sweep_number number, cJSON *root, abbe_error *error) {
+                                     abbe_sweep_number time, abbe_sweep_number number, cJSON *root,
+                                     abbe_error *error) {
   abbe_baseline_comparison d;
-  abbe_result result = abbe_baseline_comparison_make(table, profile, number, &d, error);
+  abbe_result result = abbe_baseline_comparison_make(table, profile, time, number, &d, error);
   if (result != ABBE_OK) return result;
   const struct {
     const char *name;
@@ -133,10 +143,11 @@ static abbe_result describe_baseline(const abbe_sweep_table *table, const char *
              {"front_ratio", d.front_ratio},
              {"front_points", (double)d.front},
              {"front_points_beaten", (double)d.beaten}};
-  const char *before = strcmp(profile, abbe_baselines[0]) == 0 ? "" : "vs_fair_";
+  const char *before = abbe_baseline_key(profile);
+  const char *of = time == ABBE_SWEEP_WARM_MS ? "warm_" : time == ABBE_SWEEP_COLD_MS ? "cold_" : "";
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     char name[64];
-    snprintf(name, sizeof name, "%s%s", before, all[i].name);
+    snprintf(name, sizeof name, "%s%s%s", of, before, all[i].name);
     add_number(root, name, all[i].value);
   }
   return ABBE_OK;
@@ -157,15 +168,19 @@ static void describe_decomposition(const abbe_sweep_table *table, cJSON *root) {
   cJSON_AddStringToObject(o, "words", words);
 }
 
-abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number number,
-                                         abbe_error *error) {
+abbe_result abbe_sweep_report_print_json(const abbe_sweep_table *table, abbe_sweep_number time,
+                                         abbe_sweep_number number, abbe_error *error) {
   cJSON *root = cJSON_CreateObject();
   abbe_result result = ABBE_OK;
   for (int i = 0; i < ABBE_SWEEP_FACT_COUNT; i++)
     cJSON_AddStringToObject(root, abbe_sweep_fact_name((abbe_sweep_fact)i), table->fact[i]);
+  cJSON_AddStringToObject(root, "time", abbe_sweep_number_name(time));
   cJSON_AddStringToObject(root, "error", abbe_sweep_number_name(number));
-  for (int i = 0; i < ABBE_BASELINE_COUNT && result == ABBE_OK; i++)
-    result = describe_baseline(table, abbe_baselines[i], number, root, error);
+  for (int i = 0; i < ABBE_BASELINE_COUNT; i++)
+    for (int k = 0; k < ABBE_SWEEP_TIMES && result == ABBE_OK; k++)
+      result =
+          describe_baseline(table, abbe_baselines[i], abbe_sweep_times[k], number, root, error);
+  add_number(root, "unrest", abbe_sweep_table_unrest(table));
   describe_decomposition(table, root);
   cJSON *rows = cJSON_AddArrayToObject(root, "rows");
   for (size_t i = 0; i < table->count; i++)

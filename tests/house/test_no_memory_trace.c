@@ -185,13 +185,15 @@ static abbe_result sweep(abbe_error *error) {
   const char *path = operation_path("sweep.csv");
   abbe_result result = fill_table(&table, error);
   if (result == ABBE_OK)
-    result = abbe_sweep_table_mark(&table, ABBE_SWEEP_CAUSTIC_DE, "default", error);
+    result =
+        abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, "default", error);
   if (result == ABBE_OK) result = abbe_sweep_table_save(&table, path, error);
   if (result == ABBE_OK) result = abbe_sweep_table_load(path, &back, error);
   if (result == ABBE_OK) result = abbe_sweep_table_agree(&table, "it", &back, error);
   if (result == ABBE_OK) digest(&back.count, sizeof back.count);
   if (result == ABBE_OK)
-    result = abbe_sweep_plot(operation_path("sweep.svg"), &table, numbers, 1, error);
+    result = abbe_sweep_plot(operation_path("sweep.svg"), &table, ABBE_SWEEP_FRAME_MS, numbers, 1,
+                             error);
   abbe_sweep_table_free(&back);
   abbe_sweep_table_free(&table);
   return result;

@@ -90,6 +90,7 @@ static const struct {
     {"abbe_sweep_reference_load", "picture"},
     {"abbe_sweep_reference_load", "map"},
     {"abbe_sweep_table_mark", "profile"},
+    {"abbe_sweep_trace_measure", "picture"},
     {"abbe_table_edit_make", "path"},
     {"abbe_table_edit_open", "path"},
     {"abbe_table_fix_make", "known"},

@@ -3,6 +3,7 @@
 #include "base/yaml/yaml.h"
 #include "gl/plan/plan.h"
 #include "validation/sweep/sweep_setting.h"
+#include "validation/sweep/sweep_trace.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,27 +15,31 @@ extern const size_t abbe_embedded_grids_yaml_size;
 /* ---- reading ---- */
 
 #define ABBE_NAME_OF(code, name) name,
-static const char *const profile_names[] = {ABBE_PROFILES(ABBE_NAME_OF) NULL};
-static const char *const fill_names[] = {ABBE_FILLS(ABBE_NAME_OF) NULL};
-static const char *const model_names[] = {ABBE_MODELS(ABBE_NAME_OF) NULL};
+const char *const abbe_sweep_profiles[] = {ABBE_PROFILES(ABBE_NAME_OF) ABBE_SWEEP_TRACE,
+                                           ABBE_SWEEP_TRACE_FILTER};
+static const char *const fill_names[] = {ABBE_FILLS(ABBE_NAME_OF)};
+static const char *const model_names[] = {ABBE_MODELS(ABBE_NAME_OF)};
 #undef ABBE_NAME_OF
+
+enum { MOST_PASSES = 65536 }; /* of the tracer */
 
 typedef struct reader {
   abbe_yaml *yaml;
   abbe_error *error;
 } reader;
 
-/* The index of a word in names, which end with NULL. */
+/* The index of a word in names, which are so many. */
 static abbe_result read_word(const reader *r, abbe_yaml_node node, const char *key,
-                             const char *const *names, size_t *out) {
+                             const char *const *names, size_t count, size_t *out) {
   const char *text = abbe_yaml_text(r->yaml, node);
-  for (*out = 0; text != NULL && names[*out] != NULL; ++*out)
+  for (*out = 0; text != NULL && *out < count; ++*out)
     if (strcmp(names[*out], text) == 0) return ABBE_OK;
   return abbe_yaml_fail(r->yaml, node, r->error, "'%.40s' is not known as a value of '%s'",
                         text != NULL ? text : "", key);
 }
 
-/* Counts from 1 to `most`, or words of names (NULL: counts); *out stays empty without the key. */
+/* Counts from 1 to `most`, or words of `most` names (NULL: counts); *out stays empty without the
+ * key. */
 static abbe_result read_values(const reader *r, abbe_yaml_node part, const char *key, size_t most,
                                const char *const *names, abbe_sweep_values *out) {
   abbe_yaml_node list = abbe_yaml_get(r->yaml, part, key);
@@ -47,7 +52,7 @@ static abbe_result read_values(const reader *r, abbe_yaml_node part, const char 
     abbe_yaml_node item = abbe_yaml_item(r->yaml, list, i);
     double value = 0;
     abbe_result result =
-        names != NULL ? read_word(r, item, key, names, &out->value[i])
+        names != NULL ? read_word(r, item, key, names, most, &out->value[i])
                       : abbe_yaml_number(r->yaml, item, key, 1, (double)most, &value, r->error);
     if (result != ABBE_OK) return result;
     if (names == NULL) out->value[i] = (size_t)value;
@@ -77,15 +82,16 @@ static abbe_result read_part(const reader *r, abbe_yaml_node node, abbe_sweep_gr
     size_t most;
     const char *const *names;
     abbe_sweep_values *out;
-  } axes[] = {{"profiles", 0, profile_names, &out->profiles},
+  } axes[] = {{"profiles", ABBE_SWEEP_PROFILE_COUNT, abbe_sweep_profiles, &out->profiles},
               {"wavelengths", ABBE_RENDER_MAX_WAVELENGTHS, NULL, &out->wavelengths},
               {"photons", ABBE_RENDER_MAX_PHOTONS, NULL, &out->photons},
               {"map", ABBE_RENDER_MAX_MAP, NULL, &out->map},
               {"samples", 4, NULL, &out->samples},
               {"upsample", 4, NULL, &out->upsample},
               {"exits", ABBE_RENDER_MAX_EXITS, NULL, &out->exits},
-              {"fill", 0, fill_names, &out->fills},
-              {"model", 0, model_names, &out->models}};
+              {"passes", MOST_PASSES, NULL, &out->passes},
+              {"fill", ABBE_FILL_COUNT, fill_names, &out->fills},
+              {"model", ABBE_MODEL_COUNT, model_names, &out->models}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof axes / sizeof *axes && result == ABBE_OK; i++)
     result = read_values(r, node, axes[i].key, axes[i].most, axes[i].names, axes[i].out);
@@ -171,6 +177,8 @@ typedef struct expansion {
   abbe_sweep_setting *list;
   size_t count, refused;
   abbe_error *why;
+  abbe_result traceable; /* of the scene, once it was asked */
+  bool asked;
 } expansion;
 
 static size_t length_of(const abbe_sweep_values *values) {
@@ -184,26 +192,46 @@ static size_t take(const abbe_sweep_values *values, size_t *counter) {
   return values->count > 0 ? values->value[digit] : 0;
 }
 
-static abbe_result add_setting(expansion *e, const abbe_render_desc *desc, abbe_error *error) {
-  abbe_plan plan;
-  abbe_sweep_setting setting;
-  abbe_error why = {0};
-  abbe_result result = abbe_plan_make(e->scene, desc, &plan, &why);
-  if (result == ABBE_NO_MEMORY) return abbe_error_set(error, result, "%s", why.text);
-  if (result != ABBE_OK) {
-    if (e->refused++ == 0 && e->why != NULL) *e->why = why;
-    return ABBE_OK;
-  }
-  abbe_sweep_setting_of(&plan.desc, &setting);
-  abbe_plan_free(&plan);
+/* ABBE_OK for what is left out, unless memory is short. */
+static abbe_result refuse(expansion *e, abbe_result result, const abbe_error *why,
+                          abbe_error *error) {
+  if (result == ABBE_NO_MEMORY) return abbe_error_set(error, result, "%s", why->text);
+  if (e->refused++ == 0 && e->why != NULL) *e->why = *why;
+  return ABBE_OK;
+}
+
+static abbe_result add_setting(expansion *e, const abbe_sweep_setting *setting, abbe_error *error) {
   for (size_t i = 0; i < e->count; i++)
-    if (abbe_sweep_setting_same(&e->list[i], &setting)) return ABBE_OK;
+    if (abbe_sweep_setting_same(&e->list[i], setting)) return ABBE_OK;
   if (e->count == ABBE_SWEEP_MAX_ROWS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the grid has more than %d settings; give shorter lists",
                           ABBE_SWEEP_MAX_ROWS);
-  e->list[e->count++] = setting;
+  e->list[e->count++] = *setting;
   return ABBE_OK;
+}
+
+static abbe_result add_render(expansion *e, const abbe_render_desc *desc, abbe_error *error) {
+  abbe_plan plan;
+  abbe_sweep_setting setting;
+  abbe_error why = {0};
+  abbe_result result = abbe_plan_make(e->scene, desc, &plan, &why);
+  if (result != ABBE_OK) return refuse(e, result, &why, error);
+  abbe_sweep_setting_of(&plan.desc, &setting);
+  abbe_plan_free(&plan);
+  return add_setting(e, &setting, error);
+}
+
+static abbe_result add_trace(expansion *e, size_t photons, size_t passes, bool filtered,
+                             abbe_error *error) {
+  abbe_sweep_setting setting;
+  abbe_error why = {0};
+  if (!e->asked) e->traceable = abbe_sweep_trace_check(e->scene, &why);
+  e->asked = true;
+  if (e->traceable != ABBE_OK) return refuse(e, e->traceable, &why, error);
+  abbe_sweep_setting_of_trace(photons > 0 ? photons : ABBE_SWEEP_TRACE_PHOTONS,
+                              passes > 0 ? passes : ABBE_SWEEP_TRACE_PASSES, filtered, &setting);
+  return add_setting(e, &setting, error);
 }
 
 static bool has_mesh(const abbe_scene *scene) {
@@ -215,9 +243,9 @@ static bool has_mesh(const abbe_scene *scene) {
 
 static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *error) {
   size_t shares = g->share_count > 0 ? g->share_count : 1, total = shares;
-  const abbe_sweep_values *const axes[] = {&g->profiles, &g->wavelengths, &g->photons,
-                                           &g->map,      &g->samples,     &g->upsample,
-                                           &g->exits,    &g->fills,       &g->models};
+  const abbe_sweep_values *const axes[] = {&g->profiles, &g->wavelengths, &g->photons, &g->map,
+                                           &g->samples,  &g->upsample,    &g->exits,   &g->fills,
+                                           &g->models,   &g->passes};
   for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) total *= length_of(axes[i]);
   abbe_result result = ABBE_OK;
   if (g->meshes && !has_mesh(e->scene)) return ABBE_OK;
@@ -231,9 +259,13 @@ static abbe_result add_grid(expansion *e, const abbe_sweep_grid *g, abbe_error *
     d.exits = take(&g->exits, &counter);
     d.fill = (abbe_fill)take(&g->fills, &counter);
     d.model = (abbe_model)take(&g->models, &counter);
-    d.profile = (abbe_profile)take(&g->profiles, &counter);
+    const size_t profile = take(&g->profiles, &counter), passes = take(&g->passes, &counter);
+    d.profile = (abbe_profile)profile;
     if (g->share_count > 0) d.energy_share = g->share[counter % shares];
-    result = add_setting(e, &d, error);
+    result =
+        profile < ABBE_PROFILE_COUNT
+            ? add_render(e, &d, error)
+            : add_trace(e, d.photons, passes, profile == ABBE_SWEEP_PROFILE_TRACE_FILTER, error);
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #define ABBE_VALIDATION_SWEEP_SWEEP_GRID_H
 
 #include "base/error.h"
+#include "gl/plan/facts/render_desc.h"
 #include "scenes/scene.h"
 #include "validation/tradeoff/sweep_table.h"
 
@@ -27,14 +28,23 @@ typedef struct abbe_sweep_values {
 
 /* All combinations of its axes. A zeroed grid is the default profile's default. */
 typedef struct abbe_sweep_grid {
-  abbe_sweep_values profiles; /* abbe_profile */
+  abbe_sweep_values profiles; /* abbe_profile, or one of the two below */
   abbe_sweep_values wavelengths, photons, map, samples, upsample, exits;
+  abbe_sweep_values passes; /* of the tracer; of it, photons count too, and nothing else */
   abbe_sweep_values fills;  /* abbe_fill */
   abbe_sweep_values models; /* abbe_model */
   bool meshes;              /* only where a refractor is a general mesh */
   size_t share_count;
   double share[ABBE_SWEEP_MAX_VALUES];
 } abbe_sweep_grid;
+
+/* Contestants beside the profiles, as values of that axis: the tracer, and it filtered. */
+#define ABBE_SWEEP_PROFILE_TRACE ABBE_PROFILE_COUNT
+#define ABBE_SWEEP_PROFILE_TRACE_FILTER (ABBE_PROFILE_COUNT + 1)
+#define ABBE_SWEEP_PROFILE_COUNT (ABBE_PROFILE_COUNT + 2)
+extern const char *const abbe_sweep_profiles[ABBE_SWEEP_PROFILE_COUNT];
+#define ABBE_SWEEP_TRACE_PASSES 4 /* where none are asked for, and of 512 x 512 photons */
+#define ABBE_SWEEP_TRACE_PHOTONS 512
 
 #define ABBE_SWEEP_MAX_GRIDS 8  /* of a file */
 #define ABBE_SWEEP_MAX_PARTS 64 /* of a named grid */
@@ -57,7 +67,7 @@ abbe_result abbe_sweep_grids_load(const char *path, abbe_sweep_grids *out, abbe_
 void abbe_sweep_grids_free(abbe_sweep_grids *grids);
 
 /* What is to be drawn: every setting of the grids once, resolved by the scene's plan, in order.
- * Those that a profile does not know for this scene are left out: *refused counts them and `why`
+ * Those that a contestant cannot make of this scene are left out: *refused counts them and `why`
  * (may be NULL) says of the first. ABBE_INVALID_ARGUMENT where none remains or they are too many.
  * *out is malloc'd. */
 abbe_result abbe_sweep_grid_expand(const abbe_scene *scene, const abbe_sweep_grid *grids,

@@ -4,6 +4,7 @@
 #include "scenes/view/map_resample.h"
 #include "validation/compare/compare.h"
 #include "validation/sweep/sweep_setting.h"
+#include "validation/sweep/sweep_trace.h"
 
 #include <math.h>
 #include <string.h>
@@ -205,17 +206,31 @@ static abbe_result make_desc(const abbe_sweep *s, const abbe_sweep_setting *sett
   return abbe_map_layout_read(s->map, "the reference", layout, error);
 }
 
-abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *setting,
-                               abbe_render_progress progress, void *user, abbe_sweep_row *out,
-                               abbe_image *picture, abbe_error *error) {
-  ABBE_REQUIRE(s && setting && out, error);
+static void clear_row(const abbe_sweep_setting *setting, abbe_sweep_row *out) {
+  *out = (abbe_sweep_row){.setting = *setting};
+  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) out->number[i] = NAN;
+}
+
+static abbe_result measure_trace(const abbe_sweep *s, abbe_render_progress progress, void *user,
+                                 abbe_sweep_row *out, abbe_image *picture, abbe_error *error) {
+  const abbe_sweep_trace_desc desc = {.width = s->picture != NULL ? s->picture->width : 0,
+                                      .height = s->picture != NULL ? s->picture->height : 0,
+                                      .frames = s->frames,
+                                      .enough_ms = enough_ms,
+                                      .progress = progress,
+                                      .user = user};
+  abbe_result result = abbe_sweep_trace_measure(s->scene, &desc, out, picture, error);
+  if (result == ABBE_OK && s->picture != NULL)
+    result = compare_picture(s, picture, false, out, error);
+  return result;
+}
+
+static abbe_result measure_frames(const abbe_sweep *s, const abbe_sweep_setting *setting,
+                                  abbe_render_progress progress, void *user, abbe_sweep_row *out,
+                                  abbe_image *drawn, abbe_error *error) {
   abbe_map_layout layout;
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
-  abbe_image own = {0}, *drawn = picture != NULL ? picture : &own;
-  *drawn = (abbe_image){0};
-  *out = (abbe_sweep_row){.setting = *setting};
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) out->number[i] = NAN;
   abbe_result result = make_desc(s, setting, &layout, &desc, error);
   bool scaled = desc.profile == ABBE_PROFILE_THESIS;
   if (result == ABBE_OK) result = abbe_renderer_make(s->context, s->scene, &desc, &renderer, error);
@@ -228,6 +243,19 @@ abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *se
                              ABBE_SWEEP_MATCHED_DE, out, error);
   if (result == ABBE_OK) result = measure_map(s, renderer, out, error);
   abbe_renderer_free(renderer);
+  return result;
+}
+
+abbe_result abbe_sweep_measure(const abbe_sweep *s, const abbe_sweep_setting *setting,
+                               abbe_render_progress progress, void *user, abbe_sweep_row *out,
+                               abbe_image *picture, abbe_error *error) {
+  ABBE_REQUIRE(s && setting && out, error);
+  abbe_image own = {0}, *drawn = picture != NULL ? picture : &own;
+  *drawn = (abbe_image){0};
+  clear_row(setting, out);
+  abbe_result result = abbe_sweep_setting_is_traced(setting)
+                           ? measure_trace(s, progress, user, out, drawn, error)
+                           : measure_frames(s, setting, progress, user, out, drawn, error);
   abbe_image_free(&own);
   if (result != ABBE_OK && picture != NULL) abbe_image_free(picture);
   return result;
@@ -238,8 +266,7 @@ abbe_result abbe_sweep_time(const abbe_sweep *s, const abbe_sweep_setting *setti
   ABBE_REQUIRE(s && setting && out, error);
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
-  *out = (abbe_sweep_row){.setting = *setting};
-  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) out->number[i] = NAN;
+  clear_row(setting, out);
   abbe_result result = abbe_sweep_setting_desc(setting, &desc, error);
   desc.width = width;
   desc.height = height;

@@ -1,11 +1,12 @@
-/* sweep_measure.h: renderer settings against a traced reference: one measurement, the reference.
+/* sweep_measure.h: settings against a traced reference: one measurement, the reference.
  *
- * A setting is drawn, timed as the median of warmed
- * frames, and compared with the reference: its receiver map in the reference's layout, its picture
- * pixel by pixel. The thesis profile knows no units, so its map and its picture are first
- * multiplied by the one factor each that suits it best; the same method in physical units
- * (thesis-cie) gets none. Maps of both, which they lay out by the lamp's cone, are resampled. It
- * keeps no files and draws no charts.
+ * A setting is drawn (or traced, where the tracer is the contestant: then no map is compared, which
+ * would be the reference's own estimator against itself), timed as the median of warmed frames, and
+ * compared with the reference: its receiver map in the reference's layout, its picture pixel by
+ * pixel. The thesis profile knows no units, so its map and its picture are first multiplied by the
+ * one factor each that suits it best; the same method in physical units (thesis-cie) gets none.
+ * Maps of both, which they lay out by the lamp's cone, are resampled. It keeps no files and draws
+ * no charts.
  */
 #ifndef ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_H
 #define ABBE_VALIDATION_SWEEP_SWEEP_MEASURE_H

@@ -6,6 +6,7 @@
 #include "gl/renderer.h"
 #include "scenes/import/scene_file.h"
 #include "validation/sweep/sweep_setting.h"
+#include "validation/sweep/sweep_trace.h"
 #include "validation/tradeoff/baseline_comparison.h"
 #include "validation/tradeoff/error_decomposition.h"
 
@@ -31,20 +32,34 @@ static abbe_result write_png(abbe_image *image, double factor, const char *path,
   return abbe_screen_png_write(path, image, &desc, error);
 }
 
-static abbe_result draw(abbe_context *context, const abbe_scene *scene, const abbe_sweep_table *t,
-                        const abbe_sweep_row *row, const char *path, abbe_error *error) {
+static abbe_result render(abbe_context *context, const abbe_scene *scene,
+                          const abbe_sweep_setting *setting, size_t width, size_t height,
+                          abbe_image *out, abbe_error *error) {
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
-  abbe_image image = {0};
-  abbe_result result = abbe_sweep_setting_desc(&row->setting, &desc, error);
-  sscanf(t->fact[ABBE_SWEEP_FACT_SIZE], "%5zux%5zu", &desc.width, &desc.height);
-  double scale = row->number[ABBE_SWEEP_SCALE];
+  abbe_result result = abbe_sweep_setting_desc(setting, &desc, error);
+  desc.width = width;
+  desc.height = height;
   if (result == ABBE_OK) result = abbe_renderer_make(context, scene, &desc, &renderer, error);
   if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
-  if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, &image, error);
+  if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, out, error);
+  abbe_renderer_free(renderer);
+  return result;
+}
+
+static abbe_result draw(abbe_context *context, const abbe_scene *scene, const abbe_sweep_table *t,
+                        const abbe_sweep_row *row, const char *path, abbe_error *error) {
+  abbe_image image = {0};
+  abbe_sweep_row traced = {.setting = row->setting};
+  abbe_sweep_trace_desc trace = {.frames = 1};
+  sscanf(t->fact[ABBE_SWEEP_FACT_SIZE], "%5zux%5zu", &trace.width, &trace.height);
+  const double scale = row->number[ABBE_SWEEP_SCALE];
+  abbe_result result =
+      abbe_sweep_setting_is_traced(&row->setting)
+          ? abbe_sweep_trace_measure(scene, &trace, &traced, &image, error)
+          : render(context, scene, &row->setting, trace.width, trace.height, &image, error);
   if (result == ABBE_OK) result = write_png(&image, isfinite(scale) ? scale : 1, path, error);
   abbe_image_free(&image);
-  abbe_renderer_free(renderer);
   return result;
 }
 
@@ -52,7 +67,7 @@ typedef struct page {
   const char *path; /* of the page */
   FILE *out;
   abbe_context *context;
-  abbe_sweep_number number;
+  abbe_sweep_number time, number;
   int turn; /* of the table, among those of scenes of one name; from 1 */
 } page;
 
@@ -74,7 +89,7 @@ static void say_row(const page *p, const abbe_sweep_row *row, const char *what, 
   char label[64], a[ABBE_SWEEP_SHORT], b[ABBE_SWEEP_SHORT];
   abbe_sweep_setting_label(&row->setting, label, sizeof label);
   snprintf(out->text, sizeof out->text, "%s: %s, %s ms, %s", what, label,
-           abbe_sweep_number_short(row->number[ABBE_SWEEP_FRAME_MS], a),
+           abbe_sweep_number_short(row->number[p->time], a),
            abbe_sweep_number_short(row->number[p->number], b));
 }
 
@@ -88,15 +103,15 @@ static void show_reference(const page *p, const abbe_sweep_table *t, shot *out) 
 }
 
 /* The row of a baseline's own settings, or NULL. */
-static const abbe_sweep_row *find_baseline(const abbe_sweep_table *t, int which,
-                                           abbe_sweep_number number) {
+static const abbe_sweep_row *find_baseline(const page *p, const abbe_sweep_table *t, int which) {
   abbe_baseline_comparison c;
-  if (abbe_baseline_comparison_make(t, abbe_baselines[which], number, &c, NULL) != ABBE_OK)
+  if (abbe_baseline_comparison_make(t, abbe_baselines[which], p->time, p->number, &c, NULL) !=
+      ABBE_OK)
     return NULL;
   return c.baseline;
 }
 
-/* The reference, three settings of the front, and the two baselines. */
+/* The reference, three settings of the front, and the baselines that have settings of their own. */
 static void take_shots(const page *p, const abbe_sweep_table *t, const size_t *order, size_t count,
                        shot *shots) {
   abbe_scene scene = {0};
@@ -106,7 +121,7 @@ static void take_shots(const page *p, const abbe_sweep_table *t, const size_t *o
     rows[2] = &t->row[order[count / 2]];
     rows[3] = &t->row[order[count - 1]];
   }
-  for (int i = 0; i < ABBE_BASELINE_COUNT; i++) rows[4 + i] = find_baseline(t, i, p->number);
+  for (int i = 0; 4 + i < PICTURES; i++) rows[4 + i] = find_baseline(p, t, i);
   show_reference(p, t, &shots[0]);
   bool loaded = abbe_scene_load(t->fact[ABBE_SWEEP_FACT_SCENE], NULL, &scene, NULL) == ABBE_OK;
   for (int i = 1; i < PICTURES; i++) {
@@ -126,7 +141,7 @@ static void write_row(FILE *out, const char *first, const abbe_sweep_row *row) {
   fprintf(out, "| %s%s |", first, label);
   for (int k = 0; k < ABBE_SWEEP_SHOWN; k++) {
     fprintf(out, " %s", abbe_sweep_number_short(row->number[abbe_sweep_shown[k]], text));
-    bool noisy = abbe_sweep_shown[k] != ABBE_SWEEP_FRAME_MS &&
+    bool noisy = abbe_sweep_shown[k] >= ABBE_SWEEP_MAP_RMSE &&
                  isfinite(row->number[abbe_sweep_shown[k] + 1]);
     if (noisy)
       fprintf(out, " (%s)", abbe_sweep_number_short(row->number[abbe_sweep_shown[k] + 1], noise));
@@ -155,13 +170,13 @@ static void write_pictures(FILE *out, const shot *shots) {
 }
 
 static abbe_result write_baseline(const page *p, const abbe_sweep_table *t, const char *profile,
-                                  abbe_error *error) {
+                                  abbe_sweep_number time, abbe_error *error) {
   abbe_baseline_comparison c;
   char text[4][ABBE_SWEEP_SHORT];
-  abbe_result result = abbe_baseline_comparison_make(t, profile, p->number, &c, error);
+  abbe_result result = abbe_baseline_comparison_make(t, profile, time, p->number, &c, error);
   if (result != ABBE_OK || c.front == 0) return result;
-  fprintf(p->out, "| %s | %s | %s | %s | %s | %zu of %zu |\n", abbe_baseline_text(profile),
-          abbe_sweep_number_short(c.equal_error_speedup, text[0]),
+  fprintf(p->out, "| %s | %s | %s | %s | %s | %s | %zu of %zu |\n", abbe_baseline_text(profile),
+          abbe_sweep_number_text(time), abbe_sweep_number_short(c.equal_error_speedup, text[0]),
           abbe_sweep_number_short(c.equal_time_error_ratio, text[1]),
           abbe_sweep_number_short(c.front_speedup, text[2]),
           abbe_sweep_number_short(c.front_ratio, text[3]), c.beaten, c.front);
@@ -170,11 +185,13 @@ static abbe_result write_baseline(const page *p, const abbe_sweep_table *t, cons
 
 static abbe_result write_baselines(const page *p, const abbe_sweep_table *t, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  fprintf(p->out, "| the default profile against the | as fast at its error | of its error in its "
-                  "time | as fast, over its front | of the error, over its front | points of it "
-                  "beaten in both |\n|---|---|---|---|---|---|\n");
-  for (int i = 0; i < ABBE_BASELINE_COUNT && result == ABBE_OK; i++)
-    result = write_baseline(p, t, abbe_baselines[i], error);
+  fprintf(p->out,
+          "| the default profile against the | by | as fast at its error | of its error in its "
+          "time | as fast, over its front | of the error, over its front | points of it "
+          "beaten in both |\n|---|---|---|---|---|---|---|\n");
+  for (int i = 0; i < ABBE_BASELINE_COUNT; i++)
+    for (int k = 0; k < ABBE_SWEEP_TIMES && result == ABBE_OK; k++)
+      result = write_baseline(p, t, abbe_baselines[i], abbe_sweep_times[k], error);
   fprintf(p->out, "\n");
   return result;
 }
@@ -222,7 +239,7 @@ static void write_decomposition(const page *p, const abbe_sweep_table *t) {
 
 static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_error *error) {
   shot *shots = calloc(PICTURES, sizeof *shots);
-  size_t count, *order = abbe_sweep_table_front(t, &count);
+  size_t count, *order = abbe_sweep_table_front(t, p->time, &count);
   abbe_result result = ABBE_OK;
   if (shots == NULL || order == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the report");
@@ -237,10 +254,12 @@ static abbe_result write_sweep(const page *p, const abbe_sweep_table *t, abbe_er
     fprintf(p->out, "| of %zu settings, the Pareto front |", t->count);
     for (int k = 0; k < ABBE_SWEEP_SHOWN; k++)
       fprintf(p->out, " %s |", abbe_sweep_number_text(abbe_sweep_shown[k]));
-    fprintf(p->out, "\n|---|---|---|---|---|---|---|\n");
+    fprintf(p->out, "\n|---|");
+    for (int k = 0; k < ABBE_SWEEP_SHOWN; k++) fprintf(p->out, "---|");
+    fprintf(p->out, "\n");
     for (size_t i = 0; i < count; i++) write_row(p->out, "", &t->row[order[i]]);
     for (int i = 0; i < ABBE_BASELINE_COUNT; i++) {
-      const abbe_sweep_row *baseline = find_baseline(t, i, p->number);
+      const abbe_sweep_row *baseline = find_baseline(p, t, i);
       if (baseline != NULL && !baseline->front) write_row(p->out, "baseline: ", baseline);
     }
     fprintf(p->out, "\n");
@@ -272,19 +291,20 @@ void abbe_sweep_page_picture(const char *path, const abbe_sweep_table *tables, s
 
 abbe_result abbe_sweep_page_write(abbe_context *context, const char *path,
                                   const abbe_sweep_table *tables, size_t count,
-                                  abbe_sweep_number number, abbe_error *error) {
+                                  abbe_sweep_number time, abbe_sweep_number number,
+                                  abbe_error *error) {
   ABBE_REQUIRE(context && path && tables, error);
   abbe_file_writer writer = {0};
-  page p = {.path = path, .context = context, .number = number};
+  page p = {.path = path, .context = context, .time = time, .number = number};
   if (strlen(path) > ABBE_SWEEP_PATH / 2)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the path '%.80s…' is too long", path);
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result == ABBE_OK) {
     p.out = writer.stream;
     fprintf(p.out,
-            "# Time against error\n\nThe Pareto front of the frame's time and %s; in brackets what "
+            "# Time against error\n\nThe Pareto front of %s and %s; in brackets what "
             "the reference's own noise makes of an error.\n\n",
-            abbe_sweep_number_text(number));
+            abbe_sweep_number_text(time), abbe_sweep_number_text(number));
   }
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
     p.turn = turn_of(tables, i);

@@ -17,10 +17,12 @@ extern "C" {
 
 #define ABBE_SWEEP_PAGE_PICTURES 6 /* of a table, at the most */
 
-/* Writes the page of tables[count], whose fronts are marked, and its pictures. */
+/* Writes the page of tables[count], whose fronts of that time and that error are marked, and its
+ * pictures. */
 abbe_result abbe_sweep_page_write(abbe_context *context, const char *path,
                                   const abbe_sweep_table *tables, size_t count,
-                                  abbe_sweep_number number, abbe_error *error);
+                                  abbe_sweep_number time, abbe_sweep_number number,
+                                  abbe_error *error);
 
 /* The file of such a picture, for whoever must know what the page will write:
  * "PAGE-SCENE-what.png", and "PAGE-SCENE-2-what.png" for the second table of a scene of that name.

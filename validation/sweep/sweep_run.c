@@ -1,10 +1,13 @@
 #include "validation/sweep/sweep_run.h"
 
 #include "gl/accuracy/preset.h"
+#include "validation/sweep/sweep_grid.h"
 #include "validation/sweep/sweep_hash.h"
 #include "validation/sweep/sweep_measure.h"
+#include "validation/sweep/sweep_process.h"
 #include "validation/sweep/sweep_setting.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -127,7 +130,7 @@ static abbe_result open_table(work *w, abbe_error *error) {
 /* ---- the rows ---- */
 
 static abbe_result keep_table(work *w, abbe_error *error) {
-  abbe_result result = abbe_sweep_table_mark(&w->table, w->q->error, NULL, error);
+  abbe_result result = abbe_sweep_table_mark(&w->table, w->q->time, w->q->error, NULL, error);
   return result == ABBE_OK ? abbe_sweep_table_save(&w->table, w->q->table, error) : result;
 }
 
@@ -163,6 +166,62 @@ static abbe_result measure_all(work *w, abbe_error *error) {
   return result == ABBE_OK ? keep_table(w, error) : result;
 }
 
+/* ---- whole processes ---- */
+
+static bool is_timed(const abbe_sweep_row *row) {
+  return isfinite(row->number[ABBE_SWEEP_WARM_MS]) && isfinite(row->number[ABBE_SWEEP_COLD_MS]);
+}
+
+/* Adds the rows of each contestant's own front of that error to the list. */
+static abbe_result list_fronts(work *w, abbe_sweep_number number, bool *listed, abbe_error *error) {
+  abbe_sweep_table *t = &w->table;
+  abbe_result result = ABBE_OK;
+  for (int k = 0; k < ABBE_SWEEP_PROFILE_COUNT && result == ABBE_OK; k++) {
+    result = abbe_sweep_table_mark(t, ABBE_SWEEP_FRAME_MS, number, abbe_sweep_profiles[k], error);
+    for (size_t i = 0; i < t->count; i++) listed[i] |= t->row[i].front;
+  }
+  return result;
+}
+
+static abbe_result time_processes(work *w, const bool *listed, abbe_error *error) {
+  const abbe_image *picture = w->sweep.picture;
+  const abbe_sweep_process_desc desc = {.program = w->q->run,
+                                        .scene = w->q->scene_path,
+                                        .materials = w->q->materials,
+                                        .backend = w->q->backend,
+                                        .width = picture != NULL ? picture->width : 0,
+                                        .height = picture != NULL ? picture->height : 0};
+  size_t missing = 0, done = 0;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < w->table.count; i++) missing += listed[i] && !is_timed(&w->table.row[i]);
+  w->what = "processes";
+  w->share = 1 / (double)(missing > 0 ? missing : 1);
+  for (size_t i = 0; i < w->table.count && result == ABBE_OK; i++) {
+    if (!listed[i] || is_timed(&w->table.row[i])) continue;
+    w->done = (double)done++ * w->share;
+    if (!go_on(w, 0)) return abbe_error_set(error, ABBE_CANCELLED, "stopped");
+    result = abbe_sweep_process_measure(&desc, &w->table.row[i], error);
+    if (result == ABBE_OK) result = keep_table(w, error);
+  }
+  return result;
+}
+
+static abbe_result measure_processes(work *w, abbe_error *error) {
+  if (w->q->run == NULL) return ABBE_OK;
+  bool *listed = calloc(w->table.count + 1, sizeof *listed);
+  if (listed == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the processes");
+  abbe_result result = list_fronts(w, ABBE_SWEEP_CAUSTIC_DE, listed, error);
+  if (result == ABBE_OK) result = list_fronts(w, ABBE_SWEEP_CAUSTIC_RMSE, listed, error);
+  if (result == ABBE_OK) result = time_processes(w, listed, error);
+  free(listed);
+  if (result == ABBE_CANCELLED)
+    return abbe_error_set(error, result,
+                          "stopped while whole processes were timed; what is done is in %s, and "
+                          "the same command goes on",
+                          w->q->table);
+  return result == ABBE_OK ? keep_table(w, error) : result;
+}
+
 abbe_result abbe_sweep_run(abbe_context *context, const abbe_scene *scene,
                            const abbe_sweep_request *request, abbe_sweep_table *out,
                            abbe_error *error) {
@@ -174,6 +233,7 @@ abbe_result abbe_sweep_run(abbe_context *context, const abbe_scene *scene,
   if (result == ABBE_OK && !request->trace_only) {
     result = open_table(&w, error);
     if (result == ABBE_OK) result = measure_all(&w, error);
+    if (result == ABBE_OK) result = measure_processes(&w, error);
   }
   abbe_sweep_reference_free(&w.full);
   abbe_sweep_reference_free(&w.matched);

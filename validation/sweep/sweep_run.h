@@ -13,8 +13,8 @@
 extern "C" {
 #endif
 
-/* What is under way ("reference", "matched" or "sweep"), and how much of it is done, 0 to 1; false
- * stops. */
+/* What is under way ("reference", "matched", "sweep" or "processes"), and how much of it is done, 0
+ * to 1; false stops. */
 typedef bool (*abbe_sweep_progress)(void *user, const char *what, double done);
 
 typedef struct abbe_sweep_request {
@@ -26,9 +26,13 @@ typedef struct abbe_sweep_request {
   bool decompose;                        /* a second reference, of matched physics */
   bool trace_only;                       /* no rows */
   size_t frames;                         /* behind each median */
+  /* A program whose whole processes are timed, of the settings on each contestant's own front of a
+   * frame's time and the caustic's errors; or NULL. */
+  const char *run;
+  const char *materials, *backend; /* of these processes, as abbe_sweep_process_desc has them */
   size_t setting_count;
   const abbe_sweep_setting *setting;
-  abbe_sweep_number error; /* that makes the front */
+  abbe_sweep_number time, error; /* that make the front; time: one of abbe_sweep_times */
   abbe_sweep_progress progress;
   void *user;
   const volatile int *stop; /* other than 0 stops a trace midway; or NULL */

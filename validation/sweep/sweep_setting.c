@@ -5,6 +5,19 @@
 #include <stdio.h>
 #include <string.h>
 
+void abbe_sweep_setting_of_trace(size_t photons, size_t passes, bool filtered,
+                                 abbe_sweep_setting *out) {
+  *out = (abbe_sweep_setting){.photons = photons,
+                              .passes = passes,
+                              .samples = 1,
+                              .upsample = 1,
+                              .share = 0.01, /* without effect, as the words below */
+                              .fill = "none",
+                              .model = "auto"};
+  snprintf(out->profile, sizeof out->profile, "%s",
+           filtered ? ABBE_SWEEP_TRACE_FILTER : ABBE_SWEEP_TRACE);
+}
+
 void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
   bool thesis = abbe_profile_is_thesis(d->profile);
   *out = (abbe_sweep_setting){.wavelengths = d->wavelengths,

@@ -15,7 +15,12 @@ void abbe_sweep_setting_of(const abbe_render_desc *desc, abbe_sweep_setting *out
 abbe_result abbe_sweep_setting_desc(const abbe_sweep_setting *setting, abbe_render_desc *out,
                                     abbe_error *error);
 
-/* In words, as abbe_preset_describe has them; its label where the renderer does not know it. */
+/* The tracer's setting: so many passes, each of photons x photons photons. */
+void abbe_sweep_setting_of_trace(size_t photons, size_t passes, bool filtered,
+                                 abbe_sweep_setting *out);
+
+/* In words, as abbe_preset_describe has them; its label where the renderer does not know it, as of
+ * what is traced. */
 void abbe_sweep_setting_describe(const abbe_sweep_setting *setting, char *out, size_t size);
 
 /* abbe_preset_is_fine. */

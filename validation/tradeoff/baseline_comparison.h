@@ -1,4 +1,5 @@
-/* baseline_comparison.h: the default profile held against a baseline's rows of the same sweep.
+/* baseline_comparison.h: the default profile held against another contestant's rows of the same
+ * sweep: the thesis's method, and the tracer.
  *
  * Two questions: how much sooner does the default profile have the baseline's error, and how much
  * of its error is left in its time? Both are asked of the baseline's own settings, those of the
@@ -14,17 +15,21 @@
 extern "C" {
 #endif
 
-/* X(profile, text): against whom. */
+/* X(profile, text, key): against whom; what its JSON names begin with. */
 #define ABBE_BASELINES(X)                                                                          \
-  X("thesis", "thesis profile, with the best factor on its brightness")                            \
-  X("thesis-cie", "thesis's method with CIE weights, in physical units")
-enum { ABBE_BASELINE_COUNT = 2 };
+  X("thesis", "thesis profile, with the best factor on its brightness", "")                        \
+  X("thesis-cie", "thesis's method with CIE weights, in physical units", "vs_fair_")               \
+  X("trace", "tracer", "vs_trace_")                                                                \
+  X("trace-filter", "tracer, filtered", "vs_filtered_")
+enum { ABBE_BASELINE_COUNT = 4 };
 extern const char *const abbe_baselines[ABBE_BASELINE_COUNT];
 const char *abbe_baseline_text(const char *profile);
+const char *abbe_baseline_key(const char *profile);
 
 /* NaN: not known, or never reached. */
 typedef struct abbe_baseline_comparison {
-  const abbe_sweep_row *baseline; /* 7 wavelengths, 512 photons, map 1024, smear; NULL: no row */
+  const abbe_sweep_row *baseline; /* 7 wavelengths, 512 photons, map 1024, smear; NULL: no row, or
+                                     the tracer, which has no settings of its own */
   double equal_error_speedup;     /* its time over the least time of an error no larger */
   double equal_time_error_ratio;  /* the least error in a time no longer, over its error */
   size_t front;                   /* points of the baseline's front; 0: no rows */
@@ -33,10 +38,10 @@ typedef struct abbe_baseline_comparison {
   double front_ratio;             /* the largest equal-time error ratio over it */
 } abbe_baseline_comparison;
 
-/* ABBE_NO_MEMORY. */
+/* By one of abbe_sweep_times; rows that do not have it do not count. ABBE_NO_MEMORY. */
 abbe_result abbe_baseline_comparison_make(const abbe_sweep_table *table, const char *profile,
-                                          abbe_sweep_number number, abbe_baseline_comparison *out,
-                                          abbe_error *error);
+                                          abbe_sweep_number time, abbe_sweep_number number,
+                                          abbe_baseline_comparison *out, abbe_error *error);
 
 #ifdef __cplusplus
 }

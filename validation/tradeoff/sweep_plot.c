@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_CHARTS = 4, MAX_PROFILES = 6, LABEL = 64 };
+enum { MAX_CHARTS = 4, MAX_PROFILES = 8, LABEL = 64 };
 
 /* One chart's numbers, in pieces of memory of a row each. */
 typedef struct figures {
@@ -144,15 +144,16 @@ static void add_noise(const abbe_sweep_table *table, abbe_sweep_number number, f
                                                      .colour = 7};
 }
 
-static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number number, figures *f,
-                              abbe_chart *chart, abbe_error *error) {
+static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number time,
+                              abbe_sweep_number number, figures *f, abbe_chart *chart,
+                              abbe_error *error) {
   if (!abbe_sweep_number_is_error(number))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "'%s' is no error that can be drawn",
                           abbe_sweep_number_name(number));
   abbe_result result = open_figures(table->count, f, error);
   if (result != ABBE_OK) return result;
   for (size_t i = 0; i < table->count; i++) {
-    f->x[i] = table->row[i].number[ABBE_SWEEP_FRAME_MS];
+    f->x[i] = table->row[i].number[time];
     f->y[i] = table->row[i].number[number];
   }
   find_profiles(table, f);
@@ -163,15 +164,16 @@ static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number n
   if (f->front == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no setting has a known '%s' to draw",
                           abbe_sweep_number_name(number));
+  snprintf(f->x_label, sizeof f->x_label, "%s (median)", abbe_sweep_number_text(time));
   snprintf(f->y_label, sizeof f->y_label, "%s", abbe_sweep_number_text(number));
-  *chart = (abbe_chart){.x = {.label = "frame, ms (median)", .log = true},
+  *chart = (abbe_chart){.x = {.label = f->x_label, .log = true},
                         .y = {.label = f->y_label, .log = true},
                         .series_count = f->series_count,
                         .series = f->series};
   return ABBE_OK;
 }
 
-abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table,
+abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table, abbe_sweep_number time,
                             const abbe_sweep_number *errors, size_t count, abbe_error *error) {
   ABBE_REQUIRE(path && table && errors, error);
   figures f[MAX_CHARTS];
@@ -183,7 +185,7 @@ abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table,
   memset(f, 0, sizeof f);
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < count && result == ABBE_OK; i++)
-    result = make_chart(table, errors[i], &f[i], &charts[i], error);
+    result = make_chart(table, time, errors[i], &f[i], &charts[i], error);
   snprintf(title, sizeof title, "%s, %s", abbe_file_name(table->fact[ABBE_SWEEP_FACT_SCENE]),
            table->fact[ABBE_SWEEP_FACT_SIZE]);
   charts[0].title = title;

@@ -13,10 +13,10 @@
 extern "C" {
 #endif
 
-/* Draws the charts of the errors named, one above the other, to path (.png or .svg); the fronts are
- * found anew for each. ABBE_INVALID_ARGUMENT for a number that is no error or where no row has it;
- * errors of abbe_chart_write. */
-abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table,
+/* Draws the charts of the errors named against that time, one above the other, to path (.png or
+ * .svg); the fronts are found anew for each. ABBE_INVALID_ARGUMENT for a number that is no error or
+ * where no row has it; errors of abbe_chart_write. */
+abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table, abbe_sweep_number time,
                             const abbe_sweep_number *errors, size_t count, abbe_error *error);
 
 #ifdef __cplusplus

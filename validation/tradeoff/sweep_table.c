@@ -29,7 +29,7 @@ static const char *const fact_names[] = {
 
 static const char *const setting_columns[] = {"profile", "wavelengths", "photons", "map",
                                               "samples", "fill",        "exits",   "share",
-                                              "model",   "upsample"};
+                                              "model",   "upsample",    "passes"};
 enum {
   SETTING_COLUMNS = sizeof setting_columns / sizeof *setting_columns,
   COLUMNS = SETTING_COLUMNS + ABBE_SWEEP_NUMBER_COUNT + 1
@@ -56,8 +56,8 @@ bool abbe_sweep_number_is_error(abbe_sweep_number number) {
 }
 
 const abbe_sweep_number abbe_sweep_shown[ABBE_SWEEP_SHOWN] = {
-    ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, ABBE_SWEEP_CAUSTIC_RMSE,
-    ABBE_SWEEP_MAP_RMSE, ABBE_SWEEP_MAP_ENERGY, ABBE_SWEEP_PICTURE_DE};
+    ABBE_SWEEP_FRAME_MS,     ABBE_SWEEP_WARM_MS,  ABBE_SWEEP_COLD_MS,    ABBE_SWEEP_CAUSTIC_DE,
+    ABBE_SWEEP_CAUSTIC_RMSE, ABBE_SWEEP_MAP_RMSE, ABBE_SWEEP_MAP_ENERGY, ABBE_SWEEP_PICTURE_DE};
 
 const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]) {
   if (!isfinite(value)) return "-";
@@ -65,23 +65,36 @@ const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]) {
   return out;
 }
 
+const abbe_sweep_number abbe_sweep_times[ABBE_SWEEP_TIMES] = {
+    ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_WARM_MS, ABBE_SWEEP_COLD_MS};
+
 const char *abbe_sweep_fact_name(abbe_sweep_fact fact) {
   return (unsigned)fact < ABBE_SWEEP_FACT_COUNT ? fact_names[fact] : "unknown";
 }
 
 /* Settings */
 
+bool abbe_sweep_setting_is_traced(const abbe_sweep_setting *setting) {
+  return strcmp(setting->profile, ABBE_SWEEP_TRACE) == 0 ||
+         strcmp(setting->profile, ABBE_SWEEP_TRACE_FILTER) == 0;
+}
+
 bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setting *b) {
   return strcmp(a->profile, b->profile) == 0 && strcmp(a->fill, b->fill) == 0 &&
          strcmp(a->model, b->model) == 0 && a->wavelengths == b->wavelengths &&
          a->photons == b->photons && a->map == b->map && a->samples == b->samples &&
-         a->upsample == b->upsample && a->exits == b->exits && a->share == b->share;
+         a->upsample == b->upsample && a->exits == b->exits && a->share == b->share &&
+         a->passes == b->passes;
 }
 
 void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t size) {
   bool plain = strcmp(s->profile, "default") == 0;
   char exits[24] = "", share[48] = "", model[24] = "", number[ABBE_NUMBER_TEXT_SIZE];
   char upsample[24] = "";
+  if (abbe_sweep_setting_is_traced(s)) {
+    snprintf(out, size, "%s %zu x p%zu", s->profile, s->passes, s->photons);
+    return;
+  }
   if (s->upsample > 1) snprintf(upsample, sizeof upsample, "/%zu", s->upsample);
   if (plain && s->exits < 4) snprintf(exits, sizeof exits, " e%zu", s->exits);
   if (plain && s->share != 0.01)
@@ -136,8 +149,30 @@ abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *
   return ABBE_OK;
 }
 
-abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number number,
-                                  const char *profile, abbe_error *error) {
+static int compare_numbers(const void *a, const void *b) {
+  const double *x = a, *y = b;
+  return (*x > *y) - (*x < *y);
+}
+
+double abbe_sweep_table_unrest(const abbe_sweep_table *table) {
+  double *unrest = calloc(table->count + 1, sizeof *unrest), result = 0;
+  size_t known = 0;
+  for (size_t i = 0; unrest != NULL && i < table->count; i++) {
+    const double *n = table->row[i].number;
+    double over = n[ABBE_SWEEP_FRAME_MS] / n[ABBE_SWEEP_FASTEST_MS] - 1;
+    if (isfinite(over) && over > 0) unrest[known++] = over;
+  }
+  if (known > 0) {
+    qsort(unrest, known, sizeof *unrest, compare_numbers);
+    result = unrest[known / 2];
+  }
+  free(unrest);
+  return result;
+}
+
+abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number time,
+                                  abbe_sweep_number number, const char *profile,
+                                  abbe_error *error) {
   ABBE_REQUIRE(table, error);
   size_t count = table->count;
   double *cost = calloc(2 * count + 1, sizeof *cost);
@@ -150,7 +185,7 @@ abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number num
   for (size_t i = 0; i < count; i++) {
     const abbe_sweep_row *row = &table->row[i];
     bool counts = profile == NULL || strcmp(profile, row->setting.profile) == 0;
-    cost[i] = counts ? row->number[ABBE_SWEEP_FRAME_MS] : NAN;
+    cost[i] = counts ? row->number[time] : NAN;
     cost[count + i] = row->number[number];
   }
   abbe_pareto_front_mark(cost, cost + count, count, on);
@@ -160,15 +195,15 @@ abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number num
   return ABBE_OK;
 }
 
-size_t *abbe_sweep_table_front(const abbe_sweep_table *table, size_t *out_count) {
+size_t *abbe_sweep_table_front(const abbe_sweep_table *table, abbe_sweep_number time,
+                               size_t *out_count) {
   size_t count = 0;
   size_t *order = calloc(table->count + 1, sizeof *order);
   for (size_t i = 0; order != NULL && i < table->count; i++) {
     if (!table->row[i].front) continue;
     size_t at = count++;
-    double ms = table->row[i].number[ABBE_SWEEP_FRAME_MS];
-    for (; at > 0 && table->row[order[at - 1]].number[ABBE_SWEEP_FRAME_MS] > ms; at--)
-      order[at] = order[at - 1];
+    double ms = table->row[i].number[time];
+    for (; at > 0 && table->row[order[at - 1]].number[time] > ms; at--) order[at] = order[at - 1];
     order[at] = i;
   }
   *out_count = count;
@@ -221,8 +256,9 @@ bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out)
 static void write_row(FILE *to, const abbe_sweep_row *row) {
   const abbe_sweep_setting *s = &row->setting;
   char text[ABBE_NUMBER_TEXT_SIZE];
-  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s,%zu", s->profile, s->wavelengths, s->photons, s->map,
-          s->samples, s->fill, s->exits, abbe_number_text(s->share, text), s->model, s->upsample);
+  fprintf(to, "%s,%zu,%zu,%zu,%zu,%s,%zu,%s,%s,%zu,%zu", s->profile, s->wavelengths, s->photons,
+          s->map, s->samples, s->fill, s->exits, abbe_number_text(s->share, text), s->model,
+          s->upsample, s->passes);
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
     bool known = isfinite(row->number[i]);
     fprintf(to, ",%s", known ? abbe_number_text(row->number[i], text) : "");
@@ -321,8 +357,9 @@ static abbe_result read_row(const reader *r, abbe_sweep_row *row, abbe_error *er
   if (r->cells != COLUMNS)
     return abbe_error_set(error, ABBE_PARSE, "%s:%zu: the row has %zu cells, not %d", r->name,
                           r->line, r->cells, (int)COLUMNS);
-  size_t *const counts[] = {NULL, &s->wavelengths, &s->photons, &s->map, &s->samples,
-                            NULL, &s->exits,       NULL,        NULL,    &s->upsample};
+  size_t *const counts[] = {NULL,      &s->wavelengths, &s->photons, &s->map, &s->samples,
+                            NULL,      &s->exits,       NULL,        NULL,    &s->upsample,
+                            &s->passes};
   abbe_result result = read_word(r, 0, s->profile, error);
   if (result == ABBE_OK) result = read_word(r, 5, s->fill, error);
   if (result == ABBE_OK) result = read_word(r, 8, s->model, error);

@@ -19,14 +19,20 @@ extern "C" {
 #define ABBE_SWEEP_MAX_ROWS 4096
 #define ABBE_SWEEP_WORD 16
 
-/* One renderer's setting, every field resolved. */
+/* The contestants that the tracer is, beside the renderer's profiles: its picture as it comes, and
+ * filtered. */
+#define ABBE_SWEEP_TRACE "trace"
+#define ABBE_SWEEP_TRACE_FILTER "trace-filter"
+
+/* One contestant's setting, every field resolved. Of the tracer's only photons and passes count. */
 typedef struct abbe_sweep_setting {
-  char profile[ABBE_SWEEP_WORD];
+  char profile[ABBE_SWEEP_WORD]; /* of the renderer, or one of the tracer's two names */
   size_t wavelengths, photons, map, samples, upsample;
   char fill[ABBE_SWEEP_WORD];
   char model[ABBE_SWEEP_WORD]; /* as it was asked for: "auto" is the plan's choice */
   double share;
   size_t exits;
+  size_t passes; /* of the tracer, each of photons x photons photons; 0: the renderer's setting */
 } abbe_sweep_setting;
 
 /* X(code, column, text). Errors are against the reference; beside each stands what the reference's
@@ -37,7 +43,9 @@ typedef struct abbe_sweep_setting {
   X(FASTEST_MS, "fastest_ms", "fastest frame, ms") /* of them */                                   \
   X(LIGHT_MS, "light_ms", "light's passes, ms")    /* of the median frame */                       \
   X(EYE_MS, "eye_ms", "eye's passes, ms")                                                          \
-  X(BASELINE_MS, "baseline_ms", "surfaces alone, ms") /* default profile */                        \
+  X(BASELINE_MS, "baseline_ms", "surfaces alone, ms")        /* default profile */                 \
+  X(WARM_MS, "warm_ms", "whole process, shaders cached, ms") /* median of processes */             \
+  X(COLD_MS, "cold_ms", "whole process, no shader cached, ms")                                     \
   X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
   X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \
@@ -116,17 +124,22 @@ const char *abbe_sweep_number_text(abbe_sweep_number number);
 abbe_sweep_number abbe_sweep_number_find(const char *column);
 /* Whether it is an error against the reference, whose noise is the next number. */
 bool abbe_sweep_number_is_error(abbe_sweep_number number);
+
+/* The times that a front can be of: a frame once the scene stands, a whole process. */
+#define ABBE_SWEEP_TIMES 3
+extern const abbe_sweep_number abbe_sweep_times[ABBE_SWEEP_TIMES];
 const char *abbe_sweep_fact_name(abbe_sweep_fact fact);
 
 /* What tables for people show beside a setting, and a number for them: three digits, "-" where it
  * is not known. */
-#define ABBE_SWEEP_SHOWN 6
+#define ABBE_SWEEP_SHOWN 8
 #define ABBE_SWEEP_SHORT 24
 extern const abbe_sweep_number abbe_sweep_shown[ABBE_SWEEP_SHOWN];
 const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]);
 
+bool abbe_sweep_setting_is_traced(const abbe_sweep_setting *setting);
 bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setting *b);
-/* For charts: "w7 p256 m1024 s2", with what else is unusual. */
+/* For charts: "w7 p256 m1024 s2", with what else is unusual; "trace 4 x p512". */
 void abbe_sweep_setting_label(const abbe_sweep_setting *setting, char *out, size_t size);
 
 void abbe_sweep_table_free(abbe_sweep_table *table);
@@ -135,15 +148,21 @@ void abbe_sweep_table_set(abbe_sweep_table *table, abbe_sweep_fact fact, const c
 /* The row of that setting, or NULL. */
 const abbe_sweep_row *abbe_sweep_table_find(const abbe_sweep_table *table,
                                             const abbe_sweep_setting *setting);
+/* How much longer the median of a setting's frames takes than its fastest, as a share of that; the
+ * median over the rows where they differ, which a quiet machine keeps below ABBE_SWEEP_QUIET. 0
+ * where none do. */
+#define ABBE_SWEEP_QUIET 0.15
+double abbe_sweep_table_unrest(const abbe_sweep_table *table);
 /* Adds a row. ABBE_INVALID_ARGUMENT where its setting is there already or the table is full. */
 abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *row,
                                  abbe_error *error);
-/* Marks the Pareto front of the frame's time against that error: over all rows, or (with a
- * profile's name) over that profile's rows alone. ABBE_NO_MEMORY. */
-abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number number,
-                                  const char *profile, abbe_error *error);
-/* The rows on the front in the order of time, as malloc'd indices; NULL for want of memory. */
-size_t *abbe_sweep_table_front(const abbe_sweep_table *table, size_t *out_count);
+/* Marks the Pareto front of that time against that error: over all rows, or (with a profile's name)
+ * over that profile's rows alone. ABBE_NO_MEMORY. */
+abbe_result abbe_sweep_table_mark(abbe_sweep_table *table, abbe_sweep_number time,
+                                  abbe_sweep_number number, const char *profile, abbe_error *error);
+/* The rows on the front in the order of that time, as malloc'd indices; NULL for want of memory. */
+size_t *abbe_sweep_table_front(const abbe_sweep_table *table, abbe_sweep_number time,
+                               size_t *out_count);
 
 /* The table as text, and beside its target and renamed. ABBE_IO, ABBE_NO_MEMORY. */
 abbe_result abbe_sweep_table_save(const abbe_sweep_table *table, const char *path,

@@ -62,6 +62,21 @@ static void test_grids_hold_each_setting_once(void **state) {
   assert_int_equal(expand(&scene, &thesis, 1, &list, &refused), 1);
   assert_string_equal(list[0].fill, "smear");
   free(list);
+  /* Of the tracer only photons and passes make settings; without them it has some of its own. */
+  abbe_sweep_grid traced = {
+      .profiles = {2, {ABBE_SWEEP_PROFILE_TRACE, ABBE_SWEEP_PROFILE_TRACE_FILTER}},
+      .wavelengths = {2, {3, 7}},
+      .photons = {2, {64, 128}},
+      .passes = {2, {2, 4}}};
+  assert_int_equal(expand(&scene, &traced, 1, &list, &refused), 8);
+  assert_int_equal(refused, 0);
+  free(list);
+  traced = (abbe_sweep_grid){.profiles = {1, {ABBE_SWEEP_PROFILE_TRACE}}};
+  assert_int_equal(expand(&scene, &traced, 1, &list, &refused), 1);
+  assert_string_equal(list[0].profile, "trace");
+  assert_int_equal(list[0].photons, ABBE_SWEEP_TRACE_PHOTONS);
+  assert_int_equal(list[0].passes, ABBE_SWEEP_TRACE_PASSES);
+  free(list);
   abbe_sweep_grids grids_of_file;
   assert_int_equal(abbe_sweep_grids_load(NULL, &grids_of_file, NULL), ABBE_OK);
   assert_int_equal(grids_of_file.count, 3);

@@ -24,7 +24,8 @@ static abbe_sweep_table make_table(void) {
   row.number[ABBE_SWEEP_FRAME_MS] = 40;
   row.number[ABBE_SWEEP_CAUSTIC_DE] = 8;
   assert_int_equal(abbe_sweep_table_add(&t, &row, NULL), ABBE_OK);
-  assert_int_equal(abbe_sweep_table_mark(&t, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL), ABBE_OK);
+  assert_int_equal(
+      abbe_sweep_table_mark(&t, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL), ABBE_OK);
   return t;
 }
 
@@ -35,15 +36,17 @@ static void test_tables_without_their_scene(void **state) {
   snprintf(path, sizeof path, "/tmp/abbe_test_sweep_page_%ld.md", (long)getpid());
   abbe_sweep_table t = make_table();
   abbe_error error = {0};
-  assert_ok(abbe_sweep_page_write(context, path, &t, 1, ABBE_SWEEP_CAUSTIC_DE, &error), &error);
+  assert_ok(abbe_sweep_page_write(context, path, &t, 1, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE,
+                                  &error),
+            &error);
   assert_ok(abbe_file_read(path, 1 << 16, &text, &size, &error), &error);
   assert_contains(text, "## gem.yaml");
   assert_contains(text, "6 pictures are missing");
-  assert_contains(text, "| w7 p32 m512 s1 | 10 | 8 (0.5) |");
-  assert_contains(text, "| w7 p128 m512 s1 | 40 | 2 (0.5) |");
-  assert_contains(text, "| baseline: thesis w7 p512 m1024 s1 | 40 | 8 |");
+  assert_contains(text, "| w7 p32 m512 s1 | 10 | - | - | 8 (0.5) |");
+  assert_contains(text, "| w7 p128 m512 s1 | 40 | - | - | 2 (0.5) |");
+  assert_contains(text, "| baseline: thesis w7 p512 m1024 s1 | 40 | - | - | 8 |");
   /* It has the baseline's error four times sooner, and a quarter of it in its time. */
-  assert_contains(text, "best factor on its brightness | 4 | 0.25 | 4 | 0.25 | 1 of 1 |");
+  assert_contains(text, "best factor on its brightness | frame, ms | 4 | 0.25 | 4 | 0.25 | 1 of 1 |");
   free(text);
   unlink(path);
   abbe_sweep_table_free(&t);

@@ -18,7 +18,8 @@ static void add(abbe_sweep_table *table, const char *profile, size_t photons, do
 static abbe_baseline_comparison compare_with(const abbe_sweep_table *table, const char *profile) {
   abbe_baseline_comparison c;
   abbe_error error = {0};
-  if (abbe_baseline_comparison_make(table, profile, ABBE_SWEEP_CAUSTIC_DE, &c, &error) != ABBE_OK)
+  if (abbe_baseline_comparison_make(table, profile, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, &c,
+                                    &error) != ABBE_OK)
     fail_msg("%s", error.text);
   return c;
 }

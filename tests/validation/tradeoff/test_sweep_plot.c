@@ -26,7 +26,8 @@ static void test_the_chart(void **state) {
                                               ABBE_SWEEP_PICTURE_DE};
   assert_non_null(mkdtemp(folder));
   snprintf(path, sizeof path, "%s/a.png", folder);
-  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 1, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_sweep_plot(path, &table, ABBE_SWEEP_FRAME_MS, numbers, 1, &error),
+                   ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "no setting has a known 'caustic_de'");
   abbe_sweep_table_set(&table, ABBE_SWEEP_FACT_SCENE, "gem.yaml");
   add(&table, "default", 64, 10, 3);
@@ -34,15 +35,18 @@ static void test_the_chart(void **state) {
   add(&table, "default", 128, 120, 2);
   add(&table, "thesis", 512, 90, 20);
   add(&table, "thesis", 1024, 0.0 / 0.0, 20);
-  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 1, &error), ABBE_OK);
+  assert_int_equal(abbe_sweep_plot(path, &table, ABBE_SWEEP_FRAME_MS, numbers, 1, &error), ABBE_OK);
   assert_int_equal(abbe_file_read(path, 1 << 22, &text, &size, NULL), ABBE_OK);
   assert_memory_equal(text + 1, "PNG", 3);
   free(text);
   unlink(path);
-  assert_int_equal(abbe_sweep_plot(path, &table, numbers + 1, 1, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_sweep_plot(path, &table, ABBE_SWEEP_FRAME_MS, numbers + 1, 1, &error),
+                   ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "'frame_ms' is no error");
-  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 3, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_sweep_plot(path, &table, numbers, 0, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_sweep_plot(path, &table, ABBE_SWEEP_FRAME_MS, numbers, 3, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_sweep_plot(path, &table, ABBE_SWEEP_FRAME_MS, numbers, 0, &error),
+                   ABBE_INVALID_ARGUMENT);
   assert_int_equal(rmdir(folder), 0);
   abbe_sweep_table_free(&table);
 }

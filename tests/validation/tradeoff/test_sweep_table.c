@@ -70,8 +70,9 @@ static void test_settings_are_told_apart(void **state) {
   assert_int_equal(abbe_sweep_table_add(&table, &row, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "w7 p128 m512 s2");
   size_t *const counts[] = {&row.setting.wavelengths, &row.setting.photons,  &row.setting.map,
-                            &row.setting.samples,     &row.setting.upsample, &row.setting.exits};
-  for (int i = 0; i < 6; i++) {
+                            &row.setting.samples,     &row.setting.upsample, &row.setting.exits,
+                            &row.setting.passes};
+  for (int i = 0; i < 7; i++) {
     ++*counts[i];
     assert_null(abbe_sweep_table_find(&table, &row.setting));
     --*counts[i];
@@ -98,6 +99,12 @@ static void test_settings_are_told_apart(void **state) {
   snprintf(row.setting.profile, sizeof row.setting.profile, "thesis");
   abbe_sweep_setting_label(&row.setting, text, sizeof text);
   assert_string_equal(text, "thesis w7 p128 m512 s2 no fill");
+  assert_false(abbe_sweep_setting_is_traced(&row.setting));
+  snprintf(row.setting.profile, sizeof row.setting.profile, ABBE_SWEEP_TRACE_FILTER);
+  row.setting.passes = 4;
+  assert_true(abbe_sweep_setting_is_traced(&row.setting));
+  abbe_sweep_setting_label(&row.setting, text, sizeof text);
+  assert_string_equal(text, "trace-filter 4 x p128");
   abbe_sweep_table_free(&table);
 }
 
@@ -109,12 +116,52 @@ static void test_the_front_of_all_and_of_a_profile(void **state) {
   add(&table, row_of("default", 21, 40, NAN));
   add(&table, row_of("thesis", 7, 30, 8));
   add(&table, row_of("thesis", 21, 50, 7));
-  assert_int_equal(abbe_sweep_table_mark(&table, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL), ABBE_OK);
+  assert_int_equal(
+      abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL),
+      ABBE_OK);
   static const bool all[] = {true, true, false, false, false};
   for (int i = 0; i < 5; i++) assert_int_equal(table.row[i].front, all[i]);
-  assert_int_equal(abbe_sweep_table_mark(&table, ABBE_SWEEP_CAUSTIC_DE, "thesis", NULL), ABBE_OK);
+  assert_int_equal(
+      abbe_sweep_table_mark(&table, ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAUSTIC_DE, "thesis", NULL),
+      ABBE_OK);
   static const bool thesis[] = {false, false, false, true, true};
   for (int i = 0; i < 5; i++) assert_int_equal(table.row[i].front, thesis[i]);
+  abbe_sweep_table_free(&table);
+}
+
+/* The front of another time is another one, and settings without that time are not on it. */
+static void test_the_front_of_a_process(void **state) {
+  (void)state;
+  abbe_sweep_table table = {0};
+  size_t count, *order;
+  add(&table, row_of("default", 3, 10, 5));
+  add(&table, row_of("default", 7, 20, 4));
+  add(&table, row_of("trace", 0, 400, 3));
+  add(&table, row_of("trace", 1, 300, 2));
+  static const double warm_ms[] = {900, NAN, 600, 500};
+  for (int i = 0; i < 4; i++) table.row[i].number[ABBE_SWEEP_WARM_MS] = warm_ms[i];
+  assert_int_equal(
+      abbe_sweep_table_mark(&table, ABBE_SWEEP_WARM_MS, ABBE_SWEEP_CAUSTIC_DE, NULL, NULL),
+      ABBE_OK);
+  order = abbe_sweep_table_front(&table, ABBE_SWEEP_WARM_MS, &count);
+  assert_int_equal(count, 1);
+  assert_int_equal(order[0], 3);
+  free(order);
+  abbe_sweep_table_free(&table);
+}
+
+/* Medians of frames are 0, 10, 20, 60 and 400 % above the fastest. */
+static void test_a_busy_machine_is_noticed(void **state) {
+  (void)state;
+  abbe_sweep_table table = {0};
+  static const double over[] = {0, 4, 0.1, 0.2, 0.6};
+  assert_near(abbe_sweep_table_unrest(&table), 0, 0);
+  for (size_t i = 0; i < 5; i++) {
+    abbe_sweep_row row = row_of("default", i + 1, 100 * (1 + over[i]), 5);
+    row.number[ABBE_SWEEP_FASTEST_MS] = 100;
+    add(&table, row);
+  }
+  assert_near(abbe_sweep_table_unrest(&table), 0.6, 1e-12); /* of those that vary at all */
   abbe_sweep_table_free(&table);
 }
 
@@ -151,11 +198,11 @@ static void test_broken_tables_are_named(void **state) {
       {"default,7,", "default,-7,", "is not a whole number"},
       {"default,7,", ",7,", "s.csv:3: profile '' is not a word"},
       {"default,7,", "a-profile-of-a-long-name,7,", "is not a word of 1 to 15 letters"},
-      {"auto,1,10,", "auto,1,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
-      {"auto,1,10,", "auto,1,1e999,", "is not a number"},
-      {"0.01,auto,1,10,", "0,auto,1,10,", "is not a share above 0"},
-      {"auto,1,10,", "auto,1,10,,", "the row has 45 cells, not 44"},
-      {"frame_ms", "frame_s", "column 11 is 'frame_s' where a sweep has 'frame_ms'"},
+      {"auto,1,0,10,", "auto,1,0,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
+      {"auto,1,0,10,", "auto,1,0,1e999,", "is not a number"},
+      {"0.01,auto,1,0,10,", "0,auto,1,0,10,", "is not a share above 0"},
+      {"auto,1,0,10,", "auto,1,0,10,,", "the row has 48 cells, not 47"},
+      {"frame_ms", "frame_s", "column 12 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };
   char *text = text_of_one_row(), changed[8300];
@@ -215,6 +262,8 @@ int main(void) {
       cmocka_unit_test(test_what_is_saved_is_loaded),
       cmocka_unit_test(test_settings_are_told_apart),
       cmocka_unit_test(test_the_front_of_all_and_of_a_profile),
+      cmocka_unit_test(test_the_front_of_a_process),
+      cmocka_unit_test(test_a_busy_machine_is_noticed),
       cmocka_unit_test(test_broken_tables_are_named),
       cmocka_unit_test(test_tables_of_different_things_do_not_agree),
       cmocka_unit_test(test_names),

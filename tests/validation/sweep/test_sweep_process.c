@@ -1,0 +1,111 @@
+/* Whole processes: the command that is run, its caches of shaders, and what becomes of one that
+ * fails. A script stands in for the program. */
+#include "tests/validation/tradeoff/sweep_row.h"
+
+#include "validation/sweep/sweep_process.h"
+#include "validation/sweep/sweep_setting.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/abbe-test-process-XXXXXX";
+static char program[96], log_path[96];
+
+static void write_program(const char *text) {
+  FILE *file = fopen(program, "w");
+  assert_non_null(file);
+  fputs(text, file);
+  fclose(file);
+  assert_int_equal(chmod(program, 0700), 0);
+  unlink(log_path);
+}
+
+static void read_log(char *out, size_t size) {
+  FILE *file = fopen(log_path, "r");
+  assert_non_null(file);
+  out[fread(out, 1, size - 1, file)] = '\0';
+  fclose(file);
+}
+
+static const abbe_sweep_process_desc asked = {
+    .program = program, .scene = "a scene.yaml", .width = 32, .height = 16, .runs = 3};
+
+/* Cold finds no cache and fills it, which takes a while; what is warm finds it. */
+static void test_cold_and_warm(void **state) {
+  (void)state;
+  char text[2000], script[600];
+  abbe_error error = {0};
+  abbe_sweep_row row = sweep_row("default", 64);
+  snprintf(script, sizeof script,
+           "#!/bin/sh\n"
+           "if [ -e \"$MESA_SHADER_CACHE_DIR/filled\" ]; then echo warm\n"
+           "else mkdir -p \"$MESA_SHADER_CACHE_DIR\"; touch \"$MESA_SHADER_CACHE_DIR/filled\"\n"
+           "  sleep 0.2; echo cold \"$@\"; fi >>%s\n",
+           log_path);
+  write_program(script);
+  if (abbe_sweep_process_measure(&asked, &row, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_true(row.number[ABBE_SWEEP_COLD_MS] >= 200);
+  assert_true(row.number[ABBE_SWEEP_WARM_MS] > 0);
+  read_log(text, sizeof text);
+  assert_contains(text, "cold render a scene.yaml --quiet -o /");
+  assert_contains(text, " --size 32x16 --profile default --wavelengths 7 --photons 64 --map 512 "
+                        "--samples 1 --fill bridge --model auto --exits 8 --share 0.01\n"
+                        "warm\nwarm\nwarm\n");
+  /* Nothing is left of it. */
+  char *at = strstr(text, "-o ") + 3;
+  *strstr(at, "/picture.exr") = '\0';
+  assert_int_not_equal(access(at, F_OK), 0);
+}
+
+static void test_the_tracers_command(void **state) {
+  (void)state;
+  char text[2000], script[200];
+  abbe_error error = {0};
+  abbe_sweep_row row = {0};
+  snprintf(script, sizeof script, "#!/bin/sh\necho \"$@\" >>%s\n", log_path);
+  write_program(script);
+  abbe_sweep_setting_of_trace(256, 4, true, &row.setting);
+  if (abbe_sweep_process_measure(&asked, &row, &error) != ABBE_OK) fail_msg("%s", error.text);
+  read_log(text, sizeof text);
+  assert_contains(text, "trace a scene.yaml --quiet -o /");
+  assert_contains(text, " --size 32x16 --spp 4 --photons 65536 --seed ");
+  assert_contains(text, " --filter\n");
+}
+
+static void test_what_fails_is_said(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  abbe_sweep_row row = sweep_row("default", 64);
+  write_program("#!/bin/sh\nexit 1\n");
+  assert_int_equal(abbe_sweep_process_measure(&asked, &row, &error), ABBE_IO);
+  assert_contains(error.text, "did not end well");
+  assert_contains(error.text, "render a scene.yaml --quiet");
+  assert_true(isnan(row.number[ABBE_SWEEP_WARM_MS]));
+  write_program("#!/bin/sh\nkill -INT $$\n");
+  assert_int_equal(abbe_sweep_process_measure(&asked, &row, &error), ABBE_CANCELLED);
+  assert_int_equal(unlink(program), 0);
+  assert_int_equal(abbe_sweep_process_measure(&asked, &row, &error), ABBE_IO);
+  assert_contains(error.text, "could not be run");
+  assert_int_equal(setenv("TMPDIR", "/there/is/none", 1), 0);
+  assert_int_equal(abbe_sweep_process_measure(&asked, &row, &error), ABBE_IO);
+  assert_contains(error.text, "/there/is/none");
+  assert_int_equal(unsetenv("TMPDIR"), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_cold_and_warm),
+      cmocka_unit_test(test_the_tracers_command),
+      cmocka_unit_test(test_what_fails_is_said),
+  };
+  if (mkdtemp(folder) == NULL) return 1;
+  snprintf(program, sizeof program, "%s/program", folder);
+  snprintf(log_path, sizeof log_path, "%s/log", folder);
+  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  unlink(program);
+  unlink(log_path);
+  return rmdir(folder) != 0 ? 1 : failed;
+}

@@ -1,0 +1,84 @@
+/* The tracer as a contestant: its picture is the tracer's own to the bit, its frames are timed. */
+#include "tests/validation/trace_scene.h"
+
+#include "validation/sweep/sweep_setting.h"
+#include "validation/sweep/sweep_trace.h"
+
+#include <math.h>
+
+static void assert_ok(abbe_result result, const abbe_error *error) {
+  if (result != ABBE_OK) fail_msg("%s", error->text);
+}
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
+
+static abbe_sweep_row row_of(size_t photons, size_t passes) {
+  abbe_sweep_row row;
+  abbe_sweep_setting_of_trace(photons, passes, false, &row.setting);
+  for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) row.number[i] = NAN;
+  return row;
+}
+
+static void test_the_picture_is_the_tracers(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image picture = {0}, own = {0};
+  abbe_error error = {0};
+  abbe_sweep_row row = row_of(16, 2);
+  const abbe_sweep_trace_desc desc = {.width = 16, .height = 12, .frames = 3};
+  const abbe_trace_desc same = {
+      .no_map = true, .width = 16, .height = 12, .photons = 256, .seed = ABBE_SWEEP_TRACE_SEED};
+  load_text(SCENE, &scene);
+  assert_ok(abbe_sweep_trace_check(&scene, &error), &error);
+  assert_ok(abbe_sweep_trace_measure(&scene, &desc, &row, &picture, &error), &error);
+  abbe_tracer *tracer = make_tracer(&scene, &same);
+  run_passes(tracer, 2);
+  assert_ok(abbe_tracer_picture(tracer, &own, &error), &error);
+  assert_int_equal(picture.channels, own.channels);
+  assert_memory_equal(picture.data, own.data, 16 * 12 * own.channels * sizeof *own.data);
+  assert_true(row.number[ABBE_SWEEP_FASTEST_MS] > 0);
+  assert_true(row.number[ABBE_SWEEP_FRAME_MS] >= row.number[ABBE_SWEEP_FASTEST_MS]);
+  assert_true(row.number[ABBE_SWEEP_LIGHT_MS] + row.number[ABBE_SWEEP_EYE_MS] <=
+              row.number[ABBE_SWEEP_FRAME_MS]);
+  assert_true(isnan(row.number[ABBE_SWEEP_MAP_RMSE]));
+  abbe_tracer_free(tracer);
+  abbe_image_free(&picture);
+  abbe_image_free(&own);
+  abbe_scene_free(&scene);
+}
+
+static bool say_no(void *user, double done) {
+  (void)done;
+  ++*(int *)user;
+  return false;
+}
+
+static void test_what_is_refused(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  int asked = 0;
+  abbe_sweep_row row = row_of(16, 2);
+  abbe_sweep_trace_desc desc = {.width = 8, .height = 8, .progress = say_no, .user = &asked};
+  load_text(SCENE, &scene);
+  assert_int_equal(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error), ABBE_CANCELLED);
+  assert_int_equal(asked, 1);
+  snprintf(row.setting.profile, sizeof row.setting.profile, "thesis");
+  assert_int_equal(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "'thesis'");
+  const size_t lights = scene.light_count;
+  scene.light_count = 0;
+  assert_int_equal(abbe_sweep_trace_check(&scene, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no light");
+  scene.light_count = lights;
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_picture_is_the_tracers),
+      cmocka_unit_test(test_what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,99 @@
+#include "validation/sweep/sweep_trace.h"
+
+#include "base/clock.h"
+#include "gl/accuracy/frame_times.h"
+#include "validation/tracer/tracer.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { USUAL_FRAMES = 5, FEW_FRAMES = 3 };
+
+typedef struct frame {
+  double ms, light_ms, eye_ms;
+} frame;
+
+static abbe_trace_desc describe(const abbe_sweep_setting *setting, size_t width, size_t height) {
+  return (abbe_trace_desc){.no_map = true,
+                           .width = width,
+                           .height = height,
+                           .photons = setting->photons * setting->photons,
+                           .seed = ABBE_SWEEP_TRACE_SEED};
+}
+
+static bool go_on(const abbe_sweep_trace_desc *desc, double done) {
+  return desc->progress == NULL || desc->progress(desc->user, done);
+}
+
+static abbe_result trace(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
+                         const abbe_sweep_setting *setting, double done, frame *out,
+                         abbe_image *picture, abbe_error *error) {
+  abbe_tracer *tracer = NULL;
+  abbe_trace_statistics statistics;
+  const abbe_trace_desc own = describe(setting, desc->width, desc->height);
+  abbe_image_free(picture);
+  abbe_result result = abbe_tracer_make(scene, &own, &tracer, error);
+  const double start = abbe_clock_seconds();
+  for (size_t i = 0; i < setting->passes && result == ABBE_OK; i++) {
+    if (!go_on(desc, done)) result = abbe_error_set(error, ABBE_CANCELLED, "stopped");
+    if (result == ABBE_OK) result = abbe_tracer_pass(tracer, NULL, error);
+  }
+  if (result == ABBE_OK) result = abbe_tracer_picture(tracer, picture, error);
+  const double end = abbe_clock_seconds();
+  if (result == ABBE_OK) {
+    abbe_tracer_statistics(tracer, &statistics);
+    *out =
+        (frame){1e3 * (end - start), 1e3 * statistics.light_seconds, 1e3 * statistics.eye_seconds};
+  }
+  abbe_tracer_free(tracer);
+  return result;
+}
+
+static int compare_frames(const void *a, const void *b) {
+  const frame *x = a, *y = b;
+  return (x->ms > y->ms) - (x->ms < y->ms);
+}
+
+abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
+                                     abbe_sweep_row *row, abbe_image *picture, abbe_error *error) {
+  ABBE_REQUIRE(scene && desc && row, error);
+  frame frames[ABBE_FRAME_TIMES_MAX];
+  abbe_image image = {0};
+  const abbe_sweep_setting *setting = &row->setting;
+  size_t count = desc->frames > 0 ? desc->frames : USUAL_FRAMES, done = 0;
+  double spent = 0;
+  if (!abbe_sweep_setting_is_traced(setting) || setting->passes < 1 || setting->photons < 1)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the setting of '%s' is not one to trace",
+                          setting->profile);
+  if (count > ABBE_FRAME_TIMES_MAX) count = ABBE_FRAME_TIMES_MAX;
+  abbe_result result = ABBE_OK;
+  while (done < count && result == ABBE_OK) {
+    if (desc->enough_ms > 0 && spent > desc->enough_ms && done >= FEW_FRAMES) break;
+    result =
+        trace(scene, desc, setting, (double)done / (double)count, &frames[done], &image, error);
+    if (result == ABBE_OK) spent += frames[done++].ms;
+  }
+  if (result != ABBE_OK) {
+    abbe_image_free(&image);
+    return result;
+  }
+  qsort(frames, done, sizeof *frames, compare_frames);
+  row->number[ABBE_SWEEP_FRAME_MS] = frames[done / 2].ms;
+  row->number[ABBE_SWEEP_FASTEST_MS] = frames[0].ms;
+  row->number[ABBE_SWEEP_LIGHT_MS] = frames[done / 2].light_ms;
+  row->number[ABBE_SWEEP_EYE_MS] = frames[done / 2].eye_ms;
+  if (picture != NULL)
+    *picture = image;
+  else
+    abbe_image_free(&image);
+  return ABBE_OK;
+}
+
+abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error) {
+  ABBE_REQUIRE(scene, error);
+  abbe_tracer *tracer = NULL;
+  const abbe_trace_desc least = {.no_map = true, .width = 1, .height = 1, .photons = 1};
+  abbe_result result = abbe_tracer_make(scene, &least, &tracer, error);
+  abbe_tracer_free(tracer);
+  return result;
+}
