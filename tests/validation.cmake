@@ -37,6 +37,7 @@ foreach(name
     sphere_quadrature
     trace_run
     tracer
+    sweep_pictures
     sweep_plot
     sweep_presets
     sweep_table
@@ -45,7 +46,7 @@ foreach(name
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-foreach(name matched_physics sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
+foreach(name matched_physics picture_choice sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
     sweep_setting sweep_trace)
   abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
 endforeach()

@@ -7,20 +7,37 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OPTION_PRESET = 0x600, OPTION_MAX_ERROR, OPTION_BUDGET, OPTION_PRESETS };
+enum {
+  OPTION_PRESET = 0x600,
+  OPTION_MAX_ERROR,
+  OPTION_BUDGET,
+  OPTION_PRESETS,
+  OPTION_FOR,
+  OPTION_TOOL
+};
 
 static const struct argp_option options[] = {
     {"preset", OPTION_PRESET, "NAME", 0, "draft, balanced or accurate, as measured for such scenes",
      2},
     {"max-error", OPTION_MAX_ERROR, "E", 0,
-     "the fastest settings whose mean CIEDE2000 in the caustic was at most E", 2},
+     "the fastest tool and settings that promise a mean CIEDE2000 of at most E in the caustic", 2},
     {"budget-ms", OPTION_BUDGET, "T", 0,
-     "the most accurate settings that take at most T ms on this machine", 2},
+     "the most accurate tool and settings that take at most T ms on this machine", 2},
+    {"for", OPTION_FOR, "picture|frame", 0,
+     "whose time these mean: this picture's, from the start of the program to its end, or a "
+     "frame's "
+     "once the scene stands (picture)",
+     2},
+    {"tool", OPTION_TOOL, "NAME", 0,
+     "for these: render, trace or trace-filter (whatever serves best)", 2},
     {"presets", OPTION_PRESETS, "FILE", ABBE_ARGUMENT_READS, "others than the shipped ones", 2},
     {0}};
 
 #define ABBE_NAME_OF(code, name) name,
 static const char *const names[] = {ABBE_PRESETS(ABBE_NAME_OF)};
+#define ABBE_TOOL_OF(code, name, profile) name,
+static const char *const tools[] = {ABBE_PICTURE_TOOLS(ABBE_TOOL_OF)};
+static const char *const times[] = {"picture", "frame"};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   abbe_preset_options *o = state->input;
@@ -39,6 +56,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_PRESETS:
     q->file = text;
     return 0;
+  case OPTION_FOR:
+    o->of_frame = abbe_command_choice(o->program, "--for", text, times, 2) == 1;
+    o->of_picture = !o->of_frame;
+    return 0;
+  case OPTION_TOOL:
+    o->tool = abbe_command_choice(o->program, "--tool", text, tools, ABBE_PICTURE_TOOL_COUNT);
+    return 0;
   case ARGP_KEY_END:
     asked = (q->name != NULL) + (q->max_error > 0) + (q->budget_ms > 0);
     if (q->file != NULL && asked == 0)
@@ -46,6 +70,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
                  "--presets '%s' is a file for --preset, --max-error or --budget-ms to read "
                  "from, and none of them is given",
                  q->file);
+    if (asked == 0 && (o->of_frame || o->of_picture || o->tool >= 0))
+      argp_error(state, "--for and --tool go with --preset, --max-error or --budget-ms");
+    if (o->of_frame && o->tool > 0)
+      argp_error(state, "--for frame chooses settings of the renderer; --tool %s makes no frames",
+                 tools[o->tool]);
     if (asked > 1) argp_error(state, "--preset, --max-error and --budget-ms: one of them");
     return 0;
   default:
@@ -88,6 +117,59 @@ void abbe_preset_options_describe(const abbe_preset_choice *c, const abbe_statis
   if (c->timed) cJSON_AddNumberToObject(p, "ms", c->promised_ms);
   cJSON_AddNumberToObject(p, "ms_met", s->frame_ms);
   if (q->budget_ms > 0) cJSON_AddBoolToObject(p, "budget_met", s->frame_ms <= q->budget_ms);
+}
+
+void abbe_preset_options_describe_picture(const abbe_picture_choice *c, double ms, double error_met,
+                                          cJSON *root) {
+  char text[300];
+  if (c->point == NULL) return;
+  const abbe_picture_point *point = c->point;
+  const abbe_picture_request *q = &c->request;
+  cJSON *p = cJSON_AddObjectToObject(root, "promise");
+  cJSON_AddStringToObject(p, "for", "picture");
+  if (q->name != NULL) cJSON_AddStringToObject(p, "preset", q->name);
+  if (q->max_error > 0) cJSON_AddNumberToObject(p, "max_error", q->max_error);
+  if (q->budget_ms > 0) cJSON_AddNumberToObject(p, "budget_ms", q->budget_ms);
+  abbe_picture_describe(point, text, sizeof text);
+  cJSON_AddStringToObject(p, "tool", abbe_picture_tool_name(point->tool));
+  cJSON_AddStringToObject(p, "settings", text);
+  cJSON_AddStringToObject(p, "class", abbe_preset_class_name(c->front.of));
+  cJSON_AddStringToObject(p, "measured_on", c->front.scenes);
+  cJSON_AddBoolToObject(p, "possible", c->kept);
+  cJSON_AddNumberToObject(p, "error", c->promised_error);
+  cJSON_AddNumberToObject(p, "margin", c->front.margin[point->tool]);
+  cJSON_AddNumberToObject(p, "margin_scenes", (double)c->front.margin_scenes);
+  if (error_met >= 0) {
+    cJSON_AddNumberToObject(p, "error_met", error_met);
+    cJSON_AddStringToObject(p, "error_met_is",
+                            point->tool == ABBE_PICTURE_RENDER
+                                ? "an estimate by error bars: sampling alone"
+                                : "an estimate by its standard errors");
+  } else {
+    cJSON_AddNullToObject(p, "error_met");
+  }
+  if (c->timed) cJSON_AddNumberToObject(p, "ms", c->promised_ms);
+  cJSON_AddNumberToObject(p, "ms_met", ms);
+  if (q->budget_ms > 0) cJSON_AddBoolToObject(p, "budget_met", ms <= q->budget_ms);
+}
+
+void abbe_preset_options_note_picture(const abbe_picture_choice *c) {
+  char text[300];
+  if (c->point == NULL) return;
+  const abbe_picture_point *point = c->point;
+  abbe_picture_describe(point, text, sizeof text);
+  fprintf(stderr,
+          "note: %s; a mean CIEDE2000 of at most %.3g in the caustic is promised, by what was "
+          "measured on %s",
+          text, c->promised_error, c->front.scenes);
+  if (c->timed) fprintf(stderr, "; %.0f ms from start to end are promised", c->promised_ms);
+  fprintf(stderr, "\n");
+  if (!c->kept && c->request.max_error > 0)
+    fprintf(stderr, "note: nothing is known to keep %g; this is the most accurate\n",
+            c->request.max_error);
+  if (!c->kept && c->request.budget_ms > 0)
+    fprintf(stderr, "note: nothing is known to take %g ms here; this is the fastest\n",
+            c->request.budget_ms);
 }
 
 void abbe_preset_options_note(const abbe_preset_choice *c) {

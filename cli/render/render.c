@@ -1,24 +1,20 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
-#include "cli/base/map_options.h"
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
-#include "cli/render/error_options.h"
-#include "cli/render/preset_options.h"
-#include "cli/render/render_options.h"
+#include "cli/render/render_request.h"
+#include "cli/render/traced_picture.h"
 
-#include "base/file.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/screen_png.h"
 #include "gl/accuracy/frame_times.h"
 #include "scenes/import/scene_file.h"
+#include "validation/sweep/sweep_setting.h"
 
 #include <argp.h>
-#include <cjson/cJSON.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 enum {
   OPTION_PNG = 0x200,
@@ -36,20 +32,7 @@ enum {
   OPTION_JSON
 };
 
-typedef struct request {
-  abbe_render_options render;
-  abbe_map_options map;
-  abbe_preset_options preset;
-  abbe_preset_choice choice;
-  abbe_error_options errors;
-  const char *exr, *png, *stats;
-  const char *of_png; /* an option that the PNG alone has */
-  bool aovs, unfilled, quiet, json;
-  int bits;
-  size_t frames, bands;
-  abbe_context_backend backend;
-  abbe_display_desc display;
-} request;
+typedef abbe_render_request request;
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
@@ -162,57 +145,6 @@ static abbe_result check_display(const request *q, abbe_error *error) {
   return result;
 }
 
-static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_error_bars *bars,
-                       const abbe_context *context) {
-  cJSON *root = cJSON_CreateObject();
-  cJSON_AddNumberToObject(root, "frame_ms", s->frame_ms);
-  if (s->baseline_ms > 0) cJSON_AddNumberToObject(root, "baseline_ms", s->baseline_ms);
-  cJSON *passes = cJSON_AddArrayToObject(root, "passes");
-  for (size_t i = 0; i < s->pass_count; i++) {
-    cJSON *pass = cJSON_CreateObject();
-    cJSON_AddStringToObject(pass, "name", abbe_plan_item_text(s->pass[i].pass));
-    cJSON_AddNumberToObject(pass, "ms", s->pass[i].ms);
-    cJSON_AddItemToArray(passes, pass);
-  }
-  cJSON_AddNumberToObject(root, "photons", (double)s->photons);
-  cJSON_AddNumberToObject(root, "wavelengths", (double)s->wavelengths);
-  cJSON_AddNumberToObject(root, "refractor_share", s->refractor_share);
-  cJSON *energy = cJSON_AddObjectToObject(root, "energy");
-  cJSON_AddNumberToObject(energy, "reached", s->energy.reached);
-  cJSON_AddNumberToObject(energy, "reflected", s->energy.reflected);
-  cJSON_AddNumberToObject(energy, "absorbed", s->energy.absorbed);
-  cJSON_AddNumberToObject(energy, "trapped", s->energy.trapped);
-  cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
-  cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
-  cJSON_AddNumberToObject(energy, "on_tiles", s->energy.on_tiles);
-  cJSON_AddNumberToObject(energy, "interpolated", s->energy.interpolated);
-  cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
-  cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);
-  struct rusage usage;
-  if (getrusage(RUSAGE_SELF, &usage) == 0)
-    cJSON_AddNumberToObject(root, "peak_bytes", 1024.0 * (double)usage.ru_maxrss);
-  cJSON_AddStringToObject(root, "device", abbe_context_description(context));
-  abbe_error_options_describe(&q->errors, bars, root);
-  double estimate = bars->caustic.pixels > 0 ? bars->caustic.ciede2000 : -1;
-  abbe_preset_options_describe(&q->choice, s, estimate, root);
-  return root;
-}
-
-static abbe_result write_stats(const request *q, const abbe_statistics *s,
-                               const abbe_error_bars *bars, const abbe_context *context,
-                               abbe_error *error) {
-  if (q->stats == NULL && !q->json) return ABBE_OK;
-  cJSON *root = describe(q, s, bars, context);
-  char *text = abbe_command_json_text(root);
-  cJSON_Delete(root);
-  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
-  if (q->json) fputs(text, stdout);
-  abbe_result result = ABBE_OK;
-  if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
-  free(text);
-  return result;
-}
-
 /* One frame, or the median of several after a warm-up, and the baseline under them. */
 static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_statistics *out,
                               abbe_error *error) {
@@ -234,67 +166,6 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   return result;
 }
 
-static abbe_result annotate(const request *q, const abbe_renderer *renderer,
-                            const abbe_context *context, abbe_image *image, abbe_error *error) {
-  const abbe_render_desc *d = &abbe_renderer_plan(renderer)->desc;
-  char text[512];
-  snprintf(text, sizeof text,
-           "profile %s, %zu wavelengths %g:%g nm, photons %zu, map %zu, samples %zu, upsample %zu, "
-           "fill %s, "
-           "share %g, exits %zu",
-           abbe_profile_name(d->profile), d->wavelengths, d->min_nm, d->max_nm, d->photons,
-           d->map_size, d->supersample, d->upsample, abbe_fill_name(d->fill), d->energy_share,
-           d->exits);
-  abbe_result result = abbe_image_set_attribute(image, "abbe:settings", text, error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_image_set_attribute(image, "abbe:device", abbe_context_description(context), error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(
-        image, "abbe:unit",
-        d->profile == ABBE_PROFILE_THESIS ? "display brightness" : "radiance, W/(m2 sr)", error);
-  return result;
-}
-
-static abbe_result write_png(const request *q, const abbe_image *image, abbe_error *error) {
-  const abbe_screen_png_desc desc = {.display = q->display, .bits = q->bits};
-  return abbe_screen_png_write(q->png, image, &desc, error);
-}
-
-static abbe_result save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
-  abbe_image map = {0};
-  bool thesis = abbe_renderer_plan(renderer)->desc.profile == ABBE_PROFILE_THESIS;
-  abbe_result result =
-      q->bands > 0
-          ? abbe_renderer_read_map_bands(renderer, q->map.light_index, q->bands, &map, error)
-          : abbe_renderer_read_map(renderer, q->map.light_index, !q->unfilled, &map, error);
-  if (result != ABBE_OK) return result;
-  result = abbe_image_set_attribute(&map, "abbe:unit",
-                                    thesis ? "display brightness" : "flux a texel, W", error);
-  if (result == ABBE_OK)
-    result = abbe_image_set_attribute(&map, "abbe:scene", q->render.scene, error);
-  if (result == ABBE_OK) result = abbe_exr_write(q->map.save, &map, error);
-  abbe_image_free(&map);
-  return result;
-}
-
-static void summarise(const request *q, const abbe_statistics *s, double prepared_s) {
-  if (q->quiet || q->json) return;
-  fprintf(stderr, "a frame of %.0f ms, prepared in %.1f s, %zu photons x %zu wavelengths",
-          s->frame_ms, prepared_s, s->photons, s->wavelengths);
-  const abbe_ledger *e = &s->energy;
-  if (e->reached > 0)
-    fprintf(stderr,
-            "; of the light that met refractors %.1f %% is in the map, %.1f %% reflected, %.1f %% "
-            "absorbed, %.1f %% trapped, %.1f %% missed (balance %.1e)",
-            100 * e->deposited / e->reached, 100 * e->reflected / e->reached,
-            100 * e->absorbed / e->reached, 100 * e->trapped / e->reached,
-            100 * e->missed / e->reached, abbe_ledger_imbalance(e));
-  fprintf(stderr, "\n");
-}
-
 static void say_compiling(void *user) {
   (void)user;
   fprintf(stderr, "compiling this scene's shaders: some seconds, once on this machine\n");
@@ -303,6 +174,39 @@ static void say_compiling(void *user) {
 static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
   abbe_scene_input_note(scene);
   for (size_t i = 0; i < plan->note_count; i++) fprintf(stderr, "note: %s\n", plan->note[i]);
+}
+
+static void note_picture(const request *q) {
+  if (q->picture_note != NULL) fprintf(stderr, "note: %s\n", q->picture_note);
+  abbe_preset_options_note_picture(&q->picture);
+  if (q->overridden)
+    fprintf(stderr, "note: options stand against that choice; what it promises is void\n");
+}
+
+/* By the tracer, where it serves the request best. */
+static abbe_result trace(const request *q, const abbe_scene *scene, abbe_error *error) {
+  const abbe_render_desc *d = &q->render.desc;
+  const abbe_traced_picture_desc desc = {.width = d->width,
+                                         .height = d->height,
+                                         .min_nm = d->min_nm,
+                                         .max_nm = d->max_nm,
+                                         .space = d->space,
+                                         .quiet = q->quiet};
+  abbe_image image = {0};
+  double error_met = NAN;
+  if (!q->quiet) abbe_scene_input_note(scene);
+  if (!q->quiet) note_picture(q);
+  abbe_result result =
+      abbe_traced_picture_make(q->picture.point, scene, &desc, &image, &error_met, error);
+  if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
+  if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
+  if (result == ABBE_OK) result = abbe_render_write_traced_stats(q, error_met, error);
+  if (result == ABBE_OK && !q->quiet && !q->json)
+    fprintf(stderr, "traced; %.0f ms from start to end\n", abbe_render_process_ms());
+  if (result == ABBE_OK)
+    result = abbe_picture_choice_check(&q->picture, abbe_render_process_ms(), error);
+  abbe_image_free(&image);
+  return result;
 }
 
 static abbe_result render(const request *q, const abbe_scene *scene, abbe_context *context,
@@ -328,6 +232,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
     if (!q->quiet) abbe_preset_options_note(&q->choice);
+    if (!q->quiet) note_picture(q);
     if (q->map.save != NULL && !abbe_renderer_plan(renderer)->caustics)
       result = abbe_error_set(error, ABBE_UNSUPPORTED,
                               "%s has no refractor, so there is no spectral map to save",
@@ -336,22 +241,101 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
       result = run_frames(q, renderer, &statistics, error);
   }
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->aovs, &image, error);
-  if (result == ABBE_OK) result = annotate(q, renderer, context, &image, error);
+  if (result == ABBE_OK) result = abbe_render_annotate(q, renderer, context, &image, error);
   if (result == ABBE_OK)
     result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, &bars,
                                      error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
-  if (result == ABBE_OK && q->map.save != NULL) result = save_map(q, renderer, error);
-  if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
-  if (result == ABBE_OK) result = write_stats(q, &statistics, &bars, context, error);
-  if (result == ABBE_OK) summarise(q, &statistics, prepared_s);
+  if (result == ABBE_OK && q->map.save != NULL) result = abbe_render_save_map(q, renderer, error);
+  if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
+  if (result == ABBE_OK) result = abbe_render_write_stats(q, &statistics, &bars, context, error);
+  if (result == ABBE_OK) abbe_render_summarise(q, &statistics, prepared_s);
   if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
   /* The picture is there; but a bound that was asked for and is not kept is told by the exit code.
    */
   if (result == ABBE_OK) result = abbe_preset_choice_check(&q->choice, statistics.frame_ms, error);
+  if (result == ABBE_OK)
+    result = abbe_picture_choice_check(&q->picture, abbe_render_process_ms(), error);
   abbe_error_bars_free(&bars);
   abbe_image_free(&image);
   abbe_renderer_free(renderer);
+  return result;
+}
+
+/* ---- what makes it ---- */
+
+/* An option that the tracer does not know, or NULL. */
+static const char *renderers_own(const request *q) {
+  const abbe_render_desc *d = &q->render.desc;
+  return q->aovs                              ? "--aovs"
+         : q->map.save != NULL                ? "--save-map"
+         : q->map.like != NULL                ? "--map-like"
+         : q->frames > 0                      ? "--frames"
+         : q->errors.asked                    ? "--error-bars"
+         : d->wavelengths > 0                 ? "--wavelengths"
+         : d->photons > 0                     ? "--photons"
+         : d->map_size > 0                    ? "--map"
+         : d->supersample > 0                 ? "--samples"
+         : d->upsample > 0                    ? "--upsample"
+         : d->exits > 0                       ? "--exits"
+         : d->energy_share > 0                ? "--share"
+         : d->fill != ABBE_FILL_AUTO          ? "--fill"
+         : d->model != ABBE_MODEL_AUTO        ? "--model"
+         : d->profile != ABBE_PROFILE_DEFAULT ? "--profile"
+                                              : NULL;
+}
+
+/* Leaves the choice without a point where a frame's settings are asked for, or where the presets
+ * know frames alone. */
+static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_error *error) {
+  const abbe_preset_options *o = &q->preset;
+  const abbe_preset_request *p = &o->request;
+  const char *own = renderers_own(q);
+  abbe_picture_request r = {.name = p->name,
+                            .file = p->file,
+                            .max_error = p->max_error,
+                            .budget_ms = p->budget_ms,
+                            .timed = p->timed,
+                            .width = q->render.desc.width,
+                            .height = q->render.desc.height};
+  if (p->name == NULL && !(p->max_error > 0) && !(p->budget_ms > 0)) return ABBE_OK;
+  if (o->of_frame || q->render.desc.profile != ABBE_PROFILE_DEFAULT) return ABBE_OK;
+  if (o->tool > 0 && own != NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "--tool %s: %s is for the renderer alone; leave one of the two out",
+                          abbe_picture_tool_name((abbe_picture_tool)o->tool), own);
+  if (own != NULL || o->tool >= 0)
+    r.tool[own != NULL ? ABBE_PICTURE_RENDER : (abbe_picture_tool)o->tool] = true;
+  abbe_result result = abbe_picture_choose(&r, scene, &q->picture, error);
+  if (result == ABBE_UNSUPPORTED && !o->of_picture && o->tool <= 0) {
+    q->picture_note =
+        "the presets know no whole pictures of such a scene, so a frame's time counts";
+    q->picture.point = NULL;
+    return ABBE_OK;
+  }
+  if (result != ABBE_OK || q->picture.point->tool != ABBE_PICTURE_RENDER) return result;
+  if (own != NULL)
+    q->picture_note = "options of the renderer are given, so the tracer is not considered";
+  abbe_preset_point point = {0};
+  result = abbe_sweep_setting_desc(&q->picture.point->setting, &point.desc, error);
+  if (result == ABBE_OK) q->overridden = !abbe_preset_apply(&point, &q->render.desc);
+  return result;
+}
+
+static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_error *error) {
+  abbe_context *context = NULL;
+  q->preset.request.timed = q->stats != NULL || q->json;
+  abbe_result result = choose_picture(q, scene, error);
+  const bool chosen = q->picture.point != NULL;
+  if (result == ABBE_OK && chosen && q->picture.point->tool != ABBE_PICTURE_RENDER)
+    return trace(q, scene, error);
+  if (result == ABBE_OK) result = abbe_context_make(q->backend, &context, error);
+  if (result == ABBE_OK && !chosen)
+    result =
+        abbe_preset_choose(&q->preset.request, context, scene, &q->render.desc, &q->choice, error);
+  if (result == ABBE_OK) result = render(q, scene, context, error);
+  abbe_preset_choice_free(&q->choice);
+  abbe_context_free(context);
   return result;
 }
 
@@ -379,12 +363,14 @@ int abbe_command_render(int argc, char **argv) {
       children,
       NULL,
       NULL};
-  request q = {
-      .render.program = argv[0], .preset.program = argv[0], .errors.program = argv[0], .bits = 8};
+  request q = {.render.program = argv[0],
+               .preset.program = argv[0],
+               .preset.tool = -1,
+               .errors.program = argv[0],
+               .bits = 8};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
-  abbe_context *context = NULL;
   /* The AOVs tell where the caustic is, whose error is summed up. */
   q.render.desc.aovs = q.aovs || q.errors.asked;
   const char *const targets[] = {q.exr, q.png, q.map.save, q.stats, q.errors.png};
@@ -396,14 +382,7 @@ int abbe_command_render(int argc, char **argv) {
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)
     result = abbe_map_options_resolve(&q.map, &scene, q.render.desc.map_size == 0, &error);
-  if (result == ABBE_OK) result = abbe_context_make(q.backend, &context, &error);
-  q.preset.request.timed = q.stats != NULL || q.json;
-  if (result == ABBE_OK)
-    result =
-        abbe_preset_choose(&q.preset.request, context, &scene, &q.render.desc, &q.choice, &error);
-  if (result == ABBE_OK) result = render(&q, &scene, context, &error);
-  abbe_preset_choice_free(&q.choice);
-  abbe_context_free(context);
+  if (result == ABBE_OK) result = choose_and_draw(&q, &scene, &error);
   abbe_scene_free(&scene);
   return abbe_render_options_end(&q.render, loaded, result, &error);
 }

@@ -87,7 +87,7 @@ static const struct argp_option options[] = {
     {"passes", OPTION_PASSES, "LIST", 0, "of the tracer, each of photons x photons photons", 1},
     {"frames", OPTION_FRAMES, "N", 0, "warm up, then the median of N (5)", 1},
     {"processes", OPTION_PROCESSES, NULL, 0,
-     "time whole processes too, cold and warm, of the settings on each contestant's front", 1},
+     "time whole processes too: warm ones, and cold ones of each contestant's front", 1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS, "a table instead of the scene's",

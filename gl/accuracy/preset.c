@@ -162,6 +162,7 @@ static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_preset_
   for (int i = 0; i < ABBE_PRESET_COUNT && result == ABBE_OK; i++)
     result = abbe_yaml_get_count(r->yaml, node, preset_names[i], 0, out->count - 1, &out->named[i],
                                  r->error);
+  abbe_yaml_get(r->yaml, node, "pictures"); /* of whole processes and other tools: not read here */
   return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "class", r->error) : result;
 }
 
@@ -182,14 +183,20 @@ static abbe_result read_all(const reader *r, abbe_presets *out) {
   return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, root, "file", r->error) : result;
 }
 
+const char *abbe_presets_shipped(size_t *size) {
+  *size = abbe_embedded_presets_yaml_size;
+  return (const char *)abbe_embedded_presets_yaml;
+}
+
 abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *error) {
   ABBE_REQUIRE(out, error);
   reader r = {.error = error};
   *out = (abbe_presets){0};
-  abbe_result result = path != NULL ? abbe_yaml_load(path, &r.yaml, error)
-                                    : abbe_yaml_parse((const char *)abbe_embedded_presets_yaml,
-                                                      abbe_embedded_presets_yaml_size,
-                                                      "the shipped presets", &r.yaml, error);
+  size_t size;
+  const char *shipped = abbe_presets_shipped(&size);
+  abbe_result result = path != NULL
+                           ? abbe_yaml_load(path, &r.yaml, error)
+                           : abbe_yaml_parse(shipped, size, "the shipped presets", &r.yaml, error);
   if (result == ABBE_OK) result = read_all(&r, out);
   abbe_yaml_free(r.yaml);
   if (result != ABBE_OK) abbe_presets_free(out);

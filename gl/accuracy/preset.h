@@ -79,6 +79,8 @@ bool abbe_preset_is_fine(const abbe_render_desc *desc);
  * and key. */
 abbe_result abbe_presets_load(const char *path, abbe_presets *out, abbe_error *error);
 void abbe_presets_free(abbe_presets *presets);
+/* The text of the shipped file. */
+const char *abbe_presets_shipped(size_t *size);
 
 /* The front for the plan's scene. ABBE_UNSUPPORTED where no run had such a scene. */
 abbe_result abbe_presets_find(const abbe_presets *presets, const abbe_plan *plan,

@@ -16,11 +16,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_WORDS = 48, WORD = 64, USUAL_RUNS = 3, MOST_RUNS = 99, PATH = 512 };
+enum { MAX_WORDS = 48, WORD = 64, MOST_RUNS = 99, PATH = 512 };
 
 /* Where drivers keep compiled shaders: Mesa's, and NVIDIA's for EGL. */
 static const char *const caches[] = {"MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"};
 enum { CACHES = sizeof caches / sizeof *caches };
+
+struct abbe_sweep_process {
+  abbe_sweep_process_desc desc;
+  char folder[PATH];
+  size_t caches; /* that were made */
+};
 
 typedef struct command {
   char *word[MAX_WORDS];
@@ -162,29 +168,52 @@ static int compare_times(const void *a, const void *b) {
   return (*x > *y) - (*x < *y);
 }
 
-abbe_result abbe_sweep_process_measure(const abbe_sweep_process_desc *desc, abbe_sweep_row *row,
-                                       abbe_error *error) {
-  ABBE_REQUIRE(desc && desc->program && desc->scene && row, error);
-  char folder[PATH], picture[PATH + 16], cache[PATH + 16];
+abbe_result abbe_sweep_process_make(const abbe_sweep_process_desc *desc, abbe_sweep_process **out,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(desc && desc->program && desc->scene && out, error);
   const char *base = getenv("TMPDIR");
-  double cold = 0, warm[MOST_RUNS];
-  size_t runs = desc->runs > 0 ? desc->runs : USUAL_RUNS;
-  command c;
-  if (runs > MOST_RUNS) runs = MOST_RUNS;
-  int length = snprintf(folder, sizeof folder, "%s/abbe-process-XXXXXX",
+  *out = NULL;
+  abbe_sweep_process *p = calloc(1, sizeof *p);
+  if (p == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to time processes");
+  p->desc = *desc;
+  p->desc.runs = desc->runs == 0 ? 1 : desc->runs > MOST_RUNS ? MOST_RUNS : desc->runs;
+  int length = snprintf(p->folder, sizeof p->folder, "%s/abbe-process-XXXXXX",
                         base != NULL && base[0] != '\0' ? base : "/tmp");
-  if (length < 0 || (size_t)length >= sizeof folder || mkdtemp(folder) == NULL)
-    return abbe_error_set(error, ABBE_IO, "there is no folder for temporary files: %.200s: %s",
-                          folder, strerror(errno));
-  snprintf(picture, sizeof picture, "%s/picture.exr", folder);
-  snprintf(cache, sizeof cache, "%s/shaders", folder);
-  make_command(desc, &row->setting, picture, &c);
-  abbe_result result = run(&c, cache, &cold, error);
-  for (size_t i = 0; i < runs && result == ABBE_OK; i++) result = run(&c, cache, &warm[i], error);
-  nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
+  if (length < 0 || (size_t)length >= sizeof p->folder || mkdtemp(p->folder) == NULL) {
+    abbe_result result =
+        abbe_error_set(error, ABBE_IO, "there is no folder for temporary files: %.200s: %s",
+                       p->folder, strerror(errno));
+    free(p);
+    return result;
+  }
+  *out = p;
+  return ABBE_OK;
+}
+
+void abbe_sweep_process_free(abbe_sweep_process *p) {
+  if (p == NULL) return;
+  nftw(p->folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
+  free(p);
+}
+
+abbe_result abbe_sweep_process_measure(abbe_sweep_process *p, bool cold, abbe_sweep_row *row,
+                                       abbe_error *error) {
+  ABBE_REQUIRE(p && row, error);
+  char picture[PATH + 32], cache[PATH + 32], filled[PATH + 32];
+  double first, warm[MOST_RUNS];
+  command c;
+  snprintf(picture, sizeof picture, "%s/picture.exr", p->folder);
+  snprintf(filled, sizeof filled, "%s/shaders", p->folder);
+  snprintf(cache, sizeof cache, "%s/shaders-%zu", p->folder, ++p->caches);
+  make_command(&p->desc, &row->setting, picture, &c);
+  /* The first fills what is missing in the cache, so it is not warm. */
+  abbe_result result = run(&c, cold ? cache : filled, &first, error);
+  for (size_t i = 0; i < p->desc.runs && result == ABBE_OK; i++)
+    result = run(&c, cold ? cache : filled, &warm[i], error);
+  if (cold) nftw(cache, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
   if (result != ABBE_OK) return result;
-  qsort(warm, runs, sizeof *warm, compare_times);
-  row->number[ABBE_SWEEP_COLD_MS] = cold;
-  row->number[ABBE_SWEEP_WARM_MS] = warm[runs / 2];
+  qsort(warm, p->desc.runs, sizeof *warm, compare_times);
+  if (cold) row->number[ABBE_SWEEP_COLD_MS] = first;
+  row->number[ABBE_SWEEP_WARM_MS] = warm[p->desc.runs / 2];
   return ABBE_OK;
 }

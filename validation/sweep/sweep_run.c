@@ -168,11 +168,7 @@ static abbe_result measure_all(work *w, abbe_error *error) {
 
 /* ---- whole processes ---- */
 
-static bool is_timed(const abbe_sweep_row *row) {
-  return isfinite(row->number[ABBE_SWEEP_WARM_MS]) && isfinite(row->number[ABBE_SWEEP_COLD_MS]);
-}
-
-/* Adds the rows of each contestant's own front of that error to the list. */
+/* Lists the rows of each contestant's own front of that error. */
 static abbe_result list_fronts(work *w, abbe_sweep_number number, bool *listed, abbe_error *error) {
   abbe_sweep_table *t = &w->table;
   abbe_result result = ABBE_OK;
@@ -183,42 +179,57 @@ static abbe_result list_fronts(work *w, abbe_sweep_number number, bool *listed, 
   return result;
 }
 
-static abbe_result time_processes(work *w, const bool *listed, abbe_error *error) {
+/* Cold ones take long and differ little, so they are run for the fronts alone. */
+static bool is_timed(const abbe_sweep_row *row, bool cold) {
+  return isfinite(row->number[ABBE_SWEEP_WARM_MS]) &&
+         (!cold || isfinite(row->number[ABBE_SWEEP_COLD_MS]));
+}
+
+static abbe_result time_rows(work *w, abbe_sweep_process *process, const bool *cold,
+                             abbe_error *error) {
+  size_t missing = 0, done = 0;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < w->table.count; i++) missing += !is_timed(&w->table.row[i], cold[i]);
+  w->what = "processes";
+  w->share = 1 / (double)(missing > 0 ? missing : 1);
+  for (size_t i = 0; i < w->table.count && result == ABBE_OK; i++) {
+    abbe_sweep_row *row = &w->table.row[i];
+    if (is_timed(row, cold[i])) continue;
+    w->done = (double)done++ * w->share;
+    if (!go_on(w, 0)) return abbe_error_set(error, ABBE_CANCELLED, "stopped");
+    result = abbe_sweep_process_measure(process, cold[i], row, error);
+    if (result == ABBE_OK) result = keep_table(w, error);
+  }
+  return result;
+}
+
+static abbe_result time_processes(work *w, const bool *cold, abbe_error *error) {
   const abbe_image *picture = w->sweep.picture;
+  abbe_sweep_process *process = NULL;
   const abbe_sweep_process_desc desc = {.program = w->q->run,
                                         .scene = w->q->scene_path,
                                         .materials = w->q->materials,
                                         .backend = w->q->backend,
                                         .width = picture != NULL ? picture->width : 0,
                                         .height = picture != NULL ? picture->height : 0};
-  size_t missing = 0, done = 0;
-  abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < w->table.count; i++) missing += listed[i] && !is_timed(&w->table.row[i]);
-  w->what = "processes";
-  w->share = 1 / (double)(missing > 0 ? missing : 1);
-  for (size_t i = 0; i < w->table.count && result == ABBE_OK; i++) {
-    if (!listed[i] || is_timed(&w->table.row[i])) continue;
-    w->done = (double)done++ * w->share;
-    if (!go_on(w, 0)) return abbe_error_set(error, ABBE_CANCELLED, "stopped");
-    result = abbe_sweep_process_measure(&desc, &w->table.row[i], error);
-    if (result == ABBE_OK) result = keep_table(w, error);
-  }
-  return result;
+  abbe_result result = abbe_sweep_process_make(&desc, &process, error);
+  if (result == ABBE_OK) result = time_rows(w, process, cold, error);
+  abbe_sweep_process_free(process);
+  if (result != ABBE_CANCELLED) return result;
+  return abbe_error_set(error, result,
+                        "stopped while whole processes were timed; what is done is in %s, and the "
+                        "same command goes on",
+                        w->q->table);
 }
 
 static abbe_result measure_processes(work *w, abbe_error *error) {
   if (w->q->run == NULL) return ABBE_OK;
-  bool *listed = calloc(w->table.count + 1, sizeof *listed);
-  if (listed == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the processes");
-  abbe_result result = list_fronts(w, ABBE_SWEEP_CAUSTIC_DE, listed, error);
-  if (result == ABBE_OK) result = list_fronts(w, ABBE_SWEEP_CAUSTIC_RMSE, listed, error);
-  if (result == ABBE_OK) result = time_processes(w, listed, error);
-  free(listed);
-  if (result == ABBE_CANCELLED)
-    return abbe_error_set(error, result,
-                          "stopped while whole processes were timed; what is done is in %s, and "
-                          "the same command goes on",
-                          w->q->table);
+  bool *cold = calloc(w->table.count + 1, sizeof *cold);
+  if (cold == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the processes");
+  abbe_result result = list_fronts(w, ABBE_SWEEP_CAUSTIC_DE, cold, error);
+  if (result == ABBE_OK) result = list_fronts(w, ABBE_SWEEP_CAUSTIC_RMSE, cold, error);
+  if (result == ABBE_OK) result = time_processes(w, cold, error);
+  free(cold);
   return result == ABBE_OK ? keep_table(w, error) : result;
 }
 

@@ -26,8 +26,8 @@ typedef struct abbe_sweep_request {
   bool decompose;                        /* a second reference, of matched physics */
   bool trace_only;                       /* no rows */
   size_t frames;                         /* behind each median */
-  /* A program whose whole processes are timed, of the settings on each contestant's own front of a
-   * frame's time and the caustic's errors; or NULL. */
+  /* A program whose whole processes are timed, warm ones of all rows, cold ones of each
+   * contestant's own fronts of a frame's time and the caustic's errors; or NULL. */
   const char *run;
   const char *materials, *backend; /* of these processes, as abbe_sweep_process_desc has them */
   size_t setting_count;

@@ -2,8 +2,10 @@
 
 #include "base/clock.h"
 #include "gl/accuracy/frame_times.h"
+#include "validation/compare/compare.h"
 #include "validation/tracer/tracer.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,11 +84,33 @@ abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_t
   row->number[ABBE_SWEEP_FASTEST_MS] = frames[0].ms;
   row->number[ABBE_SWEEP_LIGHT_MS] = frames[done / 2].light_ms;
   row->number[ABBE_SWEEP_EYE_MS] = frames[done / 2].eye_ms;
+  row->number[ABBE_SWEEP_OWN_DE] = abbe_sweep_trace_own_error(&image);
   if (picture != NULL)
     *picture = image;
   else
     abbe_image_free(&image);
   return ABBE_OK;
+}
+
+/* A trace against itself differs by nothing; what its noise would make of that is its own error. */
+double abbe_sweep_trace_own_error(const abbe_image *picture) {
+  static const char name[] = "the picture";
+  abbe_field a = {0}, b = {0};
+  abbe_mask mask = {0};
+  abbe_comparison c;
+  const abbe_compare_options options = {.mask = &mask};
+  double own = NAN;
+  if (abbe_field_make(picture, name, &a, NULL) == ABBE_OK &&
+      abbe_field_make(picture, name, &b, NULL) == ABBE_OK &&
+      abbe_mask_make_caustic(&a, name, ABBE_MASK_CAUSTIC_SHARE, &mask, NULL) == ABBE_OK &&
+      abbe_compare(&a, &b, &options, &c, NULL) == ABBE_OK) {
+    own = c.mask.metric[ABBE_COMPARE_CIEDE2000_MEAN].noise;
+    abbe_comparison_free(&c);
+  }
+  abbe_mask_free(&mask);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+  return own;
 }
 
 abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error) {

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "base/yaml/yaml_quote.h"
 #include "validation/tradeoff/pareto_front.h"
+#include "validation/tradeoff/sweep_pictures.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,9 +14,6 @@
 /* How far above the least error of its kind the accurate preset may be: within it more time buys
  * nothing that one sees. */
 static const double slack = 0.02;
-
-/* An error that is not above the reference's own noise by this much tells nothing of settings. */
-static const double most_noise = 0.9;
 
 /* Settings that give up paths sooner than the default does are no presets: what they leave out may
  * be all that a scene that was not swept is made of, as a rainbow is of light reflected inside. */
@@ -49,18 +47,8 @@ static const char *class_of(const abbe_sweep_table *table) {
   return table->fact[ABBE_SWEEP_FACT_CLASS];
 }
 
-/* Whether the sweep's errors are more than its reference's noise. */
-static bool tells(const abbe_sweep_table *table, abbe_sweep_number number) {
-  for (size_t i = 0; i < table->count; i++) {
-    const abbe_sweep_row *row = &table->row[i];
-    if (strcmp(row->setting.profile, "default") != 0) continue;
-    if (row->number[number + 1] > most_noise * row->number[number]) return false;
-  }
-  return true;
-}
-
 static bool is_of(const front *f, size_t table) {
-  return strcmp(class_of(&f->tables[table]), f->of) == 0 && tells(&f->tables[table], f->number);
+  return strcmp(class_of(&f->tables[table]), f->of) == 0 && abbe_sweep_table_tells(&f->tables[table], f->number);
 }
 
 static bool is_known(const abbe_sweep_row *row, abbe_sweep_number number) {
@@ -277,7 +265,7 @@ static void write_head(FILE *out, const abbe_sweep_table *t, abbe_sweep_number n
 static void write_noisy(FILE *out, const abbe_sweep_table *tables, size_t count,
                         abbe_sweep_number number) {
   for (size_t i = 0; i < count; i++)
-    if (!tells(&tables[i], number))
+    if (!abbe_sweep_table_tells(&tables[i], number))
       fprintf(out, "# left out, for its reference's noise explains its errors: %s\n",
               abbe_file_name(tables[i].fact[ABBE_SWEEP_FACT_SCENE]));
   fprintf(out, "classes:\n");
@@ -311,7 +299,7 @@ static bool opens_class(const abbe_sweep_table *tables, size_t count, size_t ind
   size_t first = count;
   for (size_t i = count; i-- > 0;)
     if (strcmp(class_of(&tables[i]), class_of(&tables[index])) == 0 &&
-        (first == count || tells(&tables[i], number) || !tells(&tables[first], number)))
+        (first == count || abbe_sweep_table_tells(&tables[i], number) || !abbe_sweep_table_tells(&tables[first], number)))
       first = i;
   return first == index;
 }
@@ -355,6 +343,8 @@ static abbe_result write_all(FILE *out, const abbe_sweep_table *tables, const ch
                          names[i], f.of, abbe_sweep_number_name(number));
     f.is_fine = is_fine;
     if (result == ABBE_OK) write_class(out, &f, &widest);
+    if (result == ABBE_OK)
+      result = abbe_sweep_pictures_write(out, tables, count, f.of, number, error);
     close_front(&f);
   }
   return result;

@@ -5,7 +5,8 @@
  * worst of theirs. The three named ones are picked by
  * rule: draft is the cheapest, accurate the cheapest whose error is at most 2 % above the least of
  * those that are finer than the defaults, balanced where the front between draft and the least
- * error bends most. gl/accuracy/preset.h reads the file.
+ * error bends most. gl/accuracy/preset.h reads the file; the fronts of whole pictures in it are
+ * sweep_pictures.h's.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_SWEEP_PRESETS_H
 #define ABBE_VALIDATION_TRADEOFF_SWEEP_PRESETS_H

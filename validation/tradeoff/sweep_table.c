@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* An error that is not above the reference's own noise by this much tells nothing of settings. */
+static const double most_noise = 0.9;
+
 enum { MAX_BYTES = 16 << 20, MAX_CELLS = 64 };
 
 static const char *const number_names[] = {
@@ -147,6 +150,15 @@ abbe_result abbe_sweep_table_add(abbe_sweep_table *table, const abbe_sweep_row *
   }
   table->row[table->count++] = *row;
   return ABBE_OK;
+}
+
+bool abbe_sweep_table_tells(const abbe_sweep_table *table, abbe_sweep_number number) {
+  for (size_t i = 0; i < table->count; i++) {
+    const abbe_sweep_row *row = &table->row[i];
+    if (strcmp(row->setting.profile, "default") != 0) continue;
+    if (row->number[number + 1] > most_noise * row->number[number]) return false;
+  }
+  return true;
 }
 
 static int compare_numbers(const void *a, const void *b) {

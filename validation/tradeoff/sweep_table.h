@@ -46,6 +46,7 @@ typedef struct abbe_sweep_setting {
   X(BASELINE_MS, "baseline_ms", "surfaces alone, ms")        /* default profile */                 \
   X(WARM_MS, "warm_ms", "whole process, shaders cached, ms") /* median of processes */             \
   X(COLD_MS, "cold_ms", "whole process, no shader cached, ms")                                     \
+  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 that its own errors make")           /* traced */   \
   X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
   X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \
@@ -148,6 +149,9 @@ void abbe_sweep_table_set(abbe_sweep_table *table, abbe_sweep_fact fact, const c
 /* The row of that setting, or NULL. */
 const abbe_sweep_row *abbe_sweep_table_find(const abbe_sweep_table *table,
                                             const abbe_sweep_setting *setting);
+/* Whether the errors of the default profile's settings are more than the reference's own noise: if
+ * not, the table tells nothing of settings. */
+bool abbe_sweep_table_tells(const abbe_sweep_table *table, abbe_sweep_number number);
 /* How much longer the median of a setting's frames takes than its fastest, as a share of that; the
  * median over the rows where they differ, which a quiet machine keeps below ABBE_SWEEP_QUIET. 0
  * where none do. */

@@ -116,6 +116,63 @@ static void test_what_is_refused(void **state) {
     assert_true(run_refuses(wrong[i].line, wrong[i].code, wrong[i].part));
 }
 
+/* A file that knows whole pictures too: the tracer is far nearer to what it promises than anything
+ * could be, and the renderer is taken where it alone can serve. */
+#define PICTURES                                                                                   \
+  "printf 'error: caustic_de\\nwhat: mean error\\nrun: a run\\nclasses:\\n- class: convex\\n"      \
+  "  scenes: gem\\n  front:\\n" POINT(                                                             \
+      "16", "1",                                                                                   \
+      "8") "  pictures:\\n    base_ms: 1e-3\\n    base_error: 1\\n    render:\\n      front:\\n"   \
+           "      - {photons: 16, wavelengths: 3, map: 64, samples: 1, upsample: 1, fill: "        \
+           "bridge,\\n"                                                                            \
+           "         exits: 8, share: 0.01, model: auto, ms: 1, error: 8, least: 0.5}\\n"          \
+           "    trace:\\n      front:\\n"                                                          \
+           "      - {photons: 64, passes: 3, ms: 2, error: 1e-6, least: 1e-6}\\n' >q.yaml"
+
+static void test_what_makes_the_picture(void **state) {
+  (void)state;
+  assert_int_equal(run_line(PICTURES), 0);
+  cJSON *json = promise_of(GEM "--presets q.yaml --max-error 1 --json -o a.exr");
+  assert_string_equal(cJSON_GetStringValue(item(json, "for")), "picture");
+  assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "trace");
+  assert_contains(cJSON_GetStringValue(item(json, "settings")), "3 passes of 4096 photons");
+  assert_true(cJSON_GetNumberValue(item(json, "error_met")) > 0);
+  assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "its standard errors");
+  assert_true(cJSON_GetNumberValue(item(json, "ms_met")) > 0);
+  assert_contains(run_errors, "note: the tracer: 3 passes of 4096 photons");
+  cJSON_Delete(json);
+  assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
+  assert_contains(run_output, "stderr.R");
+  json = promise_of(GEM "--presets q.yaml --max-error 9 --json --tool render -q");
+  assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
+  assert_true(cJSON_IsFalse(item(json, "overridden")));
+  cJSON_Delete(json);
+  json = promise_of(GEM "--presets q.yaml --preset accurate --json --samples 1");
+  assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
+  assert_contains(run_errors, "options of the renderer are given, so the tracer is not");
+  cJSON_Delete(json);
+  json = promise_that_ends(GEM "--presets q.yaml --budget-ms 1 --json -q", 3);
+  assert_true(cJSON_IsFalse(item(json, "budget_met")));
+  assert_contains(run_errors, "the budget of 1 ms is not kept, for nothing faster is known");
+  cJSON_Delete(json);
+  json = promise_of(GEM "--presets q.yaml --max-error 9 --for frame --json -q");
+  assert_null(
+      cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(json, "promise"), "for"));
+  cJSON_Delete(json);
+  assert_int_equal(run_line("rm q.yaml"), 0);
+  static const struct {
+    const char *line, *part;
+    int code;
+  } wrong[] = {
+      {GEM "--json --max-error 9 --tool trace --aovs", "--aovs is for the renderer alone", 2},
+      {GEM "--json --max-error 9 --tool tracer", "did you mean 'trace'?", 2},
+      {GEM "--json --tool trace", "--for and --tool go with --preset", 2},
+      {GEM "--json --max-error 9 --tool trace --for frame", "makes no frames", 2},
+  };
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+    assert_true(run_refuses(wrong[i].line, wrong[i].code, wrong[i].part));
+}
+
 /* Presets of a small sweep of its own, and a sweep that holds the shipped ones to their word. */
 static void test_presets_of_a_sweep(void **state) {
   (void)state;
@@ -143,6 +200,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(test_by_name, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_by_error_and_by_time, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_what_makes_the_picture, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_presets_of_a_sweep, run_setup, run_teardown),
   };

@@ -1,0 +1,53 @@
+/* render_request.h: all that `abbe render` is asked, and what it writes of a picture. */
+#ifndef ABBE_CLI_RENDER_RENDER_REQUEST_H
+#define ABBE_CLI_RENDER_RENDER_REQUEST_H
+
+#include "cli/base/map_options.h"
+#include "cli/render/error_options.h"
+#include "cli/render/preset_options.h"
+#include "cli/render/render_options.h"
+
+#include "colorimetry/image/display_ocio.h"
+#include "gl/device/context.h"
+
+typedef struct abbe_render_request {
+  abbe_render_options render;
+  abbe_map_options map;
+  abbe_preset_options preset;
+  abbe_preset_choice choice;   /* of a frame's settings */
+  abbe_picture_choice picture; /* or of what makes the picture; without a point: not asked for */
+  bool overridden;             /* a field of the request stands against the picture's choice */
+  const char *picture_note;    /* on how that was chosen, or NULL */
+  abbe_error_options errors;
+  const char *exr, *png, *stats;
+  const char *of_png; /* an option that the PNG alone has */
+  bool aovs, unfilled, quiet, json;
+  int bits;
+  size_t frames, bands;
+  abbe_context_backend backend;
+  abbe_display_desc display;
+} abbe_render_request;
+
+/* Since the program was started. */
+double abbe_render_process_ms(void);
+
+/* The statistics as JSON, where they are asked for. */
+abbe_result abbe_render_write_stats(const abbe_render_request *request,
+                                    const abbe_statistics *statistics, const abbe_error_bars *bars,
+                                    const abbe_context *context, abbe_error *error);
+/* The same of a traced picture; error_met: of its caustic, below 0 where it is not known. */
+abbe_result abbe_render_write_traced_stats(const abbe_render_request *request, double error_met,
+                                           abbe_error *error);
+
+/* Says in the picture what made it. */
+abbe_result abbe_render_annotate(const abbe_render_request *request, const abbe_renderer *renderer,
+                                 const abbe_context *context, abbe_image *image, abbe_error *error);
+abbe_result abbe_render_write_png(const abbe_render_request *request, const abbe_image *image,
+                                  abbe_error *error);
+abbe_result abbe_render_save_map(const abbe_render_request *request, abbe_renderer *renderer,
+                                 abbe_error *error);
+/* A frame's time and where the light went, on stderr. */
+void abbe_render_summarise(const abbe_render_request *request, const abbe_statistics *statistics,
+                           double prepared_s);
+
+#endif

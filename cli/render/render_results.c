@@ -1,0 +1,152 @@
+#include "cli/base/command.h"
+#include "cli/render/render_request.h"
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/screen_png.h"
+
+#include <cjson/cJSON.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+typedef abbe_render_request request;
+
+double abbe_render_process_ms(void) {
+  return 1e3 * abbe_clock_process_seconds();
+}
+
+static void describe_picture(const request *q, double error_met, cJSON *root) {
+  cJSON_AddNumberToObject(root, "process_ms", abbe_render_process_ms());
+  abbe_preset_options_describe_picture(&q->picture, abbe_render_process_ms(), error_met, root);
+  cJSON *promise = cJSON_GetObjectItemCaseSensitive(root, "promise");
+  if (q->picture.point != NULL && promise != NULL)
+    cJSON_AddBoolToObject(promise, "overridden", q->overridden);
+}
+
+static cJSON *describe(const request *q, const abbe_statistics *s, const abbe_error_bars *bars,
+                       const abbe_context *context) {
+  cJSON *root = cJSON_CreateObject();
+  cJSON_AddNumberToObject(root, "frame_ms", s->frame_ms);
+  if (s->baseline_ms > 0) cJSON_AddNumberToObject(root, "baseline_ms", s->baseline_ms);
+  cJSON *passes = cJSON_AddArrayToObject(root, "passes");
+  for (size_t i = 0; i < s->pass_count; i++) {
+    cJSON *pass = cJSON_CreateObject();
+    cJSON_AddStringToObject(pass, "name", abbe_plan_item_text(s->pass[i].pass));
+    cJSON_AddNumberToObject(pass, "ms", s->pass[i].ms);
+    cJSON_AddItemToArray(passes, pass);
+  }
+  cJSON_AddNumberToObject(root, "photons", (double)s->photons);
+  cJSON_AddNumberToObject(root, "wavelengths", (double)s->wavelengths);
+  cJSON_AddNumberToObject(root, "refractor_share", s->refractor_share);
+  cJSON *energy = cJSON_AddObjectToObject(root, "energy");
+  cJSON_AddNumberToObject(energy, "reached", s->energy.reached);
+  cJSON_AddNumberToObject(energy, "reflected", s->energy.reflected);
+  cJSON_AddNumberToObject(energy, "absorbed", s->energy.absorbed);
+  cJSON_AddNumberToObject(energy, "trapped", s->energy.trapped);
+  cJSON_AddNumberToObject(energy, "missed", s->energy.missed);
+  cJSON_AddNumberToObject(energy, "deposited", s->energy.deposited);
+  cJSON_AddNumberToObject(energy, "on_tiles", s->energy.on_tiles);
+  cJSON_AddNumberToObject(energy, "interpolated", s->energy.interpolated);
+  cJSON_AddNumberToObject(energy, "imbalance", abbe_ledger_imbalance(&s->energy));
+  cJSON_AddNumberToObject(root, "device_bytes", (double)s->device_bytes);
+  struct rusage usage;
+  if (getrusage(RUSAGE_SELF, &usage) == 0)
+    cJSON_AddNumberToObject(root, "peak_bytes", 1024.0 * (double)usage.ru_maxrss);
+  cJSON_AddStringToObject(root, "device", abbe_context_description(context));
+  abbe_error_options_describe(&q->errors, bars, root);
+  double estimate = bars->caustic.pixels > 0 ? bars->caustic.ciede2000 : -1;
+  abbe_preset_options_describe(&q->choice, s, estimate, root);
+  describe_picture(q, estimate, root);
+  return root;
+}
+
+/* Takes root. */
+static abbe_result write_json(const request *q, cJSON *root, abbe_error *error) {
+  char *text = abbe_command_json_text(root);
+  cJSON_Delete(root);
+  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
+  if (q->json) fputs(text, stdout);
+  abbe_result result = ABBE_OK;
+  if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
+  free(text);
+  return result;
+}
+
+abbe_result abbe_render_write_stats(const request *q, const abbe_statistics *s,
+                                    const abbe_error_bars *bars, const abbe_context *context,
+                                    abbe_error *error) {
+  if (q->stats == NULL && !q->json) return ABBE_OK;
+  return write_json(q, describe(q, s, bars, context), error);
+}
+
+abbe_result abbe_render_write_traced_stats(const request *q, double error_met, abbe_error *error) {
+  if (q->stats == NULL && !q->json) return ABBE_OK;
+  cJSON *root = cJSON_CreateObject();
+  describe_picture(q, error_met, root);
+  return write_json(q, root, error);
+}
+
+abbe_result abbe_render_annotate(const request *q, const abbe_renderer *renderer,
+                                 const abbe_context *context, abbe_image *image,
+                                 abbe_error *error) {
+  const abbe_render_desc *d = &abbe_renderer_plan(renderer)->desc;
+  char text[512];
+  snprintf(text, sizeof text,
+           "profile %s, %zu wavelengths %g:%g nm, photons %zu, map %zu, samples %zu, upsample %zu, "
+           "fill %s, "
+           "share %g, exits %zu",
+           abbe_profile_name(d->profile), d->wavelengths, d->min_nm, d->max_nm, d->photons,
+           d->map_size, d->supersample, d->upsample, abbe_fill_name(d->fill), d->energy_share,
+           d->exits);
+  abbe_result result = abbe_image_set_attribute(image, "abbe:settings", text, error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_image_set_attribute(image, "abbe:device", abbe_context_description(context), error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(
+        image, "abbe:unit",
+        d->profile == ABBE_PROFILE_THESIS ? "display brightness" : "radiance, W/(m2 sr)", error);
+  return result;
+}
+
+abbe_result abbe_render_write_png(const request *q, const abbe_image *image, abbe_error *error) {
+  const abbe_screen_png_desc desc = {.display = q->display, .bits = q->bits};
+  return abbe_screen_png_write(q->png, image, &desc, error);
+}
+
+abbe_result abbe_render_save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {
+  abbe_image map = {0};
+  bool thesis = abbe_renderer_plan(renderer)->desc.profile == ABBE_PROFILE_THESIS;
+  abbe_result result =
+      q->bands > 0
+          ? abbe_renderer_read_map_bands(renderer, q->map.light_index, q->bands, &map, error)
+          : abbe_renderer_read_map(renderer, q->map.light_index, !q->unfilled, &map, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_image_set_attribute(&map, "abbe:unit",
+                                    thesis ? "display brightness" : "flux a texel, W", error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(&map, "abbe:scene", q->render.scene, error);
+  if (result == ABBE_OK) result = abbe_exr_write(q->map.save, &map, error);
+  abbe_image_free(&map);
+  return result;
+}
+
+void abbe_render_summarise(const request *q, const abbe_statistics *s, double prepared_s) {
+  if (q->quiet || q->json) return;
+  fprintf(stderr, "a frame of %.0f ms, prepared in %.1f s, %zu photons x %zu wavelengths",
+          s->frame_ms, prepared_s, s->photons, s->wavelengths);
+  const abbe_ledger *e = &s->energy;
+  if (e->reached > 0)
+    fprintf(stderr,
+            "; of the light that met refractors %.1f %% is in the map, %.1f %% reflected, %.1f %% "
+            "absorbed, %.1f %% trapped, %.1f %% missed (balance %.1e)",
+            100 * e->deposited / e->reached, 100 * e->reflected / e->reached,
+            100 * e->absorbed / e->reached, 100 * e->trapped / e->reached,
+            100 * e->missed / e->reached, abbe_ledger_imbalance(e));
+  fprintf(stderr, "\n");
+}

@@ -1,0 +1,34 @@
+#include "cli/render/traced_picture.h"
+
+#include "cli/base/progress.h"
+
+#include "validation/sweep/sweep_trace.h"
+#include "validation/tracer/trace_run.h"
+
+abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe_scene *scene,
+                                     const abbe_traced_picture_desc *desc, abbe_image *out,
+                                     double *error_met, abbe_error *error) {
+  abbe_tracer *tracer = NULL;
+  abbe_progress progress;
+  const abbe_trace_desc trace = {.no_map = true,
+                                 .width = desc->width,
+                                 .height = desc->height,
+                                 .min_nm = desc->min_nm,
+                                 .max_nm = desc->max_nm,
+                                 .space = desc->space,
+                                 .photons = point->setting.photons * point->setting.photons};
+  const abbe_trace_run_desc run = {.passes = point->setting.passes,
+                                   .progress = abbe_progress_update,
+                                   .user = &progress,
+                                   .stop = abbe_progress_stopped()};
+  *out = (abbe_image){0};
+  abbe_result result = abbe_tracer_make(scene, &trace, &tracer, error);
+  if (result != ABBE_OK) return result;
+  abbe_progress_begin(&progress, "trace", desc->quiet);
+  result = abbe_trace_run(tracer, &run, error);
+  abbe_progress_end(&progress);
+  if (result == ABBE_OK) result = abbe_tracer_picture(tracer, out, error);
+  if (result == ABBE_OK) *error_met = abbe_sweep_trace_own_error(out);
+  abbe_tracer_free(tracer);
+  return result;
+}

@@ -1,0 +1,204 @@
+/* Which tool makes a picture: what is promised of a scene and machine, what is chosen by an error,
+ * by a time and by name, and files that are broken. */
+#include "tests/validation/trace_scene.h"
+
+#include "base/file.h"
+#include "validation/sweep/picture_choice.h"
+#include "validation/sweep/sweep_setting.h"
+#include "validation/sweep/sweep_trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
+#define RENDER(photons, ms, error)                                                                 \
+  "      - {photons: " photons                                                                     \
+  ", wavelengths: 3, map: 64, samples: 1, upsample: 1, fill: bridge, exits: 2, share: 0.01,\n"     \
+  "         model: auto, ms: " ms ", error: " error ", least: 0.5}\n"
+#define TRACE(photons, passes, ms, error)                                                          \
+  "      - {photons: " photons ", passes: " passes ", ms: " ms ", error: " error ", least: 0.5}\n"
+#define HEAD "error: a\nwhat: b\nrun: c\nclasses:\n- class: spheres\n  scenes: beads\n"
+#define PICTURES "  pictures:\n    base_ms: 1e-3\n    base_error: 1\n    margin_scenes: 2\n"
+/* A yardstick of a microsecond: here everything takes far longer than in that run. */
+#define WHOLE                                                                                      \
+  HEAD PICTURES "    render:\n      margin: 2\n      time_margin: 1.5\n      front:\n" RENDER(     \
+      "16", "1", "8")                                                                              \
+      RENDER("32", "4", "3") "    trace:\n      front:\n" TRACE("64", "2", "2", "1e6")             \
+          TRACE("256", "8", "1e9", "1e-9")
+
+static char path[64];
+static abbe_scene scene;
+
+static void assert_good(abbe_result result, const abbe_error *error) {
+  if (result != ABBE_OK) fail_msg("%s", error->text);
+}
+
+static void write_file(const char *text) {
+  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+}
+
+static void choose(abbe_picture_request request, abbe_picture_choice *out) {
+  abbe_error error = {0};
+  request.file = path;
+  request.width = request.height = 16;
+  assert_good(abbe_picture_choose(&request, &scene, out, &error), &error);
+}
+
+static void test_the_file(void **state) {
+  (void)state;
+  abbe_picture_front f;
+  abbe_error error = {0};
+  write_file(WHOLE);
+  assert_good(abbe_picture_front_load(path, ABBE_PRESET_CLASS_SPHERES, &f, &error), &error);
+  assert_int_equal(f.count, 4);
+  assert_string_equal(f.scenes, "beads");
+  assert_int_equal(f.point[1].tool, ABBE_PICTURE_RENDER);
+  assert_int_equal(f.point[1].setting.photons, 32);
+  assert_near(f.point[1].worst, 3, 0);
+  assert_near(f.point[1].error, 6, 0);
+  assert_near(f.point[1].ms, 6, 0);
+  assert_int_equal(f.point[3].tool, ABBE_PICTURE_TRACE);
+  assert_int_equal(f.point[3].setting.passes, 8);
+  assert_near(f.point[3].error, 1e-9, 0);
+  assert_int_equal(abbe_picture_front_load(path, ABBE_PRESET_CLASS_MESHES, &f, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "class meshes");
+}
+
+/* Without the tracer and without a time nothing is measured: promises are the file's. */
+static void test_the_renderer_alone(void **state) {
+  (void)state;
+  abbe_picture_choice c;
+  abbe_error error = {0};
+  write_file(WHOLE);
+  abbe_picture_request q = {.max_error = 16, .tool = {[ABBE_PICTURE_RENDER] = true}};
+  choose(q, &c);
+  assert_int_equal(c.point->setting.photons, 16);
+  assert_true(c.kept && !c.timed);
+  assert_near(c.promised_error, 16, 0);
+  assert_near(c.spent_ms, 0, 0);
+  q.max_error = 15.9;
+  choose(q, &c);
+  assert_int_equal(c.point->setting.photons, 32);
+  assert_int_equal(abbe_picture_choice_check(&c, 1e9, &error), ABBE_OK);
+  q.max_error = 5.9;
+  choose(q, &c);
+  assert_int_equal(c.point->setting.photons, 32);
+  assert_false(c.kept);
+  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+  assert_contains(error.text, "an error of 5.9; the nearest was taken, of which 6 is promised");
+  q.max_error = 0;
+  q.name = "draft";
+  choose(q, &c);
+  assert_int_equal(c.point->setting.photons, 16);
+  q.name = "accurate";
+  choose(q, &c);
+  assert_int_equal(c.point->setting.photons, 32);
+}
+
+/* The tracer's errors are the yardstick's own, as often as the file says; times likewise. */
+static void test_promises_are_told_by_the_yardstick(void **state) {
+  (void)state;
+  abbe_picture_choice c;
+  abbe_sweep_row row = {0};
+  abbe_error error = {0};
+  write_file(WHOLE);
+  choose((abbe_picture_request){.max_error = 1e-6}, &c);
+  assert_int_equal(c.point->tool, ABBE_PICTURE_TRACE);
+  assert_int_equal(c.point->setting.passes, 8);
+  assert_true(c.kept && c.timed && c.spent_ms > 0);
+  abbe_sweep_setting_of_trace(ABBE_PICTURE_YARDSTICK_PHOTONS, ABBE_PICTURE_YARDSTICK_PASSES, false,
+                              &row.setting);
+  const abbe_sweep_trace_desc desc = {.width = 16, .height = 16, .frames = 1};
+  assert_good(abbe_sweep_trace_measure(&scene, &desc, &row, NULL, &error), &error);
+  assert_true(row.number[ABBE_SWEEP_OWN_DE] > 0);
+  assert_near(c.promised_error, 1e-9 * row.number[ABBE_SWEEP_OWN_DE], 1e-20);
+  assert_true(c.promised_ms > 1e9);
+}
+
+static void test_by_time(void **state) {
+  (void)state;
+  abbe_picture_choice c;
+  abbe_error error = {0};
+  write_file(WHOLE);
+  /* Of what no machine does in that time the fastest. */
+  choose((abbe_picture_request){.budget_ms = 1e-3}, &c);
+  assert_int_equal(c.point->setting.photons, 16);
+  assert_false(c.kept);
+  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+  assert_contains(error.text, "the budget of 0.001 ms is not kept, for nothing faster is known");
+  assert_int_equal(abbe_picture_choice_check(&c, 1e-4, &error), ABBE_OK);
+  /* An age is time for all but what takes 1e12 times the yardstick. */
+  choose((abbe_picture_request){.budget_ms = 1e9}, &c);
+  assert_int_equal(c.point->setting.photons, 32);
+  assert_true(c.kept && c.promised_ms <= 1e9);
+}
+
+static void test_words(void **state) {
+  (void)state;
+  char text[300];
+  abbe_picture_point point = {.tool = ABBE_PICTURE_TRACE_FILTER};
+  abbe_sweep_setting_of_trace(256, 4, true, &point.setting);
+  abbe_picture_describe(&point, text, sizeof text);
+  assert_string_equal(text, "the tracer: 4 passes of 65536 photons, filtered");
+  write_file(WHOLE);
+  abbe_picture_choice c;
+  choose((abbe_picture_request){.max_error = 16, .tool = {true}}, &c);
+  abbe_picture_describe(c.point, text, sizeof text);
+  assert_contains(text, "the renderer: 3 wavelengths, 16 photons");
+}
+
+static void test_what_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *part;
+  } broken[] = {
+      {HEAD PICTURES, "'pictures' has no tool"},
+      {HEAD "  pictures:\n    base_error: 1\n", "'base_ms' is a number above 0"},
+      {HEAD PICTURES "    trace:\n      front: []\n", "a list of 1 to 48 points"},
+      {HEAD PICTURES "    trace:\n      front:\n" TRACE("64", "0", "1", "1"), "passes"},
+      {HEAD PICTURES "    trace:\n      front:\n" TRACE("64", "1", "0", "1"), "'ms' is a number"},
+      {HEAD PICTURES "    trace:\n      front:\n" TRACE("64", "1", "1", "nan"), "error"},
+      {HEAD PICTURES "    trace:\n      front:\n" TRACE("64", "1", "2", "1")
+           TRACE("64", "2", "1", "0.5"),
+       "rising time and falling error"},
+      {HEAD PICTURES "    trace:\n      margin: 0.5\n      front:\n" TRACE("64", "1", "2", "1"),
+       "margin"},
+      {HEAD PICTURES "    tracer:\n      front:\n" TRACE("64", "1", "2", "1"), "no tool"},
+      {HEAD PICTURES "    render:\n      front:\n" TRACE("64", "1", "2", "1"), "wavelengths"},
+  };
+  abbe_picture_front f;
+  abbe_picture_choice c;
+  abbe_error error = {0};
+  for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+    write_file(broken[i].text);
+    error = (abbe_error){0};
+    if (abbe_picture_front_load(path, ABBE_PRESET_CLASS_SPHERES, &f, &error) != ABBE_SCHEMA)
+      fail_msg("%zu is not refused so: %s", i, error.text);
+    assert_contains(error.text, broken[i].part);
+    assert_contains(error.text, path);
+  }
+  assert_int_equal(abbe_picture_choose(&(abbe_picture_request){0}, &scene, &c, &error),
+                   ABBE_INVALID_ARGUMENT);
+  write_file(HEAD PICTURES "    trace:\n      front:\n" TRACE("64", "1", "2", "1"));
+  const abbe_picture_request q = {.file = path, .max_error = 1, .tool = {true}};
+  assert_int_equal(abbe_picture_choose(&q, &scene, &c, &error), ABBE_NOT_FOUND);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_file),
+      cmocka_unit_test(test_the_renderer_alone),
+      cmocka_unit_test(test_promises_are_told_by_the_yardstick),
+      cmocka_unit_test(test_by_time),
+      cmocka_unit_test(test_words),
+      cmocka_unit_test(test_what_is_refused),
+  };
+  snprintf(path, sizeof path, "/tmp/abbe_test_picture_choice_%ld.yaml", (long)getpid());
+  load_text(SCENE, &scene);
+  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  abbe_scene_free(&scene);
+  unlink(path);
+  return failed;
+}

@@ -1,0 +1,343 @@
+#include "validation/sweep/picture_choice.h"
+
+#include "base/clock.h"
+#include "base/yaml/yaml.h"
+#include "gl/plan/plan.h"
+#include "validation/sweep/sweep_setting.h"
+#include "validation/sweep/sweep_trace.h"
+#include "validation/tradeoff/pareto_front.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PASSES = 65536 };
+static const double slack = 0.02; /* more accuracy than that is not seen */
+
+#define ABBE_NAME_OF(code, name) name,
+#define ABBE_TOOL_OF(code, name, profile) name,
+static const char *const class_names[] = {ABBE_PRESET_CLASSES(ABBE_NAME_OF) NULL};
+static const char *const fill_names[] = {ABBE_FILLS(ABBE_NAME_OF) NULL};
+static const char *const model_names[] = {ABBE_MODELS(ABBE_NAME_OF) NULL};
+static const char *const preset_names[] = {ABBE_PRESETS(ABBE_NAME_OF) NULL};
+static const char *const tool_names[] = {ABBE_PICTURE_TOOLS(ABBE_TOOL_OF) NULL};
+
+/* ---- reading ---- */
+
+typedef struct reader {
+  abbe_yaml *yaml;
+  abbe_error *error;
+} reader;
+
+static abbe_result get_above_0(const reader *r, abbe_yaml_node node, const char *key, double *out) {
+  *out = -1;
+  abbe_result result = abbe_yaml_get_number(r->yaml, node, key, 0, 1e9, out, r->error);
+  if (result == ABBE_OK && !(*out > 0))
+    return abbe_yaml_fail(r->yaml, node, r->error, "'%s' is a number above 0", key);
+  return result;
+}
+
+static abbe_result get_count(const reader *r, abbe_yaml_node node, const char *key, size_t most,
+                             size_t *out) {
+  *out = 0;
+  abbe_result result = abbe_yaml_get_count(r->yaml, node, key, 1, most, out, r->error);
+  if (result == ABBE_OK && *out == 0)
+    return abbe_yaml_fail(r->yaml, node, r->error, "a point has no '%s'", key);
+  return result;
+}
+
+static abbe_result read_render(const reader *r, abbe_yaml_node node, abbe_sweep_setting *s) {
+  int fill = ABBE_FILL_BRIDGE, model = ABBE_MODEL_AUTO;
+  const struct {
+    const char *key;
+    size_t most, *out;
+  } counts[] = {{"wavelengths", ABBE_RENDER_MAX_WAVELENGTHS, &s->wavelengths},
+                {"map", ABBE_RENDER_MAX_MAP, &s->map},
+                {"samples", 4, &s->samples},
+                {"upsample", 4, &s->upsample},
+                {"exits", ABBE_RENDER_MAX_EXITS, &s->exits}};
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof counts / sizeof *counts && result == ABBE_OK; i++)
+    result = get_count(r, node, counts[i].key, counts[i].most, counts[i].out);
+  if (result == ABBE_OK) result = get_above_0(r, node, "share", &s->share);
+  if (result == ABBE_OK && s->share > 1)
+    result = abbe_yaml_fail(r->yaml, node, r->error, "the share may be above 0, to 1");
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_choice(r->yaml, node, "fill", fill_names, &fill, r->error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_choice(r->yaml, node, "model", model_names, &model, r->error);
+  snprintf(s->profile, sizeof s->profile, "%s", abbe_profile_name(ABBE_PROFILE_DEFAULT));
+  snprintf(s->fill, sizeof s->fill, "%s", fill_names[fill]);
+  snprintf(s->model, sizeof s->model, "%s", model_names[model]);
+  return result;
+}
+
+static abbe_result read_point(const reader *r, abbe_yaml_node node, abbe_picture_tool tool,
+                              abbe_picture_point *out) {
+  size_t photons, passes;
+  *out = (abbe_picture_point){.tool = tool};
+  abbe_result result = get_count(r, node, "photons", ABBE_RENDER_MAX_PHOTONS, &photons);
+  if (result == ABBE_OK && out->tool == ABBE_PICTURE_RENDER) {
+    result = read_render(r, node, &out->setting);
+    out->setting.photons = photons;
+  } else if (result == ABBE_OK) {
+    result = get_count(r, node, "passes", MOST_PASSES, &passes);
+    if (result == ABBE_OK)
+      abbe_sweep_setting_of_trace(photons, passes, out->tool == ABBE_PICTURE_TRACE_FILTER,
+                                  &out->setting);
+  }
+  if (result == ABBE_OK) result = get_above_0(r, node, "ms", &out->ms);
+  if (result == ABBE_OK) result = get_above_0(r, node, "error", &out->worst);
+  if (result == ABBE_OK) result = get_above_0(r, node, "least", &out->least);
+  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "point", r->error) : result;
+}
+
+static abbe_result read_points(const reader *r, abbe_yaml_node list, abbe_picture_tool tool,
+                               abbe_picture_front *out) {
+  size_t count = abbe_yaml_count(r->yaml, list);
+  const size_t most = ABBE_PICTURE_MAX_POINTS / ABBE_PICTURE_TOOL_COUNT;
+  if (!abbe_yaml_is_sequence(r->yaml, list) || count < 1 || count > most)
+    return abbe_yaml_fail(r->yaml, list, r->error, "a front is a list of 1 to %zu points", most);
+  for (size_t i = 0; i < count; i++) {
+    abbe_yaml_node node = abbe_yaml_item(r->yaml, list, i);
+    abbe_picture_point *p = &out->point[out->count];
+    abbe_result result = read_point(r, node, tool, p);
+    if (result != ABBE_OK) return result;
+    if (i > 0 && !(p->ms >= p[-1].ms && p->worst <= p[-1].worst))
+      return abbe_yaml_fail(r->yaml, node, r->error,
+                            "the points of a front stand in the order of rising time and falling "
+                            "error");
+    p->error = p->worst * out->margin[tool];
+    out->count++;
+  }
+  for (size_t i = 0; i < count; i++) out->point[out->count - 1 - i].ms *= out->time_margin[tool];
+  return ABBE_OK;
+}
+
+static abbe_result read_tool(const reader *r, abbe_yaml_node pictures, abbe_picture_tool tool,
+                             abbe_picture_front *out) {
+  abbe_yaml_node node = abbe_yaml_get(r->yaml, pictures, tool_names[tool]), list;
+  out->margin[tool] = out->time_margin[tool] = 1;
+  if (node.id == 0) return ABBE_OK;
+  abbe_result result = abbe_yaml_require(r->yaml, node, "front", &list, r->error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(r->yaml, node, "margin", 1, 1e6, &out->margin[tool], r->error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(r->yaml, node, "time_margin", 1, 1e6, &out->time_margin[tool],
+                                  r->error);
+  if (result == ABBE_OK) result = read_points(r, list, tool, out);
+  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "tool", r->error) : result;
+}
+
+static abbe_result read_front(const reader *r, abbe_yaml_node node, abbe_picture_front *out) {
+  abbe_result result = get_above_0(r, node, "base_ms", &out->base_ms);
+  if (result == ABBE_OK) result = get_above_0(r, node, "base_error", &out->base_error);
+  if (result == ABBE_OK)
+    result =
+        abbe_yaml_get_count(r->yaml, node, "margin_scenes", 0, 1000, &out->margin_scenes, r->error);
+  for (int i = 0; i < ABBE_PICTURE_TOOL_COUNT && result == ABBE_OK; i++)
+    result = read_tool(r, node, (abbe_picture_tool)i, out);
+  if (result == ABBE_OK && out->count == 0)
+    result = abbe_yaml_fail(r->yaml, node, r->error, "'pictures' has no tool");
+  return result == ABBE_OK ? abbe_yaml_check_keys(r->yaml, node, "pictures", r->error) : result;
+}
+
+/* The class in the file, or an absent node. */
+static abbe_result find_class(const reader *r, abbe_preset_class of, abbe_yaml_node *out) {
+  abbe_yaml_node list;
+  abbe_result result =
+      abbe_yaml_require(r->yaml, abbe_yaml_root(r->yaml), "classes", &list, r->error);
+  *out = (abbe_yaml_node){0};
+  for (size_t i = 0; result == ABBE_OK && i < abbe_yaml_count(r->yaml, list); i++) {
+    abbe_yaml_node node = abbe_yaml_item(r->yaml, list, i);
+    int own = 0;
+    result = abbe_yaml_get_choice(r->yaml, node, "class", class_names, &own, r->error);
+    if (result != ABBE_OK || own != (int)of) continue;
+    *out = node;
+    break;
+  }
+  return result;
+}
+
+static abbe_result read_class(const reader *r, const char *path, abbe_preset_class of,
+                              abbe_picture_front *out) {
+  abbe_yaml_node node, pictures = {0};
+  char *scenes = NULL;
+  abbe_result result = find_class(r, of, &node);
+  if (result != ABBE_OK) return result;
+  if (node.id != 0) pictures = abbe_yaml_get(r->yaml, node, "pictures");
+  if (pictures.id == 0)
+    return abbe_error_set(r->error, ABBE_UNSUPPORTED,
+                          "%s has no whole processes of scenes of the class %s: sweep with "
+                          "--processes",
+                          path != NULL ? path : "the shipped presets", abbe_preset_class_name(of));
+  out->of = of;
+  result = abbe_yaml_get_string(r->yaml, node, "scenes", &scenes, r->error);
+  if (result == ABBE_OK && scenes != NULL) snprintf(out->scenes, sizeof out->scenes, "%s", scenes);
+  free(scenes);
+  return result == ABBE_OK ? read_front(r, pictures, out) : result;
+}
+
+abbe_result abbe_picture_front_load(const char *path, abbe_preset_class of, abbe_picture_front *out,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(out, error);
+  reader r = {.error = error};
+  size_t size;
+  *out = (abbe_picture_front){0};
+  const char *shipped = abbe_presets_shipped(&size);
+  abbe_result result = path != NULL
+                           ? abbe_yaml_load(path, &r.yaml, error)
+                           : abbe_yaml_parse(shipped, size, "the shipped presets", &r.yaml, error);
+  if (result == ABBE_OK) result = read_class(&r, path, of, out);
+  abbe_yaml_free(r.yaml);
+  return result;
+}
+
+/* ---- choosing ---- */
+
+static bool may(const abbe_picture_request *q, abbe_picture_tool tool) {
+  bool any = false;
+  for (int i = 0; i < ABBE_PICTURE_TOOL_COUNT; i++) any |= q->tool[i];
+  return !any || q->tool[tool];
+}
+
+/* What this scene and machine are to the run's. */
+typedef struct yardstick {
+  double time, error;
+} yardstick;
+
+static abbe_result measure(abbe_picture_choice *c, const abbe_scene *scene, yardstick *out,
+                           abbe_error *error) {
+  abbe_sweep_row row = {0};
+  const double start = abbe_clock_seconds();
+  const abbe_sweep_trace_desc desc = {
+      .width = c->request.width, .height = c->request.height, .frames = 1};
+  abbe_sweep_setting_of_trace(ABBE_PICTURE_YARDSTICK_PHOTONS, ABBE_PICTURE_YARDSTICK_PASSES, false,
+                              &row.setting);
+  abbe_result result = abbe_sweep_trace_measure(scene, &desc, &row, NULL, error);
+  const double own = row.number[ABBE_SWEEP_OWN_DE];
+  out->time = row.number[ABBE_SWEEP_FRAME_MS] / c->front.base_ms;
+  out->error = own > 0 ? own / c->front.base_error : NAN; /* no caustic: nothing is promised */
+  c->spent_ms = 1e3 * (abbe_clock_seconds() - start);
+  return result;
+}
+
+static double error_of(const abbe_picture_point *p, const yardstick *y) {
+  return p->tool == ABBE_PICTURE_RENDER ? p->error : p->error * y->error;
+}
+
+/* The points of this scene that may be taken and no other beats, in the order of time. */
+typedef struct candidates {
+  size_t count, point[ABBE_PICTURE_MAX_POINTS];
+  double ms[ABBE_PICTURE_MAX_POINTS], error[ABBE_PICTURE_MAX_POINTS];
+} candidates;
+
+static void find_candidates(const abbe_picture_choice *c, const yardstick *y, candidates *out) {
+  double ms[ABBE_PICTURE_MAX_POINTS], error[ABBE_PICTURE_MAX_POINTS];
+  for (size_t i = 0; i < c->front.count; i++) {
+    const abbe_picture_point *p = &c->front.point[i];
+    ms[i] = may(&c->request, p->tool) ? p->ms * y->time + c->spent_ms : NAN;
+    error[i] = error_of(p, y);
+  }
+  out->count = abbe_pareto_front_order(ms, error, c->front.count, out->point);
+  for (size_t i = 0; i < out->count; i++) {
+    out->ms[i] = ms[out->point[i]];
+    out->error[i] = error[out->point[i]];
+  }
+}
+
+static size_t pick(const abbe_picture_request *q, const candidates *all, bool *kept) {
+  const size_t last = all->count - 1;
+  size_t at = 0;
+  *kept = true;
+  if (q->name != NULL) {
+    const size_t accurate = abbe_pareto_front_accurate(all->error, all->count, slack);
+    if (strcmp(q->name, preset_names[ABBE_PRESET_ACCURATE]) == 0) return accurate;
+    if (strcmp(q->name, preset_names[ABBE_PRESET_BALANCED]) == 0)
+      return abbe_pareto_front_knee(all->ms, all->error, accurate + 1);
+    return 0;
+  }
+  if (q->max_error > 0) {
+    while (at < last && all->error[at] > q->max_error) at++;
+    *kept = all->error[at] <= q->max_error;
+    return at;
+  }
+  while (at < last && all->ms[at + 1] <= q->budget_ms) at++;
+  *kept = all->ms[at] <= q->budget_ms;
+  return at;
+}
+
+/* Whether something of the tracer is among what may be taken. */
+static bool needs_yardstick(const abbe_picture_choice *c) {
+  for (size_t i = 0; i < c->front.count; i++)
+    if (may(&c->request, c->front.point[i].tool) && c->front.point[i].tool != ABBE_PICTURE_RENDER)
+      return true;
+  return c->timed;
+}
+
+static abbe_result choose(abbe_picture_choice *c, const abbe_scene *scene, abbe_error *error) {
+  yardstick y = {1, 1};
+  candidates all;
+  c->timed = c->request.timed || c->request.budget_ms > 0;
+  abbe_result result = needs_yardstick(c) ? measure(c, scene, &y, error) : ABBE_OK;
+  if (result != ABBE_OK) return result;
+  c->timed = c->timed || c->spent_ms > 0;
+  find_candidates(c, &y, &all);
+  if (all.count == 0)
+    return abbe_error_set(error, ABBE_NOT_FOUND,
+                          "the fronts of whole pictures of the class %s have no point of a tool "
+                          "that can make this one",
+                          abbe_preset_class_name(c->front.of));
+  const size_t at = pick(&c->request, &all, &c->kept);
+  c->point = &c->front.point[all.point[at]];
+  c->promised_ms = all.ms[at];
+  c->promised_error = all.error[at];
+  return ABBE_OK;
+}
+
+abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,
+                                abbe_picture_choice *out, abbe_error *error) {
+  ABBE_REQUIRE(request && scene && out, error);
+  abbe_plan plan;
+  *out = (abbe_picture_choice){.request = *request};
+  if (request->name == NULL && !(request->max_error > 0) && !(request->budget_ms > 0))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "neither a name, an error nor a time is asked for");
+  abbe_result result = abbe_plan_make(scene, NULL, &plan, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_picture_front_load(request->file, abbe_preset_class_of(&plan), &out->front, error);
+  abbe_plan_free(&plan);
+  return result == ABBE_OK ? choose(out, scene, error) : result;
+}
+
+abbe_result abbe_picture_choice_check(const abbe_picture_choice *c, double ms, abbe_error *error) {
+  ABBE_REQUIRE(c, error);
+  const abbe_picture_request *q = &c->request;
+  if (c->point == NULL) return ABBE_OK;
+  if (q->budget_ms > 0 && ms > q->budget_ms)
+    return abbe_error_set(error, ABBE_TOLERANCE,
+                          "the picture took %.0f ms from start to end and %.0f were promised: the "
+                          "budget of %g ms is not kept%s; what was asked for is written all the "
+                          "same",
+                          ms, c->promised_ms, q->budget_ms,
+                          c->kept ? "" : ", for nothing faster is known");
+  if (q->max_error > 0 && !c->kept)
+    return abbe_error_set(
+        error, ABBE_TOLERANCE,
+        "nothing is known to keep an error of %g; the nearest was taken, of which "
+        "%.3g is promised, and what was asked for is written all the same",
+        q->max_error, c->promised_error);
+  return ABBE_OK;
+}
+
+void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size) {
+  char text[200];
+  const abbe_sweep_setting *s = &point->setting;
+  abbe_sweep_setting_describe(s, text, sizeof text);
+  if (point->tool == ABBE_PICTURE_RENDER)
+    snprintf(out, size, "the renderer: %s", text);
+  else
+    snprintf(out, size, "the tracer: %zu passes of %zu photons%s", s->passes,
+             s->photons * s->photons, point->tool == ABBE_PICTURE_TRACE_FILTER ? ", filtered" : "");
+}

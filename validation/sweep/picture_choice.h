@@ -1,0 +1,93 @@
+/* picture_choice.h: which tool makes one picture, and with what settings: by a name, by an error,
+ * or by the time from the start of the process to its end.
+ *
+ * The renderer, the tracer and the filtered tracer compete on the fronts that sweeps of whole
+ * processes gave (validation/tradeoff/sweep_pictures.h), in the files of gl/accuracy/preset.h. It
+ * makes no picture. What it says of errors and times are promises: the worst of the run's scenes,
+ * times the tool's margin. How they carry over to this scene and machine is told by the yardstick,
+ * a short frame of the tracer: how long it takes, and what it says of its own error.
+ */
+#ifndef ABBE_VALIDATION_SWEEP_PICTURE_CHOICE_H
+#define ABBE_VALIDATION_SWEEP_PICTURE_CHOICE_H
+
+#include "gl/accuracy/preset.h"
+#include "scenes/scene.h"
+#include "validation/tradeoff/sweep_pictures.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Of one tool. */
+typedef struct abbe_picture_point {
+  abbe_picture_tool tool;
+  abbe_sweep_setting setting; /* of the tracer: photons and passes; else all but the size */
+  double ms;                  /* of a whole process, in the run, with the time's margin */
+  double error;               /* the worst of the run's scenes, with the error's margin */
+  double worst, least;        /* of the run's scenes, without */
+} abbe_picture_point;
+
+#define ABBE_PICTURE_MAX_POINTS (ABBE_PICTURE_TOOL_COUNT * 48)
+
+typedef struct abbe_picture_front {
+  abbe_preset_class of;
+  char scenes[256];
+  double base_ms, base_error; /* the yardstick's in the run, geometric means over its scenes */
+  double margin[ABBE_PICTURE_TOOL_COUNT], time_margin[ABBE_PICTURE_TOOL_COUNT];
+  size_t margin_scenes;                              /* behind them; 0: too few to tell */
+  size_t count;                                      /* at least 1 */
+  abbe_picture_point point[ABBE_PICTURE_MAX_POINTS]; /* [count] tool by tool */
+} abbe_picture_front;
+
+/* The fronts of a class of scenes, from a file of presets (NULL: the shipped ones).
+ * ABBE_UNSUPPORTED where the file has none; ABBE_SCHEMA, ABBE_PARSE and ABBE_IO name file, line and
+ * key. */
+abbe_result abbe_picture_front_load(const char *path, abbe_preset_class of, abbe_picture_front *out,
+                                    abbe_error *error);
+
+/* One of name, max_error and budget_ms. */
+typedef struct abbe_picture_request {
+  const char *name;                   /* of a preset, or NULL */
+  const char *file;                   /* of presets, or NULL: the shipped ones */
+  double max_error;                   /* 0: none */
+  double budget_ms;                   /* of the whole process; 0: none */
+  bool timed;                         /* promise a time too, where budget_ms does not ask for one */
+  bool tool[ABBE_PICTURE_TOOL_COUNT]; /* those that may be taken; none: all */
+  size_t width, height;               /* pixels; 0: the scene's */
+} abbe_picture_request;
+
+typedef struct abbe_picture_choice {
+  abbe_picture_request request;
+  abbe_picture_front front;
+  const abbe_picture_point *point; /* of the front */
+  bool kept;                       /* the bound can be kept, by the front */
+  bool timed;                      /* promised_ms is known */
+  double promised_error;           /* of this scene */
+  double promised_ms;              /* on this machine, of the whole process, with the yardstick */
+  double spent_ms;                 /* on the yardstick; 0: it was not needed */
+} abbe_picture_choice;
+
+/* Of the tools that may be taken. The yardstick is traced first, unless the renderer alone may be
+ * taken and no time is asked for. Then every point has a promised error and time for this scene:
+ * for max_error the fastest that keeps it is taken, for budget_ms the most accurate, by name one of
+ * the Pareto front that is left: the cheapest for draft, the cheapest whose error is at most 2 %
+ * above the least for accurate, for balanced where the front between them bends most. Where no
+ * point keeps the bound, the nearest is taken. The request's texts and `out` outlive the choice's
+ * point. ABBE_INVALID_ARGUMENT where nothing is asked for, ABBE_NOT_FOUND where no point is left;
+ * errors of abbe_picture_front_load and abbe_sweep_trace_measure. */
+abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,
+                                abbe_picture_choice *out, abbe_error *error);
+
+/* ABBE_TOLERANCE where a process of that time does not keep the bound that was asked for. */
+abbe_result abbe_picture_choice_check(const abbe_picture_choice *choice, double ms,
+                                      abbe_error *error);
+
+/* "the renderer: 7 wavelengths, ..." or "the tracer: 4 passes of 262144 photons, filtered". */
+void abbe_picture_describe(const abbe_picture_point *point, char *out, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
