@@ -144,7 +144,7 @@ void abbe_preset_options_describe_picture(const abbe_picture_choice *c, double m
     cJSON_AddStringToObject(p, "error_met_is",
                             point->tool == ABBE_PICTURE_RENDER
                                 ? "an estimate by error bars: sampling alone"
-                                : "an estimate by its standard errors");
+                                : "an estimate by half of its passes");
   } else {
     cJSON_AddNullToObject(p, "error_met");
   }

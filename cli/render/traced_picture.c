@@ -5,6 +5,8 @@
 #include "validation/sweep/sweep_trace.h"
 #include "validation/tracer/trace_run.h"
 
+#include <math.h>
+
 abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe_scene *scene,
                                      const abbe_traced_picture_desc *desc, abbe_image *out,
                                      double *error_met, abbe_error *error) {
@@ -17,18 +19,27 @@ abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe
                                  .max_nm = desc->max_nm,
                                  .space = desc->space,
                                  .photons = point->setting.photons * point->setting.photons};
-  const abbe_trace_run_desc run = {.passes = point->setting.passes,
-                                   .progress = abbe_progress_update,
-                                   .user = &progress,
-                                   .stop = abbe_progress_stopped()};
+  const size_t passes = point->setting.passes;
+  abbe_trace_run_desc run = {.passes = passes / 2,
+                             .progress = abbe_progress_update,
+                             .user = &progress,
+                             .stop = abbe_progress_stopped()};
+  abbe_image half = {0};
   *out = (abbe_image){0};
+  *error_met = NAN;
   abbe_result result = abbe_tracer_make(scene, &trace, &tracer, error);
   if (result != ABBE_OK) return result;
   abbe_progress_begin(&progress, "trace", desc->quiet);
-  result = abbe_trace_run(tracer, &run, error);
+  if (passes % 2 == 0) {
+    result = abbe_trace_run(tracer, &run, error);
+    if (result == ABBE_OK) result = abbe_tracer_picture(tracer, &half, error);
+  }
+  run.passes = passes;
+  if (result == ABBE_OK) result = abbe_trace_run(tracer, &run, error);
   abbe_progress_end(&progress);
   if (result == ABBE_OK) result = abbe_tracer_picture(tracer, out, error);
-  if (result == ABBE_OK) *error_met = abbe_sweep_trace_own_error(out);
+  if (result == ABBE_OK && half.data != NULL) *error_met = abbe_sweep_trace_own_error(&half, out);
+  abbe_image_free(&half);
   abbe_tracer_free(tracer);
   return result;
 }

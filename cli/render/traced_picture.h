@@ -13,7 +13,7 @@ typedef struct abbe_traced_picture_desc {
 } abbe_traced_picture_desc;
 
 /* Traces the point's passes, with a bar, and filters them where it says so. error_met receives
- * abbe_sweep_trace_own_error.
+ * abbe_sweep_trace_own_error; NaN of an odd number of passes.
  * ABBE_CANCELLED; errors of abbe_tracer_make. */
 abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe_scene *scene,
                                      const abbe_traced_picture_desc *desc, abbe_image *out,

@@ -29,16 +29,22 @@ static bool go_on(const abbe_sweep_trace_desc *desc, double done) {
 
 static abbe_result trace(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
                          const abbe_sweep_setting *setting, double done, frame *out,
-                         abbe_image *picture, abbe_error *error) {
+                         abbe_image *half, abbe_image *picture, abbe_error *error) {
   abbe_tracer *tracer = NULL;
   abbe_trace_statistics statistics;
   const abbe_trace_desc own = describe(setting, desc->width, desc->height);
+  double copied = 0; /* half of it, which no frame has to do */
+  abbe_image_free(half);
   abbe_image_free(picture);
   abbe_result result = abbe_tracer_make(scene, &own, &tracer, error);
   const double start = abbe_clock_seconds();
   for (size_t i = 0; i < setting->passes && result == ABBE_OK; i++) {
     if (!go_on(desc, done)) result = abbe_error_set(error, ABBE_CANCELLED, "stopped");
     if (result == ABBE_OK) result = abbe_tracer_pass(tracer, NULL, error);
+    if (result != ABBE_OK || 2 * (i + 1) != setting->passes) continue;
+    copied = abbe_clock_seconds();
+    result = abbe_tracer_picture(tracer, half, error);
+    copied = abbe_clock_seconds() - copied;
   }
   if (result == ABBE_OK) result = abbe_tracer_picture(tracer, picture, error);
   const double end = abbe_clock_seconds();
@@ -60,7 +66,7 @@ abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_t
                                      abbe_sweep_row *row, abbe_image *picture, abbe_error *error) {
   ABBE_REQUIRE(scene && desc && row, error);
   frame frames[ABBE_FRAME_TIMES_MAX];
-  abbe_image image = {0};
+  abbe_image image = {0}, half = {0};
   const abbe_sweep_setting *setting = &row->setting;
   size_t count = desc->frames > 0 ? desc->frames : USUAL_FRAMES, done = 0;
   double spent = 0;
@@ -71,10 +77,13 @@ abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_t
   abbe_result result = ABBE_OK;
   while (done < count && result == ABBE_OK) {
     if (desc->enough_ms > 0 && spent > desc->enough_ms && done >= FEW_FRAMES) break;
-    result =
-        trace(scene, desc, setting, (double)done / (double)count, &frames[done], &image, error);
+    result = trace(scene, desc, setting, (double)done / (double)count, &frames[done], &half, &image,
+                   error);
     if (result == ABBE_OK) spent += frames[done++].ms;
   }
+  if (result == ABBE_OK && half.data != NULL)
+    row->number[ABBE_SWEEP_OWN_DE] = abbe_sweep_trace_own_error(&half, &image);
+  abbe_image_free(&half);
   if (result != ABBE_OK) {
     abbe_image_free(&image);
     return result;
@@ -84,7 +93,6 @@ abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_t
   row->number[ABBE_SWEEP_FASTEST_MS] = frames[0].ms;
   row->number[ABBE_SWEEP_LIGHT_MS] = frames[done / 2].light_ms;
   row->number[ABBE_SWEEP_EYE_MS] = frames[done / 2].eye_ms;
-  row->number[ABBE_SWEEP_OWN_DE] = abbe_sweep_trace_own_error(&image);
   if (picture != NULL)
     *picture = image;
   else
@@ -92,24 +100,61 @@ abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_t
   return ABBE_OK;
 }
 
-/* A trace against itself differs by nothing; what its noise would make of that is its own error. */
-double abbe_sweep_trace_own_error(const abbe_image *picture) {
+static abbe_result copy_image(const abbe_image *in, abbe_image *out) {
+  const size_t count = in->width * in->height * in->channels;
+  abbe_result result = abbe_image_make(in->width, in->height, in->channels,
+                                       (const char *const *)in->channel, out, NULL);
+  if (result != ABBE_OK) return result;
+  memcpy(out->data, in->data, count * sizeof *out->data);
+  memcpy(out->xy, in->xy, sizeof out->xy);
+  return ABBE_OK;
+}
+
+/* The mean over 9 x 9 pixels of the channels that hold the caustic: of few photons the brightest
+ * pixels are those that were hit, so without it the region would leave out where light is dim. */
+static void smooth_caustic(const abbe_image *in, abbe_image *out) {
+  enum { REACH = 4 };
+  const size_t w = in->width, h = in->height, n = in->channels;
+  for (size_t c = 0; c < n; c++) {
+    if (strncmp(in->channel[c], "caustic.", 8) != 0) continue;
+    for (size_t y = 0; y < h; y++) {
+      for (size_t x = 0; x < w; x++) {
+        const size_t x0 = x > REACH ? x - REACH : 0, x1 = x + REACH < w ? x + REACH : w - 1;
+        const size_t y0 = y > REACH ? y - REACH : 0, y1 = y + REACH < h ? y + REACH : h - 1;
+        float sum = 0;
+        for (size_t j = y0; j <= y1; j++)
+          for (size_t i = x0; i <= x1; i++) sum += in->data[(j * w + i) * n + c];
+        out->data[(y * w + x) * n + c] = sum / (float)((x1 - x0 + 1) * (y1 - y0 + 1));
+      }
+    }
+  }
+}
+
+/* The mean of all passes less that of half of them varies as the mean of all does, colours and
+ * neighbours together, which standard errors of channels do not tell. */
+double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *picture) {
   static const char name[] = "the picture";
-  abbe_field a = {0}, b = {0};
+  abbe_field a = {0}, b = {0}, smooth = {0};
+  abbe_image copy = {0};
   abbe_mask mask = {0};
   abbe_comparison c;
   const abbe_compare_options options = {.mask = &mask};
   double own = NAN;
+  if (copy_image(picture, &copy) != ABBE_OK) return own;
+  smooth_caustic(picture, &copy);
   if (abbe_field_make(picture, name, &a, NULL) == ABBE_OK &&
-      abbe_field_make(picture, name, &b, NULL) == ABBE_OK &&
-      abbe_mask_make_caustic(&a, name, ABBE_MASK_CAUSTIC_SHARE, &mask, NULL) == ABBE_OK &&
+      abbe_field_make(half, name, &b, NULL) == ABBE_OK &&
+      abbe_field_make(&copy, name, &smooth, NULL) == ABBE_OK &&
+      abbe_mask_make_caustic(&smooth, name, ABBE_MASK_CAUSTIC_SHARE, &mask, NULL) == ABBE_OK &&
       abbe_compare(&a, &b, &options, &c, NULL) == ABBE_OK) {
-    own = c.mask.metric[ABBE_COMPARE_CIEDE2000_MEAN].noise;
+    own = c.mask.metric[ABBE_COMPARE_CIEDE2000_MEAN].value;
     abbe_comparison_free(&c);
   }
   abbe_mask_free(&mask);
   abbe_field_free(&a);
   abbe_field_free(&b);
+  abbe_field_free(&smooth);
+  abbe_image_free(&copy);
   return own;
 }
 

@@ -27,15 +27,16 @@ typedef struct abbe_sweep_trace_desc {
   void *user;
 } abbe_sweep_trace_desc;
 
-/* Sets frame_ms, fastest_ms, light_ms, eye_ms and own_de of the row, whose setting is traced, and
+/* Sets frame_ms, fastest_ms, light_ms, eye_ms and (of an even number of passes)
+ * own_de of the row, whose setting is traced, and
  * gives the picture (may be NULL). ABBE_INVALID_ARGUMENT for a setting that is not traced;
  * ABBE_CANCELLED; errors of abbe_tracer_make and abbe_tracer_pass. */
 abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
                                      abbe_sweep_row *row, abbe_image *picture, abbe_error *error);
 
-/* The mean CIEDE2000 in the caustic that a traced picture's own standard errors make of it; NaN
- * where they are not known, or nothing is lit through refractors. */
-double abbe_sweep_trace_own_error(const abbe_image *picture);
+/* How far off a traced picture may be, told by itself: the mean CIEDE2000 in its caustic between it
+ * and the mean of the first half of its passes. NaN where nothing is lit through refractors. */
+double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *picture);
 
 /* Whether the tracer knows the scene. Errors of abbe_tracer_make. */
 abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error);

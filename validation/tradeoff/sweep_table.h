@@ -46,7 +46,7 @@ typedef struct abbe_sweep_setting {
   X(BASELINE_MS, "baseline_ms", "surfaces alone, ms")        /* default profile */                 \
   X(WARM_MS, "warm_ms", "whole process, shaders cached, ms") /* median of processes */             \
   X(COLD_MS, "cold_ms", "whole process, no shader cached, ms")                                     \
-  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 that its own errors make")           /* traced */   \
+  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves")           /* traced */   \
   X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
   X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \

@@ -127,7 +127,7 @@ static void test_what_is_refused(void **state) {
            "bridge,\\n"                                                                            \
            "         exits: 8, share: 0.01, model: auto, ms: 1, error: 8, least: 0.5}\\n"          \
            "    trace:\\n      front:\\n"                                                          \
-           "      - {photons: 64, passes: 3, ms: 2, error: 1e-6, least: 1e-6}\\n' >q.yaml"
+           "      - {photons: 64, passes: 4, ms: 2, error: 1e-6, least: 1e-6}\\n' >q.yaml"
 
 static void test_what_makes_the_picture(void **state) {
   (void)state;
@@ -135,11 +135,11 @@ static void test_what_makes_the_picture(void **state) {
   cJSON *json = promise_of(GEM "--presets q.yaml --max-error 1 --json -o a.exr");
   assert_string_equal(cJSON_GetStringValue(item(json, "for")), "picture");
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "trace");
-  assert_contains(cJSON_GetStringValue(item(json, "settings")), "3 passes of 4096 photons");
+  assert_contains(cJSON_GetStringValue(item(json, "settings")), "4 passes of 4096 photons");
   assert_true(cJSON_GetNumberValue(item(json, "error_met")) > 0);
-  assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "its standard errors");
+  assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "half of its passes");
   assert_true(cJSON_GetNumberValue(item(json, "ms_met")) > 0);
-  assert_contains(run_errors, "note: the tracer: 3 passes of 4096 photons");
+  assert_contains(run_errors, "note: the tracer: 4 passes of 4096 photons");
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
   assert_contains(run_output, "stderr.R");
