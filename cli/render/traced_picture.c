@@ -12,7 +12,9 @@ abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe
                                      double *error_met, abbe_error *error) {
   abbe_tracer *tracer = NULL;
   abbe_progress progress;
+  const bool filtered = point->tool == ABBE_PICTURE_TRACE_FILTER;
   const abbe_trace_desc trace = {.no_map = true,
+                                 .guides = filtered,
                                  .width = desc->width,
                                  .height = desc->height,
                                  .min_nm = desc->min_nm,
@@ -30,7 +32,7 @@ abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe
   abbe_result result = abbe_tracer_make(scene, &trace, &tracer, error);
   if (result != ABBE_OK) return result;
   abbe_progress_begin(&progress, "trace", desc->quiet);
-  if (passes % 2 == 0) {
+  if (passes % 2 == 0 && !filtered) {
     result = abbe_trace_run(tracer, &run, error);
     if (result == ABBE_OK) result = abbe_tracer_picture(tracer, &half, error);
   }
@@ -38,6 +40,7 @@ abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe
   if (result == ABBE_OK) result = abbe_trace_run(tracer, &run, error);
   abbe_progress_end(&progress);
   if (result == ABBE_OK) result = abbe_tracer_picture(tracer, out, error);
+  if (result == ABBE_OK && filtered) result = abbe_sweep_trace_filter(out, error);
   if (result == ABBE_OK && half.data != NULL) *error_met = abbe_sweep_trace_own_error(&half, out);
   abbe_image_free(&half);
   abbe_tracer_free(tracer);

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "gl/accuracy/frame_times.h"
 #include "validation/compare/compare.h"
+#include "validation/denoise/denoise.h"
 #include "validation/tracer/tracer.h"
 
 #include <math.h>
@@ -15,8 +16,24 @@ typedef struct frame {
   double ms, light_ms, eye_ms;
 } frame;
 
+static bool is_filtered(const abbe_sweep_setting *setting) {
+  return strcmp(setting->profile, ABBE_SWEEP_TRACE_FILTER) == 0;
+}
+
+abbe_result abbe_sweep_trace_filter(abbe_image *picture, abbe_error *error) {
+  ABBE_REQUIRE(picture, error);
+  abbe_image filtered = {0};
+  const abbe_denoise_desc desc = {0};
+  abbe_result result = abbe_denoise_picture(picture, &desc, &filtered, error);
+  if (result != ABBE_OK) return result;
+  abbe_image_free(picture);
+  *picture = filtered;
+  return ABBE_OK;
+}
+
 static abbe_trace_desc describe(const abbe_sweep_setting *setting, size_t width, size_t height) {
   return (abbe_trace_desc){.no_map = true,
+                           .guides = is_filtered(setting),
                            .width = width,
                            .height = height,
                            .photons = setting->photons * setting->photons,
@@ -41,12 +58,13 @@ static abbe_result trace(const abbe_scene *scene, const abbe_sweep_trace_desc *d
   for (size_t i = 0; i < setting->passes && result == ABBE_OK; i++) {
     if (!go_on(desc, done)) result = abbe_error_set(error, ABBE_CANCELLED, "stopped");
     if (result == ABBE_OK) result = abbe_tracer_pass(tracer, NULL, error);
-    if (result != ABBE_OK || 2 * (i + 1) != setting->passes) continue;
+    if (result != ABBE_OK || 2 * (i + 1) != setting->passes || is_filtered(setting)) continue;
     copied = abbe_clock_seconds();
     result = abbe_tracer_picture(tracer, half, error);
     copied = abbe_clock_seconds() - copied;
   }
   if (result == ABBE_OK) result = abbe_tracer_picture(tracer, picture, error);
+  if (result == ABBE_OK && is_filtered(setting)) result = abbe_sweep_trace_filter(picture, error);
   const double end = abbe_clock_seconds();
   if (result == ABBE_OK) {
     abbe_tracer_statistics(tracer, &statistics);
@@ -70,7 +88,8 @@ abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_t
   const abbe_sweep_setting *setting = &row->setting;
   size_t count = desc->frames > 0 ? desc->frames : USUAL_FRAMES, done = 0;
   double spent = 0;
-  if (!abbe_sweep_setting_is_traced(setting) || setting->passes < 1 || setting->photons < 1)
+  const size_t least = is_filtered(setting) ? 2 : 1;
+  if (!abbe_sweep_setting_is_traced(setting) || setting->passes < least || setting->photons < 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the setting of '%s' is not one to trace",
                           setting->profile);
   if (count > ABBE_FRAME_TIMES_MAX) count = ABBE_FRAME_TIMES_MAX;

@@ -27,16 +27,19 @@ typedef struct abbe_sweep_trace_desc {
   void *user;
 } abbe_sweep_trace_desc;
 
-/* Sets frame_ms, fastest_ms, light_ms, eye_ms and (of an even number of passes)
- * own_de of the row, whose setting is traced, and
- * gives the picture (may be NULL). ABBE_INVALID_ARGUMENT for a setting that is not traced;
- * ABBE_CANCELLED; errors of abbe_tracer_make and abbe_tracer_pass. */
+/* Sets frame_ms, fastest_ms, light_ms, eye_ms and (of an even number of passes that are not
+ * filtered) own_de of the row, whose setting is traced, and gives the picture (may be NULL).
+ * ABBE_INVALID_ARGUMENT for a setting that is not traced; ABBE_CANCELLED; errors of
+ * abbe_tracer_make and abbe_tracer_pass. */
 abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
                                      abbe_sweep_row *row, abbe_image *picture, abbe_error *error);
 
 /* How far off a traced picture may be, told by itself: the mean CIEDE2000 in its caustic between it
  * and the mean of the first half of its passes. NaN where nothing is lit through refractors. */
 double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *picture);
+
+/* The picture of a tracer with guides becomes what abbe_denoise_picture makes of it. */
+abbe_result abbe_sweep_trace_filter(abbe_image *picture, abbe_error *error);
 
 /* Whether the tracer knows the scene. Errors of abbe_tracer_make. */
 abbe_result abbe_sweep_trace_check(const abbe_scene *scene, abbe_error *error);
