@@ -195,7 +195,7 @@ static abbe_result write_files(const abbe_sweep_options *q, const abbe_sweep_tab
   const abbe_sweep_number number = q->work.error;
   abbe_result result = ABBE_OK;
   if (q->plot != NULL && count > 1)
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "--plot draws one table at a time");
+    result = abbe_sweep_plot_scenes(q->plot, tables, count, number, error);
   else if (q->plot != NULL)
     result = abbe_sweep_plot(q->plot, &tables[0], q->work.time, &number, 1, error);
   if (result == ABBE_OK && q->report != NULL) result = write_page(q, tables, count, error);

@@ -54,7 +54,7 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE.csv", ABBE_ARGUMENT_WRITES,
      "the table; rows that it holds are not measured again", 0},
     {"plot", OPTION_PLOT, "FILE", ABBE_ARGUMENT_WRITES,
-     "error against time, log-log: a .png or .svg", 0},
+     "error against time, log-log: a .png or .svg; of several tables a row of charts each", 0},
     {"report", OPTION_REPORT, "FILE.md", ABBE_ARGUMENT_WRITES,
      "a page with the Pareto front and pictures beside it", 0},
     {"write-presets", OPTION_WRITE_PRESETS, "FILE.yaml", ABBE_ARGUMENT_WRITES,

@@ -3,7 +3,7 @@
  * Series over linear or logarithmic axes, with ticks, labels and a legend that keeps out of the
  * data's way; error bars, bands, shaded ranges, points with names; a field of numbers in false
  * colours with its scale bar. Several charts stand one above the other in one picture, their plots
- * flush. It computes nothing from the data but ranges, and knows nothing of what they mean.
+ * flush, or in a grid. It computes nothing from the data but ranges, and knows nothing of what they mean.
  *
  * A zeroed abbe_chart is a valid, empty chart. Texts are UTF-8.
  */
@@ -84,6 +84,11 @@ typedef struct abbe_chart {
  * no length or is logarithmic and not positive, missing arrays. */
 abbe_result abbe_chart_write(const char *path, const abbe_chart *charts, size_t count, size_t width,
                              size_t height, abbe_error *error);
+
+/* The same of rows x columns charts, a row after another: of each column the plots are flush, and
+ * all columns are as wide. ABBE_INVALID_ARGUMENT also where count is no multiple of columns. */
+abbe_result abbe_chart_write_grid(const char *path, const abbe_chart *charts, size_t count,
+                                  size_t columns, size_t width, size_t height, abbe_error *error);
 
 #ifdef __cplusplus
 }

@@ -52,6 +52,15 @@ static abbe_result open_figures(size_t count, figures *f, abbe_error *error) {
   return ABBE_OK;
 }
 
+/* The same in every chart, whatever a table's order is. */
+static int colour_of(const char *profile, size_t number) {
+  static const char *const known[] = {"default", "thesis", "thesis-cie", ABBE_SWEEP_TRACE,
+                                      ABBE_SWEEP_TRACE_FILTER};
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+    if (strcmp(profile, known[i]) == 0) return (int)i + 2;
+  return (int)(number % 5) + 2;
+}
+
 static void find_profiles(const abbe_sweep_table *table, figures *f) {
   for (size_t i = 0; i < table->count; i++) {
     size_t k = 0;
@@ -75,16 +84,17 @@ static void add_points(const abbe_sweep_table *table, figures *f) {
                                                        .count = at - f->start[k],
                                                        .x = f->px + f->start[k],
                                                        .y = f->py + f->start[k],
-                                                       .colour = (int)(k % 5) + 2};
+                                                       .colour = colour_of(f->profile[k], k)};
   }
 }
 
-/* A line through the best that each other profile has, in its colour. */
-static void add_other_fronts(const abbe_sweep_table *table, figures *f) {
+/* The best that each profile has, in its colour, but for one. */
+static void add_profile_fronts(const abbe_sweep_table *table, const char *but,
+                               abbe_chart_style style, figures *f) {
   double *own = f->by + table->count;
   size_t at = 0;
   for (size_t k = 0; k < f->profiles; k++) {
-    if (strcmp(f->profile[k], "default") == 0) continue;
+    if (but != NULL && strcmp(f->profile[k], but) == 0) continue;
     for (size_t i = 0; i < table->count; i++)
       own[i] = strcmp(table->row[i].setting.profile, f->profile[k]) == 0 ? f->x[i] : NAN;
     size_t count = abbe_pareto_front_order(own, f->y, table->count, f->order);
@@ -92,11 +102,12 @@ static void add_other_fronts(const abbe_sweep_table *table, figures *f) {
       f->bx[at + i] = f->x[f->order[i]];
       f->by[at + i] = f->y[f->order[i]];
     }
-    f->series[f->series_count++] = (abbe_chart_series){.style = ABBE_CHART_LINE,
+    f->series[f->series_count++] = (abbe_chart_series){.label = but == NULL ? f->profile[k] : NULL,
+                                                       .style = style,
                                                        .count = count,
                                                        .x = f->bx + at,
                                                        .y = f->by + at,
-                                                       .colour = (int)(k % 5) + 2};
+                                                       .colour = colour_of(f->profile[k], k)};
     at += count;
   }
 }
@@ -158,7 +169,7 @@ static abbe_result make_chart(const abbe_sweep_table *table, abbe_sweep_number t
   }
   find_profiles(table, f);
   add_points(table, f);
-  add_other_fronts(table, f);
+  add_profile_fronts(table, "default", ABBE_CHART_LINE, f);
   add_front(table, f);
   add_noise(table, number, f);
   if (f->front == 0)
@@ -191,5 +202,81 @@ abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table, abb
   charts[0].title = title;
   if (result == ABBE_OK) result = abbe_chart_write(path, charts, count, 1100, 560 * count, error);
   for (size_t i = 0; i < count; i++) close_figures(&f[i]);
+  return result;
+}
+
+/* ---- several scenes ---- */
+
+enum { MAX_SCENES = 16 };
+
+/* One scene against one time: each profile's own front. */
+static abbe_result make_fronts(const abbe_sweep_table *table, abbe_sweep_number time,
+                               abbe_sweep_number number, figures *f, abbe_chart *chart,
+                               abbe_error *error) {
+  abbe_result result = open_figures(table->count, f, error);
+  if (result != ABBE_OK) return result;
+  size_t known = 0;
+  for (size_t i = 0; i < table->count; i++) {
+    f->x[i] = table->row[i].number[time];
+    f->y[i] = table->row[i].number[number];
+    known += isfinite(f->x[i]) && isfinite(f->y[i]);
+  }
+  if (known == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: no setting has a known '%s' and '%s'",
+                          abbe_file_name(table->fact[ABBE_SWEEP_FACT_SCENE]),
+                          abbe_sweep_number_name(time), abbe_sweep_number_name(number));
+  find_profiles(table, f);
+  add_profile_fronts(table, NULL, ABBE_CHART_JOINED_POINTS, f);
+  add_noise(table, number, f);
+  snprintf(f->x_label, sizeof f->x_label, "%s: %s",
+           abbe_file_name(table->fact[ABBE_SWEEP_FACT_SCENE]), abbe_sweep_number_text(time));
+  snprintf(f->y_label, sizeof f->y_label, "%s", abbe_sweep_number_text(number));
+  *chart = (abbe_chart){.x = {.label = f->x_label, .log = true},
+                        .y = {.label = f->y_label, .log = true},
+                        .series_count = f->series_count,
+                        .series = f->series};
+  return ABBE_OK;
+}
+
+static size_t known_times(const abbe_sweep_table *tables, size_t count,
+                          abbe_sweep_number out[ABBE_SWEEP_TIMES]) {
+  size_t times = 0;
+  for (size_t t = 0; t < ABBE_SWEEP_TIMES; t++) {
+    bool known = false;
+    for (size_t i = 0; i < count && !known; i++)
+      for (size_t k = 0; k < tables[i].count && !known; k++)
+        known = isfinite(tables[i].row[k].number[abbe_sweep_times[t]]);
+    if (known) out[times++] = abbe_sweep_times[t];
+  }
+  return times;
+}
+
+abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,
+                                   abbe_sweep_number number, abbe_error *error) {
+  ABBE_REQUIRE(path && tables, error);
+  if (count < 1 || count > MAX_SCENES)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%zu tables in one chart; 1 to %d can be drawn", count, MAX_SCENES);
+  if (!abbe_sweep_number_is_error(number))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "'%s' is no error that can be drawn",
+                          abbe_sweep_number_name(number));
+  abbe_sweep_number time[ABBE_SWEEP_TIMES];
+  const size_t times = known_times(tables, count, time);
+  if (times == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no setting has a known time to draw");
+  const size_t charts = count * times;
+  figures *f = calloc(charts, sizeof *f);
+  abbe_chart chart[MAX_SCENES * ABBE_SWEEP_TIMES];
+  abbe_result result =
+      f != NULL ? ABBE_OK
+                : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the sweeps' charts");
+  for (size_t i = 0; i < charts && result == ABBE_OK; i++)
+    result = make_fronts(&tables[i / times], time[i % times], number, &f[i], &chart[i], error);
+  for (size_t i = 1; i < charts && result == ABBE_OK; i++) /* one legend does for all */
+    for (size_t k = 0; k < f[i].series_count; k++) f[i].series[k].label = NULL;
+  if (result == ABBE_OK)
+    result = abbe_chart_write_grid(path, chart, charts, times, 560 * times, 360 * count, error);
+  for (size_t i = 0; i < charts && f != NULL; i++) close_figures(&f[i]);
+  free(f);
   return result;
 }

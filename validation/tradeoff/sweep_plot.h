@@ -19,6 +19,12 @@ extern "C" {
 abbe_result abbe_sweep_plot(const char *path, const abbe_sweep_table *table, abbe_sweep_number time,
                             const abbe_sweep_number *errors, size_t count, abbe_error *error);
 
+/* Several scenes in one picture: a row of charts a table, a column for each of abbe_sweep_times
+ * that any table knows, that error against that time, and in each chart every contestant's own
+ * Pareto front. 1 to 16 tables; errors as above. */
+abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,
+                                   abbe_sweep_number number, abbe_error *error);
+
 #ifdef __cplusplus
 }
 #endif

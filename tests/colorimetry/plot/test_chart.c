@@ -157,6 +157,34 @@ static void a_field_has_its_colours_and_scale(void **state) {
   abbe_image_free(&image);
 }
 
+/* Of the two rows and three columns only one chart has a point; the picture's cells are equal. */
+static void a_grid_runs_row_by_row(void **state) {
+  (void)state;
+  const double x[] = {5}, y[] = {5};
+  abbe_chart_series series = {.style = ABBE_CHART_POINTS, .count = 1, .x = x, .y = y, .colour = 2};
+  spot at[6];
+  for (size_t i = 0; i < 6; i++) {
+    abbe_chart charts[6] = {0};
+    abbe_image image;
+    for (size_t k = 0; k < 6; k++) {
+      charts[k].x = (abbe_chart_axis){.min = 0, .max = 10};
+      charts[k].y = charts[k].x;
+    }
+    charts[i].series_count = 1;
+    charts[i].series = &series;
+    if (abbe_chart_write_grid(path[0], charts, 6, 3, 600, 300, &error) != ABBE_OK ||
+        abbe_png_read(path[0], &image, &error) != ABBE_OK)
+      fail_msg("%s", error.text);
+    at[i] = find(&image, 0, image.width);
+    assert_in_range(at[i].count, 24, 44);
+    abbe_image_free(&image);
+  }
+  for (size_t i = 0; i < 6; i++) {
+    assert_near(at[i].x - at[0].x, 200.0 * (double)(i % 3), 0.6);
+    assert_near(at[i].y - at[0].y, 150.0 * (double)(i / 3), 0.6);
+  }
+}
+
 static void an_svg_is_whole_and_scales(void **state) {
   (void)state;
   const double x[] = {1, 2}, y[] = {1, 2};
@@ -234,6 +262,11 @@ static void awkward_charts_are_drawn_or_refused(void **state) {
   assert_contains(error.text, ".png or .svg");
   assert_int_equal(abbe_chart_write(path[0], &empty, 1, 63, 0, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_chart_write(path[0], &empty, 0, 0, 0, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_chart_write_grid(path[0], &empty, 1, 2, 0, 0, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "1 charts do not fill 2 columns");
+  assert_int_equal(abbe_chart_write_grid(path[0], &empty, 1, 0, 0, 0, &error),
+                   ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_chart_write("/no/such/c.png", &empty, 1, 0, 0, &error), ABBE_IO);
   assert_contains(error.text, "/no/such/c.png");
   assert_int_not_equal(access(path[0], F_OK), 0);
@@ -243,9 +276,13 @@ static void awkward_charts_are_drawn_or_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      in_folder(points_lie_where_their_axes_say),   in_folder(gaps_and_bars_are_drawn),
-      in_folder(a_field_has_its_colours_and_scale), in_folder(an_svg_is_whole_and_scales),
-      in_folder(a_png_says_that_it_is_srgb),        in_folder(awkward_charts_are_drawn_or_refused),
+      in_folder(points_lie_where_their_axes_say),
+      in_folder(gaps_and_bars_are_drawn),
+      in_folder(a_field_has_its_colours_and_scale),
+      in_folder(an_svg_is_whole_and_scales),
+      in_folder(a_grid_runs_row_by_row),
+      in_folder(a_png_says_that_it_is_srgb),
+      in_folder(awkward_charts_are_drawn_or_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

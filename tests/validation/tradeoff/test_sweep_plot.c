@@ -3,6 +3,7 @@
 #include "tests/validation/tradeoff/sweep_row.h"
 
 #include "base/file.h"
+#include "colorimetry/image/png_file.h"
 #include "validation/tradeoff/sweep_plot.h"
 
 #include <stdlib.h>
@@ -51,7 +52,56 @@ static void test_the_chart(void **state) {
   abbe_sweep_table_free(&table);
 }
 
+static abbe_result plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,
+                               abbe_sweep_number number, abbe_error *error) {
+  *error = (abbe_error){0};
+  return abbe_sweep_plot_scenes(path, tables, count, number, error);
+}
+
+/* A row a scene, a column a time that is known. */
+static void test_scenes(void **state) {
+  (void)state;
+  char folder[] = "/tmp/abbe-test-sweep-plot-XXXXXX", path[64];
+  abbe_sweep_table tables[17] = {0};
+  abbe_image image;
+  abbe_error error;
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/a.png", folder);
+  assert_int_equal(plot_scenes(path, tables, 2, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "no setting has a known time");
+  for (size_t i = 0; i < 2; i++) {
+    abbe_sweep_table_set(&tables[i], ABBE_SWEEP_FACT_SCENE, i == 0 ? "a/gem.yaml" : "a/ball.yaml");
+    add(&tables[i], "default", 64, 10, 3);
+    add(&tables[i], "thesis", 512, 90, 20);
+  }
+  assert_int_equal(plot_scenes(path, tables, 2, ABBE_SWEEP_CAUSTIC_DE, &error), ABBE_OK);
+  assert_int_equal(abbe_png_read(path, &image, NULL), ABBE_OK);
+  assert_int_equal(image.width, 560);
+  assert_int_equal(image.height, 720);
+  abbe_image_free(&image);
+  unlink(path);
+  for (size_t k = 0; k < 2; k++) tables[0].row[k].number[ABBE_SWEEP_WARM_MS] = 500;
+  assert_int_equal(plot_scenes(path, tables, 2, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "ball.yaml: no setting has a known 'warm_ms' and 'caustic_de'");
+  tables[1].row[0].number[ABBE_SWEEP_WARM_MS] = 400;
+  assert_int_equal(plot_scenes(path, tables, 2, ABBE_SWEEP_CAUSTIC_DE, &error), ABBE_OK);
+  assert_int_equal(abbe_png_read(path, &image, NULL), ABBE_OK);
+  assert_int_equal(image.width, 1120);
+  abbe_image_free(&image);
+  assert_int_equal(plot_scenes(path, tables, 2, ABBE_SWEEP_WARM_MS, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(plot_scenes(path, tables, 17, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(plot_scenes(path, tables, 0, ABBE_SWEEP_CAUSTIC_DE, &error),
+                   ABBE_INVALID_ARGUMENT);
+  unlink(path);
+  assert_int_equal(rmdir(folder), 0);
+  for (size_t i = 0; i < 2; i++) abbe_sweep_table_free(&tables[i]);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_chart)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_chart),
+                                     cmocka_unit_test(test_scenes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
