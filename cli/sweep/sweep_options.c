@@ -65,8 +65,9 @@ static const struct argp_option options[] = {
      "instead: how the time scales with photons, wavelengths, pixels, faces, share of the view", 0},
     {"error", OPTION_ERROR, "COLUMN", 0,
      "that makes the Pareto front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
-    {"time", OPTION_TIME, "frame|warm|cold", 0,
-     "that makes the Pareto front: a frame once the scene stands, or a whole process with its "
+    {"time", OPTION_TIME, "frame|camera|warm|cold", 0,
+     "that makes the Pareto front: a frame once the scene stands, one after a "
+     "camera's move, or a whole process with its "
      "shaders cached or not (frame)",
      0},
     {"json", OPTION_JSON, NULL, 0, "all rows as JSON on standard output", 0},
@@ -148,7 +149,7 @@ static void take_share(const request *q, const char *option, const char *word, s
 #define ABBE_NAME_OF(code, name) name,
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF)};
 static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF)};
-static const char *const times[ABBE_SWEEP_TIMES] = {"frame", "warm", "cold"};
+static const char *const times[ABBE_SWEEP_TIMES] = {"frame", "camera", "warm", "cold"};
 static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(ABBE_NAME_OF)};
 
 static void take_name(const request *q, const char *option, const char *word, size_t at,

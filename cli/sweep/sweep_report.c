@@ -127,7 +127,8 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
 }
 
 /* "equal_error_speedup" against the thesis profile, "vs_fair_..." against its method in units,
- * "vs_trace_..." against the tracer; with "warm_" and "cold_" before it of whole processes. */
+ * "vs_trace_..." against the tracer; with "camera_" before it of frames after a camera's move,
+ * with "warm_" and "cold_" of whole processes. */
 static abbe_result describe_baseline(const abbe_sweep_table *table, const char *profile,
                                      abbe_sweep_number time, abbe_sweep_number number, cJSON *root,
                                      abbe_error *error) {
@@ -144,7 +145,10 @@ static abbe_result describe_baseline(const abbe_sweep_table *table, const char *
              {"front_points", (double)d.front},
              {"front_points_beaten", (double)d.beaten}};
   const char *before = abbe_baseline_key(profile);
-  const char *of = time == ABBE_SWEEP_WARM_MS ? "warm_" : time == ABBE_SWEEP_COLD_MS ? "cold_" : "";
+  const char *of = time == ABBE_SWEEP_CAMERA_MS ? "camera_"
+                   : time == ABBE_SWEEP_WARM_MS ? "warm_"
+                   : time == ABBE_SWEEP_COLD_MS ? "cold_"
+                                                : "";
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     char name[64];
     snprintf(name, sizeof name, "%s%s%s", of, before, all[i].name);

@@ -1,10 +1,12 @@
 #include "gl/accuracy/frame_times.h"
 
+#include "base/clock.h"
 #include "base/order.h"
+#include "scenes/geometry/vector.h"
 
 #include <stdlib.h>
 
-enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_BASELINES = 16 };
+enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_TIMES = 16 };
 
 static int by_time(const void *a, const void *b) {
   double x = ((const abbe_statistics *)a)->frame_ms, y = ((const abbe_statistics *)b)->frame_ms;
@@ -39,8 +41,8 @@ abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_t
 abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, double *ms,
                                       abbe_error *error) {
   ABBE_REQUIRE(renderer && ms, error);
-  double all[MAX_BASELINES];
-  if (count < 1 || count > MAX_BASELINES) count = count < 1 ? 1 : MAX_BASELINES;
+  double all[MAX_TIMES];
+  if (count < 1 || count > MAX_TIMES) count = count < 1 ? 1 : MAX_TIMES;
   for (size_t i = 0; i < count; i++) {
     abbe_result result = abbe_renderer_baseline(renderer, &all[i], error);
     if (result != ABBE_OK) return result;
@@ -48,4 +50,41 @@ abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, dou
   qsort(all, count, sizeof *all, abbe_order_ascending);
   *ms = all[count / 2];
   return ABBE_OK;
+}
+
+static abbe_result time_change(abbe_renderer *renderer, const abbe_scene *scene,
+                               const abbe_render_desc *desc, double *ms, abbe_error *error) {
+  const double start = abbe_clock_seconds();
+  abbe_result result = abbe_renderer_change(renderer, scene, desc, error);
+  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
+  *ms = 1e3 * (abbe_clock_seconds() - start);
+  return result;
+}
+
+/* To the left by 1/64 of the way to the target. */
+static abbe_scene move_camera(const abbe_scene *scene) {
+  abbe_scene moved = *scene;
+  double ahead[3], left[3];
+  abbe_vector_subtract(scene->camera.target, scene->camera.eye, ahead);
+  abbe_vector_cross(scene->camera.up, ahead, left);
+  const double step = abbe_vector_length(ahead) / (64 * abbe_vector_length(left));
+  for (int i = 0; i < 3; i++) moved.camera.eye[i] += step * left[i];
+  return moved;
+}
+
+abbe_result abbe_frame_times_camera(abbe_renderer *renderer, const abbe_scene *scene,
+                                    const abbe_render_desc *desc, size_t count, double *ms,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(renderer && scene && desc && ms, error);
+  const abbe_scene moved = move_camera(scene);
+  double all[MAX_TIMES], unused;
+  if (count < 1 || count > MAX_TIMES) count = count < 1 ? 1 : MAX_TIMES;
+  abbe_result result = time_change(renderer, &moved, desc, &unused, error); /* warms up */
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    result = time_change(renderer, i % 2 == 0 ? scene : &moved, desc, &all[i], error);
+  const abbe_result back = abbe_renderer_change(renderer, scene, desc, NULL);
+  if (result != ABBE_OK || back != ABBE_OK) return result != ABBE_OK ? result : back;
+  qsort(all, count, sizeof *all, abbe_order_ascending);
+  *ms = all[count / 2];
+  return abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
 }

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PARTS = 4 };
+enum { PARTS = 4, CAMERA_FRAMES = 3 };
 
 static const double enough_ms = 3000;
 
@@ -242,6 +242,9 @@ static abbe_result measure_frames(const abbe_sweep *s, const abbe_sweep_setting 
     result = compare_matched(s->matched_picture, drawn, scaled, ABBE_COMPARE_CIEDE2000_MEAN,
                              ABBE_SWEEP_MATCHED_DE, out, error);
   if (result == ABBE_OK) result = measure_map(s, renderer, out, error);
+  if (result == ABBE_OK)
+    result = abbe_frame_times_camera(renderer, s->scene, &desc, CAMERA_FRAMES,
+                                     &out->number[ABBE_SWEEP_CAMERA_MS], error);
   abbe_renderer_free(renderer);
   return result;
 }

@@ -109,6 +109,7 @@ abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_t
   }
   qsort(frames, done, sizeof *frames, compare_frames);
   row->number[ABBE_SWEEP_FRAME_MS] = frames[done / 2].ms;
+  row->number[ABBE_SWEEP_CAMERA_MS] = frames[done / 2].ms;
   row->number[ABBE_SWEEP_FASTEST_MS] = frames[0].ms;
   row->number[ABBE_SWEEP_LIGHT_MS] = frames[done / 2].light_ms;
   row->number[ABBE_SWEEP_EYE_MS] = frames[done / 2].eye_ms;

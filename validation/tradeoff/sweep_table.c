@@ -69,7 +69,7 @@ const char *abbe_sweep_number_short(double value, char out[ABBE_SWEEP_SHORT]) {
 }
 
 const abbe_sweep_number abbe_sweep_times[ABBE_SWEEP_TIMES] = {
-    ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_WARM_MS, ABBE_SWEEP_COLD_MS};
+    ABBE_SWEEP_FRAME_MS, ABBE_SWEEP_CAMERA_MS, ABBE_SWEEP_WARM_MS, ABBE_SWEEP_COLD_MS};
 
 const char *abbe_sweep_fact_name(abbe_sweep_fact fact) {
   return (unsigned)fact < ABBE_SWEEP_FACT_COUNT ? fact_names[fact] : "unknown";

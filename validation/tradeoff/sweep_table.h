@@ -43,10 +43,11 @@ typedef struct abbe_sweep_setting {
   X(FASTEST_MS, "fastest_ms", "fastest frame, ms") /* of them */                                   \
   X(LIGHT_MS, "light_ms", "light's passes, ms")    /* of the median frame */                       \
   X(EYE_MS, "eye_ms", "eye's passes, ms")                                                          \
+  X(CAMERA_MS, "camera_ms", "frame after a camera's move, ms")                                     \
   X(BASELINE_MS, "baseline_ms", "surfaces alone, ms")        /* default profile */                 \
   X(WARM_MS, "warm_ms", "whole process, shaders cached, ms") /* median of processes */             \
   X(COLD_MS, "cold_ms", "whole process, no shader cached, ms")                                     \
-  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves")           /* traced */   \
+  X(OWN_DE, "own_de", "caustic, mean CIEDE2000 by its own halves")                  /* traced */   \
   X(FILL_INVENTED, "fill_invented", "light that the fill adds, share of the map's") /* of the */   \
   X(FILL_LOST, "fill_lost", "light that the fill drops, share of the map's") /* map before it */   \
   X(MAP_SCALE, "map_scale", "factor on the map")          /* 1, or the best one */                 \
@@ -126,8 +127,9 @@ abbe_sweep_number abbe_sweep_number_find(const char *column);
 /* Whether it is an error against the reference, whose noise is the next number. */
 bool abbe_sweep_number_is_error(abbe_sweep_number number);
 
-/* The times that a front can be of: a frame once the scene stands, a whole process. */
-#define ABBE_SWEEP_TIMES 3
+/* The times that a front can be of: a frame once the scene stands, all passes or those that a
+ * camera's move asks for; a whole process. The tracer keeps nothing between its pictures. */
+#define ABBE_SWEEP_TIMES 4
 extern const abbe_sweep_number abbe_sweep_times[ABBE_SWEEP_TIMES];
 const char *abbe_sweep_fact_name(abbe_sweep_fact fact);
 

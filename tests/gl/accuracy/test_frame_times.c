@@ -44,7 +44,32 @@ static void test_times(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* A camera's frame traces no photon, and the camera ends where it was. */
+static void test_camera(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_error error = {0};
+  abbe_image before, after;
+  load_text(SCENE, &scene);
+  const abbe_render_desc small = {.width = 16, .height = 16, .photons = 16, .map_size = 32};
+  abbe_renderer *renderer = make_renderer(&scene, &small);
+  draw_frame(renderer);
+  assert_ok(abbe_renderer_read(renderer, false, &before, &error), &error);
+  for (size_t count = 1; count <= 4; count += 3) {
+    double ms = 0;
+    assert_ok(abbe_frame_times_camera(renderer, &scene, &small, count, &ms, &error), &error);
+    assert_true(ms > 0);
+    assert_ok(abbe_renderer_read(renderer, false, &after, &error), &error);
+    assert_memory_equal(after.data, before.data, 16 * 16 * 3 * sizeof *after.data);
+    abbe_image_free(&after);
+    assert_true(draw_frame(renderer).kept[ABBE_PASS_PHOTONS]);
+  }
+  abbe_image_free(&before);
+  abbe_renderer_free(renderer);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_times)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_times), cmocka_unit_test(test_camera)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

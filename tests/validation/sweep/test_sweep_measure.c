@@ -66,6 +66,7 @@ static void test_the_same_picture_has_no_error(void **state) {
   assert_near(row.number[ABBE_SWEEP_SCALE], 1, 0);
   assert_true(row.number[ABBE_SWEEP_FRAME_MS] >= row.number[ABBE_SWEEP_FASTEST_MS]);
   assert_true(row.number[ABBE_SWEEP_FASTEST_MS] > 0);
+  assert_true(row.number[ABBE_SWEEP_CAMERA_MS] > 0);
   double parts = row.number[ABBE_SWEEP_LIGHT_MS] + row.number[ABBE_SWEEP_EYE_MS];
   assert_true(row.number[ABBE_SWEEP_LIGHT_MS] > 0 && row.number[ABBE_SWEEP_EYE_MS] > 0);
   assert_true(parts <= row.number[ABBE_SWEEP_FRAME_MS] * 1.01);

@@ -201,7 +201,7 @@ static void test_broken_tables_are_named(void **state) {
       {"auto,1,0,10,", "auto,1,0,ten,", "s.csv:3: frame_ms 'ten' is not a number"},
       {"auto,1,0,10,", "auto,1,0,1e999,", "is not a number"},
       {"0.01,auto,1,0,10,", "0,auto,1,0,10,", "is not a share above 0"},
-      {"auto,1,0,10,", "auto,1,0,10,,", "the row has 49 cells, not 48"},
+      {"auto,1,0,10,", "auto,1,0,10,,", "the row has 50 cells, not 49"},
       {"frame_ms", "frame_s", "column 12 is 'frame_s' where a sweep has 'frame_ms'"},
       {"front\n", "front,more\n", "where a sweep has ''"},
   };
