@@ -178,7 +178,8 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
                            .colour = (const float(*)[3])t->colour,
                            .white = (const float(*)[3])t->white,
                            .physics = t->desc.physics,
-                           .seed = t->desc.seed};
+                           .seed = t->desc.seed,
+                           .least_branch = ABBE_EYE_LEAST_BRANCH};
   if (t->desc.physics.eye_orders > 0) {
     t->eye.physics.orders = t->desc.physics.eye_orders;
     t->eye.physics.energy_share = t->desc.physics.eye_share;

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { HEROES = 4, MIRROR_BANDS = 8, MAX_STEPS = 10000, SALT = 0x657965 };
+enum { HEROES = 4, MIRROR_BANDS = 8, MAX_STEPS = 10000, BRANCHES_ROOM = 16, SALT = 0x657965 };
 static const float inverse_pi = 0.318309886f;
 
 /* A path from the eye. Where it is not dispersed it carries the whole spectrum, else one
@@ -14,6 +14,7 @@ static const float inverse_pi = 0.318309886f;
 typedef struct eye_path {
   float o[3], d[3];
   float share;   /* of its light, all wavelengths alike */
+  float branch;  /* that part of it which interfaces inside the glass left */
   float tint[3]; /* a colour on top of that */
   bool dispersed;
   uint32_t step;
@@ -34,7 +35,7 @@ static float dot(const float a[3], const float b[3]) {
 }
 
 static void random4(const context *c, uint32_t a, uint32_t b, float out[4]) {
-  abbe_random4(c->pixel, c->pass, a << 16 ^ b, c->w->seed ^ SALT, out);
+  abbe_random4(c->pixel, c->pass, a, (c->w->seed ^ SALT) + b * 0x9e3779b1u, out);
 }
 
 /* ---- light into the sample ---- */
@@ -169,7 +170,7 @@ static void shade(const context *c, const eye_path *p, const abbe_hit *hit, bool
   const float *normal = dot(hit->n, p->d) * side < 0 ? hit->n : hit->ng;
   for (int k = 0; k < 3; k++) n[k] = side * normal[k];
   for (size_t l = 0; l < scene->light_count; l++) {
-    random4(c, 0x4000 + p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
+    random4(c, ~p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
     float e = irradiance(c, &scene->light[l], hit, n, random);
     if (e > 0) add_light(c, p, l, e * inverse_pi, reflectance, rec709);
   }
@@ -272,34 +273,85 @@ static void absorb(const context *c, eye_path *p, float length, float random) {
   p->share *= expf(-length * abbe_media_attenuation(c->w->media, medium, p->step, p->within));
 }
 
-/* Follows a path that may be inside to its end. */
-static void follow(const context *c, eye_path p) {
+/* ---- branches ---- */
+
+/* Paths that wait for their turn. The smaller branch is followed first, so that few wait. */
+typedef struct branches {
+  eye_path path[BRANCHES_ROOM];
+  uint32_t count;
+  float least; /* share below which absorption ends a path by roulette */
+} branches;
+
+/* One of the two ways on from an interface; false where it ends there. */
+static bool branch_off(const context *c, eye_path *p, const abbe_hit *hit, const crossing *x,
+                       bool reflects, float share, const float way[2], float random) {
+  if (!matched_rules(c, p, reflects, share)) return false;
+  float part = reflects ? share : 1 - share, least = c->w->least_branch;
+  p->share *= part;
+  p->branch *= part;
+  if (p->branch < least) {
+    if (!(random * least < p->branch)) return false;
+    p->share *= least / p->branch;
+    p->branch = least;
+  }
+  p->id = p->id * 0x9e3779b1u + (reflects ? 0x85ebca6bu : 0xc2b2ae35u);
+  send(p, hit, x, reflects, way[0], way[1]);
+  return true;
+}
+
+/* Both ways on from an interface: one of them in p, the other among those that wait; false where
+ * none goes on. */
+static bool scatter(const context *c, branches *b, eye_path *p, const abbe_hit *hit,
+                    const crossing *x, float random) {
+  float way[2], share = reflectance_at(c, x, p->step, p->within, &way[0], &way[1]);
+  if (share <= 0 || share >= 1 || b->count == BRANCHES_ROOM) {
+    bool reflects = random < share;
+    if (!matched_rules(c, p, reflects, share)) return false;
+    send(p, hit, x, reflects, way[0], way[1]);
+    return true;
+  }
+  /* one number for both: where one branch ends the other is likely to go on */
+  eye_path other = *p;
+  bool goes = branch_off(c, p, hit, x, share < 0.5f, share, way, random);
+  bool also = branch_off(c, &other, hit, x, !(share < 0.5f), share, way, 1 - random);
+  if (goes && also) b->path[b->count++] = other;
+  if (!goes && also) *p = other;
+  return goes || also;
+}
+
+/* To the next interface that is one; false where the path ends. */
+static bool follow_step(const context *c, branches *b, eye_path *p) {
   abbe_hit hit;
-  float length = 0, random[4], least = p.share * 0.02f;
-  for (; p.steps < MAX_STEPS; p.steps++) {
-    bool met = trace(c, &p, &hit, &length);
-    random4(c, p.id, p.steps, random);
-    if (met) absorb(c, &p, length, random[1]);
-    if (p.share < least) {
-      if (!(random[2] * least < p.share)) return;
-      p.share = least;
-    }
-    if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
-      arrive(c, &p, met, &hit, false);
-      return;
-    }
-    crossing x;
-    cross(&p, &hit, &x);
-    if (abbe_media_same(c->w->media, x.from, x.to)) {
-      p.inside = x.after;
-      abbe_geometry_leave(&hit, p.d, p.o);
-      continue;
-    }
-    if (disperses(c, &x)) disperse(&p, random[1]);
-    float eta, cos_t, share = reflectance_at(c, &x, p.step, p.within, &eta, &cos_t);
-    bool reflects = random[0] < share;
-    if (!matched_rules(c, &p, reflects, share)) return;
-    send(&p, &hit, &x, reflects, eta, cos_t);
+  float length = 0, random[4];
+  bool met = trace(c, p, &hit, &length);
+  random4(c, p->id, p->steps, random);
+  if (met) absorb(c, p, length, random[1]);
+  if (p->share < b->least) {
+    if (!(random[2] * b->least < p->share)) return false;
+    p->share = b->least;
+  }
+  if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
+    arrive(c, p, met, &hit, false);
+    return false;
+  }
+  crossing x;
+  cross(p, &hit, &x);
+  if (abbe_media_same(c->w->media, x.from, x.to)) {
+    p->inside = x.after;
+    abbe_geometry_leave(&hit, p->d, p->o);
+    return true;
+  }
+  if (disperses(c, &x)) disperse(p, random[1]);
+  return scatter(c, b, p, &hit, &x, random[0]);
+}
+
+/* Follows a path that may be inside, and all that it splits into, to their ends. */
+static void follow(const context *c, const eye_path *first) {
+  branches b = {.count = 1, .least = first->share * 0.02f};
+  b.path[0] = *first;
+  while (b.count > 0) {
+    eye_path p = b.path[--b.count];
+    while (p.steps < MAX_STEPS && follow_step(c, &b, &p)) p.steps++;
   }
 }
 
@@ -335,7 +387,7 @@ static void follow_mirror(const context *c, const eye_path *first, const abbe_hi
   }
   p.carried = reflectance_at(c, x, (uint32_t)w->sampling->steps / 2, 0, &eta, &cos_t);
   send(&p, hit, x, true, eta, cos_t);
-  follow(c, p);
+  follow(c, &p);
 }
 
 static void follow_through(const context *c, const eye_path *first, const abbe_hit *hit,
@@ -351,7 +403,7 @@ static void follow_through(const context *c, const eye_path *first, const abbe_h
     p.share *= 1 - share;
     p.carried = 1 - share;
     send(&p, hit, x, false, eta, cos_t);
-    follow(c, p);
+    follow(c, &p);
   }
 }
 
@@ -374,7 +426,7 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
   context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
   float random[4];
   random4(&c, 0, 0, random);
-  eye_path p = {.share = 1, .tint = {1, 1, 1}, .carried = 1};
+  eye_path p = {.share = 1, .branch = 1, .tint = {1, 1, 1}, .carried = 1};
   memcpy(p.o, w->camera->eye, sizeof p.o);
   float x = (float)(pixel % w->camera->width) + random[0];
   float y = (float)(pixel / w->camera->width) + random[1];
@@ -394,7 +446,7 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
     p.id = 1;
     p.inside = at.after;
     abbe_geometry_leave(&hit, p.d, p.o);
-    follow(&c, p);
+    follow(&c, &p);
     return;
   }
   follow_mirror(&c, &p, &hit, &at, random[3]);
