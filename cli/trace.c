@@ -74,7 +74,7 @@ static const struct argp_option options[] = {
      "passes, rays, times and the energy ledger as JSON", 0},
     {"json", OPTION_JSON, NULL, 0, "the same on standard output", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
-    {"spp", OPTION_SPP, "N", 0, "passes: samples a pixel, each with its photons (64)", 1},
+    {"spp", OPTION_SPP, "N", 0, "passes: a sample a pixel or more, each with its photons (64)", 1},
     {"time", OPTION_TIME, "SECONDS", 0, "stop after this time", 1},
     {"until-error", OPTION_UNTIL_ERROR, "X", 0,
      "stop when the relative standard error is below X, 0.01 say", 1},

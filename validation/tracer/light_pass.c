@@ -254,7 +254,10 @@ abbe_result abbe_tracer_choose_splits(abbe_tracer *t, abbe_error *error) {
     if (t->photons[l] == 0) continue;
     abbe_emission e;
     result = abbe_emission_make(t, l, SPLIT_TRIALS, 0, t->desc.seed, &e, error);
+    uint64_t before = abbe_tracer_walk_rays(t);
     if (result == ABBE_OK) t->splits[l] = abbe_light_walk_best_splits(hit, land_trial(t, &e, hit));
+    t->photon_rays +=
+        (double)t->photons[l] * (double)(abbe_tracer_walk_rays(t) - before) / SPLIT_TRIALS;
     abbe_emission_free(&e);
   }
   free(hit);

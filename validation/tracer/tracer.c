@@ -4,6 +4,7 @@
 #include "spectral/wavelengths.h"
 #include "validation/tracer/layout_fit.h"
 #include "validation/tracer/light_pass.h"
+#include "validation/walks/eye_samples.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -19,6 +20,9 @@
  * variance, in three dimensions (place and wavelength) [KnausZwicker2011]. */
 static const double shrink = 1.0 / 7;
 static const double first_window_nm = 25;
+/* Rays of the eye to glass, of those of the photons in a pass, so that most of the time is theirs.
+ */
+static const double eye_share = 0.2;
 
 /* ---- the request ---- */
 
@@ -166,6 +170,29 @@ static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
   return result;
 }
 
+/* Four pixels of the receivers as far away as the refractors, or less where a pixel has more than
+ * four photons: as many are in reach then. */
+static float first_radius(const abbe_tracer *t) {
+  float eye[3], far = 0;
+  double pixels = (double)(t->desc.width * t->desc.height);
+  double sides = fmin(4, 8 * sqrt(pixels / (double)t->desc.photons));
+  abbe_geometry_to_frame(&t->geometry, t->scene->camera.eye, eye);
+  for (int k = 0; k < 3; k++) far += eye[k] * eye[k];
+  return (float)sides * 2 * t->camera.half_height / (float)t->desc.height * sqrtf(far);
+}
+
+static abbe_result choose_samples(abbe_tracer *t, abbe_error *error) {
+  t->samples = malloc(t->desc.width * t->desc.height);
+  if (t->samples == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu x %zu pixels", t->desc.width,
+                          t->desc.height);
+  abbe_eye_samples_share(&t->geometry, &t->camera, eye_share * t->photon_rays, t->desc.threads,
+                         t->samples);
+  t->eye.samples = t->samples;
+  t->radius = first_radius(t);
+  return ABBE_OK;
+}
+
 /* The eye needs photons around where some ray that met a refractor lands. */
 static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
   t->eye_gathers = !t->desc.no_picture && t->geometry.refractor_count > 0;
@@ -191,12 +218,7 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
   if (t->landed == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu photons of a pass",
                           t->landed_room);
-  /* four pixels of the receivers as far away as the refractors */
-  float eye[3], far = 0;
-  abbe_geometry_to_frame(&t->geometry, t->scene->camera.eye, eye);
-  for (int k = 0; k < 3; k++) far += eye[k] * eye[k];
-  t->radius = 4 * 2 * t->camera.half_height / (float)t->desc.height * sqrtf(far);
-  return ABBE_OK;
+  return choose_samples(t, error);
 }
 
 abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *desc,
@@ -243,6 +265,7 @@ void abbe_tracer_free(abbe_tracer *t) {
   abbe_spectral_sampling_free(&t->sampling);
   abbe_geometry_free(&t->geometry);
   free(t->landed);
+  free(t->samples);
   free(t->colour);
   free(t->white);
   free(t->projection);

@@ -67,8 +67,8 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
                              abbe_tracer **out, abbe_error *error);
 void abbe_tracer_free(abbe_tracer *tracer);
 
-/* Traces one pass: one sample a pixel and the photons of a pass. *stop (may be NULL) ends it early
- * with ABBE_CANCELLED, the pass forgotten. */
+/* Traces one pass: one sample a pixel, more where glass shows, and the photons of a pass. *stop (may
+ * be NULL) ends it early with ABBE_CANCELLED, the pass forgotten. */
 abbe_result abbe_tracer_pass(abbe_tracer *tracer, const volatile int *stop, abbe_error *error);
 
 size_t abbe_tracer_passes(const abbe_tracer *tracer);

@@ -32,12 +32,14 @@ struct abbe_tracer {
   float (*colour)[3], (*white)[3]; /* in that space */
   abbe_projection_map *projection; /* [lights] */
   size_t *photons;                 /* [lights] a pass */
+  double photon_rays;              /* of them all, as far as a trial tells */
   unsigned *splits;                /* [lights] interfaces at which its paths are split */
   abbe_light_walk **walk;          /* [threads] */
   abbe_accumulator picture, map;
   abbe_guide_sums guides;
   size_t picture_channels, map_channels; /* a pixel, a texel */
   abbe_eye_walk eye;
+  uint8_t *samples; /* [pixels] of the eye's, a pass; NULL: no glass to see */
   abbe_photon_grid grid;
   abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
   size_t landed_room;

@@ -6,8 +6,18 @@
 
 #include <string.h>
 
-enum { HEROES = 4, MIRROR_BANDS = 8, MAX_STEPS = 10000, BRANCHES_ROOM = 16, SALT = 0x657965 };
+enum {
+  HEROES = 4,
+  MIRROR_BANDS = 8,
+  MAX_STEPS = 10000,
+  BRANCHES_ROOM = 16,
+  IDS = 8,
+  SALT = 0x657965
+};
 static const float inverse_pi = 0.318309886f;
+/* Golden ratios of three dimensions, 2^32 each: places of a pixel's samples and their wavelengths
+ * [Roberts2018]. */
+static const uint32_t golden[3] = {3518319155u, 2882110345u, 2360945575u};
 
 /* A path from the eye. Where it is not dispersed it carries the whole spectrum, else one
  * wavelength. */
@@ -361,7 +371,7 @@ static void follow_mirror(const context *c, const eye_path *first, const abbe_hi
                           const crossing *x, float random) {
   const abbe_eye_walk *w = c->w;
   eye_path p = *first;
-  p.id = 1;
+  p.id++;
   float eta, cos_t;
   if (w->bands->count > 0) {
     disperse(&p, random);
@@ -395,7 +405,7 @@ static void follow_through(const context *c, const eye_path *first, const abbe_h
   uint32_t count = disperses(c, x) || c->w->media->attenuation != NULL ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
     eye_path p = *first;
-    p.id = 2 + i;
+    p.id += 2 + i;
     p.share /= (float)count;
     if (count > 1) disperse(&p, ((float)i + random) / (float)count);
     float eta, cos_t, share = reflectance_at(c, x, p.step, p.within, &eta, &cos_t);
@@ -408,13 +418,43 @@ static void follow_through(const context *c, const eye_path *first, const abbe_h
 }
 
 static void add_first(const context *c, const eye_path *p, const abbe_hit *hit, float length) {
-  float side = dot(p->d, hit->ng) < 0 ? 1 : -1;
-  for (int k = 0; k < 3; k++) c->out->normal[k] = side * hit->n[k];
-  c->out->depth = length;
+  float side = dot(p->d, hit->ng) < 0 ? p->share : -p->share;
+  for (int k = 0; k < 3; k++) c->out->normal[k] += side * hit->n[k];
+  c->out->depth += p->share * length;
 }
 
-void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
-                         abbe_eye_sample *out) {
+/* Number i of a sequence of multiples of a golden ratio, shifted. */
+static float place(uint32_t i, uint32_t ratio, float shift) {
+  return abbe_random_shift(abbe_random_float(i * ratio), shift);
+}
+
+/* One of the pixel's samples: a path from the eye through the place (x, y) on the film. wave, from
+ * 0 to 1, chooses wavelengths. */
+static void walk_sample(const context *c, eye_path *p, float x, float y, float wave) {
+  abbe_hit hit;
+  float length;
+  abbe_trace_camera_ray(c->w->camera, x, y, p->d);
+  bool met = trace(c, p, &hit, &length);
+  if (met) add_first(c, p, &hit, length);
+  if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
+    arrive(c, p, met, &hit, true);
+    return;
+  }
+  c->out->refractor = true;
+  crossing at;
+  cross(p, &hit, &at);
+  if (abbe_media_same(c->w->media, at.from, at.to)) {
+    p->id++;
+    p->inside = at.after;
+    abbe_geometry_leave(&hit, p->d, p->o);
+    follow(c, p);
+    return;
+  }
+  follow_mirror(c, p, &hit, &at, wave);
+  follow_through(c, p, &hit, &at, wave);
+}
+
+static void clear(const abbe_eye_walk *w, abbe_eye_sample *out) {
   memset(out->rgb, 0, sizeof out->rgb);
   memset(out->caustic, 0, sizeof out->caustic);
   memset(out->albedo, 0, sizeof out->albedo);
@@ -423,32 +463,21 @@ void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
   memset(out->band, 0, w->bands->count * sizeof *out->band);
   out->refractor = false;
   out->rays = 0;
+}
+
+void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
+                         abbe_eye_sample *out) {
   context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
-  float random[4];
-  random4(&c, 0, 0, random);
-  eye_path p = {.share = 1, .branch = 1, .tint = {1, 1, 1}, .carried = 1};
-  memcpy(p.o, w->camera->eye, sizeof p.o);
-  float x = (float)(pixel % w->camera->width) + random[0];
-  float y = (float)(pixel / w->camera->width) + random[1];
-  abbe_trace_camera_ray(w->camera, x, y, p.d);
-  abbe_hit hit;
-  float length;
-  bool met = trace(&c, &p, &hit, &length);
-  if (met) add_first(&c, &p, &hit, length);
-  if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
-    arrive(&c, &p, met, &hit, true);
-    return;
+  uint32_t count = w->samples != NULL ? w->samples[pixel] : 1;
+  float shift[4], column = (float)(pixel % w->camera->width);
+  float row = (float)(pixel / w->camera->width);
+  clear(w, out);
+  random4(&c, 0, 0, shift);
+  for (uint32_t i = 0; i < count; i++) {
+    eye_path p = {
+        .share = 1 / (float)count, .branch = 1, .tint = {1, 1, 1}, .carried = 1, .id = i * IDS};
+    memcpy(p.o, w->camera->eye, sizeof p.o);
+    walk_sample(&c, &p, column + place(i, golden[0], shift[0]), row + place(i, golden[1], shift[1]),
+                place(i, golden[2], shift[2]));
   }
-  out->refractor = true;
-  crossing at;
-  cross(&p, &hit, &at);
-  if (abbe_media_same(c.w->media, at.from, at.to)) {
-    p.id = 1;
-    p.inside = at.after;
-    abbe_geometry_leave(&hit, p.d, p.o);
-    follow(&c, &p);
-    return;
-  }
-  follow_mirror(&c, &p, &hit, &at, random[3]);
-  follow_through(&c, &p, &hit, &at, random[2]);
 }

@@ -226,6 +226,30 @@ static void splitting_keeps_the_mean(void **state) {
   drop(&f);
 }
 
+/* Sixteen samples of a pixel: the mean of one, with less than a quarter of its spread, for they are
+ * even over the pixel and the spectrum. */
+static void samples_share_a_pixel(void **state) {
+  (void)state;
+  double mean[2][3], error[2][3];
+  fixture f;
+  make_with(
+      CAMERA "ambient: 0.5\n" LIGHT("kind: point, position: [0.5, 0, 0.4], intensity: 3") FLOOR
+      "- {name: ball, shape: sphere, radius: 0.3, transform: [{translate: [0, 0, 0.1]}], "
+      "material: crown}\n",
+      &(abbe_trace_desc){.width = 1, .height = 1, .no_map = true, .threads = 1, .photons = 64}, 0,
+      &f);
+  for (int i = 0; i < 2; i++) {
+    f.tracer->eye.samples = (const uint8_t[]){i ? 16 : 1};
+    look(&f, i ? 4000 : 40000, mean[i], error[i]);
+  }
+  for (int k = 0; k < 3; k++) {
+    assert_near(mean[1][k], mean[0][k], 4 * hypot(error[0][k], error[1][k]));
+    /* of a tenth of the passes */
+    assert_true(error[1][k] < sqrt(10) / 4 * error[0][k]);
+  }
+  drop(&f);
+}
+
 /* Along the axis of an absorbing ball: r + (1 - r)^2 k / (1 - r k) with k = exp(-a 2 R), over the
  * spectrum of the sky. */
 static void absorbing_glass_shows(void **state) {
@@ -372,6 +396,7 @@ int main(void) {
       cmocka_unit_test(shadows),
       cmocka_unit_test(a_white_furnace),
       cmocka_unit_test(splitting_keeps_the_mean),
+      cmocka_unit_test(samples_share_a_pixel),
       cmocka_unit_test(absorbing_glass_shows),
       cmocka_unit_test(dark_glass_keeps_its_mean),
       cmocka_unit_test(a_slab_mirrors_the_sky),
