@@ -209,6 +209,7 @@ static uint64_t mix_eye(uint64_t h, const abbe_scene *scene, const abbe_plan *pl
   MIX(h, d->height);
   MIX(h, d->supersample);
   MIX(h, d->upsample);
+  MIX(h, d->adaptive);
   MIX(h, d->sample_shift);
   MIX(h, d->aovs);
   MIX(h, plan->textured);

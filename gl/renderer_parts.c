@@ -66,9 +66,11 @@ static unsigned scene_parts(unsigned parts) {
 
 static void free_eye(abbe_renderer *r) {
   abbe_picture_free(&r->picture);
+  abbe_adaptive_pass_free(&r->adaptive);
   abbe_refraction_pass_free(&r->refraction);
   abbe_receivers_pass_free(&r->receivers);
   r->picture = (abbe_picture){0};
+  r->adaptive = (abbe_adaptive_pass){0};
   r->refraction = (abbe_refraction_pass){0};
   r->receivers = (abbe_receivers_pass){0};
   abbe_gpu_drop_textures(&r->gpu, 1, &r->baseline);
@@ -124,6 +126,9 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
   if (result == ABBE_OK)
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant,
                                        &r->refraction, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_adaptive_pass_make(&r->receivers, &r->refraction, &variant, &r->adaptive, error);
   if (result == ABBE_OK)
     result = abbe_picture_make(&r->receivers, &r->refraction, &r->picture, error);
   return result;
@@ -193,6 +198,8 @@ static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {
 
 static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
   abbe_result result = abbe_receivers_pass_run(&r->receivers, error);
+  if (result == ABBE_OK) result = abbe_refraction_pass_draw(&r->refraction, error);
+  if (result == ABBE_OK) result = abbe_adaptive_pass_run(&r->adaptive, error);
   if (result == ABBE_OK) result = abbe_refraction_pass_run(&r->refraction, error);
   if (result == ABBE_OK) abbe_picture_run(&r->picture);
   return result;

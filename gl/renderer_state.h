@@ -5,6 +5,7 @@
 #define ABBE_GL_RENDERER_STATE_H
 
 #include "gl/caustics/caustics.h"
+#include "gl/eye/adaptive_pass.h"
 #include "gl/eye/picture.h"
 #include "gl/renderer.h"
 #include "gl/renderer_inputs.h"
@@ -37,6 +38,7 @@ struct abbe_renderer {
   abbe_lighting lighting;
   abbe_receivers_pass receivers;
   abbe_refraction_pass refraction;
+  abbe_adaptive_pass adaptive;
   abbe_picture picture;
   bool seen; /* the picture is drawn */
 

@@ -277,6 +277,7 @@ static const char *renderers_own(const request *q) {
          : d->map_size > 0                    ? "--map"
          : d->supersample > 0                 ? "--samples"
          : d->upsample > 0                    ? "--upsample"
+         : d->adaptive > 0                    ? "--adaptive"
          : d->exits > 0                       ? "--exits"
          : d->energy_share > 0                ? "--share"
          : d->fill != ABBE_FILL_AUTO          ? "--fill"

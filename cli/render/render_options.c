@@ -15,6 +15,7 @@ enum {
   OPTION_MAP,
   OPTION_SAMPLES,
   OPTION_UPSAMPLE,
+  OPTION_ADAPTIVE,
   OPTION_MODEL,
   OPTION_FILL,
   OPTION_SHARE,
@@ -36,6 +37,8 @@ static const struct argp_option options[] = {
     {"samples", OPTION_SAMPLES, "N", 0, "samples a pixel side, 1 to 4 (2; thesis 1)", 1},
     {"upsample", OPTION_UPSAMPLE, "N", 0,
      "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
+    {"adaptive", OPTION_ADAPTIVE, "N", 0,
+     "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis 1)", 1},
     {"model", OPTION_MODEL, "NAME", 0,
      "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)",
      1},
@@ -87,6 +90,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_UPSAMPLE:
     d->upsample = abbe_command_count(p, "--upsample", text, 1, 4);
+    return 0;
+  case OPTION_ADAPTIVE:
+    d->adaptive = abbe_command_count(p, "--adaptive", text, 1, ABBE_RENDER_MAX_ADAPTIVE);
     return 0;
   case OPTION_MODEL:
     d->model = (abbe_model)abbe_command_choice(p, "--model", text, models, ABBE_MODEL_COUNT);

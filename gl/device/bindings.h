@@ -42,6 +42,9 @@
 #define BINDING_PIXELS 24
 #define BINDING_REFINED_PIXELS 25
 
+/* Samples of receivers that take more rays. */
+#define BINDING_ADAPTIVE_SAMPLES 27
+
 /* A list that becomes the size of a dispatch. */
 #define BINDING_DISPATCH 26
 

@@ -8,6 +8,7 @@ layout(local_size_x = 256) in;
 #define COPIES_TABLES
 #include "refractor.glsl"
 #include "receiver.glsl"
+#include "receiver_sight.glsl"
 
 // Pixel as below; joined bands (a bit each), level (four bits) whose bands are wanted, and how many
 // levels above it they were joined.
@@ -88,28 +89,10 @@ View camera_view() {
 // there is one.
 vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   float t;
-  met = false;
-  int r = receiver_hit(p, d, t_min, t_max, t);
-  if (r < 0) return background;
-  met = true;
-#ifdef RECEIVER_HIERARCHY
-  Receiver rc = receivers[min(r, RECEIVER_ROOM - 1)];
-#else
-  Receiver rc = receivers[r];
-#endif
-  vec3 x = p + t * d, n = rc.normal.xyz;
-  vec2 uv = vec2(dot(x - rc.corner.xyz, rc.du.xyz), dot(x - rc.corner.xyz, rc.dv.xyz));
-  n = dot(n, d) > 0.0 ? -n : n;
-  int surface = int(rc.corner.w);
-#ifdef RECEIVER_HIERARCHY
-  face_n = n;
-  if (r >= RECEIVERS) triangle_at(r - RECEIVERS, x, -d, n, surface, uv);
-#endif
-#ifdef TILES
-  Shading s = shade(x, n, surface, uv, chart_side(r, d));
-#else
-  Shading s = shade(x, n, surface, uv, 0);
-#endif
+  Sighting at;
+  met = receiver_seen(p, d, t_min, t_max, t, at);
+  if (!met) return background;
+  Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);
   return s.direct + s.caustic + s.fill;
 }
 

@@ -101,9 +101,10 @@ void abbe_refraction_pass_free(abbe_refraction_pass *pass) {
 }
 
 /* Front with its owner, and, where a mesh ends at its back layer, the back. */
-static abbe_result draw_faces(abbe_refraction_pass *pass, abbe_error *error) {
+abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   abbe_result result = ABBE_OK;
+  if (!scene_of(pass)->plan->camera_sees_refractor) return ABBE_OK;
   abbe_gpu_start_lap(gpu);
   abbe_refractor_faces_use(pass->faces, &pass->lighting->camera->view);
   for (int back = 0; back <= (scene_of(pass)->plan->draw_back ? 1 : 0) && result == ABBE_OK;
@@ -197,9 +198,8 @@ static abbe_result clear_colour(abbe_refraction_pass *pass, abbe_error *error) {
 abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const bool seen = scene_of(pass)->plan->camera_sees_refractor;
-  abbe_result result = seen ? draw_faces(pass, error) : ABBE_OK;
   abbe_gpu_start_lap(gpu);
-  if (result == ABBE_OK && resolves(pass)) result = clear_colour(pass, error);
+  abbe_result result = resolves(pass) ? clear_colour(pass, error) : ABBE_OK;
   if (result != ABBE_OK || !seen) return result;
   list_pixels(pass);
   if (refines(pass)) use(pass, pass->refract_refined);

@@ -29,7 +29,9 @@ abbe_result abbe_refraction_pass_make(const abbe_lighting *lighting,
                                       const abbe_shader_variant *variant, abbe_refraction_pass *out,
                                       abbe_error *error);
 void abbe_refraction_pass_free(abbe_refraction_pass *pass);
-/* Tells who watches from a half to the whole. ABBE_CANCELLED, ABBE_GL. */
+/* The faces as the camera sees them first: layers and owners. ABBE_GL. */
+abbe_result abbe_refraction_pass_draw(abbe_refraction_pass *pass, abbe_error *error);
+/* What they show. Tells who watches from a half to the whole. ABBE_CANCELLED, ABBE_GL. */
 abbe_result abbe_refraction_pass_run(abbe_refraction_pass *pass, abbe_error *error);
 
 #endif

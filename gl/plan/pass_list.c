@@ -102,6 +102,14 @@ static void list_eye(abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_PASS_EYE_FRONT, "%s",
                 plan->camera_sees_refractor ? "the pixels that show a refractor" : unseen);
   list_back(plan, ABBE_PASS_EYE_BACK, plan->camera_sees_refractor, unseen);
+  if (plan->desc.adaptive > 1)
+    abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE,
+                  "%zu x %zu rays for a sample of a receiver where its light bends",
+                  plan->desc.adaptive, plan->desc.adaptive);
+  else
+    abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE, "%s",
+                  abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
+                                                             : "none, as asked");
   if (plan->camera_sees_refractor && plan->eye_exits > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,
                   "one direction a wavelength, until less than %g of its light is left, %zu exits "

@@ -49,13 +49,27 @@ bool takes_refracted(vec3 n, float facing, vec3 p) {
 #endif
 }
 
-#ifdef SEEN_BY_PIXELS
-vec2 step_right(vec2 at) { return dFdx(at); }
-vec2 step_above(vec2 at) { return dFdy(at); }
+// How far it is in a map to where the neighbouring samples are: PLACE(p) is where p is. SEEN_BY_PIXELS: as
+// neighbouring fragments tell. SEEN_BY_AREAS: as the area of the receiver tells for which p stands.
+#if defined(SEEN_BY_PIXELS)
+#define STEP_RIGHT(PLACE, at) dFdx(at)
+#define STEP_ABOVE(PLACE, at) dFdy(at)
+#elif defined(SEEN_BY_AREAS)
+vec3 area_right, area_above;  // its sides, m
+#define STEP_RIGHT(PLACE, at) (PLACE(p + area_right) - at)
+#define STEP_ABOVE(PLACE, at) (PLACE(p + area_above) - at)
 #else
-vec2 step_right(vec2 at) { return vec2(0); }
-vec2 step_above(vec2 at) { return vec2(0); }
+#define STEP_RIGHT(PLACE, at) vec2(0)
+#define STEP_ABOVE(PLACE, at) vec2(0)
 #endif
+
+// Part of the light's map.
+vec2 place_on_map(int light, vec3 p) {
+  vec3 uvz;
+  project(LIGHT(light).map_view, p, uvz);
+  return warp(light, uvz.xy);
+}
+#define PLACE_ON_MAP(p) place_on_map(light, p)
 
 #ifdef TILES
 // rgb irradiance of the tile on that side of a chart: it holds what reaches that side, whatever the light
@@ -65,7 +79,9 @@ vec3 tile_irradiance(int light, vec3 p, int side, bool lit) {
   vec4 rect = tile_rect(light, max(tile, 0)), across = tile_across(light, max(tile, 0));
   vec2 texels = place_on_tile(light, max(tile, 0), p);
   float layer_side = float(textureSize(spectral_map, 0).x);
-  vec2 at = texels / layer_side, to_right = step_right(at), to_above = step_above(at);
+#define PLACE_ON_LAYER(p) (place_on_tile(light, max(tile, 0), p) / layer_side)
+  vec2 at = texels / layer_side;
+  vec2 to_right = STEP_RIGHT(PLACE_ON_LAYER, at), to_above = STEP_ABOVE(PLACE_ON_LAYER, at);
   vec3 irradiance = vec3(0);
   if (lit && tile >= 0 && is_within(rect, texels)) {
 #ifdef RECEIVER_HIERARCHY

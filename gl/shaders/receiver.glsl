@@ -61,7 +61,8 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
   vec3 uvz;
   bool held = project(l.map_view, p, uvz) && inside(uvz.xy);
   // Before any pixel of the four goes its own way.
-  vec2 at = warp(light, uvz.xy), to_right = step_right(at), to_above = step_above(at);
+  vec2 at = warp(light, uvz.xy);
+  vec2 to_right = STEP_RIGHT(PLACE_ON_MAP, at), to_above = STEP_ABOVE(PLACE_ON_MAP, at);
 #ifdef TILES
   caustic = tile_irradiance(light, p, side, l.misc.w != 0.0);
 #endif

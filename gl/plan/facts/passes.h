@@ -28,6 +28,7 @@ extern "C" {
   X(EYE_FRONT, EYE, "eye: refractor front", p->camera_sees_refractor)                              \
   X(EYE_BACK, EYE, "eye: refractor back", p->camera_sees_refractor && p->draw_back)                \
   X(EYE_FRONT_AND_BACK, EYE, "eye: refractor layers", is_thesis(p) && p->camera_sees_refractor)    \
+  X(EYE_ADAPTIVE, EYE, "eye: adaptive samples", p->desc.adaptive > 1)                              \
   X(EYE_REFRACTION, EYE, "eye: refraction", p->camera_sees_refractor)                              \
   X(EYE_PICTURE, EYE, "eye: picture", p->desc.supersample > 1 || p->desc.upsample > 1)
 

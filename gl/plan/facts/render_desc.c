@@ -36,6 +36,7 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   if (d->map_size == 0) d->map_size = ABBE_PLAN_MAP;
   if (d->upsample == 0) d->upsample = 1;
   if (d->supersample == 0) d->supersample = thesis || d->upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
+  if (d->adaptive == 0) d->adaptive = thesis ? 1 : ABBE_PLAN_ADAPTIVE;
   if (d->fill == ABBE_FILL_AUTO) d->fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
   if (d->energy_share == 0) d->energy_share = ABBE_PLAN_SHARE;
 }
@@ -51,6 +52,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the spectral map", d->map_size, 1, ABBE_RENDER_MAX_MAP},
       {"the supersampling", d->supersample, 1, 4},
       {"the upsampling", d->upsample, 1, 4},
+      {"the adaptive sampling", d->adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE},
       /* 0: the scene tells */
       {"the number of wavelengths", d->wavelengths, 0,
        abbe_profile_is_thesis(d->profile) ? 64 : ABBE_RENDER_MAX_WAVELENGTHS},
@@ -93,6 +95,10 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
                           "a sample for %zu x %zu pixels and %zu samples a pixel side: ask for one "
                           "of the two",
                           d->upsample, d->upsample, d->supersample);
+  if (d->adaptive > 1 && thesis)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the thesis profile knows no adaptive samples; it cannot take %zu a side",
+                          d->adaptive);
   if ((int)d->model < 0 || d->model >= ABBE_MODEL_COUNT || (thesis && d->model != ABBE_MODEL_AUTO))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the model '%s' does not go with the profile '%s'",

@@ -53,6 +53,7 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_MAP 4096     /* a side */
 #define ABBE_RENDER_MAX_WAVELENGTHS 1000
 #define ABBE_RENDER_MAX_EXITS 32
+#define ABBE_RENDER_MAX_ADAPTIVE 8 /* a side */
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
@@ -62,6 +63,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_PHOTONS 256
 #define ABBE_PLAN_MAP 1024
 #define ABBE_PLAN_SAMPLES 2
+#define ABBE_PLAN_ADAPTIVE 4
 /* Exits that are followed at the most, and the share of its light below which a path ends, where
  * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
@@ -86,6 +88,9 @@ typedef struct abbe_render_desc {
   size_t map_size;       /* side of the spectral map; 0: 1024 */
   size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
   size_t upsample;       /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
+  /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
+   * (thesis: 1) */
+  size_t adaptive;
   abbe_fill fill;
   abbe_model model;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too
