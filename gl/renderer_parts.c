@@ -127,8 +127,7 @@ static abbe_result make_eye(abbe_renderer *r, abbe_error *error) {
     result = abbe_refraction_pass_make(&r->lighting, &r->faces, &r->receivers, &variant,
                                        &r->refraction, error);
   if (result == ABBE_OK)
-    result =
-        abbe_adaptive_pass_make(&r->receivers, &r->refraction, &variant, &r->adaptive, error);
+    result = abbe_adaptive_pass_make(&r->receivers, &r->refraction, &variant, &r->adaptive, error);
   if (result == ABBE_OK)
     result = abbe_picture_make(&r->receivers, &r->refraction, &r->picture, error);
   return result;

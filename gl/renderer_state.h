@@ -1,5 +1,5 @@
-/* renderer_state.h: what a renderer is made of. Internal to gl/: only renderer.c, renderer_parts.c and
- * their tests look inside.
+/* renderer_state.h: what a renderer is made of. Internal to gl/: only renderer.c, renderer_parts.c
+ * and their tests look inside.
  */
 #ifndef ABBE_GL_RENDERER_STATE_H
 #define ABBE_GL_RENDERER_STATE_H

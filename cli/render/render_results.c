@@ -96,11 +96,11 @@ abbe_result abbe_render_annotate(const request *q, const abbe_renderer *renderer
   char text[512];
   snprintf(text, sizeof text,
            "profile %s, %zu wavelengths %g:%g nm, photons %zu, map %zu, samples %zu, upsample %zu, "
-           "fill %s, "
+           "adaptive %zu, fill %s, "
            "share %g, exits %zu",
            abbe_profile_name(d->profile), d->wavelengths, d->min_nm, d->max_nm, d->photons,
-           d->map_size, d->supersample, d->upsample, abbe_fill_name(d->fill), d->energy_share,
-           d->exits);
+           d->map_size, d->supersample, d->upsample, d->adaptive, abbe_fill_name(d->fill),
+           d->energy_share, d->exits);
   abbe_result result = abbe_image_set_attribute(image, "abbe:settings", text, error);
   if (result == ABBE_OK)
     result = abbe_image_set_attribute(image, "abbe:scene", q->render.scene, error);

@@ -3,8 +3,10 @@
 #include "gl/device/bindings.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
+
+/* A bend below these is left alone: of the light around the sample, and of what a white receiver
+ * shows of the lights, so that noise in the dark asks for nothing. */
+static const double bend_share = 0.3, least_white = 0.01;
 
 static const abbe_gpu_scene *scene_of(const abbe_adaptive_pass *pass) {
   return pass->receivers->lighting->scene;
@@ -19,8 +21,8 @@ abbe_result abbe_adaptive_pass_make(const abbe_receivers_pass *receivers,
   const size_t *samples = receivers->lighting->camera->samples;
   abbe_gpu *gpu = scene_of(out)->gpu;
   if (!abbe_plan_runs(plan, ABBE_PASS_EYE_ADAPTIVE, 0)) return ABBE_OK;
-  abbe_result result = abbe_gpu_make_buffer(
-      gpu, ABBE_GPU_LIST_HEADER + 4 * samples[0] * samples[1], NULL, &out->samples, error);
+  abbe_result result = abbe_gpu_make_buffer(gpu, ABBE_GPU_LIST_HEADER + 4 * samples[0] * samples[1],
+                                            NULL, &out->samples, error);
   const char *seen = plan->camera_sees_refractor ? "#define REFRACTORS_SEEN\n" : NULL;
   if (result == ABBE_OK)
     result = abbe_gpu_compute(gpu, "adaptive_list.comp", seen, &out->list, error);
@@ -51,11 +53,6 @@ static double white_radiance(const abbe_gpu_scene *scene) {
   return sum / acos(-1);
 }
 
-static double knob(const char *name, double otherwise) {
-  const char *text = getenv(name);
-  return text != NULL ? atof(text) : otherwise;
-}
-
 static void list_samples(abbe_adaptive_pass *pass) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
   const size_t *samples = pass->receivers->lighting->camera->samples;
@@ -67,9 +64,8 @@ static void list_samples(abbe_adaptive_pass *pass) {
     abbe_gpu_bind_array(gpu, pass->list, "eye_layers", 5, pass->refraction->layers);
     abbe_gpu_bind_texture(gpu, pass->list, "eye_owner", 6, pass->refraction->owner);
   }
-  abbe_gpu_set_float(gpu, pass->list, "bend_share", knob("ABBE_BEND", 0.2));
-  abbe_gpu_set_float(gpu, pass->list, "least_bend",
-                     knob("ABBE_LEAST", 0.01) * white_radiance(scene_of(pass)));
+  abbe_gpu_set_float(gpu, pass->list, "bend_share", bend_share);
+  abbe_gpu_set_float(gpu, pass->list, "least_bend", least_white * white_radiance(scene_of(pass)));
   abbe_gpu_dispatch_2d(gpu, pass->list, samples[0], samples[1]);
   gpu->gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
                          GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -95,7 +91,6 @@ abbe_result abbe_adaptive_pass_run(abbe_adaptive_pass *pass, abbe_error *error) 
   if (pass->resample == 0) return ABBE_OK;
   abbe_gpu_start_lap(gpu);
   list_samples(pass);
-  if (getenv("ABBE_SAY")) fprintf(stderr, "listed %zu\n", abbe_gpu_read_count(gpu, pass->samples));
   resample(pass);
   abbe_gpu_book_lap(gpu, ABBE_PASS_EYE_ADAPTIVE);
   return abbe_gpu_tell(gpu, 0.5, error);

@@ -20,7 +20,8 @@ abbe_result abbe_adaptive_pass_make(const abbe_receivers_pass *receivers,
                                     const abbe_shader_variant *variant, abbe_adaptive_pass *out,
                                     abbe_error *error);
 void abbe_adaptive_pass_free(abbe_adaptive_pass *pass);
-/* After the receivers and the refractors' faces, before what these show. ABBE_CANCELLED, ABBE_GL. */
+/* After the receivers and the refractors' faces, before what these show. ABBE_CANCELLED, ABBE_GL.
+ */
 abbe_result abbe_adaptive_pass_run(abbe_adaptive_pass *pass, abbe_error *error);
 
 #endif

@@ -79,9 +79,8 @@ static void list_light(abbe_plan *plan) {
 static void list_absorption(abbe_plan *plan) {
   const char *none = abbe_plan_no_refraction(plan);
   abbe_plan_add(plan, ABBE_CHOICE_ABSORPTION, "%s",
-                none != NULL ? none
-                : plan->lengths
-                    ? "a material attenuates by wavelength: hits keep the length inside"
+                none != NULL    ? none
+                : plan->lengths ? "a material attenuates by wavelength: hits keep the length inside"
                 : plan->absorbing ? "a material attenuates; path lengths are kept"
                                   : "every material is clear");
 }

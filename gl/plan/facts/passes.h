@@ -13,8 +13,8 @@ extern "C" {
 #endif
 
 /* X(id, stage, text, condition), in the plan's order: a pass runs where the condition holds of the
- * plan p (gl/plan/facts/plan_facts.h). The thesis draws front and back in one pass, of which its plan
- * lists both halves. */
+ * plan p (gl/plan/facts/plan_facts.h). The thesis draws front and back in one pass, of which its
+ * plan lists both halves. */
 #define ABBE_PASSES(X)                                                                             \
   X(RECEIVER_DEPTH, LIGHT, "light: receiver depth", p->receivers == ABBE_RECEIVER_DEPTH)           \
   X(LIGHT_FRONT, LIGHT, "light: refractor front", p->caustics)                                     \
