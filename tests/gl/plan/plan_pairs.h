@@ -90,6 +90,7 @@ typedef struct pair {
       RUNS(PASS_EYE_RECEIVERS, "light, shadow and spectral map"),                                  \
       RUNS(PASS_EYE_FRONT, "the pixels that show a refractor"),                                    \
       RESTS(PASS_EYE_BACK, "every refractor has an exact surface"),                                \
+      RUNS(PASS_EYE_ADAPTIVE, "4 x 4 rays for a sample of a receiver where its light bends"),      \
       RUNS(PASS_EYE_REFRACTION, "until less than 0.001 of its light is left, 256 exits at most"),  \
       RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"),
 
@@ -123,6 +124,11 @@ static const pair pairs[] = {
      ball,
      {.supersample = 1},
      {RESTS(PASS_EYE_PICTURE, "one sample a pixel: nothing is averaged"), END}},
+    {"a ray a sample",
+     ball,
+     ball,
+     {.adaptive = 1},
+     {RESTS(PASS_EYE_ADAPTIVE, "none, as asked"), END}},
     {"a lamp between the refractors",
      two_balls,
      CAMERA LAMP_BETWEEN FLOOR BALL("crown") BALL_BESIDE,

@@ -17,6 +17,7 @@ static const char *const texts[] = {
     [ABBE_PASS_EYE_FRONT] = "eye: refractor front",
     [ABBE_PASS_EYE_BACK] = "eye: refractor back",
     [ABBE_PASS_EYE_FRONT_AND_BACK] = "eye: refractor layers",
+    [ABBE_PASS_EYE_ADAPTIVE] = "eye: adaptive samples",
     [ABBE_PASS_EYE_REFRACTION] = "eye: refraction",
     [ABBE_PASS_EYE_PICTURE] = "eye: picture",
     [ABBE_CHOICE_REFRACTOR_MODEL] = "model: ",

@@ -47,6 +47,9 @@ static void each_condition_is_its_own(void **state) {
   assert_false(abbe_plan_runs(&plan, ABBE_CHOICE_INNER_REFLECTIONS, 0));
   plan = (abbe_plan){.desc = {.upsample = 2}};
   assert_true(abbe_plan_runs(&plan, ABBE_PASS_EYE_PICTURE, 0));
+  assert_false(abbe_plan_runs(&plan, ABBE_PASS_EYE_ADAPTIVE, 0));
+  plan = (abbe_plan){.desc = {.adaptive = 2}};
+  assert_true(abbe_plan_runs(&plan, ABBE_PASS_EYE_ADAPTIVE, 0));
   assert_false(abbe_plan_runs(&plan, ABBE_PLAN_ITEM_COUNT, 0));
   size_t object[] = {3, 5};
   plan = (abbe_plan){.refractor_count = 2, .refractor_object = object};

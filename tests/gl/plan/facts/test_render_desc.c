@@ -15,13 +15,14 @@ static void what_is_left_open_gets_its_default(void **state) {
   abbe_render_desc d = resolve(NULL);
   assert_true(d.width == 320 && d.height == 200 && d.photons == 256 && d.map_size == 1024);
   assert_true(d.supersample == 2 && d.upsample == 1 && d.fill == ABBE_FILL_BRIDGE);
+  assert_true(d.adaptive == 4);
   assert_true(d.wavelengths == 0 && d.exits == 0); /* the scene tells */
   assert_true(d.min_nm == 380 && d.max_nm == 780 && d.energy_share == 0.01);
   d = resolve(&(abbe_render_desc){.upsample = 3, .width = 7});
   assert_true(d.supersample == 1 && d.width == 7);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS});
   assert_true(d.photons == 512 && d.supersample == 1 && d.fill == ABBE_FILL_SMEAR);
-  assert_true(d.max_nm == 680);
+  assert_true(d.max_nm == 680 && d.adaptive == 1);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS_CIE});
   assert_true(d.photons == 512 && d.fill == ABBE_FILL_SMEAR && d.max_nm == 780);
 }
@@ -50,6 +51,8 @@ static void limits_are_kept(void **state) {
       {{.map_size = ABBE_RENDER_MAX_MAP + 1}, "spectral map is 4097"},
       {{.supersample = 5}, "supersampling is 5"},
       {{.upsample = 5}, "upsampling is 5"},
+      {{.adaptive = ABBE_RENDER_MAX_ADAPTIVE + 1}, "adaptive sampling is 9"},
+      {{.profile = ABBE_PROFILE_THESIS, .adaptive = 2}, "knows no adaptive samples"},
       {{.supersample = 2, .upsample = 2}, "a sample for 2 x 2 pixels and 2 samples"},
       {{.profile = ABBE_PROFILE_THESIS, .upsample = 2}, "cannot be upsampled"},
       {{.wavelengths = ABBE_RENDER_MAX_WAVELENGTHS + 1}, "wavelengths is 1001"},
