@@ -185,10 +185,58 @@ static void test_pictures_come_nearer_to_many_samples(void **state) {
                 0.05);
 }
 
+/* Whether a pixel's middle shows the ball, or is so near to its rim that this is not sure. */
+static bool shows_ball(const abbe_scene *scene, size_t x, size_t y) {
+  abbe_view view;
+  double forward[3], from[3], d[3], along = 0, square = 0, length = 0;
+  const double half = tan(0.5 * scene->camera.fov_y_rad) * 2 / SIDE, middle = 0.5 * (SIDE - 1);
+  const double right = half * ((double)x - middle), up = half * (middle - (double)y);
+  for (int k = 0; k < 3; k++) forward[k] = scene->camera.target[k] - scene->camera.eye[k];
+  abbe_view_look(scene->camera.eye, forward, scene->camera.up, false, &view);
+  for (int k = 0; k < 3; k++) {
+    d[k] = view.forward[k] + right * view.right[k] + up * view.up[k];
+    from[k] = scene->object[1].exact.centre[k] - scene->camera.eye[k];
+    along += d[k] * from[k];
+    square += from[k] * from[k];
+    length += d[k] * d[k];
+  }
+  return sqrt(square - along * along / length) < 0.98 * scene->object[1].exact.radius;
+}
+
+/* What lies behind a refractor is none of a ray's that is spread over a sample beside it. */
+static void test_samples_beside_a_refractor_stay(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image once = {0}, more = {0};
+  size_t beside = 0, changed = 0;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown"), &scene);
+  scene.background = 1; /* the floor ends behind it */
+  scene.camera.eye[2] = 0.25;
+  draw(&scene, 1, &once);
+  draw(&scene, 4, &more);
+  for (size_t y = 1; y + 1 < SIDE; y++)
+    for (size_t x = 1; x + 1 < SIDE; x++) {
+      bool near = false;
+      for (size_t k = 0; k < 9; k++)
+        near = shows_ball(&scene, x + k % 3 - 1, y + k / 3 - 1) || near;
+      const size_t at = (y * SIDE + x) * once.channels;
+      const bool same = memcmp(once.data + at, more.data + at, 3 * sizeof *once.data) == 0;
+      assert_true(same || !near);
+      beside += near && !shows_ball(&scene, x, y);
+      changed += !same;
+    }
+  print_message("%zu samples beside it, %zu changed elsewhere\n", beside, changed);
+  assert_true(beside > 10 && changed > 10);
+  abbe_image_free(&once);
+  abbe_image_free(&more);
+  abbe_scene_free(&scene);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_an_edge_is_covered),
       cmocka_unit_test(test_flat_light_is_left_alone),
+      cmocka_unit_test(test_samples_beside_a_refractor_stay),
       cmocka_unit_test(test_pictures_come_nearer_to_many_samples),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
