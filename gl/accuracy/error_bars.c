@@ -21,8 +21,11 @@ static const double mean_distance = 0.7978845608;
 
 /* Of the distance between samples that variants move them by. A picture that moves as a whole is no
  * error, and all of it would make one of every steep caustic; but an edge that passes between the
- * samples of all variants has none. Chosen with the number above. */
-static const double sample_part = 2.0 / 3;
+ * samples of all variants has none. Chosen with the number above. Where more rays are taken at an
+ * edge it passes between none, and half of that tells what is left. */
+static double sample_part(const abbe_render_desc *desc) {
+  return desc->adaptive > 1 ? 1.0 / 3 : 2.0 / 3;
+}
 
 enum { AXES = 6 };
 
@@ -77,7 +80,7 @@ void abbe_error_bars_variant(const abbe_render_desc *desc, const abbe_map_layout
   out->map_layout = layout;
   for (int k = 0; k < 2; k++) {
     out->photon_shift[k] = place(k, i, variants);
-    out->sample_shift[k] = sample_part * place(2 + k, i, variants);
+    out->sample_shift[k] = sample_part(desc) * place(2 + k, i, variants);
     move_texels(layout, k, place(4 + k, i, variants), desc->map_size);
   }
 }

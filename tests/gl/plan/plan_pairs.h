@@ -476,6 +476,7 @@ static const pair pairs[] = {
       RUNS(PASS_PHOTONS, "7 wavelengths through the refractors"),
       RUNS(PASS_GAP_FILL, "smear: wavelengths land apart"),
       RUNS(PASS_EYE_BACK, "a mesh without an exact surface ends at its back layer"),
+      RESTS(PASS_EYE_ADAPTIVE, "the thesis knows none"),
       RUNS(PASS_EYE_REFRACTION, "one direction a wavelength"),
       RESTS(PASS_EYE_PICTURE, "one sample a pixel: nothing is averaged"), END}},
 };
