@@ -6,7 +6,7 @@
 
 /* A bend below these is left alone: of the light around the sample, and of what a white receiver
  * shows of the lights, so that noise in the dark asks for nothing. */
-static const double bend_share = 0.3, least_white = 0.01;
+static const double bend_share = 0.2, least_white = 0.01;
 
 static const abbe_gpu_scene *scene_of(const abbe_adaptive_pass *pass) {
   return pass->receivers->lighting->scene;

@@ -164,7 +164,7 @@ static void direct_light_is_whole(void **state) {
     abbe_image both = {0}, one[2] = {{0}, {0}};
     size_t shaded = 0, wrong = 0;
     desc.aovs = true;
-    desc.supersample = 1;
+    desc.supersample = desc.adaptive = 1; /* the least of places, not of areas */
     desc.model = models[m];
     desc.width = desc.height = 128;
     abbe_scene scene;

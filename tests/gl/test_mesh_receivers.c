@@ -299,6 +299,7 @@ static void light_lands_on_a_ball_behind_a_pane(void **state) {
   const abbe_render_desc desc = {.width = SIDE,
                                  .height = SIDE,
                                  .supersample = 1,
+                                 .adaptive = 1, /* known at pixels' middles */
                                  .photons = 96,
                                  .map_size = 256,
                                  .energy_share = 1e-6,
