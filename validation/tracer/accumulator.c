@@ -14,8 +14,11 @@ abbe_result abbe_accumulator_make(size_t values, size_t threads, double most, ab
   if (!(most > 0 && isfinite(most)) || values == 0 || threads == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "sums of up to %g cannot be kept: that is not a positive number", most);
-  abbe_accumulator a = {
-      .values = values, .threads = threads, .unit = most / range, .limit = most / 1024};
+  abbe_accumulator a = {.values = values,
+                        .threads = threads,
+                        .unit = most / range,
+                        .per_unit = range / most,
+                        .limit = most / 1024};
   a.adding = calloc(threads, sizeof *a.adding);
   a.cut = calloc(threads, sizeof *a.cut);
   a.sum = calloc(values, sizeof *a.sum);

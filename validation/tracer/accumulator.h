@@ -20,8 +20,9 @@ extern "C" {
 typedef struct abbe_accumulator {
   size_t values; /* elements times channels */
   size_t threads;
-  size_t passes;    /* ended so far */
-  double unit;      /* value of a whole number 1 */
+  size_t passes; /* ended so far */
+  double unit;   /* value of a whole number 1 */
+  double per_unit;
   double limit;     /* largest magnitude that one addition keeps */
   int64_t **adding; /* [threads][values] the pass that is under way */
   uint64_t *cut;    /* [threads] additions beyond the limit, cut to it */
@@ -42,7 +43,7 @@ static inline void abbe_accumulator_add(abbe_accumulator *a, size_t thread, size
     a->cut[thread]++;
     y = y > 0 ? a->limit : y < 0 ? -a->limit : 0;
   }
-  int64_t whole = (int64_t)(y / a->unit), *sum = &a->adding[thread][value];
+  int64_t whole = (int64_t)(y * a->per_unit), *sum = &a->adding[thread][value];
   if (!__builtin_add_overflow(*sum, whole, sum)) return;
   a->cut[thread]++;
   *sum = whole > 0 ? INT64_MAX : INT64_MIN;

@@ -90,20 +90,21 @@ static uint64_t hash_layout(const abbe_tracer *t) {
  * of the scene depend on it too. */
 static void describe(const abbe_tracer *t, char *out, size_t size) {
   const abbe_trace_desc *d = &t->desc;
-  abbe_number_format(out, size,
-           "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nguides %s\nmap %zu "
-           "x %zu of light %zu\n"
-           "range %.17g:%.17g\nbands %zu\nspace %s\nphotons %zu\nseed %u\nscene %016llx\n"
-           "layout %016llx\n\n",
-           d->physics.matched ? "matched" : "full", d->physics.matched ? d->physics.orders : 0,
-           d->physics.matched ? d->physics.energy_share : 0,
-           d->physics.matched ? d->physics.eye_orders : 0,
-           d->physics.matched ? d->physics.eye_share : 0, d->no_picture ? 0 : d->width,
-           d->no_picture ? 0 : d->height,
-           d->guides ? "for a filter" : "none", d->no_map ? 0 : d->map_width,
-           d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light, d->min_nm, d->max_nm,
-           d->bands, abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed,
-           (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t));
+  abbe_number_format(
+      out, size,
+      "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nguides "
+      "%s\nmap %zu "
+      "x %zu of light %zu\n"
+      "range %.17g:%.17g\nbands %zu\nspace %s\nphotons %zu\nseed %u\nscene %016llx\n"
+      "layout %016llx\n\n",
+      d->physics.matched ? "matched" : "full", d->physics.matched ? d->physics.orders : 0,
+      d->physics.matched ? d->physics.energy_share : 0,
+      d->physics.matched ? d->physics.eye_orders : 0, d->physics.matched ? d->physics.eye_share : 0,
+      d->no_picture ? 0 : d->width, d->no_picture ? 0 : d->height,
+      d->guides ? "for a filter" : "none", d->no_map ? 0 : d->map_width,
+      d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light, d->min_nm, d->max_nm, d->bands,
+      abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed,
+      (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t));
 }
 
 /* ---- the numbers ---- */
@@ -118,8 +119,7 @@ static size_t guides_size(const abbe_tracer *t) {
 }
 
 static size_t numbers_size(const abbe_tracer *t) {
-  return sizeof(counts) + 2 * sizeof(double) * (t->picture.values + t->map.values) +
-         guides_size(t);
+  return sizeof(counts) + 2 * sizeof(double) * (t->picture.values + t->map.values) + guides_size(t);
 }
 
 typedef struct hashed_stream {

@@ -1,5 +1,5 @@
-/* emission.h: the photons that a light sends to the refractors in one pass: how many each cell of its
- * projection map gets, and where, whereto and at which wavelength each of them starts.
+/* emission.h: the photons that a light sends to the refractors in one pass: how many each cell of
+ * its projection map gets, and where, whereto and at which wavelength each of them starts.
  *
  * Internal to validation/: it is not installed.
  */

@@ -22,7 +22,7 @@ static const double shrink = 1.0 / 7;
 static const double first_window_nm = 25;
 /* Rays of the eye to glass, of those of the photons in a pass, so that most of the time is theirs.
  */
-static const double eye_share = 0.2;
+static const double eye_share = 0.12;
 
 /* ---- the request ---- */
 
@@ -299,7 +299,8 @@ static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *s
     double factor = pow((double)t->pass + 1, -shrink);
     t->eye.radius = (float)((double)t->radius * factor);
     t->eye.window_nm = fmin(first_window_nm, 0.5 * (t->desc.max_nm - t->desc.min_nm)) * factor;
-    abbe_result result = abbe_photon_grid_fill(&t->grid, t->landed, landed, t->eye.radius, error);
+    abbe_result result =
+        abbe_photon_grid_fill(&t->grid, t->landed, landed, t->eye.radius, t->desc.threads, error);
     if (result != ABBE_OK) return result;
     t->eye.grid = &t->grid;
     t->statistics.radius = (double)t->eye.radius * t->geometry.unit;

@@ -67,8 +67,8 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
                              abbe_tracer **out, abbe_error *error);
 void abbe_tracer_free(abbe_tracer *tracer);
 
-/* Traces one pass: one sample a pixel, more where glass shows, and the photons of a pass. *stop (may
- * be NULL) ends it early with ABBE_CANCELLED, the pass forgotten. */
+/* Traces one pass: one sample a pixel, more where glass shows, and the photons of a pass. *stop
+ * (may be NULL) ends it early with ABBE_CANCELLED, the pass forgotten. */
 abbe_result abbe_tracer_pass(abbe_tracer *tracer, const volatile int *stop, abbe_error *error);
 
 size_t abbe_tracer_passes(const abbe_tracer *tracer);
@@ -77,12 +77,13 @@ size_t abbe_tracer_passes(const abbe_tracer *tracer);
  * over the brightest texels that hold 95 % of its light. */
 double abbe_tracer_error(const abbe_tracer *tracer);
 
-/* Means so far and, after two passes and more, their standard errors. Picture: R, G, B (X, Y, Z in that space), stderr.R …,
- * caustic.R … (the part that came to its receiver through a refractor), then the bands S0.…nm and
- * stderr.S0.…nm. With guides, after two passes and more: photons.R … (the caustic that the eye
- * sees straight), eye.R … (all else), albedo.R …, normal.X …, depth.Z in m (abbe_eye_sample),
- * stderr. of each, and covariance.photons.RG …, covariance.eye.RG … of the means. Map: X, Y, Z, flux a texel in W, stderr.X …, bands in W/nm. Both carry what the
- * run was as attributes. ABBE_INVALID_ARGUMENT where the request left it out. */
+/* Means so far and, after two passes and more, their standard errors. Picture: R, G, B (X, Y, Z in
+ * that space), stderr.R …, caustic.R … (the part that came to its receiver through a refractor),
+ * then the bands S0.…nm and stderr.S0.…nm. With guides, after two passes and more: photons.R … (the
+ * caustic that the eye sees straight), eye.R … (all else), albedo.R …, normal.X …, depth.Z in m
+ * (abbe_eye_sample), stderr. of each, and covariance.photons.RG …, covariance.eye.RG … of the
+ * means. Map: X, Y, Z, flux a texel in W, stderr.X …, bands in W/nm. Both carry what the run was as
+ * attributes. ABBE_INVALID_ARGUMENT where the request left it out. */
 abbe_result abbe_tracer_picture(const abbe_tracer *tracer, abbe_image *out, abbe_error *error);
 abbe_result abbe_tracer_map(const abbe_tracer *tracer, abbe_image *out, abbe_error *error);
 

@@ -51,8 +51,9 @@ typedef struct abbe_geometry {
   RTCScene embree;
 } abbe_geometry;
 
-/* ABBE_UNSUPPORTED for more than 64 refractors, or for one thinner than eight times what a ray starts
- * off the face that it leaves (2^-15 of its largest coordinate); ABBE_NO_MEMORY where Embree has none. */
+/* ABBE_UNSUPPORTED for more than 64 refractors, or for one thinner than eight times what a ray
+ * starts off the face that it leaves (2^-15 of its largest coordinate); ABBE_NO_MEMORY where Embree
+ * has none. */
 abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error);
 void abbe_geometry_free(abbe_geometry *geometry);
 
@@ -128,8 +129,8 @@ static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, flo
 static inline void abbe_geometry_leave(const abbe_hit *hit, const float d[3], float out[3]) {
   const float share = ABBE_GEOMETRY_OFFSET;
   float side = d[0] * hit->ng[0] + d[1] * hit->ng[1] + d[2] * hit->ng[2];
-  float size = fmaxf(fmaxf(fabsf(hit->p[0]), fabsf(hit->p[1])), fabsf(hit->p[2]));
-  if (hit->surface->sphere) size = fmaxf(size, hit->surface->radius);
+  float size = hit->surface->sphere ? hit->surface->radius : 0;
+  for (int k = 0; k < 3; k++) size = fabsf(hit->p[k]) > size ? fabsf(hit->p[k]) : size;
   float offset = side < 0 ? -share * size : share * size;
   for (int k = 0; k < 3; k++) out[k] = hit->p[k] + offset * hit->ng[k];
 }

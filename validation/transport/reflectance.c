@@ -35,12 +35,10 @@ static void sample(const abbe_image *t, double u, double v, float out[3]) {
   }
 }
 
-void abbe_reflectance_rec709(const abbe_reflectance *r, uint32_t surface, uint32_t face, float u,
-                             float v, float out[3]) {
-  const abbe_surface *s = &r->geometry->surface[surface];
-  const abbe_object *object = &r->geometry->scene->object[s->object];
-  for (int k = 0; k < 3; k++) out[k] = (float)object->reflectance[k];
-  if (object->texture.data == NULL || s->uv == NULL || s->sphere) return;
+/* Apart, so that the many receivers without a texture do not wait for its registers. */
+__attribute__((noinline)) static void multiply_by_texture(const abbe_object *object,
+                                                          const abbe_surface *s, uint32_t face,
+                                                          float u, float v, float out[3]) {
   const uint32_t *f = s->face[face];
   double at[2];
   for (int k = 0; k < 2; k++)
@@ -50,6 +48,15 @@ void abbe_reflectance_rec709(const abbe_reflectance *r, uint32_t surface, uint32
   float texel[3];
   sample(&object->texture, at[0], at[1], texel);
   for (int k = 0; k < 3; k++) out[k] *= texel[k];
+}
+
+void abbe_reflectance_rec709(const abbe_reflectance *r, uint32_t surface, uint32_t face, float u,
+                             float v, float out[3]) {
+  const abbe_surface *s = &r->geometry->surface[surface];
+  const abbe_object *object = &r->geometry->scene->object[s->object];
+  for (int k = 0; k < 3; k++) out[k] = (float)object->reflectance[k];
+  if (object->texture.data == NULL || s->uv == NULL || s->sphere) return;
+  multiply_by_texture(object, s, face, u, v, out);
 }
 
 void abbe_reflectance_at(const abbe_reflectance *r, uint32_t surface, uint32_t face, float u,

@@ -34,6 +34,6 @@ void abbe_eye_samples_share(const abbe_geometry *g, const abbe_trace_camera *c, 
         found++;
       }
   double each = fmin(rays / (rays_of_sample * (double)found), ABBE_EYE_MOST_SAMPLES);
-  uint8_t many = each >= 1 ? (uint8_t)each : 1; /* not a number where nothing shows one */
+  uint8_t many = each >= 1 ? (uint8_t)lround(each) : 1; /* not a number where nothing shows one */
   for (size_t i = 0; i < width * height; i++) samples[i] = samples[i] > 1 ? many : 1;
 }

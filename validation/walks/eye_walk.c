@@ -233,7 +233,8 @@ static void cross(const eye_path *p, const abbe_hit *hit, crossing *x) {
   x->entering = along < 0;
   const float *outside = (shaded < 0) == x->entering ? hit->n : hit->ng;
   for (int k = 0; k < 3; k++) x->n[k] = x->entering ? outside[k] : -outside[k];
-  x->cos_i = fminf(-dot(p->d, x->n), 1);
+  float cosine = -dot(p->d, x->n);
+  x->cos_i = cosine < 1 ? cosine : 1;
   abbe_media_cross(p->inside, hit->surface->index, x->entering, &x->before, &x->after);
   x->from = abbe_media_of(x->before);
   x->to = abbe_media_of(x->after);

@@ -40,7 +40,7 @@ typedef struct abbe_eye_walk {
   uint32_t seed;
   float least_branch; /* share of what came into the glass below which roulette decides; 1: at all
                          interfaces */
-  const uint8_t *samples; /* [pixels] of each pixel in a pass; NULL: one */
+  const uint8_t *samples;       /* [pixels] of each pixel in a pass; NULL: one */
   const abbe_photon_grid *grid; /* NULL: no photons */
   float radius;                 /* of the gather, frame */
   double window_nm;             /* half the range of wavelengths that a dispersed path gathers */
@@ -57,8 +57,8 @@ typedef struct abbe_eye_sample {
   uint32_t rays;
 } abbe_eye_sample;
 
-/* What the pixel (row * width + column) shows in a pass: the mean of its samples, spread evenly over
- * the pixel and the wavelengths. */
+/* What the pixel (row * width + column) shows in a pass: the mean of its samples, spread evenly
+ * over the pixel and the wavelengths. */
 void abbe_eye_walk_pixel(const abbe_eye_walk *walk, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out);
 

@@ -81,6 +81,8 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
     w->hidden[i] = abbe_lamp_is_hidden(geometry, &geometry->scene->light[i]);
   memset(w->batch, 0, sizeof *w->batch);
   memset(w->next, 0, sizeof *w->next);
+  abbe_ray_prepare(w->batch->ray, PACKETS);
+  abbe_ray_prepare(w->next->ray, PACKETS);
   *out = w;
   return ABBE_OK;
 }

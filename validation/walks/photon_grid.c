@@ -7,12 +7,17 @@
 void abbe_photon_grid_free(abbe_photon_grid *grid) {
   if (grid == NULL) return;
   free(grid->photon);
+  free(grid->own);
   free(grid->first);
   *grid = (abbe_photon_grid){0};
 }
 
 static int32_t coordinate(float x, float cell) {
-  return (int32_t)floorf(fminf(fmaxf(x / cell, -1e9f), 1e9f));
+  float at = x / cell;
+  at = at > -1e9f ? at : -1e9f;
+  at = at < 1e9f ? at : 1e9f;
+  int32_t whole = (int32_t)at;
+  return whole - (at < (float)whole);
 }
 
 static size_t hash(const abbe_photon_grid *g, int32_t x, int32_t y, int32_t z) {
@@ -31,28 +36,31 @@ static abbe_result make_room(abbe_photon_grid *g, size_t count, abbe_error *erro
   if (count > g->room || g->first == NULL || cells != g->cells) {
     abbe_photon_grid_free(g);
     g->photon = malloc((count + 1) * sizeof *g->photon);
+    g->own = malloc((count + 1) * sizeof *g->own);
     g->first = malloc((cells + 1) * sizeof *g->first);
     g->room = count;
   }
   g->cells = cells;
-  if (g->photon != NULL && g->first != NULL) return ABBE_OK;
+  if (g->photon != NULL && g->own != NULL && g->first != NULL) return ABBE_OK;
   abbe_photon_grid_free(g);
   return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu photons: ask for fewer a pass",
                         count);
 }
 
 abbe_result abbe_photon_grid_fill(abbe_photon_grid *g, const abbe_grid_photon *photon, size_t count,
-                                  float radius, abbe_error *error) {
+                                  float radius, size_t threads, abbe_error *error) {
   ABBE_REQUIRE(g && (photon || count == 0), error);
   abbe_result result = make_room(g, count, error);
   if (result != ABBE_OK) return result;
   g->count = count;
   g->cell = 2 * radius;
   memset(g->first, 0, (g->cells + 1) * sizeof *g->first);
-  for (size_t i = 0; i < count; i++) g->first[cell_of(g, photon[i].p) + 1]++;
+#pragma omp parallel for num_threads((int)threads)
+  for (size_t i = 0; i < count; i++) g->own[i] = (uint32_t)cell_of(g, photon[i].p);
+  for (size_t i = 0; i < count; i++) g->first[g->own[i] + 1]++;
   for (size_t c = 0; c < g->cells; c++) g->first[c + 1] += g->first[c];
   /* first[c] runs to the end of its cell while the cells fill, and is put back after that */
-  for (size_t i = 0; i < count; i++) g->photon[g->first[cell_of(g, photon[i].p)]++] = photon[i];
+  for (size_t i = 0; i < count; i++) g->photon[g->first[g->own[i]]++] = photon[i];
   memmove(g->first + 1, g->first, g->cells * sizeof *g->first);
   g->first[0] = 0;
   return ABBE_OK;

@@ -28,6 +28,7 @@ typedef struct abbe_grid_photon {
 typedef struct abbe_photon_grid {
   size_t count, room;
   abbe_grid_photon *photon; /* [count] sorted by cell */
+  uint32_t *own;            /* [count] cells of the photons that it was filled with */
   uint32_t *first;          /* [cells + 1] */
   size_t cells;             /* a power of two */
   float cell;               /* side, frame */
@@ -38,7 +39,7 @@ void abbe_photon_grid_free(abbe_photon_grid *grid);
 /* Sorts count photons (kept in their order within a cell) for gathers of up to that radius.
  * Reuses the grid's memory. ABBE_NO_MEMORY. */
 abbe_result abbe_photon_grid_fill(abbe_photon_grid *grid, const abbe_grid_photon *photon,
-                                  size_t count, float radius, abbe_error *error);
+                                  size_t count, float radius, size_t threads, abbe_error *error);
 
 /* Calls take(user, photon) for each photon on that surface and side within radius (at most the
  * one that the grid was filled for) of p. */

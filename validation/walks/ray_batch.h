@@ -19,7 +19,14 @@ extern "C" {
 
 #define ABBE_RAY_LANES 16 /* of a packet */
 
-/* Ray i to be traced: lane i % ABBE_RAY_LANES of its packet. */
+/* What all rays of the packets have in common; they are zeroed before. */
+static inline void abbe_ray_prepare(struct RTCRayHit16 *packets, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < ABBE_RAY_LANES; k++)
+      packets[i].ray.mask[k] = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+}
+
+/* Ray i to be traced, of prepared packets: lane i % ABBE_RAY_LANES of its packet. */
 static inline void abbe_ray_put(struct RTCRayHit16 *packets, size_t i, const float o[3],
                                 const float d[3]) {
   struct RTCRayHit16 *p = &packets[i / ABBE_RAY_LANES];
@@ -30,10 +37,7 @@ static inline void abbe_ray_put(struct RTCRayHit16 *packets, size_t i, const flo
   p->ray.dir_x[k] = d[0];
   p->ray.dir_y[k] = d[1];
   p->ray.dir_z[k] = d[2];
-  p->ray.tnear[k] = 0;
   p->ray.tfar[k] = INFINITY;
-  p->ray.mask[k] = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
-  p->ray.flags[k] = 0;
   p->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
   p->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
 }

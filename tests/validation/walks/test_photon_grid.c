@@ -65,7 +65,7 @@ static void finds_what_a_search_through_all_finds(void **state) {
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
     float radius = (float)cases[c].radius;
     scatter(photon, PHOTONS, cases[c].centre, cases[c].size, cases[c].flat, &random);
-    assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, radius, NULL), ABBE_OK);
+    assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, radius, 2, NULL), ABBE_OK);
     for (int i = 0; i < 100; i++) {
       /* half of the places are photons themselves, the others anywhere */
       float p[3];
@@ -86,7 +86,7 @@ static void photons_in_one_place(void **state) {
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {-0.5f, 0.25f, 0}, .flux = 1, .colour = i};
   abbe_photon_grid grid = {0};
-  assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.5f, NULL), ABBE_OK);
+  assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.5f, 2, NULL), ABBE_OK);
   check_gather(&grid, photon, PHOTONS, (float[3]){-0.5f, 0.25f, 0}, 0.5f, 0, 1);
   check_gather(&grid, photon, PHOTONS, (float[3]){0, 0.25f, 0}, 0.5f, 0, 1); /* on the rim */
   check_gather(&grid, photon, PHOTONS, (float[3]){0.01f, 0.25f, 0}, 0.5f, 0, 1);
@@ -106,7 +106,7 @@ static void order_is_kept_within_a_cell(void **state) {
   for (uint32_t i = 0; i < PHOTONS; i++)
     photon[i] = (abbe_grid_photon){.p = {0.2f, 0.2f, 0.2f}, .flux = 1, .colour = i};
   abbe_photon_grid grid = {0};
-  assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.1f, NULL), ABBE_OK);
+  assert_int_equal(abbe_photon_grid_fill(&grid, photon, PHOTONS, 0.1f, 2, NULL), ABBE_OK);
   uint32_t last = 0;
   abbe_photon_grid_gather(&grid, photon[0].p, 0.1f, 0, 1, gather_order, &last);
   assert_int_equal(last, PHOTONS - 1);
@@ -122,7 +122,7 @@ static void a_grid_can_be_filled_again(void **state) {
   abbe_photon_grid grid = {0};
   const size_t counts[] = {10, PHOTONS, 1, 0, 1500};
   for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
-    assert_int_equal(abbe_photon_grid_fill(&grid, photon, counts[c], 0.3f, NULL), ABBE_OK);
+    assert_int_equal(abbe_photon_grid_fill(&grid, photon, counts[c], 0.3f, 2, NULL), ABBE_OK);
     for (uint32_t surface = 0; surface < 3; surface++)
       check_gather(&grid, photon, counts[c], photon[0].p, 0.3f, surface, 1);
     gathered g = {0};
