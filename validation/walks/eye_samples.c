@@ -1,6 +1,7 @@
 #include "validation/walks/eye_samples.h"
 
 static const double rays_of_sample = 32; /* in a cut stone, about */
+static const double more_for_glass = 4;
 
 static bool shows_refractor(const abbe_geometry *g, const abbe_trace_camera *c, size_t x,
                             size_t y) {
@@ -33,6 +34,8 @@ void abbe_eye_samples_share(const abbe_geometry *g, const abbe_trace_camera *c, 
         samples[y * width + x] |= 2;
         found++;
       }
+  /* the more of the picture is glass, the less of it waits for the photons alone */
+  rays *= 1 + more_for_glass * (double)found / (double)(width * height);
   double each = fmin(rays / (rays_of_sample * (double)found), ABBE_EYE_MOST_SAMPLES);
   uint8_t many = each >= 1 ? (uint8_t)lround(each) : 1; /* not a number where nothing shows one */
   for (size_t i = 0; i < width * height; i++) samples[i] = samples[i] > 1 ? many : 1;

@@ -19,7 +19,8 @@ extern "C" {
 #define ABBE_EYE_MOST_SAMPLES 16
 
 /* samples[height][width]: 1 for what shows receivers alone; else as many as about `rays` rays in
- * all of the picture allow, alike for all, 1 to ABBE_EYE_MOST_SAMPLES. */
+ * all of the picture allow, or up to five times that the more of it is glass; alike for all, 1 to
+ * ABBE_EYE_MOST_SAMPLES. */
 void abbe_eye_samples_share(const abbe_geometry *geometry, const abbe_trace_camera *camera,
                             double rays, size_t threads, uint8_t *samples);
 

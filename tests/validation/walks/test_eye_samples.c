@@ -62,8 +62,8 @@ static void rays_are_shared_out(void **state) {
   share(CAMERA POINT_LIGHT FLOOR BUBBLE, 1e9, 1, &f);
   double pixels = (double)count(&f, ABBE_EYE_MOST_SAMPLES);
   for (int samples = 2; samples < ABBE_EYE_MOST_SAMPLES; samples += 5) {
-    abbe_eye_samples_share(&f.tracer->geometry, &f.tracer->camera, (samples + 0.4) * 32 * pixels, 1,
-                           f.samples);
+    double rays = (samples + 0.4) * 32 * pixels / (1 + 4 * pixels / (SIDE * SIDE));
+    abbe_eye_samples_share(&f.tracer->geometry, &f.tracer->camera, rays, 1, f.samples);
     assert_int_equal(count(&f, (uint8_t)samples), (size_t)pixels);
   }
   abbe_eye_samples_share(&f.tracer->geometry, &f.tracer->camera, 10, 1, f.samples);
