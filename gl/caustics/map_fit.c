@@ -59,7 +59,7 @@ static void resort(const double *histogram, double low, double high, double from
 
 /* A share of the texels goes evenly, the rest to where light lands; smooth, so that neighbouring
  * texels are alike. */
-enum { WARP_BLUR = 8 };
+enum { WARP_BLUR = 2 };
 
 static void make_warp(const double share[ABBE_WARP_STEPS], double total,
                       double knot[ABBE_WARP_STEPS + 1]) {

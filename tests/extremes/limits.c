@@ -239,7 +239,8 @@ static void receivers(abbe_context *context, extreme_row *row) {
       EXTREME_FLOOR EXTREME_BALL};
   extreme_frame frame[3];
   for (int i = 0; i < 3; i++) {
-    extreme e = {.scene = {.b = 0.01, .objects = floors[i]}};
+    /* where more rays are taken depends on how bright the floor is */
+    extreme e = {.scene = {.b = 0.01, .objects = floors[i]}, .desc = {.adaptive = 1}};
     if (!draw(context, &e, &frame[i], row)) return;
   }
   double worst = 0;
