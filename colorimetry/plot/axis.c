@@ -85,20 +85,41 @@ static void label_decade(int power, char *label, size_t size) {
     snprintf(label, size, "%s", abbe_axis_power(power, text));
 }
 
-static size_t decades(const abbe_axis *a, size_t wanted, abbe_axis_tick *tick) {
-  int low = (int)floor(log10(a->min) - 1e-9), high = (int)ceil(log10(a->max) + 1e-9);
-  int stride = 1 + (high - low) / (int)(wanted + 1), count = 0;
+/* Every `stride`th power of ten has a label; with `between` twice and five times it too. */
+static size_t powers_of_ten(const abbe_axis *a, int stride, bool between, abbe_axis_tick *tick,
+                            size_t *major_count) {
+  int low = (int)floor(log10(a->min) - 1e-9), high = (int)ceil(log10(a->max) + 1e-9), count = 0;
+  *major_count = 0;
   for (int power = low; power <= high; power++)
     for (int digit = 1; digit < 10; digit++) {
       double value = digit * pow(10, power);
-      bool major = digit == 1 && power % stride == 0;
+      bool power_itself = digit == 1 && power % stride == 0;
+      bool major = power_itself || (between && (digit == 2 || digit == 5));
       if (value < a->min * (1 - 1e-9) || value > a->max * (1 + 1e-9)) continue;
       if ((!major && stride > 1 && digit > 1) || count == ABBE_AXIS_MAX_TICKS) continue;
       tick[count] = (abbe_axis_tick){.value = value, .major = major};
-      if (major) label_decade(power, tick[count].label, sizeof tick[count].label);
+      if (power_itself)
+        label_decade(power, tick[count].label, sizeof tick[count].label);
+      else if (major)
+        abbe_number_format(tick[count].label, sizeof tick[count].label, "%.*f",
+                           power < 0 ? -power : 0, value);
+      *major_count += major;
       count++;
     }
   return (size_t)count;
+}
+
+static size_t log_ticks(const abbe_axis *a, size_t wanted, abbe_axis_tick *tick, int *exponent) {
+  const double decades = log10(a->max / a->min);
+  size_t major, count;
+  int stride = 1 + (int)(ceil(decades) / (double)(wanted + 1));
+  do count = powers_of_ten(a, stride, false, tick, &major);
+  while (major < 2 && stride-- > 1);
+  if (major >= 2) return count;
+  /* round values say more than one lonely power of ten */
+  const bool plain = a->min >= 1e-3 && a->max <= 1e5 && decades >= 1;
+  if (plain) count = powers_of_ten(a, 1, true, tick, &major);
+  return plain && major >= 2 ? count : linear_ticks(a, wanted, tick, exponent);
 }
 
 size_t abbe_axis_ticks(const abbe_axis *axis, size_t wanted,
@@ -106,9 +127,6 @@ size_t abbe_axis_ticks(const abbe_axis *axis, size_t wanted,
   *exponent = 0;
   if (wanted < 2) wanted = 2;
   if (wanted > ABBE_AXIS_MAX_TICKS / 4) wanted = ABBE_AXIS_MAX_TICKS / 4;
-  if (!axis->log) return linear_ticks(axis, wanted, tick, exponent);
-  size_t count = decades(axis, wanted, tick), major = 0;
-  for (size_t i = 0; i < count; i++) major += tick[i].major;
-  /* less than two decades: round values say more than one lonely power of ten */
-  return major >= 2 ? count : linear_ticks(axis, wanted, tick, exponent);
+  return axis->log ? log_ticks(axis, wanted, tick, exponent)
+                   : linear_ticks(axis, wanted, tick, exponent);
 }

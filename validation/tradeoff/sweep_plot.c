@@ -275,7 +275,7 @@ abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tab
   for (size_t i = 1; i < charts && result == ABBE_OK; i++) /* one legend does for all */
     for (size_t k = 0; k < f[i].series_count; k++) f[i].series[k].label = NULL;
   if (result == ABBE_OK)
-    result = abbe_chart_write_grid(path, chart, charts, times, 420 * times, 300 * count, error);
+    result = abbe_chart_write_grid(path, chart, charts, times, 420 * times, 230 * count, error);
   for (size_t i = 0; i < charts && f != NULL; i++) close_figures(&f[i]);
   free(f);
   return result;

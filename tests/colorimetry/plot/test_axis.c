@@ -36,6 +36,10 @@ static void decades_are_ticks_of_a_log_axis(void **state) {
   check_labels((abbe_axis){3e-6, 2e-3, true, false}, 6, "10⁻⁵ 10⁻⁴ 0.001", 0);
   check_labels((abbe_axis){1, 1e12, true, false}, 5, "1 1000 10⁶ 10⁹ 10¹²", 0);
   check_labels((abbe_axis){2, 8, true, false}, 4, "2 4 6 8", 0);
+  /* one power of ten is no scale: two and five times it, or powers of ten closer together */
+  check_labels((abbe_axis){150, 6000, true, false}, 3, "200 500 1000 2000 5000", 0);
+  check_labels((abbe_axis){0.003, 0.08, true, false}, 3, "0.005 0.01 0.02 0.05", 0);
+  check_labels((abbe_axis){7, 6000, true, false}, 3, "10 100 1000", 0);
   abbe_axis axis = {1, 100, true, false};
   abbe_axis_tick tick[ABBE_AXIS_MAX_TICKS];
   int exponent;

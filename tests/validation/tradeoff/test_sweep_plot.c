@@ -78,7 +78,7 @@ static void test_scenes(void **state) {
   assert_int_equal(plot_scenes(path, tables, 2, ABBE_SWEEP_CAUSTIC_DE, &error), ABBE_OK);
   assert_int_equal(abbe_png_read(path, &image, NULL), ABBE_OK);
   assert_int_equal(image.width, 420);
-  assert_int_equal(image.height, 600);
+  assert_int_equal(image.height, 460);
   abbe_image_free(&image);
   unlink(path);
   for (size_t k = 0; k < 2; k++) tables[0].row[k].number[ABBE_SWEEP_WARM_MS] = 500;
