@@ -251,6 +251,13 @@ static size_t known_times(const abbe_sweep_table *tables, size_t count,
   return times;
 }
 
+/* A legend of all would hide half of a small chart: each chart of the first row has a part of it.
+ */
+static void keep_labels(figures *f, size_t chart, size_t times) {
+  for (size_t k = 0; k < f->series_count; k++)
+    if (k * times / f->series_count != chart) f->series[k].label = NULL;
+}
+
 abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tables, size_t count,
                                    abbe_sweep_number number, abbe_error *error) {
   ABBE_REQUIRE(path && tables, error);
@@ -272,8 +279,7 @@ abbe_result abbe_sweep_plot_scenes(const char *path, const abbe_sweep_table *tab
                 : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the sweeps' charts");
   for (size_t i = 0; i < charts && result == ABBE_OK; i++)
     result = make_fronts(&tables[i / times], time[i % times], number, &f[i], &chart[i], error);
-  for (size_t i = 1; i < charts && result == ABBE_OK; i++) /* one legend does for all */
-    for (size_t k = 0; k < f[i].series_count; k++) f[i].series[k].label = NULL;
+  for (size_t i = 0; i < charts && result == ABBE_OK; i++) keep_labels(&f[i], i, times);
   if (result == ABBE_OK)
     result = abbe_chart_write_grid(path, chart, charts, times, 420 * times, 230 * count, error);
   for (size_t i = 0; i < charts && f != NULL; i++) close_figures(&f[i]);
