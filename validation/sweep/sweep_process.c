@@ -200,20 +200,21 @@ abbe_result abbe_sweep_process_measure(abbe_sweep_process *p, bool cold, abbe_sw
                                        abbe_error *error) {
   ABBE_REQUIRE(p && row, error);
   char picture[PATH + 32], cache[PATH + 32], filled[PATH + 32];
-  double first, warm[MOST_RUNS];
+  double first = 0, warm[MOST_RUNS];
   command c;
   snprintf(picture, sizeof picture, "%s/picture.exr", p->folder);
   snprintf(filled, sizeof filled, "%s/shaders", p->folder);
   snprintf(cache, sizeof cache, "%s/shaders-%zu", p->folder, ++p->caches);
   make_command(&p->desc, &row->setting, picture, &c);
-  /* The first fills what is missing in the cache, so it is not warm. */
-  abbe_result result = run(&c, cold ? cache : filled, &first, error);
+  /* The first fills what is missing in the cache, so it is not warm. The tracer needs none. */
+  const bool traced = abbe_sweep_setting_is_traced(&row->setting);
+  abbe_result result = traced ? ABBE_OK : run(&c, cold ? cache : filled, &first, error);
   for (size_t i = 0; i < p->desc.runs && result == ABBE_OK; i++)
     result = run(&c, cold ? cache : filled, &warm[i], error);
   if (cold) nftw(cache, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
   if (result != ABBE_OK) return result;
   qsort(warm, p->desc.runs, sizeof *warm, compare_times);
-  if (cold) row->number[ABBE_SWEEP_COLD_MS] = first;
   row->number[ABBE_SWEEP_WARM_MS] = warm[p->desc.runs / 2];
+  if (cold) row->number[ABBE_SWEEP_COLD_MS] = traced ? warm[p->desc.runs / 2] : first;
   return ABBE_OK;
 }
