@@ -82,8 +82,10 @@ abbe_result abbe_frame_times_camera(abbe_renderer *renderer, const abbe_scene *s
   abbe_result result = time_change(renderer, &moved, desc, &unused, error); /* warms up */
   for (size_t i = 0; i < count && result == ABBE_OK; i++)
     result = time_change(renderer, i % 2 == 0 ? scene : &moved, desc, &all[i], error);
-  const abbe_result back = abbe_renderer_change(renderer, scene, desc, NULL);
-  if (result != ABBE_OK || back != ABBE_OK) return result != ABBE_OK ? result : back;
+  /* `moved` does not outlive this, whatever went wrong */
+  if (result != ABBE_OK) abbe_renderer_change(renderer, scene, desc, NULL);
+  if (result == ABBE_OK) result = abbe_renderer_change(renderer, scene, desc, error);
+  if (result != ABBE_OK) return result;
   qsort(all, count, sizeof *all, abbe_order_ascending);
   *ms = all[count / 2];
   return abbe_renderer_frame(renderer, NULL, NULL, NULL, error);

@@ -34,8 +34,8 @@ abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, dou
                                       abbe_error *error);
 
 /* The median of `count` (1 to 16) times of a frame after the camera has moved a little, the change
- * with it: `scene` and `desc` are the renderer's. It ends with the camera where it was.
- * ABBE_CANCELLED as above; errors of abbe_renderer_change and abbe_renderer_frame. */
+ * with it, ms: `scene` and `desc` are the renderer's. It ends with the camera where it was. Errors of
+ * abbe_renderer_change and abbe_renderer_frame. */
 abbe_result abbe_frame_times_camera(abbe_renderer *renderer, const abbe_scene *scene,
                                     const abbe_render_desc *desc, size_t count, double *ms,
                                     abbe_error *error);
