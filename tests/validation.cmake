@@ -17,6 +17,7 @@ foreach(name
     field
     file_comparison
     geometry
+    solid
     interface
     light_walk path_splitting
     known_answers
@@ -33,6 +34,7 @@ foreach(name
     reflectance
     route
     scatter
+    inner_walk
     spectral_sampling
     reference
     sphere_quadrature

@@ -1,6 +1,7 @@
 #include "validation/tracer/emission.h"
 
 #include "validation/transport/random.h"
+#include "validation/transport/side_by_side.h"
 
 #include <stdlib.h>
 
@@ -44,7 +45,7 @@ static size_t cell_of(const abbe_emission *e, uint32_t photon) {
 }
 
 /* Every other bit, from the lowest on. */
-static uint32_t even_bits(uint32_t z) {
+static inline uint32_t even_bits(uint32_t z) {
   z &= 0x55555555u;
   z = (z | z >> 1) & 0x33333333u;
   z = (z | z >> 2) & 0x0f0f0f0fu;
@@ -52,34 +53,104 @@ static uint32_t even_bits(uint32_t z) {
   return (z | z >> 8) & 0x0000ffffu;
 }
 
-/* The q-th of n places in a cell: n parts of a Z-order curve through it, one place at random in
- * each. Photons that follow each other are neighbours, and every part of the cell has its share. */
-static void place_in_cell(uint32_t q, uint32_t n, float random, float uv[2]) {
-  uint32_t z = (uint32_t)(((double)q + (double)random) / (double)n * 4294967296.0);
-  uv[0] = (float)even_bits(z) * 0x1p-16f;
-  uv[1] = (float)even_bits(z >> 1) * 0x1p-16f;
+enum { LANES = ABBE_PROJECTION_MAP_LANES };
+
+/* Photons that follow each other, an array of a lane each. */
+typedef struct block {
+  abbe_projection_map_rays rays;
+  const abbe_projection_map_cell *cell[LANES];
+  uint32_t first;        /* photon of the first lane */
+  uint32_t place[LANES]; /* of the photons of its cell: which */
+  double part[LANES];    /* 2^32 over their number */
+  float share[LANES];    /* of the light's photons that go to the cell, and their number: product */
+  float within[LANES], disk[2][LANES];
+  uint32_t step[LANES];
+} block;
+
+/* Where in its cell each photon starts, and its wavelength. The q-th of n has its own of n parts of
+ * a Z-order curve through the cell, a place at random in it: photons that follow each other are
+ * neighbours, and every part of the cell has its share. Along the curve the wavelengths are the
+ * fractional parts of multiples of the golden ratio, shifted at random: every patch of neighbours
+ * has them all. */
+SIDE_BY_SIDE static void place(uint32_t light, uint32_t pass, uint32_t seed, uint32_t shift,
+                               block *b) {
+  const uint32_t golden = 2654435769u;
+  float random[LANES];
+  uint32_t z[LANES];
+  for (uint32_t k = 0; k < LANES; k++) {
+    uint32_t bits[4];
+    abbe_random_bits(b->first + k, light, pass, seed, bits);
+    random[k] = abbe_random_float(bits[0]);
+    b->disk[0][k] = abbe_random_float(bits[1]);
+    b->disk[1][k] = abbe_random_float(bits[2]);
+  }
+  for (uint32_t k = 0; k < LANES; k++)
+    z[k] = (uint32_t)((b->place[k] + (double)random[k]) * b->part[k]);
+  for (uint32_t k = 0; k < LANES; k++) {
+    b->rays.x[k] += (float)even_bits(z[k]) * 0x1p-16f;
+    b->rays.y[k] += (float)even_bits(z[k] >> 1) * 0x1p-16f;
+    b->step[k] = abbe_spectral_sampling_step(abbe_random_float((b->first + k) * golden + shift),
+                                             &b->within[k]);
+  }
 }
 
-/* Along the curve the wavelengths are the fractional parts of
- * multiples of the golden ratio, shifted at random: every patch of neighbours has them all. */
+/* From a light with a size, one by one. */
+static void start_on_disk(const abbe_projection_map *map, block *b) {
+  abbe_projection_map_rays *r = &b->rays;
+  for (size_t k = 0; k < LANES; k++) {
+    float uv[2] = {r->x[k] - (float)b->cell[k]->x, r->y[k] - (float)b->cell[k]->y}, o[3], d[3];
+    float disk[2] = {b->disk[0][k], b->disk[1][k]};
+    r->flux[k] = abbe_projection_map_ray(map, b->cell[k], uv, disk, o, d);
+    for (int i = 0; i < 3; i++) {
+      r->o[i][k] = o[i];
+      r->d[i][k] = d[i];
+    }
+  }
+}
+
+static void write(const abbe_emission *e, const block *b, size_t count, abbe_photon *photon) {
+  const abbe_projection_map_rays *r = &b->rays;
+  const size_t steps = e->t->sampling.steps;
+  const float(*xyz)[3] = (const float(*)[3])e->t->sampling.xyz + e->light * steps;
+  for (size_t k = 0; k < count; k++) {
+    abbe_photon *p = &photon[k];
+    for (int i = 0; i < 3; i++) {
+      p->o[i] = r->o[i][k];
+      p->d[i] = r->d[i][k];
+    }
+    p->flux = r->flux[k] / b->share[k];
+    p->step = b->step[k];
+    p->within = b->within[k];
+    p->y = xyz[p->step][1];
+    p->id = (b->first + (uint32_t)k) | (uint32_t)e->light << 27;
+  }
+}
+
 static size_t emit(const abbe_emission *e, uint32_t from, uint32_t to, abbe_photon *photon) {
   const abbe_projection_map *map = &e->t->projection[e->light];
-  const uint32_t golden = 2654435769u;
-  const float(*xyz)[3] = (const float(*)[3])e->t->sampling.xyz + e->light * e->t->sampling.steps;
-  uint32_t shift[4], light = (uint32_t)e->light + 1, seed = e->seed;
+  const uint32_t light = (uint32_t)e->light + 1;
+  uint32_t shift[4];
   size_t cell = cell_of(e, from);
-  abbe_random_bits(0, light, e->pass, seed, shift);
-  for (uint32_t j = from; j < to; j++) {
-    while (cell + 1 < map->count && e->first[cell + 1] <= j) cell++;
-    float random[4], at[2];
-    abbe_random4(j, light, e->pass, seed, random);
-    place_in_cell(j - e->first[cell], e->first[cell + 1] - e->first[cell], random[0], at);
-    abbe_photon *p = photon++;
-    float flux = abbe_projection_map_ray(map, &map->cell[cell], at, random + 1, p->o, p->d);
-    p->flux = flux / ((float)e->count * map->cell[cell].share);
-    p->step = abbe_spectral_sampling_step(abbe_random_float(j * golden + shift[0]), &p->within);
-    p->y = xyz[p->step][1];
-    p->id = j | (uint32_t)e->light << 27;
+  abbe_random_bits(0, light, e->pass, e->seed, shift);
+  for (uint32_t j = from; j < to; j += LANES) {
+    const uint32_t count = to - j < LANES ? to - j : LANES;
+    block b = {.first = j};
+    for (uint32_t k = 0; k < LANES; k++) {
+      const uint32_t photon_id = k < count ? j + k : j;
+      while (cell + 1 < map->count && e->first[cell + 1] <= photon_id) cell++;
+      const abbe_projection_map_cell *c = b.cell[k] = &map->cell[cell];
+      b.place[k] = k < count ? photon_id - e->first[cell] : 0;
+      b.part[k] = 4294967296.0 / (double)(e->first[cell + 1] - e->first[cell]);
+      b.share[k] = (float)e->count * c->share;
+      b.rays.x[k] = (float)c->x;
+      b.rays.y[k] = (float)c->y;
+    }
+    place(light, e->pass, e->seed, shift[0], &b);
+    if (map->radius > 0)
+      start_on_disk(map, &b);
+    else
+      abbe_projection_map_aim(map, &b.rays);
+    write(e, &b, count, &photon[j - from]);
   }
   return to - from;
 }

@@ -1,6 +1,7 @@
 #include "validation/tracer/light_pass.h"
 
 #include "validation/tracer/emission.h"
+#include "validation/walks/path_splitting.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -255,7 +256,7 @@ abbe_result abbe_tracer_choose_splits(abbe_tracer *t, abbe_error *error) {
     abbe_emission e;
     result = abbe_emission_make(t, l, SPLIT_TRIALS, 0, t->desc.seed, &e, error);
     uint64_t before = abbe_tracer_walk_rays(t);
-    if (result == ABBE_OK) t->splits[l] = abbe_light_walk_best_splits(hit, land_trial(t, &e, hit));
+    if (result == ABBE_OK) t->splits[l] = abbe_path_splitting_best(hit, land_trial(t, &e, hit));
     t->photon_rays +=
         (double)t->photons[l] * (double)(abbe_tracer_walk_rays(t) - before) / SPLIT_TRIALS;
     abbe_emission_free(&e);

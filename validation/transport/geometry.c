@@ -224,6 +224,7 @@ abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe
       result = abbe_error_set(error, ABBE_NO_MEMORY,
                               "Embree could not build its hierarchy over the scene's surfaces");
   }
+  if (result == ABBE_OK) result = abbe_solids_make(&g, &g.solid, error);
   if (result != ABBE_OK) {
     abbe_geometry_free(&g);
     return result;
@@ -241,6 +242,7 @@ void abbe_geometry_free(abbe_geometry *g) {
     free(g->surface[i].normal);
     free(g->surface[i].face);
   }
+  abbe_solids_free(g->solid, g->refractor_count);
   free(g->surface);
   free(g->refractor_object);
   *g = (abbe_geometry){0};

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "scenes/scene.h"
+#include "validation/transport/solid.h"
 
 #include <embree3/rtcore.h>
 #include <math.h>
@@ -47,6 +48,7 @@ typedef struct abbe_geometry {
   abbe_surface *surface; /* [surface_count], by geometry identifier */
   size_t refractor_count, receiver_count;
   uint32_t *refractor_object; /* [refractor_count] */
+  abbe_solid *solid;          /* [refractor_count] */
   RTCDevice device;
   RTCScene embree;
 } abbe_geometry;

@@ -192,8 +192,19 @@ static void shade(const context *c, const eye_path *p, const abbe_hit *hit, bool
 
 enum { ALL_KINDS = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_LAMPS };
 
+/* From inside a solid: where the path leaves it. */
+static bool leave_solid(const abbe_geometry *g, const eye_path *p, abbe_hit *hit, float *length) {
+  int refractor = abbe_media_of(p->inside);
+  if (refractor < 0 || !abbe_solid_is(&g->solid[refractor])) return false;
+  *hit = (abbe_hit){.surface = &g->surface[g->refractor_object[refractor]]};
+  *length = abbe_solid_leave(&g->solid[refractor], p->o, p->d, hit->p, hit->n);
+  memcpy(hit->ng, hit->n, sizeof hit->ng);
+  return true;
+}
+
 static bool trace(const context *c, const eye_path *p, abbe_hit *hit, float *length) {
   c->out->rays++;
+  if (leave_solid(c->w->geometry, p, hit, length)) return true;
   if (!abbe_geometry_hit(c->w->geometry, ALL_KINDS, p->o, p->d, INFINITY, hit)) return false;
   float square = 0;
   for (int k = 0; k < 3; k++) square += (hit->p[k] - p->o[k]) * (hit->p[k] - p->o[k]);

@@ -1,6 +1,7 @@
 #include "validation/walks/light_walk.h"
 
 #include "validation/transport/random.h"
+#include "validation/walks/inner_walk.h"
 #include "validation/walks/lamp_rays.h"
 #include "validation/walks/ray_batch.h"
 #include "validation/walks/scatter.h"
@@ -11,8 +12,6 @@
 enum {
   LANES = ABBE_RAY_LANES,
   PACKETS = ABBE_LIGHT_WALK_HITS / LANES,
-  MAX_STEPS = 10000,
-  EVEN_STEPS = 3,      /* whose decisions are spread evenly */
   SMALL_SCENE = 4096,  /* faces */
   COHERENT_BOUNCES = 2 /* how often rays of a packet are scattered before they are told apart */
 };
@@ -36,6 +35,14 @@ typedef struct ray_batch {
   path path[ABBE_LIGHT_WALK_HITS];
 } ray_batch;
 
+/* Paths on the inner side of one solid's surface. */
+typedef struct inner_batch {
+  size_t count;
+  uint32_t refractor;
+  abbe_inner_path inner[ABBE_LIGHT_WALK_HITS];
+  path path[ABBE_LIGHT_WALK_HITS];
+} inner_batch;
+
 struct abbe_light_walk {
   abbe_lamp_rays lamp_rays;
   const abbe_geometry *g;
@@ -44,10 +51,11 @@ struct abbe_light_walk {
   uint32_t seed;
   uint64_t rays;
   ray_batch *batch, *next; /* of this bounce and of the next */
-  uint32_t shift[4];       /* of the pass's even decisions */
-  unsigned splits;         /* interfaces at which paths are split, a bit each */
-  bool small;              /* so few faces that packets stay together wherever their rays go */
-  bool *hidden;            /* [lights] abbe_lamp_is_hidden */
+  inner_batch *inner;
+  uint32_t shift[4]; /* of the pass's even decisions */
+  unsigned splits;   /* interfaces at which paths are split, a bit each */
+  bool small;        /* so few faces that packets stay together wherever their rays go */
+  bool *hidden;      /* [lights] abbe_lamp_is_hidden */
   abbe_ray_record record;
   abbe_light_walk_room room;
 };
@@ -67,9 +75,10 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
     w->seed = seed;
     w->batch = aligned_alloc(64, (sizeof *w->batch + 63) / 64 * 64);
     w->next = aligned_alloc(64, (sizeof *w->next + 63) / 64 * 64);
+    w->inner = malloc(sizeof *w->inner);
     w->hidden = calloc(lights + 1, sizeof *w->hidden);
   }
-  if (w == NULL || w->batch == NULL || w->next == NULL || w->hidden == NULL) {
+  if (w == NULL || w->batch == NULL || w->next == NULL || w->inner == NULL || w->hidden == NULL) {
     abbe_light_walk_free(w);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a batch of photons");
   }
@@ -81,6 +90,7 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
     w->hidden[i] = abbe_lamp_is_hidden(geometry, &geometry->scene->light[i]);
   memset(w->batch, 0, sizeof *w->batch);
   memset(w->next, 0, sizeof *w->next);
+  w->inner->count = 0;
   abbe_ray_prepare(w->batch->ray, PACKETS);
   abbe_ray_prepare(w->next->ray, PACKETS);
   *out = w;
@@ -91,6 +101,7 @@ void abbe_light_walk_free(abbe_light_walk *walk) {
   if (walk == NULL) return;
   free(walk->batch);
   free(walk->next);
+  free(walk->inner);
   abbe_ray_record_free(&walk->record);
   free(walk->hidden);
   free(walk);
@@ -106,26 +117,6 @@ uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {
 
 void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces) {
   walk->splits = interfaces & ((1u << ABBE_PHOTON_SPLITS) - 1);
-}
-
-unsigned abbe_light_walk_best_splits(const abbe_photon_hit *hit, size_t count) {
-  unsigned best = 0;
-  double least = INFINITY;
-  for (unsigned splits = 0; splits < 1u << ABBE_PHOTON_SPLITS; splits++) {
-    double squares = 0, rays = 1;
-    for (int k = 0; k < ABBE_PHOTON_SPLITS; k++) rays *= splits >> k & 1 ? 2 : 1;
-    for (size_t i = 0; i < count; i++) {
-      double weight = 1;
-      for (int k = 0; k < ABBE_PHOTON_SPLITS; k++)
-        weight *= splits >> k & 1 ? (double)hit[i].chance[k] : 1;
-      squares += weight * (double)hit[i].flux * (double)hit[i].flux;
-    }
-    if (squares * rays < least) {
-      least = squares * rays;
-      best = splits;
-    }
-  }
-  return best;
 }
 
 void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets) {
@@ -178,8 +169,8 @@ static float dot(const float a[3], const float b[3]) {
  * numbers, so the first decisions are spread evenly over them: the fractional parts of multiples
  * of generalised golden ratios, shifted at random in every pass [Roberts2018]. */
 static float next_chance(const abbe_light_walk *w, const path *s, uint32_t pass) {
-  static const uint32_t ratio[EVEN_STEPS] = {3242174889u, 2447445414u, 3679390609u};
-  if (s->steps < EVEN_STEPS) return abbe_random_float(s->id * ratio[s->steps] + w->shift[s->steps]);
+  if (s->steps < ABBE_EVEN_STEPS)
+    return abbe_random_float(s->id * abbe_even_ratio[s->steps] + w->shift[s->steps]);
   float random[4];
   abbe_random4(s->id, s->steps, pass, w->seed, random);
   return random[0];
@@ -249,32 +240,37 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, pat
   float d[3] = {rays->ray.dir_x[k], rays->ray.dir_y[k], rays->ray.dir_z[k]};
   for (int i = 0; i < 3; i++) p->scatter.d[i][k] = d[i];
   if (id == RTC_INVALID_GEOMETRY_ID) return first ? NOT_COUNTED : s->inside != 0 ? LOST : MISSED;
+  if (first && r->w->g->surface[id].kind != ABBE_GEOMETRY_REFRACTORS) return NOT_COUNTED;
   abbe_hit *hit = &p->hit[k];
   abbe_geometry_place(&r->w->g->surface[id], rays->hit.primID[k], rays->hit.u[k], rays->hit.v[k], o,
                       d, rays->ray.tfar[k], hit);
   if (hit->surface->kind != ABBE_GEOMETRY_REFRACTORS) {
-    if (first) return NOT_COUNTED;
     if (s->inside != 0) r->ledger->contact += (double)(s->y * s->flux);
     return DEPOSITED;
   }
   if (first) r->ledger->reached += (double)(s->y * s->flux);
   bool absorbed = s->inside != 0 && !absorb(r->w, s, rays->ray.tfar[k], r->pass, r->ledger);
   p->scatter.chance[k] = next_chance(r->w, s, r->pass);
-  bool too_long = ++s->steps >= MAX_STEPS;
+  bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
   meet_interface(r->w, s, d, p, k);
   return too_long ? LOST : absorbed ? NOT_COUNTED : SCATTERS;
+}
+
+static bool is_split(const abbe_light_walk *w, const path *s) {
+  return s->steps <= ABBE_PHOTON_SPLITS && (w->splits >> (s->steps - 1u) & 1) != 0;
 }
 
 /* Numbers that decide for one branch at any share, but for total reflection's. */
 static const float REFLECT = -1, TRANSMIT = 2;
 
 /* What the path carries on the branch that was chosen, or on one of both; false for no light. */
-static bool take_branch(const packet *p, size_t k, size_t bounce, bool split, path *s) {
+static bool take_branch(const packet *p, size_t k, bool split, path *s) {
+  const size_t interface = s->steps - 1u;
   const bool reflects = p->scatter.reflects[k] && !p->straight[k];
   const float share = p->straight[k] ? 0 : p->scatter.share[k];
   const float part = reflects ? share : 1 - share;
   if (!split) {
-    if (bounce < ABBE_PHOTON_SPLITS) s->chance[bounce] = part;
+    if (interface < ABBE_PHOTON_SPLITS) s->chance[interface] = part;
     return true;
   }
   const bool reflecting = p->scatter.chance[k] < 0;
@@ -284,8 +280,39 @@ static bool take_branch(const packet *p, size_t k, size_t bounce, bool split, pa
   return part > 0;
 }
 
+static void leave_solid(run *r);
+
+/* Whether the path's way on is through a solid and asks nothing of Embree. */
+static bool stays_in_solid(const abbe_light_walk *w, const path *s) {
+  if (s->inside == 0 || w->splits >> s->steps != 0) return false;
+  return abbe_solid_is(&w->g->solid[abbe_media_of(s->inside)]);
+}
+
+/* Into the batch of its solid, whose paths leave it first where it is another's. */
+static void enter_solid(run *r, size_t k, const float d[3], const path *s) {
+  inner_batch *b = r->w->inner;
+  const uint32_t refractor = (uint32_t)abbe_media_of(s->inside);
+  if (b->count > 0 && b->refractor != refractor) leave_solid(r);
+  b->refractor = refractor;
+  const abbe_media *m = r->w->media;
+  const float *p = r->packet.hit[k].p;
+  b->path[b->count] = *s;
+  b->inner[b->count++] = (abbe_inner_path){
+      .p = {p[0], p[1], p[2]},
+      .d = {d[0], d[1], d[2]},
+      .eta = abbe_media_n(m, (int)refractor, s->step, s->within),
+      .attenuation = abbe_media_attenuation(m, (int)refractor, s->step, s->within),
+      .flux = s->flux,
+      .full = s->full,
+      .y = s->y,
+      .carried = s->carried,
+      .id = s->id,
+      .steps = s->steps,
+      .inner = s->inner};
+}
+
 /* The path after the interface, into the next batch; what matched physics does not follow ends. */
-static path_state go_on(const run *r, size_t k, path *s) {
+static path_state go_on(run *r, size_t k, path *s) {
   const packet *p = &r->packet;
   ray_batch *next = r->w->next;
   float o[3], d[3];
@@ -296,6 +323,10 @@ static path_state go_on(const run *r, size_t k, path *s) {
   bool reflects = p->scatter.reflects[k] && !p->straight[k];
   if (!p->straight[k] && !is_followed(r->w, s, reflects, p->scatter.share[k])) return TRAPPED;
   s->inside = reflects ? p->before[k] : p->after[k];
+  if (stays_in_solid(r->w, s)) {
+    enter_solid(r, k, d, s);
+    return SCATTERS;
+  }
   abbe_ray_put(next->ray, next->count, o, d);
   next->path[next->count++] = *s;
   return SCATTERS;
@@ -341,36 +372,72 @@ static void end_path(run *r, size_t k, path_state state, const path *s) {
   }
 }
 
-/* The paths of a packet on the branches that its lanes have taken; with `ends` those too that do
- * not scatter. */
-static void advance(run *r, const path *paths, size_t count, size_t bounce, bool split, bool ends) {
+/* The paths of a packet on the branches that its lanes have taken, or with `second` those of split
+ * paths on the other. */
+static void advance(run *r, const path *paths, size_t count, bool second) {
   for (size_t k = 0; k < count; k++) {
-    path s = paths[k];
     path_state state = r->packet.state[k];
-    if (state == SCATTERS) {
-      if (!take_branch(&r->packet, k, bounce, split, &s)) continue;
-      state = go_on(r, k, &s);
-    } else if (!ends) {
+    if (state != SCATTERS) {
+      if (!second) end_path(r, k, state, &paths[k]);
       continue;
     }
-    end_path(r, k, state, &s);
+    path s = paths[k];
+    const bool split = is_split(r->w, &s);
+    if ((second && !split) || !take_branch(&r->packet, k, split, &s)) continue;
+    state = go_on(r, k, &s);
+    if (state != SCATTERS) end_path(r, k, state, &s);
   }
 }
 
-/* Reflection for all lanes, and then transmission, or for each what its number decides. */
-static void scatter(run *r, const path *paths, size_t count, size_t bounce) {
+/* Each lane's path goes on as its number decides; one that is split is reflected, and then
+ * transmitted. */
+static void scatter(run *r, const path *paths, size_t count) {
   abbe_scatter *s = &r->packet.scatter;
-  if (bounce >= ABBE_PHOTON_SPLITS || (r->w->splits >> bounce & 1) == 0) {
-    abbe_scatter_packet(s);
-    advance(r, paths, count, bounce, false, true);
-    return;
+  bool splits[LANES], any = false, scatters = false;
+  for (size_t k = 0; k < count; k++) {
+    splits[k] = r->packet.state[k] == SCATTERS && is_split(r->w, &paths[k]);
+    if (splits[k]) s->chance[k] = REFLECT;
+    scatters = scatters || r->packet.state[k] == SCATTERS;
+    any = any || splits[k];
   }
-  for (size_t k = 0; k < count; k++) s->chance[k] = REFLECT;
+  if (scatters) abbe_scatter_packet(s);
+  advance(r, paths, count, false);
+  if (!any) return;
+  for (size_t k = 0; k < count; k++)
+    if (splits[k]) s->chance[k] = TRANSMIT;
   abbe_scatter_packet(s);
-  advance(r, paths, count, bounce, true, false);
-  for (size_t k = 0; k < count; k++) s->chance[k] = TRANSMIT;
-  abbe_scatter_packet(s);
-  advance(r, paths, count, bounce, true, true);
+  advance(r, paths, count, true);
+}
+
+/* The paths of a solid's batch to where they leave it, and on. */
+static void leave_solid(run *r) {
+  abbe_light_walk *w = r->w;
+  inner_batch *b = w->inner;
+  abbe_inner_rules rules = {.seed = w->seed, .pass = r->pass, .physics = w->physics};
+  memcpy(rules.shift, w->shift, sizeof rules.shift);
+  abbe_inner_walk(&w->g->solid[b->refractor], &rules, b->inner, b->count, r->ledger, &w->record,
+                  &w->rays);
+  for (size_t i = 0; i < b->count; i++) {
+    static const path_state states[] = {[ABBE_INNER_LEFT] = SCATTERS,
+                                        [ABBE_INNER_GONE] = NOT_COUNTED,
+                                        [ABBE_INNER_TRAPPED] = TRAPPED,
+                                        [ABBE_INNER_LOST] = LOST};
+    const abbe_inner_path *from = &b->inner[i];
+    path *s = &b->path[i];
+    if (s->steps == 1) s->chance[1] = from->second_chance;
+    s->flux = from->flux;
+    s->carried = from->carried;
+    s->inner = (uint16_t)from->inner;
+    s->steps = (uint16_t)from->steps;
+    s->inside = 0;
+    if (from->end == ABBE_INNER_LEFT) {
+      abbe_ray_put(w->next->ray, w->next->count, from->p, from->d);
+      w->next->path[w->next->count++] = *s;
+    } else {
+      end_path(r, 0, states[from->end], s);
+    }
+  }
+  b->count = 0;
 }
 
 /* ---- the batch ---- */
@@ -405,8 +472,9 @@ static void follow(run *r, size_t bounce) {
     path *paths = &b->path[first];
     for (size_t k = 0; k < used; k++)
       r->packet.state[k] = read_hit(r, &b->ray[first / LANES], k, &paths[k]);
-    scatter(r, paths, used, bounce);
+    scatter(r, paths, used);
   }
+  leave_solid(r);
 }
 
 size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t pass,

@@ -45,9 +45,6 @@ abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk);
  * is biased by either: splitting pays where the branch that is rarely taken is the one that lands.
  */
 void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces);
-/* The interfaces to split at, by the hits of a trial without: those that make the least of the mean
- * square of a hit's light, times the number of rays. */
-unsigned abbe_light_walk_best_splits(const abbe_photon_hit *hit, size_t count);
 
 /* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene; writes at
  * most count hits, twice as many for each interface to split at (ABBE_LIGHT_WALK_HITS), and adds to

@@ -2,6 +2,7 @@
 
 #include "scenes/geometry/vector.h"
 #include "validation/transport/random.h"
+#include "validation/transport/side_by_side.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -75,6 +76,49 @@ float abbe_projection_map_ray(const abbe_projection_map *a, const abbe_projectio
     flux *= fmaxf(d[0] * a->facing[0] + d[1] * a->facing[1] + d[2] * a->facing[2], 0);
   }
   return flux;
+}
+
+SIDE_BY_SIDE void abbe_projection_map_aim(const abbe_projection_map *a,
+                                          abbe_projection_map_rays *r) {
+  enum { LANES = ABBE_PROJECTION_MAP_LANES };
+  const float whole = a->power * a->measure, low = a->low, step = a->step;
+  float x[LANES], y[LANES], along[LANES], square[LANES];
+  for (int k = 0; k < LANES; k++) {
+    x[k] = low + step * r->x[k];
+    y[k] = low + step * r->y[k];
+    square[k] = x[k] * x[k] + y[k] * y[k];
+  }
+  if (a->parallel) {
+    for (int i = 0; i < 3; i++)
+      for (int k = 0; k < LANES; k++) {
+        r->o[i][k] = a->origin[i] + x[k] * a->right[i] + y[k] * a->up[i];
+        r->d[i][k] = a->way[i];
+      }
+    for (int k = 0; k < LANES; k++) r->flux[k] = whole;
+    return;
+  }
+  for (int k = 0; k < LANES; k++) {
+    float left = 1 - 0.25f * square[k], across = sqrtf(left > 0 ? left : 0);
+    x[k] *= across;
+    y[k] *= across;
+    along[k] = 1 - 0.5f * square[k];
+    r->flux[k] = square[k] < 4 ? whole : 0;
+  }
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < LANES; k++) {
+      r->o[i][k] = a->origin[i];
+      r->d[i][k] = x[k] * a->right[i] + y[k] * a->up[i] + along[k] * a->way[i];
+    }
+  if (a->light->kind != ABBE_LIGHT_SPOT) return;
+  const float fx = a->facing[0], fy = a->facing[1], fz = a->facing[2], outer = a->outer;
+  const float inner = a->inner, fade = outer > inner ? 1 / (outer - inner) : 0;
+  for (int k = 0; k < LANES; k++) {
+    float u = r->d[0][k] - fx, v = r->d[1][k] - fy, w = r->d[2][k] - fz;
+    float versine = 0.5f * (u * u + v * v + w * w), part = (outer - versine) * fade;
+    part = part * part * (3 - 2 * part);
+    part = versine <= inner ? 1 : part;
+    r->flux[k] *= versine <= outer ? part : 0;
+  }
 }
 
 /* ---- what of the plane a ball covers ---- */

@@ -54,6 +54,16 @@ void abbe_projection_map_free(abbe_projection_map *map);
 float abbe_projection_map_ray(const abbe_projection_map *map, const abbe_projection_map_cell *cell,
                               const float uv[2], const float disk[2], float o[3], float d[3]);
 
+/* Rays side by side: of a light without a size. In: the cell and the place in it, x and y, of each.
+ */
+#define ABBE_PROJECTION_MAP_LANES 16
+typedef struct abbe_projection_map_rays {
+  __attribute__((aligned(64))) float x[ABBE_PROJECTION_MAP_LANES], y[ABBE_PROJECTION_MAP_LANES];
+  float o[3][ABBE_PROJECTION_MAP_LANES], d[3][ABBE_PROJECTION_MAP_LANES];
+  float flux[ABBE_PROJECTION_MAP_LANES];
+} abbe_projection_map_rays;
+void abbe_projection_map_aim(const abbe_projection_map *map, abbe_projection_map_rays *rays);
+
 #ifdef __cplusplus
 }
 #endif

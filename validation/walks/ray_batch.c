@@ -7,8 +7,8 @@
 /* Kept packets say in a lane's flags whether it holds a ray, and how packets were traced. */
 enum { LANES = ABBE_RAY_LANES, KEPT = 1, KEPT_COHERENT = 2 };
 
-static void keep(abbe_ray_record *r, const struct RTCRayHit16 *packet, size_t lanes,
-                 bool coherent) {
+void abbe_ray_record_keep(abbe_ray_record *r, const struct RTCRayHit16 *packet, size_t lanes,
+                          bool coherent) {
   if (r->count == r->room) return;
   struct RTCRayHit16 *to = &r->packet[r->count++];
   *to = *packet;
@@ -29,7 +29,9 @@ void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool cohere
                           abbe_ray_record *record) {
   for (size_t first = 0; first < count; first += LANES) {
     size_t lanes = count - first < LANES ? count - first : LANES;
-    if (record->packet != NULL) keep(record, &packets[first / LANES], lanes, coherent);
+    abbe_ray_reset(&packets[first / LANES]);
+    if (record->packet != NULL)
+      abbe_ray_record_keep(record, &packets[first / LANES], lanes, coherent);
     trace_packet(scene, &packets[first / LANES], lanes, coherent);
   }
 }

@@ -37,9 +37,15 @@ static inline void abbe_ray_put(struct RTCRayHit16 *packets, size_t i, const flo
   p->ray.dir_x[k] = d[0];
   p->ray.dir_y[k] = d[1];
   p->ray.dir_z[k] = d[2];
-  p->ray.tfar[k] = INFINITY;
-  p->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-  p->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+}
+
+/* What tracing has written in a packet, as it was before. */
+static inline void abbe_ray_reset(struct RTCRayHit16 *p) {
+  for (size_t k = 0; k < ABBE_RAY_LANES; k++) {
+    p->ray.tfar[k] = INFINITY;
+    p->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    p->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
 }
 
 /* Packets that were traced, to be traced again for the sake of the time. A zeroed one keeps none.
@@ -56,6 +62,10 @@ void abbe_ray_record_free(abbe_ray_record *record);
  * where there are none. */
 bool abbe_ray_record_replay(abbe_ray_record *record, RTCScene scene, double *seconds,
                             uint64_t *rays);
+
+/* Keeps one packet more, of so many rays, while there is room. */
+void abbe_ray_record_keep(abbe_ray_record *record, const struct RTCRayHit16 *packet, size_t lanes,
+                          bool coherent);
 
 /* Traces rays [0, count). coherent: rays of a packet go to neighbouring places. */
 void abbe_ray_batch_trace(struct RTCRayHit16 *packets, size_t count, bool coherent, RTCScene scene,

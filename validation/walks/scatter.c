@@ -1,14 +1,7 @@
 #include "validation/walks/scatter.h"
 
 #include "validation/transport/interface.h"
-
-/* Compiled for several processors, and chosen when the program starts; sanitizers do not bear it.
- */
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(NDEBUG)
-#define SIDE_BY_SIDE __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define SIDE_BY_SIDE
-#endif
+#include "validation/transport/side_by_side.h"
 
 SIDE_BY_SIDE void abbe_scatter_packet(abbe_scatter *s) {
   for (size_t k = 0; k < ABBE_RAY_LANES; k++) {

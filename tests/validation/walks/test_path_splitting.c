@@ -1,6 +1,8 @@
 /* Photons that part at interfaces carry the same light as those that choose. */
 #include "tests/validation/walks/light_walks.h"
 
+#include "validation/walks/path_splitting.h"
+
 /* A photon that goes both ways brings as much to the floor as many that choose, and the books close
  * as before. */
 static void parted_light_is_the_same_light(void **state) {
@@ -67,9 +69,9 @@ static void parts_are_where_the_rare_way_lands(void **state) {
       memcpy(hit[k].chance, k < cases[i].rare_of_100 ? cases[i].rare : cases[i].common,
              sizeof hit[k].chance);
     }
-    assert_int_equal(abbe_light_walk_best_splits(hit, 100), cases[i].parts);
+    assert_int_equal(abbe_path_splitting_best(hit, 100), cases[i].parts);
   }
-  assert_int_equal(abbe_light_walk_best_splits(NULL, 0), 0);
+  assert_int_equal(abbe_path_splitting_best(NULL, 0), 0);
 }
 
 int main(void) {
