@@ -284,7 +284,8 @@ static void leave_solid(run *r);
 
 /* Whether the path's way on is through a solid and asks nothing of Embree. */
 static bool stays_in_solid(const abbe_light_walk *w, const path *s) {
-  if (s->inside == 0 || w->splits >> s->steps != 0) return false;
+  if (s->inside == 0) return false;
+  if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */
   return abbe_solid_is(&w->g->solid[abbe_media_of(s->inside)]);
 }
 
