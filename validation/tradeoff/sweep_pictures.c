@@ -53,6 +53,8 @@ static const abbe_sweep_row *find_yardstick(const abbe_sweep_table *table) {
 
 /* False where a table has no yardstick, or there is no table. */
 static bool fill_group(const abbe_sweep_table *tables, size_t count, const char *of, group *g) {
+  g->count = 0;
+  g->mean_ms = g->mean_error = 0;
   for (size_t i = 0; i < count; i++) {
     if (strcmp(tables[i].fact[ABBE_SWEEP_FACT_CLASS], of) != 0) continue;
     if (!abbe_sweep_table_tells(&tables[i], g->number)) continue;
@@ -144,8 +146,8 @@ typedef struct front {
   double *cost, *error;
 } front;
 
-static void write_tool(FILE *out, const group *g, abbe_picture_tool tool, front *f) {
-  margins m = {1, 1};
+/* The points of a tool, of which f->order[returned] is the front. */
+static size_t find_front(const group *g, abbe_picture_tool tool, front *f) {
   size_t count = 0;
   for (size_t i = 0; i < g->table[0]->count; i++)
     if (gather(g, &g->table[0]->row[i].setting, tool, &f->point[count])) count++;
@@ -153,19 +155,45 @@ static void write_tool(FILE *out, const group *g, abbe_picture_tool tool, front 
     f->cost[i] = f->point[i].ms;
     f->error[i] = f->point[i].error;
   }
-  const size_t on_front = abbe_pareto_front_order(f->cost, f->error, count, f->order);
+  return abbe_pareto_front_order(f->cost, f->error, count, f->order);
+}
+
+static void widen(const group *g, const front *f, size_t on_front, margins *m) {
   for (size_t i = 0; i < g->count && g->count > 1; i++)
-    for (size_t k = 0; k < on_front; k++) leave_out(g, i, &f->point[f->order[k]], &m);
+    for (size_t k = 0; k < on_front; k++) leave_out(g, i, &f->point[f->order[k]], m);
+}
+
+static void write_tool(FILE *out, const group *g, abbe_picture_tool tool, front *f,
+                       const margins *widest) {
+  margins m = {1, 1};
+  const size_t on_front = find_front(g, tool, f);
+  widen(g, f, on_front, &m);
+  if (g->count < 2) m = *widest;
   if (on_front == 0) return;
   abbe_number_write(out, "    %s:\n      margin: %.4g\n      time_margin: %.4g\n      front:\n",
                     names[tool], m.error, m.time);
   for (size_t i = 0; i < on_front; i++) write_point(out, &f->point[f->order[i]]);
 }
 
+/* The widest margins of each tool over the classes that have scenes enough. */
+static void find_widest(const abbe_sweep_table *tables, size_t count, group *g, front *f,
+                        margins widest[ABBE_PICTURE_TOOL_COUNT]) {
+  for (int k = 0; k < ABBE_PICTURE_TOOL_COUNT; k++) widest[k] = (margins){1, 1};
+  for (size_t i = 0; i < count; i++) {
+    const char *of = tables[i].fact[ABBE_SWEEP_FACT_CLASS];
+    size_t first = 0;
+    while (strcmp(tables[first].fact[ABBE_SWEEP_FACT_CLASS], of) != 0) first++;
+    if (first < i || !fill_group(tables, count, of, g)) continue;
+    for (int k = 0; k < ABBE_PICTURE_TOOL_COUNT; k++)
+      widen(g, f, find_front(g, (abbe_picture_tool)k, f), &widest[k]);
+  }
+}
+
 abbe_result abbe_sweep_pictures_write(FILE *out, const abbe_sweep_table *tables, size_t count,
                                       const char *of, abbe_sweep_number number, abbe_error *error) {
   ABBE_REQUIRE(out && tables && of, error);
   group g = {.number = number};
+  margins widest[ABBE_PICTURE_TOOL_COUNT];
   size_t most = 1;
   for (size_t i = 0; i < count; i++) most = tables[i].count > most ? tables[i].count : most;
   g.table = calloc(count + 1, sizeof *g.table);
@@ -176,14 +204,18 @@ abbe_result abbe_sweep_pictures_write(FILE *out, const abbe_sweep_table *tables,
              .cost = calloc(2 * most, sizeof *f.cost)};
   f.error = f.cost != NULL ? f.cost + most : NULL;
   abbe_result result = ABBE_OK;
-  if (!g.table || !g.base_ms || !f.point || !f.order || !f.cost)
+  if (!g.table || !g.base_ms || !f.point || !f.order || !f.cost) {
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the pictures' front");
-  else if (fill_group(tables, count, of, &g)) {
-    abbe_number_write(out,
-                      "  pictures:\n    base_ms: %.2f\n    base_error: %.4g\n"
-                      "    margin_scenes: %zu\n",
-                      g.mean_ms, g.mean_error, g.count > 1 ? g.count : 0);
-    for (int i = 0; i < ABBE_PICTURE_TOOL_COUNT; i++) write_tool(out, &g, (abbe_picture_tool)i, &f);
+  } else {
+    find_widest(tables, count, &g, &f, widest);
+    if (fill_group(tables, count, of, &g)) {
+      abbe_number_write(out,
+                        "  pictures:\n    base_ms: %.2f\n    base_error: %.4g\n"
+                        "    margin_scenes: %zu\n",
+                        g.mean_ms, g.mean_error, g.count > 1 ? g.count : 0);
+      for (int i = 0; i < ABBE_PICTURE_TOOL_COUNT; i++)
+        write_tool(out, &g, (abbe_picture_tool)i, &f, &widest[i]);
+    }
   }
   free(g.table);
   free(g.base_ms);

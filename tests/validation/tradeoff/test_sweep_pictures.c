@@ -82,7 +82,8 @@ static void test_two_scenes(void **state) {
   char *text = write(t, 3, "convex");
   if (abbe_yaml_parse(text, strlen(text), "it", &yaml, &error) != ABBE_OK)
     fail_msg("%s: %s", error.text, text);
-  abbe_yaml_node p = abbe_yaml_get(yaml, abbe_yaml_get(yaml, abbe_yaml_root(yaml), "class"), "pictures");
+  abbe_yaml_node p =
+      abbe_yaml_get(yaml, abbe_yaml_get(yaml, abbe_yaml_root(yaml), "class"), "pictures");
   if (p.id == 0) fail_msg("%s", text);
   assert_near(number(yaml, p, "base_ms"), 20, 1e-9);
   assert_near(number(yaml, p, "base_error"), 4, 1e-9);
@@ -113,6 +114,41 @@ static void test_two_scenes(void **state) {
   for (int i = 0; i < 3; i++) abbe_sweep_table_free(&t[i]);
 }
 
+/* A class with one scene takes the widest margins of the others, tool by tool. */
+static void test_one_scene(void **state) {
+  (void)state;
+  abbe_sweep_table t[] = {table_of("spheres"), table_of("convex"), table_of("convex"),
+                          table_of("meshes"), table_of("meshes")};
+  abbe_error error = {0};
+  abbe_yaml *yaml;
+  for (int i = 0; i < 5; i++) {
+    add_yardstick(&t[i], 10, 4);
+    add(&t[i], "default", 64, 0, i == 2 ? 1500 : 500, i == 2 ? 6 : 3); /* margins: 3 and 2 */
+    add(&t[i], ABBE_SWEEP_TRACE, 512, 4, 200, i == 4 ? 2.5 : 1);       /* 1 and 2.5 */
+  }
+  add(&t[0], ABBE_SWEEP_TRACE_FILTER, 512, 4, 300, 1); /* the others have none of it */
+  char *text = write(t, 5, "spheres");
+  if (abbe_yaml_parse(text, strlen(text), "it", &yaml, &error) != ABBE_OK)
+    fail_msg("%s: %s", error.text, text);
+  abbe_yaml_node p =
+      abbe_yaml_get(yaml, abbe_yaml_get(yaml, abbe_yaml_root(yaml), "class"), "pictures");
+  abbe_yaml_node render = abbe_yaml_get(yaml, p, "render"), trace = abbe_yaml_get(yaml, p, "trace");
+  abbe_yaml_node filtered = abbe_yaml_get(yaml, p, "trace-filter");
+  assert_near(number(yaml, p, "margin_scenes"), 0, 0);
+  assert_near(number(yaml, render, "margin"), 2, 1e-9);
+  assert_near(number(yaml, render, "time_margin"), 3, 1e-9);
+  assert_near(number(yaml, trace, "margin"), 2.5, 1e-9);
+  assert_near(number(yaml, trace, "time_margin"), 1, 1e-9);
+  assert_near(number(yaml, filtered, "margin"), 1, 0);
+  abbe_yaml_free(yaml);
+  free(text);
+  /* Of one with two scenes its own count. */
+  text = write(t, 5, "meshes");
+  assert_contains(text, "render:\n      margin: 1\n      time_margin: 1\n");
+  free(text);
+  for (int i = 0; i < 5; i++) abbe_sweep_table_free(&t[i]);
+}
+
 static void test_tools(void **state) {
   (void)state;
   static const char *const profiles[] = {"default", "trace", "trace-filter", "thesis"};
@@ -127,6 +163,7 @@ static void test_tools(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_two_scenes),
+      cmocka_unit_test(test_one_scene),
       cmocka_unit_test(test_tools),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
