@@ -49,7 +49,7 @@ foreach(name
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-foreach(name matched_physics pass_error picture_choice sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
+foreach(name bounded_trace matched_physics pass_error picture_choice sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
     sweep_setting sweep_trace)
   abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
 endforeach()

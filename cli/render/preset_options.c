@@ -148,6 +148,11 @@ void abbe_preset_options_describe_picture(const abbe_picture_choice *c, double m
   } else {
     cJSON_AddNullToObject(p, "error_met");
   }
+  if (c->passes > 0) cJSON_AddNumberToObject(p, "passes", (double)c->passes);
+  if (abbe_picture_choice_tells(c)) {
+    cJSON_AddNumberToObject(p, "error_at_most", c->met.bound);
+    if (q->max_error > 0) cJSON_AddBoolToObject(p, "error_kept", c->met.bound <= q->max_error);
+  }
   if (c->timed) cJSON_AddNumberToObject(p, "ms", c->promised_ms);
   cJSON_AddNumberToObject(p, "ms_met", ms);
   if (q->budget_ms > 0) cJSON_AddBoolToObject(p, "budget_met", ms <= q->budget_ms);
@@ -170,6 +175,17 @@ void abbe_preset_options_note_picture(const abbe_picture_choice *c) {
   if (!c->kept && c->request.budget_ms > 0)
     fprintf(stderr, "note: nothing is known to take %g ms here; this is the fastest\n",
             c->request.budget_ms);
+}
+
+void abbe_preset_options_note_traced(const abbe_picture_choice *c) {
+  if (!abbe_picture_choice_tells(c)) return;
+  fprintf(stderr, "note: %zu passes tell an error of about %.3g, at most %.3g", c->passes,
+          c->met.estimate, c->met.bound);
+  if (c->passes > c->point->setting.passes)
+    fprintf(stderr, "; %zu were too few for what is asked", c->point->setting.passes);
+  else if (c->met.estimate > c->promised_error)
+    fprintf(stderr, "; that is more than was promised, for this scene's light is of another kind");
+  fprintf(stderr, "\n");
 }
 
 void abbe_preset_options_note(const abbe_preset_choice *c) {

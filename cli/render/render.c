@@ -11,7 +11,6 @@
 #include "validation/sweep/sweep_setting.h"
 
 #include <argp.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -184,7 +183,7 @@ static void note_picture(const request *q) {
 }
 
 /* By the tracer, where it serves the request best. */
-static abbe_result trace(const request *q, const abbe_scene *scene, abbe_error *error) {
+static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error) {
   const abbe_render_desc *d = &q->render.desc;
   const abbe_traced_picture_desc desc = {.width = d->width,
                                          .height = d->height,
@@ -193,14 +192,13 @@ static abbe_result trace(const request *q, const abbe_scene *scene, abbe_error *
                                          .space = d->space,
                                          .quiet = q->quiet};
   abbe_image image = {0};
-  double error_met = NAN;
   if (!q->quiet) abbe_scene_input_note(scene);
   if (!q->quiet) note_picture(q);
-  abbe_result result =
-      abbe_traced_picture_make(q->picture.point, scene, &desc, &image, &error_met, error);
+  abbe_result result = abbe_traced_picture_make(&q->picture, scene, &desc, &image, error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
   if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
-  if (result == ABBE_OK) result = abbe_render_write_traced_stats(q, error_met, error);
+  if (result == ABBE_OK) result = abbe_render_write_traced_stats(q, error);
+  if (result == ABBE_OK && !q->quiet) abbe_preset_options_note_traced(&q->picture);
   if (result == ABBE_OK && !q->quiet && !q->json)
     fprintf(stderr, "traced; %.0f ms from start to end\n", abbe_render_process_ms());
   if (result == ABBE_OK)

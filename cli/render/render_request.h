@@ -35,9 +35,8 @@ double abbe_render_process_ms(void);
 abbe_result abbe_render_write_stats(const abbe_render_request *request,
                                     const abbe_statistics *statistics, const abbe_error_bars *bars,
                                     const abbe_context *context, abbe_error *error);
-/* The same of a traced picture; error_met: of its caustic, below 0 where it is not known. */
-abbe_result abbe_render_write_traced_stats(const abbe_render_request *request, double error_met,
-                                           abbe_error *error);
+/* The same of a traced picture. */
+abbe_result abbe_render_write_traced_stats(const abbe_render_request *request, abbe_error *error);
 
 /* Says in the picture what made it. */
 abbe_result abbe_render_annotate(const abbe_render_request *request, const abbe_renderer *renderer,

@@ -82,10 +82,10 @@ abbe_result abbe_render_write_stats(const request *q, const abbe_statistics *s,
   return write_json(q, describe(q, s, bars, context), error);
 }
 
-abbe_result abbe_render_write_traced_stats(const request *q, double error_met, abbe_error *error) {
+abbe_result abbe_render_write_traced_stats(const request *q, abbe_error *error) {
   if (q->stats == NULL && !q->json) return ABBE_OK;
   cJSON *root = cJSON_CreateObject();
-  describe_picture(q, error_met, root);
+  describe_picture(q, abbe_picture_choice_tells(&q->picture) ? q->picture.met.estimate : -1, root);
   return write_json(q, root, error);
 }
 

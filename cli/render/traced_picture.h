@@ -12,11 +12,10 @@ typedef struct abbe_traced_picture_desc {
   bool quiet;
 } abbe_traced_picture_desc;
 
-/* Traces the point's passes, with a bar, and filters them where it says so. error_met receives
- * abbe_sweep_trace_own_error; NaN of an odd number of passes.
- * ABBE_CANCELLED; errors of abbe_tracer_make. */
-abbe_result abbe_traced_picture_make(const abbe_picture_point *point, const abbe_scene *scene,
+/* Traces the choice's point, with a bar; where an error is asked for, until its own passes tell
+ * that it is kept. Sets the choice's passes and met. Errors of abbe_bounded_trace_make. */
+abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_scene *scene,
                                      const abbe_traced_picture_desc *desc, abbe_image *out,
-                                     double *error_met, abbe_error *error);
+                                     abbe_error *error);
 
 #endif

@@ -311,6 +311,10 @@ abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_
   return result == ABBE_OK ? choose(out, scene, error) : result;
 }
 
+bool abbe_picture_choice_tells(const abbe_picture_choice *c) {
+  return c->passes > 0 && isfinite(c->met.bound);
+}
+
 abbe_result abbe_picture_choice_check(const abbe_picture_choice *c, double ms, abbe_error *error) {
   ABBE_REQUIRE(c, error);
   const abbe_picture_request *q = &c->request;
@@ -322,6 +326,13 @@ abbe_result abbe_picture_choice_check(const abbe_picture_choice *c, double ms, a
                           "same",
                           ms, c->promised_ms, q->budget_ms,
                           c->kept ? "" : ", for nothing faster is known");
+  if (q->max_error > 0 && abbe_picture_choice_tells(c)) {
+    if (c->met.bound <= q->max_error) return ABBE_OK;
+    return abbe_error_set(error, ABBE_TOLERANCE,
+                          "an error of %g is not known to be kept: %zu passes tell one of %.3g, "
+                          "and at most %.3g; what was asked for is written all the same",
+                          q->max_error, c->passes, c->met.estimate, c->met.bound);
+  }
   if (q->max_error > 0 && !c->kept)
     return abbe_error_set(
         error, ABBE_TOLERANCE,

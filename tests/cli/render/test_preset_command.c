@@ -132,7 +132,7 @@ static void test_what_is_refused(void **state) {
 static void test_what_makes_the_picture(void **state) {
   (void)state;
   assert_int_equal(run_line(PICTURES), 0);
-  cJSON *json = promise_of(GEM "--presets q.yaml --max-error 1 --json -o a.exr");
+  cJSON *json = promise_of(GEM "--presets q.yaml --max-error 12 --tool trace --json -o a.exr");
   assert_string_equal(cJSON_GetStringValue(item(json, "for")), "picture");
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "trace");
   assert_contains(cJSON_GetStringValue(item(json, "settings")), "4 passes of 4096 photons");
@@ -140,6 +140,21 @@ static void test_what_makes_the_picture(void **state) {
   assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "half of its passes");
   assert_true(cJSON_GetNumberValue(item(json, "ms_met")) > 0);
   assert_contains(run_errors, "note: the tracer: 4 passes of 4096 photons");
+  assert_near(cJSON_GetNumberValue(item(json, "passes")), 4, 0);
+  assert_true(cJSON_IsTrue(item(json, "error_kept")));
+  const double at_most = cJSON_GetNumberValue(item(json, "error_at_most"));
+  assert_true(at_most > cJSON_GetNumberValue(item(json, "error_met")) && at_most <= 12);
+  cJSON_Delete(json);
+  /* Its own passes tell that the file promises too much: it goes on, or gives up and says so. */
+  json = promise_of(GEM "--presets q.yaml --max-error 6 --tool trace --json");
+  assert_true(cJSON_GetNumberValue(item(json, "passes")) > 4);
+  assert_true(cJSON_GetNumberValue(item(json, "error_at_most")) <= 6);
+  assert_contains(run_errors, "; 4 were too few for what is asked");
+  cJSON_Delete(json);
+  json = promise_that_ends(GEM "--presets q.yaml --max-error 0.5 --tool trace --json", 3);
+  assert_true(cJSON_IsFalse(item(json, "error_kept")));
+  assert_contains(run_errors, "more than was promised");
+  assert_contains(run_errors, "an error of 0.5 is not known to be kept: 4 passes tell one of");
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
   assert_contains(run_output, "stderr.R");

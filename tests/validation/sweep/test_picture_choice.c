@@ -117,6 +117,28 @@ static void test_promises_are_told_by_the_yardstick(void **state) {
   assert_true(c.promised_ms > 1e9);
 }
 
+/* A traced picture's own passes decide, whatever was promised. */
+static void test_what_passes_tell(void **state) {
+  (void)state;
+  abbe_picture_choice c;
+  abbe_error error = {0};
+  write_file(WHOLE);
+  choose((abbe_picture_request){.max_error = 1e-6}, &c);
+  assert_false(abbe_picture_choice_tells(&c));
+  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_OK);
+  c.passes = 8;
+  c.met = (abbe_pass_error){2e-6, 3e-6};
+  assert_true(abbe_picture_choice_tells(&c));
+  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+  assert_contains(error.text, "8 passes tell one of 2e-06, and at most 3e-06");
+  c.met.bound = 1e-6;
+  c.kept = false;
+  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_OK);
+  c.met.bound = NAN;
+  assert_false(abbe_picture_choice_tells(&c));
+  assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+}
+
 static void test_by_time(void **state) {
   (void)state;
   abbe_picture_choice c;
@@ -191,6 +213,7 @@ int main(void) {
       cmocka_unit_test(test_the_file),
       cmocka_unit_test(test_the_renderer_alone),
       cmocka_unit_test(test_promises_are_told_by_the_yardstick),
+      cmocka_unit_test(test_what_passes_tell),
       cmocka_unit_test(test_by_time),
       cmocka_unit_test(test_words),
       cmocka_unit_test(test_what_is_refused),

@@ -1,0 +1,131 @@
+/* A traced picture that goes on until its own error keeps a bound: how many passes, and that the
+ * picture is the tracer's own to the bit.
+ */
+#include "tests/validation/trace_scene.h"
+
+#include "validation/denoise/denoise.h"
+#include "validation/sweep/bounded_trace.h"
+
+#include <math.h>
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
+
+static abbe_scene scene;
+
+static abbe_bounded_trace_desc describe(size_t passes, bool filtered, double max_error) {
+  return (abbe_bounded_trace_desc){
+      .trace = {.no_map = true, .width = 24, .height = 24, .photons = 1024, .seed = 3},
+      .passes = passes,
+      .filtered = filtered,
+      .max_error = max_error};
+}
+
+static abbe_bounded_trace make(const abbe_bounded_trace_desc *desc, abbe_image *picture) {
+  abbe_bounded_trace out;
+  abbe_error error = {0};
+  if (abbe_bounded_trace_make(&scene, desc, picture, &out, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return out;
+}
+
+/* The tracer's own after so many passes. */
+static void check_picture(const abbe_bounded_trace_desc *desc, size_t passes,
+                          const abbe_image *picture) {
+  abbe_trace_desc own = desc->trace;
+  abbe_image raw, filtered;
+  own.guides = desc->filtered;
+  abbe_tracer *tracer = make_tracer(&scene, &own);
+  run_passes(tracer, passes);
+  assert_int_equal(abbe_tracer_picture(tracer, &raw, NULL), ABBE_OK);
+  const abbe_denoise_desc denoise = {0};
+  if (desc->filtered) {
+    assert_int_equal(abbe_denoise_picture(&raw, &denoise, &filtered, NULL), ABBE_OK);
+    check_same_image(picture, &filtered);
+    abbe_image_free(&filtered);
+  } else {
+    check_same_image(picture, &raw);
+  }
+  abbe_image_free(&raw);
+  abbe_tracer_free(tracer);
+}
+
+static void test_without_a_bound(void **state) {
+  (void)state;
+  abbe_image picture;
+  abbe_bounded_trace_desc desc = describe(4, false, 0);
+  abbe_bounded_trace t = make(&desc, &picture);
+  assert_int_equal(t.passes, 4);
+  assert_true(t.own.estimate > 0 && t.own.bound > t.own.estimate);
+  check_picture(&desc, 4, &picture);
+  abbe_image_free(&picture);
+  desc.passes = 1;
+  t = make(&desc, &picture);
+  assert_int_equal(t.passes, 1);
+  assert_true(isnan(t.own.estimate));
+  abbe_image_free(&picture);
+  desc = describe(2, true, 0);
+  t = make(&desc, &picture);
+  assert_true(isnan(t.own.estimate)); /* nobody asked, and it takes another filter's run */
+  check_picture(&desc, 2, &picture);
+  abbe_image_free(&picture);
+}
+
+static void test_until_it_is_kept(void **state) {
+  (void)state;
+  for (int filtered = 0; filtered < 2; filtered++) {
+    abbe_image picture;
+    abbe_bounded_trace_desc desc = describe(2, filtered, 1000);
+    abbe_bounded_trace t = make(&desc, &picture);
+    assert_int_equal(t.passes, filtered ? 4 : 2);
+    assert_true(t.own.bound < 1000);
+    abbe_image_free(&picture);
+    desc.max_error = 0.6 * t.own.bound;
+    t = make(&desc, &picture);
+    assert_true(t.passes >= 4 && t.passes % 2 == 0);
+    if (!(t.own.bound <= desc.max_error))
+      fail_msg("%zu passes: %g, of %g", t.passes, t.own.bound, desc.max_error);
+    check_picture(&desc, t.passes, &picture);
+    abbe_image_free(&picture);
+    /* What takes too long is given up before, not after. */
+    desc.max_error = 1e-3;
+    t = make(&desc, &picture);
+    assert_int_equal(t.passes, filtered ? 4 : 2);
+    assert_true(t.own.bound > desc.max_error);
+    abbe_image_free(&picture);
+  }
+}
+
+static bool say_no(void *user, double done) {
+  (void)done;
+  ++*(int *)user;
+  return false;
+}
+
+static void test_what_ends_it(void **state) {
+  (void)state;
+  int asked = 0;
+  abbe_image picture;
+  abbe_bounded_trace t;
+  abbe_error error = {0};
+  abbe_bounded_trace_desc desc = describe(4, false, 1);
+  desc.progress = say_no;
+  desc.user = &asked;
+  assert_int_equal(abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error), ABBE_CANCELLED);
+  assert_int_equal(asked, 1);
+  desc = describe(1, true, 0);
+  assert_int_equal(abbe_bounded_trace_make(&scene, &desc, &picture, &t, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "1 passes are too few, at least 2");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_without_a_bound),
+      cmocka_unit_test(test_until_it_is_kept),
+      cmocka_unit_test(test_what_ends_it),
+  };
+  load_text(SCENE, &scene);
+  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  abbe_scene_free(&scene);
+  return failed;
+}
