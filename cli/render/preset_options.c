@@ -20,7 +20,10 @@ static const struct argp_option options[] = {
     {"preset", OPTION_PRESET, "NAME", 0, "draft, balanced or accurate, as measured for such scenes",
      2},
     {"max-error", OPTION_MAX_ERROR, "E", 0,
-     "the fastest tool and settings that promise a mean CIEDE2000 of at most E in the caustic", 2},
+     "the fastest tool and settings that promise a mean CIEDE2000 of at most E in the caustic; "
+     "what "
+     "is traced goes on until its own passes tell that",
+     2},
     {"budget-ms", OPTION_BUDGET, "T", 0,
      "the most accurate tool and settings that take at most T ms on this machine", 2},
     {"for", OPTION_FOR, "picture|frame", 0,

@@ -5,9 +5,7 @@
 
 #include <math.h>
 
-/* How errors fall with passes: as noise does, and of a filtered picture, blur and noise, slower. */
-static const double power = 2, filtered_power = 3;
-/* More than the power asks for, for the bound itself is uncertain. */
+/* More than noise asks for, for the bound itself is uncertain. */
 static const double ahead = 1.1;
 
 /* Pictures after a part of the passes and after all, and what the filter makes of them. */
@@ -52,14 +50,13 @@ static abbe_result trace(const abbe_bounded_trace_desc *d, abbe_tracer *tracer, 
   return abbe_pass_error_make(&all, own, error);
 }
 
-/* How many passes may keep the bound, at least twice as many; 0: too many. */
+/* How many passes may keep the bound, at least twice as many; 0: too many. By noise, which falls as
+ * one over the root of the passes: blur falls slower and is asked about again. */
 static size_t find_more(const abbe_bounded_trace_desc *d, const abbe_bounded_trace *t,
                         size_t most) {
-  const double over = t->own.bound / d->max_error;
-  const double at_least = (double)t->passes * pow(over, power);
-  const double wanted = ahead * (double)t->passes * pow(over, d->filtered ? filtered_power : power);
-  if (at_least > (double)most || 2 * t->passes > most) return 0;
-  return 2 * (size_t)ceil(fmin(fmax(wanted / 2, (double)t->passes), (double)most / 2));
+  const double least = (double)t->passes * pow(t->own.bound / d->max_error, 2);
+  if (least > (double)most || 2 * t->passes > most) return 0;
+  return 2 * (size_t)ceil(fmin(fmax(ahead * least / 2, (double)t->passes), (double)most / 2));
 }
 
 abbe_result abbe_bounded_trace_make(const abbe_scene *scene, const abbe_bounded_trace_desc *desc,

@@ -71,37 +71,40 @@ static double difference(const abbe_field *a, const abbe_field *b, const region 
   return isfinite(value) ? value : 0;
 }
 
-/* Sum and number of a block's pixels in the region. */
-static distance sum_block(const abbe_field *a, const abbe_field *b, const region *r, size_t x0,
-                          size_t y0) {
-  distance sum = {0, 0};
+/* Of pixels in the region: sum, sum of squares, number. */
+typedef struct block {
+  double sum, squares, count;
+} block;
+
+static block sum_block(const abbe_field *a, const abbe_field *b, const region *r, size_t x0,
+                       size_t y0) {
+  block s = {0, 0, 0};
   for (size_t y = y0; y < y0 + BLOCK && y < a->height; y++)
     for (size_t x = x0; x < x0 + BLOCK && x < a->width; x++)
       if (r->mask.in[y * a->width + x] != 0) {
-        sum.mean += difference(a, b, r, y * a->width + x);
-        sum.error++;
+        const double value = difference(a, b, r, y * a->width + x);
+        s.sum += value;
+        s.squares += value * value;
+        s.count++;
       }
-  return sum;
+  return s;
 }
 
-/* Neighbours share photons, so the standard error is told by blocks of pixels. */
-static abbe_result measure(const abbe_field *a, const abbe_field *b, const region *r, distance *out,
-                           abbe_error *error) {
-  const size_t across = (a->width + BLOCK - 1) / BLOCK, down = (a->height + BLOCK - 1) / BLOCK;
-  distance *block = calloc(across * down, sizeof *block);
+/* The standard error is of chance alone: pixels of a block are about as noisy as each other, those
+ * of different blocks are not. */
+static distance measure(const abbe_field *a, const abbe_field *b, const region *r) {
   double sum = 0, count = 0, squares = 0;
-  if (block == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the error");
-  for (size_t i = 0; i < across * down; i++) {
-    block[i] = sum_block(a, b, r, i % across * BLOCK, i / across * BLOCK);
-    sum += block[i].mean;
-    count += block[i].error;
-  }
-  out->mean = sum / count;
-  for (size_t i = 0; i < across * down; i++)
-    squares += pow(block[i].mean - out->mean * block[i].error, 2);
-  out->error = sqrt(squares) / count;
-  free(block);
-  return ABBE_OK;
+  for (size_t y = 0; y < a->height; y += BLOCK)
+    for (size_t x = 0; x < a->width; x += BLOCK) {
+      const block s = sum_block(a, b, r, x, y);
+      sum += s.sum;
+      count += s.count;
+      if (s.count > 1)
+        squares += fmax(0, s.squares - s.sum * s.sum / s.count) * s.count / (s.count - 1);
+      else
+        squares += s.squares;
+    }
+  return (distance){sum / count, sqrt(squares) / count};
 }
 
 /* Of the parts, whose differences add in squares: as much of it is the first's as the others are
@@ -127,32 +130,23 @@ static void tell_filtered(const abbe_pass_pictures *p, distance raw, distance d,
   out->estimate = sqrt(fmax(square, least)) * pow(first, 0.25);
 }
 
+/* A dark caustic and a black picture are no errors of the caller's: nothing is told then. */
 static abbe_result tell(const abbe_pass_pictures *p, const abbe_field *part, abbe_field *whole,
+                        const abbe_field *filtered_part, const abbe_field *filtered,
                         abbe_pass_error *out, abbe_error *error) {
-  abbe_field filtered_part = {0}, filtered = {0};
   region r = {0};
-  distance raw = {0, 0}, d = {0, 0};
-  abbe_result result = ABBE_OK;
-  if (p->filtered != NULL) {
-    result = take(p->filtered, &filtered, error);
-    if (result == ABBE_OK) result = take(p->filtered_part, &filtered_part, error);
-  }
-  /* A dark caustic and a black picture are no errors of the caller's. */
-  if (result == ABBE_OK &&
-      find_region(p->filtered != NULL ? &filtered : whole, &r, NULL) == ABBE_OK) {
+  const bool is_raw = p->filtered == NULL;
+  const abbe_result result = find_region(is_raw ? whole : filtered, &r, error);
+  if (result == ABBE_OK) {
     keep_the_others(p, part, whole);
-    result = measure(part, whole, &r, &raw, error);
-    if (result == ABBE_OK && p->filtered == NULL) {
+    const distance raw = measure(part, whole, &r);
+    if (is_raw)
       tell_raw(p, raw, out);
-    } else if (result == ABBE_OK) {
-      result = measure(&filtered_part, whole, &r, &d, error);
-      if (result == ABBE_OK) tell_filtered(p, raw, d, out);
-    }
+    else
+      tell_filtered(p, raw, measure(filtered_part, whole, &r), out);
   }
   abbe_mask_free(&r.mask);
-  abbe_field_free(&filtered);
-  abbe_field_free(&filtered_part);
-  return result;
+  return result == ABBE_NO_MEMORY ? result : ABBE_OK;
 }
 
 static bool are_alike(const abbe_image *a, const abbe_image *b) {
@@ -162,7 +156,7 @@ static bool are_alike(const abbe_image *a, const abbe_image *b) {
 abbe_result abbe_pass_error_make(const abbe_pass_pictures *p, abbe_pass_error *out,
                                  abbe_error *error) {
   ABBE_REQUIRE(p && out && p->part && p->whole && !p->filtered == !p->filtered_part, error);
-  abbe_field part = {0}, whole = {0};
+  abbe_field part = {0}, whole = {0}, filtered_part = {0}, filtered = {0};
   *out = (abbe_pass_error){NAN, NAN};
   if (p->part_passes < 1 || p->part_passes >= p->passes)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu of %zu passes are not a part of them",
@@ -173,8 +167,13 @@ abbe_result abbe_pass_error_make(const abbe_pass_pictures *p, abbe_pass_error *o
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the pictures differ in size");
   abbe_result result = take(p->part, &part, error);
   if (result == ABBE_OK) result = take(p->whole, &whole, error);
-  if (result == ABBE_OK) result = tell(p, &part, &whole, out, error);
+  if (result == ABBE_OK && p->filtered != NULL) result = take(p->filtered, &filtered, error);
+  if (result == ABBE_OK && p->filtered != NULL)
+    result = take(p->filtered_part, &filtered_part, error);
+  if (result == ABBE_OK) result = tell(p, &part, &whole, &filtered_part, &filtered, out, error);
   abbe_field_free(&part);
   abbe_field_free(&whole);
+  abbe_field_free(&filtered_part);
+  abbe_field_free(&filtered);
   return result;
 }

@@ -34,8 +34,10 @@ typedef struct abbe_sweep_trace_desc {
 abbe_result abbe_sweep_trace_measure(const abbe_scene *scene, const abbe_sweep_trace_desc *desc,
                                      abbe_sweep_row *row, abbe_image *picture, abbe_error *error);
 
-/* How far off a traced picture may be, told by itself: the mean CIEDE2000 in its caustic between it
- * and the mean of the first half of its passes. NaN where nothing is lit through refractors. */
+/* How noisy a traced picture is beside another scene's: the mean CIEDE2000 between it and the mean
+ * of the first half of its passes, in its caustic and nine pixels around. What presets are told by;
+ * of rare bright specks it is far less than the error, which pass_error.h tells. NaN where nothing
+ * is lit through refractors. */
 double abbe_sweep_trace_own_error(const abbe_image *half, const abbe_image *picture);
 
 /* The picture of a tracer with guides becomes what abbe_denoise_picture makes of it. */
