@@ -28,6 +28,8 @@ foreach(name
     rings
     nl_means
     outline
+    bounded_trace
+    pass_error
     photon_grid
     projection_map
     random
@@ -49,7 +51,7 @@ foreach(name
   abbe_test(${name} cpu ${validation_rooms})
 endforeach()
 abbe_test(locale cpu abbe_sweep abbe_gl ${validation_rooms})
-foreach(name bounded_trace matched_physics pass_error picture_choice sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
+foreach(name matched_physics picture_choice sweep_grid sweep_hash sweep_process sweep_promises sweep_reference
     sweep_setting sweep_trace)
   abbe_test(${name} cpu abbe_sweep abbe_gl ${validation_rooms})
 endforeach()

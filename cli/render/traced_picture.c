@@ -2,7 +2,7 @@
 
 #include "cli/base/progress.h"
 
-#include "validation/sweep/bounded_trace.h"
+#include "validation/passes/bounded_trace.h"
 
 abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_scene *scene,
                                      const abbe_traced_picture_desc *desc, abbe_image *out,

@@ -12,7 +12,7 @@
 
 #include "gl/accuracy/preset.h"
 #include "scenes/scene.h"
-#include "validation/sweep/pass_error.h"
+#include "validation/passes/pass_error.h"
 #include "validation/tradeoff/sweep_pictures.h"
 
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-#include "validation/sweep/bounded_trace.h"
+#include "validation/passes/bounded_trace.h"
 
 #include "validation/denoise/denoise.h"
 #include "validation/tracer/trace_run.h"

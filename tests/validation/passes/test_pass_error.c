@@ -4,7 +4,7 @@
 #include "tests/check.h"
 
 #include "validation/compare/compare.h"
-#include "validation/sweep/pass_error.h"
+#include "validation/passes/pass_error.h"
 
 #include <math.h>
 #include <stdint.h>

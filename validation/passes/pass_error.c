@@ -1,4 +1,4 @@
-#include "validation/sweep/pass_error.h"
+#include "validation/passes/pass_error.h"
 
 #include "colorimetry/difference.h"
 #include "validation/compare/compare.h"

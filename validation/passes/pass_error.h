@@ -6,8 +6,8 @@
  * slowly a caustic of rare bright specks comes together. Errors are mean CIEDE2000 in the caustic
  * (the brightest pixels that hold 95 % of its light), relative to the picture's own white.
  */
-#ifndef ABBE_VALIDATION_SWEEP_PASS_ERROR_H
-#define ABBE_VALIDATION_SWEEP_PASS_ERROR_H
+#ifndef ABBE_VALIDATION_PASSES_PASS_ERROR_H
+#define ABBE_VALIDATION_PASSES_PASS_ERROR_H
 
 #include "base/error.h"
 #include "colorimetry/image/image.h"

@@ -3,10 +3,10 @@
  * Presets promise what other scenes had; a scene with light of another kind is found out here, by
  * its own passes (pass_error.h), and traced for longer. It compares with no reference.
  */
-#ifndef ABBE_VALIDATION_SWEEP_BOUNDED_TRACE_H
-#define ABBE_VALIDATION_SWEEP_BOUNDED_TRACE_H
+#ifndef ABBE_VALIDATION_PASSES_BOUNDED_TRACE_H
+#define ABBE_VALIDATION_PASSES_BOUNDED_TRACE_H
 
-#include "validation/sweep/pass_error.h"
+#include "validation/passes/pass_error.h"
 #include "validation/tracer/tracer.h"
 
 #ifdef __cplusplus

@@ -4,7 +4,7 @@
 #include "tests/validation/trace_scene.h"
 
 #include "validation/denoise/denoise.h"
-#include "validation/sweep/bounded_trace.h"
+#include "validation/passes/bounded_trace.h"
 
 #include <math.h>
 
