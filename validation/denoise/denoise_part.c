@@ -150,6 +150,8 @@ static void steady_variances(abbe_denoise_part *p) {
     for (size_t i = 0; i < w->pixels; i++) {
       float expected = around[i];
       if (p->photons) expected = wide[i] > 0 ? around[i] / wide[i] * near[i] : 0;
+      /* Rounding may leave less than nothing of a mean where there is no noise. */
+      expected = fmaxf(expected, 0);
       variance[i] = (weight * expected + own * variance[i]) / (weight + own);
     }
   }

@@ -217,6 +217,28 @@ static void what_has_no_noise_stays(void **state) {
   abbe_image_free(&out);
 }
 
+/* Noise beside pixels without any: means of their variances are differences of sums, and what
+ * rounding leaves of those, above 0 or below, is no variance. */
+static void quiet_pixels_beside_noisy_ones(void **state) {
+  (void)state;
+  enum { SIDE = 32, NOISY = 4, PICTURES = 400 };
+  uint64_t random = 11;
+  const truth t = {plain, none};
+  for (int i = 0; i < PICTURES; i++) {
+    abbe_image image = make(SIDE, SIDE, &t, 0, 4, 1);
+    const double scale = pow(10, random_between(&random, -3, -0.5));
+    for (size_t k = 0; k < (size_t)SIDE * SIDE; k++)
+      for (size_t c = 0; c < 3 && k % SIDE < NOISY && k / SIDE < NOISY; c++)
+        image.data[k * LAYERS + EYE_ERRORS + c] =
+            (float)(scale * pow(10, random_between(&random, -7, 0)));
+    abbe_image out = filter(&image, 1);
+    for (size_t k = 0; k < SIDE * SIDE * out.channels; k++)
+      if (!isfinite(out.data[k])) fail_msg("picture %d has a sample that is not finite", i);
+    abbe_image_free(&out);
+    abbe_image_free(&image);
+  }
+}
+
 static void raw_layers_are_kept(void **state) {
   (void)state;
   const truth of = {edge, lobes};
@@ -367,11 +389,15 @@ static void one_pass_is_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(noise_goes_and_light_stays), cmocka_unit_test(structure_stays),
-      cmocka_unit_test(what_has_no_noise_stays),    cmocka_unit_test(raw_layers_are_kept),
-      cmocka_unit_test(threads_do_not_matter),      cmocka_unit_test(awkward_pictures),
-      cmocka_unit_test(a_missing_layer_is_named),   cmocka_unit_test(a_traced_picture_comes_nearer),
-      cmocka_unit_test(one_pass_is_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(noise_goes_and_light_stays),
+                                     cmocka_unit_test(structure_stays),
+                                     cmocka_unit_test(quiet_pixels_beside_noisy_ones),
+                                     cmocka_unit_test(what_has_no_noise_stays),
+                                     cmocka_unit_test(raw_layers_are_kept),
+                                     cmocka_unit_test(threads_do_not_matter),
+                                     cmocka_unit_test(awkward_pictures),
+                                     cmocka_unit_test(a_missing_layer_is_named),
+                                     cmocka_unit_test(a_traced_picture_comes_nearer),
+                                     cmocka_unit_test(one_pass_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
