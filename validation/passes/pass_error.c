@@ -61,14 +61,20 @@ typedef struct distance {
   double mean, error;
 } distance;
 
+static bool is_finite(const double xyz[3]) {
+  return isfinite(xyz[0]) && isfinite(xyz[1]) && isfinite(xyz[2]);
+}
+
+/* NaN where a side is not finite: of such a picture nothing is told. */
 static double difference(const abbe_field *a, const abbe_field *b, const region *r, size_t pixel) {
   double xyz[3], lab_a[3], lab_b[3];
   abbe_field_xyz(a, pixel, xyz, NULL);
+  if (!is_finite(xyz)) return NAN;
   abbe_difference_lab(xyz, r->white, lab_a);
   abbe_field_xyz(b, pixel, xyz, NULL);
+  if (!is_finite(xyz)) return NAN;
   abbe_difference_lab(xyz, r->white, lab_b);
-  const double value = abbe_difference_ciede2000(lab_a, lab_b);
-  return isfinite(value) ? value : 0;
+  return abbe_difference_ciede2000(lab_a, lab_b);
 }
 
 /* Of pixels in the region: sum, sum of squares, number. */
@@ -140,10 +146,11 @@ static abbe_result tell(const abbe_pass_pictures *p, const abbe_field *part, abb
   if (result == ABBE_OK) {
     keep_the_others(p, part, whole);
     const distance raw = measure(part, whole, &r);
+    const distance filter = is_raw ? raw : measure(filtered_part, whole, &r);
     if (is_raw)
       tell_raw(p, raw, out);
-    else
-      tell_filtered(p, raw, measure(filtered_part, whole, &r), out);
+    else if (isfinite(filter.mean) && isfinite(raw.mean))
+      tell_filtered(p, raw, filter, out);
   }
   abbe_mask_free(&r.mask);
   return result == ABBE_NO_MEMORY ? result : ABBE_OK;

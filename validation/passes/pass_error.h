@@ -32,7 +32,8 @@ typedef struct abbe_pass_error {
                       are nearer than this */
 } abbe_pass_error;
 
-/* Both NaN where nothing is lit through refractors, or the picture is black. ABBE_INVALID_ARGUMENT
+/* Both NaN where nothing is lit through refractors, the picture is black, or a pixel of the caustic
+ * is not finite. ABBE_INVALID_ARGUMENT
  * for counts of passes out of range, pictures of different sizes, or without colours;
  * ABBE_NO_MEMORY. */
 abbe_result abbe_pass_error_make(const abbe_pass_pictures *pictures, abbe_pass_error *out,

@@ -333,6 +333,11 @@ abbe_result abbe_picture_choice_check(const abbe_picture_choice *c, double ms, a
                           "and at most %.3g; what was asked for is written all the same",
                           q->max_error, c->passes, c->met.estimate, c->met.bound);
   }
+  if (q->max_error > 0 && c->passes > 0)
+    return abbe_error_set(error, ABBE_TOLERANCE,
+                          "an error of %g is not known to be kept: %zu passes tell none; what was "
+                          "asked for is written all the same",
+                          q->max_error, c->passes);
   if (q->max_error > 0 && !c->kept)
     return abbe_error_set(
         error, ABBE_TOLERANCE,

@@ -196,6 +196,21 @@ static void test_what_has_no_caustic(void **state) {
   for (size_t i = 0; i < PIXELS; i++) image.data[6 * i] = 1; /* lit, and not through refractors */
   assert_ok(abbe_pass_error_make(&p, &own, &error), &error);
   assert_true(isnan(own.estimate) && isnan(own.bound));
+  abbe_image truth = make_truth(), other = make_truth();
+  p = (abbe_pass_pictures){.part = &truth,
+                           .whole = &truth,
+                           .part_passes = 1,
+                           .passes = 2,
+                           .filtered_part = &other,
+                           .filtered = &truth};
+  assert_ok(abbe_pass_error_make(&p, &own, &error), &error);
+  assert_near(own.bound, 0, 1e-6);
+  other.data[6 * 4 + 1] = NAN; /* one of the caustic's: no error is not what is told */
+  assert_ok(abbe_pass_error_make(&p, &own, &error), &error);
+  assert_true(isnan(own.estimate) && isnan(own.bound));
+  abbe_image_free(&truth);
+  abbe_image_free(&other);
+  p = (abbe_pass_pictures){.part = &image, .whole = &image, .part_passes = 1, .passes = 2};
   p.part_passes = 2;
   assert_int_equal(abbe_pass_error_make(&p, &own, &error), ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "2 of 2 passes");

@@ -135,6 +135,7 @@ static void test_what_passes_tell(void **state) {
   c.kept = false;
   assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_OK);
   c.met.bound = NAN;
+  c.kept = true;
   assert_false(abbe_picture_choice_tells(&c));
   assert_int_equal(abbe_picture_choice_check(&c, 1, &error), ABBE_TOLERANCE);
 }
