@@ -1,5 +1,7 @@
 #include "colorimetry/rgb_space.h"
 
+#include "colorimetry/matrix3.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -49,25 +51,6 @@ void abbe_rgb_space_apply(const double matrix[9], const double in[3], double out
     out[row] = matrix[3 * row] * v[0] + matrix[3 * row + 1] * v[1] + matrix[3 * row + 2] * v[2];
 }
 
-static void multiply(const double a[9], const double b[9], double out[9]) {
-  for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 3; column++) {
-      double sum = 0;
-      for (int k = 0; k < 3; k++) sum += a[3 * row + k] * b[3 * k + column];
-      out[3 * row + column] = sum;
-    }
-}
-
-/* By cofactors; every matrix here is far from singular. */
-static void invert(const double m[9], double out[9]) {
-  const double c[9] = {
-      m[4] * m[8] - m[5] * m[7], m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
-      m[5] * m[6] - m[3] * m[8], m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
-      m[3] * m[7] - m[4] * m[6], m[1] * m[6] - m[0] * m[7], m[0] * m[4] - m[1] * m[3]};
-  double determinant = m[0] * c[0] + m[1] * c[3] + m[2] * c[6];
-  for (int i = 0; i < 9; i++) out[i] = c[i] / determinant;
-}
-
 static void xyz_of_xy(const double xy[2], double xyz[3]) {
   xyz[0] = xy[0] / xy[1];
   xyz[1] = 1;
@@ -83,7 +66,7 @@ static void primaries_to_xyz(const double xy[8], double matrix[9]) {
     columns[6 + i] = 1 - xy[2 * i] - xy[2 * i + 1];
   }
   xyz_of_xy(xy + PRIMARIES, white);
-  invert(columns, inverse);
+  abbe_matrix3_invert(columns, inverse);
   abbe_rgb_space_apply(inverse, white, scale);
   for (int i = 0; i < 9; i++) matrix[i] = columns[i] * scale[i % 3];
 }
@@ -95,8 +78,8 @@ static void adapt(const double from_xy[2], const double to_xy[2], double matrix[
   abbe_rgb_space_apply(bradford, from, from);
   abbe_rgb_space_apply(bradford, to, to);
   for (int i = 0; i < 9; i++) scaled[i] = bradford[i] * to[i / 3] / from[i / 3];
-  invert(bradford, inverse);
-  multiply(inverse, scaled, matrix);
+  abbe_matrix3_invert(bradford, inverse);
+  abbe_matrix3_multiply(inverse, scaled, matrix);
 }
 
 /* To XYZ relative to D65, of any primaries. */
@@ -109,7 +92,7 @@ static void rgb_to_xyz(const double xy[8], double matrix[9]) {
   }
   double adaptation[9];
   adapt(xy + PRIMARIES, white_d65, adaptation);
-  multiply(adaptation, own, matrix);
+  abbe_matrix3_multiply(adaptation, own, matrix);
 }
 
 void abbe_rgb_space_to_xyz(abbe_rgb_space space, double matrix[9]) {
@@ -157,5 +140,5 @@ void abbe_rgb_space_from_xyz(abbe_rgb_space space, double matrix[9]) {
   if (space == ABBE_RGB_SPACE_XYZ)
     memcpy(matrix, identity, sizeof identity);
   else
-    invert(to, matrix);
+    abbe_matrix3_invert(to, matrix);
 }
