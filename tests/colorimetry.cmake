@@ -1,5 +1,5 @@
 foreach(name axis chart colour_map difference display_ocio exr illuminant image material_chart text_plot observer png_file screen_png
-        rgb_encoding rgb_space upsampling weights)
+        radiance_file rgb_encoding rgb_space upsampling weights)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 target_link_libraries(test_rgb_encoding PRIVATE PkgConfig::LCMS)
