@@ -1,0 +1,33 @@
+/* alias_table.h: draws from a list of shares in constant time [Walker1977] [Vose1991]. */
+#ifndef ABBE_SCENES_ENVIRONMENT_ALIAS_TABLE_H
+#define ABBE_SCENES_ENVIRONMENT_ALIAS_TABLE_H
+
+#include "base/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* An entry of equal width is kept by its own index up to `keep`, and goes to `other` above. */
+typedef struct abbe_alias_table {
+  size_t count;
+  float *keep;     /* [count], 0 to 1 */
+  uint32_t *other; /* [count] */
+} abbe_alias_table;
+
+/* Weights, any scale: finite, >= 0, their sum > 0 and finite; else ABBE_INVALID_ARGUMENT. An entry
+ * of weight 0 is never drawn. ABBE_NO_MEMORY. */
+abbe_result abbe_alias_table_make(const double *weight, size_t count, abbe_alias_table *out,
+                                  abbe_error *error);
+void abbe_alias_table_free(abbe_alias_table *table);
+
+/* The entry of u in [0, 1). */
+size_t abbe_alias_table_draw(const abbe_alias_table *table, double u);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

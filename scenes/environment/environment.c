@@ -1,0 +1,227 @@
+#include "scenes/environment/environment.h"
+
+#include "scenes/geometry/transform.h"
+#include "scenes/geometry/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static void apply(const double m[9], const double v[3], double out[3]) {
+  for (int i = 0; i < 3; i++) out[i] = abbe_vector_dot(m + 3 * i, v);
+}
+
+static void apply_inverse(const double m[9], const double v[3], double out[3]) {
+  for (int i = 0; i < 3; i++) out[i] = m[i] * v[0] + m[3 + i] * v[1] + m[6 + i] * v[2];
+}
+
+/* Luminance of Rec.709's primaries [BT709]. */
+static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.0721923153607337};
+
+/* --- making --- */
+
+static abbe_result check_texels(const abbe_radiance_map *map, abbe_error *error) {
+  static const char *const channels[] = {"red", "green", "blue"};
+  for (size_t i = 0; i < 3 * map->width * map->height; i++) {
+    const double value = (double)map->rgb[i];
+    if (value >= 0 && value <= ABBE_ENVIRONMENT_MOST) continue;
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s of the texel at column %zu, row %zu is %g; radiance is 0 to %g",
+                          channels[i % 3], i / 3 % map->width, i / 3 / map->width, value,
+                          ABBE_ENVIRONMENT_MOST);
+  }
+  return ABBE_OK;
+}
+
+static abbe_result make_table(const abbe_radiance_map *map, double *total, abbe_alias_table *out,
+                              abbe_error *error) {
+  const size_t count = map->width * map->height;
+  double *weight = malloc(count * sizeof *weight);
+  if (weight == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu texels' weights", count);
+  *total = 0;
+  for (size_t row = 0; row < map->height; row++) {
+    const double solid = abbe_radiance_map_solid_angle(map, row);
+    double sum = 0;
+    for (size_t i = row * map->width; i < (row + 1) * map->width; i++) {
+      const float *texel = map->rgb + 3 * i;
+      weight[i] = solid * (luminance[0] * (double)texel[0] + luminance[1] * (double)texel[1] +
+                           luminance[2] * (double)texel[2]);
+      sum += weight[i];
+    }
+    *total += sum;
+  }
+  const abbe_result result =
+      *total > 1e-30
+          ? abbe_alias_table_make(weight, count, out, error)
+          : abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                           "the surroundings are black everywhere; leave them out, or give them "
+                           "some light");
+  free(weight);
+  return result;
+}
+
+abbe_result abbe_environment_prepare(abbe_environment *environment, abbe_error *error) {
+  ABBE_REQUIRE(environment && environment->map.rgb, error);
+  abbe_environment made = *environment;
+  made.level_count = 0;
+  made.texels = (abbe_alias_table){0};
+  abbe_result result = check_texels(&made.map, error);
+  if (result == ABBE_OK) result = make_table(&made.map, &made.luminance, &made.texels, error);
+  abbe_radiance_map_mean(&made.map, made.mean);
+  const abbe_radiance_map *last = &made.map;
+  while (result == ABBE_OK && last->height >= 4 && made.level_count < ABBE_ENVIRONMENT_MAX_LEVELS) {
+    result = abbe_radiance_map_halve(last, &made.level[made.level_count], error);
+    if (result == ABBE_OK) last = &made.level[made.level_count++];
+  }
+  if (result == ABBE_OK) {
+    *environment = made;
+    return ABBE_OK;
+  }
+  abbe_alias_table_free(&made.texels);
+  for (size_t i = 0; i < made.level_count; i++) abbe_radiance_map_free(&made.level[i]);
+  return result;
+}
+
+void abbe_environment_free(abbe_environment *environment) {
+  if (environment == NULL) return;
+  free(environment->path);
+  free(environment->illuminant_path);
+  abbe_illuminant_free(&environment->illuminant);
+  abbe_radiance_map_free(&environment->map);
+  abbe_alias_table_free(&environment->texels);
+  for (size_t i = 0; i < environment->level_count; i++)
+    abbe_radiance_map_free(&environment->level[i]);
+  memset(environment, 0, sizeof *environment);
+}
+
+void abbe_environment_turn(double rotate_rad, const double axis[3], double tilt_rad,
+                           double to_map[9]) {
+  double rotation[16], tilt[16];
+  abbe_transform_rotate(rotate_rad, (const double[3]){0, 0, 1}, rotation);
+  if (axis != NULL) {
+    abbe_transform_rotate(tilt_rad, axis, tilt);
+    abbe_transform_multiply(tilt, rotation, rotation);
+  }
+  /* the inverse of a rotation is its transpose: rows here are that matrix's columns */
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) to_map[3 * i + k] = rotation[4 * i + k];
+}
+
+/* --- looking --- */
+
+void abbe_environment_radiance(const abbe_environment *environment, const double direction[3],
+                               double rgb[3]) {
+  abbe_environment_radiance_of_level(environment, 0, direction, rgb);
+}
+
+void abbe_environment_radiance_of_level(const abbe_environment *environment, size_t index,
+                                        const double direction[3], double rgb[3]) {
+  double own[3];
+  if (index > environment->level_count) index = environment->level_count;
+  apply(environment->to_map, direction, own);
+  abbe_radiance_map_at(index == 0 ? &environment->map : &environment->level[index - 1], own, rgb);
+}
+
+void abbe_environment_irradiance(const abbe_environment *environment, const double normal[3],
+                                 double rgb[3]) {
+  double own[3];
+  apply(environment->to_map, normal, own);
+  abbe_radiance_map_irradiance(&environment->map, own, rgb);
+}
+
+/* --- sampling --- */
+
+/* A texel's share over polar angle: (a + b t) |sin(middle + t)|, t from its middle, in at most four
+ * smooth pieces: up and down, cut where a row goes on over a pole. */
+typedef struct polar_piece {
+  double from, to, slope, sign;
+} polar_piece;
+
+/* Antiderivative of (1 + slope t) sin(middle + t). */
+static double antiderivative(double middle, double slope, double t) {
+  return slope * sin(middle + t) - (1 + slope * t) * cos(middle + t);
+}
+
+static double mass_of(const polar_piece *p, double middle, double from, double to) {
+  return p->sign * (antiderivative(middle, p->slope, to) - antiderivative(middle, p->slope, from));
+}
+
+static int pieces_of(double middle, double step, polar_piece piece[4]) {
+  double cut[5] = {-step, 0, step};
+  int count = 2;
+  if (middle < step) {
+    cut[3] = cut[2], cut[2] = cut[1], cut[1] = -middle;
+    count++;
+  }
+  if (middle > PI - step) {
+    cut[count + 1] = cut[count], cut[count] = PI - middle;
+    count++;
+  }
+  for (int i = 0; i < count; i++) {
+    const double at = (cut[i] + cut[i + 1]) / 2;
+    piece[i] = (polar_piece){cut[i], cut[i + 1], at < 0 ? 1 / step : -1 / step,
+                             sin(middle + at) < 0 ? -1 : 1};
+  }
+  return count;
+}
+
+/* By Newton's steps, held in an interval that bisection keeps. */
+static double solve(const polar_piece *p, double middle, double mass) {
+  double low = p->from, high = p->to, t = (low + high) / 2;
+  for (int i = 0; i < 60; i++) {
+    const double over = mass_of(p, middle, p->from, t) - mass;
+    const double rate = p->sign * (1 + p->slope * t) * sin(middle + t);
+    if (over > 0)
+      high = t;
+    else
+      low = t;
+    double next = rate > 0 ? t - over / rate : low;
+    if (!(next > low && next < high)) next = (low + high) / 2;
+    if (fabs(next - t) <= 1e-13) return next;
+    t = next;
+  }
+  return t;
+}
+
+/* Polar angle of a texel of the row, by share x solid angle; below 0 or above pi it lies over the
+ * pole. */
+static double polar_of(const abbe_radiance_map *map, size_t row, double u) {
+  const double step = PI / (double)map->height, middle = ((double)row + 0.5) * step;
+  polar_piece piece[4];
+  double mass[4], sum = 0;
+  const int count = pieces_of(middle, step, piece);
+  for (int i = 0; i < count; i++)
+    sum += mass[i] = fmax(mass_of(&piece[i], middle, piece[i].from, piece[i].to), 0);
+  double rest = u * sum;
+  int i = 0;
+  while (i < count - 1 && rest >= mass[i]) rest -= mass[i++];
+  return middle + solve(&piece[i], middle, fmin(rest, mass[i]));
+}
+
+static double density(const abbe_environment *environment, const double own[3]) {
+  double rgb[3];
+  abbe_radiance_map_at(&environment->map, own, rgb);
+  return abbe_vector_dot(luminance, rgb) / environment->luminance;
+}
+
+void abbe_environment_sample(const abbe_environment *environment, const double u[3],
+                             double direction[3], double *pdf) {
+  const abbe_radiance_map *map = &environment->map;
+  const size_t texel = abbe_alias_table_draw(&environment->texels, u[0]);
+  /* over longitude the share is a triangle */
+  const double aside = u[1] < 0.5 ? sqrt(2 * u[1]) - 1 : 1 - sqrt(2 - 2 * u[1]);
+  const double x = (double)(texel % map->width) + 0.5 + aside;
+  const double y = polar_of(map, texel / map->width, u[2]) / PI * (double)map->height;
+  double own[3];
+  abbe_radiance_map_direction(map, x, y, own);
+  *pdf = density(environment, own);
+  apply_inverse(environment->to_map, own, direction);
+}
+
+double abbe_environment_pdf(const abbe_environment *environment, const double direction[3]) {
+  double own[3];
+  apply(environment->to_map, direction, own);
+  return density(environment, own);
+}

@@ -1,0 +1,183 @@
+#include "scenes/environment/radiance_map.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+abbe_result abbe_radiance_map_make(size_t width, abbe_radiance_map *out, abbe_error *error) {
+  ABBE_REQUIRE(out, error);
+  *out = (abbe_radiance_map){0};
+  if (width < ABBE_RADIANCE_MAP_MIN_WIDTH || width > ABBE_RADIANCE_MAP_MAX_WIDTH || width % 2 != 0)
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "a map of %zu texels across is not possible; an even number, %d to %d, is", width,
+        ABBE_RADIANCE_MAP_MIN_WIDTH, ABBE_RADIANCE_MAP_MAX_WIDTH);
+  out->rgb = calloc(width * (width / 2), 3 * sizeof *out->rgb);
+  if (out->rgb == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a map of %zu x %zu texels", width,
+                          width / 2);
+  out->width = width;
+  out->height = width / 2;
+  return ABBE_OK;
+}
+
+void abbe_radiance_map_free(abbe_radiance_map *map) {
+  if (map == NULL) return;
+  free(map->rgb);
+  *map = (abbe_radiance_map){0};
+}
+
+void abbe_radiance_map_direction(const abbe_radiance_map *map, double x, double y,
+                                 double direction[3]) {
+  const double polar = PI * y / (double)map->height;
+  const double azimuth = PI - 2 * PI * x / (double)map->width;
+  direction[0] = sin(polar) * cos(azimuth);
+  direction[1] = sin(polar) * sin(azimuth);
+  direction[2] = cos(polar);
+}
+
+void abbe_radiance_map_place(const abbe_radiance_map *map, const double direction[3], double *x,
+                             double *y) {
+  const double aside = hypot(direction[0], direction[1]);
+  *x = (PI - atan2(direction[1], direction[0])) / (2 * PI) * (double)map->width;
+  *y = atan2(aside, direction[2]) / PI * (double)map->height;
+}
+
+/* Over a pole a row goes on half a turn away. */
+static size_t texel_of(const abbe_radiance_map *map, int64_t column, int64_t row) {
+  const int64_t width = (int64_t)map->width, height = (int64_t)map->height;
+  if (row < 0 || row >= height) {
+    row = row < 0 ? -1 - row : 2 * height - 1 - row;
+    column += width / 2;
+  }
+  column %= width;
+  return (size_t)(row * width + (column < 0 ? column + width : column));
+}
+
+void abbe_radiance_map_texels(const abbe_radiance_map *map, double x, double y, size_t texel[4],
+                              double share[4]) {
+  const double left = floor(x - 0.5), above = floor(y - 0.5);
+  const double u = x - 0.5 - left, v = y - 0.5 - above;
+  const int64_t column = (int64_t)left, row = (int64_t)above;
+  for (int i = 0; i < 4; i++) {
+    texel[i] = texel_of(map, column + i % 2, row + i / 2);
+    share[i] = (i % 2 ? u : 1 - u) * (i / 2 ? v : 1 - v);
+  }
+}
+
+static void at_place(const abbe_radiance_map *map, double x, double y, double rgb[3]) {
+  size_t texel[4];
+  double share[4];
+  abbe_radiance_map_texels(map, x, y, texel, share);
+  for (int k = 0; k < 3; k++) {
+    rgb[k] = 0;
+    for (int i = 0; i < 4; i++) rgb[k] += share[i] * (double)map->rgb[3 * texel[i] + (size_t)k];
+  }
+}
+
+void abbe_radiance_map_at(const abbe_radiance_map *map, const double direction[3], double rgb[3]) {
+  double x, y;
+  abbe_radiance_map_place(map, direction, &x, &y);
+  at_place(map, x, y, rgb);
+}
+
+/* Integral over [from, to] of (a + b theta) sin(theta), by a six-point Gauss rule: closed forms
+ * cancel near the poles. */
+static double piece(double a, double b, double from, double to) {
+  static const double at[3] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
+  static const double weight[3] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
+  const double half = (to - from) / 2, middle = from + half;
+  double sum = 0;
+  for (int i = 0; i < 6; i++) {
+    const double theta = middle + (i % 2 ? half : -half) * at[i / 2];
+    sum += weight[i / 2] * (a + b * theta) * sin(theta);
+  }
+  return half * sum;
+}
+
+double abbe_radiance_map_solid_angle(const abbe_radiance_map *map, size_t row) {
+  const double step = PI / (double)map->height, turn = 2 * PI / (double)map->width;
+  const size_t from_pole = row < map->height - 1 - row ? row : map->height - 1 - row;
+  const double middle = ((double)from_pole + 0.5) * step;
+  const double below = piece(1 + middle / step, -1 / step, middle, middle + step);
+  /* with the part over the pole, the first row's share is 1 up to the pole */
+  const double above = from_pole == 0 ? piece(1, 0, 0, middle)
+                                      : piece(1 - middle / step, 1 / step, middle - step, middle);
+  return turn * (above + below);
+}
+
+void abbe_radiance_map_mean(const abbe_radiance_map *map, double rgb[3]) {
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  for (size_t row = 0; row < map->height; row++) {
+    const double share = abbe_radiance_map_solid_angle(map, row) / (4 * PI);
+    double sum[3] = {0};
+    for (size_t i = row * map->width; i < (row + 1) * map->width; i++)
+      for (int k = 0; k < 3; k++) sum[k] += (double)map->rgb[3 * i + (size_t)k];
+    for (int k = 0; k < 3; k++) rgb[k] += share * sum[k];
+  }
+}
+
+void abbe_radiance_map_irradiance(const abbe_radiance_map *map, const double normal[3],
+                                  double rgb[3]) {
+  const size_t parts = (511 + map->height) / map->height;
+  const size_t rows = map->height * parts, columns = map->width * parts;
+  const double turn = 2 * PI / (double)columns;
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  for (size_t row = 0; row < rows; row++) {
+    const double from = PI * (double)row / (double)rows;
+    const double solid = turn * (cos(from) - cos(from + PI / (double)rows));
+    double sum[3] = {0};
+    for (size_t column = 0; column < columns; column++) {
+      const double x = ((double)column + 0.5) / (double)parts;
+      const double y = ((double)row + 0.5) / (double)parts;
+      double direction[3], light[3];
+      abbe_radiance_map_direction(map, x, y, direction);
+      const double cosine = abbe_vector_dot(direction, normal);
+      if (!(cosine > 0)) continue;
+      at_place(map, x, y, light);
+      for (int k = 0; k < 3; k++) sum[k] += cosine * light[k];
+    }
+    for (int k = 0; k < 3; k++) rgb[k] += solid * sum[k];
+  }
+}
+
+/* One texel of the halved map, from rows [top, bottom) and columns [left, right) of the map. */
+static void average(const abbe_radiance_map *map, double top, double bottom, double left,
+                    double right, float out[3]) {
+  const double step = PI / (double)map->height;
+  double sum[3] = {0}, whole = 0;
+  for (size_t row = (size_t)top; row < map->height && (double)row < bottom; row++) {
+    const double from = fmax((double)row, top), to = fmin((double)row + 1, bottom);
+    const double high = cos(from * step) - cos(to * step);
+    for (size_t column = (size_t)left; column < map->width && (double)column < right; column++) {
+      const double wide = fmin((double)column + 1, right) - fmax((double)column, left);
+      const float *texel = map->rgb + 3 * (row * map->width + column);
+      whole += high * wide;
+      for (int k = 0; k < 3; k++) sum[k] += high * wide * (double)texel[k];
+    }
+  }
+  for (int k = 0; k < 3; k++) out[k] = (float)(sum[k] / whole);
+}
+
+abbe_result abbe_radiance_map_halve(const abbe_radiance_map *map, abbe_radiance_map *out,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(map && out, error);
+  *out = (abbe_radiance_map){0};
+  if (map->height < 4)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a map of %zu x %zu texels is too small to be halved", map->width,
+                          map->height);
+  const abbe_result result = abbe_radiance_map_make(2 * (map->height / 2), out, error);
+  if (result != ABBE_OK) return result;
+  const double wide = (double)map->width / (double)out->width;
+  const double high = (double)map->height / (double)out->height;
+  for (size_t row = 0; row < out->height; row++)
+    for (size_t column = 0; column < out->width; column++)
+      average(map, (double)row * high, (double)(row + 1) * high, (double)column * wide,
+              (double)(column + 1) * wide, out->rgb + 3 * (row * out->width + column));
+  return ABBE_OK;
+}

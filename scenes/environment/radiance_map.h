@@ -1,0 +1,71 @@
+/* radiance_map.h: radiance by direction, as a latitude-longitude map: twice as wide as high.
+ *
+ * Row 0 is at the zenith, +z. The middle column looks along +x, its left neighbours towards +y: the
+ * map is seen from inside, unmirrored. A texel's value stands at its middle, and the radiance
+ * between is bilinear in the two angles. Longitude wraps. Above the middles of the first row it
+ * goes on over the pole to that row's texel half a turn away, and so below the last: the map is
+ * continuous everywhere. All integrals here are those of this bilinear radiance. It has no rotation
+ * and no units of its own: environment.h has.
+ */
+#ifndef ABBE_SCENES_ENVIRONMENT_RADIANCE_MAP_H
+#define ABBE_SCENES_ENVIRONMENT_RADIANCE_MAP_H
+
+#include "base/error.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_RADIANCE_MAP_MIN_WIDTH 4
+#define ABBE_RADIANCE_MAP_MAX_WIDTH 8192
+
+typedef struct abbe_radiance_map {
+  size_t width, height; /* width = 2 height */
+  float *rgb;           /* [height][width][3], finite, >= 0 */
+} abbe_radiance_map;
+
+/* A black map. ABBE_INVALID_ARGUMENT for a width that is odd or outside
+ * ABBE_RADIANCE_MAP_MIN_WIDTH to ABBE_RADIANCE_MAP_MAX_WIDTH, ABBE_NO_MEMORY. */
+abbe_result abbe_radiance_map_make(size_t width, abbe_radiance_map *out, abbe_error *error);
+void abbe_radiance_map_free(abbe_radiance_map *map);
+
+/* Unit direction of a place in the map, in texels: x in [0, width], y in [0, height], (0.5, 0.5)
+ * the middle of the first texel. */
+void abbe_radiance_map_direction(const abbe_radiance_map *map, double x, double y,
+                                 double direction[3]);
+/* The place of a direction of any length but 0. */
+void abbe_radiance_map_place(const abbe_radiance_map *map, const double direction[3], double *x,
+                             double *y);
+
+/* The four texels (row * width + column) around a place, and their shares, >= 0, which add up to 1.
+ */
+void abbe_radiance_map_texels(const abbe_radiance_map *map, double x, double y, size_t texel[4],
+                              double share[4]);
+
+/* Radiance from a direction of any length but 0. */
+void abbe_radiance_map_at(const abbe_radiance_map *map, const double direction[3], double rgb[3]);
+
+/* The integral over the sphere of the share of one texel of that row, sr: what its value counts in
+ * an integral. Over all texels they add up to 4 pi. */
+double abbe_radiance_map_solid_angle(const abbe_radiance_map *map, size_t row);
+
+/* Mean over the sphere. */
+void abbe_radiance_map_mean(const abbe_radiance_map *map, double rgb[3]);
+
+/* Irradiance on a plane of the unit normal, from the half space that it points to: a quadrature of
+ * at least 1024 x 512 places, right to 1e-4 of what the brightest texel would give everywhere. */
+void abbe_radiance_map_irradiance(const abbe_radiance_map *map, const double normal[3],
+                                  double rgb[3]);
+
+/* Half as wide and high, odd heights rounded down: each texel is the mean of those that it covers,
+ * in part or whole, by solid angle. The sum over cells of solid angle x radiance stays as it is.
+ * ABBE_INVALID_ARGUMENT for a map that is fewer than four texels high, ABBE_NO_MEMORY. */
+abbe_result abbe_radiance_map_halve(const abbe_radiance_map *map, abbe_radiance_map *out,
+                                    abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

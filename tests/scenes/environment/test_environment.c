@@ -1,0 +1,209 @@
+#include "tests/check.h"
+#include "tests/random.h"
+
+#include "scenes/environment/environment.h"
+#include "scenes/geometry/vector.h"
+
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+
+/* Grey noise with black places, a bright spot at the zenith and one where longitude begins again.
+ */
+static void fill(abbe_radiance_map *map) {
+  for (size_t i = 0; i < map->width * map->height; i++) {
+    const float value = i * 7919 % 101 < 40 ? 0 : (float)(i * 7919 % 101) / 101;
+    for (size_t k = 0; k < 3; k++) map->rgb[3 * i + k] = value;
+  }
+  for (size_t k = 0; k < 3; k++) map->rgb[3 * 2 + k] = 200;
+  for (size_t k = 0; k < 3; k++) map->rgb[3 * map->width * (map->height / 3) + k] = 50;
+  for (size_t k = 0; k < 3; k++) map->rgb[3 * (map->width * map->height - 3) + k] = 20;
+}
+
+static void make(size_t width, abbe_environment *out) {
+  abbe_error error = {0};
+  *out = (abbe_environment){0};
+  assert_int_equal(abbe_radiance_map_make(width, &out->map, NULL), ABBE_OK);
+  fill(&out->map);
+  abbe_environment_turn(0.7, (const double[3]){1, 2, 0.5}, -1.1, out->to_map);
+  if (abbe_environment_prepare(out, &error) != ABBE_OK) fail_msg("%s", error.text);
+}
+
+static void densities_integrate_to_one(void **state) {
+  (void)state;
+  static const size_t widths[] = {4, 6, 16, 64};
+  for (size_t w = 0; w < 4; w++) {
+    abbe_environment e;
+    double sum = 0, mean = 0;
+    make(widths[w], &e);
+    const int rows = 1000, columns = 2000;
+    for (int i = 0; i < rows; i++)
+      for (int j = 0; j < columns; j++) {
+        const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * PI * (j + 0.5) / columns;
+        const double s = sqrt(1 - z * z), d[3] = {s * cos(a), s * sin(a), z};
+        double rgb[3];
+        sum += abbe_environment_pdf(&e, d) * 4 * PI / (rows * columns);
+        abbe_environment_radiance(&e, d, rgb);
+        mean += rgb[0] / (rows * columns);
+      }
+    assert_near(sum, 1, 1e-4);
+    assert_near(mean, e.mean[0], 1e-4 * e.mean[0]);
+    assert_near(e.luminance, 4 * PI * e.mean[0], 1e-9 * e.luminance);
+    abbe_environment_free(&e);
+  }
+}
+
+/* Each sample's radiance over density is the integral itself, and samples lie as the density says:
+ * their shares of the octants, of a cap around a pole and moments. */
+static void samples_follow_their_density(void **state) {
+  (void)state;
+  static const size_t widths[] = {4, 6, 16, 64};
+  for (size_t w = 0; w < 4; w++) {
+    abbe_environment e;
+    double is[12] = {0}, expected[12] = {0};
+    make(widths[w], &e);
+    enum { SAMPLES = 1000000 };
+    uint64_t state64 = 1;
+    for (int i = 0; i < SAMPLES; i++) {
+      const double u[3] = {random_between(&state64, 0, 1), random_between(&state64, 0, 1),
+                           random_between(&state64, 0, 1)};
+      double d[3], pdf, rgb[3], own[3];
+      abbe_environment_sample(&e, u, d, &pdf);
+      assert_true(pdf > 0);
+      if (i % 100 == 0) {
+        assert_near(abbe_vector_length(d), 1, 1e-12);
+        assert_near(abbe_environment_pdf(&e, d), pdf, 1e-9 * pdf + 1e-12);
+        abbe_environment_radiance(&e, d, rgb);
+        assert_near(rgb[1] / pdf, e.luminance, 1e-6 * e.luminance);
+      }
+      for (int k = 0; k < 3; k++) own[k] = abbe_vector_dot(e.to_map + 3 * k, d);
+      is[(own[0] > 0) + 2 * (own[1] > 0) + 4 * (own[2] > 0)] += 1.0 / SAMPLES;
+      is[8] += (own[2] > 0.98) * 1.0 / SAMPLES;
+      for (int k = 0; k < 3; k++) is[9 + k] += own[k] / SAMPLES;
+    }
+    const int rows = 1000, columns = 2000;
+    for (int i = 0; i < rows; i++)
+      for (int j = 0; j < columns; j++) {
+        const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * PI * (j + 0.5) / columns;
+        const double s = sqrt(1 - z * z), own[3] = {s * cos(a), s * sin(a), z};
+        double rgb[3];
+        abbe_radiance_map_at(&e.map, own, rgb);
+        const double share = rgb[0] / e.luminance * 4 * PI / (rows * columns);
+        expected[(own[0] > 0) + 2 * (own[1] > 0) + 4 * (own[2] > 0)] += share;
+        expected[8] += (own[2] > 0.98) * share;
+        for (int k = 0; k < 3; k++) expected[9 + k] += own[k] * share;
+      }
+    for (int i = 0; i < 12; i++) assert_near(is[i], expected[i], 0.0025);
+    abbe_environment_free(&e);
+  }
+}
+
+/* The ends of [0, 1): nothing is outside, and no sample is where it is dark. */
+static void extreme_numbers(void **state) {
+  (void)state;
+  static const double ends[] = {0, 0x1p-60, 0.5, 1 - 0x1p-53};
+  abbe_environment e;
+  make(16, &e);
+  for (int i = 0; i < 64; i++)
+    for (int j = 0; j < 128; j++) {
+      const double u[3] = {(j + 0.5) / 128, ends[i % 4], ends[i / 4 % 4]};
+      double d[3], pdf;
+      abbe_environment_sample(&e, u, d, &pdf);
+      assert_true(abbe_vector_finite(d) && isfinite(pdf) && pdf >= 0);
+      assert_near(abbe_vector_length(d), 1, 1e-12);
+    }
+  abbe_environment_free(&e);
+}
+
+static void turning_both_changes_nothing(void **state) {
+  (void)state;
+  abbe_environment still = {0}, turned = {0};
+  make(64, &still);
+  make(64, &turned);
+  abbe_environment_turn(0, NULL, 0, still.to_map);
+  /* a quarter about z takes +x to +y; then a quarter about x takes +y to +z */
+  abbe_environment_turn(PI / 2, (const double[3]){1, 0, 0}, PI / 2, turned.to_map);
+  for (int i = 0; i < 200; i++) {
+    double d[3] = {sin(i), cos(3 * i), sin(5 * i) + 0.1}, one[3], other[3];
+    assert_true(abbe_vector_normalise(d));
+    const double moved[3] = {-d[1], -d[2], d[0]};
+    abbe_environment_radiance(&still, d, one);
+    abbe_environment_radiance(&turned, moved, other);
+    for (int k = 0; k < 3; k++) assert_near(one[k], other[k], 1e-9 * (1 + one[k]));
+    assert_near(abbe_environment_pdf(&still, d), abbe_environment_pdf(&turned, moved), 1e-9);
+    if (i % 20 != 0) continue;
+    abbe_environment_irradiance(&still, d, one);
+    abbe_environment_irradiance(&turned, moved, other);
+    for (int k = 0; k < 3; k++) assert_near(one[k], other[k], 1e-9 * one[k]);
+  }
+  abbe_environment_free(&still);
+  abbe_environment_free(&turned);
+}
+
+static void light_is_linear(void **state) {
+  (void)state;
+  abbe_environment one, three;
+  const double n[3] = {0.6, 0, 0.8};
+  double a[3], b[3];
+  make(64, &one);
+  make(64, &three);
+  for (size_t i = 0; i < 3 * 64 * 32; i++) three.map.rgb[i] *= 3;
+  abbe_alias_table_free(&three.texels);
+  for (size_t i = 0; i < three.level_count; i++) abbe_radiance_map_free(&three.level[i]);
+  assert_int_equal(abbe_environment_prepare(&three, NULL), ABBE_OK);
+  abbe_environment_irradiance(&one, n, a);
+  abbe_environment_irradiance(&three, n, b);
+  assert_near(b[0], 3 * a[0], 1e-5 * b[0]);
+  assert_near(three.mean[0], 3 * one.mean[0], 1e-6 * three.mean[0]);
+  assert_near(abbe_environment_pdf(&three, n), abbe_environment_pdf(&one, n), 1e-6);
+  abbe_environment_free(&one);
+  abbe_environment_free(&three);
+}
+
+static void levels_are_blurred(void **state) {
+  (void)state;
+  abbe_environment e;
+  make(64, &e);
+  assert_int_equal(e.level_count, 4);
+  assert_int_equal(e.level[3].height, 2);
+  for (size_t l = 0; l < 8; l++) {
+    double rgb[3];
+    abbe_environment_radiance_of_level(&e, l, (const double[3]){0, 0, 1}, rgb);
+    assert_true(rgb[0] >= 0 && rgb[0] <= 200);
+  }
+  abbe_environment_free(&e);
+  abbe_environment_free(NULL);
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    float value;
+    const char *part;
+  } cases[] = {
+      {-1e-3f, "is -0.001"}, {NAN, "nan"}, {INFINITY, "inf"}, {2e12f, "2e+12"}, {0, "black"}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_environment e = {0};
+    abbe_error error;
+    assert_int_equal(abbe_radiance_map_make(16, &e.map, NULL), ABBE_OK);
+    e.map.rgb[3 * (16 * 2 + 5) + 1] = cases[i].value;
+    assert_int_equal(abbe_environment_prepare(&e, &error), ABBE_INVALID_ARGUMENT);
+    assert_contains(error.text, cases[i].part);
+    if (i < 4) assert_contains(error.text, "green of the texel at column 5, row 2");
+    assert_null(e.texels.keep);
+    abbe_environment_free(&e);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(densities_integrate_to_one),
+      cmocka_unit_test(samples_follow_their_density),
+      cmocka_unit_test(extreme_numbers),
+      cmocka_unit_test(turning_both_changes_nothing),
+      cmocka_unit_test(light_is_linear),
+      cmocka_unit_test(levels_are_blurred),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

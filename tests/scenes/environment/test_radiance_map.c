@@ -1,0 +1,193 @@
+#include "tests/check.h"
+
+#include "scenes/environment/radiance_map.h"
+#include "scenes/geometry/vector.h"
+
+#define PI 3.14159265358979323846
+
+static abbe_radiance_map make(size_t width) {
+  abbe_radiance_map map;
+  assert_int_equal(abbe_radiance_map_make(width, &map, NULL), ABBE_OK);
+  return map;
+}
+
+static abbe_radiance_map pattern(size_t width) {
+  abbe_radiance_map map = make(width);
+  for (size_t i = 0; i < 3 * map.width * map.height; i++)
+    map.rgb[i] = (float)(i * 7919 % 101) / 101;
+  return map;
+}
+
+static const double normals[][3] = {
+    {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-0.6, 0.64, 0.48}, {0.1, -0.7, -0.70710678118654746}};
+
+static void where_directions_are(void **state) {
+  (void)state;
+  abbe_radiance_map map = make(64);
+  static const struct {
+    double direction[3], x, y;
+  } cases[] = {{{1, 0, 0}, 32, 16},  {{0, 1, 0}, 16, 16}, {{0, -3, 0}, 48, 16}, {{0, 0, 1}, 32, 0},
+               {{0, 0, -1}, 32, 32}, {{1, 0, 1}, 32, 8},  {{-1, 1, 0}, 8, 16}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    double x, y, back[3], length = abbe_vector_length(cases[i].direction);
+    abbe_radiance_map_place(&map, cases[i].direction, &x, &y);
+    assert_near(y, cases[i].y, 1e-12);
+    if (y > 0 && y < 32) assert_near(x, cases[i].x, 1e-12);
+    abbe_radiance_map_direction(&map, x, y, back);
+    for (int k = 0; k < 3; k++) assert_near(back[k], cases[i].direction[k] / length, 1e-12);
+  }
+  abbe_radiance_map_free(&map);
+}
+
+static void solid_angles_add_up(void **state) {
+  (void)state;
+  for (size_t width = 4; width <= 8192; width *= 2) {
+    const abbe_radiance_map map = {.width = width + (width == 64 ? 2 : 0),
+                                   .height = width / 2 + (width == 64)};
+    double sum = 0;
+    for (size_t row = 0; row < map.height; row++) {
+      sum += abbe_radiance_map_solid_angle(&map, row) * (double)map.width;
+      assert_true(abbe_radiance_map_solid_angle(&map, row) > 0);
+    }
+    assert_near(sum, 4 * PI, 1e-11);
+  }
+}
+
+static void values_stand_at_middles_and_are_continuous(void **state) {
+  (void)state;
+  abbe_radiance_map map = pattern(16);
+  for (size_t y = 0; y < 8; y++)
+    for (size_t x = 0; x < 16; x++) {
+      double direction[3], rgb[3];
+      abbe_radiance_map_direction(&map, (double)x + 0.5, (double)y + 0.5, direction);
+      abbe_radiance_map_at(&map, direction, rgb);
+      for (size_t k = 0; k < 3; k++) assert_near(rgb[k], map.rgb[3 * (16 * y + x) + k], 1e-12);
+    }
+  /* over the poles, and where longitude begins again */
+  for (int i = 0; i < 64; i++) {
+    const double a = 0.1 * i, e = 1e-9;
+    const double pairs[3][2][3] = {{{e * cos(a), e * sin(a), 1}, {-e * cos(a), -e * sin(a), 1}},
+                                   {{e * cos(a), e * sin(a), -1}, {-e * cos(a), -e * sin(a), -1}},
+                                   {{-1, e, cos(a)}, {-1, -e, cos(a)}}};
+    for (int p = 0; p < 3; p++) {
+      double one[3], other[3];
+      abbe_radiance_map_at(&map, pairs[p][0], one);
+      abbe_radiance_map_at(&map, pairs[p][1], other);
+      for (int k = 0; k < 3; k++) assert_near(one[k], other[k], 1e-6);
+    }
+  }
+  abbe_radiance_map_free(&map);
+}
+
+/* By a midpoint rule of its own. */
+static void the_mean_is_the_integral(void **state) {
+  (void)state;
+  abbe_radiance_map map = pattern(16);
+  double mean[3], sum[3] = {0};
+  const int rows = 800, columns = 1600;
+  for (int i = 0; i < rows; i++)
+    for (int j = 0; j < columns; j++) {
+      const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * PI * (j + 0.5) / columns,
+                   s = sqrt(1 - z * z);
+      double rgb[3];
+      abbe_radiance_map_at(&map, (const double[3]){s * cos(a), s * sin(a), z}, rgb);
+      for (int k = 0; k < 3; k++) sum[k] += rgb[k] / (rows * columns);
+    }
+  abbe_radiance_map_mean(&map, mean);
+  for (int k = 0; k < 3; k++) assert_near(mean[k], sum[k], 2e-5);
+  abbe_radiance_map_free(&map);
+}
+
+static void uniform_light(void **state) {
+  (void)state;
+  static const size_t widths[] = {4, 8, 100, 512, 1024, 2048};
+  for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+    abbe_radiance_map map = make(widths[w]);
+    double rgb[3];
+    for (size_t i = 0; i < map.width * map.height; i++) {
+      map.rgb[3 * i] = 1;
+      map.rgb[3 * i + 1] = 2;
+      map.rgb[3 * i + 2] = 0.5f;
+    }
+    abbe_radiance_map_mean(&map, rgb);
+    assert_near(rgb[1], 2, 1e-12);
+    for (size_t n = 0; n < sizeof normals / sizeof *normals; n++) {
+      abbe_radiance_map_irradiance(&map, normals[n], rgb);
+      assert_near(rgb[0] / PI, 1, 1e-4);
+      assert_near(rgb[1] / PI, 2, 2e-4);
+      assert_near(rgb[2] / PI, 0.5, 5e-5);
+    }
+    abbe_radiance_map_free(&map);
+  }
+}
+
+/* Radiance 1 + n.d: irradiance pi + 2 pi / 3. */
+static void light_from_one_side(void **state) {
+  (void)state;
+  abbe_radiance_map map = make(512);
+  for (size_t n = 0; n < sizeof normals / sizeof *normals; n++) {
+    double rgb[3];
+    for (size_t i = 0; i < map.width * map.height; i++) {
+      double d[3];
+      abbe_radiance_map_direction(&map, (double)(i % 512) + 0.5, (double)(i / 512) + 0.5, d);
+      map.rgb[3 * i] = (float)fmax(1 + abbe_vector_dot(d, normals[n]), 0);
+    }
+    abbe_radiance_map_irradiance(&map, normals[n], rgb);
+    assert_near(rgb[0], PI * (1 + 2.0 / 3), 3e-4);
+  }
+  abbe_radiance_map_free(&map);
+}
+
+static double sum_over_cells(const abbe_radiance_map *map) {
+  double sum = 0;
+  for (size_t i = 0; i < map->width * map->height; i++) {
+    const double top = PI * (double)(i / map->width) / (double)map->height;
+    sum += (double)map->rgb[3 * i] * (cos(top) - cos(top + PI / (double)map->height)) * 2 * PI /
+           (double)map->width;
+  }
+  return sum;
+}
+
+static void halves_keep_the_light(void **state) {
+  (void)state;
+  static const size_t widths[] = {8, 10, 64, 100, 250, 374};
+  for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+    abbe_radiance_map map = pattern(widths[w]);
+    while (map.height >= 4) {
+      abbe_radiance_map half;
+      assert_int_equal(abbe_radiance_map_halve(&map, &half, NULL), ABBE_OK);
+      assert_true(half.height == map.height / 2 && half.width == 2 * half.height);
+      assert_near(sum_over_cells(&half) / sum_over_cells(&map), 1, 1e-6);
+      abbe_radiance_map_free(&map);
+      map = half;
+    }
+    abbe_radiance_map_free(&map);
+  }
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  static const size_t widths[] = {0, 2, 5, 8194, (size_t)-2};
+  abbe_radiance_map map, half;
+  abbe_error error;
+  for (size_t w = 0; w < sizeof widths / sizeof *widths; w++)
+    assert_int_equal(abbe_radiance_map_make(widths[w], &map, &error), ABBE_INVALID_ARGUMENT);
+  map = make(6);
+  assert_int_equal(abbe_radiance_map_halve(&map, &half, &error), ABBE_INVALID_ARGUMENT);
+  abbe_radiance_map_free(&map);
+  abbe_radiance_map_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(where_directions_are),
+      cmocka_unit_test(solid_angles_add_up),
+      cmocka_unit_test(values_stand_at_middles_and_are_continuous),
+      cmocka_unit_test(the_mean_is_the_integral),
+      cmocka_unit_test(uniform_light),
+      cmocka_unit_test(light_from_one_side),
+      cmocka_unit_test(halves_keep_the_light),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
