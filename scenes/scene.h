@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "colorimetry/illuminant.h"
 #include "colorimetry/image/image.h"
+#include "scenes/environment/environment.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/convex.h"
 #include "spectral/materials/material_table.h"
@@ -93,6 +94,7 @@ typedef struct abbe_scene {
   abbe_camera camera;
   size_t light_count;
   abbe_light *light;
+  abbe_environment *environment; /* what is around it all, or NULL */
   size_t object_count;
   abbe_object *object;
   abbe_material_table table;

@@ -10,6 +10,7 @@ foreach(name
     difference_picture
     baseline_comparison
     error_decomposition
+    environment_trace
     eye_samples
     eye_walk
     pareto_front

@@ -74,10 +74,10 @@ void abbe_field_become_xyz(abbe_field *field);
 abbe_result abbe_field_sum_down(abbe_field *field, size_t width, size_t height, abbe_error *error);
 
 /* Brings two fields together: of one kind, with colour or bands in common, one size and, for maps,
- * one layout (scenes/view/map_layout.h; none for both is the same) and one abbe:map_light. The finer of
- * two maps is summed down to the coarser; if the spaces of colour differ, both become XYZ; bands
- * stay only where both have the same. ABBE_INVALID_ARGUMENT with what differs (the places where
- * they lie, too), by the names that are given. */
+ * one layout (scenes/view/map_layout.h; none for both is the same) and one abbe:map_light. The
+ * finer of two maps is summed down to the coarser; if the spaces of colour differ, both become XYZ;
+ * bands stay only where both have the same. ABBE_INVALID_ARGUMENT with what differs (the places
+ * where they lie, too), by the names that are given. */
 abbe_result abbe_field_align(abbe_field *a, const char *name_a, abbe_field *b, const char *name_b,
                              abbe_error *error);
 

@@ -45,6 +45,15 @@ unsigned long long abbe_sweep_hash_scene(const abbe_scene *s) {
       h = hash(h, &power, sizeof power);
     }
   }
+  if (s->environment != NULL) {
+    const abbe_environment *e = s->environment;
+    h = hash(h, e->to_map, sizeof e->to_map);
+    h = hash(h, e->map.rgb, e->map.width * e->map.height * 3 * sizeof *e->map.rgb);
+    for (int k = 0; k < INDEX_STEPS; k++) {
+      double power = abbe_illuminant_power(&e->illuminant, 380 + 50.0 * k);
+      h = hash(h, &power, sizeof power);
+    }
+  }
   for (size_t i = 0; i < s->object_count; i++) h = hash_object(h, &s->object[i]);
   return h;
 }

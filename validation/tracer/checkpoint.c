@@ -54,6 +54,11 @@ static uint64_t hash_scene(const abbe_tracer *t) {
                               l->cone_rad,     l->soft_rad,     l->power};
     h = hash_doubles(h, numbers, sizeof numbers / sizeof *numbers);
   }
+  if (s->environment != NULL) {
+    const abbe_radiance_map *m = &s->environment->map;
+    h = hash_doubles(h, s->environment->to_map, 9);
+    h = hash(h, m->rgb, m->width * m->height * 3 * sizeof *m->rgb);
+  }
   h = hash(h, t->sampling.xyz, t->sampling.lights * t->sampling.steps * sizeof *t->sampling.xyz);
   h = hash(h, t->media.n, t->media.refractors * (t->media.steps + 1) * sizeof *t->media.n);
   if (t->media.attenuation != NULL)

@@ -7,12 +7,16 @@
 
 enum { SALT = 0x6c6967 };
 
+static bool is_environment(const abbe_tracer *t, size_t light) {
+  return light == t->environment.light && t->environment.ball_count > 0;
+}
+
 abbe_result abbe_emission_make(const abbe_tracer *t, size_t light, size_t count, uint32_t pass,
                                uint32_t seed, abbe_emission *e, abbe_error *error) {
   const abbe_projection_map *map = &t->projection[light];
   *e = (abbe_emission){.t = t,
                        .light = light,
-                       .count = map->count > 0 ? count : 0,
+                       .count = map->count > 0 || is_environment(t, light) ? count : 0,
                        .pass = pass,
                        .seed = seed ^ SALT};
   e->first = malloc((map->count + 1) * sizeof *e->first);
@@ -155,10 +159,36 @@ static size_t emit(const abbe_emission *e, uint32_t from, uint32_t to, abbe_phot
   return to - from;
 }
 
+/* Photon j of the environment's. Places, directions and wavelengths are multiples of golden ratios
+ * of seven dimensions, shifted at random in every pass [Roberts2018]. */
+static void start_outside(const abbe_emission *e, uint32_t j, const uint32_t shift[8],
+                          abbe_photon *p) {
+  static const uint32_t golden[7] = {3915259345u, 3569120481u, 3253582939u, 2965941329u,
+                                     2703729436u, 2464699080u, 2246800835u};
+  const abbe_environment_light *light = &e->t->environment;
+  float u[7], rgb[3];
+  for (int k = 0; k < 7; k++) u[k] = abbe_random_float(j * golden[k] + shift[k]);
+  p->step = abbe_spectral_sampling_step(u[6], &p->within);
+  abbe_environment_light_ray(light, u, p->o, p->d, rgb);
+  const float *lift = light->lift[p->step];
+  p->flux = (lift[0] * rgb[0] + lift[1] * rgb[1] + lift[2] * rgb[2]) / (float)e->count;
+  p->y = e->t->sampling.xyz[e->light * e->t->sampling.steps + p->step][1];
+  p->id = j | (uint32_t)e->light << 27;
+}
+
+static size_t surround(const abbe_emission *e, uint32_t from, uint32_t to, abbe_photon *photon) {
+  uint32_t shift[8];
+  abbe_random_bits(0, (uint32_t)e->light + 1, e->pass, e->seed, shift);
+  abbe_random_bits(1, (uint32_t)e->light + 1, e->pass, e->seed, shift + 4);
+  for (uint32_t j = from; j < to; j++) start_outside(e, j, shift, &photon[j - from]);
+  return to - from;
+}
+
 size_t abbe_emission_batch(const abbe_emission *e, uint32_t from, uint32_t to,
                            abbe_photon *photon) {
-  return emit(e, from, to - from < ABBE_LIGHT_WALK_BATCH ? to : from + ABBE_LIGHT_WALK_BATCH,
-              photon);
+  const uint32_t end = to - from < ABBE_LIGHT_WALK_BATCH ? to : from + ABBE_LIGHT_WALK_BATCH;
+  return is_environment(e->t, e->light) ? surround(e, from, end, photon)
+                                        : emit(e, from, end, photon);
 }
 
 void abbe_emission_free(abbe_emission *e) {

@@ -137,7 +137,7 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t 
   abbe_light_walk_split(t->walk[thread], t->splits[e->light]);
   for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, to, photon);
-    size_t landed = abbe_light_walk_run(t->walk[thread], &t->scene->light[e->light], e->pass,
+    size_t landed = abbe_light_walk_run(t->walk[thread], abbe_tracer_light(t, e->light), e->pass,
                                         photon, count, hit, &out->ledger);
     for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, thread, e->light, &hit[i]);
     out->splat_rays += add_to_picture(&s, hit, landed);
@@ -204,7 +204,7 @@ abbe_result abbe_tracer_light_pass(abbe_tracer *t, const volatile int *stop, siz
                                    abbe_error *error) {
   *landed_count = 0;
   abbe_result result = ABBE_OK;
-  for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
+  for (size_t l = 0; l < t->sampling.lights && result == ABBE_OK; l++) {
     if (t->photons[l] == 0) continue;
     abbe_emission e;
     result = abbe_emission_make(t, l, t->photons[l], (uint32_t)t->pass, t->desc.seed, &e, error);
@@ -214,18 +214,28 @@ abbe_result abbe_tracer_light_pass(abbe_tracer *t, const volatile int *stop, siz
   return result;
 }
 
+/* W of the light that its photons stand for, before anything is met. */
+static double reach_of(const abbe_tracer *t, size_t light) {
+  if (light < t->scene->light_count)
+    return t->projection[light].count > 0 ? t->projection[light].reach : 0;
+  const abbe_environment *environment = t->environment.environment;
+  return t->desc.no_picture ? 0 : environment->luminance * t->environment.area;
+}
+
 abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
   double total = 0;
-  for (size_t l = 0; l < t->scene->light_count; l++) {
+  for (size_t l = 0; l < t->sampling.lights; l++) {
     bool wanted = !t->desc.no_picture || l == t->desc.map_light;
-    abbe_result result =
-        wanted ? abbe_projection_map_make(&t->geometry, l, &t->projection[l], error) : ABBE_OK;
+    abbe_result result = wanted && l < t->scene->light_count
+                             ? abbe_projection_map_make(&t->geometry, l, &t->projection[l], error)
+                             : ABBE_OK;
     if (result != ABBE_OK) return result;
-    total += t->projection[l].reach;
+    total += reach_of(t, l);
   }
-  for (size_t l = 0; l < t->scene->light_count && total > 0; l++) {
-    if (t->projection[l].count == 0 || !(t->projection[l].reach > 0)) continue;
-    t->photons[l] = (size_t)((double)t->desc.photons * t->projection[l].reach / total);
+  for (size_t l = 0; l < t->sampling.lights && total > 0; l++) {
+    const double reach = reach_of(t, l);
+    if (!(reach > 0)) continue;
+    t->photons[l] = (size_t)((double)t->desc.photons * reach / total);
     /* a faint light still needs enough of them to show where it goes */
     if (t->photons[l] < t->desc.photons / 16) t->photons[l] = t->desc.photons / 16;
     if (t->photons[l] < 64) t->photons[l] = 64;
@@ -241,8 +251,8 @@ static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_phot
   abbe_light_walk_split(t->walk[0], 0);
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
-    landed += abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon, count,
-                                  hit + landed, &ledger);
+    landed += abbe_light_walk_run(t->walk[0], abbe_tracer_light(t, e->light), e->pass, photon,
+                                  count, hit + landed, &ledger);
   }
   return landed;
 }
@@ -251,7 +261,7 @@ abbe_result abbe_tracer_choose_splits(abbe_tracer *t, abbe_error *error) {
   abbe_photon_hit *hit = malloc(SPLIT_TRIALS * sizeof *hit);
   abbe_result result =
       hit != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a trial");
-  for (size_t l = 0; l < t->scene->light_count && result == ABBE_OK; l++) {
+  for (size_t l = 0; l < t->sampling.lights && result == ABBE_OK; l++) {
     if (t->photons[l] == 0) continue;
     abbe_emission e;
     result = abbe_emission_make(t, l, SPLIT_TRIALS, 0, t->desc.seed, &e, error);

@@ -48,11 +48,16 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
   if (result == ABBE_OK)
     result = check_count("threads", d->threads, ABBE_TRACER_MAX_THREADS, error);
   if (result != ABBE_OK) return result;
-  if (scene->light_count == 0 || scene->object_count == 0)
+  const bool dark = scene->light_count == 0 && scene->environment == NULL;
+  if (dark || scene->object_count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is nothing to trace: %s",
-                          scene->light_count == 0 ? "the scene has no light"
-                                                  : "the scene has no object");
-  if (d->map_light >= scene->light_count)
+                          dark ? "the scene has no light and no environment"
+                               : "the scene has no object");
+  if (!d->no_map && scene->light_count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a map is of one light, and the scene has none but its environment: ask "
+                          "for a picture alone");
+  if (d->map_light >= scene->light_count && !d->no_map)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "there is no light %zu for the map: the scene has %zu", d->map_light,
                           scene->light_count);
@@ -92,7 +97,10 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   t->mixing = d->space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : d->space;
   abbe_reflectance_make(&t->geometry, t->mixing, &t->reflectance);
   abbe_trace_camera_make(&t->geometry, d->width, d->height, &t->camera);
-  size_t lights = t->scene->light_count;
+  result = abbe_environment_light_make(&t->geometry, &t->sampling, &t->bands, t->mixing,
+                                       &t->environment, error);
+  if (result != ABBE_OK) return result;
+  size_t lights = t->sampling.lights;
   t->colour = calloc(lights * t->sampling.steps, sizeof *t->colour);
   t->white = calloc(lights, sizeof *t->white);
   t->projection = calloc(lights, sizeof *t->projection);
@@ -137,6 +145,7 @@ static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
 /* Radiance of a white receiver in the middle of the scene, for the range of the sums. */
 static double usual_radiance(const abbe_tracer *t) {
   double most = fmax(t->scene->ambient, t->scene->background);
+  if (t->scene->environment != NULL) most = fmax(most, t->scene->environment->luminance);
   for (size_t l = 0; l < t->scene->light_count; l++) {
     const abbe_light *light = &t->scene->light[l];
     double square = 1, power = light->power;
@@ -202,6 +211,7 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
                            .bands = &t->bands,
                            .camera = &t->camera,
                            .reflectance = &t->reflectance,
+                           .environment = &t->environment,
                            .colour = (const float(*)[3])t->colour,
                            .white = (const float(*)[3])t->white,
                            .physics = t->desc.physics,
@@ -212,7 +222,7 @@ static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
     t->eye.physics.energy_share = t->desc.physics.eye_share;
   }
   if (!t->eye_gathers) return ABBE_OK;
-  for (size_t l = 0; l < t->scene->light_count; l++)
+  for (size_t l = 0; l < t->sampling.lights; l++)
     t->landed_room += abbe_tracer_most_hits(t, l, t->photons[l]);
   t->landed = malloc((t->landed_room + 1) * sizeof *t->landed);
   if (t->landed == NULL)
@@ -254,13 +264,14 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
 void abbe_tracer_free(abbe_tracer *t) {
   if (t == NULL) return;
   for (size_t i = 0; t->walk != NULL && i < t->desc.threads; i++) abbe_light_walk_free(t->walk[i]);
-  for (size_t l = 0; t->projection != NULL && l < t->scene->light_count; l++)
+  for (size_t l = 0; t->projection != NULL && l < t->sampling.lights; l++)
     abbe_projection_map_free(&t->projection[l]);
   abbe_accumulator_free(&t->picture);
   abbe_guide_sums_free(&t->guides);
   abbe_accumulator_free(&t->map);
   abbe_photon_grid_free(&t->grid);
   abbe_bands_free(&t->bands);
+  abbe_environment_light_free(&t->environment);
   abbe_media_free(&t->media);
   abbe_spectral_sampling_free(&t->sampling);
   abbe_geometry_free(&t->geometry);

@@ -25,15 +25,16 @@ struct abbe_tracer {
   abbe_media media;
   abbe_bands bands;
   abbe_reflectance reflectance;
+  abbe_environment_light environment; /* its number as a light is the scene's light_count */
   abbe_trace_camera camera;
   abbe_map_layout layout;
   abbe_rgb_space mixing; /* light times reflectance: the picture's space, ACEScg for XYZ */
   float to_xyz[9];       /* from there, for XYZ pictures; row-major */
   float (*colour)[3], (*white)[3]; /* in that space */
-  abbe_projection_map *projection; /* [lights] */
-  size_t *photons;                 /* [lights] a pass */
+  abbe_projection_map *projection; /* [sampling.lights] */
+  size_t *photons;                 /* [sampling.lights] a pass */
   double photon_rays;              /* of them all, as far as a trial tells */
-  unsigned *splits;                /* [lights] interfaces at which its paths are split */
+  unsigned *splits;                /* [sampling.lights] interfaces at which its paths are split */
   abbe_light_walk **walk;          /* [threads] */
   abbe_accumulator picture, map;
   abbe_guide_sums guides;
@@ -57,6 +58,10 @@ static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3]
                  ? mixed[k]
                  : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
                        t->to_xyz[3 * k + 2] * mixed[2];
+}
+/* The light of that number; NULL: the environment. */
+static inline const abbe_light *abbe_tracer_light(const abbe_tracer *t, size_t light) {
+  return light < t->scene->light_count ? &t->scene->light[light] : NULL;
 }
 /* Most hits of so many photons of the light. */
 static inline size_t abbe_tracer_most_hits(const abbe_tracer *t, size_t light, size_t photons) {

@@ -48,7 +48,8 @@ static const char *class_of(const abbe_sweep_table *table) {
 }
 
 static bool is_of(const front *f, size_t table) {
-  return strcmp(class_of(&f->tables[table]), f->of) == 0 && abbe_sweep_table_tells(&f->tables[table], f->number);
+  return strcmp(class_of(&f->tables[table]), f->of) == 0 &&
+         abbe_sweep_table_tells(&f->tables[table], f->number);
 }
 
 static bool is_known(const abbe_sweep_row *row, abbe_sweep_number number) {
@@ -299,7 +300,8 @@ static bool opens_class(const abbe_sweep_table *tables, size_t count, size_t ind
   size_t first = count;
   for (size_t i = count; i-- > 0;)
     if (strcmp(class_of(&tables[i]), class_of(&tables[index])) == 0 &&
-        (first == count || abbe_sweep_table_tells(&tables[i], number) || !abbe_sweep_table_tells(&tables[first], number)))
+        (first == count || abbe_sweep_table_tells(&tables[i], number) ||
+         !abbe_sweep_table_tells(&tables[first], number)))
       first = i;
   return first == index;
 }

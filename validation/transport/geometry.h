@@ -62,6 +62,21 @@ void abbe_geometry_free(abbe_geometry *geometry);
 void abbe_geometry_to_frame(const abbe_geometry *g, const double world[3], float frame[3]);
 void abbe_geometry_to_world(const abbe_geometry *g, const float frame[3], double world[3]);
 
+/* Two unit vectors x and y across the unit vector z; x, y, z right-handed. */
+static inline void abbe_geometry_across(const float z[3], float x[3], float y[3]) {
+  const float e[2] = {fabsf(z[0]) < 0.6f, fabsf(z[0]) >= 0.6f}, along = e[0] * z[0] + e[1] * z[1];
+  float length = 0;
+  for (int k = 0; k < 3; k++) {
+    x[k] = (k < 2 ? e[k] : 0) - along * z[k];
+    length += x[k] * x[k];
+  }
+  length = 1 / sqrtf(length);
+  for (int k = 0; k < 3; k++) x[k] *= length;
+  y[0] = z[1] * x[2] - z[2] * x[1];
+  y[1] = z[2] * x[0] - z[0] * x[2];
+  y[2] = z[0] * x[1] - z[1] * x[0];
+}
+
 /* A place on a surface, frame units. */
 typedef struct abbe_hit {
   const abbe_surface *surface;

@@ -13,13 +13,23 @@ static double fine_nm(double min_nm, double max_nm, size_t i) {
   return min_nm + (max_nm - min_nm) * (double)i / FINE;
 }
 
+/* The scene's lights, and then its environment. */
+static size_t lights_of(const abbe_scene *scene) {
+  return scene->light_count + (scene->environment != NULL);
+}
+
+static const abbe_illuminant *illuminant_of(const abbe_scene *scene, size_t light) {
+  return light < scene->light_count ? &scene->light[light].illuminant
+                                    : &scene->environment->illuminant;
+}
+
 /* What the eye sees of the lights, a share of 1 in all, over the fine bins; beyond them density has
  * room for one light's. */
 static abbe_result visible_density(const abbe_scene *scene, double min_nm, double max_nm,
                                    double *density, abbe_error *error) {
   double *one = density + FINE;
-  for (size_t l = 0; l < scene->light_count; l++) {
-    const abbe_illuminant *illuminant = &scene->light[l].illuminant;
+  for (size_t l = 0; l < lights_of(scene); l++) {
+    const abbe_illuminant *illuminant = illuminant_of(scene, l);
     double sum = 0;
     for (size_t i = 0; i < FINE; i++) {
       double lambda = 0.5 * (fine_nm(min_nm, max_nm, i) + fine_nm(min_nm, max_nm, i + 1)), xyz[3];
@@ -29,11 +39,12 @@ static abbe_result visible_density(const abbe_scene *scene, double min_nm, doubl
     }
     if (!(sum > 0 && isfinite(sum)))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "light '%s' sends nothing that the eye sees between %g and %g nm; the "
-                            "eye sees %g to %g nm",
-                            scene->light[l].name, min_nm, max_nm, ABBE_OBSERVER_MIN_NM,
-                            ABBE_OBSERVER_MAX_NM);
-    for (size_t i = 0; i < FINE; i++) density[i] += one[i] / sum / (double)scene->light_count;
+                            "%s%s sends nothing that the eye sees between %g and %g nm; the eye "
+                            "sees %g to %g nm",
+                            l < scene->light_count ? "light " : "the environment",
+                            l < scene->light_count ? scene->light[l].name : "", min_nm, max_nm,
+                            ABBE_OBSERVER_MIN_NM, ABBE_OBSERVER_MAX_NM);
+    for (size_t i = 0; i < FINE; i++) density[i] += one[i] / sum / (double)lights_of(scene);
   }
   return ABBE_OK;
 }
@@ -55,7 +66,7 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
                                 abbe_error *error) {
   abbe_wavelengths bands = {.count = s->steps, .lambda_nm = s->lambda_nm, .edge_nm = s->lambda_nm};
   for (size_t l = 0; l < s->lights; l++) {
-    const abbe_illuminant *illuminant = &scene->light[l].illuminant;
+    const abbe_illuminant *illuminant = illuminant_of(scene, l);
     abbe_weights weights;
     abbe_result result = abbe_weights_make(&bands, illuminant, ABBE_RGB_SPACE_XYZ, &weights, error);
     if (result != ABBE_OK) return result;
@@ -85,7 +96,7 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, 
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a range of wavelengths rises from above 0, as 380:780 does: not %g:%g",
                           min_nm, max_nm);
-  abbe_spectral_sampling s = {.steps = ABBE_SPECTRAL_SAMPLING_STEPS, .lights = scene->light_count};
+  abbe_spectral_sampling s = {.steps = ABBE_SPECTRAL_SAMPLING_STEPS, .lights = lights_of(scene)};
   double *density = calloc(2 * FINE, sizeof *density);
   s.lambda_nm = calloc(s.steps + 1, sizeof *s.lambda_nm);
   s.white = calloc(s.lights + 1, sizeof *s.white);

@@ -22,10 +22,10 @@ extern "C" {
 #define ABBE_SPECTRAL_SAMPLING_STEPS 4096u
 
 typedef struct abbe_spectral_sampling {
-  size_t steps;      /* ABBE_SPECTRAL_SAMPLING_STEPS */
-  double *lambda_nm; /* [steps + 1], ascending: the ends of the steps; the first and last are the
-                        range */
-  size_t lights;
+  size_t steps;       /* ABBE_SPECTRAL_SAMPLING_STEPS */
+  double *lambda_nm;  /* [steps + 1], ascending: the ends of the steps; the first and last are the
+                         range */
+  size_t lights;      /* the scene's, and its environment last, if it has one */
   double (*white)[3]; /* [lights] XYZ of a light of power 1: Y = 1 */
   float (*xyz)[3]; /* [lights][steps] XYZ that a path of power 1 carries; mean over steps: white */
   float *power;    /* [lights][steps] power that a path carries, per watt of the light; mean 1 */

@@ -82,6 +82,27 @@ static void add_white(const context *c, const eye_path *p, float share, const fl
     c->out->rgb[k] = before[k] + (c->out->rgb[k] - before[k]) / w->white[0][k];
 }
 
+/* Radiance of the environment, RGB relative to its illuminant, times share. */
+static void add_environment(const context *c, const eye_path *p, const float rgb[3], float share,
+                            const float reflectance[3], const float rec709[3]) {
+  const abbe_eye_walk *w = c->w;
+  const abbe_environment_light *e = w->environment;
+  if (p->dispersed) {
+    const float *lift = e->lift[p->step];
+    add_light(c, p, e->light, share * dot(lift, rgb), reflectance, rec709);
+    return;
+  }
+  share *= p->share;
+  for (int k = 0; k < 3; k++)
+    c->out->rgb[k] +=
+        share * p->tint[k] * dot(&e->to_colour[3 * k], rgb) * (reflectance ? reflectance[k] : 1);
+  const abbe_bands *b = w->bands;
+  for (size_t i = 0; i < b->count; i++) {
+    float kept = rec709 ? abbe_reflectance_band(rec709, b->middle_nm[i]) : 1;
+    c->out->band[i] += share * kept * dot(e->band[i], rgb) * b->power[e->light * b->count + i];
+  }
+}
+
 typedef struct gathering {
   const context *c;
   const eye_path *p;
@@ -139,14 +160,8 @@ static float irradiance(const context *c, const abbe_light *light, const abbe_hi
     abbe_geometry_to_frame(g, light->position, from);
     if (light->kind == ABBE_LIGHT_DISK) {
       float a[3], b[3], r = (float)(light->radius / g->unit) * sqrtf(random[0]);
-      float angle = 6.28318531f * random[1], *z = d;
-      float e[3] = {fabsf(z[0]) < 0.6f, fabsf(z[0]) >= 0.6f, 0}, along = dot(e, z);
-      for (int k = 0; k < 3; k++) a[k] = e[k] - along * z[k];
-      along = 1 / sqrtf(dot(a, a));
-      for (int k = 0; k < 3; k++) a[k] *= along;
-      b[0] = z[1] * a[2] - z[2] * a[1];
-      b[1] = z[2] * a[0] - z[0] * a[2];
-      b[2] = z[0] * a[1] - z[1] * a[0];
+      float angle = 6.28318531f * random[1];
+      abbe_geometry_across(d, a, b);
       for (int k = 0; k < 3; k++) from[k] += r * (cosf(angle) * a[k] + sinf(angle) * b[k]);
       power *= (float)(3.14159265358979 * light->radius * light->radius);
     }
@@ -167,6 +182,40 @@ static float irradiance(const context *c, const abbe_light *light, const abbe_hi
   return abbe_geometry_occluded(g, mask, o, d, limit) ? 0 : e;
 }
 
+/* Whether the environment is seen from the hit along d, on the side of n. */
+static bool sees_out(const context *c, const abbe_hit *hit, const float n[3], const float d[3]) {
+  float o[3];
+  if (!(dot(n, d) > 0)) return false;
+  abbe_geometry_leave(hit, d, o);
+  c->out->rays++;
+  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  return !abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
+}
+
+/* Irradiance of the environment at the hit on the side of n, over pi, RGB: one direction drawn by
+ * its radiance, one by its cosine, weighted by the balance heuristic [VeachGuibas1995]. */
+static void surrounding_light(const context *c, const eye_path *p, const abbe_hit *hit,
+                              const float n[3], float out[3]) {
+  const abbe_environment_light *e = c->w->environment;
+  float random[4], more[4], d[3], pdf, rgb[3], x[3], y[3];
+  random4(c, ~p->id ^ 0x736b79u, p->steps, random);
+  random4(c, ~p->id ^ 0x68656d69u, p->steps, more);
+  memset(out, 0, 3 * sizeof *out);
+  abbe_environment_light_sample(e, random, d, &pdf, rgb);
+  float cosine = dot(n, d) * inverse_pi;
+  if (sees_out(c, hit, n, d))
+    for (int k = 0; k < 3; k++) out[k] += rgb[k] * cosine / (pdf + cosine);
+  abbe_geometry_across(n, x, y);
+  float r = sqrtf(more[0]), angle = 6.28318531f * more[1];
+  for (int k = 0; k < 3; k++)
+    d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - more[0]) * n[k];
+  if (!sees_out(c, hit, n, d)) return;
+  cosine = dot(n, d) * inverse_pi;
+  abbe_environment_light_seen(e, d, rgb);
+  const float weight = cosine / (abbe_environment_light_pdf(e, d) + cosine);
+  for (int k = 0; k < 3; k++) out[k] += rgb[k] * weight;
+}
+
 static void shade(const context *c, const eye_path *p, const abbe_hit *hit, bool straight) {
   const abbe_eye_walk *w = c->w;
   const abbe_scene *scene = w->geometry->scene;
@@ -183,6 +232,11 @@ static void shade(const context *c, const eye_path *p, const abbe_hit *hit, bool
     random4(c, ~p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
     float e = irradiance(c, &scene->light[l], hit, n, random);
     if (e > 0) add_light(c, p, l, e * inverse_pi, reflectance, rec709);
+  }
+  if (w->environment->environment != NULL) {
+    float rgb[3];
+    surrounding_light(c, p, hit, n, rgb);
+    add_environment(c, p, rgb, 1, reflectance, rec709);
   }
   if (scene->ambient > 0) add_white(c, p, (float)scene->ambient * inverse_pi, reflectance, rec709);
   if (!straight) add_caustic(c, p, hit, side, reflectance, rec709);
@@ -218,6 +272,10 @@ static void arrive(const context *c, const eye_path *p, bool met, const abbe_hit
   const abbe_scene *scene = c->w->geometry->scene;
   if (!met) {
     if (scene->background > 0) add_white(c, p, (float)scene->background, NULL, NULL);
+    if (c->w->environment->environment == NULL) return;
+    float rgb[3];
+    abbe_environment_light_seen(c->w->environment, p->d, rgb);
+    add_environment(c, p, rgb, 1, NULL, NULL);
   } else if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
     shade(c, p, hit, straight);
   } else if (dot(p->d, hit->n) < 0) {

@@ -1,6 +1,7 @@
 /* eye_walk.h: what one pixel sees in one pass: paths from the eye through glass to what shows.
  *
- * Receivers are lit directly, with shadows, by point, spot, directional and disk lights. A pixel
+ * Receivers are lit directly, with shadows, by point, spot, directional and disk lights, and by the
+ * environment, which is seen where a path meets nothing. A pixel
  * that shows a refractor is split: the mirror image on its outside, and a few wavelengths that go
  * through it. At every further interface both ways on are followed; Russian roulette takes what is
  * faint. The caustic on a
@@ -11,6 +12,7 @@
 #define ABBE_VALIDATION_WALKS_EYE_WALK_H
 
 #include "validation/transport/bands.h"
+#include "validation/transport/environment_light.h"
 #include "validation/transport/geometry.h"
 #include "validation/transport/media.h"
 #include "validation/transport/physics.h"
@@ -34,6 +36,7 @@ typedef struct abbe_eye_walk {
   const abbe_bands *bands;
   const abbe_trace_camera *camera;
   const abbe_reflectance *reflectance;
+  const abbe_environment_light *environment; /* may be zeroed: none */
   const float (*colour)[3]; /* [lights][steps] in the picture's space, mean: white */
   const float (*white)[3];  /* [lights] in the picture's space */
   abbe_physics physics;

@@ -484,7 +484,7 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
   run r = {.w = w,
            .light = light,
            .pass = pass,
-           .hidden = w->hidden[light - w->g->scene->light],
+           .hidden = light != NULL && w->hidden[light - w->g->scene->light],
            .hit = hit,
            .ledger = ledger};
   abbe_random_bits(0x73686966, 0, pass, w->seed, w->shift);

@@ -46,7 +46,8 @@ abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk);
  */
 void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces);
 
-/* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene; writes at
+/* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene, or of its
+ * environment (light NULL: nothing is hidden from it, for it has no map); writes at
  * most count hits, twice as many for each interface to split at (ABBE_LIGHT_WALK_HITS), and adds to
  * the ledger. pass: of the random numbers. Returns the number of hits. */
 size_t abbe_light_walk_run(abbe_light_walk *walk, const abbe_light *light, uint32_t pass,

@@ -48,16 +48,8 @@ static float profile(const abbe_projection_map *a, const float d[3]) {
 
 /* A place on the disk of the light, from its middle. */
 static void disk_place(const abbe_projection_map *a, const float disk[2], float out[3]) {
-  const float *z = a->facing;
-  float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)pi * disk[1];
-  float e[3] = {fabsf(z[0]) < 0.6f, fabsf(z[0]) >= 0.6f, 0}, s[3], t[3];
-  float along = e[0] * z[0] + e[1] * z[1];
-  for (int k = 0; k < 3; k++) s[k] = e[k] - along * z[k];
-  float length = sqrtf(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-  for (int k = 0; k < 3; k++) s[k] /= length;
-  t[0] = z[1] * s[2] - z[2] * s[1];
-  t[1] = z[2] * s[0] - z[0] * s[2];
-  t[2] = z[0] * s[1] - z[1] * s[0];
+  float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)pi * disk[1], s[3], t[3];
+  abbe_geometry_across(a->facing, s, t);
   for (int k = 0; k < 3; k++) out[k] = r * (cosf(angle) * s[k] + sinf(angle) * t[k]);
 }
 

@@ -1,0 +1,181 @@
+/* Light from everywhere in the tracer: laws that hold whatever stands in it. */
+#include "tests/validation/trace_scene.h"
+
+#include "colorimetry/upsampling.h"
+
+#define SPECK                                                                                      \
+  "objects:\n- {name: speck, shape: rectangle, width: 0.05, height: 0.05, reflectance: 0.5}\n"
+
+static const double PI = 3.14159265358979;
+
+#define FAR_SPECK                                                                                  \
+  "objects:\n- {name: speck, shape: rectangle, width: 1, height: 1, reflectance: 0.5, transform: " \
+  "[{translate: [0, 40, -18]}]}\n"
+
+typedef double (*radiance_of)(const double d[3]);
+
+static double uniform(const double d[3]) {
+  (void)d;
+  return 2;
+}
+
+static double cosine_dome(const double d[3]) {
+  return d[2] > 0 ? d[2] : 0;
+}
+
+static double half_sky(const double d[3]) {
+  return d[0] > 0 ? 3 : 0.5;
+}
+
+static abbe_environment *surround(radiance_of radiance) {
+  abbe_environment *e = calloc(1, sizeof *e);
+  assert_int_equal(abbe_radiance_map_make(256, &e->map, NULL), ABBE_OK);
+  for (size_t y = 0; y < e->map.height; y++)
+    for (size_t x = 0; x < e->map.width; x++) {
+      double d[3];
+      abbe_radiance_map_direction(&e->map, (double)x + 0.5, (double)y + 0.5, d);
+      for (int k = 0; k < 3; k++)
+        e->map.rgb[3 * (y * e->map.width + x) + (size_t)k] = (float)radiance(d);
+    }
+  abbe_environment_turn(0, NULL, 0, e->to_map);
+  assert_int_equal(abbe_illuminant_make("D65", &e->illuminant, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_prepare(e, NULL), ABBE_OK);
+  return e;
+}
+
+/* The scene without its lamp, in that environment. */
+typedef struct fixture {
+  abbe_scene scene;
+  size_t lamps;
+  abbe_tracer *tracer;
+} fixture;
+
+static void make(const char *text, radiance_of radiance, fixture *f) {
+  load_text(text, &f->scene);
+  f->lamps = f->scene.light_count;
+  f->scene.light_count = 0;
+  f->scene.environment = surround(radiance);
+}
+
+static void trace(fixture *f, size_t photons, size_t passes, abbe_image *picture) {
+  const abbe_trace_desc desc = {
+      .no_map = true, .width = 48, .height = 48, .photons = photons, .threads = 2};
+  f->tracer = make_tracer(&f->scene, &desc);
+  run_passes(f->tracer, passes);
+  assert_int_equal(abbe_tracer_picture(f->tracer, picture, NULL), ABBE_OK);
+}
+
+static void drop(fixture *f) {
+  abbe_tracer_free(f->tracer);
+  f->scene.light_count = f->lamps;
+  abbe_scene_free(&f->scene);
+}
+
+static double channel(const abbe_image *p, const char *name, size_t x, size_t y) {
+  size_t at = abbe_image_find_channel(p, name);
+  assert_true(at < p->channels);
+  return (double)p->data[(y * p->width + x) * p->channels + at];
+}
+
+/* Of Rec.709 primaries; of a white, which all here is, in any space. */
+static double luminance(const abbe_image *p, size_t x, size_t y) {
+  return 0.2126 * channel(p, "R", x, y) + 0.7152 * channel(p, "G", x, y) +
+         0.0722 * channel(p, "B", x, y);
+}
+
+/* Flux that a convex body meets is pi times its surface times the radiance. */
+static void a_convex_body_meets_pi_times_its_surface(void **state) {
+  (void)state;
+  static const struct {
+    const char *body;
+    double surface;
+  } cases[] = {{BALL("crown"), 4 * 3.14159265358979 * 0.08 * 0.08},
+               {"- {name: brick, shape: box, size: [0.2, 0.05, 0.1], transform: [{rotate: {axis: "
+                "[1, 1, 0], angle: 20}}, {translate: [0, 0, 0.4]}], material: crown}\n",
+                2 * (0.2 * 0.05 + 0.2 * 0.1 + 0.05 * 0.1)}};
+  for (size_t i = 0; i < 2; i++) {
+    char text[2048];
+    fixture f;
+    abbe_image picture;
+    snprintf(text, sizeof text, CAMERA POINT_LIGHT FAR_SPECK "%s", cases[i].body);
+    make(text, uniform, &f);
+    trace(&f, 1 << 18, 2, &picture);
+    abbe_trace_statistics s;
+    abbe_tracer_statistics(f.tracer, &s);
+    assert_near(s.ledger.reached / (PI * 2 * cases[i].surface), 1, 2e-3);
+    abbe_image_free(&picture);
+    drop(&f);
+  }
+}
+
+/* Through clear glass every ray ends in the same light: no pixel shows the glass. */
+static void clear_glass_is_not_seen_in_uniform_light(void **state) {
+  (void)state;
+  fixture f;
+  abbe_image picture;
+  make(CAMERA POINT_LIGHT FAR_SPECK "- {name: stone, shape: brilliant, diameter: 0.3, transform: "
+                                    "[{translate: [0, 0, 0.2]}], material: crown}\n",
+       uniform, &f);
+  trace(&f, 1024, 8, &picture);
+  double sum = 0;
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y);
+  assert_near(sum / (48 * 48) / 2, 1, 2e-3);
+  /* where only sky shows it is exact */
+  assert_near(luminance(&picture, 1, 1), 2, 1e-3);
+  abbe_image_free(&picture);
+  drop(&f);
+}
+
+static void check_floor(radiance_of radiance, double irradiance) {
+  fixture f;
+  abbe_image picture;
+  make(CAMERA POINT_LIGHT FLOOR, radiance, &f);
+  trace(&f, 1024, 16, &picture);
+  double sum = 0;
+  for (size_t y = 24; y < 48; y++)
+    for (size_t x = 0; x < 48; x++) sum += luminance(&picture, x, y) / (24 * 48);
+  assert_near(sum / (0.5 * irradiance / PI), 1, 5e-3);
+  abbe_image_free(&picture);
+  drop(&f);
+}
+
+static void an_open_floor_has_its_irradiance(void **state) {
+  (void)state;
+  check_floor(uniform, 2 * PI);
+  check_floor(cosine_dome, 2 * PI / 3);
+  check_floor(half_sky, 0.5 * PI * (3 + 0.5));
+}
+
+/* What a clear ball takes from the speck below it, it brings back: as much light falls on it. */
+static void a_clear_ball_takes_nothing_away(void **state) {
+  (void)state;
+  fixture f;
+  abbe_image picture;
+  make(CAMERA POINT_LIGHT SPECK "- {name: ball, shape: sphere, radius: 0.08, levels: 2, transform: "
+                                "[{translate: [0, 0, 0.1]}], material: crown}\n",
+       uniform, &f);
+  const double eye[3] = {0, -0.3, 0.06}, target[3] = {0, 0, 0};
+  memcpy(f.scene.camera.eye, eye, sizeof eye);
+  memcpy(f.scene.camera.target, target, sizeof target);
+  f.scene.camera.fov_y_rad = 3.0 * PI / 180;
+  trace(&f, 1 << 19, 8, &picture);
+  double sum = 0, caustic = 0;
+  for (size_t y = 22; y < 26; y++)
+    for (size_t x = 12; x < 36; x++) {
+      sum += luminance(&picture, x, y) / (4 * 24);
+      caustic += channel(&picture, "caustic.G", x, y) / (4 * 24);
+    }
+  assert_true(caustic > 0.3); /* of 1 */
+  assert_near(sum, 1, 1.5e-2);
+  abbe_image_free(&picture);
+  drop(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
+                                     cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
+                                     cmocka_unit_test(an_open_floor_has_its_irradiance),
+                                     cmocka_unit_test(a_clear_ball_takes_nothing_away)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
