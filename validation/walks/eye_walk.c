@@ -1,253 +1,22 @@
 #include "validation/walks/eye_walk.h"
 
-#include "scenes/geometry/vector.h"
 #include "validation/transport/interface.h"
-#include "validation/transport/random.h"
+#include "validation/walks/eye_shading.h"
 
 #include <string.h>
 
-enum {
-  HEROES = 4,
-  MIRROR_BANDS = 8,
-  MAX_STEPS = 10000,
-  BRANCHES_ROOM = 16,
-  IDS = 8,
-  SALT = 0x657965
-};
-static const float inverse_pi = 0.318309886f;
+enum { HEROES = 4, MIRROR_BANDS = 8, MAX_STEPS = 10000, BRANCHES_ROOM = 16, IDS = 8 };
 /* Golden ratios of three dimensions, 2^32 each: places of a pixel's samples and their wavelengths
  * [Roberts2018]. */
 static const uint32_t golden[3] = {3518319155u, 2882110345u, 2360945575u};
-
-/* A path from the eye. Where it is not dispersed it carries the whole spectrum, else one
- * wavelength. */
-typedef struct eye_path {
-  float o[3], d[3];
-  float share;   /* of its light, all wavelengths alike */
-  float branch;  /* that part of it which interfaces inside the glass left */
-  float tint[3]; /* a colour on top of that */
-  bool dispersed;
-  uint32_t step;
-  float within;
-  abbe_media_set inside;
-  float carried; /* matched: what a splitting path would carry */
-  uint32_t walls, steps, id;
-} eye_path;
-
-typedef struct context {
-  const abbe_eye_walk *w;
-  uint32_t pixel, pass;
-  abbe_eye_sample *out;
-} context;
-
-static float dot(const float a[3], const float b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void random4(const context *c, uint32_t a, uint32_t b, float out[4]) {
-  abbe_random4(c->pixel, c->pass, a, (c->w->seed ^ SALT) + b * 0x9e3779b1u, out);
-}
-
-/* ---- light into the sample ---- */
-
-/* Radiance of a light's spectrum times share; reflectance NULL: none. */
-static void add_light(const context *c, const eye_path *p, size_t light, float share,
-                      const float reflectance[3], const float rec709[3]) {
-  const abbe_eye_walk *w = c->w;
-  size_t steps = w->sampling->steps;
-  const float *colour = p->dispersed ? w->colour[light * steps + p->step] : w->white[light];
-  share *= p->share;
-  for (int k = 0; k < 3; k++)
-    c->out->rgb[k] += share * p->tint[k] * colour[k] * (reflectance ? reflectance[k] : 1);
-  const abbe_bands *b = w->bands;
-  for (size_t i = 0; i < b->count; i++) {
-    float power = b->power[light * b->count + i];
-    if (p->dispersed) {
-      if (b->of_step[p->step] != i) continue;
-      power = w->sampling->power[light * steps + p->step] / (float)b->width_nm;
-    }
-    float kept = rec709 ? abbe_reflectance_band(rec709, b->middle_nm[i]) : 1;
-    c->out->band[i] += share * kept * power;
-  }
-}
-
-/* Ambient light and background: white in the picture's space, with the first light's spectrum. */
-static void add_white(const context *c, const eye_path *p, float share, const float reflectance[3],
-                      const float rec709[3]) {
-  const abbe_eye_walk *w = c->w;
-  float before[3];
-  memcpy(before, c->out->rgb, sizeof before);
-  add_light(c, p, 0, share, reflectance, rec709);
-  for (int k = 0; k < 3; k++)
-    c->out->rgb[k] = before[k] + (c->out->rgb[k] - before[k]) / w->white[0][k];
-}
-
-/* Radiance of the environment, RGB relative to its illuminant, times share. */
-static void add_environment(const context *c, const eye_path *p, const float rgb[3], float share,
-                            const float reflectance[3], const float rec709[3]) {
-  const abbe_eye_walk *w = c->w;
-  const abbe_environment_light *e = w->environment;
-  if (p->dispersed) {
-    const float *lift = e->lift[p->step];
-    add_light(c, p, e->light, share * dot(lift, rgb), reflectance, rec709);
-    return;
-  }
-  share *= p->share;
-  for (int k = 0; k < 3; k++)
-    c->out->rgb[k] +=
-        share * p->tint[k] * dot(&e->to_colour[3 * k], rgb) * (reflectance ? reflectance[k] : 1);
-  const abbe_bands *b = w->bands;
-  for (size_t i = 0; i < b->count; i++) {
-    float kept = rec709 ? abbe_reflectance_band(rec709, b->middle_nm[i]) : 1;
-    c->out->band[i] += share * kept * dot(e->band[i], rgb) * b->power[e->light * b->count + i];
-  }
-}
-
-typedef struct gathering {
-  const context *c;
-  const eye_path *p;
-  float sum[3];
-  float band[ABBE_BANDS_MAX];
-} gathering;
-
-static void take_photon(void *user, const abbe_grid_photon *photon) {
-  gathering *g = user;
-  const abbe_eye_walk *w = g->c->w;
-  size_t steps = w->sampling->steps, step = photon->colour % steps;
-  float flux = fabsf(photon->flux);
-  if (g->p->dispersed) {
-    /* a window of wavelengths around the path's, cut at the ends of the range */
-    const double *nm = w->sampling->lambda_nm;
-    double own = nm[g->p->step] + (double)g->p->within * (nm[g->p->step + 1] - nm[g->p->step]);
-    double other = 0.5 * (nm[step] + nm[step + 1]);
-    if (fabs(own - other) > w->window_nm) return;
-    double span = fmin(other + w->window_nm, nm[steps]) - fmax(other - w->window_nm, nm[0]);
-    double density = 1 / ((double)steps * (nm[g->p->step + 1] - nm[g->p->step]));
-    flux *= (float)(1 / (span * density));
-  }
-  for (int k = 0; k < 3; k++) g->sum[k] += flux * w->colour[photon->colour][k];
-  if (w->bands->count > 0)
-    g->band[w->bands->of_step[step]] +=
-        flux * w->sampling->power[photon->colour] / (float)w->bands->width_nm;
-}
-
-static void add_caustic(const context *c, const eye_path *p, const abbe_hit *hit, float side,
-                        const float reflectance[3], const float rec709[3]) {
-  const abbe_eye_walk *w = c->w;
-  if (w->grid == NULL) return;
-  gathering g = {.c = c, .p = p};
-  abbe_photon_grid_gather(w->grid, hit->p, w->radius,
-                          (uint32_t)(hit->surface - w->geometry->surface), side, take_photon, &g);
-  float unit = (float)w->geometry->unit, r = w->radius * unit;
-  float scale = p->share * inverse_pi * inverse_pi / (r * r);
-  for (int k = 0; k < 3; k++) {
-    float add = scale * p->tint[k] * reflectance[k] * g.sum[k];
-    c->out->rgb[k] += add;
-    c->out->caustic[k] += add;
-  }
-  for (size_t i = 0; i < w->bands->count; i++)
-    c->out->band[i] += scale * g.band[i] * abbe_reflectance_band(rec709, w->bands->middle_nm[i]);
-}
-
-/* Irradiance of a light at the hit on the viewer's side, W/m2, seen past everything. n faces the
- * viewer. */
-static float irradiance(const context *c, const abbe_light *light, const abbe_hit *hit,
-                        const float n[3], const float random[2]) {
-  const abbe_geometry *g = c->w->geometry;
-  float from[3], d[3], o[3], limit = INFINITY, power = (float)light->power, falloff = 1;
-  for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
-  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
-    abbe_geometry_to_frame(g, light->position, from);
-    if (light->kind == ABBE_LIGHT_DISK) {
-      float a[3], b[3], r = (float)(light->radius / g->unit) * sqrtf(random[0]);
-      float angle = 6.28318531f * random[1];
-      abbe_geometry_across(d, a, b);
-      for (int k = 0; k < 3; k++) from[k] += r * (cosf(angle) * a[k] + sinf(angle) * b[k]);
-      power *= (float)(3.14159265358979 * light->radius * light->radius);
-    }
-    for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
-    limit = sqrtf(dot(d, d));
-    for (int k = 0; k < 3; k++) d[k] /= limit;
-    falloff = 1 / (limit * limit * (float)(g->unit * g->unit));
-  }
-  float facing = dot(n, d);
-  if (!(facing > 0)) return 0;
-  double away[3] = {-(double)d[0], -(double)d[1], -(double)d[2]};
-  abbe_vector_normalise(away); /* a narrow cone's cosine asks for more than single precision */
-  float e = power * falloff * facing * (float)abbe_light_profile(light, away);
-  if (!(e > 0)) return 0;
-  abbe_geometry_leave(hit, d, o);
-  c->out->rays++;
-  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
-  return abbe_geometry_occluded(g, mask, o, d, limit) ? 0 : e;
-}
-
-/* Whether the environment is seen from the hit along d, on the side of n. */
-static bool sees_out(const context *c, const abbe_hit *hit, const float n[3], const float d[3]) {
-  float o[3];
-  if (!(dot(n, d) > 0)) return false;
-  abbe_geometry_leave(hit, d, o);
-  c->out->rays++;
-  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
-  return !abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
-}
-
-/* Irradiance of the environment at the hit on the side of n, over pi, RGB: one direction drawn by
- * its radiance, one by its cosine, weighted by the balance heuristic [VeachGuibas1995]. */
-static void surrounding_light(const context *c, const eye_path *p, const abbe_hit *hit,
-                              const float n[3], float out[3]) {
-  const abbe_environment_light *e = c->w->environment;
-  float random[4], more[4], d[3], pdf, rgb[3], x[3], y[3];
-  random4(c, ~p->id ^ 0x736b79u, p->steps, random);
-  random4(c, ~p->id ^ 0x68656d69u, p->steps, more);
-  memset(out, 0, 3 * sizeof *out);
-  abbe_environment_light_sample(e, random, d, &pdf, rgb);
-  float cosine = dot(n, d) * inverse_pi;
-  if (sees_out(c, hit, n, d))
-    for (int k = 0; k < 3; k++) out[k] += rgb[k] * cosine / (pdf + cosine);
-  abbe_geometry_across(n, x, y);
-  float r = sqrtf(more[0]), angle = 6.28318531f * more[1];
-  for (int k = 0; k < 3; k++)
-    d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - more[0]) * n[k];
-  if (!sees_out(c, hit, n, d)) return;
-  cosine = dot(n, d) * inverse_pi;
-  abbe_environment_light_seen(e, d, rgb);
-  const float weight = cosine / (abbe_environment_light_pdf(e, d) + cosine);
-  for (int k = 0; k < 3; k++) out[k] += rgb[k] * weight;
-}
-
-static void shade(const context *c, const eye_path *p, const abbe_hit *hit, bool straight) {
-  const abbe_eye_walk *w = c->w;
-  const abbe_scene *scene = w->geometry->scene;
-  float reflectance[3], rec709[3], n[3], random[4];
-  uint32_t surface = (uint32_t)(hit->surface - w->geometry->surface);
-  abbe_reflectance_at(w->reflectance, surface, hit->face, hit->u, hit->v, reflectance);
-  if (w->bands->count > 0)
-    abbe_reflectance_rec709(w->reflectance, surface, hit->face, hit->u, hit->v, rec709);
-  for (int k = 0; k < 3; k++) c->out->albedo[k] += p->share * p->tint[k] * reflectance[k];
-  float side = dot(p->d, hit->ng) < 0 ? 1 : -1;
-  const float *normal = dot(hit->n, p->d) * side < 0 ? hit->n : hit->ng;
-  for (int k = 0; k < 3; k++) n[k] = side * normal[k];
-  for (size_t l = 0; l < scene->light_count; l++) {
-    random4(c, ~p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
-    float e = irradiance(c, &scene->light[l], hit, n, random);
-    if (e > 0) add_light(c, p, l, e * inverse_pi, reflectance, rec709);
-  }
-  if (w->environment->environment != NULL) {
-    float rgb[3];
-    surrounding_light(c, p, hit, n, rgb);
-    add_environment(c, p, rgb, 1, reflectance, rec709);
-  }
-  if (scene->ambient > 0) add_white(c, p, (float)scene->ambient * inverse_pi, reflectance, rec709);
-  if (!straight) add_caustic(c, p, hit, side, reflectance, rec709);
-}
 
 /* ---- paths ---- */
 
 enum { ALL_KINDS = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_LAMPS };
 
 /* From inside a solid: where the path leaves it. */
-static bool leave_solid(const abbe_geometry *g, const eye_path *p, abbe_hit *hit, float *length) {
+static bool leave_solid(const abbe_geometry *g, const abbe_eye_path *p, abbe_hit *hit,
+                        float *length) {
   int refractor = abbe_media_of(p->inside);
   if (refractor < 0 || !abbe_solid_is(&g->solid[refractor])) return false;
   *hit = (abbe_hit){.surface = &g->surface[g->refractor_object[refractor]]};
@@ -256,7 +25,7 @@ static bool leave_solid(const abbe_geometry *g, const eye_path *p, abbe_hit *hit
   return true;
 }
 
-static bool trace(const context *c, const eye_path *p, abbe_hit *hit, float *length) {
+static bool trace(const abbe_eye_context *c, const abbe_eye_path *p, abbe_hit *hit, float *length) {
   c->out->rays++;
   if (leave_solid(c->w->geometry, p, hit, length)) return true;
   if (!abbe_geometry_hit(c->w->geometry, ALL_KINDS, p->o, p->d, INFINITY, hit)) return false;
@@ -266,25 +35,7 @@ static bool trace(const context *c, const eye_path *p, abbe_hit *hit, float *len
   return true;
 }
 
-/* What ends a path: a receiver, a lamp, or nothing at all. */
-static void arrive(const context *c, const eye_path *p, bool met, const abbe_hit *hit,
-                   bool straight) {
-  const abbe_scene *scene = c->w->geometry->scene;
-  if (!met) {
-    if (scene->background > 0) add_white(c, p, (float)scene->background, NULL, NULL);
-    if (c->w->environment->environment == NULL) return;
-    float rgb[3];
-    abbe_environment_light_seen(c->w->environment, p->d, rgb);
-    add_environment(c, p, rgb, 1, NULL, NULL);
-  } else if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
-    shade(c, p, hit, straight);
-  } else if (dot(p->d, hit->n) < 0) {
-    size_t l = hit->surface->index;
-    add_light(c, p, l, (float)scene->light[l].power, NULL, NULL);
-  }
-}
-
-static void disperse(eye_path *p, float random) {
+static void disperse(abbe_eye_path *p, float random) {
   if (p->dispersed) return;
   p->dispersed = true;
   p->step = abbe_spectral_sampling_step(random, &p->within);
@@ -297,27 +48,27 @@ typedef struct crossing {
   bool entering;
 } crossing;
 
-static void cross(const eye_path *p, const abbe_hit *hit, crossing *x) {
-  float along = dot(p->d, hit->ng), shaded = dot(p->d, hit->n);
+static void cross(const abbe_eye_path *p, const abbe_hit *hit, crossing *x) {
+  float along = abbe_eye_dot(p->d, hit->ng), shaded = abbe_eye_dot(p->d, hit->n);
   x->entering = along < 0;
   const float *outside = (shaded < 0) == x->entering ? hit->n : hit->ng;
   for (int k = 0; k < 3; k++) x->n[k] = x->entering ? outside[k] : -outside[k];
-  float cosine = -dot(p->d, x->n);
+  float cosine = -abbe_eye_dot(p->d, x->n);
   x->cos_i = cosine < 1 ? cosine : 1;
   abbe_media_cross(p->inside, hit->surface->index, x->entering, &x->before, &x->after);
   x->from = abbe_media_of(x->before);
   x->to = abbe_media_of(x->after);
 }
 
-static float reflectance_at(const context *c, const crossing *x, uint32_t step, float within,
-                            float *eta, float *cos_t) {
+static float reflectance_at(const abbe_eye_context *c, const crossing *x, uint32_t step,
+                            float within, float *eta, float *cos_t) {
   const abbe_media *m = c->w->media;
   *eta = abbe_media_n(m, x->from, step, within) / abbe_media_n(m, x->to, step, within);
   return abbe_interface_reflectance(x->cos_i, *eta, cos_t);
 }
 
 /* Sends the path on, mirrored or refracted. */
-static void send(eye_path *p, const abbe_hit *hit, const crossing *x, bool reflects, float eta,
+static void send(abbe_eye_path *p, const abbe_hit *hit, const crossing *x, bool reflects, float eta,
                  float cos_t) {
   float d[3];
   if (reflects)
@@ -331,7 +82,7 @@ static void send(eye_path *p, const abbe_hit *hit, const crossing *x, bool refle
 }
 
 /* Matched physics: whether the renderer would follow the path any further. */
-static bool matched_rules(const context *c, eye_path *p, bool reflects, float share) {
+static bool matched_rules(const abbe_eye_context *c, abbe_eye_path *p, bool reflects, float share) {
   const abbe_physics *physics = &c->w->physics;
   if (!physics->matched) return true;
   p->walls++;
@@ -339,14 +90,14 @@ static bool matched_rules(const context *c, eye_path *p, bool reflects, float sh
   return !reflects || (p->walls < physics->orders && (double)p->carried >= physics->energy_share);
 }
 
-static bool disperses(const context *c, const crossing *x) {
+static bool disperses(const abbe_eye_context *c, const crossing *x) {
   const bool *d = c->w->media->dispersive;
   return c->w->bands->count > 0 || (x->from >= 0 && d[x->from]) || (x->to >= 0 && d[x->to]);
 }
 
 /* Absorption along the way in the medium; the whole spectrum's goes by wavelength, so the path
  * takes one. */
-static void absorb(const context *c, eye_path *p, float length, float random) {
+static void absorb(const abbe_eye_context *c, abbe_eye_path *p, float length, float random) {
   int medium = abbe_media_of(p->inside);
   if (medium < 0 || c->w->media->attenuation == NULL) return;
   disperse(p, random);
@@ -357,14 +108,15 @@ static void absorb(const context *c, eye_path *p, float length, float random) {
 
 /* Paths that wait for their turn. The smaller branch is followed first, so that few wait. */
 typedef struct branches {
-  eye_path path[BRANCHES_ROOM];
+  abbe_eye_path path[BRANCHES_ROOM];
   uint32_t count;
   float least; /* share below which absorption ends a path by roulette */
 } branches;
 
 /* One of the two ways on from an interface; false where it ends there. */
-static bool branch_off(const context *c, eye_path *p, const abbe_hit *hit, const crossing *x,
-                       bool reflects, float share, const float way[2], float random) {
+static bool branch_off(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit,
+                       const crossing *x, bool reflects, float share, const float way[2],
+                       float random) {
   if (!matched_rules(c, p, reflects, share)) return false;
   float part = reflects ? share : 1 - share, least = c->w->least_branch;
   p->share *= part;
@@ -381,7 +133,7 @@ static bool branch_off(const context *c, eye_path *p, const abbe_hit *hit, const
 
 /* Both ways on from an interface: one of them in p, the other among those that wait; false where
  * none goes on. */
-static bool scatter(const context *c, branches *b, eye_path *p, const abbe_hit *hit,
+static bool scatter(const abbe_eye_context *c, branches *b, abbe_eye_path *p, const abbe_hit *hit,
                     const crossing *x, float random) {
   float way[2], share = reflectance_at(c, x, p->step, p->within, &way[0], &way[1]);
   if (share <= 0 || share >= 1 || b->count == BRANCHES_ROOM) {
@@ -391,7 +143,7 @@ static bool scatter(const context *c, branches *b, eye_path *p, const abbe_hit *
     return true;
   }
   /* one number for both: where one branch ends the other is likely to go on */
-  eye_path other = *p;
+  abbe_eye_path other = *p;
   bool goes = branch_off(c, p, hit, x, share < 0.5f, share, way, random);
   bool also = branch_off(c, &other, hit, x, !(share < 0.5f), share, way, 1 - random);
   if (goes && also) b->path[b->count++] = other;
@@ -400,18 +152,18 @@ static bool scatter(const context *c, branches *b, eye_path *p, const abbe_hit *
 }
 
 /* To the next interface that is one; false where the path ends. */
-static bool follow_step(const context *c, branches *b, eye_path *p) {
+static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p) {
   abbe_hit hit;
   float length = 0, random[4];
   bool met = trace(c, p, &hit, &length);
-  random4(c, p->id, p->steps, random);
+  abbe_eye_random4(c, p->id, p->steps, random);
   if (met) absorb(c, p, length, random[1]);
   if (p->share < b->least) {
     if (!(random[2] * b->least < p->share)) return false;
     p->share = b->least;
   }
   if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
-    arrive(c, p, met, &hit, false);
+    abbe_eye_arrive(c, p, met, &hit, false);
     return false;
   }
   crossing x;
@@ -426,21 +178,21 @@ static bool follow_step(const context *c, branches *b, eye_path *p) {
 }
 
 /* Follows a path that may be inside, and all that it splits into, to their ends. */
-static void follow(const context *c, const eye_path *first) {
+static void follow(const abbe_eye_context *c, const abbe_eye_path *first) {
   branches b = {.count = 1, .least = first->share * 0.02f};
   b.path[0] = *first;
   while (b.count > 0) {
-    eye_path p = b.path[--b.count];
+    abbe_eye_path p = b.path[--b.count];
     while (p.steps < MAX_STEPS && follow_step(c, &b, &p)) p.steps++;
   }
 }
 
 /* The mirror image on the outside: the whole spectrum, tinted by Fresnel's law; bands need single
  * wavelengths. */
-static void follow_mirror(const context *c, const eye_path *first, const abbe_hit *hit,
-                          const crossing *x, float random) {
+static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
+                          const abbe_hit *hit, const crossing *x, float random) {
   const abbe_eye_walk *w = c->w;
-  eye_path p = *first;
+  abbe_eye_path p = *first;
   p.id++;
   float eta, cos_t;
   if (w->bands->count > 0) {
@@ -470,11 +222,11 @@ static void follow_mirror(const context *c, const eye_path *first, const abbe_hi
   follow(c, &p);
 }
 
-static void follow_through(const context *c, const eye_path *first, const abbe_hit *hit,
-                           const crossing *x, float random) {
+static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first,
+                           const abbe_hit *hit, const crossing *x, float random) {
   uint32_t count = disperses(c, x) || c->w->media->attenuation != NULL ? HEROES : 1;
   for (uint32_t i = 0; i < count; i++) {
-    eye_path p = *first;
+    abbe_eye_path p = *first;
     p.id += 2 + i;
     p.share /= (float)count;
     if (count > 1) disperse(&p, ((float)i + random) / (float)count);
@@ -487,8 +239,9 @@ static void follow_through(const context *c, const eye_path *first, const abbe_h
   }
 }
 
-static void add_first(const context *c, const eye_path *p, const abbe_hit *hit, float length) {
-  float side = dot(p->d, hit->ng) < 0 ? p->share : -p->share;
+static void add_first(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                      float length) {
+  float side = abbe_eye_dot(p->d, hit->ng) < 0 ? p->share : -p->share;
   for (int k = 0; k < 3; k++) c->out->normal[k] += side * hit->n[k];
   c->out->depth += p->share * length;
 }
@@ -500,14 +253,14 @@ static float place(uint32_t i, uint32_t ratio, float shift) {
 
 /* One of the pixel's samples: a path from the eye through the place (x, y) on the film. wave, from
  * 0 to 1, chooses wavelengths. */
-static void walk_sample(const context *c, eye_path *p, float x, float y, float wave) {
+static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, float y, float wave) {
   abbe_hit hit;
   float length;
   abbe_trace_camera_ray(c->w->camera, x, y, p->d);
   bool met = trace(c, p, &hit, &length);
   if (met) add_first(c, p, &hit, length);
   if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
-    arrive(c, p, met, &hit, true);
+    abbe_eye_arrive(c, p, met, &hit, true);
     return;
   }
   c->out->refractor = true;
@@ -537,14 +290,14 @@ static void clear(const abbe_eye_walk *w, abbe_eye_sample *out) {
 
 void abbe_eye_walk_pixel(const abbe_eye_walk *w, size_t pixel, uint32_t pass,
                          abbe_eye_sample *out) {
-  context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
+  abbe_eye_context c = {.w = w, .pixel = (uint32_t)pixel, .pass = pass, .out = out};
   uint32_t count = w->samples != NULL ? w->samples[pixel] : 1;
   float shift[4], column = (float)(pixel % w->camera->width);
   float row = (float)(pixel / w->camera->width);
   clear(w, out);
-  random4(&c, 0, 0, shift);
+  abbe_eye_random4(&c, 0, 0, shift);
   for (uint32_t i = 0; i < count; i++) {
-    eye_path p = {
+    abbe_eye_path p = {
         .share = 1 / (float)count, .branch = 1, .tint = {1, 1, 1}, .carried = 1, .id = i * IDS};
     memcpy(p.o, w->camera->eye, sizeof p.o);
     walk_sample(&c, &p, column + place(i, golden[0], shift[0]), row + place(i, golden[1], shift[1]),

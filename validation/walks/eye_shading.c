@@ -1,0 +1,220 @@
+#include "validation/walks/eye_shading.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <string.h>
+
+static const float inverse_pi = 0.318309886f;
+
+/* Radiance of a light's spectrum times share; reflectance NULL: none. */
+static void add_light(const abbe_eye_context *c, const abbe_eye_path *p, size_t light, float share,
+                      const float reflectance[3], const float rec709[3]) {
+  const abbe_eye_walk *w = c->w;
+  size_t steps = w->sampling->steps;
+  const float *colour = p->dispersed ? w->colour[light * steps + p->step] : w->white[light];
+  share *= p->share;
+  for (int k = 0; k < 3; k++)
+    c->out->rgb[k] += share * p->tint[k] * colour[k] * (reflectance ? reflectance[k] : 1);
+  const abbe_bands *b = w->bands;
+  for (size_t i = 0; i < b->count; i++) {
+    float power = b->power[light * b->count + i];
+    if (p->dispersed) {
+      if (b->of_step[p->step] != i) continue;
+      power = w->sampling->power[light * steps + p->step] / (float)b->width_nm;
+    }
+    float kept = rec709 ? abbe_reflectance_band(rec709, b->middle_nm[i]) : 1;
+    c->out->band[i] += share * kept * power;
+  }
+}
+
+/* Ambient light and background: white in the picture's space, with the first light's spectrum. */
+static void add_white(const abbe_eye_context *c, const abbe_eye_path *p, float share,
+                      const float reflectance[3], const float rec709[3]) {
+  const abbe_eye_walk *w = c->w;
+  float before[3];
+  memcpy(before, c->out->rgb, sizeof before);
+  add_light(c, p, 0, share, reflectance, rec709);
+  for (int k = 0; k < 3; k++)
+    c->out->rgb[k] = before[k] + (c->out->rgb[k] - before[k]) / w->white[0][k];
+}
+
+/* Radiance of the environment, RGB relative to its illuminant, times share. */
+static void add_environment(const abbe_eye_context *c, const abbe_eye_path *p, const float rgb[3],
+                            float share, const float reflectance[3], const float rec709[3]) {
+  const abbe_eye_walk *w = c->w;
+  const abbe_environment_light *e = w->environment;
+  if (p->dispersed) {
+    const float *lift = e->lift[p->step];
+    add_light(c, p, e->light, share * abbe_eye_dot(lift, rgb), reflectance, rec709);
+    return;
+  }
+  share *= p->share;
+  for (int k = 0; k < 3; k++)
+    c->out->rgb[k] += share * p->tint[k] * abbe_eye_dot(&e->to_colour[3 * k], rgb) *
+                      (reflectance ? reflectance[k] : 1);
+  const abbe_bands *b = w->bands;
+  for (size_t i = 0; i < b->count; i++) {
+    float kept = rec709 ? abbe_reflectance_band(rec709, b->middle_nm[i]) : 1;
+    c->out->band[i] +=
+        share * kept * abbe_eye_dot(e->band[i], rgb) * b->power[e->light * b->count + i];
+  }
+}
+
+typedef struct gathering {
+  const abbe_eye_context *c;
+  const abbe_eye_path *p;
+  float sum[3];
+  float band[ABBE_BANDS_MAX];
+} gathering;
+
+static void take_photon(void *user, const abbe_grid_photon *photon) {
+  gathering *g = user;
+  const abbe_eye_walk *w = g->c->w;
+  size_t steps = w->sampling->steps, step = photon->colour % steps;
+  float flux = fabsf(photon->flux);
+  if (g->p->dispersed) {
+    /* a window of wavelengths around the path's, cut at the ends of the range */
+    const double *nm = w->sampling->lambda_nm;
+    double own = nm[g->p->step] + (double)g->p->within * (nm[g->p->step + 1] - nm[g->p->step]);
+    double other = 0.5 * (nm[step] + nm[step + 1]);
+    if (fabs(own - other) > w->window_nm) return;
+    double span = fmin(other + w->window_nm, nm[steps]) - fmax(other - w->window_nm, nm[0]);
+    double density = 1 / ((double)steps * (nm[g->p->step + 1] - nm[g->p->step]));
+    flux *= (float)(1 / (span * density));
+  }
+  for (int k = 0; k < 3; k++) g->sum[k] += flux * w->colour[photon->colour][k];
+  if (w->bands->count > 0)
+    g->band[w->bands->of_step[step]] +=
+        flux * w->sampling->power[photon->colour] / (float)w->bands->width_nm;
+}
+
+static void add_caustic(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                        float side, const float reflectance[3], const float rec709[3]) {
+  const abbe_eye_walk *w = c->w;
+  if (w->grid == NULL) return;
+  gathering g = {.c = c, .p = p};
+  abbe_photon_grid_gather(w->grid, hit->p, w->radius,
+                          (uint32_t)(hit->surface - w->geometry->surface), side, take_photon, &g);
+  float unit = (float)w->geometry->unit, r = w->radius * unit;
+  float scale = p->share * inverse_pi * inverse_pi / (r * r);
+  for (int k = 0; k < 3; k++) {
+    float add = scale * p->tint[k] * reflectance[k] * g.sum[k];
+    c->out->rgb[k] += add;
+    c->out->caustic[k] += add;
+  }
+  for (size_t i = 0; i < w->bands->count; i++)
+    c->out->band[i] += scale * g.band[i] * abbe_reflectance_band(rec709, w->bands->middle_nm[i]);
+}
+
+/* Irradiance of a light at the hit on the viewer's side, W/m2, seen past everything. n faces the
+ * viewer. */
+static float irradiance(const abbe_eye_context *c, const abbe_light *light, const abbe_hit *hit,
+                        const float n[3], const float random[2]) {
+  const abbe_geometry *g = c->w->geometry;
+  float from[3], d[3], o[3], limit = INFINITY, power = (float)light->power, falloff = 1;
+  for (int k = 0; k < 3; k++) d[k] = -(float)light->direction[k];
+  if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
+    abbe_geometry_to_frame(g, light->position, from);
+    if (light->kind == ABBE_LIGHT_DISK) {
+      float a[3], b[3], r = (float)(light->radius / g->unit) * sqrtf(random[0]);
+      float angle = 6.28318531f * random[1];
+      abbe_geometry_across(d, a, b);
+      for (int k = 0; k < 3; k++) from[k] += r * (cosf(angle) * a[k] + sinf(angle) * b[k]);
+      power *= (float)(3.14159265358979 * light->radius * light->radius);
+    }
+    for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
+    limit = sqrtf(abbe_eye_dot(d, d));
+    for (int k = 0; k < 3; k++) d[k] /= limit;
+    falloff = 1 / (limit * limit * (float)(g->unit * g->unit));
+  }
+  float facing = abbe_eye_dot(n, d);
+  if (!(facing > 0)) return 0;
+  double away[3] = {-(double)d[0], -(double)d[1], -(double)d[2]};
+  abbe_vector_normalise(away); /* a narrow cone's cosine asks for more than single precision */
+  float e = power * falloff * facing * (float)abbe_light_profile(light, away);
+  if (!(e > 0)) return 0;
+  abbe_geometry_leave(hit, d, o);
+  c->out->rays++;
+  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  return abbe_geometry_occluded(g, mask, o, d, limit) ? 0 : e;
+}
+
+/* Whether the environment is seen from the hit along d, on the side of n. */
+static bool sees_out(const abbe_eye_context *c, const abbe_hit *hit, const float n[3],
+                     const float d[3]) {
+  float o[3];
+  if (!(abbe_eye_dot(n, d) > 0)) return false;
+  abbe_geometry_leave(hit, d, o);
+  c->out->rays++;
+  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  return !abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
+}
+
+/* Irradiance of the environment at the hit on the side of n, over pi, RGB: one direction drawn by
+ * its radiance, one by its cosine, weighted by the balance heuristic [VeachGuibas1995]. */
+static void surrounding_light(const abbe_eye_context *c, const abbe_eye_path *p,
+                              const abbe_hit *hit, const float n[3], float out[3]) {
+  const abbe_environment_light *e = c->w->environment;
+  float random[4], more[4], d[3], pdf, rgb[3], x[3], y[3];
+  abbe_eye_random4(c, ~p->id ^ 0x736b79u, p->steps, random);
+  abbe_eye_random4(c, ~p->id ^ 0x68656d69u, p->steps, more);
+  memset(out, 0, 3 * sizeof *out);
+  abbe_environment_light_sample(e, random, d, &pdf, rgb);
+  float cosine = abbe_eye_dot(n, d) * inverse_pi;
+  if (sees_out(c, hit, n, d))
+    for (int k = 0; k < 3; k++) out[k] += rgb[k] * cosine / (pdf + cosine);
+  abbe_geometry_across(n, x, y);
+  float r = sqrtf(more[0]), angle = 6.28318531f * more[1];
+  for (int k = 0; k < 3; k++)
+    d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - more[0]) * n[k];
+  if (!sees_out(c, hit, n, d)) return;
+  cosine = abbe_eye_dot(n, d) * inverse_pi;
+  abbe_environment_light_seen(e, d, rgb);
+  const float weight = cosine / (abbe_environment_light_pdf(e, d) + cosine);
+  for (int k = 0; k < 3; k++) out[k] += rgb[k] * weight;
+}
+
+static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                  bool straight) {
+  const abbe_eye_walk *w = c->w;
+  const abbe_scene *scene = w->geometry->scene;
+  float reflectance[3], rec709[3], n[3], random[4];
+  uint32_t surface = (uint32_t)(hit->surface - w->geometry->surface);
+  abbe_reflectance_at(w->reflectance, surface, hit->face, hit->u, hit->v, reflectance);
+  if (w->bands->count > 0)
+    abbe_reflectance_rec709(w->reflectance, surface, hit->face, hit->u, hit->v, rec709);
+  for (int k = 0; k < 3; k++) c->out->albedo[k] += p->share * p->tint[k] * reflectance[k];
+  float side = abbe_eye_dot(p->d, hit->ng) < 0 ? 1 : -1;
+  const float *normal = abbe_eye_dot(hit->n, p->d) * side < 0 ? hit->n : hit->ng;
+  for (int k = 0; k < 3; k++) n[k] = side * normal[k];
+  for (size_t l = 0; l < scene->light_count; l++) {
+    abbe_eye_random4(c, ~p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
+    float e = irradiance(c, &scene->light[l], hit, n, random);
+    if (e > 0) add_light(c, p, l, e * inverse_pi, reflectance, rec709);
+  }
+  if (w->environment->environment != NULL) {
+    float rgb[3];
+    surrounding_light(c, p, hit, n, rgb);
+    add_environment(c, p, rgb, 1, reflectance, rec709);
+  }
+  if (scene->ambient > 0) add_white(c, p, (float)scene->ambient * inverse_pi, reflectance, rec709);
+  if (!straight) add_caustic(c, p, hit, side, reflectance, rec709);
+}
+
+/* What ends a path: a receiver, a lamp, or nothing at all. */
+void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *p, bool met,
+                     const abbe_hit *hit, bool straight) {
+  const abbe_scene *scene = c->w->geometry->scene;
+  if (!met) {
+    if (scene->background > 0) add_white(c, p, (float)scene->background, NULL, NULL);
+    if (c->w->environment->environment == NULL) return;
+    float rgb[3];
+    abbe_environment_light_seen(c->w->environment, p->d, rgb);
+    add_environment(c, p, rgb, 1, NULL, NULL);
+  } else if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
+    shade(c, p, hit, straight);
+  } else if (abbe_eye_dot(p->d, hit->n) < 0) {
+    size_t l = hit->surface->index;
+    add_light(c, p, l, (float)scene->light[l].power, NULL, NULL);
+  }
+}

@@ -1,0 +1,54 @@
+/* eye_shading.h: what the paths of the eye find at their ends: receivers with the light on them,
+ * the environment, the background, lamps.
+ *
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_WALKS_EYE_SHADING_H
+#define ABBE_VALIDATION_WALKS_EYE_SHADING_H
+
+#include "validation/transport/random.h"
+#include "validation/walks/eye_walk.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A path from the eye. Where it is not dispersed it carries the whole spectrum, else one
+ * wavelength. */
+typedef struct abbe_eye_path {
+  float o[3], d[3];
+  float share;   /* of its light, all wavelengths alike */
+  float branch;  /* that part of it which interfaces inside the glass left */
+  float tint[3]; /* a colour on top of that */
+  bool dispersed;
+  uint32_t step;
+  float within;
+  abbe_media_set inside;
+  float carried; /* matched: what a splitting path would carry */
+  uint32_t walls, steps, id;
+} abbe_eye_path;
+
+typedef struct abbe_eye_context {
+  const abbe_eye_walk *w;
+  uint32_t pixel, pass;
+  abbe_eye_sample *out;
+} abbe_eye_context;
+
+static inline float abbe_eye_dot(const float a[3], const float b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void abbe_eye_random4(const abbe_eye_context *c, uint32_t a, uint32_t b,
+                                    float out[4]) {
+  abbe_random4(c->pixel, c->pass, a, (c->w->seed ^ 0x657965u) + b * 0x9e3779b1u, out);
+}
+
+/* What ends a path goes into the sample: a receiver, a lamp, or nothing at all. straight: the eye's
+ * own ray, whose caustic the photons bring. */
+void abbe_eye_arrive(const abbe_eye_context *context, const abbe_eye_path *path, bool met,
+                     const abbe_hit *hit, bool straight);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
