@@ -85,9 +85,23 @@ static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
   return h;
 }
 
+static uint64_t mix_environment(uint64_t h, const abbe_environment *e) {
+  const bool there = e != NULL;
+  MIX(h, there);
+  if (!there) return h;
+  MIX(h, e->to_map);
+  MIX(h, e->map.width);
+  MIX(h, e->illuminant.kind);
+  h = mix_spectrum(h, e->illuminant.spectrum);
+  return mix_array(h, e->map.rgb, 3 * e->map.width * e->map.height, sizeof *e->map.rgb);
+}
+
 static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 4;
   MIX(h, plan->desc.space);
+  MIX(h, plan->desc.min_nm);
+  MIX(h, plan->desc.max_nm);
+  h = mix_environment(h, scene->environment);
   for (size_t i = 0; i < plan->receiver_count; i++) {
     const abbe_object *o = &scene->object[plan->receiver_object[i]];
     const size_t texels = o->texture.width * o->texture.height * o->texture.channels;

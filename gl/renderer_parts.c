@@ -1,6 +1,7 @@
 #include "gl/renderer_parts.h"
 
 #include "base/clock.h"
+#include "scenes/environment/environment_lights.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -154,12 +155,28 @@ static abbe_result end_watch(abbe_renderer *r, abbe_result result, abbe_error *e
   return abbe_error_set(error, ABBE_CANCELLED, "the render was cancelled");
 }
 
+/* The scene with lights for its environment, and its plan. */
+static abbe_result plan_scene(const abbe_scene *scene, const abbe_render_desc *desc,
+                              abbe_scene *surrounded, abbe_plan *plan, abbe_error *error) {
+  *surrounded = (abbe_scene){0};
+  abbe_result result = ABBE_OK;
+  if (scene->environment != NULL) result = abbe_plan_surround(scene, desc, surrounded, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_plan_make(scene->environment != NULL ? surrounded : scene, desc, plan, error);
+  if (result != ABBE_OK) abbe_environment_lights_drop(surrounded);
+  return result;
+}
+
 abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene,
                                        const abbe_render_desc *desc, abbe_error *error) {
   abbe_renderer_inputs inputs;
   abbe_plan plan;
-  abbe_result result = abbe_plan_make(scene, desc, &plan, error);
+  abbe_scene surrounded;
+  abbe_result result = plan_scene(scene, desc, &surrounded, &plan, error);
   if (result != ABBE_OK) return result;
+  abbe_environment_lights_drop(&r->surrounded);
+  r->surrounded = surrounded;
+  if (scene->environment != NULL) scene = &r->surrounded;
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
   if (abbe_profile_is_thesis(plan.desc.profile) && parts != 0)
@@ -186,6 +203,7 @@ void abbe_renderer_parts_free(abbe_renderer *r) {
   abbe_gpu_free(&r->gpu);
   abbe_local_scene_free(&r->local);
   abbe_plan_free(&r->plan);
+  abbe_environment_lights_drop(&r->surrounded);
 }
 
 static abbe_result draw_light(abbe_renderer *r, abbe_error *error) {

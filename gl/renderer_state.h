@@ -15,6 +15,7 @@
 struct abbe_renderer {
   abbe_context *context;
   abbe_gpu gpu;
+  abbe_scene surrounded; /* the caller's, and lights for its environment; zeroed without one */
   abbe_local_scene local;
   abbe_map_layout given, local_given; /* the request's layout; the same there */
   abbe_plan plan;

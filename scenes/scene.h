@@ -94,6 +94,8 @@ typedef struct abbe_scene {
   abbe_camera camera;
   size_t light_count;
   abbe_light *light;
+  size_t environment_lights; /* so many at the end of light[] stand for the environment
+                                (environment/environment_lights.h); 0 in a scene as it is loaded */
   abbe_environment *environment; /* what is around it all, or NULL */
   size_t object_count;
   abbe_object *object;

@@ -35,6 +35,7 @@ extern "C" {
   X(HINT, Hint)                                                                                    \
   X(POLYGONMODE, PolygonMode)                                                                      \
   X(PROVOKINGVERTEX, ProvokingVertex)                                                              \
+  X(TEXSUBIMAGE2D, TexSubImage2D)                                                                  \
   X(TEXTUREVIEW, TextureView)                                                                      \
   X(BUFFERSUBDATA, BufferSubData) X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(             \
       CLEARBUFFERFV, ClearBufferfv) X(CLEARBUFFERUIV,                                              \

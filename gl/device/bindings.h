@@ -57,5 +57,6 @@
 #define UNIT_CHART_ROWS 12
 #define UNIT_SIDE_OF_FACE 13
 #define UNIT_WARPS 14
+#define UNIT_ENVIRONMENT 15
 
 #endif

@@ -40,7 +40,7 @@ Shading ray_light(vec2 uv, vec2 area) {
   float t;
   Sighting at;
   view_ray(own_eye_view, uv, o, d);
-  if (!receiver_seen(o, d, 0.0, 1e30, t, at)) return Shading(vec3(0), vec3(0), background);
+  if (!receiver_seen(o, d, 0.0, 1e30, t, at)) return Shading(vec3(0), vec3(0), surroundings(d));
 #ifdef RECEIVER_HIERARCHY
   vec3 n = face_n;
 #else

@@ -6,6 +6,8 @@
 
 static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "surface.vert"},
                                             {GL_FRAGMENT_SHADER, "receivers.frag"}};
+static const abbe_program_stage behind[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                            {GL_FRAGMENT_SHADER, "surroundings.frag"}};
 
 /* Views that hold all that the light may reach, straight and through refractors; 0: no such are
  * known.
@@ -99,6 +101,17 @@ static void draw_lit_parts(abbe_receivers_pass *pass, int bottom, int top) {
   gl->DepthFunc(GL_LESS);
 }
 
+static void draw_surroundings(abbe_receivers_pass *pass) {
+  const abbe_gpu_scene *scene = pass->lighting->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  const size_t *samples = pass->lighting->camera->samples;
+  abbe_lighting_use(pass->lighting, pass->surroundings);
+  gl->Uniform2f(gl->GetUniformLocation(pass->surroundings, "samples"), (GLfloat)samples[0],
+                (GLfloat)samples[1]);
+  gl->BindVertexArray(scene->gpu->empty_array);
+  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 static void draw_rows(abbe_receivers_pass *pass, int bottom, int top) {
   const abbe_gpu_scene *scene = pass->lighting->scene;
   const GLuint whole = pass->unlit != 0 ? pass->unlit : pass->lit;
@@ -137,6 +150,14 @@ abbe_result abbe_receivers_pass_run(abbe_receivers_pass *pass, abbe_error *error
   gl->ClearBufferfv(GL_COLOR, 0, background);
   for (GLint k = 1; k < 3 && scene->plan->desc.aovs; k++) gl->ClearBufferfv(GL_COLOR, k, nothing);
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
+  if (pass->surroundings != 0) {
+    result = abbe_gpu_set_target(scene->gpu, target, flat, 1, 0, w, h, error);
+    if (result != ABBE_OK) return result;
+    draw_surroundings(pass);
+    result = abbe_gpu_set_target(scene->gpu, target, flat, scene->plan->desc.aovs ? 3 : 1,
+                                 pass->depth, w, h, error);
+    if (result != ABBE_OK) return result;
+  }
   gl->Enable(GL_DEPTH_TEST);
   draw_receivers(pass);
   abbe_gpu_book_lap(scene->gpu, ABBE_PASS_EYE_RECEIVERS);
@@ -174,6 +195,9 @@ abbe_result abbe_receivers_pass_make(const abbe_lighting *lighting,
   if (result == ABBE_OK)
     result = abbe_shader_variant_program(variant, lighting->scene->gpu, stages, 2, NULL, &out->lit,
                                          error);
+  if (result == ABBE_OK && variant->environment)
+    result = abbe_shader_variant_program(variant, lighting->scene->gpu, behind, 2, NULL,
+                                         &out->surroundings, error);
   return result == ABBE_OK ? make_unlit(out, variant, error) : result;
 }
 

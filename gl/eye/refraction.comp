@@ -91,7 +91,7 @@ vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   float t;
   Sighting at;
   met = receiver_seen(p, d, t_min, t_max, t, at);
-  if (!met) return background;
+  if (!met) return surroundings(d);
   Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);
   return s.direct + s.caustic + s.fill;
 }

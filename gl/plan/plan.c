@@ -9,6 +9,7 @@
 #include "gl/plan/no_culling.h"
 #include "gl/plan/pass_list.h"
 #include "gl/plan/support.h"
+#include "scenes/environment/environment_lights.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -40,13 +41,9 @@ static void combine(abbe_plan *plan) {
   plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !thesis;
 }
 
-abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
-                           abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
-  memset(out, 0, sizeof *out);
-  abbe_result result =
-      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error);
-  if (result == ABBE_OK) result = abbe_support_lights(scene, error);
+static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
+                             abbe_error *error) {
+  abbe_result result = abbe_support_lights(scene, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
@@ -68,4 +65,31 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   abbe_spectral_needs_note(scene, out);
   if (out->desc.everything) abbe_no_culling_apply(scene, desc, out);
   return ABBE_OK;
+}
+
+abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
+                               abbe_scene *out, abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
+  abbe_render_desc d;
+  abbe_result result =
+      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &d, error);
+  if (result != ABBE_OK) return result;
+  return abbe_environment_lights_add(scene, d.environment_lights, d.min_nm, d.max_nm, out, error);
+}
+
+abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
+                           abbe_error *error) {
+  ABBE_REQUIRE(scene && out, error);
+  memset(out, 0, sizeof *out);
+  abbe_result result =
+      abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error);
+  if (result != ABBE_OK) return result;
+  if (scene->environment == NULL || scene->environment_lights > 0)
+    return make_plan(scene, desc, out, error);
+  abbe_scene surrounded;
+  result = abbe_plan_surround(scene, desc, &surrounded, error);
+  if (result != ABBE_OK) return result;
+  result = make_plan(&surrounded, desc, out, error);
+  abbe_environment_lights_drop(&surrounded);
+  return result;
 }

@@ -16,7 +16,14 @@
 extern "C" {
 #endif
 
-/* ABBE_INVALID_ARGUMENT for a request outside its limits, ABBE_OUT_OF_RANGE for an index that is
+/* The scene with directional lights for its environment, as the renderer takes it
+ * (scenes/environment/environment_lights.h): for who looks up the plan's lights.
+ * abbe_environment_lights_drop frees it. */
+abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
+                               abbe_scene *out, abbe_error *error);
+
+/* Of a scene as it is loaded, or with lights for its environment already.
+ * ABBE_INVALID_ARGUMENT for a request outside its limits, ABBE_OUT_OF_RANGE for an index that is
  * not known over the range, ABBE_UNSUPPORTED for what is not modelled. desc may be NULL. */
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                            abbe_error *error);

@@ -5,6 +5,9 @@
 abbe_result abbe_support_thesis(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
   ABBE_REQUIRE(scene && plan, error);
   if (!abbe_profile_is_thesis(plan->desc.profile)) return ABBE_OK;
+  if (scene->environment != NULL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the thesis profile knows no environment; this scene has one");
   if (scene->light_count != 1)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the thesis profile knows one light; this scene has %zu",

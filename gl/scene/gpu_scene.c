@@ -173,7 +173,7 @@ static abbe_result upload_surfaces(abbe_gpu_scene *scene, abbe_error *error) {
     result = abbe_gpu_make_buffer(scene->gpu, scene->plan->receiver_count * sizeof *surface,
                                   surface, &scene->surfaces, error);
   free(surface);
-  return result;
+  return result == ABBE_OK ? abbe_gpu_environment_make(scene, error) : result;
 }
 
 static void measure_scene(abbe_gpu_scene *scene) {
@@ -258,6 +258,7 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
   if (parts & ABBE_SCENE_SURFACES) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->surfaces);
     abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
+    abbe_gpu_drop_textures(scene->gpu, 1, &scene->environment);
   }
   if (parts & ABBE_SCENE_SPECTRA) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->spectra);
@@ -302,4 +303,5 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
                 (float)scene->refractor_centre[0], (float)scene->refractor_centre[1],
                 (float)scene->refractor_centre[2], (float)scene->refractor_radius);
   abbe_gpu_set_float(scene->gpu, program, "scene_size", scene->size);
+  abbe_gpu_environment_set(scene, program);
 }

@@ -45,6 +45,7 @@ typedef struct abbe_gpu_scene {
   size_t mesh_bytes;   /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
   GLuint surface_texture;
+  GLuint environment; /* texture of what is around it all, by longitude and latitude; 0: nothing */
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
 
   GLuint bvh[3], bvh_texture[3]; /* nodes, triangles, corners; 0: no model needs them */
@@ -92,6 +93,10 @@ abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);
 /* gpu_shadows.c: the planes of convex refractors' shadows. */
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error);
 void abbe_gpu_shadows_free(abbe_gpu_scene *scene);
+
+/* gpu_environment.c: the environment's texture, of the scene's surfaces; its uniforms. */
+abbe_result abbe_gpu_environment_make(abbe_gpu_scene *scene, abbe_error *error);
+void abbe_gpu_environment_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]);

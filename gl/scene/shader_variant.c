@@ -28,6 +28,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .receiver_shadows = p->receiver_shadows,
       .absorbing = p->absorbing,
       .textured = p->textured,
+      .environment = scene->environment != 0,
       .caustics = p->caustics,
       .walk = p->multi_refractor_paths,
       .cubes = p->cubes,
@@ -112,6 +113,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "RECEIVER_HIERARCHY", v->receiver_hierarchy);
   print_flag(to, "ABSORBING", v->absorbing);
   print_flag(to, "TEXTURED", v->textured);
+  print_flag(to, "ENVIRONMENT", v->environment);
   print_flag(to, "CAUSTICS", v->caustics);
   print_flag(to, "WALK", v->walk);
   print_flag(to, "CUBES", v->cubes);

@@ -39,6 +39,8 @@ void copy_surroundings() {
 #define scene_size own_scene_size
 #endif
 
+#include "surroundings.glsl"
+
 // How far behind a refractor's interface a receiver may lie to be lit by what leaves there: a refractor
 // that stands on a receiver touches it to a rounding. In radii of the refractors' bounds.
 const float touch = 1e-5;

@@ -54,6 +54,7 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_WAVELENGTHS 1000
 #define ABBE_RENDER_MAX_EXITS 32
 #define ABBE_RENDER_MAX_ADAPTIVE 8 /* a side */
+#define ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS 16
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
@@ -64,6 +65,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_MAP 1024
 #define ABBE_PLAN_SAMPLES 2
 #define ABBE_PLAN_ADAPTIVE 4
+#define ABBE_PLAN_ENVIRONMENT_LIGHTS 6
 /* Exits that are followed at the most, and the share of its light below which a path ends, where
  * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
@@ -91,6 +93,8 @@ typedef struct abbe_render_desc {
   /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
    * (thesis: 1) */
   size_t adaptive;
+  /* lights that stand for an environment on receivers and through refractors, 1 to 16; 0: 6 */
+  size_t environment_lights;
   abbe_fill fill;
   abbe_model model;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too
