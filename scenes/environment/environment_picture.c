@@ -1,0 +1,228 @@
+#include "scenes/environment/environment_picture.h"
+
+#include "base/file.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/radiance_file.h"
+#include "colorimetry/rgb_space.h"
+#include "scenes/geometry/vector.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+enum { CUBE_PARTS = 4, CUBE_MAX_SIDE = 8192 };
+
+/* --- the file --- */
+
+static abbe_result read_image(const char *path, abbe_image *out, abbe_error *error) {
+  FILE *stream = NULL;
+  char head[4] = {0};
+  const abbe_result result = abbe_file_open(path, &stream, NULL, error);
+  if (result != ABBE_OK) return result;
+  const size_t size = fread(head, 1, sizeof head, stream);
+  fclose(stream);
+  if (size == 4 && memcmp(head, "\x76\x2f\x31\x01", 4) == 0) return abbe_exr_read(path, out, error);
+  if (size >= 2 && memcmp(head, "#?", 2) == 0) return abbe_radiance_read(path, out, error);
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: it is neither an OpenEXR nor a Radiance picture; surroundings are of "
+                        "these",
+                        path);
+}
+
+static bool find_channels(const abbe_image *image, const char *const names[3], size_t channel[3]) {
+  for (int k = 0; k < 3; k++) {
+    channel[k] = abbe_image_find_channel(image, names[k]);
+    if (channel[k] == (size_t)-1) return false;
+  }
+  return true;
+}
+
+/* Row-major matrix to Rec.709 from the picture's own channels. */
+static abbe_result colours_of(const char *path, const abbe_image *image, size_t channel[3],
+                              double matrix[9], abbe_error *error) {
+  double from_xyz[9], to_xyz[9];
+  bool stated = false;
+  for (int i = 0; i < 8; i++) stated = stated || image->xy[i] != 0;
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
+  if (find_channels(image, (const char *const[3]){"R", "G", "B"}, channel)) {
+    const abbe_result result =
+        stated ? abbe_rgb_space_chromaticities_to_xyz(image->xy, to_xyz, error) : ABBE_OK;
+    if (result != ABBE_OK)
+      return abbe_error_set(error, ABBE_SCHEMA, "%s: its chromaticities span no colour space",
+                            path);
+  } else if (find_channels(image, (const char *const[3]){"X", "Y", "Z"}, channel)) {
+    abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_XYZ, to_xyz);
+  } else if (!find_channels(image, (const char *const[3]){"Y", "Y", "Y"}, channel)) {
+    return abbe_error_set(error, ABBE_NOT_FOUND,
+                          "%s: it has no channels R, G and B, or X, Y and Z, or Y", path);
+  }
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, from_xyz);
+  for (int i = 0; i < 3; i++) {
+    double column[3] = {to_xyz[i], to_xyz[3 + i], to_xyz[6 + i]};
+    abbe_rgb_space_apply(from_xyz, column, column);
+    for (int k = 0; k < 3; k++) matrix[3 * k + i] = column[k];
+  }
+  return ABBE_OK;
+}
+
+/* The picture's pixels as Rec.709, three floats each, in place of its channels. */
+static abbe_result convert(const char *path, abbe_image *image, abbe_error *error) {
+  size_t channel[3];
+  double matrix[9];
+  const abbe_result result = colours_of(path, image, channel, matrix, error);
+  if (result != ABBE_OK) return result;
+  bool same = true;
+  for (int i = 0; i < 9; i++) same = same && fabs(matrix[i] - (i % 4 == 0)) < 1e-12;
+  /* each pixel is read before it is written: 3 k is never beyond channels k, unless grey */
+  float *to = image->data;
+  if (image->channels < 3) {
+    to = malloc(image->width * image->height * 3 * sizeof *to);
+    if (to == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for it", path);
+  }
+  for (size_t i = 0; i < image->width * image->height; i++) {
+    double rgb[3];
+    for (int k = 0; k < 3; k++) {
+      rgb[k] = (double)image->data[i * image->channels + channel[k]];
+      if (isfinite(rgb[k]) && rgb[k] >= 0) continue;
+      const abbe_result bad = abbe_error_set(
+          error, ABBE_SCHEMA,
+          "%s: the pixel at column %zu, row %zu is %g in the channel %s; radiance is finite and "
+          "not negative",
+          path, i % image->width, i / image->width, rgb[k], image->channel[channel[k]]);
+      if (to != image->data) free(to);
+      return bad;
+    }
+    if (!same) abbe_rgb_space_apply(matrix, rgb, rgb);
+    for (size_t k = 0; k < 3; k++) to[3 * i + k] = (float)fmax(rgb[k], 0);
+  }
+  if (to != image->data) free(image->data);
+  image->data = to;
+  return ABBE_OK;
+}
+
+/* --- layouts --- */
+
+static abbe_result check_layout(const char *path, const abbe_image *image,
+                                abbe_environment_layout *layout, abbe_error *error) {
+  const size_t w = image->width, h = image->height;
+  const bool latlong = w == 2 * h, cube = 3 * w == 4 * h || 4 * w == 3 * h;
+  if (*layout == ABBE_LAYOUT_BY_ASPECT) *layout = cube ? ABBE_LAYOUT_CUBE : ABBE_LAYOUT_LATLONG;
+  if (*layout == ABBE_LAYOUT_CUBE ? !cube : !latlong)
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "%s: it is %zu x %zu pixels; a latitude-longitude picture is twice as "
+                          "wide as high, and the cross of a cube 4:3 or 3:4",
+                          path, w, h);
+  const size_t most = *layout == ABBE_LAYOUT_CUBE ? CUBE_MAX_SIDE : ABBE_RADIANCE_MAP_MAX_WIDTH;
+  if (w > most || h > most)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: its %zu x %zu pixels are too many: at most %zu a side are possible; "
+                          "make it smaller",
+                          path, w, h, most);
+  if (w < ABBE_RADIANCE_MAP_MIN_WIDTH || h < 2 || (*layout == ABBE_LAYOUT_CUBE && w < 6))
+    return abbe_error_set(error, ABBE_SCHEMA, "%s: %zu x %zu pixels are too few", path, w, h);
+  return ABBE_OK;
+}
+
+/* Where each face lies in the crosses, in faces, and its axes: direction = out + u right + v down,
+ * u and v from -1 to 1. The back of an upright cross is turned by half a turn. */
+typedef struct cube_face {
+  double out[3], right[3], down[3];
+  size_t lying[2], upright[2];
+} cube_face;
+
+static const cube_face faces[6] = {
+    {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, 1}, {1, 1}},
+    {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {3, 1}, {1, 3}},
+    {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, 1}, {0, 1}},
+    {{0, -1, 0}, {-1, 0, 0}, {0, 0, -1}, {2, 1}, {2, 1}},
+    {{0, 0, 1}, {0, -1, 0}, {1, 0, 0}, {1, 0}, {1, 0}},
+    {{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {1, 2}, {1, 2}},
+};
+
+enum { BACK = 1 };
+
+/* Bilinear within the face. */
+static void cube_at(const abbe_image *image, const double direction[3], double rgb[3]) {
+  const bool upright = image->height > image->width;
+  const double side = (double)image->width / (upright ? 3 : 4);
+  int best = 0;
+  for (int f = 1; f < 6; f++)
+    if (abbe_vector_dot(direction, faces[f].out) > abbe_vector_dot(direction, faces[best].out))
+      best = f;
+  const cube_face *face = &faces[best];
+  const size_t *at = upright ? face->upright : face->lying;
+  const double depth = abbe_vector_dot(direction, face->out);
+  double place[2] = {abbe_vector_dot(direction, face->right) / depth,
+                     abbe_vector_dot(direction, face->down) / depth};
+  size_t low[2];
+  double share[2];
+  for (int k = 0; k < 2; k++) {
+    if (upright && best == BACK) place[k] = -place[k];
+    const double x = fmin(fmax((place[k] + 1) / 2 * side - 0.5, 0), side - 1);
+    const double whole = fmax(fmin(floor(x), side - 2), 0);
+    low[k] = (size_t)whole + at[k] * (size_t)side;
+    share[k] = x - whole;
+  }
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  for (int i = 0; i < 4; i++) {
+    const double w = (i % 2 ? share[0] : 1 - share[0]) * (i / 2 ? share[1] : 1 - share[1]);
+    const size_t x = low[0] + (size_t)(i % 2), y = low[1] + (size_t)(i / 2);
+    for (size_t k = 0; k < 3; k++)
+      rgb[k] += w * (double)image->data[3 * (y * image->width + x) + k];
+  }
+}
+
+/* A texel of the map: the mean over what its share covers, CUBE_PARTS places a half. */
+static void cube_texel(const abbe_image *image, const abbe_radiance_map *map, size_t column,
+                       size_t row, float out[3]) {
+  double sum[3] = {0}, whole = 0;
+  for (int i = 0; i < 2 * CUBE_PARTS; i++)
+    for (int j = 0; j < 2 * CUBE_PARTS; j++) {
+      const double x = (i + 0.5) / CUBE_PARTS - 1, y = (j + 0.5) / CUBE_PARTS - 1;
+      const double place = (double)row + 0.5 + y;
+      const double share =
+          (1 - fabs(x)) * (1 - fabs(y)) * fabs(sin(PI * place / (double)map->height));
+      double direction[3], rgb[3];
+      abbe_radiance_map_direction(map, (double)column + 0.5 + x, place, direction);
+      cube_at(image, direction, rgb);
+      whole += share;
+      for (int k = 0; k < 3; k++) sum[k] += share * rgb[k];
+    }
+  for (int k = 0; k < 3; k++) out[k] = (float)(sum[k] / whole);
+}
+
+static abbe_result from_cube(const abbe_image *image, abbe_radiance_map *out, abbe_error *error) {
+  const size_t side = image->width / (image->height > image->width ? 3 : 4);
+  const size_t width =
+      4 * side < ABBE_RADIANCE_MAP_MAX_WIDTH ? 4 * side : ABBE_RADIANCE_MAP_MAX_WIDTH;
+  const abbe_result result = abbe_radiance_map_make(width, out, error);
+  for (size_t row = 0; result == ABBE_OK && row < out->height; row++)
+    for (size_t column = 0; column < width; column++)
+      cube_texel(image, out, column, row, out->rgb + 3 * (row * width + column));
+  return result;
+}
+
+static abbe_result from_latlong(const abbe_image *image, abbe_radiance_map *out,
+                                abbe_error *error) {
+  const abbe_result result = abbe_radiance_map_make(image->width, out, error);
+  if (result == ABBE_OK)
+    memcpy(out->rgb, image->data, 3 * image->width * image->height * sizeof *out->rgb);
+  return result;
+}
+
+abbe_result abbe_environment_picture_read(const char *path, abbe_environment_layout layout,
+                                          abbe_radiance_map *out, abbe_error *error) {
+  ABBE_REQUIRE(path && out, error);
+  *out = (abbe_radiance_map){0};
+  abbe_image image = {0};
+  abbe_result result = read_image(path, &image, error);
+  if (result == ABBE_OK) result = check_layout(path, &image, &layout, error);
+  if (result == ABBE_OK) result = convert(path, &image, error);
+  if (result == ABBE_OK)
+    result = layout == ABBE_LAYOUT_CUBE ? from_cube(&image, out, error)
+                                        : from_latlong(&image, out, error);
+  abbe_image_free(&image);
+  return result;
+}

@@ -1,0 +1,297 @@
+#include "scenes/environment/environment_source.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+enum { FINEST = 256, DOME_PLACES = 1 << 20 };
+static const double spot_reach = 6; /* standard deviations: below 2e-8 of the middle beyond */
+
+/* --- what each kind is --- */
+
+/* Simpson's rule. */
+static double spot_solid_angle(double sigma) {
+  enum { STEPS = 2000 };
+  const double end = fmin(spot_reach * sigma, PI), step = end / STEPS;
+  double sum = 0;
+  for (int i = 0; i <= STEPS; i++) {
+    const double angle = i * step;
+    const double weight = i == 0 || i == STEPS ? 1 : i % 2 ? 4 : 2;
+    sum += weight * exp(-0.5 * (angle / sigma) * (angle / sigma)) * sin(angle);
+  }
+  return 2 * PI * sum * step / 3;
+}
+
+double abbe_environment_source_solid_angle(const abbe_environment_source *s) {
+  const double half = sin(s->radius_rad / 2);
+  switch (s->kind) {
+  case ABBE_SOURCE_UNIFORM:
+    return 4 * PI;
+  case ABBE_SOURCE_DISK:
+    return 4 * PI * half * half;
+  case ABBE_SOURCE_RECTANGLE:
+    return 4 * asin(sin(s->half_width_rad) * sin(s->half_height_rad));
+  case ABBE_SOURCE_SPOT:
+    return spot_solid_angle(s->radius_rad);
+  case ABBE_SOURCE_SKY:
+  case ABBE_SOURCE_DOME:
+    break;
+  }
+  return 0;
+}
+
+double abbe_environment_source_disk_radiance(double irradiance, double radius_rad) {
+  return irradiance / (PI * sin(radius_rad) * sin(radius_rad));
+}
+
+double abbe_environment_source_spot_sigma(double solid_angle) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; i++) {
+    const double middle = (low + high) / 2;
+    if (spot_solid_angle(middle) < solid_angle)
+      low = middle;
+    else
+      high = middle;
+  }
+  return (low + high) / 2;
+}
+
+/* What is made of a source once: its edges as it is asked of every place. */
+typedef struct profile {
+  const abbe_environment_source *source;
+  double right[3];
+  double reach_rad; /* nothing is farther from the centre */
+  double least_rad; /* its smallest measure */
+  double edge_rad;  /* over which edges fade: a step between places that are asked */
+} profile;
+
+static profile profile_of(const abbe_environment_source *s) {
+  profile p = {.source = s, .reach_rad = PI, .least_rad = INFINITY};
+  if (s->kind == ABBE_SOURCE_DISK || s->kind == ABBE_SOURCE_SPOT) {
+    p.least_rad = s->radius_rad;
+    p.reach_rad =
+        s->kind == ABBE_SOURCE_DISK ? s->radius_rad : fmin(spot_reach * s->radius_rad, PI);
+  }
+  if (s->kind == ABBE_SOURCE_RECTANGLE) {
+    abbe_vector_cross(s->centre, s->up, p.right);
+    p.reach_rad = atan(hypot(tan(s->half_width_rad), tan(s->half_height_rad)));
+    p.least_rad = fmin(s->half_width_rad, s->half_height_rad);
+  }
+  return p;
+}
+
+/* How far inside an edge, as a share of a step that is covered. */
+static double cover(const profile *p, double inside_rad) {
+  return fmin(fmax(0.5 + inside_rad / p->edge_rad, 0), 1);
+}
+
+/* From 0 to 1 of its radiance (a sky may be brighter than its zenith). */
+static double value_at(const profile *p, const double direction[3]) {
+  const abbe_environment_source *s = p->source;
+  if (s->kind == ABBE_SOURCE_SKY) return abbe_sky_relative(&s->sky, direction);
+  if (s->kind == ABBE_SOURCE_RECTANGLE) {
+    const double along = abbe_vector_dot(direction, s->centre);
+    const double x = fabs(abbe_vector_dot(direction, p->right));
+    const double y = fabs(abbe_vector_dot(direction, s->up));
+    return along > 0 ? cover(p, s->half_width_rad - atan2(x, along)) *
+                           cover(p, s->half_height_rad - atan2(y, along))
+                     : 0;
+  }
+  /* by the chord, which is exact for small angles */
+  double apart[3];
+  abbe_vector_subtract(direction, s->centre, apart);
+  const double angle = 2 * asin(fmin(abbe_vector_length(apart) / 2, 1));
+  if (s->kind == ABBE_SOURCE_DISK) return cover(p, s->radius_rad - angle);
+  const double bell = exp(-0.5 * (angle / s->radius_rad) * (angle / s->radius_rad));
+  return angle <= spot_reach * s->radius_rad ? bell : 0;
+}
+
+/* --- into the map --- */
+
+/* Each texel's mean by its share, from parts x parts places a texel: the light that places add to
+ * it, over the solid angle that they stand for. */
+typedef struct gathering {
+  const abbe_radiance_map *map;
+  size_t parts;
+  double *light; /* [height][width] */
+  double *solid; /* [height]: of one texel of the row */
+} gathering;
+
+static double strip(const gathering *g, size_t row) {
+  const double step = PI / (double)(g->map->height * g->parts), from = step * (double)row;
+  return (cos(from) - cos(from + step)) * 2 * PI / (double)(g->map->width * g->parts);
+}
+
+static void gather_solid(const gathering *g) {
+  const size_t rows = g->map->height * g->parts;
+  for (size_t row = 0; row < rows; row++) {
+    const double y = ((double)row + 0.5) / (double)g->parts;
+    size_t texel[4];
+    double share[4];
+    abbe_radiance_map_texels(g->map, 0.5, y, texel, share);
+    for (int i = 0; i < 4; i++)
+      g->solid[texel[i] / g->map->width] += share[i] * strip(g, row) * (double)g->parts;
+  }
+}
+
+static void gather_row(const gathering *g, const profile *p, size_t row, size_t first,
+                       size_t count) {
+  const size_t columns = g->map->width * g->parts;
+  const double y = ((double)row + 0.5) / (double)g->parts, solid = strip(g, row);
+  for (size_t c = 0; c < count; c++) {
+    const double x = ((double)((first + c) % columns) + 0.5) / (double)g->parts;
+    double direction[3], share[4];
+    size_t texel[4];
+    abbe_radiance_map_direction(g->map, x, y, direction);
+    const double value = value_at(p, direction);
+    if (!(value > 0)) continue;
+    abbe_radiance_map_texels(g->map, x, y, texel, share);
+    for (int i = 0; i < 4; i++) g->light[texel[i]] += share[i] * value * solid;
+  }
+}
+
+/* Only the rows and columns that a source can reach are asked. */
+static void gather(const gathering *g, const profile *p) {
+  const size_t rows = g->map->height * g->parts, columns = g->map->width * g->parts;
+  const double step = PI / (double)rows;
+  const double polar = acos(fmin(fmax(p->source->centre[2], -1), 1));
+  const double azimuth = atan2(p->source->centre[1], p->source->centre[0]);
+  size_t top = 0, bottom = rows, first = 0, count = columns;
+  if (p->reach_rad < PI) {
+    top = (size_t)(fmax(polar - p->reach_rad, 0) / step);
+    bottom = (size_t)fmin((polar + p->reach_rad) / step + 1, (double)rows);
+    const bool pole = polar - p->reach_rad <= step || polar + p->reach_rad >= PI - step;
+    const double half =
+        pole || p->reach_rad >= PI / 2 ? PI : asin(fmin(sin(p->reach_rad) / sin(polar), 1));
+    const double from = (PI - azimuth - half) / (2 * PI) * (double)columns - 1;
+    count = (size_t)fmin(half / PI * (double)columns + 3, (double)columns);
+    first = (size_t)(from < 0 ? from + (double)columns : from);
+  }
+  for (size_t row = top; row < bottom; row++) gather_row(g, p, row, first, count);
+}
+
+/* The map's texels from what was gathered; a source whose integral is known is scaled to it. */
+static abbe_result deposit(const gathering *g, const abbe_environment_source *s,
+                           abbe_radiance_map *map, abbe_error *error) {
+  const double exact = abbe_environment_source_solid_angle(s);
+  double total = 0;
+  for (size_t row = 0; row < map->height; row++) {
+    const double counts = abbe_radiance_map_solid_angle(map, row) / g->solid[row];
+    for (size_t i = row * map->width; i < (row + 1) * map->width; i++)
+      total += g->light[i] * counts;
+  }
+  if (!(total > 0))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a source of the surroundings is too small for a map of %zu x %zu texels",
+                          map->width, map->height);
+  const double scale = exact > 0 ? exact / total : 1;
+  for (size_t i = 0; i < map->width * map->height; i++)
+    for (size_t k = 0; k < 3 && g->light[i] > 0; k++)
+      map->rgb[3 * i + k] =
+          (float)((double)map->rgb[3 * i + k] +
+                  scale * s->radiance[k] * g->light[i] / g->solid[i / map->width]);
+  return ABBE_OK;
+}
+
+static abbe_result add_profile(const abbe_environment_source *s, abbe_radiance_map *map,
+                               abbe_error *error) {
+  const double texel = PI / (double)map->height;
+  profile p = profile_of(s);
+  gathering g = {.map = map, .parts = 2};
+  if (isfinite(p.least_rad)) g.parts = (size_t)fmin(fmax(ceil(8 * texel / p.least_rad), 4), FINEST);
+  p.edge_rad = texel / (double)g.parts;
+  p.reach_rad = fmin(p.reach_rad + p.edge_rad, PI);
+  g.light = calloc(map->width * map->height, sizeof *g.light);
+  g.solid = calloc(map->height, sizeof *g.solid);
+  abbe_result result;
+  if (g.light && g.solid) {
+    gather_solid(&g);
+    gather(&g, &p);
+    result = deposit(&g, s, map, error);
+  } else {
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a map of %zu x %zu texels",
+                            map->width, map->height);
+  }
+  free(g.light);
+  free(g.solid);
+  return result;
+}
+
+static void add_uniform(const abbe_environment_source *s, abbe_radiance_map *map) {
+  for (size_t i = 0; i < 3 * map->width * map->height; i++)
+    map->rgb[i] = (float)((double)map->rgb[i] + s->radiance[i % 3]);
+}
+
+/* --- domes --- */
+
+static void dome_at(const abbe_environment_source *s, double elevation, double rgb[3]) {
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  for (size_t i = 1; i < s->knot_count; i++) {
+    const abbe_dome_knot *low = &s->knot[i - 1], *high = &s->knot[i];
+    if (!(elevation >= low->elevation_rad && elevation < high->elevation_rad)) continue;
+    const double t = (elevation - low->elevation_rad) / (high->elevation_rad - low->elevation_rad);
+    for (int k = 0; k < 3; k++)
+      rgb[k] = s->radiance[k] * ((1 - t) * low->rgb[k] + t * high->rgb[k]);
+    return;
+  }
+}
+
+/* A row is of one value; its mean is by many places over its texels' share. */
+static void add_dome(const abbe_environment_source *s, abbe_radiance_map *map) {
+  const double step = PI / (double)map->height;
+  const size_t places = 2 + DOME_PLACES / map->height;
+  for (size_t row = 0; row < map->height; row++) {
+    double sum[3] = {0}, whole = 0;
+    const double middle = ((double)row + 0.5) * step;
+    for (size_t i = 0; i < places; i++) {
+      const double polar = middle + step * (((double)i + 0.5) * 2 / (double)places - 1);
+      const double share = (1 - fabs(polar - middle) / step) * fabs(sin(polar));
+      const double held = polar < 0 ? -polar : polar > PI ? 2 * PI - polar : polar;
+      double rgb[3];
+      dome_at(s, PI / 2 - held, rgb);
+      whole += share;
+      for (int k = 0; k < 3; k++) sum[k] += share * rgb[k];
+    }
+    for (size_t i = row * map->width; i < (row + 1) * map->width; i++)
+      for (size_t k = 0; k < 3; k++)
+        map->rgb[3 * i + k] = (float)((double)map->rgb[3 * i + k] + sum[k] / whole);
+  }
+}
+
+static bool is_size(double angle, double most) {
+  return angle >= ABBE_SOURCE_LEAST_RAD && angle <= most;
+}
+
+abbe_result abbe_environment_source_add(const abbe_environment_source *s, abbe_radiance_map *map,
+                                        abbe_error *error) {
+  ABBE_REQUIRE(s && map && map->rgb, error);
+  bool fine = true;
+  switch (s->kind) {
+  case ABBE_SOURCE_UNIFORM:
+    add_uniform(s, map);
+    return ABBE_OK;
+  case ABBE_SOURCE_DOME:
+    add_dome(s, map);
+    return ABBE_OK;
+  case ABBE_SOURCE_SKY:
+    fine = s->sky.type >= 1 && s->sky.type <= ABBE_SKY_TYPES;
+    break;
+  case ABBE_SOURCE_DISK:
+    fine = is_size(s->radius_rad, PI);
+    break;
+  case ABBE_SOURCE_SPOT:
+    fine = is_size(s->radius_rad, 1.05);
+    break;
+  case ABBE_SOURCE_RECTANGLE:
+    fine = is_size(s->half_width_rad, 1.5) && is_size(s->half_height_rad, 1.5);
+    break;
+  }
+  if (!fine)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a source of the surroundings has a size or a type that is not possible");
+  return add_profile(s, map, error);
+}

@@ -1,0 +1,213 @@
+#include "tests/check.h"
+
+#include "base/file.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/rgb_space.h"
+#include "scenes/environment/environment_picture.h"
+
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char path[128];
+static const char *const rgb_names[] = {"R", "G", "B"};
+static const char *const xyz_names[] = {"X", "Y", "Z"};
+
+static abbe_image picture(size_t width, size_t height, const char *const *names) {
+  abbe_image image;
+  assert_int_equal(abbe_image_make(width, height, 3, names, &image, NULL), ABBE_OK);
+  for (size_t i = 0; i < 3 * width * height; i++) image.data[i] = (float)(i * 7919 % 101 + 1) / 101;
+  return image;
+}
+
+static abbe_result read_back(abbe_image *image, abbe_environment_layout layout,
+                             abbe_radiance_map *map, abbe_error *error) {
+  assert_int_equal(abbe_exr_write(path, image, NULL), ABBE_OK);
+  abbe_image_free(image);
+  return abbe_environment_picture_read(path, layout, map, error);
+}
+
+static void latlong_pictures(void **state) {
+  (void)state;
+  abbe_image image = picture(16, 8, rgb_names), kept = picture(16, 8, rgb_names);
+  abbe_radiance_map map;
+  assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, NULL), ABBE_OK);
+  assert_true(map.width == 16 && map.height == 8);
+  assert_memory_equal(map.rgb, kept.data, 3 * 16 * 8 * sizeof(float));
+  abbe_radiance_map_free(&map);
+  abbe_image_free(&kept);
+  /* of Radiance: one pixel of 1, 0, 0, the rest black */
+  char data[256] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 4\n";
+  const size_t head = strlen(data);
+  memcpy(data + head + 4, "\x80\0\0\x81", 4);
+  assert_int_equal(abbe_file_write(path, data, head + 32, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_picture_read(path, ABBE_LAYOUT_LATLONG, &map, NULL), ABBE_OK);
+  assert_true(map.rgb[3] == 0.5f && map.rgb[4] == 0 && map.rgb[0] == 0);
+  abbe_radiance_map_free(&map);
+}
+
+/* The same light by other numbers: in ACEScg, in XYZ. */
+static void colours_are_converted(void **state) {
+  (void)state;
+  for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++) {
+    abbe_image image = picture(16, 8, space == ABBE_RGB_SPACE_XYZ ? xyz_names : rgb_names);
+    abbe_image kept = picture(16, 8, rgb_names);
+    double to_xyz[9], from_xyz[9];
+    abbe_radiance_map map;
+    abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
+    abbe_rgb_space_from_xyz((abbe_rgb_space)space, from_xyz);
+    if (space != ABBE_RGB_SPACE_XYZ) abbe_rgb_space_chromaticities((abbe_rgb_space)space, image.xy);
+    for (size_t i = 0; i < 16 * 8; i++) {
+      double v[3] = {image.data[3 * i], image.data[3 * i + 1], image.data[3 * i + 2]};
+      abbe_rgb_space_apply(to_xyz, v, v);
+      abbe_rgb_space_apply(from_xyz, v, v);
+      for (size_t k = 0; k < 3; k++) image.data[3 * i + k] = (float)v[k];
+    }
+    assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, NULL), ABBE_OK);
+    for (size_t i = 0; i < 3 * 16 * 8; i++) assert_near(map.rgb[i], kept.data[i], 1e-5);
+    abbe_radiance_map_free(&map);
+    abbe_image_free(&kept);
+  }
+}
+
+/* A green of ACEScg is no colour of Rec.709. */
+static void what_rec709_cannot_hold_is_clipped(void **state) {
+  (void)state;
+  abbe_image image = picture(4, 2, rgb_names);
+  abbe_radiance_map map;
+  abbe_rgb_space_chromaticities(ABBE_RGB_SPACE_ACESCG, image.xy);
+  for (size_t i = 0; i < 24; i++) image.data[i] = i % 3 == 1;
+  assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, NULL), ABBE_OK);
+  assert_true(map.rgb[0] == 0 && map.rgb[1] > 1 && map.rgb[2] == 0);
+  abbe_radiance_map_free(&map);
+}
+
+static void grey_pictures(void **state) {
+  (void)state;
+  static const char *const names[] = {"Y"};
+  abbe_image image;
+  abbe_radiance_map map;
+  assert_int_equal(abbe_image_make(4, 2, 1, names, &image, NULL), ABBE_OK);
+  for (size_t i = 0; i < 8; i++) image.data[i] = (float)i;
+  assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, NULL), ABBE_OK);
+  for (size_t i = 0; i < 24; i++) assert_true(map.rgb[i] == (float)(i / 3));
+  abbe_radiance_map_free(&map);
+}
+
+/* Faces of one colour each, both crosses: what looks along each axis, and that all that is black in
+ * the cross is not seen. A mark on the back's upper left says how it is turned. */
+static void cubes(void **state) {
+  (void)state;
+  static const struct {
+    size_t lying[2], upright[2];
+    double direction[3];
+  } faces[6] = {{{1, 1}, {1, 1}, {1, 0, 0}}, {{3, 1}, {1, 3}, {-1, 0, 0}},
+                {{0, 1}, {0, 1}, {0, 1, 0}}, {{2, 1}, {2, 1}, {0, -1, 0}},
+                {{1, 0}, {1, 0}, {0, 0, 1}}, {{1, 2}, {1, 2}, {0, 0, -1}}};
+  enum { SIDE = 16 };
+  for (int upright = 0; upright < 2; upright++) {
+    abbe_image image = picture((upright ? 3 : 4) * SIDE, (upright ? 4 : 3) * SIDE, rgb_names);
+    memset(image.data, 0, image.width * image.height * 3 * sizeof(float));
+    for (int f = 0; f < 6; f++) {
+      const size_t *at = upright ? faces[f].upright : faces[f].lying;
+      for (size_t i = 0; i < SIDE * SIDE; i++) {
+        const size_t x = at[0] * SIDE + i % SIDE, y = at[1] * SIDE + i / SIDE;
+        float *pixel = image.data + 3 * (y * image.width + x);
+        pixel[0] = 1;
+        pixel[1] = (float)f;
+        /* the side of each face that is at the left of who looks at it with +z up */
+        const int turned = upright && f == 1;
+        pixel[2] = turned ? i % SIDE >= SIDE / 2 : i % SIDE < SIDE / 2;
+      }
+    }
+    abbe_radiance_map map;
+    double rgb[3];
+    assert_int_equal(read_back(&image, ABBE_LAYOUT_BY_ASPECT, &map, NULL), ABBE_OK);
+    assert_true(map.width == 4 * SIDE);
+    for (int f = 0; f < 6; f++) {
+      const double *d = faces[f].direction;
+      abbe_radiance_map_at(&map, d, rgb);
+      assert_near(rgb[0], 1, 1e-6);
+      assert_near(rgb[1], f, 1e-6);
+      if (f > 3) continue;
+      const double left[3] = {d[0] - 0.4 * d[1], d[1] + 0.4 * d[0], 0.1};
+      abbe_radiance_map_at(&map, left, rgb);
+      assert_near(rgb[2], 1, 1e-6);
+    }
+    /* the zenith's texture goes on from the front's: its left is +y */
+    abbe_radiance_map_at(&map, (const double[3]){0, 0.4, 1}, rgb);
+    assert_near(rgb[2], 1, 1e-6);
+    abbe_radiance_map_at(&map, (const double[3]){0, 0.4, -1}, rgb);
+    assert_near(rgb[2], 1, 1e-6);
+    for (size_t i = 0; i < map.width * map.height; i++) assert_near(map.rgb[3 * i], 1, 1e-6);
+    abbe_radiance_map_free(&map);
+  }
+}
+
+static void check_refused(abbe_environment_layout layout, abbe_result code, const char *part) {
+  abbe_radiance_map map;
+  abbe_error error = {0};
+  assert_int_equal(abbe_environment_picture_read(path, layout, &map, &error), code);
+  assert_contains(error.text, part);
+  assert_null(map.rgb);
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  static const float bad[] = {-0.25f, NAN, INFINITY};
+  static const char *const parts[] = {"is -0.25 in the channel G", "nan", "inf"};
+  abbe_image image;
+  for (int i = 0; i < 3; i++) {
+    image = picture(8, 4, rgb_names);
+    image.data[3 * (8 + 2) + 1] = bad[i];
+    assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+    abbe_image_free(&image);
+    check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_SCHEMA, parts[i]);
+    check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_SCHEMA, "column 2, row 1");
+  }
+  static const size_t sizes[][2] = {{8, 8}, {9, 4}, {2, 1}, {3, 4}, {4, 3}};
+  for (int i = 0; i < 5; i++) {
+    image = picture(sizes[i][0], sizes[i][1], rgb_names);
+    assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+    abbe_image_free(&image);
+    check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_SCHEMA, "pixels");
+  }
+  image = picture(8, 4, rgb_names);
+  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  check_refused(ABBE_LAYOUT_CUBE, ABBE_SCHEMA, "8 x 4");
+  image = picture(8, 4, (const char *const[3]){"A", "B", "C"});
+  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_NOT_FOUND, "no channels");
+  assert_int_equal(abbe_image_make(8194, 4097, 1, (const char *const[1]){"Y"}, &image, NULL),
+                   ABBE_OK);
+  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_UNSUPPORTED, "8192");
+  assert_int_equal(abbe_file_write(path, "\x76\x2f\x31\x01 cut", 8, NULL), ABBE_OK);
+  check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_PARSE, path);
+  assert_int_equal(abbe_file_write(path, "\x89PNG", 4, NULL), ABBE_OK);
+  check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_UNSUPPORTED, "neither");
+  assert_int_equal(abbe_file_write(path, "", 0, NULL), ABBE_OK);
+  check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_UNSUPPORTED, "neither");
+  unlink(path);
+  check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_IO, path);
+  assert_int_equal(mkfifo(path, 0600), 0);
+  check_refused(ABBE_LAYOUT_BY_ASPECT, ABBE_IO, path);
+}
+
+int main(void) {
+  snprintf(path, sizeof path, "/tmp/abbe-test-environment-%d.exr", (int)getpid());
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(latlong_pictures),
+      cmocka_unit_test(colours_are_converted),
+      cmocka_unit_test(what_rec709_cannot_hold_is_clipped),
+      cmocka_unit_test(grey_pictures),
+      cmocka_unit_test(cubes),
+      cmocka_unit_test(what_is_refused),
+  };
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  unlink(path);
+  return failed;
+}

@@ -1,0 +1,66 @@
+#include "tests/check.h"
+
+#include "scenes/environment/sky.h"
+#include "scenes/geometry/vector.h"
+
+#define PI 3.14159265358979323846
+
+static abbe_sky sky_of(int type, double elevation) {
+  return (abbe_sky){type, {cos(elevation), 0, sin(elevation)}};
+}
+
+static void every_sky_is_1_at_its_zenith(void **state) {
+  (void)state;
+  for (int type = 1; type <= ABBE_SKY_TYPES; type++)
+    for (double e = 0.1; e < 1.6; e += 0.3) {
+      const abbe_sky sky = sky_of(type, e);
+      assert_near(abbe_sky_relative(&sky, (const double[3]){0, 0, 1}), 1, 1e-12);
+      assert_true(abbe_sky_relative(&sky, (const double[3]){1, 0, 0}) == 0);
+      assert_true(abbe_sky_relative(&sky, (const double[3]){0, 0.6, -0.8}) == 0);
+      for (double a = 0; a < 6.3; a += 0.3)
+        for (double z = 0.001; z < 1; z += 0.1) {
+          const double s = sqrt(1 - z * z);
+          assert_true(abbe_sky_relative(&sky, (const double[3]){s * cos(a), s * sin(a), z}) > 0);
+        }
+    }
+}
+
+static void known_irradiances(void **state) {
+  (void)state;
+  const abbe_sky overcast = {.type = ABBE_SKY_OVERCAST}, uniform = {.type = 5};
+  assert_near(abbe_sky_horizontal(&overcast), 7 * PI / 9, 1e-5);
+  assert_near(abbe_sky_horizontal(&uniform), PI, 1e-12);
+}
+
+/* By hand from the formula: the clear sky, sun at 30 degrees, 45 degrees up, opposite to the sun
+ * (105 degrees from it) and towards it (15). */
+static void the_clear_sky(void **state) {
+  (void)state;
+  const abbe_sky sky = sky_of(ABBE_SKY_CLEAR, PI / 6);
+  const double z = cos(PI / 4);
+  const double scale = (1 - exp(-0.32 / z)) / (1 - exp(-0.32)) /
+                       (1 + 10 * (exp(-PI) - exp(-1.5 * PI)) + 0.45 * 0.25);
+  const double away =
+      1 + 10 * (exp(-3 * 105 * PI / 180) - exp(-1.5 * PI)) + 0.45 * pow(cos(105 * PI / 180), 2);
+  const double towards =
+      1 + 10 * (exp(-3 * 15 * PI / 180) - exp(-1.5 * PI)) + 0.45 * pow(cos(15 * PI / 180), 2);
+  assert_near(abbe_sky_relative(&sky, (const double[3]){-z, 0, z}), scale * away, 1e-12);
+  assert_near(abbe_sky_relative(&sky, (const double[3]){z, 0, z}), scale * towards, 1e-12);
+}
+
+static void which_need_the_sun(void **state) {
+  (void)state;
+  assert_true(abbe_sky_needs_sun(ABBE_SKY_CLEAR) && abbe_sky_needs_sun(2));
+  assert_true(!abbe_sky_needs_sun(1) && !abbe_sky_needs_sun(5) && !abbe_sky_needs_sun(16));
+  assert_true(!abbe_sky_needs_sun(0) && !abbe_sky_needs_sun(17));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_sky_is_1_at_its_zenith),
+      cmocka_unit_test(known_irradiances),
+      cmocka_unit_test(the_clear_sky),
+      cmocka_unit_test(which_need_the_sun),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
