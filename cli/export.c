@@ -77,7 +77,7 @@ static abbe_result report(const request *q, const abbe_scene *scene, abbe_error 
     const abbe_material *m = scene->object[i].material;
     abbe_pov_glass g;
     if (m == NULL || said(scene, i)) continue;
-    result = abbe_pov_file_glass(m, &scene->light[0].illuminant, &g, error);
+    result = abbe_pov_file_glass(m, abbe_scene_illuminant(scene), &g, error);
     if (result != ABBE_OK) break;
     if (!q->json) {
       fprintf(stderr, "%s: ior %.6f, dispersion %.6f; n off by %.2g at %g nm, %.2g in the mean\n",

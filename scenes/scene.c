@@ -29,12 +29,18 @@ void abbe_scene_free(abbe_scene *scene) {
     free(scene->light[i].illuminant_path);
   }
   for (size_t i = 0; i < scene->object_count; i++) object_free(&scene->object[i]);
+  abbe_environment_free(scene->environment);
+  free(scene->environment);
   free(scene->light);
   free(scene->object);
   abbe_material_table_free(&scene->table);
   free(scene->path);
   free(scene->description);
   memset(scene, 0, sizeof *scene);
+}
+
+const abbe_illuminant *abbe_scene_illuminant(const abbe_scene *scene) {
+  return scene->light_count > 0 ? &scene->light[0].illuminant : &scene->environment->illuminant;
 }
 
 /* The path of that index in a list of them, or NULL. */
@@ -51,7 +57,7 @@ static size_t other_count(const abbe_object *object) {
 }
 
 size_t abbe_scene_file_count(const abbe_scene *scene) {
-  size_t count = 2 + scene->light_count + 2 * scene->object_count;
+  size_t count = 4 + scene->light_count + 2 * scene->object_count;
   for (size_t i = 0; i < scene->object_count; i++) count += other_count(&scene->object[i]);
   return count;
 }
@@ -64,6 +70,10 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
   index -= 2;
   if (index < scene->light_count) return scene->light[index].illuminant_path;
   index -= scene->light_count;
+  if (index < 2 && !scene->environment) return NULL;
+  if (index == 0) return scene->environment->path;
+  if (index == 1) return scene->environment->illuminant_path;
+  index -= 2;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
     const size_t files = 2 + other_count(object);
@@ -438,9 +448,10 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
 
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
   ABBE_REQUIRE(scene, error);
-  if (scene->light_count == 0)
+  if (scene->light_count == 0 && scene->environment == NULL)
     return abbe_error_set(error, ABBE_SCHEMA,
-                          "%s: the scene has no light; give it at least one under 'lights'",
+                          "%s: the scene has no light; give it at least one under 'lights', or "
+                          "surroundings under 'environment'",
                           path_of(scene));
   size_t receivers = 0;
   bool seen = false;

@@ -1,4 +1,5 @@
-/* scene.h: what is there: camera, lights, refractors and receivers, in world coordinates.
+/* scene.h: what is there: camera, lights, surroundings, refractors and receivers, in world
+ * coordinates.
  *
  * A scene is plain data, ready for the renderer, the tracer and the plan. Lengths in metres,
  * angles in radians, right-handed, z up by convention. Objects are either refractors (a dielectric
@@ -92,11 +93,11 @@ typedef struct abbe_scene {
   char *path;
   char *description;
   abbe_camera camera;
-  size_t light_count;
+  size_t light_count; /* 0 only with an environment */
   abbe_light *light;
   size_t environment_lights; /* so many at the end of light[] stand for the environment
                                 (environment/environment_lights.h); 0 in a scene as it is loaded */
-  abbe_environment *environment; /* what is around it all, or NULL */
+  abbe_environment *environment; /* owned; NULL: dark surroundings */
   size_t object_count;
   abbe_object *object;
   abbe_material_table table;
@@ -106,8 +107,11 @@ typedef struct abbe_scene {
 
 void abbe_scene_free(abbe_scene *scene);
 
+/* The illuminant of the first light, or of the environment where there is no light. */
+const abbe_illuminant *abbe_scene_illuminant(const abbe_scene *scene);
+
 /* The files that the scene was read from, each of index below the count: its own, the table of
- * materials, illuminants, textures, meshes and what those name in turn; NULL where there is none of
+ * materials, illuminants, surroundings, textures, meshes and what those name in turn; NULL where there is none of
  * that index. */
 size_t abbe_scene_file_count(const abbe_scene *scene);
 const char *abbe_scene_file(const abbe_scene *scene, size_t index);
@@ -116,7 +120,7 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index);
  * refractors' bounds is on it: single precision does not tell on which side. */
 #define ABBE_SCENE_LEAST_GAP 0x1p-20
 
-/* Refuses what cannot be rendered, by name: no light, no receiver, a light (a disk: any part of it)
+/* Refuses what cannot be rendered, by name: neither light nor environment, no receiver, a light (a disk: any part of it)
  * or the camera inside a refractor or on its surface, no receiver in the camera's view. Called by
  * the loader. */
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/* ABBE_UNSUPPORTED for a light that has a size. */
+/* ABBE_UNSUPPORTED for an environment and for a light that has a size. */
 abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error);
 
 /* ABBE_UNSUPPORTED for what the thesis profile does not know, where it is asked for. */

@@ -229,15 +229,21 @@ static void add_uniform(const abbe_environment_source *s, abbe_radiance_map *map
 /* --- domes --- */
 
 static void dome_at(const abbe_environment_source *s, double elevation, double rgb[3]) {
-  rgb[0] = rgb[1] = rgb[2] = 0;
-  for (size_t i = 1; i < s->knot_count; i++) {
-    const abbe_dome_knot *low = &s->knot[i - 1], *high = &s->knot[i];
-    if (!(elevation >= low->elevation_rad && elevation < high->elevation_rad)) continue;
-    const double t = (elevation - low->elevation_rad) / (high->elevation_rad - low->elevation_rad);
-    for (int k = 0; k < 3; k++)
-      rgb[k] = s->radiance[k] * ((1 - t) * low->rgb[k] + t * high->rgb[k]);
-    return;
+  size_t low = 0, high = s->knot_count; /* of the knots after the last that is not above */
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (s->knot[middle].elevation_rad <= elevation)
+      low = middle + 1;
+    else
+      high = middle;
   }
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  if (low == 0 || low == s->knot_count) return;
+  const abbe_dome_knot *below = &s->knot[low - 1], *above = &s->knot[low];
+  const double t =
+      (elevation - below->elevation_rad) / (above->elevation_rad - below->elevation_rad);
+  for (int k = 0; k < 3; k++)
+    rgb[k] = s->radiance[k] * ((1 - t) * below->rgb[k] + t * above->rgb[k]);
 }
 
 /* A row is of one value; its mean is by many places over its texels' share. */

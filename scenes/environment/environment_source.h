@@ -46,7 +46,7 @@ typedef struct abbe_environment_source {
   double half_width_rad, half_height_rad; /* rectangle, each below pi / 2 */
   abbe_sky sky;
   size_t knot_count;
-  const abbe_dome_knot *knot; /* dome; not owned */
+  const abbe_dome_knot *knot; /* dome: rising; not owned */
 } abbe_environment_source;
 
 /* The integral of the source over the sphere by its radiance, sr: of a disk 2 pi (1 - cos radius),

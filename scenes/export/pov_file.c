@@ -242,7 +242,7 @@ static void write_absorption(const writing *w, const abbe_material *material) {
 static abbe_result write_refractor(const writing *w, const abbe_object *object, abbe_error *error) {
   abbe_pov_glass glass;
   const abbe_result result =
-      abbe_pov_file_glass(object->material, &w->scene->light[0].illuminant, &glass, error);
+      abbe_pov_file_glass(object->material, abbe_scene_illuminant(w->scene), &glass, error);
   if (result != ABBE_OK) return result;
   comment(w, "refractor", object->name);
   abbe_number_write(w->file, "// %s: off by %.2g at the most (%g nm), by %.2g in the mean\n",
@@ -330,6 +330,10 @@ abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
   abbe_result result = check_options(&o, error);
   abbe_file_writer writer = {0};
   if (result == ABBE_OK) result = abbe_scene_check(scene, error);
+  if (result == ABBE_OK && scene->environment != NULL)
+    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the scene has an 'environment', which is not exported; leave it out, "
+                            "and give the scene 'lights'");
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
   double min[3], max[3];

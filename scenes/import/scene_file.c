@@ -2,6 +2,7 @@
 
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
+#include "scenes/import/environment_file.h"
 #include "scenes/import/object_file.h"
 #include "scenes/import/scene_value.h"
 #include "spectral/formats/material_table_load.h"
@@ -11,7 +12,6 @@
 #include <string.h>
 
 #define RADIANS (3.14159265358979323846 / 180.0)
-#define BRIGHTEST 1e9 /* W/sr, W/m2, W/(m2 sr) */
 #define FAINTEST 1e-30
 
 /* --- camera --- */
@@ -152,7 +152,7 @@ static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *
       result = refuse_key(yaml, node, powers[i].key, (int)out->kind, powers[out->kind].said, error);
   if (result == ABBE_OK) result = abbe_yaml_require(yaml, node, key, &value, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, node, key, 0, BRIGHTEST, &out->power, error);
+    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_BRIGHTEST, &out->power, error);
   if (result == ABBE_OK && !(out->power > 0.0))
     result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a light must shine", key);
   if (result == ABBE_OK && out->power < FAINTEST)
@@ -161,41 +161,6 @@ static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *
                        "'%s: %g' is too faint: pictures and maps are kept in single precision, "
                        "which takes %g and more",
                        key, out->power, FAINTEST);
-  return result;
-}
-
-static bool is_standard(const char *name) {
-  static const char *const standard[] = {"D65", "d65", "D50", "d50", "A", "a", "E", "e"};
-  for (size_t i = 0; i < sizeof standard / sizeof *standard; i++)
-    if (strcmp(name, standard[i]) == 0) return true;
-  return false;
-}
-
-static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
-                                   abbe_light *out, abbe_error *error) {
-  char *name = NULL, *path = NULL;
-  abbe_result result = abbe_yaml_get_string(yaml, node, "illuminant", &name, error);
-  if (result == ABBE_OK && name) {
-    path = abbe_scene_value_path(is_standard(name) ? "" : folder, name);
-    result = path ? abbe_illuminant_make(path, &out->illuminant, error)
-                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
-    if (result == ABBE_IO) {
-      char sentence[512];
-      snprintf(sentence, sizeof sentence, "%.500s", error ? error->text : "");
-      abbe_error_set(error, result,
-                     "the illuminant '%.60s' is neither D65, D50, A or E nor a file that can be "
-                     "read: %s",
-                     name, sentence);
-    }
-    if (result != ABBE_OK)
-      abbe_scene_value_locate(yaml, abbe_yaml_get(yaml, node, "illuminant"), result, error);
-    if (result == ABBE_OK && out->illuminant.kind == ABBE_ILLUMINANT_TABULATED) {
-      out->illuminant_path = path;
-      path = NULL;
-    }
-  }
-  free(path);
-  free(name);
   return result;
 }
 
@@ -216,7 +181,8 @@ static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *
   }
   if (result == ABBE_OK) result = read_shape_of_light(yaml, node, out, error);
   if (result == ABBE_OK) result = read_power(yaml, node, out, error);
-  if (result == ABBE_OK) result = read_illuminant(yaml, node, folder, out, error);
+  if (result == ABBE_OK) result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
+                                         &out->illuminant_path, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a light", error);
   return result;
 }
@@ -278,6 +244,16 @@ static abbe_result read_objects(abbe_yaml *yaml, abbe_yaml_node root, const char
   return result;
 }
 
+static abbe_result read_environment(abbe_yaml *yaml, abbe_yaml_node root, const char *folder,
+                                    abbe_scene *out, abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(yaml, root, "environment");
+  if (node.id == 0) return ABBE_OK;
+  out->environment = calloc(1, sizeof *out->environment);
+  if (!out->environment)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the surroundings");
+  return abbe_environment_read(yaml, node, folder, out->environment, error);
+}
+
 /* --- the scene --- */
 
 /* The materials that the objects name, so that of a store of many no others are read. */
@@ -327,15 +303,17 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
     return abbe_yaml_fail(yaml, root, error, "a scene must be a mapping (key: value)");
   abbe_result result = abbe_yaml_get_string(yaml, root, "description", &out->description, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, root, "ambient", 0, BRIGHTEST, &out->ambient, error);
+    result = abbe_yaml_get_number(yaml, root, "ambient", 0, ABBE_SCENE_BRIGHTEST, &out->ambient, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, root, "background", 0, BRIGHTEST, &out->background, error);
+    result = abbe_yaml_get_number(yaml, root, "background", 0, ABBE_SCENE_BRIGHTEST, &out->background, error);
   if (result == ABBE_OK) result = read_camera(yaml, root, &out->camera, error);
   if (result == ABBE_OK) result = read_lights(yaml, root, folder, out, error);
   /* all keys are known before the costly part begins */
   abbe_yaml_get(yaml, root, "materials");
   abbe_yaml_get(yaml, root, "objects");
+  abbe_yaml_get(yaml, root, "environment");
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, root, "a scene", error);
+  if (result == ABBE_OK) result = read_environment(yaml, root, folder, out, error);
   if (result == ABBE_OK) result = read_table(yaml, root, folder, options, out, error);
   if (result == ABBE_OK) result = read_objects(yaml, root, folder, out, error);
   return result == ABBE_OK ? abbe_scene_check(out, error) : result;

@@ -1,0 +1,272 @@
+#include "tests/check.h"
+#include "tests/scenes/scene_text.h"
+
+#include "colorimetry/image/exr.h"
+#include "scenes/import/environment_file.h"
+
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+
+static const double up[3] = {0, 0, 1}, down[3] = {0, 0, -1};
+
+static abbe_result parse(const char *text, abbe_environment *out, abbe_error *error) {
+  abbe_yaml *yaml = NULL;
+  *out = (abbe_environment){0};
+  *error = (abbe_error){0};
+  abbe_result result = abbe_yaml_parse(text, strlen(text), "text", &yaml, error);
+  if (result == ABBE_OK)
+    result = abbe_environment_read(yaml, abbe_yaml_root(yaml), "/tmp/", out, error);
+  abbe_yaml_free(yaml);
+  return result;
+}
+
+static void surroundings(const char *text, abbe_environment *out) {
+  abbe_error error;
+  if (parse(text, out, &error) != ABBE_OK) fail_msg("%s: %s", text, error.text);
+}
+
+static void check_irradiance(const char *text, const double normal[3], double expected) {
+  abbe_environment e;
+  double rgb[3];
+  surroundings(text, &e);
+  abbe_environment_irradiance(&e, normal, rgb);
+  assert_near(rgb[0], expected, 1e-4 * (expected + 0.2));
+  abbe_environment_free(&e);
+}
+
+static void known_irradiances(void **state) {
+  (void)state;
+  check_irradiance("{uniform: 2}", up, 2 * PI);
+  check_irradiance("{uniform: 2, scale: 3, size: 64}", down, 6 * PI);
+  check_irradiance("{dome: iso}", up, PI);
+  check_irradiance("{dome: cos}", up, 2 * PI / 3);
+  check_irradiance("{dome: [[0, 1], [90, 1]]}", down, 0);
+  check_irradiance("{sky: {type: overcast, zenith: 9}}", up, 7 * PI);
+  check_irradiance("{sky: {type: overcast, irradiance: 3}}", up, 3);
+  check_irradiance("{sky: {type: clear, irradiance: 3, elevation: 30}}", up, 3);
+  check_irradiance("{sky: {type: 7, irradiance: 3}, sun: {elevation: 30, irradiance: 4}}", up, 5);
+  check_irradiance("{sun: {towards: [0, 0, 2], irradiance: 4}}", up, 4);
+  check_irradiance("{sun: {elevation: 90, irradiance: 4}, rotate: 77, tilt: {axis: [1, 0, 0], "
+                   "angle: 60}}",
+                   up, 2);
+  check_irradiance("{softboxes: [{elevation: 90, radius: 30, radiance: 4}]}", up, PI);
+  check_irradiance("{uniform: 1, dome: iso, softboxes: [{elevation: 90, radius: 30, radiance: 4}, "
+                   "{elevation: -90, radius: 30, radiance: 8}]}",
+                   up, 3 * PI);
+}
+
+static void radiance_at(const abbe_environment *e, double x, double y, double z, double rgb[3]) {
+  const double length = sqrt(x * x + y * y + z * z);
+  abbe_environment_radiance(e, (const double[3]){x / length, y / length, z / length}, rgb);
+}
+
+static void places_and_turns(void **state) {
+  (void)state;
+  abbe_environment e;
+  double rgb[3];
+  surroundings(
+      "{softboxes: [{elevation: 20, azimuth: 90, width: 40, height: 4, radiance: [1, 2, 3]}]}", &e);
+  radiance_at(&e, tan(18 * PI / 180), cos(20 * PI / 180), sin(20 * PI / 180), rgb);
+  assert_near(rgb[2], 3, 1e-3);
+  radiance_at(&e, tan(22 * PI / 180), cos(20 * PI / 180), sin(20 * PI / 180), rgb);
+  assert_near(rgb[2], 0, 1e-12);
+  abbe_environment_free(&e);
+  /* +y becomes -x by a quarter turn; rolled by a quarter, the width stands upright */
+  surroundings(
+      "{softboxes: [{towards: [0, 1, 0], width: 40, height: 4, roll: 90, radiance: 1}], rotate: "
+      "90}",
+      &e);
+  radiance_at(&e, -1, 0, tan(18 * PI / 180), rgb);
+  assert_near(rgb[0], 1, 1e-3);
+  radiance_at(&e, -1, tan(4 * PI / 180), 0, rgb);
+  assert_near(rgb[0], 0, 1e-12);
+  abbe_environment_free(&e);
+  /* ... and about x by a quarter it goes from +y to +z */
+  surroundings(
+      "{spots: [{azimuth: 90, elevation: 0, sigma: 2, radiance: 5}], tilt: {axis: [1, 0, 0], "
+      "angle: 90}}",
+      &e);
+  radiance_at(&e, 0, 0, 1, rgb);
+  assert_near(rgb[0], 5, 0.1);
+  abbe_environment_free(&e);
+  surroundings("{spots: [{elevation: 40, solid_angle: 0.01, radiance: 5}]}", &e);
+  assert_near(e.mean[0] * 4 * PI, 0.05, 1e-7);
+  abbe_environment_free(&e);
+}
+
+static void aset(void **state) {
+  (void)state;
+  static const double elevations[] = {-10, 20, 60, 80};
+  abbe_environment e;
+  surroundings("{dome: aset}", &e);
+  for (int i = 0; i < 4; i++) {
+    double rgb[3];
+    radiance_at(&e, cos(elevations[i] * PI / 180), 0, sin(elevations[i] * PI / 180), rgb);
+    const double expected[3] = {i == 2, i == 1, i == 3};
+    for (int k = 0; k < 3; k++) assert_near(rgb[k], expected[k], 1e-6);
+  }
+  abbe_environment_free(&e);
+}
+
+static void pictures(void **state) {
+  (void)state;
+  static const char *const names[] = {"R", "G", "B"};
+  abbe_image image;
+  abbe_environment e;
+  double rgb[3];
+  char name[64], path[96], text[512];
+  snprintf(name, sizeof name, "abbe-test-surroundings-%d.exr", (int)getpid());
+  snprintf(path, sizeof path, "/tmp/%s", name);
+  assert_int_equal(abbe_image_make(8, 4, 3, names, &image, NULL), ABBE_OK);
+  for (size_t i = 0; i < 96; i++) image.data[i] = 0.5f;
+  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  snprintf(text, sizeof text,
+           "{file: %s, illuminant: A, scale: 4, sun: {elevation: 90, irradiance: 1}}", name);
+  surroundings(text, &e);
+  assert_string_equal(e.path, path);
+  assert_int_equal(e.illuminant.kind, ABBE_ILLUMINANT_A);
+  assert_int_equal(e.map.width, 8);
+  radiance_at(&e, 0, 1, -3, rgb);
+  assert_near(rgb[1], 2, 1e-6);
+  abbe_environment_free(&e);
+  abbe_error error;
+  snprintf(text, sizeof text, "file: %s\nlayout: cube\n", name);
+  assert_int_equal(parse(text, &e, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "text:1: ");
+  abbe_environment_free(&e);
+  unlink(path);
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *part;
+  } cases[] = {
+      {"[1]", "must be a mapping"},
+      {"{}", "has no light"},
+      {"{rotate: 3}", "has no light"},
+      {"{uniform: 0}", "black everywhere"},
+      {"{uniform: -1}", "'uniform: -1'"},
+      {"{uniform: .nan}", "finite"},
+      {"{uniform: [1, 2]}", "[red, green, blue]"},
+      {"{uniform: 1, skye: 2}", "did you mean 'sky'"},
+      {"{uniform: 1, size: 65}", "even"},
+      {"{uniform: 1, size: 32}", "size"},
+      {"{uniform: 1, size: 1e9}", "size"},
+      {"{uniform: 1, scale: 0}", "scale"},
+      {"{uniform: 1, layout: cube}", "without a 'file'"},
+      {"{uniform: 1, tilt: 3}", "axis"},
+      {"{uniform: 1, tilt: {axis: [0, 0, 0], angle: 3}}", "zero"},
+      {"{uniform: 1e9, scale: 1e9}", "radiance is 0 to"},
+      {"{file: x.exr, size: 64}", "has its own"},
+      {"{file: no_such_file.exr}", "text:1: "},
+      {"{illuminant: nothing, uniform: 1}", "illuminant"},
+      {"{sky: clear}", "mapping"},
+      {"{sky: {type: clear, zenith: 1}}", "where that is"},
+      {"{sky: {type: clear, zenith: 1, elevation: -3}}", "below the horizon"},
+      {"{sky: {type: clear, elevation: 3}}", "neither"},
+      {"{sky: {type: overcast, zenith: 1, irradiance: 1}}", "both"},
+      {"{sky: {type: 17, zenith: 1}}", "17"},
+      {"{sky: {type: 1.5, zenith: 1}}", "whole"},
+      {"{sky: {type: foggy, zenith: 1}}", "clear, overcast"},
+      {"{sky: {zenith: 1}}", "type"},
+      {"{sun: {irradiance: 1}}", "elevation"},
+      {"{sun: {elevation: 3}}", "irradiance"},
+      {"{sun: {elevation: 3, towards: [1, 0, 0], irradiance: 1}}", "either"},
+      {"{sun: {towards: [0, 0, 0], irradiance: 1}}", "zero"},
+      {"{sun: {elevation: 3, irradiance: 1, size: 2}}", "size"},
+      {"{softboxes: {elevation: 3}}", "list"},
+      {"{softboxes: [3]}", "mapping"},
+      {"{softboxes: [{elevation: 3, radiance: 1}]}", "neither"},
+      {"{softboxes: [{elevation: 3, radiance: 1, radius: 2, width: 3}]}", "both"},
+      {"{softboxes: [{elevation: 3, radiance: 1, width: 3}]}", "height"},
+      {"{softboxes: [{elevation: 3, radiance: 1, radius: 0}]}", "radius"},
+      {"{softboxes: [{elevation: 3, radius: 1}]}", "radiance"},
+      {"{spots: [{elevation: 3, radiance: 1}]}", "neither"},
+      {"{spots: [{elevation: 3, radiance: 1, sigma: 1, solid_angle: 1}]}", "both"},
+      {"{dome: round}", "iso, cos, aset"},
+      {"{dome: [[0, 1]]}", "at least two"},
+      {"{dome: [[0, 1], [0]]}", "at least two"},
+      {"{dome: [[10, 1], [0, 1]]}", "rising"},
+      {"{dome: [[0, 1], [91, 1]]}", "91"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    abbe_environment e;
+    abbe_error error;
+    if (parse(cases[i].text, &e, &error) == ABBE_OK) fail_msg("%s is read", cases[i].text);
+    assert_contains(error.text, cases[i].part);
+    assert_contains(error.text, "text:1: ");
+    abbe_environment_free(&e);
+  }
+}
+
+#define VIEW                                                                                       \
+  "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"                                            \
+  "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
+
+static void scenes_have_surroundings(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(VIEW "environment: {uniform: 1, size: 64}\n", &scene);
+  assert_int_equal(scene.light_count, 0);
+  assert_non_null(scene.environment);
+  assert_ptr_equal(abbe_scene_illuminant(&scene), &scene.environment->illuminant);
+  assert_near(scene.environment->mean[0], 1, 1e-6);
+  for (size_t i = 1; i < abbe_scene_file_count(&scene); i++)
+    assert_null(abbe_scene_file(&scene, i));
+  scene.environment->path = strdup("a.exr");
+  size_t found = 0;
+  for (size_t i = 1; i < abbe_scene_file_count(&scene); i++)
+    if (abbe_scene_file(&scene, i)) found += strcmp(abbe_scene_file(&scene, i), "a.exr") == 0;
+  assert_int_equal(found, 1);
+  abbe_scene_free(&scene);
+  load_text(VIEW POINT_LIGHT, &scene);
+  assert_null(scene.environment);
+  assert_ptr_equal(abbe_scene_illuminant(&scene), &scene.light[0].illuminant);
+  abbe_scene_free(&scene);
+  abbe_error error;
+  assert_int_equal(abbe_scene_parse(VIEW, strlen(VIEW), "s.yaml", NULL, &scene, &error),
+                   ABBE_SCHEMA);
+  assert_contains(error.text, "'environment'");
+}
+
+/* Each surroundings of the page, in a scene. */
+static void what_is_documented_loads(void **state) {
+  (void)state;
+  static const double grounds[] = {2, 3.4, 3};
+  static const double tolerance[] = {1.2, 1e-2, 1e-3};
+  char *text = NULL;
+  size_t size, found = 0;
+  assert_int_equal(
+      abbe_file_read(ABBE_SOURCE_DIR "/docs/scene-files.md", 1 << 20, &text, &size, NULL), ABBE_OK);
+  for (char *at = text; (at = strstr(at, "```yaml\nenvironment:")) != NULL; found++) {
+    at += strlen("```yaml\n");
+    char scene_text[4096];
+    const int length = (int)(strstr(at, "```") - at);
+    snprintf(scene_text, sizeof scene_text, "%s%.*s", VIEW, length, at);
+    abbe_scene scene;
+    double rgb[3];
+    load_text(scene_text, &scene);
+    abbe_environment_irradiance(scene.environment, up, rgb);
+    assert_in_range(found, 0, 2);
+    assert_near(rgb[1], grounds[found], tolerance[found]);
+    abbe_scene_free(&scene);
+  }
+  assert_int_equal(found, 3);
+  free(text);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(known_irradiances),
+      cmocka_unit_test(places_and_turns),
+      cmocka_unit_test(aset),
+      cmocka_unit_test(pictures),
+      cmocka_unit_test(what_is_refused),
+      cmocka_unit_test(scenes_have_surroundings),
+      cmocka_unit_test(what_is_documented_loads),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
