@@ -63,10 +63,6 @@ abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, 
 
 abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error) {
   ABBE_REQUIRE(scene, error);
-  if (scene->environment != NULL)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the scene has an 'environment', and the renderer knows no light from all "
-                          "around; leave it out, and give the scene 'lights'");
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
     if (light->kind != ABBE_LIGHT_DISK) continue;
