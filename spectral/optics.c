@@ -50,6 +50,30 @@ double abbe_optics_fresnel(double cos_i, double eta) {
   return clamp_unit((r_s * r_s + r_p * r_p) / 2);
 }
 
+/* With N = n + i k and w = a + i b = sqrt(N^2 - sin^2), r_s = (c - w) / (c + w) and
+ * r_p = (N^2 c - w) / (N^2 c + w). Their differences are multiplied out as above:
+ * r_s = (1 - N^2) / (c + w)^2 and r_p = (N^2 - 1) ((N^2 + 1) c^2 - 1) / (N^2 c + w)^2. */
+double abbe_optics_fresnel_conductor(double cos_i, double n, double k) {
+  double c = clamp_unit(cos_i), s2 = (1 - c) * (1 + c);
+  if (n == 1 && k == 0) return 0;
+  if (c == 0 || hypot(n, k) < 1e-100) return 1;         /* below, 1 - R is 4 n */
+  double square = (n - k) * (n + k), twice = 2 * n * k; /* N^2 */
+  double below = c * c > 0.5 ? square - s2 : (n - 1) * (n + 1) + (c * c - k * k);
+  double size = hypot(below, twice);
+  /* the smaller of a and b by a b = n k, since its own difference cancels */
+  double a = sqrt((size + fabs(below)) / 2), b = a > 0 ? twice / (2 * a) : 0;
+  if (below < 0) {
+    double larger = a;
+    a = b;
+    b = larger;
+  }
+  double contrast = hypot(n - 1, k) * hypot(n + 1, k); /* |N^2 - 1| */
+  double s = hypot(c + a, b), p = hypot(square * c + a, twice * c + b);
+  double r_s = contrast / s / s;
+  double r_p = contrast / p * (hypot(square * c * c - s2, twice * c * c) / p);
+  return clamp_unit((r_s * r_s + r_p * r_p) / 2);
+}
+
 bool abbe_optics_refract(const double wi[3], const double n[3], double eta, double wt[3]) {
   bool total = false;
   double c = clamp_unit(dot(wi, n));

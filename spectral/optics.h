@@ -1,10 +1,10 @@
-/* optics.h: Snell, Fresnel and Beer-Lambert for smooth dielectric interfaces, in double precision.
+/* optics.h: Snell, Fresnel and Beer-Lambert for smooth interfaces, in double precision.
  *
  * This is the one piece of physics that the GL renderer's tests and the reference tracer share;
  * it has tests of its own against published numbers. Directions are unit vectors: wi points
  * towards where the light comes from, wt and wo leave the surface, n is the unit normal on wi's
  * side (dot(wi, n) >= 0). A ratio of indices is eta = n_i / n_t. Unpolarised light; no
- * absorbing interfaces, no coatings, no polarisation state.
+ * coatings, no polarisation state. Interfaces are between dielectrics but for fresnel_conductor.
  */
 #ifndef ABBE_SPECTRAL_OPTICS_H
 #define ABBE_SPECTRAL_OPTICS_H
@@ -22,6 +22,12 @@ double abbe_optics_cos_refracted(double cos_i, double eta, bool *total);
 /* Unpolarised Fresnel reflectance in [0, 1]; 1 at total internal reflection and at grazing
  * incidence, exactly 0 for eta = 1. Its complement is the transmitted share. [BornWolf1999] */
 double abbe_optics_fresnel(double cos_i, double eta);
+
+/* Unpolarised Fresnel reflectance in [0, 1] of a conductor of complex index n + i k in air
+ * (n_i = 1); n and k in [0, 1e70]. 1 at grazing incidence and where n = k = 0; exactly 0 for n = 1,
+ * k = 0; for k = 0 that of fresnel with eta = 1 / n. What is not reflected is absorbed.
+ * [BornWolf1999] */
+double abbe_optics_fresnel_conductor(double cos_i, double n, double k);
 
 /* Refracts: writes the unit direction wt and returns true; returns false (wt untouched) at total
  * internal reflection. */

@@ -2,6 +2,8 @@
 
 #include "spectral/optics.h"
 
+#include <complex.h>
+
 #define PI 3.14159265358979323846
 
 static double degrees(double radians) {
@@ -233,6 +235,102 @@ static void cosines_outside_and_extreme_ratios(void **state) {
   assert_true(isnan(abbe_optics_cos_refracted(NAN, 1.5, NULL)));
 }
 
+/* ---- conductors ---- */
+
+/* The amplitudes as they are printed, in complex arithmetic [BornWolf1999, 1.5.2 and 14.2]. */
+static double by_amplitudes(double angle, double n, double k) {
+  double complex index = CMPLX(n, k), sine = sin(angle) / index;
+  double complex refracted = csqrt(1 - sine * sine);
+  double complex s = (cos(angle) - index * refracted) / (cos(angle) + index * refracted);
+  double complex p = (index * cos(angle) - refracted) / (index * cos(angle) + refracted);
+  return (cabs(s) * cabs(s) + cabs(p) * cabs(p)) / 2;
+}
+
+static const double metals[][2] = {
+    {0.05, 3.858}, {0.29, 2.863}, {1.0728, 6.7839}, {3.22, 3.30},
+    {1.96, 3.80},  {0.70, 2.704}, {0.05, 1.864},    {1.5, 1e-3},
+};
+enum { METALS = sizeof metals / sizeof metals[0] };
+
+/* ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2): silver 98.7, gold 88.2 and aluminium 91.5 % in yellow
+ * light, of the indices of Johnson and Christy and of Rakic. */
+static void metals_reflect_head_on(void **state) {
+  (void)state;
+  for (int i = 0; i < METALS; i++) {
+    double n = metals[i][0], k = metals[i][1];
+    double r = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
+    assert_near(abbe_optics_fresnel_conductor(1, n, k), r, 1e-15);
+  }
+  assert_near(abbe_optics_fresnel_conductor(1, 0.05, 3.858), 0.9875, 5e-5);
+  assert_near(abbe_optics_fresnel_conductor(1, 0.29, 2.863), 0.8824, 5e-5);
+  assert_near(abbe_optics_fresnel_conductor(1, 1.0728, 6.7839), 0.9147, 5e-5);
+}
+
+static void metals_reflect_aslant(void **state) {
+  (void)state;
+  for (int i = 0; i < METALS; i++)
+    for (double at = 1; at < 90; at++)
+      assert_near(abbe_optics_fresnel_conductor(cos(radians(at)), metals[i][0], metals[i][1]),
+                  by_amplitudes(radians(at), metals[i][0], metals[i][1]), 1e-13);
+  /* gold at 582 nm and 60 degrees: r_s^2 0.9418 and r_p^2 0.8121 */
+  assert_near(abbe_optics_fresnel_conductor(cos(radians(60)), 0.29, 2.863), 0.8770, 5e-5);
+}
+
+static void metals_reflect_all_grazing_light(void **state) {
+  (void)state;
+  for (int i = 0; i < METALS; i++) {
+    double n = metals[i][0], k = metals[i][1];
+    assert_near(abbe_optics_fresnel_conductor(0, n, k), 1, 0);
+    assert_near(abbe_optics_fresnel_conductor(1e-9, n, k), 1, 1e-7);
+    assert_near(abbe_optics_fresnel_conductor(-1e-12, n, k), 1, 0);
+  }
+}
+
+static void a_conductor_without_k_is_a_dielectric(void **state) {
+  (void)state;
+  const double n[] = {1e-3, 0.5, 1 - 1e-6, 1, 1 + 1e-6, 1.5, 2.417, 1e3};
+  for (int i = 0; i < 8; i++)
+    for (double at = 0; at <= 90; at += 1.5) {
+      double c = cos(radians(at)), expected = abbe_optics_fresnel(c, 1 / n[i]);
+      double scale = expected < 1e-9 && expected > 0 ? expected : 1;
+      assert_near(abbe_optics_fresnel_conductor(c, n[i], 0) / scale, expected / scale, 1e-8);
+    }
+  assert_near(abbe_optics_fresnel_conductor(0.5, 1, 0), 0, 0);
+  assert_near(abbe_optics_fresnel_conductor(0, 1, 0), 0, 0);
+}
+
+/* A perfect conductor reflects all; on the way there, 1 - R is 4 n / k^2 head on. */
+static void a_growing_k_reflects_more(void **state) {
+  (void)state;
+  for (double at = 0; at < 85; at += 5) {
+    double before = 0;
+    for (double k = 1; k < 1e9; k *= 10) {
+      double r = abbe_optics_fresnel_conductor(cos(radians(at)), 0.2, k);
+      assert_true(r >= before && r <= 1);
+      before = r;
+    }
+    assert_near(before, 1, 1e-8);
+  }
+  assert_near((1 - abbe_optics_fresnel_conductor(1, 1, 1e4)) / 4e-8, 1, 1e-7);
+  assert_near(abbe_optics_fresnel_conductor(1e-3, 1e3, 1e3), by_amplitudes(acos(1e-3), 1e3, 1e3),
+              1e-12);
+}
+
+static void extreme_conductors(void **state) {
+  (void)state;
+  const double values[] = {0, 5e-324, 1e-160, 1e-9, 1 - 1e-16, 1, 1 + 1e-12, 40, 1e9, 1e70};
+  const double cosines[] = {-1e-12, -0.0, 0, 5e-324, 1e-160, 1e-9, 0.5, 1 - 1e-16, 1, 1 + 1e-12};
+  for (int n = 0; n < 10; n++)
+    for (int k = 0; k < 10; k++)
+      for (int c = 0; c < 10; c++) {
+        double r = abbe_optics_fresnel_conductor(cosines[c], values[n], values[k]);
+        assert_true(r >= 0 && r <= 1);
+      }
+  assert_near(abbe_optics_fresnel_conductor(0.5, 0, 3), 1, 1e-15); /* no loss without n */
+  assert_near(abbe_optics_fresnel_conductor(0.5, 0, 0), 1, 0);
+  assert_true(isnan(abbe_optics_fresnel_conductor(NAN, 0.2, 3)));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(glass_reflects_four_percent_head_on),
@@ -249,6 +347,12 @@ int main(void) {
       cmocka_unit_test(grazing_light),
       cmocka_unit_test(the_critical_angle),
       cmocka_unit_test(cosines_outside_and_extreme_ratios),
+      cmocka_unit_test(metals_reflect_head_on),
+      cmocka_unit_test(metals_reflect_aslant),
+      cmocka_unit_test(metals_reflect_all_grazing_light),
+      cmocka_unit_test(a_conductor_without_k_is_a_dielectric),
+      cmocka_unit_test(a_growing_k_reflects_more),
+      cmocka_unit_test(extreme_conductors),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
