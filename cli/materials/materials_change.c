@@ -73,7 +73,8 @@ static bool numbers_of(const char *text, size_t size, const char *name,
   abbe_material_table table;
   const abbe_material *m = NULL;
   bool good = abbe_material_table_parse(text, size, "", &table, NULL) == ABBE_OK &&
-              abbe_material_table_find(&table, name, &m, NULL) == ABBE_OK;
+              abbe_material_table_find(&table, name, &m, NULL) == ABBE_OK &&
+              !abbe_material_is_conductor(m);
   if (good) *out = abbe_materials_numbers(m);
   abbe_material_table_free(&table);
   return good;

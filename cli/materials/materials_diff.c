@@ -29,6 +29,10 @@ static void print_parts(unsigned parts, const char *lead) {
 
 static void print_numbers(const abbe_material *m) {
   char text[2][32];
+  if (abbe_material_is_conductor(m)) {
+    printf("  a conductor");
+    return;
+  }
   abbe_dispersion_numbers d = abbe_materials_numbers(m);
   printf("  n_d %s, V_d %s", abbe_materials_number(text[0], sizeof text[0], "%.6f", d.n_d),
          abbe_materials_number(text[1], sizeof text[1], "%.3f", d.v_d));
@@ -178,7 +182,12 @@ static abbe_result judge(const request *r, const abbe_table_difference *d, abbe_
     const char *name = row->first != NULL ? row->first->name : row->second->name;
     if (row->kind == ABBE_ROW_ONLY_IN_FIRST || row->kind == ABBE_ROW_ONLY_IN_SECOND)
       return abbe_error_set(error, ABBE_TOLERANCE, "'%s' is in one of the tables only", name);
-    if (row->kind == ABBE_ROW_CHANGED && isnan(row->index.max))
+    const bool metals = row->first != NULL && row->second != NULL &&
+                        abbe_material_is_conductor(row->first) &&
+                        abbe_material_is_conductor(row->second);
+    if (metals && (row->parts & 1u << ABBE_ROW_PART_POINTS))
+      return abbe_error_set(error, ABBE_TOLERANCE, "the points of the conductor '%s' differ", name);
+    if (row->kind == ABBE_ROW_CHANGED && isnan(row->index.max) && !metals)
       return abbe_error_set(error, ABBE_TOLERANCE, "the ranges of '%s' have nothing in common",
                             name);
     if (row->index.max > r->tolerance)

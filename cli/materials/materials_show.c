@@ -2,11 +2,15 @@
 #include "cli/materials/materials_options.h"
 #include "cli/materials/materials_values.h"
 
+#include "colorimetry/illuminant.h"
+#include "colorimetry/observer.h"
+#include "colorimetry/rgb_space.h"
 #include "spectral/dispersion/fit.h"
 #include "spectral/editing/check.h"
 #include "spectral/formats/material_table_load.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/materials/material_numbers.h"
+#include "spectral/optics.h"
 #include "spectral/wavelengths.h"
 
 #include <argp.h>
@@ -21,6 +25,54 @@ typedef struct request {
   size_t at_count;
   bool json, fit;
 } request;
+
+/* ---- metals ---- */
+
+static const struct {
+  const char *name;
+  double nm;
+} lines[] = {{"F", ABBE_LINE_F_NM}, {"d", ABBE_LINE_D_NM}, {"C", ABBE_LINE_C_NM}};
+
+/* n, k and the share that is reflected head on; NaN where the record has none. */
+static void nk_at(const abbe_material *m, double lambda_nm, double out[3]) {
+  out[0] = out[1] = out[2] = NAN;
+  if (abbe_material_nk(m, lambda_nm, &out[0], &out[1], NULL) == ABBE_OK)
+    out[2] = abbe_optics_fresnel_conductor(1, out[0], out[1]);
+}
+
+/* Linear Rec.709 of D65 that the metal reflects head on, of which white is (1, 1, 1); false where
+ * its data do not cover the visible. */
+static bool colour_of(const abbe_material *m, double rgb[3]) {
+  const abbe_illuminant d65 = {0};
+  double xyz[3] = {0}, white = 0, matrix[9];
+  for (double l = ABBE_WAVELENGTH_MIN_NM; l <= ABBE_WAVELENGTH_MAX_NM; l += 1) {
+    double nk[3], bar[3], power = abbe_illuminant_power(&d65, l);
+    nk_at(m, l, nk);
+    if (isnan(nk[2])) return false;
+    abbe_observer_xyz(l, bar);
+    for (int i = 0; i < 3; i++) xyz[i] += nk[2] * power * bar[i];
+    white += power * bar[1];
+  }
+  for (int i = 0; i < 3; i++) xyz[i] /= white;
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, matrix);
+  abbe_rgb_space_apply(matrix, xyz, rgb);
+  return true;
+}
+
+static void show_metal(const abbe_material *m) {
+  double nk[3], rgb[3];
+  char text[3][32];
+  for (int i = 0; i < 3; i++) {
+    nk_at(m, lines[i].nm, nk);
+    printf("  %s %.1f nm    n %s   k %s   reflects %s head on\n", lines[i].name, lines[i].nm,
+           abbe_materials_number(text[0], sizeof text[0], "%.4f", nk[0]),
+           abbe_materials_number(text[1], sizeof text[1], "%.4f", nk[1]),
+           abbe_materials_number(text[2], sizeof text[2], "%.2f %%", 100 * nk[2]));
+  }
+  if (colour_of(m, rgb))
+    printf("  colour        %.3f, %.3f, %.3f of D65 is reflected head on, in linear Rec.709\n",
+           rgb[0], rgb[1], rgb[2]);
+}
 
 /* ---- text ---- */
 
@@ -106,14 +158,25 @@ static void show_findings(const abbe_findings *found) {
 static abbe_result show_text(const request *r, const abbe_material *m, const abbe_findings *found,
                              abbe_error *error) {
   printf("%s%s%s\n", m->name, m->description ? ": " : "", m->description ? m->description : "");
-  show_numbers(m);
+  const bool metal = abbe_material_is_conductor(m);
+  if (metal)
+    show_metal(m);
+  else
+    show_numbers(m);
   show_formula(m);
-  show_absorption(m);
-  show_fits(m);
+  if (!metal) show_absorption(m);
+  if (!metal) show_fits(m);
   printf("  source        %s\n", m->source);
   if (m->comment != NULL) printf("  comment       %s\n", m->comment);
   if (m->warning != NULL) printf("  warning       %s\n", m->warning);
   show_findings(found);
+  if (r->at_count > 0 && metal) printf("\n  %10s  %10s  %10s  %10s\n", "nm", "n", "k", "reflected");
+  for (size_t i = 0; i < r->at_count && metal; i++) {
+    double nk[3];
+    nk_at(m, r->at[i], nk);
+    printf("  %10.6g  %10.6f  %10.6f  %10.6f\n", r->at[i], nk[0], nk[1], nk[2]);
+  }
+  if (metal) return ABBE_OK;
   if (r->at_count > 0)
     printf("\n  %10s  %12s%s\n", "nm", "n", m->attenuation != NULL ? "         1/m" : "");
   for (size_t i = 0; i < r->at_count; i++) {
@@ -152,11 +215,14 @@ static abbe_result show_fit_yaml(const abbe_material *m, abbe_error *error) {
 
 /* ---- JSON ---- */
 
-static void add_points(cJSON *to, const char *key, const abbe_spectrum *spectrum) {
+/* Pairs, or [nm, n, k] where third is k. */
+static void add_points(cJSON *to, const char *key, const abbe_spectrum *spectrum,
+                       const abbe_spectrum *third) {
   cJSON *list = cJSON_AddArrayToObject(to, key);
   for (size_t i = 0; list != NULL && i < abbe_spectrum_count(spectrum); i++) {
-    double pair[2] = {abbe_spectrum_lambda_nm(spectrum)[i], abbe_spectrum_value(spectrum)[i]};
-    cJSON_AddItemToArray(list, cJSON_CreateDoubleArray(pair, 2));
+    double row[3] = {abbe_spectrum_lambda_nm(spectrum)[i], abbe_spectrum_value(spectrum)[i],
+                     third != NULL ? abbe_spectrum_value(third)[i] : 0};
+    cJSON_AddItemToArray(list, cJSON_CreateDoubleArray(row, third != NULL ? 3 : 2));
   }
 }
 
@@ -165,14 +231,14 @@ static void add_record(cJSON *to, const abbe_material *m) {
   cJSON_AddStringToObject(to, "model", abbe_dispersion_model_name(d->model));
   cJSON_AddStringToObject(to, "formula", abbe_dispersion_model_formula(d->model));
   if (d->table != NULL)
-    add_points(to, "points", d->table);
+    add_points(to, "points", d->table, d->k);
   else
     cJSON_AddItemToObject(to, "coefficients", cJSON_CreateDoubleArray(d->c, (int)d->count));
   abbe_materials_add_pair(to, "range_nm", m->min_nm, m->max_nm);
   cJSON_AddBoolToObject(to, "extrapolate", m->extrapolate);
   cJSON_AddNumberToObject(to, "temperature_c", m->temperature_c);
   if (m->attenuation != NULL)
-    add_points(to, "attenuation_per_m", m->attenuation);
+    add_points(to, "attenuation_per_m", m->attenuation, NULL);
   else
     cJSON_AddNullToObject(to, "attenuation_per_m");
   abbe_materials_add_text(to, "source", m->source);
@@ -214,6 +280,26 @@ static void add_findings(cJSON *to, const abbe_findings *found) {
   }
 }
 
+/* At the lines F, d and C, and where else it was asked. */
+static void add_metal(cJSON *to, const request *r, const abbe_material *m) {
+  double rgb[3];
+  cJSON *list = cJSON_AddArrayToObject(to, "nk");
+  for (size_t i = 0; i < 3 + r->at_count; i++) {
+    double nk[3], nm = i < 3 ? lines[i].nm : r->at[i - 3];
+    cJSON *item = cJSON_CreateObject();
+    nk_at(m, nm, nk);
+    cJSON_AddNumberToObject(item, "lambda_nm", nm);
+    cJSON_AddNumberToObject(item, "n", nk[0]);
+    cJSON_AddNumberToObject(item, "k", nk[1]);
+    cJSON_AddNumberToObject(item, "reflectance", nk[2]);
+    cJSON_AddItemToArray(list, item);
+  }
+  if (colour_of(m, rgb))
+    cJSON_AddItemToObject(to, "colour_rec709", cJSON_CreateDoubleArray(rgb, 3));
+  else
+    cJSON_AddNullToObject(to, "colour_rec709");
+}
+
 static abbe_result show_json(const request *r, const abbe_material_table *table,
                              const abbe_material *m, const abbe_findings *found,
                              abbe_error *error) {
@@ -221,9 +307,10 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
   cJSON_AddStringToObject(root, "name", m->name);
   abbe_materials_add_text(root, "description", m->description);
   cJSON_AddStringToObject(root, "table", table->path);
-  cJSON *list = cJSON_AddArrayToObject(root, "n");
+  const bool metal = abbe_material_is_conductor(m);
+  cJSON *list = metal ? NULL : cJSON_AddArrayToObject(root, "n");
   abbe_result result = ABBE_OK;
-  for (size_t i = 0; i < r->at_count && result == ABBE_OK; i++) {
+  for (size_t i = 0; i < r->at_count && !metal && result == ABBE_OK; i++) {
     double n = 0;
     result = abbe_material_n(m, r->at[i], &n, error);
     cJSON *item = cJSON_CreateObject();
@@ -233,9 +320,12 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
     cJSON_AddBoolToObject(item, "extrapolated", abbe_material_extrapolates(m, r->at[i]));
     cJSON_AddItemToArray(list, item);
   }
-  abbe_materials_add_numbers(root, m);
+  if (metal)
+    add_metal(root, r, m);
+  else
+    abbe_materials_add_numbers(root, m);
   add_record(root, m);
-  add_published(root, m);
+  if (!metal) add_published(root, m);
   add_findings(root, found);
   if (result == ABBE_OK) result = abbe_materials_print_json(root, error);
   cJSON_Delete(root);
@@ -287,7 +377,8 @@ static const struct argp parser = {
            "Examples:\n"
            "  abbe materials show diamond --at 430.8 --at 686.7\n"
            "  abbe materials show n-bk7 --at 587.5618 --json\n"
-           "  abbe materials show my-glass --table glasses.yaml --fit\n\n"
+           "  abbe materials show my-glass --table glasses.yaml --fit\n"
+           "  abbe materials show gold --at 550\n\n"
            "A wavelength outside a record's range is an error, unless the record says "
            "'extrapolate: true'; the answer then says so.",
 };
@@ -306,8 +397,9 @@ static abbe_result answer(const request *r, const abbe_material_table *table, ab
   abbe_result result = abbe_material_table_find(table, r->name, &m, error);
   /* asked first, so that a failure prints nothing else */
   for (size_t i = 0; i < r->at_count && result == ABBE_OK; i++) {
-    double n;
-    result = abbe_material_n(m, r->at[i], &n, error);
+    double n, k;
+    result = abbe_material_is_conductor(m) ? abbe_material_nk(m, r->at[i], &n, &k, error)
+                                           : abbe_material_n(m, r->at[i], &n, error);
   }
   if (result != ABBE_OK) return result;
   if (r->fit) return show_fit_yaml(m, error);

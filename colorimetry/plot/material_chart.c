@@ -81,8 +81,29 @@ static abbe_result add_curve(sheet *s, const abbe_dispersion *d, double from, do
   return ABBE_OK;
 }
 
+/* n and k of a conductor, in a colour each. */
+static abbe_result add_conductor(sheet *s, size_t index, abbe_error *error) {
+  const abbe_material *m = s->chart->material[index];
+  double from = fmax(m->min_nm, s->from), to = fmin(m->max_nm, s->to), *x, *y;
+  for (int which = 0; which < 2 && from < to; which++) {
+    char label[LABEL];
+    snprintf(label, sizeof label, "%s, %c", m->name, which == 0 ? 'n' : 'k');
+    int colour = colour_of(which == 0 ? index : s->chart->count + index);
+    if (add_series(s->curves, STEPS + 1, ABBE_CHART_LINE, colour, label, &x, &y) == NULL)
+      return no_memory(error);
+    for (int i = 0; i <= STEPS; i++) {
+      double n = NAN, k = NAN;
+      x[i] = from + (to - from) * i / STEPS;
+      abbe_dispersion_nk(&m->dispersion, x[i], &n, &k);
+      y[i] = which == 0 ? n : k;
+    }
+  }
+  return ABBE_OK;
+}
+
 static abbe_result add_material(sheet *s, size_t index, abbe_error *error) {
   const abbe_material *m = s->chart->material[index];
+  if (abbe_material_is_conductor(m)) return add_conductor(s, index, error);
   int colour = colour_of(index);
   abbe_result result =
       add_curve(s, &m->dispersion, m->min_nm, m->max_nm, ABBE_CHART_LINE, colour, m->name, error);
@@ -209,6 +230,8 @@ static abbe_result write_sheet(const char *path, sheet *s, abbe_error *error) {
                                     : m->name);
   bool below = s->residuals->count > 0;
   abbe_chart_axis y = {.label = "n"};
+  for (size_t i = 0; i < c->count; i++)
+    if (abbe_material_is_conductor(c->material[i])) y.label = "n, k";
   if (c->points == NULL) fit_height(s->curves, &y);
   size_t shade_count = shade(s, shades);
   abbe_chart_axis x = {.label = "wavelength, nm", .min = s->from, .max = s->to}, bare = x;
@@ -234,6 +257,12 @@ abbe_result abbe_material_chart_write(const char *path, const abbe_material_char
   if (chart->count < 1 || chart->count > ABBE_MATERIAL_CHART_MAX)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu materials in one chart; 1 to %d fit",
                           chart->count, ABBE_MATERIAL_CHART_MAX);
+  for (size_t i = 0; i < chart->count; i++)
+    if (abbe_material_is_conductor(chart->material[i]) && (chart->fits || chart->points != NULL))
+      return abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "%s is a conductor: it has n and k, and no real index that fits and "
+                            "measured indices are held against",
+                            chart->material[i]->name);
   bool usual = chart->min_nm == 0 && chart->max_nm == 0;
   sheet s = {.chart = chart,
              .from = usual ? ABBE_WAVELENGTH_MIN_NM : chart->min_nm,
@@ -334,7 +363,8 @@ abbe_result abbe_material_map_write(const char *path, const abbe_material_map *m
     const abbe_material_table *t = map->table[i];
     good = make_spots(&s[i], t->count);
     for (size_t k = 0; k < t->count && good; k++)
-      if (!is_marked(map, &t->material[k])) missing += !add_spot(&s[i], &t->material[k]);
+      if (!is_marked(map, &t->material[k]) && !abbe_material_is_conductor(&t->material[k]))
+        missing += !add_spot(&s[i], &t->material[k]);
   }
   for (size_t i = 0; i < map->marked_count && good; i++)
     missing += !add_spot(&s[map->table_count], map->marked[i]);

@@ -30,8 +30,9 @@ typedef struct abbe_material_chart {
   size_t width, height;            /* as chart.h has them */
 } abbe_material_chart;
 
-/* n over wavelength to path (.png or .svg). ABBE_OUT_OF_RANGE where none of the materials has data
- * in the range; else as abbe_chart_write has it. */
+/* n over wavelength to path (.png or .svg), of a conductor n and k. ABBE_OUT_OF_RANGE where none of
+ * the materials has data in the range; ABBE_UNSUPPORTED for a conductor with fits or points; else
+ * as abbe_chart_write has it. */
 abbe_result abbe_material_chart_write(const char *path, const abbe_material_chart *chart,
                                       abbe_error *error);
 
@@ -45,7 +46,7 @@ typedef struct abbe_material_map {
 
 /* n_d over V_d, which runs from right to left as glass makers draw it; names where there is room.
  * Materials without finite n_d and V_d in their range are left out, their number in *left_out (may
- * be NULL). ABBE_NOT_FOUND where that leaves none. */
+ * be NULL; conductors are counted where they are marked). ABBE_NOT_FOUND where that leaves none. */
 abbe_result abbe_material_map_write(const char *path, const abbe_material_map *map,
                                     size_t *left_out, abbe_error *error);
 

@@ -7,6 +7,7 @@
 void abbe_dispersion_free(abbe_dispersion *dispersion) {
   if (dispersion == NULL) return;
   abbe_spectrum_free(dispersion->table);
+  abbe_spectrum_free(dispersion->k);
   *dispersion = (abbe_dispersion){0};
 }
 
@@ -107,10 +108,19 @@ double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm) {
   case ABBE_DISPERSION_TABULATED:
     return dispersion->table != NULL ? physical(abbe_spectrum_at(dispersion->table, lambda_nm))
                                      : NAN;
+  case ABBE_DISPERSION_CONDUCTOR:
   case ABBE_DISPERSION_MODEL_COUNT:
     break;
   }
   return NAN;
+}
+
+bool abbe_dispersion_nk(const abbe_dispersion *dispersion, double lambda_nm, double *n, double *k) {
+  const abbe_dispersion *d = dispersion;
+  if (d->model != ABBE_DISPERSION_CONDUCTOR || d->table == NULL || d->k == NULL) return false;
+  *n = abbe_spectrum_at(d->table, lambda_nm);
+  *k = abbe_spectrum_at(d->k, lambda_nm);
+  return true;
 }
 
 abbe_dispersion_numbers abbe_dispersion_describe(const abbe_dispersion *dispersion) {
@@ -175,6 +185,24 @@ static const char *wanted_count(abbe_dispersion_model model, size_t count) {
   }
 }
 
+/* NULL, or what is wrong with the points of a conductor. */
+static const char *wrong_conductor(const abbe_dispersion *d) {
+  if (d->table == NULL || d->k == NULL) return "the model conductor wants points of n and of k";
+  size_t count = abbe_spectrum_count(d->table);
+  if (count != abbe_spectrum_count(d->k) ||
+      memcmp(abbe_spectrum_lambda_nm(d->table), abbe_spectrum_lambda_nm(d->k),
+             count * sizeof(double)) != 0)
+    return "n and k of a conductor stand at different wavelengths";
+  if (abbe_spectrum_interpolation(d->table) != ABBE_INTERPOLATION_LINEAR ||
+      abbe_spectrum_interpolation(d->k) != ABBE_INTERPOLATION_LINEAR)
+    return "n and k of a conductor run straight between their points";
+  const double *n = abbe_spectrum_value(d->table), *k = abbe_spectrum_value(d->k);
+  for (size_t i = 0; i < count; i++)
+    if (!(n[i] >= 0 && n[i] <= 1e3 && k[i] >= 0 && k[i] <= 1e3))
+      return "n and k of a conductor lie from 0 to 1000";
+  return NULL;
+}
+
 abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error *error) {
   ABBE_REQUIRE(dispersion, error);
   if (!known(dispersion->model))
@@ -196,5 +224,8 @@ abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error 
                             i, name, dispersion->c[i]);
   if (dispersion->model == ABBE_DISPERSION_TABULATED && dispersion->table == NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the model tabulated has no points");
+  if (dispersion->model != ABBE_DISPERSION_CONDUCTOR) return ABBE_OK;
+  const char *wrong = wrong_conductor(dispersion);
+  if (wrong != NULL) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s", wrong);
   return ABBE_OK;
 }

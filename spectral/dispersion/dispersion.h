@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "spectral/spectrum.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -32,7 +33,8 @@ extern "C" {
   X(RII6, "rii6", "n - 1 = c0 + sum_k c(2k-1) / (c(2k) - L^-2)")                              \
   X(RII8, "rii8", "(n^2 - 1) / (n^2 + 2) = c0 + c1 L^2 / (L^2 - c2) + c3 L^2")                \
   X(RII9, "rii9", "n^2 = c0 + c1 / (L^2 - c2) + c3 (L - c4) / ((L - c4)^2 + c5)")             \
-  X(TABULATED, "tabulated", "n through tabulated points")
+  X(TABULATED, "tabulated", "n through tabulated points")                                     \
+  X(CONDUCTOR, "conductor", "n + i k straight between tabulated points")
 
 typedef enum abbe_dispersion_model {
 #define ABBE_DISPERSION_ENUM(code, name, formula) ABBE_DISPERSION_##code,
@@ -47,18 +49,25 @@ typedef struct abbe_dispersion {
   abbe_dispersion_model model;
   size_t count;                                 /* coefficients used */
   double c[ABBE_DISPERSION_MAX_COEFFICIENTS];
-  abbe_spectrum *table;                         /* TABULATED: n at nm; owned; else NULL */
+  abbe_spectrum *table;                         /* TABULATED, CONDUCTOR: n at nm; owned; else NULL */
+  abbe_spectrum *k;                             /* CONDUCTOR: k at the nm of n; owned; else NULL */
 } abbe_dispersion;
 
 void abbe_dispersion_free(abbe_dispersion *dispersion);
 
 /* ABBE_INVALID_ARGUMENT, with what would be right, where the coefficients are not finite or their
- * count does not fit the model, or a tabulated model has no table. */
+ * count does not fit the model, or a tabulated model has no table, or a conductor not both of its
+ * own: n and k at the same wavelengths, linear, in [0, 1e3]. */
 abbe_result abbe_dispersion_check(const abbe_dispersion *dispersion, abbe_error *error);
 
 /* n at lambda_nm (> 0). No range is checked here: that is the material's. Returns NaN where the
- * formula has no real, positive, finite value (a pole, n^2 <= 0). */
+ * formula has no real, positive, finite value (a pole, n^2 <= 0), and for a conductor, which has no
+ * real index anywhere. */
 double abbe_dispersion_n(const abbe_dispersion *dispersion, double lambda_nm);
+
+/* The complex index n + i k of a conductor at lambda_nm (> 0), held beyond its points. False, with
+ * *n and *k as they were, for any other model. */
+bool abbe_dispersion_nk(const abbe_dispersion *dispersion, double lambda_nm, double *n, double *k);
 
 /* Fraunhofer lines, nm in air [Schott2014]; B and G are the gem trade's. */
 #define ABBE_LINE_C_NM 656.2725

@@ -137,9 +137,12 @@ static abbe_result check(const abbe_material *material, size_t row,
   }
   c.namesake = abbe_check_namesake(known, material->name);
   abbe_material_published_make(material, &c.published);
+  const bool metal = abbe_material_is_conductor(material);
   bool unit = material->max_nm < 100 && material->min_nm > 0;
   if (unit) c.low_nm *= 1000, c.high_nm *= 1000;
-  if (!abbe_check_read_anew(&c) && !unit) {
+  if (metal) {
+    if (!unit) abbe_check_cover(&c);
+  } else if (!abbe_check_read_anew(&c) && !unit) {
     abbe_check_follow_curve(&c);
     for (int i = 0; i < 2; i++) check_fit(&c, &material->fit[i]);
   }

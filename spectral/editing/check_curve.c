@@ -156,7 +156,7 @@ static void say_step(abbe_check *c, abbe_finding *f, double data_nm, double end_
                    data_nm, at_data, end_nm, at_end - at_data);
 }
 
-static void check_covering(abbe_check *c) {
+void abbe_check_cover(abbe_check *c) {
   const abbe_material *m = c->material;
   bool violet = c->low_nm > LOW, red = c->high_nm < HIGH;
   if (!violet && !red) return;
@@ -165,9 +165,11 @@ static void check_covering(abbe_check *c) {
     if (f == NULL) return;
     abbe_check_say(c, &f->evidence, "its data reach from %g to %g nm, not over %g to %g nm",
                    c->low_nm, c->high_nm, LOW, HIGH);
-    abbe_check_say(c, &f->fix,
-                   "scenes need a narrower range of wavelengths, or 'extrapolate: true' and a "
-                   "warning that says so");
+    abbe_check_say(c, &f->fix, "%s",
+                   abbe_material_is_conductor(m)
+                       ? "scenes need a narrower range of wavelengths, or points that reach further"
+                       : "scenes need a narrower range of wavelengths, or 'extrapolate: true' and "
+                         "a warning that says so");
     return;
   }
   abbe_finding *f = abbe_check_find(c, ABBE_FINDING_EXTRAPOLATED,
@@ -196,5 +198,5 @@ void abbe_check_follow_curve(abbe_check *c) {
   check_n_d(c, &numbers, n_d_blur);
   check_v_d(c, &numbers, v_d_blur);
   check_namesake(c, &numbers);
-  check_covering(c);
+  abbe_check_cover(c);
 }

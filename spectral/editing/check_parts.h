@@ -48,6 +48,8 @@ void abbe_check_set_coefficients(abbe_check *c, abbe_finding *finding,
 bool abbe_check_read_anew(abbe_check *c);
 /* What the curve does over its range, and what is printed about it. */
 void abbe_check_follow_curve(abbe_check *c);
+/* Whether its data cover the visible; the whole of what can be said of a conductor's curve. */
+void abbe_check_cover(abbe_check *c);
 /* Rows that are alike. */
 abbe_result abbe_check_compare_rows(const abbe_material_table *table, abbe_findings *findings,
                                     abbe_error *error);

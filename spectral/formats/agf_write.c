@@ -301,6 +301,9 @@ abbe_result abbe_agf_write(const abbe_material_table *table, FILE *to, abbe_repo
     abbe_error why;
     if (abbe_material_check(&table->material[i], &why) != ABBE_OK)
       abbe_report_add(report, ABBE_NOTE_SKIPPED, table->material[i].line, NULL, "%s", why.text);
+    else if (abbe_material_is_conductor(&table->material[i]))
+      abbe_report_add(report, ABBE_NOTE_SKIPPED, table->material[i].line, table->material[i].name,
+                      "it is a conductor, and a catalogue of glasses has no place for one");
     else
       result = write_glass(&table->material[i], &t, report, to, error);
   }

@@ -24,6 +24,18 @@ static void write_row(const abbe_material *m, double lambda_nm, double n, FILE *
   fputc('\n', to);
 }
 
+/* nm, n and k of a conductor. */
+static void write_conductor(const abbe_dispersion *d, FILE *to) {
+  for (size_t i = 0; i < abbe_spectrum_count(d->table); i++) {
+    put(to, abbe_spectrum_lambda_nm(d->table)[i]);
+    fputc(',', to);
+    put(to, abbe_spectrum_value(d->table)[i]);
+    fputc(',', to);
+    put(to, abbe_spectrum_value(d->k)[i]);
+    fputc('\n', to);
+  }
+}
+
 static abbe_result plan(const abbe_material *m, const abbe_csv_sampling *asked,
                         abbe_csv_sampling *s, abbe_error *error) {
   *s = asked != NULL ? *asked : (abbe_csv_sampling){0};
@@ -87,9 +99,11 @@ abbe_result abbe_csv_write(const abbe_material *material, const abbe_csv_samplin
   if (result != ABBE_OK) return result;
   fprintf(to, "# %s; source: ", m->name);
   for (const char *c = m->source; *c != '\0'; c++) fputc((unsigned char)*c < 0x20 ? ' ' : *c, to);
-  fputs(m->attenuation != NULL ? "\nwavelength_nm,n,k\n" : "\nwavelength_nm,n\n", to);
+  const bool metal = abbe_material_is_conductor(m);
+  fputs(metal || m->attenuation != NULL ? "\nwavelength_nm,n,k\n" : "\nwavelength_nm,n\n", to);
   const abbe_spectrum *table = m->dispersion.table;
-  for (size_t i = 0; table != NULL && i < abbe_spectrum_count(table); i++)
+  if (metal) write_conductor(&m->dispersion, to);
+  for (size_t i = 0; !metal && table != NULL && i < abbe_spectrum_count(table); i++)
     write_row(m, abbe_spectrum_lambda_nm(table)[i], abbe_spectrum_value(table)[i], to);
   if (table == NULL) result = write_formula(m, sampling, to, report, error);
   if (result != ABBE_OK) return result;

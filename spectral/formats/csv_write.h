@@ -21,7 +21,7 @@ typedef struct abbe_csv_sampling {
   double min_nm, max_nm, step_nm;
 } abbe_csv_sampling;
 
-/* Writes the columns wavelength_nm, n and, where the material absorbs, k. sampling may be NULL, and
+/* Writes the columns wavelength_nm, n and, where the material absorbs or is a conductor, k. sampling may be NULL, and
  * is without effect on a tabulated index. ABBE_OUT_OF_RANGE where the range asked for is not the
  * record's and it does not extrapolate, ABBE_INVALID_ARGUMENT for a step that is not positive or
  * makes more than ABBE_SPECTRUM_MAX_COUNT points, ABBE_IO where the stream fails. */

@@ -6,6 +6,7 @@
 #include "spectral/formats/agf.h"
 #include "spectral/formats/rii.h"
 #include "spectral/materials/absorption.h"
+#include "spectral/materials/conductor.h"
 #include "spectral/store/material_store.h"
 
 #include <math.h>
@@ -130,6 +131,12 @@ static abbe_result make_points(const abbe_csv_points *points, const char *path,
       abbe_points_spectrum(&points->n, ABBE_INTERPOLATION_MONOTONE, &m->dispersion.table, error);
   if (result == ABBE_OK && absorbs)
     result = abbe_absorption_spectrum_of_k(&points->k, &m->attenuation, error);
+  bool metal = false;
+  if (result == ABBE_OK) result = abbe_conductor_of_metal(&points->n, &points->k, m, &metal, error);
+  if (metal)
+    abbe_report_add(report, ABBE_NOTE_CHANGED, 0, m->name,
+                    "light does not get into it (k is above 0.08 in most of the visible): it is "
+                    "taken as a conductor, for mirrors");
   return result == ABBE_OK ? abbe_material_check(m, error) : result;
 }
 

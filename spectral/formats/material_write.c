@@ -48,16 +48,19 @@ static void write_list(const double *value, size_t count, int column, int indent
   fputc(']', to);
 }
 
-static void write_pairs(const abbe_spectrum *spectrum, int indent, FILE *to) {
+/* Of a conductor, third is k; else NULL. */
+static void write_points(const abbe_spectrum *spectrum, const abbe_spectrum *third, int indent,
+                         FILE *to) {
   const double *lambda_nm = abbe_spectrum_lambda_nm(spectrum);
   const double *value = abbe_spectrum_value(spectrum);
-  char a[ABBE_NUMBER_TEXT_SIZE], b[ABBE_NUMBER_TEXT_SIZE];
+  char a[ABBE_NUMBER_TEXT_SIZE], b[ABBE_NUMBER_TEXT_SIZE], c[ABBE_NUMBER_TEXT_SIZE] = "";
   int column = WIDTH;
   fputc('[', to);
   for (size_t i = 0; i < abbe_spectrum_count(spectrum); i++) {
     abbe_number_text(lambda_nm[i], a);
     abbe_number_text(value[i], b);
-    int length = (int)(strlen(a) + strlen(b)) + 6;
+    if (third != NULL) abbe_number_text(abbe_spectrum_value(third)[i], c);
+    int length = (int)(strlen(a) + strlen(b) + strlen(c)) + (third != NULL ? 8 : 6);
     if (i > 0) fputc(',', to);
     if (column + length > WIDTH) {
       fprintf(to, "\n%*s", indent, "");
@@ -65,7 +68,7 @@ static void write_pairs(const abbe_spectrum *spectrum, int indent, FILE *to) {
     } else {
       fputc(' ', to);
     }
-    fprintf(to, "[%s, %s]", a, b);
+    fprintf(to, "[%s, %s%s%s]", a, b, third != NULL ? ", " : "", c);
     column += length;
   }
   fprintf(to, "\n%*s]\n", indent - 2, "");
@@ -80,7 +83,10 @@ static void write_dispersion(const abbe_material *m, FILE *to) {
   if (d->model == ABBE_DISPERSION_TABULATED) {
     fprintf(to, "    interpolation: %s\n    points: ",
             abbe_interpolation_name(abbe_spectrum_interpolation(d->table)));
-    write_pairs(d->table, 6, to);
+    write_points(d->table, NULL, 6, to);
+  } else if (d->model == ABBE_DISPERSION_CONDUCTOR) {
+    fputs("    points: ", to);
+    write_points(d->table, d->k, 6, to);
   } else {
     fputs("    coefficients: ", to);
     write_list(d->c, d->count, 18, 6, to);
@@ -101,7 +107,7 @@ static void write_absorption(const abbe_material *m, FILE *to) {
   if (interpolation != ABBE_INTERPOLATION_LINEAR)
     fprintf(to, "      interpolation: %s\n", abbe_interpolation_name(interpolation));
   fputs("      attenuation_per_m: ", to);
-  write_pairs(m->attenuation, 8, to);
+  write_points(m->attenuation, NULL, 8, to);
 }
 
 static bool any(const double *value, size_t count) {

@@ -7,6 +7,7 @@
 #include "base/yaml/yaml.h"
 #include "spectral/dispersion/points.h"
 #include "spectral/materials/absorption.h"
+#include "spectral/materials/conductor.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -267,6 +268,17 @@ static abbe_result read_data(reader *r, abbe_yaml_node root) {
              : abbe_absorption_spectrum_of_k(&r->k, &r->m->attenuation, r->error);
 }
 
+/* After the properties, of which a conductor keeps less. */
+static abbe_result take_metal(reader *r, abbe_yaml_node root) {
+  bool made = false;
+  abbe_result result = abbe_conductor_of_metal(&r->n, &r->k, r->m, &made, r->error);
+  if (made)
+    note(r, ABBE_NOTE_CHANGED, root,
+         "light does not get into it (k is above 0.08 in most of the visible): it is taken as a "
+         "conductor, for mirrors");
+  return result;
+}
+
 /* ---- texts and properties ---- */
 
 static abbe_result read_text(reader *r, abbe_yaml_node root, const char *key, char **out) {
@@ -426,6 +438,7 @@ static abbe_result read_file(reader *r, const char *path, const char *name) {
   if (result == ABBE_OK) result = read_text(r, root, "COMMENTS", &r->m->comment);
   if (result == ABBE_OK) result = read_conditions(r, root);
   if (result == ABBE_OK) result = read_properties(r, root);
+  if (result == ABBE_OK) result = take_metal(r, root);
   if (result != ABBE_OK) return result;
   if (r->m->source == NULL) {
     char text[300];

@@ -20,7 +20,7 @@ extern "C" {
 /* The material of size bytes of text [RefractiveIndexInfo], fit for a table. path stands for the
  * file in messages; name is the material's name, or NULL to make one of the path:
  * …/main/SiO2/nk/Malitson.yml is SiO2-Malitson, …/optical/N-BK7.yml is N-BK7. k becomes
- * attenuation; references and comments lose their HTML. Indices or wavelengths that the file calls
+ * attenuation, or the index a conductor's (spectral/materials/conductor.h), with a note; references and comments lose their HTML. Indices or wavelengths that the file calls
  * absolute (of the vacuum) are kept and get a warning. *out is freed by the caller where the result
  * is ABBE_OK. ABBE_SCHEMA or ABBE_PARSE, with file and line, where there is no usable index. */
 abbe_result abbe_rii_parse(const char *text, size_t size, const char *path, const char *name,

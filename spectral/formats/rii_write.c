@@ -81,6 +81,17 @@ static void write_points(const char *type, const abbe_spectrum *spectrum, bool a
   }
 }
 
+static void write_conductor(const abbe_dispersion *d, FILE *to) {
+  fputs("  - type: tabulated nk\n    data: |\n", to);
+  for (size_t i = 0; i < abbe_spectrum_count(d->table); i++) {
+    fputs("       ", to);
+    put(to, abbe_number_tidy(abbe_spectrum_lambda_nm(d->table)[i] / 1000));
+    put(to, abbe_spectrum_value(d->table)[i]);
+    put(to, abbe_spectrum_value(d->k)[i]);
+    fputc('\n', to);
+  }
+}
+
 /* ---- what the catalogue says ---- */
 
 static bool any(const double *value, size_t count) {
@@ -142,7 +153,8 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
       {m->warning != NULL, "the database has no place for a warning"},
       {m->fit[0].terms > 0 || m->fit[1].terms > 0, "the database has no place for recorded fits"},
       {m->extrapolate, "the database cannot allow use outside the range"},
-      {table != NULL && abbe_spectrum_interpolation(table) != ABBE_INTERPOLATION_MONOTONE,
+      {table != NULL && m->dispersion.k == NULL &&
+           abbe_spectrum_interpolation(table) != ABBE_INTERPOLATION_MONOTONE,
        "the database does not say how n runs between its points"},
       {table != NULL &&
            (m->min_nm != abbe_spectrum_lambda_nm(table)[0] ||
@@ -168,7 +180,9 @@ abbe_result abbe_rii_write(const abbe_material *material, FILE *to, abbe_report 
   bool good = write_text(to, "REFERENCES", m->source) && write_text(to, "COMMENTS", m->comment);
   if (!good) return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for a text", m->name);
   fputs("DATA:\n", to);
-  if (m->dispersion.table != NULL)
+  if (abbe_material_is_conductor(m))
+    write_conductor(&m->dispersion, to);
+  else if (m->dispersion.table != NULL)
     write_points("n", m->dispersion.table, false, to);
   else
     write_formula(m, to);

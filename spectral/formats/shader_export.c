@@ -162,8 +162,36 @@ static void pbrt_spectrum(FILE *to, const char *key, const abbe_material *m,
   fputs(" ]\n", to);
 }
 
+static double conductor_n(const abbe_material *m, double lambda_nm) {
+  double n = NAN, k = NAN;
+  abbe_dispersion_nk(&m->dispersion, fmax(m->min_nm, fmin(lambda_nm, m->max_nm)), &n, &k);
+  return n;
+}
+
+static double conductor_k(const abbe_material *m, double lambda_nm) {
+  double n = NAN, k = NAN;
+  abbe_dispersion_nk(&m->dispersion, fmax(m->min_nm, fmin(lambda_nm, m->max_nm)), &n, &k);
+  return k;
+}
+
+static void write_pbrt_conductor(writer *w, const abbe_material *m) {
+  comment(w->to, "#", m);
+  fprintf(w->to, "MakeNamedMaterial \"%s\" \"string type\" \"conductor\"\n",
+          identifier(w, m->name));
+  pbrt_spectrum(w->to, "eta", m, conductor_n);
+  pbrt_spectrum(w->to, "k", m, conductor_k);
+  abbe_report_add(w->report, ABBE_NOTE_LOST, m->line, m->name,
+                  "n and k are sampled every %d nm from %g to %g nm", STEP_NM, PBRT_LOW_NM,
+                  PBRT_HIGH_NM);
+  note_range(w, m, PBRT_LOW_NM, PBRT_HIGH_NM);
+}
+
 static void write_pbrt(writer *w, const abbe_material *m) {
   FILE *to = w->to;
+  if (abbe_material_is_conductor(m)) {
+    write_pbrt_conductor(w, m);
+    return;
+  }
   const char *name = identifier(w, m->name);
   comment(to, "#", m);
   fprintf(to, "MakeNamedMaterial \"%s\" \"string type\" \"dielectric\"\n", name);
@@ -354,6 +382,11 @@ abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *tab
     abbe_error why;
     if (abbe_material_check(m, &why) != ABBE_OK) {
       abbe_report_add(report, ABBE_NOTE_SKIPPED, m->line, NULL, "%s", why.text);
+      continue;
+    }
+    if (abbe_material_is_conductor(m) && shader != ABBE_SHADER_PBRT) {
+      abbe_report_add(report, ABBE_NOTE_SKIPPED, m->line, m->name,
+                      "it is a conductor; of the shaders, only pbrt's are written of those");
       continue;
     }
     if (w.count > 0) fputs(forms[shader].between, to);

@@ -44,7 +44,8 @@ void abbe_shader_gltf_numbers(const abbe_material *material, double *ior, double
 
 /* Writes all materials of the table. Outside a record's range n is continued where the record allows
  * it, else held at the range's end, and noted as ASSUMED. Names become identifiers, each only once.
- * ABBE_IO where the stream fails; a material that a table may not hold is noted as SKIPPED. */
+ * ABBE_IO where the stream fails; a material that a table may not hold is noted as SKIPPED, and so
+ * is a conductor, but for pbrt. */
 abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *table, FILE *to,
                               abbe_report *report, abbe_error *error);
 

@@ -73,6 +73,7 @@ abbe_result abbe_glass_distance_to_numbers(const abbe_material_table *table, dou
   for (size_t i = 0; i < table->count; i++) {
     abbe_material_numbers m;
     abbe_material_numbers_make(&table->material[i], &m);
+    if (abbe_material_is_conductor(&table->material[i])) continue;
     double shift = m.n_d - n_d, spread = (m.n_F - m.n_C) - (n_d - 1) / v_d;
     double square = shift * shift + 2 * shift * spread * s.mean + spread * spread * s.square;
     if (isnan(square)) {
@@ -100,6 +101,7 @@ abbe_result abbe_glass_distance_to_points(const abbe_material_table *table,
   double low = points->lambda_nm[0], high = points->lambda_nm[points->count - 1];
   for (size_t i = 0; i < table->count; i++) {
     const abbe_material *m = &table->material[i];
+    if (abbe_material_is_conductor(m)) continue;
     abbe_index_difference d;
     bool beyond = abbe_material_extrapolates(m, low) || abbe_material_extrapolates(m, high);
     if ((beyond && !m->extrapolate) ||

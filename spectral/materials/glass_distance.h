@@ -26,7 +26,8 @@ typedef struct abbe_glass_distance {
 
 typedef struct abbe_glass_distances {
   size_t count;                 /* at most the number asked for */
-  size_t skipped;               /* materials without data in the range, or at the lines d, F, C */
+  size_t skipped;               /* materials without data in the range, or at the lines d, F, C;
+                                   conductors, which are no glasses, are not counted */
   abbe_glass_distance *nearest; /* [count], nearest first; equals in the table's order */
 } abbe_glass_distances;
 

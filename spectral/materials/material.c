@@ -59,10 +59,10 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
                  m->min_nm < m->max_nm;
   const abbe_spectrum *table = m->dispersion.table;
   if (table != NULL && abbe_spectrum_count(table) < 2)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: it has an index at a single wavelength; give it two points or more, "
-                          "or the model constant",
-                          m->name);
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "%s: it has an index at a single wavelength; give it two points or more%s", m->name,
+        abbe_material_is_conductor(m) ? "" : ", or the model constant");
   if (!ascends)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
@@ -81,6 +81,7 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
  * coefficients in another unit. */
 static abbe_result check_index(const abbe_material *m, abbe_error *error) {
   enum { STEPS = 1000 };
+  if (abbe_material_is_conductor(m)) return ABBE_OK;
   for (int i = 0; i <= STEPS; i++) {
     double lambda_nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS;
     if (!isnan(abbe_dispersion_n(&m->dispersion, lambda_nm))) continue;
@@ -90,6 +91,19 @@ static abbe_result check_index(const abbe_material *m, abbe_error *error) {
                           m->name, abbe_dispersion_model_name(m->dispersion.model), lambda_nm);
   }
   return ABBE_OK;
+}
+
+/* What would be of no effect, and could not be written. */
+static abbe_result check_conductor(const abbe_material *m, abbe_error *error) {
+  const char *idle = m->extrapolate                               ? "extrapolate"
+                     : m->attenuation != NULL                     ? "absorption"
+                     : m->fit[0].terms > 0 || m->fit[1].terms > 0 ? "fit"
+                     : m->published_n_d != 0                      ? "n_d"
+                     : m->published_v_d != 0                      ? "v_d"
+                                                                  : NULL;
+  if (!abbe_material_is_conductor(m) || idle == NULL) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the model conductor has no use for '%s'",
+                        m->name, idle);
 }
 
 abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *error) {
@@ -103,7 +117,8 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
   abbe_error why;
   if (abbe_dispersion_check(&material->dispersion, &why) != ABBE_OK)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
-  return check_range(material, error);
+  result = check_conductor(material, error);
+  return result == ABBE_OK ? check_range(material, error) : result;
 }
 
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error) {
@@ -121,6 +136,9 @@ bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm)
 abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
                             abbe_error *error) {
   ABBE_REQUIRE(material && n, error);
+  if (abbe_material_is_conductor(material))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s is a conductor: it has n and k, and no real index", material->name);
   if (abbe_material_extrapolates(material, lambda_nm) && !material->extrapolate)
     return abbe_error_set(error, ABBE_OUT_OF_RANGE,
                           "%s has no index at %g nm: its data reach from %g to %g nm, and its "
@@ -135,6 +153,26 @@ abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, dou
   return ABBE_OK;
 }
 
+bool abbe_material_is_conductor(const abbe_material *material) {
+  return material->dispersion.model == ABBE_DISPERSION_CONDUCTOR;
+}
+
+abbe_result abbe_material_nk(const abbe_material *material, double lambda_nm, double *n, double *k,
+                             abbe_error *error) {
+  ABBE_REQUIRE(material && n && k, error);
+  if (!abbe_material_is_conductor(material))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s is no conductor: it has a real index, and no k that goes with it",
+                          material->name);
+  if (!(lambda_nm >= material->min_nm && lambda_nm <= material->max_nm))
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
+                          "%s has no n and k at %g nm: its data reach from %g to %g nm",
+                          material->name, lambda_nm, material->min_nm, material->max_nm);
+  if (abbe_dispersion_nk(&material->dispersion, lambda_nm, n, k)) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s has no points of n and k",
+                        material->name);
+}
+
 double abbe_material_attenuation(const abbe_material *material, double lambda_nm) {
   if (material->attenuation == NULL) return 0;
   double value = abbe_spectrum_at(material->attenuation, lambda_nm);
@@ -143,6 +181,7 @@ double abbe_material_attenuation(const abbe_material *material, double lambda_nm
 
 bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm) {
   enum { STEPS = 81 };
+  if (abbe_material_is_conductor(material)) return true;
   size_t opaque = 0;
   for (size_t i = 0; i < STEPS; i++) {
     const double lambda_nm = min_nm + (max_nm - min_nm) * (double)i / (STEPS - 1);

@@ -1,4 +1,8 @@
-/* material.h: a transparent material: dispersion, absorption, and where its numbers come from.
+/* material.h: a material: dispersion, absorption, and where its numbers come from.
+ *
+ * It is transparent, with a real index, or a conductor, with n and k and nothing to do with light
+ * but to mirror it: a conductor has no attenuation, fit, published n_d or V_d, and does not
+ * extrapolate.
  *
  * A zeroed record with a name, a source and a dispersion is a valid one, but for temperature_c: 0
  * means 0 Celsius, NaN that the source is silent.
@@ -76,7 +80,8 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
 /* Whether a table may hold the record, that is: what is written of it can be read again. The name
  * has 1 to 80 printable characters and no space at its ends, there is a source, the coefficients go
  * with the model, the range ascends inside [ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM] and inside
- * the points of a tabulated model, and the formula has a real index at 1001 wavelengths over it.
+ * the points of a tabulated model, the formula has a real index at 1001 wavelengths over it, and a
+ * conductor has nothing that only a transparent material has.
  * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
 /* All of it but the last, which takes its time: what can be told without a value of the formula. */
@@ -85,9 +90,18 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
 abbe_result abbe_material_check_name(const char *name, abbe_error *error);
 
 /* n at lambda_nm into *n. ABBE_OUT_OF_RANGE outside [min_nm, max_nm] unless extrapolate;
- * ABBE_INVALID_ARGUMENT where the formula has no real value there. */
+ * ABBE_INVALID_ARGUMENT where the formula has no real value there; ABBE_UNSUPPORTED for a
+ * conductor. */
 abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
                             abbe_error *error);
+
+/* Whether it is a conductor: opaque, with a complex index, for mirrors. */
+bool abbe_material_is_conductor(const abbe_material *material);
+
+/* The complex index n + i k of a conductor at lambda_nm, straight between the published points.
+ * ABBE_OUT_OF_RANGE outside [min_nm, max_nm], always; ABBE_UNSUPPORTED for any other material. */
+abbe_result abbe_material_nk(const abbe_material *material, double lambda_nm, double *n, double *k,
+                             abbe_error *error);
 
 /* Whether lambda_nm lies outside the valid range (so that n there is extrapolated). */
 bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm);
@@ -96,7 +110,7 @@ bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm)
 double abbe_material_attenuation(const abbe_material *material, double lambda_nm);
 
 /* Whether it absorbs within a wavelength (down to 1/e: k above 0.08) in most of the range, as
- * metals do, in which light does not get on. */
+ * metals do, in which light does not get on. A conductor does. */
 bool abbe_material_is_opaque(const abbe_material *material, double min_nm, double max_nm);
 
 #ifdef __cplusplus

@@ -1,6 +1,7 @@
 #include "spectral/materials/material_record.h"
 
 #include "spectral/materials/absorption.h"
+#include "spectral/materials/conductor.h"
 #include "spectral/wavelengths.h"
 
 #include <math.h>
@@ -27,52 +28,79 @@ static const char *const interpolations[] = {"linear", "monotone", "spline", NUL
 
 /* ---- points and ranges ---- */
 
-/* [[nm, value], …] with values in [min, max]; the two arrays are freed by the caller. */
-static abbe_result read_pairs(reader *r, abbe_yaml_node list, const char *key, double min,
-                              double max, double **lambda_nm, double **value) {
-  size_t count = abbe_yaml_count(r->yaml, list);
+/* Rows of a list: wavelengths, and one or two values of each. */
+typedef struct rows {
+  size_t columns, count;
+  double *column[3];
+} rows;
+
+static void free_rows(rows *list) {
+  for (size_t k = 0; k < 3; k++) free(list->column[k]);
+}
+
+static abbe_result refuse_row(reader *r, abbe_yaml_node row, const char *key, size_t columns) {
+  if (columns == 2)
+    return abbe_yaml_fail(r->yaml, row, r->error, "'%s' wants pairs such as [550, 1.5]", key);
+  bool pair = abbe_yaml_is_sequence(r->yaml, row) && abbe_yaml_count(r->yaml, row) == 2;
+  return abbe_yaml_fail(r->yaml, row, r->error,
+                        "'%s' of a conductor wants [nm, n, k] such as [550, 0.06, 3.6]%s", key,
+                        pair ? "; this one has no k" : "");
+}
+
+/* [[nm, value], …] or, with three columns, [[nm, n, k], …], values in [min, max]; the rows are
+ * freed by the caller, also after a failure. */
+static abbe_result read_rows(reader *r, abbe_yaml_node list, const char *key, double min,
+                             double max, rows *out) {
+  const size_t count = abbe_yaml_count(r->yaml, list), columns = out->columns;
   if (!abbe_yaml_is_sequence(r->yaml, list) || count == 0 || count > ABBE_SPECTRUM_MAX_COUNT)
-    return abbe_yaml_fail(r->yaml, list, r->error, "'%s' wants a list of 1 to %d pairs [nm, value]",
-                          key, ABBE_SPECTRUM_MAX_COUNT);
-  *lambda_nm = malloc(count * sizeof(double));
-  *value = malloc(count * sizeof(double));
-  if (*lambda_nm == NULL || *value == NULL)
-    return abbe_error_set(r->error, ABBE_NO_MEMORY, "no memory for %zu points", count);
+    return abbe_yaml_fail(r->yaml, list, r->error, "'%s' wants a list of 1 to %d %s", key,
+                          ABBE_SPECTRUM_MAX_COUNT,
+                          columns == 2 ? "pairs [nm, value]" : "points [nm, n, k]");
+  out->count = count;
+  for (size_t k = 0; k < columns; k++) {
+    out->column[k] = malloc(count * sizeof(double));
+    if (out->column[k] == NULL)
+      return abbe_error_set(r->error, ABBE_NO_MEMORY, "no memory for %zu points", count);
+  }
+  const double *lambda_nm = out->column[0];
   for (size_t i = 0; i < count; i++) {
-    abbe_yaml_node pair = abbe_yaml_item(r->yaml, list, i);
-    if (!abbe_yaml_is_sequence(r->yaml, pair) || abbe_yaml_count(r->yaml, pair) != 2)
-      return abbe_yaml_fail(r->yaml, pair, r->error, "'%s' wants pairs such as [550, 1.5]", key);
-    abbe_result result =
-        abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, pair, 0), key, ABBE_SPECTRUM_LOW_NM,
-                         ABBE_SPECTRUM_HIGH_NM, *lambda_nm + i, r->error);
-    if (result == ABBE_OK)
-      result = abbe_yaml_number(r->yaml, abbe_yaml_item(r->yaml, pair, 1), key, min, max,
-                                *value + i, r->error);
-    if (result != ABBE_OK) return result;
-    if (i > 0 && (*lambda_nm)[i] <= (*lambda_nm)[i - 1])
-      return abbe_yaml_fail(r->yaml, pair, r->error,
-                            "'%s': %g nm follows %g nm; wavelengths must ascend", key,
-                            (*lambda_nm)[i], (*lambda_nm)[i - 1]);
+    abbe_yaml_node row = abbe_yaml_item(r->yaml, list, i);
+    if (!abbe_yaml_is_sequence(r->yaml, row) || abbe_yaml_count(r->yaml, row) != columns)
+      return refuse_row(r, row, key, columns);
+    for (size_t k = 0; k < columns; k++) {
+      abbe_result result = abbe_yaml_number(
+          r->yaml, abbe_yaml_item(r->yaml, row, k), key, k == 0 ? ABBE_SPECTRUM_LOW_NM : min,
+          k == 0 ? ABBE_SPECTRUM_HIGH_NM : max, &out->column[k][i], r->error);
+      if (result != ABBE_OK) return result;
+    }
+    if (i > 0 && lambda_nm[i] <= lambda_nm[i - 1])
+      return abbe_yaml_fail(r->yaml, row, r->error,
+                            "'%s': %g nm follows %g nm; wavelengths must ascend", key, lambda_nm[i],
+                            lambda_nm[i - 1]);
   }
   return ABBE_OK;
 }
 
+/* What a spectrum cannot be made of, as a complaint about the list. */
+static abbe_result tell(reader *r, abbe_yaml_node list, const char *key, abbe_result result,
+                        const abbe_error *why) {
+  if (result == ABBE_INVALID_ARGUMENT)
+    return abbe_yaml_fail(r->yaml, list, r->error, "'%s': %s", key, why->text);
+  return result == ABBE_OK ? ABBE_OK : abbe_error_set(r->error, result, "%s", why->text);
+}
+
 static abbe_result read_points(reader *r, abbe_yaml_node list, const char *key, double min,
                                double max, abbe_interpolation interpolation, abbe_spectrum **out) {
-  double *lambda_nm = NULL, *value = NULL;
-  abbe_result result = read_pairs(r, list, key, min, max, &lambda_nm, &value);
+  rows pairs = {.columns = 2};
+  abbe_error why = {0};
+  abbe_result result = read_rows(r, list, key, min, max, &pairs);
   if (result == ABBE_OK) {
-    abbe_error why = {0};
     abbe_spectrum_free(*out);
-    result = abbe_spectrum_make(lambda_nm, value, abbe_yaml_count(r->yaml, list), interpolation,
-                                out, &why);
-    if (result == ABBE_INVALID_ARGUMENT)
-      result = abbe_yaml_fail(r->yaml, list, r->error, "'%s': %s", key, why.text);
-    else if (result != ABBE_OK)
-      abbe_error_set(r->error, result, "%s", why.text);
+    result =
+        abbe_spectrum_make(pairs.column[0], pairs.column[1], pairs.count, interpolation, out, &why);
+    result = tell(r, list, key, result, &why);
   }
-  free(lambda_nm);
-  free(value);
+  free_rows(&pairs);
   return result;
 }
 
@@ -116,6 +144,19 @@ static abbe_result read_model(reader *r, abbe_dispersion_model *model) {
   return result;
 }
 
+static abbe_result read_conductor(reader *r, abbe_yaml_node points) {
+  rows list = {.columns = 3};
+  abbe_error why = {0};
+  abbe_result result = read_rows(r, points, "points", 0, 1e3, &list);
+  if (result == ABBE_OK) {
+    result = abbe_conductor_make(list.column[0], list.column[1], list.column[2], list.count,
+                                 &r->material->dispersion, &why);
+    result = tell(r, points, "points", result, &why);
+  }
+  free_rows(&list);
+  return result;
+}
+
 static abbe_result read_tabulated(reader *r) {
   abbe_material *m = r->material;
   abbe_yaml_node points;
@@ -123,7 +164,9 @@ static abbe_result read_tabulated(reader *r) {
   abbe_result result = abbe_yaml_require(r->yaml, r->record, "points", &points, r->error);
   if (result == ABBE_OK) result = read_interpolation(r, r->record, &interpolation);
   if (result == ABBE_OK)
-    result = read_points(r, points, "points", 1e-3, 1e3, interpolation, &m->dispersion.table);
+    result = abbe_material_is_conductor(m)
+                 ? read_conductor(r, points)
+                 : read_points(r, points, "points", 1e-3, 1e3, interpolation, &m->dispersion.table);
   if (result != ABBE_OK) return result;
   const double *lambda_nm = abbe_spectrum_lambda_nm(m->dispersion.table);
   double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(m->dispersion.table) - 1];
@@ -171,11 +214,32 @@ static abbe_result read_formula(reader *r) {
   return result != ABBE_OK ? result : read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm);
 }
 
+/* A key that the model does not read would be silently without effect. */
+static abbe_result check_idle_keys(reader *r) {
+  static const char *const of_points[] = {"coefficients", NULL};
+  static const char *const of_formulas[] = {"points", "interpolation", NULL};
+  static const char *const of_conductors[] = {
+      "coefficients", "interpolation", "extrapolate", "absorption", "fit", "n_d", "v_d", NULL};
+  abbe_dispersion_model model = r->material->dispersion.model;
+  const char *const *idle = model == ABBE_DISPERSION_CONDUCTOR   ? of_conductors
+                            : model == ABBE_DISPERSION_TABULATED ? of_points
+                                                                 : of_formulas;
+  for (; *idle != NULL; idle++) {
+    abbe_yaml_node node = abbe_yaml_get(r->yaml, r->record, *idle);
+    if (node.id != 0)
+      return abbe_yaml_fail(r->yaml, node, r->error, "the model %s has no use for '%s'",
+                            abbe_dispersion_model_name(model), *idle);
+  }
+  return ABBE_OK;
+}
+
 static abbe_result read_dispersion(reader *r) {
   abbe_dispersion *d = &r->material->dispersion;
   abbe_result result = read_model(r, &d->model);
+  if (result == ABBE_OK) result = check_idle_keys(r);
   if (result != ABBE_OK) return result;
-  result = d->model == ABBE_DISPERSION_TABULATED ? read_tabulated(r) : read_formula(r);
+  bool points = d->model == ABBE_DISPERSION_TABULATED || d->model == ABBE_DISPERSION_CONDUCTOR;
+  result = points ? read_tabulated(r) : read_formula(r);
   if (result != ABBE_OK || r->lenient) return result;
   abbe_error why;
   if (abbe_material_check(r->material, &why) != ABBE_OK)
@@ -209,14 +273,13 @@ static abbe_result read_attenuation(reader *r, abbe_yaml_node where) {
 /* Pairs into points, for what is converted. */
 static abbe_result read_list(reader *r, abbe_yaml_node where, const char *key, double max,
                              abbe_points *points) {
-  double *lambda_nm = NULL, *value = NULL;
-  abbe_yaml_node list = abbe_yaml_get(r->yaml, where, key);
-  abbe_result result = read_pairs(r, list, key, 0, max, &lambda_nm, &value);
-  for (size_t i = 0; result == ABBE_OK && i < abbe_yaml_count(r->yaml, list); i++)
-    result = abbe_points_add(points, (abbe_point){.lambda_nm = lambda_nm[i], .value = value[i]},
-                             r->error);
-  free(lambda_nm);
-  free(value);
+  rows pairs = {.columns = 2};
+  abbe_result result = read_rows(r, abbe_yaml_get(r->yaml, where, key), key, 0, max, &pairs);
+  for (size_t i = 0; result == ABBE_OK && i < pairs.count; i++)
+    result = abbe_points_add(
+        points, (abbe_point){.lambda_nm = pairs.column[0][i], .value = pairs.column[1][i]},
+        r->error);
+  free_rows(&pairs);
   return result;
 }
 
@@ -391,20 +454,6 @@ static abbe_result check_record_keys(reader *r) {
   return abbe_yaml_check_keys(r->yaml, r->record, "a material", r->error);
 }
 
-/* A key that the model does not read would be silently without effect. */
-static abbe_result check_idle_keys(reader *r) {
-  bool tabulated = r->material->dispersion.model == ABBE_DISPERSION_TABULATED;
-  const char *idle[] = {tabulated ? "coefficients" : "points",
-                        tabulated ? "coefficients" : "interpolation"};
-  for (int i = 0; i < 2; i++) {
-    abbe_yaml_node node = abbe_yaml_get(r->yaml, r->record, idle[i]);
-    if (node.id != 0)
-      return abbe_yaml_fail(r->yaml, node, r->error, "the model %s has no use for '%s'",
-                            abbe_dispersion_model_name(r->material->dispersion.model), idle[i]);
-  }
-  return ABBE_OK;
-}
-
 static abbe_result read_record(reader *r) {
   abbe_material *m = r->material;
   m->line = abbe_yaml_line(r->yaml, r->record);
@@ -412,7 +461,6 @@ static abbe_result read_record(reader *r) {
   abbe_result result = check_record_keys(r);
   if (result == ABBE_OK) result = read_texts(r);
   if (result == ABBE_OK) result = read_dispersion(r);
-  if (result == ABBE_OK) result = check_idle_keys(r);
   if (result == ABBE_OK)
     result = abbe_yaml_get_bool(r->yaml, r->record, "extrapolate", &m->extrapolate, r->error);
   if (result == ABBE_OK)

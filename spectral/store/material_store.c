@@ -1,6 +1,7 @@
 #include "spectral/store/material_store.h"
 
 #include "base/utf8.h"
+#include "spectral/materials/conductor.h"
 #include "spectral/store/material_store_columns.h"
 
 #include <fcntl.h>
@@ -206,6 +207,25 @@ static abbe_result read_spectrum(reader *r, abbe_store_column column,
   return result;
 }
 
+static abbe_result read_conductor(reader *r, abbe_dispersion *out) {
+  const unsigned char *bytes;
+  size_t count;
+  abbe_error why = {0};
+  abbe_result result = read_bytes(r, ABBE_STORE_points, 3, &bytes, &count);
+  if (result != ABBE_OK || count == 0) return result;
+  double *column = malloc(3 * count * sizeof *column);
+  if (column == NULL) return no_memory(r);
+  for (size_t i = 0; i < 3 * count; i++) column[i % 3 * count + i / 3] = get_double(bytes + 8 * i);
+  bool inside = column[0] >= ABBE_SPECTRUM_LOW_NM && column[count - 1] <= ABBE_SPECTRUM_HIGH_NM;
+  result = inside
+               ? abbe_conductor_make(column, column + count, column + 2 * count, count, out, &why)
+               : ABBE_INVALID_ARGUMENT;
+  free(column);
+  if (result == ABBE_OK || result == ABBE_NO_MEMORY)
+    return result == ABBE_OK ? ABBE_OK : no_memory(r);
+  return damaged(r, ABBE_STORE_points, "cannot be those of a conductor");
+}
+
 static abbe_result read_fit(reader *r, abbe_store_column column, size_t terms,
                             abbe_material_fit *out) {
   double value[ABBE_STORE_MAX_TERMS + 3];
@@ -256,7 +276,10 @@ static abbe_result read_dispersion(reader *r) {
     result = read_numbers(r, ABBE_STORE_coefficients, 1, ABBE_DISPERSION_MAX_COEFFICIENTS, INFINITY,
                           d->c, &d->count);
   if (result == ABBE_OK)
-    result = read_spectrum(r, ABBE_STORE_points, ABBE_STORE_interpolation, 1e-3, 1e3, &d->table);
+    result =
+        d->model == ABBE_DISPERSION_CONDUCTOR
+            ? read_conductor(r, d)
+            : read_spectrum(r, ABBE_STORE_points, ABBE_STORE_interpolation, 1e-3, 1e3, &d->table);
   const double low = ABBE_SPECTRUM_LOW_NM, high = ABBE_SPECTRUM_HIGH_NM;
   if (result == ABBE_OK) result = read_number(r, ABBE_STORE_from_nm, low, high, &m->min_nm);
   return result == ABBE_OK ? read_number(r, ABBE_STORE_to_nm, low, high, &m->max_nm) : result;

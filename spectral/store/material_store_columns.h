@@ -16,7 +16,7 @@ extern "C" {
 enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 1, ABBE_STORE_MAX_TERMS = 3 };
 
 /* X(name, type): the columns after id. Lists of numbers are doubles, the least byte first; points
- * are pairs of them, nm and value. What is large comes last: SQLite reads a row from its beginning.
+ * are pairs of them, nm and value, or nm, n and k of a conductor. What is large comes last: SQLite reads a row from its beginning.
  */
 #define ABBE_STORE_COLUMNS(X)                                                                      \
   X(name, "TEXT NOT NULL UNIQUE COLLATE NOCASE")                                                   \

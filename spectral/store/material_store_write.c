@@ -60,6 +60,19 @@ static int bind_spectrum(sqlite3_stmt *q, abbe_store_column column, abbe_store_c
   return code == SQLITE_OK ? bind_text(q, interpolation, name) : code;
 }
 
+/* nm, n and k. */
+static int bind_conductor(sqlite3_stmt *q, const abbe_dispersion *d) {
+  size_t count = abbe_spectrum_count(d->table);
+  unsigned char *bytes = malloc(24 * count);
+  if (bytes == NULL) return SQLITE_NOMEM;
+  for (size_t i = 0; i < count; i++) {
+    put_double(bytes + 24 * i, abbe_spectrum_lambda_nm(d->table)[i]);
+    put_double(bytes + 24 * i + 8, abbe_spectrum_value(d->table)[i]);
+    put_double(bytes + 24 * i + 16, abbe_spectrum_value(d->k)[i]);
+  }
+  return sqlite3_bind_blob(q, ABBE_STORE_points + 1, bytes, (int)(24 * count), free);
+}
+
 static int bind_fit(sqlite3_stmt *q, abbe_store_column column, const abbe_material_fit *fit) {
   double value[ABBE_STORE_MAX_TERMS + 3];
   if (fit->terms == 0 || fit->terms > ABBE_STORE_MAX_TERMS) return SQLITE_OK;
@@ -107,7 +120,9 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
   if (code == SQLITE_OK) code = bind_fit(q, ABBE_STORE_cauchy2, &m->fit[0]);
   if (code == SQLITE_OK) code = bind_fit(q, ABBE_STORE_cauchy3, &m->fit[1]);
   if (code == SQLITE_OK)
-    code = bind_spectrum(q, ABBE_STORE_points, ABBE_STORE_interpolation, d->table);
+    code = abbe_material_is_conductor(m)
+               ? bind_conductor(q, d)
+               : bind_spectrum(q, ABBE_STORE_points, ABBE_STORE_interpolation, d->table);
   if (code == SQLITE_OK)
     code = bind_spectrum(q, ABBE_STORE_attenuation_per_m, ABBE_STORE_attenuation_interpolation,
                          m->attenuation);

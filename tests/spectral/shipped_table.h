@@ -20,6 +20,14 @@ static inline int shipped_free(void **state) {
   return 0;
 }
 
+/* Rows of it that are no conductors. */
+static inline size_t shipped_glasses(void) {
+  size_t count = 0;
+  for (size_t i = 0; i < shipped.count; i++)
+    count += !abbe_material_is_conductor(&shipped.material[i]);
+  return count;
+}
+
 static inline const abbe_material *shipped_material(const char *name) {
   const abbe_material *m = NULL;
   abbe_error error = {0};

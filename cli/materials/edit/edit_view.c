@@ -58,7 +58,12 @@ static void draw_numbers(const abbe_edit_state *a, int y) {
   const abbe_material *m = abbe_edit_state_shown(a);
   char line[200] = "no material: ", text[4][32];
   abbe_material_numbers d;
-  if (m != NULL) {
+  if (m != NULL && abbe_material_is_conductor(m)) {
+    double n = NAN, k = NAN;
+    abbe_material_nk(m, ABBE_LINE_D_NM, &n, &k, NULL);
+    snprintf(line, sizeof line, "a conductor: n %s   k %s at %.1f nm", number(text[0], "%.4f", n),
+             number(text[1], "%.4f", k), ABBE_LINE_D_NM);
+  } else if (m != NULL) {
     abbe_material_numbers_make(m, &d);
     snprintf(line, sizeof line, "n_d %s   V_d %s   B-G %s   n_F - n_C %s",
              number(text[0], "%.6f", d.n_d), number(text[1], "%.3f", d.v_d),

@@ -36,9 +36,11 @@ static void the_shipped_table_becomes_a_catalogue(void **state) {
   assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
   abbe_report report = {0};
   abbe_material_table back = reread(&table, &report);
-  assert_int_equal(back.count, table.count);
-  for (size_t i = 0; i < back.count; i++) {
-    const abbe_material *a = &table.material[i], *b = &back.material[i];
+  size_t glasses = 0;
+  for (size_t i = 0; i < table.count; i++) {
+    if (abbe_material_is_conductor(&table.material[i])) continue;
+    assert_true(glasses < back.count);
+    const abbe_material *a = &table.material[i], *b = &back.material[glasses++];
     assert_string_equal(a->name, b->name);
     assert_string_equal(a->source, b->source);
     assert_near(a->min_nm, b->min_nm, 0);
@@ -53,12 +55,14 @@ static void the_shipped_table_becomes_a_catalogue(void **state) {
     assert_near(b->published_n_d, n_d > 1 ? n_d : 0, 5e-6); /* 1 is how catalogues say nothing */
   }
   char count[80];
-  snprintf(count, sizeof count, "no place for a description (%zu materials: ", table.count);
+  assert_int_equal(back.count, glasses);
+  snprintf(count, sizeof count, "no place for a description (%zu materials: ", glasses);
   assert_true(noted(&report, count));
   assert_true(noted(&report, "no place for a warning"));
   assert_true(noted(&report, "no place for recorded fits"));
   assert_true(noted(&report, "cannot allow use outside"));
-  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], 0);
+  assert_true(noted(&report, "it is a conductor"));
+  assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], table.count - glasses);
   abbe_report_free(&report);
   abbe_material_table_free(&back);
   abbe_material_table_free(&table);

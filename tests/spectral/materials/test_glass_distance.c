@@ -13,7 +13,7 @@ static void numbers_find_their_own_glass(void **state) {
   (void)state;
   for (size_t i = 0; i < shipped.count; i++) {
     abbe_dispersion_numbers own = abbe_dispersion_describe(&shipped.material[i].dispersion);
-    if (own.n_d <= 1) continue; /* air */
+    if (!(own.n_d > 1)) continue; /* air, metals */
     abbe_glass_distances d;
     assert_int_equal(abbe_glass_distance_to_numbers(&shipped, own.n_d, own.v_d, 3, &d, NULL),
                      ABBE_OK);
@@ -45,7 +45,7 @@ static void the_distance_is_a_difference_of_index(void **state) {
                    ABBE_OK);
   abbe_glass_distances d;
   assert_int_equal(abbe_glass_distance_to_numbers(&shipped, 1.52, 60, 0, &d, NULL), ABBE_OK);
-  assert_int_equal(d.count + d.skipped, shipped.count);
+  assert_int_equal(d.count + d.skipped, shipped_glasses());
   for (size_t i = 0; i < d.count; i++)
     if (d.nearest[i].index == 1) assert_near(d.nearest[i].rms, direct.rms, 1e-9);
   abbe_glass_distances_free(&d);
@@ -86,7 +86,7 @@ static void materials_without_data_there_are_skipped(void **state) {
                                                 2000, 0, &d, NULL),
                    ABBE_OK);
   assert_true(d.skipped > 0);
-  assert_int_equal(d.count + d.skipped, shipped.count);
+  assert_int_equal(d.count + d.skipped, shipped_glasses());
   for (size_t i = 0; i < d.count; i++) assert_string_not_equal(name_of(&d, i), "water");
   abbe_glass_distances_free(&d);
   const abbe_material_table empty = {0};

@@ -1,0 +1,375 @@
+#include "tests/check.h"
+#include "tests/spectral/same_material.h"
+
+#include "spectral/editing/check.h"
+#include "spectral/formats/agf_write.h"
+#include "spectral/formats/csv_write.h"
+#include "spectral/formats/material_import.h"
+#include "spectral/formats/material_table_load.h"
+#include "spectral/formats/material_write.h"
+#include "spectral/formats/rii.h"
+#include "spectral/formats/rii_write.h"
+#include "spectral/formats/shader_export.h"
+#include "spectral/materials/conductor.h"
+#include "spectral/materials/glass_distance.h"
+#include "spectral/materials/material_numbers.h"
+#include "spectral/materials/table_compare.h"
+#include "spectral/store/material_store.h"
+#include "spectral/store/material_store_write.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+/* Gold [JohnsonChristy1972]. */
+static const double gold_nm[] = {471.4, 495.9, 520.9, 548.6, 582.1, 616.8, 659.5};
+static const double gold_n[] = {1.31, 1.04, 0.62, 0.43, 0.29, 0.21, 0.14};
+static const double gold_k[] = {1.849, 1.833, 2.081, 2.455, 2.863, 3.272, 3.697};
+enum { COUNT = 7 };
+
+static abbe_material gold(void) {
+  abbe_material m = {.name = strdup("gold"),
+                     .source = strdup("[JohnsonChristy1972]"),
+                     .min_nm = gold_nm[0],
+                     .max_nm = gold_nm[COUNT - 1],
+                     .temperature_c = NAN};
+  assert_int_equal(abbe_conductor_make(gold_nm, gold_n, gold_k, COUNT, &m.dispersion, NULL),
+                   ABBE_OK);
+  assert_int_equal(abbe_material_check(&m, NULL), ABBE_OK);
+  return m;
+}
+
+/* ---- n and k ---- */
+
+static void n_and_k_run_straight_between_the_points(void **state) {
+  (void)state;
+  abbe_material m = gold();
+  double n = 0, k = 0;
+  assert_true(abbe_material_is_conductor(&m));
+  for (int i = 0; i < COUNT; i++) {
+    assert_int_equal(abbe_material_nk(&m, gold_nm[i], &n, &k, NULL), ABBE_OK);
+    assert_near(n, gold_n[i], 1e-15);
+    assert_near(k, gold_k[i], 1e-15);
+  }
+  assert_int_equal(abbe_material_nk(&m, (520.9 + 548.6) / 2, &n, &k, NULL), ABBE_OK);
+  assert_near(n, (0.62 + 0.43) / 2, 1e-13);
+  assert_near(k, (2.081 + 2.455) / 2, 1e-13);
+  abbe_material_free(&m);
+}
+
+static void the_range_is_that_of_the_points(void **state) {
+  (void)state;
+  abbe_material m = gold();
+  abbe_error error;
+  double n = 7, k = 8;
+  assert_int_equal(abbe_material_nk(&m, 471, &n, &k, &error), ABBE_OUT_OF_RANGE);
+  assert_contains(error.text, "gold has no n and k at 471 nm");
+  assert_contains(error.text, "from 471.4 to 659.5 nm");
+  assert_int_equal(abbe_material_nk(&m, 660, &n, &k, NULL), ABBE_OUT_OF_RANGE);
+  assert_int_equal(abbe_material_nk(&m, NAN, &n, &k, NULL), ABBE_OUT_OF_RANGE);
+  assert_near(n, 7, 0);
+  assert_near(k, 8, 0);
+  abbe_material_free(&m);
+}
+
+static void glasses_and_metals_are_not_mistaken(void **state) {
+  (void)state;
+  abbe_material m = gold();
+  abbe_error error;
+  double n = 7, k = 8;
+  assert_int_equal(abbe_material_n(&m, 550, &n, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "gold is a conductor");
+  assert_true(isnan(abbe_dispersion_n(&m.dispersion, 550)));
+  assert_true(abbe_material_is_opaque(&m, 380, 780));
+  abbe_material_numbers numbers;
+  abbe_material_numbers_make(&m, &numbers);
+  assert_true(isnan(numbers.n_d) && isnan(numbers.v_d) && isnan(numbers.b_g));
+  abbe_material glass = {.name = "glass",
+                         .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
+                         .min_nm = 400,
+                         .max_nm = 700};
+  assert_false(abbe_material_is_conductor(&glass));
+  assert_int_equal(abbe_material_nk(&glass, 550, &n, &k, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "glass is no conductor");
+  assert_false(abbe_dispersion_nk(&glass.dispersion, 550, &n, &k));
+  assert_near(n, 7, 0);
+  abbe_material_free(&m);
+}
+
+static void points_that_are_none_are_refused(void **state) {
+  (void)state;
+  const double nm[] = {400, 500, 500}, n[] = {1, 0, 1e3}, k[] = {2, 2, -1}, bad[] = {1, NAN, 1};
+  const double most[] = {1001, 1, 1};
+  abbe_dispersion d;
+  abbe_error error;
+  assert_int_equal(abbe_conductor_make(nm, n, k, 2, &d, &error), ABBE_OK);
+  abbe_dispersion_free(&d);
+  assert_int_equal(abbe_conductor_make(nm, n, n, 3, &d, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_conductor_make(nm, bad, k, 2, &d, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_conductor_make(nm, n, bad, 2, &d, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_conductor_make(nm, n, k + 1, 2, &d, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "from 0 to 1000");
+  assert_int_equal(abbe_conductor_make(nm, most, k, 2, &d, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_conductor_make(nm, n, k, 0, &d, &error), ABBE_INVALID_ARGUMENT);
+  assert_null(d.table);
+  d = (abbe_dispersion){.model = ABBE_DISPERSION_CONDUCTOR};
+  assert_int_equal(abbe_dispersion_check(&d, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "wants points of n and of k");
+}
+
+static void a_conductor_has_nothing_of_a_glass(void **state) {
+  (void)state;
+  abbe_material m = gold();
+  abbe_error error;
+  m.extrapolate = true;
+  assert_int_equal(abbe_material_check(&m, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "gold: the model conductor has no use for 'extrapolate'");
+  m.extrapolate = false;
+  m.published_n_d = 0.3;
+  assert_int_equal(abbe_material_check(&m, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "'n_d'");
+  m.published_n_d = 0;
+  m.fit[1].terms = 3;
+  assert_int_equal(abbe_material_check(&m, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "'fit'");
+  m.fit[1].terms = 0;
+  m.max_nm = 700;
+  assert_int_equal(abbe_material_check(&m, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "wider than its points");
+  abbe_material_free(&m);
+}
+
+/* ---- in a table ---- */
+
+static void refuses(const char *rest, const char *part) {
+  char text[1024];
+  abbe_material_table t;
+  abbe_error error = {0};
+  snprintf(text, sizeof text, "materials:\n- name: x\n  source: s\n  model: conductor\n%s", rest);
+  assert_int_equal(abbe_material_table_parse(text, strlen(text), "t.yaml", &t, &error),
+                   ABBE_SCHEMA);
+  assert_contains(error.text, part);
+}
+
+static void bad_records_are_refused(void **state) {
+  (void)state;
+  refuses("", "'points' is missing");
+  refuses("  points: []\n", "t.yaml:5: 'points' wants a list of 1 to 65536 points [nm, n, k]");
+  refuses("  points: gold\n", "points [nm, n, k]");
+  refuses("  points: [[400, 1, 2]]\n", "give it two points or more");
+  refuses("  points:\n  - [400, 1, 2]\n  - [500, 1]\n",
+          "t.yaml:7: 'points' of a conductor wants [nm, n, k] such as [550, 0.06, 3.6]; this one "
+          "has no k");
+  refuses("  points: [[400, 1, 2], [500, 1, 2, 3]]\n", "wants [nm, n, k]");
+  refuses("  points: [[400, 1, 2], [500, 1, nan]]\n", "t.yaml:5: 'points: nan'");
+  refuses("  points: [[400, 1, 2], [500, inf, 1]]\n", "'points: inf'");
+  refuses("  points: [[400, 1, 2], [500, -0.1, 1]]\n", "'points: -0.1'");
+  refuses("  points: [[400, 1, 2], [500, 0.1, -1]]\n", "'points: -1'");
+  refuses("  points: [[400, 1, 2], [500, 0.1, 2000]]\n", "range from 0 to 1000");
+  refuses("  points:\n  - [500, 1, 2]\n  - [400, 1, 2]\n",
+          "t.yaml:7: 'points': 400 nm follows 500 nm; wavelengths must ascend");
+  refuses("  points: [[400, 1, 2], [500, 1, 2]]\n  range_nm: [380, 500]\n", "wider than the");
+  refuses("  points: [[400, 1, 2], [500, 1, 2]]\n  extrapolate: true\n",
+          "t.yaml:6: the model conductor has no use for 'extrapolate'");
+  refuses("  points: [[400, 1, 2], [500, 1, 2]]\n  absorption: {k: [[400, 1]]}\n",
+          "no use for 'absorption'");
+  refuses("  points: [[400, 1, 2], [500, 1, 2]]\n  interpolation: spline\n",
+          "no use for 'interpolation'");
+  refuses("  coefficients: [1]\n  points: [[400, 1, 2]]\n", "no use for 'coefficients'");
+  refuses("  points: [[400, 1, 2], [500, 1, 2]]\n  n_d: 1.5\n", "no use for 'n_d'");
+}
+
+static abbe_material_table table_of(abbe_material *m) {
+  abbe_material_table t = {0};
+  assert_int_equal(abbe_material_table_append(&t, m, NULL), ABBE_OK);
+  return t;
+}
+
+static void same_conductor(const abbe_material *a, const abbe_material *b) {
+  assert_same_record(a, b);
+  assert_true(same_spectrum(a->dispersion.k, b->dispersion.k, 0));
+}
+
+static void yaml_and_stores_keep_a_conductor(void **state) {
+  (void)state;
+  char *text = NULL, path[] = "/tmp/abbe-conductor-XXXXXX";
+  size_t size = 0;
+  abbe_material m = gold();
+  m.min_nm = 480; /* its range may be narrower */
+  abbe_material_table t = table_of(&m), back;
+  FILE *to = open_memstream(&text, &size);
+  assert_int_equal(abbe_material_table_write(&t, to, NULL), ABBE_OK);
+  fclose(to);
+  assert_contains(text, "    model: conductor\n    points: [\n      [471.4, 1.31, 1.849], [495.9,");
+  assert_int_equal(abbe_material_table_parse(text, size, "t", &back, NULL), ABBE_OK);
+  same_conductor(&t.material[0], &back.material[0]);
+  abbe_material_table_free(&back);
+  free(text);
+  to = fdopen(mkstemp(path), "w");
+  assert_int_equal(abbe_material_store_write(&t, to, NULL), ABBE_OK);
+  fclose(to);
+  assert_int_equal(abbe_material_store_read(path, NULL, 0, NULL, &back, NULL), ABBE_OK);
+  same_conductor(&t.material[0], &back.material[0]);
+  abbe_material_table_free(&back);
+  unlink(path);
+  abbe_material_table_free(&t);
+}
+
+/* ---- in other forms ---- */
+
+static void refractiveindex_info_keeps_a_conductor(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  abbe_material m = gold(), back;
+  abbe_report report = {0};
+  FILE *to = open_memstream(&text, &size);
+  assert_int_equal(abbe_rii_write(&m, to, &report, NULL), ABBE_OK);
+  fclose(to);
+  assert_int_equal(report.count, 0);
+  assert_contains(text, "  - type: tabulated nk\n    data: |\n        0.4714 1.31 1.849\n");
+  assert_int_equal(abbe_rii_parse(text, size, "gold.yml", "gold", &back, &report, NULL), ABBE_OK);
+  same_conductor(&m, &back);
+  assert_int_equal(report.kinds[ABBE_NOTE_CHANGED], 1);
+  abbe_report_free(&report);
+  abbe_material_free(&back);
+  abbe_material_free(&m);
+  free(text);
+}
+
+/* Where light gets through most of the visible, k stays absorption; so it does beyond the visible,
+ * and where n and k stand at different wavelengths. */
+static void what_is_no_metal_stays_transparent(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      "DATA:\n  - type: tabulated nk\n    data: |\n      0.4 1.5 0.5\n      0.45 1.5 0\n"
+      "      0.7 1.5 0\n",
+      "DATA:\n  - type: tabulated nk\n    data: |\n      1.4 1.5 5\n      2.45 1.5 5\n",
+      "DATA:\n  - type: tabulated n\n    data: |\n      0.4 1.5\n      0.7 1.4\n"
+      "  - type: tabulated k\n    data: |\n      0.4 1.5\n      0.5 1.5\n      0.7 1.4\n"};
+  for (int i = 0; i < 3; i++) {
+    abbe_material m;
+    assert_int_equal(abbe_rii_parse(texts[i], strlen(texts[i]), "a.yml", "a", &m, NULL, NULL),
+                     ABBE_OK);
+    assert_false(abbe_material_is_conductor(&m));
+    assert_non_null(m.attenuation);
+    abbe_material_free(&m);
+  }
+}
+
+static void csv_keeps_a_conductor(void **state) {
+  (void)state;
+  char path[] = "/tmp/abbe-conductor-XXXXXX";
+  abbe_material m = gold();
+  abbe_material_table back = {0};
+  abbe_report report = {0};
+  FILE *to = fdopen(mkstemp(path), "w");
+  assert_int_equal(abbe_csv_write(&m, NULL, to, NULL, NULL), ABBE_OK);
+  fclose(to);
+  abbe_import_options options = {
+      .format = ABBE_IMPORT_CSV, .name = "gold", .source = "[JohnsonChristy1972]"};
+  assert_int_equal(abbe_import_load(path, &options, &back, &report, NULL), ABBE_OK);
+  same_conductor(&m, &back.material[0]);
+  abbe_report_free(&report);
+  abbe_material_table_free(&back);
+  abbe_material_free(&m);
+  unlink(path);
+}
+
+static void catalogues_of_glass_leave_a_conductor_out(void **state) {
+  (void)state;
+  abbe_material m = gold();
+  abbe_material_table t = table_of(&m);
+  const struct {
+    int shader; /* -1: AGF */
+    size_t skipped;
+    const char *part;
+  } rows[] = {{-1, 1, "CC"},
+              {ABBE_SHADER_POVRAY, 1, "#version"},
+              {ABBE_SHADER_MDL, 1, "mdl 1.6"},
+              {ABBE_SHADER_GLTF, 1, "\"materials\""},
+              {ABBE_SHADER_PBRT, 0, "\"string type\" \"conductor\""}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    char *text = NULL;
+    size_t size = 0;
+    abbe_report report = {0};
+    FILE *to = open_memstream(&text, &size);
+    assert_int_equal(rows[i].shader < 0
+                         ? abbe_agf_write(&t, to, &report, NULL)
+                         : abbe_shader_write((abbe_shader)rows[i].shader, &t, to, &report, NULL),
+                     ABBE_OK);
+    fclose(to);
+    assert_int_equal(report.kinds[ABBE_NOTE_SKIPPED], rows[i].skipped);
+    assert_contains(text, rows[i].part);
+    assert_null(strstr(text, "nan"));
+    free(text);
+    abbe_report_free(&report);
+  }
+  abbe_material_table_free(&t);
+}
+
+/* ---- among glasses ---- */
+
+static void no_glass_is_near_a_conductor(void **state) {
+  (void)state;
+  abbe_material m = gold();
+  abbe_material_table t = table_of(&m);
+  abbe_glass_distances d;
+  assert_int_equal(abbe_glass_distance_to_numbers(&t, 1.5, 60, 0, &d, NULL), ABBE_OK);
+  assert_int_equal(d.count, 0);
+  assert_int_equal(d.skipped, 0);
+  abbe_glass_distances_free(&d);
+  abbe_material_table_free(&t);
+}
+
+static void a_change_of_k_is_told(void **state) {
+  (void)state;
+  abbe_material a = gold(), b = gold();
+  double k[COUNT];
+  memcpy(k, gold_k, sizeof k);
+  k[3] += 0.1;
+  abbe_dispersion_free(&b.dispersion);
+  assert_int_equal(abbe_conductor_make(gold_nm, gold_n, k, COUNT, &b.dispersion, NULL), ABBE_OK);
+  abbe_material_table first = table_of(&a), second = table_of(&b);
+  abbe_table_difference d;
+  assert_int_equal(abbe_table_compare(&first, &second, &d, NULL), ABBE_OK);
+  assert_int_equal(d.row[0].parts, 1u << ABBE_ROW_PART_POINTS);
+  assert_true(isnan(d.row[0].index.max));
+  abbe_table_difference_free(&d);
+  assert_int_equal(abbe_table_compare(&first, &first, &d, NULL), ABBE_OK);
+  assert_int_equal(d.row[0].kind, ABBE_ROW_SAME);
+  abbe_table_difference_free(&d);
+  abbe_material_table_free(&first);
+  abbe_material_table_free(&second);
+}
+
+static void the_check_knows_a_conductor(void **state) {
+  (void)state;
+  abbe_material m = gold();
+  abbe_findings found = {0};
+  assert_int_equal(abbe_check_material(&m, NULL, &found, NULL), ABBE_OK);
+  assert_int_equal(found.count, 1);
+  assert_int_equal(found.finding[0].kind, ABBE_FINDING_DARK);
+  assert_contains(found.finding[0].fix, "points that reach further");
+  abbe_findings_free(&found);
+  abbe_material_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(n_and_k_run_straight_between_the_points),
+      cmocka_unit_test(the_range_is_that_of_the_points),
+      cmocka_unit_test(glasses_and_metals_are_not_mistaken),
+      cmocka_unit_test(points_that_are_none_are_refused),
+      cmocka_unit_test(a_conductor_has_nothing_of_a_glass),
+      cmocka_unit_test(bad_records_are_refused),
+      cmocka_unit_test(yaml_and_stores_keep_a_conductor),
+      cmocka_unit_test(refractiveindex_info_keeps_a_conductor),
+      cmocka_unit_test(what_is_no_metal_stays_transparent),
+      cmocka_unit_test(csv_keeps_a_conductor),
+      cmocka_unit_test(catalogues_of_glass_leave_a_conductor_out),
+      cmocka_unit_test(no_glass_is_near_a_conductor),
+      cmocka_unit_test(a_change_of_k_is_told),
+      cmocka_unit_test(the_check_knows_a_conductor),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
