@@ -76,7 +76,7 @@ static abbe_result report(const request *q, const abbe_scene *scene, abbe_error 
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
     const abbe_material *m = scene->object[i].material;
     abbe_pov_glass g;
-    if (m == NULL || said(scene, i)) continue;
+    if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_REFRACTOR || said(scene, i)) continue;
     result = abbe_pov_file_glass(m, abbe_scene_illuminant(scene), &g, error);
     if (result != ABBE_OK) break;
     if (!q->json) {

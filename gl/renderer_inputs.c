@@ -65,16 +65,16 @@ static uint64_t mix_shape(uint64_t h, const abbe_object *o) {
   return h;
 }
 
-/* Surfaces, which of them refract, which share a material, and the models that the plan chose. */
+/* Surfaces, of which kind, which share a material, and the models that the plan chose. */
 static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 1;
   for (size_t i = 0; i < scene->object_count; i++) {
     size_t first = 0;
     while (scene->object[first].material != scene->object[i].material) first++;
-    const bool refracts = scene->object[i].material != NULL;
+    const abbe_object_kind kind = abbe_object_kind_of(&scene->object[i]);
     h = mix_shape(h, &scene->object[i]);
     MIX(h, first);
-    MIX(h, refracts);
+    MIX(h, kind);
   }
   h = mix_array(h, plan->model, plan->refractor_count, sizeof *plan->model);
   h = mix_array(h, plan->receiver_model, plan->receiver_count, sizeof *plan->receiver_model);

@@ -85,12 +85,21 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
   return NULL;
 }
 
+const abbe_object *abbe_scene_mirror(const abbe_scene *scene) {
+  for (size_t i = 0; i < scene->object_count; i++)
+    if (scene->object[i].mirror) return &scene->object[i];
+  return NULL;
+}
+
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
                        double max[3]) {
   bool any = false;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
-    if (object->material ? !refractors : !receivers) continue;
+    const abbe_object_kind kind = abbe_object_kind_of(object);
+    if ((!refractors && kind != ABBE_OBJECT_RECEIVER) ||
+        (!receivers && kind != ABBE_OBJECT_REFRACTOR))
+      continue;
     for (int k = 0; k < 3; k++) {
       min[k] = any ? fmin(min[k], object->min[k]) : object->min[k];
       max[k] = any ? fmax(max[k], object->max[k]) : object->max[k];
@@ -293,30 +302,34 @@ static bool cuts(const abbe_object *object, const abbe_light *disk) {
   return false;
 }
 
+static bool refracts(const abbe_object *object) {
+  return abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR;
+}
+
 static const abbe_object *refractor_in(const abbe_scene *scene, const abbe_light *disk) {
   for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].material && cuts(&scene->object[i], disk)) return &scene->object[i];
+    if (refracts(&scene->object[i]) && cuts(&scene->object[i], disk)) return &scene->object[i];
   return NULL;
 }
 
 static const abbe_object *refractor_around(const abbe_scene *scene, const double p[3]) {
   for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].material && inside(&scene->object[i], p)) return &scene->object[i];
+    if (refracts(&scene->object[i]) && inside(&scene->object[i], p)) return &scene->object[i];
   return NULL;
 }
 
-/* What is nearer to a refractor's surface than this, m, is on it. */
+/* What is nearer to the surface of a refractor or a mirror than this, m, is on it. */
 static double least_gap(const abbe_scene *scene) {
   double min[3], max[3], size[3];
-  if (!abbe_scene_bounds(scene, true, false, min, max)) return 0.0;
+  if (!abbe_scene_bounds(scene, true, abbe_scene_mirror(scene) != NULL, min, max)) return 0.0;
   abbe_vector_subtract(max, min, size);
   return ABBE_SCENE_LEAST_GAP * 0.5 * abbe_vector_length(size);
 }
 
-static const abbe_object *refractor_at(const abbe_scene *scene, const double p[3], double gap) {
+static const abbe_object *surface_at(const abbe_scene *scene, const double p[3], double gap) {
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
-    bool near = object->material != NULL;
+    bool near = abbe_object_kind_of(object) != ABBE_OBJECT_RECEIVER;
     for (int k = 0; k < 3; k++)
       near = near && p[k] > object->min[k] - gap && p[k] < object->max[k] + gap;
     if (near && fabs(abbe_object_distance(object, p)) < gap) return object;
@@ -405,7 +418,7 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
     const abbe_light *light = &scene->light[i];
     if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;
     const bool disk = light->kind == ABBE_LIGHT_DISK;
-    const abbe_object *on = refractor_at(scene, light->position, gap);
+    const abbe_object *on = surface_at(scene, light->position, gap);
     const abbe_object *around = on ? NULL : refractor_around(scene, light->position);
     if (around) compare_sizes(scene, around, sizes, sizeof sizes);
     if (around)
@@ -423,19 +436,21 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
     if (disk && !on) on = refractor_under(scene, light, gap);
     if (on)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "%s: the light '%s' is on the surface of the refractor '%s' (line "
+                            "%s: the light '%s' is on the surface of the %s '%s' (line "
                             "%zu), or less than %.2g m away, which single precision does not tell "
                             "from it; move it farther off",
-                            path_of(scene), light->name, on->name, on->line, gap);
+                            path_of(scene), light->name,
+                            abbe_object_kind_name(abbe_object_kind_of(on)), on->name, on->line,
+                            gap);
   }
-  const abbe_object *around = refractor_at(scene, scene->camera.eye, gap);
+  const abbe_object *around = surface_at(scene, scene->camera.eye, gap);
   if (around)
-    return abbe_error_set(
-        error, ABBE_UNSUPPORTED,
-        "%s: the camera's eye is on the surface of the refractor '%s' (line %zu), "
-        "or less than %.2g m away, which single precision does not tell from it; "
-        "move it farther off",
-        path_of(scene), around->name, around->line, gap);
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "%s: the camera's eye is on the surface of the %s '%s' (line %zu), "
+                          "or less than %.2g m away, which single precision does not tell from it; "
+                          "move it farther off",
+                          path_of(scene), abbe_object_kind_name(abbe_object_kind_of(around)),
+                          around->name, around->line, gap);
   around = refractor_around(scene, scene->camera.eye);
   if (around) compare_sizes(scene, around, sizes, sizeof sizes);
   if (around)
@@ -456,8 +471,9 @@ abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error) {
   size_t receivers = 0;
   bool seen = false;
   for (size_t i = 0; i < scene->object_count; i++) {
-    if (scene->object[i].material) continue;
-    receivers++;
+    const abbe_object_kind kind = abbe_object_kind_of(&scene->object[i]);
+    if (kind == ABBE_OBJECT_REFRACTOR) continue;
+    receivers += kind == ABBE_OBJECT_RECEIVER;
     seen = seen || object_in_view(&scene->object[i], &scene->camera);
   }
   if (receivers == 0)

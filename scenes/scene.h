@@ -2,9 +2,9 @@
  * coordinates.
  *
  * A scene is plain data, ready for the renderer, the tracer and the plan. Lengths in metres,
- * angles in radians, right-handed, z up by convention. Objects are either refractors (a dielectric
- * from the material table, surrounded by air with n = 1) or receivers (opaque, Lambertian, seen
- * from both sides).
+ * angles in radians, right-handed, z up by convention. Objects are refractors (a dielectric from the
+ * material table, surrounded by air with n = 1), receivers (opaque, Lambertian, seen from both
+ * sides) or mirrors (opaque, specular on both sides, whole or open).
  */
 #ifndef ABBE_SCENES_SCENE_H
 #define ABBE_SCENES_SCENE_H
@@ -73,6 +73,12 @@ typedef struct abbe_exact {
   abbe_convex convex;                /* what was found, or why it is no convex solid */
 } abbe_exact;
 
+typedef enum abbe_object_kind {
+  ABBE_OBJECT_RECEIVER,
+  ABBE_OBJECT_REFRACTOR,
+  ABBE_OBJECT_MIRROR
+} abbe_object_kind;
+
 typedef struct abbe_object {
   char *name;
   size_t line;                     /* in the scene file */
@@ -84,6 +90,9 @@ typedef struct abbe_object {
   char *texture_path;              /* receiver: NULL or the PNG that multiplies reflectance */
   abbe_image texture;              /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
+  bool mirror;
+  const abbe_material *conductor;  /* mirror: of its n and k, owned by the scene's table, or NULL: */
+  double mirror_reflectance;       /* 0 to 1, at all angles and wavelengths */
   char *mesh_path;   /* NULL or the file that the mesh is of */
   char *mesh_others; /* and those that it names, as abbe_mesh_load has them */
   char *fixes;       /* what was fixed, and what is not whole still, or NULL */
@@ -105,6 +114,22 @@ typedef struct abbe_scene {
   double background; /* W/(m2 sr): radiance seen where nothing is hit */
 } abbe_scene;
 
+static inline abbe_object_kind abbe_object_kind_of(const abbe_object *object) {
+  return object->mirror             ? ABBE_OBJECT_MIRROR
+         : object->material != NULL ? ABBE_OBJECT_REFRACTOR
+                                    : ABBE_OBJECT_RECEIVER;
+}
+
+/* "receiver", "refractor" or "mirror". */
+static inline const char *abbe_object_kind_name(abbe_object_kind kind) {
+  return kind == ABBE_OBJECT_MIRROR      ? "mirror"
+         : kind == ABBE_OBJECT_REFRACTOR ? "refractor"
+                                         : "receiver";
+}
+
+/* The first mirror, or NULL. */
+const abbe_object *abbe_scene_mirror(const abbe_scene *scene);
+
 void abbe_scene_free(abbe_scene *scene);
 
 /* The illuminant of the first light, or of the environment where there is no light. */
@@ -116,16 +141,17 @@ const abbe_illuminant *abbe_scene_illuminant(const abbe_scene *scene);
 size_t abbe_scene_file_count(const abbe_scene *scene);
 const char *abbe_scene_file(const abbe_scene *scene, size_t index);
 
-/* A light or an eye nearer to a refractor's surface than this share of half the diagonal of all
- * refractors' bounds is on it: single precision does not tell on which side. */
+/* A light or an eye nearer to a refractor's or mirror's surface than this share of half the diagonal
+ * of all refractors' bounds (of all objects' where there is a mirror) is on it: single precision does not tell on which side. */
 #define ABBE_SCENE_LEAST_GAP 0x1p-20
 
-/* Refuses what cannot be rendered, by name: neither light nor environment, no receiver, a light (a disk: any part of it)
- * or the camera inside a refractor or on its surface, no receiver in the camera's view. Called by
- * the loader. */
+/* Refuses what cannot be rendered, by name: neither light nor environment, no receiver, a light (a
+ * disk: any part of it) or the camera inside a refractor or on its surface, a light's position or the
+ * camera on a mirror, no receiver and no mirror in the camera's view. Called by the loader. */
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 
-/* Bounds of the objects chosen: refractors, receivers or both. False where there are none. */
+/* Bounds of the objects chosen: refractors, receivers, or with both all objects, mirrors too. False
+ * where there are none. */
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
                        double max[3]);
 

@@ -44,8 +44,19 @@ void abbe_scene_input_note(const abbe_scene *scene) {
       fprintf(stderr, "note: object '%s': %s\n", scene->object[i].name, scene->object[i].fixes);
 }
 
-static const char *made_of(const abbe_object *o) {
-  return o->material != NULL ? o->material->name : "receiver";
+static const char *made_of(const abbe_object *o, char *text, size_t size) {
+  switch (abbe_object_kind_of(o)) {
+  case ABBE_OBJECT_REFRACTOR:
+    return o->material->name;
+  case ABBE_OBJECT_MIRROR:
+    if (o->conductor != NULL)
+      snprintf(text, size, "mirror of %s", o->conductor->name);
+    else
+      snprintf(text, size, "mirror, %g", o->mirror_reflectance);
+    return text;
+  default:
+    return "receiver";
+  }
 }
 
 void abbe_scene_input_list(const abbe_scene *scene) {
@@ -53,13 +64,13 @@ void abbe_scene_input_list(const abbe_scene *scene) {
   printf("What is there, with its size and the middle of its bounds, m:\n");
   for (size_t i = 0; i < scene->object_count && i < MOST; i++) {
     const abbe_object *o = &scene->object[i];
-    char size[64], middle[64];
+    char size[64], middle[64], made[ABBE_MATERIAL_MAX_NAME + 16];
     snprintf(size, sizeof size, "%.3g x %.3g x %.3g", o->max[0] - o->min[0], o->max[1] - o->min[1],
              o->max[2] - o->min[2]);
     snprintf(middle, sizeof middle, "(%.3g, %.3g, %.3g)", 0.5 * (o->min[0] + o->max[0]),
              0.5 * (o->min[1] + o->max[1]), 0.5 * (o->min[2] + o->max[2]));
-    printf("  %-26.60s %-26s %-26s %s, %zu faces\n", o->name, size, middle, made_of(o),
-           o->mesh.face_count);
+    printf("  %-26.60s %-26s %-26s %s, %zu faces\n", o->name, size, middle,
+           made_of(o, made, sizeof made), o->mesh.face_count);
   }
   if (scene->object_count > MOST) printf("  and %zu objects more\n", scene->object_count - MOST);
   printf("\n");
@@ -72,6 +83,10 @@ void abbe_scene_input_list_json(const abbe_scene *scene, cJSON *root) {
     cJSON *item = cJSON_CreateObject();
     cJSON_AddStringToObject(item, "name", o->name);
     if (o->material != NULL) cJSON_AddStringToObject(item, "material", o->material->name);
+    if (o->conductor != NULL)
+      cJSON_AddStringToObject(item, "mirror", o->conductor->name);
+    else if (o->mirror)
+      cJSON_AddNumberToObject(item, "mirror", o->mirror_reflectance);
     cJSON_AddItemToObject(item, "min", cJSON_CreateDoubleArray(o->min, 3));
     cJSON_AddItemToObject(item, "max", cJSON_CreateDoubleArray(o->max, 3));
     cJSON_AddNumberToObject(item, "faces", (double)o->mesh.face_count);

@@ -24,7 +24,7 @@ static abbe_result make_lists(const abbe_scene *scene, abbe_plan *plan, abbe_err
       plan->receiver_model == NULL || plan->model == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
   for (size_t i = 0; i < scene->object_count; i++) {
-    if (scene->object[i].material != NULL) continue;
+    if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_RECEIVER) continue;
     plan->receiver_object[plan->receiver_count++] = i;
     plan->textured = plan->textured || scene->object[i].texture.data != NULL;
   }
@@ -44,6 +44,7 @@ static void combine(abbe_plan *plan) {
 static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                              abbe_error *error) {
   abbe_result result = abbe_support_lights(scene, error);
+  if (result == ABBE_OK) result = abbe_support_mirrors(scene, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);

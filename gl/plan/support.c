@@ -75,3 +75,13 @@ abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error) {
   }
   return ABBE_OK;
 }
+
+abbe_result abbe_support_mirrors(const abbe_scene *scene, abbe_error *error) {
+  ABBE_REQUIRE(scene, error);
+  const abbe_object *mirror = abbe_scene_mirror(scene);
+  if (mirror == NULL) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "the object '%s' (line %zu) is a mirror, and the renderer follows no light "
+                        "off mirrors; leave it out, or give it a 'reflectance'",
+                        mirror->name, mirror->line);
+}

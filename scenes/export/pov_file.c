@@ -213,7 +213,7 @@ static void write_mesh(const writing *w, const abbe_mesh *mesh, bool solid) {
 
 static void write_surface(const writing *w, const abbe_object *object) {
   if (object->exact.kind != ABBE_EXACT_SPHERE) {
-    write_mesh(w, &object->mesh, object->material != NULL);
+    write_mesh(w, &object->mesh, abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR);
     return;
   }
   point(w, "sphere {\n  ", object->exact.centre, "");
@@ -303,8 +303,9 @@ static abbe_result write_scene(const writing *w, abbe_error *error) {
   for (size_t i = 0; i < w->scene->light_count; i++) write_light(w, &w->scene->light[i]);
   for (size_t i = 0; i < w->scene->object_count && result == ABBE_OK; i++) {
     const abbe_object *object = &w->scene->object[i];
-    result = object->material != NULL ? write_refractor(w, object, error)
-                                      : write_receiver(w, object, error);
+    result = abbe_object_kind_of(object) == ABBE_OBJECT_REFRACTOR
+                 ? write_refractor(w, object, error)
+                 : write_receiver(w, object, error);
   }
   return result;
 }
@@ -334,6 +335,12 @@ abbe_result abbe_pov_file_write(const char *path, const abbe_scene *scene,
     result = abbe_error_set(error, ABBE_UNSUPPORTED,
                             "the scene has an 'environment', which is not exported; leave it out, "
                             "and give the scene 'lights'");
+  const abbe_object *mirror = abbe_scene_mirror(scene);
+  if (result == ABBE_OK && mirror != NULL)
+    result = abbe_error_set(error, ABBE_UNSUPPORTED,
+                            "the object '%s' (line %zu) is a mirror, which is not written for "
+                            "POV-Ray; leave it out",
+                            mirror->name, mirror->line);
   if (result == ABBE_OK) result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
   double min[3], max[3];

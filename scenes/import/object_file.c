@@ -1,5 +1,6 @@
 #include "scenes/import/object_file.h"
 
+#include "base/number.h"
 #include "colorimetry/image/png_file.h"
 #include "scenes/geometry/transform.h"
 #include "scenes/geometry/vector.h"
@@ -160,38 +161,89 @@ static abbe_result read_receiver(const abbe_object_reading *r, abbe_object *out,
   return result;
 }
 
-static abbe_result read_substance(const abbe_object_reading *r, const abbe_material_table *table,
-                                  abbe_object *out, abbe_error *error) {
-  const abbe_yaml_node material = abbe_yaml_get(r->yaml, r->node, "material");
-  const bool receives = abbe_yaml_get(r->yaml, r->node, "reflectance").id ||
-                        abbe_yaml_get(r->yaml, r->node, "texture").id;
-  if ((material.id != 0) == receives)
-    return abbe_yaml_fail(r->yaml, r->node, error,
-                          "an object has either a 'material' (it refracts) or a 'reflectance' or "
-                          "'texture' (it receives light); this one has %s",
-                          material.id ? "both" : "neither");
-  if (!material.id) return read_receiver(r, out, error);
+/* Why nothing is seen through it, and what to do. */
+static abbe_result refuse_opaque(const abbe_object_reading *r, abbe_yaml_node node,
+                                 const abbe_material *m, abbe_error *error) {
+  const double middle_nm = 0.5 * (ABBE_WAVELENGTH_MIN_NM + ABBE_WAVELENGTH_MAX_NM);
+  const double k = abbe_absorption_k(abbe_material_attenuation(m, middle_nm), middle_nm);
+  if (abbe_material_is_conductor(m))
+    abbe_error_set(error, ABBE_UNSUPPORTED,
+                   "the material '%s' is a conductor: no light comes through it; say 'mirror: %s' "
+                   "in place of 'material: %s'",
+                   m->name, m->name, m->name);
+  else
+    abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the material '%s' absorbs light within a wavelength, as metals do (k is %.2g at "
+        "%g nm): no light comes through it; take a material with k below 0.08, or write "
+        "its n and k as 'model: conductor' and say 'mirror: %s'",
+        m->name, k, middle_nm, m->name);
+  return abbe_scene_value_locate(r->yaml, node, ABBE_UNSUPPORTED, error);
+}
+
+static abbe_result find_material(const abbe_object_reading *r, const char *key,
+                                 const abbe_material_table *table, const abbe_material **out,
+                                 abbe_error *error) {
   char *name = NULL;
-  abbe_result result = abbe_yaml_get_string(r->yaml, r->node, "material", &name, error);
+  abbe_result result = abbe_yaml_get_string(r->yaml, r->node, key, &name, error);
   if (result == ABBE_OK) {
-    result = abbe_material_table_find(table, name, &out->material, error);
-    if (result != ABBE_OK) abbe_scene_value_locate(r->yaml, material, result, error);
-  }
-  if (result == ABBE_OK &&
-      abbe_material_is_opaque(out->material, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM)) {
-    const double middle_nm = 0.5 * (ABBE_WAVELENGTH_MIN_NM + ABBE_WAVELENGTH_MAX_NM);
-    const double k =
-        abbe_absorption_k(abbe_material_attenuation(out->material, middle_nm), middle_nm);
-    result =
-        abbe_error_set(error, ABBE_UNSUPPORTED,
-                       "the material '%s' absorbs light within a wavelength, as metals do (k is "
-                       "%.2g at %g nm): no light comes through it, and its mirror is not "
-                       "modelled; take a material with k below 0.08, or a 'reflectance'",
-                       name, k, middle_nm);
-    abbe_scene_value_locate(r->yaml, material, result, error);
+    result = abbe_material_table_find(table, name, out, error);
+    if (result != ABBE_OK)
+      abbe_scene_value_locate(r->yaml, abbe_yaml_get(r->yaml, r->node, key), result, error);
   }
   free(name);
   return result;
+}
+
+static abbe_result read_refractor(const abbe_object_reading *r, abbe_yaml_node node,
+                                  const abbe_material_table *table, abbe_object *out,
+                                  abbe_error *error) {
+  const abbe_result result = find_material(r, "material", table, &out->material, error);
+  if (result != ABBE_OK ||
+      !abbe_material_is_opaque(out->material, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM))
+    return result;
+  return refuse_opaque(r, node, out->material, error);
+}
+
+/* A number, or the name of a conductor. */
+static abbe_result read_mirror(const abbe_object_reading *r, abbe_yaml_node node,
+                               const abbe_material_table *table, abbe_object *out,
+                               abbe_error *error) {
+  const char *text = abbe_yaml_text(r->yaml, node), *end = "";
+  double number;
+  out->mirror = true;
+  if (text != NULL && abbe_number_read(text, &end, &number) && *end == '\0')
+    return abbe_yaml_get_number(r->yaml, r->node, "mirror", 0, 1, &out->mirror_reflectance, error);
+  const abbe_result result = find_material(r, "mirror", table, &out->conductor, error);
+  if (result != ABBE_OK || abbe_material_is_conductor(out->conductor)) return result;
+  abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "the material '%s' is no conductor, so 'mirror' cannot be of it; take a metal such "
+      "as silver, or a reflectance from 0 to 1; %s",
+      out->conductor->name,
+      abbe_material_is_opaque(out->conductor, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM)
+          ? "a metal's record is of the model conductor, with points [nm, n, k]"
+          : "a glass stands under 'material'");
+  return abbe_scene_value_locate(r->yaml, node, ABBE_UNSUPPORTED, error);
+}
+
+static abbe_result read_substance(const abbe_object_reading *r, const abbe_material_table *table,
+                                  abbe_object *out, abbe_error *error) {
+  const abbe_yaml_node material = abbe_yaml_get(r->yaml, r->node, "material");
+  const abbe_yaml_node mirror = abbe_yaml_get(r->yaml, r->node, "mirror");
+  const bool receives = abbe_yaml_get(r->yaml, r->node, "reflectance").id ||
+                        abbe_yaml_get(r->yaml, r->node, "texture").id;
+  const int found = (material.id != 0) + (mirror.id != 0) + receives;
+  if (found != 1)
+    return abbe_yaml_fail(
+        r->yaml, r->node, error,
+        "an object has one of these: a 'material' (it refracts), a 'mirror' (it "
+        "reflects), or a 'reflectance' or 'texture' (it receives light); this one "
+        "has %s",
+        found == 0 ? "none" : "more than one");
+  return material.id ? read_refractor(r, material, table, out, error)
+         : mirror.id ? read_mirror(r, mirror, table, out, error)
+                     : read_receiver(r, out, error);
 }
 
 /* --- the surface in the world --- */
@@ -199,11 +251,11 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
 /* Faceted shapes keep one normal a face where they are fixed, rounded ones one a point; of others,
  * and of files that do not say, normals go by what is there. */
 static abbe_mesh_normals normals_of(const abbe_object_reading *r) {
-  return r->kind == ABBE_OBJECT_GEM || r->kind == ABBE_OBJECT_BRILLIANT ||
-                 r->kind == ABBE_OBJECT_PRISM || r->kind == ABBE_OBJECT_BOX
+  return r->form == ABBE_OBJECT_GEM || r->form == ABBE_OBJECT_BRILLIANT ||
+                 r->form == ABBE_OBJECT_PRISM || r->form == ABBE_OBJECT_BOX
              ? ABBE_NORMALS_FLAT
-         : r->kind == ABBE_OBJECT_SPHERE || r->kind == ABBE_OBJECT_RING ? ABBE_NORMALS_SMOOTH
-         : r->kind == ABBE_OBJECT_MESH                                  ? r->normals
+         : r->form == ABBE_OBJECT_SPHERE || r->form == ABBE_OBJECT_RING ? ABBE_NORMALS_SMOOTH
+         : r->form == ABBE_OBJECT_MESH                                  ? r->normals
                                                                         : ABBE_NORMALS_AUTO;
 }
 
@@ -229,7 +281,7 @@ static abbe_result refuse_elsewhere(const abbe_object_reading *r, const char *ke
                                     abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, key);
   const bool refracts = abbe_yaml_get(r->yaml, r->node, "material").id != 0;
-  if (!node.id || (r->kind == ABBE_OBJECT_MESH && refracts)) return ABBE_OK;
+  if (!node.id || (r->form == ABBE_OBJECT_MESH && refracts)) return ABBE_OK;
   return abbe_yaml_fail(r->yaml, node, error, "'%s' is for the mesh of a file that refracts", key);
 }
 
@@ -284,9 +336,9 @@ abbe_result abbe_object_read(abbe_yaml *yaml, abbe_yaml_node node, const char *f
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "an object", error);
   if (result != ABBE_OK) return result;
   memcpy(surface.matrix, r.matrix, sizeof surface.matrix);
-  surface.radius = r.kind == ABBE_OBJECT_SPHERE ? r.radius : 0;
-  surface.rectangles = r.kind == ABBE_OBJECT_RECTANGLE || r.kind == ABBE_OBJECT_BOX;
-  surface.file = r.kind == ABBE_OBJECT_MESH;
+  surface.radius = r.form == ABBE_OBJECT_SPHERE ? r.radius : 0;
+  surface.rectangles = r.form == ABBE_OBJECT_RECTANGLE || r.form == ABBE_OBJECT_BOX;
+  surface.file = r.form == ABBE_OBJECT_MESH;
   surface.normals = normals_of(&r);
   return place(&r, &surface, out, room, count, error);
 }

@@ -13,7 +13,7 @@ extern "C" {
 
 #define ABBE_OBJECT_RADIANS (3.14159265358979323846 / 180.0)
 
-typedef enum abbe_object_kind {
+typedef enum abbe_object_form {
   ABBE_OBJECT_SPHERE,
   ABBE_OBJECT_RING,
   ABBE_OBJECT_GEM,
@@ -23,19 +23,19 @@ typedef enum abbe_object_kind {
   ABBE_OBJECT_RECTANGLE,
   ABBE_OBJECT_LATHE,
   ABBE_OBJECT_MESH
-} abbe_object_kind;
+} abbe_object_form;
 
 typedef struct abbe_object_reading {
   abbe_yaml *yaml;
   abbe_yaml_node node;
   const char *folder;
-  abbe_object_kind kind;
+  abbe_object_form form;
   double radius;             /* of a sphere */
   abbe_mesh_normals normals; /* of a mesh */
   double matrix[16];         /* to world */
 } abbe_object_reading;
 
-/* The surface under `shape` or `mesh`, in its own coordinates, and its kind, radius and normals. */
+/* The surface under `shape` or `mesh`, in its own coordinates, and its form, radius and normals. */
 abbe_result abbe_object_read_surface(abbe_object_reading *reading, abbe_object *object,
                                      abbe_error *error);
 

@@ -171,11 +171,11 @@ abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object
     return abbe_yaml_fail(r->yaml, r->node, error,
                           "an object has either a 'shape' or a 'mesh' file; this one has %s",
                           shape.id ? "both" : "neither");
-  int kind = ABBE_OBJECT_MESH;
-  abbe_result result = abbe_yaml_get_choice(r->yaml, r->node, "shape", shape_names, &kind, error);
+  int form = ABBE_OBJECT_MESH;
+  abbe_result result = abbe_yaml_get_choice(r->yaml, r->node, "shape", shape_names, &form, error);
   if (result != ABBE_OK) return result;
-  r->kind = (abbe_object_kind)kind;
-  switch (r->kind) {
+  r->form = (abbe_object_form)form;
+  switch (r->form) {
   case ABBE_OBJECT_SPHERE:
     result = read_sphere(r, out, error);
     break;

@@ -132,7 +132,7 @@ static abbe_result find_exact(const abbe_object_surface *s, const double matrix[
     out->exact.radius = scale * s->radius;
     return ABBE_OK;
   }
-  if (out->material) return convex(out, error);
+  if (abbe_object_kind_of(out) == ABBE_OBJECT_REFRACTOR) return convex(out, error);
   return s->rectangles ? parallelograms(out, error) : ABBE_OK;
 }
 
@@ -250,7 +250,7 @@ static abbe_result flatten(const abbe_object_surface *s, abbe_object *out, abbe_
 
 /* Whether it is cut or rounded. */
 static abbe_result shape_one(const abbe_object_surface *s, abbe_object *out, abbe_error *error) {
-  if (!out->material) return ABBE_OK;
+  if (abbe_object_kind_of(out) != ABBE_OBJECT_REFRACTOR) return ABBE_OK;
   if (s->flatten > 0) return flatten(s, out, error);
   return s->file && s->normals == ABBE_NORMALS_AUTO && !out->mesh.given_normals
              ? choose_facets(&out->mesh, error)
@@ -272,7 +272,9 @@ abbe_result abbe_object_place(const abbe_object_surface *s, abbe_object *out, si
   ABBE_REQUIRE(s && out && count, error);
   double matrix[16];
   *count = 1;
-  abbe_result result = out->material ? solidify(s, out, room, count, error) : ABBE_OK;
+  abbe_result result = abbe_object_kind_of(out) == ABBE_OBJECT_REFRACTOR
+                           ? solidify(s, out, room, count, error)
+                           : ABBE_OK;
   for (size_t i = 0; i < *count && result == ABBE_OK; i++) result = shape_one(s, &out[i], error);
   /* what was dropped has no part in its size */
   if (result == ABBE_OK) result = fit_matrix(s, out, *count, matrix, error);

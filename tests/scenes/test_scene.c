@@ -74,6 +74,28 @@ static void bounds_choose_what_is_asked(void **state) {
   assert_false(abbe_scene_bounds(&scene, false, false, min, max));
 }
 
+/* A mirror counts among all objects, and is neither of the other two. */
+static void mirrors_are_a_kind_of_their_own(void **state) {
+  (void)state;
+  const abbe_material glass = {0}, metal = {0};
+  abbe_object objects[3] = {{.material = &glass, .min = {-1, 0, 0}, .max = {1, 1, 1}},
+                            {.min = {0, -5, 0}, .max = {0, 5, 9}},
+                            {.mirror = true, .conductor = &metal, .max = {20, 20, 20}}};
+  const abbe_scene scene = {.object_count = 3, .object = objects};
+  double min[3], max[3];
+  static const char *const names[] = {"refractor", "receiver", "mirror"};
+  for (int i = 0; i < 3; i++)
+    assert_string_equal(abbe_object_kind_name(abbe_object_kind_of(&objects[i])), names[i]);
+  assert_ptr_equal(abbe_scene_mirror(&scene), &objects[2]);
+  assert_true(abbe_scene_bounds(&scene, true, false, min, max));
+  assert_true(max[0] == 1);
+  assert_true(abbe_scene_bounds(&scene, false, true, min, max));
+  assert_true(max[0] == 0);
+  assert_true(abbe_scene_bounds(&scene, true, true, min, max));
+  assert_true(max[0] == 20);
+  assert_false(abbe_scene_bounds(&scene, false, false, min, max));
+}
+
 /* A triangle that covers the whole view though all its corners are outside. */
 static void a_receiver_larger_than_the_view_is_in_view(void **state) {
   (void)state;
@@ -223,6 +245,7 @@ int main(void) {
       cmocka_unit_test(a_lamp_is_on_glass_or_off_it),
       cmocka_unit_test(no_part_of_a_disk_is_in_glass),
       cmocka_unit_test(bounds_choose_what_is_asked),
+      cmocka_unit_test(mirrors_are_a_kind_of_their_own),
       cmocka_unit_test(lights_are_found_by_name_or_number),
       cmocka_unit_test(a_receiver_larger_than_the_view_is_in_view),
       cmocka_unit_test(freeing_nothing_is_safe),

@@ -63,7 +63,8 @@ static abbe_result quarter(const abbe_mesh *from, abbe_mesh *out, abbe_error *er
 static size_t count_faces(const abbe_scene *scene) {
   size_t faces = 0;
   for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].material != NULL) faces += scene->object[i].mesh.face_count;
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR)
+      faces += scene->object[i].mesh.face_count;
   return faces;
 }
 
@@ -71,7 +72,7 @@ static abbe_result refine(abbe_scene *scene, abbe_error *error) {
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
     abbe_mesh finer;
-    if (scene->object[i].material == NULL) continue;
+    if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_REFRACTOR) continue;
     result = quarter(&scene->object[i].mesh, &finer, error);
     if (result != ABBE_OK) break;
     abbe_mesh_free(&scene->object[i].mesh);
@@ -156,7 +157,7 @@ static abbe_result grow_faces(work *w) {
   if (kept == NULL) return abbe_error_set(w->error, ABBE_NO_MEMORY, "no memory for meshes");
   abbe_result result = add(w, ABBE_SCALING_FACES, (double)count_faces(w->scene), &w->base, w->side);
   for (size_t i = 0; i < w->scene->object_count && result == ABBE_OK; i++) {
-    if (w->scene->object[i].material == NULL) continue;
+    if (abbe_object_kind_of(&w->scene->object[i]) != ABBE_OBJECT_REFRACTOR) continue;
     kept[i] = w->scene->object[i].mesh;
     w->scene->object[i].mesh = (abbe_mesh){0};
     result = quarter(&kept[i], &w->scene->object[i].mesh, w->error);

@@ -236,7 +236,8 @@ static abbe_result add_trace(expansion *e, size_t photons, size_t passes, bool f
 
 static bool has_mesh(const abbe_scene *scene) {
   for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].material != NULL && scene->object[i].exact.kind == ABBE_EXACT_NONE)
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR &&
+        scene->object[i].exact.kind == ABBE_EXACT_NONE)
       return true;
   return false;
 }

@@ -23,6 +23,13 @@ static unsigned long long hash_object(unsigned long long h, const abbe_object *o
     double numbers[] = {n, abbe_material_attenuation(o->material, lambda_nm)};
     h = hash(h, numbers, sizeof numbers);
   }
+  if (!o->mirror) return h;
+  h = hash(h, &o->mirror_reflectance, sizeof o->mirror_reflectance);
+  for (int i = 0; i < INDEX_STEPS && o->conductor != NULL; i++) {
+    double nk[2] = {0, 0};
+    abbe_material_nk(o->conductor, 380 + 50.0 * i, &nk[0], &nk[1], NULL);
+    h = hash(h, nk, sizeof nk);
+  }
   return h;
 }
 

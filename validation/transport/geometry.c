@@ -129,8 +129,14 @@ static bool add_lamp(abbe_geometry *g, const abbe_light *light, abbe_surface *s,
 /* ---- make and free ---- */
 
 static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe_error *error) {
+  const abbe_object *mirror = abbe_scene_mirror(scene);
+  if (mirror != NULL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "the object '%s' (line %zu) is a mirror, and the tracer follows no light "
+                          "off mirrors; leave it out, or give it a 'reflectance'",
+                          mirror->name, mirror->line);
   for (size_t i = 0; i < scene->object_count; i++) {
-    if (scene->object[i].material != NULL)
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR)
       g->refractor_count++;
     else
       g->receiver_count++;
@@ -157,7 +163,7 @@ static abbe_result check_thickness(const abbe_geometry *g, abbe_error *error) {
   static const double least_steps = 8;
   for (size_t i = 0; i < g->scene->object_count; i++) {
     const abbe_object *o = &g->scene->object[i];
-    if (o->material == NULL) continue;
+    if (abbe_object_kind_of(o) != ABBE_OBJECT_REFRACTOR) continue;
     const double thick = abbe_object_thickness(o);
     double far = 0;
     for (int k = 0; k < 3; k++)
@@ -181,9 +187,10 @@ static bool add_objects(abbe_geometry *g) {
     const abbe_object *o = &g->scene->object[i];
     abbe_surface *s = &g->surface[i];
     s->object = (uint32_t)i;
-    s->kind = o->material != NULL ? ABBE_GEOMETRY_REFRACTORS : ABBE_GEOMETRY_RECEIVERS;
-    s->index = (uint32_t)(o->material != NULL ? refractors : receivers);
-    if (o->material != NULL)
+    const bool refracts = abbe_object_kind_of(o) == ABBE_OBJECT_REFRACTOR;
+    s->kind = refracts ? ABBE_GEOMETRY_REFRACTORS : ABBE_GEOMETRY_RECEIVERS;
+    s->index = (uint32_t)(refracts ? refractors : receivers);
+    if (refracts)
       g->refractor_object[refractors++] = (uint32_t)i;
     else
       receivers++;

@@ -23,7 +23,8 @@ static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
   if (!(range.least_n >= 1 - invisible && range.most_n <= 1 + invisible) || range.most_per_m > 0)
     return false;
   for (size_t i = 0; i < scene->object_count; i++)
-    if (&scene->object[i] != object && scene->object[i].material != NULL &&
+    if (&scene->object[i] != object &&
+        abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR &&
         abbe_reach_overlap(&scene->object[i], object))
       return false;
   return true;
@@ -32,7 +33,8 @@ static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
 /* Whether a receiver may reach into it. */
 static bool is_entered(const abbe_scene *scene, const abbe_object *refractor) {
   for (size_t i = 0; i < scene->object_count; i++)
-    if (scene->object[i].material == NULL && abbe_reach_into(&scene->object[i], refractor))
+    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_RECEIVER &&
+        abbe_reach_into(&scene->object[i], refractor))
       return true;
   return false;
 }
@@ -43,7 +45,7 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
   size_t refractors = 0;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *o = &scene->object[i];
-    if (o->material == NULL || is_invisible(scene, o, plan)) continue;
+    if (abbe_object_kind_of(o) != ABBE_OBJECT_REFRACTOR || is_invisible(scene, o, plan)) continue;
     only = o;
     refractors++;
   }
@@ -161,7 +163,7 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
   plan->multi_refractor_paths = in_turn != NULL;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
-    if (object->material == NULL) continue;
+    if (abbe_object_kind_of(object) != ABBE_OBJECT_REFRACTOR) continue;
     if (plan->refractor_count == MAX_REFRACTORS)
       return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than %d refractors",
                             MAX_REFRACTORS);

@@ -24,6 +24,15 @@ static void a_disk_is_refused_by_name(void **state) {
   abbe_scene_free(&scene);
 }
 
+static void a_mirror_is_refused_by_name(void **state) {
+  (void)state;
+  refuse_plan(
+      CAMERA POINT_LIGHT FLOOR BALL(
+          "flat") "- {name: looking glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
+                  "transform: [{translate: [0, 0, -1]}]}\n",
+      NULL, ABBE_UNSUPPORTED, "'looking glass' (line 7) is a mirror");
+}
+
 static void a_map_layout_belongs_to_its_light(void **state) {
   (void)state;
   static const char ball[] = CAMERA POINT_LIGHT FLOOR BALL("flat");
@@ -61,6 +70,7 @@ static void a_map_layout_belongs_to_its_light(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_disk_is_refused_by_name),
+      cmocka_unit_test(a_mirror_is_refused_by_name),
       cmocka_unit_test(a_map_layout_belongs_to_its_light),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

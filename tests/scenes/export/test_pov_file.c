@@ -223,6 +223,13 @@ static void test_what_cannot_be_is_refused(void **state) {
   abbe_scene scene;
   abbe_error error = {0};
   abbe_pov_options options = {.samples = 1};
+  load_text(CAMERA POINT_LIGHT FLOOR "- {name: ball, shape: sphere, radius: 0.1, transform: "
+                                     "[{translate: [0, 0, 0.2]}], mirror: 0.9}\n",
+            &scene);
+  assert_int_equal(abbe_pov_file_write("/tmp/abbe-test-never.pov", &scene, NULL, &error),
+                   ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'ball' (line 6) is a mirror");
+  abbe_scene_free(&scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
   static const char never[] = "/tmp/abbe-test-never.pov";
   assert_int_equal(abbe_pov_file_write(never, &scene, &options, &error), ABBE_INVALID_ARGUMENT);

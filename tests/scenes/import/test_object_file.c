@@ -64,6 +64,47 @@ static void a_sphere_stays_one_under_similarities_only(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* Whole or open, with its exact surface where that is known, and nothing of it is mended. */
+static void mirrors_are_metals_or_numbers_of_any_shape(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    abbe_exact_kind exact;
+    const char *conductor; /* NULL: the number */
+    double reflectance;
+  } rows[] = {
+      {"{shape: sphere, radius: 1, mirror: silver}", ABBE_EXACT_SPHERE, "silver", 0},
+      {"{shape: sphere, radius: 1, mirror: 0.9}", ABBE_EXACT_SPHERE, NULL, 0.9},
+      {"{shape: rectangle, width: 1, height: 1, mirror: 1}", ABBE_EXACT_PARALLELOGRAMS, NULL, 1},
+      {"{shape: box, size: [1, 2, 3], mirror: Gold}", ABBE_EXACT_PARALLELOGRAMS, "gold", 0},
+      {"{shape: ring, major: 1, minor: 0.2, mirror: 0}", ABBE_EXACT_NONE, NULL, 0},
+      {"{shape: prism, side: 1, length: 1, mirror: mercury}", ABBE_EXACT_NONE, "mercury", 0},
+      {"{shape: brilliant, diameter: 1, mirror: 5e-1}", ABBE_EXACT_NONE, NULL, 0.5},
+      {"{mesh: open.obj, mirror: copper, fit: 0.5}", ABBE_EXACT_NONE, "copper", 0},
+      {"{mesh: inverted.obj, mirror: copper}", ABBE_EXACT_NONE, "copper", 0},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    abbe_scene scene = read(rows[i].text);
+    const abbe_object *o = &scene.object[0];
+    assert_int_equal(scene.object_count, 1);
+    assert_int_equal(abbe_object_kind_of(o), ABBE_OBJECT_MIRROR);
+    assert_ptr_equal(abbe_scene_mirror(&scene), o);
+    assert_int_equal(o->exact.kind, rows[i].exact);
+    assert_null(o->material);
+    assert_null(o->fixes);
+    assert_true(o->mirror_reflectance == rows[i].reflectance);
+    if (rows[i].conductor != NULL)
+      assert_string_equal(o->conductor->name, rows[i].conductor);
+    else
+      assert_null(o->conductor);
+    abbe_scene_free(&scene);
+  }
+  abbe_scene scene = read("{shape: sphere, radius: 1, material: water}");
+  assert_int_equal(abbe_object_kind_of(&scene.object[0]), ABBE_OBJECT_REFRACTOR);
+  assert_null(abbe_scene_mirror(&scene));
+  abbe_scene_free(&scene);
+}
+
 static void boxes_are_planes_or_parallelograms(void **state) {
   (void)state;
   abbe_scene scene = read("{shape: box, size: [1, 2, 3], material: diamond}");
@@ -173,6 +214,7 @@ static void paths_follow_the_folder(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
+      cmocka_unit_test(mirrors_are_metals_or_numbers_of_any_shape),
       cmocka_unit_test(boxes_are_planes_or_parallelograms),
       cmocka_unit_test(steps_apply_in_order),
       cmocka_unit_test(look_turns_z_to_the_target),
