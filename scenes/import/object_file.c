@@ -212,7 +212,8 @@ static abbe_result read_mirror(const abbe_object_reading *r, abbe_yaml_node node
   const char *text = abbe_yaml_text(r->yaml, node), *end = "";
   double number;
   out->mirror = true;
-  if (text != NULL && abbe_number_read(text, &end, &number) && *end == '\0')
+  const bool signs = text != NULL && text[0] != '\0' && strchr(".+-", text[0]) != NULL; /* .nan */
+  if (signs || (text != NULL && abbe_number_read(text, &end, &number) && *end == '\0'))
     return abbe_yaml_get_number(r->yaml, r->node, "mirror", 0, 1, &out->mirror_reflectance, error);
   const abbe_result result = find_material(r, "mirror", table, &out->conductor, error);
   if (result != ABBE_OK || abbe_material_is_conductor(out->conductor)) return result;

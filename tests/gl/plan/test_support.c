@@ -30,7 +30,7 @@ static void a_mirror_is_refused_by_name(void **state) {
       CAMERA POINT_LIGHT FLOOR BALL(
           "flat") "- {name: looking glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
                   "transform: [{translate: [0, 0, -1]}]}\n",
-      NULL, ABBE_UNSUPPORTED, "'looking glass' (line 7) is a mirror");
+      NULL, ABBE_UNSUPPORTED, "'looking glass' (line 8) is a mirror");
 }
 
 static void a_map_layout_belongs_to_its_light(void **state) {

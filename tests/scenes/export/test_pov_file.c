@@ -59,6 +59,7 @@ static void test_real_glasses_are_met_as_said(void **state) {
   assert_int_equal(abbe_material_table_load("default", &table, NULL), ABBE_OK);
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
+    if (abbe_material_is_conductor(m)) continue;
     const abbe_pov_glass g = glass_of(&table, m->name);
     double worst = 0, at = 0, n = 0;
     for (int nm = 380; nm <= 730; nm++) {
@@ -228,7 +229,7 @@ static void test_what_cannot_be_is_refused(void **state) {
             &scene);
   assert_int_equal(abbe_pov_file_write("/tmp/abbe-test-never.pov", &scene, NULL, &error),
                    ABBE_UNSUPPORTED);
-  assert_contains(error.text, "'ball' (line 6) is a mirror");
+  assert_contains(error.text, "'ball' (line 7) is a mirror");
   abbe_scene_free(&scene);
   load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
   static const char never[] = "/tmp/abbe-test-never.pov";

@@ -54,7 +54,7 @@ static void a_mirror_is_refused_by_name(void **state) {
   make_of(CAMERA POINT_LIGHT FLOOR BALL("crown") "- {name: looking glass, shape: rectangle, width: "
                                                  "1, height: 1, mirror: 0.9, transform: "
                                                  "[{translate: [0, 0, -1]}]}\n",
-          "'looking glass' (line 7) is a mirror");
+          "'looking glass' (line 8) is a mirror");
 }
 
 static void hits_a_sphere_from_outside_and_inside(void **state) {
