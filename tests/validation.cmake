@@ -26,6 +26,7 @@ foreach(name
     known_light
     mask
     media
+    mirrors mirror_walk
     rings
     nl_means
     outline

@@ -64,6 +64,8 @@ static uint64_t hash_scene(const abbe_tracer *t) {
   if (t->media.attenuation != NULL)
     h = hash(h, t->media.attenuation,
              t->media.refractors * (t->media.steps + 1) * sizeof *t->media.attenuation);
+  h = hash(h, t->mirrors.reflectance, t->mirrors.count * sizeof *t->mirrors.reflectance);
+  h = hash(h, t->mirrors.nk, t->mirrors.count * (t->mirrors.steps + 1) * sizeof *t->mirrors.nk);
   for (size_t i = 0; i < s->object_count; i++) {
     const abbe_object *o = &s->object[i];
     const abbe_surface *f = &t->geometry.surface[i];

@@ -61,7 +61,8 @@ abbe_result abbe_tracer_fit_layout(abbe_tracer *t, abbe_error *error) {
   /* no seed but this one: maps of other seeds are to have the same layout */
   abbe_result result = abbe_emission_make(t, t->desc.map_light, TRIALS, 0, 0, &e, error);
   if (result == ABBE_OK)
-    result = abbe_light_walk_make(&t->geometry, &t->media, &t->desc.physics, 0, &walk, error);
+    result = abbe_light_walk_make(&t->geometry, &t->media, &t->mirrors, &t->desc.physics, 0, &walk,
+                                  error);
   if (result == ABBE_OK && (at[0] == NULL || at[1] == NULL))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for trial photons");
   if (result == ABBE_OK) {

@@ -62,7 +62,7 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
   packet->dir_z[k] = d[2];
   packet->tnear[k] = 0;
   packet->tfar[k] = distance;
-  packet->mask[k] = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  packet->mask[k] = ABBE_GEOMETRY_OBJECTS;
   packet->flags[k] = 0;
   return true;
 }

@@ -92,6 +92,9 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);
+  if (result == ABBE_OK)
+    result = abbe_mirrors_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->mirrors,
+                               error);
   if (result == ABBE_OK) result = abbe_bands_make(&t->sampling, d->bands, &t->bands, error);
   if (result != ABBE_OK) return result;
   t->mixing = d->space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : d->space;
@@ -119,8 +122,8 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
     for (int k = 0; k < 3; k++) t->white[l][k] = (float)white[k];
   }
   for (size_t i = 0; i < d->threads && result == ABBE_OK; i++)
-    result =
-        abbe_light_walk_make(&t->geometry, &t->media, &d->physics, d->seed, &t->walk[i], error);
+    result = abbe_light_walk_make(&t->geometry, &t->media, &t->mirrors, &d->physics, d->seed,
+                                  &t->walk[i], error);
   return result;
 }
 
@@ -204,9 +207,11 @@ static abbe_result choose_samples(abbe_tracer *t, abbe_error *error) {
 
 /* The eye needs photons around where some ray that met a refractor lands. */
 static abbe_result prepare_eye(abbe_tracer *t, abbe_error *error) {
-  t->eye_gathers = !t->desc.no_picture && t->geometry.refractor_count > 0;
+  t->eye_gathers =
+      !t->desc.no_picture && t->geometry.refractor_count + t->geometry.mirror_count > 0;
   t->eye = (abbe_eye_walk){.geometry = &t->geometry,
                            .media = &t->media,
+                           .mirrors = &t->mirrors,
                            .sampling = &t->sampling,
                            .bands = &t->bands,
                            .camera = &t->camera,
@@ -273,6 +278,7 @@ void abbe_tracer_free(abbe_tracer *t) {
   abbe_bands_free(&t->bands);
   abbe_environment_light_free(&t->environment);
   abbe_media_free(&t->media);
+  abbe_mirrors_free(&t->mirrors);
   abbe_spectral_sampling_free(&t->sampling);
   abbe_geometry_free(&t->geometry);
   free(t->landed);

@@ -23,6 +23,7 @@ struct abbe_tracer {
   abbe_geometry geometry;
   abbe_spectral_sampling sampling;
   abbe_media media;
+  abbe_mirrors mirrors;
   abbe_bands bands;
   abbe_reflectance reflectance;
   abbe_environment_light environment; /* its number as a light is the scene's light_count */

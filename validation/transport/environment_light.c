@@ -55,11 +55,12 @@ static void surround(const abbe_geometry *g, const abbe_object *o, float ball[4]
 
 static void set_balls(const abbe_geometry *g, abbe_environment_light *e) {
   double min[3], max[3], far = 0;
-  for (size_t i = 0; i < g->refractor_count; i++) {
-    surround(g, &g->scene->object[g->refractor_object[i]], e->ball[i]);
-    e->area += 3.14159265358979 * pow((double)e->ball[i][3] * g->unit, 2);
+  for (size_t i = 0; i < g->scene->object_count; i++) {
+    if ((g->surface[i].kind & ABBE_GEOMETRY_SPECULAR) == 0) continue;
+    float *ball = e->ball[e->ball_count++];
+    surround(g, &g->scene->object[i], ball);
+    e->area += 3.14159265358979 * pow((double)ball[3] * g->unit, 2);
   }
-  e->ball_count = g->refractor_count;
   abbe_scene_bounds(g->scene, true, true, min, max);
   for (int k = 0; k < 3; k++)
     far += pow(fmax(fabs(min[k] - g->origin[k]), fabs(max[k] - g->origin[k])) / g->unit, 2);
@@ -80,7 +81,7 @@ abbe_result abbe_environment_light_make(const abbe_geometry *g, const abbe_spect
   if (result != ABBE_OK) return result;
   e.lift = calloc(s->steps, sizeof *e.lift);
   e.band = calloc(bands->count + 1, sizeof *e.band);
-  e.ball = calloc(g->refractor_count + 1, sizeof *e.ball);
+  e.ball = calloc(g->refractor_count + g->mirror_count + 1, sizeof *e.ball);
   *out = e;
   if (e.lift == NULL || e.band == NULL || e.ball == NULL) {
     abbe_environment_light_free(out);

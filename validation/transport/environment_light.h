@@ -4,8 +4,8 @@
  * (scenes/environment/environment.h). Its spectrum is the illuminant's times lift . rgb
  * (colorimetry/upsampling.h). Among the tables of the scene's lights the illuminant stands last.
  *
- * Photons start from everywhere around the balls that hold the refractors: a direction is drawn by
- * its luminance, and a place on the disk of one of the balls across it.
+ * Photons start from everywhere around the balls that hold the refractors and mirrors: a direction
+ * is drawn by its luminance, and a place on the disk of one of the balls across it.
  *
  * Internal to validation/: it is not installed.
  */

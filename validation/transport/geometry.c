@@ -7,10 +7,24 @@
 
 /* ---- the frame ---- */
 
+/* Bounds of what refracts or mirrors; false where nothing does. */
+static bool bound_specular(const abbe_scene *scene, double min[3], double max[3]) {
+  bool any = false;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const abbe_object *o = &scene->object[i];
+    if (abbe_object_kind_of(o) == ABBE_OBJECT_RECEIVER) continue;
+    for (int k = 0; k < 3; k++) {
+      min[k] = any ? fmin(min[k], o->min[k]) : o->min[k];
+      max[k] = any ? fmax(max[k], o->max[k]) : o->max[k];
+    }
+    any = true;
+  }
+  return any;
+}
+
 static void choose_frame(abbe_geometry *g) {
   double min[3], max[3], half[3];
-  if (!abbe_scene_bounds(g->scene, true, false, min, max))
-    abbe_scene_bounds(g->scene, true, true, min, max);
+  if (!bound_specular(g->scene, min, max)) abbe_scene_bounds(g->scene, true, true, min, max);
   for (int k = 0; k < 3; k++) {
     g->origin[k] = 0.5 * (min[k] + max[k]);
     half[k] = 0.5 * (max[k] - min[k]);
@@ -129,17 +143,11 @@ static bool add_lamp(abbe_geometry *g, const abbe_light *light, abbe_surface *s,
 /* ---- make and free ---- */
 
 static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe_error *error) {
-  const abbe_object *mirror = abbe_scene_mirror(scene);
-  if (mirror != NULL)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the object '%s' (line %zu) is a mirror, and the tracer follows no light "
-                          "off mirrors; leave it out, or give it a 'reflectance'",
-                          mirror->name, mirror->line);
   for (size_t i = 0; i < scene->object_count; i++) {
-    if (abbe_object_kind_of(&scene->object[i]) == ABBE_OBJECT_REFRACTOR)
-      g->refractor_count++;
-    else
-      g->receiver_count++;
+    const abbe_object_kind kind = abbe_object_kind_of(&scene->object[i]);
+    g->refractor_count += kind == ABBE_OBJECT_REFRACTOR;
+    g->receiver_count += kind == ABBE_OBJECT_RECEIVER;
+    g->mirror_count += kind == ABBE_OBJECT_MIRROR;
   }
   if (g->refractor_count > ABBE_GEOMETRY_MAX_REFRACTORS)
     return abbe_error_set(
@@ -152,7 +160,8 @@ static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe
     g->surface_count += scene->light[i].kind == ABBE_LIGHT_DISK;
   g->surface = calloc(g->surface_count + 1, sizeof *g->surface);
   g->refractor_object = calloc(g->refractor_count + 1, sizeof *g->refractor_object);
-  if (g->surface == NULL || g->refractor_object == NULL)
+  g->mirror_object = calloc(g->mirror_count + 1, sizeof *g->mirror_object);
+  if (g->surface == NULL || g->refractor_object == NULL || g->mirror_object == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu surfaces", g->surface_count);
   return ABBE_OK;
 }
@@ -181,19 +190,28 @@ static abbe_result check_thickness(const abbe_geometry *g, abbe_error *error) {
 }
 
 static bool add_objects(abbe_geometry *g) {
-  size_t refractors = 0, receivers = 0;
+  size_t refractors = 0, receivers = 0, mirrors = 0;
   bool added = true;
   for (size_t i = 0; i < g->scene->object_count && added; i++) {
     const abbe_object *o = &g->scene->object[i];
     abbe_surface *s = &g->surface[i];
     s->object = (uint32_t)i;
-    const bool refracts = abbe_object_kind_of(o) == ABBE_OBJECT_REFRACTOR;
-    s->kind = refracts ? ABBE_GEOMETRY_REFRACTORS : ABBE_GEOMETRY_RECEIVERS;
-    s->index = (uint32_t)(refracts ? refractors : receivers);
-    if (refracts)
+    switch (abbe_object_kind_of(o)) {
+    case ABBE_OBJECT_REFRACTOR:
+      s->kind = ABBE_GEOMETRY_REFRACTORS;
+      s->index = (uint32_t)refractors;
       g->refractor_object[refractors++] = (uint32_t)i;
-    else
-      receivers++;
+      break;
+    case ABBE_OBJECT_MIRROR:
+      s->kind = ABBE_GEOMETRY_MIRRORS;
+      s->index = (uint32_t)mirrors;
+      g->mirror_object[mirrors++] = (uint32_t)i;
+      break;
+    case ABBE_OBJECT_RECEIVER:
+      s->kind = ABBE_GEOMETRY_RECEIVERS;
+      s->index = (uint32_t)receivers++;
+      break;
+    }
     added = o->exact.kind == ABBE_EXACT_SPHERE ? add_sphere(g, o, s, (unsigned)i)
                                                : add_triangles(g, o, s, (unsigned)i);
   }
@@ -252,6 +270,7 @@ void abbe_geometry_free(abbe_geometry *g) {
   abbe_solids_free(g->solid, g->refractor_count);
   free(g->surface);
   free(g->refractor_object);
+  free(g->mirror_object);
   *g = (abbe_geometry){0};
 }
 

@@ -25,12 +25,19 @@ extern "C" {
 #define ABBE_GEOMETRY_MAX_REFRACTORS 64 /* a bit each in the set of those around a path */
 
 /* Kinds of surfaces, as bits of ray masks. */
-enum { ABBE_GEOMETRY_REFRACTORS = 1, ABBE_GEOMETRY_RECEIVERS = 2, ABBE_GEOMETRY_LAMPS = 4 };
+enum {
+  ABBE_GEOMETRY_REFRACTORS = 1,
+  ABBE_GEOMETRY_RECEIVERS = 2,
+  ABBE_GEOMETRY_LAMPS = 4,
+  ABBE_GEOMETRY_MIRRORS = 8,
+  ABBE_GEOMETRY_SPECULAR = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_MIRRORS,
+  ABBE_GEOMETRY_OBJECTS = ABBE_GEOMETRY_SPECULAR | ABBE_GEOMETRY_RECEIVERS
+};
 
 /* The surface behind one of Embree's geometry identifiers; frame units. */
 typedef struct abbe_surface {
   unsigned kind;   /* one of the bits above */
-  uint32_t index;  /* among its kind: refractor, receiver; of the light for lamps */
+  uint32_t index;  /* among its kind: refractor, receiver, mirror; of the light for lamps */
   uint32_t object; /* in the scene; of the light for lamps */
   bool sphere;     /* centre and radius hold; else triangles */
   bool flat;       /* every face has one normal: its own */
@@ -46,8 +53,9 @@ typedef struct abbe_geometry {
   double origin[3], unit; /* world = origin + unit * frame, metres */
   size_t surface_count;
   abbe_surface *surface; /* [surface_count], by geometry identifier */
-  size_t refractor_count, receiver_count;
+  size_t refractor_count, receiver_count, mirror_count;
   uint32_t *refractor_object; /* [refractor_count] */
+  uint32_t *mirror_object;    /* [mirror_count] */
   abbe_solid *solid;          /* [refractor_count] */
   RTCDevice device;
   RTCScene embree;

@@ -8,9 +8,8 @@ static bool shows_refractor(const abbe_geometry *g, const abbe_trace_camera *c, 
   float d[3];
   abbe_hit hit;
   abbe_trace_camera_ray(c, (float)x + 0.5f, (float)y + 0.5f, d);
-  return abbe_geometry_hit(g, ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS, c->eye, d,
-                           INFINITY, &hit) &&
-         hit.surface->kind == ABBE_GEOMETRY_REFRACTORS;
+  return abbe_geometry_hit(g, ABBE_GEOMETRY_OBJECTS, c->eye, d, INFINITY, &hit) &&
+         (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) != 0;
 }
 
 /* Whether the pixel or one next to it is marked as showing a refractor in its middle. */

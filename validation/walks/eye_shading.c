@@ -135,7 +135,7 @@ static float irradiance(const abbe_eye_context *c, const abbe_light *light, cons
   if (!(e > 0)) return 0;
   abbe_geometry_leave(hit, d, o);
   c->out->rays++;
-  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  unsigned mask = ABBE_GEOMETRY_OBJECTS;
   return abbe_geometry_occluded(g, mask, o, d, limit) ? 0 : e;
 }
 
@@ -146,7 +146,7 @@ static bool sees_out(const abbe_eye_context *c, const abbe_hit *hit, const float
   if (!(abbe_eye_dot(n, d) > 0)) return false;
   abbe_geometry_leave(hit, d, o);
   c->out->rays++;
-  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  unsigned mask = ABBE_GEOMETRY_OBJECTS;
   return !abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
 }
 

@@ -12,7 +12,7 @@ static const uint32_t golden[3] = {3518319155u, 2882110345u, 2360945575u};
 
 /* ---- paths ---- */
 
-enum { ALL_KINDS = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_LAMPS };
+enum { ALL_KINDS = ABBE_GEOMETRY_OBJECTS | ABBE_GEOMETRY_LAMPS };
 
 /* From inside a solid: where the path leaves it. */
 static bool leave_solid(const abbe_geometry *g, const abbe_eye_path *p, abbe_hit *hit,
@@ -151,6 +151,24 @@ static bool scatter(const abbe_eye_context *c, branches *b, abbe_eye_path *p, co
   return goes || also;
 }
 
+/* On from a mirror, with what it reflects. */
+static void mirror_on(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit) {
+  const float side = abbe_eye_dot(p->d, hit->ng) < 0 ? 1 : -1;
+  const float *outside = abbe_eye_dot(p->d, hit->n) * side < 0 ? hit->n : hit->ng;
+  float n[3], d[3];
+  for (int k = 0; k < 3; k++) n[k] = side * outside[k];
+  const float cos_i = fminf(-abbe_eye_dot(p->d, n), 1);
+  p->share *= abbe_mirrors_reflect(c->w->mirrors, hit->surface->index, cos_i, p->step, p->within);
+  abbe_interface_reflect(p->d, n, cos_i, d);
+  abbe_interface_keep_side(hit->ng, side, d);
+  memcpy(p->d, d, sizeof d);
+  abbe_geometry_leave(hit, d, p->o);
+}
+
+static bool is_coloured_mirror(const abbe_eye_context *c, const abbe_hit *hit) {
+  return c->w->bands->count > 0 || !abbe_mirrors_is_grey(c->w->mirrors, hit->surface->index);
+}
+
 /* To the next interface that is one; false where the path ends. */
 static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p) {
   abbe_hit hit;
@@ -162,9 +180,14 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
     if (!(random[2] * b->least < p->share)) return false;
     p->share = b->least;
   }
-  if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
+  if (!met || (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) == 0) {
     abbe_eye_arrive(c, p, met, &hit, false);
     return false;
+  }
+  if (hit.surface->kind == ABBE_GEOMETRY_MIRRORS) {
+    if (is_coloured_mirror(c, &hit)) disperse(p, random[1]);
+    mirror_on(c, p, &hit);
+    return p->share > 0;
   }
   crossing x;
   cross(p, &hit, &x);
@@ -239,6 +262,20 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
   }
 }
 
+/* What the eye sees straight in a mirror: wavelengths of their own where it has a colour. */
+static void follow_off(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
+                       float random) {
+  const uint32_t count = is_coloured_mirror(c, hit) ? HEROES : 1;
+  for (uint32_t i = 0; i < count; i++) {
+    abbe_eye_path p = *first;
+    p.id += 2 + i;
+    p.share /= (float)count;
+    if (count > 1) disperse(&p, ((float)i + random) / (float)count);
+    mirror_on(c, &p, hit);
+    if (p.share > 0) follow(c, &p);
+  }
+}
+
 static void add_first(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
                       float length) {
   float side = abbe_eye_dot(p->d, hit->ng) < 0 ? p->share : -p->share;
@@ -259,11 +296,15 @@ static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, fl
   abbe_trace_camera_ray(c->w->camera, x, y, p->d);
   bool met = trace(c, p, &hit, &length);
   if (met) add_first(c, p, &hit, length);
-  if (!met || hit.surface->kind != ABBE_GEOMETRY_REFRACTORS) {
+  if (!met || (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) == 0) {
     abbe_eye_arrive(c, p, met, &hit, true);
     return;
   }
   c->out->refractor = true;
+  if (hit.surface->kind == ABBE_GEOMETRY_MIRRORS) {
+    follow_off(c, p, &hit, wave);
+    return;
+  }
   crossing at;
   cross(p, &hit, &at);
   if (abbe_media_same(c->w->media, at.from, at.to)) {

@@ -15,6 +15,7 @@
 #include "validation/transport/environment_light.h"
 #include "validation/transport/geometry.h"
 #include "validation/transport/media.h"
+#include "validation/transport/mirrors.h"
 #include "validation/transport/physics.h"
 #include "validation/transport/reflectance.h"
 #include "validation/transport/spectral_sampling.h"
@@ -32,6 +33,7 @@ extern "C" {
 typedef struct abbe_eye_walk {
   const abbe_geometry *geometry;
   const abbe_media *media;
+  const abbe_mirrors *mirrors;
   const abbe_spectral_sampling *sampling;
   const abbe_bands *bands;
   const abbe_trace_camera *camera;
@@ -56,7 +58,7 @@ typedef struct abbe_eye_sample {
   float albedo[3];            /* reflectance of what shows, by each path's share of the pixel */
   float normal[3];            /* of what the ray meets first, towards the eye; none: 0 */
   float depth;                /* along the ray to there, frame; none: 0 */
-  bool refractor;             /* the pixel's ray met one first */
+  bool refractor;             /* the pixel's ray met one, or a mirror, first */
   uint32_t rays;
 } abbe_eye_sample;
 

@@ -32,6 +32,7 @@ static bool stands_before(const abbe_geometry *g, const abbe_light *light, const
 /* Receivers that are the walls of a convex room around the lamp hide nothing. */
 bool abbe_lamp_is_hidden(const abbe_geometry *g, const abbe_light *light) {
   size_t faces = 0;
+  if (g->mirror_count > 0) return true;
   for (size_t i = 0; i < g->surface_count; i++) {
     const abbe_surface *s = &g->surface[i];
     if (s->kind != ABBE_GEOMETRY_RECEIVERS) continue;
@@ -96,7 +97,7 @@ void abbe_lamp_rays_add(abbe_lamp_rays *s, const abbe_geometry *g, const abbe_li
   ray->dir_z[at] = d[2];
   ray->tnear[at] = 0;
   ray->tfar[at] = limit;
-  ray->mask[at] = ABBE_GEOMETRY_RECEIVERS;
+  ray->mask[at] = ABBE_GEOMETRY_RECEIVERS | ABBE_GEOMETRY_MIRRORS;
   ray->flags[at] = 0;
   s->photon[at] = photon;
   s->flux[at] = flux;

@@ -1,5 +1,6 @@
 #include "validation/walks/light_walk.h"
 
+#include "validation/transport/interface.h"
 #include "validation/transport/random.h"
 #include "validation/walks/inner_walk.h"
 #include "validation/walks/lamp_rays.h"
@@ -47,6 +48,7 @@ struct abbe_light_walk {
   abbe_lamp_rays lamp_rays;
   const abbe_geometry *g;
   const abbe_media *media;
+  const abbe_mirrors *mirrors;
   abbe_physics physics;
   uint32_t seed;
   uint64_t rays;
@@ -61,9 +63,9 @@ struct abbe_light_walk {
 };
 
 abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
-                                 const abbe_physics *physics, uint32_t seed, abbe_light_walk **out,
-                                 abbe_error *error) {
-  ABBE_REQUIRE(geometry && geometry->scene && media && physics && out, error);
+                                 const abbe_mirrors *mirrors, const abbe_physics *physics,
+                                 uint32_t seed, abbe_light_walk **out, abbe_error *error) {
+  ABBE_REQUIRE(geometry && geometry->scene && media && mirrors && physics && out, error);
   *out = NULL;
   abbe_light_walk *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
   size_t lights = geometry->scene->light_count;
@@ -71,6 +73,7 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
     memset(w, 0, sizeof *w);
     w->g = geometry;
     w->media = media;
+    w->mirrors = mirrors;
     w->physics = *physics;
     w->seed = seed;
     w->batch = aligned_alloc(64, (sizeof *w->batch + 63) / 64 * 64);
@@ -135,6 +138,7 @@ typedef enum path_state {
   SCATTERS,   /* at an interface */
   DEPOSITED,  /* on a receiver */
   MISSED,     /* met nothing any more */
+  MIRRORED,   /* on its way already */
   TRAPPED,    /* matched: as long as the renderer follows one, and not out yet */
   LOST,       /* inside of nothing, or too long */
   NOT_COUNTED /* never met a refractor, or has no light left */
@@ -176,15 +180,8 @@ static float next_chance(const abbe_light_walk *w, const path *s, uint32_t pass)
   return random[0];
 }
 
-/* Absorption on the way, and the roulette that ends paths with little left. */
-static bool absorb(const abbe_light_walk *w, path *s, float length, uint32_t pass,
-                   abbe_light_ledger *ledger) {
-  if (w->media->attenuation == NULL) return true;
-  int medium = abbe_media_of(s->inside);
-  float left = expf(-length * abbe_media_attenuation(w->media, medium, s->step, s->within));
-  ledger->absorbed += (double)(s->y * s->flux * (1 - left));
-  s->flux *= left;
-  s->carried *= left;
+/* Ends paths with little left; true: it goes on. */
+static bool survives(const abbe_light_walk *w, path *s, uint32_t pass, abbe_light_ledger *ledger) {
   const float least = 0.05f;
   if (s->flux >= least * s->full) return true;
   float chance = s->flux / (least * s->full), random[4];
@@ -194,6 +191,18 @@ static bool absorb(const abbe_light_walk *w, path *s, float length, uint32_t pas
   s->flux = random[0] < chance ? least * s->full : 0;
   ledger->absorbed += (double)(s->y * (before - s->flux));
   return s->flux > 0;
+}
+
+/* Absorption on the way, and the roulette. */
+static bool absorb(const abbe_light_walk *w, path *s, float length, uint32_t pass,
+                   abbe_light_ledger *ledger) {
+  if (w->media->attenuation == NULL) return true;
+  int medium = abbe_media_of(s->inside);
+  float left = expf(-length * abbe_media_attenuation(w->media, medium, s->step, s->within));
+  ledger->absorbed += (double)(s->y * s->flux * (1 - left));
+  s->flux *= left;
+  s->carried *= left;
+  return survives(w, s, pass, ledger);
 }
 
 /* Matched physics: whether the renderer would still follow the path. */
@@ -230,6 +239,29 @@ static void meet_interface(const abbe_light_walk *w, const path *s, const float 
                                            abbe_media_n(w->media, to, s->step, s->within);
 }
 
+/* A mirror absorbs what it does not reflect; the path goes into the next batch. */
+static path_state mirror(run *r, const abbe_hit *hit, const float d[3], path *s) {
+  abbe_light_walk *w = r->w;
+  const float side = dot(d, hit->ng) < 0 ? 1 : -1;
+  const float *outside = dot(d, hit->n) * side < 0 ? hit->n : hit->ng;
+  const float n[3] = {side * outside[0], side * outside[1], side * outside[2]};
+  const float cos_i = fminf(-dot(d, n), 1);
+  const float share =
+      abbe_mirrors_reflect(w->mirrors, hit->surface->index, cos_i, s->step, s->within);
+  r->ledger->absorbed += (double)(s->y * s->flux * (1 - share));
+  s->flux *= share;
+  s->carried *= share;
+  if (++s->steps >= ABBE_INNER_MAX_STEPS) return LOST;
+  if (!(s->flux > 0) || !survives(w, s, r->pass, r->ledger)) return NOT_COUNTED;
+  float out[3], o[3];
+  abbe_interface_reflect(d, n, cos_i, out);
+  abbe_interface_keep_side(hit->ng, side, out);
+  abbe_geometry_leave(hit, out, o);
+  abbe_ray_put(w->next->ray, w->next->count, o, out);
+  w->next->path[w->next->count++] = *s;
+  return MIRRORED;
+}
+
 /* Lane k of a packet of rays that Embree has been through: where the path is, and what becomes of
  * it there. */
 static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, path *s) {
@@ -240,16 +272,18 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, pat
   float d[3] = {rays->ray.dir_x[k], rays->ray.dir_y[k], rays->ray.dir_z[k]};
   for (int i = 0; i < 3; i++) p->scatter.d[i][k] = d[i];
   if (id == RTC_INVALID_GEOMETRY_ID) return first ? NOT_COUNTED : s->inside != 0 ? LOST : MISSED;
-  if (first && r->w->g->surface[id].kind != ABBE_GEOMETRY_REFRACTORS) return NOT_COUNTED;
+  if (first && r->w->g->surface[id].kind == ABBE_GEOMETRY_RECEIVERS) return NOT_COUNTED;
   abbe_hit *hit = &p->hit[k];
   abbe_geometry_place(&r->w->g->surface[id], rays->hit.primID[k], rays->hit.u[k], rays->hit.v[k], o,
                       d, rays->ray.tfar[k], hit);
-  if (hit->surface->kind != ABBE_GEOMETRY_REFRACTORS) {
+  if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
     if (s->inside != 0) r->ledger->contact += (double)(s->y * s->flux);
     return DEPOSITED;
   }
   if (first) r->ledger->reached += (double)(s->y * s->flux);
   bool absorbed = s->inside != 0 && !absorb(r->w, s, rays->ray.tfar[k], r->pass, r->ledger);
+  if (hit->surface->kind == ABBE_GEOMETRY_MIRRORS)
+    return absorbed ? NOT_COUNTED : mirror(r, hit, d, s);
   p->scatter.chance[k] = next_chance(r->w, s, r->pass);
   bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
   meet_interface(r->w, s, d, p, k);
@@ -368,6 +402,7 @@ static void end_path(run *r, size_t k, path_state state, const path *s) {
     r->ledger->lost += flux;
     break;
   case SCATTERS:
+  case MIRRORED:
   case NOT_COUNTED:
     break;
   }

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "validation/transport/geometry.h"
 #include "validation/transport/media.h"
+#include "validation/transport/mirrors.h"
 #include "validation/transport/physics.h"
 #include "validation/walks/photon.h"
 
@@ -26,10 +27,10 @@ extern "C" {
 
 typedef struct abbe_light_walk abbe_light_walk; /* one a thread */
 
-/* geometry and media outlive it. seed: of all random numbers. */
+/* geometry, media and mirrors outlive it. seed: of all random numbers. */
 abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media *media,
-                                 const abbe_physics *physics, uint32_t seed, abbe_light_walk **out,
-                                 abbe_error *error);
+                                 const abbe_mirrors *mirrors, const abbe_physics *physics,
+                                 uint32_t seed, abbe_light_walk **out, abbe_error *error);
 void abbe_light_walk_free(abbe_light_walk *walk);
 
 /* Room for a batch and its hits, the walk's own and for its callers: a quarter of a megabyte,

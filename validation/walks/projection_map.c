@@ -190,7 +190,7 @@ static void cover_surface(const abbe_geometry *g, const abbe_surface *s, const c
 
 static void cover_all(const abbe_geometry *g, const cover_list *list) {
   for (size_t i = 0; i < g->surface_count; i++)
-    if (g->surface[i].kind == ABBE_GEOMETRY_REFRACTORS) cover_surface(g, &g->surface[i], list);
+    if (g->surface[i].kind & ABBE_GEOMETRY_SPECULAR) cover_surface(g, &g->surface[i], list);
 }
 
 static void take_extent(void *user, patch p) {
@@ -263,9 +263,9 @@ static double try_cell(const abbe_geometry *g, const abbe_projection_map *a,
     r[1] = ((float)(i / 4) + r[1]) / 2;
     double f = (double)abbe_projection_map_ray(a, cell, r, r + 2, o, d);
     abbe_hit hit;
-    unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+    unsigned mask = ABBE_GEOMETRY_OBJECTS;
     bool met = f > 0 && abbe_geometry_hit(g, mask, o, d, INFINITY, &hit) &&
-               hit.surface->kind == ABBE_GEOMETRY_REFRACTORS;
+               (hit.surface->kind & ABBE_GEOMETRY_SPECULAR) != 0;
     *flux += f / TRIALS;
     share += met ? f / TRIALS : 0;
   }

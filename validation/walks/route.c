@@ -1,5 +1,6 @@
 #include "validation/walks/route.h"
 
+#include "spectral/optics.h"
 #include "validation/transport/interface.h"
 #include "validation/transport/media.h"
 
@@ -66,12 +67,33 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   return ABBE_OK;
 }
 
+/* Off a mirror, whatever the choices are. */
+static abbe_result mirror(walker *w, const abbe_hit *hit, abbe_route_vertex *out,
+                          abbe_error *error) {
+  const abbe_object *object = &w->g->scene->object[hit->surface->object];
+  float along = w->d[0] * hit->n[0] + w->d[1] * hit->n[1] + w->d[2] * hit->n[2], n[3], d[3];
+  for (int k = 0; k < 3; k++) n[k] = along < 0 ? hit->n[k] : -hit->n[k];
+  float cos_i = fminf(fabsf(along), 1);
+  abbe_interface_reflect(w->d, n, cos_i, d);
+  memcpy(w->d, d, sizeof d);
+  out->event = ABBE_ROUTE_REFLECTED;
+  out->cos_in = (double)cos_i;
+  out->reflectance = object->mirror_reflectance;
+  abbe_result result = index_of(w, w->inside, &out->inside_n, error);
+  if (result != ABBE_OK || object->conductor == NULL) return result;
+  double nk[2];
+  result = abbe_material_nk(object->conductor, w->lambda_nm, &nk[0], &nk[1], error);
+  if (result == ABBE_OK)
+    out->reflectance = abbe_optics_fresnel_conductor((double)cos_i, nk[0], nk[1]);
+  return result;
+}
+
 static abbe_result step(walker *w, const char **choice, abbe_route_vertex *out, bool *ended,
                         abbe_error *error) {
   *out = (abbe_route_vertex){
       .event = ABBE_ROUTE_ESCAPED, .object = (size_t)-1, .distance = INFINITY, .inside_n = 1};
   abbe_hit hit;
-  unsigned mask = ABBE_GEOMETRY_REFRACTORS | ABBE_GEOMETRY_RECEIVERS;
+  unsigned mask = ABBE_GEOMETRY_OBJECTS;
   *ended = !abbe_geometry_hit(w->g, mask, w->o, w->d, INFINITY, &hit);
   if (*ended) {
     abbe_geometry_to_world(w->g, w->o, out->position);
@@ -81,11 +103,13 @@ static abbe_result step(walker *w, const char **choice, abbe_route_vertex *out, 
   double length = 0;
   for (int k = 0; k < 3; k++) length += pow((double)hit.p[k] - (double)w->o[k], 2);
   length = sqrt(length) * w->g->unit;
-  *ended = hit.surface->kind != ABBE_GEOMETRY_REFRACTORS;
+  *ended = hit.surface->kind == ABBE_GEOMETRY_RECEIVERS;
   abbe_result result = ABBE_OK;
   abbe_route_event event = ABBE_ROUTE_LANDED;
   if (*ended)
     out->cos_in = fabs((double)(w->d[0] * hit.n[0] + w->d[1] * hit.n[1] + w->d[2] * hit.n[2]));
+  else if (hit.surface->kind == ABBE_GEOMETRY_MIRRORS)
+    result = mirror(w, &hit, out, error);
   else
     result = meet(w, &hit, choice, out, error);
   if (!*ended) event = out->event;

@@ -17,7 +17,9 @@ typedef struct curves {
 } curves;
 
 static double index_at(const abbe_material *m, double nm) {
-  double n = NAN;
+  double n = NAN, k;
+  if (m != NULL && abbe_material_is_conductor(m))
+    return abbe_material_nk(m, nm, &n, &k, NULL) == ABBE_OK ? n : NAN;
   return m != NULL && abbe_material_n(m, nm, &n, NULL) == ABBE_OK ? n : NAN;
 }
 

@@ -88,6 +88,43 @@ static void show_tells_all_that_is_known(void **state) {
 
 /* ---- nearest ---- */
 
+/* A conductor has n, k and what it reflects; what is of glasses alone is left out or refused. */
+static void metals_are_told_by_n_and_k(void **state) {
+  (void)state;
+  answers("$abbe materials show silver --at 582.1", 0, "582.1    0.050000    3.858000    0.987490");
+  assert_null(strstr(run_output, "V_d"));
+  assert_null(strstr(run_output, "nan"));
+  assert_null(strstr(run_output, "Cauchy"));
+  cJSON *json = json_of("$abbe materials show gold --at 582.1 --json", 0);
+  const cJSON *nk = cJSON_GetObjectItem(json, "nk"), *colour;
+  assert_int_equal(cJSON_GetArraySize(nk), 4);
+  assert_near(number(cJSON_GetArrayItem(nk, 3), "reflectance"), 0.88236330895380525, 1e-12);
+  colour = cJSON_GetObjectItem(json, "colour_rec709"); /* yellow */
+  assert_true(cJSON_GetArrayItem(colour, 0)->valuedouble >
+              cJSON_GetArrayItem(colour, 1)->valuedouble);
+  assert_true(cJSON_GetArrayItem(colour, 1)->valuedouble >
+              1.8 * cJSON_GetArrayItem(colour, 2)->valuedouble);
+  assert_null(cJSON_GetObjectItem(json, "v_d"));
+  cJSON_Delete(json);
+  answers("$abbe materials list --name gold --columns name,n_d,v_d,model", 0,
+          "gold    -    -  conductor");
+  answers(
+      "$abbe materials plot gold n-bk7 -o metal.svg && grep -c 'gold, k\\|svg' metal.svg >&2; rm "
+      "metal.svg",
+      0, "");
+  static const struct {
+    const char *line, *part;
+  } refused[] = {
+      {"$abbe materials show gold --at 300", "data reach from 354.2 to 892 nm"},
+      {"$abbe materials show gold --fit", "gold is a conductor"},
+      {"$abbe materials fit gold", "gold is a conductor"},
+      {"$abbe materials nearest --like gold", "gold is a conductor"},
+      {"$abbe materials plot gold --fits -o metal.svg", "gold is a conductor"},
+  };
+  for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++)
+    assert_true(run_refuses(refused[i].line, 1, refused[i].part));
+}
+
 static void nearest_finds_by_numbers_curve_and_points(void **state) {
   (void)state;
   cJSON *json = json_of("$abbe materials nearest --nd 1.517 --vd 64.2 --count 2 --json", 0);
@@ -135,7 +172,8 @@ static void fix_changes_a_copy_and_leaves_the_rest(void **state) {
           "$house/spectral/materials/thesis.yaml",
           0, "+    coefficients: [1.447746, 0.00354]\n");
   answers("$abbe materials check --table t.yaml --fix", 0, "5 rows, 0 wrong, 0 doubtful");
-  assert_contains(run_errors, "fused-silica, k5, bak4, baf10: the row's own warning stays as it was");
+  assert_contains(run_errors,
+                  "fused-silica, k5, bak4, baf10: the row's own warning stays as it was");
   answers("diff $house/spectral/materials/thesis.yaml t.yaml | grep -c '^[<>]'", 0, "8\n");
   answers("$abbe materials check --table t.yaml --fix", 0, "0 wrong");
 }
@@ -344,6 +382,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lists_are_filtered_sorted_and_cut_into_columns),
       cmocka_unit_test(show_tells_all_that_is_known),
+      cmocka_unit_test(metals_are_told_by_n_and_k),
       cmocka_unit_test(nearest_finds_by_numbers_curve_and_points),
       cmocka_unit_test(check_finds_the_four_wrong_rows_of_the_thesis),
       cmocka_unit_test(fix_changes_a_copy_and_leaves_the_rest),

@@ -31,12 +31,12 @@ static void make(size_t width, abbe_environment *out) {
 
 static void densities_integrate_to_one(void **state) {
   (void)state;
-  static const size_t widths[] = {4, 6, 16, 64};
+  static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
     abbe_environment e;
     double sum = 0, mean = 0;
     make(widths[w], &e);
-    const int rows = 1000, columns = 2000;
+    const int rows = 500, columns = 1000;
     for (int i = 0; i < rows; i++)
       for (int j = 0; j < columns; j++) {
         const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * PI * (j + 0.5) / columns;
@@ -46,8 +46,8 @@ static void densities_integrate_to_one(void **state) {
         abbe_environment_radiance(&e, d, rgb);
         mean += rgb[0] / (rows * columns);
       }
-    assert_near(sum, 1, 1e-4);
-    assert_near(mean, e.mean[0], 1e-4 * e.mean[0]);
+    assert_near(sum, 1, 3e-4);
+    assert_near(mean, e.mean[0], 3e-4 * e.mean[0]);
     assert_near(e.luminance, 4 * PI * e.mean[0], 1e-9 * e.luminance);
     abbe_environment_free(&e);
   }
@@ -57,12 +57,12 @@ static void densities_integrate_to_one(void **state) {
  * their shares of the octants, of a cap around a pole and moments. */
 static void samples_follow_their_density(void **state) {
   (void)state;
-  static const size_t widths[] = {4, 6, 16, 64};
+  static const size_t widths[] = {4, 6, 16, 36};
   for (size_t w = 0; w < 4; w++) {
     abbe_environment e;
     double is[12] = {0}, expected[12] = {0};
     make(widths[w], &e);
-    enum { SAMPLES = 1000000 };
+    enum { SAMPLES = 200000 };
     uint64_t state64 = 1;
     for (int i = 0; i < SAMPLES; i++) {
       const double u[3] = {random_between(&state64, 0, 1), random_between(&state64, 0, 1),
@@ -81,7 +81,7 @@ static void samples_follow_their_density(void **state) {
       is[8] += (own[2] > 0.98) * 1.0 / SAMPLES;
       for (int k = 0; k < 3; k++) is[9 + k] += own[k] / SAMPLES;
     }
-    const int rows = 1000, columns = 2000;
+    const int rows = 500, columns = 1000;
     for (int i = 0; i < rows; i++)
       for (int j = 0; j < columns; j++) {
         const double z = 1 - 2 * (i + 0.5) / rows, a = 2 * PI * (j + 0.5) / columns;
@@ -93,7 +93,7 @@ static void samples_follow_their_density(void **state) {
         expected[8] += (own[2] > 0.98) * share;
         for (int k = 0; k < 3; k++) expected[9 + k] += own[k] * share;
       }
-    for (int i = 0; i < 12; i++) assert_near(is[i], expected[i], 0.0025);
+    for (int i = 0; i < 12; i++) assert_near(is[i], expected[i], 0.005);
     abbe_environment_free(&e);
   }
 }

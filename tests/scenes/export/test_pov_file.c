@@ -244,6 +244,10 @@ static void test_what_cannot_be_is_refused(void **state) {
   assert_int_equal(abbe_pov_file_write(never, &scene, NULL, &error), ABBE_OUT_OF_RANGE);
   assert_contains(error.text, "narrow");
   assert_int_equal(abbe_pov_file_write("/no/such/folder/x.pov", &scene, NULL, &error), ABBE_IO);
+  abbe_scene_free(&scene);
+  load_text(CAMERA FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n", &scene);
+  assert_int_equal(abbe_pov_file_write(never, &scene, NULL, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'environment'");
   assert_int_not_equal(access(never, F_OK), 0);
   abbe_scene_free(&scene);
 }

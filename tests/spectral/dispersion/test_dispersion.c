@@ -144,6 +144,8 @@ static void wrong_coefficients_are_refused(void **state) {
   refuses(ABBE_DISPERSION_RII4, 7, "1, 5, 9");
   refuses(ABBE_DISPERSION_RII4, 10, "1, 5, 9");
   refuses(ABBE_DISPERSION_TABULATED, 1, "none");
+  refuses(ABBE_DISPERSION_CONDUCTOR, 1, "none");
+  refuses(ABBE_DISPERSION_CONDUCTOR, 0, "points of n and of k");
   refuses(ABBE_DISPERSION_CAUCHY, ABBE_DISPERSION_MAX_COEFFICIENTS + 1, "at most 32");
   refuses((abbe_dispersion_model)77, 1, "77");
   abbe_dispersion d = bk7;

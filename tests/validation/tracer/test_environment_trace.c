@@ -127,6 +127,21 @@ static void clear_glass_is_not_seen_in_uniform_light(void **state) {
   drop(&f);
 }
 
+static void a_whole_mirror_is_not_seen_in_uniform_light(void **state) {
+  (void)state;
+  fixture f;
+  abbe_image picture;
+  make(CAMERA POINT_LIGHT FAR_SPECK
+       "- {name: ring, shape: ring, major: 0.15, minor: 0.05, around: 32, across: 16, transform: "
+       "[{translate: [0, 0, 0.1]}], mirror: 1}\n",
+       uniform, &f);
+  trace(&f, 1024, 4, &picture);
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 48; x++) assert_near(luminance(&picture, x, y), 2, 2e-3);
+  abbe_image_free(&picture);
+  drop(&f);
+}
+
 static void check_floor(radiance_of radiance, double irradiance) {
   fixture f;
   abbe_image picture;
@@ -175,6 +190,7 @@ static void a_clear_ball_takes_nothing_away(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
                                      cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
+                                     cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
                                      cmocka_unit_test(an_open_floor_has_its_irradiance),
                                      cmocka_unit_test(a_clear_ball_takes_nothing_away)};
   return cmocka_run_group_tests(tests, NULL, NULL);

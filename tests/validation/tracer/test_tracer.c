@@ -414,6 +414,9 @@ static void what_is_out_of_limits_is_refused(void **state) {
   refuse(&scene, (abbe_trace_desc){.width = 8}, bad, "no object");
   scene.object_count = objects;
   abbe_scene_free(&scene);
+  load_text(CLOSE FLOOR BALL("flat") "environment: {size: 64, uniform: 1}\n", &scene);
+  refuse(&scene, (abbe_trace_desc){.width = 8}, bad, "a map is of one light");
+  abbe_scene_free(&scene);
   abbe_tracer_free(NULL);
 }
 

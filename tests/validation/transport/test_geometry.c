@@ -49,14 +49,6 @@ static void foil_is_refused_however_it_is_turned(void **state) {
   }
 }
 
-static void a_mirror_is_refused_by_name(void **state) {
-  (void)state;
-  make_of(CAMERA POINT_LIGHT FLOOR BALL("crown") "- {name: looking glass, shape: rectangle, width: "
-                                                 "1, height: 1, mirror: 0.9, transform: "
-                                                 "[{translate: [0, 0, -1]}]}\n",
-          "'looking glass' (line 8) is a mirror");
-}
-
 static void hits_a_sphere_from_outside_and_inside(void **state) {
   (void)state;
   abbe_scene scene;
@@ -158,7 +150,6 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_is_thinner_than_its_steps_is_refused),
       cmocka_unit_test(foil_is_refused_however_it_is_turned),
-      cmocka_unit_test(a_mirror_is_refused_by_name),
       cmocka_unit_test(hits_a_sphere_from_outside_and_inside),
       cmocka_unit_test(no_ray_slips_between_faces),
       cmocka_unit_test(size_and_place_do_not_matter),

@@ -21,6 +21,7 @@ typedef struct fixture {
   abbe_scene scene;
   abbe_geometry geometry;
   abbe_media media;
+  abbe_mirrors mirrors;
   abbe_light_walk *walk;
   abbe_light_ledger ledger;
   abbe_photon photon[BATCH];
@@ -37,14 +38,16 @@ static inline void make(const char *text, const abbe_physics *physics, fixture *
   assert_int_equal(abbe_geometry_make(&f->scene, &f->geometry, NULL), ABBE_OK);
   for (int k = 0; k <= STEPS; k++) lambda_nm[k] = 500 + 100.0 * k / STEPS;
   assert_int_equal(abbe_media_make(&f->geometry, lambda_nm, STEPS, &f->media, NULL), ABBE_OK);
+  assert_int_equal(abbe_mirrors_make(&f->geometry, lambda_nm, STEPS, &f->mirrors, NULL), ABBE_OK);
   assert_int_equal(
-      abbe_light_walk_make(&f->geometry, &f->media, physics ? physics : &full, 3, &f->walk, NULL),
+      abbe_light_walk_make(&f->geometry, &f->media, &f->mirrors, physics ? physics : &full, 3, &f->walk, NULL),
       ABBE_OK);
 }
 
 static inline void drop(fixture *f) {
   abbe_light_walk_free(f->walk);
   abbe_media_free(&f->media);
+  abbe_mirrors_free(&f->mirrors);
   abbe_geometry_free(&f->geometry);
   abbe_scene_free(&f->scene);
 }

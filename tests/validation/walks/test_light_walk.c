@@ -342,7 +342,7 @@ static void what_a_bent_normal_mirrors_stays_inside(void **state) {
   static const abbe_physics full = {0};
   assert_int_equal(abbe_geometry_make(&f.scene, &f.geometry, NULL), ABBE_OK);
   assert_int_equal(abbe_media_make(&f.geometry, lambda_nm, STEPS, &f.media, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_walk_make(&f.geometry, &f.media, &full, 3, &f.walk, NULL), ABBE_OK);
+  assert_int_equal(abbe_light_walk_make(&f.geometry, &f.media, &f.mirrors, &full, 3, &f.walk, NULL), ABBE_OK);
   assert_int_equal(shoot(&f, from, down, 4), 0);
   assert_true(f.ledger.lost == 0 && f.ledger.contact == 0);
   assert_near(f.ledger.missed / (double)f.photons, 1, 1e-6);

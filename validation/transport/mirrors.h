@@ -1,0 +1,57 @@
+/* mirrors.h: what mirrors reflect, in single precision: metals by their n and k, others by one
+ * number.
+ *
+ * Its oracle is abbe_optics_fresnel_conductor.
+ *
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_TRANSPORT_MIRRORS_H
+#define ABBE_VALIDATION_TRANSPORT_MIRRORS_H
+
+#include "base/error.h"
+#include "validation/transport/geometry.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_mirrors {
+  size_t count, steps;
+  float *reflectance; /* [count] at all angles and wavelengths; below 0: a metal */
+  float (*nk)[2];     /* [count][steps + 1] at the steps' edges */
+} abbe_mirrors;
+
+/* Of the geometry's mirrors over the steps + 1 wavelengths lambda_nm, ascending. Errors as
+ * abbe_material_nk: ABBE_OUT_OF_RANGE where a metal is not known over all of them. */
+abbe_result abbe_mirrors_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
+                              abbe_mirrors *out, abbe_error *error);
+void abbe_mirrors_free(abbe_mirrors *mirrors);
+
+/* Whether it reflects all wavelengths alike. */
+static inline bool abbe_mirrors_is_grey(const abbe_mirrors *m, size_t mirror) {
+  return m->reflectance[mirror] >= 0;
+}
+
+/* Unpolarised reflectance for cos_i in [0, 1], within step k at the share f of it. [BornWolf1999]
+ */
+static inline float abbe_mirrors_reflect(const abbe_mirrors *m, size_t mirror, float cos_i,
+                                         uint32_t k, float f) {
+  if (m->reflectance[mirror] >= 0) return m->reflectance[mirror];
+  const float(*at)[2] = (const float(*)[2])m->nk + mirror * (m->steps + 1) + k;
+  const float n = at[0][0] + f * (at[1][0] - at[0][0]), kk = at[0][1] + f * (at[1][1] - at[0][1]);
+  const float c2 = cos_i * cos_i, s2 = 1 - c2, t0 = n * n - kk * kk - s2;
+  const float t1 = sqrtf(t0 * t0 + 4 * n * n * kk * kk), a2 = 0.5f * (t1 + t0);
+  const float t2 = 2 * cos_i * sqrtf(a2 > 0 ? a2 : 0);
+  const float s = (t1 + c2 - t2) / (t1 + c2 + t2);
+  const float p = (c2 * t1 + s2 * s2 - t2 * s2) / (c2 * t1 + s2 * s2 + t2 * s2);
+  return 0.5f * s * (1 + p);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif
