@@ -72,7 +72,8 @@ void abbe_geometry_to_world(const abbe_geometry *g, const float frame[3], double
 
 /* Two unit vectors x and y across the unit vector z; x, y, z right-handed. */
 static inline void abbe_geometry_across(const float z[3], float x[3], float y[3]) {
-  const float e[2] = {fabsf(z[0]) < 0.6f, fabsf(z[0]) >= 0.6f}, along = e[0] * z[0] + e[1] * z[1];
+  const float e[2] = {fabsf(z[0]) < 0.6f ? 1.0f : 0.0f, fabsf(z[0]) < 0.6f ? 0.0f : 1.0f},
+              along = e[0] * z[0] + e[1] * z[1];
   float length = 0;
   for (int k = 0; k < 3; k++) {
     x[k] = (k < 2 ? e[k] : 0) - along * z[k];
