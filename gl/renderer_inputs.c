@@ -85,10 +85,12 @@ static uint64_t of_geometry(const abbe_scene *scene, const abbe_plan *plan) {
   return h;
 }
 
-static uint64_t mix_environment(uint64_t h, const abbe_environment *e) {
+static uint64_t mix_environment(uint64_t h, const abbe_environment *e, const abbe_plan *plan) {
   const bool there = e != NULL;
   MIX(h, there);
   if (!there) return h;
+  MIX(h, plan->desc.min_nm);
+  MIX(h, plan->desc.max_nm);
   MIX(h, e->to_map);
   MIX(h, e->map.width);
   MIX(h, e->illuminant.kind);
@@ -99,9 +101,7 @@ static uint64_t mix_environment(uint64_t h, const abbe_environment *e) {
 static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 4;
   MIX(h, plan->desc.space);
-  MIX(h, plan->desc.min_nm);
-  MIX(h, plan->desc.max_nm);
-  h = mix_environment(h, scene->environment);
+  h = mix_environment(h, scene->environment, plan);
   for (size_t i = 0; i < plan->receiver_count; i++) {
     const abbe_object *o = &scene->object[plan->receiver_object[i]];
     const size_t texels = o->texture.width * o->texture.height * o->texture.channels;

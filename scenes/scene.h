@@ -105,7 +105,7 @@ typedef struct abbe_scene {
   size_t light_count; /* 0 only with an environment */
   abbe_light *light;
   size_t environment_lights; /* so many at the end of light[] stand for the environment
-                                (environment/environment_lights.h); 0 in a scene as it is loaded */
+                                (environment_lights.h); 0 in a scene as it is loaded */
   abbe_environment *environment; /* owned; NULL: dark surroundings */
   size_t object_count;
   abbe_object *object;

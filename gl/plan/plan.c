@@ -9,7 +9,7 @@
 #include "gl/plan/no_culling.h"
 #include "gl/plan/pass_list.h"
 #include "gl/plan/support.h"
-#include "scenes/environment/environment_lights.h"
+#include "scenes/environment_lights.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 /* The scene with directional lights for its environment, as the renderer takes it
- * (scenes/environment/environment_lights.h): for who looks up the plan's lights.
+ * (scenes/environment_lights.h): for who looks up the plan's lights.
  * abbe_environment_lights_drop frees it. */
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
                                abbe_scene *out, abbe_error *error);

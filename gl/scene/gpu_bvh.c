@@ -71,14 +71,13 @@ static void store_triangle(const grove *g, uint32_t face, gpu_triangle *t, gpu_c
 }
 
 /* The tree behind the others; its root's texel. */
-static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_bvh *h,
-                         forest *f, size_t *root, abbe_error *error) {
+static abbe_result plant(const grove *g, const double (*triangle)[9], const abbe_bvh *h, forest *f,
+                         size_t *root, abbe_error *error) {
   const size_t texels = abbe_bvh_nodes_count(h);
   if (!make_room(f, texels, h->triangle_count))
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a hierarchy");
   *root = f->texel_count;
-  abbe_bvh_nodes_pack(h, triangle, f->texel_count, f->triangle_count,
-                            f->texel + f->texel_count);
+  abbe_bvh_nodes_pack(h, triangle, f->texel_count, f->triangle_count, f->texel + f->texel_count);
   for (size_t i = 0; i < h->triangle_count; i++)
     store_triangle(g, h->triangle[i], &f->triangle[f->triangle_count + i],
                    &f->corners[f->triangle_count + i]);

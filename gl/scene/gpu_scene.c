@@ -2,6 +2,7 @@
 
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
+#include "gl/scene/gpu_environment.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>
@@ -173,7 +174,10 @@ static abbe_result upload_surfaces(abbe_gpu_scene *scene, abbe_error *error) {
     result = abbe_gpu_make_buffer(scene->gpu, scene->plan->receiver_count * sizeof *surface,
                                   surface, &scene->surfaces, error);
   free(surface);
-  return result == ABBE_OK ? abbe_gpu_environment_make(scene, error) : result;
+  if (result != ABBE_OK) return result;
+  return abbe_gpu_environment_make(scene->gpu, scene->local->environment,
+                                   abbe_gpu_scene_working_space(scene), scene->plan->desc.min_nm,
+                                   scene->plan->desc.max_nm, &scene->environment, error);
 }
 
 static void measure_scene(abbe_gpu_scene *scene) {
@@ -303,5 +307,5 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
                 (float)scene->refractor_centre[0], (float)scene->refractor_centre[1],
                 (float)scene->refractor_centre[2], (float)scene->refractor_radius);
   abbe_gpu_set_float(scene->gpu, program, "scene_size", scene->size);
-  abbe_gpu_environment_set(scene, program);
+  abbe_gpu_environment_set(scene->gpu, scene->local->environment, scene->environment, program);
 }

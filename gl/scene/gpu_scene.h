@@ -33,7 +33,7 @@ typedef struct abbe_gpu_scene {
   const abbe_scene *local; /* whose coordinates all below are in */
   const abbe_plan *plan;
   const abbe_map_layout *map_layout; /* the plan's, in these coordinates; NULL: none is given */
-  abbe_receiver_charts charts; /* where the plan has tiles */
+  abbe_receiver_charts charts;       /* where the plan has tiles */
 
   double min[3], max[3], size; /* bounds of all objects, m, and their diagonal */
   double refractor_centre[3], refractor_radius;
@@ -42,7 +42,7 @@ typedef struct abbe_gpu_scene {
 
   abbe_gpu_mesh *mesh; /* [mesh_count], of each object */
   size_t mesh_count;
-  size_t mesh_bytes;   /* of their vertices and faces */
+  size_t mesh_bytes; /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
   GLuint surface_texture;
   GLuint environment; /* texture of what is around it all, by longitude and latitude; 0: nothing */
@@ -93,10 +93,6 @@ abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);
 /* gpu_shadows.c: the planes of convex refractors' shadows. */
 abbe_result abbe_gpu_shadows_make(abbe_gpu_scene *scene, abbe_error *error);
 void abbe_gpu_shadows_free(abbe_gpu_scene *scene);
-
-/* gpu_environment.c: the environment's texture, of the scene's surfaces; its uniforms. */
-abbe_result abbe_gpu_environment_make(abbe_gpu_scene *scene, abbe_error *error);
-void abbe_gpu_environment_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* Linear Rec.709, as scene files have it, to the space that the shaders work in. */
 void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]);

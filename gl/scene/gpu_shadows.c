@@ -43,7 +43,8 @@ static abbe_result make_shadow(abbe_gpu_scene *scene, size_t light, size_t refra
                                  out->plane, &out->count, error);
 }
 
-/* A few counts for all: shaders are compiled for so many, and a light that moves changes its own. */
+/* A few counts for all: shaders are compiled for so many, and a light that moves changes its own.
+ */
 static size_t padded(size_t planes) {
   enum { STEP = 8 };
   return (planes + STEP - 1) / STEP * STEP;

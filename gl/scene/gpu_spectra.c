@@ -67,8 +67,8 @@ static abbe_result upload_bands(abbe_gpu_scene *scene, abbe_error *error) {
   if (band == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
   for (size_t i = 0; i < refractors; i++)
     fill_bands(&scene->tables, i, band + i * scene->band_count);
-  abbe_result result = abbe_gpu_make_buffer(
-      scene->gpu, room * sizeof *band, band, &scene->bands, error);
+  abbe_result result =
+      abbe_gpu_make_buffer(scene->gpu, room * sizeof *band, band, &scene->bands, error);
   free(band);
   return result;
 }

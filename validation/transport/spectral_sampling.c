@@ -39,11 +39,12 @@ static abbe_result visible_density(const abbe_scene *scene, double min_nm, doubl
     }
     if (!(sum > 0 && isfinite(sum)))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "%s%s sends nothing that the eye sees between %g and %g nm; the eye "
+                            "%s%s%s sends nothing that the eye sees between %g and %g nm; the eye "
                             "sees %g to %g nm",
-                            l < scene->light_count ? "light " : "the environment",
-                            l < scene->light_count ? scene->light[l].name : "", min_nm, max_nm,
-                            ABBE_OBSERVER_MIN_NM, ABBE_OBSERVER_MAX_NM);
+                            l < scene->light_count ? "light '" : "the environment",
+                            l < scene->light_count ? scene->light[l].name : "",
+                            l < scene->light_count ? "'" : "", min_nm, max_nm, ABBE_OBSERVER_MIN_NM,
+                            ABBE_OBSERVER_MAX_NM);
     for (size_t i = 0; i < FINE; i++) density[i] += one[i] / sum / (double)lights_of(scene);
   }
   return ABBE_OK;

@@ -1,9 +1,8 @@
 #include "validation/walks/light_walk.h"
 
 #include "validation/transport/interface.h"
-#include "validation/transport/random.h"
-#include "validation/walks/inner_walk.h"
 #include "validation/walks/lamp_rays.h"
+#include "validation/walks/light_path.h"
 #include "validation/walks/ray_batch.h"
 #include "validation/walks/scatter.h"
 
@@ -17,23 +16,11 @@ enum {
   COHERENT_BOUNCES = 2 /* how often rays of a packet are scattered before they are told apart */
 };
 
-typedef struct path {
-  abbe_media_set inside;
-  uint32_t id, step;
-  float within;
-  float flux, full; /* W, and W at the start */
-  float y;          /* Y of a watt, for the ledger */
-  float carried;    /* matched: share of the light that a splitting path would carry */
-  float chance[ABBE_PHOTON_SPLITS];
-  uint16_t steps, inner; /* interfaces met; matched: of them, after the first */
-  bool begun;            /* has met its first interface */
-} path;
-
 /* Paths that are followed side by side, and the ray of each. */
 typedef struct ray_batch {
   size_t count;
   struct RTCRayHit16 ray[PACKETS];
-  path path[ABBE_LIGHT_WALK_HITS];
+  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
 } ray_batch;
 
 /* Paths on the inner side of one solid's surface. */
@@ -41,7 +28,7 @@ typedef struct inner_batch {
   size_t count;
   uint32_t refractor;
   abbe_inner_path inner[ABBE_LIGHT_WALK_HITS];
-  path path[ABBE_LIGHT_WALK_HITS];
+  abbe_light_path path[ABBE_LIGHT_WALK_HITS];
 } inner_batch;
 
 struct abbe_light_walk {
@@ -157,7 +144,7 @@ typedef struct packet {
 typedef struct run {
   abbe_light_walk *w;
   const abbe_light *light;
-  uint32_t pass;
+  abbe_inner_rules rules;
   bool hidden;
   packet packet;
   size_t hits;
@@ -169,57 +156,9 @@ static float dot(const float a[3], const float b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The number that decides at a path's next interface. Neighbouring photons have neighbouring
- * numbers, so the first decisions are spread evenly over them: the fractional parts of multiples
- * of generalised golden ratios, shifted at random in every pass [Roberts2018]. */
-static float next_chance(const abbe_light_walk *w, const path *s, uint32_t pass) {
-  if (s->steps < ABBE_EVEN_STEPS)
-    return abbe_random_float(s->id * abbe_even_ratio[s->steps] + w->shift[s->steps]);
-  float random[4];
-  abbe_random4(s->id, s->steps, pass, w->seed, random);
-  return random[0];
-}
-
-/* Ends paths with little left; true: it goes on. */
-static bool survives(const abbe_light_walk *w, path *s, uint32_t pass, abbe_light_ledger *ledger) {
-  const float least = 0.05f;
-  if (s->flux >= least * s->full) return true;
-  float chance = s->flux / (least * s->full), random[4];
-  abbe_random4(s->id, s->steps, pass, ~w->seed, random);
-  /* what the roulette takes from some it gives to others: the mean stays */
-  float before = s->flux;
-  s->flux = random[0] < chance ? least * s->full : 0;
-  ledger->absorbed += (double)(s->y * (before - s->flux));
-  return s->flux > 0;
-}
-
-/* Absorption on the way, and the roulette. */
-static bool absorb(const abbe_light_walk *w, path *s, float length, uint32_t pass,
-                   abbe_light_ledger *ledger) {
-  if (w->media->attenuation == NULL) return true;
-  int medium = abbe_media_of(s->inside);
-  float left = expf(-length * abbe_media_attenuation(w->media, medium, s->step, s->within));
-  ledger->absorbed += (double)(s->y * s->flux * (1 - left));
-  s->flux *= left;
-  s->carried *= left;
-  return survives(w, s, pass, ledger);
-}
-
-/* Matched physics: whether the renderer would still follow the path. */
-static bool is_followed(const abbe_light_walk *w, path *s, bool reflects, float share) {
-  if (!w->physics.matched) return true;
-  s->carried *= reflects ? share : 1 - share;
-  if (s->begun) s->inner++;
-  if (!s->begun || !reflects) {
-    s->begun = true;
-    return true;
-  }
-  return s->inner < w->physics.orders && (double)s->carried >= w->physics.energy_share;
-}
-
 /* What a path meets at a refractor: normals, indices, media. */
-static void meet_interface(const abbe_light_walk *w, const path *s, const float d[3], packet *p,
-                           size_t k) {
+static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, const float d[3],
+                           packet *p, size_t k) {
   const abbe_hit *hit = &p->hit[k];
   float along = dot(d, hit->ng), shaded = dot(d, hit->n);
   bool entering = along < 0;
@@ -240,7 +179,7 @@ static void meet_interface(const abbe_light_walk *w, const path *s, const float 
 }
 
 /* A mirror absorbs what it does not reflect; the path goes into the next batch. */
-static path_state mirror(run *r, const abbe_hit *hit, const float d[3], path *s) {
+static path_state mirror(run *r, const abbe_hit *hit, const float d[3], abbe_light_path *s) {
   abbe_light_walk *w = r->w;
   const float side = dot(d, hit->ng) < 0 ? 1 : -1;
   const float *outside = dot(d, hit->n) * side < 0 ? hit->n : hit->ng;
@@ -252,7 +191,7 @@ static path_state mirror(run *r, const abbe_hit *hit, const float d[3], path *s)
   s->flux *= share;
   s->carried *= share;
   if (++s->steps >= ABBE_INNER_MAX_STEPS) return LOST;
-  if (!(s->flux > 0) || !survives(w, s, r->pass, r->ledger)) return NOT_COUNTED;
+  if (!(s->flux > 0) || !abbe_light_path_survives(&r->rules, s, r->ledger)) return NOT_COUNTED;
   float out[3], o[3];
   abbe_interface_reflect(d, n, cos_i, out);
   abbe_interface_keep_side(hit->ng, side, out);
@@ -264,7 +203,7 @@ static path_state mirror(run *r, const abbe_hit *hit, const float d[3], path *s)
 
 /* Lane k of a packet of rays that Embree has been through: where the path is, and what becomes of
  * it there. */
-static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, path *s) {
+static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, abbe_light_path *s) {
   packet *p = &r->packet;
   bool first = s->steps == 0;
   unsigned id = rays->hit.geomID[k];
@@ -281,16 +220,17 @@ static path_state read_hit(run *r, const struct RTCRayHit16 *rays, size_t k, pat
     return DEPOSITED;
   }
   if (first) r->ledger->reached += (double)(s->y * s->flux);
-  bool absorbed = s->inside != 0 && !absorb(r->w, s, rays->ray.tfar[k], r->pass, r->ledger);
+  bool absorbed = s->inside != 0 &&
+                  !abbe_light_path_absorb(&r->rules, r->w->media, s, rays->ray.tfar[k], r->ledger);
   if (hit->surface->kind == ABBE_GEOMETRY_MIRRORS)
     return absorbed ? NOT_COUNTED : mirror(r, hit, d, s);
-  p->scatter.chance[k] = next_chance(r->w, s, r->pass);
+  p->scatter.chance[k] = abbe_light_path_chance(&r->rules, s);
   bool too_long = ++s->steps >= ABBE_INNER_MAX_STEPS;
   meet_interface(r->w, s, d, p, k);
   return too_long ? LOST : absorbed ? NOT_COUNTED : SCATTERS;
 }
 
-static bool is_split(const abbe_light_walk *w, const path *s) {
+static bool is_split(const abbe_light_walk *w, const abbe_light_path *s) {
   return s->steps <= ABBE_PHOTON_SPLITS && (w->splits >> (s->steps - 1u) & 1) != 0;
 }
 
@@ -298,7 +238,7 @@ static bool is_split(const abbe_light_walk *w, const path *s) {
 static const float REFLECT = -1, TRANSMIT = 2;
 
 /* What the path carries on the branch that was chosen, or on one of both; false for no light. */
-static bool take_branch(const packet *p, size_t k, bool split, path *s) {
+static bool take_branch(const packet *p, size_t k, bool split, abbe_light_path *s) {
   const size_t interface = s->steps - 1u;
   const bool reflects = p->scatter.reflects[k] && !p->straight[k];
   const float share = p->straight[k] ? 0 : p->scatter.share[k];
@@ -317,14 +257,14 @@ static bool take_branch(const packet *p, size_t k, bool split, path *s) {
 static void leave_solid(run *r);
 
 /* Whether the path's way on is through a solid and asks nothing of Embree. */
-static bool stays_in_solid(const abbe_light_walk *w, const path *s) {
+static bool stays_in_solid(const abbe_light_walk *w, const abbe_light_path *s) {
   if (s->inside == 0) return false;
   if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */
   return abbe_solid_is(&w->g->solid[abbe_media_of(s->inside)]);
 }
 
 /* Into the batch of its solid, whose paths leave it first where it is another's. */
-static void enter_solid(run *r, size_t k, const float d[3], const path *s) {
+static void enter_solid(run *r, size_t k, const float d[3], const abbe_light_path *s) {
   inner_batch *b = r->w->inner;
   const uint32_t refractor = (uint32_t)abbe_media_of(s->inside);
   if (b->count > 0 && b->refractor != refractor) leave_solid(r);
@@ -347,7 +287,7 @@ static void enter_solid(run *r, size_t k, const float d[3], const path *s) {
 }
 
 /* The path after the interface, into the next batch; what matched physics does not follow ends. */
-static path_state go_on(run *r, size_t k, path *s) {
+static path_state go_on(run *r, size_t k, abbe_light_path *s) {
   const packet *p = &r->packet;
   ray_batch *next = r->w->next;
   float o[3], d[3];
@@ -356,7 +296,8 @@ static path_state go_on(run *r, size_t k, path *s) {
     d[i] = p->straight[k] ? p->scatter.d[i][k] : p->scatter.out[i][k];
   }
   bool reflects = p->scatter.reflects[k] && !p->straight[k];
-  if (!p->straight[k] && !is_followed(r->w, s, reflects, p->scatter.share[k])) return TRAPPED;
+  if (!p->straight[k] && !abbe_light_path_is_followed(&r->rules, s, reflects, p->scatter.share[k]))
+    return TRAPPED;
   s->inside = reflects ? p->before[k] : p->after[k];
   if (stays_in_solid(r->w, s)) {
     enter_solid(r, k, d, s);
@@ -367,7 +308,7 @@ static path_state go_on(run *r, size_t k, path *s) {
   return SCATTERS;
 }
 
-static void deposit(run *r, size_t k, const path *s) {
+static void deposit(run *r, size_t k, const abbe_light_path *s) {
   const abbe_hit *hit = &r->packet.hit[k];
   abbe_photon_hit *out = &r->hit[r->hits++];
   const double flux = (double)(s->y * s->flux);
@@ -386,7 +327,7 @@ static void deposit(run *r, size_t k, const path *s) {
   if (r->hidden) abbe_lamp_rays_add(&r->w->lamp_rays, r->w->g, r->light, hit, out, flux, r->ledger);
 }
 
-static void end_path(run *r, size_t k, path_state state, const path *s) {
+static void end_path(run *r, size_t k, path_state state, const abbe_light_path *s) {
   const double flux = (double)(s->y * s->flux);
   switch (state) {
   case DEPOSITED:
@@ -410,14 +351,14 @@ static void end_path(run *r, size_t k, path_state state, const path *s) {
 
 /* The paths of a packet on the branches that its lanes have taken, or with `second` those of split
  * paths on the other. */
-static void advance(run *r, const path *paths, size_t count, bool second) {
+static void advance(run *r, const abbe_light_path *paths, size_t count, bool second) {
   for (size_t k = 0; k < count; k++) {
     path_state state = r->packet.state[k];
     if (state != SCATTERS) {
       if (!second) end_path(r, k, state, &paths[k]);
       continue;
     }
-    path s = paths[k];
+    abbe_light_path s = paths[k];
     const bool split = is_split(r->w, &s);
     if ((second && !split) || !take_branch(&r->packet, k, split, &s)) continue;
     state = go_on(r, k, &s);
@@ -427,7 +368,7 @@ static void advance(run *r, const path *paths, size_t count, bool second) {
 
 /* Each lane's path goes on as its number decides; one that is split is reflected, and then
  * transmitted. */
-static void scatter(run *r, const path *paths, size_t count) {
+static void scatter(run *r, const abbe_light_path *paths, size_t count) {
   abbe_scatter *s = &r->packet.scatter;
   bool splits[LANES], any = false, scatters = false;
   for (size_t k = 0; k < count; k++) {
@@ -449,9 +390,7 @@ static void scatter(run *r, const path *paths, size_t count) {
 static void leave_solid(run *r) {
   abbe_light_walk *w = r->w;
   inner_batch *b = w->inner;
-  abbe_inner_rules rules = {.seed = w->seed, .pass = r->pass, .physics = w->physics};
-  memcpy(rules.shift, w->shift, sizeof rules.shift);
-  abbe_inner_walk(&w->g->solid[b->refractor], &rules, b->inner, b->count, r->ledger, &w->record,
+  abbe_inner_walk(&w->g->solid[b->refractor], &r->rules, b->inner, b->count, r->ledger, &w->record,
                   &w->rays);
   for (size_t i = 0; i < b->count; i++) {
     static const path_state states[] = {[ABBE_INNER_LEFT] = SCATTERS,
@@ -459,7 +398,7 @@ static void leave_solid(run *r) {
                                         [ABBE_INNER_TRAPPED] = TRAPPED,
                                         [ABBE_INNER_LOST] = LOST};
     const abbe_inner_path *from = &b->inner[i];
-    path *s = &b->path[i];
+    abbe_light_path *s = &b->path[i];
     if (s->steps == 1) s->chance[1] = from->second_chance;
     s->flux = from->flux;
     s->carried = from->carried;
@@ -484,14 +423,14 @@ static void begin(ray_batch *b, const abbe_photon *photon, size_t count) {
     const abbe_photon *p = &photon[i];
     if (!(p->flux > 0)) continue;
     abbe_ray_put(b->ray, b->count, p->o, p->d);
-    b->path[b->count++] = (path){.id = p->id,
-                                 .step = p->step,
-                                 .within = p->within,
-                                 .flux = p->flux,
-                                 .full = p->flux,
-                                 .y = p->y,
-                                 .carried = 1,
-                                 .chance = {1, 1}};
+    b->path[b->count++] = (abbe_light_path){.id = p->id,
+                                            .step = p->step,
+                                            .within = p->within,
+                                            .flux = p->flux,
+                                            .full = p->flux,
+                                            .y = p->y,
+                                            .carried = 1,
+                                            .chance = {1, 1}};
   }
 }
 
@@ -505,7 +444,7 @@ static void follow(run *r, size_t bounce) {
   w->next->count = 0;
   for (size_t first = 0; first < b->count; first += LANES) {
     const size_t used = b->count - first < LANES ? b->count - first : LANES;
-    path *paths = &b->path[first];
+    abbe_light_path *paths = &b->path[first];
     for (size_t k = 0; k < used; k++)
       r->packet.state[k] = read_hit(r, &b->ray[first / LANES], k, &paths[k]);
     scatter(r, paths, used);
@@ -518,11 +457,11 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
                            abbe_light_ledger *ledger) {
   run r = {.w = w,
            .light = light,
-           .pass = pass,
+           .rules = {.seed = w->seed, .pass = pass, .physics = w->physics},
            .hidden = light != NULL && w->hidden[light - w->g->scene->light],
            .hit = hit,
            .ledger = ledger};
-  abbe_random_bits(0x73686966, 0, pass, w->seed, w->shift);
+  abbe_random_bits(0x73686966, 0, pass, w->seed, r.rules.shift);
   begin(w->batch, photon, count);
   for (size_t bounce = 0; w->batch->count > 0; bounce++) {
     follow(&r, bounce);

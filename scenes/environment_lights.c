@@ -1,4 +1,4 @@
-#include "scenes/environment/environment_lights.h"
+#include "scenes/environment_lights.h"
 
 #include "colorimetry/upsampling.h"
 #include "scenes/geometry/vector.h"

@@ -8,7 +8,7 @@
  * shadows and caustics of such lights look like is those of sharp lights: the more of them, the
  * softer.
  */
-#ifndef ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_LIGHTS_H
+#ifndef ABBE_SCENES_ENVIRONMENT_LIGHTS_H
 #define ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_LIGHTS_H
 
 #include "scenes/scene.h"
