@@ -10,6 +10,7 @@
 
 enum { MOST_ROWS = 64, VALUES = 7 }; /* luminance, luminance x direction, RGB */
 
+static const double PI = 3.14159265358979323846;
 static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.0721923153607337};
 
 /* Sums over all texels above and left of a corner. */
@@ -30,13 +31,21 @@ static const abbe_radiance_map *coarse_map(const abbe_environment *e) {
   return map;
 }
 
-static bool make_sums(const abbe_radiance_map *map, sums *s) {
+/* Of a texel of that row: its share of all integrals, or of a level what it covers. */
+static double solid_angle(const abbe_radiance_map *map, bool is_level, size_t row) {
+  if (!is_level) return abbe_radiance_map_solid_angle(map, row);
+  const double step = PI / (double)map->height;
+  return 2 * PI / (double)map->width * (cos(step * (double)row) - cos(step * ((double)row + 1)));
+}
+
+static bool make_sums(const abbe_environment *e, sums *s) {
+  const abbe_radiance_map *map = coarse_map(e);
   s->width = map->width;
   s->height = map->height;
   s->at = calloc((s->width + 1) * (s->height + 1), sizeof *s->at);
   if (s->at == NULL) return false;
   for (size_t y = 0; y < s->height; y++) {
-    const double solid = abbe_radiance_map_solid_angle(map, y);
+    const double solid = solid_angle(map, map != &e->map, y);
     double row[VALUES] = {0};
     for (size_t x = 0; x < s->width; x++) {
       const float *texel = map->rgb + 3 * (y * s->width + x);
@@ -47,8 +56,7 @@ static bool make_sums(const abbe_radiance_map *map, sums *s) {
       for (int k = 0; k < 3; k++) row[1 + k] += solid * y_of * d[k];
       for (int k = 0; k < 3; k++) row[4 + k] += solid * (double)texel[k];
       for (int k = 0; k < VALUES; k++)
-        s->at[(y + 1) * (s->width + 1) + x + 1][k] =
-            s->at[y * (s->width + 1) + x + 1][k] + row[k];
+        s->at[(y + 1) * (s->width + 1) + x + 1][k] = s->at[y * (s->width + 1) + x + 1][k] + row[k];
     }
   }
   return true;
@@ -74,10 +82,10 @@ static bool cut(const sums *s, const part *p, part out[2]) {
   for (int across = 0; across < 2; across++) {
     const size_t from = across ? p->x0 : p->y0, to = across ? p->x1 : p->y1;
     for (size_t at = from + 1; at < to; at++) {
-      const part a = across ? sum_part(s, p->x0, at, p->y0, p->y1)
-                            : sum_part(s, p->x0, p->x1, p->y0, at);
-      const part b = across ? sum_part(s, at, p->x1, p->y0, p->y1)
-                            : sum_part(s, p->x0, p->x1, at, p->y1);
+      const part a =
+          across ? sum_part(s, p->x0, at, p->y0, p->y1) : sum_part(s, p->x0, p->x1, p->y0, at);
+      const part b =
+          across ? sum_part(s, at, p->x1, p->y0, p->y1) : sum_part(s, p->x0, p->x1, at, p->y1);
       if (!(lost(&a) + lost(&b) < least)) continue;
       least = lost(&a) + lost(&b);
       out[0] = a;
@@ -124,8 +132,8 @@ static abbe_result set_spectrum(const abbe_environment *e, const abbe_upsampling
   if (count > MOST) count = MOST;
   for (size_t i = 0; i < count; i++) {
     nm[i] = up->min_nm + (up->max_nm - up->min_nm) * (double)i / (double)(count - 1);
-    power[i] = abbe_illuminant_power(&e->illuminant, nm[i]) *
-               fmax(abbe_upsampling_at(up, rgb, nm[i]), 0);
+    power[i] =
+        abbe_illuminant_power(&e->illuminant, nm[i]) * fmax(abbe_upsampling_at(up, rgb, nm[i]), 0);
   }
   out->kind = ABBE_ILLUMINANT_TABULATED;
   return abbe_spectrum_make(nm, power, count, ABBE_INTERPOLATION_LINEAR, &out->spectrum, error);
@@ -138,8 +146,8 @@ static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *u
   const double sum = abbe_vector_length(towards);
   abbe_vector_normalise(towards);
   for (int i = 0; i < 3; i++) /* world from map: the inverse of a rotation */
-    out->direction[i] =
-        -(e->to_map[i] * towards[0] + e->to_map[3 + i] * towards[1] + e->to_map[6 + i] * towards[2]);
+    out->direction[i] = -(e->to_map[i] * towards[0] + e->to_map[3 + i] * towards[1] +
+                          e->to_map[6 + i] * towards[2]);
   for (int k = 0; k < 3; k++) rgb[k] = p->value[4 + k];
   for (int k = 0; k < 3; k++) y += luminance[k] * rgb[k];
   out->kind = ABBE_LIGHT_DIRECTIONAL;
@@ -164,7 +172,7 @@ abbe_result abbe_environment_lights_add(const abbe_scene *scene, size_t count, d
   abbe_upsampling up;
   abbe_result result = ABBE_OK;
   if (count > room) count = room;
-  if (out->light == NULL || parts == NULL || (e != NULL && !make_sums(coarse_map(e), &s)))
+  if (out->light == NULL || parts == NULL || (e != NULL && !make_sums(e, &s)))
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
   if (result == ABBE_OK && e != NULL)
     result = abbe_upsampling_make(&e->illuminant, min_nm, max_nm, &up, error);

@@ -40,6 +40,7 @@ abbe_test(preset_choice gl ${gl_rooms})
 abbe_test(frame_times gl ${gl_rooms})
 abbe_test(map_bands gl ${gl_rooms})
 abbe_test(adaptive_pass gl ${gl_rooms})
+abbe_test(surroundings gl ${gl_rooms})
 abbe_test(error_bars gl abbe_validation ${gl_rooms})
 abbe_test(error_picture cpu ${gl_rooms})
 

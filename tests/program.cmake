@@ -26,6 +26,7 @@ foreach(name
     materials_numbers
     materials_plot_command
     materials_exchange_command
+    environment_command
     outline_command
     printable_output
     render_command

@@ -16,6 +16,7 @@ enum {
   OPTION_SAMPLES,
   OPTION_UPSAMPLE,
   OPTION_ADAPTIVE,
+  OPTION_ENVIRONMENT_LIGHTS,
   OPTION_MODEL,
   OPTION_FILL,
   OPTION_SHARE,
@@ -39,6 +40,10 @@ static const struct argp_option options[] = {
      "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
     {"adaptive", OPTION_ADAPTIVE, "N", 0,
      "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis 1)", 1},
+    {"environment-lights", OPTION_ENVIRONMENT_LIGHTS, "N", 0,
+     "directional lights that stand for an environment on receivers and through refractors, 1 to 16 "
+     "(6)",
+     1},
     {"model", OPTION_MODEL, "NAME", 0,
      "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)",
      1},
@@ -93,6 +98,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_ADAPTIVE:
     d->adaptive = abbe_command_count(p, "--adaptive", text, 1, ABBE_RENDER_MAX_ADAPTIVE);
+    return 0;
+  case OPTION_ENVIRONMENT_LIGHTS:
+    d->environment_lights = abbe_command_count(p, "--environment-lights", text, 1,
+                                               ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS);
     return 0;
   case OPTION_MODEL:
     d->model = (abbe_model)abbe_command_choice(p, "--model", text, models, ABBE_MODEL_COUNT);

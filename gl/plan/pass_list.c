@@ -31,6 +31,20 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
                     : "the lights' maps hold all receivers");
 }
 
+static void list_environment(const abbe_scene *scene, abbe_plan *plan) {
+  double kept = 0;
+  for (size_t i = 0; i < scene->environment_lights; i++)
+    kept += scene->light[scene->light_count - 1 - i].power;
+  if (plan->surrounded)
+    abbe_plan_add(
+        plan, ABBE_CHOICE_ENVIRONMENT,
+        "the camera sees it whole; %zu directional lights shine %.0f %% of it on receivers "
+        "and through refractors, with sharp shadows",
+        scene->environment_lights, 100 * kept / scene->environment->luminance);
+  else
+    abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT, "none");
+}
+
 /* What a view draws of refractors for their back; `unmet`: why it draws none. */
 static void list_back(abbe_plan *plan, abbe_pass pass, bool met, const char *unmet) {
   abbe_plan_add(plan, pass, "%s",
@@ -126,4 +140,5 @@ void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan) {
   list_light(plan);
   list_absorption(plan);
   list_eye(plan);
+  list_environment(scene, plan);
 }

@@ -43,6 +43,7 @@ static void combine(abbe_plan *plan) {
 
 static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                              abbe_error *error) {
+  out->surrounded = scene->environment != NULL;
   abbe_result result = abbe_support_lights(scene, error);
   if (result == ABBE_OK) result = abbe_support_mirrors(scene, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);

@@ -1,5 +1,6 @@
 #include "scenes/import/environment_file.h"
 
+#include "colorimetry/upsampling.h"
 #include "scenes/environment/environment_picture.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/import/environment_reading.h"
@@ -10,6 +11,19 @@
 #define RADIANS (3.14159265358979323846 / 180.0)
 
 enum { LEAST_SIZE = 64, MOST_SIZE = 4096, DEFAULT_SIZE = 1024 };
+
+/* What no colour can be lifted under is refused where it is named. */
+static abbe_result read_illuminant(abbe_yaml *yaml, abbe_yaml_node node, const char *folder,
+                                   abbe_environment *out, abbe_error *error) {
+  abbe_upsampling ignored;
+  abbe_result result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
+                                                   &out->illuminant_path, error);
+  if (result != ABBE_OK) return result;
+  result = abbe_upsampling_make(&out->illuminant, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM,
+                                &ignored, error);
+  const abbe_yaml_node at = abbe_yaml_get(yaml, node, "illuminant");
+  return result == ABBE_OK ? result : abbe_scene_value_locate(yaml, at, result, error);
+}
 
 static abbe_result read_turn(abbe_yaml *yaml, abbe_yaml_node node, double to_map[9],
                              abbe_error *error) {
@@ -93,9 +107,7 @@ abbe_result abbe_environment_read(abbe_yaml *yaml, abbe_yaml_node node, const ch
     return abbe_yaml_fail(yaml, node, error, "'environment' must be a mapping (key: value)");
   const bool file = abbe_yaml_get(yaml, node, "file").id != 0;
   abbe_result result = read_turn(yaml, node, out->to_map, error);
-  if (result == ABBE_OK)
-    result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
-                                         &out->illuminant_path, error);
+  if (result == ABBE_OK) result = read_illuminant(yaml, node, folder, out, error);
   if (result == ABBE_OK)
     result =
         file ? read_picture(yaml, node, folder, out, error) : read_size(yaml, node, out, error);

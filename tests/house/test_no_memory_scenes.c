@@ -13,6 +13,7 @@
 #include "colorimetry/weights.h"
 #include "gl/accuracy/preset.h"
 #include "gl/plan/plan.h"
+#include "scenes/environment/environment_picture.h"
 #include "scenes/import/scene_file.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/shape.h"
@@ -254,13 +255,31 @@ static abbe_result scene(const char *name, abbe_error *error) {
   free(text);
   for (size_t i = 0; i < made.object_count && result == ABBE_OK; i++)
     digest_mesh(&made.object[i].mesh);
-  if (result == ABBE_OK && made.light[0].kind != ABBE_LIGHT_DISK) {
+  if (result == ABBE_OK && made.environment != NULL) {
+    digest(made.environment->mean, sizeof made.environment->mean);
+  } else if (result == ABBE_OK && made.light[0].kind != ABBE_LIGHT_DISK) {
     result = abbe_plan_make(&made, &desc, &plan, error);
     for (size_t i = 0; i < plan.entry_count && result == ABBE_OK; i++)
       digest_text(plan.entry[i].reason);
     abbe_plan_free(&plan);
   }
   abbe_scene_free(&made);
+  return result;
+}
+
+/* A Radiance picture of a cube. */
+static abbe_result picture(abbe_error *error) {
+  char text[1024] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 6 +X 8\n";
+  const size_t head = strlen(text);
+  const char *path = operation_path("cube.hdr");
+  abbe_environment made = {0};
+  for (size_t i = 0; i < 48; i++) memcpy(text + head + 4 * i, "\x80\x40\x20\x80", 4);
+  abbe_result result = abbe_file_write(path, text, head + 4 * 48, error);
+  if (result == ABBE_OK)
+    result = abbe_environment_picture_read(path, ABBE_LAYOUT_BY_ASPECT, &made.map, error);
+  if (result == ABBE_OK) result = abbe_environment_prepare(&made, error);
+  if (result == ABBE_OK) digest(made.mean, sizeof made.mean);
+  abbe_environment_free(&made);
   return result;
 }
 
@@ -272,6 +291,7 @@ SCENE(shapes)
 SCENE(gem)
 SCENE(files)
 SCENE(glass)
+SCENE(surroundings)
 
 static abbe_result presets(abbe_error *error) {
   abbe_presets made = {0};
@@ -326,6 +346,8 @@ static void test_scenes(void **state) {
       {"scene of a gem", scene_gem, 100},
       {"scene of files", scene_files, 40},
       {"scene of a glass", scene_glass, 200},
+      {"scene with surroundings", scene_surroundings, 100},
+      {"picture of surroundings", picture, 0},
       {"presets", presets, 0},
       {"receiver maps", maps, 0},
   };

@@ -46,7 +46,8 @@ extern "C" {
   X(LIGHT_MAP, "map: ", p->reaches[i])                                                             \
   X(RECEIVER_MAPS, "maps on receivers", p->tiles)                                                  \
   X(ABSORPTION, "absorption", p->absorbing)                                                        \
-  X(TEXTURES, "textures", p->textured)
+  X(TEXTURES, "textures", p->textured)                                                             \
+  X(ENVIRONMENT, "environment", p->surrounded)
 
 /* Passes first, so that arrays can be indexed by them. */
 typedef enum abbe_plan_item {

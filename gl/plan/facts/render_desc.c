@@ -53,7 +53,8 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the spectral map", d->map_size, 1, ABBE_RENDER_MAX_MAP},
       {"the supersampling", d->supersample, 1, 4},
       {"the upsampling", d->upsample, 1, 4},
-      {"the number of the environment's lights", d->environment_lights, 1, ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS},
+      {"the number of the environment's lights", d->environment_lights, 1,
+       ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS},
       {"the adaptive sampling", d->adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE},
       /* 0: the scene tells */
       {"the number of wavelengths", d->wavelengths, 0,

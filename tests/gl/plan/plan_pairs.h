@@ -92,7 +92,8 @@ typedef struct pair {
       RESTS(PASS_EYE_BACK, "every refractor has an exact surface"),                                \
       RUNS(PASS_EYE_ADAPTIVE, "4 x 4 rays for a sample of a receiver where its light bends"),      \
       RUNS(PASS_EYE_REFRACTION, "until less than 0.001 of its light is left, 256 exits at most"),  \
-      RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"),
+      RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"),                 \
+      RESTS(CHOICE_ENVIRONMENT, "none"),
 
 #define UNLIT                                                                                      \
   RESTS(CHOICE_RECEIVER_MAPS, "no light meets a refractor"),                                       \
@@ -381,6 +382,16 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT WOOD BALL("crown"),
      {0},
      {RUNS(CHOICE_TEXTURES, "a receiver has one"), END}},
+    {"an environment",
+     ball,
+     CAMERA POINT_LIGHT FLOOR BALL("crown") "environment: {softboxes: [{elevation: 90, radius: 3, "
+                                            "radiance: 9}]}\n",
+     {.environment_lights = 1},
+     {RUNS_OF(CHOICE_LIGHT_MAP, "environment 1", "the light may meet a refractor"),
+      RUNS(CHOICE_ENVIRONMENT,
+           "the camera sees it whole; 1 directional lights shine 100 % of it on receivers and "
+           "through refractors, with sharp shadows"),
+      END}},
     {"an eye that looks past the refractor",
      ball,
      EYE_ASIDE POINT_LIGHT FLOOR BALL("crown"),

@@ -77,6 +77,11 @@ static inline line *put(lines *l, row_kind kind, abbe_plan_item item) {
   return added;
 }
 
+/* The renderer gives an environment lights of its own, after the scene's. */
+static inline const char *light_name(const abbe_scene *scene, size_t light) {
+  return light < scene->light_count ? scene->light[light].name : "environment 1";
+}
+
 static inline void tell(const abbe_scene *scene, const abbe_plan *plan, lines *out) {
   out->count = 0;
   line *counts = put(out, ROW_COUNTS, 0);
@@ -87,7 +92,7 @@ static inline void tell(const abbe_scene *scene, const abbe_plan *plan, lines *o
     const abbe_plan_entry *e = &plan->entry[i];
     line *l = put(out, e->runs ? ROW_RUNS : ROW_RESTS, e->item);
     const char *about = e->item == ABBE_CHOICE_REFRACTOR_MODEL ? scene->object[e->index].name
-                        : e->item == ABBE_CHOICE_LIGHT_MAP     ? scene->light[e->index].name
+                        : e->item == ABBE_CHOICE_LIGHT_MAP     ? light_name(scene, e->index)
                                                                : "";
     snprintf(l->about, sizeof l->about, "%s", about);
     snprintf(l->text, sizeof l->text, "%s", e->reason);

@@ -175,6 +175,22 @@ static void levels_are_blurred(void **state) {
   abbe_environment_free(NULL);
 }
 
+static void the_brightest_part(void **state) {
+  (void)state;
+  abbe_environment e = {0};
+  double share;
+  assert_int_equal(abbe_radiance_map_make(256, &e.map, NULL), ABBE_OK);
+  for (size_t i = 0; i < 3 * 256 * 128; i++) e.map.rgb[i] = i / 3 % 256 < 64 ? 3 : 1;
+  abbe_environment_turn(0, NULL, 0, e.to_map);
+  assert_int_equal(abbe_environment_prepare(&e, NULL), ABBE_OK);
+  static const double known[][2] = {{0, 0}, {0.125, 0.25}, {0.25, 0.5}, {0.5, 2.0 / 3}, {1, 1}};
+  for (int i = 0; i < 5; i++) {
+    assert_int_equal(abbe_environment_brightest(&e, known[i][0], &share, NULL), ABBE_OK);
+    assert_near(share, known[i][1], 1e-6);
+  }
+  abbe_environment_free(&e);
+}
+
 static void what_is_refused(void **state) {
   (void)state;
   static const struct {
@@ -203,6 +219,7 @@ int main(void) {
       cmocka_unit_test(turning_both_changes_nothing),
       cmocka_unit_test(light_is_linear),
       cmocka_unit_test(levels_are_blurred),
+      cmocka_unit_test(the_brightest_part),
       cmocka_unit_test(what_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

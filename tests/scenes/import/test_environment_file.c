@@ -202,6 +202,27 @@ static void what_is_refused(void **state) {
   }
 }
 
+/* Sodium light has one colour. */
+static void an_illuminant_has_colours(void **state) {
+  (void)state;
+  char path[64], text[128];
+  abbe_environment e;
+  abbe_error error;
+  snprintf(path, sizeof path, "/tmp/abbe-test-line-%d.txt", (int)getpid());
+  snprintf(text, sizeof text, "{uniform: 1,\n illuminant: %s}", path);
+  static const char line[] = "588 0\n589 1\n590 0\n", lines[] = "400 1\n500 3\n600 2\n700 1\n";
+  assert_int_equal(abbe_file_write(path, line, strlen(line), NULL), ABBE_OK);
+  assert_int_equal(parse(text, &e, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "text:2: ");
+  assert_contains(error.text, "too few colours");
+  abbe_environment_free(&e);
+  assert_int_equal(abbe_file_write(path, lines, strlen(lines), NULL), ABBE_OK);
+  surroundings(text, &e);
+  assert_string_equal(e.illuminant_path, path);
+  abbe_environment_free(&e);
+  unlink(path);
+}
+
 #define VIEW                                                                                       \
   "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"                                            \
   "objects:\n- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 0.5}\n"
@@ -265,6 +286,7 @@ int main(void) {
       cmocka_unit_test(aset),
       cmocka_unit_test(pictures),
       cmocka_unit_test(what_is_refused),
+      cmocka_unit_test(an_illuminant_has_colours),
       cmocka_unit_test(scenes_have_surroundings),
       cmocka_unit_test(what_is_documented_loads),
   };

@@ -31,6 +31,7 @@ static const char *const texts[] = {
     [ABBE_CHOICE_RECEIVER_MAPS] = "maps on receivers",
     [ABBE_CHOICE_ABSORPTION] = "absorption",
     [ABBE_CHOICE_TEXTURES] = "textures",
+    [ABBE_CHOICE_ENVIRONMENT] = "environment",
 };
 
 static void every_item_has_its_text(void **state) {

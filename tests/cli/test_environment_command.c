@@ -1,0 +1,69 @@
+/* `abbe environment` as people and programs meet it: a scene, its picture, refusals. */
+#include "tests/cli/run_program.h"
+
+#include "base/file.h"
+
+#include <cjson/cJSON.h>
+
+#define VIEW                                                                                       \
+  "camera: {eye: [0, -1, 0.5], target: [0, 0, 0]}\n"                                               \
+  "objects:\n- {shape: rectangle, width: 1, height: 1, reflectance: 0.5}\n"
+
+static void write_text(const char *name, const char *text) {
+  char path[128];
+  snprintf(path, sizeof path, "%s/%s", run_folder, name);
+  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+}
+
+static double number(const cJSON *object, const char *key, int index) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+  return cJSON_GetNumberValue(index < 0 ? item : cJSON_GetArrayItem(item, index));
+}
+
+/* A lamp at +x that is turned to +y, on a grey of 0.5. */
+static void check(const char *line) {
+  assert_int_equal(run_line(line), 0);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_non_null(json);
+  assert_near(number(json, "irradiance_down", 0), 3.14159265 / 2, 2e-4);
+  assert_near(number(json, "brightest", 1), 100.5, 0.1);
+  assert_near(number(json, "brightest_azimuth", -1), 90, 1);
+  assert_near(number(json, "brightest_elevation", -1), 20, 1);
+  /* 2 pi (1 - cos 3 degrees) of 100, of all */
+  const double lamp = 0.00861 * 100, all = lamp + 2 * 3.14159265;
+  assert_near(number(json, "share_of_brightest_1_percent", -1), (lamp + 0.02 * 3.14159265) / all,
+              1e-3);
+  cJSON_Delete(json);
+}
+
+static void a_scene_and_its_picture(void **state) {
+  (void)state;
+  write_text("s.yaml", VIEW "environment:\n  size: 256\n  uniform: 0.5\n  rotate: 90\n  softboxes: "
+                            "[{elevation: 20, radius: 3, radiance: 100}]\n");
+  check("\"$abbe\" environment s.yaml --json -o out.exr --png out.png");
+  check("\"$abbe\" environment out.exr --json");
+  assert_int_equal(run_line("\"$abbe\" environment s.yaml && rm out.exr out.png s.yaml"), 0);
+  assert_contains(run_output, "256 x 128 texels, illuminant D65");
+  assert_contains(run_output, "brightest 1 %");
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  write_text("s.yaml", VIEW "lights: [{kind: point, position: [0, 0, 1], intensity: 1}]\n");
+  assert_int_equal(run_line("\"$abbe\" environment s.yaml"), 1);
+  assert_contains(run_errors, "has no 'environment'");
+  assert_int_equal(run_line("\"$abbe\" environment missing.hdr"), 1);
+  assert_contains(run_errors, "missing.hdr");
+  assert_int_equal(run_line("\"$abbe\" environment"), 2);
+  assert_int_equal(
+      run_line("\"$abbe\" environment s.yaml -o x.png; code=$?; rm s.yaml; exit $code"), 2);
+  assert_int_equal(run_left(), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_scene_and_its_picture),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}
