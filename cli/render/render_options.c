@@ -42,7 +42,7 @@ static const struct argp_option options[] = {
      "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis 1)", 1},
     {"environment-lights", OPTION_ENVIRONMENT_LIGHTS, "N", 0,
      "directional lights that stand for an environment on receivers and through refractors, 1 to 16 "
-     "(6)",
+     "(4)",
      1},
     {"model", OPTION_MODEL, "NAME", 0,
      "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)",

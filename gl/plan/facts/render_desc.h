@@ -65,7 +65,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_MAP 1024
 #define ABBE_PLAN_SAMPLES 2
 #define ABBE_PLAN_ADAPTIVE 4
-#define ABBE_PLAN_ENVIRONMENT_LIGHTS 6
+#define ABBE_PLAN_ENVIRONMENT_LIGHTS 4
 /* Exits that are followed at the most, and the share of its light below which a path ends, where
  * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
@@ -93,7 +93,7 @@ typedef struct abbe_render_desc {
   /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
    * (thesis: 1) */
   size_t adaptive;
-  /* lights that stand for an environment on receivers and through refractors, 1 to 16; 0: 6 */
+  /* lights that stand for an environment on receivers and through refractors, 1 to 16; 0: 4 */
   size_t environment_lights;
   abbe_fill fill;
   abbe_model model;

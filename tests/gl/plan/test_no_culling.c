@@ -64,7 +64,7 @@ static void test_every_switch_is_on(void **state) {
   abbe_scene scene = {0};
   abbe_plan plan;
   const abbe_render_desc all = {.everything = true};
-  load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat"), &scene);
+  load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat") "environment: {uniform: 0.1}\n", &scene);
   assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
   for (size_t i = 0; i < plan.entry_count; i++) {
     const abbe_plan_entry *entry = &plan.entry[i];

@@ -52,6 +52,7 @@ static void every_shipped_scene_loads(void **state) {
       {"gem", 24, ABBE_EXACT_CONVEX, 19},       {"bunny", 235136, ABBE_EXACT_NONE, 0},
       {"glass", 12160, ABBE_EXACT_NONE, 0},     {"prism", 8, ABBE_EXACT_CONVEX, 5},
       {"rainbow", 20480, ABBE_EXACT_SPHERE, 0}, {"diamond", 110, ABBE_EXACT_CONVEX, 73},
+      {"diamond-studio", 110, ABBE_EXACT_CONVEX, 73},
   };
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
     abbe_scene scene = load(scenes[i].name);
