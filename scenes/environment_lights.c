@@ -176,7 +176,7 @@ abbe_result abbe_environment_lights_add(const abbe_scene *scene, size_t count, d
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
   if (result == ABBE_OK && e != NULL)
     result = abbe_upsampling_make(&e->illuminant, min_nm, max_nm, &up, error);
-  if (out->light != NULL) memcpy(out->light, scene->light, own * sizeof *out->light);
+  if (out->light != NULL && own > 0) memcpy(out->light, scene->light, own * sizeof *out->light);
   if (result == ABBE_OK && e != NULL && count > 0) {
     const size_t made = cut_all(&s, count, parts);
     for (size_t i = 0; i < made && result == ABBE_OK; i++) {

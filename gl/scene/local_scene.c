@@ -97,7 +97,7 @@ abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t
   const size_t own = scene->light_count;
   abbe_light *light = calloc(own + count + 1, sizeof *light);
   if (light == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for lights");
-  memcpy(light, scene->light, own * sizeof *light);
+  if (own > 0) memcpy(light, scene->light, own * sizeof *light);
   for (size_t i = 0; i < count; i++) light[own + i] = scene->light[of[i]];
   if (local->moved || local->repeated)
     free(local->copy.light);

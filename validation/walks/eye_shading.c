@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+enum { STRAIGHT_SAMPLES = 4 };
 static const float inverse_pi = 0.318309886f;
 
 /* Radiance of a light's spectrum times share; reflectance NULL: none. */
@@ -150,28 +151,45 @@ static bool sees_out(const abbe_eye_context *c, const abbe_hit *hit, const float
   return !abbe_geometry_occluded(c->w->geometry, mask, o, d, INFINITY);
 }
 
-/* Irradiance of the environment at the hit on the side of n, over pi, RGB: one direction drawn by
- * its radiance, one by its cosine, weighted by the balance heuristic [VeachGuibas1995]. */
-static void surrounding_light(const abbe_eye_context *c, const abbe_eye_path *p,
-                              const abbe_hit *hit, const float n[3], float out[3]) {
+/* One direction drawn by the environment's radiance, one by the cosine, weighted by the balance
+ * heuristic [VeachGuibas1995]: u in [0, 1)^5. Adds irradiance over pi, RGB. */
+static void sample_surroundings(const abbe_eye_context *c, const abbe_hit *hit, const float n[3],
+                                const float u[5], float out[3]) {
   const abbe_environment_light *e = c->w->environment;
-  float random[4], more[4], d[3], pdf, rgb[3], x[3], y[3];
-  abbe_eye_random4(c, ~p->id ^ 0x736b79u, p->steps, random);
-  abbe_eye_random4(c, ~p->id ^ 0x68656d69u, p->steps, more);
-  memset(out, 0, 3 * sizeof *out);
-  abbe_environment_light_sample(e, random, d, &pdf, rgb);
+  float d[3], pdf, rgb[3], x[3], y[3];
+  abbe_environment_light_sample(e, u, d, &pdf, rgb);
   float cosine = abbe_eye_dot(n, d) * inverse_pi;
   if (sees_out(c, hit, n, d))
     for (int k = 0; k < 3; k++) out[k] += rgb[k] * cosine / (pdf + cosine);
   abbe_geometry_across(n, x, y);
-  float r = sqrtf(more[0]), angle = 6.28318531f * more[1];
+  float r = sqrtf(u[3]), angle = 6.28318531f * u[4];
   for (int k = 0; k < 3; k++)
-    d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - more[0]) * n[k];
+    d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - u[3]) * n[k];
   if (!sees_out(c, hit, n, d)) return;
   cosine = abbe_eye_dot(n, d) * inverse_pi;
   abbe_environment_light_seen(e, d, rgb);
   const float weight = cosine / (abbe_environment_light_pdf(e, d) + cosine);
   for (int k = 0; k < 3; k++) out[k] += rgb[k] * weight;
+}
+
+/* Irradiance of the environment at the hit on the side of n, over pi, RGB; on what the camera sees
+ * straight by more samples, multiples of golden ratios of five dimensions [Roberts2018], for there
+ * the path behind is cheap. */
+static void surrounding_light(const abbe_eye_context *c, const abbe_eye_path *p,
+                              const abbe_hit *hit, const float n[3], bool straight, float out[3]) {
+  static const uint32_t golden[5] = {3785032107u, 3335640777u, 2939605023u, 2590590015u,
+                                     2283013049u};
+  const uint32_t count = straight ? STRAIGHT_SAMPLES : 1;
+  float random[8], u[5];
+  abbe_eye_random4(c, ~p->id ^ 0x736b79u, p->steps, random);
+  abbe_eye_random4(c, ~p->id ^ 0x68656d69u, p->steps, random + 4);
+  memset(out, 0, 3 * sizeof *out);
+  for (uint32_t i = 0; i < count; i++) {
+    for (int k = 0; k < 5; k++)
+      u[k] = abbe_random_shift(abbe_random_float(i * golden[k]), random[k]);
+    sample_surroundings(c, hit, n, u, out);
+  }
+  for (int k = 0; k < 3; k++) out[k] /= (float)count;
 }
 
 static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
@@ -194,7 +212,7 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
   }
   if (w->environment->environment != NULL) {
     float rgb[3];
-    surrounding_light(c, p, hit, n, rgb);
+    surrounding_light(c, p, hit, n, straight, rgb);
     add_environment(c, p, rgb, 1, reflectance, rec709);
   }
   if (scene->ambient > 0) add_white(c, p, (float)scene->ambient * inverse_pi, reflectance, rec709);
