@@ -242,16 +242,22 @@ static double density(const abbe_environment *environment, const double own[3]) 
 }
 
 void abbe_environment_sample(const abbe_environment *environment, const double u[3],
-                             double direction[3], double *pdf) {
+                             double direction[3], double *pdf, double rgb[3]) {
   const abbe_radiance_map *map = &environment->map;
   const size_t texel = abbe_alias_table_draw(&environment->texels, u[0]);
   /* over longitude the share is a triangle */
   const double aside = u[1] < 0.5 ? sqrt(2 * u[1]) - 1 : 1 - sqrt(2 - 2 * u[1]);
   const double x = (double)(texel % map->width) + 0.5 + aside;
   const double y = polar_of(map, texel / map->width, u[2]) / PI * (double)map->height;
-  double own[3];
+  double own[3], share[4];
+  size_t around[4];
   abbe_radiance_map_direction(map, x, y, own);
-  *pdf = density(environment, own);
+  abbe_radiance_map_texels(map, x, y, around, share);
+  for (int k = 0; k < 3; k++) {
+    rgb[k] = 0;
+    for (int i = 0; i < 4; i++) rgb[k] += share[i] * (double)map->rgb[3 * around[i] + (size_t)k];
+  }
+  *pdf = abbe_vector_dot(luminance, rgb) / environment->luminance;
   apply_inverse(environment->to_map, own, direction);
 }
 

@@ -70,11 +70,11 @@ void abbe_environment_irradiance(const abbe_environment *environment, const doub
 abbe_result abbe_environment_brightest(const abbe_environment *environment, double of_sphere,
                                        double *share, abbe_error *error);
 
-/* A unit world direction for u in [0, 1)^3 and its density, 1/sr, which is the luminance of the
- * radiance from there over its integral: radiance of one hue over pdf is the same everywhere. Never
- * one from which no light comes. */
+/* A unit world direction for u in [0, 1)^3, the radiance from there, and its density, 1/sr, which
+ * is the luminance of the radiance from there over its integral: radiance of one hue over pdf is
+ * the same everywhere. Never one from which no light comes. */
 void abbe_environment_sample(const abbe_environment *environment, const double u[3],
-                             double direction[3], double *pdf);
+                             double direction[3], double *pdf, double rgb[3]);
 /* The density of abbe_environment_sample at a unit world direction, 1/sr. */
 double abbe_environment_pdf(const abbe_environment *environment, const double direction[3]);
 

@@ -159,16 +159,19 @@ static size_t emit(const abbe_emission *e, uint32_t from, uint32_t to, abbe_phot
   return to - from;
 }
 
-/* Photon j of the environment's. Places, directions and wavelengths are multiples of golden ratios
- * of seven dimensions, shifted at random in every pass [Roberts2018]. */
+/* Photon j of the environment's. Texels, places in them and on the disks, and wavelengths are
+ * multiples of golden ratios of seven dimensions, shifted at random in every pass [Roberts2018]:
+ * texels in turn would be faster to read, and a lattice's even spread over all of it be lost. */
 static void start_outside(const abbe_emission *e, uint32_t j, const uint32_t shift[8],
                           abbe_photon *p) {
   static const uint32_t golden[7] = {3915259345u, 3569120481u, 3253582939u, 2965941329u,
                                      2703729436u, 2464699080u, 2246800835u};
   const abbe_environment_light *light = &e->t->environment;
-  float u[7], rgb[3];
-  for (int k = 0; k < 7; k++) u[k] = abbe_random_float(j * golden[k] + shift[k]);
-  p->step = abbe_spectral_sampling_step(u[6], &p->within);
+  double u[7];
+  float rgb[3];
+  for (int k = 1; k < 7; k++) u[k] = (double)abbe_random_float(j * golden[k] + shift[k]);
+  u[0] = (double)(j * golden[0] + shift[0]) * 0x1p-32; /* all bits, for texels may be many */
+  p->step = abbe_spectral_sampling_step((float)u[6], &p->within);
   abbe_environment_light_ray(light, u, p->o, p->d, rgb);
   const float *lift = light->lift[p->step];
   p->flux = (lift[0] * rgb[0] + lift[1] * rgb[1] + lift[2] * rgb[2]) / (float)e->count;

@@ -129,12 +129,11 @@ float abbe_environment_light_pdf(const abbe_environment_light *e, const float d[
   return (float)abbe_environment_pdf(e->environment, direction);
 }
 
-void abbe_environment_light_sample(const abbe_environment_light *e, const float u[3], float d[3],
+void abbe_environment_light_sample(const abbe_environment_light *e, const double u[3], float d[3],
                                    float *pdf, float rgb[3]) {
-  const double at[3] = {(double)u[0], (double)u[1], (double)u[2]};
-  double direction[3], density;
-  abbe_environment_sample(e->environment, at, direction, &density);
-  radiance(e, direction, rgb);
+  double direction[3], density, seen[3];
+  abbe_environment_sample(e->environment, u, direction, &density, seen);
+  for (int k = 0; k < 3; k++) rgb[k] = (float)seen[k];
   for (int k = 0; k < 3; k++) d[k] = (float)direction[k];
   *pdf = (float)density;
 }
@@ -168,13 +167,13 @@ static size_t choose_ball(const abbe_environment_light *e, float *u) {
   }
 }
 
-void abbe_environment_light_ray(const abbe_environment_light *e, const float u[6], float o[3],
+void abbe_environment_light_ray(const abbe_environment_light *e, const double u[6], float o[3],
                                 float d[3], float rgb[3]) {
-  float towards[3], pdf, x[3], y[3], place = u[3], p[3];
+  float towards[3], pdf, x[3], y[3], place = (float)u[3], p[3];
   abbe_environment_light_sample(e, u, towards, &pdf, rgb);
   for (int k = 0; k < 3; k++) d[k] = -towards[k];
   const float *ball = e->ball[choose_ball(e, &place)];
-  const float r = ball[3] * sqrtf(u[4]), angle = 6.28318531f * u[5];
+  const float r = ball[3] * sqrtf((float)u[4]), angle = 6.28318531f * (float)u[5];
   abbe_geometry_across(d, x, y);
   for (int k = 0; k < 3; k++) p[k] = ball[k] + r * (cosf(angle) * x[k] + sinf(angle) * y[k]);
   float along = 0;

@@ -154,7 +154,7 @@ static bool sees_out(const abbe_eye_context *c, const abbe_hit *hit, const float
 /* One direction drawn by the environment's radiance, one by the cosine, weighted by the balance
  * heuristic [VeachGuibas1995]: u in [0, 1)^5. Adds irradiance over pi, RGB. */
 static void sample_surroundings(const abbe_eye_context *c, const abbe_hit *hit, const float n[3],
-                                const float u[5], float out[3]) {
+                                const double u[5], float out[3]) {
   const abbe_environment_light *e = c->w->environment;
   float d[3], pdf, rgb[3], x[3], y[3];
   abbe_environment_light_sample(e, u, d, &pdf, rgb);
@@ -162,9 +162,9 @@ static void sample_surroundings(const abbe_eye_context *c, const abbe_hit *hit, 
   if (sees_out(c, hit, n, d))
     for (int k = 0; k < 3; k++) out[k] += rgb[k] * cosine / (pdf + cosine);
   abbe_geometry_across(n, x, y);
-  float r = sqrtf(u[3]), angle = 6.28318531f * u[4];
+  float r = sqrtf((float)u[3]), angle = 6.28318531f * (float)u[4];
   for (int k = 0; k < 3; k++)
-    d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - u[3]) * n[k];
+    d[k] = r * (cosf(angle) * x[k] + sinf(angle) * y[k]) + sqrtf(1 - (float)u[3]) * n[k];
   if (!sees_out(c, hit, n, d)) return;
   cosine = abbe_eye_dot(n, d) * inverse_pi;
   abbe_environment_light_seen(e, d, rgb);
@@ -180,13 +180,15 @@ static void surrounding_light(const abbe_eye_context *c, const abbe_eye_path *p,
   static const uint32_t golden[5] = {3785032107u, 3335640777u, 2939605023u, 2590590015u,
                                      2283013049u};
   const uint32_t count = straight ? STRAIGHT_SAMPLES : 1;
-  float random[8], u[5];
+  float random[8];
+  double u[5];
   abbe_eye_random4(c, ~p->id ^ 0x736b79u, p->steps, random);
   abbe_eye_random4(c, ~p->id ^ 0x68656d69u, p->steps, random + 4);
   memset(out, 0, 3 * sizeof *out);
   for (uint32_t i = 0; i < count; i++) {
     for (int k = 0; k < 5; k++)
-      u[k] = abbe_random_shift(abbe_random_float(i * golden[k]), random[k]);
+      u[k] = (double)abbe_random_shift(abbe_random_float(i * golden[k]), random[k]);
+    u[0] += 0x1p-24 * (double)random[5]; /* as texels may be many */
     sample_surroundings(c, hit, n, u, out);
   }
   for (int k = 0; k < 3; k++) out[k] /= (float)count;

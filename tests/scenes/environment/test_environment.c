@@ -67,13 +67,14 @@ static void samples_follow_their_density(void **state) {
     for (int i = 0; i < SAMPLES; i++) {
       const double u[3] = {random_between(&state64, 0, 1), random_between(&state64, 0, 1),
                            random_between(&state64, 0, 1)};
-      double d[3], pdf, rgb[3], own[3];
-      abbe_environment_sample(&e, u, d, &pdf);
+      double d[3], pdf, rgb[3], own[3], seen[3];
+      abbe_environment_sample(&e, u, d, &pdf, seen);
       assert_true(pdf > 0);
       if (i % 100 == 0) {
         assert_near(abbe_vector_length(d), 1, 1e-12);
         assert_near(abbe_environment_pdf(&e, d), pdf, 1e-9 * pdf + 1e-12);
         abbe_environment_radiance(&e, d, rgb);
+        for (int k = 0; k < 3; k++) assert_near(seen[k], rgb[k], 1e-9 * e.luminance);
         assert_near(rgb[1] / pdf, e.luminance, 1e-6 * e.luminance);
       }
       for (int k = 0; k < 3; k++) own[k] = abbe_vector_dot(e.to_map + 3 * k, d);
@@ -107,8 +108,8 @@ static void extreme_numbers(void **state) {
   for (int i = 0; i < 64; i++)
     for (int j = 0; j < 128; j++) {
       const double u[3] = {(j + 0.5) / 128, ends[i % 4], ends[i / 4 % 4]};
-      double d[3], pdf;
-      abbe_environment_sample(&e, u, d, &pdf);
+      double d[3], pdf, seen[3];
+      abbe_environment_sample(&e, u, d, &pdf, seen);
       assert_true(abbe_vector_finite(d) && isfinite(pdf) && pdf >= 0);
       assert_near(abbe_vector_length(d), 1, 1e-12);
     }
