@@ -119,7 +119,10 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 2;
   for (size_t i = 0; i < plan->refractor_count; i++) {
     const abbe_object *o = &scene->object[plan->refractor_object[i]];
-    h = mix_material(h, o->material);
+    const abbe_material *material = o->mirror ? o->conductor : o->material;
+    MIX(h, o->mirror);
+    MIX(h, o->mirror_reflectance);
+    if (material != NULL) h = mix_material(h, material);
     MIX(h, o->min); /* how long paths through it are */
     MIX(h, o->max);
   }
@@ -138,6 +141,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   MIX(h, plan->dispersive);
   MIX(h, plan->absorbing);
   MIX(h, plan->tinting);
+  MIX(h, plan->colouring);
   return h;
 }
 

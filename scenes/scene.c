@@ -98,7 +98,7 @@ bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers,
     const abbe_object *object = &scene->object[i];
     const abbe_object_kind kind = abbe_object_kind_of(object);
     if ((!refractors && kind != ABBE_OBJECT_RECEIVER) ||
-        (!receivers && kind != ABBE_OBJECT_REFRACTOR))
+        (!receivers && kind == ABBE_OBJECT_RECEIVER))
       continue;
     for (int k = 0; k < 3; k++) {
       min[k] = any ? fmin(min[k], object->min[k]) : object->min[k];

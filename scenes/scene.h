@@ -150,8 +150,8 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index);
  * camera on a mirror, no receiver and no mirror in the camera's view. Called by the loader. */
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 
-/* Bounds of the objects chosen: refractors, receivers, or with both all objects, mirrors too. False
- * where there are none. */
+/* Bounds of the objects chosen: refractors and mirrors, receivers, or both. False where there are
+ * none. */
 bool abbe_scene_bounds(const abbe_scene *scene, bool refractors, bool receivers, double min[3],
                        double max[3]);
 

@@ -32,6 +32,9 @@ float sphere_spread(Hit front, vec3 d, int first, int last) {
 // the first exit shows, so a convex solid gets a band for each wavelength.
 float wanted_bands(Hit front, vec3 d, int first, int last) {
   int model = refractors[refractor].info.x;
+#ifdef MIRRORS
+  if (is_mirror(refractor)) return 1e9;
+#endif
 #ifdef SPHERES
   if (model == MODEL_SPHERE) return sphere_spread(front, d, first, last) / 1.5;
 #endif
@@ -93,11 +96,25 @@ void choose_bands(out int base, out int count) {
 int taken_step(int count) { return count > 2 ? 2 : 1; }
 int first_taken(ivec2 at, int count) { return count > 2 ? (at.x ^ at.y) & 1 : 0; }
 
+// A mirror's bands reflect each its own share.
+#ifdef MIRRORS
+float reflects_for(int band, int other) {
+  return is_mirror(refractor) ? bands[other].attenuation.x / max(bands[band].attenuation.x, 1e-6) : 1.0;
+}
+#else
+float reflects_for(int band, int other) { return 1.0; }
+#endif
+
+vec3 part_for(int band, int other, bool ends) {
+  return (ends ? 1.0 : 0.5) * reflects_for(band, other) * bands[other].weight_n.xyz;
+}
+
 vec3 band_weight(int base, int i, int count) {
-  vec3 weight = bands[base + i].weight_n.xyz;
+  int band = base + i;
+  vec3 weight = bands[band].weight_n.xyz;
   if (count <= 2) return weight;
-  if (i > 0) weight += (i == 1 ? 1.0 : 0.5) * bands[base + i - 1].weight_n.xyz;
-  if (i + 1 < count) weight += (i + 2 == count ? 1.0 : 0.5) * bands[base + i + 1].weight_n.xyz;
+  if (i > 0) weight += part_for(band, band - 1, i == 1);
+  if (i + 1 < count) weight += part_for(band, band + 1, i + 2 == count);
   return weight;
 }
 #else

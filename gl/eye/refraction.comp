@@ -41,7 +41,7 @@ uniform uint pixel_first, pixel_end;  // those of the list that are looked at
 // another.
 struct Band {
   vec4 weight_n;     // XYZ, n
-  vec4 attenuation;  // 1/m in x
+  vec4 attenuation;  // 1/m in x; of a mirror: reflectance at normal incidence, then as mirror_spectrum()
 };
 #ifdef BANDS_IN_STORAGE
 layout(std430, binding = BINDING_BANDS) readonly buffer Bands { Band bands[]; };

@@ -37,15 +37,25 @@ int place = int(gl_LocalInvocationID.x) / PIXEL_THREADS;
 int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 #endif
 
-// XYZ of what a band shows through the first interface, or in_mirror: of what it shows in the mirror
-// there; mirrored: the share that is.
+// XYZ of what a band shows through the first interface, or off a mirror; or in_mirror: of what it shows
+// reflected by an interface; mirrored: the share that is.
 vec3 band_light(int band, bool in_mirror, out float mirrored) {
   band_of_refractor = band - refractor * counts.bands;
   PathState w = start, reflected = start;
-  if (!split(w, first, reflected)) reflected.share = 0.0;
+#ifdef MIRRORS
+  bool off_mirror = is_mirror(first.hit.refractor);
+  PathState off = start;
+  if (off_mirror) reflect_off(off, first);
+#else
+  const bool off_mirror = false;
+#endif
+  if (off_mirror || !split(w, first, reflected)) reflected.share = 0.0;
+#ifdef MIRRORS
+  if (off_mirror) w = off;
+#endif
   mirrored = reflected.share;
   reflected.share = mirrored > 0.0 ? 1.0 : 0.0;
-  if (in_mirror) w = reflected;
+  if (in_mirror) w = reflected;  // of no share, off a mirror
   return xyz_from_rgb * shown(w);
 }
 

@@ -21,6 +21,12 @@ vec2 refractor_spectrum(int r) {
   return vec2(band.weight_n.w, band.attenuation.x);
 }
 
+#ifdef MIRRORS
+vec3 mirror_spectrum(int r) {
+  return bands[r * counts.bands + band_of_refractor].attenuation.yzw;
+}
+#endif
+
 // What w shows, times its share. What is not followed shows what the rest has shown.
 vec3 shown(PathState w) {
   PathState pending[PENDING];
@@ -43,8 +49,8 @@ vec3 shown(PathState w) {
       w.share *= exp(-h.hit.t * refractor_spectrum(medium_of(w.inside)).y);
 #endif
     if (met && !receiver) {
-      float ended, dropped;
-      branch(w, h, 0.5 * share_limit, pending, ended, dropped);
+      float ended, dropped, absorbed;
+      branch(w, h, 0.5 * share_limit, pending, ended, dropped, absorbed);
       left += ended;
       left += dropped;
     } else {

@@ -13,6 +13,12 @@ vec2 refractor_spectrum(int r) {
   return spectra[r * counts.wavelengths + wavelength].xy;
 }
 
+#ifdef MIRRORS
+vec3 mirror_spectrum(int r) {
+  return spectra[r * counts.wavelengths + wavelength].yzw;
+}
+#endif
+
 // A free slot, the path's own if it can be; -1: all are used.
 int take_slot(uint path, inout uint used) {
   uint at = (path * 2654435761u >> 8) % uint(counts.slots);
@@ -56,11 +62,13 @@ void trace(PhotonRay photon, out Shares entry[5]) {
   bool going = photon.reached && next_interface(w, h);
   uint owner = uint(h.hit.refractor), used = 0u;
   Ends e = Ends(0.0, 0.0, 0.0, 0.0);
-  float ended, dropped;
+  float ended, dropped, absorbed;
   if (going) {
     entry[REACHED] = Shares(1.0);
-    branch(w, h, 0.0, pending, ended, dropped);
+    branch(w, h, 0.0, pending, ended, dropped, absorbed);
     e.trapped = ended + dropped;
+    e.absorbed = absorbed;
+    going = w.share > 0.0;
   }
   for (int segment = 0; going && segment < MOST_SEGMENTS; segment++) {
     h.hit.t = 1e30;
@@ -77,8 +85,9 @@ void trace(PhotonRay photon, out Shares entry[5]) {
     }
 #endif
     if (to.state == NO_RECEIVER && met) {
-      branch(w, h, 0.0, pending, ended, dropped);
+      branch(w, h, 0.0, pending, ended, dropped, absorbed);
       e.trapped += ended + dropped;
+      e.absorbed += absorbed;
     } else {
       end_path(photon, w, to, owner, used, e);
       w.share = 0.0;

@@ -20,8 +20,9 @@ static abbe_result make_lists(const abbe_scene *scene, abbe_plan *plan, abbe_err
   plan->receiver_object = calloc(room, sizeof *plan->receiver_object);
   plan->receiver_model = calloc(room, sizeof *plan->receiver_model);
   plan->model = calloc(room, sizeof *plan->model);
+  plan->mirror = calloc(room, sizeof *plan->mirror);
   if (plan->refractor_object == NULL || plan->receiver_object == NULL ||
-      plan->receiver_model == NULL || plan->model == NULL)
+      plan->receiver_model == NULL || plan->model == NULL || plan->mirror == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plan");
   for (size_t i = 0; i < scene->object_count; i++) {
     if (abbe_object_kind_of(&scene->object[i]) != ABBE_OBJECT_RECEIVER) continue;
@@ -45,7 +46,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
                              abbe_error *error) {
   out->surrounded = scene->environment != NULL;
   abbe_result result = abbe_support_lights(scene, error);
-  if (result == ABBE_OK) result = abbe_support_mirrors(scene, error);
+  if (result == ABBE_OK) result = abbe_support_mirrors(scene, out, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);

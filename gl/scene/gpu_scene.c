@@ -51,6 +51,7 @@ static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
       refractor[i].info[3] = (int)k;
       if (scene->local->object[plan->refractor_object[k]].material == object->material) break;
     }
+    if (plan->mirror[i]) refractor[i].info[2] = -1;
     refractor[i].info[1] = (int)next;
     if (plan->model[i] == ABBE_REFRACTOR_BVH) refractor[i].info[1] = (int)scene->refractor_root[i];
     if (plan->model[i] != ABBE_REFRACTOR_CONVEX) continue;

@@ -21,8 +21,11 @@ static abbe_result upload_spectra(abbe_gpu_scene *scene, abbe_error *error) {
   float(*spectrum)[4] = calloc(room, sizeof *spectrum);
   if (spectrum == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
   for (size_t i = 0; i < count; i++) {
+    const bool mirror = scene->plan->mirror[i / tables->all.count];
     spectrum[i][0] = (float)tables->index[i];
-    spectrum[i][1] = (float)tables->attenuation[i];
+    spectrum[i][1] = (float)(mirror ? tables->mirror[i].factor : tables->attenuation[i]);
+    spectrum[i][2] = (float)tables->mirror[i].n;
+    spectrum[i][3] = (float)tables->mirror[i].k;
   }
   abbe_result result =
       abbe_gpu_make_buffer(scene->gpu, room * sizeof *spectrum, spectrum, &scene->spectra, error);
@@ -60,15 +63,61 @@ static void fill_bands(const abbe_spectral_tables *tables, size_t refractor, gpu
     }
 }
 
+static void store_mirror(const abbe_mirror_band *from, gpu_band *out) {
+  for (int c = 0; c < 3; c++) out->weight_n[c] = (float)from->weight[c];
+  out->weight_n[3] = 1;
+  out->attenuation[0] = (float)from->straight;
+  out->attenuation[1] = (float)from->factor;
+  out->attenuation[2] = (float)from->n;
+  out->attenuation[3] = (float)from->k;
+}
+
+/* The same of a mirror. */
+static abbe_result fill_mirror(const abbe_gpu_scene *scene, size_t refractor, gpu_band *band,
+                               abbe_error *error) {
+  const abbe_spectral_tables *tables = &scene->tables;
+  const abbe_wavelengths *w = &tables->all;
+  size_t count = w->count;
+  abbe_mirror_band *of = calloc(count + 1, sizeof *of);
+  abbe_weights_range light;
+  abbe_result result = of != NULL ? ABBE_OK
+                                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  abbe_weights_range_make(&scene->local->light[0].illuminant, w->edge_nm[0], w->edge_nm[count],
+                          &light);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++)
+    result = abbe_mirror_band_make(&scene->local->object[scene->plan->refractor_object[refractor]],
+                                   &light, tables->camera.sum, w->edge_nm[i], w->edge_nm[i + 1],
+                                   &tables->mirror[refractor * count + i], &of[i], error);
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) store_mirror(&of[i], &band[i]);
+  for (; count > 1 && result == ABBE_OK; count = (count + 1) / 2) {
+    band += count;
+    for (size_t i = 0; i < (count + 1) / 2; i++) {
+      of[i] = of[2 * i];
+      if (2 * i + 1 < count) {
+        const abbe_mirror_band a = of[2 * i];
+        abbe_mirror_band_join(&a, &of[2 * i + 1], &of[i]);
+      }
+      store_mirror(&of[i], &band[i]);
+    }
+  }
+  free(of);
+  return result;
+}
+
 static abbe_result upload_bands(abbe_gpu_scene *scene, abbe_error *error) {
   const size_t refractors = scene->plan->refractor_count;
   const size_t room = abbe_gpu_spectra_room(refractors * scene->band_count);
   gpu_band *band = calloc(room, sizeof *band);
   if (band == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
-  for (size_t i = 0; i < refractors; i++)
-    fill_bands(&scene->tables, i, band + i * scene->band_count);
-  abbe_result result =
-      abbe_gpu_make_buffer(scene->gpu, room * sizeof *band, band, &scene->bands, error);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < refractors && result == ABBE_OK; i++) {
+    if (scene->plan->mirror[i])
+      result = fill_mirror(scene, i, band + i * scene->band_count, error);
+    else
+      fill_bands(&scene->tables, i, band + i * scene->band_count);
+  }
+  if (result == ABBE_OK)
+    result = abbe_gpu_make_buffer(scene->gpu, room * sizeof *band, band, &scene->bands, error);
   free(band);
   return result;
 }

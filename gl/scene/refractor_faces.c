@@ -43,9 +43,12 @@ abbe_result abbe_refractor_faces_draw(const abbe_refractor_faces *faces,
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   if (clear_alone) return ABBE_OK;
   gl->Enable(GL_DEPTH_TEST);
-  gl->Enable(GL_CULL_FACE);
   gl->CullFace(target->back ? GL_FRONT : GL_BACK);
   for (size_t i = 0; i < scene->plan->refractor_count; i++) {
+    if (scene->plan->mirror[i])
+      gl->Disable(GL_CULL_FACE); /* it has two sides */
+    else
+      gl->Enable(GL_CULL_FACE);
     abbe_gpu_set_uint(scene->gpu, faces->program, "owner", i + 1);
     abbe_gpu_meshes_draw(scene, scene->plan->refractor_object[i]);
   }

@@ -31,6 +31,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .environment = scene->environment != 0,
       .caustics = p->caustics,
       .walk = p->multi_refractor_paths,
+      .mirrors = p->mirror_count > 0,
       .cubes = p->cubes,
       .pixel_threads = !p->multi_refractor_paths ? 1
                        : p->desc.wavelengths > 1 ? 8
@@ -116,6 +117,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ENVIRONMENT", v->environment);
   print_flag(to, "CAUSTICS", v->caustics);
   print_flag(to, "WALK", v->walk);
+  print_flag(to, "MIRRORS", v->mirrors);
   print_flag(to, "CUBES", v->cubes);
   print_count(to, "PIXEL_THREADS", v->pixel_threads);
 }

@@ -19,7 +19,7 @@ typedef struct abbe_shader_variant {
   size_t exits, slots;
   size_t bvh_stack, receiver_root, shadow_planes;
   bool spheres, convex, layers, hierarchy, receiver_hierarchy, one_convex, one_shadow;
-  bool receiver_shadows, absorbing, textured, environment, caustics, walk, cubes;
+  bool receiver_shadows, absorbing, textured, environment, caustics, walk, mirrors, cubes;
   bool copies; /* a software rasteriser: tables are copied first (copies.glsl) */
   /* the picture */
   bool aovs;

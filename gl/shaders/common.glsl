@@ -18,7 +18,8 @@ struct Light {
 
 struct Refractor {
   vec4 sphere;  // centre, radius
-  ivec4 info;   // model, first plane or root of its hierarchy, planes, first of the same material
+  ivec4 info;   // model, first plane or root of its hierarchy, planes (-1: it is a mirror), first of the
+                // same material
 };
 
 struct Receiver {  // a parallelogram
@@ -51,7 +52,8 @@ layout(std430, binding = BINDING_SURFACES) readonly buffer Surfaces { Surface su
 #else
 layout(std140, binding = BINDING_SURFACES) uniform Surfaces { Surface surfaces[SURFACE_ROOM]; };
 #endif
-// n and attenuation (1/m) at [refractor * wavelengths + i].
+// n and attenuation (1/m) at [refractor * wavelengths + i]; of a mirror the n by which its light is laid, and
+// from the second on what walk.glsl reflects by.
 #ifdef SPECTRA_IN_STORAGE
 layout(std430, binding = BINDING_SPECTRA) readonly buffer Spectra { vec4 spectra[]; };
 #else

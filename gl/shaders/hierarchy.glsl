@@ -38,8 +38,10 @@ bool hierarchy_turned(uvec2 cone, vec3 away) {
   return dot(vec3(word.xyz), away) > float(word.w);
 }
 
-// Makes the triangle the best so far if it is nearer.
-void meet_triangle(int i, vec3 o, vec3 d, float side, float t_min, inout TriangleHit best) {
+// Makes the triangle the best so far if it is nearer. lean: those that the ray meets on the other side, as
+// -side does, count from `skip` on.
+void meet_triangle(int i, vec3 o, vec3 d, float side, float t_min, float lean, float skip,
+                   inout TriangleHit best) {
   vec3 corner = hierarchy_triangle(3 * i).xyz;
   vec3 e1 = hierarchy_triangle(3 * i + 1).xyz, e2 = hierarchy_triangle(3 * i + 2).xyz;
   vec3 across = cross(d, e2), from = o - corner;
@@ -47,8 +49,8 @@ void meet_triangle(int i, vec3 o, vec3 d, float side, float t_min, inout Triangl
   vec3 q = cross(from, e1);
   float scale = 1.0 / det;
   float u = dot(from, across) * scale, v = dot(d, q) * scale, t = dot(e2, q) * scale;
-  bool hit = det != 0.0 && det * side >= 0.0 && min(u, v) >= -2e-6 && u + v <= 1.000002 && t > t_min &&
-             t < best.t;
+  bool hit = det != 0.0 && det * side >= 0.0 && min(u, v) >= -2e-6 && u + v <= 1.000002 &&
+             t > (det * lean < 0.0 ? skip : t_min) && t < best.t;
   best.triangle = hit ? i : best.triangle;
   best.t = hit ? t : best.t;
   best.u = hit ? u : best.u;
@@ -57,7 +59,8 @@ void meet_triangle(int i, vec3 o, vec3 d, float side, float t_min, inout Triangl
 
 // Nearest triangle of the tree at `root` with t_min < t < h.t. side 1: only those that the ray meets
 // against their normal, -1: along it, 0: all. any: the first that is found will do.
-bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
+// lean and skip: as meet_triangle() has them.
+bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, float lean, float skip, bool any,
                    inout TriangleHit h) {
   // What waits: the last four, for llvmpipe writes arrays lane by lane, and below them the others.
   ivec4 top = ivec4(0);
@@ -77,6 +80,7 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   o += start * d;
   base = (uintBitsToFloat(low.xyz) - o) * inverse;
   t_min -= start;
+  skip -= start;
   TriangleHit best = TriangleHit(h.t - start, 0.0, 0.0, -1);
   vec3 away = side * d;
   uvec3 turn = mix(uvec3(16), uvec3(0), greaterThanEqual(d, vec3(0)));
@@ -107,7 +111,7 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
     next = leaf >> 3;
     end = next + (leaf & 7);
     while (next < end) {
-      meet_triangle(next, o, d, side, t_min, best);
+      meet_triangle(next, o, d, side, t_min, lean, skip, best);
       next++;
     }
     bool pop = waiting > 0 && !(any && best.triangle >= 0);
@@ -124,4 +128,8 @@ bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any,
   h = best;
   h.t = best.t + start;
   return best.triangle >= 0;
+}
+
+bool hierarchy_hit(int root, vec3 o, vec3 d, float side, float t_min, bool any, inout TriangleHit h) {
+  return hierarchy_hit(root, o, d, side, t_min, 0.0, t_min, any, h);
 }

@@ -22,6 +22,20 @@ float fresnel(float cos_i, float eta) {
   return min(0.5 * (r_s * r_s + r_p * r_p), 1.0);
 }
 
+#ifdef MIRRORS
+// Unpolarised reflectance of a metal of complex index n + i k, met from air.
+float fresnel_conductor(float cos_i, float n, float k) {
+  float c = clamp(cos_i, 0.0, 1.0), s2 = (1.0 - c) * (1.0 + c), twice = 2.0 * n * k;
+  float below = (n - k) * (n + k) - s2, size = length(vec2(below, twice));
+  // a + i b is the root of below + i twice: the smaller of both by their product, n k
+  float larger = sqrt(0.5 * (size + abs(below))), smaller = 0.5 * twice / max(larger, 1e-20);
+  vec2 root = below < 0.0 ? vec2(smaller, larger) : vec2(larger, smaller);
+  float t1 = size + c * c, t2 = 2.0 * c * root.x;
+  float s = (t1 - t2) / (t1 + t2), q = c * c * size + s2 * s2, p = (q - t2 * s2) / (q + t2 * s2);
+  return c == 0.0 ? 1.0 : clamp(0.5 * s * (1.0 + p), 0.0, 1.0);
+}
+#endif
+
 // d travels; n is unit on the side that d comes from. False at total internal reflection.
 bool refract_direction(vec3 d, vec3 n, float eta, out vec3 t) {
   float cos_i = clamp(-dot(d, n), 0.0, 1.0), cos2_t = eta == 1.0 ? 1.0 : cos2_refracted(cos_i, eta);

@@ -1,7 +1,8 @@
 // Multi-refractor paths: light goes on from interface to interface of all refractors, each
 // known by its own model, reflected and refracted at each. Where refractors overlap the one listed
 // last is there. Who includes this gives refractor_spectrum(r): n and attenuation (1/m) of refractor
-// r at the wavelength that is followed.
+// r at the wavelength that is followed. MIRRORS: some of them are mirrors, which reflect on both sides and
+// which no path is ever in; mirror_spectrum(r) gives what they reflect by.
 
 struct PathState {
   vec3 p, d;
@@ -9,7 +10,7 @@ struct PathState {
   uint inside;    // bit r: within refractor r
   uint path;      // what it met and did so far, as one number
   int interfaces;  // met since the first; -1: none yet
-  int refractor, facet;  // that p lies on
+  int refractor, facet;  // that p lies on; of a mirror, 1 or -1: on the side of its normals, or the other
 #ifdef KEEPS_INTERFACE
   vec3 interface_n;      // the normal there, and whether it came through
   bool transmitted;
@@ -24,6 +25,21 @@ struct Interface {
 const int PENDING = 4;  // branches that wait, the strongest
 
 vec2 refractor_spectrum(int r);
+
+#ifdef MIRRORS
+vec3 mirror_spectrum(int r);
+
+bool is_mirror(int r) { return refractors[r].info.z < 0; }
+
+// spectrum: a factor, then a metal's n and k; k below 0: the factor alone.
+float mirror_reflectance(vec3 spectrum, float cos_i) {
+  float metal = spectrum.z < 0.0 ? 1.0 : fresnel_conductor(cos_i, spectrum.y, spectrum.z);
+  return min(spectrum.x * metal, 1.0);
+}
+#else
+const bool NO_MIRROR = false;
+#define is_mirror(r) NO_MIRROR
+#endif
 
 int medium_of(uint inside) {
   return findMSB(inside);
@@ -110,7 +126,14 @@ bool next_interface(PathState w, inout Interface h) {
     if (info.x == MODEL_HIERARCHY) {
       float least = -1e-6 * refractors[r].sphere.w;
       TriangleHit one = triangle;
+#ifdef MIRRORS
+      // A path that leaves a mirror meets its other side but far from where it began.
+      float side = is_mirror(r) ? 0.0 : within ? -1.0 : 1.0;
+      float lean = is_mirror(r) && w.refractor == r ? float(w.facet) : 0.0;
+      bool met = hierarchy_hit(info.y, w.p, w.d, side, least, lean, -1e3 * least, false, one);
+#else
       bool met = hierarchy_hit(info.y, w.p, w.d, within ? -1.0 : 1.0, least, false, one);
+#endif
       owner = met ? r : owner;
       if (met) triangle = one;
       h.hit.t = met ? one.t : h.hit.t;
@@ -177,6 +200,28 @@ bool split(inout PathState w, Interface h, out PathState mirrored) {
   return true;
 }
 
+#ifdef MIRRORS
+// On from a mirror that w comes to; returns the share that the mirror absorbs.
+float reflect_off(inout PathState w, Interface h) {
+  int r = h.hit.refractor;
+  float side = dot(w.d, h.face_n) < 0.0 ? 1.0 : -1.0, before = w.share;
+  vec3 n = side * h.hit.n, face_n = side * h.face_n;
+  if (dot(w.d, n) >= 0.0) n = face_n;
+  w.share *= mirror_reflectance(mirror_spectrum(r), -dot(w.d, n));
+  w.d = keep_side(face_n, reflect(w.d, n));
+  w.p = h.hit.p;
+  w.refractor = r;
+  w.facet = int(side);
+  w.interfaces = max(w.interfaces, 0);
+#ifdef KEEPS_INTERFACE
+  w.interface_n = n;
+  w.transmitted = false;
+#endif
+  w.path = w.path * 31u + uint(r * 2) + uint(h.hit.facet) * 7u + 2u;
+  return before - w.share;
+}
+#endif
+
 // Keeps a branch for later, in the place of the weakest where there is none free; returns the share
 // that is given up.
 float keep_pending(PathState w, inout PathState pending[PENDING]) {
@@ -214,11 +259,18 @@ bool reflects_on(PathState mirrored) {
 }
 
 // At an interface: the stronger branch is left in w, the other waits, and of both only what carries
-// `least`. Of what is not followed: the share that ends here, and the one that gives its place up.
+// `least`. Of what is not followed: the share that ends here, the one that gives its place up, and what a
+// mirror absorbs. A mirror has one branch, which goes on whatever it carries.
 void branch(inout PathState w, Interface h, float least, inout PathState pending[PENDING], out float ended,
-            out float dropped) {
+            out float dropped, out float absorbed) {
   PathState mirrored;
-  ended = dropped = 0.0;
+  ended = dropped = absorbed = 0.0;
+#ifdef MIRRORS
+  if (is_mirror(h.hit.refractor)) {
+    absorbed = reflect_off(w, h);
+    return;
+  }
+#endif
   if (!split(w, h, mirrored)) return;
   bool reflects = reflects_on(mirrored), passes = w.share >= least;
   ended = (reflects ? 0.0 : mirrored.share) + (passes ? 0.0 : w.share);

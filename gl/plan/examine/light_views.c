@@ -21,7 +21,7 @@ void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
             abbe_reach_through(&scene->light[i], &scene->object[plan->refractor_object[k]],
                                &scene->object[plan->receiver_object[j]]);
   if (plan->caustics || plan->camera_sees_refractor) return;
-  plan->dispersive = plan->absorbing = plan->tinting = false;
+  plan->dispersive = plan->absorbing = plan->tinting = plan->colouring = false;
 }
 
 /* Receivers outside the view have tiles. */

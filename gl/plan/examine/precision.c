@@ -21,7 +21,7 @@ static abbe_result check_distance(const abbe_scene *scene, const abbe_light *lig
     half[k] = 0.5 * (object->max[k] - object->min[k]);
     size[k] = max[k] - min[k];
   }
-  double distance = abbe_vector_length(sun ? size : apart), thick = abbe_object_thickness(object);
+  double distance = abbe_vector_length(sun ? size : apart), thick = object->mirror ? 0 : abbe_object_thickness(object);
   double radius =
       object->exact.kind == ABBE_EXACT_SPHERE ? object->exact.radius : abbe_vector_length(half);
   if (distance > most_radii * radius && sun)
@@ -37,7 +37,7 @@ static abbe_result check_distance(const abbe_scene *scene, const abbe_light *lig
                           "directional light of %.6g W/m2",
                           light->name, distance, object->name, 2 * radius,
                           light->power / (distance * distance));
-  if (distance > most_thicknesses * thick)
+  if (distance > most_thicknesses * thick && !object->mirror)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the refractor '%s' is %.3g m thin, %.3g m from the light '%s': single "
                           "precision does not tell its front from its back; make it at least %.3g "

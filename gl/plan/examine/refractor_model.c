@@ -49,6 +49,7 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
     only = o;
     refractors++;
   }
+  if (abbe_scene_mirror(scene) != NULL) return "what a mirror sends on may meet a surface again";
   if (abbe_profile_is_thesis(plan->desc.profile) || refractors == 0) return NULL;
   if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
   if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
@@ -80,6 +81,23 @@ static abbe_result check_asked(const abbe_object *object, const abbe_plan *plan,
                           "scene has more",
                           MAX_FOLLOWED);
   return ABBE_OK;
+}
+
+/* Whether nothing looks at a ball from inside: no light and no eye stands there. */
+static bool is_seen_from_outside(const abbe_scene *scene, const abbe_object *ball) {
+  bool outside = abbe_object_distance(ball, scene->camera.eye) > 0;
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (scene->light[i].kind != ABBE_LIGHT_DIRECTIONAL)
+      outside = outside && abbe_object_distance(ball, scene->light[i].position) > 0;
+  return outside;
+}
+
+static abbe_refractor_model mirror_model(const abbe_scene *scene, const abbe_object *object,
+                                         const abbe_plan *plan) {
+  const bool ball = object->exact.kind == ABBE_EXACT_SPHERE;
+  return ball && plan->desc.model != ABBE_MODEL_BVH && is_seen_from_outside(scene, object)
+             ? ABBE_REFRACTOR_SPHERE
+             : ABBE_REFRACTOR_BVH;
 }
 
 static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan *plan) {
@@ -127,19 +145,44 @@ static void list_model(abbe_plan *plan, size_t object, const char *name, const c
     ++*unlisted;
 }
 
-static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *plan,
-                                 abbe_error *error) {
-  const abbe_object *object = &scene->object[i];
-  abbe_result result = abbe_spectral_needs_examine(scene, object->material, plan, error);
-  if (result == ABBE_OK) result = check_asked(object, plan, error);
-  if (result != ABBE_OK) return result;
-  const abbe_refractor_model model = model_of(object, plan);
+static void add(abbe_plan *plan, size_t i, bool mirror, abbe_refractor_model model) {
   plan->refractor_object[plan->refractor_count] = i;
+  plan->mirror[plan->refractor_count] = mirror;
   plan->model[plan->refractor_count++] = model;
   plan->spheres = plan->spheres || model == ABBE_REFRACTOR_SPHERE;
   plan->convex = plan->convex || model == ABBE_REFRACTOR_CONVEX;
   plan->layers = plan->layers || model == ABBE_REFRACTOR_LAYERS;
   plan->bvh = plan->bvh || model == ABBE_REFRACTOR_BVH;
+}
+
+static abbe_result add_refractor(const abbe_scene *scene, size_t i, abbe_plan *plan,
+                                 size_t *unlisted, abbe_error *error) {
+  const abbe_object *object = &scene->object[i];
+  char reason[288];
+  abbe_result result = abbe_spectral_needs_examine(scene, object->material, plan, error);
+  if (result == ABBE_OK) result = check_asked(object, plan, error);
+  if (result != ABBE_OK) return result;
+  add(plan, i, false, model_of(object, plan));
+  write_reason(object, plan, reason, sizeof reason);
+  list_model(plan, i, object->name, reason, unlisted);
+  return ABBE_OK;
+}
+
+static abbe_result add_mirror(const abbe_scene *scene, size_t i, abbe_plan *plan, size_t *unlisted,
+                              abbe_error *error) {
+  const abbe_object *object = &scene->object[i];
+  const abbe_refractor_model model = mirror_model(scene, object, plan);
+  char reason[288], reflects[128];
+  abbe_result result =
+      abbe_spectral_needs_mirror(object, plan, reflects, sizeof reflects, error);
+  if (result != ABBE_OK) return result;
+  add(plan, i, true, model);
+  plan->mirror_count++;
+  snprintf(reason, sizeof reason, "%s: the object is a mirror%s", abbe_refractor_model_name(model),
+           model == ABBE_REFRACTOR_SPHERE ? " and a sphere" : ", on both sides of its faces");
+  list_model(plan, i, object->name, reason, unlisted);
+  if (plan->entry_count < MAX_LISTED)
+    abbe_plan_add_about(plan, ABBE_CHOICE_MIRROR, i, object->name, "%s", reflects);
   return ABBE_OK;
 }
 
@@ -155,6 +198,15 @@ static void list_in_turn(abbe_plan *plan, const char *why) {
                                             : "there are more refractors than are followed");
 }
 
+/* What is left out of the lists of refractors would not be met by a mirror's light. */
+static abbe_result check_followed(const abbe_plan *plan, abbe_error *error) {
+  if (plan->mirror_count == 0 || plan->refractor_count <= MAX_FOLLOWED) return ABBE_OK;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "light is followed off mirrors among at most %d refractors and mirrors; the "
+                        "scene has %zu",
+                        MAX_FOLLOWED, plan->refractor_count);
+}
+
 abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan,
                                         abbe_error *error) {
   ABBE_REQUIRE(scene && plan, error);
@@ -163,21 +215,22 @@ abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan
   plan->multi_refractor_paths = in_turn != NULL;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
-    if (abbe_object_kind_of(object) != ABBE_OBJECT_REFRACTOR) continue;
+    const bool mirror = abbe_object_kind_of(object) == ABBE_OBJECT_MIRROR;
+    if (abbe_object_kind_of(object) == ABBE_OBJECT_RECEIVER) continue;
     if (plan->refractor_count == MAX_REFRACTORS)
       return abbe_error_set(error, ABBE_UNSUPPORTED, "the scene has more than %d refractors",
                             MAX_REFRACTORS);
-    if (is_invisible(scene, object, plan)) {
+    if (!mirror && is_invisible(scene, object, plan)) {
       list_model(plan, i, object->name,
                  "clear, and its index is that of air: light does not notice it", &unlisted);
       continue;
     }
-    abbe_result result = add_refractor(scene, i, plan, error);
+    abbe_result result = mirror ? add_mirror(scene, i, plan, &unlisted, error)
+                                : add_refractor(scene, i, plan, &unlisted, error);
     if (result != ABBE_OK) return result;
-    char reason[288];
-    write_reason(object, plan, reason, sizeof reason);
-    list_model(plan, i, object->name, reason, &unlisted);
   }
+  abbe_result result = check_followed(plan, error);
+  if (result != ABBE_OK) return result;
   if (unlisted > 0)
     abbe_plan_add(plan, ABBE_CHOICE_MORE_REFRACTORS, "and %zu refractors more", unlisted);
   list_in_turn(plan, in_turn);

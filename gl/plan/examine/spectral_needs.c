@@ -1,7 +1,9 @@
 #include "gl/plan/examine/spectral_needs.h"
 
+#include "base/number.h"
 #include "colorimetry/weights.h"
 #include "gl/plan/examine/material_range.h"
+#include "spectral/optics.h"
 
 #include <math.h>
 
@@ -51,18 +53,47 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   return ABBE_OK;
 }
 
+abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *plan, char *text,
+                                       size_t size, abbe_error *error) {
+  ABBE_REQUIRE(mirror && plan && text, error);
+  const double min = plan->desc.min_nm, max = plan->desc.max_nm;
+  double least = INFINITY, most = -INFINITY;
+  if (mirror->conductor == NULL) {
+    abbe_number_format(text, size, "it reflects %g of the light at all wavelengths and angles",
+                       mirror->mirror_reflectance);
+    return ABBE_OK;
+  }
+  for (int i = 0; i < RANGE_STEPS; i++) {
+    double n, k;
+    abbe_result result = abbe_material_nk(
+        mirror->conductor, min + (max - min) * i / (RANGE_STEPS - 1), &n, &k, error);
+    if (result != ABBE_OK) return result;
+    const double reflectance = abbe_optics_fresnel_conductor(1, n, k);
+    least = fmin(least, reflectance);
+    most = fmax(most, reflectance);
+  }
+  if ((float)least != (float)most) plan->colouring = true;
+  abbe_number_format(text, size, "it reflects %.2g to %.2g of what meets it straight, by wavelength",
+                     least, most);
+  return ABBE_OK;
+}
+
 static const char *wavelengths_reason(const abbe_plan *plan, bool asked) {
   return abbe_plan_no_refraction(plan) != NULL ? abbe_plan_no_refraction(plan)
          : asked                               ? "as asked"
          : plan->dispersive                    ? "the index varies with wavelength"
          : plan->tinting                       ? "the attenuation varies with wavelength"
-                         : "all indices are constant, one geometry serves all";
+         : plan->colouring                     ? "a mirror's reflectance varies with wavelength"
+         : plan->mirror_count == plan->refractor_count
+             ? "mirrors reflect all wavelengths alike"
+             : "all indices are constant, one geometry serves all";
 }
 
 void abbe_spectral_needs_count(abbe_plan *plan) {
   bool asked = plan->desc.wavelengths != 0;
   if (!asked)
-    plan->desc.wavelengths = plan->dispersive || plan->tinting ? ABBE_PLAN_WAVELENGTHS : 1;
+    plan->desc.wavelengths =
+        plan->dispersive || plan->tinting || plan->colouring ? ABBE_PLAN_WAVELENGTHS : 1;
   if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;
   abbe_plan_add(plan, ABBE_CHOICE_WAVELENGTHS, "%zu from %g to %g nm: %s", plan->desc.wavelengths,
                 plan->desc.min_nm, plan->desc.max_nm, wavelengths_reason(plan, asked));

@@ -19,6 +19,11 @@ extern "C" {
 abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
                                         abbe_plan *plan, abbe_error *error);
 
+/* A mirror's reflectance over the range: whether it varies; what it reflects, as a sentence's part
+ * into `text`. ABBE_OUT_OF_RANGE where its metal is not known over all of it. */
+abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *plan, char *text,
+                                       size_t size, abbe_error *error);
+
 /* How many wavelengths, where the request leaves it open, and why. */
 void abbe_spectral_needs_count(abbe_plan *plan);
 

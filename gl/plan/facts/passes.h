@@ -36,6 +36,7 @@ extern "C" {
  * object or light that an entry is about. A text that ends in a blank goes on with its name. */
 #define ABBE_PLAN_CHOICES(X)                                                                       \
   X(REFRACTOR_MODEL, "model: ", refracts(p, i))                                                    \
+  X(MIRROR, "mirror: ", mirrors(p, i))                                                             \
   X(MORE_REFRACTORS, "models", true)                                                               \
   X(MULTI_REFRACTOR_PATHS, "refractors in turn", p->multi_refractor_paths)                         \
   X(RECEIVER_MODEL, "model: receivers", true)                                                      \

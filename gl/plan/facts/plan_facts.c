@@ -31,9 +31,11 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
    * (outgoing_segment.glsl). */
   static const size_t coarse = 4;
   const size_t n = plan->desc.wavelengths;
-  /* Without lengths hits do not know what absorption changes between two wavelengths. */
+  /* Without lengths hits do not know what absorption changes between two wavelengths; nor do they
+   * what a mirror does. */
   const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
-  return apart && plan->tinting == plan->lengths && n > coarse ? coarse : n;
+  const bool changes = plan->tinting || plan->colouring;
+  return apart && changes == plan->lengths && n > coarse ? coarse : n;
 }
 
 static bool is_thesis(const abbe_plan *p) {
@@ -43,6 +45,12 @@ static bool is_thesis(const abbe_plan *p) {
 static bool refracts(const abbe_plan *p, size_t object) {
   for (size_t k = 0; k < p->refractor_count; k++)
     if (p->refractor_object[k] == object) return true;
+  return false;
+}
+
+static bool mirrors(const abbe_plan *p, size_t object) {
+  for (size_t k = 0; k < p->refractor_count; k++)
+    if (p->refractor_object[k] == object) return p->mirror[k];
   return false;
 }
 
@@ -106,5 +114,6 @@ void abbe_plan_free(abbe_plan *plan) {
   free(plan->receiver_object);
   free(plan->receiver_model);
   free(plan->model);
+  free(plan->mirror);
   memset(plan, 0, sizeof *plan);
 }

@@ -52,10 +52,13 @@ typedef struct abbe_light_view {
 typedef struct abbe_plan {
   abbe_render_desc desc; /* the request, with a value for each that it left to the plan */
 
-  /* Objects, by their index in the scene, each with its model. */
+  /* Objects, by their index in the scene, each with its model. Mirrors are among the refractors:
+   * photons start at them, and paths that go from one to the next meet them, too. */
   size_t refractor_count;
   size_t *refractor_object;
   abbe_refractor_model *model; /* [refractor_count] */
+  bool *mirror;                /* [refractor_count] it is one */
+  size_t mirror_count;
   size_t receiver_count;
   size_t *receiver_object;
   abbe_receiver_model *receiver_model; /* [receiver_count] */
@@ -70,7 +73,8 @@ typedef struct abbe_plan {
   bool caustics;                       /* some light may meet one */
   bool camera_sees_refractor;          /* the camera may */
   /* Light is followed from interface to interface of all refractors: what leaves one may meet one
-   * again, or a receiver inside; or the BVH was asked for. Without this no model is the BVH. */
+   * again, or a receiver inside; or one is a mirror; or the BVH was asked for. Without this no model
+   * is the BVH. */
   bool multi_refractor_paths;
   bool forward_transmission; /* some receiver may lie where light goes on nearly straight through a
                                 refractor */
@@ -88,6 +92,7 @@ typedef struct abbe_plan {
   bool dispersive; /* its index varies */
   bool absorbing;  /* its attenuation is above zero somewhere */
   bool tinting;    /* its attenuation varies */
+  bool colouring;  /* of some mirror: its reflectance varies */
 
   size_t eye_exits; /* of the camera's rays, followed at the most */
   double eye_share; /* below this share of their light they end */

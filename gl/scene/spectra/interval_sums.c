@@ -3,6 +3,7 @@
 #include "colorimetry/weights.h"
 #include "gl/device/float4.h"
 #include "gl/scene/spectra/band_attenuation.h"
+#include "gl/scene/spectra/mirror_nodes.h"
 
 #include <math.h>
 
@@ -38,7 +39,7 @@ static void weigh_part(const abbe_interval_sums *of, const abbe_weights_range *r
 }
 
 /* One interval from node b = i down to node a = i - 1, step by step. Where the index stays, the
- * place along is by wavelength. */
+ * place along is by wavelength; so it is without a material. */
 static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *w,
                           const abbe_weights_range *range, const abbe_material *material, size_t i,
                           float (*out)[4]) {
@@ -53,8 +54,10 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
   }
   double n_a = 1, n_b = 1, sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, taken[3] = {0, 0, 0},
          before = b;
-  abbe_material_n(material, a, &n_a, NULL);
-  abbe_material_n(material, b, &n_b, NULL);
+  if (material != NULL) {
+    abbe_material_n(material, a, &n_a, NULL);
+    abbe_material_n(material, b, &n_b, NULL);
+  }
   for (size_t k = 0; k <= of->steps; k++, out += texels) {
     size_t half = of->steps / 2;
     double lambda_nm = k <= half ? b + (edge - b) * (double)k / (double)half
@@ -65,7 +68,7 @@ static void fill_interval(const abbe_interval_sums *of, const abbe_wavelengths *
     for (int c = 0; c < 3; c++) at[1 + c] = part.lambda_nm[c];
     for (int c = 0; c < 4; c++) {
       n[c] = n_b;
-      abbe_material_n(material, at[c], &n[c], NULL);
+      if (material != NULL) abbe_material_n(material, at[c], &n[c], NULL);
       t[c] = n_a != n_b ? (n[c] - n_b) / (n_a - n_b) : b > a ? (b - at[c]) / (b - a) : 0;
     }
     for (int c = 0; c < 3; c++) {
@@ -93,7 +96,7 @@ float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelen
                             w->edge_nm[w->count], &range);
     for (size_t k = 0; k < plan->refractor_count; k++)
       for (size_t i = 0; i <= w->count; i++, out += an_interval)
-        fill_interval(of, w, &range, of->scene->object[plan->refractor_object[k]].material, i, out);
+        fill_interval(of, w, &range, abbe_mirror_nodes_laid_by(of->scene, plan, k), i, out);
   }
   return out;
 }

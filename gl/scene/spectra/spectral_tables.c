@@ -35,16 +35,26 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
   t->index = calloc(refractors * n + 1, sizeof *t->index);
   t->attenuation = calloc(refractors * n + 1, sizeof *t->attenuation);
   t->attenuation_550 = calloc(refractors + 1, sizeof *t->attenuation_550);
-  if (t->index == NULL || t->attenuation == NULL || t->attenuation_550 == NULL)
+  t->mirror = calloc(refractors * n + 1, sizeof *t->mirror);
+  if (t->index == NULL || t->attenuation == NULL || t->attenuation_550 == NULL ||
+      t->mirror == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
   for (size_t i = 0; i < refractors; i++) {
-    const abbe_material *material = scene->object[plan->refractor_object[i]].material;
-    t->attenuation_550[i] = abbe_material_attenuation(material, 550.0);
+    const abbe_material *material = abbe_mirror_nodes_laid_by(scene, plan, i);
+    const abbe_object *object = &scene->object[plan->refractor_object[i]];
+    if (plan->mirror[i]) {
+      abbe_result result = abbe_mirror_nodes_fill(object, &t->all, t->mirror + i * n, error);
+      if (result != ABBE_OK) return result;
+    }
+    for (size_t k = 0; k < n; k++) t->index[i * n + k] = 1;
+    if (material == NULL) continue;
+    if (!plan->mirror[i]) t->attenuation_550[i] = abbe_material_attenuation(material, 550.0);
     for (size_t k = 0; k < n; k++) {
       const double lambda_nm = t->all.lambda_nm[k];
       abbe_result result = abbe_material_n(material, lambda_nm, &t->index[i * n + k], error);
       if (result != ABBE_OK) return result;
-      t->attenuation[i * n + k] = abbe_material_attenuation(material, lambda_nm);
+      if (!plan->mirror[i])
+        t->attenuation[i * n + k] = abbe_material_attenuation(material, lambda_nm);
     }
   }
   return ABBE_OK;
@@ -149,6 +159,7 @@ void abbe_spectral_tables_free(abbe_spectral_tables *t) {
   free(t->index);
   free(t->attenuation);
   free(t->attenuation_550);
+  free(t->mirror);
   free(t->intervals);
   free(t->bands);
   free(t->sample_weight);

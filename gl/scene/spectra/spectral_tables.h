@@ -12,6 +12,7 @@
 #include "colorimetry/weights.h"
 #include "gl/plan/facts/plan_facts.h"
 #include "gl/scene/spectra/band_attenuation.h"
+#include "gl/scene/spectra/mirror_nodes.h"
 #include "spectral/wavelengths.h"
 
 #include <stddef.h>
@@ -20,8 +21,9 @@ typedef struct abbe_spectral_tables {
   abbe_wavelengths all;    /* the plan's */
   abbe_wavelengths coarse; /* those that every photon takes, with bands of their own; or all */
 
-  double *index, *attenuation; /* [refractors][all]; 1/m */
+  double *index, *attenuation; /* [refractors][all]; of a mirror as mirror_nodes.h says; 1/m */
   double *attenuation_550;     /* [refractors], 1/m at 550 nm */
+  abbe_mirror_node *mirror;    /* [refractors][all]; zero of what is none */
   abbe_weights camera;         /* XYZ of all under the first light: none is negative */
 
   /* Of photons, where the plan has caustics; else NULL. First by the coarse set, then by all, where

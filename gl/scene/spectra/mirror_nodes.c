@@ -1,0 +1,143 @@
+#include "gl/scene/spectra/mirror_nodes.h"
+
+#include "spectral/optics.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PARTS = 64 /* of an interval, or of a band */ };
+
+static double straight_at(const abbe_material *metal, double lambda_nm) {
+  double n = 0, k = 0;
+  abbe_material_nk(metal, lambda_nm, &n, &k, NULL);
+  return abbe_optics_fresnel_conductor(1, n, k);
+}
+
+double abbe_mirror_node_straight(const abbe_mirror_node *node) {
+  const double metal = node->k < 0 ? 1 : abbe_optics_fresnel_conductor(1, node->n, node->k);
+  return fmin(node->factor * metal, 1);
+}
+
+/* Least squares of the polygon's corners: a system of three diagonals, in `corner` at last. lower,
+ * middle, right: [count]. */
+static void solve(size_t count, double *lower, double *middle, double *corner) {
+  for (size_t i = 1; i < count; i++) {
+    const double by = lower[i] / middle[i - 1];
+    middle[i] -= by * lower[i];
+    corner[i] -= by * corner[i - 1];
+  }
+  for (size_t i = count; i-- > 0;) {
+    const double above = i + 1 < count ? lower[i + 1] * corner[i + 1] : 0;
+    corner[i] = (corner[i] - above) / middle[i];
+  }
+}
+
+/* The polygon through all nodes that is nearest to the metal's reflectance. */
+static void fit(const abbe_material *metal, const abbe_wavelengths *w, double *lower,
+                double *middle, double *corner) {
+  for (size_t i = 0; i + 1 < w->count; i++) {
+    const double from = w->lambda_nm[i], width = w->lambda_nm[i + 1] - from;
+    middle[i] += width / 3;
+    middle[i + 1] += width / 3;
+    lower[i + 1] = width / 6;
+    for (int k = 0; k < PARTS; k++) {
+      const double t = (k + 0.5) / PARTS;
+      const double here = straight_at(metal, from + t * width) * width / PARTS;
+      corner[i] += (1 - t) * here;
+      corner[i + 1] += t * here;
+    }
+  }
+  if (w->count > 1) {
+    solve(w->count, lower, middle, corner);
+    return;
+  }
+  for (int k = 0; k < PARTS; k++)
+    corner[0] +=
+        straight_at(metal, w->edge_nm[0] + (w->edge_nm[1] - w->edge_nm[0]) * (k + 0.5) / PARTS) /
+        PARTS;
+}
+
+abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
+                                   abbe_mirror_node *out, abbe_error *error) {
+  ABBE_REQUIRE(mirror && w && out, error);
+  for (size_t i = 0; i < w->count; i++) {
+    out[i] = (abbe_mirror_node){.factor = mirror->mirror_reflectance, .k = -1};
+    if (mirror->conductor == NULL) continue;
+    abbe_result result =
+        abbe_material_nk(mirror->conductor, w->lambda_nm[i], &out[i].n, &out[i].k, error);
+    if (result != ABBE_OK) return result;
+  }
+  if (mirror->conductor == NULL) return ABBE_OK;
+  double *room = calloc(3 * w->count + 1, sizeof *room);
+  if (room == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a mirror's table");
+  double *corner = room + 2 * w->count;
+  fit(mirror->conductor, w, room, room + w->count, corner);
+  for (size_t i = 0; i < w->count; i++) {
+    const double straight = abbe_optics_fresnel_conductor(1, out[i].n, out[i].k);
+    out[i].factor = straight > 0 ? fmax(corner[i], 0) / straight : 1;
+  }
+  free(room);
+  return ABBE_OK;
+}
+
+/* By what of the band's light the mirror reflects, of each of X, Y and Z; and of it all. */
+static void settle(const double reflected[3], const double all[3], abbe_mirror_band *out) {
+  const double metal = out->k < 0 ? 1 : abbe_optics_fresnel_conductor(1, out->n, out->k);
+  const double sum = all[0] + all[1] + all[2];
+  const double mean = all[1] > 1e-9 * sum ? reflected[1] / all[1]
+                      : sum > 0           ? (reflected[0] + reflected[1] + reflected[2]) / sum
+                                          : metal;
+  out->factor = metal > 0 ? mean / metal : 0;
+  out->straight = mean;
+  for (int c = 0; c < 3; c++) out->weight[c] = mean > 0 ? reflected[c] / mean : all[c];
+}
+
+abbe_result abbe_mirror_band_make(const abbe_object *mirror, const abbe_weights_range *light,
+                                  const double white[3], double from_nm, double to_nm,
+                                  const abbe_mirror_node *node, abbe_mirror_band *out,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(mirror && light && white && node && out, error);
+  double all[3] = {0}, reflected[3] = {0};
+  for (int i = 0; i < PARTS; i++) {
+    const double a = from_nm + (to_nm - from_nm) * i / PARTS, b = a + (to_nm - from_nm) / PARTS;
+    double n = 0, k = 0, straight = mirror->mirror_reflectance, xyz[3];
+    if (mirror->conductor != NULL) {
+      abbe_result result = abbe_material_nk(mirror->conductor, 0.5 * (a + b), &n, &k, error);
+      if (result != ABBE_OK) return result;
+      straight = abbe_optics_fresnel_conductor(1, n, k);
+    }
+    abbe_weights_range_xyz(light, a, b, xyz);
+    for (int c = 0; c < 3; c++) {
+      const double part = white[c] > 0 ? xyz[c] / white[c] : 0;
+      all[c] += part;
+      reflected[c] += straight * part;
+    }
+  }
+  *out = (abbe_mirror_band){.n = node->n, .k = node->k};
+  settle(reflected, all, out);
+  return ABBE_OK;
+}
+
+void abbe_mirror_band_join(const abbe_mirror_band *a, const abbe_mirror_band *b,
+                           abbe_mirror_band *out) {
+  double all[3], reflected[3], wa = 1e-9, wb = 1e-9;
+  for (int c = 0; c < 3; c++) {
+    wa += a->weight[c];
+    wb += b->weight[c];
+    all[c] = a->weight[c] + b->weight[c]; /* of Y, what the band's light is */
+    reflected[c] = a->straight * a->weight[c] + b->straight * b->weight[c];
+  }
+  const double share = wa / (wa + wb);
+  *out = (abbe_mirror_band){.n = share * a->n + (1 - share) * b->n,
+                            .k = share * a->k + (1 - share) * b->k};
+  settle(reflected, all, out);
+}
+
+const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
+                                               size_t i) {
+  if (!plan->mirror[i]) return scene->object[plan->refractor_object[i]].material;
+  for (size_t k = 0; k < plan->refractor_count; k++)
+    if (!plan->mirror[k]) return scene->object[plan->refractor_object[k]].material;
+  return NULL;
+}

@@ -1,0 +1,63 @@
+/* mirror_nodes.h: what mirrors reflect, as photons and the camera's rays have it at their
+ * wavelengths. Internal to gl/.
+ *
+ * Light between two nodes is laid by what both of them carry, straight between them. A metal's
+ * reflectance may bend more than that between few nodes; so each node has a factor, which makes the
+ * polygon through all nodes, at normal incidence, the best one for the metal by least squares.
+ */
+#ifndef ABBE_GL_SCENE_SPECTRA_MIRROR_NODES_H
+#define ABBE_GL_SCENE_SPECTRA_MIRROR_NODES_H
+
+#include "base/error.h"
+#include "colorimetry/weights.h"
+#include "gl/plan/facts/plan_facts.h"
+#include "spectral/wavelengths.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Reflects factor times Fresnel's reflectance of n + i k, at most all; k below 0: the factor
+ * itself, at all angles. */
+typedef struct abbe_mirror_node {
+  double factor, n, k;
+} abbe_mirror_node;
+
+/* At normal incidence, 0 to 1. */
+double abbe_mirror_node_straight(const abbe_mirror_node *node);
+
+/* out[w->count] of the mirror, at the wavelengths w. ABBE_OUT_OF_RANGE where its metal is not known
+ * there, ABBE_NO_MEMORY. */
+abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
+                                   abbe_mirror_node *out, abbe_error *error);
+
+/* A band of wavelengths as the camera sees it in a mirror. */
+typedef struct abbe_mirror_band {
+  double n, k, factor; /* as of a node */
+  double straight;     /* what the three give at normal incidence, to Y */
+  /* X, Y and Z of the band's light, weighed so that this times `straight` is what the mirror
+   * reflects of it, each by itself */
+  double weight[3];
+} abbe_mirror_band;
+
+/* Of the wavelengths from_nm to to_nm of the light, by the node that stands for them; `weight` is of
+ * the light of the range with each of X, Y and Z over that of all, white. ABBE_OUT_OF_RANGE as
+ * above. */
+abbe_result abbe_mirror_band_make(const abbe_object *mirror, const abbe_weights_range *light,
+                                  const double white[3], double from_nm, double to_nm,
+                                  const abbe_mirror_node *node, abbe_mirror_band *out,
+                                  abbe_error *error);
+/* Two as one: n and k by brightness. */
+void abbe_mirror_band_join(const abbe_mirror_band *a, const abbe_mirror_band *b,
+                           abbe_mirror_band *out);
+
+/* The material whose index tells how far along from node to node light is laid that first met
+ * refractor i of the plan: its own; of a mirror, which sends all wavelengths the same way, that of
+ * the first refractor that is none. NULL: there is none. */
+const abbe_material *abbe_mirror_nodes_laid_by(const abbe_scene *scene, const abbe_plan *plan,
+                                               size_t i);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
