@@ -2,8 +2,8 @@
  * coordinates.
  *
  * A scene is plain data, ready for the renderer, the tracer and the plan. Lengths in metres,
- * angles in radians, right-handed, z up by convention. Objects are refractors (a dielectric from the
- * material table, surrounded by air with n = 1), receivers (opaque, Lambertian, seen from both
+ * angles in radians, right-handed, z up by convention. Objects are refractors (a dielectric from
+ * the material table, surrounded by air with n = 1), receivers (opaque, Lambertian, seen from both
  * sides) or mirrors (opaque, specular on both sides, whole or open).
  */
 #ifndef ABBE_SCENES_SCENE_H
@@ -49,28 +49,28 @@ typedef struct abbe_light {
                           of the side that shines */
   double radius;       /* disk, m */
   double cone_rad;     /* spot: half angle beyond which there is no light */
-  double soft_rad;     /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
-  double power; /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
-                   wavelength by the illuminant */
+  double soft_rad; /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
+  double power;    /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
+                      wavelength by the illuminant */
   abbe_illuminant illuminant;
   char *illuminant_path; /* the file that it is of, or NULL */
 } abbe_light;
 
 typedef enum abbe_exact_kind {
-  ABBE_EXACT_NONE,       /* triangles only */
+  ABBE_EXACT_NONE, /* triangles only */
   ABBE_EXACT_SPHERE,
-  ABBE_EXACT_CONVEX,     /* intersection of half spaces */
+  ABBE_EXACT_CONVEX, /* intersection of half spaces */
   ABBE_EXACT_PARALLELOGRAMS
 } abbe_exact_kind;
 
 /* The exact surface behind the triangles, world space. */
 typedef struct abbe_exact {
   abbe_exact_kind kind;
-  double centre[3], radius;          /* SPHERE */
-  size_t count;                      /* planes or parallelograms */
-  double (*plane)[4];                /* CONVEX: n . x <= d, unit n */
-  double (*parallelogram)[9];        /* corner, edge u, edge v; normal = u x v */
-  abbe_convex convex;                /* what was found, or why it is no convex solid */
+  double centre[3], radius;   /* SPHERE */
+  size_t count;               /* planes or parallelograms */
+  double (*plane)[4];         /* CONVEX: n . x <= d, unit n */
+  double (*parallelogram)[9]; /* corner, edge u, edge v; normal = u x v */
+  abbe_convex convex;         /* what was found, or why it is no convex solid */
 } abbe_exact;
 
 typedef enum abbe_object_kind {
@@ -81,21 +81,21 @@ typedef enum abbe_object_kind {
 
 typedef struct abbe_object {
   char *name;
-  size_t line;                     /* in the scene file */
-  abbe_mesh mesh;                  /* world space */
+  size_t line;    /* in the scene file */
+  abbe_mesh mesh; /* world space */
   abbe_exact exact;
-  double min[3], max[3];           /* bounds */
-  const abbe_material *material;   /* refractor: owned by the scene's table; else NULL */
-  double reflectance[3];           /* receiver: linear Rec.709, 0 to 1 */
-  char *texture_path;              /* receiver: NULL or the PNG that multiplies reflectance */
-  abbe_image texture;              /* linear Rec.709, "R","G","B"; zeroed without a texture */
+  double min[3], max[3];         /* bounds */
+  const abbe_material *material; /* refractor: owned by the scene's table; else NULL */
+  double reflectance[3];         /* receiver: linear Rec.709, 0 to 1 */
+  char *texture_path;            /* receiver: NULL or the PNG that multiplies reflectance */
+  abbe_image texture;            /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
   bool mirror;
-  const abbe_material *conductor;  /* mirror: of its n and k, owned by the scene's table, or NULL: */
-  double mirror_reflectance;       /* 0 to 1, at all angles and wavelengths */
-  char *mesh_path;   /* NULL or the file that the mesh is of */
-  char *mesh_others; /* and those that it names, as abbe_mesh_load has them */
-  char *fixes;       /* what was fixed, and what is not whole still, or NULL */
+  const abbe_material *conductor; /* mirror: of its n and k, owned by the scene's table, or NULL: */
+  double mirror_reflectance;      /* 0 to 1, at all angles and wavelengths */
+  char *mesh_path;                /* NULL or the file that the mesh is of */
+  char *mesh_others;              /* and those that it names, as abbe_mesh_load has them */
+  char *fixes;                    /* what was fixed, and what is not whole still, or NULL */
 } abbe_object;
 
 typedef struct abbe_scene {
@@ -136,18 +136,19 @@ void abbe_scene_free(abbe_scene *scene);
 const abbe_illuminant *abbe_scene_illuminant(const abbe_scene *scene);
 
 /* The files that the scene was read from, each of index below the count: its own, the table of
- * materials, illuminants, surroundings, textures, meshes and what those name in turn; NULL where there is none of
- * that index. */
+ * materials, illuminants, surroundings, textures, meshes and what those name in turn; NULL where
+ * there is none of that index. */
 size_t abbe_scene_file_count(const abbe_scene *scene);
 const char *abbe_scene_file(const abbe_scene *scene, size_t index);
 
-/* A light or an eye nearer to a refractor's or mirror's surface than this share of half the diagonal
- * of all refractors' bounds (of all objects' where there is a mirror) is on it: single precision does not tell on which side. */
+/* A light or an eye nearer to a refractor's or mirror's surface than this share of half the
+ * diagonal of all refractors' bounds (of all objects' where there is a mirror) is on it: single
+ * precision does not tell on which side. */
 #define ABBE_SCENE_LEAST_GAP 0x1p-20
 
 /* Refuses what cannot be rendered, by name: neither light nor environment, no receiver, a light (a
- * disk: any part of it) or the camera inside a refractor or on its surface, a light's position or the
- * camera on a mirror, no receiver and no mirror in the camera's view. Called by the loader. */
+ * disk: any part of it) or the camera inside a refractor or on its surface, a light's position or
+ * the camera on a mirror, no receiver and no mirror in the camera's view. Called by the loader. */
 abbe_result abbe_scene_check(const abbe_scene *scene, abbe_error *error);
 
 /* Bounds of the objects chosen: refractors and mirrors, receivers, or both. False where there are

@@ -76,16 +76,18 @@ abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error) {
   return ABBE_OK;
 }
 
-abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error) {
+abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
+                                 abbe_error *error) {
   ABBE_REQUIRE(scene && plan, error);
   const abbe_object *mirror = abbe_scene_mirror(scene);
   const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
   if (mirror == NULL || (!thesis && plan->desc.model != ABBE_MODEL_LAYERS)) return ABBE_OK;
   if (thesis)
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the object '%s' (line %zu) is a mirror, and the thesis profile follows no "
-                          "light off mirrors; leave it out, or take the default profile",
-                          mirror->name, mirror->line);
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the object '%s' (line %zu) is a mirror, and the thesis profile follows no "
+        "light off mirrors; leave it out, or take the default profile",
+        mirror->name, mirror->line);
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "the object '%s' (line %zu) is a mirror, and the model 'layers' follows no "
                         "light off mirrors; leave it out, or take the model 'hierarchy'",

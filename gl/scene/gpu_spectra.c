@@ -80,8 +80,8 @@ static abbe_result fill_mirror(const abbe_gpu_scene *scene, size_t refractor, gp
   size_t count = w->count;
   abbe_mirror_band *of = calloc(count + 1, sizeof *of);
   abbe_weights_range light;
-  abbe_result result = of != NULL ? ABBE_OK
-                                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
+  abbe_result result =
+      of != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
   abbe_weights_range_make(&scene->local->light[0].illuminant, w->edge_nm[0], w->edge_nm[count],
                           &light);
   for (size_t i = 0; i < count && result == ABBE_OK; i++)

@@ -1,6 +1,5 @@
 #include "gl/scene/refractor_faces.h"
 
-
 abbe_result abbe_refractor_faces_make(const abbe_gpu_scene *scene, abbe_refractor_faces *out,
                                       abbe_error *error) {
   static const abbe_program_stage stages[] = {{GL_VERTEX_SHADER, "surface.vert"},

@@ -21,7 +21,8 @@ static abbe_result check_distance(const abbe_scene *scene, const abbe_light *lig
     half[k] = 0.5 * (object->max[k] - object->min[k]);
     size[k] = max[k] - min[k];
   }
-  double distance = abbe_vector_length(sun ? size : apart), thick = object->mirror ? 0 : abbe_object_thickness(object);
+  double distance = abbe_vector_length(sun ? size : apart),
+         thick = object->mirror ? 0 : abbe_object_thickness(object);
   double radius =
       object->exact.kind == ABBE_EXACT_SPHERE ? object->exact.radius : abbe_vector_length(half);
   if (distance > most_radii * radius && sun)
@@ -93,7 +94,8 @@ static abbe_result check_gap(const abbe_light *light, const abbe_object *object,
   for (int k = 0; k < 3; k++) half[k] = 0.5 * (object->max[k] - object->min[k]);
   const double least = least_gap * abbe_vector_length(half);
   double gap = abbe_object_distance(object, light->position);
-  if (gap < 1e-9 * least) gap = 0; /* a double's rounding */
+  if (object->mirror) gap = fabs(gap); /* from inside it mirrors, too */
+  if (gap < 1e-9 * least) gap = 0;     /* a double's rounding */
   if (gap >= least) return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
                         "the light '%s' is %.3g m from the surface of the refractor '%s': single "

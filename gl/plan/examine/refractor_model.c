@@ -173,8 +173,7 @@ static abbe_result add_mirror(const abbe_scene *scene, size_t i, abbe_plan *plan
   const abbe_object *object = &scene->object[i];
   const abbe_refractor_model model = mirror_model(scene, object, plan);
   char reason[288], reflects[128];
-  abbe_result result =
-      abbe_spectral_needs_mirror(object, plan, reflects, sizeof reflects, error);
+  abbe_result result = abbe_spectral_needs_mirror(object, plan, reflects, sizeof reflects, error);
   if (result != ABBE_OK) return result;
   add(plan, i, true, model);
   plan->mirror_count++;
@@ -201,10 +200,11 @@ static void list_in_turn(abbe_plan *plan, const char *why) {
 /* What is left out of the lists of refractors would not be met by a mirror's light. */
 static abbe_result check_followed(const abbe_plan *plan, abbe_error *error) {
   if (plan->mirror_count == 0 || plan->refractor_count <= MAX_FOLLOWED) return ABBE_OK;
-  return abbe_error_set(error, ABBE_UNSUPPORTED,
-                        "light is followed off mirrors among at most %d refractors and mirrors; the "
-                        "scene has %zu",
-                        MAX_FOLLOWED, plan->refractor_count);
+  return abbe_error_set(
+      error, ABBE_UNSUPPORTED,
+      "light is followed off mirrors among at most %d refractors and mirrors; the "
+      "scene has %zu",
+      MAX_FOLLOWED, plan->refractor_count);
 }
 
 abbe_result abbe_refractor_model_choose(const abbe_scene *scene, abbe_plan *plan,

@@ -65,16 +65,16 @@ abbe_result abbe_spectral_needs_mirror(const abbe_object *mirror, abbe_plan *pla
   }
   for (int i = 0; i < RANGE_STEPS; i++) {
     double n, k;
-    abbe_result result = abbe_material_nk(
-        mirror->conductor, min + (max - min) * i / (RANGE_STEPS - 1), &n, &k, error);
+    abbe_result result = abbe_material_nk(mirror->conductor,
+                                          min + (max - min) * i / (RANGE_STEPS - 1), &n, &k, error);
     if (result != ABBE_OK) return result;
     const double reflectance = abbe_optics_fresnel_conductor(1, n, k);
     least = fmin(least, reflectance);
     most = fmax(most, reflectance);
   }
   if ((float)least != (float)most) plan->colouring = true;
-  abbe_number_format(text, size, "it reflects %.2g to %.2g of what meets it straight, by wavelength",
-                     least, most);
+  abbe_number_format(
+      text, size, "it reflects %.2g to %.2g of what meets it straight, by wavelength", least, most);
   return ABBE_OK;
 }
 

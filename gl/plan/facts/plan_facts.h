@@ -73,8 +73,8 @@ typedef struct abbe_plan {
   bool caustics;                       /* some light may meet one */
   bool camera_sees_refractor;          /* the camera may */
   /* Light is followed from interface to interface of all refractors: what leaves one may meet one
-   * again, or a receiver inside; or one is a mirror; or the BVH was asked for. Without this no model
-   * is the BVH. */
+   * again, or a receiver inside; or one is a mirror; or the BVH was asked for. Without this no
+   * model is the BVH. */
   bool multi_refractor_paths;
   bool forward_transmission; /* some receiver may lie where light goes on nearly straight through a
                                 refractor */

@@ -19,48 +19,67 @@ double abbe_mirror_node_straight(const abbe_mirror_node *node) {
   return fmin(node->factor * metal, 1);
 }
 
-/* Least squares of the polygon's corners: a system of three diagonals, in `corner` at last. lower,
- * middle, right: [count]. */
-static void solve(size_t count, double *lower, double *middle, double *corner) {
-  for (size_t i = 1; i < count; i++) {
-    const double by = lower[i] / middle[i - 1];
-    middle[i] -= by * lower[i];
-    corner[i] -= by * corner[i - 1];
-  }
-  for (size_t i = count; i-- > 0;) {
-    const double above = i + 1 < count ? lower[i + 1] * corner[i + 1] : 0;
-    corner[i] = (corner[i] - above) / middle[i];
-  }
+/* A system of three diagonals, of least squares, within 0 and 1: by turns, each corner where it
+ * does best beside its neighbours. */
+static void solve(size_t count, const double *beside, const double *middle, const double *right,
+                  double *corner) {
+  enum { TURNS = 100 };
+  for (int turn = 0; turn < TURNS; turn++)
+    for (size_t i = 0; i < count; i++) {
+      double rest = right[i];
+      if (i > 0) rest -= beside[i] * corner[i - 1];
+      if (i + 1 < count) rest -= beside[i + 1] * corner[i + 1];
+      corner[i] = fmin(fmax(rest / middle[i], 0), 1);
+    }
 }
 
-/* The polygon through all nodes that is nearest to the metal's reflectance. */
-static void fit(const abbe_material *metal, const abbe_wavelengths *w, double *lower,
-                double *middle, double *corner) {
+/* What counts: how bright the light is, then its colour, and last what nobody sees. */
+static double weight_of(const abbe_weights_range *light, double from_nm, double to_nm) {
+  double xyz[3];
+  abbe_weights_range_xyz(light, from_nm, to_nm, xyz);
+  return xyz[1] + 0.05 * (xyz[0] + xyz[2]) +
+         1e-4 * (to_nm - from_nm) / (light->max_nm - light->min_nm);
+}
+
+/* The polygon through all nodes that is nearest to the metal's reflectance; room for 3 numbers a
+ * node, zeroed. */
+static void fit(const abbe_material *metal, const abbe_wavelengths *w,
+                const abbe_weights_range *light, double *room, double *corner) {
+  double *beside = room, *middle = room + w->count, *right = room + 2 * w->count;
   for (size_t i = 0; i + 1 < w->count; i++) {
     const double from = w->lambda_nm[i], width = w->lambda_nm[i + 1] - from;
-    middle[i] += width / 3;
-    middle[i + 1] += width / 3;
-    lower[i + 1] = width / 6;
     for (int k = 0; k < PARTS; k++) {
       const double t = (k + 0.5) / PARTS;
-      const double here = straight_at(metal, from + t * width) * width / PARTS;
-      corner[i] += (1 - t) * here;
-      corner[i + 1] += t * here;
+      const double here =
+          weight_of(light, from + width * k / PARTS, from + width * (k + 1) / PARTS);
+      const double straight = straight_at(metal, from + t * width);
+      middle[i] += here * (1 - t) * (1 - t);
+      middle[i + 1] += here * t * t;
+      beside[i + 1] += here * t * (1 - t);
+      right[i] += here * (1 - t) * straight;
+      right[i + 1] += here * t * straight;
     }
   }
-  if (w->count > 1) {
-    solve(w->count, lower, middle, corner);
-    return;
+  solve(w->count, beside, middle, right, corner);
+}
+
+/* The mean over the one band that there is. */
+static double mean_of(const abbe_material *metal, const abbe_wavelengths *w,
+                      const abbe_weights_range *light) {
+  const double from = w->edge_nm[0], width = w->edge_nm[1] - from;
+  double sum = 0, all = 0;
+  for (int k = 0; k < PARTS; k++) {
+    const double here = weight_of(light, from + width * k / PARTS, from + width * (k + 1) / PARTS);
+    all += here;
+    sum += here * straight_at(metal, from + width * (k + 0.5) / PARTS);
   }
-  for (int k = 0; k < PARTS; k++)
-    corner[0] +=
-        straight_at(metal, w->edge_nm[0] + (w->edge_nm[1] - w->edge_nm[0]) * (k + 0.5) / PARTS) /
-        PARTS;
+  return sum / all;
 }
 
 abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
-                                   abbe_mirror_node *out, abbe_error *error) {
-  ABBE_REQUIRE(mirror && w && out, error);
+                                   const abbe_weights_range *light, abbe_mirror_node *out,
+                                   abbe_error *error) {
+  ABBE_REQUIRE(mirror && w && light && out, error);
   for (size_t i = 0; i < w->count; i++) {
     out[i] = (abbe_mirror_node){.factor = mirror->mirror_reflectance, .k = -1};
     if (mirror->conductor == NULL) continue;
@@ -69,13 +88,15 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
     if (result != ABBE_OK) return result;
   }
   if (mirror->conductor == NULL) return ABBE_OK;
-  double *room = calloc(3 * w->count + 1, sizeof *room);
+  double *room = calloc(4 * w->count + 1, sizeof *room), *corner = room + 3 * w->count;
   if (room == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a mirror's table");
-  double *corner = room + 2 * w->count;
-  fit(mirror->conductor, w, room, room + w->count, corner);
+  if (w->count > 1)
+    fit(mirror->conductor, w, light, room, corner);
+  else
+    corner[0] = mean_of(mirror->conductor, w, light);
   for (size_t i = 0; i < w->count; i++) {
     const double straight = abbe_optics_fresnel_conductor(1, out[i].n, out[i].k);
-    out[i].factor = straight > 0 ? fmax(corner[i], 0) / straight : 1;
+    out[i].factor = straight > 0 ? corner[i] / straight : 1;
   }
   free(room);
   return ABBE_OK;

@@ -3,7 +3,8 @@
  *
  * Light between two nodes is laid by what both of them carry, straight between them. A metal's
  * reflectance may bend more than that between few nodes; so each node has a factor, which makes the
- * polygon through all nodes, at normal incidence, the best one for the metal by least squares.
+ * polygon through all nodes, at normal incidence, the best one for the metal by least squares, by
+ * the light's brightness.
  */
 #ifndef ABBE_GL_SCENE_SPECTRA_MIRROR_NODES_H
 #define ABBE_GL_SCENE_SPECTRA_MIRROR_NODES_H
@@ -26,10 +27,11 @@ typedef struct abbe_mirror_node {
 /* At normal incidence, 0 to 1. */
 double abbe_mirror_node_straight(const abbe_mirror_node *node);
 
-/* out[w->count] of the mirror, at the wavelengths w. ABBE_OUT_OF_RANGE where its metal is not known
- * there, ABBE_NO_MEMORY. */
+/* out[w->count] of the mirror, at the wavelengths w, for that light over their range.
+ * ABBE_OUT_OF_RANGE where its metal is not known there, ABBE_NO_MEMORY. */
 abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelengths *w,
-                                   abbe_mirror_node *out, abbe_error *error);
+                                   const abbe_weights_range *light, abbe_mirror_node *out,
+                                   abbe_error *error);
 
 /* A band of wavelengths as the camera sees it in a mirror. */
 typedef struct abbe_mirror_band {
@@ -40,8 +42,8 @@ typedef struct abbe_mirror_band {
   double weight[3];
 } abbe_mirror_band;
 
-/* Of the wavelengths from_nm to to_nm of the light, by the node that stands for them; `weight` is of
- * the light of the range with each of X, Y and Z over that of all, white. ABBE_OUT_OF_RANGE as
+/* Of the wavelengths from_nm to to_nm of the light, by the node that stands for them; `weight` is
+ * of the light of the range with each of X, Y and Z over that of all, white. ABBE_OUT_OF_RANGE as
  * above. */
 abbe_result abbe_mirror_band_make(const abbe_object *mirror, const abbe_weights_range *light,
                                   const double white[3], double from_nm, double to_nm,

@@ -36,14 +36,17 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
   t->attenuation = calloc(refractors * n + 1, sizeof *t->attenuation);
   t->attenuation_550 = calloc(refractors + 1, sizeof *t->attenuation_550);
   t->mirror = calloc(refractors * n + 1, sizeof *t->mirror);
-  if (t->index == NULL || t->attenuation == NULL || t->attenuation_550 == NULL ||
-      t->mirror == NULL)
+  if (t->index == NULL || t->attenuation == NULL || t->attenuation_550 == NULL || t->mirror == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for spectra");
   for (size_t i = 0; i < refractors; i++) {
     const abbe_material *material = abbe_mirror_nodes_laid_by(scene, plan, i);
     const abbe_object *object = &scene->object[plan->refractor_object[i]];
     if (plan->mirror[i]) {
-      abbe_result result = abbe_mirror_nodes_fill(object, &t->all, t->mirror + i * n, error);
+      abbe_weights_range light;
+      abbe_weights_range_make(&scene->light[0].illuminant, t->all.edge_nm[0], t->all.edge_nm[n],
+                              &light);
+      abbe_result result =
+          abbe_mirror_nodes_fill(object, &t->all, &light, t->mirror + i * n, error);
       if (result != ABBE_OK) return result;
     }
     for (size_t k = 0; k < n; k++) t->index[i * n + k] = 1;

@@ -24,13 +24,30 @@ static void a_disk_is_refused_by_name(void **state) {
   abbe_scene_free(&scene);
 }
 
-static void a_mirror_is_refused_by_name(void **state) {
+#define LOOKING_GLASS                                                                              \
+  "- {name: looking glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "                   \
+  "transform: [{translate: [0, 0, -1]}]}\n"
+
+static void mirrors_are_refused_by_name_where_none_are_followed(void **state) {
   (void)state;
-  refuse_plan(
-      CAMERA POINT_LIGHT FLOOR BALL(
-          "flat") "- {name: looking glass, shape: rectangle, width: 1, height: 1, mirror: 0.9, "
-                  "transform: [{translate: [0, 0, -1]}]}\n",
-      NULL, ABBE_UNSUPPORTED, "'looking glass' (line 8) is a mirror");
+  static const char text[] = CAMERA POINT_LIGHT FLOOR BALL("flat") LOOKING_GLASS;
+  abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS};
+  refuse_plan(text, &desc, ABBE_UNSUPPORTED, "'looking glass' (line 8) is a mirror");
+  desc.profile = ABBE_PROFILE_THESIS_CIE;
+  refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the thesis profile follows no light off mirrors");
+  desc = (abbe_render_desc){.model = ABBE_MODEL_LAYERS};
+  refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the model 'layers' follows no light off mirrors");
+}
+
+static void mirrors_are_followed_among_so_many(void **state) {
+  (void)state;
+  char text[8192] = CAMERA POINT_LIGHT FLOOR LOOKING_GLASS;
+  for (int i = 0; i < 32; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "- {name: b%d, shape: box, size: [0.1, 0.1, 0.1], material: flat, transform: "
+             "[{translate: [%g, 0.3, 0.2]}]}\n",
+             i, 0.2 * i - 3);
+  refuse_plan(text, NULL, ABBE_UNSUPPORTED, "at most 32 refractors and mirrors; the scene has 33");
 }
 
 static void a_map_layout_belongs_to_its_light(void **state) {
@@ -70,7 +87,8 @@ static void a_map_layout_belongs_to_its_light(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_disk_is_refused_by_name),
-      cmocka_unit_test(a_mirror_is_refused_by_name),
+      cmocka_unit_test(mirrors_are_refused_by_name_where_none_are_followed),
+      cmocka_unit_test(mirrors_are_followed_among_so_many),
       cmocka_unit_test(a_map_layout_belongs_to_its_light),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -87,6 +87,33 @@ static void test_fresnel(void **state) {
   print_message("largest error of fresnel where it is well conditioned: %.2g\n", worst);
 }
 
+/* Metals, and n and k that come near to glass, to air and to nothing. */
+static void test_fresnel_conductor(void **state) {
+  (void)state;
+  static const double nk[][2] = {{0.03, 5.2}, {0.05, 1.9}, {0.13, 3.0}, {0.4, 2.4},  {1.5, 1.9},
+                                 {3, 3},      {1, 0.01},   {1.5, 0},    {0.01, 9.9}, {1.3, 7.8}};
+  enum { METALS = sizeof nk / sizeof *nk, ANGLES = 101 };
+  double worst = 0;
+  count = 0;
+  for (int m = 0; m < METALS; m++)
+    for (int i = 0; i < ANGLES; i++, count++) {
+      inputs[count][0] = (float)i / (ANGLES - 1);
+      inputs[count][1] = (float)nk[m][0];
+      inputs[count][2] = (float)nk[m][1];
+    }
+  glsl_evaluate(abbe_context_gl(context),
+                "#define MIRRORS\n#include \"optics.glsl\"\n"
+                "vec4 f(vec4 a, vec4 b) { return vec4(fresnel_conductor(a.x, a.y, a.z)); }\n",
+                (const float(*)[8])inputs, count, outputs);
+  for (size_t i = 0; i < count; i++) {
+    const double expected = abbe_optics_fresnel_conductor(
+        (double)inputs[i][0], (double)inputs[i][1], (double)inputs[i][2]);
+    assert_near(outputs[i][0], expected, 5e-6);
+    worst = fmax(worst, fabs((double)outputs[i][0] - expected));
+  }
+  print_message("largest error of fresnel_conductor: %.2g\n", worst);
+}
+
 static double refracted_angle(double c, double eta) {
   bool total;
   double t = abbe_optics_cos_refracted(c, eta, &total);
@@ -158,6 +185,7 @@ static void test_equal_indices_change_nothing(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_fresnel),
+                                     cmocka_unit_test(test_fresnel_conductor),
                                      cmocka_unit_test(test_refract_direction),
                                      cmocka_unit_test(test_equal_indices_change_nothing)};
   return cmocka_run_group_tests(tests, make_context, free_context);

@@ -21,6 +21,7 @@ static const char *const texts[] = {
     [ABBE_PASS_EYE_REFRACTION] = "eye: refraction",
     [ABBE_PASS_EYE_PICTURE] = "eye: picture",
     [ABBE_CHOICE_REFRACTOR_MODEL] = "model: ",
+    [ABBE_CHOICE_MIRROR] = "mirror: ",
     [ABBE_CHOICE_MORE_REFRACTORS] = "models",
     [ABBE_CHOICE_MULTI_REFRACTOR_PATHS] = "refractors in turn",
     [ABBE_CHOICE_RECEIVER_MODEL] = "model: receivers",

@@ -1,0 +1,91 @@
+/* What a mirror asks of the plan. */
+#include "tests/gl/plan/planned.h"
+
+#define SILVERED "materials: default\ncamera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n"
+#define MIRROR_BALL(what)                                                                          \
+  "- {name: ball, shape: sphere, radius: 0.08, levels: 4, transform: [{translate: [0, 0, 0.2]}], " \
+  "mirror: " what "}\n"
+#define MIRROR_PANE(what)                                                                          \
+  "- {name: pane, shape: rectangle, width: 0.3, height: 0.3, transform: [{rotate: {axis: [0, 1, "  \
+  "0], angle: 90}}, {translate: [-0.3, 0, 0.2]}], mirror: " what "}\n"
+
+static void check(const abbe_plan *plan, abbe_plan_item item, size_t index, const char *part) {
+  const abbe_plan_entry *entry = abbe_plan_find(plan, item, index);
+  assert_non_null(entry);
+  assert_true(entry->runs);
+  assert_contains(entry->reason, part);
+}
+
+static void a_grey_ball_asks_for_one_wavelength(void **state) {
+  (void)state;
+  abbe_plan plan;
+  plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("0.9"), NULL, &plan);
+  assert_int_equal(plan.refractor_count, 1);
+  assert_int_equal(plan.mirror_count, 1);
+  assert_true(plan.mirror[0] && plan.multi_refractor_paths && plan.caustics);
+  assert_false(plan.colouring || plan.dispersive || plan.absorbing || plan.bvh);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_SPHERE);
+  assert_int_equal(plan.desc.wavelengths, 1);
+  check(&plan, ABBE_CHOICE_REFRACTOR_MODEL, 1, "exact sphere: the object is a mirror");
+  check(&plan, ABBE_CHOICE_MIRROR, 1, "reflects 0.9 of the light");
+  check(&plan, ABBE_CHOICE_MULTI_REFRACTOR_PATHS, 0, "what a mirror sends on");
+  check(&plan, ABBE_CHOICE_WAVELENGTHS, 0, "mirrors reflect all wavelengths alike");
+  abbe_plan_free(&plan);
+}
+
+static void a_metal_asks_for_all(void **state) {
+  (void)state;
+  abbe_plan plan;
+  plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("gold"), NULL, &plan);
+  assert_true(plan.colouring);
+  assert_false(plan.fills || plan.dispersive);
+  assert_int_equal(plan.desc.wavelengths, ABBE_PLAN_WAVELENGTHS);
+  check(&plan, ABBE_CHOICE_MIRROR, 1, "by wavelength");
+  check(&plan, ABBE_CHOICE_WAVELENGTHS, 0, "a mirror's reflectance varies");
+  assert_int_equal(abbe_plan_least_wavelengths(&plan), ABBE_PLAN_WAVELENGTHS);
+  abbe_plan_free(&plan);
+}
+
+/* Between coarse wavelengths nobody knows what a metal takes. */
+static void glass_beside_a_metal_is_followed_at_all_wavelengths(void **state) {
+  (void)state;
+  abbe_plan plan;
+  plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_PANE("gold") BALL("n-bk7"), NULL, &plan);
+  assert_true(plan.fills && plan.bvh && plan.mirror[0] && !plan.mirror[1]);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_BVH);
+  assert_int_equal(abbe_plan_least_wavelengths(&plan), ABBE_PLAN_WAVELENGTHS);
+  abbe_plan_free(&plan);
+  plan_text(SILVERED POINT_LIGHT FLOOR MIRROR_PANE("0.9") BALL("n-bk7"), NULL, &plan);
+  assert_int_equal(abbe_plan_least_wavelengths(&plan), 4);
+  abbe_plan_free(&plan);
+}
+
+/* A ball is known by its triangles to whom is inside: they have two sides. */
+static void a_ball_around_the_lamp_is_a_mesh(void **state) {
+  (void)state;
+  abbe_plan plan;
+  plan_text(
+      SILVERED POINT_LIGHT FLOOR
+      "- {name: ball, shape: sphere, radius: 0.1, transform: [{translate: [0.05, 0.03, 0.6]}], "
+      "mirror: 0.9}\n",
+      NULL, &plan);
+  assert_int_equal(plan.model[0], ABBE_REFRACTOR_BVH);
+  abbe_plan_free(&plan);
+}
+
+static void a_metal_is_known_over_the_range(void **state) {
+  (void)state;
+  const abbe_render_desc desc = {.min_nm = 380, .max_nm = 1e5};
+  refuse_plan(SILVERED POINT_LIGHT FLOOR MIRROR_BALL("gold"), &desc, ABBE_OUT_OF_RANGE, "gold");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_grey_ball_asks_for_one_wavelength),
+      cmocka_unit_test(a_metal_asks_for_all),
+      cmocka_unit_test(glass_beside_a_metal_is_followed_at_all_wavelengths),
+      cmocka_unit_test(a_ball_around_the_lamp_is_a_mesh),
+      cmocka_unit_test(a_metal_is_known_over_the_range),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
