@@ -31,10 +31,10 @@ vec3 mirror_spectrum(int r);
 
 bool is_mirror(int r) { return refractors[r].info.z < 0; }
 
-// spectrum: a factor, then a metal's n and k; k below 0: the factor alone.
+// spectrum: a factor of what is absorbed, then a metal's n and k; k below 0: all but the factor is reflected.
 float mirror_reflectance(vec3 spectrum, float cos_i) {
-  float metal = spectrum.z < 0.0 ? 1.0 : fresnel_conductor(cos_i, spectrum.y, spectrum.z);
-  return min(spectrum.x * metal, 1.0);
+  float metal = spectrum.z < 0.0 ? 0.0 : fresnel_conductor(cos_i, spectrum.y, spectrum.z);
+  return max(1.0 - spectrum.x * (1.0 - metal), 0.0);
 }
 #else
 const bool NO_MIRROR = false;

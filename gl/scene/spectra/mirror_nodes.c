@@ -14,9 +14,13 @@ static double straight_at(const abbe_material *metal, double lambda_nm) {
   return abbe_optics_fresnel_conductor(1, n, k);
 }
 
+/* What a metal absorbs at normal incidence; all, where there is none. */
+static double taken_by(double n, double k) {
+  return k < 0 ? 1 : 1 - abbe_optics_fresnel_conductor(1, n, k);
+}
+
 double abbe_mirror_node_straight(const abbe_mirror_node *node) {
-  const double metal = node->k < 0 ? 1 : abbe_optics_fresnel_conductor(1, node->n, node->k);
-  return fmin(node->factor * metal, 1);
+  return fmax(1 - node->factor * taken_by(node->n, node->k), 0);
 }
 
 /* A system of three diagonals, of least squares, within 0 and 1: by turns, each corner where it
@@ -81,7 +85,7 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
                                    abbe_error *error) {
   ABBE_REQUIRE(mirror && w && light && out, error);
   for (size_t i = 0; i < w->count; i++) {
-    out[i] = (abbe_mirror_node){.factor = mirror->mirror_reflectance, .k = -1};
+    out[i] = (abbe_mirror_node){.factor = 1 - mirror->mirror_reflectance, .k = -1};
     if (mirror->conductor == NULL) continue;
     abbe_result result =
         abbe_material_nk(mirror->conductor, w->lambda_nm[i], &out[i].n, &out[i].k, error);
@@ -95,8 +99,8 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
   else
     corner[0] = mean_of(mirror->conductor, w, light);
   for (size_t i = 0; i < w->count; i++) {
-    const double straight = abbe_optics_fresnel_conductor(1, out[i].n, out[i].k);
-    out[i].factor = straight > 0 ? corner[i] / straight : 1;
+    const double taken = taken_by(out[i].n, out[i].k);
+    out[i].factor = taken > 0 ? (1 - corner[i]) / taken : 1;
   }
   free(room);
   return ABBE_OK;
@@ -104,12 +108,11 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
 
 /* By what of the band's light the mirror reflects, of each of X, Y and Z; and of it all. */
 static void settle(const double reflected[3], const double all[3], abbe_mirror_band *out) {
-  const double metal = out->k < 0 ? 1 : abbe_optics_fresnel_conductor(1, out->n, out->k);
-  const double sum = all[0] + all[1] + all[2];
+  const double taken = taken_by(out->n, out->k), sum = all[0] + all[1] + all[2];
   const double mean = all[1] > 1e-9 * sum ? reflected[1] / all[1]
                       : sum > 0           ? (reflected[0] + reflected[1] + reflected[2]) / sum
-                                          : metal;
-  out->factor = metal > 0 ? mean / metal : 0;
+                                          : 1 - taken;
+  out->factor = taken > 0 ? (1 - mean) / taken : 1;
   out->straight = mean;
   for (int c = 0; c < 3; c++) out->weight[c] = mean > 0 ? reflected[c] / mean : all[c];
 }

@@ -18,8 +18,8 @@
 extern "C" {
 #endif
 
-/* Reflects factor times Fresnel's reflectance of n + i k, at most all; k below 0: the factor
- * itself, at all angles. */
+/* Absorbs factor times what Fresnel's reflectance of n + i k leaves, at most all; k below 0: the
+ * factor itself, at all angles. So what grazes it is reflected, whatever the factor is. */
 typedef struct abbe_mirror_node {
   double factor, n, k;
 } abbe_mirror_node;
@@ -36,7 +36,7 @@ abbe_result abbe_mirror_nodes_fill(const abbe_object *mirror, const abbe_wavelen
 /* A band of wavelengths as the camera sees it in a mirror. */
 typedef struct abbe_mirror_band {
   double n, k, factor; /* as of a node */
-  double straight;     /* what the three give at normal incidence, to Y */
+  double straight;     /* what the three reflect at normal incidence, of Y */
   /* X, Y and Z of the band's light, weighed so that this times `straight` is what the mirror
    * reflects of it, each by itself */
   double weight[3];
