@@ -35,6 +35,8 @@ extern "C" {
   X(pane, "a slab's reflectance and transmittance with all inner reflections")                     \
   X(absorption, "Beer-Lambert: what absorbing slabs let pass")                                     \
   X(furnace, "a white furnace: glass in the same light from everywhere cannot be seen")            \
+  X(environment,                                                                                   \
+    "light from all around: flux into bodies, irradiance of floors, mirrors and glass")            \
   X(sphere, "light under a sphere, rings and enclosed flux, one wavelength")                       \
   X(white, "light under a sphere in XYZ under D65")                                                \
   X(picture, "light under a sphere as the eye sees it: the caustic, and all light")                \
