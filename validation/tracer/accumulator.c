@@ -64,10 +64,14 @@ void abbe_accumulator_end_pass(abbe_accumulator *a, double scale) {
   abbe_accumulator_drop_pass(a);
 }
 
+/* Whole numbers first: which thread has added what must not show in the rounding. */
 double abbe_accumulator_adding(const abbe_accumulator *a, size_t value) {
-  double sum = 0;
-  for (size_t t = 0; t < a->threads; t++) sum += (double)a->adding[t][value] * a->unit;
-  return sum;
+  int64_t whole = 0;
+  for (size_t t = 0; t < a->threads; t++) {
+    const int64_t more = a->adding[t][value];
+    if (__builtin_add_overflow(whole, more, &whole)) whole = more > 0 ? INT64_MAX : INT64_MIN;
+  }
+  return (double)whole * a->unit;
 }
 
 void abbe_accumulator_drop_pass(abbe_accumulator *a) {

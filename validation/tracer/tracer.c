@@ -338,8 +338,7 @@ static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *s
   return stop != NULL && *stop ? abbe_error_set(error, ABBE_CANCELLED, "stopped") : ABBE_OK;
 }
 
-/* Embree's advice: numbers too small for single precision count as zero, on every thread. The
- * caller's own thread gets its mode back. */
+/* Embree's advice: numbers too small for single precision count as zero, on every thread. */
 static unsigned flush_tiny_numbers(const abbe_tracer *t) {
 #ifdef __SSE__
   unsigned mode = _mm_getcsr();
@@ -355,10 +354,13 @@ static unsigned flush_tiny_numbers(const abbe_tracer *t) {
 #endif
 }
 
-static void restore_mode(unsigned mode) {
+/* On every thread: they do other work after this, and whose part is done by whom is chance. */
+static void restore_mode(const abbe_tracer *t, unsigned mode) {
 #ifdef __SSE__
+#pragma omp parallel num_threads((int)t->desc.threads)
   _mm_setcsr(mode);
 #else
+  (void)t;
   (void)mode;
 #endif
 }
@@ -373,7 +375,7 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   double middle = abbe_clock_seconds();
   if (result == ABBE_OK && !t->desc.no_picture) result = eye_pass(t, landed, stop, error);
   double end = abbe_clock_seconds();
-  restore_mode(mode);
+  restore_mode(t, mode);
   if (result != ABBE_OK) {
     t->statistics = before;
     if (!t->desc.no_picture) abbe_accumulator_drop_pass(&t->picture);

@@ -20,7 +20,7 @@ static void order_and_threads_do_not_matter(void **state) {
   uint64_t random = 5;
   for (int i = 0; i < COUNT; i++)
     x[i] = (float)(random_normal(&random) * exp(random_between(&random, -30, 3)));
-  double mean[4][VALUES], error[4][VALUES];
+  double mean[4][VALUES], error[4][VALUES], adding[4][3 * VALUES];
   for (int way = 0; way < 4; way++) {
     size_t threads = (size_t)way + 1;
     abbe_accumulator a = make(VALUES, threads, 1e6);
@@ -30,6 +30,8 @@ static void order_and_threads_do_not_matter(void **state) {
         abbe_accumulator_add(&a, (size_t)(j * 7 + pass) % threads, (size_t)(j % VALUES),
                              x[(j + pass) % COUNT]);
       }
+      for (size_t v = 0; v < VALUES; v++)
+        adding[way][(size_t)pass * VALUES + v] = abbe_accumulator_adding(&a, v);
       abbe_accumulator_end_pass(&a, 0.25);
     }
     for (size_t v = 0; v < VALUES; v++) {
@@ -42,6 +44,7 @@ static void order_and_threads_do_not_matter(void **state) {
   for (int way = 1; way < 4; way++) {
     assert_memory_equal(mean[0], mean[way], sizeof mean[0]);
     assert_memory_equal(error[0], error[way], sizeof error[0]);
+    assert_memory_equal(adding[0], adding[way], sizeof adding[0]);
   }
 }
 
