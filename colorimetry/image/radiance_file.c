@@ -196,6 +196,25 @@ static void store_line(const reader *r, const uint8_t (*line)[4], size_t number,
   }
 }
 
+/* All lines; NULL, or why not and at which line. Flat: pixels one by one without runs, though a
+ * line may begin as one in runs does. */
+static const char *read_lines(reader *r, bool flat, uint8_t (*line)[4], abbe_image *out,
+                              size_t *number) {
+  const size_t count = r->columns ? r->width : r->height;
+  const size_t length = r->columns ? r->height : r->width;
+  for (*number = 0; *number < count; ++*number) {
+    if (flat) {
+      memcpy(line, r->data + r->at, 4 * length);
+      r->at += 4 * length;
+    } else {
+      const char *reason = read_line(r, line, length);
+      if (reason != NULL) return reason;
+    }
+    store_line(r, (const uint8_t(*)[4])line, *number, out);
+  }
+  return NULL;
+}
+
 static abbe_result read_pixels(reader *r, abbe_image *out, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
   const size_t count = r->columns ? r->width : r->height;
@@ -207,14 +226,18 @@ static abbe_result read_pixels(reader *r, abbe_image *out, abbe_error *error) {
   uint8_t(*line)[4] = calloc(length, sizeof *line);
   if (line == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for a line", r->path);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
-    const char *reason = read_line(r, line, length);
-    if (reason == NULL)
-      store_line(r, (const uint8_t(*)[4])line, i, out);
-    else
+  if (result == ABBE_OK) {
+    const size_t start = r->at;
+    size_t number = 0;
+    const char *reason = read_lines(r, false, line, out, &number);
+    if (reason != NULL && r->size - start == 4 * r->width * r->height) {
+      r->at = start;
+      reason = read_lines(r, true, line, out, &number);
+    }
+    if (reason != NULL)
       result = abbe_error_set(error, ABBE_PARSE,
                               "%s: it cannot be read as a Radiance picture: %s (line %zu of %zu)",
-                              r->path, reason, i + 1, count);
+                              r->path, reason, number + 1, count);
   }
   free(line);
   return result;

@@ -107,59 +107,70 @@ static abbe_result convert(const char *path, abbe_image *image, abbe_error *erro
 static abbe_result check_layout(const char *path, const abbe_image *image,
                                 abbe_environment_layout *layout, abbe_error *error) {
   const size_t w = image->width, h = image->height;
-  const bool latlong = w == 2 * h, cube = 3 * w == 4 * h || 4 * w == 3 * h;
+  const bool latlong = w == 2 * h, cube = 3 * w == 4 * h || 4 * w == 3 * h || 6 * w == h;
   if (*layout == ABBE_LAYOUT_BY_ASPECT) *layout = cube ? ABBE_LAYOUT_CUBE : ABBE_LAYOUT_LATLONG;
   if (*layout == ABBE_LAYOUT_CUBE ? !cube : !latlong)
-    return abbe_error_set(error, ABBE_SCHEMA,
-                          "%s: it is %zu x %zu pixels; a latitude-longitude picture is twice as "
-                          "wide as high, and the cross of a cube 4:3 or 3:4",
-                          path, w, h);
+    return abbe_error_set(
+        error, ABBE_SCHEMA,
+        "%s: it is %zu x %zu pixels; a latitude-longitude picture is twice as "
+        "wide as high, the cross of a cube 4:3 or 3:4, and a column of its faces 1:6",
+        path, w, h);
   const size_t most = *layout == ABBE_LAYOUT_CUBE ? CUBE_MAX_SIDE : ABBE_RADIANCE_MAP_MAX_WIDTH;
   if (w > most || h > most)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s: its %zu x %zu pixels are too many: at most %zu a side are possible; "
                           "make it smaller",
                           path, w, h, most);
-  if (w < ABBE_RADIANCE_MAP_MIN_WIDTH || h < 2 || (*layout == ABBE_LAYOUT_CUBE && w < 6))
+  const size_t least = 6 * w == h ? 2 : 6;
+  if (h < 2 || w < (*layout == ABBE_LAYOUT_CUBE ? least : ABBE_RADIANCE_MAP_MIN_WIDTH))
     return abbe_error_set(error, ABBE_SCHEMA, "%s: %zu x %zu pixels are too few", path, w, h);
   return ABBE_OK;
 }
 
-/* Where each face lies in the crosses, in faces, and its axes: direction = out + u right + v down,
- * u and v from -1 to 1. The back of an upright cross is turned by half a turn. */
+/* Where each face lies, in faces, and its axes: direction = out + u right + v down, u and v from -1
+ * to 1. Some are turned by half a turn: the back of an upright cross, the top and the bottom of a
+ * column [OpenEXRImages]. */
+typedef enum arrangement { LYING, UPRIGHT, COLUMN, ARRANGEMENTS } arrangement;
+
 typedef struct cube_face {
   double out[3], right[3], down[3];
-  size_t lying[2], upright[2];
+  size_t at[ARRANGEMENTS][2];
+  bool turned[ARRANGEMENTS];
 } cube_face;
 
+static const size_t faces_across[ARRANGEMENTS] = {4, 3, 1};
+
 static const cube_face faces[6] = {
-    {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, 1}, {1, 1}},
-    {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {3, 1}, {1, 3}},
-    {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, 1}, {0, 1}},
-    {{0, -1, 0}, {-1, 0, 0}, {0, 0, -1}, {2, 1}, {2, 1}},
-    {{0, 0, 1}, {0, -1, 0}, {1, 0, 0}, {1, 0}, {1, 0}},
-    {{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {1, 2}, {1, 2}},
+    {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {{1, 1}, {1, 1}, {0, 4}}, {false, false, false}},
+    {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {{3, 1}, {1, 3}, {0, 5}}, {false, true, false}},
+    {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {{0, 1}, {0, 1}, {0, 0}}, {false, false, false}},
+    {{0, -1, 0}, {-1, 0, 0}, {0, 0, -1}, {{2, 1}, {2, 1}, {0, 1}}, {false, false, false}},
+    {{0, 0, 1}, {0, -1, 0}, {1, 0, 0}, {{1, 0}, {1, 0}, {0, 2}}, {false, false, true}},
+    {{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {{1, 2}, {1, 2}, {0, 3}}, {false, false, true}},
 };
 
-enum { BACK = 1 };
+static arrangement arrangement_of(const abbe_image *image) {
+  if (image->height == 6 * image->width) return COLUMN;
+  return image->height > image->width ? UPRIGHT : LYING;
+}
 
 /* Bilinear within the face. */
 static void cube_at(const abbe_image *image, const double direction[3], double rgb[3]) {
-  const bool upright = image->height > image->width;
-  const double side = (double)image->width / (upright ? 3 : 4);
+  const arrangement layout = arrangement_of(image);
+  const double side = (double)(image->width / faces_across[layout]);
   int best = 0;
   for (int f = 1; f < 6; f++)
     if (abbe_vector_dot(direction, faces[f].out) > abbe_vector_dot(direction, faces[best].out))
       best = f;
   const cube_face *face = &faces[best];
-  const size_t *at = upright ? face->upright : face->lying;
+  const size_t *at = face->at[layout];
   const double depth = abbe_vector_dot(direction, face->out);
   double place[2] = {abbe_vector_dot(direction, face->right) / depth,
                      abbe_vector_dot(direction, face->down) / depth};
   size_t low[2];
   double share[2];
   for (int k = 0; k < 2; k++) {
-    if (upright && best == BACK) place[k] = -place[k];
+    if (face->turned[layout]) place[k] = -place[k];
     const double x = fmin(fmax((place[k] + 1) / 2 * side - 0.5, 0), side - 1);
     const double whole = fmax(fmin(floor(x), side - 2), 0);
     low[k] = (size_t)whole + at[k] * (size_t)side;
@@ -194,7 +205,7 @@ static void cube_texel(const abbe_image *image, const abbe_radiance_map *map, si
 }
 
 static abbe_result from_cube(const abbe_image *image, abbe_radiance_map *out, abbe_error *error) {
-  const size_t side = image->width / (image->height > image->width ? 3 : 4);
+  const size_t side = image->width / faces_across[arrangement_of(image)];
   const size_t width =
       4 * side < ABBE_RADIANCE_MAP_MAX_WIDTH ? 4 * side : ABBE_RADIANCE_MAP_MAX_WIDTH;
   const abbe_result result = abbe_radiance_map_make(width, out, error);

@@ -1,10 +1,12 @@
 /* environment_picture.h: pictures of surroundings into a map: OpenEXR and Radiance files.
  *
- * Latitude-longitude pictures (2:1, as radiance_map.h lays them out) and unfolded cubes, upright
- * (3:4) or lying (4:3). In both crosses the middle of the left, front, right row is the front, +x;
+ * Latitude-longitude pictures (2:1, as radiance_map.h lays them out) and unfolded cubes: crosses,
+ * upright (3:4) or lying (4:3), and OpenEXR's column of faces (1:6). In both crosses the middle of the left, front, right row is the front, +x;
  * above it is the top, +z; left of it the left, +y; below it the bottom. The back is right of the
- * right face in the lying cross, and below the bottom, upside down, in the upright one. Colours are
- * taken by the file's chromaticities; a file that says nothing is linear Rec.709.
+ * right face in the lying cross, and below the bottom, upside down, in the upright one. The
+ * column holds OpenEXR's +X, -X, +Y, -Y, +Z and -Z from above [OpenEXRImages], where +Z is ahead and
+ * +Y is up: the left, right, top, bottom, front and back. Colours are taken by the file's
+ * chromaticities; a file that says nothing is linear Rec.709.
  */
 #ifndef ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_PICTURE_H
 #define ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_PICTURE_H

@@ -113,6 +113,18 @@ static void runs(void **state) {
   abbe_image_free(&image);
 }
 
+/* Pixels one by one, of which the second line begins as one in runs does. */
+static void flat_pixels(void **state) {
+  (void)state;
+  uint8_t flat[2][8][4];
+  memset(flat, 128, sizeof flat);
+  memcpy(flat[1][0], (const uint8_t[4]){2, 2, 0, 8}, 4);
+  abbe_image image = read_pixels(HEAD "\n-Y 2 +X 8\n", flat, sizeof flat);
+  check_pixel(&image, 7, 1, 0.5, 0.5, 0.5);
+  check_pixel(&image, 0, 1, ldexp(2, 8 - 136), ldexp(2, 8 - 136), 0);
+  abbe_image_free(&image);
+}
+
 static void what_is_refused(void **state) {
   (void)state;
   static const struct {
@@ -171,9 +183,13 @@ static void other_kinds_of_file(void **state) {
 int main(void) {
   snprintf(path, sizeof path, "/tmp/abbe-test-radiance-%d.hdr", (int)getpid());
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(exponents_and_mantissas), cmocka_unit_test(directions),
-      cmocka_unit_test(header_variables),        cmocka_unit_test(runs),
-      cmocka_unit_test(what_is_refused),         cmocka_unit_test(other_kinds_of_file),
+      cmocka_unit_test(exponents_and_mantissas),
+      cmocka_unit_test(directions),
+      cmocka_unit_test(header_variables),
+      cmocka_unit_test(runs),
+      cmocka_unit_test(flat_pixels),
+      cmocka_unit_test(what_is_refused),
+      cmocka_unit_test(other_kinds_of_file),
   };
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   unlink(path);

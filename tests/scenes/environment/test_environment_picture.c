@@ -94,29 +94,32 @@ static void grey_pictures(void **state) {
   abbe_radiance_map_free(&map);
 }
 
-/* Faces of one colour each, both crosses: what looks along each axis, and that all that is black in
- * the cross is not seen. A mark on the back's upper left says how it is turned. */
+/* Faces of one colour each, both crosses and OpenEXR's column: what looks along each axis, and that
+ * all that is black beside the faces is not seen. A mark says how each is turned. */
 static void cubes(void **state) {
   (void)state;
+  enum { SIDE = 16, LAYOUTS = 3 };
+  static const size_t across[LAYOUTS] = {4, 3, 1}, down[LAYOUTS] = {3, 4, 6};
   static const struct {
-    size_t lying[2], upright[2];
+    size_t at[LAYOUTS][2];
     double direction[3];
-  } faces[6] = {{{1, 1}, {1, 1}, {1, 0, 0}}, {{3, 1}, {1, 3}, {-1, 0, 0}},
-                {{0, 1}, {0, 1}, {0, 1, 0}}, {{2, 1}, {2, 1}, {0, -1, 0}},
-                {{1, 0}, {1, 0}, {0, 0, 1}}, {{1, 2}, {1, 2}, {0, 0, -1}}};
-  enum { SIDE = 16 };
-  for (int upright = 0; upright < 2; upright++) {
-    abbe_image image = picture((upright ? 3 : 4) * SIDE, (upright ? 4 : 3) * SIDE, rgb_names);
+    int turned; /* the layout in which it is, or -1 */
+  } faces[6] = {
+      {{{1, 1}, {1, 1}, {0, 4}}, {1, 0, 0}, -1}, {{{3, 1}, {1, 3}, {0, 5}}, {-1, 0, 0}, 1},
+      {{{0, 1}, {0, 1}, {0, 0}}, {0, 1, 0}, -1}, {{{2, 1}, {2, 1}, {0, 1}}, {0, -1, 0}, -1},
+      {{{1, 0}, {1, 0}, {0, 2}}, {0, 0, 1}, 2},  {{{1, 2}, {1, 2}, {0, 3}}, {0, 0, -1}, 2}};
+  for (int layout = 0; layout < LAYOUTS; layout++) {
+    abbe_image image = picture(across[layout] * SIDE, down[layout] * SIDE, rgb_names);
     memset(image.data, 0, image.width * image.height * 3 * sizeof(float));
     for (int f = 0; f < 6; f++) {
-      const size_t *at = upright ? faces[f].upright : faces[f].lying;
+      const size_t *at = faces[f].at[layout];
       for (size_t i = 0; i < SIDE * SIDE; i++) {
         const size_t x = at[0] * SIDE + i % SIDE, y = at[1] * SIDE + i / SIDE;
         float *pixel = image.data + 3 * (y * image.width + x);
         pixel[0] = 1;
         pixel[1] = (float)f;
         /* the side of each face that is at the left of who looks at it with +z up */
-        const int turned = upright && f == 1;
+        const int turned = layout == faces[f].turned;
         pixel[2] = turned ? i % SIDE >= SIDE / 2 : i % SIDE < SIDE / 2;
       }
     }
@@ -134,7 +137,7 @@ static void cubes(void **state) {
       abbe_radiance_map_at(&map, left, rgb);
       assert_near(rgb[2], 1, 1e-6);
     }
-    /* the zenith's texture goes on from the front's: its left is +y */
+    /* of the top and the bottom the side towards +y */
     abbe_radiance_map_at(&map, (const double[3]){0, 0.4, 1}, rgb);
     assert_near(rgb[2], 1, 1e-6);
     abbe_radiance_map_at(&map, (const double[3]){0, 0.4, -1}, rgb);
