@@ -102,6 +102,7 @@ static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 4;
   MIX(h, plan->desc.space);
   h = mix_environment(h, scene->environment, plan);
+  h = mix_array(h, scene->soft_light, scene->soft_light != NULL, sizeof *scene->soft_light);
   for (size_t i = 0; i < plan->receiver_count; i++) {
     const abbe_object *o = &scene->object[plan->receiver_object[i]];
     const size_t texels = o->texture.width * o->texture.height * o->texture.channels;

@@ -138,7 +138,7 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
                               abbe_error *error) {
   abbe_result result = make_local_scene(r, scene, error);
   if (result != ABBE_OK) return result;
-  abbe_gpu_scene_begin(&r->gpu, r->local.scene, &r->plan, local_layout(r), &r->scene);
+  abbe_gpu_scene_begin(&r->gpu, r->local.scene, r->local.unit, &r->plan, local_layout(r), &r->scene);
   result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
   if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
   if (result != ABBE_OK || is_thesis(r)) return result;

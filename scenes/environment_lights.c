@@ -4,120 +4,142 @@
 #include "scenes/geometry/vector.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ROWS = 64, VALUES = 7 }; /* luminance, luminance x direction, RGB */
+enum {
+  COLUMNS = 128,
+  ROWS = 64,
+  BINS = ROWS * COLUMNS, /* of directions of the map */
+  MOST_LAMPS = 64,
+  VALUES = 7 /* luminance, luminance x direction, RGB */
+};
 
 static const double PI = 3.14159265358979323846;
 static const double luminance[3] = {0.2126390058715104, 0.7151686787677559, 0.0721923153607337};
 
-/* Sums over all texels above and left of a corner. */
-typedef struct sums {
-  size_t width, height;
-  double (*at)[VALUES]; /* [height + 1][width + 1] */
-} sums;
+static const double OVER_MEAN = 3;      /* so bright is what stands out */
+static const double COMPACT = 0.0109;   /* (1 - cos(12 degrees)) / 2 */
+static const double LEAST_SHARE = 0.02; /* of all light, of what becomes a light */
 
-typedef struct part {
-  size_t x0, x1, y0, y1;
-  double value[VALUES];
-} part;
+typedef double sums[VALUES];
 
-/* A level of few texels, so that all cuts can be tried. */
-static const abbe_radiance_map *coarse_map(const abbe_environment *e) {
+/* A place that stands out of its surroundings. */
+typedef struct lamp {
+  sums value;
+} lamp;
+
+typedef struct search {
+  const abbe_environment *environment;
+  sums *bin;            /* [BINS], of what is brighter than the present bound */
+  unsigned char *place; /* [BINS]: 1 where it is looked for, then 2 where it belongs to a lamp */
+  size_t *found;        /* [BINS], bins of one lamp */
+  double (*way)[2];     /* cosine and sine of each column's azimuth */
+  lamp lamp[MOST_LAMPS];
+  size_t count;
+} search;
+
+static double luminance_of(const float *rgb) {
+  double y = 0;
+  for (int k = 0; k < 3; k++) y += luminance[k] * (double)rgb[k];
+  return y;
+}
+
+/* The mean of the radiance as far as it does not stand out of that mean itself. */
+static double mean_of_most(const abbe_environment *e) {
   const abbe_radiance_map *map = &e->map;
-  for (size_t i = 0; i < e->level_count && map->height > MOST_ROWS; i++) map = &e->level[i];
-  return map;
+  double mean = e->luminance / (4 * PI);
+  for (int pass = 0; pass < 6; pass++) {
+    double sum = 0;
+    for (size_t y = 0; y < map->height; y++) {
+      double row = 0;
+      for (size_t x = 0; x < map->width; x++)
+        row += fmin(luminance_of(map->rgb + 3 * (y * map->width + x)), OVER_MEAN * mean);
+      sum += row * abbe_radiance_map_solid_angle(map, y);
+    }
+    mean = sum / (4 * PI);
+  }
+  return mean;
 }
 
-/* Of a texel of that row: its share of all integrals, or of a level what it covers. */
-static double solid_angle(const abbe_radiance_map *map, bool is_level, size_t row) {
-  if (!is_level) return abbe_radiance_map_solid_angle(map, row);
-  const double step = PI / (double)map->height;
-  return 2 * PI / (double)map->width * (cos(step * (double)row) - cos(step * ((double)row + 1)));
-}
-
-static bool make_sums(const abbe_environment *e, sums *s) {
-  const abbe_radiance_map *map = coarse_map(e);
-  s->width = map->width;
-  s->height = map->height;
-  s->at = calloc((s->width + 1) * (s->height + 1), sizeof *s->at);
-  if (s->at == NULL) return false;
-  for (size_t y = 0; y < s->height; y++) {
-    const double solid = solid_angle(map, map != &e->map, y);
-    double row[VALUES] = {0};
-    for (size_t x = 0; x < s->width; x++) {
-      const float *texel = map->rgb + 3 * (y * s->width + x);
-      double d[3], y_of = 0;
-      abbe_radiance_map_direction(map, (double)x + 0.5, (double)y + 0.5, d);
-      for (int k = 0; k < 3; k++) y_of += luminance[k] * (double)texel[k];
-      row[0] += solid * y_of;
-      for (int k = 0; k < 3; k++) row[1 + k] += solid * y_of * d[k];
-      for (int k = 0; k < 3; k++) row[4 + k] += solid * (double)texel[k];
-      for (int k = 0; k < VALUES; k++)
-        s->at[(y + 1) * (s->width + 1) + x + 1][k] = s->at[y * (s->width + 1) + x + 1][k] + row[k];
+/* What is above that radiance, in bins that are looked at. */
+static void fill(const search *s, double above) {
+  const abbe_radiance_map *map = &s->environment->map;
+  memset(s->bin, 0, BINS * sizeof *s->bin);
+  for (size_t y = 0; y < map->height; y++) {
+    const double solid = abbe_radiance_map_solid_angle(map, y);
+    double at[3];
+    abbe_radiance_map_direction(map, 0.5, (double)y + 0.5, at);
+    const double around = hypot(at[0], at[1]);
+    for (size_t x = 0; x < map->width; x++) {
+      const float *texel = map->rgb + 3 * (y * map->width + x);
+      const double bright = luminance_of(texel);
+      if (!(bright > above)) continue;
+      const size_t bin = y * ROWS / map->height * COLUMNS + x * COLUMNS / map->width;
+      if (s->place[bin] != 1) continue;
+      const double share = solid * (1 - above / bright), *way = s->way[x];
+      double *sum = s->bin[bin];
+      sum[0] += share * bright;
+      for (int k = 0; k < 2; k++) sum[1 + k] += share * bright * around * way[k];
+      sum[3] += share * bright * at[2];
+      for (int k = 0; k < 3; k++) sum[4 + k] += share * (double)texel[k];
     }
   }
-  return true;
 }
 
-static part sum_part(const sums *s, size_t x0, size_t x1, size_t y0, size_t y1) {
-  part p = {x0, x1, y0, y1, {0}};
-  const size_t w = s->width + 1;
-  for (int k = 0; k < VALUES; k++)
-    p.value[k] = s->at[y1 * w + x1][k] - s->at[y0 * w + x1][k] - s->at[y1 * w + x0][k] +
-                 s->at[y0 * w + x0][k];
-  return p;
+static void take(search *s, size_t bin, size_t *count) {
+  if (s->place[bin] != 1 || !(s->bin[bin][0] > 0)) return;
+  s->place[bin] = 2;
+  s->found[(*count)++] = bin;
 }
 
-/* What one light along the mean direction leaves out. */
-static double lost(const part *p) {
-  return p->value[0] - abbe_vector_length(p->value + 1);
-}
-
-/* The cut that leaves least out; false for a single texel. */
-static bool cut(const sums *s, const part *p, part out[2]) {
-  double least = INFINITY;
-  for (int across = 0; across < 2; across++) {
-    const size_t from = across ? p->x0 : p->y0, to = across ? p->x1 : p->y1;
-    for (size_t at = from + 1; at < to; at++) {
-      const part a =
-          across ? sum_part(s, p->x0, at, p->y0, p->y1) : sum_part(s, p->x0, p->x1, p->y0, at);
-      const part b =
-          across ? sum_part(s, at, p->x1, p->y0, p->y1) : sum_part(s, p->x0, p->x1, at, p->y1);
-      if (!(lost(&a) + lost(&b) < least)) continue;
-      least = lost(&a) + lost(&b);
-      out[0] = a;
-      out[1] = b;
-    }
+/* All bins with light that touch each other, from one on; those of a pole's row touch. */
+static size_t find_bins(search *s, size_t first) {
+  size_t count = 0;
+  take(s, first, &count);
+  for (size_t i = 0; i < count; i++) {
+    const size_t row = s->found[i] / COLUMNS, column = s->found[i] % COLUMNS;
+    for (size_t y = row > 0 ? row - 1 : 0; y <= row + 1 && y < ROWS; y++)
+      for (size_t x = 0; x < 3; x++)
+        take(s, y * COLUMNS + (column + COLUMNS + x - 1) % COLUMNS, &count);
+    if (row == 0 || row == ROWS - 1)
+      for (size_t x = 0; x < COLUMNS; x++) take(s, row * COLUMNS + x, &count);
   }
-  return least < INFINITY;
+  return count;
+}
+
+/* Lamps brighter than the bound: those small enough for a sharp light are kept; others are looked
+ * for again above twice the bound, where their light is theirs alone. */
+static void find_lamps(search *s, double above) {
+  const double least = LEAST_SHARE * s->environment->luminance;
+  memset(s->place, 1, BINS);
+  for (bool wide = true; wide; above = above > 0 ? 2 * above : s->environment->luminance * 1e-3) {
+    wide = false;
+    fill(s, above);
+    for (size_t first = 0; first < BINS; first++) {
+      if (s->place[first] != 1 || !(s->bin[first][0] > 0)) continue;
+      sums value = {0};
+      const size_t count = find_bins(s, first);
+      for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < VALUES; k++) value[k] += s->bin[s->found[i]][k];
+      if (!(value[0] > least)) continue;
+      if (value[0] - abbe_vector_length(value + 1) > COMPACT * value[0]) {
+        for (size_t i = 0; i < count; i++) s->place[s->found[i]] = 3;
+        wide = true;
+      } else if (s->count < MOST_LAMPS) {
+        memcpy(s->lamp[s->count++].value, value, sizeof value);
+      }
+    }
+    for (size_t i = 0; i < BINS; i++) s->place[i] = s->place[i] == 3;
+  }
 }
 
 static int by_light(const void *a, const void *b) {
-  const double x = abbe_vector_length(((const part *)a)->value + 1);
-  const double y = abbe_vector_length(((const part *)b)->value + 1);
+  const double x = abbe_vector_length(((const lamp *)a)->value + 1);
+  const double y = abbe_vector_length(((const lamp *)b)->value + 1);
   return (x < y) - (x > y);
-}
-
-/* At most count parts, brightest first; those without light are left out. */
-static size_t cut_all(const sums *s, size_t count, part *parts) {
-  size_t made = 1;
-  parts[0] = sum_part(s, 0, s->width, 0, s->height);
-  while (made < count) {
-    size_t worst = 0;
-    for (size_t i = 1; i < made; i++)
-      if (lost(&parts[i]) > lost(&parts[worst])) worst = i;
-    part two[2];
-    if (!(lost(&parts[worst]) > 0) || !cut(s, &parts[worst], two)) break;
-    parts[worst] = two[0];
-    parts[made++] = two[1];
-  }
-  qsort(parts, made, sizeof *parts, by_light);
-  while (made > 0 && !(abbe_vector_length(parts[made - 1].value + 1) > 1e-9 * parts[0].value[0]))
-    made--;
-  return made;
 }
 
 /* The environment's own where the part is grey, else that times the colour's lift. */
@@ -139,7 +161,7 @@ static abbe_result set_spectrum(const abbe_environment *e, const abbe_upsampling
   return abbe_spectrum_make(nm, power, count, ABBE_INTERPOLATION_LINEAR, &out->spectrum, error);
 }
 
-static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *up, const part *p,
+static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *up, const lamp *p,
                              size_t number, abbe_light *out, abbe_error *error) {
   double towards[3], rgb[3], y = 0;
   memcpy(towards, p->value + 1, sizeof towards);
@@ -160,33 +182,82 @@ static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *u
   return set_spectrum(e, up, rgb, &out->illuminant, error);
 }
 
+/* Irradiance of all but the lights, by normal. By luminance it is nowhere negative: a lamp's own
+ * irradiance is that of its light, or, on planes that only some of it is before, more. */
+static void find_soft(const search *s, abbe_irradiance_map *out) {
+  for (size_t row = 0; row < ABBE_IRRADIANCE_MAP_ROWS; row++)
+    for (size_t column = 0; column < ABBE_IRRADIANCE_MAP_COLUMNS; column++) {
+      double world[3], n[3], rgb[3] = {0};
+      abbe_irradiance_map_normal(row, column, world);
+      for (int i = 0; i < 3; i++) n[i] = abbe_vector_dot(s->environment->to_map + 3 * i, world);
+      for (size_t i = 0; i < BINS; i++) {
+        const double *bin = s->bin[i], facing = abbe_vector_dot(n, bin + 1);
+        if (!(facing > 0)) continue;
+        for (int k = 0; k < 3; k++) rgb[k] += facing / bin[0] * bin[4 + k];
+      }
+      for (size_t i = 0; i < s->count; i++) {
+        const double *light = s->lamp[i].value;
+        const double facing = fmax(abbe_vector_dot(n, light + 1), 0);
+        for (int k = 0; k < 3; k++) rgb[k] -= facing / light[0] * light[4 + k];
+      }
+      for (int k = 0; k < 3; k++) out->rgb[row][column][k] = (float)fmax(rgb[k], 0);
+    }
+}
+
+/* The lights and what they leave, into the copy. */
+static abbe_result add_all(search *s, size_t most, double min_nm, double max_nm, abbe_scene *out,
+                           abbe_error *error) {
+  const abbe_environment *e = s->environment;
+  abbe_upsampling up;
+  abbe_result result = abbe_upsampling_make(&e->illuminant, min_nm, max_nm, &up, error);
+  if (result != ABBE_OK) return result;
+  for (size_t x = 0; x < e->map.width; x++) {
+    double level[3];
+    abbe_radiance_map_direction(&e->map, (double)x + 0.5, (double)e->map.height / 2, level);
+    memcpy(s->way[x], level, sizeof s->way[x]);
+  }
+  find_lamps(s, OVER_MEAN * mean_of_most(e));
+  qsort(s->lamp, s->count, sizeof *s->lamp, by_light);
+  if (s->count > most) s->count = most;
+  for (size_t i = 0; i < s->count && result == ABBE_OK; i++) {
+    result = set_light(e, &up, &s->lamp[i], i + 1, &out->light[out->light_count], error);
+    out->environment_lights++;
+    out->light_count++;
+  }
+  memset(s->place, 1, BINS);
+  fill(s, 0);
+  find_soft(s, out->soft_light);
+  return result;
+}
+
 abbe_result abbe_environment_lights_add(const abbe_scene *scene, size_t count, double min_nm,
                                         double max_nm, abbe_scene *out, abbe_error *error) {
   ABBE_REQUIRE(scene && out, error);
-  const abbe_environment *e = scene->environment;
   const size_t own = scene->light_count, room = ABBE_SCENE_MAX_LIGHTS - own;
   *out = *scene;
-  out->light = calloc(own + count + 1, sizeof *out->light);
-  part *parts = calloc(count + 1, sizeof *parts);
-  sums s = {0};
-  abbe_upsampling up;
-  abbe_result result = ABBE_OK;
   if (count > room) count = room;
-  if (out->light == NULL || parts == NULL || (e != NULL && !make_sums(e, &s)))
-    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
-  if (result == ABBE_OK && e != NULL)
-    result = abbe_upsampling_make(&e->illuminant, min_nm, max_nm, &up, error);
-  if (out->light != NULL && own > 0) memcpy(out->light, scene->light, own * sizeof *out->light);
-  if (result == ABBE_OK && e != NULL && count > 0) {
-    const size_t made = cut_all(&s, count, parts);
-    for (size_t i = 0; i < made && result == ABBE_OK; i++) {
-      out->environment_lights++;
-      out->light_count++;
-      result = set_light(e, &up, &parts[i], i + 1, &out->light[own + i], error);
-    }
+  out->light = calloc(own + count + 1, sizeof *out->light);
+  if (out->light == NULL) {
+    *out = (abbe_scene){0};
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
   }
-  free(parts);
-  free(s.at);
+  if (own > 0) memcpy(out->light, scene->light, own * sizeof *out->light);
+  if (scene->environment == NULL) return ABBE_OK;
+  search s = {.environment = scene->environment,
+              .bin = malloc(BINS * sizeof *s.bin),
+              .place = malloc(BINS),
+              .found = malloc(BINS * sizeof *s.found),
+              .way = malloc(scene->environment->map.width * sizeof *s.way)};
+  out->soft_light = malloc(sizeof *out->soft_light);
+  abbe_result result = ABBE_OK;
+  if (s.bin == NULL || s.place == NULL || s.found == NULL || s.way == NULL ||
+      out->soft_light == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
+  if (result == ABBE_OK) result = add_all(&s, count, min_nm, max_nm, out, error);
+  free(s.bin);
+  free(s.place);
+  free(s.found);
+  free(s.way);
   if (result != ABBE_OK) abbe_environment_lights_drop(out);
   return result;
 }
@@ -199,5 +270,6 @@ void abbe_environment_lights_drop(abbe_scene *copy) {
     abbe_illuminant_free(&light->illuminant);
   }
   free(copy->light);
+  free(copy->soft_light);
   *copy = (abbe_scene){0};
 }

@@ -1,15 +1,17 @@
-/* environment_lights.h: an environment as a few directional lights, for a renderer whose lights have
- * no size.
+/* environment_lights.h: an environment as directional lights and what they leave, for a renderer
+ * whose lights have no size.
  *
- * The sphere is cut into as many parts as there are to be lights, greedily, where that leaves least
- * light out [ViriyothaiDebevec2009]: a part's light shines along the sum of its radiance times
- * direction, whose length is its irradiance. On a plane that all of a part shines on, that is the
- * part's irradiance exactly; a part that is wide, or lies across the plane's horizon, is not. What
- * shadows and caustics of such lights look like is those of sharp lights: the more of them, the
- * softer.
+ * Lights stand for lamps: places all around each other that are brighter than three times the mean
+ * of what does not stand out, or, where those are wide, than twice, four times, … that, until their
+ * light comes from within about 12 degrees of its middle. What of a lamp is above that bound shines
+ * along the sum of its radiance times direction, whose length is its irradiance, as one light, with
+ * shadows and caustics. Lamps of less than 2 % of all light are none. All else is soft light:
+ * irradiance by the direction that a receiver faces, without shadows and caustics, as clear objects
+ * and mirrors leave it where it is alike all around. Lights and soft light together give an open
+ * receiver its irradiance exactly, but for colours that differ within a lamp.
  */
 #ifndef ABBE_SCENES_ENVIRONMENT_LIGHTS_H
-#define ABBE_SCENES_ENVIRONMENT_ENVIRONMENT_LIGHTS_H
+#define ABBE_SCENES_ENVIRONMENT_LIGHTS_H
 
 #include "scenes/scene.h"
 
@@ -17,11 +19,11 @@
 extern "C" {
 #endif
 
-/* A copy of the scene that owns nothing of it but its array of lights: after the scene's own come at
- * most `count` of its environment, named "environment 1" and so on, brightest first, as many as
- * ABBE_SCENE_MAX_LIGHTS has room for; out->environment_lights says how many. Spectra are over
- * [min_nm, max_nm]. A scene without an environment is copied as it is. ABBE_NO_MEMORY, and errors of
- * abbe_upsampling_make. */
+/* A copy of the scene that owns nothing of it but its array of lights and its soft light: after the
+ * scene's own come at most `count` of its environment, none where nothing stands out, named
+ * "environment 1" and so on, brightest first, as many as ABBE_SCENE_MAX_LIGHTS has room for;
+ * out->environment_lights says how many. Spectra are over [min_nm, max_nm]. A scene without an
+ * environment is copied as it is. ABBE_NO_MEMORY, and errors of abbe_upsampling_make. */
 abbe_result abbe_environment_lights_add(const abbe_scene *scene, size_t count, double min_nm,
                                         double max_nm, abbe_scene *out, abbe_error *error);
 /* Frees such a copy; the scene stays. */

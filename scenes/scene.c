@@ -40,7 +40,8 @@ void abbe_scene_free(abbe_scene *scene) {
 }
 
 const abbe_illuminant *abbe_scene_illuminant(const abbe_scene *scene) {
-  return scene->light_count > 0 ? &scene->light[0].illuminant : &scene->environment->illuminant;
+  const bool own = scene->light_count > scene->environment_lights;
+  return own ? &scene->light[0].illuminant : &scene->environment->illuminant;
 }
 
 /* The path of that index in a list of them, or NULL. */

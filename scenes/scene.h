@@ -13,6 +13,7 @@
 #include "colorimetry/illuminant.h"
 #include "colorimetry/image/image.h"
 #include "scenes/environment/environment.h"
+#include "scenes/environment/irradiance_map.h"
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/convex.h"
 #include "spectral/materials/material_table.h"
@@ -106,6 +107,8 @@ typedef struct abbe_scene {
   abbe_light *light;
   size_t environment_lights; /* so many at the end of light[] stand for the environment
                                 (environment_lights.h); 0 in a scene as it is loaded */
+  abbe_irradiance_map *soft_light; /* what they leave of it, as irradiance without shadows, in its
+                                      RGB; NULL in a scene as it is loaded */
   abbe_environment *environment; /* owned; NULL: dark surroundings */
   size_t object_count;
   abbe_object *object;

@@ -41,7 +41,7 @@ static const struct argp_option options[] = {
     {"adaptive", OPTION_ADAPTIVE, "N", 0,
      "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis 1)", 1},
     {"environment-lights", OPTION_ENVIRONMENT_LIGHTS, "N", 0,
-     "directional lights that stand for an environment on receivers and through refractors, 1 to 16 "
+     "directional lights that stand for what stands out of an environment, at most so many, 1 to 16 "
      "(4)",
      1},
     {"model", OPTION_MODEL, "NAME", 0,

@@ -45,6 +45,9 @@
 /* Samples of receivers that take more rays. */
 #define BINDING_ADAPTIVE_SAMPLES 27
 
+/* Irradiance by normal of what an environment's lights leave of it. */
+#define BINDING_SOFT_LIGHT 28
+
 /* A list that becomes the size of a dispatch. */
 #define BINDING_DISPATCH 26
 

@@ -14,7 +14,8 @@ abbe_result abbe_light_layers_make(const abbe_photon_lights *views,
                                    const abbe_refractor_faces *faces, abbe_light_layers *out,
                                    abbe_error *error) {
   abbe_gpu *gpu = views->scene->gpu;
-  const size_t lights = views->scene->plan->light_view_count;
+  const size_t views_there = views->scene->plan->light_view_count;
+  const size_t lights = views_there > 0 ? views_there : 1; /* no array is empty */
   const size_t side = side_for(views->scene->plan->desc.photons);
   out->views = views;
   out->faces = faces;

@@ -241,8 +241,9 @@ abbe_result abbe_receiver_atlas_keep(abbe_receiver_atlas *atlas, abbe_shader_var
 }
 
 size_t abbe_receiver_atlas_layers(const abbe_receiver_atlas *atlas) {
-  size_t layers = atlas->views->scene->plan->light_view_count;
-  for (size_t i = 0, lights = layers; i < lights; i++)
+  const size_t lights = atlas->views->scene->plan->light_view_count;
+  size_t layers = lights > 0 ? lights : 1;
+  for (size_t i = 0; i < lights; i++)
     if (atlas->tiles[i].count > 0) layers++;
   return layers;
 }

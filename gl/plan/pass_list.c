@@ -35,14 +35,18 @@ static void list_environment(const abbe_scene *scene, abbe_plan *plan) {
   double kept = 0;
   for (size_t i = 0; i < scene->environment_lights; i++)
     kept += scene->light[scene->light_count - 1 - i].power;
-  if (plan->surrounded)
-    abbe_plan_add(
-        plan, ABBE_CHOICE_ENVIRONMENT,
-        "the camera sees it whole; %zu directional lights shine %.0f %% of it on receivers "
-        "and through refractors, with sharp shadows",
-        scene->environment_lights, 100 * kept / scene->environment->luminance);
-  else
+  if (!plan->surrounded)
     abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT, "none");
+  else if (scene->environment_lights == 0)
+    abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT,
+                  "the camera sees it whole; nothing in it stands out, so it lights receivers "
+                  "without shadows or caustics: where it is alike all around, clear objects and "
+                  "mirrors change nothing outside");
+  else
+    abbe_plan_add(plan, ABBE_CHOICE_ENVIRONMENT,
+                  "the camera sees it whole; %zu directional lights, sharp, stand for the %.0f %% "
+                  "that stand out of it; the rest lights receivers without shadows or caustics",
+                  scene->environment_lights, 100 * kept / scene->environment->luminance);
 }
 
 /* What a view draws of refractors for their back; `unmet`: why it draws none. */

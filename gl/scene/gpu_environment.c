@@ -22,28 +22,30 @@ static abbe_result find_colours(const abbe_illuminant *illuminant, abbe_rgb_spac
   return ABBE_OK;
 }
 
-abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_environment *environment,
-                                      abbe_rgb_space space, double min_nm, double max_nm,
-                                      GLuint *texture, abbe_error *error) {
-  *texture = 0;
-  if (environment == NULL) return ABBE_OK;
-  const abbe_gl *gl = gpu->gl;
-  const abbe_radiance_map *map = &environment->map;
-  double matrix[9];
-  abbe_result result = find_colours(&environment->illuminant, space, min_nm, max_nm, matrix, error);
-  if (result == ABBE_OK)
-    result =
-        abbe_gpu_make_texture(gpu, GL_RGBA32F, map->width, map->height, 0, true, texture, error);
-  if (result != ABBE_OK) return result;
-  float *texel = malloc(map->width * map->height * 4 * sizeof *texel);
-  if (texel == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment");
-  for (size_t i = 0; i < map->width * map->height; i++) {
-    double rgb[3] = {(double)map->rgb[3 * i], (double)map->rgb[3 * i + 1],
-                     (double)map->rgb[3 * i + 2]};
-    abbe_rgb_space_apply(matrix, rgb, rgb);
-    abbe_float4_store(rgb, 1, texel + 4 * i);
+/* Of `count` colours, with alpha 1. */
+static float *convert(const double matrix[9], const float *rgb, size_t count, abbe_error *error) {
+  float *out = malloc(count * 4 * sizeof *out);
+  if (out == NULL) {
+    abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment");
+    return NULL;
   }
-  gl->BindTexture(GL_TEXTURE_2D, *texture);
+  for (size_t i = 0; i < count; i++) {
+    double colour[3] = {(double)rgb[3 * i], (double)rgb[3 * i + 1], (double)rgb[3 * i + 2]};
+    abbe_rgb_space_apply(matrix, colour, colour);
+    abbe_float4_store(colour, 1, out + 4 * i);
+  }
+  return out;
+}
+
+static abbe_result make_texture(abbe_gpu *gpu, const abbe_radiance_map *map, const double matrix[9],
+                                GLuint *out, abbe_error *error) {
+  const abbe_gl *gl = gpu->gl;
+  abbe_result result =
+      abbe_gpu_make_texture(gpu, GL_RGBA32F, map->width, map->height, 0, true, out, error);
+  if (result != ABBE_OK) return result;
+  float *texel = convert(matrix, map->rgb, map->width * map->height, error);
+  if (texel == NULL) return ABBE_NO_MEMORY;
+  gl->BindTexture(GL_TEXTURE_2D, *out);
   gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
   gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)map->width, (GLsizei)map->height, GL_RGBA,
                     GL_FLOAT, texel);
@@ -51,18 +53,49 @@ abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_environment *env
   return abbe_gl_check(gl, "the upload of the environment", error);
 }
 
-void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_environment *environment, GLuint texture,
+static abbe_result make_soft_light(abbe_gpu *gpu, const abbe_irradiance_map *map,
+                                   const double matrix[9], GLuint *out, abbe_error *error) {
+  enum { NODES = ABBE_IRRADIANCE_MAP_ROWS * ABBE_IRRADIANCE_MAP_COLUMNS };
+  float *node = convert(matrix, &map->rgb[0][0][0], NODES, error);
+  if (node == NULL) return ABBE_NO_MEMORY;
+  const abbe_result result = abbe_gpu_make_buffer(gpu, NODES * 4 * sizeof *node, node, out, error);
+  free(node);
+  return result;
+}
+
+abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,
+                                      double min_nm, double max_nm, abbe_gpu_environment *out,
+                                      abbe_error *error) {
+  *out = (abbe_gpu_environment){0};
+  const abbe_environment *e = scene->environment;
+  if (e == NULL) return ABBE_OK;
+  double matrix[9];
+  abbe_result result = find_colours(&e->illuminant, space, min_nm, max_nm, matrix, error);
+  if (result == ABBE_OK) result = make_texture(gpu, &e->map, matrix, &out->texture, error);
+  if (result == ABBE_OK && scene->soft_light != NULL)
+    result = make_soft_light(gpu, scene->soft_light, matrix, &out->soft_light, error);
+  return result;
+}
+
+void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment) {
+  abbe_gpu_drop_textures(gpu, 1, &environment->texture);
+  abbe_gpu_drop_buffers(gpu, 1, &environment->soft_light);
+}
+
+void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_scene *scene,
+                              const abbe_gpu_environment *environment, double unit,
                               GLuint program) {
-  if (texture == 0) return;
+  if (environment->texture == 0) return;
   const abbe_gl *gl = gpu->gl;
-  const double *m = environment->to_map;
+  const double *m = scene->environment->to_map;
   float matrix[9];
   for (int row = 0; row < 3; row++)
     for (int column = 0; column < 3; column++)
       matrix[3 * column + row] = (float)m[3 * row + column];
+  abbe_gpu_set_float(gpu, program, "environment_scale", 1 / unit);
   const GLint at = gl->GetUniformLocation(program, "environment_from_world");
   if (at < 0) return;
   gl->UniformMatrix3fv(at, 1, GL_FALSE, matrix);
   gl->ActiveTexture(GL_TEXTURE0 + UNIT_ENVIRONMENT);
-  gl->BindTexture(GL_TEXTURE_2D, texture);
+  gl->BindTexture(GL_TEXTURE_2D, environment->texture);
 }

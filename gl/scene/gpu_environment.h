@@ -1,21 +1,28 @@
-/* gpu_environment.h: what is around a scene, on the device: a texture by longitude and latitude.
- * Internal to gl/.
+/* gpu_environment.h: what is around a scene, on the device: a texture by longitude and latitude, and
+ * irradiance by normal of what the scene's lights leave of it. Internal to gl/.
  */
 #ifndef ABBE_GL_SCENE_GPU_ENVIRONMENT_H
 #define ABBE_GL_SCENE_GPU_ENVIRONMENT_H
 
 #include "colorimetry/rgb_space.h"
 #include "gl/device/gpu.h"
-#include "scenes/environment/environment.h"
+#include "scenes/scene.h"
 
-/* Radiance over [min_nm, max_nm] in `space`; 0 in *texture where environment is NULL. ABBE_GL,
- * ABBE_NO_MEMORY, errors of abbe_upsampling_make. */
-abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_environment *environment,
-                                      abbe_rgb_space space, double min_nm, double max_nm,
-                                      GLuint *texture, abbe_error *error);
+typedef struct abbe_gpu_environment {
+  GLuint texture;    /* W/(m2 sr); 0: there is none */
+  GLuint soft_light; /* W/m2, by the nodes of an abbe_irradiance_map */
+} abbe_gpu_environment;
 
-/* Into the program that is in use, where it asks for it. */
-void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_environment *environment, GLuint texture,
-                              GLuint program);
+/* Of a scene with lights for its environment (environment_lights.h), over [min_nm, max_nm], in
+ * `space`; zeros where the scene has none. ABBE_GL, ABBE_NO_MEMORY, errors of
+ * abbe_upsampling_make. */
+abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,
+                                      double min_nm, double max_nm, abbe_gpu_environment *out,
+                                      abbe_error *error);
+void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment);
+
+/* Into the program that is in use, where it asks for it. `unit`: W in one of the scene's lights. */
+void abbe_gpu_environment_set(abbe_gpu *gpu, const abbe_scene *scene,
+                              const abbe_gpu_environment *environment, double unit, GLuint program);
 
 #endif

@@ -2,7 +2,6 @@
 
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
-#include "gl/scene/gpu_environment.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>
@@ -176,9 +175,9 @@ static abbe_result upload_surfaces(abbe_gpu_scene *scene, abbe_error *error) {
                                   surface, &scene->surfaces, error);
   free(surface);
   if (result != ABBE_OK) return result;
-  return abbe_gpu_environment_make(scene->gpu, scene->local->environment,
-                                   abbe_gpu_scene_working_space(scene), scene->plan->desc.min_nm,
-                                   scene->plan->desc.max_nm, &scene->environment, error);
+  return abbe_gpu_environment_make(scene->gpu, scene->local, abbe_gpu_scene_working_space(scene),
+                                   scene->plan->desc.min_nm, scene->plan->desc.max_nm,
+                                   &scene->environment, error);
 }
 
 static void measure_scene(abbe_gpu_scene *scene) {
@@ -200,10 +199,12 @@ static void store_matrix(const double matrix[9], float out[9]) {
       out[3 * column + row] = (float)matrix[3 * row + column];
 }
 
-void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                          const abbe_map_layout *map_layout, abbe_gpu_scene *out) {
+void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, double unit,
+                          const abbe_plan *plan, const abbe_map_layout *map_layout,
+                          abbe_gpu_scene *out) {
   out->gpu = gpu;
   out->local = local;
+  out->unit = unit;
   out->plan = plan;
   out->map_layout = map_layout;
   out->band_levels = 1;
@@ -263,7 +264,7 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
   if (parts & ABBE_SCENE_SURFACES) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->surfaces);
     abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
-    abbe_gpu_drop_textures(scene->gpu, 1, &scene->environment);
+    abbe_gpu_environment_free(scene->gpu, &scene->environment);
   }
   if (parts & ABBE_SCENE_SPECTRA) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->spectra);
@@ -279,7 +280,8 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
   } tables[] = {{BINDING_REFRACTORS, scene->refractors}, {BINDING_PLANES, scene->planes},
                 {BINDING_RECEIVERS, scene->receivers},   {BINDING_SURFACES, scene->surfaces},
                 {BINDING_SPECTRA, scene->spectra},       {BINDING_BANDS, scene->bands},
-                {BINDING_SHADOW_PLANES, scene->shadows}};
+                {BINDING_SHADOW_PLANES, scene->shadows},
+                {BINDING_SOFT_LIGHT, scene->environment.soft_light}};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
     if (tables[i].buffer == 0) continue;
     /* As blocks and as storage: the shaders choose by size. */
@@ -308,5 +310,5 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
                 (float)scene->refractor_centre[0], (float)scene->refractor_centre[1],
                 (float)scene->refractor_centre[2], (float)scene->refractor_radius);
   abbe_gpu_set_float(scene->gpu, program, "scene_size", scene->size);
-  abbe_gpu_environment_set(scene->gpu, scene->local->environment, scene->environment, program);
+  abbe_gpu_environment_set(scene->gpu, scene->local, &scene->environment, scene->unit, program);
 }

@@ -6,6 +6,7 @@
 
 #include "gl/device/gpu.h"
 #include "gl/plan/plan.h"
+#include "gl/scene/gpu_environment.h"
 #include "gl/scene/receiver_charts.h"
 #include "gl/scene/spectra/spectral_tables.h"
 #include "scenes/scene.h"
@@ -31,6 +32,7 @@ typedef union abbe_gpu_shadow_row {
 typedef struct abbe_gpu_scene {
   abbe_gpu *gpu;
   const abbe_scene *local; /* whose coordinates all below are in */
+  double unit;             /* its lights are in so many W; the environment is in W */
   const abbe_plan *plan;
   const abbe_map_layout *map_layout; /* the plan's, in these coordinates; NULL: none is given */
   abbe_receiver_charts charts;       /* where the plan has tiles */
@@ -45,7 +47,7 @@ typedef struct abbe_gpu_scene {
   size_t mesh_bytes; /* of their vertices and faces */
   GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
   GLuint surface_texture;
-  GLuint environment; /* texture of what is around it all, by longitude and latitude; 0: nothing */
+  abbe_gpu_environment environment;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
 
   GLuint bvh[3], bvh_texture[3]; /* nodes, triangles, corners; 0: no model needs them */
@@ -66,8 +68,9 @@ enum {
 };
 
 /* Of this scene and plan from now on: measures them, makes nothing. */
-void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, const abbe_plan *plan,
-                          const abbe_map_layout *map_layout, abbe_gpu_scene *out);
+void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, double unit,
+                          const abbe_plan *plan, const abbe_map_layout *map_layout,
+                          abbe_gpu_scene *out);
 /* Parts that are not there, or that were freed. Errors as of abbe_renderer_make. */
 abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_error *error);
 void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts);

@@ -82,7 +82,7 @@ static abbe_result fill_mirror(const abbe_gpu_scene *scene, size_t refractor, gp
   abbe_weights_range light;
   abbe_result result =
       of != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for bands");
-  abbe_weights_range_make(&scene->local->light[0].illuminant, w->edge_nm[0], w->edge_nm[count],
+  abbe_weights_range_make(abbe_scene_illuminant(scene->local), w->edge_nm[0], w->edge_nm[count],
                           &light);
   for (size_t i = 0; i < count && result == ABBE_OK; i++)
     result = abbe_mirror_band_make(&scene->local->object[scene->plan->refractor_object[refractor]],

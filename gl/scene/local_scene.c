@@ -113,7 +113,9 @@ abbe_result abbe_local_scene_repeat_lights(abbe_local_scene *local, const size_t
 abbe_result abbe_local_scene_scale_light(abbe_local_scene *local, abbe_error *error) {
   ABBE_REQUIRE(local && local->scene, error);
   static const double faint = 0x1p-40, bright = 0x1p40;
-  double most = fmax(local->scene->ambient, local->scene->background);
+  const abbe_scene *scene = local->scene;
+  double most = fmax(scene->ambient, scene->background);
+  if (scene->environment != NULL) most = fmax(most, scene->environment->luminance);
   for (size_t i = 0; i < local->scene->light_count; i++)
     most = fmax(most, local->scene->light[i].power);
   if (!(most > 0) || (most >= faint && most <= bright)) return ABBE_OK;

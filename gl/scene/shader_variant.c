@@ -28,7 +28,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .receiver_shadows = p->receiver_shadows,
       .absorbing = p->absorbing,
       .textured = p->textured,
-      .environment = scene->environment != 0,
+      .environment = scene->environment.texture != 0,
       .caustics = p->caustics,
       .walk = p->multi_refractor_paths,
       .mirrors = p->mirror_count > 0,
@@ -115,6 +115,10 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ABSORBING", v->absorbing);
   print_flag(to, "TEXTURED", v->textured);
   print_flag(to, "ENVIRONMENT", v->environment);
+  if (v->environment) {
+    print_count(to, "SOFT_ROWS", ABBE_IRRADIANCE_MAP_ROWS);
+    print_count(to, "SOFT_COLUMNS", ABBE_IRRADIANCE_MAP_COLUMNS);
+  }
   print_flag(to, "CAUSTICS", v->caustics);
   print_flag(to, "WALK", v->walk);
   print_flag(to, "MIRRORS", v->mirrors);

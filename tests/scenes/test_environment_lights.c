@@ -1,4 +1,4 @@
-/* Directional lights in place of an environment: what they keep of it. */
+/* Directional lights in place of an environment, and the soft light that is left. */
 #include "tests/scenes/scene_text.h"
 
 #include "scenes/environment_lights.h"
@@ -22,14 +22,6 @@ static void drop(abbe_scene *scene, abbe_scene *lit) {
   abbe_scene_free(scene);
 }
 
-/* Light sums: irradiance on a plane of normal n that every one of them is before. */
-static double shine(const abbe_scene *lit, const double n[3]) {
-  double sum = 0;
-  for (size_t i = 0; i < lit->light_count; i++)
-    sum -= lit->light[i].power * abbe_vector_dot(lit->light[i].direction, n);
-  return sum;
-}
-
 static void one_softbox_is_one_light(void **state) {
   (void)state;
   abbe_scene scene, lit;
@@ -45,40 +37,77 @@ static void one_softbox_is_one_light(void **state) {
   drop(&scene, &lit);
 }
 
-/* However many there are, they shine on a plane as the environment does, if all are before it. */
-static void a_floor_has_its_irradiance(void **state) {
+#define STUDIO                                                                                     \
+  "{dome: cos, rotate: 40, uniform: 0.1, softboxes: [{elevation: 30, width: 40, height: 20, "      \
+  "radiance: 5}, {elevation: 70, azimuth: 130, radius: 5, radiance: [90, 70, 50]}, {elevation: "   \
+  "-20, azimuth: 200, radius: 2, radiance: 400}]}"
+
+/* However many there are, lights and soft light shine on any open plane as the environment does. */
+static void every_open_plane_has_its_irradiance(void **state) {
   (void)state;
-  static const double up[3] = {0, 0, 1};
-  for (size_t count = 1; count <= 16; count++) {
+  for (size_t count = 1; count <= 16; count *= 4) {
     abbe_scene scene, lit;
-    double rgb[3];
-    add("{dome: cos, rotate: 40, softboxes: [{elevation: 30, width: 40, height: 20, radiance: 5}, "
-        "{elevation: 70, azimuth: 130, radius: 5, radiance: 20}]}",
-        count, &scene, &lit);
-    assert_true(lit.light_count >= 1 && lit.light_count <= count);
-    abbe_environment_irradiance(scene.environment, up, rgb);
-    assert_near(shine(&lit, up) / rgb[1], 1, 5e-3);
+    add(STUDIO, count, &scene, &lit);
+    assert_true(lit.light_count <= count);
+    double most[3], n[3] = {0, 0, 1};
+    abbe_environment_irradiance(scene.environment, n, most);
+    for (int i = 0; i < 12; i++) {
+      double soft[3], rgb[3], all = 0;
+      for (int k = 0; k < 3; k++) n[k] = sin(7.1 * i + 3 * k + 1);
+      abbe_vector_normalise(n);
+      abbe_environment_irradiance(scene.environment, n, rgb);
+      abbe_irradiance_map_at(lit.soft_light, n, soft);
+      for (size_t k = 0; k < lit.light_count; k++)
+        all += fmax(-abbe_vector_dot(lit.light[k].direction, n), 0) * lit.light[k].power;
+      double left = 0, right = 0;
+      static const double luminance[3] = {0.2126390058715104, 0.7151686787677559,
+                                          0.0721923153607337};
+      for (int k = 0; k < 3; k++) left += luminance[k] * soft[k];
+      for (int k = 0; k < 3; k++) right += luminance[k] * rgb[k];
+      assert_near((all + left) / most[1], right / most[1], 1e-2);
+    }
     for (size_t i = 1; i < lit.light_count; i++)
       assert_true(lit.light[i].power <= lit.light[i - 1].power);
     drop(&scene, &lit);
   }
 }
 
-/* The more, the less is left out. */
-static void more_lights_keep_more(void **state) {
+/* Small lamps are lights, and each its own; what is wide is left. */
+static void only_lamps_become_lights(void **state) {
   (void)state;
-  double before = 0;
-  for (size_t count = 1; count <= 16; count *= 2) {
+  abbe_scene scene, lit;
+  add(STUDIO, 8, &scene, &lit);
+  assert_int_equal(lit.light_count, 2);
+  assert_near(lit.light[0].direction[2], -sin(70 * PI / 180), 2e-3);
+  assert_near(lit.light[1].direction[2], sin(20 * PI / 180), 2e-3);
+  drop(&scene, &lit);
+}
+
+/* Nothing stands out. */
+static void smooth_surroundings_need_no_light(void **state) {
+  (void)state;
+  static const char *const smooth[] = {"{uniform: 1}", "{dome: cos}", "{dome: iso}"};
+  for (int i = 0; i < 3; i++) {
     abbe_scene scene, lit;
-    double kept = 0;
-    add("{uniform: 1}", count, &scene, &lit);
-    for (size_t i = 0; i < lit.light_count; i++) kept += lit.light[i].power;
-    kept /= scene.environment->luminance;
-    assert_true(kept > before - 1e-9 && kept <= 1 + 1e-9);
-    before = kept;
+    double up[3], rgb[3];
+    add(smooth[i], 16, &scene, &lit);
+    assert_int_equal(lit.light_count, 0);
+    abbe_environment_irradiance(scene.environment, (const double[3]){0, 0, 1}, up);
+    abbe_irradiance_map_at(lit.soft_light, (const double[3]){0, 0, 1}, rgb);
+    for (int k = 0; k < 3; k++) assert_near(rgb[k] / up[k], 1, 2e-3);
     drop(&scene, &lit);
   }
-  assert_true(before > 0.85);
+}
+
+/* A sun in a sky is one light with the sun's own irradiance. */
+static void the_sun_stands_out_of_its_sky(void **state) {
+  (void)state;
+  abbe_scene scene, lit;
+  add("{uniform: 0.5, softboxes: [{elevation: 45, azimuth: 30, radius: 0.5, radiance: 4000}]}", 4,
+      &scene, &lit);
+  assert_int_equal(lit.light_count, 1);
+  assert_near(lit.light[0].power / (PI * 4000 * pow(sin(0.5 * PI / 180), 2)), 1, 2e-3);
+  drop(&scene, &lit);
 }
 
 static void colours_are_the_lights_own(void **state) {
@@ -116,7 +145,12 @@ static void a_lamp_at_the_zenith_is_no_brighter(void **state) {
 static void own_lights_stay_and_leave_room(void **state) {
   (void)state;
   abbe_scene scene, lit;
-  load_text(CAMERA POINT_LIGHT FLOOR "environment: {uniform: 1}\n", &scene);
+  char text[4096] = CAMERA POINT_LIGHT FLOOR "environment: {softboxes: [";
+  for (int i = 0; i < 20; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "{elevation: 20, azimuth: %d, radius: 2, radiance: 9},", 18 * i);
+  strcat(text, "]}\n");
+  load_text(text, &scene);
   assert_int_equal(abbe_environment_lights_add(&scene, 99, 380, 780, &lit, NULL), ABBE_OK);
   assert_int_equal(lit.light_count, ABBE_SCENE_MAX_LIGHTS);
   assert_int_equal(lit.environment_lights, ABBE_SCENE_MAX_LIGHTS - 1);
@@ -132,8 +166,10 @@ static void own_lights_stay_and_leave_room(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(one_softbox_is_one_light),
-                                     cmocka_unit_test(a_floor_has_its_irradiance),
-                                     cmocka_unit_test(more_lights_keep_more),
+                                     cmocka_unit_test(every_open_plane_has_its_irradiance),
+                                     cmocka_unit_test(only_lamps_become_lights),
+                                     cmocka_unit_test(smooth_surroundings_need_no_light),
+                                     cmocka_unit_test(the_sun_stands_out_of_its_sky),
                                      cmocka_unit_test(colours_are_the_lights_own),
                                      cmocka_unit_test(a_lamp_at_the_zenith_is_no_brighter),
                                      cmocka_unit_test(own_lights_stay_and_leave_room)};

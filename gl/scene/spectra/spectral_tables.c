@@ -43,7 +43,7 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
     const abbe_object *object = &scene->object[plan->refractor_object[i]];
     if (plan->mirror[i]) {
       abbe_weights_range light;
-      abbe_weights_range_make(&scene->light[0].illuminant, t->all.edge_nm[0], t->all.edge_nm[n],
+      abbe_weights_range_make(abbe_scene_illuminant(scene), t->all.edge_nm[0], t->all.edge_nm[n],
                               &light);
       abbe_result result =
           abbe_mirror_nodes_fill(object, &t->all, &light, t->mirror + i * n, error);
@@ -146,7 +146,7 @@ abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *
   while (t->steps > 2 && t->steps * t->coarse.count > MOST_SUMS) t->steps /= 2;
   if (result == ABBE_OK) result = evaluate_materials(scene, plan, t, error);
   if (result == ABBE_OK)
-    result = abbe_weights_make(&t->all, &scene->light[0].illuminant, ABBE_RGB_SPACE_XYZ, &t->camera,
+    result = abbe_weights_make(&t->all, abbe_scene_illuminant(scene), ABBE_RGB_SPACE_XYZ, &t->camera,
                                error);
   if (result != ABBE_OK || !plan->caustics || abbe_profile_is_thesis(desc->profile)) return result;
   result = weigh_lights(scene, plan, t, error);

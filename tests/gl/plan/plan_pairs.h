@@ -389,8 +389,8 @@ static const pair pairs[] = {
      {.environment_lights = 1},
      {RUNS_OF(CHOICE_LIGHT_MAP, "environment 1", "the light may meet a refractor"),
       RUNS(CHOICE_ENVIRONMENT,
-           "the camera sees it whole; 1 directional lights shine 100 % of it on receivers and "
-           "through refractors, with sharp shadows"),
+           "the camera sees it whole; 1 directional lights, sharp, stand for the 100 % that stand "
+           "out of it; the rest lights receivers without shadows or caustics"),
       END}},
     {"an eye that looks past the refractor",
      ball,
