@@ -160,9 +160,10 @@ static abbe_result plan_scene(const abbe_scene *scene, const abbe_render_desc *d
                               abbe_scene *surrounded, abbe_plan *plan, abbe_error *error) {
   *surrounded = (abbe_scene){0};
   abbe_result result = ABBE_OK;
-  if (scene->environment != NULL) result = abbe_plan_surround(scene, desc, surrounded, error);
+  const bool other = abbe_plan_surrounds(scene);
+  if (other) result = abbe_plan_surround(scene, desc, surrounded, error);
   if (result != ABBE_OK) return result;
-  result = abbe_plan_make(scene->environment != NULL ? surrounded : scene, desc, plan, error);
+  result = abbe_plan_make(other ? surrounded : scene, desc, plan, error);
   if (result != ABBE_OK) abbe_environment_lights_drop(surrounded);
   return result;
 }
@@ -176,7 +177,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   if (result != ABBE_OK) return result;
   abbe_environment_lights_drop(&r->surrounded);
   r->surrounded = surrounded;
-  if (scene->environment != NULL) scene = &r->surrounded;
+  if (r->surrounded.light != NULL) scene = &r->surrounded;
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
   if (abbe_profile_is_thesis(plan.desc.profile) && parts != 0)

@@ -49,6 +49,8 @@ typedef struct abbe_light {
   double direction[3]; /* spot, directional: unit, the way the light travels; disk: unit, the normal
                           of the side that shines */
   double radius;       /* disk, m */
+  size_t points;       /* disk: of so many that stand for it (area_lights.h), with power in W/sr; 0
+                          where it is whole, as in a scene as it is loaded */
   double cone_rad;     /* spot: half angle beyond which there is no light */
   double soft_rad; /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
   double power;    /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over

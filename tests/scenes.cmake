@@ -2,7 +2,7 @@ foreach(name transform disjoint_sets vector
         mesh mesh_fix mesh_repair mesh_charts topology shells
         convex shape brilliant
         scene object_file object_motion object_surface scene_file mesh_import mesh_files ply_strips
-        alias_table environment environment_file environment_lights environment_picture environment_source irradiance_map
+        alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
         radiance_map sky
         view map_layout map_resample pov_file)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)

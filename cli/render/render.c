@@ -277,6 +277,7 @@ static const char *renderers_own(const request *q) {
          : d->upsample > 0                    ? "--upsample"
          : d->adaptive > 0                    ? "--adaptive"
          : d->environment_lights > 0          ? "--environment-lights"
+         : d->light_points > 0                ? "--light-points"
          : d->exits > 0                       ? "--exits"
          : d->energy_share > 0                ? "--share"
          : d->fill != ABBE_FILL_AUTO          ? "--fill"

@@ -17,6 +17,7 @@ enum {
   OPTION_UPSAMPLE,
   OPTION_ADAPTIVE,
   OPTION_ENVIRONMENT_LIGHTS,
+  OPTION_LIGHT_POINTS,
   OPTION_MODEL,
   OPTION_FILL,
   OPTION_SHARE,
@@ -40,6 +41,8 @@ static const struct argp_option options[] = {
      "or a sample for N x N pixels, 1 to 4, and between samples: a draft (1)", 1},
     {"adaptive", OPTION_ADAPTIVE, "N", 0,
      "N x N rays, 1 to 8, for a sample of a receiver where its light bends (4; thesis 1)", 1},
+    {"light-points", OPTION_LIGHT_POINTS, "N", 0,
+     "points that stand for a light with a size, 1 to 16 in all (8)", 1},
     {"environment-lights", OPTION_ENVIRONMENT_LIGHTS, "N", 0,
      "directional lights that stand for what stands out of an environment, at most so many, 1 to 16 "
      "(4)",
@@ -102,6 +105,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_ENVIRONMENT_LIGHTS:
     d->environment_lights = abbe_command_count(p, "--environment-lights", text, 1,
                                                ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS);
+    return 0;
+  case OPTION_LIGHT_POINTS:
+    d->light_points =
+        abbe_command_count(p, "--light-points", text, 1, ABBE_RENDER_MAX_LIGHT_POINTS);
     return 0;
   case OPTION_MODEL:
     d->model = (abbe_model)abbe_command_choice(p, "--model", text, models, ABBE_MODEL_COUNT);

@@ -137,7 +137,7 @@ abbe_result abbe_cell_fit_run(abbe_trace_pass *trace, abbe_photon_lights *views,
                     .stride = trace->hits.stride,
                     .slot = slot,
                     .cells = {view->cells[0], view->cells[1]}};
-    choose_cells(&b, plan->desc.photons, view->cells);
+    choose_cells(&b, abbe_photon_lights_photons(views->scene, light), view->cells);
   }
   free(hit);
   free(path);

@@ -112,12 +112,18 @@ static void fit_face(const abbe_photon_lights *views, size_t light, abbe_view *v
   view->near = fmax(fmin(near, 0.5 * view->far), 1e-4 * view->far);
 }
 
+size_t abbe_photon_lights_photons(const abbe_gpu_scene *scene, size_t light) {
+  const size_t all = scene->plan->desc.photons, points = scene->local->light[light].points;
+  const size_t side = (size_t)ceil((double)all / sqrt((double)(points > 0 ? points : 1)));
+  return side > 0 ? side : 1;
+}
+
 /* Tight around the refractors for the photons; around all receivers for the map, which is fitted
  * to the photons' hits later where the request does not give it. */
 static void fit_views(abbe_photon_lights *views) {
   for (size_t i = 0; i < views->scene->plan->light_view_count; i++) {
     abbe_photon_light *state = &views->light[i];
-    state->cells[0] = state->cells[1] = views->scene->plan->desc.photons;
+    state->cells[0] = state->cells[1] = abbe_photon_lights_photons(views->scene, i);
     abbe_photon_light_look(views->scene, i, &state->near_view);
     if (views->scene->plan->refractor_count > 0)
       fit_objects(views, views->scene->plan->refractor_object, views->scene->plan->refractor_count,

@@ -38,6 +38,9 @@ abbe_result abbe_photon_lights_make(const abbe_gpu_scene *scene, abbe_photon_lig
 void abbe_photon_lights_free(abbe_photon_lights *views);
 /* Writes the tables anew: after any change of a view, of cells or of what is reached. */
 void abbe_photon_lights_upload(abbe_photon_lights *views);
+/* Cells a side, at most: the plan's, or so many fewer that all points of a light with a size have as
+ * many together. */
+size_t abbe_photon_lights_photons(const abbe_gpu_scene *scene, size_t light);
 void abbe_photon_lights_bind(const abbe_photon_lights *views);
 
 /* From the light to the refractors, or through its face of the cube; no window is set. */

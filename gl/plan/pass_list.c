@@ -31,6 +31,19 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
                     : "the lights' maps hold all receivers");
 }
 
+static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
+  const abbe_light *disk = NULL;
+  for (size_t i = 0; i < scene->light_count && disk == NULL; i++)
+    if (scene->light[i].kind == ABBE_LIGHT_DISK) disk = &scene->light[i];
+  if (disk == NULL)
+    abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE, "none");
+  else
+    abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE,
+                  "a disk, '%.40s' first: %zu points stand for each, with as many sharp shadows; the "
+                  "camera does not see it",
+                  disk->name, disk->points);
+}
+
 static void list_environment(const abbe_scene *scene, abbe_plan *plan) {
   double kept = 0;
   for (size_t i = 0; i < scene->environment_lights; i++)
@@ -144,5 +157,6 @@ void abbe_pass_list_add(const abbe_scene *scene, abbe_plan *plan) {
   list_light(plan);
   list_absorption(plan);
   list_eye(plan);
+  list_sizes(scene, plan);
   list_environment(scene, plan);
 }

@@ -9,6 +9,7 @@
 #include "gl/plan/no_culling.h"
 #include "gl/plan/pass_list.h"
 #include "gl/plan/support.h"
+#include "scenes/area_lights.h"
 #include "scenes/environment_lights.h"
 
 #include <stdlib.h>
@@ -45,8 +46,9 @@ static void combine(abbe_plan *plan) {
 static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
                              abbe_error *error) {
   out->surrounded = scene->environment != NULL;
-  abbe_result result = abbe_support_lights(scene, error);
-  if (result == ABBE_OK) result = abbe_support_mirrors(scene, out, error);
+  for (size_t i = 0; i < scene->light_count; i++)
+    out->sized_lights = out->sized_lights || scene->light[i].kind == ABBE_LIGHT_DISK;
+  abbe_result result = abbe_support_mirrors(scene, out, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
@@ -70,6 +72,10 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   return ABBE_OK;
 }
 
+bool abbe_plan_surrounds(const abbe_scene *scene) {
+  return (scene->environment != NULL && scene->soft_light == NULL) || abbe_area_lights_any(scene);
+}
+
 abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *desc,
                                abbe_scene *out, abbe_error *error) {
   ABBE_REQUIRE(scene && out, error);
@@ -77,7 +83,15 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
   abbe_result result =
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &d, error);
   if (result != ABBE_OK) return result;
-  return abbe_environment_lights_add(scene, d.environment_lights, d.min_nm, d.max_nm, out, error);
+  const size_t others = scene->environment != NULL ? d.environment_lights : 0;
+  abbe_scene pointed;
+  result = abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed,
+                                error);
+  if (result != ABBE_OK) return result;
+  result = abbe_environment_lights_add(&pointed, d.environment_lights, d.min_nm, d.max_nm, out,
+                                       error);
+  free(pointed.light);
+  return result;
 }
 
 abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
@@ -87,8 +101,7 @@ abbe_result abbe_plan_make(const abbe_scene *scene, const abbe_render_desc *desc
   abbe_result result =
       abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height, &out->desc, error);
   if (result != ABBE_OK) return result;
-  if (scene->environment == NULL || scene->environment_lights > 0)
-    return make_plan(scene, desc, out, error);
+  if (!abbe_plan_surrounds(scene)) return make_plan(scene, desc, out, error);
   abbe_scene surrounded;
   result = abbe_plan_surround(scene, desc, &surrounded, error);
   if (result != ABBE_OK) return result;

@@ -8,6 +8,17 @@ abbe_result abbe_support_thesis(const abbe_scene *scene, const abbe_plan *plan, 
   if (scene->environment != NULL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the thesis profile knows no environment; this scene has one");
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    if (light->kind != ABBE_LIGHT_DISK) continue;
+    const double area = 3.14159265358979323846 * light->radius * light->radius;
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "the light '%s' is a disk, and the thesis profile's lights have no size; take the default "
+        "profile, trace the scene, or make it a point or spot light of %.6g W/sr, which is what it "
+        "sends along its normal",
+        light->name, light->points > 0 ? light->power * (double)light->points : light->power * area);
+  }
   if (scene->light_count != 1)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the thesis profile knows one light; this scene has %zu",
@@ -61,20 +72,6 @@ abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, 
   return abbe_map_layout_check(layout, error);
 }
 
-abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error) {
-  ABBE_REQUIRE(scene, error);
-  for (size_t i = 0; i < scene->light_count; i++) {
-    const abbe_light *light = &scene->light[i];
-    if (light->kind != ABBE_LIGHT_DISK) continue;
-    double area = 3.14159265358979323846 * light->radius * light->radius;
-    return abbe_error_set(error, ABBE_UNSUPPORTED,
-                          "the light '%s' is a disk, and the renderer's lights have no size; trace "
-                          "the scene, or make it a point or spot light of %.6g W/sr, which is what "
-                          "it sends along its normal",
-                          light->name, light->power * area);
-  }
-  return ABBE_OK;
-}
 
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
                                  abbe_error *error) {

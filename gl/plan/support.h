@@ -13,9 +13,6 @@
 extern "C" {
 #endif
 
-/* ABBE_UNSUPPORTED for an environment and for a light that has a size. */
-abbe_result abbe_support_lights(const abbe_scene *scene, abbe_error *error);
-
 /* ABBE_UNSUPPORTED for a mirror where the thesis profile or the model 'layers' is asked for. */
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 

@@ -81,6 +81,7 @@ typedef struct abbe_plan {
   bool outside_map_view;     /* some receiver lies beyond a light's map view */
   bool receiver_shadows;     /* some receiver may hide another from a light */
   bool surrounded;           /* an environment is around the scene */
+  bool sized_lights; /* points stand for a light with a size */
 
   /* The scene's lights, and after them the views that cubes have more than one of. */
   size_t light_view_count;

@@ -37,6 +37,7 @@ static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   if (d->upsample == 0) d->upsample = 1;
   if (d->supersample == 0) d->supersample = thesis || d->upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
   if (d->environment_lights == 0) d->environment_lights = ABBE_PLAN_ENVIRONMENT_LIGHTS;
+  if (d->light_points == 0) d->light_points = ABBE_PLAN_LIGHT_POINTS;
   if (d->adaptive == 0) d->adaptive = thesis ? 1 : ABBE_PLAN_ADAPTIVE;
   if (d->fill == ABBE_FILL_AUTO) d->fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
   if (d->energy_share == 0) d->energy_share = ABBE_PLAN_SHARE;
@@ -55,6 +56,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the upsampling", d->upsample, 1, 4},
       {"the number of the environment's lights", d->environment_lights, 1,
        ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS},
+      {"the number of a light's points", d->light_points, 1, ABBE_RENDER_MAX_LIGHT_POINTS},
       {"the adaptive sampling", d->adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE},
       /* 0: the scene tells */
       {"the number of wavelengths", d->wavelengths, 0,

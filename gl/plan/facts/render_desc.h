@@ -55,6 +55,7 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_EXITS 32
 #define ABBE_RENDER_MAX_ADAPTIVE 8 /* a side */
 #define ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS 16
+#define ABBE_RENDER_MAX_LIGHT_POINTS 16
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
@@ -66,6 +67,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 #define ABBE_PLAN_SAMPLES 2
 #define ABBE_PLAN_ADAPTIVE 4
 #define ABBE_PLAN_ENVIRONMENT_LIGHTS 4
+#define ABBE_PLAN_LIGHT_POINTS 8
 /* Exits that are followed at the most, and the share of its light below which a path ends, where
  * the request leaves them open. */
 #define ABBE_PLAN_EXITS 8
@@ -95,6 +97,7 @@ typedef struct abbe_render_desc {
   size_t adaptive;
   /* lights that stand for an environment on receivers and through refractors, 1 to 16; 0: 4 */
   size_t environment_lights;
+  size_t light_points; /* that stand for a light with a size, 1 to 16; 0: 8 */
   abbe_fill fill;
   abbe_model model;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too

@@ -1,0 +1,67 @@
+#include "scenes/area_lights.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double PI = 3.14159265358979323846;
+
+static bool has_size(const abbe_light *light) {
+  return light->kind == ABBE_LIGHT_DISK && light->points == 0;
+}
+
+bool abbe_area_lights_any(const abbe_scene *scene) {
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (has_size(&scene->light[i])) return true;
+  return false;
+}
+
+/* Two unit vectors across n and each other. */
+static void across(const double n[3], double s[3], double t[3]) {
+  const double z[3] = {0, 0, 1}, x[3] = {1, 0, 0};
+  abbe_vector_cross(fabs(n[2]) < 0.9 ? z : x, n, s);
+  abbe_vector_normalise(s);
+  abbe_vector_cross(n, s, t);
+}
+
+/* Rings of equal area, a point each, the golden angle apart [Vogel1979]. */
+static void put_point(const abbe_light *disk, size_t index, size_t points, abbe_light *out) {
+  const double golden = PI * (3 - sqrt(5));
+  const double share = ((double)index + 0.5) / (double)points;
+  const double r = points > 1 ? disk->radius * sqrt(share) : 0, angle = golden * (double)index;
+  double s[3], t[3];
+  across(disk->direction, s, t);
+  *out = *disk;
+  for (int k = 0; k < 3; k++)
+    out->position[k] += r * (cos(angle) * s[k] + sin(angle) * t[k]);
+  out->power = disk->power * PI * disk->radius * disk->radius / (double)points;
+  out->points = points;
+}
+
+abbe_result abbe_area_lights_add(const abbe_scene *scene, size_t points, size_t room,
+                                 abbe_scene *out, abbe_error *error) {
+  ABBE_REQUIRE(scene && out && points > 0, error);
+  size_t disks = 0, count = 0;
+  for (size_t i = 0; i < scene->light_count; i++) disks += has_size(&scene->light[i]);
+  const size_t others = scene->light_count - disks;
+  if (disks > 0 && others + disks * points > room) {
+    points = room > others ? (room - others) / disks : 1;
+    if (points == 0) points = 1;
+  }
+  *out = *scene;
+  out->light = calloc(others + disks * points + 1, sizeof *out->light);
+  if (out->light == NULL) {
+    *out = (abbe_scene){0};
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for lights with a size");
+  }
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const abbe_light *light = &scene->light[i];
+    if (!has_size(light))
+      out->light[count++] = *light;
+    else
+      for (size_t k = 0; k < points; k++) put_point(light, k, points, &out->light[count++]);
+  }
+  out->light_count = count;
+  return ABBE_OK;
+}
