@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -33,8 +34,8 @@ static void put_point(const abbe_light *disk, size_t index, size_t points, abbe_
   double s[3], t[3];
   across(disk->direction, s, t);
   *out = *disk;
-  for (int k = 0; k < 3; k++)
-    out->position[k] += r * (cos(angle) * s[k] + sin(angle) * t[k]);
+  memcpy(out->centre, disk->position, sizeof out->centre);
+  for (int k = 0; k < 3; k++) out->position[k] += r * (cos(angle) * s[k] + sin(angle) * t[k]);
   out->power = disk->power * PI * disk->radius * disk->radius / (double)points;
   out->points = points;
 }

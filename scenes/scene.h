@@ -51,6 +51,7 @@ typedef struct abbe_light {
   double radius;       /* disk, m */
   size_t points;       /* disk: of so many that stand for it (area_lights.h), with power in W/sr; 0
                           where it is whole, as in a scene as it is loaded */
+  double centre[3];    /* of the disk that the points stand for */
   double cone_rad;     /* spot: half angle beyond which there is no light */
   double soft_rad; /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
   double power;    /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over

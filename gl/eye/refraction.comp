@@ -85,12 +85,42 @@ View camera_view() {
   return View(eye_view[0], eye_view[1], eye_view[2], eye_view[3], eye_view[4], eye_view[5]);
 }
 
+#ifdef DISKS
+uniform vec4 disk_place[DISKS];   // centre, radius
+uniform vec3 disk_facing[DISKS];  // unit normal of the side that shines
+uniform vec3 disk_radiance[DISKS];
+
+// Whether the ray from p meets a disk light before t_max, and what it shows: nothing from behind.
+bool disk_seen(vec3 p, vec3 d, float t_min, float t_max, out vec3 radiance) {
+  bool seen = false;
+  radiance = vec3(0);
+  for (int i = 0; i < DISKS; i++) {
+    float facing = dot(d, disk_facing[i]);
+    vec3 to = disk_place[i].xyz - p;
+    float t = dot(to, disk_facing[i]) / (facing == 0.0 ? 1e-30 : facing);
+    vec3 off = t * d - to;
+    bool here = t > t_min && t < t_max && dot(off, off) <= disk_place[i].w * disk_place[i].w;
+    seen = seen || here;
+    t_max = here ? t : t_max;
+    radiance = here ? (facing < 0.0 ? disk_radiance[i] : vec3(0)) : radiance;
+  }
+  return seen;
+}
+#endif
+
 // Radiance along the ray from p, refractors taken away, of a receiver no farther than t_max; met:
 // there is one.
 vec3 seen(vec3 p, vec3 d, float t_min, float t_max, out bool met) {
   float t;
   Sighting at;
   met = receiver_seen(p, d, t_min, t_max, t, at);
+#ifdef DISKS
+  vec3 lamp;
+  if (disk_seen(p, d, t_min, met ? t : t_max, lamp)) {
+    met = true;
+    return lamp;
+  }
+#endif
   if (!met) return surroundings(d);
   Shading s = shade(at.p, at.n, at.surface, at.uv, at.side);
   return s.direct + s.caustic + s.fill;

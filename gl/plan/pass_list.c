@@ -40,7 +40,7 @@ static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
   else
     abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE,
                   "a disk, '%.40s' first: %zu points stand for each, with as many sharp shadows; the "
-                  "camera does not see it",
+                  "camera sees it in refractors alone",
                   disk->name, disk->points);
 }
 

@@ -65,7 +65,10 @@ static abbe_result move_scene(const abbe_scene *scene, abbe_local_scene *out, ab
     whole = move_object(out->origin, &copy->object[i]);
   }
   if (!whole) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to move the scene");
-  for (size_t i = 0; i < scene->light_count; i++) move(out->origin, copy->light[i].position);
+  for (size_t i = 0; i < scene->light_count; i++) {
+    move(out->origin, copy->light[i].position);
+    move(out->origin, copy->light[i].centre);
+  }
   move(out->origin, copy->camera.eye);
   move(out->origin, copy->camera.target);
   return ABBE_OK;

@@ -93,6 +93,7 @@ typedef struct pair {
       RUNS(PASS_EYE_ADAPTIVE, "4 x 4 rays for a sample of a receiver where its light bends"),      \
       RUNS(PASS_EYE_REFRACTION, "until less than 0.001 of its light is left, 256 exits at most"),  \
       RUNS(PASS_EYE_PICTURE, "2 x 2 samples a pixel"), RESTS(CHOICE_TEXTURES, "none"),                 \
+      RESTS(CHOICE_LIGHT_SIZE, "none"),                                                            \
       RESTS(CHOICE_ENVIRONMENT, "none"),
 
 #define UNLIT                                                                                      \
@@ -382,6 +383,8 @@ static const pair pairs[] = {
      CAMERA POINT_LIGHT WOOD BALL("crown"),
      {0},
      {RUNS(CHOICE_TEXTURES, "a receiver has one"), END}},
+    {"a light with a size", ball, CAMERA DISK_LIGHT FLOOR BALL("crown"), {.light_points = 1},
+     {RUNS(CHOICE_LIGHT_SIZE, LAMP_HAS_SIZE), END}},
     {"an environment",
      ball,
      CAMERA POINT_LIGHT FLOOR BALL("crown") "environment: {softboxes: [{elevation: 90, radius: 3, "

@@ -77,6 +77,13 @@ static inline line *put(lines *l, row_kind kind, abbe_plan_item item) {
   return added;
 }
 
+#define DISK_LIGHT                                                                                 \
+  "lights:\n- {name: lamp, kind: disk, position: [0.05, 0.03, 0.6], target: [0, 0, 0], radius: "   \
+  "0.05, radiance: 100}\n"
+#define LAMP_HAS_SIZE                                                                              \
+  "a disk, 'lamp' first: 1 points stand for each, with as many sharp shadows; the camera sees it " \
+  "in refractors alone"
+
 /* The renderer gives an environment lights of its own, after the scene's. */
 static inline const char *light_name(const abbe_scene *scene, size_t light) {
   return light < scene->light_count ? scene->light[light].name : "environment 1";

@@ -5,8 +5,9 @@
 
 #include <math.h>
 
-static void a_disk_is_refused_by_name(void **state) {
+static void the_thesis_refuses_disks(void **state) {
   (void)state;
+  const abbe_render_desc thesis = {.profile = ABBE_PROFILE_THESIS};
   abbe_scene scene;
   abbe_plan plan;
   abbe_error error = {0};
@@ -17,7 +18,7 @@ static void a_disk_is_refused_by_name(void **state) {
   assert_near(scene.light[0].radius, 0.1, 0);
   assert_near(scene.light[0].power, 100, 0);
   assert_near(scene.light[0].direction[2], -1, 0);
-  assert_int_equal(abbe_plan_make(&scene, NULL, &plan, &error), ABBE_UNSUPPORTED);
+  assert_int_equal(abbe_plan_make(&scene, &thesis, &plan, &error), ABBE_UNSUPPORTED);
   assert_contains(error.text, "'panel' is a disk");
   assert_contains(error.text, "trace the scene");
   assert_contains(error.text, "of 3.14159 W/sr"); /* 100 pi 0.1^2 */
@@ -86,7 +87,7 @@ static void a_map_layout_belongs_to_its_light(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_disk_is_refused_by_name),
+      cmocka_unit_test(the_thesis_refuses_disks),
       cmocka_unit_test(mirrors_are_refused_by_name_where_none_are_followed),
       cmocka_unit_test(mirrors_are_followed_among_so_many),
       cmocka_unit_test(a_map_layout_belongs_to_its_light),

@@ -1,0 +1,81 @@
+/* Points in place of lights that have a size: their light and their places. */
+#include "tests/scenes/scene_text.h"
+
+#include "scenes/area_lights.h"
+#include "scenes/geometry/vector.h"
+
+static const double PI = 3.14159265358979;
+
+#define DISK                                                                                       \
+  "lights:\n- {name: panel, kind: disk, position: [0, 0, 0.5], direction: [0, 0, -1], radius: "    \
+  "0.2, radiance: 3}\n"
+
+static void one_point_is_the_middle(void **state) {
+  (void)state;
+  abbe_scene scene, lit;
+  load_text(CAMERA DISK FLOOR, &scene);
+  assert_true(abbe_area_lights_any(&scene));
+  assert_int_equal(abbe_area_lights_add(&scene, 1, ABBE_SCENE_MAX_LIGHTS, &lit, NULL), ABBE_OK);
+  assert_false(abbe_area_lights_any(&lit));
+  assert_int_equal(lit.light_count, 1);
+  assert_near(lit.light[0].power, 3 * PI * 0.04, 1e-12);
+  assert_memory_equal(lit.light[0].position, scene.light[0].position, sizeof(double[3]));
+  free(lit.light);
+  abbe_scene_free(&scene);
+}
+
+/* Irradiance below its middle is pi L R^2 / (R^2 + h^2); on the floor beside it the points' means
+ * come nearer to it the more there are. */
+static void points_shine_as_the_disk(void **state) {
+  (void)state;
+  static const double within[] = {0.2, 0.05, 0.02};
+  for (int i = 0; i < 3; i++) {
+    const size_t points = (size_t)1 << 2 * i;
+    abbe_scene scene, lit;
+    double sum = 0;
+    load_text(CAMERA DISK FLOOR, &scene);
+    assert_int_equal(abbe_area_lights_add(&scene, points, ABBE_SCENE_MAX_LIGHTS, &lit, NULL),
+                     ABBE_OK);
+    assert_int_equal(lit.light_count, points);
+    for (size_t k = 0; k < points; k++) {
+      double away[3];
+      for (int axis = 0; axis < 3; axis++) away[axis] = -lit.light[k].position[axis];
+      const double distance = abbe_vector_length(away);
+      abbe_vector_normalise(away);
+      sum += lit.light[k].power * abbe_light_profile(&lit.light[k], away) * -away[2] /
+             (distance * distance);
+      assert_near(lit.light[k].position[2], 0.5, 1e-12);
+      assert_true(hypot(lit.light[k].position[0], lit.light[k].position[1]) < 0.2);
+    }
+    assert_near(sum / (PI * 3 * 0.04 / (0.04 + 0.25)), 1, within[i]);
+    free(lit.light);
+    abbe_scene_free(&scene);
+  }
+}
+
+static void others_stay_and_room_is_kept(void **state) {
+  (void)state;
+  abbe_scene scene, lit;
+  load_text(CAMERA DISK
+            "- {name: second, kind: disk, position: [1, 0, 0.5], direction: [0, 0, -1], "
+            "radius: 0.2, radiance: 3}\n"
+            "- {name: lamp, kind: point, position: [0, 1, 0.5], intensity: 1}\n" FLOOR,
+            &scene);
+  assert_int_equal(abbe_area_lights_add(&scene, 16, 12, &lit, NULL), ABBE_OK);
+  assert_int_equal(lit.light_count, 11);
+  assert_int_equal(lit.light[0].points, 5);
+  assert_string_equal(lit.light[10].name, "lamp");
+  assert_near(lit.light[10].power, 1, 0);
+  free(lit.light);
+  assert_int_equal(abbe_area_lights_add(&scene, 16, 1, &lit, NULL), ABBE_OK);
+  assert_int_equal(lit.light_count, 3);
+  free(lit.light);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(one_point_is_the_middle),
+                                     cmocka_unit_test(points_shine_as_the_disk),
+                                     cmocka_unit_test(others_stay_and_room_is_kept)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
