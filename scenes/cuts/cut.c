@@ -1,0 +1,119 @@
+#include "scenes/cuts/cut.h"
+
+#include "scenes/geometry/vector.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+void abbe_cut_free(abbe_cut *cut) {
+  if (!cut) return;
+  for (int i = 0; i < ABBE_CUT_LINES; i++) {
+    free(cut->heading[i]);
+    free(cut->footnote[i]);
+  }
+  for (size_t i = 0; i < cut->tier_count; i++) free(cut->tier[i].instruction);
+  for (size_t i = 0; i < cut->facet_count; i++) free(cut->facet[i].name);
+  free(cut->tier);
+  free(cut->facet);
+  memset(cut, 0, sizeof *cut);
+}
+
+/* Room for one more than count, doubled as it fills; NULL without memory. */
+static void *grow(void *list, size_t count, size_t size) {
+  const bool full = (count & (count - 1)) == 0;
+  return full ? realloc(list, (count > 0 ? 2 * count : 1) * size) : list;
+}
+
+abbe_result abbe_cut_add_tier(abbe_cut *cut, double angle_deg, double distance, abbe_error *error) {
+  ABBE_REQUIRE(cut, error);
+  abbe_cut_tier *tier = grow(cut->tier, cut->tier_count, sizeof *tier);
+  if (!tier) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a tier");
+  cut->tier = tier;
+  tier[cut->tier_count++] =
+      (abbe_cut_tier){.angle_deg = angle_deg, .distance = distance, .first = cut->facet_count};
+  return ABBE_OK;
+}
+
+abbe_result abbe_cut_add_facet(abbe_cut *cut, double index, abbe_error *error) {
+  ABBE_REQUIRE(cut, error);
+  if (cut->tier_count == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a facet needs a tier before it");
+  if (cut->facet_count == ABBE_CUT_MAX_FACETS)
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "more than %d facets; no stone has so many",
+                          ABBE_CUT_MAX_FACETS);
+  abbe_cut_facet *facet = grow(cut->facet, cut->facet_count, sizeof *facet);
+  if (!facet) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a facet");
+  cut->facet = facet;
+  facet[cut->facet_count++] = (abbe_cut_facet){.index = index, .tier = cut->tier_count - 1};
+  cut->tier[cut->tier_count - 1].count++;
+  return ABBE_OK;
+}
+
+void abbe_cut_place(abbe_cut *cut) {
+  for (size_t i = 0; i < cut->facet_count; i++) {
+    abbe_cut_facet *f = &cut->facet[i];
+    const abbe_cut_tier *tier = &cut->tier[f->tier];
+    const double angle = fabs(tier->angle_deg) * PI / 180;
+    const double turn = 2 * PI * (f->index - cut->offset) / cut->gear;
+    const double side = fabs(tier->angle_deg) == 90 ? 1 : sin(angle);
+    const double up = fabs(tier->angle_deg) == 90 ? 0 : cos(angle);
+    f->n[0] = side * sin(turn);
+    f->n[1] = side * cos(turn);
+    f->n[2] = signbit(tier->angle_deg) ? -up : up;
+    f->d = tier->distance;
+  }
+}
+
+double abbe_cut_angle(const double n[3]) {
+  const double angle = atan2(hypot(n[0], n[1]), fabs(n[2])) * 180 / PI;
+  return signbit(n[2]) ? -angle : angle;
+}
+
+double abbe_cut_index(const abbe_cut *cut, const double n[3]) {
+  const double teeth = abs(cut->gear), whole = 1e-6, level = 1e-12;
+  if (hypot(n[0], n[1]) <= level * fabs(n[2])) return cut->offset;
+  double index = cut->offset + atan2(n[0], n[1]) * cut->gear / (2 * PI);
+  if (fabs(index - round(index)) <= whole) index = round(index);
+  index = fmod(index, teeth);
+  return index > 0 ? index : index + teeth;
+}
+
+const char *abbe_cut_facet_name(const abbe_cut *cut, size_t facet) {
+  for (size_t i = facet + 1; i-- > cut->tier[cut->facet[facet].tier].first;)
+    if (cut->facet[i].name) return cut->facet[i].name;
+  return "";
+}
+
+bool abbe_cut_facet_is_girdle(const abbe_cut_facet *facet) {
+  return fabs(facet->n[2]) < sin(ABBE_CUT_GIRDLE_DEG * PI / 180);
+}
+
+static abbe_result check_facet(const abbe_cut *cut, size_t i, abbe_error *error) {
+  const abbe_cut_facet *f = &cut->facet[i];
+  const double rounding = 1e-9;
+  if (!(f->d >= 1 / ABBE_CUT_FAR && f->d <= ABBE_CUT_FAR))
+    return abbe_error_set(error, ABBE_SCHEMA,
+                          "facet %zu lies %g from the centre; it must be above 0, from %g to %g",
+                          i + 1, f->d, 1 / ABBE_CUT_FAR, ABBE_CUT_FAR);
+  if (!isfinite(f->index) || !(fabs(abbe_vector_length(f->n) - 1) < rounding))
+    return abbe_error_set(error, ABBE_SCHEMA, "facet %zu faces no direction", i + 1);
+  return ABBE_OK;
+}
+
+abbe_result abbe_cut_check(const abbe_cut *cut, abbe_error *error) {
+  ABBE_REQUIRE(cut, error);
+  if (cut->gear == 0 || abs(cut->gear) > ABBE_CUT_MAX_GEAR || !isfinite(cut->offset))
+    return abbe_error_set(error, ABBE_SCHEMA, "a gear has 1 to %d teeth, and this one %d",
+                          ABBE_CUT_MAX_GEAR, cut->gear);
+  if (cut->facet_count < 4)
+    return abbe_error_set(error, ABBE_SCHEMA, "%zu facets enclose nothing; a stone has at least 4",
+                          cut->facet_count);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < cut->facet_count && result == ABBE_OK; i++)
+    result = check_facet(cut, i, error);
+  return result;
+}

@@ -1,0 +1,101 @@
+#include "scenes/cuts/cut.h"
+
+#include "tests/scenes/cuts/designs.h"
+
+#include <stdlib.h>
+
+static void directions_are_those_of_the_gear(void **state) {
+  (void)state;
+  abbe_cut cut = {.gear = 96};
+  assert_int_equal(abbe_cut_add_tier(&cut, 45, 2, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_add_facet(&cut, 96, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_add_facet(&cut, 24, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_add_tier(&cut, -30, 1, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_add_facet(&cut, 24, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_add_tier(&cut, -0.0, 1, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_add_facet(&cut, 24, NULL), ABBE_OK);
+  abbe_cut_place(&cut);
+  const double expected[4][4] = {{0, sqrt(0.5), sqrt(0.5), 2},
+                                 {sqrt(0.5), 0, sqrt(0.5), 2},
+                                 {0.5, 0, -sqrt(0.75), 1},
+                                 {0, 0, -1, 1}};
+  for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < 3; k++) assert_near(cut.facet[i].n[k], expected[i][k], 1e-15);
+    assert_near(cut.facet[i].d, expected[i][3], 0);
+  }
+  cut.gear = -96;
+  cut.offset = 48;
+  abbe_cut_place(&cut);
+  assert_near(cut.facet[0].n[1], -sqrt(0.5), 1e-15);
+  assert_near(cut.facet[1].n[0], sqrt(0.5), 1e-15);
+  assert_int_equal(abbe_cut_check(&cut, NULL), ABBE_OK);
+  abbe_cut_free(&cut);
+}
+
+static void angles_and_indices_come_back_from_planes(void **state) {
+  (void)state;
+  const char *const designs[] = {design_a, design_b, design_c, design_d};
+  for (size_t i = 0; i < sizeof designs / sizeof *designs; i++) {
+    abbe_cut cut = design_parse(designs[i]);
+    for (size_t f = 0; f < cut.facet_count; f++) {
+      const abbe_cut_facet *facet = &cut.facet[f];
+      const double angle = cut.tier[facet->tier].angle_deg;
+      assert_near(abbe_cut_angle(facet->n), angle, 1e-12);
+      assert_int_equal(!signbit(abbe_cut_angle(facet->n)), !signbit(angle));
+      const double index = angle == 0 ? cut.offset : facet->index;
+      assert_near(abbe_cut_index(&cut, facet->n), index, 1e-9);
+    }
+    abbe_cut_free(&cut);
+  }
+}
+
+static void names_go_on_within_a_tier(void **state) {
+  (void)state;
+  abbe_cut cut = design_parse(design_d);
+  assert_string_equal(abbe_cut_facet_name(&cut, 0), "87");
+  assert_string_equal(abbe_cut_facet_name(&cut, 1), "87");
+  assert_string_equal(abbe_cut_facet_name(&cut, 2), "G");
+  assert_string_equal(abbe_cut_facet_name(&cut, 5), "G2");
+  assert_true(abbe_cut_facet_is_girdle(&cut.facet[5]));
+  assert_false(abbe_cut_facet_is_girdle(&cut.facet[6]));
+  abbe_cut_free(&cut);
+  cut = design_parse(design_c);
+  assert_string_equal(abbe_cut_facet_name(&cut, 20), "");
+  abbe_cut_free(&cut);
+}
+
+static void what_no_stone_has_is_refused(void **state) {
+  (void)state;
+  abbe_cut cut = {.gear = 96};
+  abbe_error error;
+  assert_int_equal(abbe_cut_add_facet(&cut, 1, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_cut_check(&cut, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "at least 4");
+  assert_int_equal(abbe_cut_add_tier(&cut, 45, 2, NULL), ABBE_OK);
+  for (size_t i = 0; i < ABBE_CUT_MAX_FACETS; i++)
+    assert_int_equal(abbe_cut_add_facet(&cut, 1, &error), ABBE_OK);
+  assert_int_equal(abbe_cut_add_facet(&cut, 1, &error), ABBE_UNSUPPORTED);
+  abbe_cut_place(&cut);
+  assert_int_equal(abbe_cut_check(&cut, &error), ABBE_OK);
+  cut.facet[7].n[0] = NAN;
+  assert_int_equal(abbe_cut_check(&cut, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "facet 8 faces no direction");
+  abbe_cut_place(&cut);
+  cut.facet[8].d = INFINITY;
+  assert_int_equal(abbe_cut_check(&cut, &error), ABBE_SCHEMA);
+  cut.facet[8].d = 1;
+  cut.gear = 0;
+  assert_int_equal(abbe_cut_check(&cut, &error), ABBE_SCHEMA);
+  assert_contains(error.text, "teeth");
+  abbe_cut_free(&cut);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(directions_are_those_of_the_gear),
+      cmocka_unit_test(angles_and_indices_come_back_from_planes),
+      cmocka_unit_test(names_go_on_within_a_tier),
+      cmocka_unit_test(what_no_stone_has_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
