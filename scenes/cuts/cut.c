@@ -75,15 +75,18 @@ double abbe_cut_angle(const double n[3]) {
 
 double abbe_cut_index(const abbe_cut *cut, const double n[3]) {
   const double teeth = abs(cut->gear), whole = 1e-6, level = 1e-12;
-  if (hypot(n[0], n[1]) <= level * fabs(n[2])) return cut->offset;
-  double index = cut->offset + atan2(n[0], n[1]) * cut->gear / (2 * PI);
+  const bool flat = hypot(n[0], n[1]) <= level * fabs(n[2]);
+  double index = cut->offset + (flat ? 0 : atan2(n[0], n[1]) * cut->gear / (2 * PI));
   if (fabs(index - round(index)) <= whole) index = round(index);
   index = fmod(index, teeth);
   return index > 0 ? index : index + teeth;
 }
 
 const char *abbe_cut_facet_name(const abbe_cut *cut, size_t facet) {
-  for (size_t i = facet + 1; i-- > cut->tier[cut->facet[facet].tier].first;)
+  const abbe_cut_tier *tier = &cut->tier[cut->facet[facet].tier];
+  for (size_t i = facet + 1; i-- > tier->first;)
+    if (cut->facet[i].name) return cut->facet[i].name;
+  for (size_t i = facet + 1; i < tier->first + tier->count; i++)
     if (cut->facet[i].name) return cut->facet[i].name;
   return "";
 }

@@ -29,7 +29,7 @@ typedef struct abbe_cut_facet {
   double n[3], d; /* n . x <= d, unit n, d above 0 */
   double index;   /* of the gear, as it is read; it may have a fraction */
   size_t tier;
-  char *name; /* or NULL: the last before it in its tier goes on (abbe_cut_facet_name) */
+  char *name; /* or NULL: it shares that of another of its tier (abbe_cut_facet_name) */
 } abbe_cut_facet;
 
 typedef struct abbe_cut_tier {
@@ -65,11 +65,12 @@ void abbe_cut_place(abbe_cut *cut);
 
 /* Of the unit normal: the angle in degrees as cutters say it; -0 where it points straight down. */
 double abbe_cut_angle(const double n[3]);
-/* The index at the unit normal's azimuth, above 0 to the gear's teeth; the offset where it points
+/* The index at the unit normal's azimuth, above 0 to the gear's teeth; the offset's where it points
  * up or down. Within 1e-6 of a whole number it is that. */
 double abbe_cut_index(const abbe_cut *cut, const double n[3]);
 
-/* Its own name or the last before it in its tier; "" where there is none. */
+/* Its own name, or the last before it in its tier, or the first behind it; "" where the tier has
+ * none. */
 const char *abbe_cut_facet_name(const abbe_cut *cut, size_t facet);
 bool abbe_cut_facet_is_girdle(const abbe_cut_facet *facet);
 

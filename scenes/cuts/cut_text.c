@@ -2,6 +2,7 @@
 
 #include "base/utf8.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* What the bytes 0x80 to 0x9f stand for; 0: nothing. */
@@ -31,4 +32,20 @@ size_t abbe_cut_text_narrow(const char *utf8, char *out, size_t size) {
   }
   out[length] = '\0';
   return length;
+}
+
+static uint32_t code_of(unsigned char byte) {
+  if (byte < 0x20 || byte == 0x7f) return ' ';
+  if (byte < 0x80 || byte > 0x9f) return byte;
+  return high[byte - 0x80] != 0 ? high[byte - 0x80] : ABBE_UTF8_REPLACEMENT;
+}
+
+char *abbe_cut_text_widen(const char *bytes, size_t size) {
+  char *text = malloc(4 * size + 1);
+  size_t length = 0;
+  if (!text) return NULL;
+  for (size_t i = 0; i < size; i++)
+    length += abbe_utf8_write(text + length, code_of((unsigned char)bytes[i]));
+  text[length] = '\0';
+  return text;
 }

@@ -42,7 +42,8 @@ static void angles_and_indices_come_back_from_planes(void **state) {
       const double angle = cut.tier[facet->tier].angle_deg;
       assert_near(abbe_cut_angle(facet->n), angle, 1e-12);
       assert_int_equal(!signbit(abbe_cut_angle(facet->n)), !signbit(angle));
-      const double index = angle == 0 ? cut.offset : facet->index;
+      const double flat = cut.offset > 0 ? cut.offset : 96;
+      const double index = angle == 0 ? flat : facet->index;
       assert_near(abbe_cut_index(&cut, facet->n), index, 1e-9);
     }
     abbe_cut_free(&cut);
@@ -61,6 +62,8 @@ static void names_go_on_within_a_tier(void **state) {
   abbe_cut_free(&cut);
   cut = design_parse(design_c);
   assert_string_equal(abbe_cut_facet_name(&cut, 20), "");
+  cut.facet[2].name = strdup("late");
+  assert_string_equal(abbe_cut_facet_name(&cut, 0), "late");
   abbe_cut_free(&cut);
 }
 

@@ -2,6 +2,9 @@
 
 #include "tests/check.h"
 
+#include <stdbool.h>
+#include <stdlib.h>
+
 static void letters_of_windows_1252_become_a_byte_each(void **state) {
   (void)state;
   char out[32];
@@ -15,7 +18,23 @@ static void letters_of_windows_1252_become_a_byte_each(void **state) {
   assert_string_equal(out, "abc");
 }
 
+static void bytes_come_back_as_letters(void **state) {
+  (void)state;
+  char bytes[256], back[256];
+  for (int i = 0; i < 255; i++) bytes[i] = (char)(i + 1);
+  char *text = abbe_cut_text_widen(bytes, 255);
+  assert_int_equal(abbe_cut_text_narrow(text, back, sizeof back), 255);
+  for (int i = 0; i < 255; i++) {
+    const unsigned char byte = (unsigned char)bytes[i];
+    const bool none = byte == 0x81 || byte == 0x8d || byte == 0x8f || byte == 0x90 || byte == 0x9d;
+    const bool control = byte < ' ' || byte == 0x7f;
+    assert_int_equal((unsigned char)back[i], none ? '?' : control ? ' ' : byte);
+  }
+  free(text);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(letters_of_windows_1252_become_a_byte_each)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(letters_of_windows_1252_become_a_byte_each),
+                                     cmocka_unit_test(bytes_come_back_as_letters)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

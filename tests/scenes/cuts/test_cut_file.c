@@ -1,0 +1,41 @@
+#include "scenes/cuts/cut_file.h"
+
+#include "base/file.h"
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static void the_ending_says_the_kind(void **state) {
+  (void)state;
+  char folder[] = "/tmp/abbe_cut_XXXXXX", path[64];
+  const char text[] = "g 96 0\na 90 1 96 24 48 72\na 0 1\na -0 1\n";
+  abbe_cut cut;
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/box.ASC", folder);
+  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_file_read(path, &cut, NULL, NULL), ABBE_OK);
+  assert_int_equal(cut.facet_count, 6);
+  abbe_cut_free(&cut);
+  unlink(path);
+  rmdir(folder);
+}
+
+static void others_are_refused(void **state) {
+  (void)state;
+  abbe_cut cut;
+  abbe_error error;
+  assert_int_equal(abbe_cut_file_read("stone.stl", &cut, NULL, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "'stone.stl' is no design");
+  assert_int_equal(abbe_cut_file_read("a.asc/stone", &cut, NULL, &error), ABBE_UNSUPPORTED);
+  assert_int_equal(abbe_cut_file_read("/nowhere/stone.gcs", &cut, NULL, &error), ABBE_IO);
+  assert_int_equal(abbe_cut_file_read("/dev/zero.gem", &cut, NULL, &error), ABBE_IO);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_ending_says_the_kind),
+      cmocka_unit_test(others_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,151 @@
+#include "scenes/cuts/cut_gcs.h"
+
+#include "scenes/cuts/cut_polyhedron.h"
+#include "tests/check.h"
+
+#include <stdlib.h>
+
+/* A pyramid: a table, four mains of 45 degrees below, cut off by four girdle facets. */
+#define HEAD                                                                                       \
+  "<GemCutStudio version=\"1000\">\n<index gear=\"80\" base=\"5\" symmetry=\"4\" mirror=\"1\"/>\n"
+#define FACETS(z, by)                                                                              \
+  "<facet nx=\"0\" ny=\"-" by "\" nz=\"" z "\" index_angle=\"0\"/>"                                \
+  "<facet nx=\"" by "\" ny=\"0\" nz=\"" z "\" index_angle=\"270\"/>"                               \
+  "<facet nx=\"0\" ny=\"" by "\" nz=\"" z "\" index_angle=\"180\"/>"                               \
+  "<facet nx=\"-" by "\" ny=\"0\" nz=\"" z "\" index_angle=\"90\"/>"
+#define TABLE                                                                                      \
+  "<tier angle=\"0\" name=\"T\"><facet nx=\"0\" ny=\"0\" nz=\"1\" index_angle=\"33\">\n"           \
+  "<vertex x=\"1\" y=\"1\" z=\"0.5\"/></facet></tier>\n"
+#define REST                                                                                       \
+  "<tier angle=\"90\" depth=\"1\" name=\"G\" instructions=\"Set&#10;size \xb0\" "                  \
+  "visible=\"true\">" FACETS(                                                                      \
+      "0", "1") "</tier>\n"                                                                        \
+                "<tier angle=\"135\" depth=\"0.8\" name=\"P1\">" FACETS(                           \
+                    "-1", "1") "</tier>\n"                                                         \
+                               "<render material=\"x\" refractive_index=\"1.76\" "                 \
+                               "dispersion=\"0.018\"><color r=\"1\"/></render>\n"                  \
+                               "<info title=\"Box &amp; point\" author=\"A\" "                     \
+                               "footer1=\"f\"/>\n</GemCutStudio>\n"
+
+static abbe_cut read(const char *text) {
+  abbe_cut cut;
+  abbe_error error = {0};
+  if (abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, NULL, &error) != ABBE_OK)
+    print_error("%s\n", error.text);
+  assert_int_equal(error.code, ABBE_OK);
+  return cut;
+}
+
+static void a_design_is_read(void **state) {
+  (void)state;
+  abbe_cut cut = read(HEAD TABLE REST);
+  abbe_cut_polyhedron p;
+  assert_int_equal(cut.gear, 80);
+  assert_near(cut.refractive_index, 1.76, 0);
+  assert_string_equal(cut.heading[0], "Box & point");
+  assert_string_equal(cut.footnote[0], "f");
+  assert_int_equal(cut.tier_count, 3);
+  assert_near(cut.tier[0].angle_deg, 0, 0);
+  assert_near(cut.tier[0].distance, 0.5, 1e-15); /* by its corner */
+  assert_near(fabs(cut.tier[1].angle_deg), 90, 1e-12);
+  assert_near(cut.tier[2].angle_deg, -45, 1e-12);
+  assert_string_equal(cut.tier[1].instruction, "Set size \xc2\xb0");
+  assert_string_equal(abbe_cut_facet_name(&cut, 8), "P1");
+  assert_near(cut.facet[5].n[1], sqrt(0.5), 1e-15); /* its index 0 is in the direction of y */
+  assert_near(cut.facet[5].index, 80, 0);
+  assert_near(cut.facet[8].index, 20, 0);
+  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
+  assert_int_equal(p.vertex_count, 9);
+  assert_int_equal(p.face_count, 9);
+  assert_near(p.min[2], -0.8 * sqrt(2), 1e-12);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+/* Facets without normals have them from the angle and their index. */
+static void a_missing_normal_is_found(void **state) {
+  (void)state;
+  abbe_cut with = read(HEAD TABLE REST);
+  abbe_cut without = read(
+      HEAD TABLE "<tier angle='90' depth='1'><facet index_angle='0'/><facet index_angle='270'/>"
+                 "<facet index_angle='180'/><facet index_angle='90'/></tier>"
+                 "<tier angle='135' depth='0.8'><facet index_angle='0'/><facet index_angle='270'/>"
+                 "<facet index_angle='180'/><facet index_angle='90'/></tier></GemCutStudio>");
+  /* below the girdle indices turn the other way: 270 is at -x */
+  const size_t other[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+  for (size_t i = 0; i < 9; i++) {
+    const size_t k = i >= 5 && i % 2 == 0            ? 14 - i
+                     : i >= 1 && i < 5 && i % 2 == 0 ? 6 - i
+                                                     : other[i];
+    for (int axis = 0; axis < 3; axis++)
+      assert_near(without.facet[i].n[axis], with.facet[k].n[axis], 1e-15);
+  }
+  abbe_cut_free(&with);
+  abbe_cut_free(&without);
+}
+
+static void refuse(const char *text, abbe_result code, const char *part) {
+  abbe_cut cut;
+  abbe_error error = {0};
+  assert_int_equal(abbe_cut_gcs_parse(text, strlen(text), "x.gcs", &cut, NULL, &error), code);
+  assert_contains(error.text, part);
+  assert_null(cut.facet);
+  assert_null(cut.tier);
+}
+
+static void bad_files_are_refused(void **state) {
+  (void)state;
+  refuse("", ABBE_PARSE, "x.gcs:1: this is no well-formed XML");
+  refuse("GemCad 5.0\n", ABBE_PARSE, "no well-formed XML");
+  refuse("<html><p>not here</p></html>", ABBE_PARSE, "begins with <html>");
+  refuse(HEAD TABLE, ABBE_PARSE, "no well-formed XML");
+  refuse(HEAD "</GemCutStudio>", ABBE_SCHEMA, "0 facets enclose nothing");
+  refuse(HEAD "<tier name='x'/></GemCutStudio>", ABBE_SCHEMA, "x.gcs:3: a tier's 'angle'");
+  refuse(HEAD "<tier angle='200'/></GemCutStudio>", ABBE_SCHEMA, "from 0 (table) to 180");
+  refuse(HEAD "<tier angle='nan'/></GemCutStudio>", ABBE_SCHEMA, "'angle' is a number, not 'nan'");
+  refuse(HEAD "<tier angle='45' depth='0'><facet index_angle='0'/></tier></GemCutStudio>",
+         ABBE_SCHEMA, "0 from the centre");
+  refuse(HEAD "<tier angle='45'><facet index_angle='0'/></tier></GemCutStudio>", ABBE_SCHEMA,
+         "without 'depth' wants facets with vertices");
+  refuse(HEAD "<tier angle='45' depth='1'><facet/></tier></GemCutStudio>", ABBE_SCHEMA,
+         "no direction");
+  refuse(HEAD
+         "<tier angle='45'><facet index_angle='0'><vertex x='1'/></facet></tier></GemCutStudio>",
+         ABBE_SCHEMA, "a 'vertex' has x, y and z");
+  refuse("<GemCutStudio><index gear='0'/></GemCutStudio>", ABBE_SCHEMA, "a gear has 1 to");
+}
+
+static void what_reaches_outside_is_refused(void **state) {
+  (void)state;
+  refuse("<!DOCTYPE GemCutStudio [<!ENTITY x SYSTEM "
+         "\"/etc/hostname\">]>\n<GemCutStudio>&x;</GemCutStudio>",
+         ABBE_PARSE, "no document type");
+  refuse("<!DOCTYPE x [<!ENTITY a \"aaaa\"><!ENTITY b "
+         "\"&a;&a;&a;\">]><GemCutStudio>&b;</GemCutStudio>",
+         ABBE_PARSE, "no document type");
+  char deep[4096] = "<GemCutStudio>";
+  for (int i = 0; i < 100; i++) strcat(deep, "<tier angle='1' depth='1'>");
+  refuse(deep, ABBE_PARSE, "nested deeper");
+}
+
+static void names_of_encodings_are_heeded(void **state) {
+  (void)state;
+  abbe_cut cut = read("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GemCutStudio>"
+                      "<info title=\"\xc3\xa9\"/><tier angle='45' depth='1'>"
+                      "<facet index_angle='0'/><facet index_angle='1'/><facet index_angle='2'/>"
+                      "<facet index_angle='3'/></tier></GemCutStudio>");
+  assert_string_equal(cut.heading[0], "\xc3\xa9");
+  assert_int_equal(cut.gear, 96);
+  abbe_cut_free(&cut);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_design_is_read),
+      cmocka_unit_test(a_missing_normal_is_found),
+      cmocka_unit_test(bad_files_are_refused),
+      cmocka_unit_test(what_reaches_outside_is_refused),
+      cmocka_unit_test(names_of_encodings_are_heeded),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
