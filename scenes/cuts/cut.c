@@ -58,7 +58,7 @@ void abbe_cut_place(abbe_cut *cut) {
     abbe_cut_facet *f = &cut->facet[i];
     const abbe_cut_tier *tier = &cut->tier[f->tier];
     const double angle = fabs(tier->angle_deg) * PI / 180;
-    const double turn = 2 * PI * (f->index - cut->offset) / cut->gear;
+    const double turn = 2 * PI * fmod(f->index - cut->offset, cut->gear) / cut->gear;
     const double side = fabs(tier->angle_deg) == 90 ? 1 : sin(angle);
     const double up = fabs(tier->angle_deg) == 90 ? 0 : cos(angle);
     f->n[0] = side * sin(turn);

@@ -253,7 +253,8 @@ static abbe_result read_substance(const abbe_object_reading *r, const abbe_mater
  * and of files that do not say, normals go by what is there. */
 static abbe_mesh_normals normals_of(const abbe_object_reading *r) {
   return r->form == ABBE_OBJECT_GEM || r->form == ABBE_OBJECT_BRILLIANT ||
-                 r->form == ABBE_OBJECT_PRISM || r->form == ABBE_OBJECT_BOX
+                 r->form == ABBE_OBJECT_PRISM || r->form == ABBE_OBJECT_BOX ||
+                 r->form == ABBE_OBJECT_CUT
              ? ABBE_NORMALS_FLAT
          : r->form == ABBE_OBJECT_SPHERE || r->form == ABBE_OBJECT_RING ? ABBE_NORMALS_SMOOTH
          : r->form == ABBE_OBJECT_MESH                                  ? r->normals

@@ -22,6 +22,7 @@ typedef enum abbe_object_form {
   ABBE_OBJECT_BOX,
   ABBE_OBJECT_RECTANGLE,
   ABBE_OBJECT_LATHE,
+  ABBE_OBJECT_CUT,
   ABBE_OBJECT_MESH
 } abbe_object_form;
 

@@ -1,15 +1,18 @@
 /* The surface of an object: one of the shapes, or the mesh of a file. */
+#include "scenes/cuts/cut_file.h"
+#include "scenes/cuts/cut_polyhedron.h"
 #include "scenes/import/object_reading.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/shapes/brilliant.h"
 #include "scenes/shapes/shape.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const char *const shape_names[] = {"sphere", "ring",      "gem",   "brilliant", "prism",
-                                          "box",    "rectangle", "lathe", NULL};
+                                          "box",    "rectangle", "lathe", "cut",       NULL};
 
 /* A length that must be there; the shape itself says that it must be above zero. */
 static abbe_result need_length(const abbe_object_reading *r, const char *key, double *out,
@@ -139,6 +142,43 @@ static abbe_result read_lathe(const abbe_object_reading *r, abbe_mesh *out, abbe
   return result;
 }
 
+/* The planes of a design as wide as it is to be: its longer side across the table's axis. */
+static abbe_result make_cut(const char *path, double width, double weld, abbe_mesh *out,
+                            abbe_error *error) {
+  abbe_cut cut = {0};
+  abbe_cut_polyhedron stone = {0};
+  abbe_result result = abbe_cut_file_read(path, &cut, NULL, error);
+  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&cut, weld, &stone, error);
+  if (result == ABBE_OK) {
+    const double own = fmax(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
+    result = abbe_cut_polyhedron_mesh(&cut, &stone, width / own, out, error);
+  }
+  abbe_cut_polyhedron_free(&stone);
+  abbe_cut_free(&cut);
+  return result;
+}
+
+static abbe_result read_cut(const abbe_object_reading *r, abbe_mesh *out, abbe_error *error) {
+  double width = 0, weld = ABBE_CUT_WELD;
+  char *name = NULL, *path = NULL;
+  abbe_yaml_node ignored;
+  abbe_result result = abbe_yaml_require(r->yaml, r->node, "file", &ignored, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_string(r->yaml, r->node, "file", &name, error);
+  if (result == ABBE_OK) result = need_length(r, "width", &width, error);
+  if (result == ABBE_OK && !(width > 0))
+    result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "width"), error,
+                            "'width' is the stone's, in metres, above 0");
+  if (result == ABBE_OK)
+    result =
+        abbe_yaml_get_number(r->yaml, r->node, "weld", 1e-12, ABBE_CUT_MOST_WELD, &weld, error);
+  if (result == ABBE_OK && (path = abbe_scene_value_path(r->folder, name)) == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  if (result == ABBE_OK) result = make_cut(path, width, weld, out, error);
+  free(path);
+  free(name);
+  return result;
+}
+
 static abbe_result read_mesh(abbe_object_reading *r, abbe_object *out, abbe_error *error) {
   const bool says = abbe_yaml_get(r->yaml, r->node, "smooth").id != 0;
   char *name = NULL;
@@ -199,6 +239,9 @@ abbe_result abbe_object_read_surface(abbe_object_reading *r, abbe_object *object
     break;
   case ABBE_OBJECT_LATHE:
     result = read_lathe(r, out, error);
+    break;
+  case ABBE_OBJECT_CUT:
+    result = read_cut(r, out, error);
     break;
   case ABBE_OBJECT_MESH:
     result = read_mesh(r, object, error);

@@ -71,15 +71,9 @@ static void a_missing_normal_is_found(void **state) {
                  "<facet index_angle='180'/><facet index_angle='90'/></tier>"
                  "<tier angle='135' depth='0.8'><facet index_angle='0'/><facet index_angle='270'/>"
                  "<facet index_angle='180'/><facet index_angle='90'/></tier></GemCutStudio>");
-  /* below the girdle indices turn the other way: 270 is at -x */
-  const size_t other[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-  for (size_t i = 0; i < 9; i++) {
-    const size_t k = i >= 5 && i % 2 == 0            ? 14 - i
-                     : i >= 1 && i < 5 && i % 2 == 0 ? 6 - i
-                                                     : other[i];
+  for (size_t i = 0; i < 9; i++)
     for (int axis = 0; axis < 3; axis++)
-      assert_near(without.facet[i].n[axis], with.facet[k].n[axis], 1e-15);
-  }
+      assert_near(without.facet[i].n[axis], with.facet[i].n[axis], 1e-15);
   abbe_cut_free(&with);
   abbe_cut_free(&without);
 }

@@ -44,6 +44,33 @@ static abbe_scene read(const char *text) {
   return scene;
 }
 
+/* Designs that ship keep their planes, and are as wide as they are asked to be. */
+static void cuts_are_solids_of_their_planes(void **state) {
+  (void)state;
+  static const struct {
+    const char *design;
+    size_t planes;
+    double height; /* of the width */
+  } cuts[] = {{"brilliant-quartz", 73, (0.980784 + 0.473982) / 2.039182},
+              {"brilliant-diamond", 73, (0.903536 + 0.349458) / 2.039182},
+              {"step-square", 21, 0}};
+  for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
+    char text[256];
+    snprintf(text, sizeof text,
+             "{shape: cut, file: ../../scenes/designs/%s.asc, width: 0.01, material: water}",
+             cuts[i].design);
+    abbe_scene scene = read(text);
+    const abbe_object *stone = &scene.object[0];
+    assert_int_equal(stone->exact.kind, ABBE_EXACT_CONVEX);
+    assert_int_equal(stone->exact.count, cuts[i].planes);
+    assert_true(fabs(fmax(stone->max[0] - stone->min[0], stone->max[1] - stone->min[1]) - 0.01) <
+                1e-12);
+    if (cuts[i].height > 0)
+      assert_true(fabs((stone->max[2] - stone->min[2]) / 0.01 - cuts[i].height) < 1e-6);
+    abbe_scene_free(&scene);
+  }
+}
+
 static void a_sphere_stays_one_under_similarities_only(void **state) {
   (void)state;
   abbe_scene scene = read("{shape: sphere, radius: 2, material: water, transform: [{scale: 0.5}, "
@@ -213,6 +240,7 @@ static void paths_follow_the_folder(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(cuts_are_solids_of_their_planes),
       cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
       cmocka_unit_test(mirrors_are_metals_or_numbers_of_any_shape),
       cmocka_unit_test(boxes_are_planes_or_parallelograms),
