@@ -6,6 +6,9 @@
 #define ASIDE                                                                                      \
   "- {name: aside, kind: spot, position: [-0.3, 0.03, 0.6], target: [-0.5, 0, 0], cone: 10, "      \
   "intensity: 1}\n"
+#define WIDE                                                                                       \
+  "- {name: wide, kind: disk, position: [0.2, 0.1, 0.6], target: [0, 0, 0], radius: 0.01, "        \
+  "radiance: 100}\n"
 #define EYE_ASIDE "materials: glass.yaml\ncamera: {eye: [0, -1, 0.5], target: [-0.6, 0, 0.05]}\n"
 
 static void draw(const abbe_scene *scene, const abbe_render_desc *desc, abbe_image *out) {
@@ -64,7 +67,8 @@ static void test_every_switch_is_on(void **state) {
   abbe_scene scene = {0};
   abbe_plan plan;
   const abbe_render_desc all = {.everything = true};
-  load_text(CAMERA POINT_LIGHT ASIDE FLOOR BALL("flat") "environment: {uniform: 0.1}\n", &scene);
+  load_text(CAMERA POINT_LIGHT ASIDE WIDE FLOOR BALL("flat") "environment: {uniform: 0.1}\n",
+            &scene);
   assert_int_equal(abbe_plan_make(&scene, &all, &plan, NULL), ABBE_OK);
   for (size_t i = 0; i < plan.entry_count; i++) {
     const abbe_plan_entry *entry = &plan.entry[i];
