@@ -31,6 +31,7 @@ foreach(name
     nl_means
     outline
     bounded_trace
+    checked_picture
     pass_error
     photon_grid
     projection_map

@@ -145,13 +145,15 @@ void abbe_preset_options_describe_picture(const abbe_picture_choice *c, double m
   if (error_met >= 0) {
     cJSON_AddNumberToObject(p, "error_met", error_met);
     cJSON_AddStringToObject(p, "error_met_is",
-                            point->tool == ABBE_PICTURE_RENDER
-                                ? "an estimate by error bars: sampling alone"
-                                : "an estimate by half of its passes");
+                            point->tool != ABBE_PICTURE_RENDER || c->traced_instead
+                                ? "an estimate by half of its passes"
+                            : c->passes > 0 ? "an estimate by traced passes"
+                                            : "an estimate by error bars: sampling alone");
   } else {
     cJSON_AddNullToObject(p, "error_met");
   }
   if (c->passes > 0) cJSON_AddNumberToObject(p, "passes", (double)c->passes);
+  if (c->passes > 0) cJSON_AddBoolToObject(p, "traced_instead", c->traced_instead);
   if (abbe_picture_choice_tells(c)) {
     cJSON_AddNumberToObject(p, "error_at_most", c->met.bound);
     if (q->max_error > 0) cJSON_AddBoolToObject(p, "error_kept", c->met.bound <= q->max_error);
@@ -184,7 +186,12 @@ void abbe_preset_options_note_traced(const abbe_picture_choice *c) {
   if (!abbe_picture_choice_tells(c)) return;
   fprintf(stderr, "note: %zu passes tell an error of about %.3g, at most %.3g", c->passes,
           c->met.estimate, c->met.bound);
-  if (c->passes > c->point->setting.passes)
+  if (c->traced_instead)
+    fprintf(stderr, ", of what they made; it is taken, for the rendered picture's is not known to "
+                    "be that small");
+  else if (c->point->tool == ABBE_PICTURE_RENDER)
+    fprintf(stderr, " of the rendered picture");
+  else if (c->passes > c->point->setting.passes)
     fprintf(stderr, "; %zu were too few for what is asked", c->point->setting.passes);
   else if (c->met.estimate > c->promised_error)
     fprintf(stderr, "; that is more than was promised, for this scene's light is of another kind");

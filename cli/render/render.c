@@ -165,9 +165,17 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
   return result;
 }
 
+/* What the renderer tells while it prepares: the bar is first, for abbe_progress_update. */
+typedef struct preparation {
+  abbe_progress bar;
+  request *request;
+} preparation;
+
 static void say_compiling(void *user) {
-  (void)user;
-  fprintf(stderr, "compiling this scene's shaders: some seconds, once on this machine\n");
+  request *q = ((preparation *)user)->request;
+  q->picture.compiled = true;
+  if (!q->quiet)
+    fprintf(stderr, "compiling this scene's shaders: some seconds, once on this machine\n");
 }
 
 static void print_notes(const abbe_scene *scene, const abbe_plan *plan) {
@@ -182,15 +190,24 @@ static void note_picture(const request *q) {
     fprintf(stderr, "note: options stand against that choice; what it promises is void\n");
 }
 
+/* Whether passes of the tracer are to tell the rendered picture's error. */
+static bool is_checked(const request *q) {
+  return q->picture.point != NULL && q->picture.request.max_error > 0;
+}
+
+static abbe_traced_picture_desc describe_traced(const request *q) {
+  const abbe_render_desc *d = &q->render.desc;
+  return (abbe_traced_picture_desc){.width = d->width,
+                                    .height = d->height,
+                                    .min_nm = d->min_nm,
+                                    .max_nm = d->max_nm,
+                                    .space = d->space,
+                                    .quiet = q->quiet};
+}
+
 /* By the tracer, where it serves the request best. */
 static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error) {
-  const abbe_render_desc *d = &q->render.desc;
-  const abbe_traced_picture_desc desc = {.width = d->width,
-                                         .height = d->height,
-                                         .min_nm = d->min_nm,
-                                         .max_nm = d->max_nm,
-                                         .space = d->space,
-                                         .quiet = q->quiet};
+  const abbe_traced_picture_desc desc = describe_traced(q);
   abbe_image image = {0};
   if (!q->quiet) abbe_scene_input_note(scene);
   if (!q->quiet) note_picture(q);
@@ -207,13 +224,31 @@ static abbe_result trace(request *q, const abbe_scene *scene, abbe_error *error)
   return result;
 }
 
-static abbe_result render(const request *q, const abbe_scene *scene, abbe_context *context,
+/* The picture becomes what the passes made where that is the one that keeps the bound. */
+static abbe_result check_rendered(request *q, const abbe_scene *scene, abbe_renderer *renderer,
+                                  abbe_image *image, abbe_error *error) {
+  abbe_image layers = {0}, traced = {0};
+  if (!is_checked(q) || !abbe_renderer_plan(renderer)->caustics) return ABBE_OK;
+  const abbe_traced_picture_desc desc = describe_traced(q);
+  abbe_result result = abbe_renderer_read(renderer, true, &layers, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_traced_picture_check(&q->picture, scene, &desc, q->may_trace, &layers, &traced, error);
+  if (result == ABBE_OK && q->picture.traced_instead) {
+    abbe_image_free(image);
+    *image = traced;
+  }
+  abbe_image_free(&layers);
+  return result;
+}
+
+static abbe_result render(request *q, const abbe_scene *scene, abbe_context *context,
                           abbe_error *error) {
   abbe_renderer *renderer = NULL;
   abbe_statistics statistics;
   abbe_image image = {0};
   abbe_error_bars bars = {0};
-  abbe_progress progress;
+  preparation preparing = {.request = q};
   abbe_render_desc desc = q->render.desc;
   if (q->map.like != NULL) {
     desc.map_layout = &q->map.layout;
@@ -221,12 +256,13 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
     if (desc.map_size == 0) desc.map_size = q->map.side;
   }
   desc.progress = abbe_progress_update;
-  desc.progress_user = &progress;
-  desc.compiling = q->quiet ? NULL : say_compiling;
-  abbe_progress_begin(&progress, "prepare", q->quiet);
+  desc.progress_user = &preparing;
+  desc.compiling = say_compiling;
+  abbe_progress_begin(&preparing.bar, "prepare", q->quiet);
   abbe_result result = abbe_renderer_make(context, scene, &desc, &renderer, error);
-  const double prepared_s = abbe_progress_seconds(&progress);
-  abbe_progress_end(&progress);
+  const double prepared_s = abbe_progress_seconds(&preparing.bar);
+  abbe_progress_end(&preparing.bar);
+  q->picture.prepared_ms = 1e3 * prepared_s;
   if (result == ABBE_OK) {
     if (!q->quiet) print_notes(scene, abbe_renderer_plan(renderer));
     if (!q->quiet) abbe_preset_options_note(&q->choice);
@@ -239,7 +275,9 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
       result = run_frames(q, renderer, &statistics, error);
   }
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->aovs, &image, error);
-  if (result == ABBE_OK) result = abbe_render_annotate(q, renderer, context, &image, error);
+  if (result == ABBE_OK) result = check_rendered(q, scene, renderer, &image, error);
+  if (result == ABBE_OK && !q->picture.traced_instead)
+    result = abbe_render_annotate(q, renderer, context, &image, error);
   if (result == ABBE_OK)
     result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, &bars,
                                      error);
@@ -248,6 +286,7 @@ static abbe_result render(const request *q, const abbe_scene *scene, abbe_contex
   if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
   if (result == ABBE_OK) result = abbe_render_write_stats(q, &statistics, &bars, context, error);
   if (result == ABBE_OK) abbe_render_summarise(q, &statistics, prepared_s);
+  if (result == ABBE_OK && !q->quiet && is_checked(q)) abbe_preset_options_note_traced(&q->picture);
   if (result == ABBE_OK && !q->quiet && !q->json) abbe_error_options_summarise(&q->errors, &bars);
   /* The picture is there; but a bound that was asked for and is not kept is told by the exit code.
    */
@@ -305,8 +344,8 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "--tool %s: %s is for the renderer alone; leave one of the two out",
                           abbe_picture_tool_name((abbe_picture_tool)o->tool), own);
-  if (own != NULL || o->tool >= 0)
-    r.tool[own != NULL ? ABBE_PICTURE_RENDER : (abbe_picture_tool)o->tool] = true;
+  q->may_trace = own == NULL && o->tool < 0;
+  if (!q->may_trace) r.tool[own != NULL ? ABBE_PICTURE_RENDER : (abbe_picture_tool)o->tool] = true;
   abbe_result result = abbe_picture_choose(&r, scene, &q->picture, error);
   if (result == ABBE_UNSUPPORTED && !o->of_picture && o->tool <= 0) {
     q->picture_note =
@@ -320,6 +359,7 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
   abbe_preset_point point = {0};
   result = abbe_sweep_setting_desc(&q->picture.point->setting, &point.desc, error);
   if (result == ABBE_OK) q->overridden = !abbe_preset_apply(&point, &q->render.desc);
+  if (is_checked(q)) q->render.desc.aovs = true; /* they tell where the caustic is */
   return result;
 }
 

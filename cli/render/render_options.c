@@ -44,7 +44,8 @@ static const struct argp_option options[] = {
     {"light-points", OPTION_LIGHT_POINTS, "N", 0,
      "points that stand for a light with a size, 1 to 16 in all (8)", 1},
     {"environment-lights", OPTION_ENVIRONMENT_LIGHTS, "N", 0,
-     "directional lights that stand for what stands out of an environment, at most so many, 1 to 16 "
+     "directional lights that stand for what stands out of an environment, at most so many, 1 to "
+     "16 "
      "(4)",
      1},
     {"model", OPTION_MODEL, "NAME", 0,
@@ -103,8 +104,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     d->adaptive = abbe_command_count(p, "--adaptive", text, 1, ABBE_RENDER_MAX_ADAPTIVE);
     return 0;
   case OPTION_ENVIRONMENT_LIGHTS:
-    d->environment_lights = abbe_command_count(p, "--environment-lights", text, 1,
-                                               ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS);
+    d->environment_lights =
+        abbe_command_count(p, "--environment-lights", text, 1, ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS);
     return 0;
   case OPTION_LIGHT_POINTS:
     d->light_points =

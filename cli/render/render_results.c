@@ -18,7 +18,10 @@ double abbe_render_process_ms(void) {
   return 1e3 * abbe_clock_process_seconds();
 }
 
-static void describe_picture(const request *q, double error_met, cJSON *root) {
+/* estimate: by error bars, where passes tell nothing; below 0: neither does. */
+static void describe_picture(const request *q, double estimate, cJSON *root) {
+  const double error_met =
+      abbe_picture_choice_tells(&q->picture) ? q->picture.met.estimate : estimate;
   cJSON_AddNumberToObject(root, "process_ms", abbe_render_process_ms());
   abbe_preset_options_describe_picture(&q->picture, abbe_render_process_ms(), error_met, root);
   cJSON *promise = cJSON_GetObjectItemCaseSensitive(root, "promise");
@@ -85,7 +88,7 @@ abbe_result abbe_render_write_stats(const request *q, const abbe_statistics *s,
 abbe_result abbe_render_write_traced_stats(const request *q, abbe_error *error) {
   if (q->stats == NULL && !q->json) return ABBE_OK;
   cJSON *root = cJSON_CreateObject();
-  describe_picture(q, abbe_picture_choice_tells(&q->picture) ? q->picture.met.estimate : -1, root);
+  describe_picture(q, -1, root);
   return write_json(q, root, error);
 }
 

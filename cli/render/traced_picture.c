@@ -3,6 +3,20 @@
 #include "cli/base/progress.h"
 
 #include "validation/passes/bounded_trace.h"
+#include "validation/passes/checked_picture.h"
+
+/* A side, of the photons of a pass that checks: few, so that a coarse picture is told soon. */
+enum { CHECK_PHOTONS = 256 };
+
+static abbe_trace_desc describe(const abbe_traced_picture_desc *d, size_t photons) {
+  return (abbe_trace_desc){.no_map = true,
+                           .width = d->width,
+                           .height = d->height,
+                           .min_nm = d->min_nm,
+                           .max_nm = d->max_nm,
+                           .space = d->space,
+                           .photons = photons * photons};
+}
 
 abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_scene *scene,
                                      const abbe_traced_picture_desc *desc, abbe_image *out,
@@ -10,13 +24,7 @@ abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_sce
   abbe_progress progress;
   abbe_bounded_trace told;
   const abbe_sweep_setting *setting = &choice->point->setting;
-  const abbe_bounded_trace_desc trace = {.trace = {.no_map = true,
-                                                   .width = desc->width,
-                                                   .height = desc->height,
-                                                   .min_nm = desc->min_nm,
-                                                   .max_nm = desc->max_nm,
-                                                   .space = desc->space,
-                                                   .photons = setting->photons * setting->photons},
+  const abbe_bounded_trace_desc trace = {.trace = describe(desc, setting->photons),
                                          .passes = setting->passes,
                                          .filtered =
                                              choice->point->tool == ABBE_PICTURE_TRACE_FILTER,
@@ -30,5 +38,31 @@ abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_sce
   if (result != ABBE_OK) return result;
   choice->passes = told.passes;
   choice->met = told.own;
+  return ABBE_OK;
+}
+
+abbe_result abbe_traced_picture_check(abbe_picture_choice *choice, const abbe_scene *scene,
+                                      const abbe_traced_picture_desc *desc, bool may_trace,
+                                      const abbe_image *picture, abbe_image *traced,
+                                      abbe_error *error) {
+  abbe_progress progress;
+  abbe_checked_picture told;
+  const double most = choice->request.max_error;
+  const abbe_checked_picture_desc check = {.trace = describe(desc, CHECK_PHOTONS),
+                                           .max_error = most,
+                                           .progress = abbe_progress_update,
+                                           .user = &progress,
+                                           .stop = abbe_progress_stopped()};
+  abbe_progress_begin(&progress, "check", desc->quiet);
+  abbe_result result = abbe_checked_picture_make(scene, &check, picture, traced, &told, error);
+  abbe_progress_end(&progress);
+  if (result != ABBE_OK) return result;
+  choice->passes = told.passes;
+  choice->met = told.given;
+  choice->traced_instead = may_trace && !(told.given.bound <= most) && told.traced.bound <= most;
+  if (choice->traced_instead)
+    choice->met = told.traced;
+  else
+    abbe_image_free(traced);
   return ABBE_OK;
 }

@@ -18,4 +18,13 @@ abbe_result abbe_traced_picture_make(abbe_picture_choice *choice, const abbe_sce
                                      const abbe_traced_picture_desc *desc, abbe_image *out,
                                      abbe_error *error);
 
+/* Holds the rendered picture, with its caustic's layers, against traced passes, with a bar. Sets
+ * the choice's passes and met. `traced` receives what the passes made where that keeps the error
+ * that is asked for and the picture does not, and the choice's traced_instead then says so; else it
+ * is left without pixels, as it is without `may_trace`. Errors of abbe_checked_picture_make. */
+abbe_result abbe_traced_picture_check(abbe_picture_choice *choice, const abbe_scene *scene,
+                                      const abbe_traced_picture_desc *desc, bool may_trace,
+                                      const abbe_image *picture, abbe_image *traced,
+                                      abbe_error *error);
+
 #endif

@@ -136,6 +136,22 @@ static void tell_filtered(const abbe_pass_pictures *p, distance raw, distance d,
   out->estimate = sqrt(fmax(square, least)) * pow(first, 0.25);
 }
 
+/* A picture against all passes, without their noise. */
+static void tell_picture(const abbe_pass_pictures *p, distance raw, distance d,
+                         abbe_pass_error *out) {
+  const double first = (double)p->part_passes / (double)p->passes;
+  const double noise = first * (1 - first) * raw.mean * raw.mean;
+  const double square = d.mean * d.mean - noise;
+  const double chance = 2 * hypot(d.mean * d.error, first * (1 - first) * raw.mean * raw.error);
+  if (raw.mean > most_that_adds) return;
+  out->estimate = sqrt(fmax(square, 0));
+  out->bound = sqrt(fmax(square, 0) + nine_of_ten * chance);
+}
+
+static bool is_known(distance d) {
+  return isfinite(d.mean) && isfinite(d.error);
+}
+
 /* A dark caustic and a black picture are no errors of the caller's: nothing is told then. */
 static abbe_result tell(const abbe_pass_pictures *p, const abbe_field *part, abbe_field *whole,
                         const abbe_field *filtered_part, const abbe_field *filtered,
@@ -156,8 +172,37 @@ static abbe_result tell(const abbe_pass_pictures *p, const abbe_field *part, abb
   return result == ABBE_NO_MEMORY ? result : ABBE_OK;
 }
 
+static abbe_result tell_of_picture(const abbe_pass_pictures *p, const abbe_field *part,
+                                   const abbe_field *whole, const abbe_field *picture,
+                                   abbe_pass_error *out, abbe_error *error) {
+  region r = {0};
+  abbe_field others = {0};
+  abbe_result result = find_region(picture, &r, error);
+  const bool is_lit = result == ABBE_OK;
+  if (is_lit) result = take(p->whole, &others, error);
+  if (is_lit && result == ABBE_OK) {
+    keep_the_others(p, part, &others);
+    const distance raw = measure(part, &others, &r), d = measure(picture, whole, &r);
+    if (is_known(raw) && is_known(d)) tell_picture(p, raw, d, out);
+  }
+  abbe_field_free(&others);
+  abbe_mask_free(&r.mask);
+  return result == ABBE_NO_MEMORY ? result : ABBE_OK;
+}
+
 static bool are_alike(const abbe_image *a, const abbe_image *b) {
   return a->width == b->width && a->height == b->height;
+}
+
+static abbe_result check(const abbe_pass_pictures *p, const abbe_image *other, abbe_error *error) {
+  if (p->part_passes < 1 || p->part_passes >= p->passes)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu of %zu passes are not a part of them",
+                          p->part_passes, p->passes);
+  if (!are_alike(p->part, p->whole) || (other != NULL && !are_alike(other, p->whole)) ||
+      (p->filtered != NULL &&
+       !(are_alike(p->filtered, p->whole) && are_alike(p->filtered_part, p->whole))))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the pictures differ in size");
+  return ABBE_OK;
 }
 
 abbe_result abbe_pass_error_make(const abbe_pass_pictures *p, abbe_pass_error *out,
@@ -165,14 +210,8 @@ abbe_result abbe_pass_error_make(const abbe_pass_pictures *p, abbe_pass_error *o
   ABBE_REQUIRE(p && out && p->part && p->whole && !p->filtered == !p->filtered_part, error);
   abbe_field part = {0}, whole = {0}, filtered_part = {0}, filtered = {0};
   *out = (abbe_pass_error){NAN, NAN};
-  if (p->part_passes < 1 || p->part_passes >= p->passes)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%zu of %zu passes are not a part of them",
-                          p->part_passes, p->passes);
-  if (!are_alike(p->part, p->whole) ||
-      (p->filtered != NULL &&
-       !(are_alike(p->filtered, p->whole) && are_alike(p->filtered_part, p->whole))))
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the pictures differ in size");
-  abbe_result result = take(p->part, &part, error);
+  abbe_result result = check(p, NULL, error);
+  if (result == ABBE_OK) result = take(p->part, &part, error);
   if (result == ABBE_OK) result = take(p->whole, &whole, error);
   if (result == ABBE_OK && p->filtered != NULL) result = take(p->filtered, &filtered, error);
   if (result == ABBE_OK && p->filtered != NULL)
@@ -182,5 +221,22 @@ abbe_result abbe_pass_error_make(const abbe_pass_pictures *p, abbe_pass_error *o
   abbe_field_free(&whole);
   abbe_field_free(&filtered_part);
   abbe_field_free(&filtered);
+  return result;
+}
+
+abbe_result abbe_pass_error_of_picture(const abbe_pass_pictures *p, const abbe_image *picture,
+                                       abbe_pass_error *out, abbe_error *error) {
+  ABBE_REQUIRE(p && picture && out && p->part && p->whole && !p->filtered == !p->filtered_part,
+               error);
+  abbe_field part = {0}, whole = {0}, field = {0};
+  *out = (abbe_pass_error){NAN, NAN};
+  abbe_result result = check(p, picture, error);
+  if (result == ABBE_OK) result = take(p->part, &part, error);
+  if (result == ABBE_OK) result = take(p->whole, &whole, error);
+  if (result == ABBE_OK) result = take(picture, &field, error);
+  if (result == ABBE_OK) result = tell_of_picture(p, &part, &whole, &field, out, error);
+  abbe_field_free(&part);
+  abbe_field_free(&whole);
+  abbe_field_free(&field);
   return result;
 }

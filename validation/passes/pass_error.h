@@ -39,6 +39,15 @@ typedef struct abbe_pass_error {
 abbe_result abbe_pass_error_make(const abbe_pass_pictures *pictures, abbe_pass_error *out,
                                  abbe_error *error);
 
+/* Of a picture that none of the passes made: held against all of them, whose own noise, as the
+ * first and the others tell it, is taken off in squares. The region is the picture's own caustic.
+ * The estimate and the bound are both of the picture as it is. Both NaN too where the first and the
+ * others differ by over 12: too noisy to tell anything. Filtered pictures are not looked at. Errors
+ * as above. */
+abbe_result abbe_pass_error_of_picture(const abbe_pass_pictures *pictures,
+                                       const abbe_image *picture, abbe_pass_error *out,
+                                       abbe_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -315,17 +315,36 @@ bool abbe_picture_choice_tells(const abbe_picture_choice *c) {
   return c->passes > 0 && isfinite(c->met.bound);
 }
 
+/* Where a budget's time went, as far as it is known. */
+static void explain(const abbe_picture_choice *c, double ms, char *out, size_t size) {
+  size_t used = 0;
+  *out = '\0';
+  if (c->spent_ms > 0)
+    used += (size_t)snprintf(out, size, ", %ld of them on choosing", lround(c->spent_ms));
+  if (c->prepared_ms > 0 && used < size)
+    used += (size_t)snprintf(
+        out + used, size - used, ", %ld on preparing%s", lround(c->prepared_ms),
+        c->compiled ? " with shaders to compile, which the next run will find" : "");
+  if (used < size && c->promised_ms <= c->request.budget_ms && ms > 1.5 * c->promised_ms &&
+      !c->compiled)
+    snprintf(out + used, size - used,
+             ", and over 1.5 times what was promised: the machine may be busy");
+}
+
 abbe_result abbe_picture_choice_check(const abbe_picture_choice *c, double ms, abbe_error *error) {
   ABBE_REQUIRE(c, error);
   const abbe_picture_request *q = &c->request;
   if (c->point == NULL) return ABBE_OK;
-  if (q->budget_ms > 0 && ms > q->budget_ms)
+  if (q->budget_ms > 0 && ms > q->budget_ms) {
+    char why[200];
+    explain(c, ms, why, sizeof why);
     return abbe_error_set(error, ABBE_TOLERANCE,
-                          "the picture took %.0f ms from start to end and %.0f were promised: the "
+                          "the picture took %.0f ms from start to end%s; %.0f were promised: the "
                           "budget of %g ms is not kept%s; what was asked for is written all the "
                           "same",
-                          ms, c->promised_ms, q->budget_ms,
+                          ms, why, c->promised_ms, q->budget_ms,
                           c->kept ? "" : ", for nothing faster is known");
+  }
   if (q->max_error > 0 && abbe_picture_choice_tells(c)) {
     if (c->met.bound <= q->max_error) return ABBE_OK;
     return abbe_error_set(error, ABBE_TOLERANCE,

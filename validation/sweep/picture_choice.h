@@ -68,8 +68,11 @@ typedef struct abbe_picture_choice {
   double promised_error;           /* of this scene */
   double promised_ms;              /* on this machine, of the whole process, with the yardstick */
   double spent_ms;                 /* on the yardstick; 0: it was not needed */
-  size_t passes;       /* of the picture, once it is traced; 0: it is not, or it is rendered */
+  double prepared_ms;  /* on what stands before the first frame; 0: nothing was rendered */
+  bool compiled;       /* shaders were, which happens once on a machine */
+  size_t passes;       /* that the picture is traced of, or checked by; 0: none */
   abbe_pass_error met; /* what they tell of its error: NaN, or 0 passes: nothing */
+  bool traced_instead; /* the rendered picture did not keep max_error, and the passes do */
 } abbe_picture_choice;
 
 /* Of the tools that may be taken. The yardstick is traced first, unless the renderer alone may be
@@ -83,12 +86,12 @@ typedef struct abbe_picture_choice {
 abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,
                                 abbe_picture_choice *out, abbe_error *error);
 
-/* ABBE_TOLERANCE where a process of that time does not keep the bound that was asked for. Of a
- * traced picture whose passes tell its error these decide, whatever was promised. */
+/* ABBE_TOLERANCE where a process of that time does not keep the bound that was asked for. Where
+ * passes tell the picture's error these decide, whatever was promised. */
 abbe_result abbe_picture_choice_check(const abbe_picture_choice *choice, double ms,
                                       abbe_error *error);
 
-/* Whether a traced picture has told its own error. */
+/* Whether passes have told the picture's error. */
 bool abbe_picture_choice_tells(const abbe_picture_choice *choice);
 
 /* "the renderer: 7 wavelengths, ..." or "the tracer: 4 passes of 262144 photons, filtered". */

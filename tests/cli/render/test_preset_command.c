@@ -158,9 +158,32 @@ static void test_what_makes_the_picture(void **state) {
   cJSON_Delete(json);
   assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
   assert_contains(run_output, "stderr.R");
-  json = promise_of(GEM "--presets q.yaml --max-error 9 --json --tool render -q");
+  json = promise_of(GEM "--presets q.yaml --max-error 30 --json --tool render -q");
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
   assert_true(cJSON_IsFalse(item(json, "overridden")));
+  assert_true(cJSON_IsTrue(item(json, "error_kept")));
+  assert_true(cJSON_GetNumberValue(item(json, "passes")) >= 2);
+  assert_contains(cJSON_GetStringValue(item(json, "error_met_is")), "by traced passes");
+  cJSON_Delete(json);
+  /* A file that promises too much of the renderer: its picture is found out, and the passes that do
+   * so are taken instead, unless the renderer was asked for. */
+  assert_int_equal(
+      run_line("sed 's/error: 8, least: 0.5/error: 0.1, least: 0.1/; s/ms: 2,/ms: 9,/' "
+               "q.yaml >r.yaml"),
+      0);
+  json = promise_of(GEM "--presets r.yaml --max-error 3 --json -o a.exr");
+  assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
+  assert_true(cJSON_IsTrue(item(json, "traced_instead")));
+  assert_true(cJSON_IsTrue(item(json, "error_kept")));
+  assert_contains(run_errors, "of what they made; it is taken");
+  cJSON_Delete(json);
+  assert_int_equal(run_line("\"$abbe\" info a.exr && rm a.exr"), 0);
+  assert_contains(run_output, "stderr.R");
+  json = promise_that_ends(GEM "--presets r.yaml --max-error 3 --json --tool render", 3);
+  assert_true(cJSON_IsFalse(item(json, "traced_instead")));
+  assert_true(cJSON_IsFalse(item(json, "error_kept")));
+  assert_contains(run_errors, "of the rendered picture");
+  assert_contains(run_errors, "an error of 3 is not known to be kept");
   cJSON_Delete(json);
   json = promise_of(GEM "--presets q.yaml --preset accurate --json --samples 1");
   assert_string_equal(cJSON_GetStringValue(item(json, "tool")), "render");
@@ -174,7 +197,7 @@ static void test_what_makes_the_picture(void **state) {
   assert_null(
       cJSON_GetObjectItemCaseSensitive(cJSON_GetObjectItemCaseSensitive(json, "promise"), "for"));
   cJSON_Delete(json);
-  assert_int_equal(run_line("rm q.yaml"), 0);
+  assert_int_equal(run_line("rm q.yaml r.yaml"), 0);
   static const struct {
     const char *line, *part;
     int code;

@@ -185,6 +185,60 @@ static void test_a_filter(void **state) {
                 6); /* too noisy to tell what the filter is worth: as far off as unfiltered */
 }
 
+/* A picture that no pass made, off by what is known: blurred, and 10 % too bright. */
+static trials run_given(size_t passes, double often, double factor) {
+  trials t = {.least = INFINITY};
+  abbe_image truth = make_truth(), given = blur(&truth);
+  for (size_t i = 0; i < 6 * PIXELS; i++) given.data[i] *= (float)factor;
+  const double met = true_error(&truth, &given);
+  uint64_t state = 11;
+  for (int i = 0; i < TRIALS; i++) {
+    abbe_pass_error own;
+    abbe_error error = {0};
+    abbe_image a = make_mean(passes / 2, often, &state, NULL, 0);
+    abbe_image b = make_mean(passes, often, &state, &a, passes / 2);
+    abbe_pass_pictures p = {.part = &a, .whole = &b, .part_passes = passes / 2, .passes = passes};
+    assert_ok(abbe_pass_error_of_picture(&p, &given, &own, &error), &error);
+    t.least = fmin(t.least, own.estimate / met);
+    t.most = fmax(t.most, own.estimate / met);
+    t.mean += own.estimate / met / TRIALS;
+    t.widest = fmax(t.widest, own.bound / met);
+    t.kept += own.bound >= met;
+    abbe_image_free(&a);
+    abbe_image_free(&b);
+  }
+  abbe_image_free(&given);
+  abbe_image_free(&truth);
+  return t;
+}
+
+static void test_a_picture_of_another_make(void **state) {
+  (void)state;
+  /* The region is the given picture's own, which is blurred and so wider than the true one. */
+  trials t = run_given(128, 0.999, 1.1);
+  assert_honest(&t, 1.25, 0.02, 1.3);
+  t = run_given(1024, 0.5, 1.1);
+  assert_honest(&t, 1.25, 0.05, 1.35);
+  t = run_given(128, 0.5, 1.1);
+  assert_honest(&t, 1.25, 0.1, 1.6);
+  t = run_given(16, 0.1, 1); /* specks: nothing is told */
+  assert_true(isnan(t.mean) && t.kept == 0);
+  abbe_pass_error own;
+  abbe_error error = {0};
+  abbe_image image = make_image(), truth = make_truth(), small;
+  abbe_pass_pictures p = {.part = &truth, .whole = &truth, .part_passes = 1, .passes = 2};
+  assert_ok(abbe_pass_error_of_picture(&p, &truth, &own, &error), &error);
+  assert_near(own.bound, 0, 1e-6);
+  assert_ok(abbe_pass_error_of_picture(&p, &image, &own, &error), &error); /* black */
+  assert_true(isnan(own.estimate) && isnan(own.bound));
+  assert_int_equal(abbe_image_make(8, 8, 6, channels, &small, NULL), ABBE_OK);
+  assert_int_equal(abbe_pass_error_of_picture(&p, &small, &own, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "differ in size");
+  abbe_image_free(&small);
+  abbe_image_free(&truth);
+  abbe_image_free(&image);
+}
+
 static void test_what_has_no_caustic(void **state) {
   (void)state;
   abbe_pass_error own;
@@ -228,6 +282,7 @@ int main(void) {
       cmocka_unit_test(test_even_noise),
       cmocka_unit_test(test_rare_specks),
       cmocka_unit_test(test_a_filter),
+      cmocka_unit_test(test_a_picture_of_another_make),
       cmocka_unit_test(test_what_has_no_caustic),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,111 @@
+/* A picture of another make against traced passes: how many of them, and which of the two is known
+ * to keep the bound.
+ */
+#include "tests/validation/trace_scene.h"
+
+#include "validation/passes/checked_picture.h"
+
+#include <math.h>
+
+#define SCENE CAMERA POINT_LIGHT FLOOR BEADS("crown")
+
+static abbe_scene scene;
+
+static const abbe_trace_desc trace = {
+    .no_map = true, .width = 24, .height = 24, .photons = 1024, .seed = 3};
+
+/* After so many passes, of another seed. */
+static abbe_image make_picture(size_t passes) {
+  abbe_image image;
+  abbe_trace_desc own = trace;
+  own.seed = 17;
+  abbe_tracer *tracer = make_tracer(&scene, &own);
+  run_passes(tracer, passes);
+  assert_int_equal(abbe_tracer_picture(tracer, &image, NULL), ABBE_OK);
+  abbe_tracer_free(tracer);
+  return image;
+}
+
+static abbe_checked_picture check(const abbe_image *picture, double max_error, abbe_image *traced) {
+  abbe_checked_picture out;
+  abbe_error error = {0};
+  const abbe_checked_picture_desc desc = {.trace = trace, .max_error = max_error};
+  if (abbe_checked_picture_make(&scene, &desc, picture, traced, &out, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  return out;
+}
+
+/* To tell that a good picture is one takes fewer passes than to make one. */
+static void test_a_good_picture(void **state) {
+  (void)state;
+  abbe_image traced, picture = make_picture(1024);
+  const abbe_checked_picture c = check(&picture, 2, &traced);
+  if (!(c.given.bound <= 2) || c.traced.bound <= 2)
+    fail_msg("%zu passes: %g, and %g of their own", c.passes, c.given.bound, c.traced.bound);
+  assert_true(c.given.estimate <= c.given.bound && c.passes >= 2);
+  assert_int_equal(traced.width, 24);
+  abbe_image_free(&traced);
+  abbe_image_free(&picture);
+}
+
+static void test_a_bad_picture(void **state) {
+  (void)state;
+  abbe_image traced, picture = make_picture(64);
+  for (size_t i = 0; i < picture.width * picture.height * picture.channels; i++)
+    picture.data[i] *= 1.8f;
+  const abbe_checked_picture c = check(&picture, 2, &traced);
+  assert_true(c.given.bound > 2);
+  if (!(c.traced.bound <= 2)) fail_msg("%zu passes: %g of their own", c.passes, c.traced.bound);
+  /* The passes are the tracer's own, to the bit. */
+  abbe_image own;
+  abbe_tracer *tracer = make_tracer(&scene, &trace);
+  run_passes(tracer, c.passes);
+  assert_int_equal(abbe_tracer_picture(tracer, &own, NULL), ABBE_OK);
+  check_same_image(&own, &traced);
+  abbe_image_free(&own);
+  abbe_tracer_free(tracer);
+  abbe_image_free(&traced);
+  abbe_image_free(&picture);
+}
+
+static bool say_no(void *user, double done) {
+  (void)done;
+  ++*(int *)user;
+  return false;
+}
+
+static void test_what_ends_it(void **state) {
+  (void)state;
+  int asked = 0;
+  abbe_image traced, picture = make_picture(1), small;
+  abbe_checked_picture out;
+  abbe_error error = {0};
+  abbe_checked_picture_desc desc = {.trace = trace, .progress = say_no, .user = &asked};
+  assert_int_equal(abbe_checked_picture_make(&scene, &desc, &picture, &traced, &out, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "an error of 0 cannot be kept");
+  desc.max_error = 1;
+  assert_int_equal(abbe_checked_picture_make(&scene, &desc, &picture, &traced, &out, &error),
+                   ABBE_CANCELLED);
+  assert_int_equal(asked, 1);
+  assert_null(traced.data);
+  desc.progress = NULL;
+  assert_int_equal(abbe_image_make(8, 8, 1, (const char *const[]){"Y"}, &small, NULL), ABBE_OK);
+  assert_int_equal(abbe_checked_picture_make(&scene, &desc, &small, &traced, &out, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_null(traced.data);
+  abbe_image_free(&small);
+  abbe_image_free(&picture);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_good_picture),
+      cmocka_unit_test(test_a_bad_picture),
+      cmocka_unit_test(test_what_ends_it),
+  };
+  load_text(SCENE, &scene);
+  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  abbe_scene_free(&scene);
+  return failed;
+}

@@ -1,0 +1,48 @@
+/* checked_picture.h: a picture that was made otherwise, held against traced passes.
+ *
+ * Presets promise what other scenes had. Whether the picture of this one keeps a bound is told by
+ * passes of the tracer, twice as many each time, until they tell that it does, or keep the bound
+ * themselves: then theirs can be taken instead, and the other is not known to keep it. To tell
+ * takes fewer passes than to make as good a picture, for their noise is known and taken off
+ * (pass_error.h).
+ */
+#ifndef ABBE_VALIDATION_PASSES_CHECKED_PICTURE_H
+#define ABBE_VALIDATION_PASSES_CHECKED_PICTURE_H
+
+#include "validation/passes/pass_error.h"
+#include "validation/tracer/tracer.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { ABBE_CHECKED_PICTURE_MOST_PASSES = 1024 };
+
+typedef struct abbe_checked_picture_desc {
+  abbe_trace_desc trace;                     /* of the picture's size, wavelengths and space */
+  double max_error;                          /* mean CIEDE2000 in the caustic, above 0 */
+  bool only_check;                           /* ends too once the picture is known not to keep it */
+  bool (*progress)(void *user, double done); /* of the passes under way; false stops; or NULL */
+  void *user;
+  const volatile int *stop; /* other than 0 stops a pass midway; or NULL */
+} abbe_checked_picture_desc;
+
+typedef struct abbe_checked_picture {
+  size_t passes;
+  abbe_pass_error given;  /* of the picture, by the passes; NaN: they tell nothing */
+  abbe_pass_error traced; /* of the passes' own picture */
+} abbe_checked_picture;
+
+/* `traced` receives what the passes made. Ends with both bounds above max_error after
+ * ABBE_CHECKED_PICTURE_MOST_PASSES, and with NaN after two passes where the picture has no caustic.
+ * ABBE_INVALID_ARGUMENT for a max_error of 0 and pictures of different sizes; ABBE_CANCELLED;
+ * errors of abbe_tracer_make, abbe_tracer_pass and abbe_pass_error_of_picture. */
+abbe_result abbe_checked_picture_make(const abbe_scene *scene,
+                                      const abbe_checked_picture_desc *desc,
+                                      const abbe_image *picture, abbe_image *traced,
+                                      abbe_checked_picture *out, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
