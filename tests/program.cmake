@@ -27,6 +27,7 @@ foreach(name
     materials_plot_command
     materials_exchange_command
     environment_command
+    gem_command
     outline_command
     printable_output
     render_command
@@ -45,6 +46,11 @@ abbe_label(program NAMES readme_commands)
 add_test(NAME thesis_pictures
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/thesis_pictures $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
 abbe_label(program NAMES thesis_pictures)
+
+add_test(NAME gems_page
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+    docs/gems.md)
+abbe_label(program NAMES gems_page)
 
 add_test(NAME materials_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}

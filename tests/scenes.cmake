@@ -1,13 +1,14 @@
 foreach(name transform disjoint_sets vector
         mesh mesh_fix mesh_repair mesh_charts topology shells
         convex shape brilliant
-        cut cut_asc cut_file cut_gcs cut_gem cut_polyhedron cut_text
+        cut cut_asc cut_diagram cut_file cut_gcs cut_gem cut_measures cut_polyhedron cut_stretch cut_text
         scene object_file object_motion object_surface scene_file mesh_import mesh_files ply_strips
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
         radiance_map sky
         view map_layout map_resample pov_file)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
+abbe_test(cut_solid cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 foreach(name fork alarm aiImportFileExWithProperties)
   target_link_options(test_mesh_import PRIVATE LINKER:--wrap=${name})
 endforeach()

@@ -23,9 +23,10 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(trace, "trace the reference: what light really does, with standard errors")                    \
   X(plan, "say which passes and models a scene asks for, and why")                                 \
   X(materials, "look into, edit, convert and check tables of materials")                           \
+  X(gem, "say what a gem's design holds, draw it, convert it, change its angles")                  \
   X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
   X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
-  X(environment, "say how much light a scene's surroundings hold, and write them as a picture")     \
+  X(environment, "say how much light a scene's surroundings hold, and write them as a picture")    \
   X(export, "write a scene for POV-Ray, an outside witness of its caustics")                       \
   X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \

@@ -1,36 +1,19 @@
 #include "cli/base/scene_input.h"
 
 #include "cli/base/arguments.h"
+#include "cli/base/shipped.h"
 #include "scenes/import/scene_file.h"
 
 #include <cjson/cJSON.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
-
-/* path, or where it is in the share folder beside the program's own, or where the build installs
- * it; in text[size]. */
-static const char *find_shipped(const char *path, char *text, size_t size) {
-  static const char *const shares[] = {ABBE_SHARE_BESIDE, ABBE_SHARE};
-  char own[PATH_MAX];
-  if (path[0] == '/' || access(path, F_OK) == 0) return path;
-  ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
-  own[length > 0 ? length : 0] = '\0';
-  char *slash = strrchr(own, '/');
-  if (slash != NULL) slash[1] = '\0';
-  for (int i = slash == NULL; i < 2; i++) {
-    int n = snprintf(text, size, "%s%s/%s", i == 0 ? own : "", shares[i], path);
-    if (n > 0 && (size_t)n < size && access(text, F_OK) == 0) return text;
-  }
-  return path;
-}
 
 abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
                                   abbe_scene *out, abbe_error *error) {
   char shipped[2 * PATH_MAX];
   const abbe_scene_options options = {.materials = materials};
-  const char *found = find_shipped(path, shipped, sizeof shipped);
+  const char *found = abbe_shipped_find(path, shipped, sizeof shipped);
   if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
   abbe_result result = abbe_scene_load(found, &options, out, error);
   for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)

@@ -142,7 +142,7 @@ static abbe_result read_lathe(const abbe_object_reading *r, abbe_mesh *out, abbe
   return result;
 }
 
-/* The planes of a design as wide as it is to be: its longer side across the table's axis. */
+/* The planes of a design as wide as it is to be: the smaller extent of its outline. */
 static abbe_result make_cut(const char *path, double width, double weld, abbe_mesh *out,
                             abbe_error *error) {
   abbe_cut cut = {0};
@@ -150,7 +150,7 @@ static abbe_result make_cut(const char *path, double width, double weld, abbe_me
   abbe_result result = abbe_cut_file_read(path, &cut, NULL, error);
   if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&cut, weld, &stone, error);
   if (result == ABBE_OK) {
-    const double own = fmax(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
+    const double own = fmin(stone.max[0] - stone.min[0], stone.max[1] - stone.min[1]);
     result = abbe_cut_polyhedron_mesh(&cut, &stone, width / own, out, error);
   }
   abbe_cut_polyhedron_free(&stone);

@@ -1,0 +1,21 @@
+/* gem.h: the verbs of `abbe gem`, a file each.
+ *
+ * A verb is one line of ABBE_GEM_VERBS and one function in cli/gem/gem_NAME.c. The program lists it
+ * with its summary in `abbe gem --help`, and hands it its arguments with argv[0] "abbe gem NAME".
+ * No verb holds logic that a library could use.
+ */
+#ifndef ABBE_CLI_GEM_GEM_H
+#define ABBE_CLI_GEM_GEM_H
+
+/* X(name, summary): every verb NAME is `int abbe_gem_NAME(int argc, char **argv)`. */
+#define ABBE_GEM_VERBS(X)                                                                          \
+  X(info, "what a design holds: facets, proportions, carats, critical angle, tiers")               \
+  X(diagram, "a sheet to cut from: crown, pavilion, profiles, indices, as PDF, SVG or PNG")        \
+  X(retarget, "the design at the angles of another stone, its meets kept")                         \
+  X(convert, "a design as .asc or .gem, or as a solid: STL, OBJ, glTF")
+
+#define ABBE_GEM_DECLARE(name, summary) int abbe_gem_##name(int argc, char **argv);
+ABBE_GEM_VERBS(ABBE_GEM_DECLARE)
+#undef ABBE_GEM_DECLARE
+
+#endif

@@ -1,0 +1,135 @@
+#include "cli/gem/gem.h"
+#include "cli/gem/gem_input.h"
+
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "scenes/cuts/cut_stretch.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static double critical_deg(double n) {
+  double low, high;
+  abbe_cut_stretch_window(n, &low, &high);
+  return low;
+}
+
+static void print_stone(const abbe_gem_input *in) {
+  const abbe_cut_measures *m = &in->measures;
+  const double density = abbe_gem_input_density(in), w = m->width;
+  printf("%s\n", abbe_gem_input_title(in));
+  printf("  facets     %zu + %zu girdle: %zu crown, %zu pavilion; %zu corners, %zu edges\n",
+         m->faces[ABBE_CUT_CROWN] + m->faces[ABBE_CUT_PAVILION], m->faces[ABBE_CUT_GIRDLE],
+         m->faces[ABBE_CUT_CROWN], m->faces[ABBE_CUT_PAVILION], in->stone.vertex_count,
+         in->stone.edge_count);
+  printf("  gear       %d teeth", in->cut.gear);
+  if (in->cut.folds > 0) printf(", %d-fold%s", in->cut.folds, in->cut.mirror ? ", mirrored" : "");
+  printf("\n");
+  if (in->cut.refractive_index > 0)
+    printf("  cut for    an index of %.3f, critical angle %.2f degrees\n", in->cut.refractive_index,
+           critical_deg(in->cut.refractive_index));
+  if (in->material != NULL)
+    printf("  material   %s: n_d %.4f, critical angle %.2f degrees\n", in->material->name, in->n,
+           critical_deg(in->n));
+  printf("  ratios     L/W %.3f   T/W %.3f   C/W %.3f   P/W %.3f   H/W %.3f   Vol/W^3 %.3f\n",
+         m->length / w, m->table / w, m->side[ABBE_CUT_CROWN] / w, m->side[ABBE_CUT_PAVILION] / w,
+         m->height / w, m->volume / pow(w, 3));
+  if (in->width_m > 0)
+    printf("  size       %.2f x %.2f x %.2f mm\n", 1e3 * in->width_m * m->length / w,
+           1e3 * in->width_m, 1e3 * in->width_m * m->height / w);
+  if (density > 0 && in->width_m > 0)
+    printf("  weight     %.3f carats, at %.3g g/cm3\n",
+           abbe_cut_measures_carats(m, in->width_m, density), density);
+  else if (in->width_m > 0)
+    printf("  weight     not known without a density; --density gives it\n");
+}
+
+static void print_tiers(const abbe_gem_input *in) {
+  const abbe_cut *cut = &in->cut;
+  printf("\n  %-6s %8s %10s  indices\n", "facet", "angle", "distance");
+  for (size_t t = 0; t < cut->tier_count; t++) {
+    const abbe_cut_tier *tier = &cut->tier[t];
+    if (tier->count == 0) continue;
+    printf("  %-6s %8.2f %10.6f  ", abbe_cut_facet_name(cut, tier->first), tier->angle_deg,
+           tier->distance);
+    for (size_t i = 0; i < tier->count; i++)
+      printf("%s%g%s", i > 0 ? " " : "", cut->facet[tier->first + i].index,
+             in->stone.fate[tier->first + i] == ABBE_CUT_FACE ? "" : "*");
+    if (tier->instruction != NULL) printf("  %s", tier->instruction);
+    printf("\n");
+  }
+  if (in->measures.dead + in->measures.doubled > 0) printf("  * no face\n");
+}
+
+static abbe_result print_json(const abbe_gem_input *in, abbe_error *error) {
+  static const char *const fates[] = {"face", "dead", "double"};
+  const abbe_cut *cut = &in->cut;
+  cJSON *root = cJSON_CreateObject();
+  abbe_gem_input_describe(in, root);
+  cJSON_AddNumberToObject(root, "volume", in->measures.volume);
+  cJSON_AddNumberToObject(root, "cut_for_index", cut->refractive_index);
+  if (cut->refractive_index > 1)
+    cJSON_AddNumberToObject(root, "cut_for_critical_deg", critical_deg(cut->refractive_index));
+  if (in->material != NULL) {
+    cJSON_AddStringToObject(root, "material", in->material->name);
+    cJSON_AddNumberToObject(root, "n_d", in->n);
+    cJSON_AddNumberToObject(root, "critical_deg", critical_deg(in->n));
+  }
+  if (in->width_m > 0) {
+    const double density = abbe_gem_input_density(in);
+    cJSON_AddNumberToObject(root, "width_m", in->width_m);
+    if (density > 0)
+      cJSON_AddNumberToObject(root, "carats",
+                              abbe_cut_measures_carats(&in->measures, in->width_m, density));
+  }
+  cJSON *tiers = cJSON_AddArrayToObject(root, "tiers");
+  for (size_t t = 0; t < cut->tier_count; t++) {
+    const abbe_cut_tier *tier = &cut->tier[t];
+    cJSON *item = cJSON_CreateObject();
+    if (item == NULL || !cJSON_AddItemToArray(tiers, item)) continue;
+    cJSON_AddNumberToObject(item, "angle_deg", tier->angle_deg);
+    cJSON_AddNumberToObject(item, "distance", tier->distance);
+    if (tier->instruction != NULL) cJSON_AddStringToObject(item, "instruction", tier->instruction);
+    cJSON *facets = cJSON_AddArrayToObject(item, "facets");
+    for (size_t i = tier->first; i < tier->first + tier->count; i++) {
+      cJSON *facet = cJSON_CreateObject();
+      if (facet == NULL || !cJSON_AddItemToArray(facets, facet)) continue;
+      cJSON_AddNumberToObject(facet, "index", cut->facet[i].index);
+      cJSON_AddStringToObject(facet, "name", abbe_cut_facet_name(cut, i));
+      cJSON_AddStringToObject(facet, "fate", fates[in->stone.fate[i]]);
+    }
+  }
+  abbe_result result = abbe_command_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+int abbe_gem_info(int argc, char **argv) {
+  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
+  static const struct argp argp = {
+      NULL,
+      NULL,
+      "FILE",
+      "Says what a design holds: facets, proportions, weight, critical angle, tiers.\v"
+      "Designs are GemCad's .asc and .gem files and Gem Cut Studio's .gcs.\n\n"
+      "Examples:\n"
+      "  abbe gem info scenes/designs/brilliant-quartz.asc\n"
+      "  abbe gem info scenes/designs/brilliant-diamond.asc --material diamond --width 6.5\n"
+      "  abbe gem info stone.gem --weld 1e-4 --json",
+      children,
+      NULL,
+      NULL};
+  abbe_gem_input in = {.program = argv[0]};
+  abbe_error error = {0};
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &in);
+  abbe_result result = abbe_gem_input_load(&in, &error);
+  if (result == ABBE_OK && in.json) result = print_json(&in, &error);
+  if (result == ABBE_OK && !in.json) {
+    print_stone(&in);
+    print_tiers(&in);
+  }
+  abbe_gem_input_free(&in);
+  return abbe_command_end(argv[0], result, &error);
+}

@@ -1,0 +1,168 @@
+#include "cli/gem/gem_input.h"
+
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/shipped.h"
+
+#include "base/file.h"
+#include "scenes/cuts/cut_file.h"
+#include "scenes/cuts/cut_stretch.h"
+#include "spectral/formats/material_table_load.h"
+#include "spectral/wavelengths.h"
+
+#include <cjson/cJSON.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+
+enum {
+  OPTION_MATERIAL = 0x200,
+  OPTION_TABLE,
+  OPTION_WIDTH,
+  OPTION_DENSITY,
+  OPTION_WELD,
+  OPTION_JSON
+};
+
+static const struct argp_option options[] = {
+    {"material", OPTION_MATERIAL, "NAME", 0,
+     "of which the stone is; without it, the index that the design says", 0},
+    {"table", OPTION_TABLE, "FILE", ABBE_ARGUMENT_READS,
+     "of materials: a file, default or thesis (default)", 0},
+    {"width", OPTION_WIDTH, "MM", 0, "of the stone, its smaller extent, in millimetres", 0},
+    {"density", OPTION_DENSITY, "G/CM3", 0, "where the material's record has none", 0},
+    {"weld", OPTION_WELD, "SHARE", 0,
+     "corners nearer than this share of half the width are one (1e-6); 1e-4 closes meets that were "
+     "cut by eye",
+     0},
+    {"json", OPTION_JSON, NULL, 0, "as JSON, numbers in full", 0},
+    {"quiet", 'q', NULL, 0, "no notes", 0},
+    {0}};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  abbe_gem_input *in = state->input;
+  switch (key) {
+  case OPTION_MATERIAL:
+    in->material_name = text;
+    return 0;
+  case OPTION_TABLE:
+    in->table_path = text;
+    return 0;
+  case OPTION_WIDTH:
+    in->width_m = 1e-3 * abbe_command_number(in->program, "--width", text, 1e-3, 1e6);
+    return 0;
+  case OPTION_DENSITY:
+    in->density_g_cm3 = abbe_command_number(in->program, "--density", text, 0.1, 50);
+    return 0;
+  case OPTION_WELD:
+    in->weld = abbe_command_number(in->program, "--weld", text, 1e-12, ABBE_CUT_MOST_WELD);
+    return 0;
+  case OPTION_JSON:
+    in->json = true;
+    return 0;
+  case 'q':
+    in->quiet = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (in->path != NULL) argp_error(state, "one design at a time: '%s' and '%s'", in->path, text);
+    in->path = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (in->path == NULL)
+      argp_error(state, "which design? Give a file such as scenes/designs/brilliant-quartz.asc");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+const struct argp abbe_gem_input_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+
+static void print_notes(const abbe_gem_input *in) {
+  for (size_t i = 0; i < in->report.count; i++) {
+    const abbe_note *n = &in->report.note[i];
+    fprintf(stderr, "note: %s", in->path);
+    if (n->line > 0) fprintf(stderr, ":%zu", n->line);
+    fprintf(stderr, ": %s\n", n->text);
+  }
+  if (in->measures.dead + in->measures.doubled == 0) return;
+  fprintf(stderr, "note: %s:", in->path);
+  if (in->measures.dead > 0) fprintf(stderr, " %zu facets cut nothing", in->measures.dead);
+  if (in->measures.doubled > 0)
+    fprintf(stderr, "%s %zu facets repeat another's plane", in->measures.dead > 0 ? "," : "",
+            in->measures.doubled);
+  fprintf(stderr, "; they are left out\n");
+}
+
+static abbe_result find_material(abbe_gem_input *in, abbe_error *error) {
+  in->n = in->cut.refractive_index;
+  if (in->material_name == NULL) return ABBE_OK;
+  abbe_result result = abbe_material_table_load(in->table_path, &in->table, error);
+  if (result == ABBE_OK)
+    result = abbe_material_table_find(&in->table, in->material_name, &in->material, error);
+  if (result == ABBE_OK && abbe_material_is_conductor(in->material))
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "'%s' is a metal; a stone is cut of something that light passes",
+                          in->material_name);
+  return result == ABBE_OK ? abbe_material_n(in->material, ABBE_LINE_D_NM, &in->n, error) : result;
+}
+
+abbe_result abbe_gem_input_load(abbe_gem_input *in, abbe_error *error) {
+  char place[2 * PATH_MAX];
+  const char *found = abbe_shipped_find(in->path, place, sizeof place);
+  if (found != in->path && !in->quiet)
+    fprintf(stderr, "note: %s is not here; %s is taken\n", in->path, found);
+  abbe_arguments_add(in->program, ABBE_ARGUMENT_READS, "the design", found);
+  abbe_result result = abbe_cut_file_read(found, &in->cut, &in->report, error);
+  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&in->cut, in->weld, &in->stone, error);
+  if (result == ABBE_OK) abbe_cut_measures_make(&in->cut, &in->stone, &in->measures);
+  if (result == ABBE_OK) result = find_material(in, error);
+  if (!in->quiet) print_notes(in);
+  return result;
+}
+
+void abbe_gem_input_free(abbe_gem_input *in) {
+  abbe_report_free(&in->report);
+  abbe_cut_free(&in->cut);
+  abbe_cut_polyhedron_free(&in->stone);
+  abbe_material_table_free(&in->table);
+}
+
+double abbe_gem_input_density(const abbe_gem_input *in) {
+  return in->density_g_cm3 > 0  ? in->density_g_cm3
+         : in->material != NULL ? in->material->catalogue.density_g_cm3
+                                : 0;
+}
+
+double abbe_gem_input_scale(const abbe_gem_input *in) {
+  return in->width_m > 0 ? in->width_m / in->measures.width : 1;
+}
+
+const char *abbe_gem_input_title(const abbe_gem_input *in) {
+  const char *own = in->cut.heading[0];
+  return own != NULL && *own != '\0' ? own : abbe_file_name(in->path);
+}
+
+void abbe_gem_input_describe(const abbe_gem_input *in, cJSON *root) {
+  const abbe_cut_measures *m = &in->measures;
+  const double w = m->width;
+  cJSON_AddStringToObject(root, "design", abbe_gem_input_title(in));
+  cJSON_AddStringToObject(root, "file", in->path);
+  cJSON *facets = cJSON_AddObjectToObject(root, "facets");
+  for (int i = 0; i < ABBE_CUT_SIDE_COUNT; i++)
+    cJSON_AddNumberToObject(facets, abbe_cut_side_name((abbe_cut_side)i), (double)m->faces[i]);
+  cJSON_AddNumberToObject(facets, "dead", (double)m->dead);
+  cJSON_AddNumberToObject(facets, "doubled", (double)m->doubled);
+  cJSON_AddNumberToObject(root, "corners", (double)in->stone.vertex_count);
+  cJSON_AddNumberToObject(root, "edges", (double)in->stone.edge_count);
+  cJSON_AddNumberToObject(root, "gear", in->cut.gear);
+  cJSON_AddNumberToObject(root, "folds", in->cut.folds);
+  cJSON_AddBoolToObject(root, "mirror", in->cut.mirror);
+  cJSON *ratios = cJSON_AddObjectToObject(root, "ratios");
+  cJSON_AddNumberToObject(ratios, "L/W", m->length / w);
+  cJSON_AddNumberToObject(ratios, "T/W", m->table / w);
+  cJSON_AddNumberToObject(ratios, "C/W", m->side[ABBE_CUT_CROWN] / w);
+  cJSON_AddNumberToObject(ratios, "P/W", m->side[ABBE_CUT_PAVILION] / w);
+  cJSON_AddNumberToObject(ratios, "H/W", m->height / w);
+  cJSON_AddNumberToObject(ratios, "Vol/W^3", m->volume / pow(w, 3));
+}

@@ -1,0 +1,53 @@
+/* gem_input.h: the design and the stone that a verb of `abbe gem` works on: options, reading, and
+ * what was met on the way. */
+#ifndef ABBE_CLI_GEM_GEM_INPUT_H
+#define ABBE_CLI_GEM_GEM_INPUT_H
+
+#include "base/report.h"
+#include "scenes/cuts/cut.h"
+#include "scenes/cuts/cut_measures.h"
+#include "scenes/cuts/cut_polyhedron.h"
+#include "spectral/materials/material_table.h"
+
+#include <argp.h>
+#include <stdbool.h>
+
+/* Keys of abbe_gem_input_argp's options; a verb's own begin at ABBE_GEM_KEY_OWN. */
+enum { ABBE_GEM_KEY_OWN = 0x300 };
+
+/* Zeroed but for program. */
+typedef struct abbe_gem_input {
+  const char *program, *path;
+  const char *table_path, *material_name;
+  double weld, width_m, density_g_cm3; /* 0: not given */
+  bool json, quiet;
+  abbe_report report;
+  abbe_cut cut;
+  abbe_cut_polyhedron stone;
+  abbe_cut_measures measures;
+  abbe_material_table table;
+  const abbe_material *material; /* or NULL */
+  double n;                      /* of the material at the d line, else what the design says; 0 */
+} abbe_gem_input;
+
+/* FILE, --material, --table, --width, --density, --weld, --json, --quiet. Its input is the
+ * abbe_gem_input. */
+extern const struct argp abbe_gem_input_argp;
+
+/* Reads the file and finds its stone; a path that leads nowhere is looked for beside the program,
+ * as scenes are. Notes go to stderr unless quiet. */
+abbe_result abbe_gem_input_load(abbe_gem_input *input, abbe_error *error);
+void abbe_gem_input_free(abbe_gem_input *input);
+
+/* The density that was given, else the material's; 0: not known. */
+double abbe_gem_input_density(const abbe_gem_input *input);
+/* The width that was given, else one metre a unit of the design. */
+double abbe_gem_input_scale(const abbe_gem_input *input);
+/* What the design is called: its first heading, or its file's name. */
+const char *abbe_gem_input_title(const abbe_gem_input *input);
+
+struct cJSON;
+/* The proportions, the counts and the title. */
+void abbe_gem_input_describe(const abbe_gem_input *input, struct cJSON *root);
+
+#endif

@@ -1,0 +1,144 @@
+#include "scenes/cuts/cut_stretch.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define DEGREES (180 / 3.14159265358979323846)
+
+/* Flat facets have no angle to be changed. */
+static const double flat_deg = 1;
+
+void abbe_cut_stretch_window(double n, double *low_deg, double *high_deg) {
+  *low_deg = asin(1 / n) * DEGREES;
+  *high_deg = (180 - *low_deg) / 3;
+}
+
+double abbe_cut_stretch_angle(double main_deg, double from, double to) {
+  double low[2], high[2];
+  abbe_cut_stretch_window(from, &low[0], &high[0]);
+  abbe_cut_stretch_window(to, &low[1], &high[1]);
+  return main_deg + (low[1] + high[1] - low[0] - high[0]) / 2;
+}
+
+/* Whether the face reaches down to the stone's lowest corners. */
+static bool reaches_down(const abbe_cut_polyhedron *p, const abbe_cut_face *face) {
+  const double near = 1e-6 * (p->max[2] - p->min[2]);
+  for (size_t i = 0; i < face->count; i++)
+    if (p->vertex[p->corner[face->first + i]][2] <= p->min[2] + near) return true;
+  return false;
+}
+
+/* The mean area of a tier's faces of that side; 0 where it has none. */
+static double mean_area(const abbe_cut *cut, const abbe_cut_polyhedron *p, size_t tier,
+                        abbe_cut_side side) {
+  double area = 0, count = 0;
+  for (size_t f = 0; f < p->face_count; f++) {
+    const abbe_cut_face *face = &p->face[f];
+    const abbe_cut_facet *facet = &cut->facet[face->facet];
+    if (facet->tier != tier || abbe_cut_side_of(facet) != side ||
+        fabs(abbe_cut_angle(facet->n)) <= flat_deg ||
+        (side == ABBE_CUT_PAVILION && !reaches_down(p, face)))
+      continue;
+    area += face->area;
+    count++;
+  }
+  return count > 0 ? area / count : 0;
+}
+
+size_t abbe_cut_stretch_main(const abbe_cut *cut, const abbe_cut_polyhedron *p,
+                             abbe_cut_side side) {
+  size_t best = cut->tier_count;
+  double most = 0;
+  for (size_t t = 0; t < cut->tier_count; t++) {
+    const double area = mean_area(cut, p, t, side);
+    if (area > most * (1 + 1e-9)) {
+      most = area;
+      best = t;
+    }
+  }
+  return best;
+}
+
+double abbe_cut_stretch_factor(double from_deg, double to_deg) {
+  return tan(fabs(to_deg) / DEGREES) / tan(fabs(from_deg) / DEGREES);
+}
+
+/* The plane after z became z0 + k (z - z0). */
+static void stretch(abbe_cut_facet *f, double z0, double k) {
+  const double up = f->n[2] / k, d = f->d - z0 * (f->n[2] - up);
+  const double length = sqrt(f->n[0] * f->n[0] + f->n[1] * f->n[1] + up * up);
+  f->n[0] /= length;
+  f->n[1] /= length;
+  f->n[2] = up / length;
+  f->d = d / length;
+}
+
+static abbe_result stretch_all(abbe_cut *cut, const double z0[ABBE_CUT_SIDE_COUNT],
+                               const double k[ABBE_CUT_SIDE_COUNT], abbe_error *error) {
+  for (size_t i = 0; i < cut->facet_count; i++) {
+    abbe_cut_facet *f = &cut->facet[i];
+    const abbe_cut_side side = abbe_cut_side_of(f);
+    if (side != ABBE_CUT_GIRDLE) stretch(f, z0[side], k[side]);
+    if (!(f->d >= 1 / ABBE_CUT_FAR))
+      return abbe_error_set(error, ABBE_OUT_OF_RANGE,
+                            "at these angles facet %zu would come to the other side of the "
+                            "stone's centre; change the angles less",
+                            i + 1);
+  }
+  for (size_t t = 0; t < cut->tier_count; t++) {
+    abbe_cut_tier *tier = &cut->tier[t];
+    if (tier->count == 0) continue;
+    const abbe_cut_facet *first = &cut->facet[tier->first];
+    if (abbe_cut_side_of(first) != ABBE_CUT_GIRDLE) tier->angle_deg = abbe_cut_angle(first->n);
+    tier->distance = first->d;
+  }
+  return ABBE_OK;
+}
+
+static bool is_a_factor(double k) {
+  return k >= 1 / ABBE_CUT_STRETCH_MOST && k <= ABBE_CUT_STRETCH_MOST;
+}
+
+static abbe_result check(const abbe_cut_measures *m, double crown, double pavilion,
+                         abbe_error *error) {
+  const double level = 1e-6, same = 1e-9;
+  if (!is_a_factor(crown) || !is_a_factor(pavilion))
+    return abbe_error_set(error, ABBE_OUT_OF_RANGE,
+                          "tangents can become %g to %g times what they were, and not %g and %g",
+                          1 / ABBE_CUT_STRETCH_MOST, ABBE_CUT_STRETCH_MOST, crown, pavilion);
+  if (m->shared > 0 && fabs(crown - pavilion) > same * crown &&
+      m->shared_high - m->shared_low > level * m->width)
+    return abbe_error_set(
+        error, ABBE_UNSUPPORTED,
+        "crown and pavilion meet where there is no girdle, and not at one height: "
+        "both need the same tangent ratio, and not %g and %g",
+        crown, pavilion);
+  return ABBE_OK;
+}
+
+abbe_result abbe_cut_stretch_apply(abbe_cut *cut, const abbe_cut_polyhedron *p, double crown,
+                                   double pavilion, abbe_error *error) {
+  ABBE_REQUIRE(cut && p, error);
+  abbe_cut_measures m;
+  abbe_cut_measures_make(cut, p, &m);
+  abbe_result result = check(&m, crown, pavilion, error);
+  if (result != ABBE_OK) return result;
+  abbe_cut_facet *facet = malloc(cut->facet_count * sizeof *facet);
+  abbe_cut_tier *tier = malloc(cut->tier_count * sizeof *tier);
+  const bool share = m.shared > 0; /* what they share moves with both */
+  const double z0[] = {share ? m.shared_low : m.crown_edge, 0,
+                       share ? m.shared_low : m.pavilion_edge};
+  const double k[] = {crown, 1, pavilion};
+  if (facet == NULL || tier == NULL) {
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a design");
+  } else {
+    for (size_t i = 0; i < cut->facet_count; i++) facet[i] = cut->facet[i];
+    for (size_t i = 0; i < cut->tier_count; i++) tier[i] = cut->tier[i];
+    result = stretch_all(cut, z0, k, error);
+    for (size_t i = 0; result != ABBE_OK && i < cut->facet_count; i++) cut->facet[i] = facet[i];
+    for (size_t i = 0; result != ABBE_OK && i < cut->tier_count; i++) cut->tier[i] = tier[i];
+  }
+  free(facet);
+  free(tier);
+  return result;
+}

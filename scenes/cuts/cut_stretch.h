@@ -1,0 +1,50 @@
+/* cut_stretch.h: a design at other angles, its meets kept.
+ *
+ * Crown and pavilion are stretched along z, each by a factor k of its own: tangents of angles
+ * become k times what they were (cutters' tangent ratio), and whatever met in a point or along an
+ * edge still does, for a stretch is an affine map that leaves upright planes where they are. The
+ * outline stays; so does the girdle's thickness where it is thinnest.
+ */
+#ifndef ABBE_SCENES_CUTS_CUT_STRETCH_H
+#define ABBE_SCENES_CUTS_CUT_STRETCH_H
+
+#include "base/error.h"
+#include "scenes/cuts/cut.h"
+#include "scenes/cuts/cut_measures.h"
+#include "scenes/cuts/cut_polyhedron.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Factors are between 1 over this and this. */
+#define ABBE_CUT_STRETCH_MOST 20.0
+
+/* Angles of a pavilion's main facets, in degrees, at which a ray that comes straight down onto them
+ * is totally reflected there and on the facet opposite: above asin(1 / n), and below a third of 180
+ * degrees less that (it comes to the second at 180 - 3 a). Where n is below 1 / sin 45 degrees they
+ * leave nothing between them. n is above 1. */
+void abbe_cut_stretch_window(double n, double *low_deg, double *high_deg);
+/* The main angle for an index `to` of a design that has `main` for the index `from`: as far from
+ * the middle of the window as it was. */
+double abbe_cut_stretch_angle(double main_deg, double from, double to);
+
+/* The main tier of that side, crown or pavilion: the one with the largest faces, in the mean,
+ * tables and flat culets aside; of a pavilion among those that reach the lowest corner.
+ * cut->tier_count where there is none. */
+size_t abbe_cut_stretch_main(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                             abbe_cut_side side);
+/* The factor that brings an angle to another, both between 0 and 90 degrees either way. */
+double abbe_cut_stretch_factor(double from_deg, double to_deg);
+
+/* Moves the planes; names, indices and texts stay. ABBE_OUT_OF_RANGE for factors out of range and
+ * where a plane would come to the other side of the centre, ABBE_UNSUPPORTED where crown and
+ * pavilion meet without a girdle between them, not level, and the factors differ. The cut is as it
+ * was then. */
+abbe_result abbe_cut_stretch_apply(abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                   double crown, double pavilion, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,131 @@
+/* `abbe gem` as people and programs meet it: what a design holds, sheets, conversions, other
+ * angles, refusals that leave nothing behind. */
+#include "tests/cli/run_program.h"
+
+#include <cjson/cJSON.h>
+
+#define GEM "\"$abbe\" gem "
+#define QUARTZ " \"$house\"/scenes/designs/brilliant-quartz.asc "
+
+static const cJSON *get(const cJSON *object, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+  if (item == NULL) fail_msg("there is no %s", key);
+  return item;
+}
+
+static double number(const cJSON *object, const char *key) {
+  return cJSON_GetNumberValue(get(object, key));
+}
+
+static cJSON *json_of(const char *line) {
+  if (run_line(line) != 0) fail_msg("%s", run_errors);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_non_null(json);
+  return json;
+}
+
+static void a_design_is_described(void **state) {
+  (void)state;
+  assert_int_equal(run_line(GEM "info" QUARTZ "--material diamond --width 6.5 --density 3.52"), 0);
+  assert_contains(run_output, "57 + 16 girdle: 33 crown, 24 pavilion; 57 corners, 128 edges");
+  assert_contains(run_output, "critical angle 40.37 degrees");
+  assert_contains(run_output, "Meet A-A-B-B");
+  assert_contains(run_output, "carats");
+  cJSON *json = json_of(GEM "info" QUARTZ "--json");
+  assert_near(number(get(json, "facets"), "girdle"), 16, 0);
+  assert_near(number(get(json, "ratios"), "L/W"), 1, 1e-9);
+  assert_near(number(get(json, "ratios"), "Vol/W^3"), 2.097983 / pow(2.039182, 3), 1e-6);
+  assert_int_equal(cJSON_GetArraySize(get(json, "tiers")), 7);
+  const cJSON *tier = cJSON_GetArrayItem(get(json, "tiers"), 2);
+  assert_near(number(tier, "angle_deg"), -43, 0);
+  assert_int_equal(cJSON_GetArraySize(get(tier, "facets")), 8);
+  cJSON_Delete(json);
+}
+
+static void there_and_back(void **state) {
+  (void)state;
+  assert_int_equal(run_line(GEM "convert" QUARTZ "-o s.gem && " GEM "convert s.gem -o s.asc && " GEM
+                                "info s.asc -q"),
+                   0);
+  assert_contains(run_output, "57 + 16 girdle");
+  assert_contains(run_output, "Round brilliant for quartz");
+  assert_int_equal(run_line(GEM "convert" QUARTZ "--width 8 -o s.stl && " GEM "convert" QUARTZ
+                                "--width 8 -o s.obj && " GEM "convert" QUARTZ
+                                "--width 8 --material diamond -o s.glb && test -s s.stl -a -s "
+                                "s.obj -a -s s.glb && rm s.*"),
+                   0);
+  assert_int_equal(run_left(), 0);
+}
+
+static void other_angles(void **state) {
+  (void)state;
+  cJSON *json = json_of(GEM "retarget" QUARTZ "--index 1.768 -o s.asc --json");
+  const cJSON *pavilion = get(json, "pavilion");
+  assert_near(number(pavilion, "from_deg"), 43, 0);
+  assert_true(number(pavilion, "to_deg") > 40.5 && number(pavilion, "to_deg") < 41.5);
+  assert_near(number(pavilion, "tangent_ratio"), number(get(json, "crown"), "tangent_ratio"), 0);
+  cJSON_Delete(json);
+  json = json_of(GEM "info s.asc --json");
+  assert_near(number(json, "cut_for_index"), 1.768, 0);
+  assert_near(number(json, "corners"), 57, 0);
+  cJSON_Delete(json);
+  json = json_of(GEM "retarget" QUARTZ "--pavilion 41 --json");
+  assert_near(number(get(json, "crown"), "tangent_ratio"), 1, 0);
+  assert_near(number(get(json, "pavilion"), "to_deg"), 41, 0);
+  cJSON_Delete(json);
+  assert_int_equal(run_line("rm s.asc"), 0);
+}
+
+static void sheets(void **state) {
+  (void)state;
+  assert_int_equal(run_line(GEM "diagram" QUARTZ "-o d.pdf && " GEM "diagram" QUARTZ
+                                "-o d.png && " GEM "diagram" QUARTZ
+                                "-o d.svg --material diamond && rm d.*"),
+                   0);
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *line, *part;
+    int code;
+  } wrong[] = {
+      {GEM, "a verb is wanted", 2},
+      {GEM "inform x.asc", "did you mean 'info'?", 2},
+      {GEM "info", "which design?", 2},
+      {GEM "info none.asc", "none.asc", 1},
+      {GEM "info \"$house\"/README.md", "is no design that is known by its name", 1},
+      {GEM "info" QUARTZ "--material gold", "is a metal", 1},
+      {GEM "info" QUARTZ "--material dimond", "diamond", 1},
+      {GEM "info" QUARTZ "--weld 0.5", "--weld", 2},
+      {GEM "diagram" QUARTZ, "where to?", 2},
+      {GEM "diagram" QUARTZ "-o d.jpg", "ends with .pdf, .svg or .png", 1},
+      {GEM "convert" QUARTZ "-o s.gltf", "a design is written as .asc or .gem", 1},
+      {GEM "retarget" QUARTZ, "for which stone?", 2},
+      {GEM "retarget" QUARTZ "--index 1.6 --material diamond", "one of them", 2},
+  };
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+    assert_true(run_refuses(wrong[i].line, wrong[i].code, wrong[i].part));
+  /* An open stone, and a design that does not say for which index it was made. */
+  assert_int_equal(run_line("printf 'g 96 0\\na -90 1 96 24 48 72\\n' >o.asc; " GEM "info o.asc"),
+                   1);
+  assert_contains(run_errors, "open");
+  assert_int_equal(run_line("printf 'a 40 1 96 24 48 72\\na -40 1 96 24 48 72\\n' >>o.asc; " GEM
+                            "retarget o.asc --index 1.7"),
+                   1);
+  assert_contains(run_errors, "--from-index");
+  /* A design is not written over itself. */
+  assert_true(
+      run_refuses("cp" QUARTZ "o.asc; " GEM "retarget o.asc --index 1.7 -o o.asc", 2, "o.asc"));
+  assert_int_equal(run_line("rm o.asc"), 0);
+  assert_int_equal(run_left(), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_design_is_described), cmocka_unit_test(there_and_back),
+      cmocka_unit_test(other_angles),          cmocka_unit_test(sheets),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

@@ -1,0 +1,95 @@
+/* Sheets to cut from: all that a cutter reads is on them, in each format, or nothing is. */
+#include "scenes/cuts/cut_diagram.h"
+
+#include "base/file.h"
+#include "tests/fontconfig.h"
+#include "tests/scenes/cuts/designs.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static void write_sheet(const char *path, const char *text, const char *note) {
+  abbe_cut cut = design_parse(text);
+  abbe_cut_polyhedron p;
+  abbe_error error = {0};
+  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
+  if (abbe_cut_diagram_write(path, &cut, &p, note, &error) != ABBE_OK) fail_msg("%s", error.text);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+static size_t count(const char *text, const char *part) {
+  size_t n = 0;
+  for (const char *at = text; (at = strstr(at, part)) != NULL; at += strlen(part)) n++;
+  return n;
+}
+
+/* Each face that is seen is one closed path, filled and outlined: of design A 33 from above, 24
+ * from below and half of all from each side. */
+static void an_svg_has_all_faces(void **state) {
+  (void)state;
+  char *data;
+  size_t size;
+  write_sheet("cut_diagram_test.svg", design_a, "a note");
+  assert_int_equal(abbe_file_read("cut_diagram_test.svg", 1 << 22, &data, &size, NULL), ABBE_OK);
+  assert_int_equal(unlink("cut_diagram_test.svg"), 0);
+  /* the profile's sides show 8 of 16 girdle facets and those of crown and pavilion that look there
+   */
+  const size_t outlines = count(data, "stroke-width:0.7");
+  if (outlines < 33 + 24 + 2 * 30 || outlines > 33 + 24 + 2 * 45)
+    fail_msg("%zu outlines of faces", outlines);
+  free(data);
+}
+
+static void a_png_is_as_long_as_its_table(void **state) {
+  (void)state;
+  size_t height[2];
+  char tall[20000] = "g 96 0\na -45 1 96 24 48 72\na 0 1 96\n";
+  for (int i = 0; i < 60; i++) strcat(tall, "a -90 1 96 24 48 72 G and a line that says why\n");
+  for (int i = 0; i < 2; i++) {
+    abbe_error error = {0};
+    char *data;
+    size_t size;
+    write_sheet("cut_diagram_test.png", i == 0 ? design_c : tall, NULL);
+    assert_int_equal(abbe_file_read("cut_diagram_test.png", 1 << 24, &data, &size, &error),
+                     ABBE_OK);
+    const unsigned char *head = (const unsigned char *)data;
+    assert_memory_equal(head + 12, "IHDR", 4);
+    assert_int_equal(head[18] * 256 + head[19], 595 * ABBE_CUT_DIAGRAM_PIXELS);
+    height[i] = (size_t)(head[22] * 256 + head[23]);
+    free(data);
+  }
+  assert_int_equal(unlink("cut_diagram_test.png"), 0);
+  assert_int_equal(height[0], 842 * ABBE_CUT_DIAGRAM_PIXELS);
+  assert_true(height[1] > height[0] + 60 * 8 * ABBE_CUT_DIAGRAM_PIXELS / 2);
+}
+
+static void a_pdf_and_what_is_refused(void **state) {
+  (void)state;
+  char *data;
+  size_t size;
+  abbe_error error = {0};
+  write_sheet("cut_diagram_test.pdf", design_d, NULL);
+  assert_int_equal(abbe_file_read("cut_diagram_test.pdf", 1 << 22, &data, &size, NULL), ABBE_OK);
+  assert_memory_equal(data, "%PDF", 4);
+  free(data);
+  assert_int_equal(unlink("cut_diagram_test.pdf"), 0);
+  abbe_cut cut = design_parse(design_c);
+  abbe_cut_polyhedron p;
+  assert_int_equal(abbe_cut_polyhedron_make(&cut, 0, &p, NULL), ABBE_OK);
+  assert_int_equal(abbe_cut_diagram_write("sheet.jpg", &cut, &p, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "ends with .pdf, .svg or .png");
+  assert_int_equal(abbe_cut_diagram_write("no/such/folder/a.pdf", &cut, &p, NULL, &error), ABBE_IO);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_svg_has_all_faces),
+      cmocka_unit_test(a_png_is_as_long_as_its_table),
+      cmocka_unit_test(a_pdf_and_what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

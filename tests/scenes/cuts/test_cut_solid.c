@@ -1,0 +1,126 @@
+/* Stones as solids for other programs: what is written reads back with its volume and place, in
+ * metres or millimetres as the format has them; glTF's extensions by structure.
+ */
+#include "scenes/cuts/cut_solid.h"
+
+#include "base/file.h"
+#include "scenes/mesh/mesh.h"
+#include "spectral/formats/material_table_load.h"
+#include "spectral/materials/material_table.h"
+#include "tests/scenes/cuts/designs.h"
+
+#include <cjson/cJSON.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static const char *const paths[] = {"cut_solid_test.stl", "cut_solid_test.obj",
+                                    "cut_solid_test.glb"};
+
+static abbe_cut_polyhedron stone_of(const abbe_cut *cut) {
+  abbe_cut_polyhedron p;
+  assert_int_equal(abbe_cut_polyhedron_make(cut, 0, &p, NULL), ABBE_OK);
+  return p;
+}
+
+static void write_to(const char *path, const abbe_cut *cut, const abbe_cut_polyhedron *p,
+                     double scale, const abbe_material *material) {
+  abbe_error error = {0};
+  FILE *to = fopen(path, "wb");
+  assert_non_null(to);
+  if (abbe_cut_solid_write(cut, p, scale, material, abbe_cut_solid_format_of(path), to, &error) !=
+      ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_int_equal(fclose(to), 0);
+}
+
+/* Volume and bounds are the stone's, in the unit of the format; the normals look outwards. */
+static void check(const char *text, double scale, int format) {
+  abbe_cut cut = design_parse(text);
+  abbe_cut_polyhedron p = stone_of(&cut);
+  abbe_mesh mesh;
+  abbe_mesh_report report;
+  abbe_error error = {0};
+  const bool up = format == 2; /* y is, in glTF */
+  const double unit = up ? scale : 1e3 * scale, size = unit * (p.max[0] - p.min[0]);
+  write_to(paths[format], &cut, &p, scale, NULL);
+  if (abbe_mesh_load(paths[format], ABBE_NORMALS_FLAT, &mesh, NULL, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  assert_int_equal(abbe_mesh_check(&mesh, &report, &error), ABBE_OK);
+  assert_near(report.volume, p.volume * pow(unit, 3), 1e-5 * p.volume * pow(unit, 3));
+  assert_int_equal(report.open_edges + report.flipped_edges + report.crowded_edges, 0);
+  assert_near(report.min[0], unit * p.min[0], 1e-6 * size);
+  assert_near(report.max[0], unit * p.max[0], 1e-6 * size);
+  assert_near(report.max[up ? 1 : 2], unit * p.max[2], 1e-6 * size);
+  assert_near(up ? report.min[2] : report.max[1], (up ? -1 : 1) * unit * p.max[1], 1e-6 * size);
+  assert_int_equal(mesh.face_count, p.corner_count - 2 * p.face_count);
+  abbe_mesh_free(&mesh);
+  assert_int_equal(unlink(paths[format]), 0);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+static void what_is_written_reads_back(void **state) {
+  (void)state;
+  for (int format = 0; format < ABBE_CUT_SOLID_COUNT; format++) {
+    assert_int_equal(abbe_cut_solid_format_of(paths[format]), format);
+    check(design_a, 0.004, format);
+    check(design_d, 0.01, format); /* which looks different in a mirror */
+  }
+  assert_int_equal(abbe_cut_solid_format_of("stone.gltf"), ABBE_CUT_SOLID_COUNT);
+  assert_int_equal(abbe_cut_solid_format_of("stl"), ABBE_CUT_SOLID_COUNT);
+}
+
+static double number(const cJSON *object, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+  assert_non_null(item);
+  return cJSON_GetNumberValue(item);
+}
+
+static const cJSON *under(const cJSON *object, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+  if (item == NULL) fail_msg("there is no %s", key);
+  return cJSON_IsArray(item) ? cJSON_GetArrayItem(item, 0) : item;
+}
+
+/* Diamond: n_d 2.4175, V_d 55.3 by the record; clear, so no colour. */
+static void gltf_knows_the_stone(void **state) {
+  (void)state;
+  abbe_cut cut = design_parse(design_b);
+  abbe_cut_polyhedron p = stone_of(&cut);
+  abbe_material_table table;
+  const abbe_material *diamond;
+  char *data;
+  size_t size;
+  assert_int_equal(abbe_material_table_load(NULL, &table, NULL), ABBE_OK);
+  assert_int_equal(abbe_material_table_find(&table, "diamond", &diamond, NULL), ABBE_OK);
+  write_to(paths[2], &cut, &p, 0.003, diamond);
+  assert_int_equal(abbe_file_read(paths[2], 1 << 20, &data, &size, NULL), ABBE_OK);
+  assert_memory_equal(data, "glTF\2\0\0\0", 8);
+  cJSON *root = cJSON_Parse(data + 20);
+  assert_non_null(root);
+  const cJSON *e = under(under(root, "materials"), "extensions");
+  assert_near(number(under(e, "KHR_materials_ior"), "ior"), 2.4175, 1e-3);
+  const double v_d = 20 / number(under(e, "KHR_materials_dispersion"), "dispersion");
+  assert_true(v_d > 54 && v_d < 57);
+  assert_near(number(under(e, "KHR_materials_transmission"), "transmissionFactor"), 1, 0);
+  assert_near(number(under(e, "KHR_materials_volume"), "thicknessFactor"),
+              0.003 * (p.max[0] - p.min[0]), 1e-8);
+  const cJSON *accessor = under(root, "accessors");
+  assert_int_equal(number(accessor, "count"), p.corner_count); /* no corner is shared */
+  const uint32_t *bytes = (const uint32_t *)(const void *)data;
+  assert_int_equal(bytes[2], size);
+  cJSON_Delete(root);
+  free(data);
+  assert_int_equal(unlink(paths[2]), 0);
+  abbe_material_table_free(&table);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_is_written_reads_back),
+      cmocka_unit_test(gltf_knows_the_stone),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,135 @@
+/* Designs at other angles: tangents by one ratio, meets and outline as they were. */
+#include "scenes/cuts/cut_stretch.h"
+
+#include "tests/scenes/cuts/designs.h"
+
+#define TURN (180 / 3.14159265358979323846)
+
+static abbe_cut_polyhedron stone_of(const abbe_cut *cut) {
+  abbe_cut_polyhedron p;
+  abbe_error error = {0};
+  if (abbe_cut_polyhedron_make(cut, 0, &p, &error) != ABBE_OK) fail_msg("%s", error.text);
+  return p;
+}
+
+static void check(const char *text, double crown, double pavilion) {
+  abbe_cut cut = design_parse(text), before = design_parse(text);
+  abbe_cut_polyhedron p = stone_of(&cut);
+  abbe_cut_measures m, n;
+  abbe_error error = {0};
+  if (abbe_cut_stretch_apply(&cut, &p, crown, pavilion, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  abbe_cut_polyhedron q = stone_of(&cut);
+  assert_int_equal(q.vertex_count, p.vertex_count);
+  assert_int_equal(q.edge_count, p.edge_count);
+  assert_int_equal(q.face_count, p.face_count);
+  for (int k = 0; k < 2; k++) {
+    assert_near(q.min[k], p.min[k], 1e-9);
+    assert_near(q.max[k], p.max[k], 1e-9);
+  }
+  abbe_cut_measures_make(&cut, &p, &m); /* the planes are new, the faces old: sides are the same */
+  abbe_cut_measures_make(&before, &p, &m);
+  abbe_cut_measures_make(&cut, &q, &n);
+  for (size_t t = 0; t < cut.tier_count; t++) {
+    const double was = before.tier[t].angle_deg, is = cut.tier[t].angle_deg;
+    const double k = fabs(was) == 90 ? 1 : was > 0 ? crown : pavilion;
+    if (fabs(was) == 90)
+      assert_near(is, was, 0);
+    else
+      assert_near(tan(fabs(is) / TURN), k * tan(fabs(was) / TURN), 1e-9);
+    assert_int_equal(signbit(is) != 0, signbit(was) != 0);
+    assert_near(cut.tier[t].distance, cut.facet[cut.tier[t].first].d, 0);
+  }
+  abbe_cut_polyhedron_free(&q);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+  abbe_cut_free(&before);
+}
+
+static void meets_are_kept(void **state) {
+  (void)state;
+  const char *const designs[] = {design_a, design_b, design_c};
+  for (size_t i = 0; i < 3; i++) {
+    check(designs[i], 0.9, 0.93);
+    check(designs[i], 1.2, 0.8);
+    check(designs[i], 1, 1);
+  }
+  check(design_d, 0.9, 0.9); /* its crown and pavilion share corners at several heights */
+}
+
+/* Above a level girdle a crown that is stretched by k is k times as high. */
+static void heights_are_stretched(void **state) {
+  (void)state;
+  abbe_cut cut = design_parse(design_a);
+  abbe_cut_polyhedron p = stone_of(&cut);
+  abbe_cut_measures m, n;
+  abbe_cut_measures_make(&cut, &p, &m);
+  assert_int_equal(abbe_cut_stretch_apply(&cut, &p, 0.8, 0.9, NULL), ABBE_OK);
+  abbe_cut_polyhedron q = stone_of(&cut);
+  abbe_cut_measures_make(&cut, &q, &n);
+  assert_near(n.side[ABBE_CUT_CROWN], 0.8 * m.side[ABBE_CUT_CROWN], 1e-6);
+  assert_near(n.side[ABBE_CUT_PAVILION], 0.9 * m.side[ABBE_CUT_PAVILION], 1e-6);
+  assert_near(n.side[ABBE_CUT_GIRDLE], m.side[ABBE_CUT_GIRDLE], 1e-6);
+  abbe_cut_polyhedron_free(&q);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+static void mains(void **state) {
+  (void)state;
+  abbe_cut cut = design_parse(design_a);
+  abbe_cut_polyhedron p = stone_of(&cut);
+  assert_near(cut.tier[abbe_cut_stretch_main(&cut, &p, ABBE_CUT_PAVILION)].angle_deg, -43, 0);
+  assert_near(cut.tier[abbe_cut_stretch_main(&cut, &p, ABBE_CUT_CROWN)].angle_deg, 42, 0);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+/* Quartz: the critical angle is 40.37 degrees; and a ray that comes straight down onto 43 degrees
+ * meets the facet opposite at 180 - 129 = 51. */
+static void the_window(void **state) {
+  (void)state;
+  double low, high;
+  abbe_cut_stretch_window(1.544, &low, &high);
+  assert_near(sin(low / TURN) * 1.544, 1, 1e-12);
+  assert_near(180 - 3 * high, low, 1e-9);
+  assert_near(abbe_cut_stretch_angle(43, 1.544, 1.544), 43, 0);
+  /* as far from the middle, 30 + a third of the critical angle */
+  assert_near(abbe_cut_stretch_angle(43, 1.544, 1.768),
+              43 + (asin(1 / 1.768) - asin(1 / 1.544)) * TURN / 3, 1e-9);
+  assert_near(abbe_cut_stretch_factor(-43, 41), tan(41 / TURN) / tan(43 / TURN), 1e-12);
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  abbe_cut cut = design_parse("g 96 0\na 54.735610 0.5 96 32 64\na -54.735610 0.5 16 48 80\n");
+  abbe_cut_polyhedron p = stone_of(&cut);
+  assert_int_equal(abbe_cut_stretch_apply(&cut, &p, 0.9, 0.8, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "not at one height");
+  assert_near(cut.tier[0].angle_deg, 54.73561, 0);
+  assert_int_equal(abbe_cut_stretch_apply(&cut, &p, 0.9, 0.9, &error), ABBE_OK);
+  assert_int_equal(abbe_cut_stretch_apply(&cut, &p, 0, 1, &error), ABBE_OUT_OF_RANGE);
+  assert_int_equal(abbe_cut_stretch_apply(&cut, &p, 1, NAN, &error), ABBE_OUT_OF_RANGE);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+  /* the centre is far above this girdle: a shallow pavilion would pass it */
+  cut = design_parse("g 96 0\na 90 1 96 24 48 72\na 0 0.05 96\na -60 0.1 96 24 48 72\n");
+  p = stone_of(&cut);
+  const double was = cut.facet[0].d;
+  assert_int_equal(abbe_cut_stretch_apply(&cut, &p, 1, 0.06, &error), ABBE_OUT_OF_RANGE);
+  assert_contains(error.text, "other side of the stone's centre");
+  assert_near(cut.facet[0].d, was, 0);
+  assert_near(cut.tier[2].angle_deg, -60, 0);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(meets_are_kept),  cmocka_unit_test(heights_are_stretched),
+      cmocka_unit_test(mains),           cmocka_unit_test(the_window),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
