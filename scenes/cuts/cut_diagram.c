@@ -67,7 +67,7 @@ static void trace_face(const sheet *s, const view *v, const abbe_cut_face *face)
   cairo_close_path(s->cr);
 }
 
-/* The middle of the face on the sheet, and the radius of a disk of its area there. */
+/* The middle of the face on the sheet, and how far from it the nearest edge is. */
 static double find_middle(const sheet *s, const view *v, const abbe_cut_face *face, double out[2]) {
   double area = 0, sum[2] = {0, 0}, first[2], a[2], b[2];
   place(v, corner(s, face, 0), first);
@@ -80,7 +80,15 @@ static double find_middle(const sheet *s, const view *v, const abbe_cut_face *fa
     area += part;
   }
   for (int k = 0; k < 2; k++) out[k] = area != 0 ? sum[k] / area : first[k];
-  return sqrt(fabs(area) / 2 / PI);
+  double nearest = INFINITY;
+  for (size_t i = 0; i < face->count; i++) {
+    place(v, corner(s, face, i), a);
+    place(v, corner(s, face, (i + 1) % face->count), b);
+    const double x = b[0] - a[0], y = b[1] - a[1], length = hypot(x, y);
+    if (length > 0)
+      nearest = fmin(nearest, fabs(x * (out[1] - a[1]) - y * (out[0] - a[0])) / length);
+  }
+  return nearest;
 }
 
 static void name_face(const sheet *s, const view *v, const abbe_cut_face *face) {
@@ -91,7 +99,7 @@ static void name_face(const sheet *s, const view *v, const abbe_cut_face *face) 
   if (*name == '\0') return;
   abbe_chart_set_font(s->cr, 10, false);
   const double width = abbe_chart_text_width(s->cr, name) / 10;
-  const double size = fmin(most, 1.3 * radius / hypot(0.5 * width, 0.4));
+  const double size = fmin(most, 1.2 * radius / hypot(0.5 * width, 0.4));
   if (size < least) return;
   abbe_chart_set_font(s->cr, size, false);
   abbe_chart_put_text(s->cr, name, at[0], at[1], 0.5, 0.5);
