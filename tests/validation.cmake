@@ -14,6 +14,7 @@ foreach(name
     eye_samples
     eye_walk
     pareto_front
+    gem_view
     guide_sums
     field
     file_comparison

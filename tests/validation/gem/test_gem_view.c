@@ -1,0 +1,302 @@
+#include "tests/validation/gem/gem_stones.h"
+
+#include <stdlib.h>
+
+static const abbe_gem_view_desc small = {
+    .head_rad = 15 * DEG, .side = 32, .repeats = 4, .threads = 2};
+
+static double mean(const abbe_gem_view *view, abbe_gem_amount amount) {
+  return abbe_gem_view_amount(view, amount).value;
+}
+
+/* Light goes up and down between two faces: R + T^2 R / (1 - R^2) of it comes back. */
+static void slab_returns_what_its_faces_reflect(void **state) {
+  (void)state;
+  static const double index[] = {1.5, 2.417};
+  for (int i = 0; i < 2; i++) {
+    judged j = judged_plain(slab, index[i]);
+    abbe_gem_view view = judged_view(&j, &small);
+    const double n = index[i], r = pow((n - 1) / (n + 1), 2), back = 2 * r / (1 + r);
+    assert_near(mean(&view, ABBE_GEM_ISO), back, 1e-4);
+    assert_near(mean(&view, ABBE_GEM_COS), back, 1e-4);
+    assert_near(mean(&view, ABBE_GEM_DOWN), 1 - back, 1e-4);
+    assert_near(mean(&view, ABBE_GEM_BLUE), back, 1e-4);
+    assert_near(mean(&view, ABBE_GEM_RETURN), 0, 1e-6);
+    abbe_gem_view_free(&view);
+    judged_free(&j);
+  }
+  judged j = judged_plain(slab, 2.42);
+  abbe_gem_view view = judged_view(&j, &small);
+  assert_near(mean(&view, ABBE_GEM_ISO), 0.294, 5e-4);
+  abbe_gem_view_free(&view);
+  judged_free(&j);
+}
+
+static void slab_absorbs_by_its_thickness(void **state) {
+  (void)state;
+  static char name[] = "grey";
+  const double nm[1] = {500}, per_m[1] = {60};
+  abbe_material m = {.name = name,
+                     .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.5}},
+                     .min_nm = 300,
+                     .max_nm = 800};
+  abbe_error error = {0};
+  need(abbe_spectrum_make(nm, per_m, 1, ABBE_INTERPOLATION_LINEAR, &m.attenuation, &error), &error);
+  judged j = judged_make(slab, &m, 3);
+  abbe_gem_view view = judged_view(&j, &small);
+  /* 10 mm wide, 5 mm thick */
+  const double a = exp(-60 * 0.005), r = 0.04, t = 1 - r;
+  const double down = t * t * a / (1 - r * r * a * a),
+               up = r + t * t * r * a * a / (1 - r * r * a * a);
+  assert_near(mean(&view, ABBE_GEM_DOWN), down, 1e-4);
+  assert_near(mean(&view, ABBE_GEM_ISO), up, 1e-4);
+  assert_near(mean(&view, ABBE_GEM_ABSORBED), 1 - up - down, 1e-4);
+  abbe_gem_view_free(&view);
+  judged_free(&j);
+  abbe_spectrum_free(m.attenuation);
+}
+
+/* A right angle sends light back where it came from, and all of it where both faces reflect
+ * totally. */
+static void roof_of_a_right_angle_is_all_blue(void **state) {
+  (void)state;
+  static const double index[] = {1.4143, 1.54, 2.417};
+  char text[256];
+  roof_text(45, text);
+  for (int i = 0; i < 3; i++) {
+    judged j = judged_plain(text, index[i]);
+    abbe_gem_view view = judged_view(&j, &small);
+    assert_near(mean(&view, ABBE_GEM_BLUE), 1, 2e-4);
+    assert_near(mean(&view, ABBE_GEM_COS), 1, 2e-4);
+    abbe_gem_view_free(&view);
+    judged_free(&j);
+  }
+  judged j = judged_plain(text, 1.40);
+  abbe_gem_view view = judged_view(&j, &small);
+  assert_true(mean(&view, ABBE_GEM_DOWN) > 0.3);
+  abbe_gem_view_free(&view);
+  judged_free(&j);
+}
+
+/* Off the axis' plane the first reflection of the table is no other: of the strongest exit. */
+static double strongest_elevation(const char *text, double n, double x, double y) {
+  judged j = judged_plain(text, n);
+  static abbe_gem_path path;
+  const double o[3] = {x, y, 3}, d[3] = {0, 0, -1};
+  double p[3], normal[3], elevation = 0;
+  float most = 0;
+  assert_true(abbe_gem_path_enter(&j.stone, o, d, p, normal));
+  assert_near(normal[2], 1, 1e-12); /* by the table */
+  abbe_gem_path_follow(&j.stone, 0, p, normal, d, &path);
+  for (size_t i = 1; i < path.count; i++)
+    if (path.exit[i].share > most) {
+      most = path.exit[i].share;
+      elevation = asin((double)path.exit[i].d[2]) / DEG;
+    }
+  assert_true(most > 0.5f);
+  judged_free(&j);
+  return elevation;
+}
+
+static void brilliant_text(double pavilion_deg, char text[1024]) {
+  /* its eight mains alone below the girdle, their culet where it was */
+  snprintf(text, 1024,
+           "GemCad 5.0\ng 96 0.0\na -90.0 1.0 93 " ROUND_INDICES
+           "\na -%.9f %.9f 96 84 72 60 48 36 24 12\na 34.5 0.59810595 96 84 72 60 48 36 24 12\n"
+           "a 0 0.34945832 96\n",
+           pavilion_deg, 0.9 * cos(pavilion_deg * DEG));
+}
+
+/* Two faces of slope p turn light by 4 p - 180 degrees: it leaves the table at 45 where
+ * n sin(180 - 4 p) = sin 45. */
+static void table_turns_from_green_to_red_where_it_must(void **state) {
+  (void)state;
+  const double n = 2.417, toggle = 45 - asin(sin(45 * DEG) / n) / DEG / 4;
+  assert_near(toggle, 40.75, 0.005);
+  char text[1024];
+  for (int s = -1; s <= 1; s += 2) {
+    const double slope = toggle + 0.005 * s;
+    roof_text(slope, text);
+    const double roof = strongest_elevation(text, n, 0, 0.1);
+    assert_true(s < 0 ? roof < 45 : roof > 45);
+    /* 180 - 4 p turns by 0.02 of a degree, and what leaves by four times as much */
+    assert_near(roof, 45, 0.1);
+    brilliant_text(slope, text);
+    assert_near(strongest_elevation(text, n, 0, 0.1), roof, 1e-3);
+  }
+}
+
+static void light_everywhere_makes_every_pixel_white(void **state) {
+  (void)state;
+  judged j = judged_plain(design_b, 2.417);
+  abbe_gem_view_desc desc = small;
+  for (int tilt = -30; tilt <= 30; tilt += 15) {
+    desc.tilt_rad = tilt * DEG;
+    desc.axis_rad = 45 * DEG;
+    abbe_gem_view v = judged_view(&j, &desc);
+    for (size_t i = 0; i < v.side * v.side * v.repeats; i++) {
+      const float *a = v.amount + i * ABBE_GEM_AMOUNT_COUNT;
+      if (v.hit[i] == 0) continue;
+      const double lost = (double)(a[ABBE_GEM_ABSORBED] + a[ABBE_GEM_LEFT]);
+      assert_near(a[ABBE_GEM_ISO] + a[ABBE_GEM_DOWN], 1 - lost, 1e-5);
+      assert_near(a[ABBE_GEM_GREEN] + a[ABBE_GEM_RED] + a[ABBE_GEM_BLUE] + a[ABBE_GEM_BELOW],
+                  1 - lost, 1e-5);
+      assert_near(a[ABBE_GEM_RETURN] + a[ABBE_GEM_HEAD], a[ABBE_GEM_ISO], 1e-5);
+      assert_true(a[ABBE_GEM_COS] <= a[ABBE_GEM_ISO] + 1e-6f);
+      assert_true(lost <= (double)ABBE_GEM_LEAST_SHARE);
+    }
+    abbe_gem_view_free(&v);
+  }
+  judged_free(&j);
+}
+
+static void shares_of_area_add_up(void **state) {
+  (void)state;
+  judged j = judged_plain(design_b, 1.38);
+  abbe_gem_view v = judged_view(&j, &small);
+  abbe_gem_areas areas;
+  abbe_error error = {0};
+  need(abbe_gem_view_areas(&v, &areas, &error), &error);
+  assert_near(areas.brilliant.value + areas.window.value + areas.extinct.value, 1, 1e-12);
+  assert_true(areas.window.value > 0.5); /* below its critical angle */
+  assert_true(areas.brilliant.error > 0 && areas.brilliant.error < 0.05);
+  abbe_gem_view_free(&v);
+  judged_free(&j);
+  char text[256];
+  roof_text(45, text);
+  j = judged_plain(text, 1.54);
+  v = judged_view(&j, &small);
+  need(abbe_gem_view_areas(&v, &areas, &error), &error);
+  assert_near(areas.extinct.value, 1, 1e-12); /* all from the head */
+  abbe_gem_view_free(&v);
+  judged_free(&j);
+}
+
+static double apart(abbe_gem_number a, abbe_gem_number b) {
+  return fabs(a.value - b.value) / hypot(a.error, b.error);
+}
+
+/* Eight mains and mirrors: the same to either side, and about axes a quarter turn apart. */
+static void tilts_have_the_symmetry_of_the_cut(void **state) {
+  (void)state;
+  judged j = judged_plain(design_b, 2.417);
+  abbe_gem_view_desc desc = small;
+  desc.side = 64;
+  for (int t = 10; t <= 30; t += 20) {
+    abbe_gem_number iso[3], window[3];
+    static const double axis[3] = {0, 0, 90}, sign[3] = {1, -1, 1};
+    for (int k = 0; k < 3; k++) {
+      desc.axis_rad = axis[k] * DEG;
+      desc.tilt_rad = sign[k] * t * DEG;
+      abbe_gem_view v = judged_view(&j, &desc);
+      iso[k] = abbe_gem_view_amount(&v, ABBE_GEM_ISO);
+      window[k] = abbe_gem_view_amount(&v, ABBE_GEM_DOWN);
+      abbe_gem_view_free(&v);
+    }
+    for (int k = 1; k < 3; k++) {
+      assert_true(apart(iso[0], iso[k]) < 5);
+      assert_true(apart(window[0], window[k]) < 5);
+    }
+  }
+  judged_free(&j);
+}
+
+static void errors_are_those_of_the_means(void **state) {
+  (void)state;
+  judged j = judged_plain(design_b, 2.417);
+  abbe_gem_view_desc desc = small;
+  abbe_gem_view coarse = judged_view(&j, &desc);
+  desc.side = 200;
+  desc.repeats = 16;
+  abbe_gem_view fine = judged_view(&j, &desc);
+  static const abbe_gem_amount amount[] = {ABBE_GEM_ISO, ABBE_GEM_COS, ABBE_GEM_RETURN,
+                                           ABBE_GEM_GREEN, ABBE_GEM_RED};
+  for (int k = 0; k < 5; k++) {
+    const abbe_gem_number a = abbe_gem_view_amount(&coarse, amount[k]);
+    const abbe_gem_number b = abbe_gem_view_amount(&fine, amount[k]);
+    assert_true(b.error < a.error / 4);
+    assert_true(apart(a, b) < 8); /* four repeats tell a deviation poorly */
+  }
+  abbe_gem_view_free(&coarse);
+  abbe_gem_view_free(&fine);
+  judged_free(&j);
+}
+
+static void threads_change_nothing(void **state) {
+  (void)state;
+  judged j = judged_plain(design_b, 2.417);
+  abbe_gem_view_desc desc = small;
+  desc.threads = 1;
+  abbe_gem_view one = judged_view(&j, &desc);
+  desc.threads = 5;
+  abbe_gem_view five = judged_view(&j, &desc);
+  for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++) {
+    const abbe_gem_number x = abbe_gem_view_amount(&one, (abbe_gem_amount)a);
+    const abbe_gem_number y = abbe_gem_view_at(&five, (abbe_gem_amount)a, 0);
+    assert_near(x.value, y.value, 1e-6);
+    const abbe_gem_number z = abbe_gem_view_amount(&five, (abbe_gem_amount)a);
+    assert_memory_equal(&x, &z, sizeof x);
+  }
+  for (size_t r = 0; r < one.repeats; r++)
+    assert_memory_equal(one.colour[r], five.colour[r], sizeof one.colour[r]);
+  abbe_gem_view_free(&one);
+  abbe_gem_view_free(&five);
+  judged_free(&j);
+}
+
+/* A slab's picture is even; half of a cut that reflects all and half that none is 1. */
+static void contrast_is_of_the_picture_and_not_of_its_noise(void **state) {
+  (void)state;
+  judged j = judged_plain(slab, 1.5);
+  abbe_gem_view_desc desc = small;
+  desc.head_rad = 0;
+  abbe_gem_view v = judged_view(&j, &desc);
+  assert_near(abbe_gem_view_contrast(&v).value, 0, 1e-3);
+  /* noise that all pixels have alike, and no picture */
+  for (size_t i = 0; i < v.side * v.side; i++) {
+    v.cover[i] = 1;
+    for (size_t r = 0; r < v.repeats; r++)
+      v.amount[(i * v.repeats + r) * ABBE_GEM_AMOUNT_COUNT + ABBE_GEM_RETURN] =
+          (float)((i * 2654435761u + r * 40503u) >> 7 & 1);
+  }
+  const abbe_gem_number noise = abbe_gem_view_contrast(&v);
+  assert_true(noise.value < 0.35);
+  for (size_t i = 0; i < v.side * v.side; i++)
+    for (size_t r = 0; r < v.repeats; r++)
+      v.amount[(i * v.repeats + r) * ABBE_GEM_AMOUNT_COUNT + ABBE_GEM_RETURN] = i % 2 == 0;
+  assert_near(abbe_gem_view_contrast(&v).value, 1, 1e-9);
+  abbe_gem_view_free(&v);
+  judged_free(&j);
+}
+
+static void wrong_requests_are_refused(void **state) {
+  (void)state;
+  judged j = judged_plain(slab, 1.5);
+  static const abbe_gem_view_desc wrong[] = {
+      {.side = 4000}, {.repeats = 1}, {.repeats = 65}, {.head_rad = -0.1}, {.head_rad = 0.8}};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    abbe_gem_view view;
+    abbe_error error = {0};
+    assert_int_equal(abbe_gem_view_make(&j.stone, &j.weights, &wrong[i], &view, &error),
+                     ABBE_INVALID_ARGUMENT);
+    assert_true(error.text[0] != '\0');
+  }
+  judged_free(&j);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(slab_returns_what_its_faces_reflect),
+      cmocka_unit_test(slab_absorbs_by_its_thickness),
+      cmocka_unit_test(roof_of_a_right_angle_is_all_blue),
+      cmocka_unit_test(table_turns_from_green_to_red_where_it_must),
+      cmocka_unit_test(light_everywhere_makes_every_pixel_white),
+      cmocka_unit_test(shares_of_area_add_up),
+      cmocka_unit_test(tilts_have_the_symmetry_of_the_cut),
+      cmocka_unit_test(errors_are_those_of_the_means),
+      cmocka_unit_test(threads_change_nothing),
+      cmocka_unit_test(contrast_is_of_the_picture_and_not_of_its_noise),
+      cmocka_unit_test(wrong_requests_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

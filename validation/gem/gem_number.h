@@ -1,0 +1,25 @@
+/* gem_number.h: a measured number and its standard error, from independent repeats. */
+#ifndef ABBE_VALIDATION_GEM_GEM_NUMBER_H
+#define ABBE_VALIDATION_GEM_GEM_NUMBER_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_gem_number {
+  double value, error; /* error: one standard deviation; NaN for fewer than two repeats */
+} abbe_gem_number;
+
+/* Of sum[i] / weight[i], i < count: the ratio of the totals, and its error by the scatter of what
+ * is left without each repeat in turn (the jackknife [Efron1982]). 0 where no weight is above 0. */
+abbe_gem_number abbe_gem_number_ratio(const double *sum, const double *weight, size_t count);
+
+/* whole: from all repeats; without[i]: the same measure without repeat i. */
+abbe_gem_number abbe_gem_number_jackknife(double whole, const double *without, size_t count);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,48 @@
+/* gem_stone.h: a cut stone as light meets it: its planes, and its material at some wavelengths.
+ *
+ * The stone is what lies behind its planes: a ray inside asks them all, and no hierarchy. Lengths
+ * are scaled so that the ball around its corners has radius 1, about the origin; axes are the
+ * cut's, z up through the table. It stands alone in air. Isotropic materials; no polarisation
+ * state is kept from face to face.
+ */
+#ifndef ABBE_VALIDATION_GEM_GEM_STONE_H
+#define ABBE_VALIDATION_GEM_GEM_STONE_H
+
+#include "base/error.h"
+#include "scenes/cuts/cut_polyhedron.h"
+#include "spectral/materials/material.h"
+#include "spectral/wavelengths.h"
+#include "validation/transport/solid.h"
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_gem_stone {
+  abbe_solid solid; /* the same planes, in single precision */
+  size_t plane_count;
+  double (*plane)[4]; /* [plane_count] n . x = plane[3], n unit, outwards */
+  size_t vertex_count;
+  double (*vertex)[3];
+  double unit_m; /* metres in a unit of length */
+  size_t wavelengths;
+  float *n;           /* [wavelengths] index in air */
+  float *attenuation; /* [wavelengths] natural, a unit of length */
+} abbe_gem_stone;
+
+/* The polyhedron is the cut's. width_m: of the girdle, the lesser of its extents along x and y; it
+ * matters where the material absorbs. ABBE_INVALID_ARGUMENT for a width that is not above 0 and
+ * finite, for an index that is not above 1; ABBE_OUT_OF_RANGE and others as abbe_material_n;
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_gem_stone_make(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                const abbe_material *material, const abbe_wavelengths *wavelengths,
+                                double width_m, abbe_gem_stone *out, abbe_error *error);
+/* Safe on a zeroed one. */
+void abbe_gem_stone_free(abbe_gem_stone *stone);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
