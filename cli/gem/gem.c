@@ -13,6 +13,8 @@ static const char *const examples[] = {
     "info scenes/designs/brilliant-quartz.asc",
     "diagram scenes/designs/step-square.asc -o step.pdf",
     "retarget scenes/designs/brilliant-quartz.asc --material sapphire -o sapphire.asc",
+    "report scenes/designs/brilliant-diamond.asc --material diamond -o report.pdf",
+    "optimise scenes/designs/brilliant-quartz.asc --material quartz -o best.asc --plot best.png",
     "convert scenes/designs/brilliant-quartz.asc --width 8 --material diamond -o stone.glb"};
 
 int abbe_command_gem(int argc, char **argv) {

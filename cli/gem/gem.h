@@ -12,6 +12,8 @@
   X(info, "what a design holds: facets, proportions, carats, critical angle, tiers")               \
   X(diagram, "a sheet to cut from: crown, pavilion, profiles, indices, as PDF, SVG or PNG")        \
   X(retarget, "the design at the angles of another stone, its meets kept")                         \
+  X(report, "judge the cut in a stone: brightness, leakage, fire, by tilt, with errors")           \
+  X(optimise, "the crown and pavilion angles that do best in a stone, meets kept")                 \
   X(convert, "a design as .asc or .gem, or as a solid: STL, OBJ, glTF")
 
 #define ABBE_GEM_DECLARE(name, summary) int abbe_gem_##name(int argc, char **argv);

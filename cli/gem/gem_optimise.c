@@ -1,0 +1,339 @@
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/progress.h"
+#include "cli/gem/gem.h"
+#include "cli/gem/gem_output.h"
+#include "cli/gem/gem_stone_input.h"
+
+#include "colorimetry/plot/chart.h"
+#include "scenes/cuts/cut_stretch.h"
+#include "validation/gem/gem_optimum.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+enum {
+  KEY_MEASURE = 0x100,
+  KEY_CROWN,
+  KEY_PAVILION,
+  KEY_GRID,
+  KEY_PLOT,
+  KEY_HEAD,
+  KEY_TILT,
+  KEY_AXIS,
+  KEY_RANGE,
+  KEY_SIZE,
+  KEY_THREADS
+};
+
+/* Those of which more, or less, is wanted whatever the stone. */
+static const struct {
+  const char *name, *text;
+  abbe_gem_amount amount;
+  bool least;
+} measures[] = {{"iso", "ISO brightness", ABBE_GEM_ISO, false},
+                {"cos", "COS brightness", ABBE_GEM_COS, false},
+                {"return", "light return", ABBE_GEM_RETURN, false},
+                {"leakage", "leakage", ABBE_GEM_DOWN, true}};
+enum { MEASURES = sizeof measures / sizeof measures[0] };
+
+typedef struct request {
+  abbe_gem_stone_input stone;
+  const char *out, *plot;
+  double crown[2], pavilion[2], head_deg, tilt_deg, axis_deg;
+  size_t crowns, pavilions, size, threads;
+  int measure;
+} request;
+
+static const struct argp_option options[] = {
+    {"measure", KEY_MEASURE, "NAME", 0,
+     "iso, cos, return (with the head's shadow) or leakage (the least of it); without it, iso", 0},
+    {"crown", KEY_CROWN, "FROM:TO", 0,
+     "degrees of its main facets; without it, 8 to either side of the design's", 0},
+    {"pavilion", KEY_PAVILION, "FROM:TO", 0, "likewise; without it, 4 to either side", 0},
+    {"grid", KEY_GRID, "CROWNSxPAVILIONS", 0, "angles tried; without it, 21x21", 0},
+    {"output", 'o', "FILE.asc", ABBE_ARGUMENT_WRITES, "the best design", 0},
+    {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "the measure over both angles; .png or .svg",
+     0},
+    {"head-shadow", KEY_HEAD, "DEGREES", 0,
+     "half angle of the viewer's head, 0 to below 45; without it, 15", 0},
+    {"tilt", KEY_TILT, "DEGREES", 0, "judge the stone so tilted; without it, level", 0},
+    {"axis", KEY_AXIS, "DEGREES", 0, "azimuth of the tilt's axis; without it, 0", 0},
+    {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
+    {"size", KEY_SIZE, "PIXELS", 0, "a side of the view, of 4 rays a pixel; without it, 32", 0},
+    {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
+    {0}};
+
+static void read_angles(const request *q, const char *option, const char *text, double angle[2]) {
+  abbe_command_range(q->stone.in.program, option, text, &angle[0], &angle[1]);
+  if (angle[1] < 90) return;
+  fprintf(stderr, "%s: %s '%s': angles are below 90 degrees\n", q->stone.in.program, option, text);
+  exit(ABBE_EXIT_USAGE);
+}
+
+static void read_measure(request *q, const char *text) {
+  const char *names[MEASURES];
+  for (int i = 0; i < MEASURES; i++) names[i] = measures[i].name;
+  q->measure = abbe_command_choice(q->stone.in.program, "--measure", text, names, MEASURES);
+}
+
+static error_t parse_more(int key, char *arg, request *q) {
+  switch (key) {
+  case KEY_HEAD:
+    q->head_deg = abbe_command_number(q->stone.in.program, "--head-shadow", arg, 0, 44.999);
+    return 0;
+  case KEY_TILT:
+    q->tilt_deg = abbe_command_number(q->stone.in.program, "--tilt", arg, -90, 90);
+    return 0;
+  case KEY_AXIS:
+    q->axis_deg = abbe_command_number(q->stone.in.program, "--axis", arg, -360, 360);
+    return 0;
+  case KEY_RANGE:
+    abbe_command_range(q->stone.in.program, "--range", arg, &q->stone.from_nm, &q->stone.to_nm);
+    return 0;
+  case KEY_SIZE:
+    q->size = abbe_command_count(q->stone.in.program, "--size", arg, 8, ABBE_GEM_MOST_SIDE);
+    return 0;
+  case KEY_THREADS:
+    q->threads = abbe_command_count(q->stone.in.program, "--threads", arg, 1, 1024);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+  request *q = state->input;
+  switch (key) {
+  case KEY_MEASURE:
+    read_measure(q, arg);
+    return 0;
+  case KEY_CROWN:
+    read_angles(q, "--crown", arg, q->crown);
+    return 0;
+  case KEY_PAVILION:
+    read_angles(q, "--pavilion", arg, q->pavilion);
+    return 0;
+  case KEY_GRID:
+    abbe_command_size(q->stone.in.program, "--grid", arg, ABBE_GEM_MOST_ANGLES, &q->crowns,
+                      &q->pavilions);
+    return 0;
+  case 'o':
+    q->out = abbe_command_target(q->stone.in.program, "--output", arg, ".asc");
+    return 0;
+  case KEY_PLOT:
+    q->plot = arg;
+    return 0;
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &q->stone.in;
+    return 0;
+  case ARGP_KEY_END:
+    if (q->stone.in.material_name == NULL)
+      argp_error(state, "of which stone? Give --material NAME; 'abbe materials list' has them");
+    return 0;
+  default:
+    return parse_more(key, arg, q);
+  }
+}
+
+/* ---- what came of it ---- */
+
+static double degrees(double rad) {
+  return rad * 180 / PI;
+}
+
+static void print(const request *q, const abbe_gem_stone_input *in, const abbe_gem_optimum *o) {
+  const abbe_gem_number best = o->value[o->best];
+  printf("%s in %s: %s, %zu x %zu angles\n\n", q->stone.in.path, in->in.material->name,
+         measures[q->measure].text, o->crowns, o->pavilions);
+  printf("%-8s %8s %9s %9s %8s\n", "", "crown", "pavilion", "value", "error");
+  printf("%-8s %8.3f %9.3f %7.2f %% %8.2f\n", "design", degrees(o->design_crown_rad),
+         degrees(o->design_pavilion_rad), 100 * o->design.value, 100 * o->design.error);
+  printf("%-8s %8.3f %9.3f %7.2f %% %8.2f\n", "best", degrees(o->crown_rad[o->best % o->crowns]),
+         degrees(o->pavilion_rad[o->best / o->crowns]), 100 * best.value, 100 * best.error);
+  const size_t c = o->best % o->crowns, p = o->best / o->crowns;
+  if ((o->crowns > 1 && (c == 0 || c + 1 == o->crowns)) ||
+      (o->pavilions > 1 && (p == 0 || p + 1 == o->pavilions)))
+    printf("\nThe best lies on the grid's edge: a wider range may hold a better one.\n");
+}
+
+static void add_pair(cJSON *to, const char *name, double crown, double pavilion,
+                     abbe_gem_number n) {
+  cJSON *one = cJSON_CreateObject();
+  cJSON_AddNumberToObject(one, "crown_deg", degrees(crown));
+  cJSON_AddNumberToObject(one, "pavilion_deg", degrees(pavilion));
+  cJSON_AddNumberToObject(one, "value", n.value);
+  cJSON_AddNumberToObject(one, "error", n.error);
+  if (name != NULL)
+    cJSON_AddItemToObject(to, name, one);
+  else
+    cJSON_AddItemToArray(to, one);
+}
+
+static abbe_result print_json(const request *q, const abbe_gem_stone_input *in,
+                              const abbe_gem_optimum *o, abbe_error *error) {
+  cJSON *root = cJSON_CreateObject();
+  cJSON_AddStringToObject(root, "file", q->stone.in.path);
+  cJSON_AddStringToObject(root, "material", in->in.material->name);
+  cJSON_AddStringToObject(root, "measure", measures[q->measure].name);
+  add_pair(root, "design", o->design_crown_rad, o->design_pavilion_rad, o->design);
+  add_pair(root, "best", o->crown_rad[o->best % o->crowns], o->pavilion_rad[o->best / o->crowns],
+           o->value[o->best]);
+  cJSON *list = cJSON_AddArrayToObject(root, "grid");
+  for (size_t i = 0; i < o->crowns * o->pavilions; i++)
+    add_pair(list, NULL, o->crown_rad[i % o->crowns], o->pavilion_rad[i / o->crowns], o->value[i]);
+  abbe_result result = abbe_command_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+/* An axis whose pixels have their angle in their middle. */
+static abbe_chart_axis axis(const char *label, const double *rad, size_t count) {
+  const double first = degrees(rad[0]), last = degrees(rad[count - 1]);
+  const double half = count > 1 ? 0.5 * (last - first) / ((double)count - 1) : 0.5;
+  return (abbe_chart_axis){.label = label, .min = first - half, .max = last + half};
+}
+
+static abbe_result plot(const request *q, const abbe_gem_stone_input *in, const abbe_gem_optimum *o,
+                        abbe_error *error) {
+  float *value = malloc(o->crowns * o->pavilions * sizeof *value);
+  if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a chart");
+  for (size_t i = 0; i < o->crowns * o->pavilions; i++)
+    value[(o->pavilions - 1 - i / o->crowns) * o->crowns + i % o->crowns] =
+        (float)(100 * o->value[i].value);
+  char title[300], label[64];
+  snprintf(title, sizeof title, "%s in %s", abbe_gem_input_title(&in->in), in->in.material->name);
+  snprintf(label, sizeof label, "%s, %%", measures[q->measure].text);
+  const abbe_chart_field field = {.width = o->crowns,
+                                  .height = o->pavilions,
+                                  .value = value,
+                                  .map = ABBE_COLOUR_MAP_AMOUNT,
+                                  .label = label};
+  const double x[2] = {degrees(o->crown_rad[o->best % o->crowns]), degrees(o->design_crown_rad)};
+  const double y[2] = {degrees(o->pavilion_rad[o->best / o->crowns]),
+                       degrees(o->design_pavilion_rad)};
+  const abbe_chart_series series[2] = {
+      {.label = "best", .style = ABBE_CHART_POINTS, .count = 1, .x = x, .y = y, .colour = 3},
+      {.label = "the design",
+       .style = ABBE_CHART_POINTS,
+       .count = 1,
+       .x = x + 1,
+       .y = y + 1,
+       .colour = 6}};
+  const abbe_chart chart = {.title = title,
+                            .x = axis("crown, degrees", o->crown_rad, o->crowns),
+                            .y = axis("pavilion, degrees", o->pavilion_rad, o->pavilions),
+                            .field = &field,
+                            .series_count = 2,
+                            .series = series};
+  abbe_result result = abbe_chart_write(q->plot, &chart, 1, 860, 640, error);
+  free(value);
+  return result;
+}
+
+/* The cut becomes the best one. */
+static abbe_result write_best(request *q, const abbe_gem_optimum *o, abbe_error *error) {
+  abbe_gem_input *in = &q->stone.in;
+  abbe_result result = abbe_gem_optimum_apply(o, &in->cut, &in->stone, o->best, error);
+  if (result == ABBE_OK)
+    result = abbe_gem_output_write(q->out, &in->cut, &in->stone, 1, NULL, &in->report, error);
+  return result;
+}
+
+/* ---- the search ---- */
+
+static abbe_gem_optimum_desc describe(const request *q, abbe_progress *progress) {
+  return (abbe_gem_optimum_desc){.crown_from_rad = q->crown[0] * PI / 180,
+                                 .crown_to_rad = q->crown[1] * PI / 180,
+                                 .pavilion_from_rad = q->pavilion[0] * PI / 180,
+                                 .pavilion_to_rad = q->pavilion[1] * PI / 180,
+                                 .crowns = q->crowns,
+                                 .pavilions = q->pavilions,
+                                 .measure = measures[q->measure].amount,
+                                 .least = measures[q->measure].least,
+                                 .width_m = q->stone.width_m,
+                                 .view = {.axis_rad = q->axis_deg * PI / 180,
+                                          .tilt_rad = q->tilt_deg * PI / 180,
+                                          .head_rad = q->head_deg * PI / 180,
+                                          .side = q->size,
+                                          .repeats = 4,
+                                          .threads = q->threads},
+                                 .progress = abbe_progress_update,
+                                 .user = progress};
+}
+
+/* About the design's own, where the user names none. */
+static abbe_result find_angles(request *q, abbe_error *error) {
+  const abbe_gem_input *in = &q->stone.in;
+  double *range[2] = {q->crown, q->pavilion};
+  for (int i = 0; i < 2; i++) {
+    const abbe_cut_side side = i == 0 ? ABBE_CUT_CROWN : ABBE_CUT_PAVILION;
+    const size_t tier = abbe_cut_stretch_main(&in->cut, &in->stone, side);
+    const double about = i == 0 ? 8 : 4;
+    if (range[i][1] > 0) continue;
+    if (tier == in->cut.tier_count)
+      return abbe_error_set(error, ABBE_GEOMETRY,
+                            "%s: the design has no slanted facets on its %s, whose angle could "
+                            "change",
+                            in->path, i == 0 ? "crown" : "pavilion");
+    const double angle = fabs(in->cut.tier[tier].angle_deg);
+    range[i][0] = fmax(angle - about, 1);
+    range[i][1] = fmin(angle + about, 89);
+  }
+  return ABBE_OK;
+}
+
+static abbe_result run(request *q, abbe_error *error) {
+  const abbe_gem_stone_input *s = &q->stone;
+  abbe_gem_optimum optimum = {0};
+  abbe_result result = abbe_command_check_targets((const char *[]){q->out, q->plot}, 2, error);
+  if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
+  if (result == ABBE_OK) result = find_angles(q, error);
+  if (result == ABBE_OK) {
+    abbe_progress progress;
+    abbe_progress_begin(&progress, "searching", s->in.quiet);
+    const abbe_gem_optimum_desc desc = describe(q, &progress);
+    result = abbe_gem_optimum_find(&s->in.cut, &s->in.stone, s->in.material, &s->wavelengths,
+                                   &s->weights, &desc, &optimum, error);
+    abbe_progress_end(&progress);
+  }
+  if (result == ABBE_OK && q->plot != NULL) result = plot(q, s, &optimum, error);
+  if (result == ABBE_OK && q->out != NULL) result = write_best(q, &optimum, error);
+  if (result == ABBE_OK && !s->in.json) print(q, s, &optimum);
+  if (result == ABBE_OK && s->in.json) result = print_json(q, s, &optimum, error);
+  abbe_gem_optimum_free(&optimum);
+  abbe_gem_stone_input_free(&q->stone);
+  return result;
+}
+
+int abbe_gem_optimise(int argc, char **argv) {
+  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
+  static const struct argp argp = {
+      options,
+      parse,
+      "FILE",
+      "Tries pairs of crown and pavilion angles for a design in a stone, all its meets kept, and "
+      "says which is best by a measure.\v"
+      "Examples:\n"
+      "  abbe gem optimise brilliant.asc --material quartz -o best.asc --plot best.png\n"
+      "  abbe gem optimise brilliant.asc --material diamond --measure cos --crown 30:40 "
+      "--pavilion 39:43 --grid 21x21\n",
+      children,
+      NULL,
+      NULL};
+  request q = {.stone = {.in = {.program = argv[0]}, .count = 6},
+               .head_deg = ABBE_GEM_HEAD_DEG,
+               .crowns = 21,
+               .pavilions = 21,
+               .size = 32};
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  abbe_error error = {0};
+  const abbe_result result = run(&q, &error);
+  return abbe_command_end(argv[0], result, &error);
+}

@@ -1,0 +1,187 @@
+#include "cli/gem/gem_report.h"
+
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/progress.h"
+#include "cli/gem/gem.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+enum {
+  KEY_CSV = 0x100,
+  KEY_MAPS,
+  KEY_HEAD,
+  KEY_TILT,
+  KEY_STEP,
+  KEY_RANGE,
+  KEY_WAVELENGTHS,
+  KEY_SIZE,
+  KEY_REPEATS,
+  KEY_THREADS
+};
+
+typedef struct request {
+  abbe_gem_stone_input stone;
+  const char *out, *maps;
+  double head_deg, tilt_deg, step_deg;
+  size_t size, repeats, threads;
+  bool csv;
+} request;
+
+static const struct argp_option options[] = {
+    {"output", 'o', "FILE.pdf", ABBE_ARGUMENT_WRITES, "the report as pages", 0},
+    {"csv", KEY_CSV, NULL, 0, "all numbers as CSV", 0},
+    {"maps", KEY_MAPS, "FOLDER", ABBE_ARGUMENT_ONCE,
+     "maps.exr and a PNG of each map, into a folder that is there", 0},
+    {"head-shadow", KEY_HEAD, "DEGREES", 0,
+     "half angle of the viewer's head, 0 to below 45; without it, 15", 0},
+    {"tilt", KEY_TILT, "DEGREES", 0,
+     "rock the stone so far to either side, up to 90; 0: not at all, and no fire. Without it, 30",
+     0},
+    {"step", KEY_STEP, "DEGREES", 0, "of the tilt; without it, 2", 0},
+    {"range", KEY_RANGE, "FROM:TO", 0, "wavelengths, nm; without it, 380:780", 0},
+    {"wavelengths", KEY_WAVELENGTHS, "N", 0, "how many; without it, 16", 0},
+    {"size", KEY_SIZE, "PIXELS", 0, "a side of the maps; without it, 96", 0},
+    {"repeats", KEY_REPEATS, "N", 0, "rays in a pixel, 3 to 64; without it, 4", 0},
+    {"threads", KEY_THREADS, "N", 0, "without it, all; results do not depend on it", 0},
+    {0}};
+
+static error_t parse_more(int key, char *arg, request *q) {
+  switch (key) {
+  case KEY_RANGE:
+    abbe_command_range(q->stone.in.program, "--range", arg, &q->stone.from_nm, &q->stone.to_nm);
+    return 0;
+  case KEY_WAVELENGTHS:
+    q->stone.count = abbe_command_count(q->stone.in.program, "--wavelengths", arg, 1, 256);
+    return 0;
+  case KEY_SIZE:
+    q->size = abbe_command_count(q->stone.in.program, "--size", arg, 8, ABBE_GEM_MOST_SIDE);
+    return 0;
+  case KEY_REPEATS:
+    q->repeats =
+        abbe_command_count(q->stone.in.program, "--repeats", arg, 3, ABBE_GEM_MOST_REPEATS);
+    return 0;
+  case KEY_THREADS:
+    q->threads = abbe_command_count(q->stone.in.program, "--threads", arg, 1, 1024);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+  request *q = state->input;
+  switch (key) {
+  case 'o':
+    q->out = abbe_command_target(q->stone.in.program, "--output", arg, ".pdf");
+    return 0;
+  case KEY_CSV:
+    q->csv = true;
+    return 0;
+  case KEY_MAPS:
+    q->maps = arg;
+    return 0;
+  case KEY_HEAD:
+    q->head_deg = abbe_command_number(q->stone.in.program, "--head-shadow", arg, 0, 44.999);
+    return 0;
+  case KEY_TILT:
+    q->tilt_deg = abbe_command_number(q->stone.in.program, "--tilt", arg, 0, 90);
+    return 0;
+  case KEY_STEP:
+    q->step_deg = abbe_command_number(q->stone.in.program, "--step", arg, 0.1, 90);
+    return 0;
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &q->stone.in;
+    return 0;
+  case ARGP_KEY_END:
+    if (q->stone.in.material_name == NULL)
+      argp_error(state, "of which stone? Give --material NAME; 'abbe materials list' has them");
+    if (q->stone.in.json && q->csv) argp_error(state, "--json and --csv: one of them");
+    return 0;
+  default:
+    return parse_more(key, arg, q);
+  }
+}
+
+static abbe_gem_judgement_desc describe(const request *q, abbe_progress *progress) {
+  size_t steps = (size_t)(q->tilt_deg / q->step_deg + 0.5);
+  if (steps < 1) steps = 1;
+  return (abbe_gem_judgement_desc){
+      .view = {.head_rad = q->head_deg * PI / 180,
+               .side = q->size,
+               .repeats = q->repeats,
+               .threads = q->threads},
+      .tilts = q->tilt_deg > 0,
+      .rocked = {.most_rad = q->tilt_deg * PI / 180,
+                 .steps = steps < ABBE_GEM_MOST_STEPS ? steps : ABBE_GEM_MOST_STEPS,
+                 .progress = abbe_progress_update,
+                 .user = progress}};
+}
+
+static abbe_result say(const request *q, const abbe_gem_report_facts *f, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  if (q->stone.in.json)
+    result = abbe_gem_report_print_json(f, error);
+  else if (q->csv)
+    abbe_gem_report_print_csv(f);
+  else
+    abbe_gem_report_print(f);
+  if (result == ABBE_OK && q->out != NULL) result = abbe_gem_report_sheet(q->out, f, error);
+  if (result == ABBE_OK && q->maps != NULL)
+    result = abbe_gem_report_maps(q->maps, f->judgement, error);
+  return result;
+}
+
+static abbe_result run(request *q, abbe_error *error) {
+  abbe_gem_judgement judgement = {0};
+  abbe_result result = abbe_command_check_targets(&q->out, 1, error);
+  if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
+  if (result == ABBE_OK) {
+    abbe_progress progress;
+    abbe_progress_begin(&progress, "judging", q->stone.in.quiet);
+    const abbe_gem_judgement_desc desc = describe(q, &progress);
+    result = abbe_gem_judgement_make(&q->stone.stone, &q->stone.weights, &desc, &judgement, error);
+    const abbe_gem_report_facts facts = {.input = &q->stone,
+                                         .judgement = &judgement,
+                                         .head_deg = q->head_deg,
+                                         .seconds = abbe_progress_seconds(&progress)};
+    abbe_progress_end(&progress);
+    if (result == ABBE_OK) result = say(q, &facts, error);
+  }
+  abbe_gem_judgement_free(&judgement);
+  abbe_gem_stone_input_free(&q->stone);
+  return result;
+}
+
+int abbe_gem_report(int argc, char **argv) {
+  static const struct argp_child children[] = {{&abbe_gem_input_argp, 0, NULL, 0}, {0}};
+  static const struct argp argp = {
+      options,
+      parse,
+      "FILE",
+      "Judges a cut in a stone by what an eye above it sees: brightness, leakage, ASET, "
+      "extinction, contrast, fire and scintillation, each with its standard error.\v"
+      "Without --width the stone is 6.5 mm wide, which matters where it has colour. What each "
+      "number means is in docs/gem-measures.md.\n\n"
+      "Examples:\n"
+      "  abbe gem report brilliant.asc --material diamond\n"
+      "  abbe gem report brilliant.asc --material quartz -o report.pdf --maps maps\n"
+      "  abbe gem report brilliant.asc --material diamond --head-shadow 10 --tilt 0 --json\n",
+      children,
+      NULL,
+      NULL};
+  request q = {.stone = {.in = {.program = argv[0]}, .count = 16},
+               .head_deg = ABBE_GEM_HEAD_DEG,
+               .tilt_deg = 30,
+               .step_deg = 2,
+               .size = 96,
+               .repeats = 4};
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  abbe_error error = {0};
+  const abbe_result result = run(&q, &error);
+  return abbe_command_end(argv[0], result, &error);
+}

@@ -1,0 +1,164 @@
+#include "cli/gem/gem_report.h"
+
+#include "cli/base/command.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+
+#define PI 3.14159265358979323846
+
+size_t abbe_gem_report_rows(const abbe_gem_judgement *j,
+                            abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS]) {
+  size_t count = 0;
+  for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++)
+    row[count++] =
+        (abbe_gem_report_row){abbe_gem_amount_name((abbe_gem_amount)a),
+                              abbe_gem_amount_text((abbe_gem_amount)a), j->amount[a], true};
+  row[count++] = (abbe_gem_report_row){"area_brilliant", "area that mostly returns light",
+                                       j->areas.brilliant, true};
+  row[count++] = (abbe_gem_report_row){"area_window", "area that mostly leaks: windows",
+                                       j->areas.window, true};
+  row[count++] = (abbe_gem_report_row){"area_extinct", "area that is mostly dark: extinction",
+                                       j->areas.extinct, true};
+  row[count++] = (abbe_gem_report_row){"contrast", "contrast of the light return, RMS over mean",
+                                       j->contrast, false};
+  if (!j->has_tilts) return count;
+  const abbe_gem_tilts *t = &j->tilts;
+  row[count++] = (abbe_gem_report_row){"tilt_iso", "ISO brightness, mean over tilts",
+                                       t->mean[ABBE_GEM_TILT_ISO], true};
+  row[count++] =
+      (abbe_gem_report_row){"tilt_spread", "its standard deviation over tilts", t->spread, true};
+  row[count++] = (abbe_gem_report_row){"fire", "fire: coloured pixels under small lamps",
+                                       t->mean[ABBE_GEM_TILT_FIRE], true};
+  row[count++] = (abbe_gem_report_row){"scintillation", "scintillation: pixels that blink, a step",
+                                       t->blinks, true};
+  return count;
+}
+
+void abbe_gem_report_number(const abbe_gem_report_row *row, char value[32], char error[32]) {
+  const double unit = row->share ? 100 : 1;
+  const char *form = row->share ? "%.2f %%" : "%.3f";
+  snprintf(value, 32, form, unit * row->number.value);
+  snprintf(error, 32, row->share ? "%.2f" : "%.3f", unit * row->number.error);
+}
+
+/* ---- for people ---- */
+
+static double rays(const abbe_gem_view *v) {
+  double met = 0;
+  for (size_t r = 0; r < v->repeats; r++) met += v->met[r];
+  return met;
+}
+
+void abbe_gem_report_print(const abbe_gem_report_facts *f) {
+  const abbe_gem_judgement *j = f->judgement;
+  abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS];
+  const size_t count = abbe_gem_report_rows(j, row);
+  printf("%s: %s, in %s, %g mm wide\n", f->input->in.path, abbe_gem_input_title(&f->input->in),
+         f->input->in.material->name, 1000 * f->input->width_m);
+  printf("%.0f rays of the eye from above, each at %zu wavelengths; head's half angle %g degrees\n",
+         rays(&j->view), j->view.wavelengths, f->head_deg);
+  if (j->has_tilts)
+    printf("tilted about %d axes up to %g degrees by %g\n", ABBE_GEM_AXES,
+           j->tilts.tilt_rad[j->tilts.tilts - 1] * 180 / PI, j->tilts.step_rad * 180 / PI);
+  printf("\n%-58s %10s %8s\n", "", "value", "error");
+  for (size_t i = 0; i < count; i++) {
+    char value[32], error[32];
+    abbe_gem_report_number(&row[i], value, error);
+    printf("%-58s %10s %8s\n", row[i].text, value, error);
+  }
+  if (!j->has_tilts) return;
+  printf("\nISO brightness by tilt, %%\n%-8s", "axis");
+  const size_t stride = (j->tilts.tilts - 1) / 6 > 0 ? (j->tilts.tilts - 1) / 6 : 1;
+  for (size_t t = 0; t < j->tilts.tilts; t += stride)
+    printf(" %7.0f", j->tilts.tilt_rad[t] * 180 / PI);
+  printf("\n");
+  for (size_t a = 0; a < ABBE_GEM_AXES; a++) {
+    printf("%-8.0f", j->tilts.axis_rad[a] * 180 / PI);
+    for (size_t t = 0; t < j->tilts.tilts; t += stride)
+      printf(" %7.2f", 100 * j->tilts.curve[ABBE_GEM_TILT_ISO][a * j->tilts.tilts + t].value);
+    printf("\n");
+  }
+}
+
+/* ---- for programs ---- */
+
+void abbe_gem_report_print_csv(const abbe_gem_report_facts *f) {
+  const abbe_gem_judgement *j = f->judgement;
+  abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS];
+  const size_t count = abbe_gem_report_rows(j, row);
+  printf("measure,axis_deg,tilt_deg,wavelength_nm,value,standard_error\n");
+  for (size_t i = 0; i < count; i++)
+    printf("%s,,,,%.9g,%.3g\n", row[i].name, row[i].number.value, row[i].number.error);
+  for (int c = 0; c < 3; c++)
+    printf("return_%c,,,,%.9g,%.3g\n", "XYZ"[c], j -> xyz[c].value, j->xyz[c].error);
+  for (size_t k = 0; k < j->view.wavelengths; k++)
+    for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++) {
+      const abbe_gem_number n = abbe_gem_view_at(&j->view, (abbe_gem_amount)a, k);
+      printf("%s,,,%.6g,%.9g,%.3g\n", abbe_gem_amount_name((abbe_gem_amount)a),
+             f->input->wavelengths.lambda_nm[k], n.value, n.error);
+    }
+  if (!j->has_tilts) return;
+  for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
+    for (size_t i = 0; i < ABBE_GEM_AXES * j->tilts.tilts; i++)
+      printf("%s,%.6g,%.6g,,%.9g,%.3g\n", abbe_gem_tilt_curve_name((abbe_gem_tilt_curve)c),
+             j->tilts.axis_rad[i / j->tilts.tilts] * 180 / PI,
+             j->tilts.tilt_rad[i % j->tilts.tilts] * 180 / PI, j->tilts.curve[c][i].value,
+             j->tilts.curve[c][i].error);
+}
+
+static void add_number(cJSON *to, const char *name, abbe_gem_number n) {
+  cJSON *pair = cJSON_AddObjectToObject(to, name);
+  cJSON_AddNumberToObject(pair, "value", n.value);
+  cJSON_AddNumberToObject(pair, "error", n.error);
+}
+
+static void add_wavelengths(cJSON *root, const abbe_gem_report_facts *f) {
+  const abbe_gem_view *v = &f->judgement->view;
+  cJSON *list = cJSON_AddArrayToObject(root, "wavelengths");
+  for (size_t k = 0; k < v->wavelengths; k++) {
+    cJSON *one = cJSON_CreateObject();
+    cJSON_AddNumberToObject(one, "nm", f->input->wavelengths.lambda_nm[k]);
+    for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++)
+      add_number(one, abbe_gem_amount_name((abbe_gem_amount)a),
+                 abbe_gem_view_at(v, (abbe_gem_amount)a, k));
+    cJSON_AddItemToArray(list, one);
+  }
+}
+
+static void add_tilts(cJSON *root, const abbe_gem_tilts *t) {
+  cJSON *list = cJSON_AddArrayToObject(root, "tilts");
+  for (size_t i = 0; i < ABBE_GEM_AXES * t->tilts; i++) {
+    cJSON *one = cJSON_CreateObject();
+    cJSON_AddNumberToObject(one, "axis_deg", t->axis_rad[i / t->tilts] * 180 / PI);
+    cJSON_AddNumberToObject(one, "tilt_deg", t->tilt_rad[i % t->tilts] * 180 / PI);
+    for (int c = 0; c < ABBE_GEM_TILT_CURVE_COUNT; c++)
+      add_number(one, abbe_gem_tilt_curve_name((abbe_gem_tilt_curve)c), t->curve[c][i]);
+    cJSON_AddItemToArray(list, one);
+  }
+}
+
+abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *f, abbe_error *error) {
+  const abbe_gem_judgement *j = f->judgement;
+  abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS];
+  const size_t count = abbe_gem_report_rows(j, row);
+  cJSON *root = cJSON_CreateObject();
+  cJSON_AddStringToObject(root, "file", f->input->in.path);
+  cJSON_AddStringToObject(root, "title", abbe_gem_input_title(&f->input->in));
+  cJSON_AddStringToObject(root, "material", f->input->in.material->name);
+  cJSON_AddNumberToObject(root, "width_mm", 1000 * f->input->width_m);
+  cJSON_AddNumberToObject(root, "head_deg", f->head_deg);
+  cJSON_AddNumberToObject(root, "rays", rays(&j->view));
+  cJSON_AddNumberToObject(root, "seconds", f->seconds);
+  cJSON *measures = cJSON_AddObjectToObject(root, "measures");
+  for (size_t i = 0; i < count; i++) add_number(measures, row[i].name, row[i].number);
+  static const char *const xyz[] = {"X", "Y", "Z"};
+  cJSON *colour = cJSON_AddObjectToObject(root, "return_xyz");
+  for (int c = 0; c < 3; c++) add_number(colour, xyz[c], j->xyz[c]);
+  add_wavelengths(root, f);
+  if (j->has_tilts) add_tilts(root, &j->tilts);
+  abbe_result result = abbe_command_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}

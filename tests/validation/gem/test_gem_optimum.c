@@ -1,0 +1,106 @@
+#include "validation/gem/gem_optimum.h"
+
+#include "scenes/cuts/cut_stretch.h"
+
+#include "tests/validation/gem/gem_stones.h"
+
+static abbe_material glass(double n) {
+  static char name[] = "plain";
+  return (abbe_material){.name = name,
+                         .dispersion = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {n}},
+                         .min_nm = 300,
+                         .max_nm = 800};
+}
+
+static abbe_gem_optimum_desc describe(void) {
+  return (abbe_gem_optimum_desc){.crown_from_rad = 30 * DEG,
+                                 .crown_to_rad = 40 * DEG,
+                                 .pavilion_from_rad = 30 * DEG,
+                                 .pavilion_to_rad = 46 * DEG,
+                                 .crowns = 3,
+                                 .pavilions = 5,
+                                 .measure = ABBE_GEM_ISO,
+                                 .width_m = 0.0065,
+                                 .view = {.side = 32, .repeats = 4, .threads = 2}};
+}
+
+/* In quartz a pavilion below the critical angle, 40.5 degrees, is a window: the search leaves it.
+ * And what it says of a pair is what a view of that cut says. */
+static void it_leaves_the_window_behind(void **state) {
+  (void)state;
+  const abbe_material quartz = glass(1.54);
+  judged j = judged_make(design_a, &quartz, 1);
+  abbe_gem_optimum_desc desc = describe();
+  abbe_gem_optimum o;
+  abbe_error error = {0};
+  need(abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths, &j.weights, &desc, &o,
+                             &error),
+       &error);
+  assert_near(o.design_crown_rad, 42 * DEG, 1e-9);
+  assert_near(o.design_pavilion_rad, 43 * DEG, 1e-9);
+  assert_true(o.pavilion_rad[o.best / 3] > 40.5 * DEG);
+  for (size_t i = 0; i < 3; i++) assert_true(o.value[i].value < o.value[o.best].value - 0.1);
+  abbe_cut cut = design_parse(design_a);
+  need(abbe_gem_optimum_apply(&o, &cut, &j.polyhedron, o.best, &error), &error);
+  abbe_cut_polyhedron p;
+  abbe_gem_stone stone;
+  abbe_gem_view view;
+  need(abbe_cut_polyhedron_make(&cut, 0, &p, &error), &error);
+  need(abbe_gem_stone_make(&cut, &p, &quartz, &j.wavelengths, 0.0065, &stone, &error), &error);
+  need(abbe_gem_view_make(&stone, &j.weights, &desc.view, &view, &error), &error);
+  assert_near(abbe_gem_view_amount(&view, ABBE_GEM_ISO).value, o.value[o.best].value, 1e-12);
+  const size_t crown = abbe_cut_stretch_main(&cut, &p, ABBE_CUT_CROWN);
+  assert_near(cut.tier[crown].angle_deg * DEG, o.crown_rad[o.best % 3], 1e-9);
+  abbe_gem_view_free(&view);
+  abbe_gem_stone_free(&stone);
+  abbe_cut_polyhedron_free(&p);
+  abbe_cut_free(&cut);
+  abbe_gem_optimum_free(&o);
+  /* the least leakage is where the brightness is greatest */
+  desc.measure = ABBE_GEM_DOWN;
+  desc.least = true;
+  abbe_gem_optimum leak;
+  need(abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths, &j.weights, &desc,
+                             &leak, &error),
+       &error);
+  assert_true(leak.pavilion_rad[leak.best / 3] > 40.5 * DEG);
+  abbe_gem_optimum_free(&leak);
+  judged_free(&j);
+}
+
+static void wrong_requests_are_refused(void **state) {
+  (void)state;
+  const abbe_material quartz = glass(1.54);
+  judged j = judged_make(design_a, &quartz, 1);
+  for (int i = 0; i < 5; i++) {
+    abbe_gem_optimum_desc desc = describe();
+    if (i == 0) desc.crowns = 0;
+    if (i == 1) desc.pavilions = ABBE_GEM_MOST_ANGLES + 1;
+    if (i == 2) desc.crown_to_rad = 20 * DEG;
+    if (i == 3) desc.pavilion_to_rad = 90 * DEG;
+    if (i == 4) desc.measure = ABBE_GEM_AMOUNT_COUNT;
+    abbe_gem_optimum o;
+    abbe_error error = {0};
+    assert_int_equal(abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths,
+                                           &j.weights, &desc, &o, &error),
+                     ABBE_INVALID_ARGUMENT);
+  }
+  judged_free(&j);
+  /* a plate has no angle to change */
+  j = judged_make(slab, &quartz, 1);
+  const abbe_gem_optimum_desc desc = describe();
+  abbe_gem_optimum o;
+  abbe_error error = {0};
+  assert_int_equal(abbe_gem_optimum_find(&j.cut, &j.polyhedron, &quartz, &j.wavelengths, &j.weights,
+                                         &desc, &o, &error),
+                   ABBE_GEOMETRY);
+  judged_free(&j);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(it_leaves_the_window_behind),
+      cmocka_unit_test(wrong_requests_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

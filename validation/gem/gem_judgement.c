@@ -1,0 +1,40 @@
+#include "validation/gem/gem_judgement.h"
+
+#include <string.h>
+
+void abbe_gem_judgement_free(abbe_gem_judgement *judgement) {
+  if (judgement == NULL) return;
+  abbe_gem_view_free(&judgement->view);
+  abbe_gem_tilts_free(&judgement->tilts);
+  memset(judgement, 0, sizeof *judgement);
+}
+
+static abbe_gem_number colour(const abbe_gem_view *v, int c) {
+  double sum[ABBE_GEM_MOST_REPEATS];
+  for (size_t r = 0; r < v->repeats; r++) sum[r] = v->colour[r][c];
+  return abbe_gem_number_ratio(sum, v->met, v->repeats);
+}
+
+abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weights *weights,
+                                    const abbe_gem_judgement_desc *desc, abbe_gem_judgement *out,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(stone && weights && desc && out, error);
+  memset(out, 0, sizeof *out);
+  abbe_result result = abbe_gem_view_make(stone, weights, &desc->view, &out->view, error);
+  if (result == ABBE_OK) {
+    for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++)
+      out->amount[a] = abbe_gem_view_amount(&out->view, (abbe_gem_amount)a);
+    for (int c = 0; c < 3; c++) out->xyz[c] = colour(&out->view, c);
+    out->contrast = abbe_gem_view_contrast(&out->view);
+    result = abbe_gem_view_areas(&out->view, &out->areas, error);
+  }
+  if (result == ABBE_OK && desc->tilts) {
+    abbe_gem_tilts_desc rocked = desc->rocked;
+    rocked.head_rad = desc->view.head_rad;
+    rocked.threads = desc->view.threads;
+    result = abbe_gem_tilts_make(stone, weights, &rocked, &out->tilts, error);
+    out->has_tilts = result == ABBE_OK;
+  }
+  if (result != ABBE_OK) abbe_gem_judgement_free(out);
+  return result;
+}

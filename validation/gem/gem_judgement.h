@@ -1,0 +1,38 @@
+/* gem_judgement.h: all by which a stone is judged, at once: from above, and rocked. */
+#ifndef ABBE_VALIDATION_GEM_GEM_JUDGEMENT_H
+#define ABBE_VALIDATION_GEM_GEM_JUDGEMENT_H
+
+#include "validation/gem/gem_tilts.h"
+#include "validation/gem/gem_view.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct abbe_gem_judgement_desc {
+  abbe_gem_view_desc view;
+  bool tilts;                 /* else only from where the view is */
+  abbe_gem_tilts_desc rocked; /* its head and threads are the view's */
+} abbe_gem_judgement_desc;
+
+typedef struct abbe_gem_judgement {
+  abbe_gem_view view;
+  abbe_gem_number amount[ABBE_GEM_AMOUNT_COUNT]; /* in white light */
+  abbe_gem_areas areas;
+  abbe_gem_number contrast;
+  abbe_gem_number xyz[3]; /* mean colour of the light return; white has Y = 1 */
+  bool has_tilts;
+  abbe_gem_tilts tilts;
+} abbe_gem_judgement;
+
+/* Errors as abbe_gem_view_make and abbe_gem_tilts_make. */
+abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weights *weights,
+                                    const abbe_gem_judgement_desc *desc, abbe_gem_judgement *out,
+                                    abbe_error *error);
+/* Safe on a zeroed one. */
+void abbe_gem_judgement_free(abbe_gem_judgement *judgement);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,140 @@
+#include "validation/gem/gem_optimum.h"
+
+#include "scenes/cuts/cut_stretch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+void abbe_gem_optimum_free(abbe_gem_optimum *optimum) {
+  if (optimum == NULL) return;
+  free(optimum->crown_rad);
+  free(optimum->pavilion_rad);
+  free(optimum->value);
+  memset(optimum, 0, sizeof *optimum);
+}
+
+typedef struct work {
+  const abbe_material *material;
+  const abbe_wavelengths *wavelengths;
+  const abbe_weights *weights;
+  const abbe_gem_optimum_desc *desc;
+} work;
+
+static abbe_result judge(const work *w, const abbe_cut *cut, abbe_gem_number *out,
+                         abbe_error *error) {
+  abbe_cut_polyhedron p = {0};
+  abbe_gem_stone stone = {0};
+  abbe_gem_view view = {0};
+  abbe_result result = abbe_cut_polyhedron_make(cut, 0, &p, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_gem_stone_make(cut, &p, w->material, w->wavelengths, w->desc->width_m, &stone, error);
+  if (result == ABBE_OK)
+    result = abbe_gem_view_make(&stone, w->weights, &w->desc->view, &view, error);
+  if (result == ABBE_OK) *out = abbe_gem_view_amount(&view, w->desc->measure);
+  abbe_gem_view_free(&view);
+  abbe_gem_stone_free(&stone);
+  abbe_cut_polyhedron_free(&p);
+  return result;
+}
+
+abbe_result abbe_gem_optimum_apply(const abbe_gem_optimum *o, abbe_cut *cut,
+                                   const abbe_cut_polyhedron *polyhedron, size_t i,
+                                   abbe_error *error) {
+  ABBE_REQUIRE(o && cut && polyhedron, error);
+  if (i >= o->crowns * o->pavilions)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "pair %zu of %zu", i,
+                          o->crowns * o->pavilions);
+  return abbe_cut_stretch_apply(
+      cut, polyhedron, tan(o->crown_rad[i % o->crowns]) / tan(o->design_crown_rad),
+      tan(o->pavilion_rad[i / o->crowns]) / tan(o->design_pavilion_rad), error);
+}
+
+/* The planes are the copy's own; names and texts are the design's. */
+static abbe_result try_pair(const work *w, const abbe_cut *cut, const abbe_cut_polyhedron *p,
+                            abbe_gem_optimum *o, size_t i, abbe_error *error) {
+  abbe_cut own = *cut;
+  own.tier = malloc(cut->tier_count * sizeof *own.tier);
+  own.facet = malloc(cut->facet_count * sizeof *own.facet);
+  abbe_result result = ABBE_OK;
+  if (own.tier == NULL || own.facet == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a design of %zu facets",
+                            cut->facet_count);
+  if (result == ABBE_OK) {
+    memcpy(own.tier, cut->tier, cut->tier_count * sizeof *own.tier);
+    memcpy(own.facet, cut->facet, cut->facet_count * sizeof *own.facet);
+    result = abbe_gem_optimum_apply(o, &own, p, i, error);
+  }
+  if (result == ABBE_OK) result = judge(w, &own, &o->value[i], error);
+  free(own.tier);
+  free(own.facet);
+  return result;
+}
+
+static abbe_result check(const abbe_gem_optimum_desc *d, abbe_error *error) {
+  const bool angles = d->crown_from_rad > 0 && d->crown_to_rad >= d->crown_from_rad &&
+                      d->crown_to_rad < 0.5 * PI && d->pavilion_from_rad > 0 &&
+                      d->pavilion_to_rad >= d->pavilion_from_rad && d->pavilion_to_rad < 0.5 * PI;
+  if (angles && d->crowns >= 1 && d->pavilions >= 1 && d->crowns <= ABBE_GEM_MOST_ANGLES &&
+      d->pavilions <= ABBE_GEM_MOST_ANGLES && (unsigned)d->measure < ABBE_GEM_AMOUNT_COUNT)
+    return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "a grid of %zu x %zu angles, %g to %g and %g to %g rad; each is above 0 "
+                        "and below %g, ascending, and there are 1 to %d",
+                        d->crowns, d->pavilions, d->crown_from_rad, d->crown_to_rad,
+                        d->pavilion_from_rad, d->pavilion_to_rad, 0.5 * PI, ABBE_GEM_MOST_ANGLES);
+}
+
+static double *spread(double from, double to, size_t count) {
+  double *out = malloc(count * sizeof *out);
+  for (size_t i = 0; i < count && out != NULL; i++)
+    out[i] = count > 1 ? from + (to - from) * (double)i / ((double)count - 1) : 0.5 * (from + to);
+  return out;
+}
+
+static abbe_result begin(const abbe_cut *cut, const abbe_cut_polyhedron *p,
+                         const abbe_gem_optimum_desc *d, abbe_gem_optimum *out, abbe_error *error) {
+  const size_t crown = abbe_cut_stretch_main(cut, p, ABBE_CUT_CROWN);
+  const size_t pavilion = abbe_cut_stretch_main(cut, p, ABBE_CUT_PAVILION);
+  if (crown == cut->tier_count || pavilion == cut->tier_count)
+    return abbe_error_set(error, ABBE_GEOMETRY,
+                          "the design has no slanted facets on its %s, whose angle could change",
+                          crown == cut->tier_count ? "crown" : "pavilion");
+  out->design_crown_rad = fabs(cut->tier[crown].angle_deg) * PI / 180;
+  out->design_pavilion_rad = fabs(cut->tier[pavilion].angle_deg) * PI / 180;
+  out->crowns = d->crowns;
+  out->pavilions = d->pavilions;
+  out->crown_rad = spread(d->crown_from_rad, d->crown_to_rad, d->crowns);
+  out->pavilion_rad = spread(d->pavilion_from_rad, d->pavilion_to_rad, d->pavilions);
+  out->value = calloc(d->crowns * d->pavilions, sizeof *out->value);
+  if (out->crown_rad != NULL && out->pavilion_rad != NULL && out->value != NULL) return ABBE_OK;
+  return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu x %zu angles", d->crowns,
+                        d->pavilions);
+}
+
+abbe_result abbe_gem_optimum_find(const abbe_cut *cut, const abbe_cut_polyhedron *polyhedron,
+                                  const abbe_material *material,
+                                  const abbe_wavelengths *wavelengths, const abbe_weights *weights,
+                                  const abbe_gem_optimum_desc *desc, abbe_gem_optimum *out,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(cut && polyhedron && material && wavelengths && weights && desc && out, error);
+  memset(out, 0, sizeof *out);
+  const work w = {material, wavelengths, weights, desc};
+  abbe_result result = check(desc, error);
+  if (result == ABBE_OK) result = begin(cut, polyhedron, desc, out, error);
+  if (result == ABBE_OK) result = judge(&w, cut, &out->design, error);
+  const size_t all = out->crowns * out->pavilions;
+  for (size_t i = 0; i < all && result == ABBE_OK; i++) {
+    result = try_pair(&w, cut, polyhedron, out, i, error);
+    const double gain = out->value[i].value - out->value[out->best].value;
+    if (desc->least ? gain < 0 : gain > 0) out->best = i;
+    if (result == ABBE_OK && desc->progress != NULL &&
+        !desc->progress(desc->user, (double)(i + 1) / (double)all))
+      result = abbe_error_set(error, ABBE_CANCELLED, "the search was given up");
+  }
+  if (result != ABBE_OK) abbe_gem_optimum_free(out);
+  return result;
+}
