@@ -28,6 +28,7 @@ foreach(name
     materials_exchange_command
     environment_command
     gem_command
+    gem_report_command
     outline_command
     printable_output
     render_command
@@ -50,7 +51,10 @@ abbe_label(program NAMES thesis_pictures)
 add_test(NAME gems_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
     docs/gems.md)
-abbe_label(program NAMES gems_page)
+add_test(NAME gem_measures_page
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+    docs/gem-measures.md)
+abbe_label(program NAMES gems_page gem_measures_page)
 
 add_test(NAME materials_page
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}

@@ -124,21 +124,32 @@ static abbe_gem_judgement_desc describe(const request *q, abbe_progress *progres
 
 static abbe_result say(const request *q, const abbe_gem_report_facts *f, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (q->stone.in.json)
-    result = abbe_gem_report_print_json(f, error);
-  else if (q->csv)
+  if (q->out != NULL) result = abbe_gem_report_sheet(q->out, f, error);
+  if (result == ABBE_OK && q->maps != NULL)
+    result = abbe_gem_report_maps(q->maps, f->judgement, error);
+  if (result != ABBE_OK) return result;
+  if (q->stone.in.json) return abbe_gem_report_print_json(f, error);
+  if (q->csv)
     abbe_gem_report_print_csv(f);
   else
     abbe_gem_report_print(f);
-  if (result == ABBE_OK && q->out != NULL) result = abbe_gem_report_sheet(q->out, f, error);
-  if (result == ABBE_OK && q->maps != NULL)
-    result = abbe_gem_report_maps(q->maps, f->judgement, error);
-  return result;
+  return ABBE_OK;
+}
+
+/* That a folder is missing is found out before the work. */
+static abbe_result check_targets(const request *q, abbe_error *error) {
+  char path[4096];
+  const char *target[2] = {q->out, NULL};
+  if (q->maps != NULL) {
+    snprintf(path, sizeof path, "%s/maps.exr", q->maps);
+    target[1] = path;
+  }
+  return abbe_command_check_targets(target, 2, error);
 }
 
 static abbe_result run(request *q, abbe_error *error) {
   abbe_gem_judgement judgement = {0};
-  abbe_result result = abbe_command_check_targets(&q->out, 1, error);
+  abbe_result result = check_targets(q, error);
   if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
   if (result == ABBE_OK) {
     abbe_progress progress;

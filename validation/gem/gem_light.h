@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-/* Default half angle of the head's shadow, degrees: ASET's [AGS2006]. */
+/* Default half angle of the head's shadow, degrees: ASET's [Sasian2007]. */
 #define ABBE_GEM_HEAD_DEG 15.0
 
 /* X(code, name, text). Each is a share of the eye's light, 0 to 1. up, down, absorbed and left add
