@@ -26,6 +26,7 @@
   X(RANGE, "range", "range nm", NULL)                                                              \
   X(MODEL, "model", "model", NULL)                                                                 \
   X(TEMPERATURE, "temperature", "C", "%g")                                                         \
+  X(DENSITY, "density", "g/cm3", "%g")                                                             \
   X(SOURCE, "source", "source", NULL)                                                              \
   X(WARNING, "warning", "warning", NULL)                                                           \
   X(DESCRIPTION, "description", "description", NULL)
@@ -75,6 +76,8 @@ static double number_in(int column, const abbe_material *m, const abbe_material_
     return n->dp_gF;
   case COLUMN_TEMPERATURE:
     return m->temperature_c;
+  case COLUMN_DENSITY:
+    return m->catalogue.density_g_cm3 > 0 ? m->catalogue.density_g_cm3 : NAN;
   default:
     return NAN;
   }
@@ -144,6 +147,7 @@ static abbe_result list_json(const abbe_material_table *table, const size_t *row
     abbe_materials_add_pair(item, "range_nm", m->min_nm, m->max_nm);
     cJSON_AddBoolToObject(item, "extrapolate", m->extrapolate);
     cJSON_AddNumberToObject(item, "temperature_c", m->temperature_c);
+    abbe_materials_add_density(item, m);
     abbe_materials_add_text(item, "source", m->source);
     abbe_materials_add_text(item, "warning", m->warning);
   }
@@ -175,8 +179,8 @@ static const struct argp_option options[] = {
      2},
     {"reverse", KEY_REVERSE, NULL, 0, "the last first", 2},
     {"columns", KEY_COLUMNS, "LIST", 0,
-     "of name, n_d, v_d, b_g, n_F, n_C, n_e, p_gF, dp_gF, range, model, temperature, source, "
-     "warning, description; without it, name,n_d,v_d,b_g,range,description",
+     "of name, n_d, v_d, b_g, n_F, n_C, n_e, p_gF, dp_gF, range, model, temperature, density, "
+     "source, warning, description; without it, name,n_d,v_d,b_g,range,description",
      2},
     ABBE_MATERIALS_JSON_OPTION,
     {0}};

@@ -87,6 +87,8 @@ static void show_formula(const abbe_material *m) {
   printf("  range         %g to %g nm%s\n", m->min_nm, m->max_nm,
          m->extrapolate ? ", extrapolated outside" : "");
   if (!isnan(m->temperature_c)) printf("  temperature   %g C\n", m->temperature_c);
+  if (m->catalogue.density_g_cm3 > 0)
+    printf("  density       %g g/cm3\n", m->catalogue.density_g_cm3);
 }
 
 static void show_absorption(const abbe_material *m) {
@@ -237,6 +239,7 @@ static void add_record(cJSON *to, const abbe_material *m) {
   abbe_materials_add_pair(to, "range_nm", m->min_nm, m->max_nm);
   cJSON_AddBoolToObject(to, "extrapolate", m->extrapolate);
   cJSON_AddNumberToObject(to, "temperature_c", m->temperature_c);
+  abbe_materials_add_density(to, m);
   if (m->attenuation != NULL)
     add_points(to, "attenuation_per_m", m->attenuation, NULL);
   else

@@ -63,6 +63,13 @@ void abbe_materials_add_numbers(cJSON *to, const abbe_material *m) {
   cJSON_AddNumberToObject(to, "dp_gF", n.dp_gF);
 }
 
+void abbe_materials_add_density(cJSON *to, const abbe_material *m) {
+  if (m->catalogue.density_g_cm3 > 0)
+    cJSON_AddNumberToObject(to, "density_g_cm3", m->catalogue.density_g_cm3);
+  else
+    cJSON_AddNullToObject(to, "density_g_cm3");
+}
+
 void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b) {
   cJSON_AddItemToObject(to, key, cJSON_CreateDoubleArray((double[]){a, b}, 2));
 }

@@ -24,6 +24,8 @@ void abbe_materials_add_text(cJSON *to, const char *key, const char *text);
 void abbe_materials_add_numbers(cJSON *to, const abbe_material *material);
 /* A few coefficients to twelve digits, for a record that people read: no index moves by 1e-10. */
 void abbe_materials_round(abbe_dispersion *dispersion);
+/* density_g_cm3, null where the record has none. */
+void abbe_materials_add_density(cJSON *to, const abbe_material *material);
 void abbe_materials_add_pair(cJSON *to, const char *key, double a, double b);
 
 #endif

@@ -89,6 +89,21 @@ static void check_range(abbe_check *c) {
   f->certain = true;
 }
 
+/* Osmium, the densest of all, has 22.6 g/cm3; what is lighter than 0.1 is foam, and bends light by
+ * less than 1.2. */
+static void check_density(abbe_check *c) {
+  const abbe_material *m = c->material;
+  const double density = m->catalogue.density_g_cm3;
+  const bool foam = density > 0 && density < 0.1 &&
+                    abbe_dispersion_n(&m->dispersion, 0.5 * (c->low_nm + c->high_nm)) > 1.2;
+  if (density <= 23 && !foam) return;
+  abbe_finding *f = abbe_check_find(c, ABBE_FINDING_UNITS, ABBE_FINDING_WRONG);
+  if (f == NULL) return;
+  abbe_check_say(c, &f->evidence, "its density of %g g/cm3 is that of no %s", density,
+                 foam ? "solid or liquid of such an index" : "matter; osmium has 22.6");
+  abbe_check_say(c, &f->fix, "give density_g_cm3 in g/cm3: water has 1, quartz 2.65, diamond 3.52");
+}
+
 static void check_fit(abbe_check *c, const abbe_material_fit *fit) {
   const abbe_material *m = c->material;
   abbe_index_difference off;
@@ -147,6 +162,7 @@ static abbe_result check(const abbe_material *material, size_t row,
     for (int i = 0; i < 2; i++) check_fit(&c, &material->fit[i]);
   }
   check_range(&c);
+  check_density(&c);
   check_source(&c);
   return c.result;
 }

@@ -32,7 +32,7 @@ extern "C" {
   X(SAME, "duplicate", "two rows have the same numbers")                                           \
   X(NEAR, "near-duplicate", "two rows differ by less than can be measured")                        \
   X(NO_SOURCE, "no-source", "nothing says where the numbers come from")                            \
-  X(UNITS, "units", "a range is missing, or in another unit")                                      \
+  X(UNITS, "units", "a range is missing, or a number in another unit")                                      \
   X(FIT, "fit", "a recorded fit is not the row's")
 
 typedef enum abbe_finding_kind {

@@ -89,12 +89,20 @@ static abbe_result read_fields(const abbe_table_edit *alone, const char *name, f
   static const struct {
     const char *key;
     bool number, required;
-  } rows[] = {
-      {"name", false, true},          {"description", false, false},   {"model", false, true},
-      {"coefficients", false, false}, {"interpolation", false, false}, {"range_nm", false, false},
-      {"temperature_c", true, false}, {"extrapolate", false, false},   {"n_d", true, false},
-      {"v_d", true, false},           {"source", false, true},         {"warning", false, false},
-      {"comment", false, false}};
+  } rows[] = {{"name", false, true},
+              {"description", false, false},
+              {"model", false, true},
+              {"coefficients", false, false},
+              {"interpolation", false, false},
+              {"range_nm", false, false},
+              {"temperature_c", true, false},
+              {"extrapolate", false, false},
+              {"density_g_cm3", true, false},
+              {"n_d", true, false},
+              {"v_d", true, false},
+              {"source", false, true},
+              {"warning", false, false},
+              {"comment", false, false}};
   *out = (field_list){0};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof rows / sizeof rows[0] && result == ABBE_OK; i++)

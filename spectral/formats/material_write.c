@@ -124,7 +124,7 @@ static void write_numbers(const char *key, const double *value, size_t count, FI
 
 static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
   bool something = c->code != NULL || c->status != NULL || c->melt_frequency != 0 ||
-                   c->density_g_cm3 != 0 || any(c->expansion_per_k, 2) || c->dpgf != 0 ||
+                   any(c->expansion_per_k, 2) || c->dpgf != 0 ||
                    any(c->thermal, 6) || c->rating_count > 0;
   if (!something) return;
   fputs("    catalogue:\n", to);
@@ -137,7 +137,6 @@ static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
   }
   write_text("      status", c->status, to);
   if (c->melt_frequency != 0) write_number("      melt_frequency", c->melt_frequency, to);
-  if (c->density_g_cm3 != 0) write_number("      density_g_cm3", c->density_g_cm3, to);
   if (any(c->expansion_per_k, 2)) write_numbers("expansion_per_k", c->expansion_per_k, 2, to);
   if (c->dpgf != 0) write_number("      dpgf", c->dpgf, to);
   if (any(c->thermal, 6)) write_numbers("thermal", c->thermal, 6, to);
@@ -169,6 +168,8 @@ abbe_result abbe_material_write(const abbe_material *material, FILE *to, abbe_er
   write_text("  - name", m->name, to);
   write_text("    description", m->description, to);
   write_dispersion(m, to);
+  if (m->catalogue.density_g_cm3 != 0)
+    write_number("    density_g_cm3", m->catalogue.density_g_cm3, to);
   if (m->published_n_d != 0) write_number("    n_d", m->published_n_d, to);
   if (m->published_v_d != 0) write_number("    v_d", m->published_v_d, to);
   write_text("    source", m->source, to);

@@ -31,13 +31,14 @@ typedef struct abbe_material_fit {
 
 enum { ABBE_MATERIAL_MAX_NAME = 80 };
 
-/* What a maker's catalogue says about a glass besides its index. It is carried, not used. 0 (NULL)
- * means that the catalogue is silent, as it does in the catalogues themselves. */
+/* What a maker's catalogue says about a glass besides its index. It is carried, not used, but for
+ * the density, which weighs stones. 0 (NULL) means that the catalogue is silent, as it does in the
+ * catalogues themselves. */
 typedef struct abbe_material_catalogue {
   char *code;              /* the six-digit code of n_d and V_d, as printed: 517642.251 */
   char *status;            /* standard, preferred, obsolete, special or melt */
   double melt_frequency;   /* 1 (most often molten) to 5 */
-  double density_g_cm3;
+  double density_g_cm3;    /* up to ABBE_MATERIAL_DENSITY_MOST; a record's own key in tables */
   double expansion_per_k[2]; /* linear, -30 to 70 C and 100 to 300 C, 1/K */
   double dpgf;             /* deviation of the partial dispersion P_gF from the normal line */
   double thermal[6];       /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */

@@ -391,6 +391,20 @@ static abbe_result read_numbers(reader *r, abbe_yaml_node where, const char *key
                                ABBE_MATERIAL_CATALOGUE_MOST, out, r->error);
 }
 
+/* A key of the record; tables written before it was one have it in the catalogue. */
+static abbe_result read_density(reader *r) {
+  double *density_g_cm3 = &r->material->catalogue.density_g_cm3;
+  const char *const key = "density_g_cm3";
+  abbe_yaml_node catalogue = abbe_yaml_get(r->yaml, r->record, "catalogue");
+  abbe_yaml_node twice = {0};
+  if (catalogue.id != 0) twice = abbe_yaml_get(r->yaml, catalogue, key);
+  if (twice.id != 0 && abbe_yaml_get(r->yaml, r->record, key).id != 0)
+    return abbe_yaml_fail(r->yaml, twice, r->error,
+                          "'%s' stands in the record and in its catalogue; leave it out here", key);
+  return abbe_yaml_get_number(r->yaml, twice.id != 0 ? catalogue : r->record, key, 0,
+                              ABBE_MATERIAL_DENSITY_MOST, density_g_cm3, r->error);
+}
+
 static abbe_result read_catalogue(reader *r) {
   abbe_material_catalogue *c = &r->material->catalogue;
   abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "catalogue");
@@ -401,9 +415,6 @@ static abbe_result read_catalogue(reader *r) {
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(r->yaml, where, "melt_frequency", 0, ABBE_MATERIAL_MELT_MOST,
                                   &c->melt_frequency, r->error);
-  if (result == ABBE_OK)
-    result = abbe_yaml_get_number(r->yaml, where, "density_g_cm3", 0, ABBE_MATERIAL_DENSITY_MOST,
-                                  &c->density_g_cm3, r->error);
   if (result == ABBE_OK) result = read_numbers(r, where, "expansion_per_k", 2, c->expansion_per_k);
   if (result == ABBE_OK)
     result = abbe_yaml_get_number(r->yaml, where, "dpgf", -ABBE_MATERIAL_DPGF_MOST,
@@ -446,9 +457,9 @@ static abbe_result read_texts(reader *r) {
  * is reported as such. */
 static abbe_result check_record_keys(reader *r) {
   static const char *const keys[] = {
-      "name",     "description", "model",      "coefficients",  "points",   "interpolation",
-      "range_nm", "extrapolate", "absorption", "temperature_c", "source",   "warning",
-      "fit",      "n_d",         "v_d",        "comment",       "catalogue"};
+      "name",     "description", "model",      "coefficients",  "points",    "interpolation",
+      "range_nm", "extrapolate", "absorption", "temperature_c", "source",    "warning",
+      "fit",      "n_d",         "v_d",        "comment",       "catalogue", "density_g_cm3"};
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
     abbe_yaml_get(r->yaml, r->record, keys[i]);
   return abbe_yaml_check_keys(r->yaml, r->record, "a material", r->error);
@@ -468,6 +479,7 @@ static abbe_result read_record(reader *r) {
                                   &m->temperature_c, r->error);
   if (result == ABBE_OK) result = read_absorption(r);
   if (result == ABBE_OK) result = read_published(r);
+  if (result == ABBE_OK) result = read_density(r);
   if (result == ABBE_OK) result = read_catalogue(r);
   return result == ABBE_OK ? read_fits(r) : result;
 }

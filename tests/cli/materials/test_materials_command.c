@@ -103,6 +103,42 @@ static void numbers_outside_the_data_are_not_told(void **state) {
   unlink(path);
 }
 
+static void a_density_is_set_shown_and_listed(void **state) {
+  (void)state;
+  char path[] = "/tmp/abbe-test-materials-XXXXXX", command[256];
+  int fd = mkstemp(path);
+  assert_true(fd >= 0);
+  close(fd);
+  const char *text = "materials:\n- name: heavy\n  model: constant\n  coefficients: [1.5]\n"
+                     "  source: s\n- name: unknown\n  model: constant\n  coefficients: [1.6]\n"
+                     "  source: s\n";
+  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  snprintf(command, sizeof command, "materials set heavy density_g_cm3=4.73 --table %s", path);
+  assert_int_equal(run(command), 0);
+  snprintf(command, sizeof command, "materials show heavy --table %s", path);
+  assert_int_equal(run(command), 0);
+  assert_contains(output, "  density       4.73 g/cm3\n");
+  snprintf(command, sizeof command, "materials show heavy --table %s --json", path);
+  assert_int_equal(run(command), 0);
+  cJSON *json = cJSON_Parse(output);
+  assert_near(number(json, "density_g_cm3"), 4.73, 0);
+  cJSON_Delete(json);
+  snprintf(command, sizeof command, "materials list --table %s --json", path);
+  assert_int_equal(run(command), 0);
+  json = cJSON_Parse(output);
+  const cJSON *list = cJSON_GetObjectItem(json, "materials");
+  assert_near(number(cJSON_GetArrayItem(list, 0), "density_g_cm3"), 4.73, 0);
+  assert_true(cJSON_IsNull(cJSON_GetObjectItem(cJSON_GetArrayItem(list, 1), "density_g_cm3")));
+  cJSON_Delete(json);
+  snprintf(command, sizeof command, "materials list --table %s --columns name,density", path);
+  assert_int_equal(run(command), 0);
+  assert_contains(output, "heavy     4.73\n");
+  snprintf(command, sizeof command, "materials set heavy density_g_cm3=4730 --table %s", path);
+  assert_int_equal(run(command), 1);
+  assert_contains(output, "density_g_cm3");
+  unlink(path);
+}
+
 /* What --fit prints is what the shipped record holds. */
 static void a_printed_fit_is_the_recorded_one(void **state) {
   (void)state;
@@ -162,6 +198,7 @@ int main(void) {
       cmocka_unit_test(lists_hold_every_material),
       cmocka_unit_test(extrapolation_is_reported_or_refused),
       cmocka_unit_test(numbers_outside_the_data_are_not_told),
+      cmocka_unit_test(a_density_is_set_shown_and_listed),
       cmocka_unit_test(a_printed_fit_is_the_recorded_one),
       cmocka_unit_test(wrong_use_is_2_and_says_what_is_right),
   };

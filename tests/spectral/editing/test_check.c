@@ -304,6 +304,23 @@ static void expect(const abbe_material *m, abbe_finding_kind kind, const abbe_di
   abbe_findings_free(&found);
 }
 
+static void densities_in_another_unit_are_found(void **state) {
+  (void)state;
+  static const struct {
+    double n, density;
+    abbe_finding_kind kind;
+  } rows[] = {{2.4, 0, ABBE_FINDING_KIND_COUNT},    {2.4, 3.52, ABBE_FINDING_KIND_COUNT},
+              {1.5, 22.6, ABBE_FINDING_KIND_COUNT}, {1.5, 23.5, ABBE_FINDING_UNITS},
+              {1.5, 0.0025, ABBE_FINDING_UNITS},    {1.0003, 0.0012, ABBE_FINDING_KIND_COUNT},
+              {1.03, 0.1, ABBE_FINDING_KIND_COUNT}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    abbe_dispersion d = {.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {rows[i].n}};
+    abbe_material m = row(&d);
+    m.catalogue.density_g_cm3 = rows[i].density;
+    expect(&m, rows[i].kind, NULL);
+  }
+}
+
 /* Whatever the glass: as it is, it passes; with one fault, that fault is found. */
 static void any_glass_is_well_or_has_its_own_fault(void **state) {
   (void)state;
@@ -405,6 +422,7 @@ int main(void) {
       cmocka_unit_test(each_fault_is_found_with_its_fix),
       cmocka_unit_test(rows_that_are_alike_are_found),
       cmocka_unit_test(certain_fixes_fix),
+      cmocka_unit_test(densities_in_another_unit_are_found),
       cmocka_unit_test(any_glass_is_well_or_has_its_own_fault),
       cmocka_unit_test(senseless_records_are_survived),
       cmocka_unit_test(namesakes_are_found_in_any_spelling),

@@ -229,6 +229,24 @@ static void bad_tables_name_line_and_key(void **state) {
           "is not a name");
 }
 
+static void a_density_is_the_records_own(void **state) {
+  (void)state;
+#define DENSE "materials:\n- name: a\n  model: constant\n  coefficients: [1.5]\n  source: s\n"
+  abbe_material_table t = parse(DENSE "  density_g_cm3: 3.52\n");
+  assert_near(t.material[0].catalogue.density_g_cm3, 3.52, 0);
+  abbe_material_table_free(&t);
+  t = parse("materials:\n" GOOD_RECORD);
+  assert_near(t.material[0].catalogue.density_g_cm3, 0, 0);
+  abbe_material_table_free(&t);
+  refuses(DENSE "  density_g_cm3: 3520\n", "t.yaml:6: 'density_g_cm3: 3520'");
+  refuses(DENSE "  density_g_cm3: -1\n", "t.yaml:6: 'density_g_cm3: -1'");
+  refuses(DENSE "  density_g_cm3: heavy\n", "t.yaml:6: 'density_g_cm3");
+  refuses(DENSE "  density: 3.52\n", "'density'");
+  refuses(DENSE "  density_g_cm3: 3.52\n  catalogue: {density_g_cm3: 2}\n",
+          "t.yaml:7: 'density_g_cm3' stands in the record and in its catalogue");
+#undef DENSE
+}
+
 static void refuses_model(const char *rest, const char *part) {
   char text[1024];
   snprintf(text, sizeof text, "materials:\n- name: x\n  source: s\n%s", rest);
@@ -353,9 +371,9 @@ static void a_lenient_reading_keeps_what_can_be_read(void **state) {
   assert_contains(report.note[1].text, "must be a mapping");
   abbe_material_table_free(&t);
   abbe_report_free(&report);
-  assert_int_equal(abbe_material_table_parse_lenient("materials: 3\n", 13, "t.yaml", &t, NULL,
-                                                     &error),
-                   ABBE_SCHEMA);
+  assert_int_equal(
+      abbe_material_table_parse_lenient("materials: 3\n", 13, "t.yaml", &t, NULL, &error),
+      ABBE_SCHEMA);
   assert_int_equal(abbe_material_table_load_lenient("/no/such.yaml", &t, NULL, &error), ABBE_IO);
   assert_int_equal(abbe_material_table_load_lenient("thesis", &t, NULL, &error), ABBE_OK);
   assert_int_equal(t.count, 5);
@@ -367,9 +385,9 @@ static void cut_tables_are_harmless(void **state) {
   (void)state;
   char *text = NULL;
   size_t size = 0;
-  assert_int_equal(
-      abbe_file_read(ABBE_SOURCE_DIR "/spectral/materials/materials.yaml", 1 << 20, &text, &size, NULL),
-      ABBE_OK);
+  assert_int_equal(abbe_file_read(ABBE_SOURCE_DIR "/spectral/materials/materials.yaml", 1 << 20,
+                                  &text, &size, NULL),
+                   ABBE_OK);
   for (size_t cut = 0; cut < size; cut += 37) {
     abbe_material_table t;
     abbe_error error = {0};
@@ -390,6 +408,7 @@ int main(void) {
       cmocka_unit_test(absorption_is_a_spectrum_or_a_colour),
       cmocka_unit_test(absorption_is_also_a_transmittance_or_k),
       cmocka_unit_test(what_the_catalogue_prints_is_kept),
+      cmocka_unit_test(a_density_is_the_records_own),
       cmocka_unit_test(materials_are_moved_to_a_table),
       cmocka_unit_test(aliases_may_share_a_record_part),
       cmocka_unit_test(bad_tables_name_line_and_key),
