@@ -165,4 +165,7 @@ void abbe_gem_input_describe(const abbe_gem_input *in, cJSON *root) {
   cJSON_AddNumberToObject(ratios, "P/W", m->side[ABBE_CUT_PAVILION] / w);
   cJSON_AddNumberToObject(ratios, "H/W", m->height / w);
   cJSON_AddNumberToObject(ratios, "Vol/W^3", m->volume / pow(w, 3));
+  /* from the design's centre, which is a scene's origin */
+  cJSON_AddNumberToObject(ratios, "top/W", in->stone.max[2] / w);
+  cJSON_AddNumberToObject(ratios, "bottom/W", in->stone.min[2] / w);
 }
