@@ -14,7 +14,7 @@ foreach(name
     eye_samples
     eye_walk
     pareto_front
-    gem_optimum gem_tilts gem_view
+    gem_maps gem_optimum gem_tilts gem_view
     guide_sums
     field
     file_comparison

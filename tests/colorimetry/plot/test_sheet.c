@@ -1,0 +1,87 @@
+#include "colorimetry/plot/sheet.h"
+
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/abbe-test-sheet-XXXXXX", path[64];
+
+static int setup(void **state) {
+  (void)state;
+  if (mkdtemp(folder) == NULL) return 1;
+  snprintf(path, sizeof path, "%s/s.pdf", folder);
+  return 0;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  return rmdir(folder);
+}
+
+static abbe_sheet *begin(void) {
+  abbe_sheet *sheet;
+  abbe_error error = {0};
+  assert_int_equal(abbe_sheet_make(path, &sheet, &error), ABBE_OK);
+  abbe_sheet_text(sheet, 40, 40, 12, true, false, 0, "a line of text");
+  abbe_sheet_line(sheet, 40, 45, 300, 45, 0.5);
+  return sheet;
+}
+
+/* Cairo compresses what it draws; the number of pages stands in the open. */
+static void pages_are_written(void **state) {
+  (void)state;
+  static const char *const names[] = {"R", "G", "B"};
+  abbe_error error = {0};
+  abbe_image image;
+  abbe_sheet *sheet = begin();
+  assert_int_equal(abbe_image_make(8, 4, 3, names, &image, &error), ABBE_OK);
+  assert_int_equal(abbe_sheet_picture(sheet, 40, 60, 160, 80, &image, &error), ABBE_OK);
+  const double x[2] = {0, 1}, y[2] = {1, 2};
+  const abbe_chart_series series = {.count = 2, .x = x, .y = y};
+  const abbe_chart chart = {.series_count = 1, .series = &series};
+  abbe_sheet_turn(sheet);
+  assert_int_equal(abbe_sheet_chart(sheet, 40, 60, 400, 200, 0.7, &chart, &error), ABBE_OK);
+  assert_int_equal(access(path, F_OK), -1); /* not before it is whole */
+  assert_int_equal(abbe_sheet_finish(sheet, &error), ABBE_OK);
+  abbe_image_free(&image);
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  static char data[1 << 20];
+  const size_t size = fread(data, 1, sizeof data - 1, file);
+  fclose(file);
+  assert_memory_equal(data, "%PDF-", 5);
+  bool counted = false;
+  for (size_t i = 0; i + 8 < size; i++) counted = counted || memcmp(data + i, "/Count 2", 8) == 0;
+  assert_true(counted);
+  assert_int_equal(unlink(path), 0);
+}
+
+static void wrong_requests_are_refused(void **state) {
+  (void)state;
+  static const char *const grey[] = {"Y"};
+  abbe_error error = {0};
+  abbe_image image;
+  abbe_sheet *sheet;
+  assert_int_equal(abbe_sheet_make("s.png", &sheet, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, ".pdf");
+  assert_int_equal(abbe_sheet_make("/nowhere/s.pdf", &sheet, &error), ABBE_IO);
+  sheet = begin();
+  assert_int_equal(abbe_image_make(2, 2, 1, grey, &image, &error), ABBE_OK);
+  assert_int_equal(abbe_sheet_picture(sheet, 0, 0, 9, 9, &image, &error), ABBE_INVALID_ARGUMENT);
+  const abbe_chart chart = {.x = {.min = 2, .max = 1}};
+  assert_int_equal(abbe_sheet_chart(sheet, 0, 0, 99, 99, 0, &chart, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_sheet_chart(sheet, 0, 0, 99, 99, 1, &chart, &error), ABBE_INVALID_ARGUMENT);
+  abbe_image_free(&image);
+  abbe_sheet_free(sheet); /* and no file is there */
+  assert_int_equal(access(path, F_OK), -1);
+  abbe_sheet_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(pages_are_written),
+      cmocka_unit_test(wrong_requests_are_refused),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
