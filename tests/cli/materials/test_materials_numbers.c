@@ -53,7 +53,8 @@ static abbe_material_table record_of(const char *line) {
 static void lists_are_filtered_sorted_and_cut_into_columns(void **state) {
   (void)state;
   answers("$abbe materials list --nd 1.5:1.6 --vd 60:70 --sort n_d --columns name,v_d", 0,
-          "name      V_d\nn-bk7   64.17\nquartz  69.69\n");
+          "name        V_d\nn-bk7     64.17\nquartz    69.69\namethyst  69.69\n"
+          "citrine   69.69\n");
   answers("$abbe materials list --name 'N-*' --sort n_d --reverse --columns name", 0,
           "name\nn-sf11\nn-baf10\nn-bak4\nn-bk7\n");
   answers("$abbe materials list --source peter1923 --columns name,p_gF,dp_gF", 0,

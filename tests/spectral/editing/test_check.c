@@ -49,8 +49,13 @@ static void the_default_table_is_well(void **state) {
   (void)state;
   abbe_findings found = checked_table(&shipped);
   assert_int_equal(count_of(&found, ABBE_FINDING_DOUBTFUL), 0);
-  for (size_t i = 0; i < found.count; i++)
-    assert_int_equal(found.finding[i].kind, ABBE_FINDING_EXTRAPOLATED);
+  for (size_t i = 0; i < found.count; i++) {
+    const abbe_finding *f = &found.finding[i];
+    /* a stone's colours differ in absorption alone */
+    const bool colours = f->kind == ABBE_FINDING_SAME && shipped.material[f->row].attenuation &&
+                         f->weight == ABBE_FINDING_NOTE;
+    if (!colours) assert_int_equal(f->kind, ABBE_FINDING_EXTRAPOLATED);
+  }
   abbe_findings_free(&found);
 }
 

@@ -53,8 +53,9 @@ static void shipped_indices_are_the_published_ones(void **state) {
   abbe_material_table table = load("default");
   const size_t published = sizeof rows / sizeof rows[0];
   size_t metals = 0;
+  const size_t stones = (size_t)(find(&table, "air") - find(&table, "ruby")); /* test_stones.c */
   for (size_t i = 0; i < table.count; i++) metals += abbe_material_is_conductor(&table.material[i]);
-  assert_int_equal(table.count, published + 1 + metals); /* and air */
+  assert_int_equal(table.count, published + stones + 1 + metals); /* and air */
   for (size_t i = 0; i < published; i++) {
     const abbe_material *m = find(&table, rows[i].name);
     abbe_dispersion_numbers d = abbe_dispersion_describe(&m->dispersion);
@@ -174,6 +175,7 @@ static void every_recorded_fit_is_made_again(void **state) {
   for (size_t i = 0; i < table.count; i++) {
     const abbe_material *m = &table.material[i];
     if (!varies(m) || abbe_material_is_conductor(m)) continue; /* it is its own fit */
+    if (m->dispersion.model == ABBE_DISPERSION_CAUCHY) continue;
     for (size_t k = 0; k < 2; k++) {
       const abbe_material_fit *fit = &m->fit[k];
       abbe_dispersion made;

@@ -18,7 +18,10 @@ static void numbers_find_their_own_glass(void **state) {
     assert_int_equal(abbe_glass_distance_to_numbers(&shipped, own.n_d, own.v_d, 3, &d, NULL),
                      ABBE_OK);
     assert_int_equal(d.count, 3);
-    assert_int_equal(d.nearest[0].index, i);
+    const abbe_dispersion_numbers first =
+        abbe_dispersion_describe(&shipped.material[d.nearest[0].index].dispersion);
+    assert_true(d.nearest[0].index <= i); /* its own, or a stone's whose colour it varies */
+    assert_true(first.n_d == own.n_d && first.v_d == own.v_d);
     assert_true(d.nearest[0].rms < 1e-9);
     assert_near(d.nearest[0].n_d, own.n_d, 0);
     for (size_t k = 1; k < d.count; k++) assert_true(d.nearest[k].rms >= d.nearest[k - 1].rms);
