@@ -16,7 +16,8 @@ vec3 through(Hit front, vec3 d, int band) {
   InnerRay ray = InnerRay(front.p, d, front.facet, 1.0 - fresnel(-dot(d, front.n), 1.0 / n));
   vec3 light = vec3(0);
   if (!refract_direction(d, front.n, 1.0 / n, ray.d)) return light;
-  float shown = 0.0, left = 0.0;
+  // Of what went in: where nearly all is mirrored, the rest is followed too.
+  float limit = share_limit * ray.share, shown = 0.0, left = 0.0;
   bool met;
   for (int order = 0; order < counts.exits;) {
     Outgoing leaving = Outgoing(ray.p, vec3(0), ray.d, 0.0);
@@ -27,17 +28,17 @@ vec3 through(Hit front, vec3 d, int band) {
       ray.share *= exp(-attenuation * distance(h.p, ray.p));
 #endif
       leaving = leave(h, n, ray);
-      shows = leaving.share > 0.5 * share_limit;
+      shows = leaving.share > 0.5 * limit;
       left += shows ? 0.0 : leaving.share;
       order++;
-      left += ray.share < share_limit || order == counts.exits ? ray.share : 0.0;
-      if (!CHEAP_INTERFACES || shows || ray.share < share_limit) break;
+      left += ray.share < limit || order == counts.exits ? ray.share : 0.0;
+      if (!CHEAP_INTERFACES || shows || ray.share < limit) break;
     }
     if (shows) {
       light += leaving.share * seen(leaving.p, leaving.d, -touch * refractor_bounds.w, 1e30, met);
       shown += leaving.share;
     }
-    if (ray.share < share_limit) break;
+    if (ray.share < limit) break;
   }
   return light * (shown > 0.0 ? 1.0 + left / shown : 0.0);
 }

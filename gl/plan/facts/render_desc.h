@@ -79,7 +79,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 /* Of the eye's rays through exact surfaces, the share of one solid alone; what light is left
  * inside then is too little to show. */
 #define ABBE_PLAN_EYE_EXITS 256
-#define ABBE_PLAN_EYE_SHARE 0.001
+#define ABBE_PLAN_EYE_SHARE 0.005
 
 /* A request; zero means the default in every field. */
 typedef struct abbe_render_desc {
