@@ -53,6 +53,7 @@ enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
 
 typedef struct request {
   const char *program, *scene, *materials;
+  abbe_scene_input_changes changes;
   const char *exr, *png, *stats, *checkpoint;
   const char *of_png; /* an option that the PNG alone has */
   abbe_map_options map;
@@ -92,6 +93,7 @@ static const struct argp_option options[] = {
     {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
     {"seed", OPTION_SEED, "N", 0, "of the random numbers (0)", 1},
     {"threads", OPTION_THREADS, "N", 0, "all cores without; the result is the same", 1},
+    ABBE_SCENE_INPUT_OPTIONS(1),
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
     {"resume", OPTION_RESUME, NULL, 0, "go on from the checkpoint, where there is one", 2},
@@ -152,7 +154,7 @@ static error_t parse_work(int key, char *text, request *q) {
     d->threads = abbe_command_count(p, "--threads", text, 1, ABBE_TRACER_MAX_THREADS);
     return 0;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return abbe_scene_input_take(&q->changes, key, text, p);
   }
 }
 
@@ -470,8 +472,7 @@ int abbe_command_trace(int argc, char **argv) {
       options,
       parse,
       "SCENE.yaml",
-      "Traces what light really does in a scene, with standard errors: the reference for "
-      "'abbe render'.\v"
+      "Traces what light really does in a scene, with standard errors: the reference.\v"
       "Examples:\n"
       "  abbe trace scenes/sphere.yaml -o sphere.exr --png sphere.png\n"
       "  abbe trace scenes/gem.yaml -o gem.exr --until-error 0.01\n"
@@ -484,14 +485,13 @@ int abbe_command_trace(int argc, char **argv) {
       NULL};
   request q = {.program = argv[0], .every = 30};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-  if (q.passes == 0 && !(q.seconds > 0) && !(q.until > 0)) q.passes = DEFAULT_PASSES;
-  if (q.passes == 0) q.passes = MOST_PASSES;
+  if (q.passes == 0) q.passes = q.seconds > 0 || q.until > 0 ? MOST_PASSES : DEFAULT_PASSES;
   abbe_error error = {0};
   abbe_scene scene = {0};
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = name_checkpoint(&q, &error);
   if (result == ABBE_OK)
-    result = abbe_scene_input_load(argv[0], q.scene, q.materials, &scene, &error);
+    result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
   if (result == ABBE_OK) result = run(&q, &scene, &error);
   free(q.checkpoint_path);

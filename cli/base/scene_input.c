@@ -1,18 +1,47 @@
 #include "cli/base/scene_input.h"
 
 #include "cli/base/arguments.h"
+#include "cli/base/command.h"
 #include "cli/base/shipped.h"
 #include "scenes/import/scene_file.h"
 
 #include <cjson/cJSON.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const char *text,
+                              const char *program) {
+  if (key == ABBE_SCENE_INPUT_MATERIAL)
+    changes->stone = text;
+  else if (key != ABBE_SCENE_INPUT_SET)
+    return ARGP_ERR_UNKNOWN;
+  else if (changes->set_count < ABBE_SCENE_INPUT_MOST)
+    changes->set[changes->set_count++] = text;
+  else {
+    fprintf(stderr, "%s: no more than %d --set; write the values into the scene\n", program,
+            ABBE_SCENE_INPUT_MOST);
+    exit(ABBE_EXIT_USAGE);
+  }
+  return 0;
+}
 
 abbe_result abbe_scene_input_load(const char *program, const char *path, const char *materials,
                                   abbe_scene *out, abbe_error *error) {
+  const abbe_scene_input_changes none = {0};
+  return abbe_scene_input_load_with(program, path, materials, &none, out, error);
+}
+
+abbe_result abbe_scene_input_load_with(const char *program, const char *path,
+                                          const char *materials,
+                                          const abbe_scene_input_changes *changes, abbe_scene *out,
+                                          abbe_error *error) {
   char shipped[2 * PATH_MAX];
-  const abbe_scene_options options = {.materials = materials};
+  const abbe_scene_options options = {.materials = materials,
+                                      .stone = changes->stone,
+                                      .set = changes->set,
+                                      .set_count = changes->set_count};
   const char *found = abbe_shipped_find(path, shipped, sizeof shipped);
   if (found != path) fprintf(stderr, "note: %s is not here; %s is taken\n", path, found);
   abbe_result result = abbe_scene_load(found, &options, out, error);

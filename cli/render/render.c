@@ -396,6 +396,7 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"
       "  abbe render scenes/prism.yaml --png prism.png --wavelengths 21 --photons 1024\n"
       "  abbe render scenes/sphere.yaml --profile thesis --png thesis.png --view Plain\n"
+      "  abbe render scenes/gem.yaml --png ruby.png --material ruby --set lights.lamp.intensity=2\n"
       "  abbe render scenes/gem.yaml --stats gem.json --frames 9\n"
       "  abbe render scenes/gem.yaml --png gem.png --preset draft\n"
       "  abbe render scenes/gem.yaml --png gem.png --budget-ms 100 --json\n"
@@ -418,7 +419,8 @@ int abbe_command_render(int argc, char **argv) {
   abbe_result result = abbe_command_check_targets(targets, 5, &error);
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK)
-    result = abbe_scene_input_load(argv[0], q.render.scene, q.render.materials, &scene, &error);
+    result = abbe_scene_input_load_with(argv[0], q.render.scene, q.render.materials,
+                                           &q.render.changes, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)

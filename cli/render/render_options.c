@@ -61,6 +61,7 @@ static const struct argp_option options[] = {
      "switch on what no fact asks for, to measure what the plan saves", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},
+    ABBE_SCENE_INPUT_OPTIONS(1),
     {0}};
 
 #define ABBE_NAME_OF_2(code, name) name,
@@ -141,7 +142,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (o->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
     return 0;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return abbe_scene_input_take(&o->changes, key, text, p);
   }
 }
 

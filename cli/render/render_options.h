@@ -2,6 +2,7 @@
 #ifndef ABBE_CLI_RENDER_RENDER_OPTIONS_H
 #define ABBE_CLI_RENDER_RENDER_OPTIONS_H
 
+#include "cli/base/scene_input.h"
 #include "gl/plan/plan.h"
 
 #include <argp.h>
@@ -11,6 +12,7 @@ typedef struct abbe_render_options {
   const char *program;   /* "abbe render" */
   const char *scene;     /* path */
   const char *materials; /* table to use instead of the scene's */
+  abbe_scene_input_changes changes;
   abbe_render_desc desc;
 } abbe_render_options;
 

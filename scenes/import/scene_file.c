@@ -1,9 +1,11 @@
 #include "scenes/import/scene_file.h"
 
+#include "base/file.h"
 #include "base/yaml/yaml.h"
 #include "scenes/geometry/vector.h"
 #include "scenes/import/environment_file.h"
 #include "scenes/import/object_file.h"
+#include "scenes/import/scene_change.h"
 #include "scenes/import/scene_value.h"
 #include "spectral/formats/material_table_load.h"
 
@@ -13,6 +15,7 @@
 
 #define RADIANS (3.14159265358979323846 / 180.0)
 #define FAINTEST 1e-30
+#define SCENE_MOST_BYTES ((size_t)16 << 20) /* as of every YAML file */
 
 /* --- camera --- */
 
@@ -346,12 +349,39 @@ static abbe_result read_document(abbe_yaml *yaml, const char *path,
   return result;
 }
 
+/* The text with the changes in it, as a document. */
+static abbe_result parse_changed(const char *text, size_t size, const char *name,
+                                 const abbe_scene_options *options, abbe_yaml **out,
+                                 abbe_error *error) {
+  abbe_yaml_edit edit = {0};
+  abbe_result result = abbe_yaml_edit_make(text, size, name, &edit, error);
+  if (result == ABBE_OK && options->stone)
+    result = abbe_scene_change_material(&edit, options->stone, error);
+  for (size_t i = 0; i < options->set_count && result == ABBE_OK; i++)
+    result = abbe_scene_change_set(&edit, options->set[i], error);
+  if (result == ABBE_OK) result = abbe_yaml_parse(edit.text, edit.size, name, out, error);
+  abbe_yaml_edit_free(&edit);
+  return result;
+}
+
+static bool changes(const abbe_scene_options *options) {
+  return options && (options->stone || options->set_count > 0);
+}
+
 abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options, abbe_scene *out,
                             abbe_error *error) {
   ABBE_REQUIRE(path && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
-  abbe_result result = abbe_yaml_load(path, &yaml, error);
+  abbe_result result;
+  if (changes(options)) {
+    char *text = NULL;
+    size_t size = 0;
+    result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &size, error);
+    if (result == ABBE_OK) result = parse_changed(text, size, path, options, &yaml, error);
+    free(text);
+  } else
+    result = abbe_yaml_load(path, &yaml, error);
   return result == ABBE_OK ? read_document(yaml, path, options, out, error) : result;
 }
 
@@ -361,6 +391,7 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
   ABBE_REQUIRE(text && name && out, error);
   memset(out, 0, sizeof *out);
   abbe_yaml *yaml = NULL;
-  abbe_result result = abbe_yaml_parse(text, size, name, &yaml, error);
+  abbe_result result = changes(options) ? parse_changed(text, size, name, options, &yaml, error)
+                                        : abbe_yaml_parse(text, size, name, &yaml, error);
   return result == ABBE_OK ? read_document(yaml, name, options, out, error) : result;
 }

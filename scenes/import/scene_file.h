@@ -11,6 +11,11 @@ extern "C" {
 /* Zeroed: as the file says. */
 typedef struct abbe_scene_options {
   const char *materials; /* table to use instead of the file's: a path, "default" or "thesis" */
+  const char *const *set; /* set_count of "PATH=VALUE": keys with dots between them, of a list's item
+                             its number from 0 or its name, and one line of YAML; in order */
+  size_t set_count;
+  const char *stone; /* "STONE", what all refractors are made of instead of one material; or
+                        "NAME=STONE", of a material or an object; before set; NULL: as it is */
 } abbe_scene_options;
 
 /* Loads, tessellates, checks and fixes. Paths in the file are relative to it. Errors name file,

@@ -178,6 +178,65 @@ static void options_choose_another_table(void **state) {
   assert_non_null(strstr(error.text, "gem.yaml:"));
 }
 
+static abbe_result load_set(const char *stone, const char *set, abbe_scene *out, abbe_error *error) {
+  const abbe_scene_options options = {.stone = stone, .set = &set, .set_count = set != NULL};
+  *error = (abbe_error){0};
+  return abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", &options, out, error);
+}
+
+static void values_are_set_by_their_path(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_error error;
+  assert_int_equal(load_set(NULL, "lights.lamp.intensity=2", &scene, &error), ABBE_OK);
+  assert_true(scene.light[0].power == 2);
+  abbe_scene_free(&scene);
+  assert_int_equal(load_set(NULL, "objects.5.height=0.2", &scene, &error), ABBE_OK);
+  assert_true(fabs(scene.object[5].max[1] - 0.1) < 1e-12);
+  abbe_scene_free(&scene);
+  assert_int_equal(load_set(NULL, "objects.back wall.reflectance=[0.1, 0.2, 0.3]", &scene, &error),
+                   ABBE_OK);
+  abbe_scene_free(&scene);
+  assert_int_equal(load_set(NULL, "background=0.25", &scene, &error), ABBE_OK); /* a new key */
+  assert_true(scene.background == 0.25);
+  abbe_scene_free(&scene);
+  static const struct {
+    const char *set, *says;
+  } bad[] = {{"lights.lamp.intensity=-1", "'intensity: -1'"},
+             {"lights.lamp.intensity=bright", "'intensity"},
+             {"lights.lamp.intensty=2", "did you mean 'intensity'"},
+             {"lights.lamb.intensity=2", "there is no 'lamb'; did you mean 'lamp'?"},
+             {"object.gem.table=0.02", "there is no 'object'; did you mean 'objects'?"},
+             {"objects.77.table=0.02", "there is no '77'"},
+             {"camera.fov.x=1", "in what is one value"},
+             {"camera.fov=", "write KEY=VALUE"},
+             {"camera", "write KEY=VALUE"},
+             {"=3", "write KEY=VALUE"}};
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    assert_int_not_equal(load_set(NULL, bad[i].set, &scene, &error), ABBE_OK);
+    if (strstr(error.text, bad[i].says) == NULL) fail_msg("%s: %s", bad[i].set, error.text);
+  }
+}
+
+static void a_stone_takes_anothers_place(void **state) {
+  (void)state;
+  static const char *const good[] = {"ruby", "n-sf11=ruby", "gem=ruby"};
+  abbe_scene scene;
+  abbe_error error;
+  for (size_t i = 0; i < 3; i++) {
+    assert_int_equal(load_set(good[i], NULL, &scene, &error), ABBE_OK);
+    assert_string_equal(refractor(&scene)->material->name, "ruby");
+    abbe_scene_free(&scene);
+  }
+  static const char *const bad[][2] = {{"rubi", "did you mean 'ruby'"},
+                                       {"n-sf1=ruby", "did you mean 'n-sf11'?"},
+                                       {"floor=ruby", "nothing in it is made of 'floor'"}};
+  for (size_t i = 0; i < 3; i++) {
+    assert_int_not_equal(load_set(bad[i][0], NULL, &scene, &error), ABBE_OK);
+    if (strstr(error.text, bad[i][1]) == NULL) fail_msg("%s: %s", bad[i][0], error.text);
+  }
+}
+
 static void bad_scenes_are_explained(void **state) {
   (void)state;
   static const struct {
@@ -367,6 +426,8 @@ int main(void) {
       cmocka_unit_test(the_rainbow_falls_on_the_screen),
       cmocka_unit_test(the_glass_stands_on_textured_wood),
       cmocka_unit_test(options_choose_another_table),
+      cmocka_unit_test(values_are_set_by_their_path),
+      cmocka_unit_test(a_stone_takes_anothers_place),
       cmocka_unit_test(bad_scenes_are_explained),
       cmocka_unit_test(the_documented_scene_loads),
       cmocka_unit_test(a_missing_file_is_named),
