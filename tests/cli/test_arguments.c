@@ -246,8 +246,8 @@ static void test_names_that_are_meant(void **state) {
   static const struct {
     const char *line, *part;
   } rows[] = {
-      {"render a.yaml --material sapphire --png a.png",
-       "there is no option '--material'; did you mean '--materials'?"},
+      {"render a.yaml --materialz sapphire --png a.png",
+       "there is no option '--materialz'; did you mean '--materials'?"},
       {"render a.yaml --wavelenghts 7 --png a.png",
        "there is no option '--wavelenghts'; did you mean '--wavelengths'?"},
       {"render a.yaml --sample=2 --png a.png", "did you mean '--samples'?"},
