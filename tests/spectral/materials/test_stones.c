@@ -10,7 +10,7 @@
 
 enum { CLEAR = -1 };
 
-/* n_D and density: [Schumann2009], or the source of the record's formula. Hue: CIELAB's angle under
+/* n_D and density: [GemTables], or the source of the record's formula. Hue: CIELAB's angle under
  * D65, in degrees, of the word that people have for the stone's colour, from the unique hues (red
  * 25, yellow 90, green 165, blue 240) and what lies between. */
 static const struct {
