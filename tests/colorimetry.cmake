@@ -3,6 +3,7 @@ foreach(name axis chart colour_map difference display_ocio exr illuminant image 
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 target_link_libraries(test_rgb_encoding PRIVATE PkgConfig::LCMS)
+abbe_test(animated_png cpu abbe_colorimetry abbe_spectral abbe_base PNG::PNG) # which brings zlib
 abbe_test(stones cpu abbe_colorimetry abbe_spectral abbe_base)
 abbe_test(colour_commands cpu abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 target_compile_definitions(test_colour_commands PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")

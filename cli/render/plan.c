@@ -82,9 +82,8 @@ int abbe_command_plan(int argc, char **argv) {
   abbe_error error = {0};
   abbe_scene scene = {0};
   abbe_plan plan = {0};
-  abbe_result result =
-      abbe_scene_input_load_with(argv[0], o.render.scene, o.render.materials,
-                                    &o.render.changes, &scene, &error);
+  abbe_result result = abbe_scene_input_load_with(argv[0], o.render.scene, o.render.materials,
+                                                  &o.render.changes, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded) result = abbe_plan_make(&scene, &o.render.desc, &plan, &error);
   if (loaded) abbe_scene_input_note(&scene);

@@ -4,6 +4,7 @@
 #include "cli/base/scene_input.h"
 #include "cli/render/render_request.h"
 #include "cli/render/traced_picture.h"
+#include "cli/render/turntable.h"
 
 #include "colorimetry/image/exr.h"
 #include "gl/accuracy/frame_times.h"
@@ -64,6 +65,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[1] = &q->map;
     state->child_inputs[2] = &q->preset;
     state->child_inputs[3] = &q->errors;
+    state->child_inputs[4] = &q->turntable;
     return 0;
   case 'o':
     q->exr = abbe_command_target(state->name, "-o", text, ".exr");
@@ -123,6 +125,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
     if (q->bands > 0 && q->map.save == NULL)
       argp_error(state, "--bands are those of a map: give --save-map FILE.exr too");
+    if (q->turntable.frames > 0 && (q->map.save != NULL || q->frames > 0 || q->errors.asked ||
+                                    (q->exr == NULL && q->png == NULL)))
+      argp_error(state, "--turntable writes frames by -o FILE.exr and --png FILE.png, and goes "
+                        "without --save-map, --frames and --error-bars");
     if (q->errors.mean && q->aovs)
       argp_error(state, "--mean has no --aovs: they are of one picture, not of the mean");
     return 0;
@@ -242,11 +248,29 @@ static abbe_result check_rendered(request *q, const abbe_scene *scene, abbe_rend
   return result;
 }
 
+/* The frame that the renderer holds, as files. */
+static abbe_result write_picture(request *q, const abbe_scene *scene, abbe_context *context,
+                                 abbe_renderer *renderer, abbe_error_bars *bars,
+                                 abbe_error *error) {
+  abbe_image image = {0};
+  abbe_result result = abbe_renderer_read(renderer, q->aovs, &image, error);
+  if (result == ABBE_OK) result = check_rendered(q, scene, renderer, &image, error);
+  if (result == ABBE_OK && !q->picture.traced_instead)
+    result = abbe_render_annotate(q, renderer, context, &image, error);
+  if (result == ABBE_OK)
+    result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, bars,
+                                     error);
+  if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
+  if (result == ABBE_OK && q->map.save != NULL) result = abbe_render_save_map(q, renderer, error);
+  if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
+  abbe_image_free(&image);
+  return result;
+}
+
 static abbe_result render(request *q, const abbe_scene *scene, abbe_context *context,
                           abbe_error *error) {
   abbe_renderer *renderer = NULL;
   abbe_statistics statistics;
-  abbe_image image = {0};
   abbe_error_bars bars = {0};
   preparation preparing = {.request = q};
   abbe_render_desc desc = q->render.desc;
@@ -271,19 +295,13 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
       result = abbe_error_set(error, ABBE_UNSUPPORTED,
                               "%s has no refractor, so there is no spectral map to save",
                               q->render.scene);
+    else if (q->turntable.frames > 0)
+      result = abbe_turntable_draw(q, scene, &desc, renderer, context, &statistics, error);
     else
       result = run_frames(q, renderer, &statistics, error);
   }
-  if (result == ABBE_OK) result = abbe_renderer_read(renderer, q->aovs, &image, error);
-  if (result == ABBE_OK) result = check_rendered(q, scene, renderer, &image, error);
-  if (result == ABBE_OK && !q->picture.traced_instead)
-    result = abbe_render_annotate(q, renderer, context, &image, error);
-  if (result == ABBE_OK)
-    result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, &bars,
-                                     error);
-  if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
-  if (result == ABBE_OK && q->map.save != NULL) result = abbe_render_save_map(q, renderer, error);
-  if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
+  if (result == ABBE_OK && q->turntable.frames == 0)
+    result = write_picture(q, scene, context, renderer, &bars, error);
   if (result == ABBE_OK) result = abbe_render_write_stats(q, &statistics, &bars, context, error);
   if (result == ABBE_OK) abbe_render_summarise(q, &statistics, prepared_s);
   if (result == ABBE_OK && !q->quiet && is_checked(q)) abbe_preset_options_note_traced(&q->picture);
@@ -294,7 +312,6 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
   if (result == ABBE_OK)
     result = abbe_picture_choice_check(&q->picture, abbe_render_process_ms(), error);
   abbe_error_bars_free(&bars);
-  abbe_image_free(&image);
   abbe_renderer_free(renderer);
   return result;
 }
@@ -309,6 +326,7 @@ static const char *renderers_own(const request *q) {
          : q->map.like != NULL                ? "--map-like"
          : q->frames > 0                      ? "--frames"
          : q->errors.asked                    ? "--error-bars"
+         : q->turntable.frames > 0            ? "--turntable"
          : d->wavelengths > 0                 ? "--wavelengths"
          : d->photons > 0                     ? "--photons"
          : d->map_size > 0                    ? "--map"
@@ -386,6 +404,7 @@ int abbe_command_render(int argc, char **argv) {
       {&abbe_map_options_argp, 0, "Spectral map:", 3},
       {&abbe_preset_options_argp, 0, "By error or by time:", 2},
       {&abbe_error_options_argp, 0, "How far off it is:", 4},
+      {&abbe_turntable_argp, 0, "From all around:", 5},
       {0}};
   static const struct argp argp = {
       options,
@@ -401,6 +420,7 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/gem.yaml --png gem.png --preset draft\n"
       "  abbe render scenes/gem.yaml --png gem.png --budget-ms 100 --json\n"
       "  abbe render scenes/gem.yaml -o gem.exr --error-bars --error-png gem-error.png\n"
+      "  abbe render scenes/stone.yaml --turntable 72 --png stone.png --size 256x256\n"
       "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
       children,
       NULL,
@@ -409,6 +429,7 @@ int abbe_command_render(int argc, char **argv) {
                .preset.program = argv[0],
                .preset.tool = -1,
                .errors.program = argv[0],
+               .turntable.program = argv[0],
                .bits = 8};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
@@ -420,7 +441,7 @@ int abbe_command_render(int argc, char **argv) {
   if (result == ABBE_OK) result = check_display(&q, &error);
   if (result == ABBE_OK)
     result = abbe_scene_input_load_with(argv[0], q.render.scene, q.render.materials,
-                                           &q.render.changes, &scene, &error);
+                                        &q.render.changes, &scene, &error);
   bool loaded = result == ABBE_OK;
   if (loaded && q.errors.asked) result = abbe_error_bars_check(q.render.desc.profile, NULL, &error);
   if (result == ABBE_OK)

@@ -10,6 +10,13 @@
 #include "colorimetry/image/display_ocio.h"
 #include "gl/device/context.h"
 
+/* --turntable; zeroed but for program. */
+typedef struct abbe_turntable_options {
+  const char *program;
+  size_t frames;     /* 0: one picture */
+  double per_second; /* 0: 25 */
+} abbe_turntable_options;
+
 typedef struct abbe_render_request {
   abbe_render_options render;
   abbe_map_options map;
@@ -20,6 +27,7 @@ typedef struct abbe_render_request {
   bool may_trace;              /* where the rendered picture does not keep its bound */
   const char *picture_note;    /* on how that was chosen, or NULL */
   abbe_error_options errors;
+  abbe_turntable_options turntable;
   const char *exr, *png, *stats;
   const char *of_png; /* an option that the PNG alone has */
   bool aovs, unfilled, quiet, json;

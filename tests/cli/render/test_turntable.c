@@ -1,0 +1,38 @@
+/* `abbe render --turntable`: frames from all around and the PNG that moves. */
+#include "tests/cli/run_program.h"
+
+#define GEM "\"$abbe\" render \"$house\"/scenes/gem.yaml --size 16x16 --photons 16 --map 64 -q "
+
+static void frames_and_what_moves(void **state) {
+  (void)state;
+  if (run_line(GEM "--turntable 4 --fps 10 --png t.png -o t.exr && ls t*") != 0)
+    fail_msg("%s", run_errors);
+  assert_string_equal(run_output, "t-0001.exr\nt-0001.png\nt-0002.exr\nt-0002.png\nt-0003.exr\n"
+                                  "t-0003.png\nt-0004.exr\nt-0004.png\nt.png\n");
+  assert_int_equal(run_line("grep -c acTL t.png"), 0);
+  /* The first is the scene's own view, and the others are not. */
+  assert_int_equal(run_line(GEM "-o one.exr && \"$abbe\" compare one.exr t-0001.exr --tolerance "
+                                "relative_rmse=1e-5"),
+                   0);
+  assert_int_not_equal(run_line("cmp t-0001.png t-0003.png"), 0);
+  assert_int_equal(run_line("rm t* one.exr"), 0);
+  assert_int_equal(run_left(), 0);
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  assert_true(run_refuses(GEM "--turntable 1 --png t.png", 2, "--turntable"));
+  assert_true(run_refuses(GEM "--fps 5 --png t.png", 2, "--fps goes with --turntable"));
+  assert_true(run_refuses(GEM "--turntable 4 --json", 2, "--turntable writes frames"));
+  assert_true(run_refuses(GEM "--turntable 4 --png t.png --error-bars", 2, "goes without"));
+  assert_true(run_refuses(GEM "--turntable 4 --png t.png --max-error 3 --tool trace", 2,
+                          "--turntable is for the renderer alone"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(frames_and_what_moves),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, run_setup, run_teardown);
+}

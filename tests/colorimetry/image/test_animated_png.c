@@ -1,0 +1,111 @@
+/* PNGs as one that moves: its chunks by the standard, its first frame for whoever knows no more. */
+#include "tests/check.h"
+
+#include "base/file.h"
+#include "colorimetry/image/animated_png.h"
+#include "colorimetry/image/png_file.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+static const char *const frames[] = {"animated_0.png", "animated_1.png", "animated_2.png"};
+#define MOVES "animated.png"
+
+static void write_frame(const char *path, size_t side, float grey) {
+  static const char *const names[] = {"R", "G", "B"};
+  abbe_image image;
+  assert_int_equal(abbe_image_make(side, side, 3, names, &image, NULL), ABBE_OK);
+  for (size_t i = 0; i < 3 * side * side; i++) image.data[i] = grey * (float)(i % 7) / 7;
+  assert_int_equal(abbe_png_write(path, &image, 8, NULL), ABBE_OK);
+  abbe_image_free(&image);
+}
+
+static uint32_t u32_at(const char *at) {
+  const unsigned char *b = (const unsigned char *)at;
+  return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+}
+
+/* Every chunk is whole, its sum right, and sequence numbers count up from 0. */
+static void chunks_are_by_the_standard(void **state) {
+  (void)state;
+  char *data;
+  size_t size;
+  uint32_t sequence = 0, controls = 0, others = 0, first = 0;
+  abbe_error error = {0};
+  for (int i = 0; i < 3; i++) write_frame(frames[i], 16, 0.3f * (float)(i + 1));
+  if (abbe_animated_png_write(MOVES, frames, 3, 25, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(abbe_file_read(MOVES, 1 << 20, &data, &size, NULL), ABBE_OK);
+  assert_memory_equal(data + 12, "IHDR", 4);
+  assert_memory_equal(data + 8 + 25 + 4, "acTL", 4);
+  assert_int_equal(u32_at(data + 8 + 25 + 8), 3);
+  for (size_t at = 8; at < size;) {
+    const uint32_t length = u32_at(data + at);
+    const char *type = data + at + 4;
+    assert_true(length <= size - at - 12);
+    assert_int_equal(crc32(0, (const unsigned char *)type, length + 4), u32_at(type + 4 + length));
+    if (memcmp(type, "fcTL", 4) == 0 || memcmp(type, "fdAT", 4) == 0)
+      assert_int_equal(u32_at(type + 4), sequence++);
+    controls += memcmp(type, "fcTL", 4) == 0;
+    others += memcmp(type, "fdAT", 4) == 0;
+    first += memcmp(type, "IDAT", 4) == 0;
+    if (memcmp(type, "fcTL", 4) == 0) {
+      assert_int_equal(u32_at(type + 8), 16);
+      assert_int_equal(type[4 + 20] * 256 + type[4 + 21], 40); /* thousandths */
+    }
+    at += length + 12;
+  }
+  assert_memory_equal(data + size - 8, "IEND", 4);
+  assert_int_equal(controls, 3);
+  assert_int_equal(others, 2);
+  assert_int_equal(first, 1);
+  free(data);
+}
+
+static void the_first_frame_is_what_others_see(void **state) {
+  (void)state;
+  abbe_image a, b;
+  assert_int_equal(abbe_png_read(MOVES, &a, NULL), ABBE_OK);
+  assert_int_equal(abbe_png_read(frames[0], &b, NULL), ABBE_OK);
+  assert_int_equal(a.width, 16);
+  assert_memory_equal(a.data, b.data, 3 * 16 * 16 * sizeof(float));
+  abbe_image_free(&a);
+  abbe_image_free(&b);
+}
+
+static void what_is_refused(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  assert_int_equal(abbe_animated_png_write("none.png", frames, 0, 25, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_animated_png_write("none.png", frames, 2, NAN, &error),
+                   ABBE_INVALID_ARGUMENT);
+  write_frame(frames[1], 8, 0.5f);
+  assert_int_equal(abbe_animated_png_write("none.png", frames, 3, 25, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "another kind");
+  assert_int_equal(abbe_file_write(frames[1], "\x89PNG, they say", 15, NULL), ABBE_OK);
+  assert_int_equal(abbe_animated_png_write("none.png", frames, 3, 25, &error), ABBE_PARSE);
+  char *data;
+  size_t size;
+  assert_int_equal(abbe_file_read(frames[0], 1 << 20, &data, &size, NULL), ABBE_OK);
+  for (size_t cut = 0; cut < size; cut += 7) {
+    assert_int_equal(abbe_file_write(frames[1], data, cut, NULL), ABBE_OK);
+    assert_int_equal(abbe_animated_png_write("none.png", frames, 2, 25, &error), ABBE_PARSE);
+  }
+  free(data);
+  assert_int_not_equal(access("none.png", F_OK), 0);
+  for (int i = 0; i < 3; i++) unlink(frames[i]);
+  unlink(MOVES);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(chunks_are_by_the_standard),
+      cmocka_unit_test(the_first_frame_is_what_others_see),
+      cmocka_unit_test(what_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
