@@ -14,6 +14,7 @@ enum { OPTION_PHOTONS = 0x100, OPTION_SAMPLES, OPTION_MATERIALS, OPTION_JSON };
 
 typedef struct request {
   const char *program, *scene, *output, *materials;
+  abbe_scene_input_changes changes;
   abbe_pov_options pov;
   bool json, quiet;
 } request;
@@ -24,6 +25,7 @@ static const struct argp_option options[] = {
     {"samples", OPTION_SAMPLES, "N", 0, "of POV-Ray's spectrum, 2 to 100 (31)", 0},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 0},
+    ABBE_SCENE_INPUT_OPTIONS(0),
     {"json", OPTION_JSON, NULL, 0, "what became of each material, on standard output", 0},
     {"quiet", 'q', NULL, 0, "no summary", 0},
     {0}};
@@ -58,7 +60,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (q->output == NULL) argp_error(state, "where to? Give -o FILE.pov");
     return 0;
   default:
-    return ARGP_ERR_UNKNOWN;
+    return abbe_scene_input_take(&q->changes, key, text, q->program);
   }
 }
 
@@ -119,7 +121,8 @@ int abbe_command_export(int argc, char **argv) {
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};
-  abbe_result result = abbe_scene_input_load(argv[0], q.scene, q.materials, &scene, &error);
+  abbe_result result =
+      abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK) result = abbe_pov_file_write(q.output, &scene, &q.pov, &error);
   if (result == ABBE_OK && (q.json || !q.quiet)) result = report(&q, &scene, &error);
   abbe_scene_free(&scene);

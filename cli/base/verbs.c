@@ -11,7 +11,7 @@ enum { MOST = 64 };
 static void help(const abbe_verbs *v, FILE *out, const char *program) {
   fprintf(out, "usage: %s VERB [OPTION…] [NAME…]\n\n", program);
   for (size_t i = 0; i < v->count; i++)
-    fprintf(out, "  %-8s %s\n", v->verb[i].name, v->verb[i].summary);
+    fprintf(out, "  %-9s %s\n", v->verb[i].name, v->verb[i].summary);
   fprintf(out, "\nExamples:\n");
   for (size_t i = 0; i < v->examples; i++) fprintf(out, "  %s %s\n", program, v->example[i]);
   fprintf(out, "\n'%s VERB --help' shows a verb's options, with examples; %s\n", program, v->page);

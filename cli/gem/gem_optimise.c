@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #define PI 3.14159265358979323846
 
@@ -289,10 +290,22 @@ static abbe_result find_angles(request *q, abbe_error *error) {
   return ABBE_OK;
 }
 
+/* Before the search, not after it. */
+static abbe_result check_plot(const char *path, abbe_error *error) {
+  const char *dot = path != NULL ? strrchr(path, '.') : NULL;
+  if (path == NULL ||
+      (dot != NULL && (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".svg") == 0)))
+    return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s: a plot wants a name that ends with .png or .svg", path);
+}
+
 static abbe_result run(request *q, abbe_error *error) {
   const abbe_gem_stone_input *s = &q->stone;
   abbe_gem_optimum optimum = {0};
-  abbe_result result = abbe_command_check_targets((const char *[]){q->out, q->plot}, 2, error);
+  abbe_result result = check_plot(q->plot, error);
+  if (result == ABBE_OK)
+    result = abbe_command_check_targets((const char *[]){q->out, q->plot}, 2, error);
   if (result == ABBE_OK) result = abbe_gem_stone_input_load(&q->stone, error);
   if (result == ABBE_OK) result = find_angles(q, error);
   if (result == ABBE_OK) {

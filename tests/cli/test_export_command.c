@@ -52,6 +52,7 @@ static void test_wrong_use_ends_with_2(void **state) {
       {"\"$abbe\" export \"$house\"/tests/bad/scene_no_light.yaml -o x.pov", 1, "has no light"},
       {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o missing/x.pov", 1, "missing/x.pov"},
       {"\"$abbe\" export missing.yaml -o x.pov", 1, "missing.yaml"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pov --set camera.fob=3", 1, "fob"},
   };
   int wrong = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)

@@ -1,6 +1,7 @@
 #include "colorimetry/plot/sheet.h"
 
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include <stdlib.h>
 #include <unistd.h>
