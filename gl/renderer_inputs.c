@@ -168,6 +168,7 @@ static uint64_t mix_beams(uint64_t h, const abbe_scene *scene, const abbe_plan *
     const abbe_light *light = &scene->light[view->light];
     MIX(h, light->direction);
     MIX(h, light->radius);
+    MIX(h, light->edge);
     MIX(h, light->cone_rad);
     MIX(h, light->soft_rad);
     MIX(h, view->face);

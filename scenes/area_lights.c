@@ -9,7 +9,7 @@
 static const double PI = 3.14159265358979323846;
 
 static bool has_size(const abbe_light *light) {
-  return light->kind == ABBE_LIGHT_DISK && light->points == 0;
+  return abbe_light_has_size(light) && light->points == 0;
 }
 
 bool abbe_area_lights_any(const abbe_scene *scene) {
@@ -27,17 +27,55 @@ static void across(const double n[3], double s[3], double t[3]) {
 }
 
 /* Rings of equal area, a point each, the golden angle apart [Vogel1979]. */
-static void put_point(const abbe_light *disk, size_t index, size_t points, abbe_light *out) {
+static void ring_place(const abbe_light *disk, size_t index, size_t points, double out[3]) {
   const double golden = PI * (3 - sqrt(5));
   const double share = ((double)index + 0.5) / (double)points;
   const double r = points > 1 ? disk->radius * sqrt(share) : 0, angle = golden * (double)index;
   double s[3], t[3];
   across(disk->direction, s, t);
-  *out = *disk;
-  memcpy(out->centre, disk->position, sizeof out->centre);
-  for (int k = 0; k < 3; k++) out->position[k] += r * (cos(angle) * s[k] + sin(angle) * t[k]);
-  out->power = disk->power * PI * disk->radius * disk->radius / (double)points;
-  out->points = points;
+  for (int k = 0; k < 3; k++) out[k] = r * (cos(angle) * s[k] + sin(angle) * t[k]);
+}
+
+/* How many along the width; as many parts of the height as are left. Parts are as square as so few
+ * can be. */
+static size_t columns_of(const abbe_light *rectangle, size_t points) {
+  const double wide = abbe_vector_length(rectangle->edge[0]),
+               high = abbe_vector_length(rectangle->edge[1]);
+  const double columns = round(sqrt((double)points * wide / high));
+  return columns < 1 ? 1 : columns > (double)points ? points : (size_t)columns;
+}
+
+/* Of at most so many, those that make even rows. */
+static size_t points_of(const abbe_light *light, size_t points) {
+  if (light->kind != ABBE_LIGHT_RECTANGLE) return points;
+  const size_t columns = columns_of(light, points);
+  return columns * (points / columns);
+}
+
+static void part_place(const abbe_light *rectangle, size_t index, size_t points, size_t columns,
+                       double out[3]) {
+  const size_t rows = points / columns;
+  const double x = (2 * (double)(index % columns) + 1) / (double)columns - 1;
+  const double y = (2 * (double)(index / columns) + 1) / (double)rows - 1;
+  for (int k = 0; k < 3; k++) out[k] = x * rectangle->edge[0][k] + y * rectangle->edge[1][k];
+}
+
+static size_t put_points(const abbe_light *light, size_t most, abbe_light *out) {
+  const size_t points = points_of(light, most);
+  const size_t columns = light->kind == ABBE_LIGHT_RECTANGLE ? columns_of(light, most) : 0;
+  for (size_t i = 0; i < points; i++) {
+    double off[3];
+    if (light->kind == ABBE_LIGHT_RECTANGLE)
+      part_place(light, i, points, columns, off);
+    else
+      ring_place(light, i, points, off);
+    out[i] = *light;
+    memcpy(out[i].centre, light->position, sizeof out->centre);
+    for (int k = 0; k < 3; k++) out[i].position[k] += off[k];
+    out[i].power = light->power * abbe_light_area(light) / (double)points;
+    out[i].points = points;
+  }
+  return points;
 }
 
 abbe_result abbe_area_lights_add(const abbe_scene *scene, size_t points, size_t room,
@@ -61,7 +99,7 @@ abbe_result abbe_area_lights_add(const abbe_scene *scene, size_t points, size_t 
     if (!has_size(light))
       out->light[count++] = *light;
     else
-      for (size_t k = 0; k < points; k++) put_point(light, k, points, &out->light[count++]);
+      count += put_points(light, points, &out->light[count]);
   }
   out->light_count = count;
   return ABBE_OK;

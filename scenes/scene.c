@@ -139,9 +139,18 @@ abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, siz
       scene->path ? scene->path : "scene", found > 1 ? "more than one" : "no", text, names);
 }
 
+bool abbe_light_has_size(const abbe_light *light) {
+  return light->kind == ABBE_LIGHT_DISK || light->kind == ABBE_LIGHT_RECTANGLE;
+}
+
+double abbe_light_area(const abbe_light *light) {
+  if (light->kind == ABBE_LIGHT_DISK) return 3.14159265358979323846 * light->radius * light->radius;
+  if (light->kind != ABBE_LIGHT_RECTANGLE) return 0;
+  return 4 * abbe_vector_length(light->edge[0]) * abbe_vector_length(light->edge[1]);
+}
+
 double abbe_light_profile(const abbe_light *light, const double direction[3]) {
-  if (light->kind == ABBE_LIGHT_DISK)
-    return fmax(abbe_vector_dot(light->direction, direction), 0.0);
+  if (abbe_light_has_size(light)) return fmax(abbe_vector_dot(light->direction, direction), 0.0);
   if (light->kind != ABBE_LIGHT_SPOT) return 1.0;
   const double cosine = abbe_vector_dot(light->direction, direction);
   const double outer = cos(light->cone_rad);

@@ -39,19 +39,21 @@ typedef enum abbe_light_kind {
   ABBE_LIGHT_POINT,       /* intensity, W/sr, all directions */
   ABBE_LIGHT_SPOT,        /* intensity, W/sr, inside a cone */
   ABBE_LIGHT_DIRECTIONAL, /* irradiance, W/m2, across the beam */
-  ABBE_LIGHT_DISK         /* radiance, W/(m2 sr), the same in all directions of its front side */
+  ABBE_LIGHT_DISK,        /* radiance, W/(m2 sr), the same in all directions of its front side */
+  ABBE_LIGHT_RECTANGLE    /* the same */
 } abbe_light_kind;
 
 typedef struct abbe_light {
   char *name;
   abbe_light_kind kind;
-  double position[3];  /* point, spot; the centre of a disk */
-  double direction[3]; /* spot, directional: unit, the way the light travels; disk: unit, the normal
-                          of the side that shines */
-  double radius;       /* disk, m */
-  size_t points;       /* disk: of so many that stand for it (area_lights.h), with power in W/sr; 0
-                          where it is whole, as in a scene as it is loaded */
-  double centre[3];    /* of the disk that the points stand for */
+  double position[3];  /* point, spot; the centre of a disk or rectangle */
+  double direction[3]; /* spot, directional: unit, the way the light travels; disk, rectangle: unit,
+                          the normal of the side that shines */
+  double radius;       /* disk, m; rectangle: of the circle around it */
+  double edge[2][3];   /* rectangle: half of its width and of its height, m */
+  size_t points;       /* disk, rectangle: of so many that stand for it (area_lights.h), with power
+                          in W/sr; 0 where it is whole, as in a scene as it is loaded */
+  double centre[3];    /* of the light that the points stand for */
   double cone_rad;     /* spot: half angle beyond which there is no light */
   double soft_rad; /* spot: full intensity inside cone - soft; smoothstep in the cosine between */
   double power;    /* W/sr, W/m2 or W/(m2 sr) over the rendered wavelength range, shared out over
@@ -176,8 +178,13 @@ double abbe_object_thickness(const abbe_object *object);
 abbe_result abbe_scene_find_light(const abbe_scene *scene, const char *text, size_t *index,
                                   abbe_error *error);
 
-/* Relative intensity of the light along the unit direction away from it, in [0, 1]; of a disk, seen
- * from afar: the cosine to its normal, 0 behind. A disk's flux is pi^2 radius^2 radiance. */
+/* Whether it is a disk or a rectangle, whose area is in m2 (0 of the others); its flux is pi times
+ * area times radiance. */
+bool abbe_light_has_size(const abbe_light *light);
+double abbe_light_area(const abbe_light *light);
+
+/* Relative intensity of the light along the unit direction away from it, in [0, 1]; of a disk or a
+ * rectangle, seen from afar: the cosine to its normal, 0 behind. */
 double abbe_light_profile(const abbe_light *light, const double direction[3]);
 
 #ifdef __cplusplus

@@ -198,7 +198,7 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
     if (light->kind == ABBE_LIGHT_DIRECTIONAL) continue;
-    const bool disk = light->kind == ABBE_LIGHT_DISK;
+    const bool disk = abbe_light_has_size(light); /* or the one around it */
     const abbe_object *on = surface_at(scene, light->position, gap);
     const abbe_object *around = on ? NULL : refractor_around(scene, light->position);
     if (around) compare_sizes(scene, around, sizes, sizeof sizes);
@@ -210,7 +210,7 @@ static abbe_result check_places(const abbe_scene *scene, abbe_error *error) {
     around = disk && !on ? refractor_in(scene, light) : NULL;
     if (around)
       return abbe_error_set(error, ABBE_UNSUPPORTED,
-                            "%s: the disk of the light '%s' is partly inside the refractor '%s' "
+                            "%s: the area of the light '%s' is partly inside the refractor '%s' "
                             "(line %zu); lights are modelled in air only, so move it or make it "
                             "smaller",
                             path_of(scene), light->name, around->name, around->line);

@@ -34,14 +34,14 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
 static void list_sizes(const abbe_scene *scene, abbe_plan *plan) {
   const abbe_light *disk = NULL;
   for (size_t i = 0; i < scene->light_count && disk == NULL; i++)
-    if (scene->light[i].kind == ABBE_LIGHT_DISK) disk = &scene->light[i];
+    if (abbe_light_has_size(&scene->light[i])) disk = &scene->light[i];
   if (disk == NULL)
     abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE, "none");
   else
     abbe_plan_add(plan, ABBE_CHOICE_LIGHT_SIZE,
-                  "a disk, '%.40s' first: %zu points stand for each, with as many sharp shadows; the "
+                  "a %s, '%.40s' first: %zu points stand for each, with as many sharp shadows; the "
                   "camera sees it in refractors alone",
-                  disk->name, disk->points);
+                  disk->kind == ABBE_LIGHT_DISK ? "disk" : "rectangle", disk->name, disk->points);
 }
 
 static void list_environment(const abbe_scene *scene, abbe_plan *plan) {

@@ -47,7 +47,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
                              abbe_error *error) {
   out->surrounded = scene->environment != NULL;
   for (size_t i = 0; i < scene->light_count; i++)
-    out->sized_lights = out->sized_lights || scene->light[i].kind == ABBE_LIGHT_DISK;
+    out->sized_lights = out->sized_lights || abbe_light_has_size(&scene->light[i]);
   abbe_result result = abbe_support_mirrors(scene, out, error);
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);

@@ -10,14 +10,15 @@ abbe_result abbe_support_thesis(const abbe_scene *scene, const abbe_plan *plan, 
                           "the thesis profile knows no environment; this scene has one");
   for (size_t i = 0; i < scene->light_count; i++) {
     const abbe_light *light = &scene->light[i];
-    if (light->kind != ABBE_LIGHT_DISK) continue;
-    const double area = 3.14159265358979323846 * light->radius * light->radius;
+    if (!abbe_light_has_size(light)) continue;
+    const double area = abbe_light_area(light);
     return abbe_error_set(
         error, ABBE_UNSUPPORTED,
-        "the light '%s' is a disk, and the thesis profile's lights have no size; take the default "
+        "the light '%s' is a %s, and the thesis profile's lights have no size; take the default "
         "profile, trace the scene, or make it a point or spot light of %.6g W/sr, which is what it "
         "sends along its normal",
-        light->name, light->points > 0 ? light->power * (double)light->points : light->power * area);
+        light->name, light->kind == ABBE_LIGHT_DISK ? "disk" : "rectangle",
+        light->points > 0 ? light->power * (double)light->points : light->power * area);
   }
   if (scene->light_count != 1)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -71,7 +72,6 @@ abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, 
                           scene->light[index].name);
   return abbe_map_layout_check(layout, error);
 }
-
 
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan,
                                  abbe_error *error) {

@@ -310,6 +310,6 @@ void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program) {
                 (float)scene->refractor_centre[0], (float)scene->refractor_centre[1],
                 (float)scene->refractor_centre[2], (float)scene->refractor_radius);
   abbe_gpu_set_float(scene->gpu, program, "scene_size", scene->size);
-  abbe_gpu_disks_set(scene, program);
+  abbe_gpu_area_lights_set(scene, program);
   abbe_gpu_environment_set(scene->gpu, scene->local, &scene->environment, scene->unit, program);
 }

@@ -80,9 +80,9 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene);
 /* The scene's uniforms and textures, into the program that is in use. */
 void abbe_gpu_scene_set(const abbe_gpu_scene *scene, GLuint program);
 
-/* gpu_disks.c: lights with a size, as the camera's paths see them. */
-size_t abbe_gpu_disks_count(const abbe_gpu_scene *scene);
-void abbe_gpu_disks_set(const abbe_gpu_scene *scene, GLuint program);
+/* gpu_area_lights.c: disks and rectangles, as the camera's paths see them. */
+size_t abbe_gpu_area_lights_count(const abbe_gpu_scene *scene);
+void abbe_gpu_area_lights_set(const abbe_gpu_scene *scene, GLuint program);
 
 /* gpu_meshes.c */
 void abbe_gpu_meshes_draw(const abbe_gpu_scene *scene, size_t object);

@@ -7,7 +7,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
   const abbe_plan *p = scene->plan;
   *out = (abbe_shader_variant){
       .lights = p->light_view_count,
-      .disks = abbe_gpu_disks_count(scene),
+      .area_lights = abbe_gpu_area_lights_count(scene),
       .refractors = p->refractor_count,
       .receivers = p->parallelogram_count,
       .surfaces = p->receiver_count,
@@ -116,7 +116,7 @@ static void print_facts(FILE *to, const abbe_shader_variant *v) {
   print_flag(to, "ABSORBING", v->absorbing);
   print_flag(to, "TEXTURED", v->textured);
   print_flag(to, "ENVIRONMENT", v->environment);
-  if (v->disks > 0) print_count(to, "DISKS", v->disks);
+  if (v->area_lights > 0) print_count(to, "AREA_LIGHTS", v->area_lights);
   if (v->environment) {
     print_count(to, "SOFT_ROWS", ABBE_IRRADIANCE_MAP_ROWS);
     print_count(to, "SOFT_COLUMNS", ABBE_IRRADIANCE_MAP_COLUMNS);

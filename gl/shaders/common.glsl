@@ -8,7 +8,7 @@ const float PI = 3.14159265358979;
 struct Light {
   View near_view;  // tight around the refractors: photon grid, front and back layers
   View map_view;   // around what the photons reach: spectral map
-  vec4 position;   // w: 0 point, 1 spot, 2 directional, 3 a point of a disk
+  vec4 position;   // w: 0 point, 1 spot, 2 directional, 3 or 4 a point of a disk or rectangle
   vec4 direction;  // w: cosine of the cone's half angle
   vec4 white;      // rgb of unit power; w: power, W/sr or W/m2
   vec4 misc;       // cosine where the soft edge starts; flux of one map unit, of unit power; photons by window area;
@@ -93,7 +93,7 @@ float light_profile(Light l, vec3 direction) {
 #endif
   int kind = int(l.position.w);
   float c = dot(direction, l.direction.xyz);
-  if (kind == 3) return max(c, 0.0);
+  if (kind >= 3) return max(c, 0.0);
   if (kind != 1) return 1.0;
   float outer = l.direction.w, inner = l.misc.x;
   if (inner <= outer) return c >= outer ? 1.0 : 0.0;

@@ -145,7 +145,7 @@ static void write_light(const writing *w, const abbe_light *light) {
   const bool parallel = light->kind == ABBE_LIGHT_DIRECTIONAL;
   comment(w, "light", light->name);
   light_colour(light, rgb);
-  if (light->kind == ABBE_LIGHT_DISK) power *= PI * light->radius * light->radius;
+  if (abbe_light_has_size(light)) power *= abbe_light_area(light);
   memcpy(at, light->position, sizeof at);
   if (parallel) {
     double min[3], max[3], size = 0;
@@ -163,6 +163,12 @@ static void write_light(const writing *w, const abbe_light *light) {
     abbe_number_write(w->file, "  spotlight tightness 0 radius %.12g falloff %.12g\n",
                       fmax(light->cone_rad - light->soft_rad, 0) * DEGREES,
                       light->cone_rad * DEGREES);
+  if (light->kind == ABBE_LIGHT_RECTANGLE) {
+    fprintf(w->file, "  // 9 x 9 points stand for the rectangle\n"
+                     "  spotlight tightness 1 radius 90 falloff 90\n");
+    vector(w, "  area_light ", light->edge[0], 2 * w->scale, ", ");
+    vector(w, "", light->edge[1], 2 * w->scale, ", 9, 9\n");
+  }
   if (light->kind == ABBE_LIGHT_DISK) {
     double u[3], v[3];
     const int axis = fabs(light->direction[0]) < 0.6 ? 0 : 1;
@@ -183,7 +189,7 @@ static void write_light(const writing *w, const abbe_light *light) {
                       w->scale * fade_length(w->scene, light));
   if (w->photons)
     fprintf(w->file, "  photons { refraction on reflection on%s }\n",
-            light->kind == ABBE_LIGHT_DISK ? " area_light" : "");
+            abbe_light_has_size(light) ? " area_light" : "");
   fprintf(w->file, "}\n");
 }
 

@@ -28,7 +28,8 @@ static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera
   if (result == ABBE_OK) result = abbe_scene_value_point(yaml, node, "eye", out->eye, error);
   if (result == ABBE_OK) result = abbe_scene_value_point(yaml, node, "target", out->target, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error);
+    result =
+        abbe_yaml_get_numbers(yaml, node, "up", 3, -ABBE_SCENE_FAR, ABBE_SCENE_FAR, out->up, error);
   if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "fov", 0.1, 170, &fov, error);
   if (result == ABBE_OK)
     result = abbe_yaml_get_numbers(yaml, node, "size", 2, 1, ABBE_IMAGE_MAX_SIDE, size, error);
@@ -52,7 +53,8 @@ static abbe_result read_camera(abbe_yaml *yaml, abbe_yaml_node root, abbe_camera
 
 /* --- lights --- */
 
-static const char *const light_kinds[] = {"point", "spot", "directional", "disk", NULL};
+static const char *const light_kinds[] = {"point", "spot",      "directional",
+                                          "disk",  "rectangle", NULL};
 
 /* The key belongs to other kinds of light. */
 static abbe_result refuse_key(abbe_yaml *yaml, abbe_yaml_node node, const char *key, int kind,
@@ -113,6 +115,48 @@ static abbe_result read_radius(abbe_yaml *yaml, abbe_yaml_node node, abbe_light 
   return result;
 }
 
+static abbe_result read_side(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out,
+                             abbe_error *error) {
+  abbe_yaml_node value;
+  abbe_result result = abbe_yaml_require(yaml, node, key, &value, error);
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_number(yaml, node, key, 0, ABBE_SCENE_FAR, out, error);
+  if (result == ABBE_OK && !(*out > 0.0))
+    result = abbe_yaml_fail(yaml, value, error, "'%s' is zero; a rectangle has an area", key);
+  return result;
+}
+
+/* The height grows along z, or along y where the light looks along z; roll turns it about the
+ * normal. */
+static abbe_result read_rectangle(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
+                                  abbe_error *error) {
+  const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0}, upright = 1e-6;
+  double width = 0, height = 0, roll = 0, across[3], up[3];
+  abbe_result result = read_side(yaml, node, "width", &width, error);
+  if (result == ABBE_OK) result = read_side(yaml, node, "height", &height, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_number(yaml, node, "roll", -360, 360, &roll, error);
+  if (result != ABBE_OK) return result;
+  const double *n = out->direction;
+  abbe_vector_cross(hypot(n[0], n[1]) < upright ? y : z, n, across);
+  abbe_vector_normalise(across);
+  abbe_vector_cross(n, across, up);
+  const double c = cos(roll * RADIANS), s = sin(roll * RADIANS);
+  for (int k = 0; k < 3; k++) {
+    out->edge[0][k] = 0.5 * width * (c * across[k] + s * up[k]);
+    out->edge[1][k] = 0.5 * height * (c * up[k] - s * across[k]);
+  }
+  out->radius = 0.5 * hypot(width, height);
+  return ABBE_OK;
+}
+
+static abbe_result refuse_sides(abbe_yaml *yaml, abbe_yaml_node node, int kind, abbe_error *error) {
+  static const char *const keys[] = {"width", "height", "roll"};
+  abbe_result result = ABBE_OK;
+  for (int i = 0; i < 3 && result == ABBE_OK; i++)
+    result = refuse_key(yaml, node, keys[i], kind, "a rectangle light has", error);
+  return result;
+}
+
 static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                                        abbe_error *error) {
   abbe_result result = ABBE_OK;
@@ -129,6 +173,10 @@ static abbe_result read_shape_of_light(abbe_yaml *yaml, abbe_yaml_node node, abb
     result = read_radius(yaml, node, out, error);
   else if (result == ABBE_OK)
     result = refuse_key(yaml, node, "radius", (int)out->kind, "a disk light has", error);
+  if (result == ABBE_OK && out->kind == ABBE_LIGHT_RECTANGLE)
+    result = read_rectangle(yaml, node, out, error);
+  else if (result == ABBE_OK)
+    result = refuse_sides(yaml, node, (int)out->kind, error);
   if (result == ABBE_OK && out->kind == ABBE_LIGHT_SPOT) return read_cone(yaml, node, out, error);
   if (result == ABBE_OK)
     result = refuse_key(yaml, node, "cone", (int)out->kind, "a spot light has", error);
@@ -143,7 +191,8 @@ static const struct {
 } powers[] = {[ABBE_LIGHT_POINT] = {"intensity", "it has an 'intensity' (W/sr)"},
               [ABBE_LIGHT_SPOT] = {"intensity", "it has an 'intensity' (W/sr)"},
               [ABBE_LIGHT_DIRECTIONAL] = {"irradiance", "it has an 'irradiance' (W/m2)"},
-              [ABBE_LIGHT_DISK] = {"radiance", "it has a 'radiance' (W/(m2 sr))"}};
+              [ABBE_LIGHT_DISK] = {"radiance", "it has a 'radiance' (W/(m2 sr))"},
+              [ABBE_LIGHT_RECTANGLE] = {"radiance", "it has a 'radiance' (W/(m2 sr))"}};
 
 static abbe_result read_power(abbe_yaml *yaml, abbe_yaml_node node, abbe_light *out,
                               abbe_error *error) {
@@ -184,7 +233,8 @@ static abbe_result read_light(abbe_yaml *yaml, abbe_yaml_node node, const char *
   }
   if (result == ABBE_OK) result = read_shape_of_light(yaml, node, out, error);
   if (result == ABBE_OK) result = read_power(yaml, node, out, error);
-  if (result == ABBE_OK) result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
+  if (result == ABBE_OK)
+    result = abbe_scene_value_illuminant(yaml, node, folder, &out->illuminant,
                                          &out->illuminant_path, error);
   if (result == ABBE_OK) result = abbe_yaml_check_keys(yaml, node, "a light", error);
   return result;
@@ -306,9 +356,11 @@ static abbe_result read_scene(abbe_yaml *yaml, const char *folder,
     return abbe_yaml_fail(yaml, root, error, "a scene must be a mapping (key: value)");
   abbe_result result = abbe_yaml_get_string(yaml, root, "description", &out->description, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, root, "ambient", 0, ABBE_SCENE_BRIGHTEST, &out->ambient, error);
+    result =
+        abbe_yaml_get_number(yaml, root, "ambient", 0, ABBE_SCENE_BRIGHTEST, &out->ambient, error);
   if (result == ABBE_OK)
-    result = abbe_yaml_get_number(yaml, root, "background", 0, ABBE_SCENE_BRIGHTEST, &out->background, error);
+    result = abbe_yaml_get_number(yaml, root, "background", 0, ABBE_SCENE_BRIGHTEST,
+                                  &out->background, error);
   if (result == ABBE_OK) result = read_camera(yaml, root, &out->camera, error);
   if (result == ABBE_OK) result = read_lights(yaml, root, folder, out, error);
   /* all keys are known before the costly part begins */
@@ -340,9 +392,9 @@ static abbe_result read_document(abbe_yaml *yaml, const char *path,
                                  abbe_error *error) {
   char *folder = folder_of(path);
   out->path = strdup(path);
-  abbe_result result =
-      folder && out->path ? read_scene(yaml, folder, options, out, error)
-                          : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its path", path);
+  abbe_result result = folder && out->path ? read_scene(yaml, folder, options, out, error)
+                                           : abbe_error_set(error, ABBE_NO_MEMORY,
+                                                            "%s: no memory for its path", path);
   free(folder);
   abbe_yaml_free(yaml);
   if (result != ABBE_OK) abbe_scene_free(out);

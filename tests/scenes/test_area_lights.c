@@ -53,6 +53,35 @@ static void points_shine_as_the_disk(void **state) {
   }
 }
 
+/* A rectangle of 0.4 x 0.1: of 8 points six stand in a row and a half; those that make even rows
+ * do, in the middles of equal parts. */
+static void a_rectangle_is_a_grid(void **state) {
+  (void)state;
+  abbe_scene scene, lit;
+  load_text(CAMERA
+            "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.5], direction: [0, "
+            "0, -1], width: 0.4, height: 0.1, radiance: 3}\n" FLOOR,
+            &scene);
+  assert_near(abbe_light_area(&scene.light[0]), 0.04, 1e-12);
+  assert_int_equal(abbe_area_lights_add(&scene, 8, ABBE_SCENE_MAX_LIGHTS, &lit, NULL), ABBE_OK);
+  assert_int_equal(lit.light_count, 6); /* sqrt(8 x 4) is 6 columns */
+  double sum = 0;
+  for (size_t i = 0; i < lit.light_count; i++) {
+    sum += lit.light[i].power;
+    assert_near(fabs(lit.light[i].position[0]), 0.4 / 12 * (double)(i < 3 ? 5 - 2 * i : 2 * i - 5),
+                1e-12);
+    assert_near(lit.light[i].position[1], 0, 1e-12);
+    assert_int_equal(lit.light[i].points, 6);
+  }
+  assert_near(sum, 3 * 0.04, 1e-12);
+  free(lit.light);
+  assert_int_equal(abbe_area_lights_add(&scene, 16, ABBE_SCENE_MAX_LIGHTS, &lit, NULL), ABBE_OK);
+  assert_int_equal(lit.light_count, 16); /* 8 columns, 2 rows */
+  assert_near(fabs(lit.light[0].position[1]), 0.025, 1e-12);
+  free(lit.light);
+  abbe_scene_free(&scene);
+}
+
 static void others_stay_and_room_is_kept(void **state) {
   (void)state;
   abbe_scene scene, lit;
@@ -74,8 +103,8 @@ static void others_stay_and_room_is_kept(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(one_point_is_the_middle),
-                                     cmocka_unit_test(points_shine_as_the_disk),
-                                     cmocka_unit_test(others_stay_and_room_is_kept)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(one_point_is_the_middle), cmocka_unit_test(points_shine_as_the_disk),
+      cmocka_unit_test(a_rectangle_is_a_grid), cmocka_unit_test(others_stay_and_room_is_kept)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

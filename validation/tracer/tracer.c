@@ -153,6 +153,7 @@ static double usual_radiance(const abbe_tracer *t) {
     const abbe_light *light = &t->scene->light[l];
     double square = 1, power = light->power;
     if (light->kind == ABBE_LIGHT_DISK) power *= 3.14159 * light->radius * light->radius;
+    if (light->kind == ABBE_LIGHT_RECTANGLE) power *= abbe_light_area(light);
     if (light->kind != ABBE_LIGHT_DIRECTIONAL) {
       square = 0;
       for (int k = 0; k < 3; k++) square += pow(light->position[k] - t->geometry.origin[k], 2);

@@ -119,6 +119,30 @@ static bool add_triangles(abbe_geometry *g, const abbe_object *o, abbe_surface *
   return true;
 }
 
+static bool add_rectangle(abbe_geometry *g, const abbe_light *light, abbe_surface *s, unsigned id) {
+  static const float corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  s->normal = malloc(sizeof *s->normal);
+  RTCGeometry geometry = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_QUAD);
+  float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                     3 * sizeof *v, 4);
+  unsigned *f = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4,
+                                        4 * sizeof *f, 1);
+  const bool made = v != NULL && f != NULL && s->normal != NULL;
+  if (made) {
+    abbe_geometry_to_frame(g, light->position, s->centre);
+    for (int i = 0; i < 4; i++)
+      for (int k = 0; k < 3; k++)
+        v[3 * i + k] =
+            s->centre[k] +
+            (float)((corner[i][0] * light->edge[0][k] + corner[i][1] * light->edge[1][k]) /
+                    g->unit);
+    for (unsigned i = 0; i < 4; i++) f[i] = i;
+    for (int k = 0; k < 3; k++) s->normal[0][k] = (float)light->direction[k];
+  }
+  attach(g, geometry, id, s->kind);
+  return made;
+}
+
 static bool add_lamp(abbe_geometry *g, const abbe_light *light, abbe_surface *s, unsigned id) {
   s->normal = malloc(sizeof *s->normal);
   RTCGeometry geometry = rtcNewGeometry(g->device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
@@ -157,7 +181,7 @@ static abbe_result count_objects(const abbe_scene *scene, abbe_geometry *g, abbe
         scene->path ? scene->path : "the scene", g->refractor_count, ABBE_GEOMETRY_MAX_REFRACTORS);
   g->surface_count = scene->object_count;
   for (size_t i = 0; i < scene->light_count; i++)
-    g->surface_count += scene->light[i].kind == ABBE_LIGHT_DISK;
+    g->surface_count += abbe_light_has_size(&scene->light[i]);
   g->surface = calloc(g->surface_count + 1, sizeof *g->surface);
   g->refractor_object = calloc(g->refractor_count + 1, sizeof *g->refractor_object);
   g->mirror_object = calloc(g->mirror_count + 1, sizeof *g->mirror_object);
@@ -217,10 +241,12 @@ static bool add_objects(abbe_geometry *g) {
   }
   size_t id = g->scene->object_count;
   for (size_t i = 0; i < g->scene->light_count && added; i++) {
-    if (g->scene->light[i].kind != ABBE_LIGHT_DISK) continue;
+    const abbe_light *light = &g->scene->light[i];
+    if (!abbe_light_has_size(light)) continue;
     abbe_surface *s = &g->surface[id];
     *s = (abbe_surface){.kind = ABBE_GEOMETRY_LAMPS, .index = (uint32_t)i, .object = (uint32_t)i};
-    added = add_lamp(g, &g->scene->light[i], s, (unsigned)id++);
+    added = light->kind == ABBE_LIGHT_DISK ? add_lamp(g, light, s, (unsigned)id++)
+                                           : add_rectangle(g, light, s, (unsigned)id++);
   }
   return added;
 }

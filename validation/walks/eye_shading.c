@@ -122,6 +122,11 @@ static float irradiance(const abbe_eye_context *c, const abbe_light *light, cons
       abbe_geometry_across(d, a, b);
       for (int k = 0; k < 3; k++) from[k] += r * (cosf(angle) * a[k] + sinf(angle) * b[k]);
       power *= (float)(3.14159265358979 * light->radius * light->radius);
+    } else if (light->kind == ABBE_LIGHT_RECTANGLE) {
+      const float x = 2 * random[0] - 1, y = 2 * random[1] - 1, unit = (float)g->unit;
+      for (int k = 0; k < 3; k++)
+        from[k] += (x * (float)light->edge[0][k] + y * (float)light->edge[1][k]) / unit;
+      power *= (float)abbe_light_area(light);
     }
     for (int k = 0; k < 3; k++) d[k] = from[k] - hit->p[k];
     limit = sqrtf(abbe_eye_dot(d, d));

@@ -46,8 +46,13 @@ static float profile(const abbe_projection_map *a, const float d[3]) {
   return x * x * (3 - 2 * x);
 }
 
-/* A place on the disk of the light, from its middle. */
+/* A place on the disk or rectangle of the light, from its middle. */
 static void disk_place(const abbe_projection_map *a, const float disk[2], float out[3]) {
+  if (a->light->kind == ABBE_LIGHT_RECTANGLE) {
+    const float x = 2 * disk[0] - 1, y = 2 * disk[1] - 1;
+    for (int k = 0; k < 3; k++) out[k] = x * a->edge[0][k] + y * a->edge[1][k];
+    return;
+  }
   float r = a->radius * sqrtf(disk[0]), angle = 2 * (float)pi * disk[1], s[3], t[3];
   abbe_geometry_across(a->facing, s, t);
   for (int k = 0; k < 3; k++) out[k] = r * (cosf(angle) * s[k] + sinf(angle) * t[k]);
@@ -380,9 +385,11 @@ abbe_result abbe_projection_map_make(const abbe_geometry *geometry, size_t light
       .light = l, .parallel = l->kind == ABBE_LIGHT_DIRECTIONAL, .power = (float)l->power};
   *out = a;
   if (!a.parallel) abbe_geometry_to_frame(geometry, l->position, a.origin);
-  if (l->kind == ABBE_LIGHT_DISK) {
+  if (abbe_light_has_size(l)) {
     a.radius = (float)(l->radius / geometry->unit);
-    a.power = (float)(l->power * pi * l->radius * l->radius);
+    a.power = (float)(l->power * abbe_light_area(l));
+    for (int i = 0; i < 2; i++)
+      for (int k = 0; k < 3; k++) a.edge[i][k] = (float)(l->edge[i][k] / geometry->unit);
   }
   a.outer = (float)versine_of(l->cone_rad);
   a.inner = (float)versine_of(fmax(l->cone_rad - l->soft_rad, 0));

@@ -37,7 +37,8 @@ typedef struct abbe_projection_map {
   float low, step;                /* of both axes: plane = low + step * (cell + place in it) */
   float measure;                  /* of a cell: sr, or m2 */
   double reach;                   /* W that all cells hold, before anything is met */
-  float radius;                   /* frame: of a disk light */
+  float radius;                   /* frame: of a disk light, or around a rectangle */
+  float edge[2][3];               /* frame: half of a rectangle's sides */
   float facing[3], power;         /* the light's direction; W/sr, W/m2, or W/(m2 sr) times m2 */
   float outer, inner;             /* spot: 1 - cos of the cone, and of the part at full intensity */
   size_t count;                   /* cells kept; 0: no refractor, or the light misses them all */

@@ -48,10 +48,14 @@ static void every_shipped_scene_loads(void **state) {
     abbe_exact_kind exact;
     size_t count;
   } scenes[] = {
-      {"sphere", 5120, ABBE_EXACT_SPHERE, 0},   {"ring", 65536, ABBE_EXACT_NONE, 0},
-      {"gem", 24, ABBE_EXACT_CONVEX, 19},       {"bunny", 235136, ABBE_EXACT_NONE, 0},
-      {"glass", 12160, ABBE_EXACT_NONE, 0},     {"prism", 8, ABBE_EXACT_CONVEX, 5},
-      {"rainbow", 20480, ABBE_EXACT_SPHERE, 0}, {"diamond", 110, ABBE_EXACT_CONVEX, 73},
+      {"sphere", 5120, ABBE_EXACT_SPHERE, 0},
+      {"ring", 65536, ABBE_EXACT_NONE, 0},
+      {"gem", 24, ABBE_EXACT_CONVEX, 19},
+      {"bunny", 235136, ABBE_EXACT_NONE, 0},
+      {"glass", 12160, ABBE_EXACT_NONE, 0},
+      {"prism", 8, ABBE_EXACT_CONVEX, 5},
+      {"rainbow", 20480, ABBE_EXACT_SPHERE, 0},
+      {"diamond", 110, ABBE_EXACT_CONVEX, 73},
       {"diamond-studio", 110, ABBE_EXACT_CONVEX, 73},
   };
   for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
@@ -178,7 +182,8 @@ static void options_choose_another_table(void **state) {
   assert_non_null(strstr(error.text, "gem.yaml:"));
 }
 
-static abbe_result load_set(const char *stone, const char *set, abbe_scene *out, abbe_error *error) {
+static abbe_result load_set(const char *stone, const char *set, abbe_scene *out,
+                            abbe_error *error) {
   const abbe_scene_options options = {.stone = stone, .set = &set, .set_count = set != NULL};
   *error = (abbe_error){0};
   return abbe_scene_load(ABBE_SOURCE_DIR "/scenes/gem.yaml", &options, out, error);
@@ -293,6 +298,10 @@ static void bad_scenes_are_explained(void **state) {
       {"cut_of_a_mesh", ABBE_UNSUPPORTED, "is no design that is known by its name"},
       {"disk_without_radius", ABBE_SCHEMA, "'radius'"},
       {"disk_of_no_size", ABBE_SCHEMA, "'radius' is zero"},
+      {"rectangle_without_height", ABBE_SCHEMA, "'height'"},
+      {"rectangle_of_no_size", ABBE_SCHEMA, "'width' is zero"},
+      {"width_of_a_disk", ABBE_SCHEMA, "a rectangle light has"},
+      {"radius_of_a_rectangle", ABBE_SCHEMA, "a disk light has"},
       {"disk_without_direction", ABBE_SCHEMA, "'direction'"},
       {"intensity_of_a_disk", ABBE_SCHEMA, "'radiance' (W/(m2 sr))"},
       {"cone_of_a_disk", ABBE_SCHEMA, "a disk light has no 'cone'"},

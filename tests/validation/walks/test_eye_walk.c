@@ -1,5 +1,6 @@
 #include "tests/validation/trace_scene.h"
 
+#include "scenes/geometry/vector.h"
 #include "validation/tracer/tracer_state.h"
 
 static const double pi = 3.14159265358979;
@@ -147,6 +148,62 @@ static void a_disks_irradiance(void **state) {
   }
 }
 
+/* Lambert's formula for a polygon of radiance L: E = L / 2 times the sum over its edges of the
+ * angle that an edge subtends times the cosine between the receiver's normal and that of the edge's
+ * plane.
+ */
+static double polygon_irradiance(double (*corner)[3], size_t count, const double at[3]) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) {
+    double a[3], b[3], across[3];
+    abbe_vector_subtract(corner[i], at, a);
+    abbe_vector_subtract(corner[(i + 1) % count], at, b);
+    abbe_vector_normalise(a);
+    abbe_vector_normalise(b);
+    abbe_vector_cross(a, b, across);
+    const double angle = asin(fmin(abbe_vector_length(across), 1));
+    abbe_vector_normalise(across);
+    sum += angle * across[2];
+  }
+  return fabs(sum) / 2;
+}
+
+/* Off its axis, turned by 30 degrees and tilted: the edges are where width, height and roll put
+ * them. */
+static void a_rectangles_irradiance(void **state) {
+  (void)state;
+  const double c = cos(pi / 6), s = sin(pi / 6), at[] = {0.1, 0, 0};
+  for (int i = 0; i < 2; i++) {
+    const char *text =
+        i ? DOWN LIGHT("kind: rectangle, position: [0.3, 0.1, 0.3], direction: [-1, 0, -1], width: "
+                       "0.2, height: 0.3, radiance: 5") FLOOR
+          : DOWN LIGHT("kind: rectangle, position: [0.3, 0.1, 0.3], direction: [0, 0, -1], width: "
+                       "0.4, height: 0.1, roll: 30, radiance: 5") FLOOR;
+    /* z: the width along -x, as n is down and the height along y; turned from the one to the other.
+     * Tilted: the width along -y and the height along z x n. */
+    const double d = sqrt(0.5), wide[2][3] = {{-0.2 * c, 0.2 * s, 0}, {0, -0.1, 0}};
+    const double high[2][3] = {{0.05 * s, 0.05 * c, 0}, {-0.15 * d, 0, 0.15 * d}};
+    double corner[4][3], mean[3], error[3];
+    static const int sign[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    for (int k = 0; k < 4; k++)
+      for (int x = 0; x < 3; x++)
+        corner[k][x] =
+            (double[]){0.3, 0.1, 0.3}[x] + sign[k][0] * wide[i][x] + sign[k][1] * high[i][x];
+    fixture f;
+    make(text, &f);
+    float eye[3];
+    abbe_geometry_to_frame(&f.tracer->geometry, (double[3]){0.1, 0, 0.1}, eye);
+    memcpy(f.tracer->camera.eye, eye, sizeof eye);
+    look(&f, 250, mean, error);
+    for (int k = 0; k < 3; k++) {
+      const double white = (double)f.tracer->white[0][k];
+      assert_near(mean[k], 5 * polygon_irradiance(corner, 4, at) * 0.5 / pi * white, 4 * error[k]);
+      assert_true(error[k] < 0.02 * mean[k]);
+    }
+    drop(&f);
+  }
+}
+
 static void lamps_are_seen_from_the_front(void **state) {
   (void)state;
 #define LAMP(direction)                                                                            \
@@ -154,6 +211,11 @@ static void lamps_are_seen_from_the_front(void **state) {
         "], radius: 0.1, radiance: 5")
   check_radiance(DOWN LAMP("1") FLOOR, 5, 1e-6);
   check_radiance(DOWN LAMP("-1") FLOOR, 0, 0);
+#define PANEL(direction)                                                                           \
+  LIGHT("kind: rectangle, position: [0.1, 0, 0.5], direction: [0, 0, " direction                   \
+        "], width: 0.1, height: 0.2, radiance: 5")
+  check_radiance(DOWN PANEL("1") FLOOR, 5, 1e-6);
+  check_radiance(DOWN PANEL("-1") FLOOR, 0, 0);
 }
 
 #define LID(reflectance)                                                                           \
@@ -392,6 +454,7 @@ int main(void) {
       cmocka_unit_test(direct_light_on_a_plane),
       cmocka_unit_test(spots_end_where_they_end),
       cmocka_unit_test(a_disks_irradiance),
+      cmocka_unit_test(a_rectangles_irradiance),
       cmocka_unit_test(lamps_are_seen_from_the_front),
       cmocka_unit_test(shadows),
       cmocka_unit_test(a_white_furnace),

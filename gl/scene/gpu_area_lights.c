@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The points of a disk follow each other; views of the same light again come after all lights. */
+/* The points of a disk or rectangle follow each other; views of the same light again come after all
+ * lights. */
 static bool is_first(const abbe_gpu_scene *scene, size_t light) {
   const abbe_light *all = scene->local->light;
   return all[light].points > 0 && scene->plan->light_view[light].light == light &&
@@ -14,7 +15,7 @@ static bool is_first(const abbe_gpu_scene *scene, size_t light) {
           memcmp(all[light].centre, all[light - 1].centre, sizeof all->centre) != 0);
 }
 
-size_t abbe_gpu_disks_count(const abbe_gpu_scene *scene) {
+size_t abbe_gpu_area_lights_count(const abbe_gpu_scene *scene) {
   size_t count = 0;
   for (size_t i = 0; i < scene->plan->light_view_count; i++) count += is_first(scene, i);
   return count;
@@ -26,14 +27,24 @@ static GLint place_of(const abbe_gl *gl, GLuint program, const char *what, size_
   return gl->GetUniformLocation(program, name);
 }
 
-void abbe_gpu_disks_set(const abbe_gpu_scene *scene, GLuint program) {
+/* Half a side over its square: how far a place is along it, in halves. */
+static void set_edge(const abbe_gl *gl, GLuint program, size_t index, const abbe_light *light,
+                     const double edge[3]) {
+  double square = 0;
+  for (int k = 0; k < 3; k++) square += edge[k] * edge[k];
+  const double scale = light->kind == ABBE_LIGHT_RECTANGLE ? 1 / square : 0;
+  gl->Uniform3f(place_of(gl, program, "area_light_edge", index), (float)(scale * edge[0]),
+                (float)(scale * edge[1]), (float)(scale * edge[2]));
+}
+
+void abbe_gpu_area_lights_set(const abbe_gpu_scene *scene, GLuint program) {
   const abbe_gl *gl = scene->gpu->gl;
   size_t disk = 0;
-  if (place_of(gl, program, "disk_place", 0) < 0) return;
+  if (place_of(gl, program, "area_light_place", 0) < 0) return;
   for (size_t i = 0; i < scene->plan->light_view_count; i++) {
     const abbe_light *l = &scene->local->light[i];
     if (!is_first(scene, i)) continue;
-    const double area = 3.14159265358979323846 * l->radius * l->radius;
+    const double area = abbe_light_area(l);
     double xyz[3];
     float rgb[3];
     abbe_weights_band_xyz(&l->illuminant, scene->plan->desc.min_nm, scene->plan->desc.max_nm,
@@ -43,11 +54,13 @@ void abbe_gpu_disks_set(const abbe_gpu_scene *scene, GLuint program) {
       rgb[k] = (float)(scale * ((double)scene->rgb_from_xyz[k] * xyz[0] +
                                 (double)scene->rgb_from_xyz[3 + k] * xyz[1] +
                                 (double)scene->rgb_from_xyz[6 + k] * xyz[2]));
-    gl->Uniform4f(place_of(gl, program, "disk_place", disk), (float)l->centre[0],
-                  (float)l->centre[1], (float)l->centre[2], (float)l->radius);
-    gl->Uniform3f(place_of(gl, program, "disk_facing", disk), (float)l->direction[0],
+    gl->Uniform4f(place_of(gl, program, "area_light_place", disk), (float)l->centre[0],
+                  (float)l->centre[1], (float)l->centre[2],
+                  l->kind == ABBE_LIGHT_DISK ? (float)l->radius : 0);
+    for (size_t k = 0; k < 2; k++) set_edge(gl, program, 2 * disk + k, l, l->edge[k]);
+    gl->Uniform3f(place_of(gl, program, "area_light_facing", disk), (float)l->direction[0],
                   (float)l->direction[1], (float)l->direction[2]);
-    gl->Uniform3f(place_of(gl, program, "disk_radiance", disk), rgb[0], rgb[1], rgb[2]);
+    gl->Uniform3f(place_of(gl, program, "area_light_radiance", disk), rgb[0], rgb[1], rgb[2]);
     disk++;
   }
 }
