@@ -1,4 +1,5 @@
-/* The stones of the default table: n_D and density as handbooks print them, and their colours. */
+/* The stones of the default table: n_D, B-G and density as the records name them, and their
+ * colours. It finds slips: the figures are the records' own. */
 #include "tests/spectral/shipped_table.h"
 
 #include "colorimetry/difference.h"
@@ -56,7 +57,7 @@ static const struct {
 };
 enum { COUNT = sizeof stones / sizeof stones[0] };
 
-static void indices_and_densities_are_the_published_ones(void **state) {
+static void indices_and_densities_are_those_named(void **state) {
   (void)state;
   for (size_t i = 0; i < COUNT; i++) {
     const abbe_material *m = shipped_material(stones[i].name);
@@ -79,7 +80,7 @@ static void every_stone_is_held(void **state) {
 }
 
 /* B-G of those whose index is known by it alone. */
-static void fire_is_the_published_one(void **state) {
+static void fire_is_the_one_that_is_named(void **state) {
   (void)state;
   static const struct {
     const char *name;
@@ -145,9 +146,9 @@ static void a_designed_colour_says_so(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(indices_and_densities_are_the_published_ones),
+      cmocka_unit_test(indices_and_densities_are_those_named),
       cmocka_unit_test(every_stone_is_held),
-      cmocka_unit_test(fire_is_the_published_one),
+      cmocka_unit_test(fire_is_the_one_that_is_named),
       cmocka_unit_test(five_to_ten_millimetres_have_the_stones_colour),
       cmocka_unit_test(a_designed_colour_says_so),
   };
