@@ -13,7 +13,7 @@
 
 /* What a picture would still gain by ever finer settings, as a share of what it gained by halving
  * every step once: 1 where errors fall with the step, a third where they fall with its square. What
- * it was fitted to stands in docs/trade.md, "Error bars". */
+ * it was fitted to stands in docs/trade-measured.md. */
 static const double rest = 0.4;
 
 /* The mean distance of a normal number from its mean, in standard deviations: sqrt(2 / pi). */

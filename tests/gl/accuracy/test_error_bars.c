@@ -113,7 +113,7 @@ static void test_errors_are_near_the_true_ones(void **state) {
     make_bars(&scene, &coarse_frame, NULL, &picture, &bars);
     double truth = true_error(names[i], &picture), ratio = bars.whole.relative_rmse / truth;
     if (!(ratio > 0.5 && ratio < 2)) print_error("%s: %g of %g\n", names[i], ratio, truth);
-    /* Where docs/trade.md finds most scenes and settings. */
+    /* Where docs/trade-measured.md finds most scenes and settings. */
     assert_true(ratio > 0.5 && ratio < 2);
     assert_true(true_error(names[i], &bars.mean) < truth);
     assert_true(bars.caustic.pixels > 0 && bars.caustic.pixels < bars.whole.pixels);
