@@ -1,7 +1,7 @@
 #include "gl/renderer_parts.h"
 
 #include "base/clock.h"
-#include "scenes/environment_lights.h"
+#include "scenes/lights/environment_lights.h"
 
 #include <stdlib.h>
 #include <string.h>

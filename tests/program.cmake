@@ -66,8 +66,10 @@ abbe_label(program NAMES materials_page)
 # known_answers, known_light and validate_command have the groups but this one.
 add_test(NAME known_answers_whole COMMAND abbe validate --quiet)
 add_test(NAME known_answers_white COMMAND abbe validate --quiet --only white --samples 262144)
+add_test(NAME known_answers_mirror COMMAND abbe validate --quiet --only mirror)
+add_test(NAME known_answers_lamp COMMAND abbe validate --quiet --only lamp)
 abbe_label(program long NAMES known_answers_whole)
-abbe_label(program NAMES known_answers_white)
+abbe_label(program NAMES known_answers_white known_answers_mirror known_answers_lamp)
 foreach(scene sphere ring gem bunny glass prism rainbow)
   add_test(NAME reference_${scene}
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})

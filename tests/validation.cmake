@@ -3,6 +3,7 @@ foreach(name
     accumulator
     bands
     camera
+    catacaustic
     checkpoint
     closed_form
     compare compare_noise

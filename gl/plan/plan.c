@@ -9,8 +9,8 @@
 #include "gl/plan/no_culling.h"
 #include "gl/plan/pass_list.h"
 #include "gl/plan/support.h"
-#include "scenes/area_lights.h"
-#include "scenes/environment_lights.h"
+#include "scenes/lights/area_lights.h"
+#include "scenes/lights/environment_lights.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -106,8 +106,8 @@ static abbe_result read_profile(const abbe_object_reading *r, double (**out)[2],
   abbe_result result = abbe_yaml_require(r->yaml, r->node, "profile", &list, error);
   if (result != ABBE_OK) return result;
   *count = abbe_yaml_count(r->yaml, list);
-  if (!abbe_yaml_is_sequence(r->yaml, list) || *count < 3 || *count > ABBE_SHAPE_MAX_PROFILE)
-    return abbe_yaml_fail(r->yaml, list, error, "'profile' wants a list of 3 to %u points [r, z]",
+  if (!abbe_yaml_is_sequence(r->yaml, list) || *count < 2 || *count > ABBE_SHAPE_MAX_PROFILE)
+    return abbe_yaml_fail(r->yaml, list, error, "'profile' wants a list of 2 to %u points [r, z]",
                           ABBE_SHAPE_MAX_PROFILE);
   double(*profile)[2] = malloc(*count * sizeof *profile);
   if (!profile) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a lathe profile");
@@ -132,6 +132,11 @@ static abbe_result read_lathe(const abbe_object_reading *r, abbe_mesh *out, abbe
   abbe_result result = read_count(r, "around", 3, 4096, &around, error);
   if (result == ABBE_OK) result = read_count(r, "round", 0, 8, &round, error);
   if (result == ABBE_OK) result = read_profile(r, &profile, &count, error);
+  if (result == ABBE_OK && abbe_yaml_get(r->yaml, r->node, "material").id != 0 &&
+      (profile[0][0] != 0 || profile[count - 1][0] != 0))
+    result = abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->node, "profile"), error,
+                            "the 'profile' of a refractor begins and ends on the axis, r = 0, so "
+                            "that it encloses a volume; this one is open");
   if (result == ABBE_OK)
     result = abbe_shape_round_profile((const double(*)[2])profile, count, round, &rounded,
                                       &rounded_count, error);

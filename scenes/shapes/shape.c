@@ -248,25 +248,28 @@ abbe_result abbe_shape_box(const double size[3], abbe_mesh *out, abbe_error *err
 
 static abbe_result check_profile(const double (*profile)[2], size_t count, size_t around,
                                  abbe_error *error) {
-  if (count < 3 || count > ABBE_SHAPE_MAX_PROFILE)
+  if (count < 2 || count > ABBE_SHAPE_MAX_PROFILE)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a lathe profile of %zu points is not possible: from 3 to %u", count,
+                          "a lathe profile of %zu points is not possible: from 2 to %u", count,
                           ABBE_SHAPE_MAX_PROFILE);
   if (around < 3 || around > 4096)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a lathe of %zu segments around is not possible: from 3 to 4096", around);
   for (size_t i = 0; i < count; i++) {
     const bool end = i == 0 || i == count - 1;
-    if (!isfinite(profile[i][0]) || !isfinite(profile[i][1]) ||
-        (end ? profile[i][0] != 0.0 : !(profile[i][0] > 0.0)))
+    if (!isfinite(profile[i][0]) || !isfinite(profile[i][1]) || !(profile[i][0] >= 0.0) ||
+        (!end && profile[i][0] == 0.0))
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "point %zu of the lathe profile is (%g, %g): radii must be above 0, "
-                            "and 0 at both ends",
+                            "and only the ends may lie on the axis",
                             i + 1, profile[i][0], profile[i][1]);
     if (i > 0 && profile[i][0] == profile[i - 1][0] && profile[i][1] == profile[i - 1][1])
       return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                             "points %zu and %zu of the lathe profile are the same", i, i + 1);
   }
+  if (count == 2 && profile[0][0] == 0.0 && profile[1][0] == 0.0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "both points of the lathe profile lie on the axis");
   return ABBE_OK;
 }
 
@@ -279,19 +282,21 @@ static void segment_normal(const double (*profile)[2], size_t i, double n[2]) {
 }
 
 /* Normal of segment i at its end (0 first, 1 second): shared with the neighbour where the profile
- * bends by 30 degrees or less; on the axis the mirrored segment is the neighbour. */
+ * bends by 30 degrees or less; on the axis the mirrored segment is the neighbour, at a rim none is.
+ */
 static void end_normal(const double (*profile)[2], size_t count, size_t i, size_t end,
                        double n[2]) {
   const double smooth = cos(30.0 * PI / 180.0);
   double own[2], other[2];
   segment_normal(profile, i, own);
+  memcpy(n, own, sizeof own);
   if ((i == 0 && end == 0) || (i == count - 2 && end == 1)) {
+    if (profile[i + end][0] != 0.0) return;
     other[0] = -own[0];
     other[1] = own[1];
   } else {
     segment_normal(profile, end ? i + 1 : i - 1, other);
   }
-  memcpy(n, own, sizeof own);
   if (own[0] * other[0] + own[1] * other[1] < smooth) return;
   const double sum[2] = {own[0] + other[0], own[1] + other[1]};
   const double length = hypot(sum[0], sum[1]);
@@ -304,13 +309,13 @@ static void end_normal(const double (*profile)[2], size_t count, size_t i, size_
 static void lathe_segment(const double (*profile)[2], size_t count, size_t i, size_t around,
                           abbe_mesh *out, size_t *face) {
   const size_t first = 2 * i * around;
-  const bool bottom = i == 0, top = i == count - 2;
+  const bool bottom = profile[i][0] == 0.0, top = profile[i + 1][0] == 0.0;
   for (size_t end = 0; end < 2; end++) {
     double n[2];
     end_normal(profile, count, i, end, n);
     const double r = profile[i + end][0], z = profile[i + end][1];
     for (size_t j = 0; j < around; j++) {
-      const double turn = (end == 0 && bottom) || (end == 1 && top) ? 0.5 : 0.0;
+      const double turn = (end == 0 ? bottom : top) ? 0.5 : 0.0;
       const double a = 2.0 * PI * ((double)j + turn) / (double)around;
       const size_t at = first + end * around + j;
       set3(out->position[at], r * cos(a), r * sin(a), z);
@@ -331,7 +336,9 @@ abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t ar
   abbe_result result = check_profile(profile, count, around, error);
   if (result != ABBE_OK) return result;
   const size_t segments = count - 1;
-  result = abbe_mesh_make(2 * segments * around, 2 * (segments - 1) * around, false, out, error);
+  const size_t points = (profile[0][0] == 0.0 ? 1u : 0u) + (profile[segments][0] == 0.0 ? 1u : 0u);
+  result =
+      abbe_mesh_make(2 * segments * around, (2 * segments - points) * around, false, out, error);
   if (result != ABBE_OK) return result;
   size_t face = 0;
   for (size_t i = 0; i < segments; i++) lathe_segment(profile, count, i, around, out, &face);
@@ -344,7 +351,7 @@ abbe_result abbe_shape_round_profile(const double (*profile)[2], size_t count, s
   *out = NULL;
   *out_count = 0;
   size_t final = count;
-  if (count < 3) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a profile needs 3 points");
+  if (count < 2) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a profile needs 2 points");
   for (size_t i = 0; i < times; i++) {
     if (final > ABBE_SHAPE_MAX_PROFILE) break;
     final = 2 * (final - 2) + 2;

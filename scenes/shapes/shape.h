@@ -35,9 +35,9 @@ abbe_result abbe_shape_prism(double apex_rad, double side, double length, abbe_m
 abbe_result abbe_shape_box(const double size[3], abbe_mesh *out, abbe_error *error);
 /* Rectangle in the xy plane, facing +z, uv from 0 to 1. */
 abbe_result abbe_shape_rectangle(double width, double height, abbe_mesh *out, abbe_error *error);
-/* Surface of revolution around z through count profile points (r, z), from the bottom on the
- * axis outside up and inside down to the axis again (closed), `around` segments, smooth except at
- * profile corners sharper than 30 degrees. */
+/* Surface of revolution around z through count profile points (r, z), `around` segments, smooth
+ * except at profile corners sharper than 30 degrees. Closed where both ends lie on the axis: from
+ * the bottom outside up and inside down to the axis again. An end off the axis is a rim. */
 abbe_result abbe_shape_lathe(const double (*profile)[2], size_t count, size_t around,
                              abbe_mesh *out, abbe_error *error);
 

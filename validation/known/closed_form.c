@@ -1,5 +1,6 @@
 #include "validation/known/closed_form.h"
 
+#include <complex.h>
 #include <math.h>
 
 double abbe_closed_form_fresnel(double incidence, double n) {
@@ -10,6 +11,49 @@ double abbe_closed_form_fresnel(double incidence, double n) {
   double s = sin(incidence - refraction) / sin(incidence + refraction);
   double p = tan(incidence - refraction) / tan(incidence + refraction);
   return (s * s + p * p) / 2;
+}
+
+double abbe_closed_form_conductor(double incidence, double n, double k) {
+  const double complex m = n + k * I, sine = sin(incidence) / m, cosine = csqrt(1 - sine * sine);
+  const double c = cos(incidence);
+  const double s = cabs((c - m * cosine) / (c + m * cosine));
+  const double p = cabs((m * c - cosine) / (m * c + cosine));
+  return (s * s + p * p) / 2;
+}
+
+/* Over the edges: the angle that each is seen under, times the patch's cosine to the normal of the
+ * plane through the edge and p. */
+double abbe_closed_form_polygon(const double (*corner)[3], size_t count, const double p[3],
+                                const double n[3]) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) {
+    double a[3], b[3], across[3];
+    for (int k = 0; k < 3; k++) {
+      a[k] = corner[i][k] - p[k];
+      b[k] = corner[(i + 1) % count][k] - p[k];
+    }
+    for (int k = 0; k < 3; k++)
+      across[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    const double length =
+        sqrt(across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
+    const double along = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    if (length > 0)
+      sum +=
+          atan2(length, along) * (across[0] * n[0] + across[1] * n[1] + across[2] * n[2]) / length;
+  }
+  return fabs(sum) / (2 * acos(-1));
+}
+
+double abbe_closed_form_coaxial_disks(double from, double to, double h) {
+  const double a = from / h, b = to / h;
+  if (!(from > 0)) return b * b / (1 + b * b);
+  const double x = 1 + (1 + b * b) / (a * a);
+  return (x - sqrt(x * x - 4 * pow(to / from, 2))) / 2;
+}
+
+double abbe_closed_form_penumbra(double at) {
+  if (!(fabs(at) < 1)) return at > 0 ? 1 : 0;
+  return 0.5 + (at * sqrt(1 - at * at) + asin(at)) / acos(-1);
 }
 
 void abbe_closed_form_slab(double r, double tau, double *reflected, double *passed) {

@@ -19,6 +19,23 @@ extern "C" {
  * and tangent laws; 1 beyond the critical angle where n < 1. [BornWolf1999, 1.5.2] */
 double abbe_closed_form_fresnel(double incidence, double n);
 
+/* The same of a metal of index n + i k, by complex amplitudes. [BornWolf1999, 14.2] */
+double abbe_closed_form_conductor(double incidence, double n, double k);
+
+/* Form factor from a plane patch at p with the unit normal n to a polygon: its irradiance over pi
+ * times the polygon's radiance, by Lambert's formula. The polygon lies above the patch's plane, its
+ * corners in order, either way round. [Howell2021, appendix C] */
+double abbe_closed_form_polygon(const double (*corner)[3], size_t count, const double p[3],
+                                const double n[3]);
+
+/* Form factor from a disk of radius `from` to a parallel coaxial one of radius `to` at the distance
+ * h; from a patch on its axis where `from` is 0. [Howell2021, C-41] */
+double abbe_closed_form_coaxial_disks(double from, double to, double h);
+
+/* Share of a disk of radius 1 that lies beyond a straight edge at -at from its middle, 0 to 1 for
+ * `at` from -1 to 1: what a place in its penumbra sees of it, from far off. */
+double abbe_closed_form_penumbra(double at);
+
 /* Shares of the light that a plane-parallel slab reflects and passes with all reflections inside,
  * incoherently: r of one face, tau what one crossing leaves. [BornWolf1999, 1.5.4] */
 void abbe_closed_form_slab(double r, double tau, double *reflected, double *passed);

@@ -37,6 +37,8 @@ extern "C" {
   X(furnace, "a white furnace: glass in the same light from everywhere cannot be seen")            \
   X(environment,                                                                                   \
     "light from all around: flux into bodies, irradiance of floors, mirrors and glass")            \
+  X(mirror, "metals, a mirror ball's light, images between mirrors, a ring's caustics")            \
+  X(lamp, "lights with a size: form factors, penumbras, images through a hole and in mirrors")     \
   X(sphere, "light under a sphere, rings and enclosed flux, one wavelength")                       \
   X(white, "light under a sphere in XYZ under D65")                                                \
   X(picture, "light under a sphere as the eye sees it: the caustic, and all light")                \

@@ -1,17 +1,8 @@
 /* Light from all around: what bodies meet of it, what floors get, and where it cannot be seen. */
 #include "validation/known/known_light.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-enum { SIDE = 16 };
-
-typedef enum measure { REACHED, MEAN_RADIANCE } measure;
-
 typedef struct setting {
-  const char *what, *unit;
-  measure measure;
+  const char *what, *channel;
   double exact;
   const char *camera, *environment, *objects;
 } setting;
@@ -28,33 +19,31 @@ typedef struct setting {
 #define LOW_CAMERA "{eye: [0, -0.5, 0.02], target: [0, 0, 0], fov: 0.1, size: [16, 16]}"
 
 static const setting settings[] = {
-    {"ball, flux that it meets: pi x surface x radiance", "W", REACHED,
-     2 * PI * 4 * PI * 0.04 * 0.04, FAR_CAMERA, UNIFORM,
-     MOTE "- {name: ball, shape: sphere, radius: 0.04, material: n-bk7}\n"},
-    {"turned brick, flux that it meets: pi x surface x radiance", "W", REACHED,
+    {"ball, flux that it meets: pi x surface x radiance", NULL, 2 * PI * 4 * PI * 0.04 * 0.04,
+     FAR_CAMERA, UNIFORM, MOTE "- {name: ball, shape: sphere, radius: 0.04, material: n-bk7}\n"},
+    {"turned brick, flux that it meets: pi x surface x radiance", NULL,
      2 * PI * 2 * (0.1 * 0.03 + 0.1 * 0.05 + 0.03 * 0.05), FAR_CAMERA, UNIFORM,
      MOTE "- {name: brick, shape: box, size: [0.1, 0.03, 0.05], material: n-sf11,\n"
           "   transform: [{rotate: {axis: [1, 2, 0], angle: 35}}]}\n"},
-    {"silver ball, flux that it meets: pi x surface x radiance", "W", REACHED,
+    {"silver ball, flux that it meets: pi x surface x radiance", NULL,
      2 * PI * 4 * PI * 0.04 * 0.04, FAR_CAMERA, UNIFORM,
      MOTE "- {name: ball, shape: sphere, radius: 0.04, mirror: silver}\n"},
-    {"cut diamond in uniform light, mean radiance of the picture", "W/(m2 sr)", MEAN_RADIANCE, 2,
-     FAR_CAMERA, UNIFORM,
+    {"cut diamond in uniform light, mean radiance of the picture", "Y", 2, FAR_CAMERA, UNIFORM,
      MOTE "- {name: stone, shape: brilliant, diameter: 0.07, material: diamond}\n"},
-    {"mirror ring in uniform light, mean radiance of the picture", "W/(m2 sr)", MEAN_RADIANCE, 2,
-     FAR_CAMERA, UNIFORM,
+    {"mirror ring in uniform light, mean radiance of the picture", "Y", 2, FAR_CAMERA, UNIFORM,
      MOTE "- {name: ring, shape: ring, major: 0.03, minor: 0.012, mirror: 1}\n"},
-    {"mirror of 0.5 before uniform light, mean radiance of the picture", "W/(m2 sr)", MEAN_RADIANCE,
-     1, FAR_CAMERA, UNIFORM,
+    {"mirror of 0.5 before uniform light, mean radiance of the picture", "Y", 1, FAR_CAMERA,
+     UNIFORM,
      MOTE "- {name: pane, shape: rectangle, width: 9, height: 9, mirror: 0.5,\n"
           "   transform: [{translate: [0, 0, -0.05]}]}\n"},
-    {"white floor under a cosine dome, radiance", "W/(m2 sr)", MEAN_RADIANCE, 2.0 / 3, LOW_CAMERA,
-     "{dome: cos}", FLOOR},
-    {"white floor under a disk overhead, radiance", "W/(m2 sr)", MEAN_RADIANCE,
+    {"white floor under a cosine dome, radiance", "Y", 2.0 / 3, LOW_CAMERA, "{dome: cos}", FLOOR},
+    {"white floor under a cosine dome that is tilted to the horizon, radiance", "Y", 2 / (3 * PI),
+     LOW_CAMERA, "{dome: cos, tilt: {axis: [1, 1, 0], angle: 90}}", FLOOR},
+    {"white floor under a disk overhead, radiance", "Y",
      5 * 0.030153689607045804 /* sin^2 of 10 degrees */, LOW_CAMERA,
      "{softboxes: [{elevation: 90, radius: 10, radiance: 5}]}", FLOOR},
-    {"white floor, the sky half hidden by a square of form factor 0.5541", "W/(m2 sr)",
-     MEAN_RADIANCE, 2 * (1 - 0.5541264239795719), LOW_CAMERA, UNIFORM,
+    {"white floor, the sky half hidden by a square of form factor 0.5541", "Y",
+     2 * (1 - 0.5541264239795719), LOW_CAMERA, UNIFORM,
      FLOOR "- {name: lid, shape: rectangle, width: 0.4, height: 0.4, reflectance: 0,\n"
            "   transform: [{translate: [0, 0, 0.2]}]}\n"},
 };
@@ -62,60 +51,22 @@ static const setting settings[] = {
 static const char reason[] = "as improbable as four standard errors, taken from the spread of the "
                              "passes; and 2e-4 of the value for the map's texels";
 
-/* Of the mean so far. */
-static abbe_result value_of(const abbe_tracer *tracer, const setting *s, double *value,
-                            abbe_error *error) {
-  abbe_trace_statistics statistics;
-  abbe_tracer_statistics(tracer, &statistics);
-  *value = statistics.ledger.reached;
-  if (s->measure == REACHED) return ABBE_OK;
-  abbe_image picture = {0};
-  abbe_result result = abbe_tracer_picture(tracer, &picture, error);
-  const size_t at = abbe_image_find_channel(&picture, "Y"), pixels = picture.width * picture.height;
-  *value = 0;
-  for (size_t i = 0; result == ABBE_OK && i < pixels; i++)
-    *value += (double)picture.data[i * picture.channels + at] / (double)pixels;
-  abbe_image_free(&picture);
-  return result;
-}
-
 static abbe_result add_setting(abbe_known_run *run, const setting *s, double from, double to,
                                abbe_error *error) {
   abbe_scene scene = {0};
-  abbe_tracer *tracer = NULL;
-  abbe_trace_desc desc = {
-      .no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = SIDE, .height = SIDE};
-  const size_t passes = abbe_known_passes(run, 1 << 19, &desc);
-  double(*sum)[3] = calloc(passes, sizeof *sum), before = 0, mean = 0;
-  abbe_result result =
-      sum != NULL ? abbe_known_scene(&scene, error, "camera: %s\nenvironment: %s\nobjects:\n%s",
-                                     s->camera, s->environment, s->objects)
-                  : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for passes");
-  if (result == ABBE_OK) result = abbe_tracer_make(&scene, &desc, &tracer, error);
-  for (size_t p = 0; p < passes && result == ABBE_OK; p++) {
-    result = abbe_tracer_pass(tracer, NULL, error);
-    if (result == ABBE_OK) result = value_of(tracer, s, &mean, error);
-    sum[p][1] = ((double)p + 1) * mean - (double)p * before;
-    before = mean;
-    const double done = from + (to - from) * (double)(p + 1) / (double)passes;
-    if (result == ABBE_OK) result = abbe_known_progress(run, done, error);
-  }
-  if (result == ABBE_OK) {
-    double spread = 0;
-    abbe_known_mean(sum, passes, 1, 0, 1, 1, &mean, &spread);
-    abbe_known_answer row = {.unit = s->unit,
-                             .exact = s->exact,
-                             .traced = mean,
-                             .standard_error = spread,
-                             .tolerance = abbe_known_sigmas(passes) * spread + 2e-4 * s->exact,
-                             .useful = 2e-2 * s->exact,
-                             .reason = reason};
-    snprintf(row.quantity, sizeof row.quantity, "%s", s->what);
-    result = abbe_known_add(run, row, error);
-  }
-  abbe_tracer_free(tracer);
+  const abbe_known_setting known = {.what = s->what,
+                                    .unit = s->channel ? "W/(m2 sr)" : "W",
+                                    .reason = reason,
+                                    .exact = s->exact,
+                                    .slack = 2e-4 * s->exact,
+                                    .useful = 2e-2 * s->exact,
+                                    .samples = 1 << 19,
+                                    .side = 16,
+                                    .channel = s->channel};
+  abbe_result result = abbe_known_scene(&scene, error, "camera: %s\nenvironment: %s\nobjects:\n%s",
+                                        s->camera, s->environment, s->objects);
+  if (result == ABBE_OK) result = abbe_known_add_setting(run, &known, &scene, from, to, error);
   abbe_scene_free(&scene);
-  free(sum);
   return result;
 }
 

@@ -1,11 +1,7 @@
 /* A white furnace: where the same light comes from everywhere, clear glass cannot be seen. */
 #include "validation/known/known_light.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-
-enum { SIDE = 48 };
 
 typedef struct room {
   const char *what, *objects;
@@ -39,63 +35,23 @@ static const char furnace_reason[] =
     "as improbable as four standard errors, taken from the spread of the passes; and 2e-5 for "
     "paths that single precision loses on edges, and for those too long to be followed";
 
-/* Mean of a channel over the picture of all passes so far. */
-static abbe_result mean_of(const abbe_tracer *tracer, const char *channel, double *mean,
-                           double *least, double *most, abbe_error *error) {
-  abbe_image picture = {0};
-  abbe_result result = abbe_tracer_picture(tracer, &picture, error);
-  size_t at = abbe_image_find_channel(&picture, channel), pixels = picture.width * picture.height;
-  *mean = 0;
-  *least = INFINITY;
-  *most = -INFINITY;
-  if (result == ABBE_OK && at == (size_t)-1)
-    result = abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture has no channel %s", channel);
-  for (size_t i = 0; result == ABBE_OK && i < pixels; i++) {
-    double value = (double)picture.data[i * picture.channels + at];
-    *mean += value / (double)pixels;
-    *least = fmin(*least, value);
-    *most = fmax(*most, value);
-  }
-  abbe_image_free(&picture);
-  return result;
-}
-
 static abbe_result add_room(abbe_known_run *run, const room *r, double from, double to,
                             abbe_error *error) {
   abbe_scene scene = {0};
-  abbe_tracer *tracer = NULL;
-  abbe_trace_desc desc = {
-      .no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = SIDE, .height = SIDE};
-  size_t passes = abbe_known_passes(run, 1 << 16, &desc);
-  double(*sum)[3] = calloc(passes, sizeof *sum), before = 0, mean = 0, least = 0, most = 0;
-  abbe_result result = sum != NULL
-                           ? abbe_known_scene(&scene, error, "%s%s", furnace_head, r->objects)
-                           : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for passes");
-  if (result == ABBE_OK) result = abbe_tracer_make(&scene, &desc, &tracer, error);
-  for (size_t p = 0; p < passes && result == ABBE_OK; p++) {
-    result = abbe_tracer_pass(tracer, NULL, error);
-    if (result == ABBE_OK) result = mean_of(tracer, "Y", &mean, &least, &most, error);
-    sum[p][1] = ((double)p + 1) * mean - (double)p * before;
-    before = mean;
-    double done = from + (to - from) * (double)(p + 1) / (double)passes;
-    if (result == ABBE_OK) result = abbe_known_progress(run, done, error);
-  }
-  if (result == ABBE_OK) {
-    double spread = 0;
-    abbe_known_mean(sum, passes, 1, 0, 1, 1, &mean, &spread);
-    abbe_known_answer row = {.unit = "W/(m2 sr)",
-                             .exact = 1,
-                             .traced = mean,
-                             .standard_error = spread,
-                             .tolerance = abbe_known_sigmas(passes) * spread + 2e-5,
-                             .useful = 2e-3,
-                             .reason = furnace_reason};
-    snprintf(row.quantity, sizeof row.quantity, "%s, mean radiance of the picture", r->what);
-    result = abbe_known_add(run, row, error);
-  }
-  abbe_tracer_free(tracer);
+  char what[sizeof((abbe_known_answer){0}).quantity];
+  snprintf(what, sizeof what, "%s, mean radiance of the picture", r->what);
+  const abbe_known_setting setting = {.what = what,
+                                      .unit = "W/(m2 sr)",
+                                      .reason = furnace_reason,
+                                      .exact = 1,
+                                      .slack = 2e-5,
+                                      .useful = 2e-3,
+                                      .samples = 1 << 16,
+                                      .side = 48,
+                                      .channel = "Y"};
+  abbe_result result = abbe_known_scene(&scene, error, "%s%s", furnace_head, r->objects);
+  if (result == ABBE_OK) result = abbe_known_add_setting(run, &setting, &scene, from, to, error);
   abbe_scene_free(&scene);
-  free(sum);
   return result;
 }
 

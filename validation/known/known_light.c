@@ -2,6 +2,7 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -98,4 +99,64 @@ void abbe_known_mean(double (*sum)[3], size_t passes, size_t rings, size_t first
 double abbe_known_sigmas(size_t passes) {
   double tail = gsl_cdf_ugaussian_Q(ABBE_KNOWN_SIGMAS);
   return passes > 1 ? gsl_cdf_tdist_Qinv(tail, (double)passes - 1) : INFINITY;
+}
+
+/* Of all passes so far. */
+static abbe_result value_so_far(const abbe_tracer *tracer, const abbe_known_setting *s,
+                                double *value, abbe_error *error) {
+  abbe_trace_statistics statistics;
+  abbe_tracer_statistics(tracer, &statistics);
+  *value = statistics.ledger.reached;
+  if (s->channel == NULL) return ABBE_OK;
+  abbe_image picture = {0};
+  abbe_result result = abbe_tracer_picture(tracer, &picture, error);
+  if (result != ABBE_OK) return result;
+  const size_t at = abbe_image_find_channel(&picture, s->channel);
+  const size_t pixels = picture.width * picture.height;
+  if (at >= picture.channels)
+    result =
+        abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture has no channel %s", s->channel);
+  *value = 0;
+  for (size_t i = 0; result == ABBE_OK && i < pixels; i++) {
+    const double x = (2 * (double)(i % picture.width) + 1) / (double)picture.width - 1;
+    const double y = 1 - (2 * (double)(i / picture.width) + 1) / (double)picture.height;
+    const double weight = s->weight != NULL ? s->weight(x, y) : 1;
+    *value += weight * (double)picture.data[i * picture.channels + at] / (double)pixels;
+  }
+  abbe_image_free(&picture);
+  return result;
+}
+
+static abbe_result add_mean(abbe_known_run *run, const abbe_known_setting *s, double (*sum)[3],
+                            size_t passes, abbe_error *error) {
+  abbe_known_answer row = {
+      .unit = s->unit, .exact = s->exact, .useful = s->useful, .reason = s->reason};
+  abbe_known_mean(sum, passes, 1, 0, 1, 1, &row.traced, &row.standard_error);
+  row.tolerance = abbe_known_sigmas(passes) * row.standard_error + s->slack;
+  snprintf(row.quantity, sizeof row.quantity, "%s", s->what);
+  return abbe_known_add(run, row, error);
+}
+
+abbe_result abbe_known_add_setting(abbe_known_run *run, const abbe_known_setting *setting,
+                                   const abbe_scene *scene, double from, double to,
+                                   abbe_error *error) {
+  abbe_tracer *tracer = NULL;
+  abbe_trace_desc desc = {
+      .no_map = true, .space = ABBE_RGB_SPACE_XYZ, .width = setting->side, .height = setting->side};
+  const size_t passes = abbe_known_passes(run, setting->samples, &desc);
+  double(*sum)[3] = calloc(passes, sizeof *sum), before = 0, mean = 0;
+  abbe_result result = sum != NULL ? abbe_tracer_make(scene, &desc, &tracer, error)
+                                   : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for passes");
+  for (size_t p = 0; p < passes && result == ABBE_OK; p++) {
+    result = abbe_tracer_pass(tracer, NULL, error);
+    if (result == ABBE_OK) result = value_so_far(tracer, setting, &mean, error);
+    sum[p][1] = ((double)p + 1) * mean - (double)p * before;
+    before = mean;
+    const double done = from + (to - from) * (double)(p + 1) / (double)passes;
+    if (result == ABBE_OK) result = abbe_known_progress(run, done, error);
+  }
+  if (result == ABBE_OK) result = add_mean(run, setting, sum, passes, error);
+  abbe_tracer_free(tracer);
+  free(sum);
+  return result;
 }

@@ -35,6 +35,26 @@ void abbe_known_mean(double (*sum)[3], size_t passes, size_t rings, size_t first
  * as a normal one is ABBE_KNOWN_SIGMAS.  */
 double abbe_known_sigmas(size_t passes);
 
+/* A whole run of which one number is known: a weighted mean over its picture, or what its ledger
+ * has. */
+typedef struct abbe_known_setting {
+  const char *what, *unit, *reason; /* as in abbe_known_answer */
+  double exact;
+  double slack;  /* that the value may be off beside noise */
+  double useful; /* as in abbe_known_answer */
+  uint64_t samples;
+  size_t side;         /* pixels of the picture */
+  const char *channel; /* whose mean over the picture is known; NULL: the flux that was met, W */
+  double (*weight)(double x, double y); /* of a pixel whose middle lies there, the picture reaching
+                                           from -1 to 1 both ways, y up; NULL: 1 */
+} abbe_known_setting;
+
+/* Traces the scene pass by pass and adds a row: the tolerance is the setting's slack and four
+ * standard errors, by the spread of the passes. Progress runs from `from` to `to` of the group. */
+abbe_result abbe_known_add_setting(abbe_known_run *run, const abbe_known_setting *setting,
+                                   const abbe_scene *scene, double from, double to,
+                                   abbe_error *error);
+
 /* The rows of one sphere, light and plane of the groups `sphere` and (white) `white`.
  * ABBE_INVALID_ARGUMENT beyond the last. */
 abbe_result abbe_known_sphere_setting(abbe_known_run *run, size_t index, bool white,

@@ -111,6 +111,73 @@ static void an_open_floor_has_its_irradiance(void **state) {
   abbe_image_free(&picture);
 }
 
+/* Receivers that send on all that they get, in light that is alike all around: nothing is seen of
+ * clear glass or of a whole mirror before them. */
+static void nothing_is_seen_in_a_furnace(void **state) {
+  (void)state;
+  static const char *const body[] = {
+      BALL("crown"),
+      "- {name: stone, shape: brilliant, diameter: 0.3, transform: [{translate: [0, 0, 0.2]}], "
+      "material: crown}\n",
+      "- {name: ball, shape: sphere, radius: 0.1, transform: [{translate: [0, 0, 0.2]}], mirror: "
+      "1}\n"};
+  for (int i = 0; i < 3; i++) {
+    char text[2048];
+    abbe_image picture;
+    snprintf(text, sizeof text,
+             CAMERA "objects:\n- {name: floor, shape: rectangle, width: 1, height: 1, reflectance: "
+                    "1}\n%senvironment: {uniform: 2}\n",
+             body[i]);
+    draw(text, &picture);
+    for (size_t y = 0; y < 64; y++)
+      for (size_t x = 0; x < 64; x++) assert_near(at(&picture, x, y, 1), 2, 1e-2);
+    abbe_image_free(&picture);
+  }
+}
+
+#define TURNED(angle, eye, what)                                                                   \
+  "materials: glass.yaml\ncamera: {eye: " eye ", target: [0, 0, 0.05], fov: 40}\n" FLOOR           \
+  "- {name: stone, shape: brilliant, diameter: 0.3, transform: [{rotate: {axis: [0, 0, 1], "       \
+  "angle: " angle "}}, {translate: [0, 0, 0.2]}], material: crown}\n"                              \
+  "environment: {" what "uniform: 0.2, softboxes: [{elevation: 50, azimuth: 20, radius: 6, "       \
+  "radiance: [9, 7, 4]}, {elevation: 20, azimuth: 160, width: 60, height: 30, radiance: 1}]}\n"
+
+static double difference(const abbe_image *a, const abbe_image *b, double factor) {
+  double sum = 0, all = 0;
+  for (size_t i = 0; i < 64 * 64 * a->channels; i++) {
+    sum += fabs(factor * (double)a->data[i] - (double)b->data[i]);
+    all += fabs((double)b->data[i]);
+  }
+  return sum / all;
+}
+
+/* Turned with all that stands in it, it changes nothing but roundings, which edges of facets and
+ * texels show; not turned, it does. */
+static void turning_all_changes_nothing(void **state) {
+  (void)state;
+  abbe_image here, there, half;
+  draw(TURNED("0", "[0, -1, 0.5]", ""), &here);
+  draw(TURNED("90", "[1, 0, 0.5]", "rotate: 90, "), &there);
+  draw(TURNED("90", "[1, 0, 0.5]", ""), &half);
+  print_message("turned: %.5f; the environment left: %.3f\n", difference(&here, &there, 1),
+                difference(&here, &half, 1));
+  assert_true(difference(&here, &there, 1) < 5e-3);
+  assert_true(difference(&here, &half, 1) > 0.05);
+  abbe_image_free(&here);
+  abbe_image_free(&there);
+  abbe_image_free(&half);
+}
+
+static void light_is_linear(void **state) {
+  (void)state;
+  abbe_image once, thrice;
+  draw(TURNED("0", "[0, -1, 0.5]", ""), &once);
+  draw(TURNED("0", "[0, -1, 0.5]", "scale: 3, "), &thrice);
+  assert_true(difference(&once, &thrice, 3) < 1e-4);
+  abbe_image_free(&once);
+  abbe_image_free(&thrice);
+}
+
 static void the_ledger_closes(void **state) {
   (void)state;
   abbe_image picture;
@@ -124,9 +191,13 @@ static void the_ledger_closes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_sky_is_seen_as_it_is), cmocka_unit_test(a_lamp_stands_where_it_is),
-      cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
-      cmocka_unit_test(an_open_floor_has_its_irradiance), cmocka_unit_test(the_ledger_closes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_sky_is_seen_as_it_is),
+                                     cmocka_unit_test(a_lamp_stands_where_it_is),
+                                     cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
+                                     cmocka_unit_test(an_open_floor_has_its_irradiance),
+                                     cmocka_unit_test(nothing_is_seen_in_a_furnace),
+                                     cmocka_unit_test(turning_all_changes_nothing),
+                                     cmocka_unit_test(light_is_linear),
+                                     cmocka_unit_test(the_ledger_closes)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

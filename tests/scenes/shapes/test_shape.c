@@ -145,6 +145,36 @@ static void lathe_of_an_arc_is_smooth(void **state) {
   abbe_mesh_free(&m);
 }
 
+/* A pipe's wall, a disk and a bowl: rims where the profile ends off the axis. */
+static void an_open_lathe_has_rims(void **state) {
+  (void)state;
+  const double wall[2][2] = {{0.1, 0}, {0.1, 0.3}}, disk[2][2] = {{0, 0.2}, {0.1, 0.2}};
+  const double bowl[3][2] = {{0, 0}, {0.1, 0.02}, {0.15, 0.08}};
+  const struct {
+    const double (*profile)[2];
+    size_t count, faces;
+    double area;
+  } cases[] = {{wall, 2, 2 * 64, 2 * PI * 0.1 * 0.3},
+               {disk, 2, 64, PI * 0.01},
+               {bowl, 3, 3 * 64, PI * (0.1 * hypot(0.1, 0.02) + 0.25 * hypot(0.05, 0.06))}};
+  for (int i = 0; i < 3; i++) {
+    abbe_mesh m;
+    double area = 0;
+    assert_int_equal(abbe_shape_lathe(cases[i].profile, cases[i].count, 64, &m, NULL), ABBE_OK);
+    assert_int_equal(m.face_count, cases[i].faces);
+    for (size_t f = 0; f < m.face_count; f++) {
+      double n[3];
+      abbe_vector_triangle(m.position[m.face[f][0]], m.position[m.face[f][1]],
+                           m.position[m.face[f][2]], n);
+      area += abbe_vector_length(n) / 2;
+      /* normals are across the faces, on their side */
+      assert_true(abbe_vector_dot(n, m.normal[m.face[f][0]]) > 0.9 * abbe_vector_length(n));
+    }
+    assert_true(fabs(area / cases[i].area - 1) < 0.003);
+    abbe_mesh_free(&m);
+  }
+}
+
 static void rounding_a_profile_cuts_corners_and_keeps_ends(void **state) {
   (void)state;
   const double profile[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -165,7 +195,7 @@ static void impossible_parameters_are_refused(void **state) {
   abbe_mesh m;
   abbe_error error;
   const double flat[3] = {1, 0, 1}, cut[3][2] = {{0, 0}, {-1, 0}, {0, 1}};
-  const double open[3][2] = {{0, 0}, {1, 0}, {1, 1}},
+  const double line[2][2] = {{0, 0}, {0, 1}}, pinched[3][2] = {{1, 0}, {0, 1}, {1, 2}},
                twice[4][2] = {{0, 0}, {1, 0}, {1, 0}, {0, 1}};
   assert_int_equal(abbe_shape_sphere(0, 2, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_shape_sphere(NAN, 2, &m, &error), ABBE_INVALID_ARGUMENT);
@@ -181,7 +211,8 @@ static void impossible_parameters_are_refused(void **state) {
   assert_int_equal(abbe_shape_box(flat, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_shape_rectangle(1, -1, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_shape_lathe(cut, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_shape_lathe(open, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_lathe(line, 2, 8, &m, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_shape_lathe(pinched, 3, 8, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_int_equal(abbe_shape_lathe(twice, 4, 8, &m, &error), ABBE_INVALID_ARGUMENT);
   assert_null(m.face);
 }
@@ -195,6 +226,7 @@ int main(void) {
       cmocka_unit_test(box_and_rectangle_face_outwards),
       cmocka_unit_test(lathe_of_a_cylinder_keeps_its_rims_sharp),
       cmocka_unit_test(lathe_of_an_arc_is_smooth),
+      cmocka_unit_test(an_open_lathe_has_rims),
       cmocka_unit_test(rounding_a_profile_cuts_corners_and_keeps_ends),
       cmocka_unit_test(impossible_parameters_are_refused),
   };

@@ -35,6 +35,69 @@ static void fresnel_agrees_with_the_optics(void **state) {
                   abbe_optics_fresnel(cos(radians(i)), 1 / n), 1e-11);
 }
 
+/* Complex amplitudes here, real formulas there. */
+static void metals_agree_with_the_optics(void **state) {
+  (void)state;
+  for (double n = 0.05; n < 4; n *= 1.6)
+    for (double k = 0.01; k < 9; k *= 2)
+      for (double i = 0; i < 89; i += 7)
+        assert_near(abbe_closed_form_conductor(radians(i), n, k),
+                    abbe_optics_fresnel_conductor(cos(radians(i)), n, k), 1e-11);
+  assert_near(abbe_closed_form_conductor(0, 0.2, 3), (0.64 + 9) / (1.44 + 9), 1e-14);
+  assert_near(abbe_closed_form_conductor(radians(60), 1.5, 0),
+              abbe_closed_form_fresnel(radians(60), 1.5), 1e-14);
+}
+
+/* The corner formula for a parallel rectangle, and what a cube's faces show of one another. */
+static void polygons_have_their_form_factors(void **state) {
+  (void)state;
+  static const double p[3] = {0, 0, 0}, up[3] = {0, 0, 1}, aside[3] = {1, 0, 0};
+  const double a = 0.7, b = 1.3; /* in heights */
+  const double corner[4][3] = {{0, 0, 1}, {a, 0, 1}, {a, b, 1}, {0, b, 1}};
+  const double known = (a / sqrt(1 + a * a) * atan(b / sqrt(1 + a * a)) +
+                        b / sqrt(1 + b * b) * atan(a / sqrt(1 + b * b))) /
+                       (2 * PI);
+  assert_near(abbe_closed_form_polygon(corner, 4, p, up), known, 1e-14);
+  const double upright = (atan(b) - atan(b / sqrt(1 + a * a)) / sqrt(1 + a * a)) / (2 * PI);
+  assert_near(abbe_closed_form_polygon(corner, 4, p, aside), upright, 1e-14);
+  const double square[4][3] = {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+  assert_near(abbe_closed_form_polygon(square, 4, p, up), 0.5541264239795719, 1e-13);
+}
+
+static void disks_have_their_form_factors(void **state) {
+  (void)state;
+  enum { SIDES = 4096 };
+  static double corner[SIDES][3];
+  static const double p[3] = {0, 0, 0}, up[3] = {0, 0, 1};
+  for (int i = 0; i < SIDES; i++) {
+    corner[i][0] = 0.6 * cos(2 * PI * i / SIDES);
+    corner[i][1] = 0.6 * sin(2 * PI * i / SIDES);
+    corner[i][2] = 0.8;
+  }
+  assert_near(abbe_closed_form_coaxial_disks(0, 0.6, 0.8), 0.36, 1e-15);
+  assert_near(abbe_closed_form_polygon((const double(*)[3])corner, SIDES, p, up), 0.36, 1e-6);
+  assert_near(abbe_closed_form_coaxial_disks(1e-4, 0.6, 0.8), 0.36, 1e-7);
+  assert_near(abbe_closed_form_coaxial_disks(1, 1, 1), (3 - sqrt(5)) / 2, 1e-15);
+  /* what goes one way goes the other */
+  assert_near(abbe_closed_form_coaxial_disks(1, 0.3, 0.5),
+              0.09 * abbe_closed_form_coaxial_disks(0.3, 1, 0.5), 1e-14);
+}
+
+static void a_penumbra_grows_to_its_light(void **state) {
+  (void)state;
+  enum { STEPS = 200000 };
+  assert_near(abbe_closed_form_penumbra(0), 0.5, 1e-15);
+  assert_near(abbe_closed_form_penumbra(-1), 0, 1e-15);
+  assert_near(abbe_closed_form_penumbra(7), 1, 0);
+  assert_near(abbe_closed_form_penumbra(0.3) + abbe_closed_form_penumbra(-0.3), 1, 1e-15);
+  double area = 0; /* of the disk at x > -0.4 */
+  for (int i = 0; i < STEPS; i++) {
+    const double x = -0.4 + 1.4 * (i + 0.5) / STEPS;
+    area += 2 * sqrt(1 - x * x) * 1.4 / STEPS;
+  }
+  assert_near(abbe_closed_form_penumbra(0.4), area / PI, 1e-7);
+}
+
 /* A window pane: 7.7 % back and 92.3 % through, 2 n / (n^2 + 1) of it. */
 static void a_pane_of_glass(void **state) {
   (void)state;
@@ -160,6 +223,10 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(glass_reflects_as_the_books_say),
       cmocka_unit_test(fresnel_agrees_with_the_optics),
+      cmocka_unit_test(metals_agree_with_the_optics),
+      cmocka_unit_test(polygons_have_their_form_factors),
+      cmocka_unit_test(disks_have_their_form_factors),
+      cmocka_unit_test(a_penumbra_grows_to_its_light),
       cmocka_unit_test(a_pane_of_glass),
       cmocka_unit_test(a_slab_moves_a_ray),
       cmocka_unit_test(a_ball_focuses),

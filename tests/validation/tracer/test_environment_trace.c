@@ -187,11 +187,81 @@ static void a_clear_ball_takes_nothing_away(void **state) {
   drop(&f);
 }
 
+static double turned(const double d[3]) { /* half_sky, by 90 degrees about z */
+  return d[1] > 0 ? 3 : 0.5;
+}
+
+static double doubled(const double d[3]) {
+  return 2 * half_sky(d);
+}
+
+static void draw_stone(const char *angle, const double eye[3], radiance_of radiance,
+                       abbe_image *out) {
+  char text[2048];
+  fixture f;
+  snprintf(text, sizeof text,
+           CAMERA POINT_LIGHT FLOOR "- {name: stone, shape: brilliant, diameter: 0.3, transform: "
+                                    "[{rotate: {axis: [0, 0, 1], angle: %s}}, {translate: [0, 0, "
+                                    "0.2]}], material: crown}\n",
+           angle);
+  make(text, radiance, &f);
+  memcpy(f.scene.camera.eye, eye, 3 * sizeof *eye);
+  f.scene.camera.target[0] = f.scene.camera.target[1] = 0;
+  trace(&f, 4096, 24, out);
+  drop(&f);
+}
+
+/* Squares of the differences, over what the standard errors of both say. */
+static double chi_square(const abbe_image *a, const abbe_image *b, double factor) {
+  double sum = 0;
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 48; x++) {
+      const double d = factor * channel(a, "G", x, y) - channel(b, "G", x, y);
+      const double sigma =
+          hypot(factor * channel(a, "stderr.G", x, y), channel(b, "stderr.G", x, y));
+      sum += d * d / (sigma * sigma + 1e-6) / (48 * 48);
+    }
+  return sum;
+}
+
+static void turning_all_changes_nothing(void **state) {
+  (void)state;
+  static const double eye[3] = {0.2, -1, 0.5}, eye_turned[3] = {1, 0.2, 0.5};
+  abbe_image here, there, left;
+  draw_stone("0", eye, half_sky, &here);
+  draw_stone("90", eye_turned, turned, &there);
+  draw_stone("90", eye_turned, half_sky, &left);
+  print_message("chi square a pixel: %.2f turned, %.2f with the environment left\n",
+                chi_square(&here, &there, 1), chi_square(&here, &left, 1));
+  assert_true(chi_square(&here, &there, 1) < 1.5);
+  assert_true(chi_square(&here, &left, 1) > 5);
+  abbe_image_free(&here);
+  abbe_image_free(&there);
+  abbe_image_free(&left);
+}
+
+/* The same paths, of twice the light. */
+static void light_is_linear(void **state) {
+  (void)state;
+  static const double eye[3] = {0.2, -1, 0.5};
+  abbe_image once, twice;
+  draw_stone("0", eye, half_sky, &once);
+  draw_stone("0", eye, doubled, &twice);
+  for (size_t y = 0; y < 48; y++)
+    for (size_t x = 0; x < 48; x++)
+      assert_near(channel(&twice, "G", x, y), 2 * channel(&once, "G", x, y),
+                  1e-3 * channel(&once, "G", x, y) + 1e-4);
+  abbe_image_free(&once);
+  abbe_image_free(&twice);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_convex_body_meets_pi_times_its_surface),
                                      cmocka_unit_test(clear_glass_is_not_seen_in_uniform_light),
                                      cmocka_unit_test(a_whole_mirror_is_not_seen_in_uniform_light),
                                      cmocka_unit_test(an_open_floor_has_its_irradiance),
-                                     cmocka_unit_test(a_clear_ball_takes_nothing_away)};
+                                     cmocka_unit_test(a_clear_ball_takes_nothing_away),
+                                     cmocka_unit_test(turning_all_changes_nothing),
+                                     cmocka_unit_test(light_is_linear)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

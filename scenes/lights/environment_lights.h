@@ -10,8 +10,8 @@
  * and mirrors leave it where it is alike all around. Lights and soft light together give an open
  * receiver its irradiance exactly, but for colours that differ within a lamp.
  */
-#ifndef ABBE_SCENES_ENVIRONMENT_LIGHTS_H
-#define ABBE_SCENES_ENVIRONMENT_LIGHTS_H
+#ifndef ABBE_SCENES_LIGHTS_ENVIRONMENT_LIGHTS_H
+#define ABBE_SCENES_LIGHTS_ENVIRONMENT_LIGHTS_H
 
 #include "scenes/scene.h"
 

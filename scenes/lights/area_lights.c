@@ -1,4 +1,4 @@
-#include "scenes/area_lights.h"
+#include "scenes/lights/area_lights.h"
 
 #include "scenes/geometry/vector.h"
 

@@ -1,4 +1,4 @@
-#include "scenes/environment_lights.h"
+#include "scenes/lights/environment_lights.h"
 
 #include "colorimetry/upsampling.h"
 #include "scenes/geometry/vector.h"

@@ -5,8 +5,8 @@
  * nearly as the points fill it. A disk's lie on rings, a rectangle's in the middles of equal parts. Shadows are as many sharp ones, caustics as many sharp ones in one another's
  * midst.
  */
-#ifndef ABBE_SCENES_AREA_LIGHTS_H
-#define ABBE_SCENES_AREA_LIGHTS_H
+#ifndef ABBE_SCENES_LIGHTS_AREA_LIGHTS_H
+#define ABBE_SCENES_LIGHTS_AREA_LIGHTS_H
 
 #include "scenes/scene.h"
 
