@@ -5,7 +5,7 @@ foreach(name transform disjoint_sets vector
         scene object_file object_motion object_surface scene_file mesh_import mesh_files ply_strips
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
         radiance_map sky
-        view map_layout map_resample pov_file)
+        view estimator map_layout map_resample pov_file)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 abbe_test(cut_solid cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
