@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_thesis(const abbe_renderer *r) {
-  return abbe_profile_is_thesis(r->plan.desc.profile);
+static bool is_published(const abbe_renderer *r) {
+  return abbe_profile_is_published(r->plan.desc.profile);
 }
 
 /* A caller's progress may make another context current. */
@@ -83,14 +83,14 @@ static abbe_result check_drawn(const abbe_renderer *r, abbe_error *error) {
 }
 
 static abbe_rgb_space space_of(const abbe_renderer *r) {
-  return r->plan.desc.profile == ABBE_PROFILE_THESIS ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
+  return abbe_profile_is_printed(r->plan.desc.profile) ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
 }
 
 static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
-  result = is_thesis(r) ? abbe_thesis_read(&r->thesis, out, error)
-                        : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error);
+  result = is_published(r) ? abbe_published_read(&r->published, out, error)
+                           : abbe_picture_read(&r->picture, aovs, r->local.unit, out, error);
   if (result != ABBE_OK) return result;
   const abbe_rgb_space space = space_of(r);
   abbe_rgb_space_chromaticities(space, out->xy);
@@ -107,7 +107,7 @@ static abbe_result check_map(const abbe_renderer *r, size_t light, abbe_error *e
                           "the scene has no spectral map of light %zu", light);
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
-  if (is_thesis(r) || !abbe_photon_lights_is_face(&r->views, light) ||
+  if (is_published(r) || !abbe_photon_lights_is_face(&r->views, light) ||
       abbe_photon_lights_map_is_given(&r->views, light))
     return ABBE_OK;
   return abbe_error_set(error, ABBE_UNSUPPORTED,
@@ -131,8 +131,8 @@ static abbe_result read_map(abbe_renderer *r, size_t light, bool filled, abbe_im
                             abbe_error *error) {
   abbe_result result = check_map(r, light, error);
   if (result != ABBE_OK) return result;
-  result = is_thesis(r) ? abbe_thesis_read_map(&r->thesis, filled, out, error)
-                        : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error);
+  result = is_published(r) ? abbe_published_read_map(&r->published, filled, out, error)
+                           : abbe_spectral_map_read(&r->map, light, r->local.unit, out, error);
   if (result != ABBE_OK) return result;
   result = abbe_gl_check(r->gpu.gl, "the reading of the map", error);
   return describe_map(r, light, result, out, error);
@@ -143,9 +143,10 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
   if (bands < 1 || bands > ABBE_RENDER_MAX_BANDS)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a map of %zu bands; it may have 1 to %d",
                           bands, ABBE_RENDER_MAX_BANDS);
-  if (is_thesis(r))
+  if (is_published(r))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the thesis's passes sum colours; bands go with the default profile");
+                          "the %s profile's passes sum colours; bands go with the default profile",
+                          abbe_profile_name(r->plan.desc.profile));
   abbe_result result = check_map(r, light, error);
   if (result != ABBE_OK) return result;
   result = abbe_map_bands_read(&r->caustics, light, bands, r->local.unit, out, error);
@@ -154,7 +155,7 @@ static abbe_result read_map_bands(abbe_renderer *r, size_t light, size_t bands, 
 }
 
 void abbe_renderer_map_layout(const abbe_renderer *r, size_t light, abbe_map_layout *out) {
-  *out = is_thesis(r) ? r->thesis.layout : r->views.light[light].map;
+  *out = is_published(r) ? *abbe_published_layout(&r->published) : r->views.light[light].map;
   abbe_local_scene_to_world(&r->local, &out->view);
 }
 
@@ -167,7 +168,7 @@ static abbe_result read_hits(abbe_renderer *r, size_t light, float **data, unsig
                              size_t *count, size_t *slots, size_t *samples, abbe_error *error) {
   const abbe_result made = abbe_renderer_parts_check(r, error);
   if (made != ABBE_OK) return made;
-  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_thesis(r))
+  if (light >= r->plan.light_view_count || !r->plan.reaches[light] || is_published(r))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no photons start from light %zu", light);
   *slots = r->plan.hit_slots;
   *samples = r->caustics.trace.hits.stride;
@@ -177,10 +178,11 @@ static abbe_result read_hits(abbe_renderer *r, size_t light, float **data, unsig
 static abbe_result find_texture(abbe_renderer *r, abbe_renderer_picture *out, abbe_error *error) {
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
-  out->texture = is_thesis(r) ? r->thesis.picture : abbe_picture_texture(&r->picture);
+  out->texture =
+      is_published(r) ? abbe_published_picture(&r->published) : abbe_picture_texture(&r->picture);
   out->width = r->plan.desc.width;
   out->height = r->plan.desc.height;
-  out->scale = is_thesis(r) ? 1 : r->local.unit;
+  out->scale = is_published(r) ? 1 : r->local.unit;
   out->space = space_of(r) == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : space_of(r);
   r->gpu.gl->MemoryBarrier(GL_ALL_BARRIER_BITS);
   return abbe_gl_check(r->gpu.gl, "the handing out of the picture", error);

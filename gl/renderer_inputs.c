@@ -204,6 +204,9 @@ static uint64_t mix_light_plan(uint64_t h, const abbe_plan *plan) {
   MIX(h, d->energy_share);
   MIX(h, d->exits);
   MIX(h, d->photon_shift);
+  MIX(h, d->estimator);
+  MIX(h, d->iterations);
+  MIX(h, d->interfaces);
   h = mix_layout(h, d->map_layout, d->map_layout_light);
   const bool facts[] = {plan->spheres,
                         plan->convex,

@@ -17,8 +17,8 @@ enum {
   ALL = (1 << ABBE_PART_COUNT) - 1
 };
 
-static bool is_thesis(const abbe_renderer *r) {
-  return abbe_profile_is_thesis(r->plan.desc.profile);
+static bool is_published(const abbe_renderer *r) {
+  return abbe_profile_is_published(r->plan.desc.profile);
 }
 
 abbe_result abbe_renderer_parts_check(const abbe_renderer *r, abbe_error *error) {
@@ -34,7 +34,8 @@ static abbe_result make_local_scene(abbe_renderer *r, const abbe_scene *scene, a
   size_t of[ABBE_SCENE_MAX_LIGHTS] = {0};
   abbe_local_scene_free(&r->local);
   abbe_result result = abbe_local_scene_make(scene, &r->local, error);
-  if (result == ABBE_OK && !is_thesis(r)) result = abbe_local_scene_scale_light(&r->local, error);
+  if (result == ABBE_OK && !is_published(r))
+    result = abbe_local_scene_scale_light(&r->local, error);
   for (size_t i = own; i < r->plan.light_view_count; i++) of[i - own] = r->plan.light_view[i].light;
   if (result == ABBE_OK && r->plan.cubes)
     result = abbe_local_scene_repeat_lights(&r->local, of, r->plan.light_view_count - own, error);
@@ -79,13 +80,12 @@ static void free_eye(abbe_renderer *r) {
 }
 
 static void free_light(abbe_renderer *r) {
-  abbe_thesis_free(&r->thesis);
+  abbe_published_free(&r->published);
   abbe_caustics_free(&r->caustics);
   abbe_spectral_map_free(&r->map);
   abbe_receiver_atlas_free(&r->atlas);
   abbe_light_layers_free(&r->layers);
   abbe_photon_lights_free(&r->views);
-  r->thesis = (abbe_thesis){0};
   r->caustics = (abbe_caustics){0};
   r->map = (abbe_spectral_map){0};
   r->atlas = (abbe_receiver_atlas){0};
@@ -103,7 +103,7 @@ static void free_parts(abbe_renderer *r, unsigned parts) {
 static abbe_result make_light(abbe_renderer *r, abbe_error *error) {
   abbe_shader_variant_make(&r->scene, &r->variant);
   r->variant.copies = r->gpu.software;
-  if (is_thesis(r)) return abbe_thesis_make(&r->scene, &r->variant, &r->thesis, error);
+  if (is_published(r)) return abbe_published_make(&r->scene, &r->variant, &r->published, error);
   r->variant.textured = false; /* no light is followed beyond a receiver */
   abbe_result result = abbe_photon_lights_make(&r->scene, &r->views, error);
   r->variant.wide = r->views.wide;
@@ -138,10 +138,11 @@ static abbe_result make_parts(abbe_renderer *r, const abbe_scene *scene, unsigne
                               abbe_error *error) {
   abbe_result result = make_local_scene(r, scene, error);
   if (result != ABBE_OK) return result;
-  abbe_gpu_scene_begin(&r->gpu, r->local.scene, r->local.unit, &r->plan, local_layout(r), &r->scene);
+  abbe_gpu_scene_begin(&r->gpu, r->local.scene, r->local.unit, &r->plan, local_layout(r),
+                       &r->scene);
   result = abbe_gpu_scene_make(&r->scene, scene_parts(parts), error);
   if (result == ABBE_OK && (parts & LIGHT) != 0) result = make_light(r, error);
-  if (result != ABBE_OK || is_thesis(r)) return result;
+  if (result != ABBE_OK || is_published(r)) return result;
   if ((parts & (LIGHT | POWERS)) == POWERS) abbe_photon_lights_upload(&r->views);
   return (parts & EYE) != 0 ? make_eye(r, error) : ABBE_OK;
 }
@@ -180,7 +181,7 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   if (r->surrounded.light != NULL) scene = &r->surrounded;
   abbe_renderer_inputs_of(scene, &plan, &inputs);
   unsigned parts = r->made ? abbe_renderer_inputs_differ(&r->inputs, &inputs) : ALL;
-  if (abbe_profile_is_thesis(plan.desc.profile) && parts != 0)
+  if (abbe_profile_is_published(plan.desc.profile) && parts != 0)
     parts = ALL; /* its tables hold all */
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
@@ -227,8 +228,8 @@ static abbe_result draw_eye(abbe_renderer *r, abbe_error *error) {
  * has changed since are left out. */
 static abbe_result run_passes(abbe_renderer *r, abbe_error *error) {
   abbe_result result = ABBE_OK;
-  if (is_thesis(r)) {
-    if (!r->seen) result = abbe_thesis_run(&r->thesis, error);
+  if (is_published(r)) {
+    if (!r->seen) result = abbe_published_run(&r->published, error);
     r->lit = result == ABBE_OK;
   } else {
     if (!r->lit) result = draw_light(r, error);
@@ -243,8 +244,8 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
   s->wavelengths = r->plan.desc.wavelengths;
   s->device_bytes = abbe_gpu_bytes(&r->gpu) + r->scene.mesh_bytes;
   double cells = (double)r->plan.desc.photons * (double)r->plan.desc.photons;
-  size_t first = r->thesis.photon_count;
-  if (!is_thesis(r)) {
+  size_t first = abbe_published_photons(&r->published);
+  if (!is_published(r)) {
     for (size_t i = 0; i < r->plan.light_view_count; i++)
       s->photons += r->views.light[i].photon_count;
     cells = (double)r->views.light[0].cells[0] * (double)r->views.light[0].cells[1];
@@ -253,10 +254,11 @@ static void summarise(const abbe_renderer *r, double start_ms, abbe_statistics *
     s->photons = first;
   }
   s->refractor_share = (double)first / cells;
-  if (r->plan.caustics && !is_thesis(r)) abbe_caustics_energy(&r->caustics, &s->energy);
+  if (r->plan.caustics && !is_published(r)) abbe_caustics_energy(&r->caustics, &s->energy);
   double *part = &s->energy.reached;
   for (size_t i = 0; i < sizeof s->energy / sizeof *part; i++) part[i] *= r->local.unit;
-  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (!is_thesis(r) || s->pass_count == 0); pass++)
+  for (abbe_pass pass = 0; pass < ABBE_PASS_COUNT && (!is_published(r) || s->pass_count == 0);
+       pass++)
     s->kept[pass] = abbe_plan_runs(&r->plan, pass, 0) && !abbe_statistics_ran(s, pass);
 }
 
@@ -264,12 +266,13 @@ abbe_result abbe_renderer_parts_draw(abbe_renderer *r, abbe_render_progress prog
                                      abbe_statistics *statistics, abbe_error *error) {
   if (statistics != NULL) memset(statistics, 0, sizeof *statistics);
   if (abbe_renderer_parts_check(r, error) != ABBE_OK) return ABBE_INVALID_ARGUMENT;
-  if (statistics != NULL && r->plan.caustics && !is_thesis(r) &&
+  if (statistics != NULL && r->plan.caustics && !is_published(r) &&
       !abbe_caustics_know_energy(&r->caustics))
     r->lit = false; /* no frame with statistics has followed this light */
   r->gpu.statistics = statistics;
   r->untimed_ms = 0;
-  if (!r->lit || (is_thesis(r) && statistics != NULL)) r->seen = false; /* it counts as it draws */
+  if (!r->lit || (is_published(r) && statistics != NULL))
+    r->seen = false; /* it counts as it draws */
   const double start_ms = 1e3 * abbe_clock_seconds();
   abbe_gpu_watch(&r->gpu, progress, user);
   abbe_result result = run_passes(r, error);
@@ -290,8 +293,9 @@ abbe_result abbe_renderer_parts_baseline(abbe_renderer *r, double *ms, abbe_erro
   const abbe_gl *gl = r->gpu.gl;
   abbe_result result = abbe_renderer_parts_check(r, error);
   if (result != ABBE_OK) return result;
-  if (is_thesis(r))
-    return abbe_error_set(error, ABBE_UNSUPPORTED, "the thesis profile has no baseline of its own");
+  if (is_published(r))
+    return abbe_error_set(error, ABBE_UNSUPPORTED, "the %s profile has no baseline of its own",
+                          abbe_profile_name(r->plan.desc.profile));
   if (r->baseline == 0) /* the picture may be what lies in the receivers' colour, and stays */
     result = abbe_gpu_make_texture(&r->gpu, GL_RGBA32F, samples[0], samples[1], 1, false,
                                    &r->baseline, error);

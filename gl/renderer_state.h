@@ -7,10 +7,10 @@
 #include "gl/caustics/caustics.h"
 #include "gl/eye/adaptive_pass.h"
 #include "gl/eye/picture.h"
+#include "gl/published.h"
 #include "gl/renderer.h"
 #include "gl/renderer_inputs.h"
 #include "gl/scene/local_scene.h"
-#include "gl/thesis/thesis.h"
 
 struct abbe_renderer {
   abbe_context *context;
@@ -31,7 +31,7 @@ struct abbe_renderer {
   abbe_receiver_atlas atlas;
   abbe_spectral_map map;
   abbe_caustics caustics;
-  abbe_thesis thesis; /* in place of these and those below */
+  abbe_published published; /* in place of these and those below */
   bool lit;           /* all of that is drawn: the maps hold the light as it is now */
 
   /* eye */

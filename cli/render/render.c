@@ -142,7 +142,7 @@ static abbe_result check_display(const request *q, abbe_error *error) {
   if (q->png == NULL) return ABBE_OK;
   abbe_display *display = NULL;
   abbe_display_desc desc = q->display;
-  bool thesis = q->render.desc.profile == ABBE_PROFILE_THESIS;
+  bool thesis = abbe_profile_is_printed(q->render.desc.profile);
   desc.source_space =
       abbe_rgb_space_ocio_name(thesis ? ABBE_RGB_SPACE_REC709 : q->render.desc.space);
   abbe_result result = abbe_display_make(&desc, &display, error);
@@ -166,7 +166,7 @@ static abbe_result run_frames(const request *q, abbe_renderer *renderer, abbe_st
     if (result == ABBE_OK) *out = times.median;
   }
   abbe_progress_end(&progress);
-  if (result == ABBE_OK && q->frames > 0 && !abbe_profile_is_thesis(q->render.desc.profile))
+  if (result == ABBE_OK && q->frames > 0 && !abbe_profile_is_published(q->render.desc.profile))
     result = abbe_frame_times_baseline(renderer, q->frames, &out->baseline_ms, error);
   return result;
 }

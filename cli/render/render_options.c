@@ -20,6 +20,9 @@ enum {
   OPTION_LIGHT_POINTS,
   OPTION_MODEL,
   OPTION_FILL,
+  OPTION_ESTIMATOR,
+  OPTION_ITERATIONS,
+  OPTION_INTERFACES,
   OPTION_SHARE,
   OPTION_EXITS,
   OPTION_SPACE,
@@ -29,7 +32,9 @@ enum {
 
 static const struct argp_option options[] = {
     {"profile", OPTION_PROFILE, "NAME", 0,
-     "default; baselines: thesis, and thesis-cie with CIE weights in W", 1},
+     "default; published methods, and each with CIE weights in W: thesis, thesis-cie, shah2007, "
+     "shah2007-cie",
+     1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0,
      "samples of the spectrum that a photon takes at the most, 1 to 1000 (7)", 1},
@@ -52,6 +57,13 @@ static const struct argp_option options[] = {
      "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)",
      1},
     {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
+    {"estimator", OPTION_ESTIMATOR, "NAME", 0,
+     "of shah2007, how rays are brought to receivers: shah, axis, newton, secant, false-position, "
+     "illinois, bisection, march, impostor, ratio, exact (shah; in its twin ratio)",
+     1},
+    {"iterations", OPTION_ITERATIONS, "N", 0, "of the estimator, 1 to 64 (1)", 1},
+    {"interfaces", OPTION_INTERFACES, "N", 0,
+     "of shah2007, that refract light: 1, as of water, or 2 (2)", 1},
     {"share", OPTION_SHARE, "X", 0,
      "paths end below this share of their light (0.01; 0.005 in a gem)", 1},
     {"exits", OPTION_EXITS, "N", 0,
@@ -68,6 +80,7 @@ static const struct argp_option options[] = {
 #define ABBE_NAME_OF_3(code, name, ocio) name,
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF_2)};
 static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF_2)};
+static const char *const estimators[] = {ABBE_ESTIMATORS(ABBE_NAME_OF_2)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 
@@ -117,6 +130,16 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_FILL:
     d->fill = (abbe_fill)abbe_command_choice(p, "--fill", text, fills, ABBE_FILL_COUNT);
+    return 0;
+  case OPTION_ESTIMATOR:
+    d->estimator = (abbe_estimator)abbe_command_choice(p, "--estimator", text, estimators,
+                                                       ABBE_ESTIMATOR_COUNT);
+    return 0;
+  case OPTION_ITERATIONS:
+    d->iterations = abbe_command_count(p, "--iterations", text, 1, ABBE_ESTIMATOR_MAX_ITERATIONS);
+    return 0;
+  case OPTION_INTERFACES:
+    d->interfaces = abbe_command_count(p, "--interfaces", text, 1, 2);
     return 0;
   case OPTION_SHARE:
     d->energy_share = abbe_command_number(p, "--share", text, 1e-9, 1);

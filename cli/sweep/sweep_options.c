@@ -74,8 +74,8 @@ static const struct argp_option options[] = {
     {"quiet", 'q', NULL, 0, "no progress", 0},
     {"grid", OPTION_GRID, "quick|full|thin|presets", 0,
      "a named set of settings; presets: do they keep their promise here? (quick)", 1},
-    {"profiles", OPTION_PROFILES, "LIST", 0, "default,thesis,thesis-cie,trace,trace-filter (all)",
-     1},
+    {"profiles", OPTION_PROFILES, "LIST", 0,
+     "default,thesis,thesis-cie,shah2007,shah2007-cie,trace,trace-filter (all)", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "LIST", 0, "such as 3,7,21", 1},
     {"photons", OPTION_PHOTONS, "LIST", 0, "sides of the photon grid", 1},
     {"map", OPTION_MAP, "LIST", 0, "sides of the spectral map", 1},
@@ -372,8 +372,8 @@ const struct argp abbe_sweep_options_argp = {
     parse,
     "SCENE.yaml -o FILE.csv\nFILE.csv...",
     "Draws a scene with many settings and says what each costs, in time, and how far it is from "
-    "a traced reference: which settings are worth their time, and what the thesis's method "
-    "gives for it.\v"
+    "a traced reference: which settings are worth their time, and what published methods "
+    "give for it.\v"
     "The same command goes on where it was stopped. Given tables, it shows them.\n\n"
     "Examples:\n"
     "  abbe sweep scenes/gem.yaml -o gem.csv --plot gem.png\n"

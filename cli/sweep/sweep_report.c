@@ -127,8 +127,8 @@ static cJSON *describe_row(const abbe_sweep_row *row) {
 }
 
 /* "equal_error_speedup" against the thesis profile, "vs_fair_..." against its method in units,
- * "vs_trace_..." against the tracer; with "camera_" before it of frames after a camera's move,
- * with "warm_" and "cold_" of whole processes. */
+ * "vs_trace_..." against the tracer, "vs_shah2007_..." against caustics mapping; with "camera_"
+ * before it of frames after a camera's move, with "warm_" and "cold_" of whole processes. */
 static abbe_result describe_baseline(const abbe_sweep_table *table, const char *profile,
                                      abbe_sweep_number time, abbe_sweep_number number, cJSON *root,
                                      abbe_error *error) {

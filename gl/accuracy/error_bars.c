@@ -31,9 +31,9 @@ enum { AXES = 6 };
 
 abbe_result abbe_error_bars_check(abbe_profile profile, const abbe_error_bars_desc *desc,
                                   abbe_error *error) {
-  if (abbe_profile_is_thesis(profile))
+  if (abbe_profile_is_published(profile))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the profile '%s' has no error bars: it keeps to the thesis's own "
+                          "the profile '%s' has no error bars: it keeps to its own "
                           "sampling; use the default profile",
                           abbe_profile_name(profile));
   size_t variants = desc != NULL ? desc->variants : 0;

@@ -47,7 +47,7 @@ abbe_result abbe_preset_choose(const abbe_preset_request *request, abbe_context 
   if (!is_asked(q)) return ABBE_OK;
   if (desc->profile != ABBE_PROFILE_DEFAULT)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "presets are of the default profile; a thesis profile has none");
+                          "presets are of the default profile; a published method has none");
   abbe_result result = find_front(scene, desc, &c, error);
   if (result == ABBE_OK && q->name != NULL) result = find_named(q, c.front, &point, error);
   if (result == ABBE_OK && c.timed)

@@ -17,6 +17,11 @@ extern "C" {
 /* X(pointer type's middle, name without gl) */
 #define ABBE_GL_FUNCTIONS(X)                                                                       \
   X(ACTIVETEXTURE, ActiveTexture)                                                                  \
+  X(BEGINQUERY, BeginQuery)                                                                        \
+  X(DELETEQUERIES, DeleteQueries)                                                                  \
+  X(ENDQUERY, EndQuery)                                                                            \
+  X(GENQUERIES, GenQueries)                                                                        \
+  X(GETQUERYOBJECTUIV, GetQueryObjectuiv)                                                          \
   X(COPYBUFFERSUBDATA, CopyBufferSubData) X(ATTACHSHADER, AttachShader)                            \
   X(BINDBUFFER, BindBuffer)                                                                        \
   X(BINDBUFFERBASE, BindBufferBase)                                                                \

@@ -48,7 +48,7 @@ static void switch_refraction_on(const abbe_scene *scene, const abbe_render_desc
 
 void abbe_no_culling_apply(const abbe_scene *scene, const abbe_render_desc *asked,
                            abbe_plan *plan) {
-  if (abbe_profile_is_thesis(plan->desc.profile)) return;
+  if (abbe_profile_is_published(plan->desc.profile)) return;
   plan->receiver_shadows = plan->textured = true;
   if (plan->refractor_count > 0) switch_refraction_on(scene, asked, plan);
   list_again(plan);

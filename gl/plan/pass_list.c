@@ -9,6 +9,11 @@ static int count_faces(const abbe_plan *plan, size_t light) {
   return faces;
 }
 
+static const char *knows_none(const abbe_plan *plan) {
+  return abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
+                                                    : "the published method knows none";
+}
+
 static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
   for (size_t i = 0; i < scene->light_count && plan->refractor_count > 0; i++) {
     const char *name = scene->light[i].name;
@@ -23,8 +28,8 @@ static void list_maps(const abbe_scene *scene, abbe_plan *plan) {
                                            : "its cone misses every refractor");
   }
   abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MAPS, "%s",
-                !plan->caustics                              ? unlit
-                : abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
+                !plan->caustics                                 ? unlit
+                : abbe_profile_is_published(plan->desc.profile) ? knows_none(plan)
                 : plan->receiver_shadows ? "a receiver may hide from a light where its light lands"
                 : plan->outside_map_view
                     ? "a receiver lies more than 76 degrees off the view of a light's map"
@@ -78,9 +83,20 @@ static void list_photons(abbe_plan *plan) {
     abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, unlit);
     return;
   }
-  abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT,
-                "at most %zu a side, where light meets a refractor", plan->desc.photons);
-  if (least < most)
+  if (abbe_profile_is_shah2007(plan->desc.profile))
+    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, "a vertex each for %zu x %zu pixels",
+                  plan->desc.photons, plan->desc.photons);
+  else
+    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT,
+                  "at most %zu a side, where light meets a refractor", plan->desc.photons);
+  if (abbe_profile_is_shah2007(plan->desc.profile))
+    abbe_plan_add(
+        plan, ABBE_PASS_PHOTONS,
+        "%zu wavelengths, %zu interface%s; receivers by the estimator '%s', %zu iteration%s", most,
+        plan->desc.interfaces, plan->desc.interfaces > 1 ? "s" : "",
+        abbe_estimator_name(plan->desc.estimator), plan->desc.iterations,
+        plan->desc.iterations > 1 ? "s" : "");
+  else if (least < most)
     abbe_plan_add(plan, ABBE_PASS_PHOTONS, "%zu to %zu wavelengths, as each photon's hits ask",
                   least, most);
   else
@@ -95,6 +111,8 @@ static void list_light(abbe_plan *plan) {
   abbe_plan_add(plan, ABBE_PASS_RECEIVER_DEPTH,
                 plan->receivers == ABBE_RECEIVER_DEPTH
                     ? "receivers are found by their depth from the light"
+                : abbe_profile_is_published(plan->desc.profile)
+                    ? "it casts the shadows; receivers are hit exactly"
                     : "receivers are hit exactly");
   abbe_plan_add(plan, ABBE_PASS_LIGHT_FRONT, "%s",
                 plan->caustics ? "photons start where the light sees a refractor" : unlit);
@@ -138,8 +156,8 @@ static void list_eye(abbe_plan *plan) {
                   plan->desc.adaptive, plan->desc.adaptive);
   else
     abbe_plan_add(plan, ABBE_PASS_EYE_ADAPTIVE, "%s",
-                  abbe_profile_is_thesis(plan->desc.profile) ? "the thesis knows none"
-                                                             : "none, as asked");
+                  abbe_profile_is_published(plan->desc.profile) ? knows_none(plan)
+                                                                : "none, as asked");
   if (plan->camera_sees_refractor && plan->eye_exits > 1)
     abbe_plan_add(plan, ABBE_PASS_EYE_REFRACTION,
                   "one direction a wavelength, until less than %g of its light is left, %zu exits "

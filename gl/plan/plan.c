@@ -35,12 +35,13 @@ static abbe_result make_lists(const abbe_scene *scene, abbe_plan *plan, abbe_err
 
 /* Facts that follow from others. */
 static void combine(abbe_plan *plan) {
-  const bool thesis = abbe_profile_is_thesis(plan->desc.profile), caustics = plan->caustics;
+  const bool published = abbe_profile_is_published(plan->desc.profile), caustics = plan->caustics;
   const bool apart = caustics && plan->dispersive && plan->desc.wavelengths > 1;
   plan->draw_back = plan->layers;
-  plan->tiles = caustics && !thesis && (plan->receiver_shadows || plan->outside_map_view);
-  plan->fills = plan->desc.fill != ABBE_FILL_NONE && (apart || (thesis && caustics));
-  plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !thesis;
+  plan->tiles = caustics && !published && (plan->receiver_shadows || plan->outside_map_view);
+  plan->fills =
+      plan->desc.fill != ABBE_FILL_NONE && ((apart && !published) || (published && caustics));
+  plan->lengths = caustics && plan->tinting && !plan->multi_refractor_paths && !published;
 }
 
 static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *desc, abbe_plan *out,
@@ -52,7 +53,7 @@ static abbe_result make_plan(const abbe_scene *scene, const abbe_render_desc *de
   if (result == ABBE_OK) result = make_lists(scene, out, error);
   if (result == ABBE_OK) result = abbe_refractor_model_choose(scene, out, error);
   if (result == ABBE_OK) abbe_receiver_model_choose(scene, out);
-  if (result == ABBE_OK) result = abbe_support_thesis(scene, out, error);
+  if (result == ABBE_OK) result = abbe_support_published(scene, out, error);
   if (result == ABBE_OK) result = abbe_support_layout(scene, out, error);
   if (result == ABBE_OK) abbe_light_views_reach(scene, out);
   if (result == ABBE_OK) result = abbe_light_views_choose(scene, out, error);
@@ -85,11 +86,11 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
   if (result != ABBE_OK) return result;
   const size_t others = scene->environment != NULL ? d.environment_lights : 0;
   abbe_scene pointed;
-  result = abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed,
-                                error);
+  result =
+      abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed, error);
   if (result != ABBE_OK) return result;
-  result = abbe_environment_lights_add(&pointed, d.environment_lights, d.min_nm, d.max_nm, out,
-                                       error);
+  result =
+      abbe_environment_lights_add(&pointed, d.environment_lights, d.min_nm, d.max_nm, out, error);
   free(pointed.light);
   return result;
 }

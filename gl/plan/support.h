@@ -13,11 +13,11 @@
 extern "C" {
 #endif
 
-/* ABBE_UNSUPPORTED for a mirror where the thesis profile or the model 'layers' is asked for. */
+/* ABBE_UNSUPPORTED for a mirror where the thesis's profiles or the model 'layers' is asked for. */
 abbe_result abbe_support_mirrors(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
-/* ABBE_UNSUPPORTED for what the thesis profile does not know, where it is asked for. */
-abbe_result abbe_support_thesis(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
+/* ABBE_UNSUPPORTED for what a published method does not know, where it is asked for. */
+abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);
 
 /* ABBE_INVALID_ARGUMENT for a given map layout that is not the layout of its light's map. */
 abbe_result abbe_support_layout(const abbe_scene *scene, const abbe_plan *plan, abbe_error *error);

@@ -12,11 +12,7 @@
  * fill's thresholds mean what they do in the thesis. */
 #include "gl/thesis/thesis.h"
 
-#include "colorimetry/weights.h"
-#include "gl/caustics/map_picture.h"
-#include "gl/eye/picture.h"
 #include "scenes/geometry/transform.h"
-#include "spectral/wavelengths.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,14 +21,6 @@
 
 /* Integral of the splat's Gaussian over its disk, in texels. */
 static const double splat_sum = 2.6075;
-
-static void look_and_clip(const abbe_view *view, double look[16], double clip[16]) {
-  double target[3];
-  for (int k = 0; k < 3; k++) target[k] = view->origin[k] + view->forward[k];
-  abbe_transform_look_at(view->origin, target, view->up, look);
-  const double *w = view->window;
-  abbe_transform_perspective(w[0], w[1], w[2], w[3], view->near, view->far, clip);
-}
 
 static abbe_result make_targets(abbe_thesis *t, abbe_error *error) {
   size_t map = t->scene->plan->desc.map_size, w = t->scene->plan->desc.width,
@@ -93,70 +81,23 @@ static abbe_result make_programs(abbe_thesis *t, const abbe_shader_variant *vari
   return result;
 }
 
-static const double narrow_rad = 0.17; /* ten degrees */
-
-static void fit_objects(const abbe_gpu_scene *scene, const size_t *object, size_t count,
-                        abbe_view *view) {
-  for (size_t i = 0; i < count; i++) {
-    const abbe_mesh *mesh = &scene->local->object[object[i]].mesh;
-    abbe_view_fit(view, (const double(*)[3])mesh->position, mesh->vertex_count);
-  }
-}
-
-/* The thesis's light sees through one frustum: its cone, or all there is. With the CIE's weights
- * also where the cone is narrow: a prism throws all of its light out of it. */
-static void fit_light(abbe_thesis *t) {
-  const abbe_light *light = &t->scene->local->light[0];
-  const abbe_plan *plan = t->scene->plan;
-  abbe_view fitted, *view = &fitted;
-  abbe_photon_light_look(t->scene, 0, view);
-  fit_objects(t->scene, plan->refractor_object, plan->refractor_count, view);
-  fit_objects(t->scene, plan->receiver_object, plan->receiver_count, view);
-  bool narrow = t->cie && light->cone_rad < narrow_rad;
-  if (light->kind == ABBE_LIGHT_SPOT && !narrow) {
-    double look[3];
-    memcpy(look, light->direction, sizeof look);
-    double near = view->near, far = view->far;
-    abbe_view_look(light->position, look, view->up, false, view);
-    double tangent = fmin(tan(light->cone_rad), ABBE_VIEW_MAX_TANGENT);
-    double window[4] = {-tangent, tangent, -tangent, tangent};
-    memcpy(view->window, window, sizeof window);
-    view->near = fmax(0.25 * near, 1e-3 * far);
-    view->far = 1.5 * far;
-  } else {
-    abbe_view_pad(view, 0.01);
-  }
-  double half = 0.5 * fmax(view->window[1] - view->window[0], view->window[3] - view->window[2]);
-  for (int axis = 0; axis < 2; axis++) {
-    double middle = 0.5 * (view->window[2 * axis] + view->window[2 * axis + 1]);
-    view->window[2 * axis] = middle - half;
-    view->window[2 * axis + 1] = middle + half;
-  }
-  abbe_map_layout_make(view, &t->layout);
-}
-
 abbe_result abbe_thesis_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
                              abbe_thesis *out, abbe_error *error) {
   abbe_thesis *t = out;
   t->scene = scene;
   t->cie = scene->plan->desc.profile == ABBE_PROFILE_THESIS_CIE;
-  fit_light(t);
+  abbe_view fitted;
+  abbe_image_view_fit_light(scene, &fitted);
+  abbe_map_layout_make(&fitted, &t->layout);
   abbe_camera_view_fit(scene->local, &scene->plan->desc, &t->camera);
-  look_and_clip(&t->layout.view, t->light_look, t->light_clip);
-  look_and_clip(&t->camera.view, t->eye_look, t->eye_clip);
+  abbe_image_view_make(&t->layout.view, &t->light);
+  abbe_image_view_make(&t->camera.view, &t->eye);
   abbe_result result =
       abbe_photon_cells_make(scene->gpu, scene->plan->desc.photons, &t->cells, error);
   if (result == ABBE_OK) result = abbe_thesis_tables_make(t->scene, t->cie, &t->tables, error);
   if (result == ABBE_OK) result = make_targets(t, error);
   if (result == ABBE_OK) result = make_programs(t, variant, error);
   return result;
-}
-
-static void set_matrix(abbe_thesis *t, GLuint program, const char *name, const double m[16]) {
-  float f[16];
-  for (int k = 0; k < 16; k++) f[k] = (float)m[k];
-  t->scene->gpu->gl->UniformMatrix4fv(t->scene->gpu->gl->GetUniformLocation(program, name), 1,
-                                      GL_FALSE, f);
 }
 
 static void set_planes(abbe_thesis *t, GLuint program, const abbe_view *view) {
@@ -169,32 +110,13 @@ static void set_common(abbe_thesis *t, GLuint program, const abbe_view *view,
                        const double clip[16]) {
   const abbe_gl *gl = t->scene->gpu->gl;
   const double *w = view->window;
-  set_matrix(t, program, "projection", clip);
+  abbe_image_view_set_matrix(t->scene, program, "projection", clip);
   gl->Uniform4f(gl->GetUniformLocation(program, "window"), (float)w[0], (float)w[1], (float)w[2],
                 (float)w[3]);
   set_planes(t, program, view);
   GLsizei n = (GLsizei)t->scene->plan->desc.wavelengths;
   gl->Uniform1fv(gl->GetUniformLocation(program, "index"), n, t->tables.index);
   gl->Uniform1fv(gl->GetUniformLocation(program, "attenuation_of"), n, t->tables.attenuation_of);
-}
-
-/* The lamp: white in Rec.709 at full strength, a cone; a point light's reaches everywhere. */
-static void set_spot(abbe_thesis *t, GLuint program, const double direction[3]) {
-  const abbe_light *light = &t->scene->local->light[0];
-  double white[3], rgb[3], matrix[9];
-  abbe_weights_band_xyz(&light->illuminant, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM,
-                        ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM, white);
-  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, matrix);
-  abbe_rgb_space_apply(matrix, white, rgb);
-  bool cone = light->kind == ABBE_LIGHT_SPOT;
-  double outer = cone ? cos(light->cone_rad) : -2;
-  double inner = cone ? cos(fmax(light->cone_rad - light->soft_rad, 0)) : -2;
-  t->scene->gpu->gl->Uniform4f(t->scene->gpu->gl->GetUniformLocation(program, "spot"),
-                               (float)direction[0], (float)direction[1], (float)direction[2],
-                               (float)outer);
-  abbe_gpu_set_float(t->scene->gpu, program, "spot_inner", inner);
-  t->scene->gpu->gl->Uniform3f(t->scene->gpu->gl->GetUniformLocation(program, "spot_colour"),
-                               (float)rgb[0], (float)rgb[1], (float)rgb[2]);
 }
 
 static abbe_result draw_layers(abbe_thesis *t, GLuint normals, GLuint depths, size_t width,
@@ -208,8 +130,8 @@ static abbe_result draw_layers(abbe_thesis *t, GLuint normals, GLuint depths, si
   t->scene->gpu->gl->ClearBufferfv(GL_COLOR, 0, nothing);
   t->scene->gpu->gl->ClearBufferfv(GL_DEPTH, 0, &far);
   t->scene->gpu->gl->UseProgram(t->layers);
-  set_matrix(t, t->layers, "view", look);
-  set_matrix(t, t->layers, "projection", clip);
+  abbe_image_view_set_matrix(t->scene, t->layers, "view", look);
+  abbe_image_view_set_matrix(t->scene, t->layers, "projection", clip);
   for (size_t i = 0; i < t->scene->plan->refractor_count; i++)
     abbe_gpu_meshes_draw(t->scene, t->scene->plan->refractor_object[i]);
   return ABBE_OK;
@@ -227,12 +149,12 @@ static abbe_result light_passes(abbe_thesis *t, abbe_error *error) {
   if (result != ABBE_OK) return result;
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->UseProgram(t->depth_only);
-  abbe_transform_multiply(t->light_clip, t->light_look, matrix);
-  set_matrix(t, t->depth_only, "view_projection", matrix);
+  abbe_transform_multiply(t->light.clip, t->light.look, matrix);
+  abbe_image_view_set_matrix(t->scene, t->depth_only, "view_projection", matrix);
   for (size_t i = 0; i < t->scene->plan->receiver_count; i++)
     abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_RECEIVER_DEPTH);
-  result = draw_layers(t, t->light_normals, t->light_depths, map, map, t->light_look, t->light_clip,
+  result = draw_layers(t, t->light_normals, t->light_depths, map, map, t->light.look, t->light.clip,
                        error);
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
   return result;
@@ -256,10 +178,10 @@ static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
   gl->Enable(GL_PROGRAM_POINT_SIZE);
   gl->BlendFunc(GL_ONE, GL_ONE);
   gl->UseProgram(t->splat);
-  set_common(t, t->splat, &t->layout.view, t->light_clip);
+  set_common(t, t->splat, &t->layout.view, t->light.clip);
   double direction[3] = {0, 0, -1};
-  abbe_transform_direction(t->light_look, t->scene->local->light[0].direction, direction);
-  set_spot(t, t->splat, direction);
+  abbe_transform_direction(t->light.look, t->scene->local->light[0].direction, direction);
+  abbe_image_view_set_lamp(t->scene, t->splat, direction);
   abbe_gpu_bind_array(t->scene->gpu, t->splat, "normals", 0, t->light_normals);
   abbe_gpu_bind_array(t->scene->gpu, t->splat, "depths", 1, t->light_depths);
   abbe_gpu_bind_texture(t->scene->gpu, t->splat, "receiver_depth", 2, t->light_receiver_depth);
@@ -278,56 +200,14 @@ static abbe_result splat_photons(abbe_thesis *t, abbe_error *error) {
   return ABBE_OK;
 }
 
-static abbe_result draw_screen(abbe_thesis *t, GLuint target, size_t width, size_t height,
-                               abbe_error *error) {
-  static const int flat = -1;
-  abbe_result result =
-      abbe_gpu_set_target(t->scene->gpu, &target, &flat, 1, 0, width, height, error);
-  if (result != ABBE_OK) return result;
-  t->scene->gpu->gl->Disable(GL_DEPTH_TEST);
-  t->scene->gpu->gl->BindVertexArray(t->scene->gpu->empty_array);
-  t->scene->gpu->gl->DrawArrays(GL_TRIANGLES, 0, 3);
-  return ABBE_OK;
-}
-
 static abbe_result fill_gaps(abbe_thesis *t, abbe_error *error) {
   size_t map = t->scene->plan->desc.map_size;
   abbe_gpu_start_lap(t->scene->gpu);
   t->scene->gpu->gl->UseProgram(t->fill);
   abbe_gpu_bind_texture(t->scene->gpu, t->fill, "spectral_map", 0, t->map);
-  abbe_result result = draw_screen(t, t->filled, map, map, error);
+  abbe_result result = abbe_image_view_draw_screen(t->scene, t->filled, map, map, error);
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_GAP_FILL);
   return result;
-}
-
-static void set_surface(abbe_thesis *t, size_t receiver, int *layer) {
-  const abbe_object *o = &t->scene->local->object[t->scene->plan->receiver_object[receiver]];
-  GLuint p = t->receivers;
-  bool textured = o->texture.data != NULL;
-  double rgb[3] = {o->reflectance[0], o->reflectance[1], o->reflectance[2]};
-  if (t->cie) abbe_gpu_scene_to_working(t->scene, rgb, rgb);
-  t->scene->gpu->gl->Uniform3f(t->scene->gpu->gl->GetUniformLocation(p, "reflectance"),
-                               (float)rgb[0], (float)rgb[1], (float)rgb[2]);
-  t->scene->gpu->gl->Uniform3f(t->scene->gpu->gl->GetUniformLocation(p, "texture_info"),
-                               textured ? (float)*layer : -1.0f, (float)o->texture_repeat[0],
-                               (float)o->texture_repeat[1]);
-  *layer += textured;
-}
-
-/* What only the physical units ask for; programs without them have no such uniforms. */
-static void set_units(abbe_thesis *t, GLuint program) {
-  const abbe_gl *gl = t->scene->gpu->gl;
-  const double *forward = t->layout.view.forward;
-  const float *white = t->tables.white, *m = t->scene->rgb_from_xyz;
-  if (!t->cie) return;
-  gl->UniformMatrix3fv(gl->GetUniformLocation(program, "rgb_from_xyz"), 1, GL_FALSE, m);
-  gl->UniformMatrix3fv(gl->GetUniformLocation(program, "xyz_from_rgb"), 1, GL_FALSE,
-                       t->scene->xyz_from_rgb);
-  gl->Uniform3f(gl->GetUniformLocation(program, "forward"), (float)forward[0], (float)forward[1],
-                (float)forward[2]);
-  gl->Uniform3f(gl->GetUniformLocation(program, "white"), white[0], white[1], white[2]);
-  abbe_gpu_set_float(t->scene->gpu, program, "power", t->scene->local->light[0].power);
-  abbe_gpu_set_float(t->scene->gpu, program, "ambient", t->scene->local->ambient);
 }
 
 static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
@@ -346,13 +226,13 @@ static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
   gl->ClearBufferfv(GL_DEPTH, 0, &far);
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(t->receivers);
-  abbe_transform_multiply(t->eye_clip, t->eye_look, matrix);
-  set_matrix(t, t->receivers, "view_projection", matrix);
-  abbe_transform_multiply(t->light_clip, t->light_look, matrix);
-  set_matrix(t, t->receivers, "light_matrix", matrix);
-  set_spot(t, t->receivers, t->scene->local->light[0].direction);
+  abbe_transform_multiply(t->eye.clip, t->eye.look, matrix);
+  abbe_image_view_set_matrix(t->scene, t->receivers, "view_projection", matrix);
+  abbe_transform_multiply(t->light.clip, t->light.look, matrix);
+  abbe_image_view_set_matrix(t->scene, t->receivers, "light_matrix", matrix);
+  abbe_image_view_set_lamp(t->scene, t->receivers, t->scene->local->light[0].direction);
   set_planes(t, t->receivers, &t->layout.view);
-  set_units(t, t->receivers);
+  abbe_image_view_set_units(t->scene, t->receivers, &t->light.view);
   const double *lamp = t->scene->local->light[0].position, *eye = t->scene->local->camera.eye;
   gl->Uniform3f(gl->GetUniformLocation(t->receivers, "light_position"), (float)lamp[0],
                 (float)lamp[1], (float)lamp[2]);
@@ -365,7 +245,7 @@ static abbe_result light_receivers(abbe_thesis *t, abbe_error *error) {
   abbe_gpu_bind_array(t->scene->gpu, t->receivers, "refractor_depths", 3, t->light_depths);
   int layer = 0;
   for (size_t i = 0; i < t->scene->plan->receiver_count; i++) {
-    set_surface(t, i, &layer);
+    abbe_image_view_set_surface(t->scene, t->receivers, i, &layer);
     abbe_gpu_meshes_draw(t->scene, t->scene->plan->receiver_object[i]);
   }
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_EYE_RECEIVERS);
@@ -379,15 +259,15 @@ static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
   gl->Enable(GL_DEPTH_TEST);
   abbe_gpu_start_lap(t->scene->gpu);
   abbe_result result =
-      draw_layers(t, t->eye_normals, t->eye_depths, width, height, t->eye_look, t->eye_clip, error);
+      draw_layers(t, t->eye_normals, t->eye_depths, width, height, t->eye.look, t->eye.clip, error);
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_EYE_FRONT_AND_BACK);
   if (result != ABBE_OK) return result;
   gl->UseProgram(t->refraction);
-  set_common(t, t->refraction, &t->camera.view, t->eye_clip);
+  set_common(t, t->refraction, &t->camera.view, t->eye.clip);
   double lamp[3], none[3] = {0, 0, -1};
-  abbe_transform_point(t->eye_look, t->scene->local->light[0].position, lamp);
-  set_spot(t, t->refraction, none);
-  set_units(t, t->refraction);
+  abbe_transform_point(t->eye.look, t->scene->local->light[0].position, lamp);
+  abbe_image_view_set_lamp(t->scene, t->refraction, none);
+  abbe_image_view_set_units(t->scene, t->refraction, &t->light.view);
   gl->Uniform3f(gl->GetUniformLocation(t->refraction, "light_position"), (float)lamp[0],
                 (float)lamp[1], (float)lamp[2]);
   gl->Uniform2f(gl->GetUniformLocation(t->refraction, "picture_size"), (float)width, (float)height);
@@ -403,7 +283,7 @@ static abbe_result refract_eye(abbe_thesis *t, abbe_error *error) {
   abbe_gpu_bind_array(t->scene->gpu, t->refraction, "depths", 1, t->eye_depths);
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receiver_depth", 2, t->eye_receiver_depth);
   abbe_gpu_bind_texture(t->scene->gpu, t->refraction, "receivers", 3, t->eye_receivers);
-  result = draw_screen(t, t->picture, width, height, error);
+  result = abbe_image_view_draw_screen(t->scene, t->picture, width, height, error);
   abbe_gpu_book_lap(t->scene->gpu, ABBE_PASS_EYE_REFRACTION);
   return result;
 }
@@ -436,37 +316,11 @@ void abbe_thesis_free(abbe_thesis *t) {
 }
 
 abbe_result abbe_thesis_read(const abbe_thesis *t, abbe_image *out, abbe_error *error) {
-  static const char *const rgb[] = {"R", "G", "B"}, *const xyz[] = {"X", "Y", "Z"};
-  const abbe_render_desc *desc = &t->scene->plan->desc;
-  const bool as_xyz = t->cie && desc->space == ABBE_RGB_SPACE_XYZ;
-  abbe_result result =
-      abbe_image_make(desc->width, desc->height, 3, as_xyz ? xyz : rgb, out, error);
-  if (result != ABBE_OK) return result;
-  float *data = malloc(out->width * out->height * 4 * sizeof *data);
-  if (data == NULL) {
-    abbe_image_free(out);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the picture");
-  }
-  t->scene->gpu->gl->BindTexture(GL_TEXTURE_2D, t->picture);
-  t->scene->gpu->gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
-  abbe_picture_copy_flipped(data, 0, out, 0, 3, 1);
-  free(data);
-  if (as_xyz) abbe_picture_to_xyz(out, 0);
-  return ABBE_OK;
+  return abbe_image_view_read(t->scene, t->picture, out, error);
 }
 
 abbe_result abbe_thesis_read_map(const abbe_thesis *t, bool filled, abbe_image *out,
                                  abbe_error *error) {
   const bool smeared = filled && t->scene->plan->desc.fill == ABBE_FILL_SMEAR;
-  const size_t side = t->scene->plan->desc.map_size;
-  float *data = malloc(side * side * 4 * sizeof *data);
-  if (data == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to read the map");
-  t->scene->gpu->gl->BindTexture(GL_TEXTURE_2D, smeared ? t->filled : t->map);
-  t->scene->gpu->gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_FLOAT, data);
-  /* The passes sum the light of a lamp of unit power. */
-  abbe_result result = t->cie ? abbe_map_picture_flux(data, side, &t->layout,
-                                                      t->scene->local->light[0].power, out, error)
-                              : abbe_map_picture_colour(data, side, out, error);
-  free(data);
-  return result;
+  return abbe_image_view_read_map(t->scene, smeared ? t->filled : t->map, &t->layout, out, error);
 }

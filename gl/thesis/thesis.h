@@ -5,6 +5,7 @@
 #define ABBE_GL_THESIS_THESIS_H
 
 #include "colorimetry/image/image.h"
+#include "gl/image_space/image_view.h"
 #include "gl/light/photon_start.h"
 #include "gl/scene/camera_view.h"
 #include "gl/scene/shader_variant.h"
@@ -23,7 +24,7 @@ typedef struct abbe_thesis {
   GLuint layers, depth_only, splat, fill, receivers, refraction;
   GLuint light_normals, light_depths, light_receiver_depth, map, filled;
   GLuint eye_normals, eye_depths, eye_receiver_depth, eye_receivers, picture;
-  double light_look[16], light_clip[16], eye_look[16], eye_clip[16];
+  abbe_image_view light, eye;
   abbe_thesis_tables tables;
   bool cie;
 } abbe_thesis;

@@ -124,7 +124,7 @@ static double cut(place a, place b) {
 static double bracketed(search *s, abbe_estimator kind) {
   const bool ratio = kind == ABBE_ESTIMATOR_RATIO,
              illinois = ratio || kind == ABBE_ESTIMATOR_ILLINOIS;
-  place low, high;
+  place low = {0, 0}, high = {0, 0};
   int side = 0;
   if (!bracket(s, ratio, &low, &high)) {
     s->found = false;
@@ -229,7 +229,7 @@ abbe_estimate abbe_estimator_run(const abbe_estimator_desc *desc, const double o
     out.distance = bracketed(&s, desc->kind);
     break;
   }
-  out.found = s.found && isfinite(out.distance);
+  out.found = s.found && isfinite(out.distance) && out.distance >= 0;
   out.lookups = s.lookups;
   if (desc->kind == ABBE_ESTIMATOR_SHAH || desc->kind == ABBE_ESTIMATOR_AXIS)
     memcpy(out.at, s.seen, sizeof out.at);

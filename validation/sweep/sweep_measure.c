@@ -38,7 +38,7 @@ static abbe_result time_frames(const abbe_sweep *s, abbe_renderer *renderer,
   out->number[ABBE_SWEEP_FASTEST_MS] = times.fastest_ms;
   out->number[ABBE_SWEEP_LIGHT_MS] = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_LIGHT);
   out->number[ABBE_SWEEP_EYE_MS] = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_EYE);
-  if (abbe_profile_is_thesis(abbe_renderer_plan(renderer)->desc.profile)) return ABBE_OK;
+  if (abbe_profile_is_published(abbe_renderer_plan(renderer)->desc.profile)) return ABBE_OK;
   return abbe_frame_times_baseline(renderer, 3, &out->number[ABBE_SWEEP_BASELINE_MS], error);
 }
 
@@ -176,7 +176,7 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
                                abbe_error *error) {
   abbe_image map = {0}, before = {0};
   const abbe_plan *plan = abbe_renderer_plan(renderer);
-  bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  bool thesis = abbe_profile_is_published(plan->desc.profile);
   if (!plan->caustics || s->light >= plan->light_view_count) return ABBE_OK;
   abbe_result result =
       thesis ? abbe_renderer_read_map(renderer, s->light, true, &map, error)
@@ -186,7 +186,7 @@ static abbe_result measure_map(const abbe_sweep *s, abbe_renderer *renderer, abb
     if (result == ABBE_OK) note_fill(&before, &map, out);
   }
   if (result == ABBE_OK && s->map != NULL)
-    result = compare_map(s, &map, plan->desc.profile == ABBE_PROFILE_THESIS, thesis, out, error);
+    result = compare_map(s, &map, abbe_profile_is_printed(plan->desc.profile), thesis, out, error);
   abbe_image_free(&map);
   abbe_image_free(&before);
   return result;
@@ -200,7 +200,7 @@ static abbe_result make_desc(const abbe_sweep *s, const abbe_sweep_setting *sett
   if (result != ABBE_OK) return result;
   out->width = s->picture != NULL ? s->picture->width : 0;
   out->height = s->picture != NULL ? s->picture->height : 0;
-  if (s->map == NULL || abbe_profile_is_thesis(out->profile)) return ABBE_OK;
+  if (s->map == NULL || abbe_profile_is_published(out->profile)) return ABBE_OK;
   out->map_layout = layout;
   out->map_layout_light = s->light;
   return abbe_map_layout_read(s->map, "the reference", layout, error);
@@ -232,7 +232,7 @@ static abbe_result measure_frames(const abbe_sweep *s, const abbe_sweep_setting 
   abbe_render_desc desc;
   abbe_renderer *renderer = NULL;
   abbe_result result = make_desc(s, setting, &layout, &desc, error);
-  bool scaled = desc.profile == ABBE_PROFILE_THESIS;
+  bool scaled = abbe_profile_is_printed(desc.profile);
   if (result == ABBE_OK) result = abbe_renderer_make(s->context, s->scene, &desc, &renderer, error);
   if (result == ABBE_OK) result = time_frames(s, renderer, progress, user, out, error);
   if (result == ABBE_OK) result = abbe_renderer_read(renderer, false, drawn, error);

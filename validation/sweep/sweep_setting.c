@@ -19,7 +19,7 @@ void abbe_sweep_setting_of_trace(size_t photons, size_t passes, bool filtered,
 }
 
 void abbe_sweep_setting_of(const abbe_render_desc *d, abbe_sweep_setting *out) {
-  bool thesis = abbe_profile_is_thesis(d->profile);
+  bool thesis = abbe_profile_is_published(d->profile);
   *out = (abbe_sweep_setting){.wavelengths = d->wavelengths,
                               .photons = d->photons,
                               .map = d->map_size,

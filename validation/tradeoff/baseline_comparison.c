@@ -25,10 +25,12 @@ const char *abbe_baseline_key(const char *profile) {
   return "";
 }
 
-/* The settings of the thesis. */
+/* The published settings. */
 static bool is_own(const abbe_sweep_setting *s, const char *profile) {
-  return strcmp(s->profile, profile) == 0 && s->wavelengths == 7 && s->photons == 512 &&
-         s->map == 1024 && strcmp(s->fill, "smear") == 0;
+  if (strcmp(s->profile, profile) != 0) return false;
+  if (strncmp(profile, "shah2007", 8) == 0) return s->photons == 128 && s->map == 768;
+  return s->wavelengths == 7 && s->photons == 512 && s->map == 1024 &&
+         strcmp(s->fill, "smear") == 0;
 }
 
 /* The default profile against one point. */

@@ -1,10 +1,10 @@
 /* baseline_comparison.h: the default profile held against another contestant's rows of the same
- * sweep: the thesis's method, and the tracer.
+ * sweep: the published methods, and the tracer.
  *
  * Two questions: how much sooner does the default profile have the baseline's error, and how much
- * of its error is left in its time? Both are asked of the baseline's own settings, those of the
- * thesis, and of every point of its own Pareto front, where the hardest answer counts. Points are
- * measured ones; nothing is interpolated.
+ * of its error is left in its time? Both are asked of the baseline's own settings, those that
+ * were published, and of every point of its own Pareto front, where the hardest answer counts.
+ * Points are measured ones; nothing is interpolated.
  */
 #ifndef ABBE_VALIDATION_TRADEOFF_BASELINE_COMPARISON_H
 #define ABBE_VALIDATION_TRADEOFF_BASELINE_COMPARISON_H
@@ -20,16 +20,19 @@ extern "C" {
   X("thesis", "thesis profile, with the best factor on its brightness", "")                        \
   X("thesis-cie", "thesis's method with CIE weights, in physical units", "vs_fair_")               \
   X("trace", "tracer", "vs_trace_")                                                                \
-  X("trace-filter", "tracer, filtered", "vs_filtered_")
-enum { ABBE_BASELINE_COUNT = 4 };
+  X("trace-filter", "tracer, filtered", "vs_filtered_")                                            \
+  X("shah2007", "caustics mapping, with the best factor on its brightness", "vs_shah2007_")        \
+  X("shah2007-cie", "caustics mapping with CIE weights, in physical units", "vs_fair_shah2007_")
+enum { ABBE_BASELINE_COUNT = 6 };
 extern const char *const abbe_baselines[ABBE_BASELINE_COUNT];
 const char *abbe_baseline_text(const char *profile);
 const char *abbe_baseline_key(const char *profile);
 
 /* NaN: not known, or never reached. */
 typedef struct abbe_baseline_comparison {
-  const abbe_sweep_row *baseline; /* 7 wavelengths, 512 photons, map 1024, smear; NULL: no row, or
-                                     the tracer, which has no settings of its own */
+  const abbe_sweep_row *baseline; /* of the thesis 7 wavelengths, 512 photons, map 1024, smear; of
+                                     caustics mapping 128 photons, map 768; NULL: no row, or the
+                                     tracer, which has no settings of its own */
   double equal_error_speedup;     /* its time over the least time of an error no larger */
   double equal_time_error_ratio;  /* the least error in a time no longer, over its error */
   size_t front;                   /* points of the baseline's front; 0: no rows */

@@ -4,7 +4,7 @@
 #include "gl/plan/examine/reach.h"
 
 void abbe_light_views_reach(const abbe_scene *scene, abbe_plan *plan) {
-  bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  bool thesis = abbe_profile_is_published(plan->desc.profile);
   for (size_t k = 0; k < plan->refractor_count; k++) {
     const abbe_object *object = &scene->object[plan->refractor_object[k]];
     for (size_t i = 0; i < scene->light_count; i++)
@@ -110,7 +110,7 @@ bool abbe_light_views_fit(const abbe_scene *scene, const abbe_light *light, cons
 /* Where one view of the light holds all refractors, it has that; else a cube of them. */
 static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan *plan,
                                 abbe_error *error) {
-  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  const bool thesis = abbe_profile_is_published(plan->desc.profile);
   const abbe_light *from = &scene->light[light];
   abbe_view view;
   if (thesis && from->kind == ABBE_LIGHT_SPOT) return ABBE_OK; /* its view is its cone */
@@ -120,10 +120,11 @@ static abbe_result examine_view(const abbe_scene *scene, size_t light, abbe_plan
   }
   if (!thesis) return make_cube(scene, light, plan, error);
   return abbe_error_set(error, ABBE_UNSUPPORTED,
-                        "the thesis profile looks through one view, and the light '%s' sees the "
+                        "the %s profile looks through one view, and the light '%s' sees the "
                         "refractor '%s' more than 76 degrees off the middle of all; move it away, "
                         "or take the default profile",
-                        from->name, scene->object[plan->off_view[light]].name);
+                        abbe_profile_name(plan->desc.profile), from->name,
+                        scene->object[plan->off_view[light]].name);
 }
 
 abbe_result abbe_light_views_choose(const abbe_scene *scene, abbe_plan *plan, abbe_error *error) {

@@ -7,26 +7,29 @@
 enum { MAX_PARALLELOGRAMS = 96 };
 
 void abbe_receiver_model_choose(const abbe_scene *scene, abbe_plan *plan) {
-  const bool thesis = abbe_profile_is_thesis(plan->desc.profile);
+  /* The published methods look their receivers up; an exact estimator meets them as the default
+   * profile does. */
+  const bool looked_up =
+      abbe_profile_is_published(plan->desc.profile) && plan->desc.estimator != ABBE_ESTIMATOR_EXACT;
   const abbe_object *general = NULL, *beyond = NULL;
-  plan->receivers = thesis ? ABBE_RECEIVER_DEPTH : ABBE_RECEIVER_EXACT;
+  plan->receivers = looked_up ? ABBE_RECEIVER_DEPTH : ABBE_RECEIVER_EXACT;
   for (size_t i = 0; i < plan->receiver_count; i++) {
     const abbe_object *object = &scene->object[plan->receiver_object[i]];
     const bool flat = object->exact.kind == ABBE_EXACT_PARALLELOGRAMS;
     const bool room = flat && object->exact.count <= MAX_PARALLELOGRAMS - plan->parallelogram_count;
-    plan->receiver_model[i] = thesis ? ABBE_RECEIVER_DEPTH
-                              : room ? ABBE_RECEIVER_EXACT
-                                     : ABBE_RECEIVER_BVH;
+    plan->receiver_model[i] = looked_up ? ABBE_RECEIVER_DEPTH
+                              : room    ? ABBE_RECEIVER_EXACT
+                                        : ABBE_RECEIVER_BVH;
     if (plan->receiver_model[i] == ABBE_RECEIVER_EXACT)
       plan->parallelogram_count += object->exact.count;
     if (!flat && general == NULL) general = object;
     if (flat && !room && beyond == NULL) beyond = object;
   }
-  if (!thesis && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_BVH;
+  if (!looked_up && (general != NULL || beyond != NULL)) plan->receivers = ABBE_RECEIVER_BVH;
   const char *model = abbe_receiver_model_name(plan->receivers);
-  if (thesis)
-    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: the thesis profile knows no other model",
-                  model);
+  if (looked_up)
+    abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: the %s profile knows no other model",
+                  model, abbe_profile_name(plan->desc.profile));
   else if (general != NULL)
     abbe_plan_add(plan, ABBE_CHOICE_RECEIVER_MODEL, "%s: '%.50s' is a general mesh", model,
                   general->name);

@@ -16,7 +16,7 @@ static const double invisible = 2e-6;
 static bool is_invisible(const abbe_scene *scene, const abbe_object *object,
                          const abbe_plan *plan) {
   abbe_material_range range;
-  if (plan->desc.profile == ABBE_PROFILE_THESIS ||
+  if (abbe_profile_is_printed(plan->desc.profile) ||
       abbe_material_range_make(object->material, plan->desc.min_nm, plan->desc.max_nm, &range,
                                NULL) != ABBE_OK)
     return false;
@@ -49,8 +49,9 @@ static const char *why_in_turn(const abbe_scene *scene, const abbe_plan *plan) {
     only = o;
     refractors++;
   }
+  if (abbe_profile_is_published(plan->desc.profile)) return NULL;
   if (abbe_scene_mirror(scene) != NULL) return "what a mirror sends on may meet a surface again";
-  if (abbe_profile_is_thesis(plan->desc.profile) || refractors == 0) return NULL;
+  if (refractors == 0) return NULL;
   if (plan->desc.model == ABBE_MODEL_LAYERS || refractors > MAX_FOLLOWED) return NULL;
   if (plan->desc.model == ABBE_MODEL_BVH) return "as asked";
   if (refractors > 1) return "there is more than one refractor";
@@ -95,13 +96,14 @@ static bool is_seen_from_outside(const abbe_scene *scene, const abbe_object *bal
 static abbe_refractor_model mirror_model(const abbe_scene *scene, const abbe_object *object,
                                          const abbe_plan *plan) {
   const bool ball = object->exact.kind == ABBE_EXACT_SPHERE;
+  if (abbe_profile_is_published(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
   return ball && plan->desc.model != ABBE_MODEL_BVH && is_seen_from_outside(scene, object)
              ? ABBE_REFRACTOR_SPHERE
              : ABBE_REFRACTOR_BVH;
 }
 
 static abbe_refractor_model model_of(const abbe_object *object, const abbe_plan *plan) {
-  if (abbe_profile_is_thesis(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
+  if (abbe_profile_is_published(plan->desc.profile)) return ABBE_REFRACTOR_LAYERS;
   if (plan->desc.model != ABBE_MODEL_AUTO)
     return (abbe_refractor_model)(plan->desc.model - ABBE_MODEL_SPHERE);
   if (object->exact.kind == ABBE_EXACT_SPHERE) return ABBE_REFRACTOR_SPHERE;
@@ -114,10 +116,12 @@ static void write_reason(const abbe_object *object, const abbe_plan *plan, char 
                          size_t size) {
   const char *model = abbe_refractor_model_name(model_of(object, plan));
   const char *because, *joint = NULL; /* before what the mesh itself tells */
-  char why[128];
+  char why[128], only[64];
   abbe_convex_reason(&object->exact.convex, why, sizeof why);
-  if (abbe_profile_is_thesis(plan->desc.profile)) {
-    because = "the thesis profile knows no other model";
+  if (abbe_profile_is_published(plan->desc.profile)) {
+    snprintf(only, sizeof only, "the %s profile knows no other model",
+             abbe_profile_name(plan->desc.profile));
+    because = only;
   } else if (plan->desc.model != ABBE_MODEL_AUTO) {
     because = "as asked";
   } else if (object->exact.kind == ABBE_EXACT_SPHERE) {
@@ -191,6 +195,8 @@ static void list_in_turn(abbe_plan *plan, const char *why) {
                 : plan->multi_refractor_paths ? why
                 : abbe_profile_is_thesis(plan->desc.profile)
                     ? "the thesis profile follows two interfaces"
+                : abbe_profile_is_published(plan->desc.profile)
+                    ? "the published method follows two interfaces at the most"
                 : plan->desc.model == ABBE_MODEL_LAYERS
                     ? "light goes through two layers and no further, as asked"
                 : plan->refractor_count < 2 ? "light that leaves the refractor cannot meet it again"

@@ -33,13 +33,18 @@ size_t abbe_plan_least_wavelengths(const abbe_plan *plan) {
   const size_t n = plan->desc.wavelengths;
   /* Without lengths hits do not know what absorption changes between two wavelengths; nor do they
    * what a mirror does. */
-  const bool apart = plan->fills && !abbe_profile_is_thesis(plan->desc.profile);
+  const bool apart = plan->fills && !abbe_profile_is_published(plan->desc.profile);
   const bool changes = plan->tinting || plan->colouring;
   return apart && changes == plan->lengths && n > coarse ? coarse : n;
 }
 
-static bool is_thesis(const abbe_plan *p) {
-  return abbe_profile_is_thesis(p->desc.profile);
+static bool is_published(const abbe_plan *p) {
+  return abbe_profile_is_published(p->desc.profile);
+}
+
+/* Its photons are the pixels of what the light sees. */
+static bool is_gridded(const abbe_plan *p) {
+  return abbe_profile_is_shah2007(p->desc.profile);
 }
 
 static bool refracts(const abbe_plan *p, size_t object) {

@@ -14,6 +14,18 @@ bool abbe_profile_is_thesis(abbe_profile profile) {
   return profile == ABBE_PROFILE_THESIS || profile == ABBE_PROFILE_THESIS_CIE;
 }
 
+bool abbe_profile_is_shah2007(abbe_profile profile) {
+  return profile == ABBE_PROFILE_SHAH2007 || profile == ABBE_PROFILE_SHAH2007_CIE;
+}
+
+bool abbe_profile_is_published(abbe_profile profile) {
+  return profile != ABBE_PROFILE_DEFAULT;
+}
+
+bool abbe_profile_is_printed(abbe_profile profile) {
+  return profile == ABBE_PROFILE_THESIS || profile == ABBE_PROFILE_SHAH2007;
+}
+
 const char *abbe_fill_name(abbe_fill fill) {
   static const char *const names[] = {ABBE_FILLS(ABBE_NAME_OF)};
   return (int)fill >= 0 && fill < ABBE_FILL_COUNT ? names[fill] : "unknown";
@@ -25,21 +37,40 @@ const char *abbe_model_name(abbe_model model) {
 }
 #undef ABBE_NAME_OF
 
+/* The printed methods' own: the thesis's nodes are 380 to 680, three of red, green and blue. */
+static const double shah_nm[2] = {450, 650};
+enum { SHAH_PHOTONS = 128, SHAH_MAP = 768, THESIS_PHOTONS = 512 };
+
+static void fill_in_shah(abbe_render_desc *d) {
+  const bool printed = abbe_profile_is_printed(d->profile);
+  if (printed && d->min_nm == 0) d->min_nm = shah_nm[0];
+  if (printed && d->max_nm == 0) d->max_nm = shah_nm[1];
+  if (d->photons == 0) d->photons = SHAH_PHOTONS;
+  if (d->map_size == 0) d->map_size = SHAH_MAP;
+  if (d->iterations == 0) d->iterations = 1;
+  if (d->interfaces == 0) d->interfaces = 2;
+  if (d->estimator == ABBE_ESTIMATOR_AUTO)
+    d->estimator = printed ? ABBE_ESTIMATOR_SHAH : ABBE_ESTIMATOR_RATIO;
+}
+
 static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
+  const bool published = abbe_profile_is_published(d->profile);
   const bool thesis = abbe_profile_is_thesis(d->profile);
+  if (abbe_profile_is_shah2007(d->profile)) fill_in_shah(d);
   if (d->width == 0) d->width = width;
   if (d->height == 0) d->height = height;
   if (d->min_nm == 0) d->min_nm = ABBE_WAVELENGTH_MIN_NM;
   if (d->max_nm == 0)
     d->max_nm = d->profile == ABBE_PROFILE_THESIS ? 680.0 : ABBE_WAVELENGTH_MAX_NM;
-  if (d->photons == 0) d->photons = thesis ? 512 : ABBE_PLAN_PHOTONS;
+  if (d->photons == 0) d->photons = thesis ? THESIS_PHOTONS : ABBE_PLAN_PHOTONS;
   if (d->map_size == 0) d->map_size = ABBE_PLAN_MAP;
   if (d->upsample == 0) d->upsample = 1;
-  if (d->supersample == 0) d->supersample = thesis || d->upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
+  if (d->supersample == 0) d->supersample = published || d->upsample > 1 ? 1 : ABBE_PLAN_SAMPLES;
   if (d->environment_lights == 0) d->environment_lights = ABBE_PLAN_ENVIRONMENT_LIGHTS;
   if (d->light_points == 0) d->light_points = ABBE_PLAN_LIGHT_POINTS;
-  if (d->adaptive == 0) d->adaptive = thesis ? 1 : ABBE_PLAN_ADAPTIVE;
-  if (d->fill == ABBE_FILL_AUTO) d->fill = thesis ? ABBE_FILL_SMEAR : ABBE_FILL_BRIDGE;
+  if (d->adaptive == 0) d->adaptive = published ? 1 : ABBE_PLAN_ADAPTIVE;
+  if (d->fill == ABBE_FILL_AUTO)
+    d->fill = thesis ? ABBE_FILL_SMEAR : published ? ABBE_FILL_NONE : ABBE_FILL_BRIDGE;
   if (d->energy_share == 0) d->energy_share = ABBE_PLAN_SHARE;
 }
 
@@ -60,8 +91,10 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the adaptive sampling", d->adaptive, 1, ABBE_RENDER_MAX_ADAPTIVE},
       /* 0: the scene tells */
       {"the number of wavelengths", d->wavelengths, 0,
-       abbe_profile_is_thesis(d->profile) ? 64 : ABBE_RENDER_MAX_WAVELENGTHS},
+       abbe_profile_is_published(d->profile) ? 64 : ABBE_RENDER_MAX_WAVELENGTHS},
       {"the number of exits", d->exits, 0, ABBE_RENDER_MAX_EXITS},
+      {"the number of iterations", d->iterations, 0, ABBE_ESTIMATOR_MAX_ITERATIONS},
+      {"the number of interfaces", d->interfaces, 0, 2},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i].value < counts[i].least || counts[i].value > counts[i].most)
@@ -89,30 +122,54 @@ static abbe_result check_numbers(const abbe_render_desc *d, abbe_error *error) {
   return ABBE_OK;
 }
 
-static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
-  const bool thesis = abbe_profile_is_thesis(d->profile);
-  if (d->upsample > 1 && thesis)
+/* What the published methods alone know, and what they do not. */
+static abbe_result check_published(const abbe_render_desc *d, abbe_error *error) {
+  const bool shah = abbe_profile_is_shah2007(d->profile);
+  if ((int)d->estimator < 0 || d->estimator >= ABBE_ESTIMATOR_COUNT ||
+      (!shah && (d->estimator != ABBE_ESTIMATOR_AUTO || d->iterations > 0 || d->interfaces > 0)))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the thesis profile has a sample for every pixel; it cannot be "
-                          "upsampled");
+                          "an estimator, its iterations and a number of interfaces go with the "
+                          "profiles shah2007 and shah2007-cie, not with '%s'",
+                          abbe_profile_name(d->profile));
+  if (shah && d->profile == ABBE_PROFILE_SHAH2007 && d->wavelengths != 0 && d->wavelengths != 1 &&
+      d->wavelengths != ABBE_PLAN_SHAH_COLOURS)
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "the profile 'shah2007' has an index each for red, green and blue, or one "
+        "for all; it cannot take %zu wavelengths, shah2007-cie can",
+        d->wavelengths);
+  return ABBE_OK;
+}
+
+static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
+  const bool published = abbe_profile_is_published(d->profile);
+  const char *name = abbe_profile_name(d->profile);
+  if (d->upsample > 1 && published)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the %s profile has a sample for every pixel; it cannot be upsampled",
+                          name);
   if (d->upsample > 1 && d->supersample > 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a sample for %zu x %zu pixels and %zu samples a pixel side: ask for one "
                           "of the two",
                           d->upsample, d->upsample, d->supersample);
-  if (d->adaptive > 1 && thesis)
+  if (d->adaptive > 1 && published)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "the thesis profile knows no adaptive samples; it cannot take %zu a side",
-                          d->adaptive);
-  if ((int)d->model < 0 || d->model >= ABBE_MODEL_COUNT || (thesis && d->model != ABBE_MODEL_AUTO))
+                          "the %s profile knows no adaptive samples; it cannot take %zu a side",
+                          name, d->adaptive);
+  if ((int)d->model < 0 || d->model >= ABBE_MODEL_COUNT ||
+      (published && d->model != ABBE_MODEL_AUTO))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the model '%s' does not go with the profile '%s'",
                           abbe_model_name(d->model), abbe_profile_name(d->profile));
-  if (thesis != (d->fill == ABBE_FILL_SMEAR) && d->fill != ABBE_FILL_NONE)
+  const abbe_fill fill = abbe_profile_is_thesis(d->profile) ? ABBE_FILL_SMEAR
+                         : published                        ? ABBE_FILL_NONE
+                                                            : ABBE_FILL_BRIDGE;
+  if (d->fill != fill && d->fill != ABBE_FILL_NONE)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'",
                           abbe_fill_name(d->fill), abbe_profile_name(d->profile));
-  return ABBE_OK;
+  return check_published(d, error);
 }
 
 abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width, size_t height,

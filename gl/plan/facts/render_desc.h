@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "colorimetry/rgb_space.h"
+#include "scenes/view/estimator.h"
 #include "scenes/view/map_layout.h"
 
 #include <stdbool.h>
@@ -16,9 +17,12 @@
 extern "C" {
 #endif
 
-/* thesis: the thesis's method with its constants; thesis-cie: the same passes with the default
+/* Methods as they were published, with their own constants, and each (-cie) with the default
  * profile's wavelengths, CIE weights, indices, Fresnel's law and units. */
-#define ABBE_PROFILES(X) X(DEFAULT, "default") X(THESIS, "thesis") X(THESIS_CIE, "thesis-cie")
+#define ABBE_PROFILES(X)                                                                           \
+  X(DEFAULT, "default")                                                                            \
+  X(THESIS, "thesis")                                                                              \
+  X(THESIS_CIE, "thesis-cie") X(SHAH2007, "shah2007") X(SHAH2007_CIE, "shah2007-cie")
 typedef enum abbe_profile {
 #define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
   ABBE_PROFILES(ABBE_PROFILE_ENUM)
@@ -62,6 +66,7 @@ typedef bool (*abbe_render_progress)(void *user, double done);
 
 /* What a request of the default profile leaves open, where a scene disperses. */
 #define ABBE_PLAN_WAVELENGTHS 7
+#define ABBE_PLAN_SHAH_COLOURS 3 /* of shah2007: blue, green and red */
 #define ABBE_PLAN_PHOTONS 256
 #define ABBE_PLAN_MAP 1024
 #define ABBE_PLAN_SAMPLES 2
@@ -88,8 +93,8 @@ typedef struct abbe_render_desc {
   /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
   size_t wavelengths;
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
-  size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512) */
-  size_t map_size;       /* side of the spectral map; 0: 1024 */
+  size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512, shah2007: 128) */
+  size_t map_size;       /* side of the spectral map; 0: 1024 (shah2007: 768) */
   size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
   size_t upsample;       /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
   /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
@@ -100,6 +105,10 @@ typedef struct abbe_render_desc {
   size_t light_points; /* that stand for a light with a size, 1 to 16; 0: 8 */
   abbe_fill fill;
   abbe_model model;
+  /* Of shah2007: how rays are brought to receivers, AUTO: shah, in its twin ratio; iterations, 1 to
+   * 64, 0: 1; interfaces that light is refracted at, 1 (as by water) or 2, 0: 2. Elsewhere 0. */
+  abbe_estimator estimator;
+  size_t iterations, interfaces;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too
    * much light inside a convex solid */
   double energy_share;
@@ -130,8 +139,12 @@ abbe_result abbe_render_desc_resolve(const abbe_render_desc *desc, size_t width,
                                      abbe_render_desc *out, abbe_error *error);
 
 const char *abbe_profile_name(abbe_profile profile);
-/* Whether it draws with the thesis's passes. */
+/* Whether it is a published method, with passes of its own: all in images, of one light. */
+bool abbe_profile_is_published(abbe_profile profile);
+/* Whether it is one with its own constants: of display brightness, and no units. */
+bool abbe_profile_is_printed(abbe_profile profile);
 bool abbe_profile_is_thesis(abbe_profile profile);
+bool abbe_profile_is_shah2007(abbe_profile profile);
 const char *abbe_fill_name(abbe_fill fill);
 const char *abbe_model_name(abbe_model model);
 

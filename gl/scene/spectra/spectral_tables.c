@@ -148,7 +148,7 @@ abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *
   if (result == ABBE_OK)
     result = abbe_weights_make(&t->all, abbe_scene_illuminant(scene), ABBE_RGB_SPACE_XYZ, &t->camera,
                                error);
-  if (result != ABBE_OK || !plan->caustics || abbe_profile_is_thesis(desc->profile)) return result;
+  if (result != ABBE_OK || !plan->caustics || abbe_profile_is_published(desc->profile)) return result;
   result = weigh_lights(scene, plan, t, error);
   if (result == ABBE_OK)
     result = abbe_spectral_tables_intervals(t, scene, plan, 0, 0, &t->intervals, error);

@@ -108,7 +108,7 @@ static void test_what_is_refused(void **state) {
       {GEM "--json --preset drift", "did you mean 'draft'?", 2},
       {GEM "--json --preset draft --budget-ms 9", "one of them", 2},
       {GEM "--json --max-error 0", "--max-error '0' is not a number", 2},
-      {GEM "--json --preset draft --profile thesis", "a thesis profile has none", 2},
+      {GEM "--json --preset draft --profile thesis", "a published method has none", 2},
       {GEM "--json --preset draft --presets no.yaml", "no.yaml", 1},
       {GEM "--json --presets draft", "--presets 'draft' is a file for --preset,", 2},
   };

@@ -35,7 +35,7 @@ static void mirrors_are_refused_by_name_where_none_are_followed(void **state) {
   abbe_render_desc desc = {.profile = ABBE_PROFILE_THESIS};
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "'looking glass' (line 8) is a mirror");
   desc.profile = ABBE_PROFILE_THESIS_CIE;
-  refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the thesis profile follows no light off mirrors");
+  refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the thesis-cie profile follows no light off mirrors");
   desc = (abbe_render_desc){.model = ABBE_MODEL_LAYERS};
   refuse_plan(text, &desc, ABBE_UNSUPPORTED, "the model 'layers' follows no light off mirrors");
 }

@@ -23,6 +23,12 @@ static void what_is_left_open_gets_its_default(void **state) {
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS});
   assert_true(d.photons == 512 && d.supersample == 1 && d.fill == ABBE_FILL_SMEAR);
   assert_true(d.max_nm == 680 && d.adaptive == 1);
+  d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_SHAH2007});
+  assert_true(d.photons == 128 && d.map_size == 768 && d.supersample == 1 && d.adaptive == 1);
+  assert_true(d.min_nm == 450 && d.max_nm == 650 && d.fill == ABBE_FILL_NONE);
+  assert_true(d.estimator == ABBE_ESTIMATOR_SHAH && d.iterations == 1 && d.interfaces == 2);
+  d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_SHAH2007_CIE});
+  assert_true(d.min_nm == 380 && d.estimator == ABBE_ESTIMATOR_RATIO);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS_CIE});
   assert_true(d.photons == 512 && d.fill == ABBE_FILL_SMEAR && d.max_nm == 780);
 }
@@ -35,8 +41,8 @@ static void names_are_the_options(void **state) {
   assert_string_equal(abbe_profile_name((abbe_profile)-1), "unknown");
   assert_string_equal(abbe_fill_name(ABBE_FILL_COUNT), "unknown");
   assert_string_equal(abbe_model_name(ABBE_MODEL_COUNT), "unknown");
-  assert_true(abbe_profile_is_thesis(ABBE_PROFILE_THESIS_CIE));
-  assert_false(abbe_profile_is_thesis(ABBE_PROFILE_DEFAULT));
+  assert_true(abbe_profile_is_published(ABBE_PROFILE_THESIS_CIE));
+  assert_false(abbe_profile_is_published(ABBE_PROFILE_DEFAULT));
 }
 
 static void limits_are_kept(void **state) {
@@ -52,6 +58,12 @@ static void limits_are_kept(void **state) {
       {{.supersample = 5}, "supersampling is 5"},
       {{.upsample = 5}, "upsampling is 5"},
       {{.adaptive = ABBE_RENDER_MAX_ADAPTIVE + 1}, "adaptive sampling is 9"},
+      {{.profile = ABBE_PROFILE_SHAH2007, .wavelengths = 7}, "red, green and blue"},
+      {{.profile = ABBE_PROFILE_SHAH2007, .interfaces = 3}, "interfaces is 3"},
+      {{.profile = ABBE_PROFILE_SHAH2007, .fill = ABBE_FILL_SMEAR}, "'shah2007'"},
+      {{.profile = ABBE_PROFILE_SHAH2007_CIE, .iterations = 65}, "iterations is 65"},
+      {{.estimator = ABBE_ESTIMATOR_RATIO}, "not with 'default'"},
+      {{.profile = ABBE_PROFILE_THESIS, .interfaces = 1}, "not with 'thesis'"},
       {{.profile = ABBE_PROFILE_THESIS, .adaptive = 2}, "knows no adaptive samples"},
       {{.supersample = 2, .upsample = 2}, "a sample for 2 x 2 pixels and 2 samples"},
       {{.profile = ABBE_PROFILE_THESIS, .upsample = 2}, "cannot be upsampled"},

@@ -1,0 +1,132 @@
+#include "gl/image_space/image_places.h"
+
+static const GLfloat nothing[4] = {0, 0, 0, 0}, far_away = 1;
+static const int flat = -1;
+
+static abbe_result make_targets(abbe_image_places *p, abbe_error *error) {
+  const struct {
+    GLuint *texture;
+    GLenum format;
+    const size_t *size;
+    size_t layers;
+    bool linear;
+  } all[] = {{&p->receivers, GL_RGBA32F, p->size, 0, false},
+             {&p->depth, GL_DEPTH_COMPONENT32F, p->size, 0, false},
+             {&p->places, GL_RGBA32F, p->grid, 2, false},
+             {&p->normals, GL_RGBA32F, p->grid, 2, true},
+             {&p->depths, GL_DEPTH_COMPONENT32F, p->grid, 2, false}};
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
+    result = abbe_gpu_make_texture(p->scene->gpu, all[i].format, all[i].size[0], all[i].size[1],
+                                   all[i].layers, all[i].linear, all[i].texture, error);
+  return result;
+}
+
+static abbe_result make_programs(abbe_image_places *p, abbe_error *error) {
+  static const abbe_program_stage seen[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                            {GL_FRAGMENT_SHADER, "image_places.frag"}};
+  static const abbe_program_stage depth[] = {{GL_VERTEX_SHADER, "surface.vert"},
+                                             {GL_FRAGMENT_SHADER, "depth.frag"}};
+  static const abbe_program_stage objects[] = {{GL_VERTEX_SHADER, "image_objects.vert"},
+                                               {GL_GEOMETRY_SHADER, "image_objects.geom"},
+                                               {GL_FRAGMENT_SHADER, "image_objects.frag"}};
+  abbe_gpu *gpu = p->scene->gpu;
+  abbe_result result = abbe_gpu_program(gpu, seen, 2, "", &p->seen, error);
+  if (result == ABBE_OK) result = abbe_gpu_program(gpu, depth, 2, "", &p->depth_only, error);
+  if (result == ABBE_OK) result = abbe_gpu_program(gpu, objects, 3, "", &p->objects, error);
+  return result;
+}
+
+abbe_result abbe_image_places_make(const abbe_gpu_scene *scene, const abbe_view *view,
+                                   const size_t size[2], const size_t grid[2], bool counts,
+                                   abbe_image_places *out, abbe_error *error) {
+  *out = (abbe_image_places){.scene = scene};
+  abbe_image_view_make(view, &out->view);
+  for (int k = 0; k < 2; k++) {
+    out->size[k] = size[k];
+    out->grid[k] = grid[k];
+  }
+  if (counts) scene->gpu->gl->GenQueries(1, &out->query);
+  abbe_result result = make_targets(out, error);
+  return result == ABBE_OK ? make_programs(out, error) : result;
+}
+
+void abbe_image_places_free(abbe_image_places *p) {
+  if (p->scene == NULL) return;
+  GLuint textures[] = {p->receivers, p->depth, p->places, p->normals, p->depths};
+  abbe_gpu_drop_textures(p->scene->gpu, sizeof textures / sizeof *textures, textures);
+  if (p->query != 0) p->scene->gpu->gl->DeleteQueries(1, &p->query);
+  *p = (abbe_image_places){0};
+}
+
+abbe_result abbe_image_places_receivers(abbe_image_places *p, abbe_error *error) {
+  const abbe_gl *gl = p->scene->gpu->gl;
+  const abbe_plan *plan = p->scene->plan;
+  abbe_result result = abbe_gpu_set_target(p->scene->gpu, &p->receivers, &flat, 1, p->depth,
+                                           p->size[0], p->size[1], error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
+  gl->Enable(GL_DEPTH_TEST);
+  gl->UseProgram(p->seen);
+  abbe_image_view_set_clip(p->scene, p->seen, "view_projection", &p->view);
+  for (size_t i = 0; i < plan->receiver_count; i++)
+    abbe_gpu_meshes_draw(p->scene, plan->receiver_object[i]);
+  return ABBE_OK;
+}
+
+abbe_result abbe_image_places_shadow(abbe_image_places *p, abbe_error *error) {
+  const abbe_gl *gl = p->scene->gpu->gl;
+  const abbe_plan *plan = p->scene->plan;
+  abbe_result result =
+      abbe_gpu_set_target(p->scene->gpu, NULL, NULL, 0, p->depth, p->size[0], p->size[1], error);
+  if (result != ABBE_OK) return result;
+  gl->Enable(GL_DEPTH_TEST);
+  gl->UseProgram(p->depth_only);
+  abbe_image_view_set_clip(p->scene, p->depth_only, "view_projection", &p->view);
+  for (size_t i = 0; i < plan->refractor_count; i++)
+    abbe_gpu_meshes_draw(p->scene, plan->refractor_object[i]);
+  return ABBE_OK;
+}
+
+abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
+  static const int all[2] = {-1, -1};
+  const abbe_gl *gl = p->scene->gpu->gl;
+  const abbe_plan *plan = p->scene->plan;
+  const abbe_view *view = &p->view.view;
+  const GLuint colour[2] = {p->places, p->normals};
+  const double *from = view->orthographic ? view->forward : view->origin;
+  abbe_result result =
+      abbe_gpu_set_target(p->scene->gpu, colour, all, 2, p->depths, p->grid[0], p->grid[1], error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  gl->ClearBufferfv(GL_COLOR, 1, nothing);
+  gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
+  gl->Enable(GL_DEPTH_TEST);
+  gl->UseProgram(p->objects);
+  abbe_image_view_set_clip(p->scene, p->objects, "view_projection", &p->view);
+  gl->Uniform4f(gl->GetUniformLocation(p->objects, "seen_along"), (float)from[0], (float)from[1],
+                (float)from[2], view->orthographic ? 0 : 1);
+  if (p->query != 0) gl->BeginQuery(GL_SAMPLES_PASSED, p->query);
+  for (size_t i = 0; i < plan->refractor_count; i++) {
+    abbe_gpu_set_int(p->scene->gpu, p->objects, "object", (int)i);
+    abbe_gpu_set_int(p->scene->gpu, p->objects, "mirror", plan->mirror[i]);
+    abbe_gpu_meshes_draw(p->scene, plan->refractor_object[i]);
+  }
+  if (p->query != 0) gl->EndQuery(GL_SAMPLES_PASSED);
+  return ABBE_OK;
+}
+
+size_t abbe_image_places_count(const abbe_image_places *p) {
+  GLuint count = 0;
+  if (p->query != 0) p->scene->gpu->gl->GetQueryObjectuiv(p->query, GL_QUERY_RESULT, &count);
+  return count;
+}
+
+void abbe_image_places_set(const abbe_image_places *p, GLuint program) {
+  abbe_gpu *gpu = p->scene->gpu;
+  abbe_image_view_set_view(p->scene, program, "seen_from", &p->view.view);
+  abbe_gpu_bind_texture(gpu, program, "receiver_places", 2, p->receivers);
+  abbe_gpu_bind_array(gpu, program, "object_places", 3, p->places);
+  abbe_gpu_bind_array(gpu, program, "object_normals", 4, p->normals);
+}

@@ -1,0 +1,57 @@
+// Receivers: a lamp with a shadow map, and a caustic map that the light projects. AS_PRINTED: caustic colour,
+// with diffuse shading and shadow beside it; else in units, as receiver.glsl has them.
+#include "view.glsl"
+in vec3 world;
+in vec3 world_normal;
+in vec2 surface_uv;
+uniform sampler2D caustic_map;
+uniform sampler2D shadow_map;
+uniform sampler2DArray surface_texture;
+uniform mat4 light_matrix;
+uniform vec4 lit_from[6];  // the light's view
+uniform float shadow_bias;  // m
+uniform vec3 eye;
+uniform vec4 spot;  // world direction, cosine of the cone
+uniform float spot_inner;
+uniform vec3 spot_colour;
+uniform vec3 reflectance;
+uniform vec3 texture_info;  // layer or -1, repeats
+layout(location = 0) out vec4 radiance;
+#ifndef AS_PRINTED
+uniform mat3 rgb_from_xyz;
+uniform vec3 white;     // XYZ of the lamp's light
+uniform float power;    // W/sr or W/m2
+uniform float ambient;  // W/m2
+const float PI = 3.14159265358979;
+#else
+const float SCENE_AMBIENT = 0.1;
+#endif
+
+void main() {
+  View light = View(lit_from[0], lit_from[1], lit_from[2], lit_from[3], lit_from[4], lit_from[5]);
+  bool perspective = light.origin.w > 0.5;
+  vec3 n = normalize(world_normal), uvz;
+  if (dot(n, eye - world) < 0.0) n = -n;
+  vec3 along = perspective ? normalize(world - light.origin.xyz) : light.forward.xyz;
+  bool seen = project(light, world, uvz) && inside(uvz.xy);
+  // A depth back to what the light sees: the bias is in metres along its axis.
+  float depth = texture(shadow_map, uvz.xy).x, near = light.range.x, far = light.range.y;
+  float nearest = perspective ? near * far / (far - depth * (far - near)) : mix(near, far, depth);
+  bool shaded = seen && nearest < dot(world - light.origin.xyz, light.forward.xyz) - shadow_bias;
+  float c = dot(along, spot.xyz);
+  float beam = spot_inner > spot.w ? smoothstep(spot.w, spot_inner, c) : step(spot.w, c);
+  float facing = -dot(n, along);
+  vec3 caustic = seen ? texture(caustic_map, uvz.xy).rgb : vec3(0);
+#ifdef AS_PRINTED
+  vec3 direct = shaded ? vec3(0) : spot_colour * (beam * max(facing, 0.0));
+  vec3 sum = reflectance * (direct + SCENE_AMBIENT + caustic);
+#else
+  float falloff = perspective ? 1.0 / dot(world - light.origin.xyz, world - light.origin.xyz) : 1.0;
+  vec3 xyz = shaded ? vec3(0) : white * (max(facing, 0.0) * beam);
+  xyz += caustic * (abs(facing) / window_measure(light, along));
+  vec3 sum = (rgb_from_xyz * xyz * (power * falloff) + ambient) * reflectance / PI;
+#endif
+  if (texture_info.x >= 0.0)
+    sum *= textureLod(surface_texture, vec3(surface_uv * texture_info.yz, texture_info.x), 0.0).rgb;
+  radiance = vec4(sum, distance(eye, world));
+}

@@ -1,0 +1,55 @@
+/* image_view.h: what the published methods share, as all of them work in images: the light's one
+ * frustum, matrices, the lamp, a pass over a whole image, reading. Internal to gl/.
+ */
+#ifndef ABBE_GL_IMAGE_SPACE_IMAGE_VIEW_H
+#define ABBE_GL_IMAGE_SPACE_IMAGE_VIEW_H
+
+#include "colorimetry/image/image.h"
+#include "gl/scene/gpu_scene.h"
+#include "scenes/view/map_layout.h"
+#include "scenes/view/view.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct abbe_image_view {
+  abbe_view view;
+  double look[16], clip[16]; /* world to view, view to clip; column-major */
+} abbe_image_view;
+
+void abbe_image_view_make(const abbe_view *view, abbe_image_view *out);
+
+/* A square around the spot's cone, or around all objects: of other lights, and in units also where
+ * the cone is narrow, for a prism throws all of its light out of it. */
+void abbe_image_view_fit_light(const abbe_gpu_scene *scene, abbe_view *out);
+
+/* Uniforms of the program that is in use: a matrix; the view's own, world to clip; a view as
+ * view.glsl has it. */
+void abbe_image_view_set_matrix(const abbe_gpu_scene *scene, GLuint program, const char *name,
+                                const double m[16]);
+void abbe_image_view_set_clip(const abbe_gpu_scene *scene, GLuint program, const char *name,
+                              const abbe_image_view *view);
+void abbe_image_view_set_view(const abbe_gpu_scene *scene, GLuint program, const char *name,
+                              const abbe_view *view);
+/* spot, spot_inner and spot_colour: the lamp, white in Rec.709 at full strength, with a cone along
+ * the direction; a point light's reaches everywhere. */
+void abbe_image_view_set_lamp(const abbe_gpu_scene *scene, GLuint program,
+                              const double direction[3]);
+/* reflectance and texture_info of a receiver of the plan; *layer: of textures, the next. */
+void abbe_image_view_set_surface(const abbe_gpu_scene *scene, GLuint program, size_t receiver,
+                                 int *layer);
+/* What only physical units ask for: rgb_from_xyz, xyz_from_rgb, forward, white, power, ambient. */
+void abbe_image_view_set_units(const abbe_gpu_scene *scene, GLuint program, const abbe_view *light);
+
+/* A triangle over all of the target. */
+abbe_result abbe_image_view_draw_screen(const abbe_gpu_scene *scene, GLuint target, size_t width,
+                                        size_t height, abbe_error *error);
+
+/* As of abbe_renderer_read and _read_map. */
+abbe_result abbe_image_view_read(const abbe_gpu_scene *scene, GLuint picture, abbe_image *out,
+                                 abbe_error *error);
+abbe_result abbe_image_view_read_map(const abbe_gpu_scene *scene, GLuint map,
+                                     const abbe_map_layout *layout, abbe_image *out,
+                                     abbe_error *error);
+
+#endif

@@ -1,0 +1,31 @@
+/* published.h: the profiles of published methods behind one set of verbs: whichever the plan asks
+ * for is made, drawn and read. Internal to gl/.
+ */
+#ifndef ABBE_GL_PUBLISHED_H
+#define ABBE_GL_PUBLISHED_H
+
+#include "gl/shah2007/shah2007.h"
+#include "gl/thesis/thesis.h"
+
+typedef struct abbe_published {
+  abbe_thesis thesis;
+  abbe_shah2007 shah;
+} abbe_published;
+
+abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
+                                abbe_published *out, abbe_error *error);
+/* A zeroed one too; it is zeroed. */
+void abbe_published_free(abbe_published *published);
+abbe_result abbe_published_run(abbe_published *published, abbe_error *error);
+
+/* As of abbe_renderer_read and _read_map; filled: after the method's gap fill, where it has one. */
+abbe_result abbe_published_read(const abbe_published *published, abbe_image *out,
+                                abbe_error *error);
+abbe_result abbe_published_read_map(const abbe_published *published, bool filled, abbe_image *out,
+                                    abbe_error *error);
+const abbe_map_layout *abbe_published_layout(const abbe_published *published);
+GLuint abbe_published_picture(const abbe_published *published);
+/* Photons of the last frame with statistics. */
+size_t abbe_published_photons(const abbe_published *published);
+
+#endif

@@ -1,0 +1,200 @@
+/* Caustics mapping [ShahKonttinenPattanaik2007]: receivers' places from the light, places and
+ * normals of refractors and mirrors at the grid's resolution, a vertex for each of its pixels,
+ * which is brought to a receiver by a few lookups and splatted, and a lookup of the map by
+ * projection. Two interfaces by the distance between front and back along the view, one, or one
+ * reflection.
+ *
+ * As printed: from 1 m on, flux (N . L) / V with V the pixels that an occlusion query counts,
+ * exp(-K d) by the distance between front and back, an index each for red, green and blue. Where
+ * the paper is silent: red, green and blue are 650, 550 and 450 nm; a splat's standard deviation is
+ * half the distance of undisturbed vertices, and it ends at three; the light of an object that
+ * fills a sixteenth of the view is white; totally reflected light ends; ambient brightness is 0.1;
+ * the camera's rays are the thesis's.
+ *
+ * In units (shah2007-cie) the same passes, grid and splats have the default profile's wavelengths,
+ * indices, attenuation and XYZ weights, Fresnel's law, and the flux of a pixel's solid angle, which
+ * counts projection once and needs no count of pixels; what a receiver hides from the light starts
+ * no vertex, and estimators start from what the light sees behind the ray's origin. */
+#include "gl/shah2007/shah2007.h"
+
+#include "colorimetry/weights.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double white_share = 1.0 / 16;
+/* Of the Gaussian's integral, within three standard deviations. */
+static const double held = 0.98889100346175773;
+static const double least_size = 3, most_size = 255; /* texels; drivers draw no larger points */
+static const double tau = 6.283185307179586;
+
+static bool is_printed(const abbe_gpu_scene *scene) {
+  return abbe_profile_is_printed(scene->plan->desc.profile);
+}
+
+static double splat_size(const abbe_gpu_scene *scene) {
+  const abbe_render_desc *d = &scene->plan->desc;
+  return fmin(fmax(3.0 * (double)d->map_size / (double)d->photons, least_size), most_size);
+}
+
+/* What a splat's peak is of a vertex of unit light. */
+static double vertex_strength(const abbe_shah2007 *s) {
+  const abbe_render_desc *d = &s->scene->plan->desc;
+  const double across = (double)d->map_size / (double)d->photons, sigma = splat_size(s->scene) / 6;
+  const double peak = across * across / (tau * sigma * sigma * held);
+  if (!is_printed(s->scene)) return peak;
+  const double cells = (double)d->photons * (double)d->photons;
+  return peak * white_share * cells / fmax((double)s->photon_count, 1);
+}
+
+static abbe_result make_colours(const abbe_gpu_scene *scene, float (**out)[3], abbe_error *error) {
+  const size_t n = scene->plan->desc.wavelengths;
+  float(*colour)[3] = calloc(n, sizeof *colour);
+  *out = colour;
+  if (colour == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for colours");
+  for (size_t i = 0; i < n; i++)
+    for (size_t c = 0; c < 3; c++)
+      colour[i][c] = !is_printed(scene) ? (float)scene->tables.camera.weight[i][c]
+                     : n == 1           ? 1.0f
+                                        : (float)(i + c == 2); /* blue, green, red */
+  return ABBE_OK;
+}
+
+/* The same by white, for the camera's rays. */
+static abbe_result make_shares(const abbe_shah2007 *s, float (**out)[3], abbe_error *error) {
+  abbe_result result = make_colours(s->scene, out, error);
+  for (size_t i = 0; result == ABBE_OK && i < s->scene->plan->desc.wavelengths; i++)
+    for (size_t c = 0; c < 3; c++)
+      if (!is_printed(s->scene)) (*out)[i][c] /= (float)s->scene->tables.camera.sum[c];
+  return result;
+}
+
+static void write_definitions(const abbe_render_desc *d, char *out, size_t size) {
+  size_t used = (size_t)snprintf(out, size, "#define WAVELENGTHS %zu\n#define INTERFACES %zu\n%s",
+                                 d->wavelengths, d->interfaces,
+                                 abbe_profile_is_printed(d->profile) ? "#define AS_PRINTED\n" : "");
+#define ABBE_DEFINE(code, name)                                                                    \
+  used += (size_t)snprintf(out + used, size - used, "#define ESTIMATOR_" #code " %d\n",            \
+                           (int)ABBE_ESTIMATOR_##code);
+  ABBE_ESTIMATORS(ABBE_DEFINE)
+#undef ABBE_DEFINE
+}
+
+static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *variant,
+                                 abbe_error *error) {
+  static const abbe_program_stage splat[] = {{GL_VERTEX_SHADER, "shah_splat.vert"},
+                                             {GL_FRAGMENT_SHADER, "shah_splat.frag"}};
+  const abbe_render_desc *d = &s->scene->plan->desc;
+  float(*shares)[3] = NULL;
+  char more[640], search[768];
+  write_definitions(d, more, sizeof more);
+  snprintf(search, sizeof search, "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n%s", more,
+           (int)d->estimator, d->iterations,
+           is_printed(s->scene) ? "#define SEARCH_AS_PRINTED\n" : "");
+  abbe_result result =
+      abbe_shader_variant_program(variant, s->scene->gpu, splat, 2, search, &s->splat, error);
+  if (result == ABBE_OK) result = make_shares(s, &shares, error);
+  if (result == ABBE_OK)
+    result = abbe_image_eye_make(s->scene, &s->light, variant, more, shares, &s->eye, error);
+  return result;
+}
+
+abbe_result abbe_shah2007_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
+                               abbe_shah2007 *out, abbe_error *error) {
+  const abbe_render_desc *d = &scene->plan->desc;
+  const size_t map[2] = {d->map_size, d->map_size}, grid[2] = {d->photons, d->photons};
+  abbe_view view;
+  out->scene = scene;
+  abbe_image_view_fit_light(scene, &view);
+  abbe_map_layout_make(&view, &out->layout);
+  abbe_result result = abbe_image_places_make(scene, &view, map, grid, true, &out->light, error);
+  if (result == ABBE_OK)
+    result =
+        abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], 0, true, &out->map, error);
+  if (result == ABBE_OK) result = make_colours(scene, &out->colour, error);
+  if (result == ABBE_OK) result = make_programs(out, variant, error);
+  return result;
+}
+
+void abbe_shah2007_free(abbe_shah2007 *s) {
+  if (s->scene == NULL) return;
+  abbe_image_eye_free(&s->eye);
+  abbe_image_places_free(&s->light);
+  abbe_gpu_drop_textures(s->scene->gpu, 1, &s->map);
+  free(s->colour);
+  *s = (abbe_shah2007){0};
+}
+
+static abbe_result see_from_light(abbe_shah2007 *s, abbe_error *error) {
+  abbe_gpu *gpu = s->scene->gpu;
+  abbe_gpu_start_lap(gpu);
+  abbe_result result = abbe_image_places_receivers(&s->light, error);
+  if (result == ABBE_OK) result = abbe_image_places_shadow(&s->light, error);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_RECEIVER_DEPTH);
+  if (result == ABBE_OK) result = abbe_image_places_objects(&s->light, error);
+  s->photon_count = abbe_image_places_count(&s->light);
+  abbe_gpu_book_lap(gpu, ABBE_PASS_LIGHT_FRONT_AND_BACK);
+  return result;
+}
+
+static void set_splats(abbe_shah2007 *s) {
+  const abbe_gpu_scene *scene = s->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  const abbe_render_desc *d = &scene->plan->desc;
+  const abbe_light *light = &scene->local->light[0];
+  GLuint p = s->splat;
+  abbe_gpu_scene_set(scene, p);
+  abbe_image_places_set(&s->light, p);
+  abbe_image_view_set_lamp(scene, p, light->direction);
+  abbe_gpu_set_int(scene->gpu, p, "grid", (int)d->photons);
+  abbe_gpu_set_float(scene->gpu, p, "map_side", (double)d->map_size);
+  abbe_gpu_set_float(scene->gpu, p, "splat_size", splat_size(scene));
+  abbe_gpu_set_float(scene->gpu, p, "strength", vertex_strength(s));
+  abbe_gpu_set_float(scene->gpu, p, "object_bias", 1e-3 * scene->refractor_radius);
+  gl->Uniform3fv(gl->GetUniformLocation(p, "colour"), (GLsizei)d->wavelengths, &s->colour[0][0]);
+}
+
+static abbe_result splat_vertices(abbe_shah2007 *s, abbe_error *error) {
+  static const int flat = -1;
+  static const GLfloat nothing[4] = {0, 0, 0, 0};
+  const abbe_gpu_scene *scene = s->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  const abbe_render_desc *d = &scene->plan->desc;
+  abbe_gpu_start_lap(scene->gpu);
+  abbe_result result =
+      abbe_gpu_set_target(scene->gpu, &s->map, &flat, 1, 0, d->map_size, d->map_size, error);
+  if (result != ABBE_OK) return result;
+  gl->ClearBufferfv(GL_COLOR, 0, nothing);
+  gl->Disable(GL_DEPTH_TEST);
+  gl->Enable(GL_BLEND);
+  gl->Enable(GL_PROGRAM_POINT_SIZE);
+  gl->BlendFunc(GL_ONE, GL_ONE);
+  gl->UseProgram(s->splat);
+  set_splats(s);
+  gl->BindVertexArray(scene->gpu->empty_array);
+  for (size_t i = 0; i < d->wavelengths; i++) {
+    abbe_gpu_set_int(scene->gpu, s->splat, "wavelength", (int)i);
+    gl->DrawArrays(GL_POINTS, 0, (GLsizei)(d->photons * d->photons));
+  }
+  gl->Disable(GL_BLEND);
+  abbe_gpu_book_lap(scene->gpu, ABBE_PASS_PHOTONS);
+  return ABBE_OK;
+}
+
+abbe_result abbe_shah2007_run(abbe_shah2007 *s, abbe_error *error) {
+  abbe_gpu_scene_bind(s->scene);
+  abbe_result result = see_from_light(s, error);
+  if (result == ABBE_OK) result = splat_vertices(s, error);
+  if (result == ABBE_OK) result = abbe_image_eye_run(&s->eye, s->map, error);
+  return result == ABBE_OK ? abbe_gl_check(s->scene->gpu->gl, "the shah2007 profile", error)
+                           : result;
+}
+
+abbe_result abbe_shah2007_read(const abbe_shah2007 *s, abbe_image *out, abbe_error *error) {
+  return abbe_image_view_read(s->scene, s->eye.picture, out, error);
+}
+
+abbe_result abbe_shah2007_read_map(const abbe_shah2007 *s, abbe_image *out, abbe_error *error) {
+  return abbe_image_view_read_map(s->scene, s->map, &s->layout, out, error);
+}

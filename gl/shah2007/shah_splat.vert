@@ -1,0 +1,53 @@
+// A vertex a pixel of what the light sees of its objects, brought to where its light lands.
+#include "image_places.glsl"
+#if ESTIMATOR == ESTIMATOR_EXACT
+#if defined(HIERARCHY) || defined(RECEIVER_HIERARCHY)
+#include "hierarchy.glsl"
+#endif
+uniform vec4 refractor_bounds;
+#include "receiver_hit.glsl"
+#endif
+#include "image_search.glsl"
+#include "image_path.glsl"
+uniform int grid, wavelength;
+uniform vec3 colour[WAVELENGTHS];
+uniform float strength;    // of a vertex, in a splat's peak
+uniform float splat_size;  // texels
+uniform vec4 spot;         // direction, cosine of the cone
+uniform float spot_inner;
+uniform float object_bias;  // m
+flat out vec2 centre;  // on the map, 0 to 1
+flat out vec3 peak;
+
+// Light of a pixel, of what a unit of it is.
+float pixel_light(vec3 at, ivec2 pixel) {
+  vec3 d = seen_direction(at);
+  float c = dot(d, spot.xyz), beam = spot_inner > spot.w ? smoothstep(spot.w, spot_inner, c) : step(spot.w, c);
+#ifdef AS_PRINTED
+  return beam * abs(dot(texelFetch(object_normals, ivec3(pixel, 0), 0).xyz, d));
+#else
+  vec3 seen;
+  View v = places_view();
+  bool hidden = look_up(at, seen) && dot(seen - at, v.forward.xyz) < -object_bias;
+  return hidden ? 0.0 : beam * window_measure(v, d);
+#endif
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_VertexID % grid, gl_VertexID / grid);
+  Ray ray;
+  vec3 at, uvz;
+  centre = vec2(-1);
+  peak = vec3(0);
+  gl_PointSize = 1.0;
+  gl_Position = vec4(2, 2, 2, 1);  // outside
+  if (!leave_object(pixel, wavelength, ray)) return;
+  if (!find_receiver(ray.o, ray.r, at)) return;
+  if (!project(places_view(), at, uvz) || !inside(uvz.xy)) return;
+  float light = strength * pixel_light(texelFetch(object_places, ivec3(pixel, 0), 0).xyz, pixel) * ray.share;
+  if (ray.inside > 0.0) light *= exp(-ray.inside * distance(ray.o, at));
+  centre = uvz.xy;
+  peak = light * colour[wavelength];
+  gl_PointSize = splat_size;
+  gl_Position = vec4(2.0 * uvz.xy - 1.0, 0, 1);
+}
