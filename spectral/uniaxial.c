@@ -1,0 +1,295 @@
+#include "spectral/uniaxial.h"
+
+#include <complex.h>
+#include <math.h>
+#include <string.h>
+
+typedef double complex number;
+
+static const double grazing = 1e-6; /* below, rounding hides which way it goes */
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void scale_to_unit(double v[3]) {
+  const double length = sqrt(dot(v, v));
+  for (int k = 0; k < 3; k++) v[k] /= length;
+}
+
+static void cross(const number a[3], const number b[3], number out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* ---- one wave ---- */
+
+double abbe_uniaxial_index(double n_o, double n_e, double cos_axis) {
+  const double c = fmin(fabs(cos_axis), 1), s = sqrt((1 - c) * (1 + c));
+  return n_o * n_e / hypot(n_e * c, n_o * s);
+}
+
+double abbe_uniaxial_walk_off(double n_o, double n_e, double cos_axis) {
+  const double c = fmin(fabs(cos_axis), 1), s = sqrt((1 - c) * (1 + c));
+  const double o = n_o * n_o, e = n_e * n_e;
+  return fabs(atan2((o - e) * s * c, e * c * c + o * s * s));
+}
+
+/* The part of v along the axis times `along`, and the part across it times `across`. */
+static void stretch(const abbe_uniaxial *m, const double v[3], double along, double across,
+                    double out[3]) {
+  const double a = dot(v, m->axis);
+  double stretched[3];
+  for (int k = 0; k < 3; k++)
+    stretched[k] = across * (v[k] - a * m->axis[k]) + along * a * m->axis[k];
+  memcpy(out, stretched, sizeof stretched);
+}
+
+static bool bends(const abbe_uniaxial *m, abbe_uniaxial_mode mode) {
+  return mode == ABBE_UNIAXIAL_EXTRAORDINARY && m->n_o != m->n_e;
+}
+
+/* The ray is normal to the surface of wave vectors, |k_across / n_e|^2 + |k_along / n_o|^2 = 1. */
+void abbe_uniaxial_ray(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const double normal[3],
+                       double ray[3]) {
+  const double o = m->n_o * m->n_o, e = m->n_e * m->n_e;
+  if (bends(m, mode))
+    stretch(m, normal, e, o, ray);
+  else
+    memmove(ray, normal, 3 * sizeof *ray);
+  scale_to_unit(ray);
+}
+
+void abbe_uniaxial_normal(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const double ray[3],
+                          double normal[3]) {
+  const double o = m->n_o * m->n_o, e = m->n_e * m->n_e;
+  if (bends(m, mode))
+    stretch(m, ray, o, e, normal);
+  else
+    memmove(normal, ray, 3 * sizeof *normal);
+  scale_to_unit(normal);
+}
+
+/* ---- waves of one tangential wave vector ---- */
+
+/* A plane wave at the face; k in units of vacuum's wave number. */
+typedef struct wave {
+  number k[3], e[3], h[3]; /* |e| = 1, h = k x e */
+  double flux;             /* along n */
+  bool travels;
+} wave;
+
+/* What all waves at the face have in common. */
+typedef struct face {
+  double n[3], along[3],
+      across[3]; /* right-handed; along: the tangential wave vector's direction */
+  double k;      /* its length */
+} face;
+
+static void make_face(const double n[3], const double k[3], face *f) {
+  const double normal = dot(n, k);
+  memcpy(f->n, n, sizeof f->n);
+  for (int i = 0; i < 3; i++) f->along[i] = k[i] - normal * n[i];
+  f->k = sqrt(dot(f->along, f->along));
+  if (!(f->k > 1e-12)) { /* head on: any direction does */
+    const int least = fabs(n[0]) < 0.6 ? 0 : 1;
+    for (int i = 0; i < 3; i++) f->along[i] = (i == least) - n[least] * n[i];
+    f->k = 0;
+  }
+  scale_to_unit(f->along);
+  for (int i = 0; i < 3; i++)
+    f->across[i] = n[(i + 1) % 3] * f->along[(i + 2) % 3] - n[(i + 2) % 3] * f->along[(i + 1) % 3];
+}
+
+/* The wave vector along + q n, and whether it travels: q solves A q^2 + 2 B q + C = 0 of the
+ * surface of wave vectors, and the ray leaves the face to the side of n (+1 or -1); a wave that
+ * does not travel dies out on that side. */
+static void find_wave_vector(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const face *f,
+                             double side, wave *w) {
+  const double o = m->n_o * m->n_o, e = m->n_e * m->n_e;
+  double a = 1 / o, b = 0, c = f->k * f->k / o - 1;
+  if (bends(m, mode)) {
+    const double more = 1 / o - 1 / e, at_n = dot(m->axis, f->n),
+                 at_k = f->k * dot(m->axis, f->along);
+    a = 1 / e + more * at_n * at_n;
+    b = more * at_n * at_k;
+    c = f->k * f->k / e + more * at_k * at_k - 1;
+  }
+  const double square = b * b - a * c, root = sqrt(fabs(square));
+  w->travels = square > 0;
+  const number q = (side * (w->travels ? root : I * root) - b) / a;
+  for (int i = 0; i < 3; i++) w->k[i] = f->k * f->along[i] + q * f->n[i];
+}
+
+static double norm(const number v[3]) {
+  double square = 0;
+  for (int i = 0; i < 3; i++) square += creal(v[i] * conj(v[i]));
+  return sqrt(square);
+}
+
+/* Scales the field to 1 and makes the rest of it. */
+static void finish_wave(const face *f, wave *w) {
+  const double length = norm(w->e);
+  for (int i = 0; i < 3; i++) w->e[i] /= length;
+  cross(w->k, w->e, w->h);
+  w->flux = 0;
+  for (int i = 0; i < 3 && w->travels; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    w->flux += f->n[i] * creal(w->e[j] * conj(w->h[k]) - w->e[k] * conj(w->h[j]));
+  }
+}
+
+/* A direction across the wave vector, by which both fields are told apart: across the axis too or,
+ * where that lies along the wave vector or there is none, across the plane of incidence. */
+static void across_wave_vector(const abbe_uniaxial *m, const face *f, const wave *w,
+                               number out[3]) {
+  const number across[3] = {f->across[0], f->across[1], f->across[2]};
+  const number axis[3] = {m->axis[0], m->axis[1], m->axis[2]};
+  memcpy(out, across, sizeof across);
+  if (m->n_o == m->n_e) return;
+  number turned[3], along = 0;
+  cross(axis, w->k, turned);
+  const double length = norm(turned), square = pow(norm(w->k), 2);
+  if (length < 1e-9 * m->n_o) return;
+  /* rounding leaves a part along a real k where the two are nearly parallel */
+  for (int i = 0; i < 3 && w->travels; i++) along += turned[i] * w->k[i];
+  for (int i = 0; i < 3; i++) out[i] = (turned[i] - along / square * w->k[i]) / length;
+}
+
+/* Ordinary: E along axis x k. Extraordinary: H along it, and E = -(k x H) / permittivity. */
+static void make_wave(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const face *f, double side,
+                      wave *w) {
+  find_wave_vector(m, mode, f, side, w);
+  number t[3];
+  across_wave_vector(m, f, w, t);
+  if (mode == ABBE_UNIAXIAL_ORDINARY) {
+    memcpy(w->e, t, sizeof t);
+  } else {
+    number along = 0;
+    const double o = m->n_o * m->n_o, e = m->n_e * m->n_e;
+    cross(t, w->k, w->e);
+    for (int i = 0; i < 3; i++) along += w->e[i] * m->axis[i];
+    for (int i = 0; i < 3; i++)
+      w->e[i] = w->e[i] / o + (bends(m, mode) ? (1 / e - 1 / o) * along * m->axis[i] : 0);
+  }
+  finish_wave(f, w);
+}
+
+/* ---- the face ---- */
+
+static number part(const number v[3], const double d[3]) {
+  return v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
+}
+
+static void tangential(const wave *w, const face *f, number out[4]) {
+  out[0] = part(w->e, f->along);
+  out[1] = part(w->e, f->across);
+  out[2] = part(w->h, f->along);
+  out[3] = part(w->h, f->across);
+}
+
+/* Gauss with the largest pivot; m[row][0..3] x = m[row][4]. */
+static void solve(number m[4][5], number x[4]) {
+  for (int c = 0; c < 4; c++) {
+    int best = c;
+    for (int r = c + 1; r < 4; r++)
+      if (cabs(m[r][c]) > cabs(m[best][c])) best = r;
+    if (best != c)
+      for (int k = c; k < 5; k++) {
+        const number swapped = m[c][k];
+        m[c][k] = m[best][k];
+        m[best][k] = swapped;
+      }
+    /* two waves that cling to the face may be one: any split between them is right */
+    if (cabs(m[c][c]) < 1e-30) m[c][c] = 1e-30;
+    for (int r = c + 1; r < 4; r++) {
+      const number times = m[r][c] / m[c][c];
+      for (int k = c; k < 5; k++) m[r][k] -= times * m[c][k];
+    }
+  }
+  for (int r = 3; r >= 0; r--) {
+    x[r] = m[r][4];
+    for (int k = r + 1; k < 4; k++) x[r] -= m[r][k] * x[k];
+    x[r] /= m[r][r];
+  }
+}
+
+static void tell(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const wave *w, number amplitude,
+                 double flux, abbe_uniaxial_wave *out) {
+  double square = 0;
+  out->travels = w->travels;
+  out->share = w->travels ? creal(amplitude * conj(amplitude)) * fabs(w->flux / flux) : 0;
+  out->amplitude[0] = creal(amplitude);
+  out->amplitude[1] = cimag(amplitude);
+  for (int i = 0; i < 3; i++) {
+    out->normal[i] = creal(w->k[i]);
+    out->field[i] = creal(w->e[i]);
+    square += out->normal[i] * out->normal[i];
+  }
+  out->index = sqrt(square);
+  for (int i = 0; i < 3 && square > 0; i++) out->normal[i] /= out->index;
+  if (w->travels)
+    abbe_uniaxial_ray(m, mode, out->normal, out->ray);
+  else
+    memcpy(out->ray, out->normal, sizeof out->ray);
+}
+
+/* Along the face nothing gets in. */
+static void graze(const abbe_uniaxial *from, const double n[3], abbe_uniaxial_mode mode,
+                  const double ray[3], abbe_uniaxial_split *out) {
+  abbe_uniaxial_wave *w = &out->reflected[mode];
+  const double twice = 2 * dot(ray, n);
+  memset(out, 0, sizeof *out);
+  for (int i = 0; i < 3; i++) w->ray[i] = ray[i] - twice * n[i];
+  scale_to_unit(w->ray);
+  abbe_uniaxial_normal(from, mode, w->ray, w->normal);
+  w->index = bends(from, mode)
+                 ? abbe_uniaxial_index(from->n_o, from->n_e, dot(w->normal, from->axis))
+                 : from->n_o;
+  w->share = 1;
+  w->amplitude[0] = -1;
+  w->travels = true;
+}
+
+void abbe_uniaxial_meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
+                        abbe_uniaxial_mode mode, const double ray[3], abbe_uniaxial_split *out) {
+  if (!(dot(ray, n) < -grazing)) {
+    graze(from, n, mode, ray, out);
+    return;
+  }
+  double k[3];
+  abbe_uniaxial_normal(from, mode, ray, k);
+  const double index =
+      bends(from, mode) ? abbe_uniaxial_index(from->n_o, from->n_e, dot(k, from->axis)) : from->n_o;
+  for (int i = 0; i < 3; i++) k[i] *= index;
+  face f;
+  make_face(n, k, &f);
+  wave incident, waves[4];
+  make_wave(from, mode, &f, -1, &incident);
+  number column[4], m[4][5], amplitude[4];
+  tangential(&incident, &f, column);
+  for (int r = 0; r < 4; r++) m[r][4] = column[r];
+  for (int i = 0; i < 4; i++) {
+    const bool inside = i >= 2;
+    make_wave(inside ? to : from, (abbe_uniaxial_mode)(i & 1), &f, inside ? -1 : 1, &waves[i]);
+    tangential(&waves[i], &f, column);
+    for (int r = 0; r < 4; r++) m[r][i] = inside ? column[r] : -column[r];
+  }
+  solve(m, amplitude);
+  for (int i = 0; i < 4; i++)
+    tell(i < 2 ? from : to, (abbe_uniaxial_mode)(i & 1), &waves[i], amplitude[i], incident.flux,
+         i < 2 ? &out->reflected[i] : &out->transmitted[i - 2]);
+  for (int i = 0; i < 3; i++) out->field[i] = creal(incident.e[i]);
+}
+
+void abbe_uniaxial_meet_unpolarised(const abbe_uniaxial *from, const abbe_uniaxial *to,
+                                    const double n[3], const double ray[3],
+                                    abbe_uniaxial_split *out) {
+  abbe_uniaxial_split s;
+  abbe_uniaxial_meet(from, to, n, ABBE_UNIAXIAL_ORDINARY, ray, &s);
+  abbe_uniaxial_meet(from, to, n, ABBE_UNIAXIAL_EXTRAORDINARY, ray, out);
+  for (int i = 0; i < 2; i++) {
+    out->reflected[i].share = (out->reflected[i].share + s.reflected[i].share) / 2;
+    out->transmitted[i].share = (out->transmitted[i].share + s.transmitted[i].share) / 2;
+  }
+}
