@@ -74,16 +74,46 @@ static void show_metal(const abbe_material *m) {
            rgb[0], rgb[1], rgb[2]);
 }
 
+/* ---- crystals ---- */
+
+/* NaN where the record has none. */
+static double extraordinary_at(const abbe_material *m, double lambda_nm) {
+  double n = NAN;
+  abbe_material_n_extraordinary(m, lambda_nm, &n, NULL);
+  return n;
+}
+
+/* The extraordinary index less the ordinary one. */
+static double birefringence_at(const abbe_material *m, double lambda_nm) {
+  double n = NAN;
+  abbe_material_n(m, lambda_nm, &n, NULL);
+  return extraordinary_at(m, lambda_nm) - n;
+}
+
 /* ---- text ---- */
 
+static void show_curve(const abbe_dispersion *d) {
+  printf("  model         %s: %s\n", abbe_dispersion_model_name(d->model),
+         abbe_dispersion_model_formula(d->model));
+  if (d->table != NULL) printf("  points        %zu\n", abbe_spectrum_count(d->table));
+  for (size_t i = 0; i < d->count; i++)
+    printf("%s%.10g%s", i == 0 ? "  coefficients  " : "", d->c[i],
+           i + 1 < d->count ? ", " : "   (L in um)\n");
+}
+
+static void show_extraordinary(const abbe_material *m) {
+  char text[2][32];
+  if (!abbe_material_is_uniaxial(m)) return;
+  printf(
+      "  extraordinary n_d %s   birefringence %s\n",
+      abbe_materials_number(text[0], sizeof text[0], "%.6f", extraordinary_at(m, ABBE_LINE_D_NM)),
+      abbe_materials_number(text[1], sizeof text[1], "%+.6f", birefringence_at(m, ABBE_LINE_D_NM)));
+  show_curve(&m->extraordinary);
+}
+
 static void show_formula(const abbe_material *m) {
-  printf("  model         %s: %s\n", abbe_dispersion_model_name(m->dispersion.model),
-         abbe_dispersion_model_formula(m->dispersion.model));
-  if (m->dispersion.table != NULL)
-    printf("  points        %zu\n", abbe_spectrum_count(m->dispersion.table));
-  for (size_t i = 0; i < m->dispersion.count; i++)
-    printf("%s%.10g%s", i == 0 ? "  coefficients  " : "", m->dispersion.c[i],
-           i + 1 < m->dispersion.count ? ", " : "   (L in um)\n");
+  show_curve(&m->dispersion);
+  show_extraordinary(m);
   printf("  range         %g to %g nm%s\n", m->min_nm, m->max_nm,
          m->extrapolate ? ", extrapolated outside" : "");
   if (!isnan(m->temperature_c)) printf("  temperature   %g C\n", m->temperature_c);
@@ -179,13 +209,16 @@ static abbe_result show_text(const request *r, const abbe_material *m, const abb
     printf("  %10.6g  %10.6f  %10.6f  %10.6f\n", r->at[i], nk[0], nk[1], nk[2]);
   }
   if (metal) return ABBE_OK;
+  const bool two = abbe_material_is_uniaxial(m);
   if (r->at_count > 0)
-    printf("\n  %10s  %12s%s\n", "nm", "n", m->attenuation != NULL ? "         1/m" : "");
+    printf("\n  %10s  %12s%s%s\n", "nm", two ? "ordinary n" : "n", two ? " extraordinary" : "",
+           m->attenuation != NULL ? "         1/m" : "");
   for (size_t i = 0; i < r->at_count; i++) {
     double n = 0;
     abbe_result result = abbe_material_n(m, r->at[i], &n, error);
     if (result != ABBE_OK) return result;
     printf("  %10.6g  %12.9f", r->at[i], n);
+    if (two) printf("  %12.9f", extraordinary_at(m, r->at[i]));
     if (m->attenuation != NULL) printf("  %10.4g", abbe_material_attenuation(m, r->at[i]));
     printf("%s\n", abbe_material_extrapolates(m, r->at[i]) ? "  extrapolated" : "");
   }
@@ -228,14 +261,25 @@ static void add_points(cJSON *to, const char *key, const abbe_spectrum *spectrum
   }
 }
 
-static void add_record(cJSON *to, const abbe_material *m) {
-  const abbe_dispersion *d = &m->dispersion;
+static void add_curve(cJSON *to, const abbe_dispersion *d) {
   cJSON_AddStringToObject(to, "model", abbe_dispersion_model_name(d->model));
   cJSON_AddStringToObject(to, "formula", abbe_dispersion_model_formula(d->model));
   if (d->table != NULL)
     add_points(to, "points", d->table, d->k);
   else
     cJSON_AddItemToObject(to, "coefficients", cJSON_CreateDoubleArray(d->c, (int)d->count));
+}
+
+static void add_extraordinary(cJSON *to, const abbe_material *m) {
+  cJSON *item = cJSON_AddObjectToObject(to, "extraordinary");
+  add_curve(item, &m->extraordinary);
+  cJSON_AddNumberToObject(item, "n_d", extraordinary_at(m, ABBE_LINE_D_NM));
+  cJSON_AddNumberToObject(item, "birefringence_d", birefringence_at(m, ABBE_LINE_D_NM));
+}
+
+static void add_record(cJSON *to, const abbe_material *m) {
+  add_curve(to, &m->dispersion);
+  if (abbe_material_is_uniaxial(m)) add_extraordinary(to, m);
   abbe_materials_add_pair(to, "range_nm", m->min_nm, m->max_nm);
   cJSON_AddBoolToObject(to, "extrapolate", m->extrapolate);
   cJSON_AddNumberToObject(to, "temperature_c", m->temperature_c);
@@ -319,6 +363,8 @@ static abbe_result show_json(const request *r, const abbe_material_table *table,
     cJSON *item = cJSON_CreateObject();
     cJSON_AddNumberToObject(item, "lambda_nm", r->at[i]);
     cJSON_AddNumberToObject(item, "n", n);
+    if (abbe_material_is_uniaxial(m))
+      cJSON_AddNumberToObject(item, "n_extraordinary", extraordinary_at(m, r->at[i]));
     cJSON_AddNumberToObject(item, "attenuation_per_m", abbe_material_attenuation(m, r->at[i]));
     cJSON_AddBoolToObject(item, "extrapolated", abbe_material_extrapolates(m, r->at[i]));
     cJSON_AddItemToArray(list, item);

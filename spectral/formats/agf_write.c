@@ -17,6 +17,7 @@ typedef enum loss {
   DESCRIPTION,
   WARNING,
   FITS,
+  EXTRAORDINARY,
   EXTRAPOLATE,
   INTERPOLATION,
   REWRITTEN,
@@ -30,6 +31,7 @@ static const abbe_summary_row losses[LOSSES] = {
     [DESCRIPTION] = {ABBE_NOTE_LOST, "AGF has no place for a description"},
     [WARNING] = {ABBE_NOTE_LOST, "AGF has no place for a warning"},
     [FITS] = {ABBE_NOTE_LOST, "AGF has no place for recorded fits"},
+    [EXTRAORDINARY] = {ABBE_NOTE_LOST, "AGF has one index a glass: the ordinary one"},
     [EXTRAPOLATE] = {ABBE_NOTE_LOST, "AGF cannot allow use outside the range"},
     [INTERPOLATION] = {ABBE_NOTE_LOST, "AGF does not say how attenuation runs between points"},
     [REWRITTEN] = {ABBE_NOTE_CHANGED, "the formula is written as another one with the same n"},
@@ -245,6 +247,7 @@ static void count_losses(const abbe_material *m, abbe_summary *t) {
   if (m->description != NULL) abbe_summary_add(t, DESCRIPTION, m->name);
   if (m->warning != NULL) abbe_summary_add(t, WARNING, m->name);
   if (m->fit[0].terms > 0 || m->fit[1].terms > 0) abbe_summary_add(t, FITS, m->name);
+  if (abbe_material_is_uniaxial(m)) abbe_summary_add(t, EXTRAORDINARY, m->name);
   if (m->extrapolate) abbe_summary_add(t, EXTRAPOLATE, m->name);
   abbe_summary_add(t, SOURCE, m->name);
 }

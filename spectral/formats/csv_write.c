@@ -86,6 +86,9 @@ static void note_losses(const abbe_material *m, abbe_report *report) {
   abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                   "a table of points has no place for its name and source%s, but in a comment",
                   more ? ", nor for the rest of the record" : "");
+  if (abbe_material_is_uniaxial(m))
+    abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
+                    "a table of points has one index: the ordinary one");
   if (m->attenuation != NULL)
     abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
                     "absorption is written as k at the wavelengths of n alone");

@@ -76,26 +76,35 @@ static void write_points(const abbe_spectrum *spectrum, const abbe_spectrum *thi
 
 /* ---- parts of a record ---- */
 
+/* Model and numbers, each line indented by so many spaces. */
+static void write_curve(const abbe_dispersion *d, int indent, FILE *to) {
+  fprintf(to, "%*smodel: %s\n", indent, "", abbe_dispersion_model_name(d->model));
+  if (d->model == ABBE_DISPERSION_TABULATED) {
+    fprintf(to, "%*sinterpolation: %s\n%*spoints: ", indent, "",
+            abbe_interpolation_name(abbe_spectrum_interpolation(d->table)), indent, "");
+    write_points(d->table, NULL, indent + 2, to);
+  } else if (d->model == ABBE_DISPERSION_CONDUCTOR) {
+    fprintf(to, "%*spoints: ", indent, "");
+    write_points(d->table, d->k, indent + 2, to);
+  } else {
+    fprintf(to, "%*scoefficients: ", indent, "");
+    write_list(d->c, d->count, indent + 14, indent + 2, to);
+    fputc('\n', to);
+  }
+}
+
 static void write_dispersion(const abbe_material *m, FILE *to) {
   const abbe_dispersion *d = &m->dispersion;
   char low[ABBE_NUMBER_TEXT_SIZE], high[ABBE_NUMBER_TEXT_SIZE];
-  fprintf(to, "    model: %s\n", abbe_dispersion_model_name(d->model));
-  if (d->model == ABBE_DISPERSION_TABULATED) {
-    fprintf(to, "    interpolation: %s\n    points: ",
-            abbe_interpolation_name(abbe_spectrum_interpolation(d->table)));
-    write_points(d->table, NULL, 6, to);
-  } else if (d->model == ABBE_DISPERSION_CONDUCTOR) {
-    fputs("    points: ", to);
-    write_points(d->table, d->k, 6, to);
-  } else {
-    fputs("    coefficients: ", to);
-    write_list(d->c, d->count, 18, 6, to);
-    fputc('\n', to);
-  }
+  write_curve(d, 4, to);
   bool all = m->min_nm == ABBE_SPECTRUM_LOW_NM && m->max_nm == ABBE_SPECTRUM_HIGH_NM;
   if (d->model != ABBE_DISPERSION_CONSTANT || !all)
     fprintf(to, "    range_nm: [%s, %s]\n", abbe_number_text(m->min_nm, low),
             abbe_number_text(m->max_nm, high));
+  if (abbe_material_is_uniaxial(m)) {
+    fputs("    extraordinary:\n", to);
+    write_curve(&m->extraordinary, 6, to);
+  }
   if (m->extrapolate) fputs("    extrapolate: true\n", to);
   if (!isnan(m->temperature_c)) write_number("    temperature_c", m->temperature_c, to);
 }
@@ -124,8 +133,8 @@ static void write_numbers(const char *key, const double *value, size_t count, FI
 
 static void write_catalogue(const abbe_material_catalogue *c, FILE *to) {
   bool something = c->code != NULL || c->status != NULL || c->melt_frequency != 0 ||
-                   any(c->expansion_per_k, 2) || c->dpgf != 0 ||
-                   any(c->thermal, 6) || c->rating_count > 0;
+                   any(c->expansion_per_k, 2) || c->dpgf != 0 || any(c->thermal, 6) ||
+                   c->rating_count > 0;
   if (!something) return;
   fputs("    catalogue:\n", to);
   if (c->code != NULL) {

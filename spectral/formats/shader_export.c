@@ -389,6 +389,9 @@ abbe_result abbe_shader_write(abbe_shader shader, const abbe_material_table *tab
                       "it is a conductor; of the shaders, only pbrt's are written of those");
       continue;
     }
+    if (abbe_material_is_uniaxial(m))
+      abbe_report_add(report, ABBE_NOTE_LOST, m->line, m->name,
+                      "it is written with its ordinary index alone");
     if (w.count > 0) fputs(forms[shader].between, to);
     forms[shader].write(&w, m);
   }

@@ -16,6 +16,7 @@ void abbe_material_free(abbe_material *material) {
   free(material->catalogue.code);
   free(material->catalogue.status);
   abbe_dispersion_free(&material->dispersion);
+  abbe_dispersion_free(&material->extraordinary);
   abbe_spectrum_free(material->attenuation);
   *material = (abbe_material){0};
 }
@@ -54,6 +55,19 @@ abbe_result abbe_material_check_name(const char *name, abbe_error *error) {
                         name == NULL ? "" : name, ABBE_MATERIAL_MAX_NAME);
 }
 
+/* The points of a tabulated index cover the range. */
+static abbe_result check_points(const abbe_material *m, const abbe_spectrum *table,
+                                const char *which, abbe_error *error) {
+  if (table == NULL) return ABBE_OK;
+  const double *lambda_nm = abbe_spectrum_lambda_nm(table);
+  double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(table) - 1];
+  if (m->min_nm >= low && m->max_nm <= high) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%s: its range of %g to %g nm is wider than %s, which reach from %g to "
+                        "%g nm",
+                        m->name, m->min_nm, m->max_nm, which, low, high);
+}
+
 static abbe_result check_range(const abbe_material *m, abbe_error *error) {
   bool ascends = m->min_nm >= ABBE_SPECTRUM_LOW_NM && m->max_nm <= ABBE_SPECTRUM_HIGH_NM &&
                  m->min_nm < m->max_nm;
@@ -67,30 +81,46 @@ static abbe_result check_range(const abbe_material *m, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: its range of %g to %g nm does not ascend between %g and %g", m->name,
                           m->min_nm, m->max_nm, ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM);
-  if (table == NULL) return ABBE_OK;
-  const double *lambda_nm = abbe_spectrum_lambda_nm(table);
-  double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(table) - 1];
-  if (m->min_nm >= low && m->max_nm <= high) return ABBE_OK;
-  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                        "%s: its range of %g to %g nm is wider than its points, which reach from "
-                        "%g to %g nm",
-                        m->name, m->min_nm, m->max_nm, low, high);
+  abbe_result result = check_points(m, table, "its points", error);
+  return result == ABBE_OK
+             ? check_points(m, m->extraordinary.table, "those of its extraordinary index", error)
+             : result;
 }
 
 /* A formula that has a pole or no root inside its own range was copied wrongly, most often with
  * coefficients in another unit. */
-static abbe_result check_index(const abbe_material *m, abbe_error *error) {
+static abbe_result check_curve(const abbe_material *m, const abbe_dispersion *d, const char *which,
+                               abbe_error *error) {
   enum { STEPS = 1000 };
-  if (abbe_material_is_conductor(m)) return ABBE_OK;
   for (int i = 0; i <= STEPS; i++) {
     double lambda_nm = m->min_nm + (m->max_nm - m->min_nm) * i / STEPS;
-    if (!isnan(abbe_dispersion_n(&m->dispersion, lambda_nm))) continue;
+    if (!isnan(abbe_dispersion_n(d, lambda_nm))) continue;
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s: its %s formula has no real index at %g nm, inside its range; check "
-                          "the coefficients (wavelengths in micrometres)",
-                          m->name, abbe_dispersion_model_name(m->dispersion.model), lambda_nm);
+                          "%s: its %s%s formula has no real index at %g nm, inside its range; "
+                          "check the coefficients (wavelengths in micrometres)",
+                          m->name, which, abbe_dispersion_model_name(d->model), lambda_nm);
   }
   return ABBE_OK;
+}
+
+static abbe_result check_index(const abbe_material *m, abbe_error *error) {
+  if (abbe_material_is_conductor(m)) return ABBE_OK;
+  abbe_result result = check_curve(m, &m->dispersion, "", error);
+  if (result != ABBE_OK || !abbe_material_is_uniaxial(m)) return result;
+  return check_curve(m, &m->extraordinary, "extraordinary ", error);
+}
+
+static abbe_result check_extraordinary(const abbe_material *m, abbe_error *error) {
+  abbe_error why;
+  if (!abbe_material_is_uniaxial(m)) return ABBE_OK;
+  if (m->extraordinary.model == ABBE_DISPERSION_CONDUCTOR)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: its extraordinary index is of the model conductor, and has to be "
+                          "real",
+                          m->name);
+  if (abbe_dispersion_check(&m->extraordinary, &why) == ABBE_OK) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: its extraordinary index: %s", m->name,
+                        why.text);
 }
 
 /* What would be of no effect, and could not be written. */
@@ -100,6 +130,7 @@ static abbe_result check_conductor(const abbe_material *m, abbe_error *error) {
                      : m->fit[0].terms > 0 || m->fit[1].terms > 0 ? "fit"
                      : m->published_n_d != 0                      ? "n_d"
                      : m->published_v_d != 0                      ? "v_d"
+                     : abbe_material_is_uniaxial(m)               ? "extraordinary"
                                                                   : NULL;
   if (!abbe_material_is_conductor(m) || idle == NULL) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the model conductor has no use for '%s'",
@@ -118,6 +149,7 @@ abbe_result abbe_material_check_form(const abbe_material *material, abbe_error *
   if (abbe_dispersion_check(&material->dispersion, &why) != ABBE_OK)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %s", material->name, why.text);
   result = check_conductor(material, error);
+  if (result == ABBE_OK) result = check_extraordinary(material, error);
   return result == ABBE_OK ? check_range(material, error) : result;
 }
 
@@ -133,9 +165,8 @@ bool abbe_material_extrapolates(const abbe_material *material, double lambda_nm)
   return lambda_nm < material->min_nm || lambda_nm > material->max_nm;
 }
 
-abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
-                            abbe_error *error) {
-  ABBE_REQUIRE(material && n, error);
+static abbe_result index_of(const abbe_material *material, const abbe_dispersion *dispersion,
+                            double lambda_nm, double *n, abbe_error *error) {
   if (abbe_material_is_conductor(material))
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "%s is a conductor: it has n and k, and no real index", material->name);
@@ -144,13 +175,31 @@ abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, dou
                           "%s has no index at %g nm: its data reach from %g to %g nm, and its "
                           "record does not say 'extrapolate: true'",
                           material->name, lambda_nm, material->min_nm, material->max_nm);
-  double value = abbe_dispersion_n(&material->dispersion, lambda_nm);
+  double value = abbe_dispersion_n(dispersion, lambda_nm);
   if (isnan(value))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: its %s formula has no real index at %g nm", material->name,
-                          abbe_dispersion_model_name(material->dispersion.model), lambda_nm);
+                          abbe_dispersion_model_name(dispersion->model), lambda_nm);
   *n = value;
   return ABBE_OK;
+}
+
+abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
+                            abbe_error *error) {
+  ABBE_REQUIRE(material && n, error);
+  return index_of(material, &material->dispersion, lambda_nm, n, error);
+}
+
+bool abbe_material_is_uniaxial(const abbe_material *material) {
+  return material->extraordinary.count > 0 || material->extraordinary.table != NULL;
+}
+
+abbe_result abbe_material_n_extraordinary(const abbe_material *material, double lambda_nm,
+                                          double *n, abbe_error *error) {
+  ABBE_REQUIRE(material && n, error);
+  const bool two = abbe_material_is_uniaxial(material);
+  return index_of(material, two ? &material->extraordinary : &material->dispersion, lambda_nm, n,
+                  error);
 }
 
 bool abbe_material_is_conductor(const abbe_material *material) {

@@ -2,7 +2,7 @@
  *
  * It is transparent, with a real index, or a conductor, with n and k and nothing to do with light
  * but to mirror it: a conductor has no attenuation, fit, published n_d or V_d, and does not
- * extrapolate.
+ * extrapolate. A transparent one may be a uniaxial crystal, with two indices (spectral/uniaxial.h).
  *
  * A zeroed record with a name, a source and a dispersion is a valid one, but for temperature_c: 0
  * means 0 Celsius, NaN that the source is silent.
@@ -23,9 +23,9 @@ extern "C" {
 
 /* A Cauchy form fitted to the material, as the table records it. */
 typedef struct abbe_material_fit {
-  size_t terms;        /* 0 where the table has none */
-  double c[8];         /* um^(2k) */
-  double max_error;    /* largest |n - fit| over [min_nm, max_nm] */
+  size_t terms;     /* 0 where the table has none */
+  double c[8];      /* um^(2k) */
+  double max_error; /* largest |n - fit| over [min_nm, max_nm] */
   double min_nm, max_nm;
 } abbe_material_fit;
 
@@ -35,34 +35,36 @@ enum { ABBE_MATERIAL_MAX_NAME = 80 };
  * the density, which weighs stones. 0 (NULL) means that the catalogue is silent, as it does in the
  * catalogues themselves. */
 typedef struct abbe_material_catalogue {
-  char *code;              /* the six-digit code of n_d and V_d, as printed: 517642.251 */
-  char *status;            /* standard, preferred, obsolete, special or melt */
-  double melt_frequency;   /* 1 (most often molten) to 5 */
-  double density_g_cm3;    /* up to ABBE_MATERIAL_DENSITY_MOST; a record's own key in tables */
+  char *code;                /* the six-digit code of n_d and V_d, as printed: 517642.251 */
+  char *status;              /* standard, preferred, obsolete, special or melt */
+  double melt_frequency;     /* 1 (most often molten) to 5 */
+  double density_g_cm3;      /* up to ABBE_MATERIAL_DENSITY_MOST; a record's own key in tables */
   double expansion_per_k[2]; /* linear, -30 to 70 C and 100 to 300 C, 1/K */
-  double dpgf;             /* deviation of the partial dispersion P_gF from the normal line */
-  double thermal[6];       /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
-  size_t rating_count;     /* 0 or 6 */
-  double ratings[6];       /* relative cost, then resistance: climate, stain, acid, alkali,
-                              phosphate; -1 where it is not known */
+  double dpgf;               /* deviation of the partial dispersion P_gF from the normal line */
+  double thermal[6];         /* dn/dT: D0, D1, D2, E0, E1, lambda_tk (um); about temperature_c */
+  size_t rating_count;       /* 0 or 6 */
+  double ratings[6];         /* relative cost, then resistance: climate, stain, acid, alkali,
+                                phosphate; -1 where it is not known */
 } abbe_material_catalogue;
 
 typedef struct abbe_material {
-  char *name;                /* unique in its table, as on the command line */
-  char *description;         /* one line for people; may be NULL */
+  char *name;        /* unique in its table, as on the command line */
+  char *description; /* one line for people; may be NULL */
   abbe_dispersion dispersion;
-  double min_nm, max_nm;     /* valid range of the dispersion, from its source */
-  bool extrapolate;          /* the record allows use outside that range; reported when used */
-  abbe_spectrum *attenuation;/* natural attenuation coefficient, 1/m, at nm; NULL: clear */
-  double temperature_c;      /* of the measurement, Celsius; NaN where the source is silent */
-  char *source;              /* key into BIBLIOGRAPHY.md, then details */
-  char *warning;             /* what a user of this row must know (thesis rows); may be NULL */
-  abbe_material_fit fit[2];  /* two and three terms */
-  double published_n_d;      /* n_d and V_d as the source prints them, for the check; */
-  double published_v_d;      /* 0 where it prints none */
-  char *comment;             /* the source's own remark; may be NULL */
+  abbe_dispersion extraordinary; /* of a uniaxial crystal, whose ordinary index is the other; of
+                                    any other material zeroed */
+  double min_nm, max_nm;         /* valid range of the dispersion, from its source */
+  bool extrapolate;              /* the record allows use outside that range; reported when used */
+  abbe_spectrum *attenuation;    /* natural attenuation coefficient, 1/m, at nm; NULL: clear */
+  double temperature_c;          /* of the measurement, Celsius; NaN where the source is silent */
+  char *source;                  /* key into BIBLIOGRAPHY.md, then details */
+  char *warning;                 /* what a user of this row must know (thesis rows); may be NULL */
+  abbe_material_fit fit[2];      /* two and three terms */
+  double published_n_d;          /* n_d and V_d as the source prints them, for the check; */
+  double published_v_d;          /* 0 where it prints none */
+  char *comment;                 /* the source's own remark; may be NULL */
   abbe_material_catalogue catalogue;
-  size_t line;               /* of the record in its file, for messages */
+  size_t line; /* of the record in its file, for messages */
 } abbe_material;
 
 void abbe_material_free(abbe_material *material);
@@ -81,8 +83,8 @@ size_t abbe_material_catalogue_bound(abbe_material_catalogue *catalogue);
 /* Whether a table may hold the record, that is: what is written of it can be read again. The name
  * has 1 to 80 printable characters and no space at its ends, there is a source, the coefficients go
  * with the model, the range ascends inside [ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM] and inside
- * the points of a tabulated model, the formula has a real index at 1001 wavelengths over it, and a
- * conductor has nothing that only a transparent material has.
+ * the points of a tabulated model, the formula has a real index at 1001 wavelengths over it, the
+ * extraordinary one as well, and a conductor has nothing that only a transparent material has.
  * ABBE_INVALID_ARGUMENT, with a sentence that begins with the name. */
 abbe_result abbe_material_check(const abbe_material *material, abbe_error *error);
 /* All of it but the last, which takes its time: what can be told without a value of the formula. */
@@ -95,6 +97,12 @@ abbe_result abbe_material_check_name(const char *name, abbe_error *error);
  * conductor. */
 abbe_result abbe_material_n(const abbe_material *material, double lambda_nm, double *n,
                             abbe_error *error);
+
+/* Whether it is a uniaxial crystal: it has an extraordinary index besides. */
+bool abbe_material_is_uniaxial(const abbe_material *material);
+/* The extraordinary index, as abbe_material_n; that of any other material is its only one. */
+abbe_result abbe_material_n_extraordinary(const abbe_material *material, double lambda_nm,
+                                          double *n, abbe_error *error);
 
 /* Whether it is a conductor: opaque, with a complex index, for mirrors. */
 bool abbe_material_is_conductor(const abbe_material *material);

@@ -60,6 +60,11 @@ static bool same_catalogue(const abbe_material_catalogue *a, const abbe_material
          same_numbers(a->ratings, b->ratings, a->rating_count);
 }
 
+static bool same_index(const abbe_dispersion *a, const abbe_dispersion *b) {
+  return a->model == b->model && a->count == b->count && same_numbers(a->c, b->c, a->count) &&
+         same_points(a->table, b->table);
+}
+
 static unsigned parts_of(const abbe_material *a, const abbe_material *b) {
   const abbe_dispersion *p = &a->dispersion, *q = &b->dispersion;
   const bool same[ABBE_ROW_PART_COUNT] = {
@@ -68,6 +73,7 @@ static unsigned parts_of(const abbe_material *a, const abbe_material *b) {
       [ABBE_ROW_PART_COEFFICIENTS] = p->count == q->count && same_numbers(p->c, q->c, p->count),
       [ABBE_ROW_PART_POINTS] = same_points(p->table, q->table) && same_points(p->k, q->k),
       [ABBE_ROW_PART_RANGE] = a->min_nm == b->min_nm && a->max_nm == b->max_nm,
+      [ABBE_ROW_PART_EXTRAORDINARY] = same_index(&a->extraordinary, &b->extraordinary),
       [ABBE_ROW_PART_EXTRAPOLATE] = a->extrapolate == b->extrapolate,
       [ABBE_ROW_PART_TEMPERATURE] = same_number(a->temperature_c, b->temperature_c),
       [ABBE_ROW_PART_PUBLISHED] =

@@ -32,6 +32,7 @@ typedef enum abbe_row_kind {
   X(COEFFICIENTS, "coefficients")                                                                  \
   X(POINTS, "points")                                                                              \
   X(RANGE, "range_nm")                                                                             \
+  X(EXTRAORDINARY, "extraordinary")                                                                \
   X(EXTRAPOLATE, "extrapolate")                                                                    \
   X(TEMPERATURE, "temperature_c")                                                                  \
   X(PUBLISHED, "n_d and v_d")                                                                      \

@@ -264,22 +264,32 @@ static abbe_result read_catalogue(reader *r) {
              : read_numbers(r, ABBE_STORE_ratings, 6, 6, most, c->ratings, &c->rating_count);
 }
 
-static abbe_result read_dispersion(reader *r) {
-  abbe_material *m = r->material;
-  abbe_dispersion *d = &m->dispersion;
+/* An index: its model, numbers, how its points are joined, and those. */
+static abbe_result read_index(reader *r, const abbe_store_column column[4], abbe_dispersion *d) {
   int model = -1;
-  abbe_result result =
-      read_word(r, ABBE_STORE_model, model_name, ABBE_DISPERSION_MODEL_COUNT, &model);
-  if (result == ABBE_OK && model < 0) return damaged(r, ABBE_STORE_model, "is missing");
+  abbe_result result = read_word(r, column[0], model_name, ABBE_DISPERSION_MODEL_COUNT, &model);
+  if (result != ABBE_OK || model < 0) return result;
   d->model = (abbe_dispersion_model)model;
-  if (result == ABBE_OK)
-    result = read_numbers(r, ABBE_STORE_coefficients, 1, ABBE_DISPERSION_MAX_COEFFICIENTS, INFINITY,
-                          d->c, &d->count);
-  if (result == ABBE_OK)
-    result =
-        d->model == ABBE_DISPERSION_CONDUCTOR
-            ? read_conductor(r, d)
-            : read_spectrum(r, ABBE_STORE_points, ABBE_STORE_interpolation, 1e-3, 1e3, &d->table);
+  result =
+      read_numbers(r, column[1], 1, ABBE_DISPERSION_MAX_COEFFICIENTS, INFINITY, d->c, &d->count);
+  if (result != ABBE_OK) return result;
+  return d->model == ABBE_DISPERSION_CONDUCTOR
+             ? read_conductor(r, d)
+             : read_spectrum(r, column[3], column[2], 1e-3, 1e3, &d->table);
+}
+
+static abbe_result read_dispersion(reader *r) {
+  static const abbe_store_column ordinary[4] = {ABBE_STORE_model, ABBE_STORE_coefficients,
+                                                ABBE_STORE_interpolation, ABBE_STORE_points},
+                                 extraordinary[4] = {ABBE_STORE_extraordinary_model,
+                                                     ABBE_STORE_extraordinary_coefficients,
+                                                     ABBE_STORE_extraordinary_interpolation,
+                                                     ABBE_STORE_extraordinary_points};
+  abbe_material *m = r->material;
+  if (sqlite3_column_type(r->q, ABBE_STORE_model + 1) == SQLITE_NULL)
+    return damaged(r, ABBE_STORE_model, "is missing");
+  abbe_result result = read_index(r, ordinary, &m->dispersion);
+  if (result == ABBE_OK) result = read_index(r, extraordinary, &m->extraordinary);
   const double low = ABBE_SPECTRUM_LOW_NM, high = ABBE_SPECTRUM_HIGH_NM;
   if (result == ABBE_OK) result = read_number(r, ABBE_STORE_from_nm, low, high, &m->min_nm);
   return result == ABBE_OK ? read_number(r, ABBE_STORE_to_nm, low, high, &m->max_nm) : result;

@@ -13,7 +13,7 @@ extern "C" {
 #endif
 
 /* "Abbe" in the file's header, and the version of what follows. */
-enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 1, ABBE_STORE_MAX_TERMS = 3 };
+enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 2, ABBE_STORE_MAX_TERMS = 3 };
 
 /* X(name, type): the columns after id. Lists of numbers are doubles, the least byte first; points
  * are pairs of them, nm and value, or nm, n and k of a conductor. What is large comes last: SQLite reads a row from its beginning.
@@ -24,6 +24,9 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 1, ABBE_STORE_M
   X(model, "TEXT NOT NULL")                                                                        \
   X(coefficients, "BLOB")                                                                          \
   X(interpolation, "TEXT")                                                                         \
+  X(extraordinary_model, "TEXT")                                                                   \
+  X(extraordinary_coefficients, "BLOB")                                                            \
+  X(extraordinary_interpolation, "TEXT")                                                           \
   X(from_nm, "REAL")                                                                               \
   X(to_nm, "REAL")                                                                                 \
   X(extrapolate, "INTEGER")                                                                        \
@@ -45,6 +48,7 @@ enum { ABBE_STORE_APPLICATION = 0x41626265, ABBE_STORE_VERSION = 1, ABBE_STORE_M
   X(cauchy3, "BLOB")                                                                               \
   X(attenuation_interpolation, "TEXT")                                                             \
   X(attenuation_per_m, "BLOB")                                                                     \
+  X(extraordinary_points, "BLOB")                                                                  \
   X(points, "BLOB")
 
 typedef enum abbe_store_column {

@@ -123,6 +123,14 @@ static int bind_material(sqlite3_stmt *q, const abbe_material *m) {
     code = abbe_material_is_conductor(m)
                ? bind_conductor(q, d)
                : bind_spectrum(q, ABBE_STORE_points, ABBE_STORE_interpolation, d->table);
+  const abbe_dispersion *e = &m->extraordinary;
+  if (code == SQLITE_OK && abbe_material_is_uniaxial(m))
+    code = bind_text(q, ABBE_STORE_extraordinary_model, abbe_dispersion_model_name(e->model));
+  if (code == SQLITE_OK)
+    code = bind_numbers(q, ABBE_STORE_extraordinary_coefficients, e->c, e->count);
+  if (code == SQLITE_OK)
+    code = bind_spectrum(q, ABBE_STORE_extraordinary_points, ABBE_STORE_extraordinary_interpolation,
+                         e->table);
   if (code == SQLITE_OK)
     code = bind_spectrum(q, ABBE_STORE_attenuation_per_m, ABBE_STORE_attenuation_interpolation,
                          m->attenuation);

@@ -104,6 +104,25 @@ static inline abbe_dispersion random_dispersion(void) {
   return d;
 }
 
+/* A second index over the range of the first. */
+static inline abbe_dispersion random_second(const abbe_dispersion *first) {
+  abbe_dispersion d = {.model = ABBE_DISPERSION_TABULATED};
+  if (first->table != NULL) {
+    double value[64];
+    const size_t count = abbe_spectrum_count(first->table);
+    for (size_t i = 0; i < count; i++) value[i] = random_in(1.3, 1.4);
+    assert_int_equal(abbe_spectrum_make(abbe_spectrum_lambda_nm(first->table), value, count,
+                                        (abbe_interpolation)(rand() % 3), &d.table, NULL),
+                     ABBE_OK);
+    return d;
+  }
+  do {
+    abbe_dispersion_free(&d);
+    d = random_dispersion();
+  } while (d.table != NULL);
+  return d;
+}
+
 static inline void random_catalogue(abbe_material_catalogue *c) {
   if (rand() % 2) c->code = strdup("517642.251");
   if (rand() % 2) c->status = strdup(rand() % 2 ? "obsolete" : "standard");
@@ -139,6 +158,7 @@ static inline abbe_material random_material(size_t number) {
     m.max_nm =
         abbe_spectrum_lambda_nm(m.dispersion.table)[abbe_spectrum_count(m.dispersion.table) - 1];
   }
+  if (rand() % 3 == 0) m.extraordinary = random_second(&m.dispersion);
   random_catalogue(&m.catalogue);
   if (rand() % 2)
     m.fit[0] = (abbe_material_fit){2, {random_in(1, 2), random_in(0, 0.01)}, 1e-4, 380, 780};

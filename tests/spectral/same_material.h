@@ -100,6 +100,8 @@ static inline void check_same_record(const abbe_material *a, const abbe_material
   check_carried(a, b, 0, file, line);
   check_same(same_text(a->description, b->description), "description", a->name, file, line);
   check_same(same_text(a->warning, b->warning), "warning", a->name, file, line);
+  check_same(same_dispersion(&a->extraordinary, &b->extraordinary), "extraordinary index", a->name,
+             file, line);
   check_same(a->extrapolate == b->extrapolate, "extrapolate", a->name, file, line);
   check_same(a->published_n_d == b->published_n_d && a->published_v_d == b->published_v_d,
              "n_d and V_d", a->name, file, line);

@@ -47,6 +47,7 @@ static void shipped_indices_are_the_published_ones(void **state) {
       {"moissanite", 2.647990, 5e-7, 25.957, 5e-4},
       {"quartz", 1.544276, 5e-7, 69.689, 5e-4},
       {"rutile", 2.614265, 5e-7, 9.869, 5e-4},
+      {"calcite", 1.658461, 5e-7, 49.914, 5e-4},
       {"fluorite", 1.43385, 5e-6, 95.0, 5e-2},
       {"yag", 1.8328, 5e-5, 52.6, 5e-2},
   };
@@ -88,6 +89,37 @@ static void shipped_indices_hold_at_the_ends(void **state) {
     assert_int_equal(abbe_material_n(m, 780, &n, NULL), ABBE_OK);
     assert_near(n, rows[i].n_780, 5.1e-7);
   }
+  abbe_material_table_free(&table);
+}
+
+/* The extraordinary index at d, from an evaluation of the same formulas by another hand; of stones
+ * whose birefringence alone is known, that. Metals, glasses and cubic or biaxial stones have none.
+ */
+static void shipped_extraordinary_indices_are_the_published_ones(void **state) {
+  (void)state;
+  const struct {
+    const char *name;
+    double n, less; /* less: from the ordinary one */
+  } rows[] = {
+      {"sapphire", 1.760096, 0},    {"ruby", 1.760096, 0},        {"moissanite", 2.689581, 0},
+      {"quartz", 1.553379, 0},      {"amethyst", 1.553379, 0},    {"rutile", 2.910351, 0},
+      {"calcite", 1.486185, 0},     {"emerald", 0, 0.006},        {"aquamarine", 0, 0.006},
+      {"tourmaline-pink", 0, 0.02}, {"tourmaline-blue", 0, 0.02}, {"zircon", 0, -0.059},
+      {"zircon-blue", 0, -0.059},
+  };
+  abbe_material_table table = load("default");
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    const abbe_material *m = find(&table, rows[i].name);
+    double n_o = 0, n_e = 0;
+    assert_true(abbe_material_is_uniaxial(m));
+    assert_int_equal(abbe_material_n(m, ABBE_LINE_D_NM, &n_o, NULL), ABBE_OK);
+    assert_int_equal(abbe_material_n_extraordinary(m, ABBE_LINE_D_NM, &n_e, NULL), ABBE_OK);
+    if (rows[i].n > 0) assert_near(n_e, rows[i].n, 5.1e-7);
+    if (rows[i].less != 0) assert_near(n_o - n_e, rows[i].less, 1e-12);
+  }
+  const char *const others[] = {"diamond", "spinel", "topaz", "peridot", "n-bk7", "gold", "air"};
+  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+    assert_false(abbe_material_is_uniaxial(find(&table, others[i])));
   abbe_material_table_free(&table);
 }
 
@@ -265,6 +297,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shipped_indices_are_the_published_ones),
       cmocka_unit_test(shipped_indices_hold_at_the_ends),
+      cmocka_unit_test(shipped_extraordinary_indices_are_the_published_ones),
       cmocka_unit_test(air_is_what_indices_are_relative_to),
       cmocka_unit_test(shipped_metals_reflect_what_their_sources_say),
       cmocka_unit_test(every_shipped_row_covers_the_spectrum_and_falls_with_wavelength),

@@ -1,0 +1,154 @@
+#include "spectral/materials/record_reading.h"
+
+#include "spectral/materials/conductor.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static abbe_result read_model(abbe_record_reading *r, abbe_yaml_node where,
+                              abbe_dispersion_model *model) {
+  const char *names[ABBE_DISPERSION_MODEL_COUNT + 1] = {NULL};
+  for (int i = 0; i < ABBE_DISPERSION_MODEL_COUNT; i++)
+    names[i] = abbe_dispersion_model_name((abbe_dispersion_model)i);
+  abbe_yaml_node node;
+  abbe_result result = abbe_yaml_require(r->yaml, where, "model", &node, r->error);
+  int choice = 0;
+  if (result == ABBE_OK)
+    result = abbe_yaml_get_choice(r->yaml, where, "model", names, &choice, r->error);
+  *model = (abbe_dispersion_model)choice;
+  return result;
+}
+
+static abbe_result read_conductor(abbe_record_reading *r, abbe_yaml_node points) {
+  abbe_record_rows list = {.columns = 3};
+  abbe_error why = {0};
+  abbe_result result = abbe_record_rows_read(r, points, "points", 0, 1e3, &list);
+  if (result == ABBE_OK) {
+    result = abbe_conductor_make(list.column[0], list.column[1], list.column[2], list.count,
+                                 &r->material->dispersion, &why);
+    result = abbe_record_tell(r, points, "points", result, &why);
+  }
+  abbe_record_rows_free(&list);
+  return result;
+}
+
+/* Pairs of nm and n, and how they are joined. */
+static abbe_result read_pairs(abbe_record_reading *r, abbe_yaml_node where, abbe_dispersion *d) {
+  abbe_yaml_node points;
+  abbe_interpolation interpolation = ABBE_INTERPOLATION_MONOTONE;
+  abbe_result result = abbe_yaml_require(r->yaml, where, "points", &points, r->error);
+  if (result == ABBE_OK) result = abbe_record_read_interpolation(r, where, &interpolation);
+  if (result != ABBE_OK || d->model == ABBE_DISPERSION_CONDUCTOR)
+    return result == ABBE_OK ? read_conductor(r, points) : result;
+  return abbe_record_read_points(r, points, "points", 1e-3, 1e3, interpolation, &d->table);
+}
+
+static abbe_result read_tabulated(abbe_record_reading *r) {
+  abbe_material *m = r->material;
+  abbe_result result = read_pairs(r, r->record, &m->dispersion);
+  if (result != ABBE_OK) return result;
+  const double *lambda_nm = abbe_spectrum_lambda_nm(m->dispersion.table);
+  double low = lambda_nm[0], high = lambda_nm[abbe_spectrum_count(m->dispersion.table) - 1];
+  m->min_nm = low;
+  m->max_nm = high;
+  if (abbe_yaml_get(r->yaml, r->record, "range_nm").id != 0)
+    result = abbe_record_read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm);
+  if (result == ABBE_OK && (m->min_nm < low || m->max_nm > high))
+    return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, r->record, "range_nm"), r->error,
+                          "'range_nm: [%g, %g]' is wider than the points, which reach from %g to "
+                          "%g nm",
+                          m->min_nm, m->max_nm, low, high);
+  return result;
+}
+
+static abbe_result read_coefficients(abbe_record_reading *r, abbe_yaml_node where,
+                                     abbe_dispersion *d) {
+  abbe_yaml_node node;
+  abbe_result result = abbe_yaml_require(r->yaml, where, "coefficients", &node, r->error);
+  if (result != ABBE_OK) return result;
+  double *c = NULL;
+  result = abbe_yaml_get_list(r->yaml, where, "coefficients", ABBE_DISPERSION_MAX_COEFFICIENTS, &c,
+                              &d->count, r->error);
+  if (result != ABBE_OK) return result;
+  memcpy(d->c, c, d->count * sizeof *c);
+  free(c);
+  abbe_error why;
+  if (abbe_dispersion_check(d, &why) != ABBE_OK)
+    return abbe_yaml_fail(r->yaml, node, r->error, "'coefficients': %s", why.text);
+  return ABBE_OK;
+}
+
+static abbe_result read_formula(abbe_record_reading *r) {
+  abbe_material *m = r->material;
+  abbe_result result = read_coefficients(r, r->record, &m->dispersion);
+  if (result != ABBE_OK) return result;
+  abbe_yaml_node node = {0};
+  m->min_nm = ABBE_SPECTRUM_LOW_NM;
+  m->max_nm = ABBE_SPECTRUM_HIGH_NM;
+  if (m->dispersion.model != ABBE_DISPERSION_CONSTANT)
+    result = abbe_record_require(r, "range_nm", &node);
+  if (r->lenient && node.id == 0 && m->dispersion.model != ABBE_DISPERSION_CONSTANT) {
+    m->min_nm = m->max_nm = 0;
+    return ABBE_OK;
+  }
+  return result != ABBE_OK
+             ? result
+             : abbe_record_read_range(r, r->record, "range_nm", &m->min_nm, &m->max_nm);
+}
+
+/* A key that the model does not read would be silently without effect. */
+static abbe_result check_idle_keys(abbe_record_reading *r, abbe_yaml_node where,
+                                   abbe_dispersion_model model) {
+  static const char *const of_points[] = {"coefficients", NULL};
+  static const char *const of_formulas[] = {"points", "interpolation", NULL};
+  static const char *const of_conductors[] = {"coefficients", "interpolation", "extrapolate",
+                                              "absorption",   "fit",           "n_d",
+                                              "v_d",          "extraordinary", NULL};
+  const char *const *idle = model == ABBE_DISPERSION_CONDUCTOR   ? of_conductors
+                            : model == ABBE_DISPERSION_TABULATED ? of_points
+                                                                 : of_formulas;
+  for (; *idle != NULL; idle++) {
+    abbe_yaml_node node = abbe_yaml_get(r->yaml, where, *idle);
+    if (node.id != 0)
+      return abbe_yaml_fail(r->yaml, node, r->error, "the model %s has no use for '%s'",
+                            abbe_dispersion_model_name(model), *idle);
+  }
+  return ABBE_OK;
+}
+
+/* The second index of a uniaxial crystal, over the range of the first. */
+static abbe_result read_extraordinary(abbe_record_reading *r) {
+  abbe_dispersion *d = &r->material->extraordinary;
+  const abbe_yaml_node where = abbe_yaml_get(r->yaml, r->record, "extraordinary");
+  if (where.id == 0) return ABBE_OK;
+  if (!abbe_yaml_is_mapping(r->yaml, where))
+    return abbe_yaml_fail(r->yaml, where, r->error,
+                          "'extraordinary' wants a model and its numbers, such as {model: cauchy, "
+                          "coefficients: [1.48, 0.003]}");
+  static const char *const keys[] = {"model", "coefficients", "points", "interpolation"};
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) abbe_yaml_get(r->yaml, where, keys[i]);
+  abbe_result result = abbe_yaml_check_keys(r->yaml, where, "'extraordinary'", r->error);
+  if (result == ABBE_OK) result = read_model(r, where, &d->model);
+  if (result == ABBE_OK && d->model == ABBE_DISPERSION_CONDUCTOR)
+    return abbe_yaml_fail(r->yaml, abbe_yaml_get(r->yaml, where, "model"), r->error,
+                          "'extraordinary' is a real index; the model conductor has n and k");
+  if (result == ABBE_OK) result = check_idle_keys(r, where, d->model);
+  if (result != ABBE_OK) return result;
+  return d->model == ABBE_DISPERSION_TABULATED ? read_pairs(r, where, d)
+                                               : read_coefficients(r, where, d);
+}
+
+abbe_result abbe_record_read_dispersion(abbe_record_reading *r) {
+  abbe_dispersion *d = &r->material->dispersion;
+  abbe_result result = read_model(r, r->record, &d->model);
+  if (result == ABBE_OK) result = check_idle_keys(r, r->record, d->model);
+  if (result != ABBE_OK) return result;
+  bool points = d->model == ABBE_DISPERSION_TABULATED || d->model == ABBE_DISPERSION_CONDUCTOR;
+  result = points ? read_tabulated(r) : read_formula(r);
+  if (result == ABBE_OK) result = read_extraordinary(r);
+  if (result != ABBE_OK || r->lenient) return result;
+  abbe_error why;
+  if (abbe_material_check(r->material, &why) != ABBE_OK)
+    return abbe_yaml_fail(r->yaml, r->record, r->error, "%s", why.text);
+  return ABBE_OK;
+}

@@ -1,0 +1,61 @@
+/* record_reading.h: what the parts of a record are read with. Internal to spectral/materials. */
+#ifndef ABBE_SPECTRAL_MATERIALS_RECORD_READING_H
+#define ABBE_SPECTRAL_MATERIALS_RECORD_READING_H
+
+#include "base/error.h"
+#include "base/yaml/yaml.h"
+#include "spectral/materials/material.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A record being read: where complaints go, and what fills. */
+typedef struct abbe_record_reading {
+  abbe_yaml *yaml;
+  abbe_yaml_node record;
+  abbe_material *material;
+  abbe_error *error;
+  bool lenient; /* for a record that is to be examined */
+} abbe_record_reading;
+
+/* A key that only the lenient reading goes without: *node is none then. */
+abbe_result abbe_record_require(abbe_record_reading *r, const char *key, abbe_yaml_node *node);
+
+/* Rows of a list: wavelengths, and one or two values of each. */
+typedef struct abbe_record_rows {
+  size_t columns, count;
+  double *column[3];
+} abbe_record_rows;
+
+/* [[nm, value], …] or, with three columns, [[nm, n, k], …], values in [min, max]; the rows are
+ * freed by the caller, also after a failure. */
+abbe_result abbe_record_rows_read(abbe_record_reading *r, abbe_yaml_node list, const char *key,
+                                  double min, double max, abbe_record_rows *out);
+void abbe_record_rows_free(abbe_record_rows *list);
+
+/* What a spectrum cannot be made of, as a complaint about the list. */
+abbe_result abbe_record_tell(abbe_record_reading *r, abbe_yaml_node list, const char *key,
+                             abbe_result result, const abbe_error *why);
+
+/* A list of pairs as a spectrum. */
+abbe_result abbe_record_read_points(abbe_record_reading *r, abbe_yaml_node list, const char *key,
+                                    double min, double max, abbe_interpolation interpolation,
+                                    abbe_spectrum **out);
+
+/* [from, to] under the key of `where`; as it is where there is none. */
+abbe_result abbe_record_read_range(abbe_record_reading *r, abbe_yaml_node where, const char *key,
+                                   double *min_nm, double *max_nm);
+abbe_result abbe_record_read_interpolation(abbe_record_reading *r, abbe_yaml_node where,
+                                           abbe_interpolation *interpolation);
+
+/* Model, numbers and range of the material, and its extraordinary index. */
+abbe_result abbe_record_read_dispersion(abbe_record_reading *r);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
