@@ -60,6 +60,8 @@ abbe_result abbe_object_move(abbe_object *object, const double matrix[16], abbe_
   abbe_result result = abbe_mesh_transform(&object->mesh, matrix, error);
   if (result != ABBE_OK) return result;
   move_exact(&object->exact, matrix, scale);
+  abbe_transform_direction(matrix, object->axis, object->axis);
+  abbe_vector_normalise(object->axis);
   abbe_object_bound(object);
   return ABBE_OK;
 }

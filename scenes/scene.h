@@ -92,6 +92,8 @@ typedef struct abbe_object {
   abbe_exact exact;
   double min[3], max[3];         /* bounds */
   const abbe_material *material; /* refractor: owned by the scene's table; else NULL */
+  double axis[3];                /* of a uniaxial crystal: unit, its optic axis in the world; of
+                                    other materials of no meaning */
   double reflectance[3];         /* receiver: linear Rec.709, 0 to 1 */
   char *texture_path;            /* receiver: NULL or the PNG that multiplies reflectance */
   abbe_image texture;            /* linear Rec.709, "R","G","B"; zeroed without a texture */

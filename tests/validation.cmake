@@ -28,7 +28,7 @@ foreach(name
     known_light
     mask
     media
-    mirrors mirror_walk
+    mirrors mirror_walk crystal_walk double_refraction
     rings
     nl_means
     outline

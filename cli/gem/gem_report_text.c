@@ -59,6 +59,9 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
          f->input->in.material->name, 1000 * f->input->width_m);
   printf("%.0f rays of the eye from above, each at %zu wavelengths; head's half angle %g degrees\n",
          rays(&j->view), j->view.wavelengths, f->head_deg);
+  if (abbe_material_is_uniaxial(f->input->in.material))
+    printf("%s is taken with its ordinary index alone: its double refraction is left out\n",
+           f->input->in.material->name);
   if (j->has_tilts)
     printf("tilted about %d axes up to %g degrees by %g\n", ABBE_GEM_AXES,
            j->tilts.tilt_rad[j->tilts.tilts - 1] * 180 / PI, j->tilts.step_rad * 180 / PI);

@@ -198,6 +198,7 @@ static abbe_result make_part(const abbe_object *whole, size_t i, size_t count, a
   out->mesh = *mesh;
   memset(mesh, 0, sizeof *mesh);
   out->material = whole->material;
+  memcpy(out->axis, whole->axis, sizeof out->axis);
   out->line = whole->line;
   out->name = malloc(size);
   if (!out->name) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a name");
@@ -260,6 +261,8 @@ static abbe_result shape_one(const abbe_object_surface *s, abbe_object *out, abb
 static abbe_result place_one(const abbe_object_surface *s, const double matrix[16],
                              abbe_object *out, abbe_error *error) {
   abbe_result result = abbe_mesh_transform(&out->mesh, matrix, error);
+  abbe_transform_direction(matrix, out->axis, out->axis);
+  abbe_vector_normalise(out->axis);
   if (result == ABBE_OK) result = find_exact(s, matrix, out, error);
   if (result == ABBE_OK) abbe_object_bound(out);
   if (result == ABBE_OK && !(abbe_vector_finite(out->min) && abbe_vector_finite(out->max)))

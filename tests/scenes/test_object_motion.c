@@ -43,6 +43,7 @@ static void assert_same_object(const abbe_object *a, const abbe_object *b) {
   if (a->exact.plane != NULL) assert_all_near(a->exact.plane[0], b->exact.plane[0], 4 * a->exact.count);
   if (a->exact.parallelogram != NULL)
     assert_all_near(a->exact.parallelogram[0], b->exact.parallelogram[0], 9 * a->exact.count);
+  assert_all_near(a->axis, b->axis, 3);
   assert_all_near(a->min, b->min, 3);
   assert_all_near(a->max, b->max, 3);
 }

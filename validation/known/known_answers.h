@@ -31,8 +31,9 @@ extern "C" {
   X(nest, "a bubble in a glass ball and a ball of water in glass: the later object is there")      \
   X(slab, "how far a plane-parallel slab moves a ray")                                             \
   X(fresnel, "reflectance of a face at five angles from both sides, and critical angles")          \
+  X(crystal, "calcite: the angle between its rays, their indices, shares and doubled image")       \
   X(rainbow, "primary and secondary rainbows of water")                                            \
-  X(pane, "a slab's reflectance and transmittance with all inner reflections")                     \
+  X(pane, "what slabs, of calcite too, reflect and pass with all inner reflections")               \
   X(absorption, "Beer-Lambert: what absorbing slabs let pass")                                     \
   X(furnace, "a white furnace: glass in the same light from everywhere cannot be seen")            \
   X(environment,                                                                                   \

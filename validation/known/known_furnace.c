@@ -29,6 +29,9 @@ static const room rooms[] = {
     {"bubble in a ball of n-bk7",
      "- {name: ball, shape: sphere, radius: 0.04, material: n-bk7}\n"
      "- {name: bubble, shape: sphere, radius: 0.025, material: air}\n"},
+    {"cut calcite",
+     "- {name: gem, shape: gem, sides: 6, girdle: 0.04, table: 0.024, crown: 0.013,\n"
+     "   pavilion: 0.03, material: calcite, axis: [1, 0.4, 0.7]}\n"},
 };
 
 static const char furnace_reason[] =

@@ -18,6 +18,7 @@
 typedef struct pane {
   const char *material;
   double lambda_nm, thickness, degrees, circle;
+  bool crystal; /* with its optic axis across the plane of incidence */
 } pane;
 
 static abbe_result load(const pane *p, abbe_scene *scene, abbe_error *error) {
@@ -35,10 +36,11 @@ static abbe_result load(const pane *p, abbe_scene *scene, abbe_error *error) {
       "camera: {eye: [0, -9, 4], target: [0, 0, 0]}\n"
       "lights: [{name: sun, kind: directional, direction: [%.17g, 0, %.17g], irradiance: 1}]\n"
       "objects:\n"
-      "- {name: pane, shape: box, size: [1, 1, %.17g], material: %s}\n"
+      "- {name: pane, shape: box, size: [1, 1, %.17g], material: %s%s}\n"
       "- {name: below, shape: rectangle, width: 4, height: 4, reflectance: 0.5,\n"
       "   transform: [{translate: [0, 0, %.17g]}]}\n%s",
-      sin(angle), -cos(angle), p->thickness, p->material, -BELOW, upper);
+      sin(angle), -cos(angle), p->thickness, p->material, p->crystal ? ", axis: [0, 1, 0]" : "",
+      -BELOW, upper);
 }
 
 /* The circle on the plane below or above that the middle of the pane sends its light to. */
@@ -70,10 +72,37 @@ static double all_light(const pane *p, const abbe_rings *rings) {
   return flux;
 }
 
+/* By the sine and tangent laws, from outside into index n. [BornWolf1999, 1.5.2] */
+static double polarised(double angle, double n, bool across) {
+  double inner = asin(sin(angle) / n);
+  double r = angle == 0 ? (n - 1) / (n + 1)
+             : across   ? sin(angle - inner) / sin(angle + inner)
+                        : tan(angle - inner) / tan(angle + inner);
+  return r * r;
+}
+
+/* The extraordinary wave is polarised across the plane of incidence and sees n_e, the ordinary one
+ * in it, and sees n_o; neither makes any of the other. */
+static abbe_result exact_of_crystal(const pane *p, const abbe_material *material, double *reflected,
+                                    double *passed, abbe_error *error) {
+  double n[2], angle = p->degrees / ABBE_KNOWN_DEGREES, r, t;
+  abbe_result result = abbe_material_n(material, p->lambda_nm, &n[0], error);
+  if (result == ABBE_OK)
+    result = abbe_material_n_extraordinary(material, p->lambda_nm, &n[1], error);
+  if (result != ABBE_OK) return result;
+  for (int wave = 0; wave < 2; wave++) {
+    abbe_closed_form_slab(polarised(angle, n[wave], wave == 1), 1, &r, &t);
+    *reflected += r / 2;
+    *passed += t / 2;
+  }
+  return ABBE_OK;
+}
+
 static abbe_result exact_of(const pane *p, const abbe_scene *scene, double *reflected,
                             double *passed, abbe_error *error) {
   const abbe_material *material = scene->object[0].material;
   double n = 0, angle = p->degrees / ABBE_KNOWN_DEGREES;
+  if (p->crystal) return exact_of_crystal(p, material, reflected, passed, error);
   abbe_result result = abbe_material_n(material, p->lambda_nm, &n, error);
   if (result != ABBE_OK) return result;
   double slanted = p->thickness / cos(asin(sin(angle) / n));
@@ -131,16 +160,24 @@ typedef struct setting {
 #define D_LINE 587.5618
 
 static const setting clear[] = {
-    {{"n-bk7", D_LINE, 0.005, 0, 0.25}, false},   {{"n-bk7", D_LINE, 0.005, 30, 0.25}, true},
-    {{"n-bk7", D_LINE, 0.005, 30, 0.25}, false},  {{"n-bk7", D_LINE, 0.005, 60, 0.25}, true},
-    {{"n-bk7", D_LINE, 0.005, 60, 0.25}, false},  {{"diamond", D_LINE, 0.005, 0, 0.25}, false},
-    {{"diamond", D_LINE, 0.005, 30, 0.25}, true}, {{"diamond", D_LINE, 0.005, 30, 0.25}, false},
-    {{"diamond", D_LINE, 0.005, 60, 0.25}, true}, {{"diamond", D_LINE, 0.005, 60, 0.25}, false},
+    {{"n-bk7", D_LINE, 0.005, 0, 0.25, false}, false},
+    {{"n-bk7", D_LINE, 0.005, 30, 0.25, false}, true},
+    {{"n-bk7", D_LINE, 0.005, 30, 0.25, false}, false},
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, false}, true},
+    {{"n-bk7", D_LINE, 0.005, 60, 0.25, false}, false},
+    {{"diamond", D_LINE, 0.005, 0, 0.25, false}, false},
+    {{"diamond", D_LINE, 0.005, 30, 0.25, false}, true},
+    {{"diamond", D_LINE, 0.005, 30, 0.25, false}, false},
+    {{"diamond", D_LINE, 0.005, 60, 0.25, false}, true},
+    {{"diamond", D_LINE, 0.005, 60, 0.25, false}, false},
+    {{"calcite", D_LINE, 0.005, 0, 0.25, true}, false},
+    {{"calcite", D_LINE, 0.005, 60, 0.25, true}, true},
+    {{"calcite", D_LINE, 0.005, 60, 0.25, true}, false},
 };
 static const setting absorbing[] = {
-    {{"n-sf11", 546, 0.02, 0, 0.25}, false}, {{"n-sf11", 436, 0.02, 0, 0.25}, false},
-    {{"n-sf11", 400, 0.02, 0, 0.25}, false}, {{"n-sf11", 400, 0.02, 45, 0.25}, false},
-    {{"n-sf11", 400, 0.1, 0, 0.25}, false},
+    {{"n-sf11", 546, 0.02, 0, 0.25, false}, false}, {{"n-sf11", 436, 0.02, 0, 0.25, false}, false},
+    {{"n-sf11", 400, 0.02, 0, 0.25, false}, false}, {{"n-sf11", 400, 0.02, 45, 0.25, false}, false},
+    {{"n-sf11", 400, 0.1, 0, 0.25, false}, false},
 };
 
 enum { CLEAR = sizeof clear / sizeof *clear, ABSORBING = sizeof absorbing / sizeof *absorbing };

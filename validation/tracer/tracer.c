@@ -92,6 +92,7 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);
+  if (d->physics.matched) abbe_media_forget_axes(&t->media);
   if (result == ABBE_OK)
     result = abbe_mirrors_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->mirrors,
                                error);

@@ -1,13 +1,54 @@
 #include "validation/transport/media.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+static const abbe_object *object_of(const abbe_geometry *g, size_t refractor) {
+  return &g->scene->object[g->refractor_object[refractor]];
+}
+
+/* Of crystals the axes have to be alike too, whichever way they point. */
+static bool is_same(const abbe_geometry *g, size_t a, size_t b) {
+  const abbe_object *p = object_of(g, a), *q = object_of(g, b);
+  double along = 0;
+  for (int k = 0; k < 3; k++) along += p->axis[k] * q->axis[k];
+  return p->material == q->material &&
+         (!abbe_material_is_uniaxial(p->material) || fabs(along) > 1 - 1e-12);
+}
+
+/* The other index of a crystal, and its axis. */
+static abbe_result fill_crystal(const abbe_geometry *g, const double *lambda_nm, abbe_media *m,
+                                size_t i, abbe_error *error) {
+  const abbe_object *o = object_of(g, i);
+  m->crystal[i] = abbe_material_is_uniaxial(o->material);
+  memcpy(m->axis[i], o->axis, sizeof m->axis[i]);
+  for (size_t k = 0; m->crystal[i] && k <= m->steps; k++) {
+    double n = 0;
+    abbe_result result = abbe_material_n_extraordinary(o->material, lambda_nm[k], &n, error);
+    if (result != ABBE_OK) return result;
+    const size_t at = i * (m->steps + 1) + k;
+    m->extraordinary[at] = (float)n;
+    m->dispersive[i] =
+        m->dispersive[i] || m->extraordinary[at] != m->extraordinary[i * (m->steps + 1)];
+  }
+  return ABBE_OK;
+}
+
+static void free_crystals(abbe_media *m) {
+  free(m->extraordinary);
+  free(m->crystal);
+  free(m->axis);
+  m->extraordinary = NULL;
+  m->crystal = NULL;
+  m->axis = NULL;
+}
 
 static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_media *m,
                         bool *absorbs, abbe_error *error) {
   for (size_t i = 0; i < m->refractors; i++) {
-    const abbe_material *material = g->scene->object[g->refractor_object[i]].material;
+    const abbe_material *material = object_of(g, i)->material;
     for (m->stuff[i] = 0; m->stuff[i] < i; m->stuff[i]++)
-      if (g->scene->object[g->refractor_object[m->stuff[i]]].material == material) break;
+      if (is_same(g, m->stuff[i], i)) break;
     for (size_t k = 0; k <= m->steps; k++) {
       double n = 0;
       abbe_result result = abbe_material_n(material, lambda_nm[k], &n, error);
@@ -18,6 +59,8 @@ static abbe_result fill(const abbe_geometry *g, const double *lambda_nm, abbe_me
       *absorbs = *absorbs || m->attenuation[at] > 0;
       m->dispersive[i] = m->dispersive[i] || m->n[at] != m->n[i * (m->steps + 1)];
     }
+    abbe_result result = fill_crystal(g, lambda_nm, m, i, error);
+    if (result != ABBE_OK) return result;
   }
   return ABBE_OK;
 }
@@ -32,15 +75,22 @@ abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_
   m.attenuation = calloc(values, sizeof *m.attenuation);
   m.dispersive = calloc(m.refractors + 1, sizeof *m.dispersive);
   m.stuff = calloc(m.refractors + 1, sizeof *m.stuff);
-  bool absorbs = false;
+  m.extraordinary = calloc(values, sizeof *m.extraordinary);
+  m.crystal = calloc(m.refractors + 1, sizeof *m.crystal);
+  m.axis = calloc(m.refractors + 1, sizeof *m.axis);
+  bool absorbs = false, crystals = false;
   abbe_result result =
-      m.n == NULL || m.attenuation == NULL || m.dispersive == NULL || m.stuff == NULL
+      m.n == NULL || m.attenuation == NULL || m.dispersive == NULL || m.stuff == NULL ||
+              m.extraordinary == NULL || m.crystal == NULL || m.axis == NULL
           ? abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tables of %zu media", m.refractors)
           : fill(geometry, lambda_nm, &m, &absorbs, error);
   if (!absorbs) {
     free(m.attenuation);
     m.attenuation = NULL;
   }
+  for (size_t i = 0; i < m.refractors && result == ABBE_OK; i++)
+    crystals = crystals || m.crystal[i];
+  if (!crystals) free_crystals(&m);
   if (result != ABBE_OK) abbe_media_free(&m);
   *out = m;
   return result;
@@ -52,5 +102,10 @@ void abbe_media_free(abbe_media *m) {
   free(m->attenuation);
   free(m->dispersive);
   free(m->stuff);
+  free_crystals(m);
   *m = (abbe_media){0};
+}
+
+void abbe_media_forget_axes(abbe_media *m) {
+  free_crystals(m);
 }

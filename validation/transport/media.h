@@ -4,7 +4,8 @@
  * set of refractors around a point is enough to know its medium, and a surface that another,
  * later refractor covers is no interface, nor is one between two of the same material. The tables
  * hold index and attenuation of every refractor at the sampler's wavelengths. Air (n = 1) is where
- * no refractor is.
+ * no refractor is. A uniaxial crystal has two indices and an axis (double_refraction.h); two of one
+ * material are one medium where their axes are alike.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_MEDIA_H
 #define ABBE_VALIDATION_TRANSPORT_MEDIA_H
@@ -38,16 +39,27 @@ static inline void abbe_media_cross(abbe_media_set set, uint32_t i, bool enterin
 
 typedef struct abbe_media {
   size_t refractors, steps;
-  float *n;           /* [refractors][steps + 1] at the steps' edges */
-  float *attenuation; /* the same, a frame unit; NULL where all are clear */
-  bool *dispersive;   /* [refractors] the index varies over the steps */
-  uint32_t *stuff;    /* [refractors] the first refractor of the same material */
+  float *n;             /* [refractors][steps + 1] at the steps' edges */
+  float *attenuation;   /* the same, a frame unit; NULL where all are clear */
+  bool *dispersive;     /* [refractors] the index varies over the steps */
+  uint32_t *stuff;      /* [refractors] the first refractor of the same material */
+  float *extraordinary; /* the other index of crystals, as n; NULL where there are none */
+  bool *crystal;        /* [refractors] */
+  double (*axis)[3];    /* [refractors] unit, of crystals */
 } abbe_media;
 
 /* Tables over the steps + 1 wavelengths lambda_nm, ascending. Errors as abbe_material_n. */
 abbe_result abbe_media_make(const abbe_geometry *geometry, const double *lambda_nm, size_t steps,
                             abbe_media *out, abbe_error *error);
 void abbe_media_free(abbe_media *media);
+
+/* Takes crystals for isotropic with their ordinary index, as the renderer does. */
+void abbe_media_forget_axes(abbe_media *media);
+
+/* Whether the medium (-1: air) has two indices. */
+static inline bool abbe_media_is_crystal(const abbe_media *m, int i) {
+  return i >= 0 && m->extraordinary != NULL && m->crystal[i];
+}
 
 /* Whether two media (-1: air) are one, so that there is no interface between them. */
 static inline bool abbe_media_same(const abbe_media *m, int a, int b) {

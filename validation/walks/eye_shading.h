@@ -26,6 +26,7 @@ typedef struct abbe_eye_path {
   abbe_media_set inside;
   float carried; /* matched: what a splitting path would carry */
   uint32_t walls, steps, id;
+  uint8_t wave; /* in a crystal: which of its two */
 } abbe_eye_path;
 
 typedef struct abbe_eye_context {

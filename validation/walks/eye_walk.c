@@ -1,5 +1,6 @@
 #include "validation/walks/eye_walk.h"
 
+#include "validation/transport/double_refraction.h"
 #include "validation/transport/interface.h"
 #include "validation/walks/eye_shading.h"
 
@@ -46,9 +47,13 @@ typedef struct crossing {
   int from, to;
   float n[3], cos_i; /* the normal on the path's side */
   bool entering;
+  bool crystal; /* on either side; then also how the path comes: */
+  float d[3];
+  uint8_t wave;
 } crossing;
 
-static void cross(const abbe_eye_path *p, const abbe_hit *hit, crossing *x) {
+static void cross(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
+                  crossing *x) {
   float along = abbe_eye_dot(p->d, hit->ng), shaded = abbe_eye_dot(p->d, hit->n);
   x->entering = along < 0;
   const float *outside = (shaded < 0) == x->entering ? hit->n : hit->ng;
@@ -58,11 +63,26 @@ static void cross(const abbe_eye_path *p, const abbe_hit *hit, crossing *x) {
   abbe_media_cross(p->inside, hit->surface->index, x->entering, &x->before, &x->after);
   x->from = abbe_media_of(x->before);
   x->to = abbe_media_of(x->after);
+  x->crystal =
+      abbe_media_is_crystal(c->w->media, x->from) || abbe_media_is_crystal(c->w->media, x->to);
+  memcpy(x->d, p->d, sizeof x->d);
+  x->wave = p->wave;
+}
+
+static void find_ways(const abbe_eye_context *c, const crossing *x, uint32_t step, float within,
+                      abbe_wave_ways *out) {
+  abbe_media_ways(c->w->media, x->from, x->to, step, within, x->n, x->d, x->wave, out);
 }
 
 static float reflectance_at(const abbe_eye_context *c, const crossing *x, uint32_t step,
                             float within, float *eta, float *cos_t) {
   const abbe_media *m = c->w->media;
+  if (x->crystal) {
+    abbe_wave_ways ways;
+    find_ways(c, x, step, within, &ways);
+    *eta = *cos_t = 1;
+    return ways.reflected;
+  }
   *eta = abbe_media_n(m, x->from, step, within) / abbe_media_n(m, x->to, step, within);
   return abbe_interface_reflectance(x->cos_i, *eta, cos_t);
 }
@@ -79,6 +99,15 @@ static void send(abbe_eye_path *p, const abbe_hit *hit, const crossing *x, bool 
   memcpy(p->d, d, sizeof d);
   p->inside = reflects ? x->before : x->after;
   abbe_geometry_leave(hit, d, p->o);
+}
+
+static void send_as(abbe_eye_path *p, const abbe_hit *hit, const crossing *x,
+                    const abbe_wave_way *way) {
+  memcpy(p->d, way->d, sizeof p->d);
+  abbe_interface_keep_side(hit->ng, x->entering == way->reflected ? 1 : -1, p->d);
+  p->inside = way->reflected ? x->before : x->after;
+  p->wave = way->wave;
+  abbe_geometry_leave(hit, p->d, p->o);
 }
 
 /* Matched physics: whether the renderer would follow the path any further. */
@@ -151,6 +180,42 @@ static bool scatter(const abbe_eye_context *c, branches *b, abbe_eye_path *p, co
   return goes || also;
 }
 
+/* All ways on from a crystal's face, as scatter. Those of which little is left share one number, so
+ * that about as many go on as there is light for. Matched physics knows no crystals. */
+static bool scatter_waves(const abbe_eye_context *c, branches *b, abbe_eye_path *p,
+                          const abbe_hit *hit, const crossing *x, const float random[4]) {
+  const abbe_eye_path first = *p;
+  const float least = c->w->least_branch;
+  abbe_wave_ways ways;
+  find_ways(c, x, p->step, p->within, &ways);
+  if (b->count + 3 > BRANCHES_ROOM) {
+    send_as(p, hit, x, abbe_wave_ways_choose(&ways, random[0], random[3]));
+    return true;
+  }
+  float sum = random[0];
+  bool goes = false;
+  for (size_t i = 0; i < ways.count; i++) {
+    abbe_eye_path next = first;
+    next.share *= ways.way[i].share;
+    next.branch *= ways.way[i].share;
+    if (next.branch < least) {
+      const float before = sum;
+      sum += next.branch / least;
+      if (floorf(sum) == floorf(before)) continue;
+      next.share *= least / next.branch;
+      next.branch = least;
+    }
+    next.id = first.id * 0x9e3779b1u + 0x85ebca6bu * (uint32_t)(i + 1);
+    send_as(&next, hit, x, &ways.way[i]);
+    if (goes)
+      b->path[b->count++] = next;
+    else
+      *p = next;
+    goes = true;
+  }
+  return goes;
+}
+
 /* On from a mirror, with what it reflects. */
 static void mirror_on(const abbe_eye_context *c, abbe_eye_path *p, const abbe_hit *hit) {
   const float side = abbe_eye_dot(p->d, hit->ng) < 0 ? 1 : -1;
@@ -190,13 +255,14 @@ static bool follow_step(const abbe_eye_context *c, branches *b, abbe_eye_path *p
     return p->share > 0;
   }
   crossing x;
-  cross(p, &hit, &x);
+  cross(c, p, &hit, &x);
   if (abbe_media_same(c->w->media, x.from, x.to)) {
     p->inside = x.after;
     abbe_geometry_leave(&hit, p->d, p->o);
     return true;
   }
   if (disperses(c, &x)) disperse(p, random[1]);
+  if (x.crystal) return scatter_waves(c, b, p, &hit, &x, random);
   return scatter(c, b, p, &hit, &x, random[0]);
 }
 
@@ -245,6 +311,21 @@ static void follow_mirror(const abbe_eye_context *c, const abbe_eye_path *first,
   follow(c, &p);
 }
 
+/* Both waves into a crystal. */
+static void follow_waves(const abbe_eye_context *c, const abbe_eye_path *first, const abbe_hit *hit,
+                         const crossing *x) {
+  abbe_wave_ways ways;
+  find_ways(c, x, first->step, first->within, &ways);
+  for (size_t i = 0; i < ways.count; i++) {
+    if (ways.way[i].reflected) continue;
+    abbe_eye_path p = *first;
+    p.id += HEROES * (uint32_t)ways.way[i].wave * 0x10000u;
+    p.share *= ways.way[i].share;
+    send_as(&p, hit, x, &ways.way[i]);
+    follow(c, &p);
+  }
+}
+
 static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first,
                            const abbe_hit *hit, const crossing *x, float random) {
   uint32_t count = disperses(c, x) || c->w->media->attenuation != NULL ? HEROES : 1;
@@ -253,6 +334,10 @@ static void follow_through(const abbe_eye_context *c, const abbe_eye_path *first
     p.id += 2 + i;
     p.share /= (float)count;
     if (count > 1) disperse(&p, ((float)i + random) / (float)count);
+    if (x->crystal) {
+      follow_waves(c, &p, hit, x);
+      continue;
+    }
     float eta, cos_t, share = reflectance_at(c, x, p.step, p.within, &eta, &cos_t);
     if (share >= 1) continue;
     p.share *= 1 - share;
@@ -306,7 +391,7 @@ static void walk_sample(const abbe_eye_context *c, abbe_eye_path *p, float x, fl
     return;
   }
   crossing at;
-  cross(p, &hit, &at);
+  cross(c, p, &hit, &at);
   if (abbe_media_same(c->w->media, at.from, at.to)) {
     p->id++;
     p->inside = at.after;

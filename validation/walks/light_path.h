@@ -1,14 +1,17 @@
 /* light_path.h: a photon between its interfaces: the number that decides at the next, absorption
- * and the roulette, and how far matched physics follows it.
+ * and the roulette, what a crystal's face makes of it, and how far matched physics follows it.
  *
  * Internal to validation/: it is not installed.
  */
 #ifndef ABBE_VALIDATION_WALKS_LIGHT_PATH_H
 #define ABBE_VALIDATION_WALKS_LIGHT_PATH_H
 
+#include "validation/transport/double_refraction.h"
+#include "validation/transport/interface.h"
 #include "validation/transport/media.h"
 #include "validation/transport/random.h"
 #include "validation/walks/inner_walk.h"
+#include "validation/walks/scatter.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -25,6 +28,7 @@ typedef struct abbe_light_path {
   float chance[ABBE_PHOTON_SPLITS];
   uint16_t steps, inner; /* interfaces met; matched: of them, after the first */
   bool begun;            /* has met its first interface */
+  uint8_t wave;          /* in a crystal: which of its two */
 } abbe_light_path;
 
 /* The number that decides at a path's next interface. Neighbouring photons have neighbouring
@@ -63,6 +67,33 @@ static inline bool abbe_light_path_absorb(const abbe_inner_rules *r, const abbe_
   s->flux *= left;
   s->carried *= left;
   return abbe_light_path_survives(r, s, ledger);
+}
+
+/* At a face of a crystal: puts into lane k, in place of what it has, where the path goes on as that
+ * lane's number decides. Returns the wave that it goes on as. */
+static inline uint8_t abbe_light_path_bend(const abbe_inner_rules *r, const abbe_media *media,
+                                           const abbe_light_path *s, int from, int to,
+                                           abbe_scatter *p, size_t k) {
+  float d[3], n[3], ng[3], random[4];
+  for (int i = 0; i < 3; i++) {
+    d[i] = p->d[i][k];
+    n[i] = p->n[i][k];
+    ng[i] = p->ng[i][k];
+  }
+  abbe_wave_ways ways;
+  abbe_media_ways(media, from, to, s->step, s->within, n, d, s->wave, &ways);
+  abbe_random4(s->id, s->steps, r->pass, r->seed ^ 0x77617665u, random);
+  const abbe_wave_way *way = abbe_wave_ways_choose(&ways, p->chance[k], random[0]);
+  for (int i = 0; i < 3; i++) d[i] = way->d[i];
+  abbe_interface_keep_side(ng, way->reflected ? 1 : -1, d);
+  for (int i = 0; i < 3; i++) {
+    p->out[i][k] = d[i];
+    /* off the face to the other side */
+    if (way->reflected != (p->reflects[k] != 0)) p->from[i][k] = 2 * p->p[i][k] - p->from[i][k];
+  }
+  p->share[k] = ways.reflected;
+  p->reflects[k] = way->reflected;
+  return way->wave;
 }
 
 /* Matched physics: whether the renderer would still follow the path. */

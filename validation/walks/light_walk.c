@@ -136,6 +136,8 @@ typedef struct packet {
   abbe_scatter scatter;
   abbe_media_set before[LANES], after[LANES];
   bool straight[LANES]; /* media of one index: no interface */
+  bool crystal[LANES];  /* on either side */
+  uint8_t wave[LANES];  /* that a path goes on as, in a crystal */
   path_state state[LANES];
   abbe_hit hit[LANES];
 } packet;
@@ -173,6 +175,8 @@ static void meet_interface(const abbe_light_walk *w, const abbe_light_path *s, c
   abbe_media_cross(s->inside, hit->surface->index, entering, &p->before[k], &p->after[k]);
   int from = abbe_media_of(p->before[k]), to = abbe_media_of(p->after[k]);
   p->straight[k] = abbe_media_same(w->media, from, to);
+  p->crystal[k] = !p->straight[k] &&
+                  (abbe_media_is_crystal(w->media, from) || abbe_media_is_crystal(w->media, to));
   p->scatter.eta[k] = p->straight[k] ? 1
                                      : abbe_media_n(w->media, from, s->step, s->within) /
                                            abbe_media_n(w->media, to, s->step, s->within);
@@ -260,7 +264,8 @@ static void leave_solid(run *r);
 static bool stays_in_solid(const abbe_light_walk *w, const abbe_light_path *s) {
   if (s->inside == 0) return false;
   if (s->steps < ABBE_PHOTON_SPLITS && w->splits >> s->steps != 0) return false; /* one is split */
-  return abbe_solid_is(&w->g->solid[abbe_media_of(s->inside)]);
+  const int medium = abbe_media_of(s->inside);
+  return abbe_solid_is(&w->g->solid[medium]) && !abbe_media_is_crystal(w->media, medium);
 }
 
 /* Into the batch of its solid, whose paths leave it first where it is another's. */
@@ -299,6 +304,7 @@ static path_state go_on(run *r, size_t k, abbe_light_path *s) {
   if (!p->straight[k] && !abbe_light_path_is_followed(&r->rules, s, reflects, p->scatter.share[k]))
     return TRAPPED;
   s->inside = reflects ? p->before[k] : p->after[k];
+  if (p->crystal[k]) s->wave = p->wave[k];
   if (stays_in_solid(r->w, s)) {
     enter_solid(r, k, d, s);
     return SCATTERS;
@@ -366,6 +372,16 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
   }
 }
 
+static void scatter_packet(run *r, const abbe_light_path *paths, size_t count) {
+  packet *p = &r->packet;
+  abbe_scatter_packet(&p->scatter);
+  for (size_t k = 0; r->w->media->crystal != NULL && k < count; k++)
+    if (p->state[k] == SCATTERS && p->crystal[k])
+      p->wave[k] =
+          abbe_light_path_bend(&r->rules, r->w->media, &paths[k], abbe_media_of(p->before[k]),
+                               abbe_media_of(p->after[k]), &p->scatter, k);
+}
+
 /* Each lane's path goes on as its number decides; one that is split is reflected, and then
  * transmitted. */
 static void scatter(run *r, const abbe_light_path *paths, size_t count) {
@@ -377,12 +393,12 @@ static void scatter(run *r, const abbe_light_path *paths, size_t count) {
     scatters = scatters || r->packet.state[k] == SCATTERS;
     any = any || splits[k];
   }
-  if (scatters) abbe_scatter_packet(s);
+  if (scatters) scatter_packet(r, paths, count);
   advance(r, paths, count, false);
   if (!any) return;
   for (size_t k = 0; k < count; k++)
     if (splits[k]) s->chance[k] = TRANSMIT;
-  abbe_scatter_packet(s);
+  scatter_packet(r, paths, count);
   advance(r, paths, count, true);
 }
 

@@ -1,6 +1,7 @@
 #include "validation/walks/route.h"
 
 #include "spectral/optics.h"
+#include "validation/transport/double_refraction.h"
 #include "validation/transport/interface.h"
 #include "validation/transport/media.h"
 
@@ -11,6 +12,7 @@ typedef struct walker {
   double lambda_nm;
   abbe_media_set inside;
   float o[3], d[3];
+  uint8_t wave; /* in a crystal */
 } walker;
 
 static abbe_result index_of(const walker *w, abbe_media_set set, double *n, abbe_error *error) {
@@ -19,6 +21,52 @@ static abbe_result index_of(const walker *w, abbe_media_set set, double *n, abbe
   if (medium < 0) return ABBE_OK;
   uint32_t object = w->g->refractor_object[medium];
   return abbe_material_n(w->g->scene->object[object].material, w->lambda_nm, n, error);
+}
+
+static abbe_result medium_of(const walker *w, abbe_media_set set, abbe_uniaxial *out,
+                             abbe_error *error) {
+  *out = (abbe_uniaxial){1, 1, {0, 0, 1}};
+  const int medium = abbe_media_of(set);
+  if (medium < 0) return ABBE_OK;
+  const abbe_object *object = &w->g->scene->object[w->g->refractor_object[medium]];
+  memcpy(out->axis, object->axis, sizeof out->axis);
+  abbe_result result = abbe_material_n(object->material, w->lambda_nm, &out->n_o, error);
+  return result == ABBE_OK
+             ? abbe_material_n_extraordinary(object->material, w->lambda_nm, &out->n_e, error)
+             : result;
+}
+
+/* The way that the choice names, or else the strongest. */
+static const abbe_wave_way *way_of(const abbe_wave_ways *ways, char choice) {
+  const abbe_wave_way *best = &ways->way[0];
+  const bool reflected = choice == 'r' || choice == 'R', capital = choice == 'T' || choice == 'R';
+  for (size_t i = 0; i < ways->count; i++) {
+    const abbe_wave_way *way = &ways->way[i];
+    bool alone = true;
+    for (size_t k = 0; k < ways->count; k++)
+      alone = alone && (k == i || ways->way[k].reflected != way->reflected);
+    if (way->reflected == reflected && (alone || way->wave == capital)) return way;
+    if (way->share > best->share) best = way;
+  }
+  return best;
+}
+
+/* A face of a crystal. */
+static void meet_crystal(walker *w, const abbe_hit *hit, bool entering, const float n[3],
+                         const abbe_uniaxial media[2], const char **choice,
+                         abbe_route_vertex *out) {
+  abbe_wave_ways ways;
+  abbe_wave_ways_find(&media[0], &media[1], n, w->d, w->wave, &ways);
+  const abbe_wave_way *way = way_of(&ways, **choice != '\0' ? *(*choice)++ : 't');
+  abbe_media_set before, after;
+  abbe_media_cross(w->inside, hit->surface->index, entering, &before, &after);
+  memcpy(w->d, way->d, sizeof w->d);
+  w->wave = way->wave;
+  w->inside = way->reflected ? before : after;
+  out->event = way->reflected ? ABBE_ROUTE_REFLECTED : ABBE_ROUTE_TRANSMITTED;
+  out->reflectance = (double)ways.reflected;
+  out->share = (double)way->share;
+  out->extraordinary = way->wave == ABBE_UNIAXIAL_EXTRAORDINARY;
 }
 
 static void record(const walker *w, const abbe_hit *hit, abbe_route_event event, double distance,
@@ -45,13 +93,25 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   double n_i, n_t;
   abbe_result result = index_of(w, before, &n_i, error);
   if (result == ABBE_OK) result = index_of(w, after, &n_t, error);
+  abbe_uniaxial media[2];
+  if (result == ABBE_OK) result = medium_of(w, before, &media[0], error);
+  if (result == ABBE_OK) result = medium_of(w, after, &media[1], error);
   if (result != ABBE_OK) return result;
+  out->cos_in = (double)cos_i;
+  out->inside_n = n_i;
+  if (media[0].n_o != media[0].n_e || media[1].n_o != media[1].n_e) {
+    meet_crystal(w, hit, entering, n, media, choice, out);
+    return ABBE_OK;
+  }
   float eta = (float)(n_i / n_t), d[3];
   float share = abbe_media_of(before) == abbe_media_of(after)
                     ? 0
                     : abbe_interface_reflectance(cos_i, eta, &cos_t);
   bool reflects = share >= 1;
-  if (!reflects && **choice != '\0') reflects = *(*choice)++ == 'r';
+  if (!reflects && **choice != '\0') {
+    reflects = **choice == 'r' || **choice == 'R';
+    ++*choice;
+  }
   if (reflects)
     abbe_interface_reflect(w->d, n, cos_i, d);
   else if (abbe_media_of(before) == abbe_media_of(after))
@@ -61,9 +121,8 @@ static abbe_result meet(walker *w, const abbe_hit *hit, const char **choice, abb
   memcpy(w->d, d, sizeof d);
   w->inside = reflects ? before : after;
   out->event = reflects ? ABBE_ROUTE_REFLECTED : ABBE_ROUTE_TRANSMITTED;
-  out->cos_in = (double)cos_i;
   out->reflectance = (double)share;
-  out->inside_n = n_i;
+  out->share = (double)(reflects ? share : 1 - share);
   return ABBE_OK;
 }
 
@@ -90,8 +149,11 @@ static abbe_result mirror(walker *w, const abbe_hit *hit, abbe_route_vertex *out
 
 static abbe_result step(walker *w, const char **choice, abbe_route_vertex *out, bool *ended,
                         abbe_error *error) {
-  *out = (abbe_route_vertex){
-      .event = ABBE_ROUTE_ESCAPED, .object = (size_t)-1, .distance = INFINITY, .inside_n = 1};
+  *out = (abbe_route_vertex){.event = ABBE_ROUTE_ESCAPED,
+                             .object = (size_t)-1,
+                             .distance = INFINITY,
+                             .inside_n = 1,
+                             .share = 1};
   abbe_hit hit;
   unsigned mask = ABBE_GEOMETRY_OBJECTS;
   *ended = !abbe_geometry_hit(w->g, mask, w->o, w->d, INFINITY, &hit);
@@ -124,11 +186,13 @@ abbe_result abbe_route_follow(const abbe_geometry *geometry, const double from[3
                               abbe_error *error) {
   ABBE_REQUIRE(geometry && from && direction && choices && (vertex || room == 0) && count, error);
   *count = 0;
-  size_t known = strspn(choices, "tr");
+  size_t known = strspn(choices, "trTR");
   if (choices[known] != '\0')
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "'%c' is no choice at an interface: t (transmit) and r (reflect) are",
-                          choices[known]);
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT,
+        "'%c' is no choice at an interface: t (transmit) and r (reflect) are, T and R "
+        "of a crystal's extraordinary wave",
+        choices[known]);
   walker w = {.g = geometry, .lambda_nm = lambda_nm};
   abbe_geometry_to_frame(geometry, from, w.o);
   for (int k = 0; k < 3; k++) w.d[k] = (float)direction[k];

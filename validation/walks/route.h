@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "validation/transport/geometry.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -31,12 +32,16 @@ typedef struct abbe_route_vertex {
   double distance;     /* from the vertex before, m; infinite: escaped */
   double cos_in;       /* of the angle of incidence, 0 to 1 */
   double reflectance;  /* Fresnel's, unpolarised; 0 where nothing refracts */
-  double inside_n;     /* index along the way to this vertex */
+  double inside_n;     /* index along the way to this vertex; in a crystal the ordinary one */
+  double share;        /* of the light that goes on this way; 1 at the end */
+  bool extraordinary;  /* it goes on as a crystal's extraordinary wave */
 } abbe_route_vertex;
 
 /* Follows the ray from `from` along direction (unit) at lambda_nm, starting outside of all
  * refractors. choices: 't' or 'r' for each interface in turn; past its end 't'. An interface that
- * reflects totally is not a choice: it reflects, and uses none. Writes at most room vertices and
+ * reflects totally is not a choice: it reflects, and uses none. At a crystal's face 'T' and 'R' are
+ * its extraordinary wave, 't' and 'r' the ordinary one; each face uses a letter, and where there is
+ * no such wave the strongest goes on. Writes at most room vertices and
  * their number to *count; the last one is LANDED or ESCAPED unless room ended first.
  * ABBE_INVALID_ARGUMENT for other letters, and what abbe_material_n says. */
 abbe_result abbe_route_follow(const abbe_geometry *geometry, const double from[3],

@@ -33,6 +33,19 @@ static double extrapolated_share(const abbe_scene *scene, const abbe_material *m
   return most;
 }
 
+/* A crystal is taken for glass of its ordinary index. */
+static void note_birefringence(const abbe_material *material, double lambda_nm, abbe_plan *plan) {
+  double n_o = 0, n_e = 0;
+  if (!abbe_material_is_uniaxial(material) ||
+      abbe_material_n(material, lambda_nm, &n_o, NULL) != ABBE_OK ||
+      abbe_material_n_extraordinary(material, lambda_nm, &n_e, NULL) != ABBE_OK)
+    return;
+  abbe_plan_note(plan,
+                 "%s: double refraction is left out; it has its ordinary index alone, and the "
+                 "extraordinary one is %.4f %s at %g nm",
+                 material->name, fabs(n_e - n_o), n_e < n_o ? "lower" : "higher", lambda_nm);
+}
+
 abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_material *material,
                                         abbe_plan *plan, abbe_error *error) {
   ABBE_REQUIRE(scene && material && plan, error);
@@ -45,9 +58,11 @@ abbe_result abbe_spectral_needs_examine(const abbe_scene *scene, const abbe_mate
   if ((float)range.least_n != (float)range.most_n) plan->dispersive = true;
   if (range.least_per_m != range.most_per_m) plan->tinting = true;
   if (range.most_per_m > 0) plan->absorbing = true;
-  for (size_t i = 0; i < plan->refractor_count && outside; i++)
-    if (scene->object[plan->refractor_object[i]].material == material) outside = false;
-  if (outside)
+  bool noted = false;
+  for (size_t i = 0; i < plan->refractor_count && !noted; i++)
+    noted = scene->object[plan->refractor_object[i]].material == material;
+  if (!noted) note_birefringence(material, 0.5 * (min + max), plan);
+  if (outside && !noted)
     abbe_plan_note(plan, "%s: the index is extrapolated outside its valid range, %g to %g nm",
                    material->name, material->min_nm, material->max_nm);
   return ABBE_OK;

@@ -91,6 +91,30 @@ static void a_sphere_stays_one_under_similarities_only(void **state) {
   abbe_scene_free(&scene);
 }
 
+/* z unless the scene says else, turned and never stretched with the object. */
+static void crystals_have_an_optic_axis(void **state) {
+  (void)state;
+  const struct {
+    const char *keys;
+    double axis[3];
+  } rows[] = {
+      {"", {0, 0, 1}},
+      {"axis: [0, 3, 4],", {0, 0.6, 0.8}},
+      {"axis: [0, 0, -1e-3],", {0, 0, -1}},
+      {"axis: [1, 0, 1], transform: [{rotate: {axis: [0, 0, 1], angle: 90}}, {scale: 7}],",
+       {0, 0.70710678118654752, 0.70710678118654752}},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    char text[256];
+    snprintf(text, sizeof text, "{shape: box, size: [1, 1, 1], %s material: calcite}",
+             rows[i].keys);
+    abbe_scene scene = read(text);
+    for (int k = 0; k < 3; k++)
+      assert_true(fabs(scene.object[0].axis[k] - rows[i].axis[k]) < 1e-12);
+    abbe_scene_free(&scene);
+  }
+}
+
 /* Whole or open, with its exact surface where that is known, and nothing of it is mended. */
 static void mirrors_are_metals_or_numbers_of_any_shape(void **state) {
   (void)state;
@@ -242,6 +266,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cuts_are_solids_of_their_planes),
       cmocka_unit_test(a_sphere_stays_one_under_similarities_only),
+      cmocka_unit_test(crystals_have_an_optic_axis),
       cmocka_unit_test(mirrors_are_metals_or_numbers_of_any_shape),
       cmocka_unit_test(boxes_are_planes_or_parallelograms),
       cmocka_unit_test(steps_apply_in_order),

@@ -104,6 +104,64 @@ static void points_make_an_index(void **state) {
   abbe_material_table_free(&t);
 }
 
+/* A second index: a formula or points, over the range of the first. */
+static void crystals_have_two_indices(void **state) {
+  (void)state;
+  abbe_material_table t = parse(
+      "materials:\n"
+      "- {name: a, model: constant, coefficients: [1.5], source: s,\n"
+      "   extraordinary: {model: cauchy, coefficients: [1.4, 0.01]}}\n"
+      "- {name: b, model: cauchy, coefficients: [1.5, 0.004], range_nm: [400, 700], source: s,\n"
+      "   extraordinary: {model: tabulated, interpolation: linear,\n"
+      "     points: [[400, 1.6], [800, 1.4]]}}\n"
+      "- {name: c, model: constant, coefficients: [1.5], source: s}\n");
+  double n = 0;
+  assert_true(abbe_material_is_uniaxial(&t.material[0]));
+  assert_int_equal(abbe_material_n_extraordinary(&t.material[0], 500, &n, NULL), ABBE_OK);
+  assert_near(n, 1.44, 1e-15);
+  assert_int_equal(abbe_material_n_extraordinary(&t.material[1], 500, &n, NULL), ABBE_OK);
+  assert_near(n, 1.55, 1e-15);
+  assert_int_equal(abbe_material_n_extraordinary(&t.material[1], 750, &n, NULL), ABBE_OUT_OF_RANGE);
+  assert_false(abbe_material_is_uniaxial(&t.material[2]));
+  assert_int_equal(abbe_material_n_extraordinary(&t.material[2], 500, &n, NULL), ABBE_OK);
+  assert_near(n, 1.5, 0);
+  abbe_material_table_free(&t);
+}
+
+static void second_indices_that_cannot_be_are_refused(void **state) {
+  (void)state;
+  const struct {
+    const char *extraordinary, *part;
+  } rows[] = {
+      {"1.4", "'extraordinary' wants a model and its numbers"},
+      {"{coefficients: [1.4]}", "'model' is missing"},
+      {"{model: cauchy}", "'coefficients' is missing"},
+      {"{model: cauchy, coefficients: []}", "coefficients"},
+      {"{model: cauchy, coefficients: [1.4], points: [[400, 1.4], [800, 1.3]]}",
+       "the model cauchy has no use for 'points'"},
+      {"{model: cauchy, coefficients: [1.4], range_nm: [400, 700]}",
+       "'extraordinary' has no key 'range_nm'"},
+      {"{model: conductor, points: [[400, 1.4, 1], [800, 1.3, 1]]}",
+       "'extraordinary' is a real index"},
+      {"{model: tabulated, points: [[450, 1.4], [800, 1.3]]}",
+       "wider than those of its extraordinary index, which reach from 450 to 800 nm"},
+      {"{model: cauchy, coefficients: [-1.4]}", "its extraordinary cauchy formula has no real"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    char text[512];
+    abbe_material_table t;
+    abbe_error error = {0};
+    snprintf(text, sizeof text,
+             "materials:\n- {name: x, model: cauchy, coefficients: [1.5, 0.004], source: s,\n"
+             "   range_nm: [400, 700], extraordinary: %s}\n",
+             rows[i].extraordinary);
+    assert_int_equal(abbe_material_table_parse(text, strlen(text), "t.yaml", &t, &error),
+                     ABBE_SCHEMA);
+    assert_contains(error.text, "t.yaml:");
+    assert_contains(error.text, rows[i].part);
+  }
+}
+
 /* A colour at a distance: its transmittances come back at that distance. */
 static void absorption_is_a_spectrum_or_a_colour(void **state) {
   (void)state;
@@ -404,6 +462,8 @@ int main(void) {
       cmocka_unit_test(names_are_found_in_any_case_or_suggested),
       cmocka_unit_test(of_a_long_list_whole_names_are_told),
       cmocka_unit_test(a_record_may_be_short),
+      cmocka_unit_test(crystals_have_two_indices),
+      cmocka_unit_test(second_indices_that_cannot_be_are_refused),
       cmocka_unit_test(points_make_an_index),
       cmocka_unit_test(absorption_is_a_spectrum_or_a_colour),
       cmocka_unit_test(absorption_is_also_a_transmittance_or_k),

@@ -39,9 +39,9 @@ static void single_rays_meet_the_closed_forms(void **state) {
   static const struct {
     const char *group;
     size_t rows;
-  } groups[] = {{"prism", 13}, {"slit", 8},     {"ball", 10},  {"nest", 7},
-                {"slab", 7},   {"fresnel", 14}, {"rainbow", 6}};
-  for (int g = 0; g < 7; g++) {
+  } groups[] = {{"prism", 13}, {"slit", 8},     {"ball", 10},    {"nest", 7},
+                {"slab", 7},   {"fresnel", 14}, {"crystal", 22}, {"rainbow", 6}};
+  for (int g = 0; g < 8; g++) {
     abbe_known_answers a = make(groups[g].group);
     check_rows(&a);
     assert_int_equal(a.count, groups[g].rows);
@@ -61,6 +61,9 @@ static void the_exact_column_is_the_books(void **state) {
   assert_near(find(&a, "water, primary bow at 700 nm, from the antisolar point")->exact, 42.4, 0.1);
   assert_near(find(&a, "water, secondary bow at 700 nm, from the antisolar point")->exact, 50.3,
               0.1);
+  abbe_known_answers_free(&a);
+  a = make("crystal");
+  assert_near(find(&a, "calcite, axis at 45 degrees, between its rays")->exact, 6.2, 0.05);
   abbe_known_answers_free(&a);
   a = make("fresnel");
   assert_near(find(&a, "diamond, critical angle at d")->exact, 24.43, 0.01);

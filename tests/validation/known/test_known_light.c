@@ -38,8 +38,9 @@ static void check_setting(setting_maker make, size_t index, bool other, size_t r
 
 static void panes_reflect_pass_and_absorb(void **state) {
   (void)state;
-  check_setting(abbe_known_pane_setting, 3, false, 1); /* reflected at 60 degrees */
-  check_setting(abbe_known_pane_setting, 3, true, 1);  /* what absorbing glass leaves, aslant */
+  check_setting(abbe_known_pane_setting, 3, false, 1);  /* reflected at 60 degrees */
+  check_setting(abbe_known_pane_setting, 11, false, 1); /* of a crystal */
+  check_setting(abbe_known_pane_setting, 3, true, 1);   /* what absorbing glass leaves, aslant */
 }
 
 static void spheres_throw_rings(void **state) {
@@ -56,7 +57,7 @@ static void settings_end(void **state) {
     bool other;
   } beyond[] = {{abbe_known_sphere_setting, 20, false},
                 {abbe_known_sphere_setting, 3, true},
-                {abbe_known_pane_setting, 10, false},
+                {abbe_known_pane_setting, 13, false},
                 {abbe_known_pane_setting, 5, true},
                 {make_picture, 3, false}};
   for (int i = 0; i < 5; i++) {

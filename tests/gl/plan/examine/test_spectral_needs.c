@@ -21,9 +21,31 @@ static void an_index_that_is_not_known_is_refused_or_noted(void **state) {
   abbe_plan_free(&plan);
 }
 
+/* A crystal has one index here, and the plan says what is left out, once a material. */
+static void double_refraction_is_noted(void **state) {
+  (void)state;
+  abbe_plan plan;
+  const char *head = "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR;
+  char text[2048];
+  snprintf(text, sizeof text, "%s%s%s", head, BALL("calcite"), BRICK("calcite"));
+  plan_text(text, NULL, &plan);
+  assert_true(is_noted(&plan, "calcite: double refraction is left out; it has its ordinary index "
+                              "alone, and the extraordinary one is 0.1720 lower at 580 nm"));
+  size_t count = 0;
+  for (size_t i = 0; i < plan.note_count; i++)
+    count += strstr(plan.note[i], "double refraction") != NULL ? 1 : 0;
+  assert_int_equal(count, 1);
+  abbe_plan_free(&plan);
+  snprintf(text, sizeof text, "%s%s", head, BALL("diamond"));
+  plan_text(text, NULL, &plan);
+  assert_false(is_noted(&plan, "double refraction"));
+  abbe_plan_free(&plan);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_index_that_is_not_known_is_refused_or_noted),
+      cmocka_unit_test(double_refraction_is_noted),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

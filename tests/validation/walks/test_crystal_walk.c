@@ -1,0 +1,190 @@
+/* Light and eye through blocks of calcite: two images at the known distance, and halves of light.
+ */
+#include "tests/validation/walks/light_walks.h"
+
+#include "spectral/uniaxial.h"
+#include "validation/tracer/tracer.h"
+
+/* 0.1 m thick, its axis at 45 degrees to the face; calcite at 550 nm, whose indices vary little
+ * over the fixture's range. */
+#define CALCITE(axis)                                                                              \
+  "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR                          \
+  "- {name: slab, shape: box, size: [0.4, 0.4, 0.1], transform: [{translate: [0, 0, 0.3]}], "      \
+  "material: spar, axis: " axis "}\n"
+
+#define TABLE                                                                                      \
+  "materials:\n- {name: spar, model: constant, coefficients: [1.66], source: made up,\n"           \
+  "   extraordinary: {model: constant, coefficients: [1.48]}}\n"
+
+static const double n_o = 1.66, n_e = 1.48;
+
+/* As make, with the crystal's table. */
+static void make_crystal(const char *text, const abbe_physics *physics, fixture *f) {
+  char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], all[4096];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/table.yaml", folder);
+  assert_int_equal(abbe_file_write(path, TABLE, strlen(TABLE), NULL), ABBE_OK);
+  snprintf(all, sizeof all, "materials: %s\n%s", path, text);
+  make(all, physics, f);
+  unlink(path);
+  rmdir(folder);
+}
+
+/* Of the light that enters as one wave a slab lets through, with all inner reflections, (1 - r) /
+ * (1 + r): each wave by its own index, and neither makes any of the other head on. */
+static void a_beam_becomes_two(void **state) {
+  (void)state;
+  fixture *f = malloc(sizeof *f);
+  make_crystal(CALCITE("[1, 0, 1]"), NULL, f);
+  const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1}, cos_axis = sqrt(0.5);
+  const double n[2] = {n_o, abbe_uniaxial_index(n_o, n_e, cos_axis)};
+  const double shift = 0.1 * tan(abbe_uniaxial_walk_off(n_o, n_e, cos_axis));
+  size_t count[2] = {0}, photons = 0;
+  for (uint32_t b = 0; b < 64; b++) {
+    for (uint32_t i = 0; i < BATCH; i++) f->photon[i] = photon_of(f, from, down, i);
+    size_t hits =
+        abbe_light_walk_run(f->walk, &f->scene.light[0], b, f->photon, BATCH, f->hit, &f->ledger);
+    photons += BATCH;
+    for (size_t i = 0; i < hits; i++) {
+      double p[3];
+      abbe_geometry_to_world(&f->geometry, f->hit[i].p, p);
+      if (p[2] > 0.1) continue;
+      /* away from the axis for a negative crystal, once or, after two reflections, three times */
+      const double steps = (p[0] - from[0]) / shift;
+      const bool odd = fabs(steps - round(steps)) < 1e-3 && (int)round(steps) % 2 != 0;
+      assert_true(odd || fabs(steps) < 1e-3);
+      assert_near(p[1], from[1], 1e-5);
+      count[odd]++;
+    }
+  }
+  for (int wave = 0; wave < 2; wave++) {
+    const double r = pow((n[wave] - 1) / (n[wave] + 1), 2);
+    check_share((double)count[wave], (double)photons, 0.5 * (1 - r) / (1 + r));
+  }
+  assert_near(f->ledger.reached, (double)photons, 1e-6 * (double)photons);
+  assert_near(f->ledger.lost, 0, 0);
+  drop(f);
+  free(f);
+}
+
+/* All that reaches the block is somewhere, whatever faces it meets and how often it is split. */
+static void the_ledger_closes(void **state) {
+  (void)state;
+  for (unsigned splits = 0; splits < 4; splits++) {
+    fixture *f = malloc(sizeof *f);
+    make_crystal(CALCITE("[1, 0.3, 0.7]"), NULL, f);
+    abbe_light_walk_split(f->walk, splits);
+    flood(f, 40);
+    const abbe_light_ledger *l = &f->ledger;
+    const double parts = l->deposited + l->absorbed + l->missed + l->trapped + l->lost;
+    assert_near(parts / l->reached, 1, 1e-5);
+    assert_true(l->lost < 1e-3 * l->reached);
+    drop(f);
+    free(f);
+  }
+}
+
+/* Split paths carry what chosen ones carry. */
+static void splitting_biases_nothing(void **state) {
+  (void)state;
+  double landed[2];
+  for (int i = 0; i < 2; i++) {
+    fixture *f = malloc(sizeof *f);
+    make_crystal(CALCITE("[1, 0.3, 0.7]"), NULL, f);
+    abbe_light_walk_split(f->walk, i == 0 ? 0 : 3);
+    flood(f, 100);
+    landed[i] = f->ledger.deposited / f->ledger.reached;
+    drop(f);
+    free(f);
+  }
+  assert_near(landed[1], landed[0], 5e-3);
+}
+
+/* Matched physics is the renderer's, which has the ordinary index alone. */
+static void matched_physics_knows_one_index(void **state) {
+  (void)state;
+  fixture *f = malloc(sizeof *f);
+  const abbe_physics matched = {.matched = true, .orders = 1000, .energy_share = 0};
+  make_crystal(CALCITE("[1, 0, 1]"), &matched, f);
+  abbe_media_forget_axes(&f->media);
+  const double from[3] = {0.02, 0.01, 0.5}, down[3] = {0, 0, -1};
+  const double r = pow((n_o - 1) / (n_o + 1), 2);
+  check_share((double)shoot(f, from, down, 32), 32.0 * BATCH, (1 - r) / (1 + r));
+  drop(f);
+  free(f);
+}
+
+/* ---- the eye ---- */
+
+/* A dark line on a bright floor under the block, seen straight from above, is two lines of half the
+ * depth, as far apart as the closed form says. */
+static void a_line_is_seen_double(void **state) {
+  (void)state;
+  enum { WIDE = 48, ROWS = 8 };
+  char folder[] = "/tmp/abbe-test-crystal-XXXXXX", path[64], text[2048];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/table.yaml", folder);
+  assert_int_equal(abbe_file_write(path, TABLE, strlen(TABLE), NULL), ABBE_OK);
+  snprintf(text, sizeof text,
+           "materials: %s\n"
+           "camera: {eye: [0, 0, 40], target: [0, 0, 0], up: [0, 1, 0], fov: 0.1, "
+           "size: [%d, %d]}\n"
+           "ambient: 3.14159265\nbackground: 1\n"
+           "lights: [{name: lamp, kind: point, position: [0, 0, 200], intensity: 1.0e-12}]\n"
+           "objects:\n"
+           "- {name: floor, shape: rectangle, width: 2, height: 2, reflectance: 1}\n"
+           "- {name: line, shape: rectangle, width: 0.02, height: 2, reflectance: 0,\n"
+           "   transform: [{translate: [0, 0, 0.001]}]}\n"
+           "- {name: slab, shape: box, size: [2, 2, 1], material: spar, axis: [1, 0, 1],\n"
+           "   transform: [{translate: [0, 0, 0.6]}]}\n",
+           path, WIDE, ROWS);
+  abbe_scene scene;
+  abbe_error error = {0};
+  if (abbe_scene_parse(text, strlen(text), "scene", NULL, &scene, &error) != ABBE_OK)
+    fail_msg("%s", error.text);
+  abbe_tracer *tracer = NULL;
+  const abbe_trace_desc desc = {.no_map = true,
+                                .space = ABBE_RGB_SPACE_XYZ,
+                                .width = WIDE,
+                                .height = ROWS,
+                                .photons = 1024,
+                                .threads = 1};
+  assert_int_equal(abbe_tracer_make(&scene, &desc, &tracer, NULL), ABBE_OK);
+  for (int p = 0; p < 24; p++) assert_int_equal(abbe_tracer_pass(tracer, NULL, NULL), ABBE_OK);
+  abbe_image picture = {0};
+  assert_int_equal(abbe_tracer_picture(tracer, &picture, NULL), ABBE_OK);
+  const size_t y = abbe_image_find_channel(&picture, "Y");
+  const double pixel = 2 * 40 * tan(0.05 / 180 * 3.14159265358979) / ROWS; /* m on the floor */
+  const double shift = tan(abbe_uniaxial_walk_off(n_o, n_e, sqrt(0.5))), around = 0.04;
+  double dark[2] = {0}, centre[2] = {0};
+  for (size_t i = 0; i < picture.width * picture.height; i++) {
+    const double x = ((double)(i % WIDE) + 0.5 - WIDE / 2.0) * pixel;
+    const double missing = (1 - (double)picture.data[i * picture.channels + y]) * pixel / ROWS;
+    const int line = fabs(x) < around ? 0 : fabs(x + shift) < around ? 1 : -1;
+    if (line < 0) continue;
+    dark[line] += missing;
+    centre[line] += x * missing;
+  }
+  assert_near(centre[0] / dark[0], 0, 0.3 * pixel);
+  assert_near(centre[1] / dark[1], -shift, 0.3 * pixel);
+  /* halves, less what is reflected at the upper face and comes from elsewhere */
+  const double n[2] = {n_o, abbe_uniaxial_index(n_o, n_e, sqrt(0.5))};
+  for (int line = 0; line < 2; line++) {
+    const double r = pow((n[line] - 1) / (n[line] + 1), 2);
+    assert_near(dark[line] / 0.02, 0.5 * pow(1 - r, 2), 0.03);
+  }
+  abbe_image_free(&picture);
+  abbe_tracer_free(tracer);
+  abbe_scene_free(&scene);
+  unlink(path);
+  rmdir(folder);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_beam_becomes_two),       cmocka_unit_test(the_ledger_closes),
+      cmocka_unit_test(splitting_biases_nothing), cmocka_unit_test(matched_physics_knows_one_index),
+      cmocka_unit_test(a_line_is_seen_double),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

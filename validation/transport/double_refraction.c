@@ -1,0 +1,81 @@
+#include "validation/transport/double_refraction.h"
+
+#include <math.h>
+
+static bool is_crystal(const abbe_uniaxial *m) {
+  return m->n_o != m->n_e;
+}
+
+/* Both waves of an isotropic medium run along one ray. */
+static void add_side(const abbe_uniaxial *medium, const abbe_uniaxial_wave wave[2], bool reflected,
+                     abbe_wave_ways *out) {
+  const bool two = is_crystal(medium);
+  for (int i = 0; i < (two ? 2 : 1); i++) {
+    const double share = two ? wave[i].share : wave[0].share + wave[1].share;
+    const abbe_uniaxial_wave *w = !two && !wave[0].travels ? &wave[1] : &wave[i];
+    if (!(share > 0)) continue;
+    abbe_wave_way *way = &out->way[out->count++];
+    *way = (abbe_wave_way){
+        .share = (float)share, .wave = (uint8_t)(two ? i : 0), .reflected = reflected};
+    for (int k = 0; k < 3; k++) way->d[k] = (float)w->ray[k];
+  }
+}
+
+void abbe_wave_ways_find(const abbe_uniaxial *from, const abbe_uniaxial *to, const float n[3],
+                         const float d[3], uint8_t wave, abbe_wave_ways *out) {
+  double normal[3], ray[3], lengths[2] = {0, 0};
+  for (int k = 0; k < 3; k++) {
+    normal[k] = (double)n[k];
+    ray[k] = (double)d[k];
+    lengths[0] += normal[k] * normal[k];
+    lengths[1] += ray[k] * ray[k];
+  }
+  for (int k = 0; k < 3; k++) {
+    normal[k] /= sqrt(lengths[0]);
+    ray[k] /= sqrt(lengths[1]);
+  }
+  abbe_uniaxial_split split;
+  if (is_crystal(from))
+    abbe_uniaxial_meet(from, to, normal, (abbe_uniaxial_mode)wave, ray, &split);
+  else
+    abbe_uniaxial_meet_unpolarised(from, to, normal, ray, &split);
+  *out = (abbe_wave_ways){0};
+  add_side(from, split.reflected, true, out);
+  const size_t reflected = out->count;
+  add_side(to, split.transmitted, false, out);
+  float all = 0;
+  for (size_t i = 0; i < out->count; i++) all += out->way[i].share;
+  for (size_t i = 0; i < out->count; i++) {
+    out->way[i].share /= all;
+    if (i < reflected) out->reflected += out->way[i].share;
+  }
+  if (reflected == out->count) out->reflected = 1;
+}
+
+void abbe_media_crystal(const abbe_media *m, int i, uint32_t k, float f, abbe_uniaxial *out) {
+  *out = (abbe_uniaxial){.axis = {0, 0, 1}};
+  out->n_o = out->n_e = (double)abbe_media_n(m, i, k, f);
+  if (!abbe_media_is_crystal(m, i)) return;
+  const float *n = m->extraordinary + (size_t)i * (m->steps + 1) + k;
+  out->n_e = (double)(n[0] + f * (n[1] - n[0]));
+  for (int c = 0; c < 3; c++) out->axis[c] = m->axis[i][c];
+}
+
+void abbe_media_ways(const abbe_media *m, int from, int to, uint32_t step, float within,
+                     const float n[3], const float d[3], uint8_t wave, abbe_wave_ways *out) {
+  abbe_uniaxial media[2];
+  abbe_media_crystal(m, from, step, within, &media[0]);
+  abbe_media_crystal(m, to, step, within, &media[1]);
+  abbe_wave_ways_find(&media[0], &media[1], n, d, wave, out);
+}
+
+const abbe_wave_way *abbe_wave_ways_choose(const abbe_wave_ways *w, float chance, float which) {
+  size_t mirrored = 0;
+  while (mirrored < w->count && w->way[mirrored].reflected) mirrored++;
+  const bool reflects = mirrored == w->count || (mirrored > 0 && chance < w->reflected);
+  const size_t first = reflects ? 0 : mirrored, end = reflects ? mirrored : w->count;
+  const float all = reflects ? w->reflected : 1 - w->reflected;
+  size_t i = first;
+  for (float sum = w->way[i].share; i + 1 < end && which * all >= sum; sum += w->way[i].share) i++;
+  return &w->way[i];
+}

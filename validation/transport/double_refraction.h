@@ -1,0 +1,60 @@
+/* double_refraction.h: light at the faces of uniaxial crystals, for the walks.
+ *
+ * Inside a crystal a path carries one of its two waves, with that wave's own linear polarisation;
+ * at a face it goes on as up to two waves a side. Waves are added by power, not by amplitude: there
+ * is no interference of the two. Light in isotropic media counts as unpolarised. Directions are
+ * those of the rays; n is the unit normal on the side that the light comes from.
+ *
+ * The physics is spectral/uniaxial.h's, in double precision.
+ *
+ * Internal to validation/: it is not installed.
+ */
+#ifndef ABBE_VALIDATION_TRANSPORT_DOUBLE_REFRACTION_H
+#define ABBE_VALIDATION_TRANSPORT_DOUBLE_REFRACTION_H
+
+#include "spectral/uniaxial.h"
+#include "validation/transport/media.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One way on from a face. */
+typedef struct abbe_wave_way {
+  float d[3];   /* unit */
+  float share;  /* of the light that came, above 0 */
+  uint8_t wave; /* abbe_uniaxial_mode of the crystal that it goes on in; 0 in isotropic media */
+  bool reflected;
+} abbe_wave_way;
+
+/* Reflected ways first; the shares add up to 1. */
+typedef struct abbe_wave_ways {
+  size_t count; /* 1 to 4 */
+  abbe_wave_way way[4];
+  float reflected; /* shares of the reflected ways together; 1 where there are no others */
+} abbe_wave_ways;
+
+/* wave: of the light that comes, as above. */
+void abbe_wave_ways_find(const abbe_uniaxial *from, const abbe_uniaxial *to, const float n[3],
+                         const float d[3], uint8_t wave, abbe_wave_ways *out);
+
+/* The medium as a crystal or, with both indices alike, as what is none; -1: air. */
+void abbe_media_crystal(const abbe_media *media, int medium, uint32_t step, float within,
+                        abbe_uniaxial *out);
+
+/* The same between two media at a wavelength of the tables. */
+void abbe_media_ways(const abbe_media *media, int from, int to, uint32_t step, float within,
+                     const float n[3], const float d[3], uint8_t wave, abbe_wave_ways *out);
+
+/* One of the ways by two numbers: reflection below the reflected share, as far as there is any,
+ * and then one of both waves. */
+const abbe_wave_way *abbe_wave_ways_choose(const abbe_wave_ways *ways, float chance, float which);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
