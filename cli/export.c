@@ -84,6 +84,8 @@ static abbe_result report(const request *q, const abbe_scene *scene, abbe_error 
     if (!q->json) {
       fprintf(stderr, "%s: ior %.6f, dispersion %.6f; n off by %.2g at %g nm, %.2g in the mean\n",
               m->name, g.index.ior, g.index.dispersion, g.worst, g.worst_nm, g.rms);
+      if (abbe_material_is_uniaxial(m))
+        fprintf(stderr, "%s: its double refraction is left out\n", m->name);
       continue;
     }
     cJSON *glass = cJSON_CreateObject();

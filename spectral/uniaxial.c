@@ -177,6 +177,10 @@ static void make_wave(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const fac
 
 /* ---- the face ---- */
 
+static double size_of(number z) {
+  return fabs(creal(z)) + fabs(cimag(z));
+}
+
 static number part(const number v[3], const double d[3]) {
   return v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
 }
@@ -188,30 +192,36 @@ static void tangential(const wave *w, const face *f, number out[4]) {
   out[3] = part(w->h, f->across);
 }
 
-/* Gauss with the largest pivot; m[row][0..3] x = m[row][4]. */
-static void solve(number m[4][5], number x[4]) {
+/* Most waves that come at once: s and p. */
+enum { COME = 2 };
+
+/* Gauss with the largest pivot; m[row][0..3] x = m[row][4 + i] for each of `count` right sides,
+ * whose solutions take their place. */
+static void solve(number m[4][4 + COME], int count) {
+  const int end = 4 + count;
   for (int c = 0; c < 4; c++) {
     int best = c;
     for (int r = c + 1; r < 4; r++)
-      if (cabs(m[r][c]) > cabs(m[best][c])) best = r;
+      if (size_of(m[r][c]) > size_of(m[best][c])) best = r;
     if (best != c)
-      for (int k = c; k < 5; k++) {
+      for (int k = c; k < end; k++) {
         const number swapped = m[c][k];
         m[c][k] = m[best][k];
         m[best][k] = swapped;
       }
     /* two waves that cling to the face may be one: any split between them is right */
-    if (cabs(m[c][c]) < 1e-30) m[c][c] = 1e-30;
+    if (size_of(m[c][c]) < 1e-30) m[c][c] = 1e-30;
+    const number inverse = 1 / m[c][c];
     for (int r = c + 1; r < 4; r++) {
-      const number times = m[r][c] / m[c][c];
-      for (int k = c; k < 5; k++) m[r][k] -= times * m[c][k];
+      const number times = m[r][c] * inverse;
+      for (int k = c + 1; k < end; k++) m[r][k] -= times * m[c][k];
     }
+    for (int k = 4; k < end; k++) m[c][k] *= inverse;
+    for (int k = c + 1; k < 4; k++) m[c][k] *= inverse;
   }
-  for (int r = 3; r >= 0; r--) {
-    x[r] = m[r][4];
-    for (int k = r + 1; k < 4; k++) x[r] -= m[r][k] * x[k];
-    x[r] /= m[r][r];
-  }
+  for (int r = 3; r >= 0; r--)
+    for (int i = 4; i < end; i++)
+      for (int k = r + 1; k < 4; k++) m[r][i] -= m[r][k] * m[k][i];
 }
 
 static void tell(const abbe_uniaxial *m, abbe_uniaxial_mode mode, const wave *w, number amplitude,
@@ -251,45 +261,63 @@ static void graze(const abbe_uniaxial *from, const double n[3], abbe_uniaxial_mo
   w->travels = true;
 }
 
-void abbe_uniaxial_meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
-                        abbe_uniaxial_mode mode, const double ray[3], abbe_uniaxial_split *out) {
-  if (!(dot(ray, n) < -grazing)) {
-    graze(from, n, mode, ray, out);
-    return;
-  }
+/* For the modes from first to last, which have one wave vector: one, or both of an isotropic
+ * medium.
+ */
+static void meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
+                 abbe_uniaxial_mode first, int count, const double ray[3],
+                 abbe_uniaxial_split out[COME]) {
   double k[3];
-  abbe_uniaxial_normal(from, mode, ray, k);
-  const double index =
-      bends(from, mode) ? abbe_uniaxial_index(from->n_o, from->n_e, dot(k, from->axis)) : from->n_o;
+  abbe_uniaxial_normal(from, first, ray, k);
+  const double index = bends(from, first)
+                           ? abbe_uniaxial_index(from->n_o, from->n_e, dot(k, from->axis))
+                           : from->n_o;
   for (int i = 0; i < 3; i++) k[i] *= index;
   face f;
   make_face(n, k, &f);
-  wave incident, waves[4];
-  make_wave(from, mode, &f, -1, &incident);
-  number column[4], m[4][5], amplitude[4];
-  tangential(&incident, &f, column);
-  for (int r = 0; r < 4; r++) m[r][4] = column[r];
+  wave incident[COME], waves[4];
+  number column[4], m[4][4 + COME];
+  for (int i = 0; i < count; i++) {
+    make_wave(from, (abbe_uniaxial_mode)((int)first + i), &f, -1, &incident[i]);
+    tangential(&incident[i], &f, column);
+    for (int r = 0; r < 4; r++) m[r][4 + i] = column[r];
+  }
   for (int i = 0; i < 4; i++) {
     const bool inside = i >= 2;
     make_wave(inside ? to : from, (abbe_uniaxial_mode)(i & 1), &f, inside ? -1 : 1, &waves[i]);
     tangential(&waves[i], &f, column);
     for (int r = 0; r < 4; r++) m[r][i] = inside ? column[r] : -column[r];
   }
-  solve(m, amplitude);
-  for (int i = 0; i < 4; i++)
-    tell(i < 2 ? from : to, (abbe_uniaxial_mode)(i & 1), &waves[i], amplitude[i], incident.flux,
-         i < 2 ? &out->reflected[i] : &out->transmitted[i - 2]);
-  for (int i = 0; i < 3; i++) out->field[i] = creal(incident.e[i]);
+  solve(m, count);
+  for (int c = 0; c < count; c++) {
+    for (int i = 0; i < 4; i++)
+      tell(i < 2 ? from : to, (abbe_uniaxial_mode)(i & 1), &waves[i], m[i][4 + c], incident[c].flux,
+           i < 2 ? &out[c].reflected[i] : &out[c].transmitted[i - 2]);
+    for (int i = 0; i < 3; i++) out[c].field[i] = creal(incident[c].e[i]);
+  }
+}
+
+void abbe_uniaxial_meet(const abbe_uniaxial *from, const abbe_uniaxial *to, const double n[3],
+                        abbe_uniaxial_mode mode, const double ray[3], abbe_uniaxial_split *out) {
+  if (dot(ray, n) < -grazing)
+    meet(from, to, n, mode, 1, ray, out);
+  else
+    graze(from, n, mode, ray, out);
 }
 
 void abbe_uniaxial_meet_unpolarised(const abbe_uniaxial *from, const abbe_uniaxial *to,
                                     const double n[3], const double ray[3],
                                     abbe_uniaxial_split *out) {
-  abbe_uniaxial_split s;
-  abbe_uniaxial_meet(from, to, n, ABBE_UNIAXIAL_ORDINARY, ray, &s);
-  abbe_uniaxial_meet(from, to, n, ABBE_UNIAXIAL_EXTRAORDINARY, ray, out);
+  abbe_uniaxial_split both[COME];
+  if (dot(ray, n) < -grazing) {
+    meet(from, to, n, ABBE_UNIAXIAL_ORDINARY, COME, ray, both);
+  } else {
+    graze(from, n, ABBE_UNIAXIAL_ORDINARY, ray, &both[0]);
+    graze(from, n, ABBE_UNIAXIAL_EXTRAORDINARY, ray, &both[1]);
+  }
+  *out = both[1];
   for (int i = 0; i < 2; i++) {
-    out->reflected[i].share = (out->reflected[i].share + s.reflected[i].share) / 2;
-    out->transmitted[i].share = (out->transmitted[i].share + s.transmitted[i].share) / 2;
+    out->reflected[i].share = (both[0].reflected[i].share + both[1].reflected[i].share) / 2;
+    out->transmitted[i].share = (both[0].transmitted[i].share + both[1].transmitted[i].share) / 2;
   }
 }

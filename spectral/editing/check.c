@@ -104,6 +104,29 @@ static void check_density(abbe_check *c) {
   abbe_check_say(c, &f->fix, "give density_g_cm3 in g/cm3: water has 1, quartz 2.65, diamond 3.52");
 }
 
+/* Calomel, the most birefringent of minerals, has 0.68. */
+static void check_birefringence(abbe_check *c) {
+  const abbe_material *m = c->material;
+  const double middle_nm = 0.5 * (c->low_nm + c->high_nm);
+  if (!abbe_material_is_uniaxial(m)) return;
+  const double n_o = abbe_dispersion_n(&m->dispersion, middle_nm);
+  const double n_e = abbe_dispersion_n(&m->extraordinary, middle_nm);
+  if (isnan(n_o) || (n_e >= 1 && fabs(n_e - n_o) <= 0.7)) return;
+  abbe_finding *f = abbe_check_find(c, ABBE_FINDING_BIREFRINGENCE, ABBE_FINDING_DOUBTFUL);
+  if (f == NULL) return;
+  if (isnan(n_e))
+    abbe_check_say(c, &f->evidence, "its extraordinary formula has no real index at %g nm",
+                   middle_nm);
+  else
+    abbe_check_say(c, &f->evidence,
+                   "at %g nm its ordinary index is %.5g and its extraordinary one %.5g; no known "
+                   "crystal has them 0.7 apart, or one below 1",
+                   middle_nm, n_o, n_e);
+  abbe_check_say(c, &f->fix,
+                 "compare 'extraordinary' with the source: the model, and coefficients "
+                 "for wavelengths in micrometres");
+}
+
 static void check_fit(abbe_check *c, const abbe_material_fit *fit) {
   const abbe_material *m = c->material;
   abbe_index_difference off;
@@ -163,6 +186,7 @@ static abbe_result check(const abbe_material *material, size_t row,
   }
   check_range(&c);
   check_density(&c);
+  check_birefringence(&c);
   check_source(&c);
   return c.result;
 }

@@ -23,6 +23,7 @@ extern "C" {
   X(NO_INDEX, "no-index", "the formula has no real index inside its own range")                    \
   X(BELOW_ONE, "below-one", "n is below 1")                                                        \
   X(RISING, "rising", "n rises with the wavelength in the visible")                                \
+  X(BIREFRINGENCE, "birefringence", "the two indices of a crystal do not go together")             \
   X(OFF_ND, "n_d", "n_d does not follow from the coefficients")                                    \
   X(OFF_VD, "v_d", "V_d does not follow from the coefficients")                                    \
   X(UNLIKE, "unlike-namesake", "the known material of this name is another")                       \

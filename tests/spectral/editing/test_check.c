@@ -420,6 +420,35 @@ static void words_are_there_for_all(void **state) {
   assert_string_equal(abbe_finding_weight_name(ABBE_FINDING_WRONG), "wrong");
 }
 
+/* Calcite's and calomel's indices go together; those of a copied digit or unit do not. */
+static void crystals_have_indices_that_go_together(void **state) {
+  (void)state;
+  const struct {
+    const char *extraordinary;
+    size_t findings;
+  } rows[] = {{"{model: constant, coefficients: [1.486]}", 0},
+              {"{model: constant, coefficients: [2.35]}", 0},
+              {"{model: constant, coefficients: [2.4]}", 1},
+              {"{model: constant, coefficients: [0.99]}", 1},
+              {"{model: cauchy, coefficients: [1.48, 4000]}", 1},
+              {"{model: sellmeier2, coefficients: [0, -2, 0.01]}", 1}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "- {name: spar, model: cauchy, coefficients: [1.64, 0.007], range_nm: [350, 900],\n"
+             "   source: a book, extraordinary: %s}\n",
+             rows[i].extraordinary);
+    abbe_material_table t = checked_parse(text);
+    abbe_findings found = checked_table(&t);
+    size_t count = 0;
+    for (size_t k = 0; k < found.count; k++)
+      count += found.finding[k].kind == ABBE_FINDING_BIREFRINGENCE;
+    assert_int_equal(count, rows[i].findings);
+    abbe_findings_free(&found);
+    abbe_material_table_free(&t);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_thesis_has_four_wrong_rows_and_bk7),
@@ -431,6 +460,7 @@ int main(void) {
       cmocka_unit_test(any_glass_is_well_or_has_its_own_fault),
       cmocka_unit_test(senseless_records_are_survived),
       cmocka_unit_test(namesakes_are_found_in_any_spelling),
+      cmocka_unit_test(crystals_have_indices_that_go_together),
       cmocka_unit_test(words_are_there_for_all),
   };
   return cmocka_run_group_tests(tests, shipped_load, shipped_free);
