@@ -274,12 +274,15 @@ static abbe_result run_passes(const request *q, const abbe_trace_run_desc *run, 
 
 /* ---- results ---- */
 
-static void add_ledger(cJSON *root, const abbe_light_ledger *l) {
+static void add_ledger(cJSON *root, const abbe_light_ledger *l, bool map) {
   cJSON *energy = cJSON_AddObjectToObject(root, "energy");
   cJSON_AddNumberToObject(energy, "reached", l->reached);
   cJSON_AddNumberToObject(energy, "deposited", l->deposited);
   cJSON_AddNumberToObject(energy, "contact", l->contact);
-  cJSON_AddNumberToObject(energy, "hidden", l->hidden);
+  if (map)
+    cJSON_AddNumberToObject(energy, "hidden", l->hidden);
+  else
+    cJSON_AddNullToObject(energy, "hidden");
   cJSON_AddNumberToObject(energy, "absorbed", l->absorbed);
   cJSON_AddNumberToObject(energy, "missed", l->missed);
   cJSON_AddNumberToObject(energy, "trapped", l->trapped);
@@ -301,7 +304,7 @@ static abbe_result write_stats(const request *q, const abbe_tracer *tracer, abbe
   cJSON_AddNumberToObject(root, "relative_error", abbe_tracer_error(tracer));
   cJSON_AddNumberToObject(root, "cut", (double)s.cuts);
   cJSON_AddNumberToObject(root, "gather_radius_m", s.radius);
-  add_ledger(root, &s.ledger);
+  add_ledger(root, &s.ledger, !q->desc.no_map);
   char *text = abbe_command_json_text(root);
   cJSON_Delete(root);
   if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");

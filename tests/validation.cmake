@@ -16,7 +16,7 @@ foreach(name
     eye_walk
     pareto_front
     gem_maps gem_optimum gem_tilts gem_view
-    guide_sums
+    guide_sums map_texels
     field
     file_comparison
     geometry

@@ -2,8 +2,10 @@
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "gl/accuracy/frame_times.h"
 
 #include <cjson/cJSON.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -87,6 +89,17 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 const struct argp abbe_preset_options_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
 
+static void add_unrest(double unrest, cJSON *p) {
+  if (isfinite(unrest)) cJSON_AddNumberToObject(p, "unrest", unrest);
+}
+
+/* On a busy machine, before the work begins. */
+static void note_unrest(double unrest) {
+  char text[120];
+  abbe_frame_times_say_unrest(unrest, "note: ", text, sizeof text);
+  if (*text != '\0') fprintf(stderr, "%s; times may not be kept\n", text);
+}
+
 void abbe_preset_options_describe(const abbe_preset_choice *c, const abbe_statistics *s,
                                   double estimate, cJSON *root) {
   char text[200];
@@ -118,6 +131,7 @@ void abbe_preset_options_describe(const abbe_preset_choice *c, const abbe_statis
     cJSON_AddNullToObject(p, "error_met");
   }
   if (c->timed) cJSON_AddNumberToObject(p, "ms", c->promised_ms);
+  if (c->timed) add_unrest(c->unrest, p);
   cJSON_AddNumberToObject(p, "ms_met", s->frame_ms);
   if (q->budget_ms > 0) cJSON_AddBoolToObject(p, "budget_met", s->frame_ms <= q->budget_ms);
 }
@@ -159,6 +173,7 @@ void abbe_preset_options_describe_picture(const abbe_picture_choice *c, double m
     if (q->max_error > 0) cJSON_AddBoolToObject(p, "error_kept", c->met.bound <= q->max_error);
   }
   if (c->timed) cJSON_AddNumberToObject(p, "ms", c->promised_ms);
+  if (c->timed) add_unrest(c->unrest, p);
   cJSON_AddNumberToObject(p, "ms_met", ms);
   if (q->budget_ms > 0) cJSON_AddBoolToObject(p, "budget_met", ms <= q->budget_ms);
 }
@@ -174,6 +189,7 @@ void abbe_preset_options_note_picture(const abbe_picture_choice *c) {
           text, c->promised_error, c->front.scenes);
   if (c->timed) fprintf(stderr, "; %.0f ms from start to end are promised", c->promised_ms);
   fprintf(stderr, "\n");
+  note_unrest(c->unrest);
   if (!c->kept && c->request.max_error > 0)
     fprintf(stderr, "note: nothing is known to keep %g; this is the most accurate\n",
             c->request.max_error);
@@ -208,6 +224,7 @@ void abbe_preset_options_note(const abbe_preset_choice *c) {
           c->presets.error_text, point->least, point->worst, c->front->scenes, point->error);
   if (c->timed) fprintf(stderr, "; %.0f ms are promised", c->promised_ms);
   fprintf(stderr, "\n");
+  note_unrest(c->unrest);
   if (c->overridden)
     fprintf(stderr, "note: options stand against that choice; what it promises is void\n");
   if (!c->kept && q->max_error > 0)

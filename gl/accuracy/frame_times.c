@@ -4,6 +4,8 @@
 #include "base/order.h"
 #include "scenes/geometry/vector.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { DEFAULT_FRAMES = 5, ENOUGH_FRAMES = 3, MAX_TIMES = 16 };
@@ -36,6 +38,17 @@ abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_t
   }
   free(all);
   return result;
+}
+
+double abbe_frame_times_unrest(double median_ms, double fastest_ms) {
+  return median_ms > 0 && fastest_ms > 0 ? median_ms / fastest_ms - 1 : NAN;
+}
+
+void abbe_frame_times_say_unrest(double unrest, const char *before, char *out, size_t size) {
+  *out = '\0';
+  if (unrest > ABBE_FRAME_TIMES_QUIET)
+    snprintf(out, size, "%sthe machine is busy: repeats took %.0f %% longer than the fastest",
+             before, 100 * unrest);
 }
 
 abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, double *ms,

@@ -10,6 +10,9 @@ extern "C" {
 #endif
 
 #define ABBE_FRAME_TIMES_MAX 1000
+/* On a quiet machine the median of repeats takes at most that much longer than the fastest, as a
+ * share of it. */
+#define ABBE_FRAME_TIMES_QUIET 0.15
 
 typedef struct abbe_frame_times_desc {
   size_t frames; /* behind the median, at most ABBE_FRAME_TIMES_MAX; 0: 5 */
@@ -24,6 +27,12 @@ typedef struct abbe_frame_times {
   double fastest_ms;
 } abbe_frame_times;
 
+/* How much longer a median takes than the fastest, as a share of that: what repeats tell of a busy
+ * machine. NaN where either is not known. */
+double abbe_frame_times_unrest(double median_ms, double fastest_ms);
+/* "the machine is busy: ..." for more than ABBE_FRAME_TIMES_QUIET, after `before`; else "". */
+void abbe_frame_times_say_unrest(double unrest, const char *before, char *out, size_t size);
+
 /* ABBE_CANCELLED where progress says stop; errors of abbe_renderer_frame. */
 abbe_result abbe_frame_times_measure(abbe_renderer *renderer, const abbe_frame_times_desc *desc,
                                      abbe_frame_times *out, abbe_error *error);
@@ -34,8 +43,8 @@ abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, dou
                                       abbe_error *error);
 
 /* The median of `count` (1 to 16) times of a frame after the camera has moved a little, the change
- * with it, ms: `scene` and `desc` are the renderer's. It ends with the camera where it was. Errors of
- * abbe_renderer_change and abbe_renderer_frame. */
+ * with it, ms: `scene` and `desc` are the renderer's. It ends with the camera where it was. Errors
+ * of abbe_renderer_change and abbe_renderer_frame. */
 abbe_result abbe_frame_times_camera(abbe_renderer *renderer, const abbe_scene *scene,
                                     const abbe_render_desc *desc, size_t count, double *ms,
                                     abbe_error *error);

@@ -1,7 +1,7 @@
 #include "gl/accuracy/preset.h"
 
 #include "base/yaml/yaml.h"
-#include "gl/renderer.h"
+#include "gl/accuracy/frame_times.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -278,19 +278,19 @@ abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene
   static const double least_ms = 0.01; /* a part too short to tell a speed by */
   const abbe_preset_point *point = &front->point[0];
   abbe_renderer *renderer = NULL;
-  abbe_statistics statistics = {0};
+  abbe_frame_times times = {0};
+  const abbe_frame_times_desc repeats = {.frames = 3};
   abbe_render_desc quick = {.width = desc->width, .height = desc->height, .space = desc->space};
   abbe_preset_apply(point, &quick);
   abbe_result result = abbe_renderer_make(context, scene, &quick, &renderer, error);
-  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, NULL, error);
-  if (result == ABBE_OK) abbe_renderer_redraw(renderer);
-  if (result == ABBE_OK) result = abbe_renderer_frame(renderer, NULL, NULL, &statistics, error);
+  if (result == ABBE_OK) result = abbe_frame_times_measure(renderer, &repeats, &times, error);
   abbe_renderer_free(renderer);
   if (result != ABBE_OK) return result;
-  const double light_ms = abbe_statistics_stage_ms(&statistics, ABBE_STAGE_LIGHT);
-  const double eye_ms = abbe_statistics_stage_ms(&statistics, ABBE_STAGE_EYE);
+  const double light_ms = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_LIGHT);
+  const double eye_ms = abbe_statistics_stage_ms(&times.median, ABBE_STAGE_EYE);
   out->light = light_ms / fmax(point->light_ms, least_ms);
   out->eye = eye_ms / fmax(point->eye_ms, least_ms);
+  out->unrest = abbe_frame_times_unrest(times.median.frame_ms, times.fastest_ms);
   return ABBE_OK;
 }
 

@@ -1,10 +1,10 @@
 /* preset.h: settings that were measured to be worth their time, and which of them to take.
  *
  * For every class of scenes a front: settings of rising cost and falling error, read off sweeps
- * (abbe sweep --write-presets) and kept in gl/accuracy/presets.yaml with the run that made them. Three of
- * them have names. Others are chosen by an error or by a time; for a time, one quick frame on this
- * machine tells how fast it is. An error is a promise and no measurement: the worst of the front's
- * own scenes, times the margin by which leaving one of them out would have been wrong.
+ * (abbe sweep --write-presets) and kept in gl/accuracy/presets.yaml with the run that made them.
+ * Three of them have names. Others are chosen by an error or by a time; for a time, one quick frame
+ * on this machine tells how fast it is. An error is a promise and no measurement: the worst of the
+ * front's own scenes, times the margin by which leaving one of them out would have been wrong.
  */
 #ifndef ABBE_GL_ACCURACY_PRESET_H
 #define ABBE_GL_ACCURACY_PRESET_H
@@ -44,8 +44,8 @@ abbe_preset_class abbe_preset_class_of(const abbe_plan *plan);
 #define ABBE_PRESET_MAX_POINTS 128
 
 typedef struct abbe_preset_point {
-  abbe_render_desc
-      desc; /* wavelengths, photons, map, samples, upsampling, fill, share, exits, model; the rest 0 */
+  abbe_render_desc desc;   /* wavelengths, photons, map, samples, upsampling, fill, share, exits,
+                              model; the rest 0 */
   double light_ms, eye_ms; /* on the run's machine, as promised: the worst of its scenes in ratio to
                               the first point, times the time's margin */
   double error;            /* that is promised: the worst times the front's margin */
@@ -95,10 +95,11 @@ bool abbe_preset_apply(const abbe_preset_point *point, abbe_render_desc *desc);
  * passes. */
 typedef struct abbe_preset_speed {
   double light, eye;
+  double unrest; /* of the repeats that told it (frame_times.h) */
 } abbe_preset_speed;
 
-/* Draws the front's cheapest point once to warm up and once for the clock. size and space are
- * desc's. Errors of abbe_renderer_make. */
+/* Draws the front's cheapest point once to warm up and three times for the clock. size and space
+ * are desc's. Errors of abbe_renderer_make. */
 abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene,
                                   const abbe_preset_front *front, const abbe_render_desc *desc,
                                   abbe_preset_speed *out, abbe_error *error);

@@ -1,7 +1,9 @@
 #include "gl/accuracy/preset_choice.h"
 
 #include "base/number.h"
+#include "gl/accuracy/frame_times.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -62,6 +64,7 @@ abbe_result abbe_preset_choose(const abbe_preset_request *request, abbe_context 
     point = abbe_preset_for_error(c.front, q->max_error, &c.kept);
   c.point = &c.front->point[point];
   c.promised_ms = abbe_preset_ms(c.point, &speed);
+  c.unrest = c.timed ? speed.unrest : NAN;
   c.overridden = !abbe_preset_apply(c.point, desc);
   *out = c;
   out->front = &out->presets.front[c.front - c.presets.front];
@@ -79,12 +82,15 @@ abbe_result abbe_preset_choice_check(const abbe_preset_choice *choice, double fr
   ABBE_REQUIRE(choice, error);
   const abbe_preset_request *q = &choice->request;
   if (choice->point == NULL) return ABBE_OK;
-  if (q->budget_ms > 0 && frame_ms > q->budget_ms)
+  if (q->budget_ms > 0 && frame_ms > q->budget_ms) {
+    char busy[120];
+    abbe_frame_times_say_unrest(choice->unrest, ", and ", busy, sizeof busy);
     return abbe_error_set(error, ABBE_TOLERANCE,
-                          "the frame took %.0f ms and %.0f were promised: the budget of %g ms is "
+                          "the frame took %.0f ms and %.0f were promised%s: the budget of %g ms is "
                           "not kept%s; what was asked for is written all the same",
-                          frame_ms, choice->promised_ms, q->budget_ms,
+                          frame_ms, choice->promised_ms, busy, q->budget_ms,
                           choice->kept ? "" : ", for no faster settings are known");
+  }
   if (q->max_error > 0 && !choice->kept)
     return abbe_error_set(error, ABBE_TOLERANCE,
                           "no settings are known to keep an error of %g; the most accurate ones "

@@ -28,6 +28,7 @@ typedef struct abbe_preset_choice {
   bool overridden;    /* a field of the picture's request stands against it: it promises nothing */
   bool timed;         /* promised_ms is known */
   double promised_ms; /* on this machine */
+  double unrest;      /* of the frames that told its speed (frame_times.h); NaN: none were drawn */
 } abbe_preset_choice;
 
 /* Chooses and fills the fields of desc that are 0. With a time to keep or to promise, this

@@ -67,6 +67,9 @@ typedef struct profile {
   double reach_rad; /* nothing is farther from the centre */
   double least_rad; /* its smallest measure */
   double edge_rad;  /* over which edges fade: a step between places that are asked */
+  /* of a rectangle's width and height: tangents up to which a place is wholly inside, and from
+     which it is outside; only between these angles are asked */
+  double inside[2], outside[2];
 } profile;
 
 static profile profile_of(const abbe_environment_source *s) {
@@ -84,6 +87,17 @@ static profile profile_of(const abbe_environment_source *s) {
   return p;
 }
 
+static void set_edges(profile *p) {
+  const double rounding = 1e-9;
+  const double half[2] = {p->source->half_width_rad, p->source->half_height_rad};
+  for (int i = 0; i < 2; i++) {
+    const double from = half[i] - p->edge_rad / 2 - rounding;
+    const double to = half[i] + p->edge_rad / 2 + rounding;
+    p->inside[i] = from > 0 ? tan(from) : 0;
+    p->outside[i] = to < PI / 2 ? tan(to) : INFINITY;
+  }
+}
+
 /* How far inside an edge, as a share of a step that is covered. */
 static double cover(const profile *p, double inside_rad) {
   return fmin(fmax(0.5 + inside_rad / p->edge_rad, 0), 1);
@@ -97,6 +111,8 @@ static double value_at(const profile *p, const double direction[3]) {
     const double along = abbe_vector_dot(direction, s->centre);
     const double x = fabs(abbe_vector_dot(direction, p->right));
     const double y = fabs(abbe_vector_dot(direction, s->up));
+    if (x > p->outside[0] * along || y > p->outside[1] * along) return 0;
+    if (x < p->inside[0] * along && y < p->inside[1] * along) return 1;
     return along > 0 ? cover(p, s->half_width_rad - atan2(x, along)) *
                            cover(p, s->half_height_rad - atan2(y, along))
                      : 0;
@@ -142,11 +158,14 @@ static void gather_row(const gathering *g, const profile *p, size_t row, size_t 
                        size_t count) {
   const size_t columns = g->map->width * g->parts;
   const double y = ((double)row + 0.5) / (double)g->parts, solid = strip(g, row);
+  const double polar = PI * y / (double)g->map->height, across = sin(polar), up = cos(polar);
   for (size_t c = 0; c < count; c++) {
     const double x = ((double)((first + c) % columns) + 0.5) / (double)g->parts;
-    double direction[3], share[4];
+    /* abbe_radiance_map_direction, with what a row has in common */
+    const double azimuth = PI - 2 * PI * x / (double)g->map->width;
+    const double direction[3] = {across * cos(azimuth), across * sin(azimuth), up};
+    double share[4];
     size_t texel[4];
-    abbe_radiance_map_direction(g->map, x, y, direction);
     const double value = value_at(p, direction);
     if (!(value > 0)) continue;
     abbe_radiance_map_texels(g->map, x, y, texel, share);
@@ -204,6 +223,7 @@ static abbe_result add_profile(const abbe_environment_source *s, abbe_radiance_m
   gathering g = {.map = map, .parts = 2};
   if (isfinite(p.least_rad)) g.parts = (size_t)fmin(fmax(ceil(8 * texel / p.least_rad), 4), FINEST);
   p.edge_rad = texel / (double)g.parts;
+  set_edges(&p);
   p.reach_rad = fmin(p.reach_rad + p.edge_rad, PI);
   g.light = calloc(map->width * map->height, sizeof *g.light);
   g.solid = calloc(map->height, sizeof *g.solid);

@@ -54,7 +54,7 @@ static size_t texel_of(const abbe_radiance_map *map, int64_t column, int64_t row
     row = row < 0 ? -1 - row : 2 * height - 1 - row;
     column += width / 2;
   }
-  column %= width;
+  if (column < 0 || column >= width) column %= width;
   return (size_t)(row * width + (column < 0 ? column + width : column));
 }
 

@@ -17,7 +17,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   FUZZ_PROMISE(presets.count <= ABBE_PRESET_CLASS_COUNT);
   for (size_t i = 0; i < presets.count; i++) {
     const abbe_preset_front *f = &presets.front[i];
-    const abbe_preset_speed speed = {1, 1};
+    const abbe_preset_speed speed = {.light = 1, .eye = 1};
     bool kept;
     FUZZ_PROMISE(f->count >= 1 && f->count <= ABBE_PRESET_MAX_POINTS);
     for (int k = 0; k < ABBE_PRESET_COUNT; k++) FUZZ_PROMISE(f->named[k] <= f->count);

@@ -68,6 +68,7 @@ typedef struct abbe_picture_choice {
   double promised_error;           /* of this scene */
   double promised_ms;              /* on this machine, of the whole process, with the yardstick */
   double spent_ms;                 /* on the yardstick; 0: it was not needed */
+  double unrest;       /* of its repeats (gl/accuracy/frame_times.h); NaN: it has none */
   double prepared_ms;  /* on what stands before the first frame; 0: nothing was rendered */
   bool compiled;       /* shaders were, which happens once on a machine */
   size_t passes;       /* that the picture is traced of, or checked by; 0: none */
@@ -76,13 +77,14 @@ typedef struct abbe_picture_choice {
 } abbe_picture_choice;
 
 /* Of the tools that may be taken. The yardstick is traced first, unless the renderer alone may be
- * taken and no time is asked for. Then every point has a promised error and time for this scene:
- * for max_error the fastest that keeps it is taken, for budget_ms the most accurate, by name one of
- * the Pareto front that is left: the cheapest for draft, the cheapest whose error is at most 2 %
- * above the least for accurate, for balanced where the front between them bends most. Where no
- * point keeps the bound, the nearest is taken. The request's texts and `out` outlive the choice's
- * point. ABBE_INVALID_ARGUMENT where nothing is asked for, ABBE_NOT_FOUND where no point is left;
- * errors of abbe_picture_front_load and abbe_sweep_trace_measure. */
+ * taken and no time is asked for; three times for a budget of which all that takes a tenth at the
+ * most. Then every point has a promised error and time for this scene: for max_error the fastest
+ * that keeps it is taken, for budget_ms the most accurate, by name one of the Pareto front that is
+ * left: the cheapest for draft, the cheapest whose error is at most 2 % above the least for
+ * accurate, for balanced where the front between them bends most. Where no point keeps the bound,
+ * the nearest is taken. The request's texts and `out` outlive the choice's point.
+ * ABBE_INVALID_ARGUMENT where nothing is asked for, ABBE_NOT_FOUND where no point is left; errors
+ * of abbe_picture_front_load and abbe_sweep_trace_measure. */
 abbe_result abbe_picture_choose(const abbe_picture_request *request, const abbe_scene *scene,
                                 abbe_picture_choice *out, abbe_error *error);
 

@@ -38,8 +38,8 @@ abbe_result abbe_sweep_promises_make(const abbe_sweep_table *table, const char *
   if (first == NULL || number == ABBE_SWEEP_NUMBER_COUNT) return ABBE_OK;
   const abbe_preset_point *cheapest = &front->point[0];
   const abbe_preset_speed speed = {
-      first->number[ABBE_SWEEP_LIGHT_MS] / fmax(cheapest->light_ms, least_ms),
-      first->number[ABBE_SWEEP_EYE_MS] / fmax(cheapest->eye_ms, least_ms)};
+      .light = first->number[ABBE_SWEEP_LIGHT_MS] / fmax(cheapest->light_ms, least_ms),
+      .eye = first->number[ABBE_SWEEP_EYE_MS] / fmax(cheapest->eye_ms, least_ms)};
   out->front = front;
   for (size_t i = 0; i < front->count; i++) {
     const abbe_sweep_row *row = find_point(table, &front->point[i]);

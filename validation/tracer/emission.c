@@ -138,16 +138,23 @@ static size_t emit(const abbe_emission *e, uint32_t from, uint32_t to, abbe_phot
   abbe_random_bits(0, light, e->pass, e->seed, shift);
   for (uint32_t j = from; j < to; j += LANES) {
     const uint32_t count = to - j < LANES ? to - j : LANES;
-    block b = {.first = j};
-    for (uint32_t k = 0; k < LANES; k++) {
-      const uint32_t photon_id = k < count ? j + k : j;
-      while (cell + 1 < map->count && e->first[cell + 1] <= photon_id) cell++;
-      const abbe_projection_map_cell *c = b.cell[k] = &map->cell[cell];
-      b.place[k] = k < count ? photon_id - e->first[cell] : 0;
-      b.part[k] = 4294967296.0 / (double)(e->first[cell + 1] - e->first[cell]);
-      b.share[k] = (float)e->count * c->share;
-      b.rays.x[k] = (float)c->x;
-      b.rays.y[k] = (float)c->y;
+    block b;
+    b.first = j;
+    for (uint32_t k = 0; k < LANES; cell++) {
+      /* those of the cell; lanes beyond the last photon are copies of it */
+      const uint32_t first = e->first[cell], end = e->first[cell + 1];
+      const abbe_projection_map_cell *c = &map->cell[cell];
+      const double part = 4294967296.0 / (double)(end - first);
+      const float share = (float)e->count * c->share, x = (float)c->x, y = (float)c->y;
+      for (; k < LANES && (j + k < end || k >= count); k++) {
+        b.cell[k] = c;
+        b.place[k] = k < count ? j + k - first : 0;
+        b.part[k] = part;
+        b.share[k] = share;
+        b.rays.x[k] = x;
+        b.rays.y[k] = y;
+      }
+      if (k == LANES) break;
     }
     place(light, e->pass, e->seed, shift[0], &b);
     if (map->radius > 0)

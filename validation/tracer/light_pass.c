@@ -1,6 +1,7 @@
 #include "validation/tracer/light_pass.h"
 
 #include "validation/tracer/emission.h"
+#include "validation/tracer/map_texels.h"
 #include "validation/walks/path_splitting.h"
 
 #include <omp.h>
@@ -16,20 +17,35 @@ typedef struct sink {
   size_t thread, light;
 } sink;
 
-void abbe_tracer_add_to_map(abbe_tracer *t, size_t thread, size_t light, const abbe_photon_hit *l) {
-  if (t->desc.no_map || light != t->desc.map_light || l->hidden) return;
-  double p[3];
-  size_t column, row;
-  abbe_geometry_to_world(&t->geometry, l->p, p);
-  if (!abbe_map_layout_texel(&t->layout, t->desc.map_width, t->desc.map_height, p, &column, &row))
-    return;
-  size_t at = (row * t->desc.map_width + column) * t->map_channels;
-  const float *xyz = t->sampling.xyz[light * t->sampling.steps + l->step];
+static void add_to_texel(abbe_tracer *t, size_t thread, size_t light, const abbe_photon_hit *l,
+                         size_t texel) {
+  const size_t at = texel * t->map_channels, step = light * t->sampling.steps + l->step;
+  const float *xyz = t->sampling.xyz[step];
   for (size_t k = 0; k < 3; k++) abbe_accumulator_add(&t->map, thread, at + k, l->flux * xyz[k]);
   if (t->bands.count > 0)
     abbe_accumulator_add(&t->map, thread, at + 3 + t->bands.of_step[l->step],
-                         l->flux * t->sampling.power[light * t->sampling.steps + l->step] /
-                             (float)t->bands.width_nm);
+                         l->flux * t->sampling.power[step] / (float)t->bands.width_nm);
+}
+
+void abbe_tracer_add_to_map(abbe_tracer *t, size_t thread, size_t light, const abbe_photon_hit *hit,
+                            size_t count) {
+  enum { LANES = ABBE_MAP_TEXELS_LANES };
+  abbe_map_texels texels;
+  if (!abbe_tracer_maps(t, light)) return;
+  for (size_t first = 0; first < count; first += LANES) {
+    const size_t used = count - first < LANES ? count - first : LANES;
+    for (size_t k = 0; k < LANES; k++) {
+      double p[3];
+      abbe_geometry_to_world(&t->geometry, hit[first + (k < used ? k : 0)].p, p);
+      for (int i = 0; i < 3; i++) texels.p[i][k] = p[i];
+    }
+    abbe_map_texels_find(&t->layout, t->desc.map_width, t->desc.map_height, &texels);
+    for (size_t k = 0; k < used; k++) {
+      const abbe_photon_hit *l = &hit[first + k];
+      if (!l->hidden && texels.at[k] != ABBE_MAP_TEXELS_NONE)
+        add_to_texel(t, thread, light, l, texels.at[k]);
+    }
+  }
 }
 
 /* What a photon adds to the pixel that sees it straight. */
@@ -135,11 +151,12 @@ static void run_task(const abbe_emission *e, uint32_t from, uint32_t to, size_t 
   sink s = {.t = t, .thread = thread, .light = e->light};
   *out = (task_result){0};
   abbe_light_walk_split(t->walk[thread], t->splits[e->light]);
+  abbe_light_walk_for_map(t->walk[thread], abbe_tracer_maps(t, e->light));
   for (uint32_t j = from; j < to; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, to, photon);
     size_t landed = abbe_light_walk_run(t->walk[thread], abbe_tracer_light(t, e->light), e->pass,
                                         photon, count, hit, &out->ledger);
-    for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, thread, e->light, &hit[i]);
+    abbe_tracer_add_to_map(t, thread, e->light, hit, landed);
     out->splat_rays += add_to_picture(&s, hit, landed);
     for (size_t i = 0; keep != NULL && i < landed; i++) {
       const abbe_photon_hit *l = &hit[i];
@@ -249,6 +266,7 @@ static size_t land_trial(const abbe_tracer *t, const abbe_emission *e, abbe_phot
   abbe_light_ledger ledger = {0};
   size_t landed = 0;
   abbe_light_walk_split(t->walk[0], 0);
+  abbe_light_walk_for_map(t->walk[0], false);
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
     landed += abbe_light_walk_run(t->walk[0], abbe_tracer_light(t, e->light), e->pass, photon,

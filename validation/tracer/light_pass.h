@@ -22,9 +22,9 @@ abbe_result abbe_tracer_light_pass(abbe_tracer *tracer, const volatile int *stop
 abbe_result abbe_tracer_share_photons(abbe_tracer *tracer, abbe_error *error);
 /* Chooses where paths are split, by a trial of each light's. */
 abbe_result abbe_tracer_choose_splits(abbe_tracer *tracer, abbe_error *error);
-/* One photon into the map of its light, if that is the one that is made. */
+/* Photons into the map of their light, if that is the one that is made. */
 void abbe_tracer_add_to_map(abbe_tracer *tracer, size_t thread, size_t light,
-                            const abbe_photon_hit *hit);
+                            const abbe_photon_hit *hit, size_t count);
 
 #ifdef __cplusplus
 }

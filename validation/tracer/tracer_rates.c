@@ -11,12 +11,13 @@ static double walk_seconds(abbe_tracer *t, const abbe_emission *e) {
   abbe_photon *photon = room->photon;
   abbe_photon_hit *hit = room->hit;
   abbe_light_ledger ledger = {0};
+  abbe_light_walk_for_map(t->walk[0], abbe_tracer_maps(t, e->light));
   double start = abbe_clock_seconds();
   for (uint32_t j = 0; j < e->count; j += ABBE_LIGHT_WALK_BATCH) {
     size_t count = abbe_emission_batch(e, j, (uint32_t)e->count, photon);
     size_t landed = abbe_light_walk_run(t->walk[0], &t->scene->light[e->light], e->pass, photon,
                                         count, hit, &ledger);
-    for (size_t i = 0; i < landed; i++) abbe_tracer_add_to_map(t, 0, e->light, &hit[i]);
+    abbe_tracer_add_to_map(t, 0, e->light, hit, landed);
   }
   double end = abbe_clock_seconds();
   if (!t->desc.no_map) abbe_accumulator_drop_pass(&t->map);

@@ -64,6 +64,10 @@ static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3]
 static inline const abbe_light *abbe_tracer_light(const abbe_tracer *t, size_t light) {
   return light < t->scene->light_count ? &t->scene->light[light] : NULL;
 }
+/* Whether a map is made of that light. */
+static inline bool abbe_tracer_maps(const abbe_tracer *t, size_t light) {
+  return !t->desc.no_map && light == t->desc.map_light;
+}
 /* Most hits of so many photons of the light. */
 static inline size_t abbe_tracer_most_hits(const abbe_tracer *t, size_t light, size_t photons) {
   for (int k = 0; k < ABBE_PHOTON_SPLITS; k++) photons <<= t->splits[light] >> k & 1;

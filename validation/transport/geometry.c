@@ -61,6 +61,24 @@ static void face_normal(const abbe_mesh *mesh, size_t face, float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = (float)(known ? n[k] : mesh->normal[f[0]][k]);
 }
 
+static bool make_planes(size_t faces, abbe_surface *s) {
+  s->plane = aligned_alloc(64, (faces + 1) * sizeof *s->plane);
+  if (s->plane == NULL) return false;
+  for (size_t i = 0; i < faces; i++) {
+    const float *a = s->position[s->face[i][0]], *b = s->position[s->face[i][1]],
+                *c = s->position[s->face[i][2]];
+    abbe_plane_face *p = &s->plane[i];
+    *p = (abbe_plane_face){0};
+    for (int k = 0; k < 3; k++) {
+      p->corner[k] = a[k];
+      p->second[k] = b[k] - a[k];
+      p->third[k] = c[k] - a[k];
+      p->normal[k] = s->normal[i][k];
+    }
+  }
+  return true;
+}
+
 /* Triangles of one plane of a convex solid have its normal, as thin ones may be off it. Embree
  * reads 16 bytes at the last vertex: one more than there are is kept. */
 static bool copy_mesh(const abbe_geometry *g, const abbe_object *object, abbe_surface *s) {
@@ -83,7 +101,7 @@ static bool copy_mesh(const abbe_geometry *g, const abbe_object *object, abbe_su
       for (int k = 0; k < 3; k++) s->normal[i][k] = (float)mesh->normal[i][k];
   }
   s->uv = (const double(*)[2])mesh->uv;
-  return true;
+  return !s->flat || make_planes(mesh->face_count, s);
 }
 
 static void attach(abbe_geometry *g, RTCGeometry geometry, unsigned id, unsigned mask) {
@@ -292,6 +310,7 @@ void abbe_geometry_free(abbe_geometry *g) {
     free(g->surface[i].position);
     free(g->surface[i].normal);
     free(g->surface[i].face);
+    free(g->surface[i].plane);
   }
   abbe_solids_free(g->solid, g->refractor_count);
   free(g->surface);

@@ -34,6 +34,12 @@ enum {
   ABBE_GEOMETRY_OBJECTS = ABBE_GEOMETRY_SPECULAR | ABBE_GEOMETRY_RECEIVERS
 };
 
+/* A face with one normal, in one line of the cache and padded for the compiler: its first corner,
+ * the ways to the others, and the normal. */
+typedef struct abbe_plane_face {
+  __attribute__((aligned(64))) float corner[4], second[4], third[4], normal[4];
+} abbe_plane_face;
+
 /* The surface behind one of Embree's geometry identifiers; frame units. */
 typedef struct abbe_surface {
   unsigned kind;   /* one of the bits above */
@@ -42,10 +48,11 @@ typedef struct abbe_surface {
   bool sphere;     /* centre and radius hold; else triangles */
   bool flat;       /* every face has one normal: its own */
   float centre[3], radius;
-  float (*position)[3];  /* [vertices + 1] */
-  float (*normal)[3];    /* flat: [faces]; else [vertices] */
-  const double (*uv)[2]; /* [vertices] of the mesh, or NULL */
-  uint32_t (*face)[3];   /* [faces] */
+  float (*position)[3];   /* [vertices + 1] */
+  float (*normal)[3];     /* flat: [faces]; else [vertices] */
+  const double (*uv)[2];  /* [vertices] of the mesh, or NULL */
+  uint32_t (*face)[3];    /* [faces] */
+  abbe_plane_face *plane; /* flat: [faces]; else NULL */
 } abbe_surface;
 
 typedef struct abbe_geometry {
@@ -121,13 +128,19 @@ static inline void abbe_geometry_place(const abbe_surface *s, uint32_t face, flo
     }
     return;
   }
+  if (s->plane != NULL) {
+    const abbe_plane_face *f = &s->plane[face];
+    float p[4];
+    for (int k = 0; k < 4; k++) p[k] = f->corner[k] + u * f->second[k] + v * f->third[k];
+    for (int k = 0; k < 3; k++) {
+      hit->p[k] = p[k];
+      hit->ng[k] = hit->n[k] = f->normal[k];
+    }
+    return;
+  }
   const uint32_t *f = s->face[face];
   const float *a = s->position[f[0]], *b = s->position[f[1]], *c = s->position[f[2]];
   for (int k = 0; k < 3; k++) hit->p[k] = a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]);
-  if (s->flat) {
-    for (int k = 0; k < 3; k++) hit->ng[k] = hit->n[k] = s->normal[face][k];
-    return;
-  }
   float e[3], h[3], n[3], w = 1 - u - v;
   for (int k = 0; k < 3; k++) {
     e[k] = b[k] - a[k];

@@ -45,6 +45,7 @@ struct abbe_light_walk {
   unsigned splits;   /* interfaces at which paths are split, a bit each */
   bool small;        /* so few faces that packets stay together wherever their rays go */
   bool *hidden;      /* [lights] abbe_lamp_is_hidden */
+  bool for_map;
   abbe_ray_record record;
   abbe_light_walk_room room;
 };
@@ -63,6 +64,7 @@ abbe_result abbe_light_walk_make(const abbe_geometry *geometry, const abbe_media
     w->mirrors = mirrors;
     w->physics = *physics;
     w->seed = seed;
+    w->for_map = true;
     w->batch = aligned_alloc(64, (sizeof *w->batch + 63) / 64 * 64);
     w->next = aligned_alloc(64, (sizeof *w->next + 63) / 64 * 64);
     w->inner = malloc(sizeof *w->inner);
@@ -107,6 +109,10 @@ uint64_t abbe_light_walk_rays(const abbe_light_walk *walk) {
 
 void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces) {
   walk->splits = interfaces & ((1u << ABBE_PHOTON_SPLITS) - 1);
+}
+
+void abbe_light_walk_for_map(abbe_light_walk *walk, bool map) {
+  walk->for_map = map;
 }
 
 void abbe_light_walk_keep(abbe_light_walk *walk, size_t packets) {
@@ -361,7 +367,7 @@ static void advance(run *r, const abbe_light_path *paths, size_t count, bool sec
   for (size_t k = 0; k < count; k++) {
     path_state state = r->packet.state[k];
     if (state != SCATTERS) {
-      if (!second) end_path(r, k, state, &paths[k]);
+      if (!second && state != NOT_COUNTED) end_path(r, k, state, &paths[k]);
       continue;
     }
     abbe_light_path s = paths[k];
@@ -474,7 +480,7 @@ size_t abbe_light_walk_run(abbe_light_walk *w, const abbe_light *light, uint32_t
   run r = {.w = w,
            .light = light,
            .rules = {.seed = w->seed, .pass = pass, .physics = w->physics},
-           .hidden = light != NULL && w->hidden[light - w->g->scene->light],
+           .hidden = w->for_map && light != NULL && w->hidden[light - w->g->scene->light],
            .hit = hit,
            .ledger = ledger};
   abbe_random_bits(0x73686966, 0, pass, w->seed, r.rules.shift);

@@ -47,6 +47,10 @@ abbe_light_walk_room *abbe_light_walk_get_room(abbe_light_walk *walk);
  */
 void abbe_light_walk_split(abbe_light_walk *walk, unsigned interfaces);
 
+/* Whether the hits of the next runs are for a map of their light: then they and the ledger tell
+ * what receivers hide from it, which asks for a ray each. At first they are. */
+void abbe_light_walk_for_map(abbe_light_walk *walk, bool map);
+
 /* Follows count <= ABBE_LIGHT_WALK_BATCH photons of one light of the geometry's scene, or of its
  * environment (light NULL: nothing is hidden from it, for it has no map); writes at
  * most count hits, twice as many for each interface to split at (ABBE_LIGHT_WALK_HITS), and adds to

@@ -40,7 +40,8 @@ typedef struct abbe_light_ledger {
   double reached;   /* brought to a refractor, before anything else */
   double deposited; /* on receivers */
   double contact;   /* the part of it that came from inside a refractor that touches the receiver */
-  double hidden;    /* the part of it that other receivers hide from the lamp: in no map */
+  double hidden;    /* the part of it that other receivers hide from the lamp, so that its map does
+                       not hold it; of the light that a map is made of */
   double absorbed;  /* along inner paths */
   double missed;    /* met no receiver; with it what the renderer's ledger has as reflected */
   double trapped;   /* matched physics: the path was as long as the renderer follows one, and still

@@ -44,6 +44,21 @@ static void test_times(void **state) {
   abbe_scene_free(&scene);
 }
 
+static void test_unrest(void **state) {
+  (void)state;
+  char text[120];
+  assert_near(abbe_frame_times_unrest(150, 100), 0.5, 1e-12);
+  assert_near(abbe_frame_times_unrest(100, 100), 0, 0);
+  assert_true(isnan(abbe_frame_times_unrest(100, NAN)));
+  assert_true(isnan(abbe_frame_times_unrest(0, 0)));
+  abbe_frame_times_say_unrest(0.5, "note: ", text, sizeof text);
+  assert_string_equal(text, "note: the machine is busy: repeats took 50 % longer than the fastest");
+  abbe_frame_times_say_unrest(ABBE_FRAME_TIMES_QUIET, "note: ", text, sizeof text);
+  assert_string_equal(text, "");
+  abbe_frame_times_say_unrest(NAN, "note: ", text, sizeof text);
+  assert_string_equal(text, "");
+}
+
 /* A camera's frame traces no photon, and the camera ends where it was. */
 static void test_camera(void **state) {
   (void)state;
@@ -70,6 +85,7 @@ static void test_camera(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_times), cmocka_unit_test(test_camera)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_times), cmocka_unit_test(test_unrest),
+                                     cmocka_unit_test(test_camera)};
   return cmocka_run_group_tests(tests, make_context, free_context);
 }

@@ -102,7 +102,7 @@ static void test_margins_widen_promises(void **state) {
   /* 4 was measured, but 6 is promised. */
   assert_int_equal(abbe_preset_for_error(f, 5.9, &kept), 2);
   assert_int_equal(abbe_preset_for_error(f, 6, &kept), 1);
-  const abbe_preset_speed same = {1, 1};
+  const abbe_preset_speed same = {.light = 1, .eye = 1};
   assert_int_equal(abbe_preset_for_time(f, &same, 99, &kept), 0);
   assert_int_equal(abbe_preset_for_time(f, &same, 100, &kept), 1);
   abbe_presets_free(&presets);
@@ -151,7 +151,7 @@ static void test_choices(void **state) {
   assert_true(kept);
   assert_int_equal(abbe_preset_for_error(f, 1, &kept), 2);
   assert_false(kept);
-  const abbe_preset_speed same = {1, 1}, slow = {2, 10};
+  const abbe_preset_speed same = {.light = 1, .eye = 1}, slow = {.light = 2, .eye = 10};
   assert_near(abbe_preset_ms(&f->point[1], &same), 50, 1e-12);
   assert_near(abbe_preset_ms(&f->point[1], &slow), 180, 1e-12);
   assert_int_equal(abbe_preset_for_time(f, &same, 170, &kept), 2);

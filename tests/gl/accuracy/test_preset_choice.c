@@ -64,6 +64,14 @@ static void test_times(void **state) {
   assert_int_equal(abbe_preset_choice_check(&c, 1, &error), ABBE_TOLERANCE);
   assert_contains(error.text, "the budget of 1e-06 ms is not kept, for no faster settings");
   assert_int_equal(abbe_preset_choice_check(&c, 1e-7, NULL), ABBE_OK);
+  /* Frames that differed are said to be of a busy machine; those that did not are not. */
+  assert_true(c.unrest >= 0);
+  c.unrest = 0.5;
+  assert_int_equal(abbe_preset_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+  assert_contains(error.text, "the machine is busy: repeats took 50 % longer than the fastest");
+  c.unrest = 0.05;
+  assert_int_equal(abbe_preset_choice_check(&c, 1, &error), ABBE_TOLERANCE);
+  assert_null(strstr(error.text, "busy"));
   abbe_preset_choice_free(&c);
 }
 

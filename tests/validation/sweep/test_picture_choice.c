@@ -158,6 +158,32 @@ static void test_by_time(void **state) {
   assert_true(c.kept && c.promised_ms <= 1e9);
 }
 
+/* What repeats of the yardstick tell of the machine is said where a budget is not kept. */
+static void test_a_busy_machine(void **state) {
+  (void)state;
+  abbe_picture_choice c;
+  abbe_error error = {0};
+  write_file(WHOLE);
+  choose((abbe_picture_request){.max_error = 1e-6}, &c);
+  assert_true(isnan(c.unrest)); /* no time is asked for: it is not repeated */
+  choose((abbe_picture_request){.budget_ms = 1e-3}, &c);
+  assert_true(isnan(c.unrest)); /* nor where it would take much of the budget */
+  choose((abbe_picture_request){.budget_ms = 1e9}, &c);
+  assert_true(c.unrest >= 0);
+  c.request.budget_ms = 1000;
+  c.promised_ms = 900;
+  c.unrest = 0.4;
+  assert_int_equal(abbe_picture_choice_check(&c, 1100, &error), ABBE_TOLERANCE);
+  assert_contains(error.text, "the machine is busy: repeats took 40 % longer than the fastest");
+  assert_int_equal(abbe_picture_choice_check(&c, 1000, &error), ABBE_OK);
+  c.unrest = 0.1;
+  assert_int_equal(abbe_picture_choice_check(&c, 1100, &error), ABBE_TOLERANCE);
+  assert_null(strstr(error.text, "busy"));
+  c.unrest = NAN;
+  assert_int_equal(abbe_picture_choice_check(&c, 1400, &error), ABBE_TOLERANCE);
+  assert_contains(error.text, "the machine may be busy");
+}
+
 static void test_words(void **state) {
   (void)state;
   char text[300];
@@ -216,6 +242,7 @@ int main(void) {
       cmocka_unit_test(test_promises_are_told_by_the_yardstick),
       cmocka_unit_test(test_what_passes_tell),
       cmocka_unit_test(test_by_time),
+      cmocka_unit_test(test_a_busy_machine),
       cmocka_unit_test(test_words),
       cmocka_unit_test(test_what_is_refused),
   };

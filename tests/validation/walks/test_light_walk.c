@@ -206,6 +206,13 @@ static void light_that_the_lamp_does_not_see_is_hidden(void **state) {
     assert_true(f.hidden > 0.8 * (double)f.photons);
     assert_near(f.ledger.hidden, (double)f.hidden, 1e-6 * (double)f.photons);
     drop(&f);
+    /* where no map is made nothing asks, and as much lands */
+    make(text, i ? &matched : NULL, &f);
+    abbe_light_walk_for_map(f.walk, false);
+    assert_int_equal(shoot(&f, from, d, 4), landed);
+    assert_int_equal(f.hidden, 0);
+    assert_true(f.ledger.hidden == 0);
+    drop(&f);
   }
 }
 
@@ -342,7 +349,8 @@ static void what_a_bent_normal_mirrors_stays_inside(void **state) {
   static const abbe_physics full = {0};
   assert_int_equal(abbe_geometry_make(&f.scene, &f.geometry, NULL), ABBE_OK);
   assert_int_equal(abbe_media_make(&f.geometry, lambda_nm, STEPS, &f.media, NULL), ABBE_OK);
-  assert_int_equal(abbe_light_walk_make(&f.geometry, &f.media, &f.mirrors, &full, 3, &f.walk, NULL), ABBE_OK);
+  assert_int_equal(abbe_light_walk_make(&f.geometry, &f.media, &f.mirrors, &full, 3, &f.walk, NULL),
+                   ABBE_OK);
   assert_int_equal(shoot(&f, from, down, 4), 0);
   assert_true(f.ledger.lost == 0 && f.ledger.contact == 0);
   assert_near(f.ledger.missed / (double)f.photons, 1, 1e-6);
