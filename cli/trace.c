@@ -279,10 +279,7 @@ static void add_ledger(cJSON *root, const abbe_light_ledger *l, bool map) {
   cJSON_AddNumberToObject(energy, "reached", l->reached);
   cJSON_AddNumberToObject(energy, "deposited", l->deposited);
   cJSON_AddNumberToObject(energy, "contact", l->contact);
-  if (map)
-    cJSON_AddNumberToObject(energy, "hidden", l->hidden);
-  else
-    cJSON_AddNullToObject(energy, "hidden");
+  cJSON_AddNumberToObject(energy, "hidden", map ? l->hidden : NAN); /* null */
   cJSON_AddNumberToObject(energy, "absorbed", l->absorbed);
   cJSON_AddNumberToObject(energy, "missed", l->missed);
   cJSON_AddNumberToObject(energy, "trapped", l->trapped);

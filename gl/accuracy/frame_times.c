@@ -47,8 +47,8 @@ double abbe_frame_times_unrest(double median_ms, double fastest_ms) {
 void abbe_frame_times_say_unrest(double unrest, const char *before, char *out, size_t size) {
   *out = '\0';
   if (unrest > ABBE_FRAME_TIMES_QUIET)
-    snprintf(out, size, "%sthe machine is busy: repeats took %.0f %% longer than the fastest",
-             before, 100 * unrest);
+    snprintf(out, size, "%sthe machine is busy: repeats took %ld %% longer than the fastest",
+             before, lround(100 * unrest));
 }
 
 abbe_result abbe_frame_times_baseline(abbe_renderer *renderer, size_t count, double *ms,
