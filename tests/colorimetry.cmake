@@ -1,4 +1,4 @@
-foreach(name axis chart colour_map difference display_ocio exr illuminant image material_chart text_plot observer png_file screen_png sheet
+foreach(name axis chart chromaticity colour_map colour_temperature difference display_ocio exr illuminant image material_chart text_plot observer png_file screen_png sheet
         radiance_file rgb_encoding rgb_space upsampling weights)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()

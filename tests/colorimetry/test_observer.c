@@ -3,17 +3,61 @@
 
 #include "colorimetry/observer.h"
 
-static void test_table_is_the_cies(void **state) {
-  (void)state;
+static void compare_with_the_cies(const char *file, abbe_observer observer) {
   double cie[300], start = 0, end = 0;
-  size_t count = colord_read("cmf/CIE1931-2deg-XYZ.cmf", cie, 300, &start, &end);
+  size_t count = colord_read(file, cie, 300, &start, &end);
   assert_int_equal(count, 285);
   assert_true(start == ABBE_OBSERVER_MIN_NM && end == ABBE_OBSERVER_MAX_NM);
   for (int i = 0; i < 95; i++) {
     double xyz[3];
-    abbe_observer_xyz(360 + 5 * i, xyz);
+    abbe_observer_xyz_of(observer, 360 + 5 * i, xyz);
     for (int k = 0; k < 3; k++) assert_true(fabs(xyz[k] - cie[95 * k + i]) <= 1e-15);
   }
+}
+
+static void test_tables_are_the_cies(void **state) {
+  (void)state;
+  compare_with_the_cies("cmf/CIE1931-2deg-XYZ.cmf", ABBE_OBSERVER_CIE_1931);
+  compare_with_the_cies("cmf/CIE1964-10deg-XYZ.cmf", ABBE_OBSERVER_CIE_1964);
+  for (double nm = 350; nm < 840; nm += 0.7) {
+    double a[3], b[3];
+    abbe_observer_xyz(nm, a);
+    abbe_observer_xyz_of(ABBE_OBSERVER_CIE_1931, nm, b);
+    assert_memory_equal(a, b, sizeof a);
+  }
+}
+
+/* ybar of 2015 is 1 at 556 and 557 nm, its greatest [CIE170-2]; and each observer's equal-energy
+ * light is white, by their normalisation: x = y = 1/3. */
+static void test_observers_of_2015(void **state) {
+  (void)state;
+  static const abbe_observer observer[2] = {ABBE_OBSERVER_CIE_2015_2, ABBE_OBSERVER_CIE_2015_10};
+  static const double peak_nm[2] = {555, 555}, peak[2] = {0.999181, 0.9988};
+  for (int o = 0; o < 2; o++) {
+    double sum[3] = {0}, xyz[3];
+    for (int nm = 390; nm <= 830; nm += 5) {
+      abbe_observer_xyz_of(observer[o], nm, xyz);
+      for (int k = 0; k < 3; k++) sum[k] += xyz[k];
+    }
+    const double all = sum[0] + sum[1] + sum[2];
+    for (int k = 0; k < 3; k++) assert_near(sum[k] / all, 1.0 / 3, 1e-4);
+    abbe_observer_xyz_of(observer[o], peak_nm[o], xyz);
+    assert_near(xyz[1], peak[o], 2e-3);
+    abbe_observer_xyz_of(observer[o], 389.9, xyz);
+    assert_true(xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0);
+  }
+}
+
+static void test_names(void **state) {
+  (void)state;
+  for (int i = 0; i < ABBE_OBSERVER_COUNT; i++)
+    assert_int_equal(abbe_observer_find(abbe_observer_name((abbe_observer)i)), i);
+  assert_int_equal(abbe_observer_find("2006-10"), ABBE_OBSERVER_CIE_2015_10);
+  assert_int_equal(abbe_observer_find("1932"), ABBE_OBSERVER_COUNT);
+  assert_string_equal(abbe_observer_text(ABBE_OBSERVER_CIE_1964), "CIE 1964, 10 degrees");
+  double xyz[3] = {1, 1, 1};
+  abbe_observer_xyz_of(ABBE_OBSERVER_COUNT, 500, xyz);
+  assert_true(xyz[0] == 0 && xyz[1] == 0 && xyz[2] == 0);
 }
 
 static void test_between_knots(void **state) {
@@ -57,8 +101,11 @@ static void test_zero_outside(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_table_is_the_cies), cmocka_unit_test(test_between_knots),
-      cmocka_unit_test(test_near_the_1_nm_table), cmocka_unit_test(test_zero_outside)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_tables_are_the_cies),
+                                     cmocka_unit_test(test_observers_of_2015),
+                                     cmocka_unit_test(test_names),
+                                     cmocka_unit_test(test_between_knots),
+                                     cmocka_unit_test(test_near_the_1_nm_table),
+                                     cmocka_unit_test(test_zero_outside)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
