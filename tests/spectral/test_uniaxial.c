@@ -343,6 +343,24 @@ static void without_birefringence_it_is_fresnels_glass(void **state) {
   }
 }
 
+/* Total reflection turns the phase of s by -2 atan(sqrt(n^2 sin^2 - 1) / (n cos)) [BornWolf1999]:
+ * the wave outside dies out, and does not grow. */
+static void total_reflection_has_fresnels_phase(void **state) {
+  (void)state;
+  const abbe_uniaxial glass = {1.5, 1.5, {0, 0, 1}};
+  for (double a = 42; a < 90; a += 4) {
+    double in[3];
+    down(a, in);
+    const double s = 1.5 * sin(radians(a)), c = 1.5 * cos(radians(a));
+    abbe_uniaxial_split split;
+    abbe_uniaxial_meet(&glass, &air, up, O, in, &split);
+    assert_near(split.reflected[O].share, 1, 1e-14);
+    assert_false(split.transmitted[O].travels);
+    assert_near(atan2(split.reflected[O].amplitude[1], split.reflected[O].amplitude[0]),
+                -2 * atan(sqrt(s * s - 1) / c), 1e-12);
+  }
+}
+
 /* A vanishing birefringence has the limit without, also where the axis is along the light. */
 static void a_vanishing_birefringence_changes_nothing(void **state) {
   (void)state;
@@ -406,6 +424,7 @@ int main(void) {
       cmocka_unit_test(energy_is_conserved),
       cmocka_unit_test(ways_back_have_the_same_share),
       cmocka_unit_test(without_birefringence_it_is_fresnels_glass),
+      cmocka_unit_test(total_reflection_has_fresnels_phase),
       cmocka_unit_test(a_vanishing_birefringence_changes_nothing),
       cmocka_unit_test(awkward_directions),
   };
