@@ -11,6 +11,7 @@ foreach(name
     difference_picture
     baseline_comparison
     error_decomposition
+    estimator_study landing_rays
     environment_trace
     eye_samples
     eye_walk

@@ -5,6 +5,7 @@
 #include "cli/sweep/sweep_options.h"
 #include "cli/sweep/sweep_report.h"
 
+#include "validation/landing/estimator_study.h"
 #include "validation/sweep/scaling_study.h"
 #include "validation/sweep/sweep_page.h"
 #include "validation/sweep/sweep_setting.h"
@@ -148,6 +149,22 @@ static abbe_result study_scaling(const abbe_sweep_options *q, abbe_error *error)
   return result;
 }
 
+static abbe_result study_estimators(const abbe_sweep_options *q, abbe_error *error) {
+  const size_t side = q->list.map.count > 0 ? q->list.map.value[0] : 768;
+  const size_t grid = q->list.photons.count > 0 ? q->list.photons.value[0] : 128;
+  abbe_scene scene = {0};
+  abbe_estimator_study *study = calloc(1, sizeof *study);
+  if (study == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the study");
+  abbe_result result = abbe_scene_input_load(q->program, q->scene, q->materials, &scene, error);
+  if (result == ABBE_OK) result = abbe_estimator_study_make(&scene, side, grid, study, error);
+  if (result == ABBE_OK && q->work.table != NULL)
+    result = abbe_estimator_study_save(study, q->work.table, error);
+  if (result == ABBE_OK) abbe_estimator_study_print(study, stdout);
+  abbe_scene_free(&scene);
+  free(study);
+  return result;
+}
+
 /* ---- tables ---- */
 
 /* What a report draws again. */
@@ -233,6 +250,7 @@ static abbe_result run(const abbe_sweep_options *q, abbe_error *error) {
   abbe_result result = abbe_command_check_targets(targets, 3, error);
   if (result != ABBE_OK) return result;
   if (q->scaling) return study_scaling(q, error);
+  if (q->estimators) return study_estimators(q, error);
   size_t count = q->scene == NULL ? q->argument_count : 1;
   abbe_sweep_table *tables = calloc(count, sizeof *tables);
   if (tables == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the tables");

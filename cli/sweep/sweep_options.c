@@ -17,6 +17,7 @@ enum {
   OPTION_WRITE_PRESETS,
   OPTION_PRESETS,
   OPTION_SCALING,
+  OPTION_ESTIMATORS,
   OPTION_GRID,
   OPTION_PROFILES,
   OPTION_WAVELENGTHS,
@@ -63,6 +64,11 @@ static const struct argp_option options[] = {
      "say what these promise beside what was met (the shipped ones)", 0},
     {"scaling", OPTION_SCALING, NULL, 0,
      "instead: how the time scales with photons, wavelengths, pixels, faces, share of the view", 0},
+    {"estimators", OPTION_ESTIMATORS, NULL, 0,
+     "instead: how far from the truth the estimators of shah2007 are, by iterations and lookups; "
+     "of "
+     "--map and --photons the first (768, 128)",
+     0},
     {"error", OPTION_ERROR, "COLUMN", 0,
      "that makes the Pareto front: caustic_de, map_rmse, picture_de, ... (caustic_de)", 0},
     {"time", OPTION_TIME, "frame|camera|warm|cold", 0,
@@ -257,7 +263,7 @@ static void finish(request *q, struct argp_state *state) {
   abbe_sweep_request *w = &q->work;
   if (q->argument_count == 0) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
   if (abbe_sweep_options_is_table(q->argument[0])) {
-    if (w->table != NULL || q->listed || q->grid != NULL || q->scaling)
+    if (w->table != NULL || q->listed || q->grid != NULL || q->scaling || q->estimators)
       argp_error(state, "'%s' is a table: it is shown, and nothing is measured", q->argument[0]);
     return;
   }
@@ -266,7 +272,12 @@ static void finish(request *q, struct argp_state *state) {
   q->scene = q->argument[0];
   if (q->argument_count > 1)
     argp_error(state, "one scene at a time: '%s' and '%s'", q->scene, q->argument[1]);
-  if (w->table == NULL && !q->list_only) argp_error(state, "where to? Give -o FILE.csv");
+  if (q->estimators && (q->grid != NULL || q->traced || q->report != NULL || q->json ||
+                        q->scaling || q->plot != NULL || q->list_only || w->reference != NULL))
+    argp_error(state, "--estimators draws nothing: it goes with -o, --map, --photons and "
+                      "--materials alone");
+  if (w->table == NULL && !q->list_only && !q->estimators)
+    argp_error(state, "where to? Give -o FILE.csv");
   if (q->listed && q->grid != NULL)
     argp_error(state, "--grid and lists such as --wavelengths 3,7: one or the other");
   if (q->scaling && (q->listed || q->grid != NULL || q->traced || q->report != NULL || q->json ||
@@ -314,6 +325,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_SCALING:
     q->scaling = true;
+    return 0;
+  case OPTION_ESTIMATORS:
+    q->estimators = true;
     return 0;
   case OPTION_PRESETS:
     q->write_presets = text;
@@ -383,6 +397,7 @@ const struct argp abbe_sweep_options_argp = {
     "  abbe sweep gem.csv sphere.csv --report trade.md\n"
     "  abbe sweep scenes/gem.yaml -o gem.csv --decompose --report gem.md\n"
     "  abbe sweep scenes/gem.yaml -o scaling.csv --scaling --plot scaling.png\n"
+    "  abbe sweep scenes/sphere.yaml --estimators\n"
     "  abbe sweep *.csv --write-presets presets.yaml\n",
     NULL,
     NULL,

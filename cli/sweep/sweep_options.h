@@ -24,8 +24,9 @@ typedef struct abbe_sweep_options {
   bool listed, traced;  /* a list, or something of the reference that is traced, was given */
   abbe_sweep_grid list; /* of the lists */
   abbe_context_backend backend;
-  bool scaling;   /* instead of a sweep: how a frame's time scales */
-  bool processes; /* time whole processes too */
+  bool scaling;    /* instead of a sweep: how a frame's time scales */
+  bool estimators; /* instead: how far off estimators of where light lands are */
+  bool processes;  /* time whole processes too */
   bool quiet, json, list_only;
 } abbe_sweep_options;
 

@@ -4,6 +4,7 @@
 // look_up(at, seen), places_view() and, for the exact one, receiver_hit().
 const float START_M = 1.0, STEP_M = 0.1, STEP_SHARE = 0.015625;
 const int DOUBLINGS = 8;
+const float BEHIND = 1e-3;  // of the view's far end
 
 vec3 search_o, search_r, search_seen;
 bool search_found;
@@ -232,6 +233,6 @@ bool find_receiver(vec3 o, vec3 r, out vec3 at) {
 #else
   at = o + d * r;
 #endif
-  return search_found && d >= 0.0;
+  return search_found && d >= -BEHIND * places_view().range.y;
 #endif
 }

@@ -229,7 +229,8 @@ abbe_estimate abbe_estimator_run(const abbe_estimator_desc *desc, const double o
     out.distance = bracketed(&s, desc->kind);
     break;
   }
-  out.found = s.found && isfinite(out.distance) && out.distance >= 0;
+  out.found =
+      s.found && isfinite(out.distance) && out.distance >= -ABBE_ESTIMATOR_BEHIND * desc->view->far;
   out.lookups = s.lookups;
   if (desc->kind == ABBE_ESTIMATOR_SHAH || desc->kind == ABBE_ESTIMATOR_AXIS)
     memcpy(out.at, s.seen, sizeof out.at);

@@ -57,6 +57,9 @@ typedef enum abbe_estimator {
 /* As printed: the first place of shah and axis and the step of newton. */
 #define ABBE_ESTIMATOR_START_M 1.0
 #define ABBE_ESTIMATOR_STEP_M 0.1
+/* So far behind its origin a ray may land, of the view's far end: what it leaves may stand on the
+ * receiver. */
+#define ABBE_ESTIMATOR_BEHIND 1e-3
 /* Else, of |p(0) - origin|. */
 #define ABBE_ESTIMATOR_STEP_SHARE 0.015625
 #define ABBE_ESTIMATOR_DOUBLINGS 8

@@ -130,6 +130,8 @@ static void test_every_estimator(void **state) {
     for (int k = 0; k < 4; k++) {
       world w = {.round = k & 1};
       abbe_view_look(lamp, down, up, k & 2, &w.view);
+      w.view.near = 0.01;
+      w.view.far = 3;
       for (int i = 0; i < 3; i++, all += CASES)
         compare((abbe_estimator)kind, iterations[i], false, &w, &found, &alike);
       if (kind != ABBE_ESTIMATOR_SHAH) continue;

@@ -80,6 +80,8 @@ static world make_world(bool parallel, bool round) {
   static const double lamp[3] = {0.2, -0.1, 0.7}, down[3] = {-0.1, 0.15, -1}, up[3] = {0, 1, 0};
   world w = {.round = round, .n = {0.2, -0.1, 1}, .c = -0.5, .centre = {0, 0, 0.1}, .radius = 1.1};
   abbe_view_look(lamp, down, up, parallel, &w.view);
+  w.view.near = 0.01;
+  w.view.far = 3;
   abbe_vector_normalise(w.n);
   return w;
 }
@@ -338,6 +340,23 @@ static void test_rays_that_meet_nothing(void **state) {
   }
 }
 
+/* What stands on a receiver sends its light from there: a hair in front of it or behind. */
+static void test_rays_from_the_surface(void **state) {
+  (void)state;
+  for (int i = 0; i < 4 * DIRECTIONS; i++) {
+    world w = make_world(i & 1, false);
+    ray r = ray_of(&w, i / 4);
+    const double t = r.t + (i & 2 ? 1e-12 : -1e-12);
+    for (int c = 0; c < 3; c++) r.o[c] += t * r.d[c];
+    for (int kind = ABBE_ESTIMATOR_SHAH; kind < ABBE_ESTIMATOR_EXACT; kind++) {
+      const abbe_estimate e = run(&w, &r, (abbe_estimator)kind, 8);
+      if (kind == ABBE_ESTIMATOR_MARCH) continue; /* its steps are of the range */
+      assert_true(e.found);
+      assert_near(e.distance, 0, 1e-5);
+    }
+  }
+}
+
 static void test_names(void **state) {
   (void)state;
   assert_string_equal(abbe_estimator_name(ABBE_ESTIMATOR_FALSE_POSITION), "false-position");
@@ -358,6 +377,7 @@ int main(void) {
       cmocka_unit_test(test_shah_as_printed),
       cmocka_unit_test(test_blind_lookups),
       cmocka_unit_test(test_rays_that_meet_nothing),
+      cmocka_unit_test(test_rays_from_the_surface),
       cmocka_unit_test(test_names),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
