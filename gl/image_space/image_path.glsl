@@ -7,6 +7,7 @@ struct Ray {
   vec3 o, r;
   float share;   // of its light
   float inside;  // attenuation along its way, 1/m: of what follows, where light stays in the refractor
+  bool total;    // it was totally reflected at the back, and goes on in the mirror direction
 };
 
 #ifdef MIRRORS
@@ -25,11 +26,11 @@ vec3 normal_behind(vec3 p, vec3 t) {
   return normalize(n);
 }
 
-// False where nothing is seen, or light is totally reflected at the back.
+// False where nothing is seen.
 bool leave_object(ivec2 pixel, int wavelength, out Ray ray) {
   vec4 front = texelFetch(object_places, ivec3(pixel, 0), 0), normal = texelFetch(object_normals, ivec3(pixel, 0), 0);
   int refractor = int(normal.w + 0.5) - 1;
-  ray = Ray(front.xyz, vec3(0), 1.0, 0.0);
+  ray = Ray(front.xyz, vec3(0), 1.0, 0.0, false);
   if (front.w < 0.5 || refractor < 0) return false;
   vec4 spectrum = spectra[refractor * counts.wavelengths + wavelength];
   vec3 d = seen_direction(front.xyz), n = normal.xyz;
@@ -57,9 +58,10 @@ bool leave_object(ivec2 pixel, int wavelength, out Ray ray) {
   ray.o = front.xyz + way * inner;
   vec3 n2 = normal_behind(ray.o, inner);
   ray.share *= exp(-spectrum.y * way);
-  if (!refract_direction(inner, -n2, index, ray.r)) return false;
+  ray.total = !refract_direction(inner, -n2, index, ray.r);
+  if (ray.total) ray.r = reflect(inner, n2);
 #ifndef AS_PRINTED
-  ray.share *= 1.0 - fresnel(dot(inner, n2), index);
+  if (!ray.total) ray.share *= 1.0 - fresnel(dot(inner, n2), index);
 #endif
   return true;
 #endif

@@ -1,5 +1,5 @@
 // Refractors and mirrors as the camera sees them: a ray a wavelength, and what lies on a receiver where it
-// lands, as far as the camera sees that too.
+// lands. What the camera does not see is as what lies at the edge of its view.
 #include "image_places.glsl"
 #include "image_search.glsl"
 #include "image_path.glsl"
@@ -26,8 +26,8 @@ void main() {
     Ray ray;
     vec3 at, uvz, seen = vec3(0);
     if (!leave_object(pixel, i, ray)) continue;
-    if (find_receiver(ray.o, ray.r, at) && project(places_view(), at, uvz) && inside(uvz.xy))
-      seen = textureLod(receivers_lit, uvz.xy, 0.0).rgb;
+    find_receiver(ray.o, ray.r, at);
+    if (project(places_view(), at, uvz)) seen = textureLod(receivers_lit, clamp(uvz.xy, 0.0, 1.0), 0.0).rgb;
     float share = ray.share * (ray.inside > 0.0 ? exp(-ray.inside * distance(ray.o, at)) : 1.0);
 #ifdef AS_PRINTED
     sum += seen * colour[i] * share;

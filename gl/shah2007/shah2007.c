@@ -8,8 +8,8 @@
  * exp(-K d) by the distance between front and back, an index each for red, green and blue. Where
  * the paper is silent: red, green and blue are 650, 550 and 450 nm; a splat's standard deviation is
  * half the distance of undisturbed vertices, and it ends at three; the light of an object that
- * fills a sixteenth of the view is white; totally reflected light ends; ambient brightness is 0.1;
- * the camera's rays are the thesis's.
+ * fills a sixteenth of the view is white; totally reflected light starts no splat; ambient
+ * brightness is 0.1; the camera's rays are the thesis's.
  *
  * In units (shah2007-cie) the same passes, grid and splats have the default profile's wavelengths,
  * indices, attenuation and XYZ weights, Fresnel's law, and the flux of a pixel's solid angle, which

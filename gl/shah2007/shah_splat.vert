@@ -41,7 +41,7 @@ void main() {
   peak = vec3(0);
   gl_PointSize = 1.0;
   gl_Position = vec4(2, 2, 2, 1);  // outside
-  if (!leave_object(pixel, wavelength, ray)) return;
+  if (!leave_object(pixel, wavelength, ray) || ray.total) return;
   if (!find_receiver(ray.o, ray.r, at)) return;
   if (!project(places_view(), at, uvz) || !inside(uvz.xy)) return;
   float light = strength * pixel_light(texelFetch(object_places, ivec3(pixel, 0), 0).xyz, pixel) * ray.share;

@@ -352,7 +352,7 @@ static void random_changes_of_meshes(void **state) {
   walk_at_random(MESH_SCENE, 2, 8);
 }
 
-/* From one scene to another and back, and to the thesis's passes. */
+/* From one scene to another and back, and to the passes of published methods. */
 static void another_scene_is_a_change_too(void **state) {
   (void)state;
   abbe_scene solid = {0}, mesh = {0};
@@ -362,13 +362,17 @@ static void another_scene_is_a_change_too(void **state) {
   draw_frame(renderer);
   assert_int_equal(change(renderer, &mesh, &tiny), ABBE_OK);
   assert_as_made_anew(renderer, &mesh, &tiny, "another scene");
-  abbe_render_desc thesis = tiny;
-  thesis.profile = ABBE_PROFILE_THESIS;
-  assert_int_equal(change(renderer, &solid, &thesis), ABBE_OK);
-  abbe_statistics s = draw_frame(renderer);
-  assert_true(s.pass_count > 0 && s.photons > 0);
+  static const abbe_profile published[] = {ABBE_PROFILE_THESIS, ABBE_PROFILE_SHAH2007};
+  for (int i = 0; i < 2; i++) {
+    abbe_render_desc desc = tiny;
+    desc.profile = published[i];
+    desc.wavelengths = 0;
+    assert_int_equal(change(renderer, &solid, &desc), ABBE_OK);
+    abbe_statistics s = draw_frame(renderer);
+    assert_true(s.pass_count > 0 && s.photons > 0);
+  }
   assert_int_equal(change(renderer, &solid, &tiny), ABBE_OK);
-  assert_as_made_anew(renderer, &solid, &tiny, "the thesis's profile");
+  assert_as_made_anew(renderer, &solid, &tiny, "published profiles");
   abbe_renderer_free(renderer);
   abbe_scene_free(&solid);
   abbe_scene_free(&mesh);

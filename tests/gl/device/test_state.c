@@ -336,9 +336,18 @@ static void test_the_thesis(void **state) {
   assert_same_in_any_state(CAMERA POINT_LIGHT FLOOR BALL("crown"), &desc);
 }
 
+static void test_caustics_mapping(void **state) {
+  (void)state;
+  abbe_render_desc desc = tiny;
+  desc.profile = ABBE_PROFILE_SHAH2007_CIE;
+  desc.aovs = false;
+  desc.photons = desc.map_size = 64;
+  assert_same_in_any_state(CAMERA SUN FLOOR BALL("crown"), &desc);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_the_default_profile),
-                                     cmocka_unit_test(test_a_mesh),
-                                     cmocka_unit_test(test_the_thesis)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_default_profile), cmocka_unit_test(test_caustics_mapping),
+      cmocka_unit_test(test_a_mesh), cmocka_unit_test(test_the_thesis)};
   return cmocka_run_group_tests(tests, make_things, free_context);
 }
