@@ -89,10 +89,20 @@ abbe_result abbe_image_places_shadow(abbe_image_places *p, abbe_error *error) {
   return ABBE_OK;
 }
 
+/* One of the two layers, or with -1 both. */
+static void draw_objects(abbe_image_places *p, int only) {
+  const abbe_plan *plan = p->scene->plan;
+  abbe_gpu_set_int(p->scene->gpu, p->objects, "only", only);
+  for (size_t i = 0; i < plan->refractor_count; i++) {
+    abbe_gpu_set_int(p->scene->gpu, p->objects, "object", (int)i);
+    abbe_gpu_set_int(p->scene->gpu, p->objects, "mirror", plan->mirror[i]);
+    abbe_gpu_meshes_draw(p->scene, plan->refractor_object[i]);
+  }
+}
+
 abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
   static const int all[2] = {-1, -1};
   const abbe_gl *gl = p->scene->gpu->gl;
-  const abbe_plan *plan = p->scene->plan;
   const abbe_view *view = &p->view.view;
   const GLuint colour[2] = {p->places, p->normals};
   const double *from = view->orthographic ? view->forward : view->origin;
@@ -107,13 +117,14 @@ abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
   abbe_image_view_set_clip(p->scene, p->objects, "view_projection", &p->view);
   gl->Uniform4f(gl->GetUniformLocation(p->objects, "seen_along"), (float)from[0], (float)from[1],
                 (float)from[2], view->orthographic ? 0 : 1);
-  if (p->query != 0) gl->BeginQuery(GL_SAMPLES_PASSED, p->query);
-  for (size_t i = 0; i < plan->refractor_count; i++) {
-    abbe_gpu_set_int(p->scene->gpu, p->objects, "object", (int)i);
-    abbe_gpu_set_int(p->scene->gpu, p->objects, "mirror", plan->mirror[i]);
-    abbe_gpu_meshes_draw(p->scene, plan->refractor_object[i]);
+  if (p->query == 0) {
+    draw_objects(p, -1);
+    return ABBE_OK;
   }
-  if (p->query != 0) gl->EndQuery(GL_SAMPLES_PASSED);
+  gl->BeginQuery(GL_SAMPLES_PASSED, p->query); /* fronts alone are counted */
+  draw_objects(p, 0);
+  gl->EndQuery(GL_SAMPLES_PASSED);
+  draw_objects(p, 1);
   return ABBE_OK;
 }
 

@@ -67,17 +67,20 @@ static void test_estimators_land_alike(void **state) {
 }
 
 #define MIRROR                                                                                     \
-  "- {name: mirror, shape: rectangle, width: 0.1, height: 0.1, mirror: 0.8, transform: [{rotate: {axis: " \
+  "- {name: mirror, shape: rectangle, width: 0.1, height: 0.1, mirror: 0.8, transform: [{rotate: " \
+  "{axis: "                                                                                        \
   "[0, 1, 0], angle: 60}}, {translate: [0.1, 0, 0.15]}]}\n"
 
-/* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has it. */
+/* A flat mirror sends all of its share of the lamp's light to the floor, as the default profile has
+ * it. */
 static void test_a_flat_mirror_has_the_lamps_light(void **state) {
   (void)state;
   abbe_scene scene = {0};
   abbe_image own = {0}, map = {0};
   load_text(CAMERA POINT_LIGHT FLOOR MIRROR, &scene);
   abbe_render_desc desc = small;
-  desc.photons = 1024; /* the mirror is small in what the light sees, and its cells are whole ones */
+  desc.photons =
+      1024; /* the mirror is small in what the light sees, and its cells are whole ones */
   const double sum = map_energy(&scene, &desc, &map);
   desc.profile = ABBE_PROFILE_DEFAULT;
   const double right = map_energy(&scene, &desc, &own);
@@ -103,6 +106,24 @@ static void test_one_interface_and_the_sun(void **state) {
   }
   assert_true(sum[0] > 0);
   assert_near(sum[1] / sum[0], 0.96, 0.005);
+  abbe_scene_free(&scene);
+}
+
+/* A ball of air in the sun, all of whose light lands: two thirds of what its vertices are in full,
+ * for (N . L) counts projection twice. */
+static void test_projection_is_counted_twice(void **state) {
+  (void)state;
+  abbe_scene scene = {0};
+  abbe_image map = {0};
+  abbe_render_desc desc = small;
+  load_text(CAMERA SUN FLOOR BALL("air"), &scene);
+  desc.profile = ABBE_PROFILE_SHAH2007;
+  desc.space = ABBE_RGB_SPACE_REC709;
+  desc.photons = 1024;
+  desc.map_size = 2048; /* splats of six texels, whose sum does not go by where they lie */
+  const double sum = map_energy(&scene, &desc, &map), white = 2048.0 * 2048 / 16;
+  assert_near(sum / white, 2.0 / 3, 0.02);
+  abbe_image_free(&map);
   abbe_scene_free(&scene);
 }
 
@@ -145,6 +166,7 @@ int main(void) {
       cmocka_unit_test(test_estimators_land_alike),
       cmocka_unit_test(test_a_flat_mirror_has_the_lamps_light),
       cmocka_unit_test(test_one_interface_and_the_sun),
+      cmocka_unit_test(test_projection_is_counted_twice),
       cmocka_unit_test(test_as_printed),
   };
   return cmocka_run_group_tests(tests, make_context, free_context);
