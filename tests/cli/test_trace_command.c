@@ -300,9 +300,63 @@ static void test_a_small_stack(void **state) {
             0);
 }
 
+/* Processes that know nothing of each other, one of them killed and started again. */
+static void test_parts(void **state) {
+  (void)state;
+  const char *const whole = TRACE BALL SMALL "--spp 7 -o whole.exr --save-map whole-map.exr";
+  check_run(whole, 0);
+#define PART(range, file)                                                                          \
+  TRACE BALL SMALL "-o a.exr --save-map m.exr --passes " range " --checkpoint " file
+  check_run(PART("0:2", "p0.ck") " & " PART("5:7", "p2.ck") " & wait", 0);
+  assert_true(!there("a.exr") && !there("m.exr"));
+  /* killed once it has a pass on the disk, and taken up again */
+  check_run(
+      PART("2:5", "p1.ck") " --checkpoint-every 0 & p=$!; while [ ! -e p1.ck ] && kill -0 $p; "
+                           "do sleep 0.02; done; kill -9 $p; wait $p; true",
+      0);
+  check_run(PART("2:5", "p1.ck") " --resume", 0);
+  check_run(TRACE BALL SMALL "-o a.exr --save-map m.exr --merge p2.ck p0.ck p1.ck", 0);
+  assert_true(same_pixels("whole.exr", "a.exr") && same_pixels("whole-map.exr", "m.exr"));
+  check_run("cmp whole.exr a.exr && cmp whole-map.exr m.exr", 0);
+  /* some put together are a part again */
+  check_run(TRACE BALL SMALL "-o b.exr --save-map n.exr --merge p0.ck p1.ck --checkpoint p01.ck",
+            0);
+  check_run(TRACE BALL SMALL "-o b.exr --save-map n.exr --merge p01.ck p2.ck", 0);
+  check_run("cmp whole.exr b.exr", 0);
+#undef PART
+}
+
+static void refuse_parts(const char *arguments, int code, const char *part) {
+  char line[512];
+  snprintf(line, sizeof line, TRACE BALL SMALL "%s", arguments);
+  check_run(line, code);
+  assert_contains(run_errors, part);
+}
+
+static void test_wrong_parts(void **state) {
+  (void)state;
+  check_run(TRACE BALL SMALL "--passes 0:1 --checkpoint q0.ck", 0);
+  check_run(TRACE BALL SMALL "--passes 3:4 --checkpoint q3.ck", 0);
+  refuse_parts("-o c.exr --merge q0.ck q3.ck", 1, "passes 1 to 2 are missing");
+  refuse_parts("-o c.exr --merge q3.ck", 1, "passes 0 to 2 are missing");
+  refuse_parts("-o c.exr --merge q0.ck q0.ck", 1, "both hold pass 0");
+  refuse_parts("-o c.exr --seed 4 --merge q0.ck", 1, "seed 0");
+  refuse_parts("-o c.exr --merge q0.ck nothing.ck", 1, "nothing.ck");
+  refuse_parts("-o c.exr --merge", 2, "which parts");
+  refuse_parts("-o c.exr q0.ck", 2, "one scene at a time");
+  refuse_parts("-o c.exr --passes 0:1", 2, "--checkpoint FILE");
+  refuse_parts("--passes 3:3 --checkpoint q.ck", 2, "are no passes");
+  refuse_parts("--passes 3 --checkpoint q.ck", 2, "are no passes");
+  refuse_parts("--passes 0:1 --spp 3 --checkpoint q.ck", 2, "--spp");
+  refuse_parts("--passes 0:1 --merge q0.ck --checkpoint q.ck", 2, "--merge");
+  refuse_parts("--passes 0:1 --checkpoint q3.ck --resume", 1, "from 3 on");
+  assert_true(!there("c.exr") && !there("q.ck"));
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, run_setup, run_teardown)
   const struct CMUnitTest tests[] = {
+      TEST(test_parts),         TEST(test_wrong_parts),
       TEST(test_outputs),       TEST(test_numbers),
       TEST(test_bands),         TEST(test_seeds_and_threads),
       TEST(test_resume),        TEST(test_interrupt),

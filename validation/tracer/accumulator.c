@@ -47,7 +47,7 @@ void abbe_accumulator_free(abbe_accumulator *a) {
   *a = (abbe_accumulator){0};
 }
 
-void abbe_accumulator_end_pass(abbe_accumulator *a, double scale) {
+void abbe_accumulator_end_pass(abbe_accumulator *a) {
   for (size_t i = 0; i < a->values; i++) {
     int64_t whole = 0;
     for (size_t t = 0; t < a->threads; t++) {
@@ -56,22 +56,20 @@ void abbe_accumulator_end_pass(abbe_accumulator *a, double scale) {
       a->cut[t]++;
       whole = more > 0 ? INT64_MAX : INT64_MIN;
     }
-    double value = (double)whole * a->unit * scale;
-    a->sum[i] += value;
-    a->square[i] += value * value;
+    a->sum[i] += whole;
+    a->square[i] += abbe_whole_sum_product(whole, whole);
   }
   a->passes++;
   abbe_accumulator_drop_pass(a);
 }
 
-/* Whole numbers first: which thread has added what must not show in the rounding. */
-double abbe_accumulator_adding(const abbe_accumulator *a, size_t value) {
+int64_t abbe_accumulator_adding(const abbe_accumulator *a, size_t value) {
   int64_t whole = 0;
   for (size_t t = 0; t < a->threads; t++) {
     const int64_t more = a->adding[t][value];
     if (__builtin_add_overflow(whole, more, &whole)) whole = more > 0 ? INT64_MAX : INT64_MIN;
   }
-  return (double)whole * a->unit;
+  return whole;
 }
 
 void abbe_accumulator_drop_pass(abbe_accumulator *a) {
@@ -79,14 +77,15 @@ void abbe_accumulator_drop_pass(abbe_accumulator *a) {
 }
 
 double abbe_accumulator_mean(const abbe_accumulator *a, size_t value) {
-  return a->passes > 0 ? a->sum[value] / (double)a->passes : 0;
+  return a->passes > 0 ? (double)a->sum[value] * a->unit / (double)a->passes : 0;
 }
 
 double abbe_accumulator_error(const abbe_accumulator *a, size_t value) {
   if (a->passes < 2) return INFINITY;
-  double n = (double)a->passes, mean = a->sum[value] / n;
-  double variance = (a->square[value] / n - mean * mean) * n / (n - 1);
-  return variance > 0 ? sqrt(variance / n) : 0;
+  const double n = (double)a->passes, mean = (double)a->sum[value] / n;
+  const double square = abbe_whole_sum_of_products(a->square[value]) / n;
+  const double variance = (square - mean * mean) * n / (n - 1);
+  return variance > 0 ? a->unit * sqrt(variance / n) : 0;
 }
 
 uint64_t abbe_accumulator_cuts(const abbe_accumulator *a) {

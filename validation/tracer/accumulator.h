@@ -2,12 +2,14 @@
  *
  * Within a pass values are added as whole numbers of a small unit, by each thread for itself;
  * whole numbers have the same sum in any order, so the result does not depend on how the work was
- * shared out. Passes are independent of each other, so their spread tells the error of the mean.
+ * shared out. So are the sums over passes (whole_sum.h). Passes are independent of each other, so
+ * their spread tells the error of the mean.
  */
 #ifndef ABBE_VALIDATION_TRACER_ACCUMULATOR_H
 #define ABBE_VALIDATION_TRACER_ACCUMULATOR_H
 
 #include "base/error.h"
+#include "validation/tracer/whole_sum.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,11 +25,11 @@ typedef struct abbe_accumulator {
   size_t passes; /* ended so far */
   double unit;   /* value of a whole number 1 */
   double per_unit;
-  double limit;     /* largest magnitude that one addition keeps */
-  int64_t **adding; /* [threads][values] the pass that is under way */
-  uint64_t *cut;    /* [threads] additions beyond the limit, cut to it */
-  double *sum;      /* [values] over passes */
-  double *square;   /* [values] sum of squares */
+  double limit;           /* largest magnitude that one addition keeps */
+  int64_t **adding;       /* [threads][values] the pass that is under way */
+  uint64_t *cut;          /* [threads] additions beyond the limit, cut to it */
+  abbe_whole_sum *sum;    /* [values] over passes */
+  abbe_whole_sum *square; /* [values] abbe_whole_sum_product of each with itself */
 } abbe_accumulator;
 
 /* Sums of a pass up to `most` in magnitude are held; ABBE_INVALID_ARGUMENT unless it is positive
@@ -49,10 +51,10 @@ static inline void abbe_accumulator_add(abbe_accumulator *a, size_t thread, size
   *sum = whole > 0 ? INT64_MAX : INT64_MIN;
 }
 
-/* Ends the pass: its sums, times scale, become one sample of every value. */
-void abbe_accumulator_end_pass(abbe_accumulator *a, double scale);
-/* Sum of a value in the pass that is under way. */
-double abbe_accumulator_adding(const abbe_accumulator *a, size_t value);
+/* Ends the pass: its sums become one sample of every value. */
+void abbe_accumulator_end_pass(abbe_accumulator *a);
+/* Sum of a value in the pass that is under way, in units. */
+int64_t abbe_accumulator_adding(const abbe_accumulator *a, size_t value);
 /* Forgets the pass that is under way. */
 void abbe_accumulator_drop_pass(abbe_accumulator *a);
 

@@ -1,8 +1,9 @@
 /* checkpoint.h: a trace put aside and taken up again.
  *
  * Holds the sums over passes exactly, so that a trace that is taken up gives the very image that
- * an unbroken one gives. It belongs to one scene and one request: anything else is refused by
- * name. Written beside its target and renamed.
+ * an unbroken one gives, and passes that were traced in parts the image of one run. It belongs to
+ * one scene, one request and one kind of processor: anything else is refused by name. Written
+ * beside its target and renamed.
  */
 #ifndef ABBE_VALIDATION_TRACER_CHECKPOINT_H
 #define ABBE_VALIDATION_TRACER_CHECKPOINT_H
@@ -21,6 +22,14 @@ abbe_result abbe_checkpoint_save(const abbe_tracer *tracer, const char *path, ab
  * failure the tracer is as it was. ABBE_IO, ABBE_PARSE for a file that is no checkpoint, broken,
  * cut off or of another version; ABBE_INVALID_ARGUMENT names what of scene or request differs. */
 abbe_result abbe_checkpoint_load(abbe_tracer *tracer, const char *path, abbe_error *error);
+
+/* Puts the passes of all the files together, which may stand in any order: they must begin at pass
+ * 0 and leave none out, and none may be in two files. *tracer is made from the same scene and
+ * request; what it holds is replaced. It is as it was where a head is refused, and empty after
+ * other errors. ABBE_INVALID_ARGUMENT names the passes that are missing or twice there, and in
+ * which files; errors of abbe_checkpoint_load. */
+abbe_result abbe_checkpoint_merge(abbe_tracer *tracer, const char *const *path, size_t count,
+                                  abbe_error *error);
 
 #ifdef __cplusplus
 }

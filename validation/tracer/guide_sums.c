@@ -5,8 +5,13 @@
 
 enum { ADDED = ABBE_GUIDE_MEANS - ABBE_GUIDE_EYE };
 
-abbe_result abbe_guide_sums_make(size_t pixels, abbe_guide_sums *out, abbe_error *error) {
+/* Of what is no colour; beyond the limit it is cut. */
+static const double plain_unit = 0x1p-40, plain_limit = 0x1p20;
+
+abbe_result abbe_guide_sums_make(size_t pixels, double picture_unit, abbe_guide_sums *out,
+                                 abbe_error *error) {
   *out = (abbe_guide_sums){.pixels = pixels,
+                           .unit = picture_unit,
                            .adding = calloc(pixels * ADDED, sizeof *out->adding),
                            .sum = calloc(pixels * ABBE_GUIDE_VALUES, sizeof *out->sum)};
   if (out->adding != NULL && out->sum != NULL) return ABBE_OK;
@@ -29,20 +34,30 @@ void abbe_guide_sums_set(abbe_guide_sums *g, size_t pixel, const float rgb[3],
     g->adding[pixel * ADDED + k] = isfinite(values[k]) ? values[k] : 0;
 }
 
-static void end_pixel(const float *adding, const double rgb[3], double *sum) {
-  double x[ABBE_GUIDE_MEANS];
-  for (size_t k = 0; k < ADDED; k++) x[ABBE_GUIDE_EYE + k] = (double)adding[k];
-  for (size_t k = 0; k < 3; k++) x[k] = rgb[k] - x[ABBE_GUIDE_EYE + k];
+static double unit_of(const abbe_guide_sums *g, size_t mean) {
+  return mean < ABBE_GUIDE_ALBEDO ? g->unit : plain_unit;
+}
+
+/* rgb: the picture's, in its units. */
+static void end_pixel(const float *adding, const abbe_accumulator *picture, const int64_t rgb[3],
+                      abbe_whole_sum *sum) {
+  int64_t x[ABBE_GUIDE_MEANS];
+  for (size_t k = 0; k < ADDED; k++)
+    x[ABBE_GUIDE_EYE + k] =
+        k < 3 ? abbe_whole_sum_quantise((double)adding[k], picture->per_unit, picture->limit)
+              : abbe_whole_sum_quantise((double)adding[k], 1 / plain_unit, plain_limit);
+  for (size_t k = 0; k < 3; k++)
+    if (__builtin_sub_overflow(rgb[k], x[ABBE_GUIDE_EYE + k], &x[k])) x[k] = rgb[k];
   for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
     sum[k] += x[k];
-    sum[ABBE_GUIDE_SQUARES + k] += x[k] * x[k];
+    sum[ABBE_GUIDE_SQUARES + k] += abbe_whole_sum_product(x[k], x[k]);
   }
   for (size_t part = 0; part < 2; part++) {
-    const double *c = x + 3 * part;
-    double *product = sum + ABBE_GUIDE_PRODUCTS + 3 * part;
-    product[0] += c[0] * c[1];
-    product[1] += c[0] * c[2];
-    product[2] += c[1] * c[2];
+    const int64_t *c = x + 3 * part;
+    abbe_whole_sum *product = sum + ABBE_GUIDE_PRODUCTS + 3 * part;
+    product[0] += abbe_whole_sum_product(c[0], c[1]);
+    product[1] += abbe_whole_sum_product(c[0], c[2]);
+    product[2] += abbe_whole_sum_product(c[1], c[2]);
   }
 }
 
@@ -50,27 +65,35 @@ void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *pictur
                               size_t channels) {
 #pragma omp parallel for num_threads((int)picture->threads)
   for (size_t i = 0; i < g->pixels; i++) {
-    double rgb[3];
+    int64_t rgb[3];
     for (size_t k = 0; k < 3; k++) rgb[k] = abbe_accumulator_adding(picture, i * channels + k);
-    end_pixel(g->adding + i * ADDED, rgb, g->sum + i * ABBE_GUIDE_VALUES);
+    end_pixel(g->adding + i * ADDED, picture, rgb, g->sum + i * ABBE_GUIDE_VALUES);
   }
 }
 
-static double of_means(double product, double a, double b, size_t passes) {
+/* In units. */
+static double of_means(abbe_whole_sum product, abbe_whole_sum a, abbe_whole_sum b, size_t passes) {
   const double n = (double)passes;
-  return (product / n - a / n * (b / n)) / (n - 1);
+  return (abbe_whole_sum_of_products(product) / n - (double)a / n * ((double)b / n)) / (n - 1);
+}
+
+double abbe_guide_sums_mean(const abbe_guide_sums *g, size_t passes, size_t pixel, size_t mean) {
+  return unit_of(g, mean) * (double)g->sum[pixel * ABBE_GUIDE_VALUES + mean] / (double)passes;
 }
 
 double abbe_guide_sums_variance(const abbe_guide_sums *g, size_t passes, size_t pixel,
                                 size_t mean) {
-  const double *sum = g->sum + pixel * ABBE_GUIDE_VALUES;
-  return fmax(of_means(sum[ABBE_GUIDE_SQUARES + mean], sum[mean], sum[mean], passes), 0);
+  const abbe_whole_sum *sum = g->sum + pixel * ABBE_GUIDE_VALUES;
+  const double unit = unit_of(g, mean);
+  return unit * unit *
+         fmax(of_means(sum[ABBE_GUIDE_SQUARES + mean], sum[mean], sum[mean], passes), 0);
 }
 
 double abbe_guide_sums_covariance(const abbe_guide_sums *g, size_t passes, size_t pixel,
                                   size_t product) {
   static const size_t first[3] = {0, 0, 1}, second[3] = {1, 2, 2};
-  const double *sum = g->sum + pixel * ABBE_GUIDE_VALUES, *part = sum + 3 * (product / 3);
-  return of_means(sum[ABBE_GUIDE_PRODUCTS + product], part[first[product % 3]],
+  const abbe_whole_sum *sum = g->sum + pixel * ABBE_GUIDE_VALUES, *part = sum + 3 * (product / 3);
+  return g->unit * g->unit *
+         of_means(sum[ABBE_GUIDE_PRODUCTS + product], part[first[product % 3]],
                   part[second[product % 3]], passes);
 }

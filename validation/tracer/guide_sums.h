@@ -29,11 +29,14 @@ enum {
 /* A zeroed one is of no pixels. */
 typedef struct abbe_guide_sums {
   size_t pixels;
-  float *adding; /* [pixels][10] the pass that is under way, but for the photons */
-  double *sum;   /* [pixels][ABBE_GUIDE_VALUES] over passes */
+  double unit;         /* of the colours: the picture's sums' */
+  float *adding;       /* [pixels][10] the pass that is under way, but for the photons */
+  abbe_whole_sum *sum; /* [pixels][ABBE_GUIDE_VALUES] over passes, in units (whole_sum.h) */
 } abbe_guide_sums;
 
-abbe_result abbe_guide_sums_make(size_t pixels, abbe_guide_sums *out, abbe_error *error);
+/* picture_unit: abbe_accumulator's of the picture. */
+abbe_result abbe_guide_sums_make(size_t pixels, double picture_unit, abbe_guide_sums *out,
+                                 abbe_error *error);
 void abbe_guide_sums_free(abbe_guide_sums *g);
 
 /* The pass's sample of a pixel, whose colour is rgb; what is not finite counts as nothing. */
@@ -43,6 +46,8 @@ void abbe_guide_sums_set(abbe_guide_sums *g, size_t pixel, const float rgb[3],
  * begin with R, G, B: what is not the eye's there is the photons'. */
 void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *picture, size_t channels);
 
+/* A mean over so many passes. */
+double abbe_guide_sums_mean(const abbe_guide_sums *g, size_t passes, size_t pixel, size_t mean);
 /* Of the means over so many passes, at least two: a mean's square of standard error, and the
  * covariance that product 0 to 5 tells. */
 double abbe_guide_sums_variance(const abbe_guide_sums *g, size_t passes, size_t pixel, size_t mean);

@@ -249,6 +249,7 @@ abbe_result abbe_tracer_share_photons(abbe_tracer *t, abbe_error *error) {
     if (result != ABBE_OK) return result;
     total += reach_of(t, l);
   }
+  t->reach = total;
   for (size_t l = 0; l < t->sampling.lights && total > 0; l++) {
     const double reach = reach_of(t, l);
     if (!(reach > 0)) continue;

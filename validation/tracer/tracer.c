@@ -136,8 +136,9 @@ static abbe_result check_memory(const abbe_tracer *t, abbe_error *error) {
   if (!d->no_picture)
     values += (double)(d->width * d->height) * (double)(ABBE_TRACER_BANDS + t->bands.count);
   if (!d->no_map) values += (double)(d->map_width * d->map_height) * (double)(3 + t->bands.count);
-  double needed = values * 8 * (double)(d->threads + 2);
-  if (d->guides) needed += (double)(d->width * d->height) * 8 * (ABBE_GUIDE_VALUES + 5);
+  double needed = values * (8 * (double)d->threads + 2 * sizeof(abbe_whole_sum));
+  if (d->guides)
+    needed += (double)(d->width * d->height) * (sizeof(abbe_whole_sum) * ABBE_GUIDE_VALUES + 40);
   if (!(pages > 0) || !(page > 0) || needed < pages * page) return ABBE_OK;
   return abbe_error_set(
       error, ABBE_NO_MEMORY,
@@ -174,7 +175,7 @@ static abbe_result make_sums(abbe_tracer *t, abbe_error *error) {
                                    usual_radiance(t) * 0x1p28, &t->picture, error);
   }
   if (result == ABBE_OK && d->guides)
-    result = abbe_guide_sums_make(d->width * d->height, &t->guides, error);
+    result = abbe_guide_sums_make(d->width * d->height, t->picture.unit, &t->guides, error);
   if (result == ABBE_OK && !d->no_map) {
     t->map_channels = 3 + t->bands.count;
     double reach = t->projection[d->map_light].reach;
@@ -311,18 +312,21 @@ static void add_sample(abbe_tracer *t, size_t thread, size_t pixel, const abbe_e
   if (t->desc.guides) abbe_guide_sums_set(&t->guides, pixel, rgb, s);
 }
 
+static double shrunk_by(size_t pass) {
+  return pow((double)pass + 1, -shrink);
+}
+
 static abbe_result eye_pass(abbe_tracer *t, size_t landed, const volatile int *stop,
                             abbe_error *error) {
   t->eye.grid = NULL;
   if (t->eye_gathers) {
-    double factor = pow((double)t->pass + 1, -shrink);
+    const double factor = shrunk_by(t->pass);
     t->eye.radius = (float)((double)t->radius * factor);
     t->eye.window_nm = fmin(first_window_nm, 0.5 * (t->desc.max_nm - t->desc.min_nm)) * factor;
     abbe_result result =
         abbe_photon_grid_fill(&t->grid, t->landed, landed, t->eye.radius, t->desc.threads, error);
     if (result != ABBE_OK) return result;
     t->eye.grid = &t->grid;
-    t->statistics.radius = (double)t->eye.radius * t->geometry.unit;
   }
   uint64_t rays = 0;
 #pragma omp parallel for schedule(dynamic) num_threads((int)t->desc.threads) reduction(+ : rays)
@@ -367,9 +371,19 @@ static void restore_mode(const abbe_tracer *t, unsigned mode) {
 #endif
 }
 
+static void end_ledger(abbe_tracer *t) {
+  const double per_unit = 1 / abbe_tracer_ledger_unit(t), *part = &t->statistics.ledger.reached;
+  for (size_t i = 0; i < ABBE_TRACER_LEDGER; i++)
+    t->ledger[i] += abbe_whole_sum_quantise(part[i], per_unit, 0x1p60 / per_unit);
+}
+
 abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_error *error) {
   ABBE_REQUIRE(t, error);
+  if (t->pass >= ABBE_WHOLE_SUM_MOST_PASSES)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no more than %u passes",
+                          ABBE_WHOLE_SUM_MOST_PASSES);
   unsigned mode = flush_tiny_numbers(t);
+  t->statistics.ledger = (abbe_light_ledger){0};
   abbe_trace_statistics before = t->statistics;
   size_t landed = 0;
   double start = abbe_clock_seconds();
@@ -387,23 +401,41 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   t->statistics.light_seconds += middle - start;
   t->statistics.eye_seconds += end - middle;
   if (t->desc.guides) abbe_guide_sums_end_pass(&t->guides, &t->picture, t->picture_channels);
-  if (!t->desc.no_picture) abbe_accumulator_end_pass(&t->picture, 1);
-  if (!t->desc.no_map) abbe_accumulator_end_pass(&t->map, 1);
+  if (!t->desc.no_picture) abbe_accumulator_end_pass(&t->picture);
+  if (!t->desc.no_map) abbe_accumulator_end_pass(&t->map);
+  end_ledger(t);
   t->pass++;
   return ABBE_OK;
 }
 
+abbe_result abbe_tracer_begin_at(abbe_tracer *t, size_t pass, abbe_error *error) {
+  ABBE_REQUIRE(t, error);
+  if (t->pass > t->first || pass >= ABBE_WHOLE_SUM_MOST_PASSES)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a trace cannot begin at pass %zu %s", pass,
+                          t->pass > t->first ? "once it has begun" : "or beyond");
+  t->first = t->pass = pass;
+  return ABBE_OK;
+}
+
 size_t abbe_tracer_passes(const abbe_tracer *tracer) {
-  return tracer->pass;
+  return tracer->pass - tracer->first;
+}
+
+size_t abbe_tracer_first_pass(const abbe_tracer *tracer) {
+  return tracer->first;
 }
 
 void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {
   *out = t->statistics;
-  out->passes = t->pass;
+  const size_t passes = out->passes = abbe_tracer_passes(t);
+  out->radius =
+      t->eye_gathers && passes > 0
+          ? (double)((float)((double)t->radius * shrunk_by(t->pass - 1))) * t->geometry.unit
+          : 0;
   out->light_rays += abbe_tracer_walk_rays(t) - t->other_rays;
   if (!t->desc.no_picture) out->cuts += abbe_accumulator_cuts(&t->picture);
   if (!t->desc.no_map) out->cuts += abbe_accumulator_cuts(&t->map);
-  double scale = t->pass > 0 ? 1 / (double)t->pass : 0;
+  const double scale = passes > 0 ? abbe_tracer_ledger_unit(t) / (double)passes : 0;
   double *part = &out->ledger.reached;
-  for (size_t i = 0; i < sizeof out->ledger / sizeof *part; i++) part[i] *= scale;
+  for (size_t i = 0; i < ABBE_TRACER_LEDGER; i++) part[i] = scale * (double)t->ledger[i];
 }

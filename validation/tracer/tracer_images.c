@@ -39,7 +39,7 @@ static double map_error(const abbe_tracer *t) {
 }
 
 double abbe_tracer_error(const abbe_tracer *t) {
-  if (t->pass < 2) return INFINITY;
+  if (abbe_tracer_passes(t) < 2) return INFINITY;
   double picture = t->desc.no_picture ? 0 : picture_error(t);
   return t->desc.no_map ? picture : fmax(picture, map_error(t));
 }
@@ -60,7 +60,7 @@ typedef struct channel_list {
 /* Of one pass nothing tells how far off it is: then there is no channel for the errors. */
 static void add_channel(const abbe_tracer *t, channel_list *list, const char *prefix,
                         const char *name, size_t value, bool error) {
-  if (error && t->pass < 2) return;
+  if (error && abbe_tracer_passes(t) < 2) return;
   snprintf(list->name[list->count], NAME, "%s%s", prefix, name);
   list->value[list->count] = value;
   list->error[list->count++] = error;
@@ -69,7 +69,7 @@ static void add_channel(const abbe_tracer *t, channel_list *list, const char *pr
 static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image *out,
                               abbe_error *error) {
   char passes[32], seed[32], photons[32];
-  snprintf(passes, sizeof passes, "%zu", t->pass);
+  snprintf(passes, sizeof passes, "%zu", abbe_tracer_passes(t));
   snprintf(seed, sizeof seed, "%u", (unsigned)t->desc.seed);
   snprintf(photons, sizeof photons, "%zu", t->desc.photons);
   const char *pair[][2] = {
@@ -122,7 +122,7 @@ static void add_guides(const abbe_tracer *t, const char *const rgb[3], channel_l
   static const char *const part[2] = {"photons.", "eye."}, *const axis[3] = {"X", "Y", "Z"};
   const char *const names[ABBE_GUIDE_MEANS - 6] = {rgb[0],  rgb[1],  rgb[2], axis[0],
                                                    axis[1], axis[2], "Z"};
-  if (!t->desc.guides || t->pass < 2) return;
+  if (!t->desc.guides || abbe_tracer_passes(t) < 2) return;
   for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
     const char *of = k < 6 ? part[k / 3] : k < 9 ? "albedo." : k < 12 ? "normal." : "depth.";
     const char *name = k < 6 ? rgb[k % 3] : names[k - 6];
@@ -135,17 +135,17 @@ static void add_guides(const abbe_tracer *t, const char *const rgb[3], channel_l
 }
 
 static void read_guides(const abbe_tracer *t, abbe_image *out) {
-  if (!t->desc.guides || t->pass < 2) return;
+  if (!t->desc.guides || abbe_tracer_passes(t) < 2) return;
   const abbe_guide_sums *g = &t->guides;
-  const double n = (double)t->pass;
+  const size_t passes = abbe_tracer_passes(t);
   for (size_t i = 0; i < g->pixels; i++) {
     float *to = out->data + (i + 1) * out->channels - GUIDES;
     for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
       const double unit = k == ABBE_GUIDE_DEPTH ? t->geometry.unit : 1;
-      *to++ = (float)(unit * g->sum[i * ABBE_GUIDE_VALUES + k] / n);
-      *to++ = (float)(unit * sqrt(abbe_guide_sums_variance(g, t->pass, i, k)));
+      *to++ = (float)(unit * abbe_guide_sums_mean(g, passes, i, k));
+      *to++ = (float)(unit * sqrt(abbe_guide_sums_variance(g, passes, i, k)));
     }
-    for (size_t k = 0; k < 6; k++) *to++ = (float)abbe_guide_sums_covariance(g, t->pass, i, k);
+    for (size_t k = 0; k < 6; k++) *to++ = (float)abbe_guide_sums_covariance(g, passes, i, k);
   }
 }
 

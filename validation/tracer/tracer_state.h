@@ -15,6 +15,8 @@
 extern "C" {
 #endif
 
+/* Parts of a ledger. */
+enum { ABBE_TRACER_LEDGER = sizeof(abbe_light_ledger) / sizeof(double) };
 enum { ABBE_TRACER_RGB = 0, ABBE_TRACER_CAUSTIC = 3, ABBE_TRACER_BANDS = 6 };
 
 struct abbe_tracer {
@@ -45,11 +47,13 @@ struct abbe_tracer {
   abbe_photon_grid grid;
   abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
   size_t landed_room;
-  bool eye_gathers;    /* some pixel may show a receiver through or in a refractor */
-  float radius;        /* of the first gather, frame */
-  size_t pass;         /* the next one */
+  bool eye_gathers;   /* some pixel may show a receiver through or in a refractor */
+  float radius;       /* of the first gather, frame */
+  size_t first, pass; /* the first in the sums, and the next one */
+  double reach;       /* W that photons stand for, at the scale of the ledger's units */
+  abbe_whole_sum ledger[ABBE_TRACER_LEDGER]; /* over passes */
   uint64_t other_rays; /* of the walks: trials, and from before a checkpoint was taken up */
-  abbe_trace_statistics statistics;
+  abbe_trace_statistics statistics; /* its ledger: of the pass that is under way */
 };
 
 /* From the space of mixing to the picture's. */
@@ -59,6 +63,10 @@ static inline void abbe_tracer_finish(const abbe_tracer *t, const float mixed[3]
                  ? mixed[k]
                  : t->to_xyz[3 * k] * mixed[0] + t->to_xyz[3 * k + 1] * mixed[1] +
                        t->to_xyz[3 * k + 2] * mixed[2];
+}
+/* Of the ledger's sums, W. */
+static inline double abbe_tracer_ledger_unit(const abbe_tracer *t) {
+  return (t->reach > 0 ? t->reach : 1) * 0x1p-50;
 }
 /* The light of that number; NULL: the environment. */
 static inline const abbe_light *abbe_tracer_light(const abbe_tracer *t, size_t light) {

@@ -269,6 +269,18 @@ static bool add_objects(abbe_geometry *g) {
   return added;
 }
 
+const char *abbe_geometry_instructions(void) {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512vl"))
+    return "avx512";
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? "avx2" : "sse";
+#else
+  return "other";
+#endif
+}
+
 /* One thread builds the hierarchy: its shape, and so the winner of a tie at an edge, is the same
  * on every run. */
 abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error) {

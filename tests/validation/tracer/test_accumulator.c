@@ -20,7 +20,8 @@ static void order_and_threads_do_not_matter(void **state) {
   uint64_t random = 5;
   for (int i = 0; i < COUNT; i++)
     x[i] = (float)(random_normal(&random) * exp(random_between(&random, -30, 3)));
-  double mean[4][VALUES], error[4][VALUES], adding[4][3 * VALUES];
+  double mean[4][VALUES], error[4][VALUES];
+  int64_t adding[4][3 * VALUES];
   for (int way = 0; way < 4; way++) {
     size_t threads = (size_t)way + 1;
     abbe_accumulator a = make(VALUES, threads, 1e6);
@@ -32,7 +33,7 @@ static void order_and_threads_do_not_matter(void **state) {
       }
       for (size_t v = 0; v < VALUES; v++)
         adding[way][(size_t)pass * VALUES + v] = abbe_accumulator_adding(&a, v);
-      abbe_accumulator_end_pass(&a, 0.25);
+      abbe_accumulator_end_pass(&a);
     }
     for (size_t v = 0; v < VALUES; v++) {
       mean[way][v] = abbe_accumulator_mean(&a, v);
@@ -48,6 +49,40 @@ static void order_and_threads_do_not_matter(void **state) {
   }
 }
 
+/* Passes in another order, and in parts that are added up: the same sums to the last bit. */
+static void order_of_passes_does_not_matter(void **state) {
+  (void)state;
+  enum { PASSES = 40 };
+  uint64_t random = 11;
+  float x[PASSES];
+  for (int i = 0; i < PASSES; i++)
+    x[i] = (float)(random_normal(&random) * exp(random_between(&random, -20, 3)));
+  abbe_whole_sum sum[3] = {0}, square[3] = {0};
+  for (int way = 0; way < 3; way++) {
+    abbe_accumulator a = make(1, 1, 1e6);
+    for (int i = 0; i < PASSES; i++) {
+      abbe_accumulator_add(&a, 0, 0, x[way == 0 ? i : way == 1 ? PASSES - 1 - i : 7 * i % PASSES]);
+      abbe_accumulator_end_pass(&a);
+    }
+    sum[way] = a.sum[0];
+    square[way] = a.square[0];
+    abbe_accumulator_free(&a);
+  }
+  assert_true(sum[0] == sum[1] && sum[0] == sum[2] && sum[0] != 0);
+  assert_true(square[0] == square[1] && square[0] == square[2] && square[0] > 0);
+}
+
+/* The largest passes there may be, as many as there may be: no sum overflows. */
+static void the_largest_sums_fit(void **state) {
+  (void)state;
+  const abbe_whole_sum most = abbe_whole_sum_product(INT64_MIN, INT64_MIN);
+  const abbe_whole_sum all = most * ABBE_WHOLE_SUM_MOST_PASSES;
+  assert_true(most > 0 && all > 0 && all / ABBE_WHOLE_SUM_MOST_PASSES == most);
+  assert_near(abbe_whole_sum_of_products(most), 0x1p126, 0);
+  assert_int_equal((int64_t)abbe_whole_sum_product(-1, 1), -1); /* downwards */
+  assert_true(abbe_whole_sum_quantise(3, 4, 2) == 8 && abbe_whole_sum_quantise(-0.3, 4, 2) == -1);
+}
+
 /* Passes of 1, 2, 3, 4: mean 2.5, standard error sqrt(5/3 / 4). */
 static void mean_and_standard_error(void **state) {
   (void)state;
@@ -55,11 +90,11 @@ static void mean_and_standard_error(void **state) {
   assert_true(abbe_accumulator_mean(&a, 0) == 0);
   assert_true(isinf(abbe_accumulator_error(&a, 0)));
   for (int pass = 1; pass <= 4; pass++) {
-    /* half of it by each thread, twice as large as the scale brings it to */
-    abbe_accumulator_add(&a, 0, 0, (float)pass);
-    abbe_accumulator_add(&a, 1, 0, (float)pass);
-    abbe_accumulator_add(&a, 1, 1, -3);
-    abbe_accumulator_end_pass(&a, 0.5);
+    /* half of it by each thread */
+    abbe_accumulator_add(&a, 0, 0, (float)(0.5 * pass));
+    abbe_accumulator_add(&a, 1, 0, (float)(0.5 * pass));
+    abbe_accumulator_add(&a, 1, 1, -1.5f);
+    abbe_accumulator_end_pass(&a);
     if (pass == 1) assert_true(isinf(abbe_accumulator_error(&a, 0)));
   }
   assert_int_equal(a.passes, 4);
@@ -81,7 +116,7 @@ static void the_error_is_the_spread_of_the_mean(void **state) {
   for (int pass = 0; pass < PASSES; pass++) {
     for (size_t v = 0; v < VALUES; v++)
       abbe_accumulator_add(&a, 0, v, (float)(10 + random_normal(&random)));
-    abbe_accumulator_end_pass(&a, 1);
+    abbe_accumulator_end_pass(&a);
   }
   double told = 0, true_square = 0;
   for (size_t v = 0; v < VALUES; v++) {
@@ -97,12 +132,12 @@ static void a_dropped_pass_leaves_nothing(void **state) {
   (void)state;
   abbe_accumulator a = make(1, 2, 1e6);
   abbe_accumulator_add(&a, 0, 0, 1);
-  abbe_accumulator_end_pass(&a, 1);
+  abbe_accumulator_end_pass(&a);
   abbe_accumulator_add(&a, 0, 0, 50);
   abbe_accumulator_add(&a, 1, 0, 50);
   abbe_accumulator_drop_pass(&a);
   abbe_accumulator_add(&a, 1, 0, 3);
-  abbe_accumulator_end_pass(&a, 1);
+  abbe_accumulator_end_pass(&a);
   assert_int_equal(a.passes, 2);
   assert_near(abbe_accumulator_mean(&a, 0), 2, 1e-12);
   assert_near(abbe_accumulator_error(&a, 0), 1, 1e-9);
@@ -116,7 +151,7 @@ static void what_is_too_large_is_cut_and_counted(void **state) {
   const float awkward[] = {2, -INFINITY, NAN, 1, -1, 1.0000001f};
   for (int i = 0; i < 6; i++)
     abbe_accumulator_add(&a, (size_t)(i % 2), (size_t)(i / 2), awkward[i]);
-  abbe_accumulator_end_pass(&a, 1);
+  abbe_accumulator_end_pass(&a);
   assert_int_equal(abbe_accumulator_cuts(&a), 4);
   assert_near(abbe_accumulator_mean(&a, 0), 0, 1e-12); /* 1 - 1 */
   assert_near(abbe_accumulator_mean(&a, 1), 1, 1e-12); /* nothing, and 1 whole */
@@ -130,7 +165,7 @@ static void a_sum_that_runs_over_is_told(void **state) {
   for (int sign = -1; sign <= 1; sign += 2) {
     abbe_accumulator a = make(1, 3, 1024);
     for (int i = 0; i < 30000; i++) abbe_accumulator_add(&a, (size_t)(i % 3), 0, (float)sign);
-    abbe_accumulator_end_pass(&a, 1);
+    abbe_accumulator_end_pass(&a);
     assert_true(abbe_accumulator_cuts(&a) > 0);
     assert_true(sign * abbe_accumulator_mean(&a, 0) >= 1024);
     abbe_accumulator_free(&a);
@@ -144,7 +179,7 @@ static void small_numbers_are_not_lost(void **state) {
   for (int i = 0; i < 1000; i++) abbe_accumulator_add(&a, 0, 0, 0x1p-50f);
   abbe_accumulator_add(&a, 0, 0, 0x1p-11f);
   abbe_accumulator_add(&a, 0, 0, -0x1p-11f);
-  abbe_accumulator_end_pass(&a, 1);
+  abbe_accumulator_end_pass(&a);
   assert_near(abbe_accumulator_mean(&a, 0) * 0x1p50, 1000, 1e-9);
   abbe_accumulator_free(&a);
 }
@@ -167,6 +202,8 @@ static void what_cannot_be_kept_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(order_and_threads_do_not_matter),
+      cmocka_unit_test(order_of_passes_does_not_matter),
+      cmocka_unit_test(the_largest_sums_fit),
       cmocka_unit_test(mean_and_standard_error),
       cmocka_unit_test(the_error_is_the_spread_of_the_mean),
       cmocka_unit_test(a_dropped_pass_leaves_nothing),

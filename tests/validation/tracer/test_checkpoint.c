@@ -273,9 +273,9 @@ static void what_is_no_checkpoint_is_told(void **state) {
   } files[] = {{"", "not a checkpoint"},
                {"description: a scene\n", "not a checkpoint"},
                {"abbe checkpoint 1\nscene 1\n\n", "another version"},
-               {"abbe checkpoint 4\n", "broken"},
-               {"abbe checkpoint 4\nscene 0123", "broken"},
-               {"abbe checkpoint 4\n\n\n", "start anew"}};
+               {"abbe checkpoint 5\n", "broken"},
+               {"abbe checkpoint 5\nscene 0123", "broken"},
+               {"abbe checkpoint 5\n\n\n", "start anew"}};
   abbe_error error;
   abbe_tracer *tracer = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
@@ -291,6 +291,109 @@ static void what_is_no_checkpoint_is_told(void **state) {
   abbe_tracer_free(tracer);
 }
 
+/* ---- parts ---- */
+
+enum { PARTS = 4, ROOM = 96 };
+
+/* The passes first to end - 1 into the part's own file. */
+static void save_part(const abbe_trace_desc *desc, size_t first, size_t end, char file[ROOM],
+                      int number) {
+  snprintf(file, ROOM, "%s/part-%d.ck", folder, number);
+  abbe_tracer *tracer = make_tracer(&scene, desc);
+  assert_int_equal(abbe_tracer_begin_at(tracer, first, NULL), ABBE_OK);
+  run_passes(tracer, end - first);
+  assert_int_equal(abbe_checkpoint_save(tracer, file, NULL), ABBE_OK);
+  abbe_tracer_free(tracer);
+}
+
+/* Any split, put together in any order, is one run to the last bit, guides and ledger too, and goes
+ * on like one. */
+static void any_split_gives_the_bits_of_one_run(void **state) {
+  (void)state;
+  static const size_t split[][PARTS + 1] = {{0, 1, 2, 3, 6}, {0, 2, 3, 5, 6}, {0, 3, 4, 5, 6}};
+  static const int order[][PARTS] = {{0, 1, 2, 3}, {3, 2, 1, 0}, {2, 0, 3, 1}};
+  abbe_trace_desc desc = small;
+  desc.guides = true;
+  abbe_tracer *whole = make_tracer(&scene, &desc);
+  run_passes(whole, 6);
+  for (size_t i = 0; i < sizeof split / sizeof *split; i++) {
+    char file[PARTS][ROOM];
+    const char *paths[PARTS];
+    for (int k = 0; k < PARTS; k++) {
+      desc.threads = 1 + (size_t)k % 2;
+      save_part(&desc, split[i][k], split[i][k + 1], file[k], k);
+    }
+    for (int k = 0; k < PARTS; k++) paths[k] = file[order[i][k]];
+    abbe_tracer *merged = make_tracer(&scene, &desc);
+    abbe_error error = {0};
+    if (abbe_checkpoint_merge(merged, paths, PARTS, &error) != ABBE_OK) fail_msg("%s", error.text);
+    check_same(whole, merged);
+    if (i == 2) {
+      run_passes(whole, 1);
+      run_passes(merged, 1);
+      check_same(whole, merged);
+    }
+    abbe_tracer_free(merged);
+    for (int k = 0; k < PARTS; k++) unlink(file[k]);
+  }
+  abbe_tracer_free(whole);
+}
+
+static void check_unmerged(const char *const *paths, size_t count, abbe_result why,
+                           const char *part) {
+  abbe_error error = {0};
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  abbe_result result = abbe_checkpoint_merge(tracer, paths, count, &error);
+  if (result != why) print_error("%d: %s\n", result, error.text);
+  assert_int_equal(result, why);
+  assert_contains(error.text, part);
+  assert_int_equal(abbe_tracer_passes(tracer), 0);
+  abbe_tracer_free(tracer);
+}
+
+static void gaps_and_overlaps_are_named(void **state) {
+  (void)state;
+  static const size_t range[PARTS][2] = {{0, 2}, {1, 4}, {4, 5}, {7, 8}};
+  char file[PARTS][ROOM], other[ROOM];
+  for (int k = 0; k < PARTS; k++) save_part(&small, range[k][0], range[k][1], file[k], k);
+  check_unmerged((const char *[]){file[1], file[0]}, 2, ABBE_INVALID_ARGUMENT, "both hold pass 1");
+  check_unmerged((const char *[]){file[0], file[0]}, 2, ABBE_INVALID_ARGUMENT,
+                 "both hold passes 0 to 1");
+  check_unmerged((const char *[]){file[2], file[0]}, 2, ABBE_INVALID_ARGUMENT,
+                 "passes 2 to 3 are missing, between");
+  check_unmerged((const char *[]){file[1]}, 1, ABBE_INVALID_ARGUMENT, "pass 0 is missing");
+  check_unmerged((const char *[]){file[3], file[2]}, 2, ABBE_INVALID_ARGUMENT,
+                 "passes 0 to 3 are missing");
+  check_unmerged((const char *[]){file[0]}, 0, ABBE_INVALID_ARGUMENT, "no parts");
+  abbe_trace_desc desc = small;
+  desc.seed = 3;
+  save_part(&desc, 2, 3, other, 9);
+  check_unmerged((const char *[]){file[0], other}, 2, ABBE_INVALID_ARGUMENT, "seed 3");
+  /* broken behind its head: found out while parts are added up */
+  char *data = NULL;
+  size_t size = 0;
+  save_part(&small, 2, 3, other, 9);
+  assert_int_equal(abbe_file_read(other, 1 << 24, &data, &size, NULL), ABBE_OK);
+  data[size - 20] = (char)(data[size - 20] ^ 1);
+  assert_int_equal(abbe_file_write(other, data, size, NULL), ABBE_OK);
+  check_unmerged((const char *[]){file[0], other}, 2, ABBE_PARSE, "damaged");
+  free(data);
+  unlink(other);
+  for (int k = 0; k < PARTS; k++) unlink(file[k]);
+}
+
+static void a_trace_begins_once(void **state) {
+  (void)state;
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  assert_int_equal(abbe_tracer_begin_at(tracer, 1u << 20, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_tracer_begin_at(tracer, 5, NULL), ABBE_OK);
+  run_passes(tracer, 1);
+  assert_int_equal(abbe_tracer_passes(tracer), 1);
+  assert_int_equal(abbe_tracer_first_pass(tracer), 5);
+  assert_int_equal(abbe_tracer_begin_at(tracer, 6, NULL), ABBE_INVALID_ARGUMENT);
+  abbe_tracer_free(tracer);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(resumed_runs_give_the_image_of_unbroken_ones),
@@ -300,6 +403,9 @@ int main(void) {
       cmocka_unit_test(textures_and_normals_are_part_of_the_scene),
       cmocka_unit_test(broken_files_are_told),
       cmocka_unit_test(what_is_no_checkpoint_is_told),
+      cmocka_unit_test(any_split_gives_the_bits_of_one_run),
+      cmocka_unit_test(gaps_and_overlaps_are_named),
+      cmocka_unit_test(a_trace_begins_once),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

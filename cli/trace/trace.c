@@ -3,20 +3,15 @@
 #include "cli/base/map_options.h"
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
+#include "cli/trace/trace_results.h"
 
-#include "base/clock.h"
-#include "base/file.h"
-#include "colorimetry/image/exr.h"
-#include "colorimetry/image/screen_png.h"
 #include "scenes/import/scene_file.h"
-#include "validation/denoise/denoise.h"
 #include "validation/sweep/matched_physics.h"
 #include "validation/tracer/checkpoint.h"
 #include "validation/tracer/trace_run.h"
 #include "validation/tracer/tracer.h"
 
 #include <argp.h>
-#include <cjson/cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +36,8 @@ enum {
   OPTION_MATERIALS,
   OPTION_RESUME,
   OPTION_CHECKPOINT,
+  OPTION_PASSES,
+  OPTION_MERGE,
   OPTION_EVERY,
   OPTION_VIEW,
   OPTION_EXPOSURE,
@@ -51,20 +48,7 @@ enum {
 
 enum { DEFAULT_PASSES = 64, MOST_PASSES = 1000000 };
 
-typedef struct request {
-  const char *program, *scene, *materials;
-  abbe_scene_input_changes changes;
-  const char *exr, *png, *stats, *checkpoint;
-  const char *of_png; /* an option that the PNG alone has */
-  abbe_map_options map;
-  abbe_trace_desc desc;
-  size_t passes;
-  double seconds, until, every;
-  bool resume, json, quiet, rates, half, filter;
-  double filter_seconds; /* spent */
-  abbe_display_desc display;
-  char *checkpoint_path;
-} request;
+typedef abbe_trace_request request;
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES,
@@ -99,6 +83,10 @@ static const struct argp_option options[] = {
     {"resume", OPTION_RESUME, NULL, 0, "go on from the checkpoint, where there is one", 2},
     {"checkpoint", OPTION_CHECKPOINT, "FILE", ABBE_ARGUMENT_WRITES,
      "keep it there, also when all is done (OUTPUT.checkpoint, until all is done)", 2},
+    {"passes", OPTION_PASSES, "A:B", 0,
+     "passes A to B - 1 of the whole alone, into --checkpoint FILE, and no other file", 2},
+    {"merge", OPTION_MERGE, NULL, 0,
+     "trace nothing: put parts together, the checkpoints named behind the scene", 2},
     {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
     {"view", OPTION_VIEW, "NAME", 0, "of the display, for the PNG", 2},
     {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
@@ -109,12 +97,36 @@ static const struct argp_option options[] = {
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 static const char *const physics[] = {"full", "matched"};
 
+/* "8:16". */
+static void take_passes(request *q, const char *text) {
+  char first[32];
+  const size_t length = strcspn(text, ":");
+  snprintf(first, sizeof first, "%.*s", (int)length, text);
+  if (text[length] == ':') {
+    q->part_first = abbe_command_count(q->program, "--passes", first, 0, MOST_PASSES);
+    q->part_end = abbe_command_count(q->program, "--passes", text + length + 1, 1, MOST_PASSES);
+  }
+  if (q->part_end <= q->part_first) {
+    fprintf(stderr,
+            "%s: --passes '%s' are no passes: two numbers, the first pass from 0 on and the "
+            "one behind the last, such as 8:16\n",
+            q->program, text);
+    exit(ABBE_EXIT_USAGE);
+  }
+}
+
 static error_t parse_work(int key, char *text, request *q) {
   abbe_trace_desc *d = &q->desc;
   const char *p = q->program;
   switch (key) {
   case OPTION_SPP:
     q->passes = abbe_command_count(p, "--spp", text, 1, MOST_PASSES);
+    return 0;
+  case OPTION_PASSES:
+    take_passes(q, text);
+    return 0;
+  case OPTION_MERGE:
+    q->merge = true;
     return 0;
   case OPTION_TIME:
     q->seconds = abbe_command_number(p, "--time", text, 0.001, 1e9);
@@ -156,6 +168,24 @@ static error_t parse_work(int key, char *text, request *q) {
   default:
     return abbe_scene_input_take(&q->changes, key, text, p);
   }
+}
+
+/* What goes with --passes and --merge, and what does not. */
+static void check_parts(const request *q, struct argp_state *state) {
+  const bool part = q->part_end > 0;
+  const char *name = part ? "--passes" : "--merge";
+  if (!q->merge && q->part_count > 0)
+    argp_error(state, "one scene at a time: what is '%s'?", q->parts[0]);
+  if (q->merge && part) argp_error(state, "--passes traces a part, and --merge traces nothing");
+  if (q->merge && q->part_count == 0)
+    argp_error(state, "--merge: which parts? Name their checkpoints behind the scene");
+  if (part && q->checkpoint == NULL)
+    argp_error(state, "--passes needs a file for its part: --checkpoint FILE");
+  if (!part && !q->merge) return;
+  if (q->passes > 0 || q->seconds > 0 || q->until > 0)
+    argp_error(state, "%s has its own number of passes: no --spp, --time or --until-error", name);
+  if (q->rates || (q->merge && q->resume))
+    argp_error(state, "%s goes without --%s", name, q->rates ? "rates" : "resume");
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -209,15 +239,18 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     q->rates = true;
     return 0;
   case ARGP_KEY_ARG:
-    if (q->scene != NULL) argp_error(state, "one scene at a time: what is '%s'?", text);
-    q->scene = text;
+    if (q->scene == NULL)
+      q->scene = text;
+    else
+      q->parts[q->part_count++] = text;
     return 0;
   case ARGP_KEY_END:
     if (q->scene == NULL) argp_error(state, "which scene? Try scenes/sphere.yaml");
-    if (q->exr == NULL && q->png == NULL && q->map.save == NULL && q->stats == NULL && !q->json &&
-        !q->rates)
+    check_parts(q, state);
+    if (q->part_end == 0 && q->exr == NULL && q->png == NULL && q->map.save == NULL &&
+        q->stats == NULL && !q->json && !q->rates && !(q->merge && q->checkpoint != NULL))
       argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
-    if (q->filter && ((q->exr == NULL && q->png == NULL) || q->passes == 1))
+    if (q->filter && q->part_end == 0 && ((q->exr == NULL && q->png == NULL) || q->passes == 1))
       argp_error(state, "--filter needs a picture (-o, --png) of two passes or more (--spp 2)");
     if (q->of_png != NULL && q->png == NULL)
       argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
@@ -230,10 +263,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 /* ---- before the work ---- */
 
 static abbe_result check_targets(const request *q, abbe_error *error) {
-  const char *const targets[] = {q->exr, q->png, q->map.save, q->stats, q->checkpoint};
-  abbe_result targeted = abbe_command_check_targets(targets, 5, error);
+  const char *const targets[] = {q->checkpoint, q->stats, q->exr, q->png, q->map.save};
+  const bool part = q->part_end > 0;
+  abbe_result targeted = abbe_command_check_targets(targets, part ? 2 : 5, error);
   if (targeted != ABBE_OK) return targeted;
-  if (q->png == NULL) return ABBE_OK;
+  if (q->png == NULL || part) return ABBE_OK;
   abbe_display *display = NULL;
   abbe_display_desc desc = q->display;
   desc.source_space = abbe_rgb_space_ocio_name(q->desc.space);
@@ -245,7 +279,7 @@ static abbe_result check_targets(const request *q, abbe_error *error) {
 /* The checkpoint stands beside the first output. */
 static abbe_result name_checkpoint(request *q, abbe_error *error) {
   const char *beside = q->exr ? q->exr : q->map.save ? q->map.save : q->png;
-  if (q->checkpoint == NULL && beside == NULL) return ABBE_OK;
+  if (q->checkpoint == NULL && (beside == NULL || q->merge)) return ABBE_OK;
   size_t size = strlen(q->checkpoint ? q->checkpoint : beside) + sizeof ".checkpoint";
   q->checkpoint_path = malloc(size);
   if (q->checkpoint_path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
@@ -272,123 +306,6 @@ static abbe_result run_passes(const request *q, const abbe_trace_run_desc *run, 
   return result;
 }
 
-/* ---- results ---- */
-
-static void add_ledger(cJSON *root, const abbe_light_ledger *l, bool map) {
-  cJSON *energy = cJSON_AddObjectToObject(root, "energy");
-  cJSON_AddNumberToObject(energy, "reached", l->reached);
-  cJSON_AddNumberToObject(energy, "deposited", l->deposited);
-  cJSON_AddNumberToObject(energy, "contact", l->contact);
-  cJSON_AddNumberToObject(energy, "hidden", map ? l->hidden : NAN); /* null */
-  cJSON_AddNumberToObject(energy, "absorbed", l->absorbed);
-  cJSON_AddNumberToObject(energy, "missed", l->missed);
-  cJSON_AddNumberToObject(energy, "trapped", l->trapped);
-  cJSON_AddNumberToObject(energy, "lost", l->lost);
-}
-
-static abbe_result write_stats(const request *q, const abbe_tracer *tracer, abbe_error *error) {
-  if (q->stats == NULL && !q->json) return ABBE_OK;
-  abbe_trace_statistics s;
-  abbe_tracer_statistics(tracer, &s);
-  cJSON *root = cJSON_CreateObject();
-  cJSON_AddNumberToObject(root, "passes", (double)s.passes);
-  cJSON_AddNumberToObject(root, "photons", (double)s.photons);
-  cJSON_AddNumberToObject(root, "light_rays", (double)s.light_rays);
-  cJSON_AddNumberToObject(root, "eye_rays", (double)s.eye_rays);
-  cJSON_AddNumberToObject(root, "light_seconds", s.light_seconds);
-  cJSON_AddNumberToObject(root, "eye_seconds", s.eye_seconds);
-  if (q->filter) cJSON_AddNumberToObject(root, "filter_seconds", q->filter_seconds);
-  cJSON_AddNumberToObject(root, "relative_error", abbe_tracer_error(tracer));
-  cJSON_AddNumberToObject(root, "cut", (double)s.cuts);
-  cJSON_AddNumberToObject(root, "gather_radius_m", s.radius);
-  add_ledger(root, &s.ledger, !q->desc.no_map);
-  char *text = abbe_command_json_text(root);
-  cJSON_Delete(root);
-  if (text == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the statistics");
-  if (q->json) fputs(text, stdout);
-  abbe_result result = ABBE_OK;
-  if (q->stats != NULL) result = abbe_file_write(q->stats, text, strlen(text), error);
-  free(text);
-  return result;
-}
-
-static abbe_result write_png(const request *q, const abbe_image *image, abbe_error *error) {
-  abbe_screen_png_desc desc = {.display = q->display};
-  desc.display.source_space = abbe_rgb_space_ocio_name(q->desc.space);
-  return abbe_screen_png_write(q->png, image, &desc, error);
-}
-
-static abbe_result write_exr(const request *q, const char *path, const abbe_image *image,
-                             abbe_error *error) {
-  return q->half ? abbe_exr_write_half(path, image, error) : abbe_exr_write(path, image, error);
-}
-
-/* A trace that was stopped after one pass has nothing to go by: its picture stays as it is. */
-static abbe_result filter(request *q, size_t passes, abbe_image *image, abbe_error *error) {
-  if (!q->filter || passes < 2) return ABBE_OK;
-  const abbe_denoise_desc desc = {.threads = q->desc.threads};
-  abbe_image filtered;
-  const double start = abbe_clock_seconds();
-  abbe_result result = abbe_denoise_picture(image, &desc, &filtered, error);
-  q->filter_seconds = abbe_clock_seconds() - start;
-  if (result != ABBE_OK) return result;
-  abbe_image_free(image);
-  *image = filtered;
-  return ABBE_OK;
-}
-
-static abbe_result write_results(request *q, const abbe_tracer *tracer, abbe_error *error) {
-  abbe_result result = ABBE_OK;
-  abbe_image image = {0};
-  if (q->exr != NULL || q->png != NULL) {
-    result = abbe_tracer_picture(tracer, &image, error);
-    if (result == ABBE_OK) result = filter(q, abbe_tracer_passes(tracer), &image, error);
-    if (result == ABBE_OK && q->exr != NULL) result = write_exr(q, q->exr, &image, error);
-    if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
-    abbe_image_free(&image);
-  }
-  if (result == ABBE_OK && q->map.save != NULL) {
-    result = abbe_tracer_map(tracer, &image, error);
-    if (result == ABBE_OK) result = write_exr(q, q->map.save, &image, error);
-    abbe_image_free(&image);
-  }
-  if (result == ABBE_OK) result = write_stats(q, tracer, error);
-  return result;
-}
-
-static void summarise(const request *q, const abbe_tracer *tracer) {
-  if (q->quiet || q->json) return;
-  abbe_trace_statistics s;
-  abbe_tracer_statistics(tracer, &s);
-  double seconds = s.light_seconds + s.eye_seconds;
-  fprintf(stderr, "%zu pass%s", s.passes, s.passes == 1 ? "" : "es");
-  if (seconds > 0) fprintf(stderr, " in %.1f s", seconds);
-  fprintf(stderr, ", %.3g million photons, %.3g million rays; ", 1e-6 * (double)s.photons,
-          1e-6 * (double)(s.light_rays + s.eye_rays));
-  if (s.passes < 2)
-    fprintf(stderr, "no standard errors, which take two passes or more (--spp 2)");
-  else
-    fprintf(stderr, "%srelative standard error %.2g", q->filter ? "unfiltered " : "",
-            abbe_tracer_error(tracer));
-  if (s.ledger.reached > 0) {
-    double whole = 100 / s.ledger.reached;
-    fprintf(stderr,
-            "; of the light that met refractors %.2f %% is on receivers, %.2f %% absorbed, %.2f %% "
-            "missed, %.2g %% lost",
-            whole * s.ledger.deposited, whole * s.ledger.absorbed, whole * s.ledger.missed,
-            whole * s.ledger.lost);
-    if (s.ledger.hidden > 0)
-      fprintf(stderr, ", %.2f %% where receivers hide it from its lamp, in no map",
-              whole * s.ledger.hidden);
-    if (s.ledger.trapped > 0)
-      fprintf(stderr, ", %.2f %% trapped, which is not modelled", whole * s.ledger.trapped);
-  }
-  fprintf(stderr, "\n");
-  if (s.cuts > 0)
-    fprintf(stderr, "note: %llu contributions were too bright to be kept whole\n",
-            (unsigned long long)s.cuts);
-}
-
 static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error *error) {
   if (!q->rates) return ABBE_OK;
   double walk, embree;
@@ -400,29 +317,38 @@ static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error
   return result;
 }
 
-/* The image of fewer passes is not in a checkpoint of more. */
+/* The image of fewer passes is not in a checkpoint of more, nor that of others. */
 static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *error) {
+  const bool part = q->part_end > 0;
   if (!q->resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
-    return ABBE_OK;
+    return part ? abbe_tracer_begin_at(tracer, q->part_first, error) : ABBE_OK;
   abbe_result result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
-  size_t passes = abbe_tracer_passes(tracer);
-  if (result != ABBE_OK || passes <= q->passes) return result;
+  if (result != ABBE_OK) return result;
+  const size_t passes = abbe_tracer_passes(tracer), first = abbe_tracer_first_pass(tracer);
+  if (first != q->part_first)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s holds passes from %zu on, not from %zu: give each part a file of its "
+                          "own, or start anew without --resume",
+                          q->checkpoint_path, first, q->part_first);
+  if (passes <= q->passes) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "%s holds %zu passes already, more than the %zu that are asked for: ask "
-                        "with --spp for as many, or start anew without --resume",
-                        q->checkpoint_path, passes, q->passes);
+                        "with %s for as many, or start anew without --resume",
+                        q->checkpoint_path, passes, q->passes, part ? "--passes" : "--spp");
 }
 
 /* A user's stop keeps what is done: results are written, and the checkpoint to go on from. */
 static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
+  const bool part = q->part_end > 0;
   const abbe_trace_run_desc run = {.passes = q->passes,
                                    .seconds = q->seconds,
                                    .error = q->until,
                                    .checkpoint = q->checkpoint_path,
                                    .checkpoint_s = q->every};
-  abbe_result result = resume(q, tracer, error);
+  abbe_result result = q->merge ? abbe_checkpoint_merge(tracer, q->parts, q->part_count, error)
+                                : resume(q, tracer, error);
   if (result != ABBE_OK) return result;
-  result = run_passes(q, &run, tracer, error);
+  if (!q->merge) result = run_passes(q, &run, tracer, error);
   bool stopped = result == ABBE_CANCELLED;
   if (result != ABBE_OK && !stopped) return result;
   size_t passes = abbe_tracer_passes(tracer);
@@ -430,12 +356,15 @@ static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
     return abbe_error_set(error, ABBE_CANCELLED,
                           "stopped before the first pass was done; nothing "
                           "was written");
-  result = write_results(q, tracer, error);
+  result = abbe_trace_write(q, tracer, error);
   if (result == ABBE_OK && (stopped || q->checkpoint != NULL))
     result = abbe_trace_keep(tracer, &run, error);
   else if (result == ABBE_OK && q->checkpoint_path != NULL)
     unlink(q->checkpoint_path);
-  if (result == ABBE_OK) summarise(q, tracer);
+  if (result == ABBE_OK) abbe_trace_summarise(q, tracer);
+  if (result == ABBE_OK && part && !stopped && !q->quiet)
+    fprintf(stderr, "passes %zu to %zu are in %s; --merge puts parts together\n", q->part_first,
+            q->part_end - 1, q->checkpoint_path);
   if (result == ABBE_OK && stopped)
     return abbe_error_set(error, ABBE_CANCELLED,
                           "stopped after %zu passes; what is done is saved, and the same command "
@@ -459,8 +388,8 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
     result = abbe_matched_physics(scene, q->desc.min_nm, q->desc.max_nm, &q->desc.physics, error);
   if (result == ABBE_OK) result = abbe_tracer_make(scene, &q->desc, &tracer, error);
   if (result == ABBE_OK) result = print_rates(q, tracer, error);
-  if (result == ABBE_OK && (q->exr || q->png || q->map.save || q->stats || q->json))
-    result = trace(q, tracer, error);
+  const bool wants = q->exr || q->png || q->map.save || q->stats || q->json;
+  if (result == ABBE_OK && (wants || q->part_end > 0 || q->merge)) result = trace(q, tracer, error);
   abbe_tracer_free(tracer);
   return result;
 }
@@ -471,7 +400,7 @@ int abbe_command_trace(int argc, char **argv) {
   static const struct argp argp = {
       options,
       parse,
-      "SCENE.yaml",
+      "SCENE.yaml\nSCENE.yaml --merge PART...",
       "Traces what light really does in a scene, with standard errors: the reference.\v"
       "Examples:\n"
       "  abbe trace scenes/sphere.yaml -o sphere.exr --png sphere.png\n"
@@ -479,14 +408,22 @@ int abbe_command_trace(int argc, char **argv) {
       "  abbe trace scenes/ring.yaml -o ring.exr --spp 4 --filter\n"
       "  abbe trace scenes/prism.yaml --save-map prism-map.exr --spp 256 --bands 40\n"
       "  abbe trace scenes/bunny.yaml -o bunny.exr --time 600 --resume\n"
-      "  abbe trace scenes/gem.yaml -o matched.exr --physics matched\n",
+      "  abbe trace scenes/gem.yaml -o matched.exr --physics matched\n"
+      "  abbe trace scenes/gem.yaml -o gem.exr --passes 8:16 --checkpoint part-1.ck\n"
+      "  abbe trace scenes/gem.yaml -o gem.exr --merge part-*.ck\n",
       children,
       NULL,
       NULL};
   request q = {.program = argv[0], .every = 30};
-  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
-  if (q.passes == 0) q.passes = q.seconds > 0 || q.until > 0 ? MOST_PASSES : DEFAULT_PASSES;
+  q.parts = calloc((size_t)argc + 1, sizeof *q.parts);
   abbe_error error = {0};
+  if (q.parts == NULL) {
+    abbe_error_set(&error, ABBE_NO_MEMORY, "no memory for the arguments");
+    return abbe_command_end(argv[0], ABBE_NO_MEMORY, &error);
+  }
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  if (q.part_end > 0) q.passes = q.part_end - q.part_first;
+  if (q.passes == 0) q.passes = q.seconds > 0 || q.until > 0 ? MOST_PASSES : DEFAULT_PASSES;
   abbe_scene scene = {0};
   abbe_result result = check_targets(&q, &error);
   if (result == ABBE_OK) result = name_checkpoint(&q, &error);
@@ -495,6 +432,7 @@ int abbe_command_trace(int argc, char **argv) {
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
   if (result == ABBE_OK) result = run(&q, &scene, &error);
   free(q.checkpoint_path);
+  free(q.parts);
   abbe_scene_free(&scene);
   return abbe_command_end(argv[0], result, &error);
 }

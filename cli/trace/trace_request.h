@@ -1,0 +1,30 @@
+/* trace_request.h: all that `abbe trace` is asked. */
+#ifndef ABBE_CLI_TRACE_TRACE_REQUEST_H
+#define ABBE_CLI_TRACE_TRACE_REQUEST_H
+
+#include "cli/base/map_options.h"
+#include "cli/base/scene_input.h"
+
+#include "colorimetry/image/display_ocio.h"
+#include "validation/tracer/tracer.h"
+
+typedef struct abbe_trace_request {
+  const char *program, *scene, *materials;
+  abbe_scene_input_changes changes;
+  const char *exr, *png, *stats, *checkpoint;
+  const char *of_png; /* an option that the PNG alone has */
+  abbe_map_options map;
+  abbe_trace_desc desc;
+  size_t passes;
+  size_t part_first, part_end; /* --passes: of the whole, the end not among them; 0, 0: all */
+  bool merge;
+  const char **parts; /* files to merge */
+  size_t part_count;
+  double seconds, until, every;
+  bool resume, json, quiet, rates, half, filter;
+  double filter_seconds; /* spent */
+  abbe_display_desc display;
+  char *checkpoint_path;
+} abbe_trace_request;
+
+#endif
