@@ -4,6 +4,7 @@
 #include "cli/base/command.h"
 #include "cli/base/shipped.h"
 #include "scenes/import/scene_file.h"
+#include "scenes/refractor_tilt.h"
 
 #include <cjson/cJSON.h>
 #include <limits.h>
@@ -11,10 +12,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double RAD = 3.14159265358979323846 / 180;
+
+static void take_tilt(abbe_scene_input_changes *changes, const char *text, const char *program) {
+  char tilt[64];
+  const size_t length = strcspn(text, ",");
+  snprintf(tilt, sizeof tilt, "%.*s", (int)length, text);
+  changes->tilt_deg = abbe_command_number(program, "--tilt", tilt, -180, 180);
+  changes->axis_deg = text[length] == ','
+                          ? abbe_command_number(program, "--tilt", text + length + 1, -360, 360)
+                          : 0;
+}
+
 error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const char *text,
                               const char *program) {
   if (key == ABBE_SCENE_INPUT_MATERIAL)
     changes->stone = text;
+  else if (key == ABBE_SCENE_INPUT_TILT)
+    take_tilt(changes, text, program);
   else if (key != ABBE_SCENE_INPUT_SET)
     return ARGP_ERR_UNKNOWN;
   else if (changes->set_count < ABBE_SCENE_INPUT_MOST)
@@ -33,10 +48,9 @@ abbe_result abbe_scene_input_load(const char *program, const char *path, const c
   return abbe_scene_input_load_with(program, path, materials, &none, out, error);
 }
 
-abbe_result abbe_scene_input_load_with(const char *program, const char *path,
-                                          const char *materials,
-                                          const abbe_scene_input_changes *changes, abbe_scene *out,
-                                          abbe_error *error) {
+abbe_result abbe_scene_input_load_with(const char *program, const char *path, const char *materials,
+                                       const abbe_scene_input_changes *changes, abbe_scene *out,
+                                       abbe_error *error) {
   char shipped[2 * PATH_MAX];
   const abbe_scene_options options = {.materials = materials,
                                       .stone = changes->stone,
@@ -47,6 +61,8 @@ abbe_result abbe_scene_input_load_with(const char *program, const char *path,
   abbe_result result = abbe_scene_load(found, &options, out, error);
   for (size_t i = 0; result == ABBE_OK && i < abbe_scene_file_count(out); i++)
     abbe_arguments_add(program, ABBE_ARGUMENT_READS, "the scene's file", abbe_scene_file(out, i));
+  if (result == ABBE_OK && changes->tilt_deg != 0)
+    result = abbe_refractors_tilt(out, changes->tilt_deg * RAD, changes->axis_deg * RAD, error);
   return result;
 }
 

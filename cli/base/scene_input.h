@@ -13,32 +13,46 @@ struct cJSON;
 
 enum { ABBE_SCENE_INPUT_MOST = 64 };
 
-/* What --material and --set ask of the scene. */
+/* What --material, --set and --tilt ask of the scene. */
 typedef struct abbe_scene_input_changes {
   const char *stone; /* NULL: as the scene says */
   const char *set[ABBE_SCENE_INPUT_MOST];
   size_t set_count;
+  double tilt_deg, axis_deg; /* of the refractors (scenes/refractor_tilt.h) */
 } abbe_scene_input_changes;
 
 /* Rows of a command's options, and in *changes what they say. */
-enum { ABBE_SCENE_INPUT_MATERIAL = 0x7f00, ABBE_SCENE_INPUT_SET };
+enum { ABBE_SCENE_INPUT_MATERIAL = 0x7f00, ABBE_SCENE_INPUT_SET, ABBE_SCENE_INPUT_TILT };
 #define ABBE_SCENE_INPUT_OPTIONS(group)                                                            \
-  {"material", ABBE_SCENE_INPUT_MATERIAL, "[NAME=]STONE", 0,                                       \
+  {"material",                                                                                     \
+   ABBE_SCENE_INPUT_MATERIAL,                                                                      \
+   "[NAME=]STONE",                                                                                 \
+   0,                                                                                              \
    "make the refractors of STONE; where they are of several materials, those of the material or "  \
    "object NAME",                                                                                  \
    group},                                                                                         \
-  {"set", ABBE_SCENE_INPUT_SET, "KEY=VALUE", 0,                                                    \
-   "another value in the scene, such as camera.fov=30 or lights.lamp.intensity=2; may be repeated",\
-   group}
-/* ARGP_ERR_UNKNOWN where key is none of them; ends the program where there are too many. */
+      {"set",                                                                                      \
+       ABBE_SCENE_INPUT_SET,                                                                       \
+       "KEY=VALUE",                                                                                \
+       0,                                                                                          \
+       "another value in the scene, such as camera.fov=30 or lights.lamp.intensity=2; may be "     \
+       "repeated",                                                                                 \
+       group},                                                                                     \
+  {                                                                                                \
+    "tilt", ABBE_SCENE_INPUT_TILT, "DEG[,AXIS]", 0,                                                \
+        "tilt the refractors about their middle, about the horizontal axis of azimuth AXIS (0: "   \
+        "+x)",                                                                                     \
+        group                                                                                      \
+  }
+/* ARGP_ERR_UNKNOWN where key is none of them; ends the program where there are too many,
+ * or where a tilt is none. */
 error_t abbe_scene_input_take(abbe_scene_input_changes *changes, int key, const char *text,
                               const char *program);
 
 /* abbe_scene_input_load of the scene with those changes in it. */
-abbe_result abbe_scene_input_load_with(const char *program, const char *path,
-                                          const char *materials,
-                                          const abbe_scene_input_changes *changes, abbe_scene *out,
-                                          abbe_error *error);
+abbe_result abbe_scene_input_load_with(const char *program, const char *path, const char *materials,
+                                       const abbe_scene_input_changes *changes, abbe_scene *out,
+                                       abbe_error *error);
 
 /* abbe_scene_load with that table of materials (NULL: the scene's own). A path that leads nowhere
  * and is found in the share folder that came with the program is taken there, with a note. Ends the
