@@ -1,6 +1,6 @@
 // Which bands of wavelengths a pixel takes: the fewer, the less the spectrum is spread out in it. Level 0
-// has a band for each wavelength; each further level joins those of the one before by twos. A refractor's
-// levels stand one after another in `bands`.
+// has a band for each wavelength; each further level joins those of the one before by twos. The levels of a
+// set stand one after another in `bands`.
 
 #ifdef SPHERES
 // The two ends of the spectrum leave a sphere where they first meet it from inside: how far apart, in
@@ -54,7 +54,7 @@ void coarsen(bool coarser, inout int base, inout int count) {
 // Where the bands that a list entry wants begin, and how many there are on its level.
 void wanted_level(uint what, out int base, out int count) {
   int level = int(what >> 8 & 15u);
-  base = refractor * counts.bands;
+  base = first_band(refractor);
   count = counts.wavelengths;
   for (int k = 0; k < counts.band_levels - 1; k++) coarsen(k < level, base, count);
 }
@@ -70,7 +70,7 @@ vec3 shown_by[COARSE_BANDS];
 // Those that the pixel takes: `count` from `base` on, of the coarsest level that has as many as are
 // wanted, or of level 0. REFINES: at most COARSE_BANDS, for which they are joined further.
 void choose_bands(out int base, out int count) {
-  base = refractor * counts.bands;
+  base = first_band(refractor);
   count = counts.wavelengths;
   float wanted = wanted_bands(front, sight, base, base + counts.wavelengths - 1);
   for (int k = 0; k < counts.band_levels - 1; k++) {

@@ -36,9 +36,8 @@ uniform usampler2D eye_owner;         // refractor + 1
 uniform vec4 eye_view[6];
 uniform uint pixel_first, pixel_end;  // those of the list that are looked at
 
-// The samples grouped, and grouped again by twos: level 0 holds every sample, level k every 2^k as
-// one. XYZ weight (sum 1) and mean index; attenuation at [i].y of the row after. Levels one after
-// another.
+// gl/scene/spectra/camera_bands.h: the wavelengths grouped, and grouped again by twos: level 0 holds every
+// one, level k every 2^k as one. Levels one after another, in sets.
 struct Band {
   vec4 weight_n;     // XYZ, n
   vec4 attenuation;  // 1/m in x; of a mirror: reflectance at normal incidence, then as mirror_spectrum()
@@ -76,6 +75,20 @@ void copy_all() {
 #define xyz_from_rgb own_xyz_from_rgb
 
 int refractor;  // that this thread's pixel shows
+int band_set;   // that it takes
+
+// SHARES_SPECTRUM: the samples of a pixel share the spectrum, each with wavelengths of its own. Neighbours
+// take places far from each other.
+int band_set_of(ivec2 at) {
+#ifdef SHARES_SPECTRUM
+  int x = at.x & 1, y = at.y & 1;
+  return 1 + 2 * x + 3 * y - 4 * x * y;
+#else
+  return 0;
+#endif
+}
+
+int first_band(int r) { return (r * BAND_SETS + band_set) * counts.bands; }
 
 ivec2 pixel_of(uint listed) {
   return ivec2(listed & 0xffffu, listed >> 16);
@@ -140,6 +153,7 @@ void look(ivec2 at);
 void aim_at(ivec2 at) {
   vec3 o;
   refractor = int(texelFetch(eye_owner, at, 0).x) - 1;
+  band_set = band_set_of(at);
   view_ray(camera_view(), (vec2(at) + 0.5) / vec2(textureSize(eye_owner, 0)), o, sight);
 }
 

@@ -33,20 +33,30 @@ static bool interleaves(const abbe_refraction_pass *pass) {
   return dear && plan->desc.supersample > 1 && !plan->desc.everything;
 }
 
+/* Samples of a pixel whose glass spreads light by colour share the spectrum: four of them have four
+ * times as many wavelengths between them. */
+static bool shares_spectrum(const abbe_refraction_pass *pass) {
+  const abbe_render_desc *desc = &scene_of(pass)->plan->desc;
+  return desc->supersample > 1 && desc->wavelengths > 1;
+}
+
 static abbe_result make_programs(abbe_refraction_pass *pass, const abbe_shader_variant *variant,
                                  abbe_error *error) {
   abbe_gpu *gpu = scene_of(pass)->gpu;
-  char coarse[64];
+  char facts[128], refined[128];
   abbe_shader_variant camera = *variant;
   camera.exits = scene_of(pass)->plan->eye_exits;
-  snprintf(coarse, sizeof coarse, "#define REFINES\n#define COARSE_BANDS %d\n", COARSE_BANDS);
-  abbe_result result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp",
-                                                   refines(pass)       ? coarse
-                                                   : interleaves(pass) ? "#define INTERLEAVES\n"
-                                                                       : NULL,
-                                                   &pass->refract, error);
+  const char *shares = shares_spectrum(pass) ? "#define SHARES_SPECTRUM\n" : "";
+  if (refines(pass))
+    snprintf(facts, sizeof facts, "%s#define REFINES\n#define COARSE_BANDS %d\n", shares,
+             COARSE_BANDS);
+  else
+    snprintf(facts, sizeof facts, "%s%s", shares, interleaves(pass) ? "#define INTERLEAVES\n" : "");
+  snprintf(refined, sizeof refined, "%s#define REFINED\n", shares);
+  abbe_result result =
+      abbe_shader_variant_compute(&camera, gpu, "refraction.comp", facts, &pass->refract, error);
   if (result == ABBE_OK && refines(pass))
-    result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", "#define REFINED\n",
+    result = abbe_shader_variant_compute(&camera, gpu, "refraction.comp", refined,
                                          &pass->refract_refined, error);
   if (result != ABBE_OK) return result;
   return abbe_gpu_compute(gpu, "refraction_list.comp", NULL, &pass->list, error);

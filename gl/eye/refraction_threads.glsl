@@ -23,6 +23,7 @@ void give_task(int base, int count) {
 void take_task(out int base, out int count) {
   refractor = task[place].x;
   base = task[place].y;
+  band_set = base / counts.bands - refractor * BAND_SETS;
   count = task[place].z;
   found = task[place].w != 0;
   start = task_start[place];
@@ -40,7 +41,7 @@ int pixel_thread = int(gl_LocalInvocationID.x) % PIXEL_THREADS;
 // XYZ of what a band shows through the first interface, or off a mirror; or in_mirror: of what it shows
 // reflected by an interface; mirrored: the share that is.
 vec3 band_light(int band, bool in_mirror, out float mirrored) {
-  band_of_refractor = band - refractor * counts.bands;
+  band_of_refractor = band - first_band(refractor);
   PathState w = start, reflected = start;
 #ifdef MIRRORS
   bool off_mirror = is_mirror(first.hit.refractor);

@@ -17,13 +17,13 @@ int most_segments() {
 int band_of_refractor;  // that is followed, among one refractor's
 
 vec2 refractor_spectrum(int r) {
-  Band band = bands[r * counts.bands + band_of_refractor];
+  Band band = bands[first_band(r) + band_of_refractor];
   return vec2(band.weight_n.w, band.attenuation.x);
 }
 
 #ifdef MIRRORS
 vec3 mirror_spectrum(int r) {
-  return bands[r * counts.bands + band_of_refractor].attenuation.yzw;
+  return bands[first_band(r) + band_of_refractor].attenuation.yzw;
 }
 #endif
 

@@ -2,6 +2,7 @@
 
 #include "gl/device/bindings.h"
 #include "gl/device/float4.h"
+#include "gl/scene/spectra/camera_bands.h"
 #include "scenes/geometry/vector.h"
 
 #include <math.h>
@@ -207,10 +208,7 @@ void abbe_gpu_scene_begin(abbe_gpu *gpu, const abbe_scene *local, double unit,
   out->unit = unit;
   out->plan = plan;
   out->map_layout = map_layout;
-  out->band_levels = 1;
-  out->band_count = plan->desc.wavelengths;
-  for (size_t n = plan->desc.wavelengths; n > 1; out->band_levels++)
-    out->band_count += n = (n + 1) / 2;
+  out->band_count = abbe_camera_bands_count(plan->desc.wavelengths, &out->band_levels);
   measure_scene(out);
   double matrix[9];
   abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(out), matrix);

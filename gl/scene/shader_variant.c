@@ -1,5 +1,7 @@
 #include "gl/scene/shader_variant.h"
 
+#include "gl/scene/spectra/camera_bands.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -62,7 +64,7 @@ static bool too_large(size_t count, size_t element) {
 
 static void print_tables(FILE *to, const abbe_shader_variant *v) {
   const size_t spectra = abbe_gpu_spectra_room(v->refractors * v->wavelengths);
-  const size_t bands = abbe_gpu_spectra_room(v->refractors * v->bands);
+  const size_t bands = abbe_gpu_spectra_room(v->refractors * ABBE_CAMERA_BAND_SETS * v->bands);
   print_count(to, "LIGHTS", v->lights);
   print_count(to, "REFRACTORS", v->refractors);
   print_count(to, "RECEIVERS", v->receivers);
@@ -74,6 +76,7 @@ static void print_tables(FILE *to, const abbe_shader_variant *v) {
   print_room(to, "SURFACE_ROOM", v->surfaces);
   print_count(to, "SPECTRUM_ROOM", spectra);
   print_count(to, "BAND_ROOM", bands);
+  print_count(to, "BAND_SETS", ABBE_CAMERA_BAND_SETS);
   print_flag(to, "BANDS_IN_STORAGE", too_large(bands, 32));
   print_flag(to, "PLANES_IN_STORAGE", too_large(v->planes, 16));
   print_flag(to, "SURFACES_IN_STORAGE", too_large(v->surfaces, 32));

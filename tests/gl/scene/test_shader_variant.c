@@ -1,6 +1,7 @@
 #include "tests/check.h"
 
 #include "gl/scene/shader_variant.h"
+#include "gl/scene/spectra/camera_bands.h"
 
 #include <stdlib.h>
 
@@ -87,7 +88,7 @@ static void copies_are_told_where_they_are_made(void **state) {
 static void tables_beyond_a_block_are_storage(void **state) {
   (void)state;
   abbe_shader_variant v = {.planes = ABBE_GPU_BLOCK_BYTES / 16, .refractors = 1};
-  v.bands = ABBE_GPU_BLOCK_BYTES / 32;
+  v.bands = ABBE_GPU_BLOCK_BYTES / 32 / ABBE_CAMERA_BAND_SETS;
   v.surfaces = ABBE_GPU_BLOCK_BYTES / 32;
   v.wavelengths = ABBE_GPU_BLOCK_BYTES / 16;
   char *text = text_of(&v, NULL);
@@ -136,8 +137,8 @@ static void other_counts_are_the_same_program(void **state) {
                            .nodes = 7,
                            .map_levels = 6};
   char *text = text_of(&v, NULL);
-  v.wavelengths = 16;
-  v.bands = 31;
+  v.wavelengths = 12;
+  v.bands = 24;
   v.band_levels = v.exits = v.slots = 8;
   v.bvh_stack = 24;
   v.receiver_root = 4;

@@ -1,0 +1,120 @@
+/* The wavelengths of the camera's rays: white stays white, and samples of a pixel take others. */
+#include "tests/gl/plan/planned.h"
+
+#include "gl/scene/spectra/camera_bands.h"
+
+enum { NODES = 7, COUNT = NODES + 4 + 2 + 1, SETS = ABBE_CAMERA_BAND_SETS };
+
+typedef struct fixture {
+  abbe_scene scene;
+  abbe_plan plan;
+  abbe_spectral_tables tables;
+  abbe_camera_band band[2][SETS][COUNT];
+} fixture;
+
+static void make(const char *text, fixture *f) {
+  const abbe_render_desc desc = {.wavelengths = NODES, .min_nm = 400, .max_nm = 700};
+  size_t levels;
+  assert_int_equal(abbe_camera_bands_count(NODES, &levels), COUNT);
+  assert_int_equal(levels, 4);
+  memset(f->band, 0, sizeof f->band);
+  load_text(text, &f->scene);
+  plan_scene(&f->scene, &desc, &f->plan);
+  assert_int_equal(abbe_spectral_tables_make(&f->scene, &f->plan, &f->tables, NULL), ABBE_OK);
+  assert_int_equal(abbe_camera_bands_fill(&f->scene, &f->plan, &f->tables, f->band[0][0], NULL),
+                   ABBE_OK);
+}
+
+static void done(fixture *f) {
+  abbe_spectral_tables_free(&f->tables);
+  abbe_plan_free(&f->plan);
+  abbe_scene_free(&f->scene);
+}
+
+static void every_level_of_every_set_is_white(void **state) {
+  (void)state;
+  static const size_t count[] = {NODES, 4, 2, 1};
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("murk") BRICK("crown"), &f);
+  for (size_t r = 0; r < 2; r++)
+    for (size_t set = 0; set < SETS; set++) {
+      const abbe_camera_band *at = f.band[r][set];
+      for (size_t level = 0; level < 4; at += count[level++])
+        for (int c = 0; c < 3; c++) {
+          double sum = 0;
+          for (size_t i = 0; i < count[level]; i++) sum += (double)at[i].weight_n[c];
+          assert_near(sum, 1, 1e-6);
+        }
+    }
+  done(&f);
+}
+
+static double index_at(const fixture *f, double lambda_nm) {
+  double n = 0;
+  const abbe_material *material = f->scene.object[f->plan.refractor_object[0]].material;
+  assert_int_equal(abbe_material_n(material, lambda_nm, &n, NULL), ABBE_OK);
+  return n;
+}
+
+/* Of 400 to 700 by 50: bands from 400, 425, 475 ... 675, 700. */
+static void shares_stand_a_quarter_apart(void **state) {
+  (void)state;
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
+  for (size_t i = 0; i < NODES; i++) {
+    const double from = i == 0 ? 400 : 375 + 50 * (double)i, wide = i % (NODES - 1) == 0 ? 25 : 50;
+    assert_near((double)f.band[0][0][i].weight_n[3], index_at(&f, 400 + 50 * (double)i), 1e-7);
+    for (size_t share = 0; share < ABBE_CAMERA_BAND_SHARES; share++)
+      assert_near((double)f.band[0][1 + share][i].weight_n[3],
+                  index_at(&f, from + ((double)share + 0.5) / 4 * wide), 1e-7);
+  }
+  done(&f);
+}
+
+/* Four samples of a pixel, each with the weights of its own, leave of a spectrum what four times as
+ * many wavelengths do: a line of light that is narrower than a band shows less of the wrong
+ * colours. Y of what lies below 500 nm, against the integral. */
+static void together_they_tell_a_spectrum_better(void **state) {
+  (void)state;
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR BALL("crown"), &f);
+  abbe_weights_range range;
+  double all[3], below[3], one = 0, four = 0;
+  const double edge = index_at(&f, 500.5);
+  abbe_weights_range_make(abbe_scene_illuminant(&f.scene), 400, 700, &range);
+  abbe_weights_range_xyz(&range, 400, 700, all);
+  abbe_weights_range_xyz(&range, 400, 500.5, below);
+  for (size_t i = 0; i < NODES; i++) {
+    if ((double)f.band[0][0][i].weight_n[3] > edge) one += (double)f.band[0][0][i].weight_n[1];
+    for (size_t share = 1; share < SETS; share++)
+      if ((double)f.band[0][share][i].weight_n[3] > edge)
+        four += 0.25 * (double)f.band[0][share][i].weight_n[1];
+  }
+  const double truth = below[1] / all[1];
+  assert_true(fabs(four - truth) < 0.35 * fabs(one - truth));
+  done(&f);
+}
+
+/* A mirror sends all wavelengths one way, and its bands are whole ones in every set. */
+static void mirrors_have_one_set(void **state) {
+  (void)state;
+  fixture f;
+  make(CAMERA POINT_LIGHT FLOOR "- {name: pane, shape: box, size: [0.1, 0.1, 0.01], mirror: 0.5,\n"
+                                "   transform: [{translate: [0, 0, 0.2]}]}\n" BALL("crown"),
+       &f);
+  const size_t pane = f.plan.mirror[0] ? 0 : 1;
+  assert_true(f.plan.mirror[pane]);
+  for (size_t set = 1; set < SETS; set++)
+    assert_memory_equal(f.band[pane][set], f.band[pane][0], sizeof f.band[pane][0]);
+  done(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_level_of_every_set_is_white),
+      cmocka_unit_test(shares_stand_a_quarter_apart),
+      cmocka_unit_test(together_they_tell_a_spectrum_better),
+      cmocka_unit_test(mirrors_have_one_set),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
