@@ -33,7 +33,7 @@ foreach(name
     printable_output
     render_command
     trace_command
-    turntable
+    tilt turntable
     validate_command
     )
   abbe_test(${name} program abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)

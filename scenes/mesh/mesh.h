@@ -78,7 +78,8 @@ abbe_result abbe_mesh_check(const abbe_mesh *mesh, abbe_mesh_report *report, abb
  * part of a sentence; empty where nothing does. */
 void abbe_mesh_report_faults(const abbe_mesh_report *report, char *text, size_t size);
 
-/* Fixes what is safe: drops degenerate faces and faces that are there twice, makes orientation
+/* Fixes what is safe: joins corners that lie up to 3e-4 of its size apart, if that closes it, drops
+ * degenerate faces and faces that are there twice, makes orientation
  * consistent, turns an inside-out mesh, closes flat or small holes. repair: closes holes of any
  * shape by the smallest surface, and drops what parts a body from itself: walls of faces back to
  * back (or one of them, where nothing is around), sheets that hang on it or stand in it. *what (may

@@ -12,9 +12,11 @@
 #include <string.h>
 
 typedef struct fixing {
-  size_t repeated, doubles, walls, sheets, slivers, turned, holes, inverted, crossings, solids;
+  size_t joined, repeated, doubles, walls, sheets, slivers, turned, holes, inverted, crossings,
+      solids;
   double volume;      /* that is enclosed */
   double widest;      /* hole, in the mesh's own unit */
+  double apart;       /* a joined corner, at the most, from the middle, likewise */
   double crossing[3]; /* where the surface crosses itself first */
 } fixing;
 
@@ -242,11 +244,15 @@ static void say(char *text, size_t size, size_t count, const char *one, const ch
 }
 
 static abbe_result describe(const fixing *done, bool repair, char **what, abbe_error *error) {
-  char text[640] = "", one[80], many[80];
+  char text[640] = "", one[80], many[80], corners[96];
+  abbe_number_format(corners, sizeof corners,
+                     "corners joined that lay up to %.3g from their middle, in the mesh's own unit",
+                     done->apart);
   abbe_number_format(one, sizeof one, "hole closed, %.3g across in the mesh's own unit",
                      done->widest);
   abbe_number_format(many, sizeof many,
                      "holes closed, the widest %.3g across in the mesh's own unit", done->widest);
+  say(text, sizeof text, done->joined, corners, corners);
   say(text, sizeof text, done->repeated, "face with repeated corners dropped",
       "faces with repeated corners dropped");
   say(text, sizeof text, done->doubles, "face that was there twice dropped",
@@ -355,17 +361,35 @@ static abbe_result fix(const abbe_topology *t, bool repair, fixing *done, abbe_m
   return result;
 }
 
+/* The mesh, or with its corners joined where that closes it, and the topology of that. */
+static abbe_result join(const abbe_mesh *mesh, abbe_mesh *joined, abbe_topology *t, fixing *done,
+                        abbe_error *error) {
+  abbe_topology own;
+  const abbe_result result =
+      abbe_mesh_join_corners(mesh, t, joined, &own, &done->joined, &done->apart, error);
+  if (result != ABBE_OK || done->joined == 0) return result;
+  abbe_topology_free(t);
+  *t = own;
+  return ABBE_OK;
+}
+
 abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repair, size_t *solids,
                           char **what, abbe_error *error) {
   ABBE_REQUIRE(mesh, error);
   if (what) *what = NULL;
   abbe_topology t;
   abbe_mesh_report report;
-  abbe_mesh work = {0};
+  abbe_mesh work = {0}, joined = {0};
   fixing done = {0};
   abbe_result result = abbe_topology_make(mesh, &t, error);
   if (result != ABBE_OK) return result;
   result = abbe_mesh_check_known(mesh, &t, &report, error);
+  if (result == ABBE_OK && report.open_edges > 0) {
+    result = join(mesh, &joined, &t, &done, error);
+    if (result == ABBE_OK && done.joined > 0)
+      result = abbe_mesh_check_known(&joined, &t, &report, error);
+  }
+  const abbe_mesh *from = done.joined > 0 ? &joined : mesh;
   /* what is sound, and nowhere there twice, has faces turned at the most */
   if (result == ABBE_OK && is_sound(&report) && report.touching_edges == 0) {
     result = welded(&t, &work, error);
@@ -373,16 +397,17 @@ abbe_result abbe_mesh_fix(abbe_mesh *mesh, abbe_mesh_normals normals, bool repai
   } else if (result == ABBE_OK) {
     result = fix(&t, repair, &done, &work, error);
   }
-  const bool changed = done.repeated + done.doubles + done.walls + done.sheets + done.slivers +
-                           done.turned + done.holes + done.inverted >
+  const bool changed = done.joined + done.repeated + done.doubles + done.walls + done.sheets +
+                           done.slivers + done.turned + done.holes + done.inverted >
                        0;
   if (result == ABBE_OK && changed && normals != ABBE_NORMALS_AUTO)
     result = abbe_mesh_drop_unused(&work, error);
   if (result == ABBE_OK && changed)
-    result = normals == ABBE_NORMALS_AUTO ? fixed_normals(mesh, &t, &work, error)
+    result = normals == ABBE_NORMALS_AUTO ? fixed_normals(from, &t, &work, error)
                                           : abbe_mesh_compute_normals(&work, normals, error);
   if (result == ABBE_OK) result = describe(&done, repair, what, error);
   abbe_topology_free(&t);
+  abbe_mesh_free(&joined);
   if (result == ABBE_OK && solids) *solids = done.solids;
   if (result == ABBE_OK && changed) {
     abbe_mesh_free(mesh);

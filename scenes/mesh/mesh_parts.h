@@ -34,6 +34,14 @@ double abbe_mesh_diagonal(const abbe_mesh *mesh, double centre[3]);
 /* Drops vertices that no face names. */
 abbe_result abbe_mesh_drop_unused(abbe_mesh *mesh, abbe_error *error);
 
+/* Of a mesh with open edges: a copy of it whose corners that lie a little apart are one, if that
+ * closes it, by the least of a few shares of its size up to 3e-4, with its topology. *moved: of so
+ * many points, by *farthest at the most, in the mesh's own unit; 0, and no copy, where that does
+ * not close it. */
+abbe_result abbe_mesh_join_corners(const abbe_mesh *mesh, const abbe_topology *topology,
+                                   abbe_mesh *joined, abbe_topology *own, size_t *moved,
+                                   double *farthest, abbe_error *error);
+
 /* Steps of fixing, over a mesh of one vertex a point. */
 
 /* Drops faces that are there twice and counts them; in walls: that lie on one another back to back,

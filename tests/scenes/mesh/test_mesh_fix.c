@@ -33,6 +33,45 @@ static void a_sound_mesh_is_left_alone(void **state) {
   abbe_mesh_free(&m);
 }
 
+/* Faces with corners of their own, each rounded in another way by up to `off` of the size. */
+static abbe_mesh torn_sphere(double off) {
+  abbe_mesh whole = test_sphere(2), m;
+  uint32_t random = 1;
+  assert_int_equal(abbe_mesh_make(3 * whole.face_count, whole.face_count, false, &m, NULL),
+                   ABBE_OK);
+  for (size_t f = 0; f < whole.face_count; f++)
+    for (size_t k = 0; k < 3; k++) {
+      const size_t v = 3 * f + k;
+      m.face[f][k] = (uint32_t)v;
+      for (int i = 0; i < 3; i++) {
+        random = random * 1664525u + 1013904223u;
+        m.position[v][i] = whole.position[whole.face[f][k]][i] +
+                           off * sqrt(12) / sqrt(3) * ((double)random / 4294967296.0 - 0.5);
+        m.normal[v][i] = whole.normal[whole.face[f][k]][i];
+      }
+    }
+  abbe_mesh_free(&whole);
+  return m;
+}
+
+static void corners_that_lie_a_little_apart_are_joined(void **state) {
+  (void)state;
+  static const double off[] = {1e-9, 1e-7, 1e-6, 1e-5};
+  for (size_t i = 0; i < sizeof off / sizeof *off; i++) {
+    abbe_mesh m = torn_sphere(off[i]);
+    assert_int_equal(test_mesh_faults(&m).open_edges > 0, off[i] > 1e-8);
+    assert_fixes(&m, off[i] > 1e-8 ? "corners joined that lay up to" : NULL);
+    assert_near(test_mesh_faults(&m).volume, 4.0 / 3 * 3.14159265, 0.2);
+    abbe_mesh_free(&m);
+  }
+  /* farther apart than that they are another mesh's business */
+  abbe_mesh m = torn_sphere(1e-2);
+  abbe_error error = {0};
+  assert_int_equal(abbe_mesh_fix(&m, ABBE_NORMALS_SMOOTH, false, NULL, NULL, &error),
+                   ABBE_GEOMETRY);
+  abbe_mesh_free(&m);
+}
+
 static void an_inverted_mesh_is_turned(void **state) {
   (void)state;
   abbe_mesh m = test_sphere(2);
@@ -413,6 +452,7 @@ static void fixing_keeps_given_normals(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_sound_mesh_is_left_alone),
+      cmocka_unit_test(corners_that_lie_a_little_apart_are_joined),
       cmocka_unit_test(an_inverted_mesh_is_turned),
       cmocka_unit_test(single_flipped_faces_are_turned),
       cmocka_unit_test(small_and_flat_holes_are_closed),
