@@ -101,14 +101,47 @@ static abbe_result take_plane_normals(abbe_mesh *mesh, const double (*plane)[4],
   return result;
 }
 
+/* The planes of a mesh; it is a solid where out->exact.convex says so. */
+static abbe_result find_planes(abbe_object *out, double (*plane)[4], uint32_t *plane_of,
+                               abbe_error *error) {
+  return abbe_convex_find(&out->mesh, ABBE_SCENE_MAX_PLANES, plane, plane_of, &out->exact.convex,
+                          error);
+}
+
+/* Triangles that lie off their planes by more than rounding become those of the planes: what leaves
+ * a plane would meet the triangle that stands before it. The mesh stays where planes of their means
+ * are no solid. */
+static abbe_result straighten(abbe_object *out, double (*plane)[4], uint32_t **plane_of,
+                              abbe_error *error) {
+  static const double tolerance[] = ABBE_CONVEX_TOLERANCES;
+  const abbe_convex found = out->exact.convex;
+  double moved = 0;
+  if (found.tolerance <= tolerance[0]) return ABBE_OK;
+  abbe_result result = ABBE_GEOMETRY;
+  for (int times = 1; times <= 3 && result == ABBE_GEOMETRY; times += 2)
+    result = abbe_convex_flatten(&out->mesh, times * found.tolerance, ABBE_SCENE_MAX_PLANES, &moved,
+                                 error);
+  if (result == ABBE_GEOMETRY) return ABBE_OK;
+  if (result == ABBE_OK)
+    result = abbe_mesh_fix(&out->mesh, ABBE_NORMALS_FLAT, false, NULL, NULL, error);
+  if (result != ABBE_OK) return result;
+  uint32_t *room = realloc(*plane_of, (out->mesh.face_count + 1) * sizeof *room);
+  if (room == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
+  *plane_of = room;
+  result = find_planes(out, plane, *plane_of, error);
+  out->exact.convex.tolerance = found.tolerance; /* of the file */
+  return result;
+}
+
 static abbe_result convex(abbe_object *out, abbe_error *error) {
   const double alike = 1e-9; /* rad */
   double(*plane)[4] = malloc(ABBE_SCENE_MAX_PLANES * sizeof *plane);
   uint32_t *plane_of = malloc((out->mesh.face_count + 1) * sizeof *plane_of);
   abbe_result result = plane && plane_of
-                           ? abbe_convex_find(&out->mesh, ABBE_SCENE_MAX_PLANES, plane, plane_of,
-                                              &out->exact.convex, error)
+                           ? find_planes(out, plane, plane_of, error)
                            : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for face planes");
+  if (result == ABBE_OK && out->exact.convex.verdict == ABBE_CONVEX_SOLID)
+    result = straighten(out, plane, &plane_of, error);
   const bool found = result == ABBE_OK && out->exact.convex.verdict == ABBE_CONVEX_SOLID;
   if (found && out->exact.convex.off > alike)
     result = take_plane_normals(&out->mesh, (const double(*)[4])plane, plane_of, error);

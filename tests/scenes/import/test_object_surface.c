@@ -214,8 +214,70 @@ static void a_stone_is_cut_and_a_ball_is_round(void **state) {
   abbe_scene_free(&scene);
 }
 
+enum { CUTS = 4 };
+
+/* A cube of side 1 whose faces are cut into CUTS x CUTS squares, all corners off by `off` at most.
+ */
+static abbe_mesh rough_cube(double off) {
+  abbe_mesh m;
+  assert_int_equal(abbe_mesh_make(6 * (CUTS + 1) * (CUTS + 1), 12 * CUTS * CUTS, false, &m, NULL),
+                   ABBE_OK);
+  size_t v = 0, f = 0;
+  for (int side = 0; side < 6; side++)
+    for (int j = 0; j <= CUTS; j++)
+      for (int i = 0; i <= CUTS; i++, v++) {
+        const int axis = side / 2, up = side % 2;
+        int at[3];
+        at[axis] = up ? CUTS : 0;
+        at[(axis + 1) % 3] = up ? i : j;
+        at[(axis + 2) % 3] = up ? j : i;
+        const unsigned key = (unsigned)(at[0] + 8 * at[1] + 64 * at[2]);
+        for (int k = 0; k < 3; k++)
+          m.position[v][k] = (double)at[k] / CUTS +
+                             off * ((double)((key * 2654435761u >> (8 * k)) % 256) / 127.5 - 1);
+        if (i == CUTS || j == CUTS) continue;
+        const uint32_t a = (uint32_t)v, row = CUTS + 1;
+        const uint32_t faces[2][3] = {{a, a + 1, a + row + 1}, {a, a + row + 1, a + row}};
+        memcpy(m.face[f], faces, sizeof faces);
+        f += 2;
+      }
+  assert_int_equal(abbe_mesh_compute_normals(&m, ABBE_NORMALS_FLAT, NULL), ABBE_OK);
+  return m;
+}
+
+/* What is known by its planes has triangles in them: light that leaves a plane meets none. */
+static void triangles_of_a_rough_solid_lie_in_its_planes(void **state) {
+  (void)state;
+  static const double off[] = {0, 1e-6, 8e-6};
+  for (size_t i = 0; i < sizeof off / sizeof *off; i++) {
+    abbe_object_surface s = request();
+    abbe_scene scene = place(rough_cube(off[i]), &s, true);
+    const abbe_object *o = &scene.object[0];
+    char why[160];
+    abbe_convex_reason(&o->exact.convex, why, sizeof why);
+    if (o->exact.kind != ABBE_EXACT_CONVEX) fail_msg("%g: %s", off[i], why);
+    assert_int_equal(o->exact.count, 6);
+    for (size_t f = 0; f < o->mesh.face_count; f++) {
+      double nearest = 1;
+      for (size_t p = 0; p < 6; p++) {
+        double farthest = 0;
+        for (int k = 0; k < 3; k++)
+          farthest =
+              fmax(farthest,
+                   fabs(abbe_vector_dot(o->exact.plane[p], o->mesh.position[o->mesh.face[f][k]]) -
+                        o->exact.plane[p][3]));
+        nearest = fmin(nearest, farthest);
+      }
+      assert_near(nearest, 0, 1e-12);
+    }
+    assert_true(off[i] == 0 || o->exact.convex.tolerance > 2e-6);
+    abbe_scene_free(&scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(triangles_of_a_rough_solid_lie_in_its_planes),
       cmocka_unit_test(a_size_and_a_place_are_taken_from_the_bounds),
       cmocka_unit_test(what_is_dropped_has_no_size),
       cmocka_unit_test(a_ball_is_fitted_as_a_ball),
