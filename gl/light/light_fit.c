@@ -5,7 +5,25 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 1024, TURNS = 4 };
+enum { SIDE = 1024, TURNS = 4, COARSE = 32 };
+
+/* Rays of a part of the lattice that reach refractors, into the box that was found. */
+static void ask(const abbe_light_fit *fit, int left, int bottom, int width, int height,
+                int spacing) {
+  const abbe_gl *gl = fit->views->scene->gpu->gl;
+  abbe_gpu *gpu = fit->views->scene->gpu;
+  if (width <= 0 || height <= 0) return;
+  gl->Uniform2i(gl->GetUniformLocation(fit->program, "first"), left, bottom);
+  gl->Uniform2i(gl->GetUniformLocation(fit->program, "count"), width, height);
+  abbe_gpu_set_int(gpu, fit->program, "spacing", spacing);
+  abbe_gpu_dispatch_2d(gpu, fit->program, (size_t)width, (size_t)height);
+}
+
+static void read_box(const abbe_light_fit *fit, GLuint found[4]) {
+  const abbe_gl *gl = fit->views->scene->gpu->gl;
+  gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 4 * sizeof *found, found);
+}
 
 /* The window of lit rays, in whole rays: least and greatest column, then row. */
 static void find_lit(const abbe_light_fit *fit, size_t light, GLuint found[4]) {
@@ -22,9 +40,20 @@ static void find_lit(const abbe_light_fit *fit, size_t light, GLuint found[4]) {
   abbe_gpu_set_int(scene->gpu, fit->program, "light", (int)light);
   abbe_gpu_set_int(scene->gpu, fit->program, "side", SIDE);
   abbe_gpu_bind_storage(scene->gpu, BINDING_FOUND_BOX, fit->found);
-  abbe_gpu_dispatch_2d(scene->gpu, fit->program, SIDE, SIDE);
-  gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 4 * sizeof *found, found);
+  /* What lies within the box of a few rays makes it no larger: only the rays around are asked. */
+  ask(fit, COARSE / 2, COARSE / 2, SIDE / COARSE, SIDE / COARSE, COARSE);
+  read_box(fit, found);
+  if (found[0] > found[1]) {
+    ask(fit, 0, 0, SIDE, SIDE, 1);
+  } else {
+    const int left = (int)found[0], right = (int)found[1] + 1;
+    const int bottom = (int)found[2], top = (int)found[3] + 1;
+    ask(fit, 0, 0, left, SIDE, 1);
+    ask(fit, right, 0, SIDE - right, SIDE, 1);
+    ask(fit, left, 0, right - left, bottom, 1);
+    ask(fit, left, top, right - left, SIDE - top, 1);
+  }
+  read_box(fit, found);
 }
 
 /* Each turn sees as finely as the last one left the view, and leaves a ray's width on every side.

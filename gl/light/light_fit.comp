@@ -10,14 +10,17 @@ layout(local_size_x = 32, local_size_y = 16) in;
 #include "photon_start.glsl"
 
 uniform int side;  // rays
+uniform ivec2 first, count;
+uniform int spacing;
 layout(std430, binding = BINDING_FOUND_BOX) buffer Box { uint box[4]; };  // left, right, bottom, top
 
 void main() {
   copy_tables();
   copy_surroundings();
   copy_light();
-  uvec2 at = texel_number();
-  if (max(at.x, at.y) >= uint(side)) return;
+  uvec2 number = texel_number();
+  if (number.x >= uint(count.x) || number.y >= uint(count.y)) return;
+  uvec2 at = uvec2(first) + number * uint(spacing);
   vec3 o, d;
   Hit front;
   float flux;
