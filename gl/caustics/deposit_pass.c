@@ -2,7 +2,8 @@
 
 #include "gl/device/bindings.h"
 
-enum { SPLAT_BYTES = 48, FIRST_SPLATS = 5 << 17, MAX_SPLATS = 4 << 20 };
+enum { SPLAT_BYTES = 48, LEAST_SPLATS = 1 << 12, FIRST_SPLATS = 5 << 17, MAX_SPLATS = 4 << 20 };
+enum { SPLATS_A_HIT = 4 }; /* as room is made for at first; the first frame makes more */
 
 static const abbe_gpu_scene *scene_of(const abbe_deposit_pass *pass) {
   return pass->trace->spectra->scene;
@@ -16,6 +17,13 @@ static abbe_result make_room(abbe_deposit_pass *pass, size_t splats, abbe_error 
                               error);
 }
 
+/* The pages of a room are written before the first frame, so few photons have a small one. */
+static size_t first_room(const abbe_trace_pass *trace) {
+  const size_t wavelengths = trace->spectra->scene->plan->desc.wavelengths;
+  const size_t splats = trace->most_photons * wavelengths * SPLATS_A_HIT;
+  return splats < LEAST_SPLATS ? LEAST_SPLATS : splats < FIRST_SPLATS ? splats : FIRST_SPLATS;
+}
+
 abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refine_pass *refine,
                                    abbe_spectral_map *map, const abbe_shader_variant *photons,
                                    const abbe_shader_variant *scene, abbe_deposit_pass *out,
@@ -27,7 +35,7 @@ abbe_result abbe_deposit_pass_make(const abbe_trace_pass *trace, const abbe_refi
       abbe_shader_variant_compute(photons, gpu, "photon_deposit.comp", NULL, &out->list, error);
   if (result == ABBE_OK)
     result = abbe_shader_variant_compute(scene, gpu, "photon_splat.comp", NULL, &out->add, error);
-  return result == ABBE_OK ? make_room(out, FIRST_SPLATS, error) : result;
+  return result == ABBE_OK ? make_room(out, first_room(trace), error) : result;
 }
 
 void abbe_deposit_pass_free(abbe_deposit_pass *pass) {

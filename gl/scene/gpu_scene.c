@@ -137,6 +137,9 @@ static abbe_result upload_textures(abbe_gpu_scene *scene, gpu_surface *surface, 
   scene->gpu->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
   float *texel = malloc(width * height * 4 * sizeof *texel);
   if (texel == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a texture");
+  double to_xyz[9], from_xyz[9];
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
+  abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(scene), from_xyz);
   int layer = 0;
   for (size_t i = 0; i < scene->plan->receiver_count; i++) {
     const abbe_image *t = &scene->local->object[scene->plan->receiver_object[i]].texture;
@@ -147,7 +150,8 @@ static abbe_result upload_textures(abbe_gpu_scene *scene, gpu_surface *surface, 
             t->data +
             ((height - 1 - y) * t->height / height * t->width + x * t->width / width) * t->channels;
         double rgb[3] = {from[0], from[1], from[2]};
-        abbe_gpu_scene_to_working(scene, rgb, rgb);
+        abbe_rgb_space_apply(to_xyz, rgb, rgb);
+        abbe_rgb_space_apply(from_xyz, rgb, rgb);
         abbe_float4_store(rgb, 1, texel + 4 * (y * width + x));
       }
     scene->gpu->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width,
@@ -275,11 +279,11 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
   const abbe_gl *gl = scene->gpu->gl;
   const struct {
     GLuint binding, buffer;
-  } tables[] = {{BINDING_REFRACTORS, scene->refractors}, {BINDING_PLANES, scene->planes},
-                {BINDING_RECEIVERS, scene->receivers},   {BINDING_SURFACES, scene->surfaces},
-                {BINDING_SPECTRA, scene->spectra},       {BINDING_BANDS, scene->bands},
-                {BINDING_SHADOW_PLANES, scene->shadows},
-                {BINDING_SOFT_LIGHT, scene->environment.soft_light}};
+  } tables[] = {
+      {BINDING_REFRACTORS, scene->refractors}, {BINDING_PLANES, scene->planes},
+      {BINDING_RECEIVERS, scene->receivers},   {BINDING_SURFACES, scene->surfaces},
+      {BINDING_SPECTRA, scene->spectra},       {BINDING_BANDS, scene->bands},
+      {BINDING_SHADOW_PLANES, scene->shadows}, {BINDING_SOFT_LIGHT, scene->environment.soft_light}};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
     if (tables[i].buffer == 0) continue;
     /* As blocks and as storage: the shaders choose by size. */
