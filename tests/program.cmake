@@ -83,3 +83,17 @@ add_test(NAME reference_broken_wavelengths
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
           --broken prism --wavelengths 1)
 abbe_label(program NAMES reference_broken_exits reference_broken_wavelengths)
+
+foreach(name view_camera view_document view_refine view_state)
+  abbe_test(${name} cpu abbe_view_state abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
+endforeach()
+abbe_test(view_command program abbe_colorimetry abbe_spectral abbe_base)
+target_compile_definitions(test_view_command PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>"
+  $<$<BOOL:${ABBE_VIEWER}>:ABBE_HAVE_VIEW>)
+add_dependencies(test_view_command abbe)
+if(ABBE_VIEWER)
+  add_test(NAME view_window COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/window
+    $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
+  abbe_label(program NAMES view_window)
+  set_tests_properties(view_window PROPERTIES SKIP_RETURN_CODE 77)
+endif()

@@ -20,6 +20,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
  * argv[0] is "abbe NAME". */
 #define ABBE_COMMANDS(X)                                                                           \
   X(render, "render a scene to OpenEXR and PNG")                                                   \
+  X(view, "show a scene in a window: turn it, change it, see the light follow")                    \
   X(trace, "trace the reference: what light really does, with standard errors")                    \
   X(plan, "say which passes and models a scene asks for, and why")                                 \
   X(materials, "look into, edit, convert and check tables of materials")                           \

@@ -401,16 +401,24 @@ static abbe_result read_document(abbe_yaml *yaml, const char *path,
   return result;
 }
 
-/* The text with the changes in it, as a document. */
+/* The text with the changes in it. */
+static abbe_result change_text(const char *text, size_t size, const char *name,
+                               const abbe_scene_options *options, abbe_yaml_edit *out,
+                               abbe_error *error) {
+  abbe_result result = abbe_yaml_edit_make(text, size, name, out, error);
+  if (result == ABBE_OK && options && options->stone)
+    result = abbe_scene_change_material(out, options->stone, error);
+  for (size_t i = 0; options && i < options->set_count && result == ABBE_OK; i++)
+    result = abbe_scene_change_set(out, options->set[i], error);
+  return result;
+}
+
+/* The same as a document. */
 static abbe_result parse_changed(const char *text, size_t size, const char *name,
                                  const abbe_scene_options *options, abbe_yaml **out,
                                  abbe_error *error) {
   abbe_yaml_edit edit = {0};
-  abbe_result result = abbe_yaml_edit_make(text, size, name, &edit, error);
-  if (result == ABBE_OK && options->stone)
-    result = abbe_scene_change_material(&edit, options->stone, error);
-  for (size_t i = 0; i < options->set_count && result == ABBE_OK; i++)
-    result = abbe_scene_change_set(&edit, options->set[i], error);
+  abbe_result result = change_text(text, size, name, options, &edit, error);
   if (result == ABBE_OK) result = abbe_yaml_parse(edit.text, edit.size, name, out, error);
   abbe_yaml_edit_free(&edit);
   return result;
@@ -446,4 +454,24 @@ abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
   abbe_result result = changes(options) ? parse_changed(text, size, name, options, &yaml, error)
                                         : abbe_yaml_parse(text, size, name, &yaml, error);
   return result == ABBE_OK ? read_document(yaml, name, options, out, error) : result;
+}
+
+abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,
+                            size_t *size, abbe_error *error) {
+  ABBE_REQUIRE(path && out && size, error);
+  abbe_yaml_edit edit = {0};
+  char *text = NULL;
+  size_t bytes = 0;
+  *out = NULL;
+  *size = 0;
+  abbe_result result = abbe_file_read_text(path, SCENE_MOST_BYTES, &text, &bytes, error);
+  if (result == ABBE_OK) result = change_text(text, bytes, path, options, &edit, error);
+  free(text);
+  if (result == ABBE_OK) {
+    *out = edit.text;
+    *size = edit.size;
+    edit.text = NULL;
+  }
+  abbe_yaml_edit_free(&edit);
+  return result;
 }

@@ -10,9 +10,9 @@ extern "C" {
 
 /* Zeroed: as the file says. */
 typedef struct abbe_scene_options {
-  const char *materials; /* table to use instead of the file's: a path, "default" or "thesis" */
-  const char *const *set; /* set_count of "PATH=VALUE": keys with dots between them, of a list's item
-                             its number from 0 or its name, and one line of YAML; in order */
+  const char *materials;  /* table to use instead of the file's: a path, "default" or "thesis" */
+  const char *const *set; /* set_count of "PATH=VALUE": keys with dots between them, of a list's
+                             item its number from 0 or its name, and one line of YAML; in order */
   size_t set_count;
   const char *stone; /* "STONE", what all refractors are made of instead of one material; or
                         "NAME=STONE", of a material or an object; before set; NULL: as it is */
@@ -24,8 +24,13 @@ abbe_result abbe_scene_load(const char *path, const abbe_scene_options *options,
                             abbe_error *error);
 /* The same from text; name stands for the path, in messages and for relative paths. */
 abbe_result abbe_scene_parse(const char *text, size_t size, const char *name,
-                             const abbe_scene_options *options, abbe_scene *out,
-                             abbe_error *error);
+                             const abbe_scene_options *options, abbe_scene *out, abbe_error *error);
+
+/* The file's text with the changes of `set` and `stone` in it, every other byte as it was: what the
+ * file would have to be for the scene that abbe_scene_load makes with them. *out is malloc'd and
+ * ended by a zero byte that *size does not count. It is not read as a scene. */
+abbe_result abbe_scene_text(const char *path, const abbe_scene_options *options, char **out,
+                            size_t *size, abbe_error *error);
 
 #ifdef __cplusplus
 }

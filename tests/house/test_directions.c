@@ -24,7 +24,7 @@ static const struct {
 /* The exceptions: the sweep compares both pictures; C++ stays in the bridges. */
 static const char *const exception_files = "validation/sweep/", *const exception_room = "gl";
 static const char *const bridges[] = {
-    "colorimetry/image/display_ocio.cpp", "scenes/geometry/transform.cpp",
+    "cli/view/view_ui.cpp", "colorimetry/image/display_ocio.cpp", "scenes/geometry/transform.cpp",
     "tests/colorimetry/image/exr_library.cpp"};
 
 static bool may_use(const char *file, const char *used) {

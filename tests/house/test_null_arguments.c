@@ -85,6 +85,7 @@ static const struct {
     {"abbe_scaling_study_measure", "user"},
     {"abbe_scene_load", "options"},
     {"abbe_scene_parse", "options"},
+    {"abbe_scene_text", "options"},
     {"abbe_shader_write", "report"},
     {"abbe_shadow_planes_make", "plane"},
     {"abbe_picture_front_load", "path"},

@@ -428,6 +428,32 @@ static void text_is_read_like_a_file(void **state) {
   assert_null(parsed.object);
 }
 
+/* Only what was set differs; without changes nothing does. */
+static void texts_differ_where_something_was_set(void **state) {
+  (void)state;
+  static const char path[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
+  const char *set = "lights.lamp.cone=40";
+  const abbe_scene_options options = {.set = &set, .set_count = 1, .stone = "diamond"};
+  char *plain, *changed;
+  size_t plain_size, changed_size;
+  assert_int_equal(abbe_scene_text(path, NULL, &plain, &plain_size, NULL), ABBE_OK);
+  assert_int_equal(abbe_scene_text(path, &options, &changed, &changed_size, NULL), ABBE_OK);
+  char *cone = strstr(plain, "cone: 45"), *stone = strstr(plain, "material: n-sf11");
+  assert_true(cone != NULL && stone != NULL && strlen(plain) == plain_size);
+  const size_t to_cone = (size_t)(cone - plain), after = to_cone + strlen("cone: 45");
+  assert_memory_equal(plain, changed, to_cone);
+  assert_memory_equal(changed + to_cone, "cone: 40", 8);
+  assert_memory_equal(plain + after, changed + after, (size_t)(stone - plain) - after);
+  assert_non_null(strstr(changed, "material: diamond\n"));
+  assert_int_equal(changed_size, plain_size + strlen("diamond") - strlen("n-sf11"));
+  free(plain);
+  free(changed);
+  set = "lights.lamb.cone=40";
+  assert_int_equal(abbe_scene_text(path, &options, &changed, &changed_size, NULL),
+                   ABBE_INVALID_ARGUMENT);
+  assert_null(changed);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_shipped_scene_loads),
@@ -436,6 +462,7 @@ int main(void) {
       cmocka_unit_test(the_rainbow_falls_on_the_screen),
       cmocka_unit_test(the_glass_stands_on_textured_wood),
       cmocka_unit_test(options_choose_another_table),
+      cmocka_unit_test(texts_differ_where_something_was_set),
       cmocka_unit_test(values_are_set_by_their_path),
       cmocka_unit_test(a_stone_takes_anothers_place),
       cmocka_unit_test(bad_scenes_are_explained),

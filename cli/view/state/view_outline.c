@@ -1,0 +1,239 @@
+#include "cli/view/state/view_outline.h"
+
+#include "base/number.h"
+#include "base/yaml/yaml.h"
+#include "scenes/geometry/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LONGEST_TRANSFORM = 1024 };
+
+/* What shapes are set by, as docs/scene-files.md has them. */
+static const struct {
+  const char *shape, *key, *label, *unit;
+  double scale, initial, min, max;
+} values[] = {
+    {"gem", "crown", "crown height", "mm", 1e3, 0, 0.001, 0.1},
+    {"gem", "pavilion", "pavilion depth", "mm", 1e3, 0, 0.001, 0.1},
+    {"gem", "girdle", "girdle radius", "mm", 1e3, 0, 0.005, 0.1},
+    {"gem", "table", "table radius", "mm", 1e3, 0, 0.002, 0.1},
+    {"brilliant", "crown", "crown angle", "\u00b0", 1, 34.5, 20, 50},
+    {"brilliant", "pavilion", "pavilion angle", "\u00b0", 1, 40.75, 35, 50},
+    {"brilliant", "table", "table, of diameter", "", 1, 0.56, 0.4, 0.75},
+    {"brilliant", "diameter", "diameter", "mm", 1e3, 0, 0.001, 0.1},
+    {"cut", "width", "width", "mm", 1e3, 0, 0.001, 0.1},
+    {"sphere", "radius", "radius", "mm", 1e3, 0, 0.001, 0.2},
+    {"ring", "major", "major radius", "mm", 1e3, 0, 0.005, 0.2},
+    {"ring", "minor", "minor radius", "mm", 1e3, 0, 0.001, 0.05},
+    {"prism", "apex", "apex angle", "\u00b0", 1, 60, 10, 90},
+};
+
+static void number_of(abbe_yaml *yaml, abbe_yaml_node node, const char *key, double *out) {
+  abbe_yaml_get_number(yaml, node, key, -1e30, 1e30, out, NULL);
+}
+
+/* "KIND.NAME" where the name is the item's own, else "KIND.NUMBER". */
+static void key_of(abbe_yaml *yaml, const char *kind, abbe_yaml_node list, size_t index,
+                   char *out) {
+  const char *name =
+      abbe_yaml_text(yaml, abbe_yaml_get(yaml, abbe_yaml_item(yaml, list, index), "name"));
+  bool own = name != NULL && strpbrk(name, "=.") == NULL && strlen(name) < ABBE_VIEW_NAME &&
+             name[0] != '\0' && strspn(name, "0123456789") != strlen(name);
+  for (size_t i = 0; own && i < abbe_yaml_count(yaml, list); i++) {
+    const char *other =
+        abbe_yaml_text(yaml, abbe_yaml_get(yaml, abbe_yaml_item(yaml, list, i), "name"));
+    own = i == index || other == NULL || strcmp(other, name) != 0;
+  }
+  if (own)
+    snprintf(out, ABBE_VIEW_KEY, "%.30s.%.90s", kind, name);
+  else
+    snprintf(out, ABBE_VIEW_KEY, "%.30s.%zu", kind, index);
+}
+
+static void join(const char *key, const char *value, char *out) {
+  char whole[2 * ABBE_VIEW_KEY];
+  snprintf(whole, sizeof whole, "%s.%s", key, value);
+  memcpy(out, whole, ABBE_VIEW_KEY);
+  out[ABBE_VIEW_KEY - 1] = '\0';
+}
+
+static void make_light(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const abbe_light *light,
+                       abbe_view_light *out) {
+  static const char *const keys[] = {"intensity", "intensity", "irradiance", "radiance",
+                                     "radiance"};
+  static const char *const units[] = {"W/sr", "W/sr", "W/m\u00b2", "W/(m\u00b2 sr)",
+                                      "W/(m\u00b2 sr)"};
+  const abbe_yaml_node node = abbe_yaml_item(yaml, list, i);
+  key_of(yaml, "lights", list, i, out->key);
+  snprintf(out->name, sizeof out->name, "%.79s", light->name);
+  out->kind = light->kind;
+  out->placed = abbe_yaml_get(yaml, node, "position").id != 0;
+  memcpy(out->position, light->position, sizeof out->position);
+  out->power = (abbe_view_value){
+      .label = keys[light->kind], .unit = units[light->kind], .value = light->power, .scale = 1};
+  join(out->key, keys[light->kind], out->power.key);
+  /* from a round number on, which mostly stays when the value moves */
+  const double decade = pow(10, ceil(log10(light->power)));
+  out->power.min = decade / 100;
+  out->power.max = decade * 2;
+}
+
+/* A node as one line, with no more room than that. */
+static bool flow(abbe_yaml *yaml, abbe_yaml_node node, char *out, size_t size) {
+  const char *text = abbe_yaml_text(yaml, node);
+  size_t used = 0;
+  if (text != NULL) return snprintf(out, size, "%s", text) < (int)size;
+  const bool mapping = abbe_yaml_is_mapping(yaml, node);
+  const size_t count = abbe_yaml_count(yaml, node);
+  if (size < 3) return false;
+  out[used++] = mapping ? '{' : '[';
+  for (size_t i = 0; i < count; i++) {
+    const abbe_yaml_node value =
+        mapping ? abbe_yaml_value(yaml, node, i) : abbe_yaml_item(yaml, node, i);
+    const char *key = mapping ? abbe_yaml_text(yaml, abbe_yaml_key(yaml, node, i)) : "";
+    const int n =
+        snprintf(out + used, size - used, "%s%s%s", i > 0 ? ", " : "", key, mapping ? ": " : "");
+    if (n < 0 || (size_t)n >= size - used) return false;
+    used += (size_t)n;
+    if (!flow(yaml, value, out + used, size - used)) return false;
+    used += strlen(out + used);
+  }
+  if (used + 2 > size) return false;
+  out[used++] = mapping ? '}' : ']';
+  out[used] = '\0';
+  return true;
+}
+
+/* How the object was put there; false where it cannot be said in a line, or memory lacks. */
+static bool read_transform(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_object *out) {
+  const abbe_yaml_node list = abbe_yaml_get(yaml, node, "transform");
+  char text[LONGEST_TRANSFORM] = "";
+  size_t count = abbe_yaml_count(yaml, list), used = 0;
+  const abbe_yaml_node last = count > 0 ? abbe_yaml_item(yaml, list, count - 1) : list;
+  if (count > 0 && abbe_yaml_get(yaml, last, "translate").id != 0) {
+    abbe_yaml_get_numbers(yaml, last, "translate", 3, -1e30, 1e30, out->translate, NULL);
+    count--;
+  }
+  for (size_t i = 0; i < count; i++) {
+    if (i > 0) used += (size_t)snprintf(text + used, sizeof text - used, ", ");
+    if (used + 8 > sizeof text ||
+        !flow(yaml, abbe_yaml_item(yaml, list, i), text + used, sizeof text - used - 8))
+      return false;
+    used += strlen(text + used);
+  }
+  return (out->before = strdup(text)) != NULL;
+}
+
+static void read_values(abbe_yaml *yaml, abbe_yaml_node node, abbe_view_object *out) {
+  const char *shape = abbe_yaml_text(yaml, abbe_yaml_get(yaml, node, "shape"));
+  for (size_t i = 0; shape != NULL && i < sizeof values / sizeof *values; i++) {
+    if (strcmp(values[i].shape, shape) != 0 || out->value_count == ABBE_VIEW_MOST_VALUES) continue;
+    abbe_view_value *v = &out->value[out->value_count++];
+    *v = (abbe_view_value){.label = values[i].label,
+                           .unit = values[i].unit,
+                           .value = values[i].initial,
+                           .min = values[i].min,
+                           .max = values[i].max,
+                           .scale = values[i].scale};
+    join(out->key, values[i].key, v->key);
+    number_of(yaml, node, values[i].key, &v->value);
+  }
+}
+
+/* The object that was read from that line on, where it is the only one of it. */
+static const abbe_object *object_at(const abbe_scene *scene, size_t line) {
+  const abbe_object *found = NULL;
+  for (size_t i = 0; i < scene->object_count; i++) {
+    if (scene->object[i].line != line) continue;
+    if (found != NULL) return NULL;
+    found = &scene->object[i];
+  }
+  return found;
+}
+
+static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const abbe_scene *scene,
+                        abbe_view_outline *outline) {
+  const abbe_yaml_node node = abbe_yaml_item(yaml, list, i);
+  const abbe_object *object = object_at(scene, abbe_yaml_line(yaml, node));
+  abbe_view_object *out = &outline->object[outline->object_count];
+  double half[3];
+  *out = (abbe_view_object){0};
+  if (object == NULL || !read_transform(yaml, node, out)) return;
+  key_of(yaml, "objects", list, i, out->key);
+  snprintf(out->name, sizeof out->name, "%.79s", object->name);
+  if (object->material != NULL)
+    snprintf(out->material, sizeof out->material, "%.79s", object->material->name);
+  for (int k = 0; k < 3; k++) {
+    out->middle[k] = 0.5 * (object->min[k] + object->max[k]);
+    half[k] = 0.5 * (object->max[k] - object->min[k]);
+  }
+  out->radius = abbe_vector_length(half);
+  read_values(yaml, node, out);
+  outline->object_count++;
+}
+
+static bool read_stones(const abbe_material_table *table, abbe_view_outline *out) {
+  for (size_t i = 0; i < table->count && out->stone_count < ABBE_VIEW_MOST_STONES; i++) {
+    out->stone[out->stone_count] = strdup(table->material[i].name);
+    if (out->stone[out->stone_count] == NULL) return false;
+    out->stone_count++;
+  }
+  return true;
+}
+
+abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, size_t size,
+                                   abbe_view_outline *out, abbe_error *error) {
+  abbe_yaml *yaml = NULL;
+  *out = (abbe_view_outline){.camera = scene->camera};
+  abbe_result result = abbe_yaml_parse(text, size, scene->path, &yaml, error);
+  if (result != ABBE_OK) return result;
+  const abbe_yaml_node root = abbe_yaml_root(yaml);
+  const abbe_yaml_node lights = abbe_yaml_get(yaml, root, "lights");
+  const abbe_yaml_node objects = abbe_yaml_get(yaml, root, "objects");
+  for (size_t i = 0; i < scene->light_count && i < abbe_yaml_count(yaml, lights); i++)
+    make_light(yaml, lights, i, &scene->light[i], &out->light[out->light_count++]);
+  for (size_t i = 0; i < abbe_yaml_count(yaml, objects); i++)
+    if (out->object_count < ABBE_VIEW_MOST_OBJECTS) make_object(yaml, objects, i, scene, out);
+  out->surrounded = scene->environment != NULL;
+  out->rotate = (abbe_view_value){.key = "environment.rotate",
+                                  .label = "rotation",
+                                  .unit = "\u00b0",
+                                  .min = -180,
+                                  .max = 180,
+                                  .scale = 1};
+  if (out->surrounded)
+    number_of(yaml, abbe_yaml_get(yaml, root, "environment"), "rotate", &out->rotate.value);
+  out->ambient = (abbe_view_value){.key = "ambient",
+                                   .label = "ambient",
+                                   .unit = "W/m\u00b2",
+                                   .value = scene->ambient,
+                                   .max = 2,
+                                   .scale = 1};
+  if (!read_stones(&scene->table, out))
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the names of materials");
+  abbe_yaml_free(yaml);
+  if (result != ABBE_OK) abbe_view_outline_free(out);
+  return result;
+}
+
+void abbe_view_outline_free(abbe_view_outline *outline) {
+  for (size_t i = 0; i < outline->object_count; i++) free(outline->object[i].before);
+  for (size_t i = 0; i < outline->stone_count; i++) free(outline->stone[i]);
+  *outline = (abbe_view_outline){0};
+}
+
+bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad,
+                                 const double axis[3], const double translate[3], char *out,
+                                 size_t size) {
+  char tilt[160] = "";
+  const double degrees = tilt_rad * 180 / 3.14159265358979323846;
+  if (tilt_rad != 0)
+    abbe_number_format(tilt, sizeof tilt, "%s{rotate: {axis: [%.6g, %.6g, %.6g], angle: %.6g}}",
+                       object->before[0] != '\0' ? ", " : "", axis[0], axis[1], axis[2], degrees);
+  const int n =
+      abbe_number_format(out, size, "[%s%s%s{translate: [%.6g, %.6g, %.6g]}]", object->before, tilt,
+                         object->before[0] != '\0' || tilt[0] != '\0' ? ", " : "", translate[0],
+                         translate[1], translate[2]);
+  return n > 0 && (size_t)n < size;
+}

@@ -1,0 +1,69 @@
+/* view_outline.h: what of a scene can be taken hold of: lights and objects, where they stand, and
+ * the keys under which their values are set.
+ *
+ * It is made of the scene and of the text that it was read from: of the one come places and names,
+ * of the other keys, and how an object was put where it is. It changes nothing.
+ */
+#ifndef ABBE_CLI_VIEW_STATE_VIEW_OUTLINE_H
+#define ABBE_CLI_VIEW_STATE_VIEW_OUTLINE_H
+
+#include "scenes/scene.h"
+
+#define ABBE_VIEW_MOST_OBJECTS 64 /* that can be taken hold of; more are left alone */
+#define ABBE_VIEW_MOST_VALUES 6   /* of a shape */
+#define ABBE_VIEW_MOST_STONES 512
+enum { ABBE_VIEW_NAME = 80, ABBE_VIEW_KEY = 128 };
+
+/* A number of the scene that a slider sets. */
+typedef struct abbe_view_value {
+  char key[ABBE_VIEW_KEY]; /* "objects.gem.crown" */
+  const char *label, *unit;
+  double value, min, max; /* as the file has it */
+  double scale;           /* from the file's unit to the one shown */
+} abbe_view_value;
+
+typedef struct abbe_view_light {
+  char name[ABBE_VIEW_NAME], key[ABBE_VIEW_KEY]; /* "lights.lamp" */
+  abbe_light_kind kind;
+  bool placed; /* it has a position, which may be set */
+  double position[3];
+  abbe_view_value power;
+} abbe_view_light;
+
+typedef struct abbe_view_object {
+  char name[ABBE_VIEW_NAME], key[ABBE_VIEW_KEY]; /* "objects.gem" */
+  char material[ABBE_VIEW_NAME];                 /* "": not a refractor */
+  double middle[3], radius;                      /* of its bounds, m */
+  /* How it was put there, as one line of YAML without brackets, but for a last `translate`; and
+   * that. */
+  char *before;
+  double translate[3];
+  size_t value_count;
+  abbe_view_value value[ABBE_VIEW_MOST_VALUES];
+} abbe_view_object;
+
+typedef struct abbe_view_outline {
+  abbe_camera camera; /* the scene's own */
+  size_t light_count, object_count, stone_count;
+  abbe_view_light light[ABBE_SCENE_MAX_LIGHTS];
+  abbe_view_object object[ABBE_VIEW_MOST_OBJECTS];
+  char *stone[ABBE_VIEW_MOST_STONES]; /* names of the scene's table of materials that are clear */
+  bool surrounded;                    /* an environment is there, with this value: */
+  abbe_view_value rotate;
+  abbe_view_value ambient;
+} abbe_view_outline;
+
+/* text[size] is what the scene was read from. Errors of abbe_yaml_parse, ABBE_NO_MEMORY; *out is
+ * then zeroed. */
+abbe_result abbe_view_outline_make(const abbe_scene *scene, const char *text, size_t size,
+                                   abbe_view_outline *out, abbe_error *error);
+void abbe_view_outline_free(abbe_view_outline *outline);
+
+/* The whole transform of an object as a value to be set: as it was, but tilted about the origin of
+ * its shape by `tilt_rad` about `axis` (0: not), and moved to `translate`. False where it does not
+ * fit. */
+bool abbe_view_outline_transform(const abbe_view_object *object, double tilt_rad,
+                                 const double axis[3], const double translate[3], char *out,
+                                 size_t size);
+
+#endif

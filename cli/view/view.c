@@ -1,0 +1,165 @@
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/scene_input.h"
+#include "cli/base/shipped.h"
+
+#ifdef ABBE_HAVE_VIEW
+#include "base/file.h"
+#include "cli/view/view_script.h"
+#include "cli/view/view_window.h"
+#endif
+
+#include <argp.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  OPTION_SCRIPT = 0x100,
+  OPTION_SIZE,
+  OPTION_KEEP,
+  OPTION_LAST,
+  OPTION_MATERIALS,
+  OPTION_OCIO
+};
+
+typedef struct view_options {
+  const char *program, *scene, *script, *keep, *materials, *ocio;
+  size_t width, height;
+  int last;
+  abbe_scene_input_changes changes;
+} view_options;
+
+static const struct argp_option options[] = {
+    {"size", OPTION_SIZE, "WxH", 0, "of the window, pixels (900x560)", 1},
+    {"keep", OPTION_KEEP, "NAME", 0,
+     "what kept files are called: NAME.exr, NAME.png, NAME.yaml (the scene's name and -view)", 1},
+    {"last", OPTION_LAST, "STAGE", 0,
+     "where refining ends: moving, balanced, accurate, mean, traced (traced)", 1},
+    {"config", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
+     "an OpenColorIO configuration ($OCIO, else Abbe's own)", 1},
+    {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
+     "a table instead of the scene's: default, thesis or a file", 1},
+    {"set", ABBE_SCENE_INPUT_SET, "KEY=VALUE", 0,
+     "another value in the scene to begin with, such as camera.fov=30; may be repeated", 1},
+    {"script", OPTION_SCRIPT, "FILE", ABBE_ARGUMENT_READS,
+     "lead the viewer by a script, without a display", 2},
+    {0}};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  static const char *const stages[] = {"moving", "balanced", "accurate", "mean", "traced"};
+  view_options *o = state->input;
+  switch (key) {
+  case OPTION_SCRIPT:
+    o->script = text;
+    return 0;
+  case OPTION_SIZE:
+    abbe_command_size(o->program, "--size", text, 8192, &o->width, &o->height);
+    return 0;
+  case OPTION_KEEP:
+    o->keep = text;
+    return 0;
+  case OPTION_LAST:
+    o->last = 1 + abbe_command_choice(o->program, "--last", text, stages, 5);
+    return 0;
+  case OPTION_MATERIALS:
+    o->materials = text;
+    return 0;
+  case OPTION_OCIO:
+    o->ocio = text;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (o->scene != NULL) argp_error(state, "one scene at a time: '%s' and '%s'", o->scene, text);
+    o->scene = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (o->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
+    return 0;
+  default:
+    return abbe_scene_input_take(&o->changes, key, text, o->program);
+  }
+}
+
+#ifdef ABBE_HAVE_VIEW
+/* The document to begin with; its texts are the command line's. */
+static abbe_result begin(const view_options *o, const char *path, abbe_view_document *out,
+                         abbe_error *error) {
+  char *own = strdup(path);
+  *out = (abbe_view_document){.path = own};
+  abbe_result result =
+      own != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  for (size_t i = 0; i < o->changes.set_count && result == ABBE_OK; i++) {
+    const char *set = o->changes.set[i], *equals = strchr(set, '=');
+    char key[256];
+    if (equals == NULL || equals == set || (size_t)(equals - set) >= sizeof key)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "'%.80s' sets nothing; write KEY=VALUE, such as camera.fov=30", set);
+    snprintf(key, sizeof key, "%.*s", (int)(equals - set), set);
+    result = abbe_view_document_set(out, key, equals + 1, error);
+  }
+  return result;
+}
+
+static abbe_result view(const view_options *o, abbe_error *error) {
+  char shipped[2 * PATH_MAX], keep[PATH_MAX];
+  abbe_view_document document;
+  abbe_scene scene = {0};
+  const char *path = abbe_shipped_find(o->scene, shipped, sizeof shipped);
+  const char *name = abbe_file_name(path), *dot = strrchr(name, '.');
+  snprintf(keep, sizeof keep, "%.*s-view", dot != NULL ? (int)(dot - name) : (int)strlen(name),
+           name);
+  const abbe_view_app_desc desc = {.document = &document,
+                                   .materials = o->materials,
+                                   .keep = o->keep != NULL ? o->keep : keep,
+                                   .ocio = o->ocio,
+                                   .last = (abbe_view_stage)o->last};
+  abbe_result result = begin(o, path, &document, error);
+  /* what is wrong with the file is said before there is a window */
+  if (result == ABBE_OK)
+    result =
+        abbe_scene_input_load_with(o->program, o->scene, o->materials, &o->changes, &scene, error);
+  abbe_scene_free(&scene);
+  if (result == ABBE_OK)
+    result = o->script != NULL ? abbe_view_script_run(o->script, &desc, o->width, o->height, error)
+                               : abbe_view_window_run(&desc, o->width, o->height, error);
+  abbe_view_document_free(&document);
+  return result;
+}
+#else
+static abbe_result view(const view_options *o, abbe_error *error) {
+  (void)o;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "this build has no window; install libglfw3-dev and libimgui-dev and build "
+                        "again");
+}
+#endif
+
+int abbe_command_view(int argc, char **argv) {
+  static const struct argp argp = {
+      options,
+      parse,
+      "SCENE.yaml",
+      "Shows a scene in a window: turn it, change it, and see the light follow.\v"
+      "Left drag turns, middle drag or shift moves, the wheel goes nearer, right drag looks about "
+      "and\n"
+      "w a s d q e fly meanwhile. Drag a ring to move a lamp or a stone: shift upright, control "
+      "tilts.\n"
+      "Click for a pixel's spectrum. b: rendered or traced, v: their difference, + -: exposure,\n"
+      "control z and y: back and forth, control s: keep.\n\n"
+      "Examples:\n"
+      "  abbe view scenes/gem.yaml\n"
+      "  abbe view scenes/gem.yaml --set objects.gem.material=diamond --size 1200x800\n"
+      "  abbe view scenes/gem.yaml --script tour.txt",
+      NULL,
+      NULL,
+      NULL};
+  view_options o = {.program = argv[0], .width = 900, .height = 560};
+  abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
+  abbe_error error = {0};
+  const abbe_result result = view(&o, &error);
+  const int code = abbe_command_end(argv[0], result, &error);
+  return result == ABBE_TOLERANCE          ? ABBE_EXIT_TOLERANCE
+         : result == ABBE_INVALID_ARGUMENT ? ABBE_EXIT_USAGE
+                                           : code;
+}

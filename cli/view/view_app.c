@@ -1,0 +1,347 @@
+#include "cli/view/view_app.h"
+
+#include "base/clock.h"
+#include "cli/view/view_keep.h"
+#include "cli/view/view_panel.h"
+#include "colorimetry/rgb_space.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define LOOK_S 0.5 /* how often files are looked at */
+
+/* ---- begin, end ---- */
+
+static int by_name(const void *a, const void *b) {
+  return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* The scenes beside the one that is looked at. */
+static void list_scenes(abbe_view_session *app, const char *path) {
+  char folder[3072];
+  const char *slash = strrchr(path, '/');
+  snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path + 1) : 2,
+           slash != NULL ? path : "./");
+  DIR *dir = opendir(folder);
+  for (struct dirent *entry; dir != NULL && (entry = readdir(dir)) != NULL;) {
+    char name[4096];
+    const size_t length = strlen(entry->d_name);
+    if (length < 6 || strcmp(entry->d_name + length - 5, ".yaml") != 0) continue;
+    snprintf(name, sizeof name, "%s%s", slash != NULL ? folder : "", entry->d_name);
+    if (app->scene_count < ABBE_VIEW_MOST_SCENES &&
+        (app->scene[app->scene_count] = strdup(name)) != NULL)
+      app->scene_count++;
+  }
+  if (dir != NULL) closedir(dir);
+  qsort(app->scene, app->scene_count, sizeof *app->scene, by_name);
+}
+
+abbe_result abbe_view_app_begin(abbe_view_session *app, const abbe_view_app_desc *desc,
+                                abbe_context *context, abbe_error *error) {
+  *app = (abbe_view_session){.gl = abbe_context_gl(context),
+                             .keep = desc->keep,
+                             .ocio = desc->ocio,
+                             .seen_s = -1,
+                             .event_s = -1};
+  abbe_result result = abbe_view_state_begin(&app->state, desc->document, error);
+  app->state.refine.last = desc->last;
+  if (result == ABBE_OK) result = abbe_display_list(desc->ocio, &app->views, error);
+  if (result == ABBE_OK) result = abbe_view_session_choose_view(app, 0, error);
+  if (result == ABBE_OK) result = abbe_ui_make(error);
+  if (result == ABBE_OK)
+    result = abbe_view_worker_make(desc->materials, desc->wake, &app->worker, error);
+  if (result == ABBE_OK) list_scenes(app, desc->document->path);
+  if (result != ABBE_OK) abbe_view_app_end(app);
+  return result;
+}
+
+static void forget_files(abbe_view_session *app) {
+  for (size_t i = 0; i < app->file_count; i++) free(app->file[i]);
+  free(app->file);
+  free(app->changed);
+  app->file = NULL;
+  app->changed = NULL;
+  app->file_count = 0;
+}
+
+void abbe_view_app_end(abbe_view_session *app) {
+  abbe_view_worker_free(app->worker);
+  if (app->texture != 0) app->gl->DeleteTextures(1, &app->texture);
+  abbe_ui_free();
+  abbe_display_free(app->display);
+  for (size_t i = 0; i < app->scene_count; i++) free(app->scene[i]);
+  free(app->views);
+  forget_files(app);
+  abbe_view_pictures_free(&app->pictures);
+  abbe_view_result_free(&app->last);
+  abbe_view_state_free(&app->state);
+  app->worker = NULL;
+}
+
+/* ---- files that change on disk ---- */
+
+static long long changed_at(const char *path) {
+  struct stat status;
+  if (stat(path, &status) != 0) return -1;
+  return (long long)status.st_mtim.tv_sec * 1000000000 + status.st_mtim.tv_nsec;
+}
+
+static void watch_files(abbe_view_session *app, abbe_view_result *result) {
+  if (!result->outlined || result->file == NULL) return;
+  forget_files(app);
+  app->file = result->file;
+  app->file_count = result->file_count;
+  result->file = NULL;
+  result->file_count = 0;
+  app->changed = calloc(app->file_count + 1, sizeof *app->changed);
+  for (size_t i = 0; app->changed != NULL && i < app->file_count; i++)
+    app->changed[i] = changed_at(app->file[i]);
+}
+
+static void look_at_files(abbe_view_session *app, double now_s) {
+  if (now_s - app->looked_s < LOOK_S || app->changed == NULL) return;
+  app->looked_s = now_s;
+  for (size_t i = 0; i < app->file_count; i++) {
+    const long long at = changed_at(app->file[i]);
+    if (at == app->changed[i] || at < 0) continue;
+    app->changed[i] = at;
+    app->reload = true;
+    abbe_view_state_reload(&app->state, now_s);
+  }
+}
+
+/* ---- results ---- */
+
+static void replace(abbe_image *old, abbe_image *new) {
+  abbe_image_free(old);
+  *old = *new;
+  *new = (abbe_image){0};
+}
+
+/* How far the rendered picture is from the traced one, and how sure that is, over the mean. The
+ * errors of the three channels are taken as one. */
+static void compare(abbe_view_session *app) {
+  const abbe_image *a = &app->pictures.rendered, *b = &app->pictures.traced;
+  double mean = 0, off = 0, noise = 0;
+  size_t of_a[3], of_b[3], of_error[3];
+  app->against = app->noise = 0;
+  if (a->data == NULL || b->data == NULL || a->width != b->width || a->height != b->height) return;
+  if (!abbe_view_channels(a, "", of_a) || !abbe_view_channels(b, "", of_b) ||
+      !abbe_view_channels(b, "stderr", of_error))
+    return;
+  const size_t count = a->width * a->height;
+  for (size_t i = 0; i < count; i++) {
+    const double y = abbe_view_luminance(b, of_b, i);
+    mean += y;
+    off += pow(abbe_view_luminance(a, of_a, i) - y, 2);
+    noise += pow(abbe_view_luminance(b, of_error, i), 2);
+  }
+  if (!(mean > 0)) return;
+  app->against = sqrt(off / (double)count) / (mean / (double)count);
+  app->noise = sqrt(noise / (double)count) / (mean / (double)count);
+}
+
+static void take_rendered(abbe_view_session *app, abbe_view_result *result) {
+  const bool mean = result->job.stage == ABBE_VIEW_MEAN;
+  app->stage = result->job.stage;
+  abbe_image_free(&app->pictures.traced);
+  abbe_image_free(&app->pictures.error);
+  app->passes = 0;
+  app->promised = result->promised;
+  app->estimated = 0;
+  if (mean) {
+    replace(&app->pictures.rendered, &result->bars.mean);
+    replace(&app->pictures.error, &result->bars.error);
+    app->estimated = result->bars.caustic.pixels > 0 ? result->bars.caustic.ciede2000
+                                                     : result->bars.whole.ciede2000;
+    app->promised = app->last.promised;
+    return;
+  }
+  replace(&app->pictures.rendered, &result->picture);
+  abbe_image_free(&app->pictures.layers);
+  if (result->job.stage == ABBE_VIEW_MOVING) return;
+  /* what the mean takes the place of is kept for its layers */
+  const abbe_image *from = &app->pictures.rendered;
+  if (abbe_image_make(from->width, from->height, from->channels, (const char *const *)from->channel,
+                      &app->pictures.layers, NULL) == ABBE_OK)
+    memcpy(app->pictures.layers.data, from->data,
+           from->width * from->height * from->channels * sizeof *from->data);
+  abbe_view_result_free(&app->last);
+  app->last = *result;
+  *result = (abbe_view_result){.job = app->last.job};
+}
+
+static void take(abbe_view_session *app, abbe_view_result *result, double now_s) {
+  abbe_view_refine *refine = &app->state.refine;
+  const bool moved = result->job.stage == ABBE_VIEW_MOVING;
+  abbe_view_refine_end(refine, &result->job, result->outcome, result->ms, now_s);
+  watch_files(app, result);
+  if (result->outlined) abbe_view_state_learn(&app->state, &result->outline);
+  if (result->outcome == ABBE_VIEW_REFUSED && result->job.serial == refine->serial)
+    snprintf(app->state.refusal, sizeof app->state.refusal, "%s", result->sentence);
+  if (result->outcome != ABBE_VIEW_DONE) return;
+  const double pictured_s = abbe_clock_seconds();
+  if (moved && app->seen_s > 0 && pictured_s - app->seen_s < 1)
+    app->frames_ms[app->frame_count++ % 32] = 1e3 * (pictured_s - app->seen_s);
+  app->seen_s = moved ? pictured_s : -1;
+  if (app->event_s >= 0) app->latency_ms = 1e3 * (pictured_s - app->event_s);
+  app->event_s = -1;
+  if (result->job.stage == ABBE_VIEW_TRACED) {
+    app->stage = ABBE_VIEW_TRACED;
+    if (result->traced.data == NULL) return;
+    app->passes = result->passes;
+    replace(&app->pictures.traced, &result->traced);
+  } else
+    take_rendered(app, result);
+  compare(app);
+  app->stale = true;
+}
+
+static void give(abbe_view_session *app, double now_s) {
+  abbe_view_state *s = &app->state;
+  abbe_view_request request = {.width = s->width, .height = s->height, .reload = app->reload};
+  if (s->width == 0 || s->height == 0) return;
+  if (!abbe_view_worker_idle(app->worker)) {
+    if (abbe_view_refine_cancels(&s->refine, &app->running)) abbe_view_worker_cancel(app->worker);
+    return;
+  }
+  if (!abbe_view_refine_next(&s->refine, now_s, &request.job)) return;
+  if (abbe_view_document_copy(abbe_view_history_now(&s->history), &request.document, NULL) !=
+      ABBE_OK)
+    return;
+  app->running = request.job;
+  app->reload = false;
+  abbe_view_worker_give(app->worker, &request);
+}
+
+/* ---- the picture in the window ---- */
+
+static void upload(abbe_view_session *app) {
+  const abbe_image *image = &app->pictures.rendered;
+  const abbe_gl *gl = app->gl;
+  unsigned char *pixels = NULL;
+  abbe_error error = {0};
+  if (image->data == NULL) return;
+  app->drawn = abbe_view_shown_of(&app->pictures, app->state.shown);
+  app->drawn_exposure = app->state.exposure;
+  app->stale = false;
+  if (abbe_view_show(&app->pictures, app->drawn, app->drawn_exposure, app->display, &pixels,
+                     &error) != ABBE_OK) {
+    snprintf(app->note, sizeof app->note, "%s", error.text);
+    return;
+  }
+  if (app->texture == 0 || app->texture_width != image->width ||
+      app->texture_height != image->height) {
+    if (app->texture != 0) gl->DeleteTextures(1, &app->texture);
+    gl->GenTextures(1, &app->texture);
+    gl->BindTexture(GL_TEXTURE_2D, app->texture);
+    gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, (GLsizei)image->width, (GLsizei)image->height);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    app->texture_width = image->width;
+    app->texture_height = image->height;
+  }
+  gl->BindTexture(GL_TEXTURE_2D, app->texture);
+  gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)image->width, (GLsizei)image->height, GL_RGBA,
+                    GL_UNSIGNED_BYTE, pixels);
+  free(pixels);
+}
+
+static void feed(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
+  abbe_view_state *s = &app->state;
+  const abbe_ui_input *before = &app->input;
+  const uint64_t serial = s->refine.serial;
+  static const abbe_view_button buttons[] = {ABBE_VIEW_LEFT, ABBE_VIEW_RIGHT, ABBE_VIEW_MIDDLE};
+  const int modifiers =
+      (input->shift ? ABBE_VIEW_SHIFT : 0) | (input->control ? ABBE_VIEW_CONTROL : 0);
+  const double x = input->mouse[0], y = input->mouse[1];
+  for (int i = 0; i < 3; i++) {
+    const bool inside = x < app->area[0] && y < app->area[1];
+    if (input->button[i] && !before->button[i] && inside && !abbe_ui_has_pointer())
+      abbe_view_state_press(s, buttons[i], x, y, modifiers, now_s);
+  }
+  if (x != before->mouse[0] || y != before->mouse[1]) abbe_view_state_move(s, x, y, now_s);
+  for (int i = 0; i < 3; i++)
+    if (!input->button[i] && before->button[i]) abbe_view_state_release(s, buttons[i], now_s);
+  if (input->wheel != 0 && x < app->area[0] && !abbe_ui_has_pointer())
+    abbe_view_state_wheel(s, input->wheel, now_s);
+  abbe_view_state_tick(s, input->seconds, now_s);
+  if (s->refine.serial != serial && app->event_s < 0) app->event_s = abbe_clock_seconds();
+}
+
+void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers, double now_s) {
+  abbe_error error = {0};
+  if (down && key == 's' && (modifiers & ABBE_VIEW_CONTROL) != 0) {
+    if (abbe_view_keep(app, &error) != ABBE_OK)
+      snprintf(app->note, sizeof app->note, "%s", error.text);
+    return;
+  }
+  abbe_view_state_key(&app->state, key, down, modifiers, now_s);
+}
+
+static void draw_handles(const abbe_view_session *app) {
+  const abbe_view_state *s = &app->state;
+  abbe_view_handle handle;
+  for (size_t i = 0; abbe_view_state_handle(s, i, &handle); i++) {
+    const bool light = handle.kind == ABBE_VIEW_LIGHT_HANDLE;
+    const bool near = hypot(handle.xy[0] - app->input.mouse[0],
+                            handle.xy[1] - app->input.mouse[1]) < ABBE_VIEW_HANDLE_PIXELS;
+    const abbe_ui_colour colour = light ? 0x30ffd98a : 0x509fc4ff;
+    abbe_ui_circle(handle.xy[0], handle.xy[1], near ? 8 : 6, colour, near ? 2.5 : 1.5);
+    if (near)
+      abbe_ui_label(handle.xy[0] + 13, handle.xy[1] - 8, colour,
+                    light ? s->outline.light[handle.index].name
+                          : s->outline.object[handle.index].name);
+  }
+  if (!s->picked) return;
+  const double x = (double)s->pixel[0] + 0.5, y = (double)s->pixel[1] + 0.5;
+  abbe_ui_circle(x, y, 5, 0x00ffffff, 1.5);
+  abbe_ui_circle(x, y, 6.5, 0x40000000, 1);
+}
+
+void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, double now_s) {
+  abbe_view_state *s = &app->state;
+  const double panel = fmin(ABBE_VIEW_PANEL_WIDTH, input->width);
+  const double width = floor(input->width - panel), height = floor(input->height);
+  const bool room = width >= 16 && height >= 16; /* else there is no picture to be drawn */
+  app->area[0] = width;
+  app->area[1] = height;
+  abbe_view_state_resize(s, room ? (size_t)width : 0, room ? (size_t)height : 0, now_s);
+  feed(app, input, now_s);
+  look_at_files(app, now_s);
+  if (abbe_view_worker_take(app->worker, &app->taken)) {
+    take(app, &app->taken, now_s);
+    abbe_view_result_free(&app->taken);
+  }
+  give(app, now_s);
+  if (s->picked) abbe_view_probe_make(&app->pictures, s->pixel, &app->probe);
+  if (app->stale || app->drawn_exposure != s->exposure ||
+      app->drawn != abbe_view_shown_of(&app->pictures, s->shown))
+    upload(app);
+  app->input = *input;
+  abbe_ui_begin(input);
+  if (app->texture != 0) abbe_ui_image(app->texture, 0, 0, width, height);
+  if (room) draw_handles(app);
+  abbe_ui_panel_begin("Abbe", width, 0, panel, input->height);
+  abbe_view_panel_draw(app, now_s);
+  abbe_ui_panel_end();
+  abbe_ui_end();
+  give(app, now_s); /* what the panel has changed */
+}
+
+double abbe_view_app_wait(abbe_view_session *app, double now_s) {
+  const abbe_view_state *s = &app->state;
+  if (s->fly[0] != 0 || s->fly[1] != 0 || s->fly[2] != 0) return 0;
+  if (!abbe_view_worker_idle(app->worker)) return LOOK_S;
+  const double wait = abbe_view_refine_wait(&s->refine, now_s);
+  return wait < 0 ? LOOK_S : fmin(LOOK_S, wait);
+}
+
+bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
+  return abbe_view_worker_idle(app->worker) && abbe_view_refine_wait(&app->state.refine, now_s) < 0;
+}

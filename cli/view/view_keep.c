@@ -1,0 +1,126 @@
+#include "cli/view/view_keep.h"
+
+#include "base/file.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/screen_png.h"
+#include "scenes/import/scene_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Text that grows; without memory it stays NULL. */
+typedef struct growing {
+  char *text;
+  size_t size;
+  FILE *stream;
+} growing;
+
+/* As a shell reads it back. */
+static void quote(FILE *out, const char *text) {
+  static const char plain[] =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=+-:";
+  if (text[0] != '\0' && strspn(text, plain) == strlen(text)) {
+    fputs(text, out);
+    return;
+  }
+  fputc('\'', out);
+  for (; *text != '\0'; text++)
+    if (*text == '\'')
+      fputs("'\\''", out);
+    else
+      fputc(*text, out);
+  fputc('\'', out);
+}
+
+char *abbe_view_keep_command(const abbe_view_session *session) {
+  const abbe_view_document *now = abbe_view_history_now(&session->state.history);
+  const abbe_render_desc *d = &session->last.asked;
+  const struct {
+    const char *option;
+    size_t value;
+  } settings[] = {{"wavelengths", d->wavelengths},
+                  {"photons", d->photons},
+                  {"map", d->map_size},
+                  {"samples", d->supersample},
+                  {"upsample", d->upsample},
+                  {"adaptive", d->adaptive},
+                  {"exits", d->exits}};
+  growing out = {0};
+  if (d->width == 0 || (out.stream = open_memstream(&out.text, &out.size)) == NULL) return NULL;
+  fputs("abbe render ", out.stream);
+  quote(out.stream, now->path);
+  for (size_t i = 0; i < now->set_count; i++) {
+    fputs(" --set ", out.stream);
+    quote(out.stream, now->set[i]);
+  }
+  fprintf(out.stream, " --size %zux%zu", d->width, d->height);
+  for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
+    if (settings[i].value > 0)
+      fprintf(out.stream, " --%s %zu", settings[i].option, settings[i].value);
+  if (d->fill != ABBE_FILL_AUTO) fprintf(out.stream, " --fill %s", abbe_fill_name(d->fill));
+  if (d->model != ABBE_MODEL_AUTO) fprintf(out.stream, " --model %s", abbe_model_name(d->model));
+  if (session->stage == ABBE_VIEW_MEAN || session->stage == ABBE_VIEW_TRACED)
+    if (session->pictures.error.data != NULL) fputs(" --mean", out.stream);
+  fclose(out.stream);
+  return out.text;
+}
+
+/* Whether the scene names files that it would not find from the other's folder. */
+static bool names_files(const abbe_view_session *session, const char *target) {
+  const char *path = abbe_view_history_now(&session->state.history)->path;
+  const char *a = strrchr(path, '/'), *b = strrchr(target, '/');
+  const size_t here = a != NULL ? (size_t)(a - path) : 0;
+  const size_t there = b != NULL ? (size_t)(b - target) : 0;
+  return session->file_count > 1 && (here != there || strncmp(path, target, here) != 0);
+}
+
+static abbe_result keep_scene(const abbe_view_session *session, const char *target,
+                              abbe_error *error) {
+  const abbe_view_document *now = abbe_view_history_now(&session->state.history);
+  const abbe_scene_options options = {.set = (const char *const *)now->set,
+                                      .set_count = now->set_count};
+  char *text = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_scene_text(now->path, &options, &text, &size, error);
+  if (result == ABBE_OK) result = abbe_file_write(target, text, size, error);
+  free(text);
+  return result;
+}
+
+abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
+  const abbe_image *image = &session->pictures.rendered;
+  char exr[1024], png[1024], yaml[1024], words[128], view[128];
+  const char *line = session->views, *slash;
+  if (image->data == NULL || session->stage < ABBE_VIEW_BALANCED)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a picture is kept once it has come to rest; wait a moment");
+  for (size_t i = 0; i < session->view && line != NULL; i++)
+    if ((line = strchr(line, '\n')) != NULL) line++;
+  slash = line != NULL ? strstr(line, " / ") : NULL;
+  snprintf(exr, sizeof exr, "%.1000s.exr", session->keep);
+  snprintf(png, sizeof png, "%.1000s.png", session->keep);
+  snprintf(yaml, sizeof yaml, "%.1000s.yaml", session->keep);
+  if (slash != NULL) {
+    snprintf(words, sizeof words, "%.*s", (int)(slash - line), line);
+    snprintf(view, sizeof view, "%.*s", (int)strcspn(slash + 3, "\n"), slash + 3);
+  }
+  const abbe_screen_png_desc desc = {.display = {.config = session->ocio,
+                                                 .display = slash != NULL ? words : NULL,
+                                                 .view = slash != NULL ? view : NULL,
+                                                 .exposure = session->state.exposure}};
+  const bool scene = !names_files(session, yaml);
+  abbe_result result = abbe_exr_write(exr, image, error);
+  if (result == ABBE_OK) result = abbe_screen_png_write(png, image, &desc, error);
+  if (result == ABBE_OK && scene) result = keep_scene(session, yaml, error);
+  if (result != ABBE_OK) return result;
+  if (scene)
+    snprintf(session->note, sizeof session->note, "kept %.300s, %.300s, %.300s", exr, png, yaml);
+  else
+    snprintf(
+        session->note, sizeof session->note,
+        "kept %.300s and %.300s; the scene names files beside it, so it can be kept in its own "
+        "folder only: start with --keep there",
+        exr, png);
+  return ABBE_OK;
+}

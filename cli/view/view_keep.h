@@ -1,0 +1,17 @@
+/* view_keep.h: what is seen, kept: EXR, PNG, the scene with its changes, and the command line that
+ * repeats the picture. */
+#ifndef ABBE_CLI_VIEW_VIEW_KEEP_H
+#define ABBE_CLI_VIEW_VIEW_KEEP_H
+
+#include "cli/view/view_session.h"
+
+/* Writes KEEP.exr, KEEP.png and KEEP.yaml, and says so in the session's note. The scene is written
+ * beside the files that it names or not at all. ABBE_INVALID_ARGUMENT where no picture has come to
+ * rest; errors of files. */
+abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error);
+
+/* `abbe render …` that draws the last picture at rest, without names of outputs; malloc'd, NULL
+ * where there is none or no memory. */
+char *abbe_view_keep_command(const abbe_view_session *session);
+
+#endif

@@ -1,0 +1,250 @@
+#include "cli/view/view_panel.h"
+
+#include "base/file.h"
+#include "base/number.h"
+#include "cli/view/view_chart.h"
+#include "cli/view/view_keep.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DIM 0x858b95
+#define BRIGHT 0xe8eaee
+#define WARM 0xffb86b
+#define GREEN 0x9ccf9c
+
+static void pair(const char *name, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void pair(const char *name, const char *format, ...) {
+  char text[160];
+  va_list arguments;
+  va_start(arguments, format);
+  abbe_number_format_list(text, sizeof text, format, arguments);
+  va_end(arguments);
+  abbe_ui_pair(name, text);
+}
+
+/* A slider over a value of the scene. */
+static void slide(abbe_view_session *app, const abbe_view_value *v, const char *prefix,
+                  bool logarithmic, double now_s) {
+  char label[2 * ABBE_VIEW_NAME], format[48], text[ABBE_NUMBER_TEXT_SIZE];
+  const char *set = abbe_view_document_value(abbe_view_history_now(&app->state.history), v->key);
+  double value = v->value, shown;
+  const char *end;
+  bool began = false;
+  if (set != NULL) abbe_number_read(set, &end, &value);
+  shown = value * v->scale;
+  snprintf(label, sizeof label, "%.70s%s%.70s", prefix, prefix[0] != '\0' ? " " : "", v->label);
+  snprintf(format, sizeof format, "%%.4g %s", v->unit);
+  if (!abbe_ui_slider(label, &shown, v->min * v->scale, v->max * v->scale, format, logarithmic,
+                      &began))
+    return;
+  abbe_number_format(text, sizeof text, "%.5g", shown / v->scale);
+  abbe_view_state_set(&app->state, v->key, text, !began, now_s);
+}
+
+static void draw_head(abbe_view_session *app) {
+  const abbe_view_state *s = &app->state;
+  char text[160];
+  const char *doing = abbe_view_stage_name(app->stage);
+  if (app->pictures.rendered.data == NULL)
+    snprintf(text, sizeof text, "loading");
+  else if (app->stage == ABBE_VIEW_MOVING && abbe_view_session_rate(app) > 0)
+    abbe_number_format(text, sizeof text, "moving, %.0f pictures a second",
+                       abbe_view_session_rate(app));
+  else if (app->passes > 0)
+    snprintf(text, sizeof text, "traced, %zu passes", app->passes);
+  else
+    snprintf(text, sizeof text, "%s", doing);
+  abbe_ui_text(app->stage >= ABBE_VIEW_ACCURATE ? GREEN : DIM, text);
+  if (s->refusal[0] != '\0') abbe_ui_text(WARM, s->refusal);
+  if (app->note[0] != '\0') abbe_ui_text(DIM, app->note);
+}
+
+static void draw_scene(abbe_view_session *app, double now_s) {
+  abbe_view_state *s = &app->state;
+  const abbe_view_outline *o = &s->outline;
+  const char *names[ABBE_VIEW_MOST_SCENES];
+  const char *path = abbe_view_history_now(&s->history)->path;
+  size_t at = app->scene_count;
+  for (size_t i = 0; i < app->scene_count; i++) {
+    names[i] = abbe_file_name(app->scene[i]);
+    if (strcmp(app->scene[i], path) == 0) at = i;
+  }
+  if (abbe_ui_choose("scene", names, app->scene_count, &at)) {
+    abbe_view_state_open(s, app->scene[at], now_s);
+    return;
+  }
+  for (size_t i = 0; i < o->object_count; i++) {
+    const abbe_view_object *object = &o->object[i];
+    char key[ABBE_VIEW_KEY + 16], label[ABBE_VIEW_NAME + 16];
+    size_t stone = 0;
+    if (object->material[0] == '\0') continue;
+    snprintf(key, sizeof key, "%s.material", object->key);
+    const char *set = abbe_view_document_value(abbe_view_history_now(&s->history), key);
+    while (stone < o->stone_count &&
+           strcmp(o->stone[stone], set != NULL ? set : object->material) != 0)
+      stone++;
+    snprintf(label, sizeof label, "%s, of", object->name);
+    if (abbe_ui_choose(label, (const char *const *)o->stone, o->stone_count, &stone))
+      abbe_view_state_set(s, key, o->stone[stone], false, now_s);
+    for (size_t k = 0; k < object->value_count; k++)
+      slide(app, &object->value[k], "", false, now_s);
+  }
+  for (size_t i = 0; i < o->light_count; i++)
+    slide(app, &o->light[i].power, o->light[i].name, true, now_s);
+  if (o->surrounded) slide(app, &o->rotate, "surroundings:", false, now_s);
+  slide(app, &o->ambient, "", false, now_s);
+}
+
+static void draw_view(abbe_view_session *app) {
+  static const char *const shown[] = {
+#define ABBE_VIEW_NAME_OF(code, name) name,
+      ABBE_VIEW_SHOWN(ABBE_VIEW_NAME_OF)
+#undef ABBE_VIEW_NAME_OF
+  };
+  abbe_view_state *s = &app->state;
+  const char *names[32];
+  char *views = app->views != NULL ? strdup(app->views) : NULL;
+  size_t count = 0, at = s->shown, view = app->view;
+  if (abbe_ui_choose("shown", shown, ABBE_VIEW_SHOWN_COUNT, &at)) s->shown = (abbe_view_shown)at;
+  if (app->drawn == ABBE_VIEW_DIFFERENCE_PICTURE)
+    abbe_ui_text(DIM, "blue: darker than traced, red: brighter; full at 25 % of the mean");
+  if (app->drawn == ABBE_VIEW_ERROR_PICTURE)
+    abbe_ui_text(DIM, "one standard error, black 0.1 % of the mean, white 100 %");
+  if (app->drawn != s->shown) abbe_ui_text(DIM, "not there yet: the rendered picture stands");
+  for (char *line = views; line != NULL && *line != '\0' && count < 32;) {
+    char *end = strchr(line, '\n');
+    if (end != NULL) *end = '\0';
+    names[count++] = line;
+    line = end != NULL ? end + 1 : NULL;
+  }
+  abbe_error error = {0};
+  if (abbe_ui_choose("display", names, count, &view) &&
+      abbe_view_session_choose_view(app, view, &error) != ABBE_OK)
+    snprintf(app->note, sizeof app->note, "%s", error.text);
+  free(views);
+  abbe_ui_slider("exposure", &s->exposure, -8, 8, "%+.2f stops", false, NULL);
+}
+
+/* A setting that the stage has unless it is given. */
+static bool slide_setting(const char *label, size_t *given, size_t planned, double min, double max,
+                          bool *began) {
+  double value = (double)(*given > 0 ? *given : planned > 0 ? planned : (size_t)min);
+  if (!abbe_ui_slider(label, &value, min, max, *given > 0 ? "%.0f" : "%.0f  (as planned)", true,
+                      began))
+    return false;
+  *given = (size_t)(value + 0.5);
+  return true;
+}
+
+static void draw_settings(abbe_view_session *app, double now_s) {
+  const abbe_view_document *now = abbe_view_history_now(&app->state.history);
+  const abbe_render_desc *d = &app->last.desc;
+  size_t wavelengths = now->wavelengths, photons = now->photons, map = now->map_size;
+  bool began[3] = {false};
+  const bool a = slide_setting("wavelengths", &wavelengths, d->wavelengths, 1, 61, &began[0]);
+  const bool b = slide_setting("photons a side", &photons, d->photons, 16, 1024, &began[1]);
+  const bool c = slide_setting("map, texels a side", &map, d->map_size, 64, 2048, &began[2]);
+  if (a || b || c)
+    abbe_view_state_settings(&app->state, wavelengths, photons, map,
+                             !(began[0] || began[1] || began[2]), now_s);
+  if (now->wavelengths + now->photons + now->map_size > 0 && abbe_ui_button("as planned"))
+    abbe_view_state_settings(&app->state, 0, 0, 0, false, now_s);
+}
+
+static void draw_error(const abbe_view_session *app) {
+  if (app->promised > 0) pair("promised", "%.2f \u0394E, caustic", app->promised);
+  if (app->estimated > 0) pair("estimated", "%.2f \u0394E, of the mean", app->estimated);
+  if (app->against > 0)
+    pair("to traced", "%.1f %% rms (noise %.1f %%)", 100 * app->against, 100 * app->noise);
+  if (!(app->promised > 0) && !(app->estimated > 0) && !(app->against > 0))
+    abbe_ui_text(DIM, "known once the picture has come to rest");
+}
+
+static void draw_passes(const abbe_view_session *app) {
+  const abbe_view_result *r = &app->last;
+  if (r->counted) pair("frame", "%.0f ms", r->statistics.frame_ms);
+  for (size_t i = 0; i < r->line_count; i++) {
+    const abbe_view_line *line = &r->line[i];
+    if (!line->runs) continue;
+    if (line->ms >= 0)
+      pair(line->name, "%.1f ms", line->ms);
+    else if (line->kept)
+      pair(line->name, "kept");
+    else {
+      abbe_ui_text(BRIGHT, line->name);
+      abbe_ui_text(DIM, line->reason);
+      continue;
+    }
+    abbe_ui_text(DIM, line->reason);
+  }
+}
+
+static void draw_ledger(const abbe_view_session *app) {
+  const abbe_ledger *e = &app->last.statistics.energy;
+  const double whole = e->reached > 0 ? e->reached / 100 : 1;
+  if (!(e->reached > 0)) {
+    abbe_ui_text(DIM, "no light has reached a refractor");
+    return;
+  }
+  pair("reached refractors", "%.4g W", e->reached);
+  pair("laid on receivers", "%.2f %%", e->deposited / whole);
+  pair("reflected outside", "%.2f %%", e->reflected / whole);
+  pair("absorbed", "%.2f %%", e->absorbed / whole);
+  pair("trapped", "%.2f %%", e->trapped / whole);
+  pair("missed", "%.2f %%", e->missed / whole);
+  pair("imbalance", "%.1e", abbe_ledger_imbalance(e));
+}
+
+static void draw_pixel(const abbe_view_session *app) {
+  const abbe_view_state *s = &app->state;
+  const abbe_view_probe *p = &app->probe;
+  pair("pixel", "%zu, %zu", s->pixel[0], s->pixel[1]);
+  if (!p->coloured) {
+    abbe_ui_text(DIM, "no light is seen there");
+    return;
+  }
+  pair("Y", "%.4g, %s", p->xyz[1], p->traced ? "traced" : "rendered");
+  pair("x, y", "%.4f, %.4f", p->xy[0], p->xy[1]);
+  pair("u', v'", "%.4f, %.4f", p->uv[0], p->uv[1]);
+  if (p->dominant_nm > 0)
+    pair("dominant", "%.1f nm, purity %.0f %%", p->dominant_nm, 100 * p->purity);
+  if (p->dominant_nm < 0)
+    pair("complementary", "%.1f nm, purity %.0f %%", -p->dominant_nm, 100 * p->purity);
+  abbe_ui_gap();
+  if (p->bands > 0)
+    abbe_view_chart_spectrum(p);
+  else
+    abbe_ui_text(DIM, "the tracer is on its way to its spectrum");
+  abbe_view_chart_colours(p);
+}
+
+void abbe_view_panel_draw(abbe_view_session *app, double now_s) {
+  abbe_view_state *s = &app->state;
+  abbe_error error = {0};
+  draw_head(app);
+  abbe_ui_gap();
+  if (abbe_ui_button("undo")) abbe_view_state_undo(s, now_s);
+  abbe_ui_beside();
+  if (abbe_ui_button("redo")) abbe_view_state_redo(s, now_s);
+  abbe_ui_beside();
+  if (abbe_ui_button("keep") && abbe_view_keep(app, &error) != ABBE_OK)
+    snprintf(app->note, sizeof app->note, "%s", error.text);
+  abbe_ui_gap();
+  if (s->picked && abbe_ui_section("Pixel", true)) draw_pixel(app);
+  if (abbe_ui_section("Scene", true)) draw_scene(app, now_s);
+  if (abbe_ui_section("Picture", true)) draw_view(app);
+  if (abbe_ui_section("Error", true)) draw_error(app);
+  if (!s->picked) abbe_ui_text(DIM, "click into the picture for a pixel's spectrum");
+  if (abbe_ui_section("Settings", false)) draw_settings(app, now_s);
+  if (abbe_ui_section("Light", false)) draw_ledger(app);
+  if (abbe_ui_section("Plan and passes", false)) draw_passes(app);
+  if (abbe_ui_section("Command", false)) {
+    char *command = abbe_view_keep_command(app);
+    abbe_ui_text(DIM, command != NULL ? command : "there is none yet");
+    free(command);
+  }
+}

@@ -1,0 +1,33 @@
+/* view_probe.h: what is known of a pixel's light: its spectrum with standard errors, and its
+ * colour.
+ */
+#ifndef ABBE_CLI_VIEW_VIEW_PROBE_H
+#define ABBE_CLI_VIEW_VIEW_PROBE_H
+
+#include "cli/view/view_show.h"
+
+#define ABBE_VIEW_PROBE_BANDS 64
+
+typedef struct abbe_view_probe {
+  bool coloured;       /* something is seen there: */
+  bool traced;         /* the colour is the traced picture's; else the rendered one's */
+  double xyz[3];       /* relative to D65, radiance shared out as the picture's */
+  double xy[2], uv[2]; /* CIE 1931 x, y and 1976 u', v' */
+  double dominant_nm;  /* where the line from D65's white meets the locus; below 0: the complement,
+                          on the line of purples; 0: too near to white to tell */
+  double purity;       /* of excitation, 0 to 1 */
+  size_t bands;        /* of the traced picture; 0: none yet */
+  double nm[ABBE_VIEW_PROBE_BANDS];       /* their middles */
+  double radiance[ABBE_VIEW_PROBE_BANDS]; /* W/(m2 sr nm) */
+  double stderr_of[ABBE_VIEW_PROBE_BANDS];
+} abbe_view_probe;
+
+void abbe_view_probe_make(const abbe_view_pictures *pictures, const size_t pixel[2],
+                          abbe_view_probe *out);
+
+/* A point of the spectral locus in CIE xy. */
+void abbe_view_locus(double lambda_nm, double xy[2]);
+/* CIE 1976 u', v' of x, y. */
+void abbe_view_uv(const double xy[2], double uv[2]);
+
+#endif

@@ -1,0 +1,500 @@
+#include "cli/view/view_script.h"
+
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "cli/view/view_keep.h"
+#include "colorimetry/image/png_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { MOST_WORDS = 16, MOST_REMEMBERED = 32, LONGEST = 4096 };
+#define PATIENCE_S 300.0
+#define SCRIPT_MOST_BYTES ((size_t)1 << 20)
+
+typedef struct script {
+  abbe_view_session session;
+  abbe_context *context;
+  const abbe_gl *gl;
+  GLuint framebuffer, colour;
+  size_t width, height;
+  abbe_ui_input input;
+  double last_s;
+  uint64_t copied; /* the serial when a file was copied last */
+  const char *path;
+  size_t line;
+  const char *word[MOST_WORDS];
+  size_t words;
+  struct {
+    char name[LONGEST], value[LONGEST];
+  } remembered[MOST_REMEMBERED];
+  size_t remembered_count;
+} script;
+
+static abbe_result fail(const script *s, abbe_result result, abbe_error *error, const char *format,
+                        ...) __attribute__((format(printf, 4, 5)));
+static abbe_result fail(const script *s, abbe_result result, abbe_error *error, const char *format,
+                        ...) {
+  char prefix[1024];
+  va_list arguments;
+  snprintf(prefix, sizeof prefix, "%.700s:%zu: %.60s: ", s->path, s->line,
+           s->words > 0 ? s->word[0] : "");
+  va_start(arguments, format);
+  abbe_error_set_list(error, result, prefix, format, arguments);
+  va_end(arguments);
+  return result;
+}
+
+/* ---- the window that nobody sees ---- */
+
+static void make_target(script *s, size_t width, size_t height) {
+  const abbe_gl *gl = s->gl;
+  if (s->colour != 0) gl->DeleteTextures(1, &s->colour);
+  if (s->framebuffer == 0) gl->GenFramebuffers(1, &s->framebuffer);
+  gl->GenTextures(1, &s->colour);
+  gl->BindTexture(GL_TEXTURE_2D, s->colour);
+  gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, (GLsizei)width, (GLsizei)height);
+  gl->BindFramebuffer(GL_FRAMEBUFFER, s->framebuffer);
+  gl->FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, s->colour, 0);
+  s->width = width;
+  s->height = height;
+}
+
+static void pump(script *s) {
+  static const float dark[4] = {0.05F, 0.055F, 0.063F, 1};
+  const double now = abbe_clock_seconds();
+  s->input.width = (double)s->width;
+  s->input.height = (double)s->height;
+  s->input.seconds = now - s->last_s;
+  s->last_s = now;
+  s->gl->BindFramebuffer(GL_FRAMEBUFFER, s->framebuffer);
+  s->gl->Viewport(0, 0, (GLsizei)s->width, (GLsizei)s->height);
+  s->gl->ClearBufferfv(GL_COLOR, 0, dark);
+  abbe_view_app_frame(&s->session, &s->input, now);
+  s->input.wheel = 0;
+  s->input.text[0] = '\0';
+}
+
+static abbe_result shoot(script *s, const char *path, abbe_error *error) {
+  static const char *const names[] = {"R", "G", "B"};
+  const size_t count = s->width * s->height;
+  unsigned char *pixels = malloc(4 * count);
+  abbe_image image;
+  pump(s);
+  abbe_result result = abbe_image_make(s->width, s->height, 3, names, &image, error);
+  if (result != ABBE_OK || pixels == NULL) {
+    free(pixels);
+    return result != ABBE_OK ? result : abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  }
+  s->gl->BindTexture(GL_TEXTURE_2D, s->colour);
+  s->gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
+  s->gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+  for (size_t y = 0; y < s->height; y++)
+    for (size_t x = 0; x < s->width; x++)
+      for (size_t k = 0; k < 3; k++)
+        image.data[3 * (y * s->width + x) + k] =
+            (float)pixels[4 * ((s->height - 1 - y) * s->width + x) + k] / 255;
+  result = abbe_png_write(path, &image, 8, error);
+  abbe_image_free(&image);
+  free(pixels);
+  return result;
+}
+
+/* ---- where things are ---- */
+
+static bool find_handle(const script *s, const char *name, double xy[2]) {
+  const abbe_view_state *state = &s->session.state;
+  abbe_view_handle handle;
+  for (size_t i = 0; abbe_view_state_handle(state, i, &handle); i++) {
+    const bool light = handle.kind == ABBE_VIEW_LIGHT_HANDLE;
+    const char *own =
+        light ? state->outline.light[handle.index].name : state->outline.object[handle.index].name;
+    if (strcmp(own, name) != 0) continue;
+    xy[0] = handle.xy[0];
+    xy[1] = handle.xy[1];
+    return true;
+  }
+  return false;
+}
+
+/* "FROM:TO", nm: where the rendered picture has most colour of a dominant wavelength in between. */
+static bool find_hue(const script *s, const char *text, double xy[2]) {
+  const abbe_image *image = &s->session.pictures.rendered;
+  const abbe_view_pictures pictures = {.rendered = *image};
+  double from, to, best = 0;
+  if (!abbe_number_read(text, &text, &from) || *text != ':' ||
+      !abbe_number_read(text + 1, &text, &to) || image->data == NULL)
+    return false;
+  for (size_t y = 0; y < image->height; y++)
+    for (size_t x = 0; x < image->width; x++) {
+      abbe_view_probe probe;
+      const float *v = &image->data[image->channels * (y * image->width + x)];
+      if (!(fmaxf(v[0], fmaxf(v[1], v[2])) > 1.5F * fminf(v[0], fminf(v[1], v[2])))) continue;
+      abbe_view_probe_make(&pictures, (const size_t[2]){x, y}, &probe);
+      if (probe.dominant_nm < from || probe.dominant_nm > to) continue;
+      if (probe.purity * probe.xyz[1] <= best) continue;
+      best = probe.purity * probe.xyz[1];
+      xy[0] = (double)x + 0.5;
+      xy[1] = (double)y + 0.5;
+    }
+  return best > 0;
+}
+
+/* "X,Y", a handle, a hue or the label of a widget. */
+static bool find(script *s, const char *text, double xy[2]) {
+  double x, y, width, height;
+  const char *end;
+  if (abbe_number_read(text, &end, &xy[0]) && *end == ',' &&
+      abbe_number_read(end + 1, &end, &xy[1]) && *end == '\0')
+    return true;
+  if (strncmp(text, "hue:", 4) == 0) return find_hue(s, text + 4, xy);
+  if (strncmp(text, "handle:", 7) == 0) return find_handle(s, text + 7, xy);
+  for (int i = 0; i < 4; i++) { /* it may have to scroll into sight */
+    if (abbe_ui_find(text, &x, &y, &width, &height) && y >= 0 && y + height <= (double)s->height) {
+      xy[0] = x + fmin(20, 0.5 * width);
+      xy[1] = y + 0.5 * height;
+      return true;
+    }
+    abbe_ui_seek(text);
+    pump(s);
+    pump(s);
+  }
+  return false;
+}
+
+static abbe_result aim(script *s, size_t word, double xy[2], abbe_error *error) {
+  if (word >= s->words)
+    return fail(s, ABBE_PARSE, error, "where? Give X,Y, a label, handle:NAME or hue:FROM:TO");
+  if (find(s, s->word[word], xy)) return ABBE_OK;
+  return fail(s, ABBE_NOT_FOUND, error, "there is no '%.60s' in sight", s->word[word]);
+}
+
+/* ---- pointer ---- */
+
+static void point(script *s, const double xy[2]) {
+  s->input.mouse[0] = xy[0];
+  s->input.mouse[1] = xy[1];
+  pump(s);
+}
+
+static void set_button(script *s, int button, bool down) {
+  s->input.button[button] = down;
+  pump(s);
+}
+
+/* Button and keys beside it, by the words from `from` on. */
+static int held_of(script *s, size_t from) {
+  int button = ABBE_VIEW_LEFT;
+  s->input.shift = s->input.control = false;
+  for (size_t i = from; i < s->words; i++) {
+    if (strcmp(s->word[i], "right") == 0) button = 1;
+    if (strcmp(s->word[i], "middle") == 0) button = 2;
+    if (strcmp(s->word[i], "shift") == 0) s->input.shift = true;
+    if (strcmp(s->word[i], "control") == 0) s->input.control = true;
+  }
+  return button == 1 ? 1 : button == 2 ? 2 : 0;
+}
+
+static void press_at(script *s, const double xy[2], int button) {
+  point(s, xy);
+  pump(s);
+  set_button(s, button, true);
+  set_button(s, button, false);
+}
+
+static abbe_result do_click(script *s, abbe_error *error) {
+  double xy[2];
+  const abbe_result result = aim(s, 1, xy, error);
+  if (result == ABBE_OK) press_at(s, xy, held_of(s, 2));
+  s->input.shift = s->input.control = false;
+  pump(s);
+  return result;
+}
+
+/* As a hand does it: some places on the way, each for a moment. */
+static abbe_result do_drag(script *s, abbe_error *error) {
+  enum { PLACES = 12 };
+  double from[2], to[2];
+  abbe_result result = aim(s, 1, from, error);
+  if (result == ABBE_OK) result = aim(s, 2, to, error);
+  if (result != ABBE_OK) return result;
+  const int button = held_of(s, 3);
+  point(s, from);
+  pump(s);
+  set_button(s, button, true);
+  for (int i = 1; i <= PLACES; i++) {
+    const double t = (double)i / PLACES, until = abbe_clock_seconds() + 0.05;
+    point(s, (const double[2]){from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])});
+    while (abbe_clock_seconds() < until) pump(s);
+  }
+  set_button(s, button, false);
+  s->input.shift = s->input.control = false;
+  pump(s);
+  return ABBE_OK;
+}
+
+static abbe_result do_choose(script *s, abbe_error *error) {
+  double xy[2];
+  abbe_result result = aim(s, 1, xy, error);
+  if (result != ABBE_OK) return result;
+  press_at(s, xy, 0);
+  pump(s);
+  result = aim(s, 2, xy, error);
+  if (result == ABBE_OK) press_at(s, xy, 0);
+  pump(s);
+  return result;
+}
+
+/* To a share of the slider's way. */
+static abbe_result do_slide(script *s, abbe_error *error) {
+  double xy[2], x, y, width, height, share = 0;
+  const char *end;
+  abbe_result result = aim(s, 1, xy, error);
+  if (result != ABBE_OK) return result;
+  if (s->words < 3 || !abbe_number_read(s->word[2], &end, &share) || share < 0 || share > 1)
+    return fail(s, ABBE_PARSE, error, "how far? Give a share of its way, 0 to 1");
+  if (!abbe_ui_find(s->word[1], &x, &y, &width, &height))
+    return fail(s, ABBE_NOT_FOUND, error, "'%.60s' is out of sight", s->word[1]);
+  xy[0] = x + 4 + share * (width - 8);
+  press_at(s, xy, 0);
+  return ABBE_OK;
+}
+
+static abbe_result do_wheel(script *s, abbe_error *error) {
+  double xy[2], clicks = 0;
+  const char *end;
+  const abbe_result result = aim(s, 1, xy, error);
+  if (result != ABBE_OK) return result;
+  if (s->words < 3 || !abbe_number_read(s->word[2], &end, &clicks))
+    return fail(s, ABBE_PARSE, error, "how many clicks?");
+  point(s, xy);
+  s->input.wheel = clicks;
+  pump(s);
+  return ABBE_OK;
+}
+
+static abbe_result do_key(script *s, abbe_error *error) {
+  const char *name = s->words > 1 ? s->word[1] : "";
+  const bool control = strncmp(name, "control+", 8) == 0;
+  if (control) name += 8;
+  if (strlen(name) != 1)
+    return fail(s, ABBE_PARSE, error, "which? Give a letter, or control+LETTER");
+  const int modifiers = control ? ABBE_VIEW_CONTROL : 0;
+  abbe_view_app_key(&s->session, name[0], true, modifiers, abbe_clock_seconds());
+  abbe_view_app_key(&s->session, name[0], false, modifiers, abbe_clock_seconds());
+  pump(s);
+  return ABBE_OK;
+}
+
+/* ---- waiting and asserting ---- */
+
+static bool has_come(script *s, const char *what) {
+  const abbe_view_session *v = &s->session;
+  const double now = abbe_clock_seconds();
+  if (strcmp(what, "rest") == 0) return abbe_view_app_rests(&s->session, now);
+  if (strcmp(what, "refusal") == 0) return v->state.refusal[0] != '\0';
+  if (strcmp(what, "changed") == 0) return v->state.refine.serial != s->copied;
+  if (strcmp(what, "spectrum") == 0) return v->probe.bands > 0;
+  if (v->state.refine.stage == ABBE_VIEW_NONE) return false;
+  for (int stage = 0; stage < ABBE_VIEW_STAGE_COUNT; stage++)
+    if (strcmp(what, abbe_view_stage_name((abbe_view_stage)stage)) == 0)
+      return (int)v->stage >= stage && (int)v->state.refine.stage >= stage &&
+             (stage != ABBE_VIEW_TRACED || v->passes > 0);
+  return false;
+}
+
+/* The processor is the worker's meanwhile. */
+static void sleep_a_little(void) {
+  const struct timespec time = {.tv_nsec = 20000000};
+  nanosleep(&time, NULL);
+}
+
+static abbe_result do_wait(script *s, abbe_error *error) {
+  const char *what = s->words > 1 ? s->word[1] : "rest";
+  const double start = abbe_clock_seconds();
+  pump(s);
+  while (!has_come(s, what)) {
+    if (abbe_clock_seconds() - start > PATIENCE_S)
+      return fail(s, ABBE_TOLERANCE, error,
+                  "'%.60s' has not come in %.0f s; the stage is %s%s%.300s", what, PATIENCE_S,
+                  abbe_view_stage_name(s->session.stage),
+                  s->session.state.refusal[0] != '\0' ? ": " : "", s->session.state.refusal);
+    sleep_a_little();
+    pump(s);
+  }
+  pump(s);
+  return ABBE_OK;
+}
+
+static abbe_result value_of(script *s, const char *name, char out[LONGEST], abbe_error *error) {
+  if (name[0] == '$') {
+    for (size_t i = s->remembered_count; i-- > 0;)
+      if (strcmp(s->remembered[i].name, name + 1) == 0) {
+        memcpy(out, s->remembered[i].value, LONGEST);
+        return ABBE_OK;
+      }
+    return fail(s, ABBE_NOT_FOUND, error, "'%.60s' was not remembered", name);
+  }
+  if (abbe_view_session_value(&s->session, name, out, LONGEST)) return ABBE_OK;
+  char *command = strcmp(name, "command") == 0 ? abbe_view_keep_command(&s->session) : NULL;
+  if (command != NULL) {
+    snprintf(out, LONGEST, "%s", command);
+    free(command);
+    return ABBE_OK;
+  }
+  return fail(s, ABBE_NOT_FOUND, error, "there is no value '%.60s'", name);
+}
+
+static abbe_result do_remember(script *s, abbe_error *error) {
+  char value[LONGEST];
+  if (s->words < 3 || s->remembered_count == MOST_REMEMBERED)
+    return fail(s, ABBE_PARSE, error, "a value, and a name for it");
+  const abbe_result result = value_of(s, s->word[1], value, error);
+  if (result != ABBE_OK) return result;
+  memcpy(s->remembered[s->remembered_count].value, value, LONGEST);
+  snprintf(s->remembered[s->remembered_count++].name, LONGEST, "%s", s->word[2]);
+  return ABBE_OK;
+}
+
+static bool holds(const char *value, const char *relation, const char *other, bool *known) {
+  double a = 0, b = 0;
+  const char *end_a, *end_b;
+  const bool numbers = abbe_number_read(value, &end_a, &a) && *end_a == '\0' &&
+                       abbe_number_read(other, &end_b, &b) && *end_b == '\0';
+  *known = true;
+  if (strcmp(relation, "contains") == 0) return strstr(value, other) != NULL;
+  if (strcmp(relation, "=") == 0) return numbers ? a == b : strcmp(value, other) == 0;
+  if (strcmp(relation, "!=") == 0) return numbers ? a != b : strcmp(value, other) != 0;
+  if (strcmp(relation, "<") == 0) return numbers && a < b;
+  if (strcmp(relation, ">") == 0) return numbers && a > b;
+  *known = false;
+  return false;
+}
+
+static abbe_result do_assert(script *s, abbe_error *error) {
+  char value[LONGEST], other[LONGEST];
+  bool known;
+  if (s->words < 4) return fail(s, ABBE_PARSE, error, "a value, one of = != < > contains, another");
+  abbe_result result = value_of(s, s->word[1], value, error);
+  snprintf(other, sizeof other, "%s", s->word[3]);
+  if (result == ABBE_OK && s->word[3][0] == '$') result = value_of(s, s->word[3], other, error);
+  if (result != ABBE_OK) return result;
+  if (holds(value, s->word[2], other, &known)) return ABBE_OK;
+  if (!known) return fail(s, ABBE_PARSE, error, "'%.20s' is none of = != < > contains", s->word[2]);
+  return fail(s, ABBE_TOLERANCE, error, "%.60s is '%.120s', not %.20s '%.120s'", s->word[1], value,
+              s->word[2], other);
+}
+
+static abbe_result do_say(script *s, abbe_error *error) {
+  char value[LONGEST];
+  for (size_t i = 1; i < s->words; i++) {
+    const abbe_result result = value_of(s, s->word[i], value, error);
+    if (result != ABBE_OK) return result;
+    printf("%s %s\n", s->word[i], value);
+  }
+  return ABBE_OK;
+}
+
+static abbe_result do_shot(script *s, abbe_error *error) {
+  if (s->words < 2) return fail(s, ABBE_PARSE, error, "into which file?");
+  return shoot(s, s->word[1], error);
+}
+
+static abbe_result do_size(script *s, abbe_error *error) {
+  unsigned width = 0, height = 0;
+  if (s->words < 2 || sscanf(s->word[1], "%5ux%5u", &width, &height) != 2 || width < 1 ||
+      height < 1 || width > 8192 || height > 8192)
+    return fail(s, ABBE_PARSE, error, "WxH, 1 to 8192 each");
+  make_target(s, width, height);
+  pump(s);
+  return ABBE_OK;
+}
+
+static abbe_result do_copy(script *s, abbe_error *error) {
+  char *data = NULL;
+  size_t size = 0;
+  if (s->words < 3) return fail(s, ABBE_PARSE, error, "which file, and to where?");
+  abbe_result result = abbe_file_read(s->word[1], SCRIPT_MOST_BYTES, &data, &size, error);
+  s->copied = s->session.state.refine.serial;
+  if (result == ABBE_OK) result = abbe_file_write(s->word[2], data, size, error);
+  free(data);
+  return result;
+}
+
+/* ---- lines ---- */
+
+static const struct {
+  const char *name;
+  abbe_result (*run)(script *, abbe_error *);
+} commands[] = {{"wait", do_wait},   {"click", do_click},       {"drag", do_drag},
+                {"wheel", do_wheel}, {"key", do_key},           {"choose", do_choose},
+                {"slide", do_slide}, {"remember", do_remember}, {"assert", do_assert},
+                {"say", do_say},     {"shot", do_shot},         {"size", do_size},
+                {"copy", do_copy}};
+
+/* Words of a line, in place: by blanks, or between quotes. */
+static void part(script *s, char *line) {
+  s->words = 0;
+  while (s->words < MOST_WORDS) {
+    line += strspn(line, " \t\r");
+    if (*line == '\0' || *line == '#') return;
+    const bool quoted = *line == '"';
+    if (quoted) line++;
+    s->word[s->words++] = line;
+    line += strcspn(line, quoted ? "\"" : " \t\r");
+    if (*line == '\0') return;
+    *line++ = '\0';
+  }
+}
+
+static abbe_result run_line(script *s, char *line, abbe_error *error) {
+  part(s, line);
+  if (s->words == 0) return ABBE_OK;
+  for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+    if (strcmp(s->word[0], commands[i].name) == 0) return commands[i].run(s, error);
+  return fail(s, ABBE_PARSE, error, "is no command; docs/view.md lists them");
+}
+
+static abbe_result run_lines(script *s, char *text, abbe_error *error) {
+  abbe_result result = ABBE_OK;
+  for (char *line = text; line != NULL && result == ABBE_OK;) {
+    char *end = strchr(line, '\n');
+    if (end != NULL) *end++ = '\0';
+    s->line++;
+    result = run_line(s, line, error);
+    line = end;
+  }
+  return result;
+}
+
+abbe_result abbe_view_script_run(const char *path, const abbe_view_app_desc *desc, size_t width,
+                                 size_t height, abbe_error *error) {
+  script *s = calloc(1, sizeof *s);
+  char *text = NULL;
+  size_t size = 0;
+  if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
+  s->path = path;
+  s->input.mouse[0] = s->input.mouse[1] = -1;
+  abbe_result result = abbe_file_read_text(path, SCRIPT_MOST_BYTES, &text, &size, error);
+  if (result == ABBE_OK) result = abbe_context_make(ABBE_CONTEXT_EGL, &s->context, error);
+  if (result == ABBE_OK) {
+    s->gl = abbe_context_gl(s->context);
+    s->last_s = abbe_clock_seconds();
+    make_target(s, width, height);
+    result = abbe_view_app_begin(&s->session, desc, s->context, error);
+    if (result == ABBE_OK) {
+      result = run_lines(s, text, error);
+      abbe_view_app_end(&s->session);
+    }
+    s->gl->DeleteFramebuffers(1, &s->framebuffer);
+    s->gl->DeleteTextures(1, &s->colour);
+  }
+  abbe_context_free(s->context);
+  free(text);
+  free(s);
+  return result;
+}

@@ -1,0 +1,105 @@
+#include "cli/view/view_session.h"
+
+#include "base/number.h"
+#include "colorimetry/rgb_space.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
+                                          abbe_error *error) {
+  char display[128] = "", name[128] = "";
+  const char *line = session->views;
+  for (size_t i = 0; i < view && line != NULL; i++)
+    if ((line = strchr(line, '\n')) != NULL) line++;
+  const char *slash = line != NULL ? strstr(line, " / ") : NULL;
+  if (slash != NULL) {
+    snprintf(display, sizeof display, "%.*s", (int)(slash - line), line);
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(slash + 3, "\n"), slash + 3);
+  }
+  abbe_display *made = NULL;
+  const abbe_display_desc desc = {.config = session->ocio,
+                                  .source_space = abbe_rgb_space_ocio_name(ABBE_RGB_SPACE_ACESCG),
+                                  .display = slash != NULL ? display : NULL,
+                                  .view = slash != NULL ? name : NULL};
+  const abbe_result result = abbe_display_make(&desc, &made, error);
+  if (result != ABBE_OK) return result;
+  abbe_display_free(session->display);
+  session->display = made;
+  session->view = view;
+  session->stale = true;
+  return ABBE_OK;
+}
+
+double abbe_view_session_rate(const abbe_view_session *session) {
+  const size_t count = session->frame_count < 32 ? session->frame_count : 32;
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) sum += session->frames_ms[i];
+  return sum > 0 ? 1e3 * (double)count / sum : 0;
+}
+
+unsigned long long abbe_view_session_hash(const abbe_view_session *session) {
+  const abbe_image *image = &session->pictures.rendered;
+  unsigned long long hash = 14695981039346656037ULL;
+  /* a rendered picture's first three channels are its colour */
+  for (size_t i = 0; image->data != NULL && i < image->width * image->height; i++) {
+    unsigned char bytes[3 * sizeof(float)];
+    memcpy(bytes, &image->data[i * image->channels], sizeof bytes);
+    for (size_t k = 0; k < sizeof bytes; k++) hash = (hash ^ bytes[k]) * 1099511628211ULL;
+  }
+  return hash;
+}
+
+/* The largest of a spectrum, in standard errors. */
+static double significance(const abbe_view_probe *probe) {
+  double most = 0;
+  for (size_t i = 0; i < probe->bands; i++)
+    if (probe->stderr_of[i] > 0) most = fmax(most, probe->radiance[i] / probe->stderr_of[i]);
+  return most;
+}
+
+bool abbe_view_session_value(const abbe_view_session *session, const char *name, char *out,
+                             size_t size) {
+  const abbe_view_state *s = &session->state;
+  const abbe_view_document *now = abbe_view_history_now(&s->history);
+  const abbe_view_probe *probe = &session->probe;
+  const struct {
+    const char *name;
+    double value;
+  } numbers[] = {{"photons", (double)session->last.desc.photons},
+                 {"wavelengths", (double)session->last.desc.wavelengths},
+                 {"map", (double)session->last.desc.map_size},
+                 {"passes", (double)session->passes},
+                 {"promised", session->promised},
+                 {"estimated", session->estimated},
+                 {"against", session->against},
+                 {"undo", (double)s->history.at},
+                 {"rate", abbe_view_session_rate(session)},
+                 {"latency", session->latency_ms},
+                 {"bands", (double)probe->bands},
+                 {"dominant", probe->dominant_nm},
+                 {"purity", probe->purity},
+                 {"x", probe->xy[0]},
+                 {"y", probe->xy[1]},
+                 {"Y", probe->xyz[1]},
+                 {"significance", significance(probe)},
+                 {"exposure", s->exposure},
+                 {"width", (double)s->width},
+                 {"height", (double)s->height}};
+  const struct {
+    const char *name, *text;
+  } texts[] = {{"scene", now->path},
+               {"stage", abbe_view_stage_name(session->stage)},
+               {"refusal", s->refusal},
+               {"note", session->note}};
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    if (strcmp(name, numbers[i].name) == 0)
+      return abbe_number_format(out, size, "%.10g", numbers[i].value) > 0;
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+    if (strcmp(name, texts[i].name) == 0) return snprintf(out, size, "%s", texts[i].text) >= 0;
+  if (strcmp(name, "hash") == 0)
+    return snprintf(out, size, "%016llx", abbe_view_session_hash(session)) > 0;
+  const char *set = abbe_view_document_value(now, name);
+  return set != NULL && snprintf(out, size, "%s", set) >= 0;
+}

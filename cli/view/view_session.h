@@ -1,0 +1,66 @@
+/* view_session.h: what a running viewer holds: its state, its pictures, what is known of them.
+ *
+ * cli/view/view_app.h leads it; panel and scripts look into it.
+ */
+#ifndef ABBE_CLI_VIEW_VIEW_SESSION_H
+#define ABBE_CLI_VIEW_VIEW_SESSION_H
+
+#include "cli/view/view_probe.h"
+#include "cli/view/view_ui.h"
+#include "cli/view/view_worker.h"
+#include "gl/device/api.h"
+
+#define ABBE_VIEW_PANEL_WIDTH 340
+#define ABBE_VIEW_MOST_SCENES 64
+
+typedef struct abbe_view_session {
+  abbe_view_state state;
+  abbe_view_worker *worker;
+  const abbe_gl *gl;
+  const char *keep, *ocio;
+  abbe_display *display;
+  char *views; /* lines "display / view" */
+  size_t view; /* of these */
+  char *scene[ABBE_VIEW_MOST_SCENES];
+  size_t scene_count;
+  abbe_view_job running;
+  bool reload; /* at the next job */
+  abbe_view_pictures pictures;
+  abbe_view_result taken;     /* while it is looked at */
+  abbe_view_result last;      /* of the last rendered picture: plan, statistics, settings */
+  abbe_view_stage stage;      /* of the picture that stands */
+  double promised, estimated; /* mean CIEDE2000 in the caustic; 0: not known */
+  double against; /* root mean square of rendered less traced, over the mean; 0: not known */
+  double noise;   /* of the traced picture alone, the same */
+  size_t passes;  /* behind the traced picture */
+  unsigned texture;
+  size_t texture_width, texture_height;
+  bool stale;            /* the texture */
+  abbe_view_shown drawn; /* what it shows */
+  double drawn_exposure;
+  abbe_view_probe probe;
+  abbe_ui_input input;          /* of the frame before */
+  double area[2];               /* of the picture in the window */
+  double seen_s, frames_ms[32]; /* times between pictures while something moves */
+  size_t frame_count;
+  double event_s, latency_ms; /* of the oldest change that is not shown; of the last picture */
+  char note[1200];            /* what was saved, or why not */
+  char **file;                /* of the scene, and when they were changed last */
+  long long *changed;
+  size_t file_count;
+  double looked_s;
+} abbe_view_session;
+
+/* Another line of the list of displays and views; ABBE_COLOUR where it is broken. */
+abbe_result abbe_view_session_choose_view(abbe_view_session *session, size_t view,
+                                          abbe_error *error);
+/* Pictures a second while something moves, of the last ones; 0: nothing has moved. */
+double abbe_view_session_rate(const abbe_view_session *session);
+/* A value by its name, for scripts (docs/view.md lists them), or what a key was set to. False:
+ * there is none. */
+bool abbe_view_session_value(const abbe_view_session *session, const char *name, char *out,
+                             size_t size);
+/* FNV-1a of the bytes of the linear picture that stands. */
+unsigned long long abbe_view_session_hash(const abbe_view_session *session);
+
+#endif

@@ -1,0 +1,127 @@
+#include "cli/view/view_show.h"
+
+#include "colorimetry/image/colour_map.h"
+#include "colorimetry/rgb_space.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+void abbe_view_pictures_free(abbe_view_pictures *pictures) {
+  abbe_image_free(&pictures->rendered);
+  abbe_image_free(&pictures->layers);
+  abbe_image_free(&pictures->error);
+  abbe_image_free(&pictures->traced);
+  *pictures = (abbe_view_pictures){0};
+}
+
+static bool same_size(const abbe_image *a, const abbe_image *b) {
+  return a->data != NULL && b->data != NULL && a->width == b->width && a->height == b->height;
+}
+
+abbe_view_shown abbe_view_shown_of(const abbe_view_pictures *p, abbe_view_shown wish) {
+  switch (wish) {
+  case ABBE_VIEW_TRACED_PICTURE:
+  case ABBE_VIEW_DIFFERENCE_PICTURE:
+    return same_size(&p->rendered, &p->traced) ? wish : ABBE_VIEW_RENDERED_PICTURE;
+  case ABBE_VIEW_ERROR_PICTURE:
+    return same_size(&p->rendered, &p->error) ? wish : ABBE_VIEW_RENDERED_PICTURE;
+  case ABBE_VIEW_CAUSTIC_PICTURE:
+  case ABBE_VIEW_DIRECT_PICTURE:
+    return same_size(&p->rendered, &p->layers) ? wish : ABBE_VIEW_RENDERED_PICTURE;
+  default:
+    return ABBE_VIEW_RENDERED_PICTURE;
+  }
+}
+
+bool abbe_view_channels(const abbe_image *image, const char *prefix, size_t channel[3]) {
+  static const char letters[] = "RGB";
+  for (size_t k = 0; k < 3; k++) {
+    char name[64];
+    snprintf(name, sizeof name, "%.40s%s%c", prefix, prefix[0] != '\0' ? "." : "", letters[k]);
+    channel[k] = abbe_image_find_channel(image, name);
+    if (channel[k] == (size_t)-1) return false;
+  }
+  return true;
+}
+
+double abbe_view_luminance(const abbe_image *image, const size_t channel[3], size_t pixel) {
+  double matrix[9], y = 0;
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  for (size_t k = 0; k < 3; k++)
+    y += matrix[3 + k] * (double)image->data[pixel * image->channels + channel[k]];
+  return y;
+}
+
+static double mean_luminance(const abbe_image *image, const size_t channel[3]) {
+  double sum = 0;
+  const size_t count = image->width * image->height;
+  for (size_t i = 0; i < count; i++) sum += abbe_view_luminance(image, channel, i);
+  return sum / (double)count;
+}
+
+static unsigned char byte_of(double value) {
+  return (unsigned char)(255 * fmin(1, fmax(0, value)) + 0.5);
+}
+
+/* Errors and differences. */
+static void show_false(const abbe_view_pictures *p, abbe_view_shown shown, unsigned char *out) {
+  const abbe_image *first = &p->rendered;
+  const bool difference = shown == ABBE_VIEW_DIFFERENCE_PICTURE;
+  const abbe_image *second = difference ? &p->traced : &p->error;
+  size_t a[3], b[3];
+  if (!abbe_view_channels(first, "", a) ||
+      !abbe_view_channels(second, difference ? "" : "stderr", b))
+    return;
+  const double mean =
+      fmax(1e-30, difference ? mean_luminance(second, b) : mean_luminance(first, a));
+  for (size_t i = 0; i < first->width * first->height; i++) {
+    const double y = abbe_view_luminance(second, b, i);
+    double rgb[3], t;
+    if (difference)
+      t = 0.5 + 0.5 * (abbe_view_luminance(first, a, i) - y) / (ABBE_VIEW_FULL_DIFFERENCE * mean);
+    else
+      t = log10(fmax(1e-30, fabs(y)) / (ABBE_VIEW_LEAST_ERROR * mean)) / 3;
+    abbe_colour_map_at(difference ? ABBE_COLOUR_MAP_DIFFERENCE : ABBE_COLOUR_MAP_AMOUNT, t, rgb);
+    for (int k = 0; k < 3; k++) out[4 * i + (size_t)k] = byte_of(rgb[k]);
+    out[4 * i + 3] = 255;
+  }
+}
+
+abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, double exposure,
+                           const abbe_display *display, unsigned char **out, abbe_error *error) {
+  static const char *const names[] = {"R", "G", "B"};
+  const size_t count = p->rendered.width * p->rendered.height;
+  const double gain = exp2(exposure);
+  abbe_image screen = {0};
+  *out = calloc(count + 1, 4);
+  if (*out == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory to show the picture");
+  shown = abbe_view_shown_of(p, shown);
+  if (shown == ABBE_VIEW_ERROR_PICTURE || shown == ABBE_VIEW_DIFFERENCE_PICTURE) {
+    show_false(p, shown, *out);
+    return ABBE_OK;
+  }
+  const char *layer = shown == ABBE_VIEW_CAUSTIC_PICTURE  ? "caustic"
+                      : shown == ABBE_VIEW_DIRECT_PICTURE ? "direct"
+                                                          : "";
+  const abbe_image *from = shown == ABBE_VIEW_TRACED_PICTURE ? &p->traced
+                           : layer[0] != '\0'                ? &p->layers
+                                                             : &p->rendered;
+  size_t channel[3];
+  abbe_result result = abbe_view_channels(from, layer, channel)
+                           ? abbe_image_make(from->width, from->height, 3, names, &screen, error)
+                           : abbe_error_set(error, ABBE_NOT_FOUND, "the picture has no such layer");
+  for (size_t i = 0; result == ABBE_OK && i < count; i++)
+    for (size_t k = 0; k < 3; k++)
+      screen.data[3 * i + k] = (float)(gain * (double)from->data[from->channels * i + channel[k]]);
+  if (result == ABBE_OK) result = abbe_display_apply(display, &screen, error);
+  for (size_t i = 0; result == ABBE_OK && i < count; i++) {
+    for (size_t k = 0; k < 3; k++) (*out)[4 * i + k] = byte_of((double)screen.data[3 * i + k]);
+    (*out)[4 * i + 3] = 255;
+  }
+  abbe_image_free(&screen);
+  if (result == ABBE_OK) return ABBE_OK;
+  free(*out);
+  *out = NULL;
+  return result;
+}

@@ -1,0 +1,290 @@
+#include "cli/view/view_ui.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <string>
+
+namespace {
+
+struct rectangle {
+  float x, y, width, height;
+  int frame;
+};
+std::map<std::string, rectangle> places;
+std::string sought;
+bool in_panel;
+
+ImU32 colour_of(abbe_ui_colour c) {
+  return IM_COL32(c >> 16 & 255, c >> 8 & 255, c & 255, 255 - (c >> 24 & 255));
+}
+
+ImVec4 vector_of(abbe_ui_colour c) {
+  return ImGui::ColorConvertU32ToFloat4(colour_of(c));
+}
+
+ImDrawList *list() {
+  return in_panel ? ImGui::GetWindowDrawList() : ImGui::GetBackgroundDrawList();
+}
+
+ImVec2 at(double x, double y) {
+  return ImVec2(static_cast<float>(x), static_cast<float>(y));
+}
+
+/* Keeps where the last widget is. */
+void note(const char *label) {
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+  if (sought == label) {
+    ImGui::SetScrollHereY(0.5F);
+    sought.clear();
+  }
+  if (ImGui::IsItemVisible())
+    places[label] = {from.x, from.y, to.x - from.x, to.y - from.y, ImGui::GetFrameCount()};
+}
+
+void dress() {
+  ImGuiStyle &s = ImGui::GetStyle();
+  ImGui::StyleColorsDark();
+  s.WindowRounding = 0;
+  s.FrameRounding = 3;
+  s.GrabRounding = 3;
+  s.WindowBorderSize = 0;
+  s.WindowPadding = ImVec2(14, 12);
+  s.ItemSpacing = ImVec2(8, 6);
+  s.FramePadding = ImVec2(7, 4);
+  s.ScrollbarSize = 10;
+  const struct {
+    ImGuiCol which;
+    abbe_ui_colour colour;
+  } colours[] = {{ImGuiCol_WindowBg, 0x16181c},
+                 {ImGuiCol_PopupBg, 0x1d2026},
+                 {ImGuiCol_Text, 0xd6d9de},
+                 {ImGuiCol_TextDisabled, 0x858b95},
+                 {ImGuiCol_FrameBg, 0x262a31},
+                 {ImGuiCol_FrameBgHovered, 0x30353e},
+                 {ImGuiCol_FrameBgActive, 0x363c47},
+                 {ImGuiCol_SliderGrab, 0x7f93b2},
+                 {ImGuiCol_SliderGrabActive, 0xa5b9d8},
+                 {ImGuiCol_Button, 0x2b3038},
+                 {ImGuiCol_ButtonHovered, 0x3a414c},
+                 {ImGuiCol_ButtonActive, 0x47505e},
+                 {ImGuiCol_Header, 0x1f2329},
+                 {ImGuiCol_HeaderHovered, 0x2a2f37},
+                 {ImGuiCol_HeaderActive, 0x323842},
+                 {ImGuiCol_ScrollbarBg, 0x16181c},
+                 {ImGuiCol_ScrollbarGrab, 0x343a44},
+                 {ImGuiCol_Separator, 0x2a2e35}};
+  for (const auto &c : colours) s.Colors[c.which] = vector_of(c.colour);
+}
+
+void load_font() {
+  static const ImWchar ranges[] = {0x20,   0xff,   0x370,  0x3ff,  0x2000, 0x206f,
+                                   0x2070, 0x209f, 0x2190, 0x22ff, 0};
+  static const char path[] = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+  ImFontAtlas *fonts = ImGui::GetIO().Fonts;
+  std::FILE *there = std::fopen(path, "rb");
+  if (there != nullptr) std::fclose(there);
+  if (there == nullptr || fonts->AddFontFromFileTTF(path, 14, nullptr, ranges) == nullptr)
+    fonts->AddFontDefault();
+}
+
+} // namespace
+
+abbe_result abbe_ui_make(abbe_error *error) {
+  try {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui::GetIO().LogFilename = nullptr;
+    dress();
+    load_font();
+    if (ImGui_ImplOpenGL3_Init("#version 450 core")) return ABBE_OK;
+    ImGui::DestroyContext();
+    return abbe_error_set(error, ABBE_GL, "the viewer's widgets find no OpenGL to draw with");
+  } catch (const std::exception &e) {
+    return abbe_error_set(error, ABBE_GL, "the viewer's widgets: %s", e.what());
+  }
+}
+
+void abbe_ui_free(void) {
+  if (ImGui::GetCurrentContext() == nullptr) return;
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext();
+  places.clear();
+}
+
+void abbe_ui_begin(const abbe_ui_input *input) {
+  ImGuiIO &io = ImGui::GetIO();
+  io.DisplaySize = at(input->width, input->height);
+  io.DeltaTime = input->seconds > 1e-4 ? static_cast<float>(input->seconds) : 1e-4F;
+  io.MousePos = at(input->mouse[0], input->mouse[1]);
+  for (int i = 0; i < 3; i++) io.MouseDown[i] = input->button[i];
+  io.MouseWheel = static_cast<float>(input->wheel);
+  io.KeyShift = input->shift;
+  io.KeyCtrl = input->control;
+  io.KeyMap[ImGuiKey_Enter] = 1;
+  io.KeyMap[ImGuiKey_Backspace] = 2;
+  io.KeyMap[ImGuiKey_Escape] = 3;
+  io.KeysDown[1] = input->enter;
+  io.KeysDown[2] = input->backspace;
+  io.KeysDown[3] = input->escape;
+  io.AddInputCharactersUTF8(input->text);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui::NewFrame();
+}
+
+void abbe_ui_end(void) {
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool abbe_ui_has_pointer(void) {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool abbe_ui_has_keys(void) {
+  return ImGui::GetIO().WantTextInput;
+}
+
+void abbe_ui_panel_begin(const char *name, double x, double y, double width, double height) {
+  ImGui::SetNextWindowPos(at(x, y));
+  ImGui::SetNextWindowSize(at(width, height));
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PushItemWidth(ImGui::GetWindowWidth() * 0.56F);
+  in_panel = true;
+}
+
+void abbe_ui_panel_end(void) {
+  ImGui::PopItemWidth();
+  ImGui::End();
+  in_panel = false;
+}
+
+bool abbe_ui_section(const char *label, bool open) {
+  const bool is_open = ImGui::CollapsingHeader(label, open ? ImGuiTreeNodeFlags_DefaultOpen
+                                                           : ImGuiTreeNodeFlags_None);
+  note(label);
+  return is_open;
+}
+
+void abbe_ui_text(abbe_ui_colour colour, const char *text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, vector_of(colour));
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+}
+
+void abbe_ui_pair(const char *name, const char *value) {
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(ImGui::GetWindowWidth() * 0.46F);
+  ImGui::TextUnformatted(value);
+}
+
+void abbe_ui_gap(void) {
+  ImGui::Spacing();
+}
+
+void abbe_ui_beside(void) {
+  ImGui::SameLine();
+}
+
+bool abbe_ui_button(const char *label) {
+  const bool pressed = ImGui::Button(label);
+  note(label);
+  return pressed;
+}
+
+bool abbe_ui_slider(const char *label, double *value, double min, double max, const char *format,
+                    bool logarithmic, bool *began) {
+  const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
+                                 (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  const bool changed =
+      ImGui::SliderScalar(label, ImGuiDataType_Double, value, &min, &max, format, flags);
+  note(label);
+  places[label].width = ImGui::CalcItemWidth(); /* without the label */
+  if (began != nullptr) *began = ImGui::IsItemActivated();
+  return changed;
+}
+
+bool abbe_ui_choose(const char *label, const char *const *names, size_t count, size_t *index) {
+  bool chosen = false;
+  const bool open =
+      ImGui::BeginCombo(label, *index < count ? names[*index] : "", ImGuiComboFlags_HeightLarge);
+  if (!open) note(label);
+  if (!open) return false;
+  for (size_t i = 0; i < count; i++) {
+    if (ImGui::Selectable(names[i], i == *index)) {
+      *index = i;
+      chosen = true;
+    }
+    note(names[i]);
+  }
+  ImGui::EndCombo();
+  return chosen;
+}
+
+void abbe_ui_tooltip(const char *text) {
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(340);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+bool abbe_ui_place(const char *label, double width, double height, double *x, double *y) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton(label, at(width, height));
+  note(label);
+  *x = corner.x;
+  *y = corner.y;
+  return ImGui::IsItemVisible();
+}
+
+double abbe_ui_panel_width(void) {
+  return ImGui::GetContentRegionAvail().x;
+}
+
+void abbe_ui_image(unsigned texture, double x, double y, double width, double height) {
+  list()->AddImage(reinterpret_cast<ImTextureID>(static_cast<size_t>(texture)), at(x, y),
+                   at(x + width, y + height));
+}
+
+void abbe_ui_line(double x0, double y0, double x1, double y1, abbe_ui_colour colour, double width) {
+  list()->AddLine(at(x0, y0), at(x1, y1), colour_of(colour), static_cast<float>(width));
+}
+
+void abbe_ui_circle(double x, double y, double radius, abbe_ui_colour colour, double width) {
+  list()->AddCircle(at(x, y), static_cast<float>(radius), colour_of(colour), 0,
+                    static_cast<float>(width));
+}
+
+void abbe_ui_box(double x0, double y0, double x1, double y1, abbe_ui_colour colour) {
+  list()->AddRectFilled(at(x0, y0), at(x1, y1), colour_of(colour));
+}
+
+void abbe_ui_label(double x, double y, abbe_ui_colour colour, const char *text) {
+  list()->AddText(at(x, y), colour_of(colour), text);
+}
+
+bool abbe_ui_find(const char *label, double *x, double *y, double *width, double *height) {
+  const auto found = places.find(label);
+  if (found == places.end() || found->second.frame < ImGui::GetFrameCount() - 1) return false;
+  const rectangle &r = found->second;
+  *x = r.x;
+  *y = r.y;
+  *width = r.width;
+  *height = r.height;
+  return true;
+}
+
+void abbe_ui_seek(const char *label) {
+  sought = label;
+}

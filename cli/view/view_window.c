@@ -1,0 +1,129 @@
+#include "cli/view/view_window.h"
+
+#include "base/clock.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct window {
+  GLFWwindow *handle;
+  abbe_view_session session;
+  abbe_ui_input input;
+} window;
+
+static abbe_result fail(const char *what, abbe_error *error) {
+  const char *why = NULL;
+  glfwGetError(&why);
+  return abbe_error_set(error, ABBE_GL, "%s%s%s; without a display, --script leads the viewer",
+                        what, why != NULL ? ": " : "", why != NULL ? why : "");
+}
+
+static int modifiers_of(int mods) {
+  return ((mods & GLFW_MOD_SHIFT) != 0 ? ABBE_VIEW_SHIFT : 0) |
+         ((mods & GLFW_MOD_CONTROL) != 0 ? ABBE_VIEW_CONTROL : 0);
+}
+
+static void on_key(GLFWwindow *handle, int key, int code, int action, int mods) {
+  window *w = glfwGetWindowUserPointer(handle);
+  (void)code;
+  const bool down = action != GLFW_RELEASE;
+  if (key == GLFW_KEY_ENTER) w->input.enter = down;
+  if (key == GLFW_KEY_BACKSPACE) w->input.backspace = down;
+  if (key == GLFW_KEY_ESCAPE) w->input.escape = down;
+  if (abbe_ui_has_keys()) return;
+  int character = 0;
+  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) character = 'a' + key - GLFW_KEY_A;
+  if (key == GLFW_KEY_KP_ADD || key == GLFW_KEY_EQUAL) character = '+';
+  if (key == GLFW_KEY_KP_SUBTRACT || key == GLFW_KEY_MINUS) character = '-';
+  if (character != 0)
+    abbe_view_app_key(&w->session, character, down, modifiers_of(mods), abbe_clock_seconds());
+}
+
+static void on_wheel(GLFWwindow *handle, double across, double along) {
+  window *w = glfwGetWindowUserPointer(handle);
+  (void)across;
+  w->input.wheel += along;
+}
+
+static void wake(void) {
+  glfwPostEmptyEvent();
+}
+
+/* A click shorter than a frame is not lost: it is down for one. */
+static void read_pointer(window *w) {
+  static const int buttons[] = {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT,
+                                GLFW_MOUSE_BUTTON_MIDDLE};
+  GLFWwindow *h = w->handle;
+  glfwGetCursorPos(h, &w->input.mouse[0], &w->input.mouse[1]);
+  for (int i = 0; i < 3; i++) w->input.button[i] = glfwGetMouseButton(h, buttons[i]) == GLFW_PRESS;
+  w->input.shift = glfwGetKey(h, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
+                   glfwGetKey(h, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+  w->input.control = glfwGetKey(h, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS ||
+                     glfwGetKey(h, GLFW_KEY_RIGHT_CONTROL) == GLFW_PRESS;
+}
+
+static void loop(window *w, const abbe_gl *gl) {
+  static const float dark[4] = {0.05F, 0.055F, 0.063F, 1};
+  double last = abbe_clock_seconds();
+  while (!glfwWindowShouldClose(w->handle)) {
+    int width, height;
+    const double now = abbe_clock_seconds();
+    read_pointer(w);
+    glfwGetFramebufferSize(w->handle, &width, &height);
+    w->input.seconds = now - last;
+    last = now;
+    if (width > 0 && height > 0 && !glfwGetWindowAttrib(w->handle, GLFW_ICONIFIED)) {
+      w->input.width = width;
+      w->input.height = height;
+      gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+      gl->Viewport(0, 0, width, height);
+      gl->ClearBufferfv(GL_COLOR, 0, dark);
+      abbe_view_app_frame(&w->session, &w->input, now);
+      glfwSwapBuffers(w->handle);
+    }
+    w->input.wheel = 0;
+    w->input.text[0] = '\0';
+    const double wait = abbe_view_app_wait(&w->session, abbe_clock_seconds());
+    if (wait > 0)
+      glfwWaitEventsTimeout(wait);
+    else
+      glfwPollEvents();
+  }
+}
+
+abbe_result abbe_view_window_run(const abbe_view_app_desc *desc, size_t width, size_t height,
+                                 abbe_error *error) {
+  abbe_context *context = NULL;
+  abbe_view_app_desc own = *desc;
+  if (!glfwInit()) return fail("there is no display", error);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  /* as the worker's own context, for two ways to OpenGL in a process disturb each other */
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+  window *w = calloc(1, sizeof *w);
+  abbe_result result = w != NULL ? ABBE_OK : abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  if (result == ABBE_OK) w->handle = glfwCreateWindow((int)width, (int)height, "Abbe", NULL, NULL);
+  if (result == ABBE_OK && w->handle == NULL) result = fail("there is no window", error);
+  if (result == ABBE_OK) {
+    glfwMakeContextCurrent(w->handle);
+    glfwSwapInterval(0);
+    const abbe_context_host host = {.lookup = (abbe_gl_lookup)glfwGetProcAddress};
+    result = abbe_context_adopt(&host, &context, error);
+  }
+  own.wake = wake;
+  if (result == ABBE_OK) result = abbe_view_app_begin(&w->session, &own, context, error);
+  if (result == ABBE_OK) {
+    glfwSetWindowUserPointer(w->handle, w);
+    glfwSetKeyCallback(w->handle, on_key);
+    glfwSetScrollCallback(w->handle, on_wheel);
+    loop(w, abbe_context_gl(context));
+    abbe_view_app_end(&w->session);
+  }
+  abbe_context_free(context);
+  free(w);
+  glfwTerminate();
+  return result;
+}

@@ -1,0 +1,429 @@
+#include "cli/view/view_worker.h"
+
+#include "base/clock.h"
+#include "base/number.h"
+#include "gl/accuracy/preset.h"
+#include "gl/renderer.h"
+#include "scenes/import/scene_file.h"
+#include "validation/tracer/tracer.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct abbe_view_worker {
+  pthread_t thread;
+  pthread_mutex_t lock;
+  pthread_cond_t signal;
+  void (*wake)(void);
+  const char *materials;
+  volatile int stop, quit;
+  bool busy, done;
+  abbe_view_request request;
+  abbe_view_result result;
+  abbe_view_result made; /* in the making */
+  /* the thread's own */
+  abbe_context *context;
+  abbe_renderer *renderer;
+  abbe_tracer *tracer;
+  uint64_t traced; /* the serial that the tracer is of */
+  abbe_presets presets;
+  abbe_preset_front front;
+  bool fronted, loaded;
+  abbe_view_document document; /* that the scene is of */
+  abbe_scene *scene, *drawn;   /* the renderer looks at what it has drawn until it has the other */
+  abbe_camera own;             /* the scene's, as the file has it */
+  abbe_result started;
+  abbe_error error;
+};
+
+void abbe_view_result_free(abbe_view_result *result) {
+  abbe_image_free(&result->picture);
+  abbe_image_free(&result->traced);
+  abbe_view_outline_free(&result->outline);
+  for (size_t i = 0; i < result->file_count; i++) free(result->file[i]);
+  free(result->file);
+  free(result->line);
+  abbe_error_bars_free(&result->bars);
+  *result = (abbe_view_result){0};
+}
+
+static bool goes_on(void *user, double done) {
+  const abbe_view_worker *w = user;
+  (void)done;
+  return !w->stop;
+}
+
+/* ---- the scene ---- */
+
+static bool is_place(const char *set) {
+  return strncmp(set, "camera.eye=", 11) == 0 || strncmp(set, "camera.target=", 14) == 0;
+}
+
+static void read_place(const abbe_view_document *document, const char *key, double out[3]) {
+  const char *text = abbe_view_document_value(document, key);
+  double v[3];
+  for (int k = 0; k < 3; k++) {
+    if (text == NULL || (*text != '[' && *text != ',')) return;
+    if (!abbe_number_read(text + 1, &text, &v[k])) return;
+  }
+  memcpy(out, v, sizeof v);
+}
+
+static abbe_result outline(const abbe_view_worker *w, const abbe_view_document *d,
+                           abbe_view_result *out, abbe_error *error) {
+  const abbe_scene_options all = {.set = (const char *const *)d->set, .set_count = d->set_count};
+  char *text = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_scene_text(d->path, &all, &text, &size, error);
+  if (result == ABBE_OK)
+    result = abbe_view_outline_make(w->scene, text, size, &out->outline, error);
+  free(text);
+  out->outlined = result == ABBE_OK;
+  const size_t files = abbe_scene_file_count(w->scene);
+  out->file = calloc(files + 1, sizeof *out->file);
+  for (size_t i = 0; out->file != NULL && i < files; i++) {
+    const char *file = abbe_scene_file(w->scene, i);
+    if (file != NULL && (out->file[out->file_count] = strdup(file)) != NULL) out->file_count++;
+  }
+  return result;
+}
+
+static void free_scene(abbe_scene *scene) {
+  if (scene != NULL) abbe_scene_free(scene);
+  free(scene);
+}
+
+/* The scene anew; the old one stays where the new one cannot be read. */
+static abbe_result load(abbe_view_worker *w, const abbe_view_document *d, abbe_view_result *out,
+                        abbe_error *error) {
+  const char *set[ABBE_VIEW_MOST_CHANGES];
+  abbe_scene_options options = {.materials = w->materials, .set = set};
+  abbe_view_document kept;
+  abbe_scene *scene = calloc(1, sizeof *scene);
+  if (scene == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the scene");
+  for (size_t i = 0; i < d->set_count; i++)
+    if (!is_place(d->set[i])) set[options.set_count++] = d->set[i];
+  abbe_result result = abbe_scene_load(d->path, &options, scene, error);
+  if (result == ABBE_OK) result = abbe_view_document_copy(d, &kept, error);
+  if (result != ABBE_OK) {
+    free_scene(scene);
+    return result;
+  }
+  abbe_tracer_free(w->tracer);
+  w->tracer = NULL;
+  if (w->scene != w->drawn) free_scene(w->scene);
+  w->scene = scene;
+  abbe_view_document_free(&w->document);
+  w->document = kept;
+  w->own = scene->camera;
+  w->loaded = true;
+  return outline(w, d, out, error);
+}
+
+static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
+                              abbe_view_result *out, abbe_error *error) {
+  const abbe_view_document *d = &q->document;
+  const bool other =
+      !w->loaded || q->reload || abbe_view_document_compare(&w->document, d) == ABBE_VIEW_CHANGED;
+  const bool another = !w->loaded || strcmp(w->document.path, d->path) != 0;
+  if (another) w->fronted = false;
+  const abbe_result result = other ? load(w, d, out, error) : ABBE_OK;
+  if (result != ABBE_OK) return result;
+  w->scene->camera = w->own;
+  read_place(d, "camera.eye", w->scene->camera.eye);
+  read_place(d, "camera.target", w->scene->camera.target);
+  return abbe_scene_check(w->scene, error);
+}
+
+/* ---- settings ---- */
+
+/* What the presets have for such a scene, once for each scene. */
+static void find_front(abbe_view_worker *w) {
+  abbe_plan plan;
+  const abbe_preset_front *front;
+  if (w->fronted) return;
+  w->front.count = 0;
+  w->fronted = true;
+  if (abbe_plan_make(w->scene, NULL, &plan, NULL) != ABBE_OK) return;
+  if (abbe_presets_find(&w->presets, &plan, &front, NULL) == ABBE_OK) w->front = *front;
+  abbe_plan_free(&plan);
+}
+
+static const abbe_preset_point *point_of(const abbe_view_worker *w, abbe_view_stage stage) {
+  const abbe_preset_name name = stage <= ABBE_VIEW_MOVING     ? ABBE_PRESET_DRAFT
+                                : stage == ABBE_VIEW_BALANCED ? ABBE_PRESET_BALANCED
+                                                              : ABBE_PRESET_ACCURATE;
+  const size_t at = w->front.count > 0 ? w->front.named[name] : 0;
+  return at < w->front.count ? &w->front.point[at] : NULL;
+}
+
+/* A stage's settings; where no sweep has measured such scenes, the plan's own and what is coarser
+ * and finer than these. */
+static abbe_render_desc settings_of(const abbe_view_worker *w, abbe_view_stage stage) {
+  const abbe_preset_point *point = point_of(w, stage);
+  abbe_render_desc desc = {0};
+  if (point != NULL) {
+    abbe_preset_apply(point, &desc);
+  } else if (stage <= ABBE_VIEW_MOVING) {
+    desc = (abbe_render_desc){.wavelengths = 5, .photons = 64, .map_size = 256, .supersample = 1};
+  } else if (stage >= ABBE_VIEW_ACCURATE) {
+    desc = (abbe_render_desc){.wavelengths = 21, .photons = 512, .supersample = 2};
+  }
+  return desc;
+}
+
+static abbe_render_desc request_of(const abbe_view_worker *w, const abbe_view_request *q) {
+  static const double fewer[ABBE_VIEW_LIGHT_STEPS] = {1, 0.7, 0.5, 0.35};
+  const abbe_view_job *job = &q->job;
+  const bool moving = job->stage == ABBE_VIEW_MOVING;
+  abbe_render_desc desc = settings_of(w, job->light);
+  desc.supersample = moving ? 1 : settings_of(w, job->stage).supersample;
+  desc.upsample = moving ? job->eye_step + 1 : 0;
+  desc.adaptive = moving ? 1 : 0;
+  desc.aovs = !moving;
+  desc.width = q->width;
+  desc.height = q->height;
+  if (moving && job->light == ABBE_VIEW_MOVING && desc.photons > 0)
+    desc.photons = (size_t)fmax(8, (double)desc.photons * fewer[job->light_step]);
+  if (job->light != ABBE_VIEW_MOVING || !moving) {
+    if (q->document.wavelengths > 0) desc.wavelengths = q->document.wavelengths;
+    if (q->document.photons > 0) desc.photons = q->document.photons;
+    if (q->document.map_size > 0) desc.map_size = q->document.map_size;
+  }
+  return desc;
+}
+
+/* ---- what is drawn ---- */
+
+static void list_plan(const abbe_plan *plan, const abbe_statistics *s, abbe_view_result *out) {
+  out->line = calloc(plan->entry_count + plan->note_count + 1, sizeof *out->line);
+  if (out->line == NULL) return;
+  for (size_t i = 0; i < plan->entry_count; i++) {
+    const abbe_plan_entry *e = &plan->entry[i];
+    abbe_view_line *line = &out->line[out->line_count++];
+    *line = (abbe_view_line){.runs = e->runs, .ms = -1};
+    snprintf(line->name, sizeof line->name, "%s", e->name);
+    snprintf(line->reason, sizeof line->reason, "%s", e->reason);
+    if (e->item >= ABBE_PASS_COUNT) continue;
+    line->kept = s->kept[e->item];
+    for (size_t k = 0; k < s->pass_count; k++)
+      if (s->pass[k].pass == e->item) line->ms = s->pass[k].ms;
+  }
+  for (size_t i = 0; i < plan->note_count; i++) {
+    abbe_view_line *line = &out->line[out->line_count++];
+    *line = (abbe_view_line){.runs = true, .ms = -1};
+    snprintf(line->name, sizeof line->name, "note");
+    snprintf(line->reason, sizeof line->reason, "%.223s", plan->note[i]);
+  }
+}
+
+static abbe_result change(abbe_view_worker *w, const abbe_render_desc *desc, abbe_error *error) {
+  abbe_render_desc watched = *desc;
+  watched.progress = goes_on;
+  watched.progress_user = w;
+  const abbe_result result =
+      w->renderer == NULL ? abbe_renderer_make(w->context, w->scene, &watched, &w->renderer, error)
+                          : abbe_renderer_change(w->renderer, w->scene, &watched, error);
+  if (result != ABBE_OK) return result;
+  if (w->drawn != w->scene) free_scene(w->drawn);
+  w->drawn = w->scene;
+  return ABBE_OK;
+}
+
+static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
+                        abbe_error *error) {
+  const bool moving = q->job.stage == ABBE_VIEW_MOVING;
+  find_front(w);
+  const abbe_render_desc desc = request_of(w, q);
+  abbe_result result = change(w, &desc, error);
+  if (result == ABBE_OK)
+    result = abbe_renderer_frame(w->renderer, goes_on, w, moving ? NULL : &out->statistics, error);
+  if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, !moving, &out->picture, error);
+  if (result != ABBE_OK) return result;
+  const abbe_plan *plan = abbe_renderer_plan(w->renderer);
+  const abbe_preset_point *point = point_of(w, q->job.stage);
+  out->desc = plan->desc;
+  out->asked = desc;
+  out->counted = !moving;
+  if (!moving) list_plan(plan, &out->statistics, out);
+  const abbe_view_document *d = &q->document;
+  if (point != NULL && d->wavelengths + d->photons + d->map_size == 0) out->promised = point->error;
+  return ABBE_OK;
+}
+
+/* The mean of the picture that stands and of others that it could have been. */
+static abbe_result draw_mean(abbe_view_worker *w, abbe_view_result *out, abbe_error *error) {
+  const abbe_error_bars_desc desc = {.of_mean = true, .progress = goes_on, .user = w};
+  out->desc = abbe_renderer_plan(w->renderer)->desc;
+  return abbe_error_bars_make(w->context, w->scene, w->renderer, &desc, &out->bars, error);
+}
+
+/* Whether the passes' picture is worth its reading: its error falls with their root. */
+static bool is_read(size_t passes) {
+  return passes == 2 || passes == 3 || (passes >= 4 && (passes & (passes - 1)) == 0) ||
+         passes % 16 == 0 || passes == ABBE_VIEW_TRACED_PASSES;
+}
+
+static abbe_result trace(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
+                         abbe_error *error) {
+  const size_t pixels = q->width * q->height;
+  const abbe_trace_desc desc = {
+      .no_map = true,
+      .width = q->width,
+      .height = q->height,
+      .bands = pixels <= ABBE_VIEW_BANDS_PIXELS
+                   ? ABBE_VIEW_BANDS
+                   : (size_t)fmax(1, (double)(ABBE_VIEW_BANDS * ABBE_VIEW_BANDS_PIXELS) /
+                                         (double)pixels)};
+  abbe_result result = ABBE_OK;
+  if (w->tracer == NULL || w->traced != q->job.serial) {
+    abbe_tracer_free(w->tracer);
+    w->tracer = NULL;
+    result = abbe_tracer_make(w->scene, &desc, &w->tracer, error);
+    w->traced = q->job.serial;
+  }
+  if (result == ABBE_OK) result = abbe_tracer_pass(w->tracer, &w->stop, error);
+  if (result != ABBE_OK) return result;
+  out->passes = abbe_tracer_passes(w->tracer);
+  return is_read(out->passes) ? abbe_tracer_picture(w->tracer, &out->traced, error) : ABBE_OK;
+}
+
+static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {
+  const double start = abbe_clock_seconds();
+  abbe_error error = {0};
+  *out = (abbe_view_result){.job = q->job, .width = q->width, .height = q->height};
+  abbe_result result = take_scene(w, q, out, &error);
+  if (result == ABBE_OK && q->job.stage == ABBE_VIEW_TRACED)
+    result = trace(w, q, out, &error);
+  else if (result == ABBE_OK && q->job.stage == ABBE_VIEW_MEAN)
+    result = draw_mean(w, out, &error);
+  else if (result == ABBE_OK)
+    result = draw(w, q, out, &error);
+  out->ms = 1e3 * (abbe_clock_seconds() - start);
+  out->outcome = result == ABBE_OK          ? ABBE_VIEW_DONE
+                 : result == ABBE_CANCELLED ? ABBE_VIEW_CANCELLED
+                                            : ABBE_VIEW_REFUSED;
+  if (out->outcome == ABBE_VIEW_REFUSED)
+    snprintf(out->sentence, sizeof out->sentence, "%.1000s",
+             error.text[0] != '\0' ? error.text : abbe_result_text(result));
+}
+
+/* ---- the thread ---- */
+
+static void run(abbe_view_worker *w) {
+  pthread_mutex_lock(&w->lock);
+  while (!w->quit) {
+    if (!w->busy || w->done) {
+      pthread_cond_wait(&w->signal, &w->lock);
+      continue;
+    }
+    pthread_mutex_unlock(&w->lock);
+    work(w, &w->request, &w->made);
+    pthread_mutex_lock(&w->lock);
+    abbe_view_document_free(&w->request.document);
+    w->result = w->made;
+    w->done = true;
+    if (w->wake != NULL) w->wake();
+  }
+  pthread_mutex_unlock(&w->lock);
+}
+
+static void *begin(void *user) {
+  abbe_view_worker *w = user;
+  const abbe_result result = abbe_context_make(ABBE_CONTEXT_EGL, &w->context, &w->error);
+  pthread_mutex_lock(&w->lock);
+  w->started = result;
+  w->done = true;
+  pthread_cond_broadcast(&w->signal);
+  while (w->done) pthread_cond_wait(&w->signal, &w->lock);
+  pthread_mutex_unlock(&w->lock);
+  if (result == ABBE_OK) run(w);
+  abbe_tracer_free(w->tracer);
+  abbe_renderer_free(w->renderer);
+  abbe_context_free(w->context);
+  return NULL;
+}
+
+abbe_result abbe_view_worker_make(const char *materials, void (*wake)(void), abbe_view_worker **out,
+                                  abbe_error *error) {
+  abbe_view_worker *w = calloc(1, sizeof *w);
+  *out = NULL;
+  if (w == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
+  w->wake = wake;
+  w->materials = materials;
+  abbe_result result = abbe_presets_load(NULL, &w->presets, error);
+  pthread_mutex_init(&w->lock, NULL);
+  pthread_cond_init(&w->signal, NULL);
+  if (result == ABBE_OK && pthread_create(&w->thread, NULL, begin, w) != 0)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no thread for the viewer's pictures");
+  if (result == ABBE_OK) {
+    pthread_mutex_lock(&w->lock);
+    while (!w->done) pthread_cond_wait(&w->signal, &w->lock);
+    result = w->started;
+    w->done = false;
+    pthread_cond_broadcast(&w->signal);
+    pthread_mutex_unlock(&w->lock);
+    if (result == ABBE_OK) {
+      *out = w;
+      return ABBE_OK;
+    }
+    abbe_error_set(error, result, "%s", w->error.text);
+    pthread_join(w->thread, NULL);
+  }
+  abbe_presets_free(&w->presets);
+  free(w);
+  return result;
+}
+
+void abbe_view_worker_free(abbe_view_worker *w) {
+  if (w == NULL) return;
+  pthread_mutex_lock(&w->lock);
+  w->stop = w->quit = 1;
+  pthread_cond_broadcast(&w->signal);
+  pthread_mutex_unlock(&w->lock);
+  pthread_join(w->thread, NULL);
+  abbe_view_result_free(&w->result);
+  abbe_view_document_free(&w->request.document);
+  abbe_view_document_free(&w->document);
+  if (w->drawn != w->scene) free_scene(w->drawn);
+  free_scene(w->scene);
+  abbe_presets_free(&w->presets);
+  pthread_cond_destroy(&w->signal);
+  pthread_mutex_destroy(&w->lock);
+  free(w);
+}
+
+bool abbe_view_worker_idle(abbe_view_worker *w) {
+  pthread_mutex_lock(&w->lock);
+  const bool idle = !w->busy;
+  pthread_mutex_unlock(&w->lock);
+  return idle;
+}
+
+void abbe_view_worker_give(abbe_view_worker *w, abbe_view_request *request) {
+  pthread_mutex_lock(&w->lock);
+  w->request = *request;
+  *request = (abbe_view_request){0};
+  w->busy = true;
+  w->stop = 0;
+  pthread_cond_broadcast(&w->signal);
+  pthread_mutex_unlock(&w->lock);
+}
+
+void abbe_view_worker_cancel(abbe_view_worker *w) {
+  w->stop = 1;
+}
+
+bool abbe_view_worker_take(abbe_view_worker *w, abbe_view_result *out) {
+  pthread_mutex_lock(&w->lock);
+  const bool there = w->busy && w->done;
+  if (there) {
+    *out = w->result;
+    w->result = (abbe_view_result){0};
+    w->busy = w->done = false;
+  }
+  pthread_mutex_unlock(&w->lock);
+  return there;
+}

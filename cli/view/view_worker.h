@@ -1,0 +1,76 @@
+/* view_worker.h: the thread that draws and traces: a job in, a picture out.
+ *
+ * It has a context, a renderer and a tracer of its own, and loads the scene by itself, so that
+ * whoever watches never waits. One job at a time; what it makes is handed over whole. It decides
+ * nothing: which job is next, and whether one is to stop, is cli/view/state/view_refine.h's
+ * business.
+ */
+#ifndef ABBE_CLI_VIEW_VIEW_WORKER_H
+#define ABBE_CLI_VIEW_VIEW_WORKER_H
+
+#include "cli/view/state/view_state.h"
+#include "colorimetry/image/image.h"
+#include "gl/accuracy/error_bars.h"
+#include "gl/device/statistics.h"
+#include "gl/plan/plan.h"
+
+#define ABBE_VIEW_BANDS 40                         /* of a traced pixel's spectrum */
+#define ABBE_VIEW_BANDS_PIXELS ((size_t)640 * 640) /* more pixels have fewer bands */
+
+typedef struct abbe_view_request {
+  abbe_view_job job;
+  abbe_view_document document; /* the request's own */
+  bool reload;                 /* the files anew */
+  size_t width, height;
+} abbe_view_request;
+
+typedef struct abbe_view_line {
+  char name[64], reason[224];
+  bool runs, kept;
+  double ms; /* below 0: it did not run in this picture */
+} abbe_view_line;
+
+/* What came of a request; zeroed parts were not made. */
+typedef struct abbe_view_result {
+  abbe_view_job job;
+  abbe_view_outcome outcome;
+  char sentence[1024];
+  size_t width, height;
+  double ms;
+  abbe_image picture; /* rendered: R, G, B, and at rest direct.* and caustic.* */
+  abbe_image traced;  /* R, G, B, stderr.*, bands */
+  bool outlined;      /* the scene was read: */
+  abbe_view_outline outline;
+  size_t file_count;
+  char **file;            /* that it was read from */
+  abbe_render_desc asked; /* of a rendered picture; the rest was left to the plan: */
+  abbe_render_desc desc;  /* as the plan has it */
+  size_t line_count;
+  abbe_view_line *line; /* of the plan */
+  bool counted;         /* the statistics are there */
+  abbe_statistics statistics;
+  double promised;      /* mean CIEDE2000 in the caustic, by the presets; 0: nothing promised */
+  abbe_error_bars bars; /* of the stage `mean`; its pictures too */
+  size_t passes;        /* traced */
+} abbe_view_result;
+void abbe_view_result_free(abbe_view_result *result);
+
+typedef struct abbe_view_worker abbe_view_worker;
+
+/* Starts the thread. wake (may be NULL) is called on it whenever a result is there. ABBE_GL where
+ * there is no EGL for it, ABBE_NO_MEMORY. */
+abbe_result abbe_view_worker_make(const char *materials, void (*wake)(void), abbe_view_worker **out,
+                                  abbe_error *error);
+/* Cancels what is being done and ends the thread. */
+void abbe_view_worker_free(abbe_view_worker *worker);
+
+/* Whether a request may be given. */
+bool abbe_view_worker_idle(abbe_view_worker *worker);
+/* Takes the request over; only while idle. */
+void abbe_view_worker_give(abbe_view_worker *worker, abbe_view_request *request);
+/* What is being done ends soon, with ABBE_VIEW_CANCELLED. */
+void abbe_view_worker_cancel(abbe_view_worker *worker);
+/* The result, once; the caller frees it. False: none yet. */
+bool abbe_view_worker_take(abbe_view_worker *worker, abbe_view_result *out);
+
+#endif

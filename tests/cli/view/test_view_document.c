@@ -1,0 +1,143 @@
+/* What is looked at: changes by key, what differs, and the way back. */
+#include "tests/check.h"
+
+#include "cli/view/state/view_document.h"
+
+static abbe_view_document gem(void) {
+  char path[] = "gem.yaml";
+  const abbe_view_document named = {.path = path};
+  abbe_view_document out;
+  assert_int_equal(abbe_view_document_copy(&named, &out, NULL), ABBE_OK);
+  return out;
+}
+
+static void set(abbe_view_document *d, const char *key, const char *value) {
+  assert_int_equal(abbe_view_document_set(d, key, value, NULL), ABBE_OK);
+}
+
+static void test_a_key_has_one_value(void **state) {
+  (void)state;
+  abbe_view_document d = gem();
+  set(&d, "ambient", "1");
+  set(&d, "camera.fov", "30");
+  set(&d, "ambient", "2");
+  assert_int_equal(d.set_count, 2);
+  assert_string_equal(d.set[0], "camera.fov=30");
+  assert_string_equal(d.set[1], "ambient=2");
+  assert_string_equal(abbe_view_document_value(&d, "ambient"), "2");
+  assert_null(abbe_view_document_value(&d, "ambien"));
+  assert_null(abbe_view_document_value(&d, "camera"));
+  abbe_view_document_free(&d);
+}
+
+static void test_one_change_too_many_is_refused(void **state) {
+  (void)state;
+  abbe_view_document d = gem();
+  abbe_error error = {0};
+  char key[16];
+  for (int i = 0; i < ABBE_VIEW_MOST_CHANGES; i++) {
+    snprintf(key, sizeof key, "k%d", i);
+    set(&d, key, "1");
+  }
+  assert_int_equal(abbe_view_document_set(&d, "more", "1", &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "64 changes");
+  assert_int_equal(d.set_count, ABBE_VIEW_MOST_CHANGES);
+  set(&d, "k3", "2"); /* one that is there may change on */
+  assert_string_equal(d.set[ABBE_VIEW_MOST_CHANGES - 1], "k3=2");
+  abbe_view_document_free(&d);
+}
+
+static void test_points_are_what_is_written(void **state) {
+  (void)state;
+  double p[3] = {1.0 / 3, -2e-7 / 3, 123456.789};
+  char text[96];
+  abbe_view_document_point(p, text, sizeof text);
+  assert_string_equal(text, "[0.333333, -6.66667e-08, 123457]");
+  assert_true(p[0] == 0.333333 && p[1] == -6.66667e-08 && p[2] == 123457);
+}
+
+static void test_what_differs(void **state) {
+  (void)state;
+  abbe_view_document a = gem(), b = gem();
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_SAME);
+  set(&a, "camera.eye", "[1, 0, 0]");
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_CAMERA);
+  set(&b, "camera.eye", "[2, 0, 0]");
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_CAMERA);
+  set(&b, "camera.eye", "[1, 0, 0]");
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_SAME);
+  set(&a, "ambient", "1");
+  set(&b, "ambient", "1");
+  set(&b, "camera.eye", "[1, 0, 0]"); /* other places in the list, the same values */
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_SAME);
+  set(&b, "ambient", "2");
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_CHANGED);
+  set(&b, "ambient", "1");
+  b.photons = 64;
+  assert_int_equal(abbe_view_document_compare(&a, &b), ABBE_VIEW_CHANGED);
+  abbe_view_document_free(&a);
+  abbe_view_document_free(&b);
+}
+
+static void edit(abbe_view_history *h, bool continued, const char *value) {
+  abbe_view_document *d;
+  assert_int_equal(abbe_view_history_edit(h, continued, &d, NULL), ABBE_OK);
+  set(d, "ambient", value);
+}
+
+static const char *now(const abbe_view_history *h) {
+  return abbe_view_document_value(abbe_view_history_now(h), "ambient");
+}
+
+static void test_there_and_back(void **state) {
+  (void)state;
+  static abbe_view_history h;
+  abbe_view_document d = gem();
+  assert_int_equal(abbe_view_history_begin(&h, &d, NULL), ABBE_OK);
+  abbe_view_document_free(&d);
+  assert_false(abbe_view_history_undo(&h));
+  edit(&h, false, "1");
+  edit(&h, false, "2");
+  edit(&h, true, "3"); /* a drag is one step */
+  assert_int_equal(h.count, 3);
+  assert_true(abbe_view_history_undo(&h));
+  assert_string_equal(now(&h), "1");
+  assert_true(abbe_view_history_redo(&h));
+  assert_string_equal(now(&h), "3");
+  assert_false(abbe_view_history_redo(&h));
+  assert_true(abbe_view_history_undo(&h) && abbe_view_history_undo(&h));
+  assert_null(now(&h));
+  edit(&h, true, "4"); /* what had come then is gone, the first stays */
+  assert_int_equal(h.count, 2);
+  assert_true(abbe_view_history_undo(&h));
+  assert_null(now(&h));
+  abbe_view_history_free(&h);
+}
+
+static void test_the_oldest_steps_are_forgotten(void **state) {
+  (void)state;
+  static abbe_view_history h;
+  abbe_view_document d = gem();
+  char value[16];
+  assert_int_equal(abbe_view_history_begin(&h, &d, NULL), ABBE_OK);
+  abbe_view_document_free(&d);
+  for (int i = 0; i < ABBE_VIEW_MOST_STEPS + 5; i++) {
+    snprintf(value, sizeof value, "%d", i);
+    edit(&h, false, value);
+  }
+  int steps = 0;
+  while (abbe_view_history_undo(&h)) steps++;
+  assert_int_equal(steps, ABBE_VIEW_MOST_STEPS - 1);
+  assert_string_equal(now(&h), "5");
+  abbe_view_history_free(&h);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_key_has_one_value),
+                                     cmocka_unit_test(test_one_change_too_many_is_refused),
+                                     cmocka_unit_test(test_points_are_what_is_written),
+                                     cmocka_unit_test(test_what_differs),
+                                     cmocka_unit_test(test_there_and_back),
+                                     cmocka_unit_test(test_the_oldest_steps_are_forgotten)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

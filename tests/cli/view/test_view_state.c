@@ -1,0 +1,215 @@
+/* The viewer without its window, by scripted events. */
+#include "tests/check.h"
+
+#include "cli/view/state/view_camera.h"
+#include "cli/view/state/view_state.h"
+#include "scenes/import/scene_file.h"
+
+#include <stdlib.h>
+
+static const char gem[] = ABBE_SOURCE_DIR "/scenes/gem.yaml";
+
+/* What the document's changes make of the scene, learnt as from a job. */
+static void learn(abbe_view_state *s) {
+  const abbe_view_document *now = abbe_view_history_now(&s->history);
+  const abbe_scene_options options = {.set = (const char *const *)now->set,
+                                      .set_count = now->set_count};
+  static abbe_view_outline outline;
+  abbe_scene scene;
+  abbe_error error = {0};
+  char *text;
+  size_t size;
+  if (abbe_scene_load(now->path, &options, &scene, &error) != ABBE_OK) fail_msg("%s", error.text);
+  assert_int_equal(abbe_scene_text(now->path, &options, &text, &size, NULL), ABBE_OK);
+  assert_int_equal(abbe_view_outline_make(&scene, text, size, &outline, NULL), ABBE_OK);
+  outline.camera = scene.camera;
+  abbe_view_state_learn(s, &outline);
+  free(text);
+  abbe_scene_free(&scene);
+}
+
+/* The gem in a picture of 512 x 512. */
+static abbe_view_state *begun(void) {
+  static abbe_view_state s;
+  char path[sizeof gem];
+  memset(&s, 0, sizeof s);
+  strcpy(path, gem);
+  const abbe_view_document document = {.path = path};
+  assert_int_equal(abbe_view_state_begin(&s, &document, NULL), ABBE_OK);
+  abbe_view_state_resize(&s, 512, 512, 0);
+  learn(&s);
+  return &s;
+}
+
+static const char *value(const abbe_view_state *s, const char *key) {
+  return abbe_view_document_value(abbe_view_history_now(&s->history), key);
+}
+
+static void drag(abbe_view_state *s, abbe_view_button button, double x0, double y0, double x1,
+                 double y1, int modifiers) {
+  abbe_view_state_press(s, button, x0, y0, modifiers, 1);
+  for (int i = 1; i <= 4; i++)
+    abbe_view_state_move(s, x0 + i * (x1 - x0) / 4, y0 + i * (y1 - y0) / 4, 1 + 0.05 * i);
+  abbe_view_state_release(s, button, 1.3);
+}
+
+static void test_what_can_be_held_is_found(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const abbe_view_outline *o = &s->outline;
+  assert_int_equal(o->light_count, 1);
+  assert_string_equal(o->light[0].key, "lights.lamp");
+  assert_string_equal(o->light[0].power.key, "lights.lamp.intensity");
+  assert_near(o->light[0].power.value, 0.265, 1e-12);
+  assert_int_equal(o->object_count, 6);
+  assert_string_equal(o->object[0].key, "objects.gem");
+  assert_string_equal(o->object[0].material, "n-sf11");
+  assert_string_equal(o->object[1].material, "");
+  assert_near(o->object[0].translate[2], 0.15, 1e-12);
+  assert_string_equal(o->object[0].before, "{rotate: {axis: [0, 0, 1], angle: 12}}, "
+                                           "{rotate: {axis: [1, 0, 0], angle: 5}}");
+  assert_string_equal(o->object[0].value[0].key, "objects.gem.crown");
+  assert_near(o->object[0].value[0].value, 0.013, 1e-12);
+  abbe_view_state_free(s);
+}
+
+static void test_a_drag_turns_the_camera_in_one_step(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const abbe_camera before = s->camera;
+  drag(s, ABBE_VIEW_LEFT, 40, 400, 140, 400, 0);
+  assert_int_equal(s->history.count, 2);
+  assert_non_null(value(s, "camera.eye"));
+  assert_true(s->camera.eye[0] < before.eye[0] - 0.01); /* the scene goes right, the eye left */
+  assert_near(s->camera.target[0], before.target[0], 1e-12);
+  const abbe_camera led = s->camera;
+  learn(s); /* the scene that is written has the camera that was led */
+  assert_memory_equal(s->camera.eye, led.eye, sizeof led.eye);
+  assert_true(abbe_view_state_undo(s, 2));
+  assert_null(value(s, "camera.eye"));
+  learn(s);
+  assert_memory_equal(s->camera.eye, before.eye, sizeof before.eye);
+  assert_true(abbe_view_state_key(s, 'y', true, ABBE_VIEW_CONTROL, 3));
+  assert_memory_equal(s->camera.eye, led.eye, sizeof led.eye);
+  abbe_view_state_free(s);
+}
+
+static void test_other_buttons_pan_and_look(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const abbe_camera before = s->camera;
+  drag(s, ABBE_VIEW_MIDDLE, 40, 400, 140, 400, 0);
+  assert_true(s->camera.eye[0] < before.eye[0] && s->camera.target[0] < before.target[0]);
+  const abbe_camera panned = s->camera;
+  drag(s, ABBE_VIEW_RIGHT, 40, 400, 140, 400, 0);
+  assert_memory_equal(s->camera.eye, panned.eye, sizeof panned.eye);
+  assert_true(s->camera.target[0] > panned.target[0]);
+  abbe_view_state_press(s, ABBE_VIEW_RIGHT, 40, 40, 0, 5);
+  assert_true(abbe_view_state_key(s, 'w', true, 0, 5));
+  const abbe_camera still = s->camera;
+  abbe_view_state_tick(s, 0.1, 5.1);
+  assert_true(s->camera.eye[1] > still.eye[1]);
+  abbe_view_state_key(s, 'w', false, 0, 5.2);
+  const abbe_camera there = s->camera;
+  abbe_view_state_tick(s, 0.1, 5.3);
+  assert_memory_equal(&s->camera, &there, sizeof there);
+  abbe_view_state_free(s);
+}
+
+static void test_handles_move_and_tilt_objects(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  double xy[2], middle[3];
+  memcpy(middle, s->outline.object[0].middle, sizeof middle);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, middle, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] + 60, xy[1], 0);
+  assert_int_equal(s->history.count, 2);
+  assert_null(value(s, "camera.eye"));
+  learn(s);
+  const abbe_view_object *o = &s->outline.object[0];
+  assert_true(o->middle[0] > middle[0] + 0.01);
+  assert_near(o->middle[2], middle[2], 1e-6); /* six digits are written */
+  drag(s, ABBE_VIEW_LEFT, xy[0] + 60, xy[1], xy[0] + 60, xy[1] - 40, ABBE_VIEW_SHIFT);
+  learn(s);
+  assert_true(s->outline.object[0].middle[2] > middle[2] + 0.01);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, s->outline.object[0].middle, xy));
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0], xy[1] + 80, ABBE_VIEW_CONTROL);
+  assert_int_equal(s->history.count, 4);
+  assert_contains(value(s, "objects.gem.transform"), "angle: 28.6");
+  learn(s);
+  assert_contains(s->outline.object[0].before, "angle: 5}}, {rotate");
+  abbe_view_state_free(s);
+}
+
+static void test_lights_move(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  double xy[2];
+  abbe_view_state_wheel(s, -6, 0.9);
+  assert_int_equal(s->history.count, 2);
+  assert_true(abbe_view_camera_project(&s->camera, 512, 512, s->outline.light[0].position, xy));
+  const abbe_view_handle handle = abbe_view_state_handle_at(s, xy[0] + 5, xy[1]);
+  assert_int_equal(handle.kind, ABBE_VIEW_LIGHT_HANDLE);
+  drag(s, ABBE_VIEW_LEFT, xy[0], xy[1], xy[0] - 30, xy[1], 0);
+  assert_non_null(value(s, "lights.lamp.position"));
+  assert_int_equal(s->refine.light, ABBE_VIEW_NONE);
+  learn(s);
+  assert_true(s->outline.light[0].position[0] < -0.03);
+  abbe_view_state_free(s);
+}
+
+static void test_a_click_asks_for_a_spectrum(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  const uint64_t serial = s->refine.serial;
+  drag(s, ABBE_VIEW_LEFT, 40, 400, 41, 400, 0);
+  assert_true(s->picked && s->refine.spectrum);
+  assert_int_equal(s->pixel[0], 40);
+  assert_int_equal(s->refine.serial, serial); /* nothing has changed */
+  assert_int_equal(s->history.count, 1);
+  abbe_view_state_free(s);
+}
+
+static void test_edits_and_settings(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  abbe_view_state_set(s, "objects.gem.material", "diamond", false, 1);
+  abbe_view_state_set(s, "lights.lamp.intensity", "0.3", false, 2);
+  abbe_view_state_set(s, "lights.lamp.intensity", "0.4", true, 2.1);
+  abbe_view_state_settings(s, 9, 128, 0, false, 3);
+  assert_int_equal(s->history.count, 4);
+  learn(s);
+  assert_string_equal(s->outline.object[0].material, "diamond");
+  assert_near(s->outline.light[0].power.value, 0.4, 1e-12);
+  assert_true(abbe_view_state_undo(s, 4));
+  assert_int_equal(abbe_view_history_now(&s->history)->photons, 0);
+  assert_true(abbe_view_state_undo(s, 5));
+  assert_null(value(s, "lights.lamp.intensity"));
+  snprintf(s->refusal, sizeof s->refusal, "because");
+  abbe_view_state_set(s, "ambient", "0.2", false, 6);
+  assert_string_equal(s->refusal, ""); /* of what was before */
+  abbe_view_state_free(s);
+}
+
+static void test_a_window_without_room_takes_no_pointer(void **state) {
+  (void)state;
+  abbe_view_state *s = begun();
+  abbe_view_state_resize(s, 0, 0, 1);
+  drag(s, ABBE_VIEW_LEFT, 40, 400, 140, 400, 0);
+  assert_int_equal(s->history.count, 1);
+  assert_false(s->refine.held);
+  assert_int_equal(abbe_view_state_handle_at(s, 1, 1).kind, ABBE_VIEW_NO_HANDLE);
+  abbe_view_state_free(s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_can_be_held_is_found),
+                                     cmocka_unit_test(test_a_drag_turns_the_camera_in_one_step),
+                                     cmocka_unit_test(test_other_buttons_pan_and_look),
+                                     cmocka_unit_test(test_handles_move_and_tilt_objects),
+                                     cmocka_unit_test(test_lights_move),
+                                     cmocka_unit_test(test_a_click_asks_for_a_spectrum),
+                                     cmocka_unit_test(test_edits_and_settings),
+                                     cmocka_unit_test(test_a_window_without_room_takes_no_pointer)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
