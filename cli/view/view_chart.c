@@ -2,7 +2,7 @@
 
 #include "base/number.h"
 #include "cli/view/view_ui.h"
-#include "colorimetry/observer.h"
+#include "colorimetry/chromaticity.h"
 #include "colorimetry/rgb_space.h"
 
 #include <math.h>
@@ -58,7 +58,7 @@ typedef struct frame {
 
 static void dot_of(const frame *f, const double xy[2], double out[2]) {
   double uv[2];
-  abbe_view_uv(xy, uv);
+  abbe_chromaticity_uv_of_xy(xy, uv);
   out[0] = f->x + f->scale * uv[0];
   out[1] = f->y - f->scale * uv[1];
 }
@@ -83,12 +83,12 @@ void abbe_view_chart_colours(const abbe_view_probe *p) {
   if (!abbe_ui_place("chromaticity", width, height, &x, &y)) return;
   const frame f = {x + 8, y + height - 6, (height - 14) / 0.6};
   for (int nm = 400; nm < 700; nm += 5) {
-    abbe_view_locus(nm, a);
-    abbe_view_locus(nm + 5, b);
+    abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, nm, a);
+    abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, nm + 5, b);
     side(&f, a, b, hue_of(nm));
   }
-  abbe_view_locus(400, a);
-  abbe_view_locus(700, b);
+  abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, 400, a);
+  abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, 700, b);
   side(&f, a, b, 0x8a5a8a);
   gamut(&f, ABBE_RGB_SPACE_ACESCG, 0x59616e);
   gamut(&f, ABBE_RGB_SPACE_REC709, 0x9aa3b2);

@@ -25,9 +25,4 @@ typedef struct abbe_view_probe {
 void abbe_view_probe_make(const abbe_view_pictures *pictures, const size_t pixel[2],
                           abbe_view_probe *out);
 
-/* A point of the spectral locus in CIE xy. */
-void abbe_view_locus(double lambda_nm, double xy[2]);
-/* CIE 1976 u', v' of x, y. */
-void abbe_view_uv(const double xy[2], double uv[2]);
-
 #endif
