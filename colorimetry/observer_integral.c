@@ -1,7 +1,5 @@
 #include "colorimetry/observer_integral.h"
 
-#include "colorimetry/observer.h"
-
 /* Six-point Gauss-Legendre rule on [-1, 1]: exact to degree 11. Between knots the observer is a
  * cubic, a tabulated light at most one too, and a function of the caller's; the Planckian A is
  * smooth over 5 nm. */
@@ -40,14 +38,15 @@ static void one(double lambda_nm, double value[3]) {
 }
 
 /* Adds one smooth piece to the sums, one a function. */
-static void add_piece(const abbe_illuminant *illuminant, double from, double to, int count,
-                      void (*functions)(double lambda_nm, double value[3]), abbe_sum3 *sum) {
+static void add_piece(abbe_observer observer, const abbe_illuminant *illuminant, double from,
+                      double to, int count, void (*functions)(double lambda_nm, double value[3]),
+                      abbe_sum3 *sum) {
   const double half = (to - from) / 2, middle = from + half;
   double piece[3][3] = {{0}};
   for (int i = 0; i < RULE_COUNT; i++) {
     const double lambda_nm = middle + half * rule_x[i];
     double xyz[3], value[3];
-    abbe_observer_xyz(lambda_nm, xyz);
+    abbe_observer_xyz_of(observer, lambda_nm, xyz);
     functions(lambda_nm, value);
     const double factor = half * rule_w[i] * abbe_illuminant_power(illuminant, lambda_nm);
     for (int j = 0; j < count; j++)
@@ -56,29 +55,35 @@ static void add_piece(const abbe_illuminant *illuminant, double from, double to,
   for (int j = 0; j < count; j++) abbe_sum3_add(&sum[j], piece[j]);
 }
 
-static void integrate(const abbe_illuminant *illuminant, double from, double to, int count,
-                      void (*functions)(double lambda_nm, double value[3]), abbe_sum3 *sum) {
+static void integrate(abbe_observer observer, const abbe_illuminant *illuminant, double from,
+                      double to, int count, void (*functions)(double lambda_nm, double value[3]),
+                      abbe_sum3 *sum) {
   from = fmax(from, ABBE_OBSERVER_MIN_NM);
   to = fmin(to, ABBE_OBSERVER_MAX_NM);
   while (from < to) {
     const double next = fmin(knot_above(illuminant, from), to);
-    add_piece(illuminant, from, next, count, functions, sum);
+    add_piece(observer, illuminant, from, next, count, functions, sum);
     from = next;
   }
 }
 
+void abbe_observer_integral_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                               double from_nm, double to_nm, double xyz[3]) {
+  abbe_sum3 sum = {0};
+  integrate(observer, illuminant, from_nm, to_nm, 1, one, &sum);
+  abbe_sum3_get(&sum, xyz);
+}
+
 void abbe_observer_integral(const abbe_illuminant *illuminant, double from_nm, double to_nm,
                             double xyz[3]) {
-  abbe_sum3 sum = {0};
-  integrate(illuminant, from_nm, to_nm, 1, one, &sum);
-  abbe_sum3_get(&sum, xyz);
+  abbe_observer_integral_by(ABBE_OBSERVER_CIE_1931, illuminant, from_nm, to_nm, xyz);
 }
 
 void abbe_observer_integral_of(const abbe_illuminant *illuminant, double from_nm, double to_nm,
                                void (*functions)(double lambda_nm, double value[3]),
                                double matrix[9]) {
   abbe_sum3 sum[3] = {{{0}, {0}}};
-  integrate(illuminant, from_nm, to_nm, 3, functions, sum);
+  integrate(ABBE_OBSERVER_CIE_1931, illuminant, from_nm, to_nm, 3, functions, sum);
   for (int j = 0; j < 3; j++) {
     double xyz[3];
     abbe_sum3_get(&sum[j], xyz);

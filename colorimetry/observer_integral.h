@@ -7,6 +7,7 @@
 #define ABBE_COLORIMETRY_OBSERVER_INTEGRAL_H
 
 #include "colorimetry/illuminant.h"
+#include "colorimetry/observer.h"
 
 #include <math.h>
 
@@ -32,6 +33,10 @@ static inline void abbe_sum3_get(const abbe_sum3 *sum, double out[3]) {
  * empty interval. Only 360 to 830 nm count. */
 void abbe_observer_integral(const abbe_illuminant *illuminant, double from_nm, double to_nm,
                             double xyz[3]);
+
+/* The same of any observer. */
+void abbe_observer_integral_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                               double from_nm, double to_nm, double xyz[3]);
 
 /* The same of observer x illuminant x each of three functions that are at most cubic between
  * multiples of 5 nm: matrix[3 * i + j] is component i of XYZ of function j. */

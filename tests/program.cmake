@@ -30,6 +30,7 @@ foreach(name
     gem_command
     gem_report_command
     outline_command
+    pixel_command
     printable_output
     render_command
     trace_command

@@ -52,6 +52,9 @@ static const struct named {
     {"outline", "", READS},
     {"outline", "minus", READS},
     {"info", "", READS},
+    {"pixel", "lit-by", READS},
+    {"pixel", "illuminant", READS},
+    {"pixel", "plot", WRITES},
     {"sweep", "", READS},
     {"sweep", "output", WRITES},
     {"sweep", "plot", WRITES},
@@ -189,7 +192,8 @@ static void test_other_files_are_let_through(void **state) {
 static void test_files_of_a_scene(void **state) {
   (void)state;
   static const char make[] =
-      "cp \"$house\"/scenes/wood.png wood.png; cp \"$house\"/spectral/materials/thesis.yaml t.yaml;\n"
+      "cp \"$house\"/scenes/wood.png wood.png; cp \"$house\"/spectral/materials/thesis.yaml "
+      "t.yaml;\n"
       "(echo mtllib wedge.mtl; cat \"$house\"/tests/bad/inverted.obj) >wedge.obj;\n"
       "printf 'newmtl a\\n' >wedge.mtl; printf '380 1\\n780 1\\n' >lamp.txt;\n"
       "cat >scene.yaml <<END\n"
@@ -226,7 +230,8 @@ static void test_files_of_a_scene(void **state) {
   assert_int_not_equal(run_line("ls | grep -E 'exr|csv|checkpoint'"), 0);
 }
 
-/* What no option names is claimed as well; of sweeps, tests/cli/sweep/test_sweep_command.c has it. */
+/* What no option names is claimed as well; of sweeps, tests/cli/sweep/test_sweep_command.c has it.
+ */
 static void test_files_that_no_option_names(void **state) {
   (void)state;
   assert_true(run_line("\"$abbe\" trace a.yaml -o c.exr --png c.exr.checkpoint") == 2);
@@ -234,10 +239,12 @@ static void test_files_that_no_option_names(void **state) {
   assert_true(run_line("OCIO=o.txt; export OCIO; printf kept >o.txt; \"$abbe\" display a.exr "
                        "-o o.txt") == 2);
   assert_contains(run_errors, "$OCIO 'o.txt'");
-  assert_true(run_line("mkdir sub; cp \"$house\"/spectral/materials/thesis.yaml sub/t.yaml;"
-                       "ln sub/t.yaml sub/hard.yaml; \"$abbe\" materials import sub --force "
-                       "-o sub/hard.yaml; code=$?; cmp sub/t.yaml \"$house\"/spectral/materials/thesis.yaml "
-                       "|| exit 9; rm -r sub; exit $code") == 1);
+  assert_true(
+      run_line(
+          "mkdir sub; cp \"$house\"/spectral/materials/thesis.yaml sub/t.yaml;"
+          "ln sub/t.yaml sub/hard.yaml; \"$abbe\" materials import sub --force "
+          "-o sub/hard.yaml; code=$?; cmp sub/t.yaml \"$house\"/spectral/materials/thesis.yaml "
+          "|| exit 9; rm -r sub; exit $code") == 1);
   assert_contains(run_errors, "'sub/hard.yaml' would be written over");
 }
 

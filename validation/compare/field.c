@@ -2,14 +2,14 @@
 
 #include "base/number.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/rgb_space.h"
+#include "colorimetry/image/picture_space.h"
+#include "colorimetry/spectral_picture/spectral_channels.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 static const size_t absent = (size_t)-1;
 
@@ -77,34 +77,6 @@ static void drop_unknown(float **errors, size_t count) {
 
 /* Colour */
 
-static bool is_stated(const double xy[8]) {
-  for (int i = 0; i < 8; i++)
-    if (xy[i] != 0) return true;
-  return false;
-}
-
-/* abbe:space, else the chromaticities, else what OpenEXR says that their absence means: Rec.709. */
-static abbe_result find_space(const abbe_image *image, const char *name, abbe_field *f,
-                              abbe_error *error) {
-  const char *word = abbe_image_attribute_text(image, "abbe:space");
-  abbe_rgb_space space = f->is_xyz ? ABBE_RGB_SPACE_XYZ : ABBE_RGB_SPACE_COUNT;
-  for (int s = 0; space == ABBE_RGB_SPACE_COUNT && word != NULL && s < ABBE_RGB_SPACE_COUNT; s++)
-    if (strcasecmp(word, abbe_rgb_space_name((abbe_rgb_space)s)) == 0) space = (abbe_rgb_space)s;
-  if (space == ABBE_RGB_SPACE_COUNT && is_stated(image->xy)) {
-    abbe_error why = {0};
-    space = abbe_rgb_space_of_chromaticities(image->xy);
-    snprintf(f->space, sizeof f->space, "RGB of the file's chromaticities");
-    if (abbe_rgb_space_chromaticities_to_xyz(image->xy, f->to_xyz, &why) != ABBE_OK)
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: %.400s", name, why.text);
-    if (space == ABBE_RGB_SPACE_COUNT) return ABBE_OK;
-  }
-  f->space_assumed = space == ABBE_RGB_SPACE_COUNT;
-  if (f->space_assumed) space = ABBE_RGB_SPACE_REC709;
-  snprintf(f->space, sizeof f->space, "%s", abbe_rgb_space_name(space));
-  abbe_rgb_space_to_xyz(space, f->to_xyz);
-  return ABBE_OK;
-}
-
 static abbe_result take_colour(const abbe_image *image, const char *name, abbe_field *f,
                                abbe_error *error) {
   f->is_xyz = abbe_image_find_channel(image, "R") == absent &&
@@ -117,60 +89,29 @@ static abbe_result take_colour(const abbe_image *image, const char *name, abbe_f
   drop_unknown(&f->colour.error, 3 * image->width * image->height);
   if (result == ABBE_OK) result = take(image, "caustic.", names, 3, name, &f->caustic.value, error);
   if (f->caustic.value != NULL) f->caustic.channels = 3;
-  return result == ABBE_OK ? find_space(image, name, f, error) : result;
+  abbe_picture_space space;
+  if (result == ABBE_OK) result = abbe_picture_space_find(image, f->is_xyz, name, &space, error);
+  if (result != ABBE_OK) return result;
+  memcpy(f->to_xyz, space.to_xyz, sizeof f->to_xyz);
+  snprintf(f->space, sizeof f->space, "%s", space.text);
+  f->space_assumed = space.assumed;
+  return ABBE_OK;
 }
 
 /* Bands */
 
-typedef struct band {
-  double lambda_nm;
-  const char *name;
-} band;
-
-/* "S0.550,000000nm": the comma is the decimal point, for a point ends a layer's name. */
-static bool parse_band(const char *name, double *lambda_nm) {
-  if (strncmp(name, "S0.", 3) != 0) return false;
-  double digits = 0, scale = 1;
-  bool any = false, comma = false;
-  const char *c = name + 3;
-  for (; (*c >= '0' && *c <= '9') || (*c == ',' && !comma); c++) {
-    comma = comma || *c == ',';
-    if (*c == ',') continue;
-    any = true;
-    digits = 10 * digits + (*c - '0');
-    if (comma) scale *= 10;
-  }
-  *lambda_nm = digits / scale;
-  return any && strcmp(c, "nm") == 0 && isfinite(*lambda_nm) && *lambda_nm > 0;
-}
-
-static int ascending(const void *a, const void *b) {
-  double x = ((const band *)a)->lambda_nm, y = ((const band *)b)->lambda_nm;
-  return (x > y) - (x < y);
-}
-
 static abbe_result take_bands(const abbe_image *image, const char *name, abbe_field *f,
                               abbe_error *error) {
-  band list[ABBE_IMAGE_MAX_CHANNELS];
+  abbe_spectral_channels list = {0};
   const char *names[ABBE_IMAGE_MAX_CHANNELS];
-  size_t count = 0;
-  for (size_t c = 0; c < image->channels; c++) {
-    list[count].name = image->channel[c];
-    count += parse_band(image->channel[c], &list[count].lambda_nm);
-  }
-  if (count == 0) return ABBE_OK;
-  qsort(list, count, sizeof *list, ascending);
-  f->lambda_nm = calloc(count, sizeof *f->lambda_nm);
-  if (f->lambda_nm == NULL) return no_memory(name, error);
-  for (size_t i = 0; i < count; i++) {
-    names[i] = list[i].name;
-    f->lambda_nm[i] = list[i].lambda_nm;
-    if (i > 0 && list[i].lambda_nm == list[i - 1].lambda_nm)
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                            "%s: the channels '%s' and '%s' are of one wavelength", name,
-                            list[i - 1].name, list[i].name);
-  }
-  abbe_result result = take(image, "", names, count, name, &f->bands.value, error);
+  abbe_result result = abbe_spectral_channels_find(image, NULL, name, &list, error);
+  const size_t count = list.count;
+  for (size_t i = 0; i < count; i++) names[i] = image->channel[list.channel[i]];
+  f->lambda_nm = list.lambda_nm;
+  list.lambda_nm = NULL;
+  abbe_spectral_channels_free(&list);
+  if (result != ABBE_OK || count == 0) return result;
+  result = take(image, "", names, count, name, &f->bands.value, error);
   if (result == ABBE_OK)
     result = take(image, "stderr.", names, count, name, &f->bands.error, error);
   drop_unknown(&f->bands.error, count * image->width * image->height);

@@ -1,0 +1,321 @@
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+
+#include "colorimetry/colour_description.h"
+#include "colorimetry/image/exr.h"
+#include "colorimetry/plot/chart.h"
+#include "colorimetry/spectral_picture/pixel_probe.h"
+
+#include <argp.h>
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct request {
+  const char *program, *path, *layer, *plot, *illuminant, *lit_by;
+  abbe_observer observer;
+  abbe_image_window window;
+  bool placed, json;
+} request;
+
+/* The colours that a probe holds: of the channels R, G, B, and of the spectrum. */
+typedef struct colours {
+  bool has[2];
+  abbe_colour_description of[2];
+} colours;
+
+static const char *const sources[2] = {"picture", "spectrum"};
+
+static void describe(const request *r, const abbe_pixel_probe *p, colours *out) {
+  static const double d65[2] = {0.3127, 0.3290};
+  *out = (colours){.has = {p->has_colour, p->has_spectral_xyz}};
+  abbe_colour_description_make(p->xyz, d65, ABBE_OBSERVER_CIE_1931, &out->of[0]);
+  abbe_colour_description_make(p->spectral_xyz, p->white_xy, r->observer, &out->of[1]);
+}
+
+static const char *unit_of(const abbe_pixel_probe *p) {
+  return p->spectrum.kind == ABBE_SPECTRAL_REFLECTIVE ? "of a perfect white"
+         : p->is_relative                             ? "in the picture's unit"
+                                                      : "in lm (of a radiance: cd/m2)";
+}
+
+static void print_number(const char *before, double value, const char *format, const char *none) {
+  printf("%s", before);
+  if (isnan(value))
+    printf("%s", none);
+  else
+    printf(format, value);
+}
+
+static void print_colour(const abbe_colour_description *c) {
+  printf("  XYZ                     %.6g %.6g %.6g\n", c->xyz[0], c->xyz[1], c->xyz[2]);
+  if (isnan(c->xy[0])) {
+    printf("  it is dark, or no colour that an eye could see\n");
+    return;
+  }
+  printf("  x, y                    %.5f %.5f\n", c->xy[0], c->xy[1]);
+  printf("  u', v'                  %.5f %.5f\n", c->uv[0], c->uv[1]);
+  print_number("  dominant wavelength     ", c->dominant.lambda_nm, "%.1f nm\n",
+               "none: a purple, or the white\n");
+  print_number("  complementary           ", c->dominant.complementary_nm, "%.1f nm\n", "none\n");
+  print_number("  excitation purity       ", c->dominant.purity, "%.4f\n", "none\n");
+  print_number("  colour temperature      ", c->kelvin, "%.0f K", "none");
+  print_number(", Duv ", c->duv, "%.5f\n", "none\n");
+}
+
+static void print_text(const request *r, const abbe_image *image, const abbe_pixel_probe *p,
+                       const colours *c) {
+  const abbe_image_window w = p->window;
+  printf("%s, ", r->path);
+  if (p->pixels == 1)
+    printf("pixel (%d, %d)\n", (int)w.x0, (int)w.y0);
+  else
+    printf("mean of %zu pixels, (%d, %d) to (%d, %d)\n", p->pixels, (int)w.x0, (int)w.y0, (int)w.x1,
+           (int)w.y1);
+  if (c->has[0])
+    printf("\ncolour of the channels, %s%s\n", p->space.text,
+           p->space.assumed ? " (assumed: the file does not say)" : "");
+  if (c->has[0]) print_colour(&c->of[0]);
+  if (c->has[1])
+    printf("\ncolour of the spectrum, %s, %s\n", abbe_observer_text(r->observer), unit_of(p));
+  if (c->has[1]) print_colour(&c->of[1]);
+  printf("\n%-24s %14s %14s\n", "channel", "value", "std. error");
+  for (size_t i = 0; i < p->channels; i++) {
+    if (strncmp(image->channel[i], "stderr.", 7) == 0) continue;
+    printf("%-24s %14.6g", image->channel[i], p->mean[i]);
+    print_number(" ", p->error[i], "%14.6g\n", "             -\n");
+  }
+}
+
+static bool add_pair(cJSON *o, const char *name, const double *value, int count) {
+  return cJSON_AddItemToObject(o, name, cJSON_CreateDoubleArray(value, count));
+}
+
+/* cJSON writes NaN as null. */
+static bool add_colour(cJSON *root, const char *name, const abbe_colour_description *c) {
+  cJSON *o = cJSON_AddObjectToObject(root, name);
+  return o != NULL && add_pair(o, "xyz", c->xyz, 3) && add_pair(o, "xy", c->xy, 2) &&
+         add_pair(o, "uv", c->uv, 2) &&
+         cJSON_AddNumberToObject(o, "dominant_nm", c->dominant.lambda_nm) != NULL &&
+         cJSON_AddNumberToObject(o, "complementary_nm", c->dominant.complementary_nm) != NULL &&
+         cJSON_AddNumberToObject(o, "purity", c->dominant.purity) != NULL &&
+         cJSON_AddNumberToObject(o, "cct_k", c->kelvin) != NULL &&
+         cJSON_AddNumberToObject(o, "duv", c->duv) != NULL;
+}
+
+static bool add_spectrum(cJSON *root, const abbe_pixel_probe *p) {
+  cJSON *list = cJSON_AddArrayToObject(root, "bands");
+  bool made = list != NULL;
+  for (size_t i = 0; made && i < p->spectrum.count; i++) {
+    cJSON *o = cJSON_CreateObject();
+    const size_t channel = p->spectrum.channel[i];
+    made = cJSON_AddItemToArray(list, o) &&
+           cJSON_AddNumberToObject(o, "lambda_nm", p->spectrum.lambda_nm[i]) != NULL &&
+           add_pair(o, "band_nm", p->spectrum.edge_nm + i, 2) &&
+           cJSON_AddNumberToObject(o, "value", p->mean[channel]) != NULL &&
+           cJSON_AddNumberToObject(o, "standard_error", p->error[channel]) != NULL;
+  }
+  return made;
+}
+
+static abbe_result print_json(const request *r, const abbe_image *image, const abbe_pixel_probe *p,
+                              const colours *c, abbe_error *error) {
+  cJSON *root = cJSON_CreateObject();
+  const int window[4] = {p->window.x0, p->window.y0, p->window.x1, p->window.y1};
+  bool made = cJSON_AddStringToObject(root, "file", r->path) != NULL &&
+              cJSON_AddItemToObject(root, "window", cJSON_CreateIntArray(window, 4)) &&
+              cJSON_AddNumberToObject(root, "pixels", (double)p->pixels) != NULL &&
+              cJSON_AddStringToObject(root, "observer", abbe_observer_name(r->observer)) != NULL;
+  for (int i = 0; i < 2 && made; i++)
+    if (c->has[i]) made = add_colour(root, sources[i], &c->of[i]);
+  if (made && c->has[1])
+    made = cJSON_AddStringToObject(root, "spectrum_unit", unit_of(p)) != NULL &&
+           add_pair(root, "spectrum_xyz_error_at_most", p->spectral_error, 3);
+  if (made && p->spectrum.count > 0) made = add_spectrum(root, p);
+  cJSON *channels = cJSON_AddObjectToObject(root, "channels");
+  for (size_t i = 0; made && i < p->channels; i++)
+    made = cJSON_AddNumberToObject(channels, image->channel[i], p->mean[i]) != NULL;
+  abbe_result result = abbe_command_print_json(made ? root : NULL, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+static abbe_result plot(const request *r, const abbe_pixel_probe *p, abbe_error *error) {
+  const abbe_spectral_channels *s = &p->spectrum;
+  if (s->count == 0)
+    return abbe_error_set(error, ABBE_NOT_FOUND,
+                          "%s: it has no bands to plot; abbe trace --bands N makes a picture that "
+                          "has",
+                          r->path);
+  double *value = calloc(3 * s->count, sizeof *value), *low = value, *high = value;
+  if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plot");
+  low += s->count;
+  high += 2 * s->count;
+  bool errors = false;
+  for (size_t i = 0; i < s->count; i++) {
+    const double error_there = p->error[s->channel[i]];
+    value[i] = p->mean[s->channel[i]];
+    errors = errors || isfinite(error_there);
+    low[i] = value[i] - (isfinite(error_there) ? error_there : 0);
+    high[i] = value[i] + (isfinite(error_there) ? error_there : 0);
+  }
+  const abbe_chart_series series = {.style = ABBE_CHART_JOINED_POINTS,
+                                    .count = s->count,
+                                    .x = s->lambda_nm,
+                                    .y = value,
+                                    .low = errors ? low : NULL,
+                                    .high = errors ? high : NULL};
+  char title[400];
+  snprintf(title, sizeof title, "%.300s, (%d, %d)", r->path, (int)p->window.x0, (int)p->window.y0);
+  const bool reflective = s->kind == ABBE_SPECTRAL_REFLECTIVE;
+  const abbe_chart chart = {.title = title,
+                            .x.label = "wavelength, nm",
+                            .y.label = reflective ? "reflectance" : "spectral value, a nm",
+                            .series_count = 1,
+                            .series = &series};
+  abbe_result result = abbe_chart_write(r->plot, &chart, 1, 0, 0, error);
+  free(value);
+  return result;
+}
+
+static abbe_result make_light(const char *name, abbe_illuminant *light,
+                              const abbe_illuminant **used, abbe_error *error) {
+  if (name == NULL) return ABBE_OK;
+  *used = light;
+  return abbe_illuminant_make(name, light, error);
+}
+
+static abbe_result probe(const request *r, const abbe_image *image, const abbe_spectral_view *view,
+                         abbe_error *error) {
+  abbe_pixel_probe p = {0};
+  colours c;
+  abbe_result result = abbe_pixel_probe_make(image, r->layer, r->path, r->window, view, &p, error);
+  if (result != ABBE_OK) return result;
+  describe(r, &p, &c);
+  if (r->plot != NULL) result = plot(r, &p, error);
+  if (result == ABBE_OK && r->json)
+    result = print_json(r, image, &p, &c, error);
+  else if (result == ABBE_OK)
+    print_text(r, image, &p, &c);
+  abbe_pixel_probe_free(&p);
+  return result;
+}
+
+static abbe_result run(const request *r, abbe_error *error) {
+  abbe_image image = {0};
+  abbe_illuminant from = {0}, to = {0};
+  abbe_spectral_view view = {.observer = r->observer};
+  abbe_result result = make_light(r->lit_by, &from, &view.from, error);
+  if (result == ABBE_OK) result = make_light(r->illuminant, &to, &view.to, error);
+  if (result == ABBE_OK) result = abbe_exr_read(r->path, &image, error);
+  if (result == ABBE_OK) result = probe(r, &image, &view, error);
+  abbe_image_free(&image);
+  abbe_illuminant_free(&from);
+  abbe_illuminant_free(&to);
+  return result;
+}
+
+/* The command line */
+
+enum { KEY_LAYER = 256, KEY_OBSERVER, KEY_ILLUMINANT, KEY_LIT_BY, KEY_PLOT, KEY_JSON };
+
+static const struct argp_option options[] = {
+    {"layer", KEY_LAYER, "NAME", 0, "the channels NAME.R …, NAME.S0.550nm …", 0},
+    {"observer", KEY_OBSERVER, "NAME", 0,
+     "of the spectrum's colour: 1931, 1964, 2015-2 or 2015-10; without it, 1931", 0},
+    {"lit-by", KEY_LIT_BY, "NAME|FILE", ABBE_ARGUMENT_READS,
+     "the illuminant that all lights of the scene have", 0},
+    {"illuminant", KEY_ILLUMINANT, "NAME|FILE", ABBE_ARGUMENT_READS,
+     "another to see the spectrum under (a reflectance: D65 without it)", 0},
+    {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "the spectrum as a .png or .svg", 0},
+    {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
+    {0}};
+
+/* "12,34" or "12,34:56,78". */
+static void set_place(request *r, const char *text, struct argp_state *state) {
+  abbe_image_window w = {0};
+  char rest;
+  int n = sscanf(text, "%d,%d:%d,%d%c", &w.x0, &w.y0, &w.x1, &w.y1, &rest);
+  const bool one = n == 2 && strchr(text, ':') == NULL && sscanf(text, "%*d,%*d%c", &rest) < 1;
+  if (one) {
+    w.x1 = w.x0;
+    w.y1 = w.y0;
+  }
+  if (!one && n != 4)
+    argp_error(state, "'%s' is no pixel such as 120,80, nor a region such as 120,80:130,90", text);
+  if (w.x0 > w.x1 || w.y0 > w.y1)
+    argp_error(state,
+               "the region '%s' ends before it begins; its corners are the upper left and the "
+               "lower right one",
+               text);
+  r->window = w;
+  r->placed = true;
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state) {
+  const char *names[ABBE_OBSERVER_COUNT];
+  request *r = state->input;
+  switch (key) {
+  case KEY_LAYER:
+    r->layer = arg;
+    return 0;
+  case KEY_OBSERVER:
+    for (int i = 0; i < ABBE_OBSERVER_COUNT; i++) names[i] = abbe_observer_name((abbe_observer)i);
+    r->observer = abbe_observer_find(arg);
+    if (r->observer == ABBE_OBSERVER_COUNT)
+      r->observer = (abbe_observer)abbe_command_choice(r->program, "--observer", arg, names,
+                                                       ABBE_OBSERVER_COUNT);
+    return 0;
+  case KEY_LIT_BY:
+    r->lit_by = arg;
+    return 0;
+  case KEY_ILLUMINANT:
+    r->illuminant = arg;
+    return 0;
+  case KEY_PLOT:
+    r->plot = arg;
+    return 0;
+  case KEY_JSON:
+    r->json = true;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (r->placed) argp_error(state, "'%s' is one argument too many", arg);
+    if (r->path == NULL)
+      r->path = arg;
+    else
+      set_place(r, arg, state);
+    return 0;
+  case ARGP_KEY_END:
+    if (r->path == NULL) argp_error(state, "which file?");
+    if (!r->placed) argp_error(state, "which pixel? Give X,Y or a region X0,Y0:X1,Y1");
+    abbe_arguments_add(r->program, ABBE_ARGUMENT_READS, "the picture", r->path);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const struct argp parser = {
+    .options = options,
+    .parser = parse,
+    .args_doc = "FILE.exr X,Y[:X1,Y1]",
+    .doc =
+        "Says what a picture has at a pixel, or in the mean of a region: its channels with their "
+        "standard errors, and its colour: XYZ, x, y, u', v', dominant wavelength, purity, "
+        "correlated colour temperature. Where it has bands, also the colour of its spectrum, for "
+        "any observer.\v"
+        "Pixels are counted as the file counts them (abbe info says its windows), y downwards.\n\n"
+        "Examples:\n"
+        "  abbe pixel gem.exr 250,310\n"
+        "  abbe pixel bands.exr 250,310:259,319 --observer 1964 --plot spectrum.png\n"
+        "  abbe pixel bands.exr 250,310 --lit-by D65 --illuminant A --json\n",
+};
+
+int abbe_command_pixel(int argc, char **argv) {
+  request r = {.program = argv[0]};
+  abbe_arguments_parse(&parser, 0, argc, argv, &r);
+  abbe_error error = {0};
+  return abbe_command_end(r.program, run(&r, &error), &error);
+}

@@ -1,0 +1,51 @@
+/* spectral_channels.h: which of a picture's channels are samples of a spectrum, by their names.
+ *
+ * The layout of [Fichet2021]: "S0.550,000000nm" is emitted (or arriving) light, "T.550,000000nm" a
+ * reflectance; the comma is the decimal point, the unit m or Hz with or without a prefix. What
+ * stands before, up to a point, is a layer. Each sample stands for a band; bands meet midway
+ * between neighbouring samples and reach as far beyond the first and the last; of a lone sample
+ * nothing tells the band, and it has no width. It reads no files.
+ */
+#ifndef ABBE_COLORIMETRY_SPECTRAL_PICTURE_SPECTRAL_CHANNELS_H
+#define ABBE_COLORIMETRY_SPECTRAL_PICTURE_SPECTRAL_CHANNELS_H
+
+#include "colorimetry/image/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum abbe_spectral_kind {
+  ABBE_SPECTRAL_NONE,
+  ABBE_SPECTRAL_EMISSIVE,  /* S0 */
+  ABBE_SPECTRAL_REFLECTIVE /* T */
+} abbe_spectral_kind;
+
+/* What a channel's name without its layer says, and the wavelength in *lambda_nm (vacuum's, where
+ * the name says a frequency). Of polarised light only S0, all of it, counts; re-radiation
+ * ("T.550nm.600nm") is none. */
+abbe_spectral_kind abbe_spectral_channel_parse(const char *name, double *lambda_nm);
+
+/* Zeroed: none. */
+typedef struct abbe_spectral_channels {
+  abbe_spectral_kind kind;
+  size_t count;
+  double *lambda_nm; /* [count] ascending */
+  double *edge_nm;   /* [count + 1] of the bands */
+  size_t *channel;   /* [count] in the image */
+  size_t *error;     /* [count] the channel of its standard error, "stderr." before the name, or
+                        (size_t)-1 */
+} abbe_spectral_channels;
+
+/* The emissive samples of a picture, else the reflective ones, else none (count 0, ABBE_OK).
+ * `layer` names the layer that they are in, NULL: in none. `name` is what errors call the picture.
+ * ABBE_INVALID_ARGUMENT for two channels of one wavelength. */
+abbe_result abbe_spectral_channels_find(const abbe_image *image, const char *layer,
+                                        const char *name, abbe_spectral_channels *out,
+                                        abbe_error *error);
+void abbe_spectral_channels_free(abbe_spectral_channels *channels);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,85 @@
+/* The subcommand pixel, as a person or a program runs it. */
+#include "tests/check.h"
+
+#include "colorimetry/image/exr.h"
+
+#include <cjson/cJSON.h>
+#include <sys/wait.h>
+
+static char path[] = "pixel_command.exr";
+
+/* 2 x 2 pixels of Rec.709's white, with the bands of an even spectrum of 1 in each. */
+static int make_picture(void **state) {
+  (void)state;
+  char name[46][32];
+  const char *names[46] = {"R", "G", "B", "stderr.R", "S0.385nm", "stderr.S0.385nm"};
+  for (int i = 1; i < 40; i++) {
+    snprintf(name[i], sizeof name[i], "S0.%d,0nm", 385 + 10 * i);
+    names[5 + i] = name[i];
+  }
+  abbe_image image;
+  assert_int_equal(abbe_image_make(2, 2, 45, names, &image, NULL), ABBE_OK);
+  for (size_t i = 0; i < 4 * 45; i++) image.data[i] = 1;
+  assert_int_equal(abbe_exr_write(path, &image, NULL), ABBE_OK);
+  abbe_image_free(&image);
+  return 0;
+}
+
+static int remove_picture(void **state) {
+  (void)state;
+  remove(path);
+  return 0;
+}
+
+/* Runs the program with a pixel command on the picture; its exit code. */
+static char output[1 << 16];
+static int run(const char *arguments) {
+  char command[512];
+  snprintf(command, sizeof command, "%s pixel %s %s 2>&1", ABBE_PROGRAM, path, arguments);
+  FILE *pipe = popen(command, "r");
+  assert_non_null(pipe);
+  output[fread(output, 1, sizeof output - 1, pipe)] = '\0';
+  const int status = pclose(pipe);
+  assert_true(WIFEXITED(status));
+  return WEXITSTATUS(status);
+}
+
+static double number(const cJSON *root, const char *group, const char *key, int index) {
+  const cJSON *item = cJSON_GetObjectItem(cJSON_GetObjectItem(root, group), key);
+  return cJSON_GetNumberValue(index < 0 ? item : cJSON_GetArrayItem(item, index));
+}
+
+/* Equal energy is at x = y = 1/3, of 5455 K [CIE15]; the channels' white is D65. */
+static void test_equal_energy(void **state) {
+  (void)state;
+  assert_int_equal(run("0,0:1,1 --json"), 0);
+  cJSON *root = cJSON_Parse(output);
+  assert_non_null(root);
+  assert_near(number(root, "spectrum", "xy", 0), 1.0 / 3, 1e-4);
+  assert_near(number(root, "spectrum", "xy", 1), 1.0 / 3, 1e-4);
+  assert_near(number(root, "spectrum", "cct_k", -1), 5455, 2);
+  assert_near(number(root, "picture", "cct_k", -1), 6504, 2);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(root, "bands")), 40);
+  cJSON_Delete(root);
+  assert_int_equal(run("1,1 --observer 1964"), 0);
+  assert_contains(output, "CIE 1964, 10 degrees");
+  assert_contains(output, "S0.385nm");
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  assert_int_equal(run("2,0"), 1);
+  assert_contains(output, "(0, 0) to (1, 1)");
+  assert_int_equal(run("nowhere"), 2);
+  assert_int_equal(run("1,1:0,0"), 2);
+  assert_int_equal(run(""), 2);
+  assert_int_equal(run("0,0 --observer 1930"), 2);
+  assert_int_equal(run("0,0 --illuminant A"), 1);
+  assert_contains(output, "which light it was made with");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_equal_energy),
+                                     cmocka_unit_test(test_refusals)};
+  return cmocka_run_group_tests(tests, make_picture, remove_picture);
+}

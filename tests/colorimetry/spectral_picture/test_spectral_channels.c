@@ -1,0 +1,101 @@
+#include "tests/check.h"
+
+#include "colorimetry/spectral_picture/spectral_channels.h"
+
+/* Names as [Fichet2021] writes them, and names that are none. */
+static void test_names(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    abbe_spectral_kind kind;
+    double nm;
+  } names[] = {{"S0.550,000000nm", ABBE_SPECTRAL_EMISSIVE, 550},
+               {"S0.550nm", ABBE_SPECTRAL_EMISSIVE, 550},
+               {"T.380,5nm", ABBE_SPECTRAL_REFLECTIVE, 380.5},
+               {"T.0,55um", ABBE_SPECTRAL_REFLECTIVE, 550},
+               {"S0.5,5E-7m", ABBE_SPECTRAL_EMISSIVE, 550},
+               {"S0.5,45E14Hz", ABBE_SPECTRAL_EMISSIVE, 550.0779},
+               {"S0.545THz", ABBE_SPECTRAL_EMISSIVE, 550.0779},
+               {"S1.550nm", ABBE_SPECTRAL_NONE, 0},
+               {"S0.550", ABBE_SPECTRAL_NONE, 0},
+               {"S0.,nm", ABBE_SPECTRAL_NONE, 0},
+               {"S0.5,5,0nm", ABBE_SPECTRAL_NONE, 0},
+               {"S0.0nm", ABBE_SPECTRAL_NONE, 0},
+               {"S0.-550nm", ABBE_SPECTRAL_NONE, 0},
+               {"T.550nm.600nm", ABBE_SPECTRAL_NONE, 0},
+               {"T.550xm", ABBE_SPECTRAL_NONE, 0},
+               {"R", ABBE_SPECTRAL_NONE, 0},
+               {"", ABBE_SPECTRAL_NONE, 0}};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    double nm = 0;
+    const abbe_spectral_kind kind = abbe_spectral_channel_parse(names[i].name, &nm);
+    if (kind != names[i].kind) fail_msg("'%s' is of kind %d", names[i].name, (int)kind);
+    assert_near(nm, names[i].nm, 1e-4);
+  }
+}
+
+static void make(const char *const *names, size_t count, abbe_image *out) {
+  assert_int_equal(abbe_image_make(1, 1, count, names, out, NULL), ABBE_OK);
+}
+
+static void test_bands_meet_midway(void **state) {
+  (void)state;
+  static const char *const names[] = {"S0.600nm", "R", "stderr.S0.500nm", "S0.500nm", "S0.520nm"};
+  abbe_image image;
+  abbe_spectral_channels c;
+  make(names, 5, &image);
+  assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, NULL), ABBE_OK);
+  assert_int_equal(c.kind, ABBE_SPECTRAL_EMISSIVE);
+  assert_int_equal(c.count, 3);
+  static const double edge[4] = {490, 510, 560, 640}, nm[3] = {500, 520, 600};
+  static const size_t channel[3] = {3, 4, 0}, of_error[3] = {2, (size_t)-1, (size_t)-1};
+  for (int i = 0; i < 4; i++) assert_near(c.edge_nm[i], edge[i], 1e-12);
+  for (int i = 0; i < 3; i++) {
+    assert_near(c.lambda_nm[i], nm[i], 1e-12);
+    assert_int_equal(c.channel[i], channel[i]);
+    assert_true(c.error[i] == of_error[i]);
+  }
+  abbe_spectral_channels_free(&c);
+  assert_int_equal(c.count, 0);
+  abbe_image_free(&image);
+}
+
+static void test_layers_and_reflectances(void **state) {
+  (void)state;
+  static const char *const names[] = {"left.T.500nm", "left.T.600nm", "T.400nm"};
+  abbe_image image;
+  abbe_spectral_channels c;
+  make(names, 3, &image);
+  assert_int_equal(abbe_spectral_channels_find(&image, "left", "it", &c, NULL), ABBE_OK);
+  assert_int_equal(c.kind, ABBE_SPECTRAL_REFLECTIVE);
+  assert_int_equal(c.count, 2);
+  abbe_spectral_channels_free(&c);
+  /* a lone one has no width */
+  assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it", &c, NULL), ABBE_OK);
+  assert_true(c.count == 1 && c.edge_nm[0] == 400 && c.edge_nm[1] == 400);
+  abbe_spectral_channels_free(&c);
+  assert_int_equal(abbe_spectral_channels_find(&image, "right", "it", &c, NULL), ABBE_OK);
+  assert_true(c.count == 0 && c.kind == ABBE_SPECTRAL_NONE);
+  abbe_image_free(&image);
+}
+
+static void test_twice_the_same(void **state) {
+  (void)state;
+  static const char *const names[] = {"S0.500nm", "S0.0,5um"};
+  abbe_image image;
+  abbe_spectral_channels c;
+  abbe_error error = {0};
+  make(names, 2, &image);
+  assert_int_equal(abbe_spectral_channels_find(&image, NULL, "it.exr", &c, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "it.exr");
+  assert_contains(error.text, "one wavelength");
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_names), cmocka_unit_test(test_bands_meet_midway),
+      cmocka_unit_test(test_layers_and_reflectances), cmocka_unit_test(test_twice_the_same)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
