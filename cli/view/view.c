@@ -37,7 +37,7 @@ static const struct argp_option options[] = {
      "what kept files are called: NAME.exr, NAME.png, NAME.yaml (the scene's name and -view)", 1},
     {"last", OPTION_LAST, "STAGE", 0,
      "where refining ends: moving, balanced, accurate, mean, traced (traced)", 1},
-    {"config", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
+    {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
      "an OpenColorIO configuration ($OCIO, else Abbe's own)", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
      "a table instead of the scene's: default, thesis or a file", 1},

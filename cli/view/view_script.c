@@ -215,6 +215,12 @@ static abbe_result do_click(script *s, abbe_error *error) {
   return result;
 }
 
+/* The processor is the worker's meanwhile. */
+static void sleep_a_little(void) {
+  const struct timespec time = {.tv_nsec = 20000000};
+  nanosleep(&time, NULL);
+}
+
 /* As a hand does it: some places on the way, each for a moment. */
 static abbe_result do_drag(script *s, abbe_error *error) {
   enum { PLACES = 12 };
@@ -229,7 +235,7 @@ static abbe_result do_drag(script *s, abbe_error *error) {
   for (int i = 1; i <= PLACES; i++) {
     const double t = (double)i / PLACES, until = abbe_clock_seconds() + 0.05;
     point(s, (const double[2]){from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])});
-    while (abbe_clock_seconds() < until) pump(s);
+    for (pump(s); abbe_clock_seconds() < until; pump(s)) sleep_a_little();
   }
   set_button(s, button, false);
   s->input.shift = s->input.control = false;
@@ -305,12 +311,6 @@ static bool has_come(script *s, const char *what) {
       return (int)v->stage >= stage && (int)v->state.refine.stage >= stage &&
              (stage != ABBE_VIEW_TRACED || v->passes > 0);
   return false;
-}
-
-/* The processor is the worker's meanwhile. */
-static void sleep_a_little(void) {
-  const struct timespec time = {.tv_nsec = 20000000};
-  nanosleep(&time, NULL);
 }
 
 static abbe_result do_wait(script *s, abbe_error *error) {

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -182,7 +183,7 @@ static abbe_render_desc request_of(const abbe_view_worker *w, const abbe_view_re
   desc.supersample = moving ? 1 : settings_of(w, job->stage).supersample;
   desc.upsample = moving ? job->eye_step + 1 : 0;
   desc.adaptive = moving ? 1 : 0;
-  desc.aovs = !moving;
+  desc.aovs = true; /* in motion too: without them other programs would have to be compiled */
   desc.width = q->width;
   desc.height = q->height;
   if (moving && job->light == ABBE_VIEW_MOVING && desc.photons > 0)
