@@ -37,6 +37,24 @@ static uint64_t hash_texture(uint64_t h, const abbe_object *o, const abbe_surfac
   return hash(h, t->data, t->width * t->height * t->channels * sizeof *t->data);
 }
 
+static uint64_t hash_light(uint64_t h, const abbe_light *l) {
+  const double numbers[] = {l->kind,         l->position[0],  l->position[1],  l->position[2],
+                            l->direction[0], l->direction[1], l->direction[2], l->radius,
+                            l->cone_rad,     l->soft_rad,     l->power};
+  h = hash_doubles(h, numbers, sizeof numbers / sizeof *numbers);
+  return l->kind == ABBE_LIGHT_RECTANGLE ? hash_doubles(h, l->edge[0], 6) : h;
+}
+
+static uint64_t hash_media(uint64_t h, const abbe_media *m) {
+  const size_t values = m->refractors * (m->steps + 1);
+  h = hash(h, m->n, values * sizeof *m->n);
+  if (m->attenuation != NULL) h = hash(h, m->attenuation, values * sizeof *m->attenuation);
+  if (m->extraordinary == NULL) return h;
+  h = hash(h, m->extraordinary, values * sizeof *m->extraordinary);
+  h = hash(h, m->crystal, m->refractors * sizeof *m->crystal);
+  return hash(h, m->axis, m->refractors * sizeof *m->axis);
+}
+
 /* All that the walks read of the scene. */
 static uint64_t hash_scene(const abbe_tracer *t) {
   const abbe_scene *s = t->scene;
@@ -47,23 +65,16 @@ static uint64_t hash_scene(const abbe_tracer *t) {
   h = hash_doubles(h, s->camera.up, 3);
   const double loose[] = {s->camera.fov_y_rad, s->ambient, s->background};
   h = hash_doubles(h, loose, 3);
-  for (size_t i = 0; i < s->light_count; i++) {
-    const abbe_light *l = &s->light[i];
-    const double numbers[] = {l->kind,         l->position[0],  l->position[1],  l->position[2],
-                              l->direction[0], l->direction[1], l->direction[2], l->radius,
-                              l->cone_rad,     l->soft_rad,     l->power};
-    h = hash_doubles(h, numbers, sizeof numbers / sizeof *numbers);
-  }
+  for (size_t i = 0; i < s->light_count; i++) h = hash_light(h, &s->light[i]);
   if (s->environment != NULL) {
     const abbe_radiance_map *m = &s->environment->map;
+    const double size[] = {(double)m->width, (double)m->height};
     h = hash_doubles(h, s->environment->to_map, 9);
+    h = hash_doubles(h, size, 2);
     h = hash(h, m->rgb, m->width * m->height * 3 * sizeof *m->rgb);
   }
   h = hash(h, t->sampling.xyz, t->sampling.lights * t->sampling.steps * sizeof *t->sampling.xyz);
-  h = hash(h, t->media.n, t->media.refractors * (t->media.steps + 1) * sizeof *t->media.n);
-  if (t->media.attenuation != NULL)
-    h = hash(h, t->media.attenuation,
-             t->media.refractors * (t->media.steps + 1) * sizeof *t->media.attenuation);
+  h = hash_media(h, &t->media);
   h = hash(h, t->mirrors.reflectance, t->mirrors.count * sizeof *t->mirrors.reflectance);
   h = hash(h, t->mirrors.nk, t->mirrors.count * (t->mirrors.steps + 1) * sizeof *t->mirrors.nk);
   for (size_t i = 0; i < s->object_count; i++) {

@@ -228,6 +228,38 @@ static void textures_and_normals_are_part_of_the_scene(void **state) {
   scene = kept;
 }
 
+/* Which way an optic axis points, a crystal's other index, and how a light's sides lie. */
+static void axes_and_edges_are_part_of_the_scene(void **state) {
+  (void)state;
+  abbe_scene kept = scene;
+  load_text(CAMERA
+            "lights:\n- {name: panel, kind: rectangle, position: [0, 0, 0.6], direction: [0, "
+            "0, -1], width: 0.02, height: 0.05, radiance: 1}\n" FLOOR BEADS("crown"),
+            &scene);
+  abbe_object *bead = &scene.object[1];
+  abbe_dispersion *other = NULL;
+  for (size_t i = 0; i < scene.table.count; i++)
+    if (&scene.table.material[i] == bead->material) other = &scene.table.material[i].extraordinary;
+  assert_non_null(other);
+  *other = (abbe_dispersion){.model = ABBE_DISPERSION_CONSTANT, .count = 1, .c = {1.4}};
+  save(&small, 1);
+  other->c[0] = 1.41;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  other->c[0] = 1.4;
+  bead->axis[0] = 0.6;
+  bead->axis[2] = 0.8;
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  bead->axis[0] = 0;
+  bead->axis[2] = 1;
+  double(*edge)[3] = scene.light[0].edge, turned[3];
+  memcpy(turned, edge[0], sizeof turned);
+  memcpy(edge[0], edge[1], sizeof turned);
+  memcpy(edge[1], turned, sizeof turned);
+  check_refused(&scene, &small, ABBE_INVALID_ARGUMENT, "another scene");
+  abbe_scene_free(&scene);
+  scene = kept;
+}
+
 static void broken_files_are_told(void **state) {
   (void)state;
   save(&small, 2);
@@ -401,6 +433,7 @@ int main(void) {
       cmocka_unit_test(another_request_is_named),
       cmocka_unit_test(another_scene_is_told),
       cmocka_unit_test(textures_and_normals_are_part_of_the_scene),
+      cmocka_unit_test(axes_and_edges_are_part_of_the_scene),
       cmocka_unit_test(broken_files_are_told),
       cmocka_unit_test(what_is_no_checkpoint_is_told),
       cmocka_unit_test(any_split_gives_the_bits_of_one_run),
