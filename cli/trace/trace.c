@@ -102,6 +102,7 @@ static void take_passes(request *q, const char *text) {
   char first[32];
   const size_t length = strcspn(text, ":");
   snprintf(first, sizeof first, "%.*s", (int)length, text);
+  q->part_first = q->part_end = 0;
   if (text[length] == ':') {
     q->part_first = abbe_command_count(q->program, "--passes", first, 0, MOST_PASSES);
     q->part_end = abbe_command_count(q->program, "--passes", text + length + 1, 1, MOST_PASSES);

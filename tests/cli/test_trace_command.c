@@ -347,6 +347,7 @@ static void test_wrong_parts(void **state) {
   refuse_parts("-o c.exr --passes 0:1", 2, "--checkpoint FILE");
   refuse_parts("--passes 3:3 --checkpoint q.ck", 2, "are no passes");
   refuse_parts("--passes 3 --checkpoint q.ck", 2, "are no passes");
+  refuse_parts("--passes 0:1 --passes 3 --checkpoint q.ck", 2, "are no passes");
   refuse_parts("--passes 0:1 --spp 3 --checkpoint q.ck", 2, "--spp");
   refuse_parts("--passes 0:1 --merge q0.ck --checkpoint q.ck", 2, "--merge");
   refuse_parts("--passes 0:1 --checkpoint q3.ck --resume", 1, "from 3 on");
