@@ -56,8 +56,7 @@ void abbe_accumulator_end_pass(abbe_accumulator *a) {
       a->cut[t]++;
       whole = more > 0 ? INT64_MAX : INT64_MIN;
     }
-    a->sum[i] += whole;
-    a->square[i] += abbe_whole_sum_product(whole, whole);
+    abbe_whole_sum_add_sample(whole, &a->sum[i], &a->square[i]);
   }
   a->passes++;
   abbe_accumulator_drop_pass(a);
@@ -77,13 +76,13 @@ void abbe_accumulator_drop_pass(abbe_accumulator *a) {
 }
 
 double abbe_accumulator_mean(const abbe_accumulator *a, size_t value) {
-  return a->passes > 0 ? (double)a->sum[value] * a->unit / (double)a->passes : 0;
+  return a->passes > 0 ? abbe_whole_sum_of_values(a->sum[value]) * a->unit / (double)a->passes : 0;
 }
 
 double abbe_accumulator_error(const abbe_accumulator *a, size_t value) {
   if (a->passes < 2) return INFINITY;
-  const double n = (double)a->passes, mean = (double)a->sum[value] / n;
-  const double square = abbe_whole_sum_of_products(a->square[value]) / n;
+  const double n = (double)a->passes, mean = abbe_whole_sum_of_values(a->sum[value]) / n;
+  const double square = abbe_whole_sum_of_squares(a->sum[value], a->square[value]) / n;
   const double variance = (square - mean * mean) * n / (n - 1);
   return variance > 0 ? a->unit * sqrt(variance / n) : 0;
 }

@@ -28,8 +28,8 @@ typedef struct abbe_accumulator {
   double limit;           /* largest magnitude that one addition keeps */
   int64_t **adding;       /* [threads][values] the pass that is under way */
   uint64_t *cut;          /* [threads] additions beyond the limit, cut to it */
-  abbe_whole_sum *sum;    /* [values] over passes */
-  abbe_whole_sum *square; /* [values] abbe_whole_sum_product of each with itself */
+  abbe_whole_sum *sum;    /* [values] over passes, by abbe_whole_sum_add_sample */
+  abbe_whole_sum *square; /* [values] likewise */
 } abbe_accumulator;
 
 /* Sums of a pass up to `most` in magnitude are held; ABBE_INVALID_ARGUMENT unless it is positive

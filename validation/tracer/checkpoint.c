@@ -10,7 +10,7 @@
 
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
-static const char magic[] = "abbe checkpoint 5\n";
+static const char magic[] = "abbe checkpoint 6\n";
 enum { HEAD = 4096 }; /* bytes that hold all the lines */
 
 /* ---- hash: FNV-1a, 64 bits ---- */

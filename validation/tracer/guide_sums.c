@@ -48,10 +48,8 @@ static void end_pixel(const float *adding, const abbe_accumulator *picture, cons
               : abbe_whole_sum_quantise((double)adding[k], 1 / plain_unit, plain_limit);
   for (size_t k = 0; k < 3; k++)
     if (__builtin_sub_overflow(rgb[k], x[ABBE_GUIDE_EYE + k], &x[k])) x[k] = rgb[k];
-  for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++) {
-    sum[k] += x[k];
-    sum[ABBE_GUIDE_SQUARES + k] += abbe_whole_sum_product(x[k], x[k]);
-  }
+  for (size_t k = 0; k < ABBE_GUIDE_MEANS; k++)
+    abbe_whole_sum_add_sample(x[k], &sum[k], &sum[ABBE_GUIDE_SQUARES + k]);
   for (size_t part = 0; part < 2; part++) {
     const int64_t *c = x + 3 * part;
     abbe_whole_sum *product = sum + ABBE_GUIDE_PRODUCTS + 3 * part;
@@ -72,21 +70,22 @@ void abbe_guide_sums_end_pass(abbe_guide_sums *g, const abbe_accumulator *pictur
 }
 
 /* In units. */
-static double of_means(abbe_whole_sum product, abbe_whole_sum a, abbe_whole_sum b, size_t passes) {
-  const double n = (double)passes;
-  return (abbe_whole_sum_of_products(product) / n - (double)a / n * ((double)b / n)) / (n - 1);
+static double of_means(double product, abbe_whole_sum a, abbe_whole_sum b, size_t passes) {
+  const double n = (double)passes, x = abbe_whole_sum_of_values(a), y = abbe_whole_sum_of_values(b);
+  return (product / n - x / n * (y / n)) / (n - 1);
 }
 
 double abbe_guide_sums_mean(const abbe_guide_sums *g, size_t passes, size_t pixel, size_t mean) {
-  return unit_of(g, mean) * (double)g->sum[pixel * ABBE_GUIDE_VALUES + mean] / (double)passes;
+  const abbe_whole_sum sum = g->sum[pixel * ABBE_GUIDE_VALUES + mean];
+  return unit_of(g, mean) * abbe_whole_sum_of_values(sum) / (double)passes;
 }
 
 double abbe_guide_sums_variance(const abbe_guide_sums *g, size_t passes, size_t pixel,
                                 size_t mean) {
   const abbe_whole_sum *sum = g->sum + pixel * ABBE_GUIDE_VALUES;
   const double unit = unit_of(g, mean);
-  return unit * unit *
-         fmax(of_means(sum[ABBE_GUIDE_SQUARES + mean], sum[mean], sum[mean], passes), 0);
+  const double square = abbe_whole_sum_of_squares(sum[mean], sum[ABBE_GUIDE_SQUARES + mean]);
+  return unit * unit * fmax(of_means(square, sum[mean], sum[mean], passes), 0);
 }
 
 double abbe_guide_sums_covariance(const abbe_guide_sums *g, size_t passes, size_t pixel,
@@ -94,6 +93,6 @@ double abbe_guide_sums_covariance(const abbe_guide_sums *g, size_t passes, size_
   static const size_t first[3] = {0, 0, 1}, second[3] = {1, 2, 2};
   const abbe_whole_sum *sum = g->sum + pixel * ABBE_GUIDE_VALUES, *part = sum + 3 * (product / 3);
   return g->unit * g->unit *
-         of_means(sum[ABBE_GUIDE_PRODUCTS + product], part[first[product % 3]],
-                  part[second[product % 3]], passes);
+         of_means(abbe_whole_sum_of_products(sum[ABBE_GUIDE_PRODUCTS + product]),
+                  part[first[product % 3]], part[second[product % 3]], passes);
 }

@@ -25,8 +25,31 @@ static inline double abbe_whole_sum_of_products(abbe_whole_sum sum) {
   return (double)sum * (double)(1 << ABBE_WHOLE_SUM_DROPPED_BITS);
 }
 
-/* x in units of 1 / per_unit, towards 0; at most as large as `limit` times per_unit. */
+/* Sums of a value and of its square, with no bit dropped: what the square's drops is summed in the
+ * lowest bits of the value's, which need as many less. Both are added up as they are. */
+#define ABBE_WHOLE_SUM_REST_BITS 40
+
+static inline void abbe_whole_sum_add_sample(int64_t x, abbe_whole_sum *sum,
+                                             abbe_whole_sum *square) {
+  const abbe_whole_sum whole = (abbe_whole_sum)x * x;
+  const int64_t rest = (int64_t)(whole & ((1 << ABBE_WHOLE_SUM_DROPPED_BITS) - 1));
+  *sum += (abbe_whole_sum)x * ((int64_t)1 << ABBE_WHOLE_SUM_REST_BITS) + rest;
+  *square += whole >> ABBE_WHOLE_SUM_DROPPED_BITS;
+}
+
+/* In the value's units, and in their square. */
+static inline double abbe_whole_sum_of_values(abbe_whole_sum sum) {
+  return (double)(sum >> ABBE_WHOLE_SUM_REST_BITS);
+}
+static inline double abbe_whole_sum_of_squares(abbe_whole_sum sum, abbe_whole_sum square) {
+  const int64_t rest = (int64_t)(sum & (((int64_t)1 << ABBE_WHOLE_SUM_REST_BITS) - 1));
+  return abbe_whole_sum_of_products(square) + (double)rest;
+}
+
+/* x in units of 1 / per_unit, towards 0; at most as large as `limit` times per_unit; 0 of what is
+ * not a number. */
 static inline int64_t abbe_whole_sum_quantise(double x, double per_unit, double limit) {
+  if (x != x) return 0;
   const double y = x > limit ? limit : x < -limit ? -limit : x;
   return (int64_t)(y * per_unit);
 }

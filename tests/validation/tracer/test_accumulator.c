@@ -80,7 +80,35 @@ static void the_largest_sums_fit(void **state) {
   assert_true(most > 0 && all > 0 && all / ABBE_WHOLE_SUM_MOST_PASSES == most);
   assert_near(abbe_whole_sum_of_products(most), 0x1p126, 0);
   assert_int_equal((int64_t)abbe_whole_sum_product(-1, 1), -1); /* downwards */
+  /* sums of whole values and squares at both ends, by doubling */
+  static const int64_t ends[2] = {INT64_MIN, INT64_MAX};
+  for (int i = 0; i < 2; i++) {
+    abbe_whole_sum sum = 0, square = 0;
+    abbe_whole_sum_add_sample(ends[i], &sum, &square);
+    for (uint64_t passes = 1; passes < ABBE_WHOLE_SUM_MOST_PASSES; passes *= 2)
+      assert_false(__builtin_add_overflow(sum, sum, &sum) ||
+                   __builtin_add_overflow(square, square, &square));
+    assert_near(abbe_whole_sum_of_values(sum), (double)ends[i] * 0x1p20, 0);
+    assert_near(abbe_whole_sum_of_squares(sum, square), 0x1p146, 0x1p93);
+  }
+  assert_true(abbe_whole_sum_quantise(NAN, 4, 2) == 0);
   assert_true(abbe_whole_sum_quantise(3, 4, 2) == 8 && abbe_whole_sum_quantise(-0.3, 4, 2) == -1);
+}
+
+/* What is far below the range has its standard error too: no bit of a square is dropped. */
+static void dim_values_have_an_error(void **state) {
+  (void)state;
+  abbe_accumulator a = make(2, 1, 0x1p61); /* units of 1 */
+  for (int pass = 0; pass < 4; pass++) {
+    abbe_accumulator_add(&a, 0, 0, pass % 2 ? 300 : 100);
+    abbe_accumulator_add(&a, 0, 1, pass % 2 ? -1301 : -1300);
+    abbe_accumulator_end_pass(&a);
+  }
+  assert_near(abbe_accumulator_mean(&a, 0), 200, 0);
+  assert_near(abbe_accumulator_error(&a, 0), 100 / sqrt(3), 1e-9);
+  assert_near(abbe_accumulator_mean(&a, 1), -1300.5, 0);
+  assert_near(abbe_accumulator_error(&a, 1), 0.5 / sqrt(3), 1e-6);
+  abbe_accumulator_free(&a);
 }
 
 /* Passes of 1, 2, 3, 4: mean 2.5, standard error sqrt(5/3 / 4). */
@@ -204,6 +232,7 @@ int main(void) {
       cmocka_unit_test(order_and_threads_do_not_matter),
       cmocka_unit_test(order_of_passes_does_not_matter),
       cmocka_unit_test(the_largest_sums_fit),
+      cmocka_unit_test(dim_values_have_an_error),
       cmocka_unit_test(mean_and_standard_error),
       cmocka_unit_test(the_error_is_the_spread_of_the_mean),
       cmocka_unit_test(a_dropped_pass_leaves_nothing),

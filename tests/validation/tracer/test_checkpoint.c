@@ -305,9 +305,9 @@ static void what_is_no_checkpoint_is_told(void **state) {
   } files[] = {{"", "not a checkpoint"},
                {"description: a scene\n", "not a checkpoint"},
                {"abbe checkpoint 1\nscene 1\n\n", "another version"},
-               {"abbe checkpoint 5\n", "broken"},
-               {"abbe checkpoint 5\nscene 0123", "broken"},
-               {"abbe checkpoint 5\n\n\n", "start anew"}};
+               {"abbe checkpoint 6\n", "broken"},
+               {"abbe checkpoint 6\nscene 0123", "broken"},
+               {"abbe checkpoint 6\n\n\n", "start anew"}};
   abbe_error error;
   abbe_tracer *tracer = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
