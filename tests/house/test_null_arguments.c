@@ -89,6 +89,7 @@ static const struct {
     {"abbe_shader_write", "report"},
     {"abbe_shadow_planes_make", "plane"},
     {"abbe_picture_front_load", "path"},
+    {"abbe_spectral_channels_find", "layer"},
     {"abbe_sweep_grid_expand", "why"},
     {"abbe_sweep_grids_load", "path"},
     {"abbe_sweep_measure", "user"},
