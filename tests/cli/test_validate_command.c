@@ -37,7 +37,7 @@ static void a_group_as_json(void **state) {
 static void runs_meet_a_furnace_and_converge(void **state) {
   (void)state;
   assert_int_equal(run_line("\"$abbe\" validate --only furnace --samples 65536 --threads 1"), 0);
-  assert_contains(run_output, "4 of 4 known answers are within tolerance");
+  assert_contains(run_output, "5 of 5 known answers are within tolerance");
   assert_int_equal(run_line("\"$abbe\" validate --only convergence --samples 65536 --threads 1"),
                    0);
   assert_contains(run_output, "slope of the error over the photons");
