@@ -47,6 +47,39 @@ static void a_scene_and_its_picture(void **state) {
   assert_contains(run_output, "brightest 1 %");
 }
 
+/* The shipped pictures give the irradiances that script/make-environments asks for: of the skies by
+ * what is written there, of the studio by the scene whose it is. */
+static void what_ships(void **state) {
+  (void)state;
+  assert_int_equal(run_line("\"$abbe\" environment " ABBE_SOURCE_DIR
+                            "/scenes/environments/overcast-sky.exr --json"),
+                   0);
+  cJSON *json = cJSON_Parse(run_output);
+  assert_near(number(json, "irradiance_up", 1), 3, 1e-3);
+  assert_near(number(json, "irradiance_down", 1), 0.25 * 3.14159265, 1e-3);
+  cJSON_Delete(json);
+  assert_int_equal(run_line("\"$abbe\" environment " ABBE_SOURCE_DIR
+                            "/scenes/environments/clear-sky.exr --json"),
+                   0);
+  json = cJSON_Parse(run_output);
+  const double sine = 0.61566148;
+  assert_near(number(json, "irradiance_up", 0), 0.4 + 3.1 * sine, 2e-3);
+  assert_near(number(json, "irradiance_up", 2), 0.8 + 2.6 * sine, 2e-3);
+  assert_near(number(json, "brightest_elevation", -1), 38, 1.5);
+  cJSON_Delete(json);
+  assert_int_equal(
+      run_line("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/diamond-studio.yaml --json"), 0);
+  json = cJSON_Parse(run_output);
+  const double up = number(json, "irradiance_up", 0);
+  cJSON_Delete(json);
+  assert_int_equal(
+      run_line("\"$abbe\" environment " ABBE_SOURCE_DIR "/scenes/environments/studio.exr --json"),
+      0);
+  json = cJSON_Parse(run_output);
+  assert_near(number(json, "irradiance_up", 0), up, 2e-3 * up);
+  cJSON_Delete(json);
+}
+
 static void what_is_refused(void **state) {
   (void)state;
   write_text("s.yaml", VIEW "lights: [{kind: point, position: [0, 0, 1], intensity: 1}]\n");
@@ -63,6 +96,7 @@ static void what_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_scene_and_its_picture),
+      cmocka_unit_test(what_ships),
       cmocka_unit_test(what_is_refused),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);
