@@ -47,7 +47,7 @@ static void a_scene_and_its_picture(void **state) {
   assert_contains(run_output, "brightest 1 %");
 }
 
-/* The shipped pictures give the irradiances that script/make-environments asks for: of the skies by
+/* The shipped pictures give the irradiances that scenes/environments/make-environments asks for: of the skies by
  * what is written there, of the studio by the scene whose it is. */
 static void what_ships(void **state) {
   (void)state;
