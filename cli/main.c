@@ -1,5 +1,6 @@
 #include "cli/base/command.h"
 #include "cli/base/output.h"
+#include "cli/pages/pages.h"
 
 #include "base/nearest.h"
 #include "colorimetry/image/display_ocio.h"
@@ -18,10 +19,7 @@
 
 const char *argp_program_version = "abbe " ABBE_VERSION;
 
-static const struct {
-  const char *name, *summary;
-  int (*run)(int argc, char **argv);
-} commands[] = {
+static const abbe_pages_command commands[] = {
 #define ABBE_COMMAND_ROW(name, summary) {#name, summary, abbe_command_##name},
     ABBE_COMMANDS(ABBE_COMMAND_ROW)
 #undef ABBE_COMMAND_ROW
@@ -37,11 +35,8 @@ static void help(FILE *out) {
   for (int i = 0; i < COMMAND_COUNT; i++)
     fprintf(out, "  %-10s %s\n", commands[i].name, commands[i].summary);
   fprintf(out, "  %-10s %s\n\n", "help", "this page, or a command's own: abbe help render");
-  fprintf(out, "First steps:\n"
-               "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"
-               "  abbe plan scenes/gem.yaml\n"
-               "  abbe materials show diamond --at 587.5618\n\n"
-               "Exit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
+  fprintf(out, "First steps:\n" ABBE_FIRST_STEPS
+               "\nExit codes: 0 done, 1 failed, 2 used wrongly, 3 out of tolerance.\n");
 }
 
 /* What a page of help or a version says goes to stdout too, past all commands. */
@@ -60,6 +55,14 @@ static void say(const char *message) {
   fputs(message, stderr);
 }
 
+/* For the build alone, which installs them. */
+static int write_pages(const char *folder) {
+  abbe_error error = {0};
+  const abbe_result result =
+      abbe_pages_write(folder, ABBE_VERSION, commands, COMMAND_COUNT, &error);
+  return abbe_command_end("abbe", result, &error);
+}
+
 int main(int argc, char **argv) {
   hold_streams();
   abbe_output_begin();
@@ -75,6 +78,7 @@ int main(int argc, char **argv) {
     return ABBE_EXIT_USAGE;
   }
   const char *word = argv[1];
+  if (strcmp(word, "--write-pages") == 0 && argc == 3) return write_pages(argv[2]);
   if (strcmp(word, "--version") == 0) return printf("%s\n", argp_program_version) < 0;
   bool wants_help = strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 ||
                     strcmp(word, "-h") == 0 || strcmp(word, "-?") == 0;

@@ -1,4 +1,5 @@
-# The install step: the program, one library, its headers, what ships, and the ways to find them.
+# The install step: the program, the library as an archive and shared, its headers, what ships, and
+# the ways to find them.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -15,11 +16,24 @@ list(FILTER libraries EXCLUDE REGEX "^abbe_")
 list(REMOVE_ITEM libraries glm::glm) # headers, of which the installed ones include none
 list(REMOVE_DUPLICATES libraries)
 
-add_library(abbe_library STATIC ${objects})
-set_target_properties(abbe_library PROPERTIES OUTPUT_NAME abbe EXPORT_NAME abbe LINKER_LANGUAGE C)
+add_library(abbe_archive STATIC ${objects})
+set_target_properties(abbe_archive PROPERTIES OUTPUT_NAME abbe EXPORT_NAME abbe LINKER_LANGUAGE C)
 # The C++ of the two bridges is named, so that a project in C alone can link it.
-target_link_libraries(abbe_library PUBLIC ${libraries} stdc++)
-target_include_directories(abbe_library INTERFACE $<INSTALL_INTERFACE:include/abbe>)
+target_link_libraries(abbe_archive PUBLIC ${libraries} stdc++)
+target_include_directories(abbe_archive INTERFACE $<INSTALL_INTERFACE:include/abbe>)
+
+# The same objects, of which only what library/lib_*.h declares is to be seen. Its name and the
+# version of its symbols change with what callers must be built anew for.
+set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+if(NOT ABBE_SANITIZE) # whose run-time library must come first in a program
+  set(exports ${CMAKE_CURRENT_BINARY_DIR}/abbe.map)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/abbe.map.in ${exports} @ONLY)
+  add_library(abbe_shared SHARED ${objects})
+  set_target_properties(abbe_shared PROPERTIES OUTPUT_NAME abbe LINKER_LANGUAGE CXX
+    VERSION ${PROJECT_VERSION} SOVERSION ${abi} LINK_DEPENDS ${exports})
+  target_link_options(abbe_shared PRIVATE LINKER:--version-script,${exports} LINKER:-z,defs)
+  target_link_libraries(abbe_shared PRIVATE abbe_build ${libraries})
+endif()
 
 # What each library is called to CMake and to pkg-config.
 set(config_finds "")
@@ -57,7 +71,10 @@ set(share ${CMAKE_INSTALL_DATADIR}/abbe)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/abbe)
 
 install(TARGETS abbe RUNTIME)
-install(TARGETS abbe_library EXPORT abbeTargets ARCHIVE)
+install(TARGETS abbe_archive EXPORT abbeTargets ARCHIVE)
+if(TARGET abbe_shared)
+  install(TARGETS abbe_shared LIBRARY)
+endif()
 install(EXPORT abbeTargets NAMESPACE abbe:: DESTINATION ${package})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/abbeConfig.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/abbeConfig.cmake INSTALL_DESTINATION ${package})
@@ -69,8 +86,11 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/abbeConfig.cmake
 # Relative to the file itself, so that the prefix may be chosen or moved afterwards.
 file(RELATIVE_PATH pc_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" pc_prefix ${pc_prefix})
-configure_file(${CMAKE_CURRENT_LIST_DIR}/abbe.pc.in ${CMAKE_CURRENT_BINARY_DIR}/abbe.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/abbe.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+foreach(name abbe abbe-shared)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/${name}.pc.in ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 
 # The headers, but not those that say that they are a room's own.
 foreach(room ${rooms})
@@ -92,3 +112,25 @@ install(DIRECTORY scenes/designs scenes/environments scenes/meshes DESTINATION $
   FILES_MATCHING PATTERN "*.asc" PATTERN "*.exr" PATTERN "*.obj" PATTERN "*.ply")
 install(FILES spectral/materials/materials.yaml spectral/materials/thesis.yaml DESTINATION ${share}/materials)
 install(FILES colorimetry/image/config.ocio DESTINATION ${share}/ocio)
+
+# Made from the program's own option tables.
+set(pages ${CMAKE_CURRENT_BINARY_DIR}/pages)
+file(MAKE_DIRECTORY ${pages})
+add_custom_command(OUTPUT ${pages}/abbe.1 ${pages}/abbe.bash ${pages}/_abbe
+  COMMAND abbe --write-pages ${pages} DEPENDS abbe VERBATIM)
+add_custom_target(abbe_pages ALL DEPENDS ${pages}/abbe.1)
+install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1)
+install(FILES ${pages}/abbe.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+  RENAME abbe)
+install(FILES ${pages}/_abbe DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+
+# The Python module, which finds the shared library from its own place.
+if(TARGET abbe_shared)
+  set(python lib/python3/dist-packages/abbe)
+  file(RELATIVE_PATH library_beside /${python} /${CMAKE_INSTALL_LIBDIR}/libabbe.so.${abi})
+  configure_file(library/python/abbe/_place.py.in ${CMAKE_CURRENT_BINARY_DIR}/_place.py @ONLY)
+  file(GLOB modules CONFIGURE_DEPENDS library/python/abbe/*.py)
+  install(FILES ${modules} ${CMAKE_CURRENT_BINARY_DIR}/_place.py DESTINATION ${python})
+endif()
+
+include(${CMAKE_CURRENT_LIST_DIR}/pack.cmake)

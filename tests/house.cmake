@@ -23,7 +23,8 @@ abbe_test(number_places cpu abbe_base)
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/base/*.h ${PROJECT_SOURCE_DIR}/spectral/*.h
   ${PROJECT_SOURCE_DIR}/colorimetry/*.h ${PROJECT_SOURCE_DIR}/scenes/*.h
-  ${PROJECT_SOURCE_DIR}/gl/*.h ${PROJECT_SOURCE_DIR}/validation/*.h)
+  ${PROJECT_SOURCE_DIR}/gl/*.h ${PROJECT_SOURCE_DIR}/validation/*.h
+  ${PROJECT_SOURCE_DIR}/library/*.h)
 set(sources "")
 set(declarations "")
 set(sum "0")
@@ -69,7 +70,7 @@ add_custom_command(OUTPUT ${calls}
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   DEPENDS ${header_files} ${CMAKE_CURRENT_SOURCE_DIR}/null_arguments/generate
   VERBATIM)
-abbe_test(null_arguments cpu abbe_sweep abbe_gl abbe_validation abbe_scenes abbe_colorimetry
+abbe_test(null_arguments cpu abbe_library abbe_sweep abbe_gl abbe_validation abbe_scenes abbe_colorimetry
   abbe_spectral abbe_base)
 target_sources(test_null_arguments PRIVATE ${calls})
 abbe_label(cpu memory NAMES null_arguments)

@@ -1,11 +1,26 @@
 # The program and the installed library, as those outside the house meet them.
 add_test(NAME install
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/check ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR}
-          ${CMAKE_C_COMPILER})
+          ${CMAKE_C_COMPILER} ${CMAKE_CXX_COMPILER})
 if(ABBE_HARDEN AND NOT ABBE_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   add_test(NAME hardened COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/hardened $<TARGET_FILE:abbe>
-           $<TARGET_FILE:abbe_library>)
+           $<TARGET_FILE:abbe_archive> $<TARGET_FILE:abbe_shared>)
   abbe_label(program NAMES hardened)
+endif()
+add_test(NAME pages COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/pages ${CMAKE_COMMAND}
+         ${PROJECT_BINARY_DIR})
+add_test(NAME package COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install/package ${PROJECT_BINARY_DIR}
+         ${CMAKE_CPACK_COMMAND})
+abbe_label(program NAMES pages package)
+# Debian's own, whose numpy is Debian's.
+find_program(ABBE_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(ABBE_PYTHON)
+  execute_process(COMMAND ${ABBE_PYTHON} -c "import numpy" RESULT_VARIABLE no_numpy ERROR_QUIET)
+  if(no_numpy EQUAL 0)
+    add_test(NAME python COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/python/check ${CMAKE_COMMAND}
+             ${PROJECT_BINARY_DIR} ${ABBE_PYTHON} ${PROJECT_SOURCE_DIR})
+    abbe_label(program NAMES python)
+  endif()
 endif()
 add_test(NAME scripts COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/scripts/check)
 add_test(NAME measuring_scripts

@@ -2,6 +2,7 @@
 
 #include "base/nearest.h"
 #include "cli/base/command.h"
+#include "cli/base/option_tables.h"
 #include "spectral/materials/material_table.h"
 
 #include <libgen.h>
@@ -190,6 +191,7 @@ void abbe_arguments_parse(const struct argp *argp, unsigned flags, int argc, cha
   static const struct argp always = {.options = own};
   option_list list = {.count = 0};
   bool only_arguments = false;
+  abbe_option_tables_offer(argp, flags);
   collect(argp, &list);
   collect(&always, &list);
   abbe_arguments_add(argv[0], ABBE_ARGUMENT_READS, "$OCIO", getenv("OCIO"));

@@ -40,6 +40,12 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
 ABBE_COMMANDS(ABBE_COMMAND_DECLARE)
 #undef ABBE_COMMAND_DECLARE
 
+/* What the program's own help and manual page begin with. */
+#define ABBE_FIRST_STEPS                                                                           \
+  "  abbe render scenes/gem.yaml -o gem.exr --png gem.png\n"                                       \
+  "  abbe plan scenes/gem.yaml\n"                                                                  \
+  "  abbe materials show diamond --at 587.5618\n"
+
 /* Prints "PROGRAM: sentence" to stderr (its general text where the sentence is empty); returns
  * the exit code that goes with the result. */
 int abbe_command_fail(const char *program, const abbe_error *error);

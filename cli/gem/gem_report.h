@@ -11,20 +11,8 @@ typedef struct abbe_gem_report_facts {
   double head_deg, seconds;
 } abbe_gem_report_facts;
 
-/* A row of the table of numbers. */
-typedef struct abbe_gem_report_row {
-  const char *name, *text;
-  abbe_gem_number number;
-  bool share; /* shown in percent */
-} abbe_gem_report_row;
-
-enum { ABBE_GEM_REPORT_MOST_ROWS = 32 };
-
-size_t abbe_gem_report_rows(const abbe_gem_judgement *judgement,
-                            abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS]);
-
 /* "91.73 %" and "0.02", for people. */
-void abbe_gem_report_number(const abbe_gem_report_row *row, char value[32], char error[32]);
+void abbe_gem_report_number(const abbe_gem_judgement_row *row, char value[32], char error[32]);
 
 void abbe_gem_report_print(const abbe_gem_report_facts *facts);
 /* Rows of measure, axis, tilt, wavelength, value, standard error; what does not apply is empty. */

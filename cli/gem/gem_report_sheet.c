@@ -15,8 +15,8 @@
 static const double MARGIN = 42, LINE = 13.5;
 
 static void put_numbers(abbe_sheet *s, const abbe_gem_report_facts *f, double y) {
-  abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS];
-  const size_t count = abbe_gem_report_rows(f->judgement, row);
+  abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
+  const size_t count = abbe_gem_judgement_rows(f->judgement, row);
   const double right = ABBE_SHEET_A4_WIDTH - MARGIN;
   abbe_sheet_text(s, right - 70, y, 8, false, true, 0.4, "value");
   abbe_sheet_text(s, right, y, 8, false, true, 0.4, "standard error");

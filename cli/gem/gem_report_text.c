@@ -8,35 +8,7 @@
 
 #define PI 3.14159265358979323846
 
-size_t abbe_gem_report_rows(const abbe_gem_judgement *j,
-                            abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS]) {
-  size_t count = 0;
-  for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++)
-    row[count++] =
-        (abbe_gem_report_row){abbe_gem_amount_name((abbe_gem_amount)a),
-                              abbe_gem_amount_text((abbe_gem_amount)a), j->amount[a], true};
-  row[count++] = (abbe_gem_report_row){"area_brilliant", "area that mostly returns light",
-                                       j->areas.brilliant, true};
-  row[count++] = (abbe_gem_report_row){"area_window", "area that mostly leaks: windows",
-                                       j->areas.window, true};
-  row[count++] = (abbe_gem_report_row){"area_extinct", "area that is mostly dark: extinction",
-                                       j->areas.extinct, true};
-  row[count++] = (abbe_gem_report_row){"contrast", "contrast of the light return, RMS over mean",
-                                       j->contrast, false};
-  if (!j->has_tilts) return count;
-  const abbe_gem_tilts *t = &j->tilts;
-  row[count++] = (abbe_gem_report_row){"tilt_iso", "ISO brightness, mean over tilts",
-                                       t->mean[ABBE_GEM_TILT_ISO], true};
-  row[count++] =
-      (abbe_gem_report_row){"tilt_spread", "its standard deviation over tilts", t->spread, true};
-  row[count++] = (abbe_gem_report_row){"fire", "fire: coloured pixels under small lamps",
-                                       t->mean[ABBE_GEM_TILT_FIRE], true};
-  row[count++] = (abbe_gem_report_row){"scintillation", "scintillation: pixels that blink, a step",
-                                       t->blinks, true};
-  return count;
-}
-
-void abbe_gem_report_number(const abbe_gem_report_row *row, char value[32], char error[32]) {
+void abbe_gem_report_number(const abbe_gem_judgement_row *row, char value[32], char error[32]) {
   const double unit = row->share ? 100 : 1;
   const char *form = row->share ? "%.2f %%" : "%.3f";
   snprintf(value, 32, form, unit * row->number.value);
@@ -53,8 +25,8 @@ static double rays(const abbe_gem_view *v) {
 
 void abbe_gem_report_print(const abbe_gem_report_facts *f) {
   const abbe_gem_judgement *j = f->judgement;
-  abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS];
-  const size_t count = abbe_gem_report_rows(j, row);
+  abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
+  const size_t count = abbe_gem_judgement_rows(j, row);
   printf("%s: %s, in %s, %g mm wide\n", f->input->in.path, abbe_gem_input_title(&f->input->in),
          f->input->in.material->name, 1000 * f->input->width_m);
   printf("%.0f rays of the eye from above, each at %zu wavelengths; head's half angle %g degrees\n",
@@ -89,8 +61,8 @@ void abbe_gem_report_print(const abbe_gem_report_facts *f) {
 
 void abbe_gem_report_print_csv(const abbe_gem_report_facts *f) {
   const abbe_gem_judgement *j = f->judgement;
-  abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS];
-  const size_t count = abbe_gem_report_rows(j, row);
+  abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
+  const size_t count = abbe_gem_judgement_rows(j, row);
   printf("measure,axis_deg,tilt_deg,wavelength_nm,value,standard_error\n");
   for (size_t i = 0; i < count; i++)
     printf("%s,,,,%.9g,%.3g\n", row[i].name, row[i].number.value, row[i].number.error);
@@ -144,8 +116,8 @@ static void add_tilts(cJSON *root, const abbe_gem_tilts *t) {
 
 abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *f, abbe_error *error) {
   const abbe_gem_judgement *j = f->judgement;
-  abbe_gem_report_row row[ABBE_GEM_REPORT_MOST_ROWS];
-  const size_t count = abbe_gem_report_rows(j, row);
+  abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
+  const size_t count = abbe_gem_judgement_rows(j, row);
   cJSON *root = cJSON_CreateObject();
   cJSON_AddStringToObject(root, "file", f->input->in.path);
   cJSON_AddStringToObject(root, "title", abbe_gem_input_title(&f->input->in));

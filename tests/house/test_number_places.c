@@ -11,7 +11,8 @@
 #include <sys/stat.h>
 
 static const char *const rooms[] = {"base",   "spectral", "colorimetry",
-                                    "scenes", "gl",       "validation"};
+                                    "scenes", "gl",       "validation",
+                                    "library"};
 static const char *const the_place = "base/number.c";
 
 /* Read numbers, or print what is not told from here. */

@@ -38,3 +38,31 @@ abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weig
   if (result != ABBE_OK) abbe_gem_judgement_free(out);
   return result;
 }
+
+size_t abbe_gem_judgement_rows(const abbe_gem_judgement *j,
+                               abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS]) {
+  size_t count = 0;
+  for (int a = 0; a < ABBE_GEM_AMOUNT_COUNT; a++)
+    row[count++] =
+        (abbe_gem_judgement_row){abbe_gem_amount_name((abbe_gem_amount)a),
+                                 abbe_gem_amount_text((abbe_gem_amount)a), j->amount[a], true};
+  row[count++] = (abbe_gem_judgement_row){"area_brilliant", "area that mostly returns light",
+                                          j->areas.brilliant, true};
+  row[count++] = (abbe_gem_judgement_row){"area_window", "area that mostly leaks: windows",
+                                          j->areas.window, true};
+  row[count++] = (abbe_gem_judgement_row){"area_extinct", "area that is mostly dark: extinction",
+                                          j->areas.extinct, true};
+  row[count++] = (abbe_gem_judgement_row){"contrast", "contrast of the light return, RMS over mean",
+                                          j->contrast, false};
+  if (!j->has_tilts) return count;
+  const abbe_gem_tilts *t = &j->tilts;
+  row[count++] = (abbe_gem_judgement_row){"tilt_iso", "ISO brightness, mean over tilts",
+                                          t->mean[ABBE_GEM_TILT_ISO], true};
+  row[count++] =
+      (abbe_gem_judgement_row){"tilt_spread", "its standard deviation over tilts", t->spread, true};
+  row[count++] = (abbe_gem_judgement_row){"fire", "fire: coloured pixels under small lamps",
+                                          t->mean[ABBE_GEM_TILT_FIRE], true};
+  row[count++] = (abbe_gem_judgement_row){
+      "scintillation", "scintillation: pixels that blink, a step", t->blinks, true};
+  return count;
+}

@@ -32,6 +32,19 @@ abbe_result abbe_gem_judgement_make(const abbe_gem_stone *stone, const abbe_weig
 /* Safe on a zeroed one. */
 void abbe_gem_judgement_free(abbe_gem_judgement *judgement);
 
+/* One of the numbers that a judgement comes to. */
+typedef struct abbe_gem_judgement_row {
+  const char *name, *text; /* for programs, for people */
+  abbe_gem_number number;
+  bool share; /* of 1, shown in percent */
+} abbe_gem_judgement_row;
+
+enum { ABBE_GEM_JUDGEMENT_MOST_ROWS = 32 };
+
+/* Fills row[], and says how many there are: those of tilts only where it has them. */
+size_t abbe_gem_judgement_rows(const abbe_gem_judgement *judgement,
+                               abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS]);
+
 #ifdef __cplusplus
 }
 #endif

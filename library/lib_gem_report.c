@@ -1,0 +1,172 @@
+#include "library/lib_gem_report.h"
+
+#include "colorimetry/weights.h"
+#include "library/lib_handles.h"
+#include "library/lib_settings.h"
+#include "library/lib_shipped.h"
+#include "scenes/cuts/cut_file.h"
+#include "scenes/cuts/cut_polyhedron.h"
+#include "spectral/formats/material_table_load.h"
+#include "validation/gem/gem_judgement.h"
+#include "validation/gem/gem_maps.h"
+
+#include <limits.h>
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+
+struct abbe_lib_gem_report {
+  abbe_gem_judgement judgement;
+  size_t count;
+  abbe_gem_judgement_row row[ABBE_GEM_JUDGEMENT_MOST_ROWS];
+};
+
+typedef struct request {
+  const char *table;
+  double width_m, min_nm, max_nm, head_rad, tilt_rad, step_rad, weld;
+  size_t wavelengths, size, repeats, threads;
+} request;
+
+static abbe_result read_request(const char *const *settings, size_t count, request *q,
+                                abbe_error *error) {
+  *q = (request){.width_m = 0.0065,
+                 .min_nm = ABBE_WAVELENGTH_MIN_NM,
+                 .max_nm = ABBE_WAVELENGTH_MAX_NM,
+                 .head_rad = ABBE_GEM_HEAD_DEG * PI / 180,
+                 .tilt_rad = PI / 6,
+                 .step_rad = PI / 90,
+                 .wavelengths = 16,
+                 .size = 96,
+                 .repeats = 4};
+  const abbe_lib_setting known[] = {
+      ABBE_LIB_TEXT("table", &q->table),
+      ABBE_LIB_NUMBER("width_m", &q->width_m, 1e-6, 1e3),
+      ABBE_LIB_NUMBER("min_nm", &q->min_nm, 1, 1e6),
+      ABBE_LIB_NUMBER("max_nm", &q->max_nm, 1, 1e6),
+      ABBE_LIB_NUMBER("head_rad", &q->head_rad, 0, 0.999 * PI / 4),
+      ABBE_LIB_NUMBER("tilt_rad", &q->tilt_rad, 0, PI / 2),
+      ABBE_LIB_NUMBER("step_rad", &q->step_rad, PI / 1800, PI / 2),
+      ABBE_LIB_NUMBER("weld", &q->weld, 1e-12, ABBE_CUT_MOST_WELD),
+      ABBE_LIB_COUNT("wavelengths", &q->wavelengths, 1, 256),
+      ABBE_LIB_COUNT("size", &q->size, 8, ABBE_GEM_MOST_SIDE),
+      ABBE_LIB_COUNT("repeats", &q->repeats, 3, ABBE_GEM_MOST_REPEATS),
+      ABBE_LIB_COUNT("threads", &q->threads, 1, 1024)};
+  return abbe_library_settings_read("gem_report", known, sizeof known / sizeof *known, settings,
+                                    count, error);
+}
+
+/* What is read and made on the way to a judgement. */
+typedef struct work {
+  abbe_cut cut;
+  abbe_cut_polyhedron polyhedron;
+  abbe_material_table table;
+  const abbe_material *material;
+  abbe_wavelengths wavelengths;
+  abbe_weights weights;
+  abbe_gem_stone stone;
+} work;
+
+static void free_work(work *w) {
+  abbe_gem_stone_free(&w->stone);
+  abbe_weights_free(&w->weights);
+  abbe_wavelengths_free(&w->wavelengths);
+  abbe_material_table_free(&w->table);
+  abbe_cut_polyhedron_free(&w->polyhedron);
+  abbe_cut_free(&w->cut);
+}
+
+static abbe_result prepare(const request *q, const char *path, const char *material, work *w,
+                           abbe_error *error) {
+  const abbe_illuminant d65 = {0};
+  char place[2 * PATH_MAX];
+  const char *found = abbe_library_shipped_find(path, place, sizeof place);
+  abbe_result result = abbe_cut_file_read(found, &w->cut, NULL, error);
+  if (result == ABBE_OK) result = abbe_cut_polyhedron_make(&w->cut, q->weld, &w->polyhedron, error);
+  if (result == ABBE_OK) result = abbe_material_table_load(q->table, &w->table, error);
+  if (result == ABBE_OK)
+    result = abbe_material_table_find(&w->table, material, &w->material, error);
+  if (result == ABBE_OK)
+    result = abbe_wavelengths_make(q->wavelengths, q->min_nm, q->max_nm, &w->wavelengths, error);
+  if (result == ABBE_OK)
+    result = abbe_weights_make(&w->wavelengths, &d65, ABBE_RGB_SPACE_XYZ, &w->weights, error);
+  if (result == ABBE_OK)
+    result = abbe_gem_stone_make(&w->cut, &w->polyhedron, w->material, &w->wavelengths, q->width_m,
+                                 &w->stone, error);
+  return result;
+}
+
+static abbe_gem_judgement_desc describe(const request *q, bool (*progress)(void *, double),
+                                        void *user) {
+  size_t steps = (size_t)(q->tilt_rad / q->step_rad + 0.5);
+  if (steps < 1) steps = 1;
+  return (abbe_gem_judgement_desc){
+      .view = {.head_rad = q->head_rad,
+               .side = q->size,
+               .repeats = q->repeats,
+               .threads = q->threads},
+      .tilts = q->tilt_rad > 0,
+      .rocked = {.most_rad = q->tilt_rad,
+                 .steps = steps < ABBE_GEM_MOST_STEPS ? steps : ABBE_GEM_MOST_STEPS,
+                 .progress = progress,
+                 .user = user}};
+}
+
+abbe_result abbe_lib_gem_report_make(const char *path, const char *material,
+                                     const char *const *settings, size_t count,
+                                     bool (*progress)(void *user, double done), void *user,
+                                     abbe_lib_gem_report **out, abbe_error *error) {
+  ABBE_REQUIRE(path && material && (settings || count == 0) && out, error);
+  request q;
+  work w = {0};
+  *out = NULL;
+  abbe_result result = read_request(settings, count, &q, error);
+  if (result != ABBE_OK) return result;
+  abbe_lib_gem_report *r = calloc(1, sizeof *r);
+  if (r == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for a report");
+  const abbe_gem_judgement_desc desc = describe(&q, progress, user);
+  result = prepare(&q, path, material, &w, error);
+  if (result == ABBE_OK)
+    result = abbe_gem_judgement_make(&w.stone, &w.weights, &desc, &r->judgement, error);
+  free_work(&w);
+  if (result != ABBE_OK) {
+    abbe_lib_gem_report_free(r);
+    return result;
+  }
+  r->count = abbe_gem_judgement_rows(&r->judgement, r->row);
+  *out = r;
+  return ABBE_OK;
+}
+
+void abbe_lib_gem_report_free(abbe_lib_gem_report *r) {
+  if (r == NULL) return;
+  abbe_gem_judgement_free(&r->judgement);
+  free(r);
+}
+
+const char *abbe_lib_gem_report_name(const abbe_lib_gem_report *r, size_t index) {
+  return r != NULL && index < r->count ? r->row[index].name : NULL;
+}
+
+const char *abbe_lib_gem_report_text(const abbe_lib_gem_report *r, size_t index) {
+  return r != NULL && index < r->count ? r->row[index].text : NULL;
+}
+
+abbe_result abbe_lib_gem_report_number(const abbe_lib_gem_report *r, size_t index, double *value,
+                                       double *standard_error, abbe_error *error) {
+  ABBE_REQUIRE(r && value && standard_error, error);
+  if (index >= r->count)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "there is no number %zu: the report has %zu, from 0 on", index, r->count);
+  *value = r->row[index].number.value;
+  *standard_error = r->row[index].number.error;
+  return ABBE_OK;
+}
+
+abbe_result abbe_lib_gem_report_maps(const abbe_lib_gem_report *r, abbe_lib_picture **out,
+                                     abbe_error *error) {
+  ABBE_REQUIRE(r && out, error);
+  abbe_image image = {0};
+  *out = NULL;
+  abbe_result result = abbe_gem_map_image(&r->judgement.view, &image, error);
+  return result == ABBE_OK ? abbe_library_picture_adopt(&image, out, error) : result;
+}

@@ -1,0 +1,38 @@
+#include "library/lib_weights.h"
+
+#include "colorimetry/weights.h"
+
+#include <string.h>
+#include <strings.h>
+
+static abbe_result find_space(const char *text, abbe_rgb_space *out, abbe_error *error) {
+  for (int s = 0; s < ABBE_RGB_SPACE_COUNT; s++) {
+    *out = (abbe_rgb_space)s;
+    if (strcasecmp(text, abbe_rgb_space_name(*out)) == 0) return ABBE_OK;
+  }
+  return abbe_error_set(error, ABBE_NOT_FOUND, "the space '%.60s' is not acescg, rec709 or xyz",
+                        text);
+}
+
+abbe_result abbe_lib_weights_fill(const char *illuminant, const char *space, double min_nm,
+                                  double max_nm, size_t count, double *lambda_nm, double *weight,
+                                  abbe_error *error) {
+  ABBE_REQUIRE(lambda_nm && weight, error);
+  abbe_wavelengths samples = {0};
+  abbe_illuminant light = {0};
+  abbe_weights weights = {0};
+  abbe_rgb_space own;
+  abbe_result result = find_space(space == NULL ? "xyz" : space, &own, error);
+  if (result == ABBE_OK) result = abbe_wavelengths_make(count, min_nm, max_nm, &samples, error);
+  if (result == ABBE_OK)
+    result = abbe_illuminant_make(illuminant == NULL ? "D65" : illuminant, &light, error);
+  if (result == ABBE_OK) result = abbe_weights_make(&samples, &light, own, &weights, error);
+  if (result == ABBE_OK) {
+    memcpy(lambda_nm, samples.lambda_nm, count * sizeof *lambda_nm);
+    memcpy(weight, weights.weight, 3 * count * sizeof *weight);
+  }
+  abbe_weights_free(&weights);
+  abbe_illuminant_free(&light);
+  abbe_wavelengths_free(&samples);
+  return result;
+}

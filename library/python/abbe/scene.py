@@ -1,0 +1,96 @@
+"""Scenes: opened, changed, looked at, rendered and traced."""
+import math
+from ctypes import byref, c_double, c_size_t, c_void_p
+
+from ._native import Handle, Progress, Watch, call, encode, plain, settings, texts
+from .picture import of_pointer
+
+
+def _three(values):
+    if values is None:
+        return None
+    values = [float(value) for value in values]
+    if len(values) != 3:
+        raise ValueError(f"a place or direction has three numbers, not {len(values)}")
+    return (c_double * 3)(*values)
+
+
+def _value(value):
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_value(one) for one in value) + "]"
+    return str(value)
+
+
+class Scene(Handle):
+    """A scene file; one that is not there is taken from those that came with Abbe.
+
+    materials: default, thesis or a file instead of the scene's own table; stone: what its
+    refractors are made of; set: {"camera.fov": 30, "lights.lamp.intensity": 2}.
+    """
+
+    free = "scene_free"
+
+    def __init__(self, path, materials=None, stone=None, set=None):
+        super().__init__(None)
+        pointer = c_void_p()
+        call("scene_open", encode(path), encode(materials), encode(stone),
+             *texts(f"{key}={_value(value)}" for key, value in (set or {}).items()),
+             byref(pointer))
+        self._pointer = pointer
+
+    def change(self, set):
+        """Other values of the file: change({"lights.lamp.intensity": 2})."""
+        call("scene_change", self._pointer,
+             *texts(f"{key}={_value(value)}" for key, value in set.items()))
+
+    def look(self, eye=None, target=None, up=None, fov=None):
+        """Moves the camera: m, and degrees from bottom to top; None: as it is."""
+        if fov is not None and not 0 < fov < 180:
+            raise ValueError(f"fov is above 0 and below 180 degrees, not {fov}")
+        call("scene_look", self._pointer, _three(eye), _three(target), _three(up),
+             0.0 if fov is None else math.radians(fov))
+
+    @property
+    def camera(self):
+        """{"eye": …, "target": …, "up": …, "fov": …}"""
+        eye, target, up, fov = ((c_double * 3)() for _ in range(4))
+        call("scene_camera", self._pointer, eye, target, up, fov)
+        return {"eye": tuple(eye), "target": tuple(target), "up": tuple(up),
+                "fov": math.degrees(fov[0])}
+
+    def render(self, progress=None, **how):
+        """The picture by OpenGL: width, height, wavelengths, photons, map_size, aovs, … progress
+        is called with the share done; what it raises, or False, stops the work."""
+        pointer = c_void_p()
+        self._watched(progress, "scene_render", *settings(how), byref(pointer))
+        return of_pointer(pointer)
+
+    def map(self, light=None, bands=0):
+        """Where a light's flux landed in the last rendered picture, W a texel."""
+        pointer = c_void_p()
+        call("scene_map", self._pointer, encode(light), c_size_t(bands), byref(pointer))
+        return of_pointer(pointer)
+
+    def trace(self, progress=None, **how):
+        """The reference, with standard errors: passes, seconds, error, width, height, photons,
+        bands, seed, filter, …"""
+        pointer = c_void_p()
+        self._watched(progress, "scene_trace", *settings(how), None, byref(pointer), None)
+        return of_pointer(pointer)
+
+    def trace_map(self, like=None, progress=None, **how):
+        """The reference's map; like: a map whose texels it is to have."""
+        pointer = c_void_p()
+        self._watched(progress, "scene_trace", *settings(how),
+                      None if like is None else like._pointer, None, byref(pointer))
+        return of_pointer(pointer)
+
+    def _watched(self, progress, name, *arguments):
+        with Watch(progress) as function:
+            plain("scene_set_progress")(self._pointer, function, None)
+            try:
+                call(name, self._pointer, *arguments)
+            finally:
+                plain("scene_set_progress")(self._pointer, Progress(), None)

@@ -1,0 +1,70 @@
+/* A design judged by handle: shares that add up, a diamond above quartz, what is refused. */
+#include "tests/check.h"
+
+#include "library/lib_gem_report.h"
+
+static const char *const design = ABBE_SOURCE_DIR "/scenes/designs/brilliant-diamond.asc";
+static const char *const coarse[] = {"size=16", "repeats=3", "wavelengths=2", "tilt_rad=0"};
+
+static double number_of(const abbe_lib_gem_report *r, const char *name) {
+  for (size_t i = 0; abbe_lib_gem_report_name(r, i) != NULL; i++) {
+    double value, error;
+    if (strcmp(abbe_lib_gem_report_name(r, i), name) != 0) continue;
+    assert_non_null(abbe_lib_gem_report_text(r, i));
+    assert_int_equal(abbe_lib_gem_report_number(r, i, &value, &error, NULL), ABBE_OK);
+    assert_true(error >= 0);
+    return value;
+  }
+  return NAN;
+}
+
+static abbe_lib_gem_report *judged(const char *material) {
+  abbe_lib_gem_report *r = NULL;
+  assert_int_equal(abbe_lib_gem_report_make(design, material, coarse, 4, NULL, NULL, &r, NULL),
+                   ABBE_OK);
+  return r;
+}
+
+static void test_shares_add_up(void **state) {
+  (void)state;
+  abbe_lib_gem_report *diamond = judged("diamond"), *quartz = judged("quartz");
+  const double up = number_of(diamond, "iso"), down = number_of(diamond, "leakage");
+  assert_near(up + down + number_of(diamond, "absorbed") + number_of(diamond, "left"), 1, 1e-5);
+  /* under a head, the cut for diamond returns less of quartz */
+  assert_true(number_of(diamond, "return") > number_of(quartz, "return") + 0.1);
+  assert_true(isnan(number_of(diamond, "fire"))); /* not tilted */
+  abbe_lib_picture *maps = NULL;
+  assert_int_equal(abbe_lib_gem_report_maps(diamond, &maps, NULL), ABBE_OK);
+  assert_int_equal(abbe_lib_picture_width(maps), 16);
+  abbe_lib_picture_free(maps);
+  abbe_lib_gem_report_free(diamond);
+  abbe_lib_gem_report_free(quartz);
+}
+
+static void test_what_is_none_is_refused(void **state) {
+  (void)state;
+  abbe_lib_gem_report *r = NULL;
+  abbe_error error = {0};
+  assert_int_equal(abbe_lib_gem_report_make(design, "dimond", coarse, 4, NULL, NULL, &r, &error),
+                   ABBE_NOT_FOUND);
+  assert_int_equal(abbe_lib_gem_report_make(design, "gold", coarse, 4, NULL, NULL, &r, &error),
+                   ABBE_UNSUPPORTED);
+  assert_int_equal(
+      abbe_lib_gem_report_make("/nowhere.asc", "diamond", coarse, 4, NULL, NULL, &r, &error),
+      ABBE_IO);
+  const char *const wrong[] = {"head_rad=1"};
+  assert_int_equal(abbe_lib_gem_report_make(design, "diamond", wrong, 1, NULL, NULL, &r, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_null(r);
+  r = judged("diamond");
+  double value, off;
+  assert_int_equal(abbe_lib_gem_report_number(r, 99, &value, &off, &error), ABBE_INVALID_ARGUMENT);
+  assert_null(abbe_lib_gem_report_name(r, 99));
+  abbe_lib_gem_report_free(r);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shares_add_up),
+                                     cmocka_unit_test(test_what_is_none_is_refused)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,87 @@
+/* Materials by handle: published indices, metals, attenuation, what is refused. */
+#include "tests/check.h"
+
+#include "library/lib_materials.h"
+
+static abbe_lib_materials *table;
+
+static int setup(void **state) {
+  (void)state;
+  return abbe_lib_materials_load(NULL, &table, NULL) != ABBE_OK;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  abbe_lib_materials_free(table);
+  return 0;
+}
+
+static size_t place_of(const char *name) {
+  size_t index = 0;
+  assert_int_equal(abbe_lib_materials_find(table, name, &index, NULL), ABBE_OK);
+  return index;
+}
+
+/* Schott's data sheet of N-BK7: n_d 1.51680, n_F 1.52238, n_C 1.51432 [Schott2014]. */
+static void test_indices_are_the_published_ones(void **state) {
+  (void)state;
+  const double lines[] = {587.5618, 486.1327, 656.2725}, known[] = {1.51680, 1.52238, 1.51432};
+  double n[3], k[3];
+  assert_int_equal(abbe_lib_materials_index(table, place_of("N-BK7"), lines, 3, n, k, NULL),
+                   ABBE_OK);
+  for (int i = 0; i < 3; i++) {
+    assert_near(n[i], known[i], 6e-6);
+    assert_true(k[i] >= 0 && k[i] < 1e-6);
+  }
+}
+
+static void test_metals_have_both_parts(void **state) {
+  (void)state;
+  const double green = 550;
+  double n, k;
+  assert_int_equal(abbe_lib_materials_index(table, place_of("gold"), &green, 1, &n, &k, NULL),
+                   ABBE_OK);
+  assert_true(n > 0 && n < 1 && k > 2);
+}
+
+static void test_every_row_has_its_texts(void **state) {
+  (void)state;
+  const size_t count = abbe_lib_materials_count(table);
+  assert_true(count > 10);
+  for (size_t i = 0; i < count; i++) {
+    double from, to;
+    size_t again = count;
+    const char *name = abbe_lib_materials_name(table, i);
+    assert_int_equal(abbe_lib_materials_find(table, name, &again, NULL), ABBE_OK);
+    assert_int_equal(again, i);
+    assert_non_null(abbe_lib_materials_text(table, i, "source"));
+    assert_int_equal(abbe_lib_materials_range(table, i, &from, &to, NULL), ABBE_OK);
+    assert_true(from > 0 && from < to);
+  }
+  assert_null(abbe_lib_materials_name(table, count));
+  assert_null(abbe_lib_materials_text(table, 0, "colour"));
+}
+
+static void test_what_is_none_is_refused(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  abbe_lib_materials *none = NULL;
+  size_t index;
+  double n, far = 1e6;
+  assert_int_equal(abbe_lib_materials_find(table, "dimond", &index, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "diamond");
+  assert_int_equal(abbe_lib_materials_index(table, 99999, &far, 1, &n, NULL, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_lib_materials_index(table, place_of("gold"), &far, 1, &n, NULL, &error),
+                   ABBE_OUT_OF_RANGE);
+  assert_int_equal(abbe_lib_materials_load("/nowhere.yaml", &none, &error), ABBE_IO);
+  assert_null(none);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_indices_are_the_published_ones),
+                                     cmocka_unit_test(test_metals_have_both_parts),
+                                     cmocka_unit_test(test_every_row_has_its_texts),
+                                     cmocka_unit_test(test_what_is_none_is_refused)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

@@ -1,0 +1,184 @@
+/* A scene by handle: pictures are those of the renderer and the tracer; changes are those of a
+ * scene opened anew; what fails leaves all as it was. */
+#include "tests/check.h"
+
+#include "library/lib_comparison.h"
+#include "library/lib_scene.h"
+
+#include <stdbool.h>
+
+static const char *const sphere = ABBE_SOURCE_DIR "/scenes/sphere.yaml";
+static const char *const small[] = {"width=48", "height=48", "photons=64", "map_size=128"};
+static const char *const quick[] = {"width=48", "height=48", "photons=20000", "passes=4"};
+#define COUNT(list) (sizeof list / sizeof *list)
+
+static abbe_lib_scene *opened(const char *const *set, size_t count) {
+  abbe_lib_scene *s = NULL;
+  abbe_error error = {0};
+  if (abbe_lib_scene_open(sphere, NULL, NULL, set, count, &s, &error) != ABBE_OK)
+    print_error("%s\n", error.text);
+  assert_non_null(s);
+  return s;
+}
+
+static abbe_lib_picture *rendered(abbe_lib_scene *s) {
+  abbe_lib_picture *p = NULL;
+  abbe_error error = {0};
+  if (abbe_lib_scene_render(s, small, COUNT(small), &p, &error) != ABBE_OK)
+    print_error("%s\n", error.text);
+  assert_non_null(p);
+  return p;
+}
+
+static bool same(abbe_lib_picture *a, abbe_lib_picture *b) {
+  const size_t size = abbe_lib_picture_width(a) * abbe_lib_picture_height(a) *
+                      abbe_lib_picture_channels(a) * sizeof(float);
+  return memcmp(abbe_lib_picture_pixels(a), abbe_lib_picture_pixels(b), size) == 0;
+}
+
+/* Frees both. */
+static void assert_same(abbe_lib_picture *a, abbe_lib_picture *b, bool expected) {
+  assert_int_equal(same(a, b), expected);
+  abbe_lib_picture_free(a);
+  abbe_lib_picture_free(b);
+}
+
+static void test_a_change_is_a_scene_opened_so(void **state) {
+  (void)state;
+  const char *const dim[] = {"camera.fov=20"}, *const both[] = {"camera.fov=20", "ambient=0.5"};
+  abbe_lib_scene *changed = opened(NULL, 0), *fresh = opened(both, 2);
+  abbe_lib_picture *before = rendered(changed);
+  assert_int_equal(abbe_lib_scene_change(changed, dim, 1, NULL), ABBE_OK);
+  assert_int_equal(abbe_lib_scene_change(changed, both + 1, 1, NULL), ABBE_OK);
+  assert_same(rendered(changed), rendered(fresh), true);
+  assert_same(before, rendered(changed), false);
+  abbe_lib_scene_free(changed);
+  abbe_lib_scene_free(fresh);
+}
+
+static void test_the_camera_moves_and_comes_back(void **state) {
+  (void)state;
+  abbe_lib_scene *s = opened(NULL, 0);
+  double eye[3], target[3], up[3], fov, moved[3], unused[3], angle;
+  assert_int_equal(abbe_lib_scene_camera(s, eye, target, up, &fov, NULL), ABBE_OK);
+  abbe_lib_picture *first = rendered(s);
+  for (int i = 0; i < 3; i++) moved[i] = eye[i] + 0.3 * (target[i] - eye[i]);
+  assert_int_equal(abbe_lib_scene_look(s, moved, NULL, NULL, 0, NULL), ABBE_OK);
+  abbe_lib_picture *nearer = rendered(s);
+  assert_false(same(first, nearer));
+  /* other values of the file leave the camera where it was put */
+  assert_int_equal(abbe_lib_scene_change(s, (const char *const[]){"ambient=0"}, 1, NULL), ABBE_OK);
+  assert_int_equal(abbe_lib_scene_camera(s, unused, target, up, &angle, NULL), ABBE_OK);
+  for (int i = 0; i < 3; i++) assert_near(unused[i], moved[i], 0);
+  assert_near(angle, fov, 0);
+  abbe_lib_picture_free(nearer);
+  abbe_lib_scene_free(s);
+  s = opened(NULL, 0);
+  assert_int_equal(abbe_lib_scene_look(s, moved, NULL, NULL, 0, NULL), ABBE_OK);
+  assert_int_equal(abbe_lib_scene_look(s, eye, NULL, NULL, 0, NULL), ABBE_OK);
+  assert_same(first, rendered(s), true);
+  abbe_lib_scene_free(s);
+}
+
+static void test_a_trace_agrees_with_the_picture(void **state) {
+  (void)state;
+  abbe_lib_scene *s = opened(NULL, 0);
+  abbe_lib_picture *truth = NULL, *map = NULL, *mapped = NULL, *picture = rendered(s);
+  abbe_lib_comparison *c = NULL;
+  double value, noise, limit;
+  assert_int_equal(abbe_lib_scene_map(s, NULL, 0, &map, NULL), ABBE_OK);
+  assert_int_equal(abbe_lib_scene_trace(s, quick, COUNT(quick), map, &truth, &mapped, NULL),
+                   ABBE_OK);
+  assert_int_equal(abbe_lib_picture_width(mapped), abbe_lib_picture_width(map));
+  assert_int_equal(abbe_lib_comparison_make(truth, picture, NULL, NULL, 0, &c, NULL), ABBE_OK);
+  assert_int_equal(
+      abbe_lib_comparison_value(c, "energy_ratio", false, &value, &noise, &limit, NULL), ABBE_OK);
+  assert_near(value, 1, 0.03);
+  assert_false(isnan(noise));
+  abbe_lib_comparison_free(c);
+  assert_int_equal(abbe_lib_comparison_make(mapped, map, NULL, NULL, 0, &c, NULL), ABBE_OK);
+  assert_int_equal(
+      abbe_lib_comparison_value(c, "energy_ratio", false, &value, &noise, &limit, NULL), ABBE_OK);
+  assert_near(value, 1, 0.05);
+  abbe_lib_comparison_free(c);
+  abbe_lib_picture_free(truth);
+  abbe_lib_picture_free(map);
+  abbe_lib_picture_free(mapped);
+  abbe_lib_picture_free(picture);
+  abbe_lib_scene_free(s);
+}
+
+static bool stop_at_once(void *user, double done) {
+  (void)done;
+  ++*(int *)user;
+  return false;
+}
+
+static void test_progress_stops_the_work(void **state) {
+  (void)state;
+  abbe_lib_scene *s = opened(NULL, 0);
+  abbe_lib_picture *p = NULL;
+  abbe_error error = {0};
+  int told = 0;
+  abbe_lib_scene_set_progress(s, stop_at_once, &told);
+  assert_int_equal(abbe_lib_scene_trace(s, quick, COUNT(quick), NULL, &p, NULL, &error),
+                   ABBE_CANCELLED);
+  assert_true(told > 0);
+  assert_null(p);
+  assert_int_equal(abbe_lib_scene_render(s, small, COUNT(small), &p, &error), ABBE_CANCELLED);
+  assert_null(p);
+  abbe_lib_scene_set_progress(s, NULL, NULL);
+  abbe_lib_picture_free(rendered(s));
+  abbe_lib_scene_free(s);
+}
+
+static void test_what_fails_leaves_all_as_it_was(void **state) {
+  (void)state;
+  abbe_lib_scene *s = opened(NULL, 0), *none = NULL;
+  abbe_lib_picture *p = NULL, *first = rendered(s);
+  abbe_error error = {0};
+  const double nowhere[3] = {NAN, 0, 0};
+  assert_int_equal(abbe_lib_scene_open("/nowhere.yaml", NULL, NULL, NULL, 0, &none, &error),
+                   ABBE_IO);
+  assert_null(none);
+  assert_int_not_equal(
+      abbe_lib_scene_change(s, (const char *const[]){"camera.fov=1000"}, 1, &error), ABBE_OK);
+  assert_contains(error.text, "fov");
+  assert_int_equal(abbe_lib_scene_look(s, nowhere, NULL, NULL, 0, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_lib_scene_look(s, NULL, NULL, NULL, 4, &error), ABBE_INVALID_ARGUMENT);
+  double eye[3], target[3], up[3], fov;
+  assert_int_equal(abbe_lib_scene_camera(s, eye, target, up, &fov, NULL), ABBE_OK);
+  assert_int_equal(abbe_lib_scene_look(s, target, NULL, NULL, 0, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_lib_scene_render(s, (const char *const[]){"widht=3"}, 1, &p, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "width");
+  assert_int_equal(
+      abbe_lib_scene_trace(s, (const char *const[]){"passes=0"}, 1, NULL, &p, NULL, &error),
+      ABBE_INVALID_ARGUMENT);
+  assert_same(first, rendered(s), true);
+  abbe_lib_scene_free(s);
+}
+
+static void test_a_map_wants_a_picture(void **state) {
+  (void)state;
+  abbe_lib_scene *s = opened(NULL, 0);
+  abbe_lib_picture *map = NULL;
+  abbe_error error = {0};
+  assert_int_equal(abbe_lib_scene_map(s, NULL, 0, &map, &error), ABBE_INVALID_ARGUMENT);
+  abbe_lib_picture_free(rendered(s));
+  assert_int_equal(abbe_lib_scene_map(s, "nobody's", 0, &map, &error), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_lib_scene_map(s, "1", 4, &map, &error), ABBE_OK);
+  assert_int_equal(abbe_lib_picture_channels(map), 7);
+  abbe_lib_picture_free(map);
+  abbe_lib_scene_free(s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_change_is_a_scene_opened_so),
+                                     cmocka_unit_test(test_the_camera_moves_and_comes_back),
+                                     cmocka_unit_test(test_a_trace_agrees_with_the_picture),
+                                     cmocka_unit_test(test_progress_stops_the_work),
+                                     cmocka_unit_test(test_what_fails_leaves_all_as_it_was),
+                                     cmocka_unit_test(test_a_map_wants_a_picture)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

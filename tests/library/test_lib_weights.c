@@ -1,0 +1,56 @@
+/* Weights as arrays: they sum to the white, in every space; what is refused. */
+#include "tests/check.h"
+
+#include "library/lib_weights.h"
+
+enum { COUNT = 9 };
+
+static void test_weights_sum_to_the_white(void **state) {
+  (void)state;
+  double nm[COUNT], weight[3 * COUNT], sum[3] = {0};
+  assert_int_equal(abbe_lib_weights_fill(NULL, NULL, 380, 780, COUNT, nm, weight, NULL), ABBE_OK);
+  assert_near(nm[0], 380, 0);
+  assert_near(nm[COUNT - 1], 780, 0);
+  for (int i = 0; i < 3 * COUNT; i++) {
+    assert_true(weight[i] >= 0);
+    sum[i % 3] += weight[i];
+  }
+  /* D65: x 0.31272, y 0.32903 [CIE15], over this range */
+  assert_near(sum[1], 1, 1e-12);
+  assert_near(sum[0], 0.31272 / 0.32903, 5e-4);
+  assert_near(sum[2], (1 - 0.31272 - 0.32903) / 0.32903, 5e-4);
+}
+
+static void test_spaces_and_illuminants_are_by_name(void **state) {
+  (void)state;
+  double nm[COUNT], weight[3 * COUNT], red = 0, blue = 0;
+  assert_int_equal(abbe_lib_weights_fill("A", "rec709", 380, 780, COUNT, nm, weight, NULL),
+                   ABBE_OK);
+  for (int i = 0; i < COUNT; i++) {
+    red += weight[3 * i];
+    blue += weight[3 * i + 2];
+  }
+  assert_true(red > 2 * blue); /* a lamp is reddish */
+}
+
+static void test_what_is_none_is_refused(void **state) {
+  (void)state;
+  double nm[COUNT], weight[3 * COUNT];
+  abbe_error error = {0};
+  assert_int_equal(abbe_lib_weights_fill(NULL, "lab", 380, 780, COUNT, nm, weight, &error),
+                   ABBE_NOT_FOUND);
+  assert_contains(error.text, "lab");
+  assert_int_equal(abbe_lib_weights_fill("/nowhere", NULL, 380, 780, COUNT, nm, weight, &error),
+                   ABBE_IO);
+  assert_int_equal(abbe_lib_weights_fill(NULL, NULL, 780, 380, COUNT, nm, weight, &error),
+                   ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_lib_weights_fill(NULL, NULL, 380, 780, 0, nm, weight, &error),
+                   ABBE_INVALID_ARGUMENT);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_weights_sum_to_the_white),
+                                     cmocka_unit_test(test_spaces_and_illuminants_are_by_name),
+                                     cmocka_unit_test(test_what_is_none_is_refused)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
