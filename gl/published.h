@@ -6,10 +6,12 @@
 
 #include "gl/shah2007/shah2007.h"
 #include "gl/thesis/thesis.h"
+#include "gl/wyman2006/wyman2006.h"
 
 typedef struct abbe_published {
   abbe_thesis thesis;
   abbe_shah2007 shah;
+  abbe_wyman2006 wyman;
 } abbe_published;
 
 abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_variant *variant,
@@ -18,10 +20,15 @@ abbe_result abbe_published_make(const abbe_gpu_scene *scene, const abbe_shader_v
 void abbe_published_free(abbe_published *published);
 abbe_result abbe_published_run(abbe_published *published, abbe_error *error);
 
+/* The frames that a filter over time goes on with, from a renderer that is changed to what it
+ * becomes; what is left of them afterwards is the caller's. */
+void abbe_published_take_frames(abbe_published *published, abbe_wyman_history *out);
+void abbe_published_give_frames(abbe_published *published, abbe_wyman_history *frames);
+
 /* As of abbe_renderer_read and _read_map; filled: after the method's gap fill, where it has one. */
 abbe_result abbe_published_read(const abbe_published *published, abbe_image *out,
                                 abbe_error *error);
-abbe_result abbe_published_read_map(const abbe_published *published, bool filled, abbe_image *out,
+abbe_result abbe_published_read_map(abbe_published *published, bool filled, abbe_image *out,
                                     abbe_error *error);
 const abbe_map_layout *abbe_published_layout(const abbe_published *published);
 GLuint abbe_published_picture(const abbe_published *published);

@@ -185,6 +185,8 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
     parts = ALL; /* its tables hold all */
   const bool crowded = abbe_gpu_program_count(&r->gpu) > ABBE_GPU_MOST_PROGRAMS;
   if (crowded && (parts & LIGHT) != 0) parts = ALL;
+  abbe_wyman_history frames = {0};
+  if ((parts & LIGHT) != 0) abbe_published_take_frames(&r->published, &frames);
   free_parts(r, parts);
   if (parts == ALL && crowded) abbe_gpu_drop_programs(&r->gpu);
   take_plan(r, &plan);
@@ -194,6 +196,8 @@ abbe_result abbe_renderer_parts_change(abbe_renderer *r, const abbe_scene *scene
   r->gpu.compiling = plan.desc.compiling;
   result = end_watch(r, make_parts(r, scene, parts, error), error);
   r->made = result == ABBE_OK;
+  if (r->made) abbe_published_give_frames(&r->published, &frames);
+  abbe_gpu_drop_textures(&r->gpu, ABBE_WYMAN_KEPT, frames.sums);
   if (!r->made) free_parts(r, ALL);
   if (!r->made) r->lit = r->seen = false;
   abbe_gpu_trim(&r->gpu);

@@ -20,6 +20,8 @@ enum {
   OPTION_LIGHT_POINTS,
   OPTION_MODEL,
   OPTION_FILL,
+  OPTION_DIRECTION,
+  OPTION_HISTORY,
   OPTION_ESTIMATOR,
   OPTION_ITERATIONS,
   OPTION_INTERFACES,
@@ -33,7 +35,7 @@ enum {
 static const struct argp_option options[] = {
     {"profile", OPTION_PROFILE, "NAME", 0,
      "default; published methods, and each with CIE weights in W: thesis, thesis-cie, shah2007, "
-     "shah2007-cie",
+     "shah2007-cie, wyman2006, wyman2006-cie",
      1},
     {"size", OPTION_SIZE, "WxH", 0, "pixels; the scene's own without", 1},
     {"wavelengths", OPTION_WAVELENGTHS, "N", 0,
@@ -56,14 +58,23 @@ static const struct argp_option options[] = {
     {"model", OPTION_MODEL, "NAME", 0,
      "how light goes through refractors: sphere, convex, layers, hierarchy (auto: by the scene)",
      1},
-    {"fill", OPTION_FILL, "NAME", 0, "gaps between wavelengths: bridge, none, smear (thesis)", 1},
+    {"fill", OPTION_FILL, "NAME", 0,
+     "gaps between wavelengths: bridge, none, smear (thesis); of wyman2006 between photons: "
+     "points, "
+     "quads, triangles, gather-eye, gather-light (gather-light)",
+     1},
+    {"direction", OPTION_DIRECTION, "NAME", 0,
+     "of wyman2006, by which caustics are shaded: own, mean, direct (mean)", 1},
+    {"history", OPTION_HISTORY, "N", 0,
+     "of wyman2006's gathers, frames that a picture holds, 1 to 4: with --frames (1)", 1},
     {"estimator", OPTION_ESTIMATOR, "NAME", 0,
-     "of shah2007, how rays are brought to receivers: shah, axis, newton, secant, false-position, "
-     "illinois, bisection, march, impostor, ratio, exact (shah; in its twin ratio)",
+     "of shah2007 and wyman2006, how rays are brought to receivers: shah, axis, newton, secant, "
+     "false-position, "
+     "illinois, bisection, march, impostor, ratio, exact (shah; in their twins ratio)",
      1},
     {"iterations", OPTION_ITERATIONS, "N", 0, "of the estimator, 1 to 64 (1)", 1},
     {"interfaces", OPTION_INTERFACES, "N", 0,
-     "of shah2007, that refract light: 1, as of water, or 2 (2)", 1},
+     "of shah2007 and wyman2006, that refract light: 1, as of water, or 2 (2)", 1},
     {"share", OPTION_SHARE, "X", 0,
      "paths end below this share of their light (0.01; 0.005 in a gem)", 1},
     {"exits", OPTION_EXITS, "N", 0,
@@ -81,6 +92,7 @@ static const struct argp_option options[] = {
 static const char *const profiles[] = {ABBE_PROFILES(ABBE_NAME_OF_2)};
 static const char *const models[] = {ABBE_MODELS(ABBE_NAME_OF_2)};
 static const char *const estimators[] = {ABBE_ESTIMATORS(ABBE_NAME_OF_2)};
+static const char *const directions[] = {ABBE_DIRECTIONS(ABBE_NAME_OF_2)};
 static const char *const fills[] = {ABBE_FILLS(ABBE_NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(ABBE_NAME_OF_3)};
 
@@ -130,6 +142,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_FILL:
     d->fill = (abbe_fill)abbe_command_choice(p, "--fill", text, fills, ABBE_FILL_COUNT);
+    return 0;
+  case OPTION_DIRECTION:
+    d->direction = (abbe_direction)abbe_command_choice(p, "--direction", text, directions,
+                                                       ABBE_DIRECTION_COUNT);
+    return 0;
+  case OPTION_HISTORY:
+    d->history = abbe_command_count(p, "--history", text, 1, ABBE_RENDER_MAX_HISTORY);
     return 0;
   case OPTION_ESTIMATOR:
     d->estimator = (abbe_estimator)abbe_command_choice(p, "--estimator", text, estimators,

@@ -10,6 +10,8 @@ struct Ray {
   bool total;    // it was totally reflected at the back, and goes on in the mirror direction
 };
 
+uniform vec2 grid_shift;  // of the objects' pixels, as a share of the window
+
 #ifdef MIRRORS
 float mirrored_share(vec4 spectrum, float c) {
   float lost = spectrum.w < 0.0 ? spectrum.y : spectrum.y * (1.0 - fresnel_conductor(c, spectrum.z, spectrum.w));
@@ -21,7 +23,9 @@ float mirrored_share(vec4 spectrum, float c) {
 vec3 normal_behind(vec3 p, vec3 t) {
   View v = places_view();
   vec3 uvz, n = vec3(0);
-  if (project(v, p, uvz) && inside(uvz.xy)) n = textureLod(object_normals, vec3(uvz.xy, 1), 0.0).xyz;
+  bool before = project(v, p, uvz);
+  uvz.xy -= grid_shift;
+  if (before && inside(uvz.xy)) n = textureLod(object_normals, vec3(uvz.xy, 1), 0.0).xyz;
   if (dot(n, n) < 1e-6) n = t - dot(t, v.forward.xyz) * v.forward.xyz;
   return normalize(n);
 }

@@ -100,6 +100,21 @@ static void draw_objects(abbe_image_places *p, int only) {
   }
 }
 
+/* The view of the objects' pixels. */
+static abbe_image_view shifted_view(const abbe_image_places *p) {
+  abbe_view view = p->view.view;
+  abbe_image_view out = p->view;
+  if (p->shift[0] == 0 && p->shift[1] == 0) return out;
+  for (int axis = 0; axis < 2; axis++) {
+    double *window = &view.window[2 * axis];
+    const double by = p->shift[axis] * (window[1] - window[0]) / (double)p->grid[axis];
+    window[0] += by;
+    window[1] += by;
+  }
+  abbe_image_view_make(&view, &out);
+  return out;
+}
+
 abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
   static const int all[2] = {-1, -1};
   const abbe_gl *gl = p->scene->gpu->gl;
@@ -114,7 +129,8 @@ abbe_result abbe_image_places_objects(abbe_image_places *p, abbe_error *error) {
   gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
   gl->Enable(GL_DEPTH_TEST);
   gl->UseProgram(p->objects);
-  abbe_image_view_set_clip(p->scene, p->objects, "view_projection", &p->view);
+  const abbe_image_view shifted = shifted_view(p);
+  abbe_image_view_set_clip(p->scene, p->objects, "view_projection", &shifted);
   gl->Uniform4f(gl->GetUniformLocation(p->objects, "seen_along"), (float)from[0], (float)from[1],
                 (float)from[2], view->orthographic ? 0 : 1);
   if (p->query == 0) {
@@ -136,7 +152,11 @@ size_t abbe_image_places_count(const abbe_image_places *p) {
 
 void abbe_image_places_set(const abbe_image_places *p, GLuint program) {
   abbe_gpu *gpu = p->scene->gpu;
+  const abbe_gl *gl = gpu->gl;
   abbe_image_view_set_view(p->scene, program, "seen_from", &p->view.view);
+  gl->Uniform2f(gl->GetUniformLocation(program, "grid_shift"),
+                (float)(p->shift[0] / (double)p->grid[0]),
+                (float)(p->shift[1] / (double)p->grid[1]));
   abbe_gpu_bind_texture(gpu, program, "receiver_places", 2, p->receivers);
   abbe_gpu_bind_array(gpu, program, "object_places", 3, p->places);
   abbe_gpu_bind_array(gpu, program, "object_normals", 4, p->normals);

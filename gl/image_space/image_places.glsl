@@ -14,7 +14,7 @@ bool look_up(vec3 at, out vec3 seen) {
   seen = at;
   if (!project(places_view(), at, uvz) || !inside(uvz.xy)) return false;
   vec4 place = textureLod(receiver_places, uvz.xy, 0.0);
-  seen = place.xyz;
+  seen = place.xyz / max(place.w, 1e-6);  // of neighbours, where they are interpolated
   return place.w > 0.5;
 }
 

@@ -15,6 +15,7 @@ typedef struct abbe_image_places {
   const abbe_gpu_scene *scene;
   abbe_image_view view;
   size_t size[2], grid[2];          /* pixels of receivers, and of objects */
+  double shift[2];                  /* of the objects' pixels, in pixels, right and up */
   GLuint seen, objects, depth_only; /* programs */
   GLuint receivers;                 /* place, m; w: 1, or 0 where none is seen */
   GLuint depth;                     /* of receivers; of all, where shadows are asked for */

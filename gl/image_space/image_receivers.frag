@@ -1,5 +1,7 @@
 // Receivers: a lamp with a shadow map, and a caustic map that the light projects. AS_PRINTED: caustic colour,
-// with diffuse shading and shadow beside it; else in units, as receiver.glsl has them.
+// with diffuse shading and shadow beside it; else in units, as receiver.glsl has them. CAUSTIC_RATIOS: the map
+// holds what the caustic's light is of the lamp's, by the window's area; with CAUSTICS_SEEN in the camera's pixels
+// instead of the light's, or with CAUSTICS_WHOLE the ratio itself.
 #include "view.glsl"
 in vec3 world;
 in vec3 world_normal;
@@ -26,6 +28,46 @@ const float PI = 3.14159265358979;
 #else
 const float SCENE_AMBIENT = 0.1;
 #endif
+#ifdef CAUSTIC_RATIOS
+uniform vec4 camera_view[6];
+uniform sampler2D caustic_directions;  // sums of what arrives by direction, in the map's unit
+
+// The caustic's irradiance by what the lamp gives what faces it there: of a unit of the map.
+float caustic_scale(View light, vec3 n, vec3 along) {
+  float facing = abs(dot(n, along));
+#if defined(CAUSTICS_WHOLE)
+  return facing;
+#elif defined(CAUSTICS_SEEN)
+  View camera = View(camera_view[0], camera_view[1], camera_view[2], camera_view[3], camera_view[4], camera_view[5]);
+  vec3 to = world - camera.origin.xyz, from = world - light.origin.xyz, d = normalize(to);
+  return abs(dot(n, d)) * dot(from, from) / (window_measure(camera, d) * dot(to, to));
+#else
+  return facing / window_measure(light, along);
+#endif
+}
+
+vec4 caustic_texel(sampler2D map, vec2 uv) {
+#ifdef CAUSTICS_SEEN
+  return texelFetch(map, ivec2(gl_FragCoord.xy), 0);
+#else
+  return texture(map, uv);
+#endif
+}
+
+// As printed: the lamp's shading, along the light's own direction or that of photons.
+vec3 shaded_caustic(View light, vec3 n, vec3 along, vec2 uv) {
+  vec3 sum = caustic_texel(caustic_map, uv).rgb * caustic_scale(light, n, along);
+#ifdef DIRECTIONS
+  vec3 d = caustic_texel(caustic_directions, uv).xyz;
+  float facing = max(abs(dot(n, along)), 1e-3), light_of = max(sum.y, 1e-30);
+#ifdef NORMALISED_DIRECTIONS
+  if (dot(d, d) > 0.0) d = caustic_texel(caustic_map, uv).y * normalize(d);
+#endif
+  if (dot(d, d) > 0.0) sum *= max(-dot(n, d), 0.0) * caustic_scale(light, n, along) / (facing * light_of);
+#endif
+  return sum;
+}
+#endif
 
 void main() {
   View light = View(lit_from[0], lit_from[1], lit_from[2], lit_from[3], lit_from[4], lit_from[5]);
@@ -41,14 +83,28 @@ void main() {
   float c = dot(along, spot.xyz);
   float beam = spot_inner > spot.w ? smoothstep(spot.w, spot_inner, c) : step(spot.w, c);
   float facing = -dot(n, along);
+#ifdef CAUSTICS_SEEN
+  seen = true;
+#endif
+#ifdef CAUSTIC_RATIOS
+  vec3 caustic = seen ? caustic_texel(caustic_map, uvz.xy).rgb : vec3(0);
+#else
   vec3 caustic = seen ? texture(caustic_map, uvz.xy).rgb : vec3(0);
+#endif
 #ifdef AS_PRINTED
+#ifdef CAUSTIC_RATIOS
+  caustic = seen ? spot_colour * shaded_caustic(light, n, along, uvz.xy) : vec3(0);
+#endif
   vec3 direct = shaded ? vec3(0) : spot_colour * (beam * max(facing, 0.0));
   vec3 sum = reflectance * (direct + SCENE_AMBIENT + caustic);
 #else
   float falloff = perspective ? 1.0 / dot(world - light.origin.xyz, world - light.origin.xyz) : 1.0;
   vec3 xyz = shaded ? vec3(0) : white * (max(facing, 0.0) * beam);
+#ifdef CAUSTIC_RATIOS
+  xyz += caustic * caustic_scale(light, n, along);
+#else
   xyz += caustic * (abs(facing) / window_measure(light, along));
+#endif
   vec3 sum = (rgb_from_xyz * xyz * (power * falloff) + ambient) * reflectance / PI;
 #endif
   if (texture_info.x >= 0.0)

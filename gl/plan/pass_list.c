@@ -83,13 +83,16 @@ static void list_photons(abbe_plan *plan) {
     abbe_plan_add(plan, ABBE_PASS_SPECTRAL_MAP, unlit);
     return;
   }
-  if (abbe_profile_is_shah2007(plan->desc.profile))
+  if (abbe_profile_is_wyman2006(plan->desc.profile))
+    abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, "a photon each for %zu x %zu pixels",
+                  plan->desc.photons, plan->desc.photons);
+  else if (abbe_profile_is_shah2007(plan->desc.profile))
     abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT, "a vertex each for %zu x %zu pixels",
                   plan->desc.photons, plan->desc.photons);
   else
     abbe_plan_add(plan, ABBE_PASS_PHOTON_PLACEMENT,
                   "at most %zu a side, where light meets a refractor", plan->desc.photons);
-  if (abbe_profile_is_shah2007(plan->desc.profile))
+  if (abbe_profile_estimates(plan->desc.profile))
     abbe_plan_add(
         plan, ABBE_PASS_PHOTONS,
         "%zu wavelengths, %zu interface%s; receivers by the estimator '%s', %zu iteration%s", most,
@@ -118,7 +121,10 @@ static void list_light(abbe_plan *plan) {
                 plan->caustics ? "photons start where the light sees a refractor" : unlit);
   list_back(plan, ABBE_PASS_LIGHT_BACK, plan->caustics, unlit);
   list_photons(plan);
-  if (plan->fills)
+  if (abbe_profile_is_wyman2006(plan->desc.profile))
+    abbe_plan_add(plan, ABBE_PASS_GAP_FILL, "photons are drawn as '%s'",
+                  abbe_fill_name(plan->desc.fill));
+  else if (plan->fills)
     abbe_plan_add(plan, ABBE_PASS_GAP_FILL, "%s: %s", abbe_fill_name(plan->desc.fill),
                   apart ? "wavelengths land apart" : "the thesis fills whatever lands");
   else

@@ -27,7 +27,8 @@ abbe_result abbe_support_published(const abbe_scene *scene, const abbe_plan *pla
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile knows one light; this scene has %zu", profile,
                           scene->light_count);
-  if (thesis && scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
+  const bool rays = thesis || abbe_profile_is_wyman2006(plan->desc.profile);
+  if (rays && scene->light[0].kind == ABBE_LIGHT_DIRECTIONAL)
     return abbe_error_set(error, ABBE_UNSUPPORTED,
                           "the %s profile knows point and spot lights; '%s' is directional",
                           profile, scene->light[0].name);

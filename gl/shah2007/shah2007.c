@@ -17,7 +17,7 @@
  * no vertex, and estimators start from what the light sees behind the ray's origin. */
 #include "gl/shah2007/shah2007.h"
 
-#include "colorimetry/weights.h"
+#include "gl/image_space/image_tables.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -48,39 +48,6 @@ static double vertex_strength(const abbe_shah2007 *s) {
   return peak * white_share * cells / fmax((double)s->photon_count, 1);
 }
 
-static abbe_result make_colours(const abbe_gpu_scene *scene, float (**out)[3], abbe_error *error) {
-  const size_t n = scene->plan->desc.wavelengths;
-  float(*colour)[3] = calloc(n, sizeof *colour);
-  *out = colour;
-  if (colour == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for colours");
-  for (size_t i = 0; i < n; i++)
-    for (size_t c = 0; c < 3; c++)
-      colour[i][c] = !is_printed(scene) ? (float)scene->tables.camera.weight[i][c]
-                     : n == 1           ? 1.0f
-                                        : (float)(i + c == 2); /* blue, green, red */
-  return ABBE_OK;
-}
-
-/* The same by white, for the camera's rays. */
-static abbe_result make_shares(const abbe_shah2007 *s, float (**out)[3], abbe_error *error) {
-  abbe_result result = make_colours(s->scene, out, error);
-  for (size_t i = 0; result == ABBE_OK && i < s->scene->plan->desc.wavelengths; i++)
-    for (size_t c = 0; c < 3; c++)
-      if (!is_printed(s->scene)) (*out)[i][c] /= (float)s->scene->tables.camera.sum[c];
-  return result;
-}
-
-static void write_definitions(const abbe_render_desc *d, char *out, size_t size) {
-  size_t used = (size_t)snprintf(out, size, "#define WAVELENGTHS %zu\n#define INTERFACES %zu\n%s",
-                                 d->wavelengths, d->interfaces,
-                                 abbe_profile_is_printed(d->profile) ? "#define AS_PRINTED\n" : "");
-#define ABBE_DEFINE(code, name)                                                                    \
-  used += (size_t)snprintf(out + used, size - used, "#define ESTIMATOR_" #code " %d\n",            \
-                           (int)ABBE_ESTIMATOR_##code);
-  ABBE_ESTIMATORS(ABBE_DEFINE)
-#undef ABBE_DEFINE
-}
-
 static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *variant,
                                  abbe_error *error) {
   static const abbe_program_stage splat[] = {{GL_VERTEX_SHADER, "shah_splat.vert"},
@@ -88,13 +55,13 @@ static abbe_result make_programs(abbe_shah2007 *s, const abbe_shader_variant *va
   const abbe_render_desc *d = &s->scene->plan->desc;
   float(*shares)[3] = NULL;
   char more[640], search[768];
-  write_definitions(d, more, sizeof more);
+  abbe_image_tables_define(d, more, sizeof more);
   snprintf(search, sizeof search, "%s#define ESTIMATOR %d\n#define ITERATIONS %zu\n%s", more,
            (int)d->estimator, d->iterations,
            is_printed(s->scene) ? "#define SEARCH_AS_PRINTED\n" : "");
   abbe_result result =
       abbe_shader_variant_program(variant, s->scene->gpu, splat, 2, search, &s->splat, error);
-  if (result == ABBE_OK) result = make_shares(s, &shares, error);
+  if (result == ABBE_OK) result = abbe_image_tables_colours(s->scene, true, &shares, error);
   if (result == ABBE_OK)
     result = abbe_image_eye_make(s->scene, &s->light, variant, more, shares, &s->eye, error);
   return result;
@@ -112,7 +79,7 @@ abbe_result abbe_shah2007_make(const abbe_gpu_scene *scene, const abbe_shader_va
   if (result == ABBE_OK)
     result =
         abbe_gpu_make_texture(scene->gpu, GL_RGBA32F, map[0], map[1], 0, true, &out->map, error);
-  if (result == ABBE_OK) result = make_colours(scene, &out->colour, error);
+  if (result == ABBE_OK) result = abbe_image_tables_colours(scene, false, &out->colour, error);
   if (result == ABBE_OK) result = make_programs(out, variant, error);
   return result;
 }

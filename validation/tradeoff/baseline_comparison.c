@@ -29,6 +29,8 @@ const char *abbe_baseline_key(const char *profile) {
 static bool is_own(const abbe_sweep_setting *s, const char *profile) {
   if (strcmp(s->profile, profile) != 0) return false;
   if (strncmp(profile, "shah2007", 8) == 0) return s->photons == 128 && s->map == 768;
+  if (strncmp(profile, "wyman2006", 9) == 0)
+    return s->photons == 1024 && s->map == 512 && strcmp(s->fill, "gather-light") == 0;
   return s->wavelengths == 7 && s->photons == 512 && s->map == 1024 &&
          strcmp(s->fill, "smear") == 0;
 }

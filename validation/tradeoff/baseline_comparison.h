@@ -22,8 +22,12 @@ extern "C" {
   X("trace", "tracer", "vs_trace_")                                                                \
   X("trace-filter", "tracer, filtered", "vs_filtered_")                                            \
   X("shah2007", "caustics mapping, with the best factor on its brightness", "vs_shah2007_")        \
-  X("shah2007-cie", "caustics mapping with CIE weights, in physical units", "vs_fair_shah2007_")
-enum { ABBE_BASELINE_COUNT = 6 };
+  X("shah2007-cie", "caustics mapping with CIE weights, in physical units", "vs_fair_shah2007_")   \
+  X("wyman2006", "photons in image space, with the best factor on its brightness",                 \
+    "vs_wyman2006_")                                                                               \
+  X("wyman2006-cie", "photons in image space with CIE weights, in physical units",                 \
+    "vs_fair_wyman2006_")
+enum { ABBE_BASELINE_COUNT = 8 };
 extern const char *const abbe_baselines[ABBE_BASELINE_COUNT];
 const char *abbe_baseline_text(const char *profile);
 const char *abbe_baseline_key(const char *profile);
@@ -31,7 +35,8 @@ const char *abbe_baseline_key(const char *profile);
 /* NaN: not known, or never reached. */
 typedef struct abbe_baseline_comparison {
   const abbe_sweep_row *baseline; /* of the thesis 7 wavelengths, 512 photons, map 1024, smear; of
-                                     caustics mapping 128 photons, map 768; NULL: no row, or the
+                                     caustics mapping 128 photons, map 768; of photons in
+                                     image space 1024, map 512, gather-light; NULL: no row, or the
                                      tracer, which has no settings of its own */
   double equal_error_speedup;     /* its time over the least time of an error no larger */
   double equal_time_error_ratio;  /* the least error in a time no longer, over its error */

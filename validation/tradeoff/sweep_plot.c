@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_CHARTS = 4, MAX_PROFILES = 8, LABEL = 64 };
+enum { MAX_CHARTS = 4, MAX_PROFILES = 10, LABEL = 64 };
 
 /* One chart's numbers, in pieces of memory of a row each. */
 typedef struct figures {
@@ -55,8 +55,8 @@ static abbe_result open_figures(size_t count, figures *f, abbe_error *error) {
 /* The same in every chart, whatever a table's order is. */
 static int colour_of(const char *profile, size_t number) {
   static const char *const known[] = {
-      "default",  "thesis",      "thesis-cie", ABBE_SWEEP_TRACE, ABBE_SWEEP_TRACE_FILTER,
-      "shah2007", "shah2007-cie"};
+      "default",  "thesis",       "thesis-cie", ABBE_SWEEP_TRACE, ABBE_SWEEP_TRACE_FILTER,
+      "shah2007", "shah2007-cie", "wyman2006",  "wyman2006-cie"};
   for (size_t i = 0; i < sizeof known / sizeof *known; i++)
     if (strcmp(profile, known[i]) == 0) return (int)(i % 7) + 2;
   return (int)(number % 5) + 2;

@@ -93,7 +93,7 @@ bool abbe_sweep_setting_same(const abbe_sweep_setting *a, const abbe_sweep_setti
 void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t size) {
   bool plain = strcmp(s->profile, "default") == 0;
   char exits[24] = "", share[48] = "", model[24] = "", number[ABBE_NUMBER_TEXT_SIZE];
-  char upsample[24] = "";
+  char upsample[24] = "", fill[48] = "";
   if (abbe_sweep_setting_is_traced(s)) {
     snprintf(out, size, "%s %zu x p%zu", s->profile, s->passes, s->photons);
     return;
@@ -103,9 +103,13 @@ void abbe_sweep_setting_label(const abbe_sweep_setting *s, char *out, size_t siz
   if (plain && s->share != 0.01)
     snprintf(share, sizeof share, " share %s", abbe_number_text(s->share, number));
   if (plain && strcmp(s->model, "auto") != 0) snprintf(model, sizeof model, " %s", s->model);
+  if (strcmp(s->fill, "none") == 0)
+    snprintf(fill, sizeof fill, " no fill");
+  else if (strncmp(s->profile, "wyman2006", 9) == 0)
+    snprintf(fill, sizeof fill, " %s", s->fill);
   snprintf(out, size, "%s%sw%zu p%zu m%zu s%zu%s%s%s%s%s", plain ? "" : s->profile,
-           plain ? "" : " ", s->wavelengths, s->photons, s->map, s->samples, upsample,
-           strcmp(s->fill, "none") == 0 ? " no fill" : "", exits, share, model);
+           plain ? "" : " ", s->wavelengths, s->photons, s->map, s->samples, upsample, fill, exits,
+           share, model);
 }
 
 /* The table */

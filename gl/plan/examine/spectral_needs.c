@@ -109,6 +109,7 @@ void abbe_spectral_needs_count(abbe_plan *plan) {
   if (!asked)
     plan->desc.wavelengths =
         !(plan->dispersive || plan->tinting || plan->colouring) ? 1
+        : plan->desc.profile == ABBE_PROFILE_WYMAN2006          ? 1
         : plan->desc.profile == ABBE_PROFILE_SHAH2007           ? ABBE_PLAN_SHAH_COLOURS
                                                                 : ABBE_PLAN_WAVELENGTHS;
   if (abbe_plan_no_refraction(plan) != NULL) plan->desc.wavelengths = 1;

@@ -44,7 +44,7 @@ static bool is_published(const abbe_plan *p) {
 
 /* Its photons are the pixels of what the light sees. */
 static bool is_gridded(const abbe_plan *p) {
-  return abbe_profile_is_shah2007(p->desc.profile);
+  return abbe_profile_estimates(p->desc.profile);
 }
 
 static bool refracts(const abbe_plan *p, size_t object) {

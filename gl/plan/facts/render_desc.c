@@ -18,12 +18,21 @@ bool abbe_profile_is_shah2007(abbe_profile profile) {
   return profile == ABBE_PROFILE_SHAH2007 || profile == ABBE_PROFILE_SHAH2007_CIE;
 }
 
+bool abbe_profile_is_wyman2006(abbe_profile profile) {
+  return profile == ABBE_PROFILE_WYMAN2006 || profile == ABBE_PROFILE_WYMAN2006_CIE;
+}
+
+bool abbe_profile_estimates(abbe_profile profile) {
+  return abbe_profile_is_shah2007(profile) || abbe_profile_is_wyman2006(profile);
+}
+
 bool abbe_profile_is_published(abbe_profile profile) {
   return profile != ABBE_PROFILE_DEFAULT;
 }
 
 bool abbe_profile_is_printed(abbe_profile profile) {
-  return profile == ABBE_PROFILE_THESIS || profile == ABBE_PROFILE_SHAH2007;
+  return profile == ABBE_PROFILE_THESIS || profile == ABBE_PROFILE_SHAH2007 ||
+         profile == ABBE_PROFILE_WYMAN2006;
 }
 
 const char *abbe_fill_name(abbe_fill fill) {
@@ -39,9 +48,26 @@ const char *abbe_model_name(abbe_model model) {
 
 /* The printed methods' own: the thesis's nodes are 380 to 680, three of red, green and blue. */
 static const double shah_nm[2] = {450, 650};
-enum { SHAH_PHOTONS = 128, SHAH_MAP = 768, THESIS_PHOTONS = 512 };
+enum {
+  SHAH_PHOTONS = 128,
+  SHAH_MAP = 768,
+  WYMAN_PHOTONS = 1024,
+  WYMAN_MAP = 512,
+  THESIS_PHOTONS = 512
+};
 
-static void fill_in_shah(abbe_render_desc *d) {
+static void fill_in_wyman(abbe_render_desc *d) {
+  if (d->photons == 0) d->photons = WYMAN_PHOTONS;
+  if (d->map_size == 0) d->map_size = WYMAN_MAP;
+  if (d->fill == ABBE_FILL_AUTO) d->fill = ABBE_FILL_GATHER_LIGHT;
+  if (d->fill == ABBE_FILL_NONE) d->fill = ABBE_FILL_POINTS;
+  if (d->history == 0) d->history = 1;
+  if (d->direction == ABBE_DIRECTION_AUTO)
+    d->direction =
+        abbe_profile_is_printed(d->profile) ? ABBE_DIRECTION_MEAN : ABBE_DIRECTION_DIRECT;
+}
+
+static void fill_in_estimates(abbe_render_desc *d) {
   const bool printed = abbe_profile_is_printed(d->profile);
   if (printed && d->min_nm == 0) d->min_nm = shah_nm[0];
   if (printed && d->max_nm == 0) d->max_nm = shah_nm[1];
@@ -56,7 +82,8 @@ static void fill_in_shah(abbe_render_desc *d) {
 static void fill_in_defaults(size_t width, size_t height, abbe_render_desc *d) {
   const bool published = abbe_profile_is_published(d->profile);
   const bool thesis = abbe_profile_is_thesis(d->profile);
-  if (abbe_profile_is_shah2007(d->profile)) fill_in_shah(d);
+  if (abbe_profile_is_wyman2006(d->profile)) fill_in_wyman(d);
+  if (abbe_profile_estimates(d->profile)) fill_in_estimates(d);
   if (d->width == 0) d->width = width;
   if (d->height == 0) d->height = height;
   if (d->min_nm == 0) d->min_nm = ABBE_WAVELENGTH_MIN_NM;
@@ -95,6 +122,7 @@ static abbe_result check_counts(const abbe_render_desc *d, abbe_error *error) {
       {"the number of exits", d->exits, 0, ABBE_RENDER_MAX_EXITS},
       {"the number of iterations", d->iterations, 0, ABBE_ESTIMATOR_MAX_ITERATIONS},
       {"the number of interfaces", d->interfaces, 0, 2},
+      {"the number of a picture's frames", d->history, 0, ABBE_RENDER_MAX_HISTORY},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i].value < counts[i].least || counts[i].value > counts[i].most)
@@ -123,22 +151,58 @@ static abbe_result check_numbers(const abbe_render_desc *d, abbe_error *error) {
 }
 
 /* What the published methods alone know, and what they do not. */
+static abbe_result check_wyman(const abbe_render_desc *d, abbe_error *error) {
+  const bool wyman = abbe_profile_is_wyman2006(d->profile);
+  const bool gathers = d->fill == ABBE_FILL_GATHER_EYE || d->fill == ABBE_FILL_GATHER_LIGHT;
+  if ((int)d->direction < 0 || d->direction >= ABBE_DIRECTION_COUNT ||
+      (!wyman && (d->direction != ABBE_DIRECTION_AUTO || d->history > 0)))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a direction of shading and a history of frames go with the profiles "
+                          "wyman2006 and wyman2006-cie, not with '%s'",
+                          abbe_profile_name(d->profile));
+  if (d->profile == ABBE_PROFILE_WYMAN2006_CIE && d->direction != ABBE_DIRECTION_DIRECT)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "in units light is the same whatever direction it is shaded by; "
+                          "wyman2006-cie takes none, wyman2006 does");
+  if (d->history > 1 && !gathers)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a history of %zu frames goes with gathers, not with the fill '%s'",
+                          d->history, abbe_fill_name(d->fill));
+  if (d->profile == ABBE_PROFILE_WYMAN2006 && d->wavelengths > 1)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the profile 'wyman2006' has one index for all colours; it cannot take "
+                          "%zu wavelengths, wyman2006-cie can",
+                          d->wavelengths);
+  return ABBE_OK;
+}
+
 static abbe_result check_published(const abbe_render_desc *d, abbe_error *error) {
-  const bool shah = abbe_profile_is_shah2007(d->profile);
+  const bool estimates = abbe_profile_estimates(d->profile);
   if ((int)d->estimator < 0 || d->estimator >= ABBE_ESTIMATOR_COUNT ||
-      (!shah && (d->estimator != ABBE_ESTIMATOR_AUTO || d->iterations > 0 || d->interfaces > 0)))
+      (!estimates &&
+       (d->estimator != ABBE_ESTIMATOR_AUTO || d->iterations > 0 || d->interfaces > 0)))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "an estimator, its iterations and a number of interfaces go with the "
-                          "profiles shah2007 and shah2007-cie, not with '%s'",
+                          "profiles shah2007 and wyman2006 and their twins, not with '%s'",
                           abbe_profile_name(d->profile));
-  if (shah && d->profile == ABBE_PROFILE_SHAH2007 && d->wavelengths != 0 && d->wavelengths != 1 &&
+  if (d->profile == ABBE_PROFILE_SHAH2007 && d->wavelengths != 0 && d->wavelengths != 1 &&
       d->wavelengths != ABBE_PLAN_SHAH_COLOURS)
     return abbe_error_set(
         error, ABBE_INVALID_ARGUMENT,
         "the profile 'shah2007' has an index each for red, green and blue, or one "
         "for all; it cannot take %zu wavelengths, shah2007-cie can",
         d->wavelengths);
-  return ABBE_OK;
+  return check_wyman(d, error);
+}
+
+/* Whether it knows the fill, which is not AUTO any more. */
+static bool knows_fill(const abbe_render_desc *d) {
+  const bool published = abbe_profile_is_published(d->profile);
+  if (abbe_profile_is_wyman2006(d->profile))
+    return d->fill >= ABBE_FILL_POINTS && d->fill <= ABBE_FILL_GATHER_LIGHT;
+  return d->fill == ABBE_FILL_NONE ||
+         (d->fill == ABBE_FILL_SMEAR && abbe_profile_is_thesis(d->profile)) ||
+         (d->fill == ABBE_FILL_BRIDGE && !published);
 }
 
 static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
@@ -162,10 +226,7 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the model '%s' does not go with the profile '%s'",
                           abbe_model_name(d->model), abbe_profile_name(d->profile));
-  const abbe_fill fill = abbe_profile_is_thesis(d->profile) ? ABBE_FILL_SMEAR
-                         : published                        ? ABBE_FILL_NONE
-                                                            : ABBE_FILL_BRIDGE;
-  if (d->fill != fill && d->fill != ABBE_FILL_NONE)
+  if (!knows_fill(d))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'",
                           abbe_fill_name(d->fill), abbe_profile_name(d->profile));

@@ -22,7 +22,9 @@ extern "C" {
 #define ABBE_PROFILES(X)                                                                           \
   X(DEFAULT, "default")                                                                            \
   X(THESIS, "thesis")                                                                              \
-  X(THESIS_CIE, "thesis-cie") X(SHAH2007, "shah2007") X(SHAH2007_CIE, "shah2007-cie")
+  X(THESIS_CIE, "thesis-cie")                                                                      \
+  X(SHAH2007, "shah2007") X(SHAH2007_CIE, "shah2007-cie") X(WYMAN2006, "wyman2006")                \
+      X(WYMAN2006_CIE, "wyman2006-cie")
 typedef enum abbe_profile {
 #define ABBE_PROFILE_ENUM(code, name) ABBE_PROFILE_##code,
   ABBE_PROFILES(ABBE_PROFILE_ENUM)
@@ -31,14 +33,30 @@ typedef enum abbe_profile {
 } abbe_profile;
 
 /* bridge: light is laid between neighbouring wavelengths' hits; none: each wavelength lands
- * on its own; smear: the thesis's 20-step fill. AUTO is bridge, and smear in the thesis profile. */
-#define ABBE_FILLS(X) X(AUTO, "auto") X(NONE, "none") X(BRIDGE, "bridge") X(SMEAR, "smear")
+ * on its own; smear: the thesis's 20-step fill; of wyman2006, in the camera's image points, quads
+ * or triangles of neighbouring photons or a gather, or a gather in the light's. AUTO is bridge,
+ * smear in the thesis profile, gather-light in wyman2006, whose none is points. */
+#define ABBE_FILLS(X)                                                                              \
+  X(AUTO, "auto")                                                                                  \
+  X(NONE, "none")                                                                                  \
+  X(BRIDGE, "bridge") X(SMEAR, "smear") X(POINTS, "points") X(QUADS, "quads")                      \
+      X(TRIANGLES, "triangles") X(GATHER_EYE, "gather-eye") X(GATHER_LIGHT, "gather-light")
 typedef enum abbe_fill {
 #define ABBE_FILL_ENUM(code, name) ABBE_FILL_##code,
   ABBE_FILLS(ABBE_FILL_ENUM)
 #undef ABBE_FILL_ENUM
       ABBE_FILL_COUNT
 } abbe_fill;
+
+/* The direction by which wyman2006 shades caustics: photons' own, their mean in a pixel, the direct
+ * light's. AUTO is mean; in units direct, which there is exact. */
+#define ABBE_DIRECTIONS(X) X(AUTO, "auto") X(OWN, "own") X(MEAN, "mean") X(DIRECT, "direct")
+typedef enum abbe_direction {
+#define ABBE_DIRECTION_ENUM(code, name) ABBE_DIRECTION_##code,
+  ABBE_DIRECTIONS(ABBE_DIRECTION_ENUM)
+#undef ABBE_DIRECTION_ENUM
+      ABBE_DIRECTION_COUNT
+} abbe_direction;
 
 /* How light is followed through refractors. AUTO: by the scene; the others ask for one model for
  * all refractors. */
@@ -60,6 +78,7 @@ typedef enum abbe_model {
 #define ABBE_RENDER_MAX_ADAPTIVE 8 /* a side */
 #define ABBE_RENDER_MAX_ENVIRONMENT_LIGHTS 16
 #define ABBE_RENDER_MAX_LIGHT_POINTS 16
+#define ABBE_RENDER_MAX_HISTORY 4 /* frames */
 
 /* Called now and then with the share done, 0 to 1; false stops the work with ABBE_CANCELLED. */
 typedef bool (*abbe_render_progress)(void *user, double done);
@@ -93,10 +112,11 @@ typedef struct abbe_render_desc {
   /* samples at the most; 0: 7, or 1 where neither index nor attenuation varies */
   size_t wavelengths;
   double min_nm, max_nm; /* 0: 380, 780 (thesis: its nodes are 380 to 680) */
-  size_t photons;        /* side of the photon grid; 0: 256 (thesis: 512, shah2007: 128) */
-  size_t map_size;       /* side of the spectral map; 0: 1024 (shah2007: 768) */
-  size_t supersample;    /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
-  size_t upsample;       /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
+  size_t
+      photons; /* side of the photon grid; 0: 256 (thesis: 512, shah2007: 128, wyman2006: 1024) */
+  size_t map_size;    /* side of the spectral map; 0: 1024 (shah2007: 768, wyman2006: 512) */
+  size_t supersample; /* 1 to 4 samples a pixel side; 0: 2 (thesis, and with upsample: 1) */
+  size_t upsample;    /* or 1 to 4 pixels a sample side, and between samples; 0: 1 */
   /* rays a side for a sample of a receiver where its light bends, 1 to 8; 1: the sample alone; 0: 4
    * (thesis: 1) */
   size_t adaptive;
@@ -105,10 +125,16 @@ typedef struct abbe_render_desc {
   size_t light_points; /* that stand for a light with a size, 1 to 16; 0: 8 */
   abbe_fill fill;
   abbe_model model;
-  /* Of shah2007: how rays are brought to receivers, AUTO: shah, in its twin ratio; iterations, 1 to
-   * 64, 0: 1; interfaces that light is refracted at, 1 (as by water) or 2, 0: 2. Elsewhere 0. */
+  /* Of shah2007 and wyman2006: how rays are brought to receivers, AUTO: shah, in their twins ratio;
+   * iterations, 1 to 64, 0: 1; interfaces that light is refracted at, 1 (as by water) or 2, 0: 2.
+   * Elsewhere 0. */
   abbe_estimator estimator;
   size_t iterations, interfaces;
+  abbe_direction direction; /* of wyman2006; in its twin direct alone */
+  /* Of wyman2006's gathers: frames that a picture holds, 1 to 4, 0: 1. A renderer that is changed
+   * or redrawn goes on with the frames before, so that a picture is no longer that of a renderer
+   * made anew; in units the photons of each frame are shifted. */
+  size_t history;
   /* paths below this share of their light end; 0: 0.01, or 0.005 where paths that end leave too
    * much light inside a convex solid */
   double energy_share;
@@ -145,6 +171,9 @@ bool abbe_profile_is_published(abbe_profile profile);
 bool abbe_profile_is_printed(abbe_profile profile);
 bool abbe_profile_is_thesis(abbe_profile profile);
 bool abbe_profile_is_shah2007(abbe_profile profile);
+bool abbe_profile_is_wyman2006(abbe_profile profile);
+/* Whether rays are brought to receivers by an estimator: the last two. */
+bool abbe_profile_estimates(abbe_profile profile);
 const char *abbe_fill_name(abbe_fill fill);
 const char *abbe_model_name(abbe_model model);
 

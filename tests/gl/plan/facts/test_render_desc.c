@@ -29,6 +29,11 @@ static void what_is_left_open_gets_its_default(void **state) {
   assert_true(d.estimator == ABBE_ESTIMATOR_SHAH && d.iterations == 1 && d.interfaces == 2);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_SHAH2007_CIE});
   assert_true(d.min_nm == 380 && d.estimator == ABBE_ESTIMATOR_RATIO);
+  d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_WYMAN2006});
+  assert_true(d.photons == 1024 && d.map_size == 512 && d.fill == ABBE_FILL_GATHER_LIGHT);
+  assert_true(d.direction == ABBE_DIRECTION_MEAN && d.history == 1 && d.iterations == 1);
+  d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_WYMAN2006_CIE, .fill = ABBE_FILL_NONE});
+  assert_true(d.direction == ABBE_DIRECTION_DIRECT && d.fill == ABBE_FILL_POINTS);
   d = resolve(&(abbe_render_desc){.profile = ABBE_PROFILE_THESIS_CIE});
   assert_true(d.photons == 512 && d.fill == ABBE_FILL_SMEAR && d.max_nm == 780);
 }
@@ -63,6 +68,14 @@ static void limits_are_kept(void **state) {
       {{.profile = ABBE_PROFILE_SHAH2007, .fill = ABBE_FILL_SMEAR}, "'shah2007'"},
       {{.profile = ABBE_PROFILE_SHAH2007_CIE, .iterations = 65}, "iterations is 65"},
       {{.estimator = ABBE_ESTIMATOR_RATIO}, "not with 'default'"},
+      {{.direction = ABBE_DIRECTION_OWN}, "not with 'default'"},
+      {{.profile = ABBE_PROFILE_SHAH2007, .history = 4}, "not with 'shah2007'"},
+      {{.profile = ABBE_PROFILE_WYMAN2006, .history = 5}, "frames is 5"},
+      {{.profile = ABBE_PROFILE_WYMAN2006, .history = 4, .fill = ABBE_FILL_QUADS}, "'quads'"},
+      {{.profile = ABBE_PROFILE_WYMAN2006, .wavelengths = 3}, "one index for all"},
+      {{.profile = ABBE_PROFILE_WYMAN2006, .fill = ABBE_FILL_SMEAR}, "'smear'"},
+      {{.profile = ABBE_PROFILE_WYMAN2006_CIE, .direction = ABBE_DIRECTION_MEAN}, "in units"},
+      {{.fill = ABBE_FILL_QUADS}, "'quads'"},
       {{.profile = ABBE_PROFILE_THESIS, .interfaces = 1}, "not with 'thesis'"},
       {{.profile = ABBE_PROFILE_THESIS, .adaptive = 2}, "knows no adaptive samples"},
       {{.supersample = 2, .upsample = 2}, "a sample for 2 x 2 pixels and 2 samples"},

@@ -1,0 +1,221 @@
+#include "gl/wyman2006/wyman_target.h"
+
+#include "scenes/geometry/transform.h"
+
+#include <stdio.h>
+
+static const GLfloat nothing[4] = {0, 0, 0, 0};
+static const int flat[2] = {-1, -1};
+
+static bool is_printed(const abbe_gpu_scene *scene) {
+  return abbe_profile_is_printed(scene->plan->desc.profile);
+}
+
+static abbe_result make_programs(abbe_wyman_target *t, const abbe_shader_variant *variant,
+                                 abbe_error *error) {
+  static const abbe_program_stage points[] = {{GL_VERTEX_SHADER, "wyman_points.vert"},
+                                              {GL_FRAGMENT_SHADER, "wyman_points.frag"}};
+  static const abbe_program_stage polygons[] = {{GL_VERTEX_SHADER, "wyman_polygons.vert"},
+                                                {GL_FRAGMENT_SHADER, "wyman_polygons.frag"}};
+  static const abbe_program_stage areas[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                             {GL_FRAGMENT_SHADER, "wyman_areas.frag"}};
+  static const abbe_program_stage gather[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                              {GL_FRAGMENT_SHADER, "wyman_gather.frag"}};
+  static const abbe_program_stage filter[] = {{GL_VERTEX_SHADER, "screen.vert"},
+                                              {GL_FRAGMENT_SHADER, "wyman_history.frag"}};
+  const abbe_render_desc *d = &t->scene->plan->desc;
+  abbe_gpu *gpu = t->scene->gpu;
+  char more[160];
+  snprintf(more, sizeof more, "%s%s%s%s%s", t->camera ? "#define IN_CAMERA\n" : "",
+           d->fill == ABBE_FILL_TRIANGLES ? "#define TRIANGLES\n" : "",
+           t->directions ? "#define DIRECTIONS\n" : "",
+           d->direction == ABBE_DIRECTION_MEAN ? "#define MEAN_DIRECTION\n" : "",
+           is_printed(t->scene) ? "#define AS_PRINTED\n" : "");
+  abbe_result result = abbe_shader_variant_program(variant, gpu, t->polygons ? polygons : points, 2,
+                                                   more, &t->draw, error);
+  if (result == ABBE_OK && t->gathers)
+    result = abbe_gpu_program(gpu, areas, 2, "", &t->area, error);
+  if (result == ABBE_OK && t->gathers)
+    result = abbe_gpu_program(gpu, gather, 2, more, &t->gather, error);
+  if (result == ABBE_OK && d->history > 1)
+    result = abbe_gpu_program(gpu, filter, 2, more, &t->filter, error);
+  return result;
+}
+
+static abbe_result make_targets(abbe_wyman_target *t, abbe_error *error) {
+  const size_t *size = t->places->size, history = t->scene->plan->desc.history;
+  for (int k = 0; k < 2; k++) t->history.size[k] = size[k];
+  t->history.printed = is_printed(t->scene);
+  const GLenum format = is_printed(t->scene) ? GL_RGBA16F : GL_RGBA32F;
+  const bool filters = history > 1;
+  const struct {
+    GLuint *texture;
+    bool wanted;
+    GLenum format;
+  } all[] = {{&t->sum, true, format},
+             {&t->direction_sum, t->directions, format},
+             {&t->areas, t->gathers, GL_R32F},
+             {&t->gathered[0], t->gathers, format},
+             {&t->gathered[1], t->gathers && t->directions, format},
+             {&t->filtered[0], filters, format},
+             {&t->filtered[1], filters && t->directions, format},
+             {&t->history.sums[0], filters, format},
+             {&t->history.sums[1], history > 2, format},
+             {&t->history.sums[2], history > 3, format}};
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < sizeof all / sizeof *all && result == ABBE_OK; i++)
+    if (all[i].wanted)
+      result = abbe_gpu_make_texture(t->scene->gpu, all[i].format, size[0], size[1], 0, true,
+                                     all[i].texture, error);
+  return result;
+}
+
+abbe_result abbe_wyman_target_make(const abbe_wyman_photons *photons,
+                                   const abbe_image_places *places, bool camera,
+                                   const abbe_shader_variant *variant, abbe_wyman_target *out,
+                                   abbe_error *error) {
+  const abbe_render_desc *d = &photons->scene->plan->desc;
+  *out = (abbe_wyman_target){
+      .scene = photons->scene,
+      .photons = photons,
+      .places = places,
+      .camera = camera,
+      .directions = d->direction != ABBE_DIRECTION_DIRECT,
+      .polygons = d->fill == ABBE_FILL_QUADS || d->fill == ABBE_FILL_TRIANGLES,
+      .gathers = d->fill == ABBE_FILL_GATHER_EYE || d->fill == ABBE_FILL_GATHER_LIGHT};
+  abbe_result result = make_targets(out, error);
+  return result == ABBE_OK ? make_programs(out, variant, error) : result;
+}
+
+void abbe_wyman_target_free(abbe_wyman_target *t) {
+  if (t->scene == NULL) return;
+  abbe_gpu *gpu = t->scene->gpu;
+  abbe_gpu_drop_textures(gpu, 1, &t->sum);
+  abbe_gpu_drop_textures(gpu, 1, &t->direction_sum);
+  abbe_gpu_drop_textures(gpu, 1, &t->areas);
+  abbe_gpu_drop_textures(gpu, 2, t->filtered);
+  abbe_gpu_drop_textures(gpu, 2, t->gathered);
+  abbe_gpu_drop_textures(gpu, ABBE_WYMAN_KEPT, t->history.sums);
+  *t = (abbe_wyman_target){0};
+}
+
+static double window_area(const abbe_view *view) {
+  return (view->window[1] - view->window[0]) * (view->window[3] - view->window[2]);
+}
+
+static void set_drawing(const abbe_wyman_target *t) {
+  const abbe_gpu_scene *scene = t->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  const abbe_image_places *light = t->photons->light;
+  const double side = (double)scene->plan->desc.photons;
+  const double cell = window_area(&light->view.view) / (side * side);
+  const double pixel = window_area(&t->places->view.view) /
+                       ((double)t->places->size[0] * (double)t->places->size[1]);
+  const double *from = light->view.view.origin;
+  abbe_image_view_set_view(scene, t->draw, "drawn_from", &t->places->view.view);
+  abbe_image_view_set_clip(scene, t->draw, "drawn_matrix", &t->places->view);
+  abbe_gpu_bind_texture(scene->gpu, t->draw, "photon_places", 0, t->photons->places);
+  abbe_gpu_bind_texture(scene->gpu, t->draw, "photon_directions", 1, t->photons->incident);
+  abbe_gpu_bind_texture(scene->gpu, t->draw, "drawn_places", 2, t->places->receivers);
+  abbe_gpu_set_int(scene->gpu, t->draw, "grid", (int)side);
+  abbe_gpu_set_float(scene->gpu, t->draw, "strength", cell / pixel);
+  abbe_gpu_set_float(scene->gpu, t->draw, "cell_area", cell);
+  gl->Uniform3f(gl->GetUniformLocation(t->draw, "light_at"), (float)from[0], (float)from[1],
+                (float)from[2]);
+}
+
+/* What is drawn first clears the image. */
+static abbe_result draw(const abbe_wyman_target *t, const float colour[3], bool first,
+                        abbe_error *error) {
+  const abbe_gpu_scene *scene = t->scene;
+  const abbe_gl *gl = scene->gpu->gl;
+  const size_t side = scene->plan->desc.photons, cells = (side - 1) * (side - 1);
+  const GLuint targets[2] = {t->sum, t->direction_sum};
+  abbe_result result = abbe_gpu_set_target(scene->gpu, targets, flat, t->directions ? 2 : 1, 0,
+                                           t->places->size[0], t->places->size[1], error);
+  if (result != ABBE_OK) return result;
+  for (int i = 0; first && i <= t->directions; i++) gl->ClearBufferfv(GL_COLOR, i, nothing);
+  gl->Disable(GL_DEPTH_TEST);
+  gl->Enable(GL_BLEND);
+  gl->Enable(GL_PROGRAM_POINT_SIZE);
+  gl->BlendFunc(GL_ONE, GL_ONE);
+  gl->UseProgram(t->draw);
+  set_drawing(t);
+  gl->Uniform3f(gl->GetUniformLocation(t->draw, "colour"), colour[0], colour[1], colour[2]);
+  gl->BindVertexArray(scene->gpu->empty_array);
+  gl->DrawArrays(t->polygons ? GL_TRIANGLES : GL_POINTS, 0,
+                 (GLsizei)(t->polygons ? 6 * cells : side * side));
+  gl->Disable(GL_BLEND);
+  return ABBE_OK;
+}
+
+/* A pass over the image into one texture, or with directions into two. */
+static abbe_result draw_over(const abbe_wyman_target *t, const GLuint target[2],
+                             abbe_error *error) {
+  const abbe_gl *gl = t->scene->gpu->gl;
+  abbe_result result = abbe_gpu_set_target(t->scene->gpu, target, flat, target[1] != 0 ? 2 : 1, 0,
+                                           t->places->size[0], t->places->size[1], error);
+  if (result != ABBE_OK) return result;
+  gl->Disable(GL_DEPTH_TEST);
+  gl->BindVertexArray(t->scene->gpu->empty_array);
+  gl->DrawArrays(GL_TRIANGLES, 0, 3);
+  return ABBE_OK;
+}
+
+static void bind_sums(const abbe_wyman_target *t, GLuint program) {
+  abbe_gpu *gpu = t->scene->gpu;
+  gpu->gl->UseProgram(program);
+  abbe_gpu_bind_texture(gpu, program, "photon_sums", 0, t->light);
+  abbe_gpu_bind_texture(gpu, program, "photon_direction_sums", 1, t->light_directions);
+}
+
+static abbe_result filter(abbe_wyman_target *t, bool next, abbe_error *error) {
+  abbe_wyman_history *h = &t->history;
+  abbe_gpu *gpu = t->scene->gpu;
+  const size_t most = t->scene->plan->desc.history - 1;
+  bind_sums(t, t->filter);
+  abbe_gpu_bind_texture(gpu, t->filter, "kept[0]", 2, h->sums[0]);
+  abbe_gpu_bind_texture(gpu, t->filter, "kept[1]", 3, h->sums[1]);
+  abbe_gpu_bind_texture(gpu, t->filter, "kept[2]", 4, h->sums[2]);
+  abbe_gpu_set_int(gpu, t->filter, "frames", (int)h->count);
+  abbe_result result = draw_over(t, t->filtered, error);
+  t->light = t->filtered[0];
+  t->light_directions = t->filtered[1];
+  if (result != ABBE_OK || !next) return result;
+  const GLuint oldest = h->sums[most - 1];
+  for (size_t i = most - 1; i > 0; i--) h->sums[i] = h->sums[i - 1];
+  h->sums[0] = t->sum;
+  t->sum = oldest;
+  if (h->count < most) h->count++;
+  return ABBE_OK;
+}
+
+static abbe_result gather(abbe_wyman_target *t, abbe_error *error) {
+  const GLuint areas[2] = {t->areas, 0};
+  abbe_gpu *gpu = t->scene->gpu;
+  gpu->gl->UseProgram(t->area);
+  abbe_gpu_bind_texture(gpu, t->area, "drawn_places", 0, t->places->receivers);
+  abbe_result result = draw_over(t, areas, error);
+  if (result != ABBE_OK) return result;
+  bind_sums(t, t->gather);
+  abbe_gpu_bind_texture(gpu, t->gather, "areas", 2, t->areas);
+  result = draw_over(t, t->gathered, error);
+  t->light = t->gathered[0];
+  t->light_directions = t->gathered[1];
+  return result;
+}
+
+abbe_result abbe_wyman_target_run(abbe_wyman_target *t, float (*colour)[3], bool next_frame,
+                                  abbe_error *error) {
+  const abbe_render_desc *d = &t->scene->plan->desc;
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < d->wavelengths && result == ABBE_OK; i++) {
+    result = abbe_wyman_photons_run(t->photons, i, error);
+    if (result == ABBE_OK) result = draw(t, colour[i], i == 0, error);
+  }
+  t->light = t->sum;
+  t->light_directions = t->direction_sum;
+  if (result == ABBE_OK && d->history > 1) result = filter(t, next_frame, error);
+  if (result == ABBE_OK && t->gathers) result = gather(t, error);
+  return result;
+}

@@ -1,0 +1,44 @@
+/* wyman_target.h: an image that photons are drawn into, the light's or the camera's: as points, as
+ * polygons of neighbours, or as points that are gathered, with a filter over frames. Internal to
+ * gl/.
+ *
+ * A texel holds the solid angle of photons, from the light, by its window area, and so light by
+ * irradiance once the texel's area is known; of polygons in the camera's image, the ratio of solid
+ * angles itself.
+ */
+#ifndef ABBE_GL_WYMAN2006_WYMAN_TARGET_H
+#define ABBE_GL_WYMAN2006_WYMAN_TARGET_H
+
+#include "gl/wyman2006/wyman_photons.h"
+
+#define ABBE_WYMAN_KEPT 3 /* frames beside this one */
+
+/* Photons of the frames before. */
+typedef struct abbe_wyman_history {
+  GLuint sums[ABBE_WYMAN_KEPT];
+  size_t size[2], count; /* of them, those that are drawn */
+  size_t frame;          /* of the sequence, the one to come */
+  bool printed;          /* in 16 bits */
+} abbe_wyman_history;
+
+typedef struct abbe_wyman_target {
+  const abbe_gpu_scene *scene;
+  const abbe_wyman_photons *photons;
+  const abbe_image_places *places; /* of the image: its view and the receivers in it */
+  bool camera, directions, polygons, gathers;
+  GLuint draw, area, gather, filter; /* programs */
+  GLuint sum, direction_sum, areas, filtered[2], gathered[2];
+  abbe_wyman_history history;
+  GLuint light, light_directions; /* of the last run, two of those above; directions: 0: none */
+} abbe_wyman_target;
+
+abbe_result abbe_wyman_target_make(const abbe_wyman_photons *photons,
+                                   const abbe_image_places *places, bool camera,
+                                   const abbe_shader_variant *variant, abbe_wyman_target *out,
+                                   abbe_error *error);
+void abbe_wyman_target_free(abbe_wyman_target *target);
+/* The image's receivers and the light's places are drawn by then. colour: of each wavelength. */
+abbe_result abbe_wyman_target_run(abbe_wyman_target *target, float (*colour)[3], bool next_frame,
+                                  abbe_error *error);
+
+#endif
