@@ -3,24 +3,43 @@
 #include "cli/base/scene_input.h"
 
 #include "scenes/export/pov_file.h"
+#include "scenes/export/scene_export.h"
 #include "scenes/import/scene_file.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
-enum { OPTION_PHOTONS = 0x100, OPTION_SAMPLES, OPTION_MATERIALS, OPTION_JSON };
+enum {
+  OPTION_TO = 0x100,
+  OPTION_LAMBDA,
+  OPTION_PHOTONS,
+  OPTION_SAMPLES,
+  OPTION_MATERIALS,
+  OPTION_JSON
+};
+
+#define NAME(code, name, ending, form, program) name ", "
+#define ENDING(code, name, ending, form, program) ending ", "
 
 typedef struct request {
-  const char *program, *scene, *output, *materials;
+  const char *program, *scene, *output, *materials, *to;
   abbe_scene_input_changes changes;
+  abbe_scene_export_target target; /* ABBE_SCENE_EXPORT_COUNT: POV-Ray */
+  abbe_scene_export_options other;
   abbe_pov_options pov;
   bool json, quiet;
 } request;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE.pov", ABBE_ARGUMENT_WRITES, "where to", 0},
+    {"output", 'o', "FILE", ABBE_ARGUMENT_WRITES, "where to: " ABBE_SCENE_EXPORTS(ENDING) "or .pov",
+     0},
+    {"to", OPTION_TO, "FORMAT", 0,
+     ABBE_SCENE_EXPORTS(NAME) "or povray; by the file's ending where it is not said", 0},
+    {"lambda", OPTION_LAMBDA, "NM", 0, "wavelength of the one index that Mitsuba takes (587.5618)",
+     0},
     {"photons", OPTION_PHOTONS, "N", 0, "that POV-Ray shoots at refractors (100000)", 0},
     {"samples", OPTION_SAMPLES, "N", 0, "of POV-Ray's spectrum, 2 to 100 (31)", 0},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
@@ -30,11 +49,44 @@ static const struct argp_option options[] = {
     {"quiet", 'q', NULL, 0, "no summary", 0},
     {0}};
 
+/* By --to, else by the ending; the ending has to be the format's. */
+static void choose_target(request *q, struct argp_state *state) {
+  static const char povray[] = "povray";
+  const char *dot = strrchr(q->output, '.'), *ending = ".pov";
+  int i = 0;
+  if (q->to != NULL) {
+    i = abbe_scene_export_of_name(q->to);
+    if (i == ABBE_SCENE_EXPORT_COUNT && strcmp(q->to, povray) != 0)
+      argp_error(state, "--to takes " ABBE_SCENE_EXPORTS(NAME) "or %s, not '%s'", povray, q->to);
+  } else {
+    while (i < ABBE_SCENE_EXPORT_COUNT && dot != NULL &&
+           strcasecmp(dot, abbe_scene_export_ending((abbe_scene_export_target)i)) != 0)
+      i++;
+    if (dot == NULL || (i == ABBE_SCENE_EXPORT_COUNT && strcasecmp(dot, ending) != 0))
+      argp_error(state, "'%s' ends in none of " ABBE_SCENE_EXPORTS(ENDING) "or %s; say --to too",
+                 q->output, ending);
+  }
+  q->target = (abbe_scene_export_target)i;
+  if (i < ABBE_SCENE_EXPORT_COUNT) ending = abbe_scene_export_ending(q->target);
+  q->output = abbe_command_target(state->name, "-o", q->output, ending);
+  const bool pov = q->pov.photons != 0 || q->pov.samples != 0;
+  if (i < ABBE_SCENE_EXPORT_COUNT && pov)
+    argp_error(state, "--photons and --samples are POV-Ray's; leave them out");
+  if (q->target != ABBE_SCENE_EXPORT_MITSUBA && q->other.lambda_nm != 0)
+    argp_error(state, "--lambda is for Mitsuba alone; leave it out");
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   request *q = state->input;
   switch (key) {
   case 'o':
-    q->output = abbe_command_target(state->name, "-o", text, ".pov");
+    q->output = text;
+    return 0;
+  case OPTION_TO:
+    q->to = text;
+    return 0;
+  case OPTION_LAMBDA:
+    q->other.lambda_nm = abbe_command_number(q->program, "--lambda", text, 380, 780);
     return 0;
   case OPTION_PHOTONS:
     q->pov.photons = abbe_command_count(q->program, "--photons", text, 1, ABBE_POV_MAX_PHOTONS);
@@ -57,7 +109,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     if (q->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
-    if (q->output == NULL) argp_error(state, "where to? Give -o FILE.pov");
+    if (q->output == NULL) argp_error(state, "where to? Give -o FILE.pbrt, for one");
+    choose_target(q, state);
     return 0;
   default:
     return abbe_scene_input_take(&q->changes, key, text, q->program);
@@ -71,7 +124,7 @@ static bool said(const abbe_scene *scene, size_t object) {
   return false;
 }
 
-static abbe_result report(const request *q, const abbe_scene *scene, abbe_error *error) {
+static abbe_result report_pov(const request *q, const abbe_scene *scene, abbe_error *error) {
   cJSON *root = q->json ? cJSON_CreateObject() : NULL;
   cJSON *glasses = q->json ? cJSON_AddArrayToObject(root, "materials") : NULL;
   abbe_result result = ABBE_OK;
@@ -105,17 +158,82 @@ static abbe_result report(const request *q, const abbe_scene *scene, abbe_error 
   return result;
 }
 
+static void add_glass_json(cJSON *list, const abbe_scene_export_glass *g) {
+  cJSON *glass = cJSON_CreateObject();
+  cJSON_AddItemToArray(list, glass);
+  cJSON_AddStringToObject(glass, "name", g->material->name);
+  cJSON_AddStringToObject(glass, "form", abbe_export_form_name(g->index.form));
+  if (g->index.form != ABBE_EXPORT_FORM_TABLE) {
+    const int count = g->index.form == ABBE_EXPORT_FORM_ONE     ? 1
+                      : g->index.form == ABBE_EXPORT_FORM_THREE ? 3
+                                                                : 2;
+    cJSON_AddItemToObject(glass, "values", cJSON_CreateDoubleArray(g->index.value, count));
+  }
+  cJSON_AddNumberToObject(glass, "worst", g->index.worst);
+  cJSON_AddNumberToObject(glass, "worst_nm", g->index.worst_nm);
+  cJSON_AddNumberToObject(glass, "rms", g->index.rms);
+}
+
+static abbe_result report_json(const request *q, const abbe_scene_export_report *r,
+                               abbe_error *error) {
+  cJSON *root = cJSON_CreateObject();
+  cJSON_AddStringToObject(root, "format", abbe_scene_export_name(q->target));
+  cJSON_AddStringToObject(root, "output", q->output);
+  cJSON *glasses = cJSON_AddArrayToObject(root, "materials");
+  for (size_t i = 0; i < r->glass_count; i++) add_glass_json(glasses, &r->glass[i]);
+  cJSON *notes = cJSON_AddArrayToObject(root, "notes");
+  for (size_t i = 0; i < r->notes.count; i++) {
+    cJSON *note = cJSON_CreateObject();
+    cJSON_AddItemToArray(notes, note);
+    cJSON_AddStringToObject(note, "kind", abbe_note_kind_word(r->notes.note[i].kind));
+    cJSON_AddStringToObject(note, "of", r->notes.note[i].name);
+    cJSON_AddStringToObject(note, "text", r->notes.note[i].text);
+  }
+  const abbe_result result = abbe_command_print_json(root, error);
+  cJSON_Delete(root);
+  return result;
+}
+
+static void report_text(const abbe_scene_export_report *r) {
+  for (size_t i = 0; i < r->glass_count; i++) {
+    const abbe_scene_export_glass *g = &r->glass[i];
+    fprintf(stderr, "%s: n as '%s' is off by up to %.2g (at %g nm), RMS %.2g\n", g->material->name,
+            abbe_export_form_name(g->index.form), g->index.worst, g->index.worst_nm, g->index.rms);
+  }
+  for (size_t i = 0; i < r->notes.count; i++)
+    fprintf(stderr, "%s: %s: %s\n", abbe_note_kind_word(r->notes.note[i].kind),
+            r->notes.note[i].name, r->notes.note[i].text);
+}
+
+static abbe_result write_scene(const request *q, const abbe_scene *scene, abbe_error *error) {
+  if (q->target == ABBE_SCENE_EXPORT_COUNT) {
+    const abbe_result result = abbe_pov_file_write(q->output, scene, &q->pov, error);
+    return result == ABBE_OK && (q->json || !q->quiet) ? report_pov(q, scene, error) : result;
+  }
+  abbe_scene_export_report report = {0};
+  abbe_result result =
+      abbe_scene_export_write(q->output, scene, q->target, &q->other, &report, error);
+  if (result == ABBE_OK && q->json) result = report_json(q, &report, error);
+  if (result == ABBE_OK && !q->json && !q->quiet) report_text(&report);
+  abbe_scene_export_report_free(&report);
+  return result;
+}
+
 int abbe_command_export(int argc, char **argv) {
   static const struct argp argp = {
       options,
       parse,
       "SCENE.yaml",
-      "Writes a scene for POV-Ray 3.7, with photons and dispersion, as an outside witness.\v"
+      "Writes a scene for another program, and says what that cannot hold of it.\v"
+      "pbrt takes n as a table, Mitsuba one index, LuxCore two terms of Cauchy's, glTF n_d and an "
+      "Abbe number, Blender one index for red, green and blue each, POV-Ray two numbers. Pictures "
+      "and meshes are written beside the file, as STEM-NAME.\n\n"
       "Examples:\n"
-      "  abbe export scenes/prism.yaml -o prism.pov\n"
-      "  povray +Iprism.pov +Oprism.exr +FE +W512 +H512 -D\n"
-      "  abbe display prism.exr -o prism.png\n"
-      "  abbe export scenes/gem.yaml -o gem.pov --photons 1000000 --samples 100\n",
+      "  abbe export scenes/gem.yaml -o gem.pbrt\n"
+      "  abbe export scenes/gem.yaml -o gem.glb --json\n"
+      "  abbe export scenes/prism.yaml -o prism.xml --lambda 486.1327\n"
+      "  abbe export scenes/gem.yaml --to blender -o gem.py\n"
+      "  abbe export scenes/prism.yaml -o prism.pov --photons 1000000 --samples 100\n",
       NULL,
       NULL,
       NULL};
@@ -125,8 +243,7 @@ int abbe_command_export(int argc, char **argv) {
   abbe_scene scene = {0};
   abbe_result result =
       abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
-  if (result == ABBE_OK) result = abbe_pov_file_write(q.output, &scene, &q.pov, &error);
-  if (result == ABBE_OK && (q.json || !q.quiet)) result = report(&q, &scene, &error);
+  if (result == ABBE_OK) result = write_scene(&q, &scene, &error);
   abbe_scene_free(&scene);
   return abbe_command_end(q.program, result, &error);
 }

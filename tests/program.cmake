@@ -78,6 +78,11 @@ add_test(NAME materials_page
           docs/materials.md)
 abbe_label(program NAMES materials_page)
 
+add_test(NAME export_page
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/page_commands $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR}
+          docs/export.md)
+abbe_label(program NAMES export_page)
+
 # All known answers at full size keep both cores busy for minutes. With fewer samples, the tests of
 # known_answers, known_light and validate_command have the groups but this one.
 add_test(NAME known_answers_whole COMMAND abbe validate --quiet)

@@ -5,9 +5,11 @@ foreach(name transform disjoint_sets vector
         scene object_file object_motion refractor_tilt object_surface scene_file mesh_import mesh_files ply_strips
         alias_table area_lights environment environment_file environment_lights environment_picture environment_source irradiance_map
         radiance_map sky
-        view estimator map_layout map_resample pov_file)
+        view estimator map_layout map_resample pov_file export_index)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
+abbe_test(export_views cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
+abbe_test(scene_export cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 abbe_test(cut_solid cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 foreach(name fork alarm aiImportFileExWithProperties)
   target_link_options(test_mesh_import PRIVATE LINKER:--wrap=${name})

@@ -28,7 +28,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(weights, "what each wavelength sample adds to a colour, in XYZ or RGB")                        \
   X(display, "turn a linear EXR into a PNG for a screen, through OpenColorIO")                     \
   X(environment, "say how much light a scene's surroundings hold, and write them as a picture")    \
-  X(export, "write a scene for POV-Ray, an outside witness of its caustics")                       \
+  X(export, "write a scene for pbrt, Mitsuba, LuxCore, glTF, Blender or POV-Ray")                  \
   X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \

@@ -218,7 +218,7 @@ static void test_files_of_a_scene(void **state) {
       "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint wedge.obj",
       "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint t.yaml",
       "trace scene.yaml -q --spp 1 --photons 8 -o c.exr --checkpoint wedge.mtl",
-      "export scene.yaml -q -o wedge.obj",
+      "export scene.yaml -q --to povray -o wedge.obj",
       "sweep scene.yaml -q -o lamp.txt",
       "sweep scene.yaml -q -o s.csv --report t.yaml",
   };

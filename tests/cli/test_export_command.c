@@ -38,6 +38,40 @@ static void test_materials_as_json(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* The format by the file's ending or by --to; the same report for people and for programs. */
+static void test_other_programs(void **state) {
+  (void)state;
+  static const struct {
+    const char *to, *file, *says;
+  } rows[] = {{"", "p.pbrt", "sf10: n as 'table'"},
+              {"", "p.xml", "sf10: n as 'one'"},
+              {"", "p.scn", "sf10: n as 'cauchy'"},
+              {"--to gltf", "p.glb", "sf10: n as 'abbe'"},
+              {"--to blender", "p.py", "n as 'three'"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char line[300];
+    snprintf(line, sizeof line, "\"$abbe\" export \"$house\"/scenes/prism.yaml %s -o %s",
+             rows[i].to, rows[i].file);
+    assert_int_equal(run_line(line), 0);
+    assert_string_equal(run_output, "");
+    assert_contains(run_errors, rows[i].says);
+    snprintf(line, sizeof line,
+             "\"$abbe\" export \"$house\"/scenes/prism.yaml %s -o %s --json "
+             "&& rm p.* p-*",
+             rows[i].to, rows[i].file);
+    run_line(line);
+    cJSON *json = cJSON_Parse(run_output);
+    assert_non_null(json);
+    const cJSON *glass = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(json, "materials"), 0);
+    assert_string_equal(cJSON_GetObjectItemCaseSensitive(glass, "name")->valuestring, "sf10");
+    const double worst = cJSON_GetObjectItemCaseSensitive(glass, "worst")->valuedouble;
+    assert_true(worst > 0 && worst >= cJSON_GetObjectItemCaseSensitive(glass, "rms")->valuedouble);
+    cJSON_Delete(json);
+    assert_int_equal(run_line("rm -f p.* p-*"), 0);
+  }
+  assert_int_equal(run_left(), 0);
+}
+
 static void test_wrong_use_ends_with_2(void **state) {
   (void)state;
   static const struct {
@@ -46,9 +80,15 @@ static void test_wrong_use_ends_with_2(void **state) {
     const char *part;
   } rows[] = {
       {"\"$abbe\" export", 2, "which scene?"},
-      {"\"$abbe\" export \"$house\"/scenes/gem.yaml", 2, "-o FILE.pov"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml", 2, "-o FILE.pbrt"},
       {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pov --samples 1", 2, "--samples"},
       {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pov --photons 0", 2, "--photons"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.obj", 2, ".obj"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pbrt --to maya", 2, "not 'maya'"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pbrt --samples 9", 2, "POV-Ray's"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.pbrt --lambda 500", 2, "Mitsuba alone"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o x.xml --lambda 200", 2, "--lambda"},
+      {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o no/x.xml", 1, "no/x.xml"},
       {"\"$abbe\" export \"$house\"/tests/bad/scene_no_light.yaml -o x.pov", 1, "has no light"},
       {"\"$abbe\" export \"$house\"/scenes/gem.yaml -o missing/x.pov", 1, "missing/x.pov"},
       {"\"$abbe\" export missing.yaml -o x.pov", 1, "missing.yaml"},
@@ -64,6 +104,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_scene_is_exported),
       cmocka_unit_test(test_materials_as_json),
+      cmocka_unit_test(test_other_programs),
       cmocka_unit_test(test_wrong_use_ends_with_2),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);

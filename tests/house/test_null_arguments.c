@@ -85,6 +85,7 @@ static const struct {
     {"abbe_material_table_unique", "report"},
     {"abbe_mesh_import", "others"},
     {"abbe_mesh_load", "others"},
+    {"abbe_scene_export_write", "options"},
     {"abbe_mesh_fix", "solids"},
     {"abbe_mesh_fix", "what"},
     {"abbe_outline_make", "options"},

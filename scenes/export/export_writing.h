@@ -1,0 +1,84 @@
+/* export_writing.h: what the writers of single formats share. Internal to scenes/. */
+#ifndef ABBE_SCENES_EXPORT_EXPORT_WRITING_H
+#define ABBE_SCENES_EXPORT_EXPORT_WRITING_H
+
+#include "scenes/export/export_files.h"
+#include "scenes/export/scene_export.h"
+
+#include <stdio.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ABBE_EXPORT_DEGREES (180 / 3.14159265358979323846)
+#define ABBE_EXPORT_NAME_SIZE 96
+#define ABBE_EXPORT_DISK_SIDES 64
+
+typedef struct abbe_export_writing {
+  FILE *file;
+  const abbe_scene *scene;
+  abbe_scene_export_target target;
+  const abbe_scene_export_report *report;
+  abbe_export_files *files;
+} abbe_export_writing;
+
+/* One for each format. */
+abbe_result abbe_export_pbrt(const abbe_export_writing *w, abbe_error *error);
+abbe_result abbe_export_mitsuba(const abbe_export_writing *w, abbe_error *error);
+abbe_result abbe_export_luxcore(const abbe_export_writing *w, abbe_error *error);
+abbe_result abbe_export_gltf(const abbe_export_writing *w, abbe_error *error);
+abbe_result abbe_export_blender(const abbe_export_writing *w, abbe_error *error);
+
+/* prefix, number and the letters and digits of name: an identifier in every format, of its own. */
+const char *abbe_export_name(char out[ABBE_EXPORT_NAME_SIZE], const char *prefix, size_t number,
+                             const char *name);
+/* Index of the material among the report's. */
+size_t abbe_export_glass_of(const abbe_export_writing *w, const abbe_material *material);
+
+/* The head of a file: where it comes from, and the report, a line each between before and after.
+ * No line holds what ends a comment. */
+void abbe_export_comment(const abbe_export_writing *w, const char *before, const char *after);
+
+/* "a b c" with a separator; the numbers of many. */
+void abbe_export_vector(FILE *file, const double v[3], const char *separator);
+void abbe_export_numbers(FILE *file, const double *v, size_t count, const char *separator);
+
+/* The camera's own axes: unit, right-handed with -forward. */
+void abbe_export_camera(const abbe_camera *camera, double right[3], double up[3],
+                        double forward[3]);
+/* Two unit axes with a x b = direction. */
+void abbe_export_basis(const double direction[3], double a[3], double b[3]);
+
+/* Linear Rec.709 of the illuminant's light over 380 to 780 nm, Y = 1. */
+void abbe_export_light_rgb(const abbe_illuminant *illuminant, double rgb[3]);
+/* Calls put for wavelengths from 380 to 780 nm, as densely as the illuminant needs. */
+void abbe_export_light_spectrum(const abbe_illuminant *illuminant, double factor,
+                                void (*put)(void *user, double lambda_nm, double value),
+                                void *user);
+/* A rectangle's or disk's front as a mesh whose normal is the light's direction. A disk has
+ * ABBE_EXPORT_DISK_SIDES sides and its own area. */
+abbe_result abbe_export_light_mesh(const abbe_light *light, abbe_mesh *out, abbe_error *error);
+
+/* Attenuation for red, green and blue, 1/m, at the dominant wavelengths of the primaries. */
+void abbe_export_attenuation_rgb(const abbe_material *material, double per_m[3]);
+/* n and k of a conductor at the wavelength, held at the ends of the data. */
+void abbe_export_nk(const abbe_material *conductor, double lambda_nm, double *n, double *k);
+/* What a mirror reflects of white light at normal incidence, linear Rec.709 within 0 to 1. */
+void abbe_export_mirror_rgb(const abbe_object *mirror, double rgb[3]);
+
+/* Adds the surroundings as STEM-environment.exr, linear Rec.709. direction says from where, in
+ * world axes, light comes at (u, v), both in [0, 1], v downwards. */
+abbe_result abbe_export_environment(const abbe_export_writing *w, size_t width, size_t height,
+                                    void (*direction)(double u, double v, double out[3]),
+                                    abbe_error *error);
+/* Adds the receiver's texture times its reflectance as STEM-NAME.exr. */
+abbe_result abbe_export_texture(const abbe_export_writing *w, const abbe_object *object,
+                                const char *name, abbe_error *error);
+/* Whether all triangles have their own normals at their corners. */
+bool abbe_export_is_faceted(const abbe_mesh *mesh);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

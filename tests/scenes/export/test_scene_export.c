@@ -1,0 +1,296 @@
+/* Scenes for other programs: what was written is read back by each program's own rules.
+ * Tables give the index whose error is stated, lights have their power, and nothing stays of a file
+ * that could not be finished. */
+#include "tests/scenes/export/export_text.h"
+
+#include <cjson/cJSON.h>
+#include <sys/stat.h>
+
+/* ---- the index ---- */
+
+/* From each file's own numbers, as each program would have it. */
+static double pbrt_n(const double *table, double nm) {
+  size_t i = 0;
+  while (table[2 * i + 2] < nm) i++;
+  const double *a = table + 2 * i;
+  return a[1] + (nm - a[0]) / (a[2] - a[0]) * (a[3] - a[1]);
+}
+
+static void test_the_index_in_the_file_has_the_stated_error(void **state) {
+  (void)state;
+  static const char *const words[] = {"\"spectrum eta\" [", "name=\"n_m0_sf10\"",
+                                      "interiorior =", "\"ior\":", "= glass('m0_sf10', "};
+  static const size_t counts[] = {190, 1, 1, 1, 3};
+  abbe_scene scene;
+  load_shipped("prism", &scene);
+  for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++) {
+    char *text = written(&scene, (abbe_scene_export_target)target);
+    double v[190], b = 0, worst = 0, sum = 0;
+    numbers_after(text, words[target], v, counts[target]);
+    if (target == ABBE_SCENE_EXPORT_LUXCORE) numbers_after(text, "cauchyb =", &b, 1);
+    if (target == ABBE_SCENE_EXPORT_GLTF) numbers_after(text, "\"dispersion\":", &b, 1);
+    assert_int_equal(report.glass_count, 1);
+    for (int nm = 380; nm <= 780; nm++) {
+      double n = 0, got = v[0];
+      assert_int_equal(abbe_material_n(report.glass[0].material, nm, &n, NULL), ABBE_OK);
+      if (target == ABBE_SCENE_EXPORT_PBRT) got = pbrt_n(v, nm);
+      if (target == ABBE_SCENE_EXPORT_LUXCORE) got += b * 1e6 / ((double)nm * nm);
+      /* the law that the extension prints, whose numbers are rounded */
+      if (target == ABBE_SCENE_EXPORT_GLTF)
+        got += (got - 1) * b / 20 * (523655.0 / ((double)nm * nm) - 1.5168);
+      if (target == ABBE_SCENE_EXPORT_BLENDER) got = v[nm > 580 ? 0 : nm > 506 ? 1 : 2];
+      worst = fmax(worst, fabs(got - n));
+      sum += (got - n) * (got - n);
+    }
+    const abbe_export_index *index = &report.glass[0].index;
+    assert_near(worst, index->worst, 1e-6);
+    assert_near(sqrt(sum / 401), index->rms, 1e-6);
+    assert_true(index->worst > 0);
+    done(text);
+  }
+  abbe_scene_free(&scene);
+}
+
+/* ---- lights ---- */
+
+#define LIGHTS                                                                                     \
+  "lights:\n"                                                                                      \
+  "- {name: lamp, kind: point, position: [0.1, 0.2, 0.9], intensity: 2}\n"                         \
+  "- {name: sun, kind: directional, direction: [0, 0.6, -0.8], irradiance: 3}\n"                   \
+  "- {name: beam, kind: spot, position: [0, 0, 1], target: [0, 0, 0], intensity: 5, cone: 30, "    \
+  "soft: 10, illuminant: E}\n"                                                                     \
+  "- {name: panel, kind: disk, position: [0.3, 0, 1], direction: [0, 0, -1], radius: 0.05, "       \
+  "radiance: 100}\n"                                                                               \
+  "- {name: window, kind: rectangle, position: [-0.3, 0, 1], direction: [0, 0, -1], width: 0.2, "  \
+  "height: 0.1, radiance: 40}\n"
+
+static void test_lights_keep_their_power(void **state) {
+  (void)state;
+  const double sphere = 4 * 3.14159265358979323846;
+  abbe_scene scene;
+  double v[16];
+  load_text(CAMERA LIGHTS FLOOR BALL("murk") BRICK("flat"), &scene);
+  char *text = written(&scene, ABBE_SCENE_EXPORT_PBRT);
+  const char *at = strstr(text, "\"point\"");
+  numbers_after(at, "\"float scale\"", v, 1);
+  assert_near(v[0], 2, 0);
+  numbers_after(text, "\"distant\" \"point3 from\"", v, 3);
+  assert_near(v[1], -0.6, 1e-9);
+  assert_near(v[2], 0.8, 1e-9);
+  numbers_after(text, "coneangle\"", v, 1);
+  assert_near(v[0], 30, 1e-6);
+  numbers_after(text, "conedeltaangle\"", v, 1);
+  assert_near(v[0], 10, 1e-6);
+  assert_non_null(strstr(text, "Shape \"disk\" \"float radius\" 0.05"));
+  assert_non_null(strstr(text, "MediumInterface \"m0_murk\" \"\""));
+  done(text);
+  text = written(&scene, ABBE_SCENE_EXPORT_LUXCORE);
+  numbers_after(text, "lights.l0_lamp.color =", v, 3);
+  assert_near(0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2], 2 * sphere, 0.01);
+  numbers_after(text, "lights.l1_sun.direction =", v, 3);
+  assert_near(v[2], -0.8, 1e-9);
+  done(text);
+  text = written(&scene, ABBE_SCENE_EXPORT_BLENDER);
+  numbers_after(text, "'l0_lamp', ", v, 13);
+  assert_near(v[12], 2 * sphere, 1e-6);
+  numbers_after(text, "'l1_sun', ", v, 13);
+  assert_near(v[12], 3, 1e-9);
+  assert_near(v[7], -0.6, 1e-9); /* lamps shine along -z, the third column */
+  done(text);
+  abbe_scene_free(&scene);
+}
+
+/* An equal-energy lamp in glTF: 683 lm/W times the mean of V over 380 to 780 nm, 0.2672 (the
+ * integral of V is 106.86 nm). In Mitsuba its film's Y, the integral of ybar times the values over
+ * 106.75, is the power. */
+static void test_photometric_and_film_units(void **state) {
+  (void)state;
+  abbe_scene scene;
+  double v[200];
+  load_text(CAMERA "lights:\n- {name: lamp, kind: point, position: [0, 0, 0.9], intensity: 2, "
+                   "illuminant: E}\n" FLOOR BALL("flat"),
+            &scene);
+  char *text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
+  numbers_after(text, "\"intensity\":", v, 1);
+  assert_near(v[0], 2 * 683.0 * 106.86 / 400, 0.5);
+  done(text);
+  text = written(&scene, ABBE_SCENE_EXPORT_MITSUBA);
+  const char *values = strstr(strstr(text, "<emitter type=\"point\""), "name=\"values\"");
+  numbers_after(values, "value=", v, 81);
+  for (int i = 0; i < 81; i++) assert_near(v[i] * 106.86 / 106.7503, 2, 0.01);
+  done(text);
+  abbe_scene_free(&scene);
+}
+
+/* ---- the rest ---- */
+
+static bool noted(abbe_note_kind kind, const char *name, const char *part) {
+  for (size_t i = 0; i < report.notes.count; i++) {
+    const abbe_note *n = &report.notes.note[i];
+    if (n->kind == kind && strcmp(n->name, name) == 0 && strstr(n->text, part) != NULL) return true;
+  }
+  return false;
+}
+
+static void test_losses_are_said(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA "ambient: 0.1\n" LIGHTS FLOOR BALL("murk"), &scene);
+  char *text = written(&scene, ABBE_SCENE_EXPORT_MITSUBA);
+  assert_true(noted(ABBE_NOTE_LOST, "murk", "its dispersion"));
+  assert_true(noted(ABBE_NOTE_CHANGED, "murk", "volpath"));
+  assert_true(noted(ABBE_NOTE_CHANGED, "beam", "smoothstep"));
+  assert_true(noted(ABBE_NOTE_LOST, "ambient", "0.1"));
+  assert_non_null(strstr(text, "<!-- lost: ambient: "));
+  done(text);
+  text = written(&scene, ABBE_SCENE_EXPORT_GLTF);
+  assert_true(noted(ABBE_NOTE_LOST, "panel", "glows"));
+  assert_true(noted(ABBE_NOTE_LOST, "caustics", ""));
+  assert_true(noted(ABBE_NOTE_CHANGED, "ball", "triangles"));
+  assert_true(noted(ABBE_NOTE_CHANGED, "murk", "three numbers"));
+  assert_non_null(strstr(text, "\"lost: caustics: "));
+  done(text);
+  text = written(&scene, ABBE_SCENE_EXPORT_PBRT);
+  assert_true(!noted(ABBE_NOTE_CHANGED, "ball", "triangles"));
+  assert_non_null(strstr(text, "Shape \"sphere\" \"float radius\" 0.08"));
+  done(text);
+  abbe_scene_free(&scene);
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("narrow"), &scene);
+  text = written(&scene, ABBE_SCENE_EXPORT_PBRT);
+  assert_true(noted(ABBE_NOTE_ASSUMED, "narrow", "400 to 700 nm"));
+  done(text);
+  abbe_scene_free(&scene);
+  clear_folder();
+}
+
+/* Names become identifiers; what would end a comment does not. */
+static void test_names_do_no_harm(void **state) {
+  (void)state;
+  abbe_scene scene;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("flat"), &scene);
+  free(scene.object[1].name);
+  scene.object[1].name = strdup("x\"--><b>'\n]\nimport os #");
+  free(scene.path);
+  scene.path = strdup("a--><b>\nimport os");
+  for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++) {
+    char *text = written(&scene, (abbe_scene_export_target)target);
+    if (target != ABBE_SCENE_EXPORT_GLTF) assert_null(strstr(text, "--><b>"));
+    assert_null(strstr(text, "\nimport os\n"));
+    if (target != ABBE_SCENE_EXPORT_GLTF)
+      assert_non_null(strstr(text, "o1_x_____b_____import_os__"));
+    done(text);
+  }
+  abbe_scene_free(&scene);
+  clear_folder();
+}
+
+static void test_nothing_half_written_stays(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_error error = {0};
+  char path[200], blocked[220];
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("crown") BRICK("crown"), &scene);
+  /* a folder stands where the last companion is to be written */
+  snprintf(path, sizeof path, "%s/it.xml", folder);
+  snprintf(blocked, sizeof blocked, "%s/it-o2_brick.ply", folder);
+  assert_int_equal(mkdir(blocked, 0777), 0);
+  assert_int_equal(
+      abbe_scene_export_write(path, &scene, ABBE_SCENE_EXPORT_MITSUBA, NULL, &report, &error),
+      ABBE_IO);
+  abbe_scene_export_report_free(&report);
+  assert_int_equal(rmdir(blocked), 0);
+  assert_int_equal(clear_folder(), 0);
+  assert_int_equal(
+      abbe_scene_export_write(path, &scene, ABBE_SCENE_EXPORT_PBRT, NULL, &report, &error),
+      ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, ".pbrt");
+  snprintf(path, sizeof path, "%s/a b.xml", folder);
+  assert_int_equal(
+      abbe_scene_export_write(path, &scene, ABBE_SCENE_EXPORT_MITSUBA, NULL, &report, &error),
+      ABBE_UNSUPPORTED);
+  abbe_scene_export_report_free(&report);
+  const abbe_scene_export_options options = {.lambda_nm = 200};
+  snprintf(path, sizeof path, "%s/it.xml", folder);
+  assert_int_equal(
+      abbe_scene_export_write(path, &scene, ABBE_SCENE_EXPORT_MITSUBA, &options, &report, &error),
+      ABBE_INVALID_ARGUMENT);
+  assert_int_equal(clear_folder(), 0);
+  abbe_scene_free(&scene);
+}
+
+/* pbrt's own rules of tokens: strings, brackets, directives and numbers, brackets in pairs. */
+static void check_pbrt(const char *text) {
+  bool inside = false;
+  for (const char *at = text; *at != '\0';) {
+    if (*at == '#') {
+      at += strcspn(at, "\n");
+    } else if (*at == '"') {
+      at = strchr(at + 1, '"') + 1;
+    } else if (*at == '[' || *at == ']') {
+      assert_true(inside == (*at == ']'));
+      inside = *at++ == '[';
+    } else if (isspace((unsigned char)*at)) {
+      at++;
+    } else if (isalpha((unsigned char)*at)) {
+      at += strcspn(at, " \n");
+      assert_false(inside);
+    } else {
+      char *end;
+      assert_true(isfinite(strtod(at, &end)));
+      assert_true(end > at);
+      at = end;
+    }
+  }
+  assert_false(inside);
+}
+
+/* Runs it where the program is found; 0 without it. */
+static int checked_by(const char *program, const char *line) {
+  char command[500];
+  snprintf(command, sizeof command, "command -v %s > /dev/null 2>&1 || exit 0; cd %s && %s",
+           program, folder, line);
+  return system(command);
+}
+
+static void test_shipped_scenes_are_well_formed(void **state) {
+  (void)state;
+  static const char *const names[] = {"gem", "prism", "glass", "metals", "diamond-studio"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    abbe_scene scene;
+    load_shipped(names[i], &scene);
+    for (int target = 0; target < ABBE_SCENE_EXPORT_COUNT; target++) {
+      char *text = written(&scene, (abbe_scene_export_target)target);
+      if (target == ABBE_SCENE_EXPORT_PBRT) check_pbrt(text);
+      if (target == ABBE_SCENE_EXPORT_GLTF) {
+        cJSON *root = cJSON_Parse(text);
+        assert_non_null(root);
+        assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(root, "meshes")),
+                         scene.object_count);
+        cJSON_Delete(root);
+      }
+      assert_null(strstr(text, "nan"));
+      done(text);
+    }
+    assert_int_equal(checked_by("xmllint", "xmllint --noout it.xml"), 0);
+    assert_int_equal(checked_by("python3", "python3 -c \"compile(open('it.py').read(), 'it.py', "
+                                           "'exec')\""),
+                     0);
+    assert_int_equal(
+        checked_by("grep", "! grep -Ev '^(#.*|scene[.][A-Za-z0-9_.]+ = ?.*)?$' it.scn"), 0);
+    abbe_scene_free(&scene);
+    clear_folder();
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_index_in_the_file_has_the_stated_error),
+      cmocka_unit_test(test_lights_keep_their_power),
+      cmocka_unit_test(test_photometric_and_film_units),
+      cmocka_unit_test(test_losses_are_said),
+      cmocka_unit_test(test_names_do_no_harm),
+      cmocka_unit_test(test_nothing_half_written_stays),
+      cmocka_unit_test(test_shipped_scenes_are_well_formed),
+  };
+  return cmocka_run_group_tests(tests, make_folder, drop_folder);
+}
