@@ -1,9 +1,12 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/spectral_options.h"
 
 #include "colorimetry/image/display_ocio.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/screen_png.h"
+#include "colorimetry/plot/false_colours.h"
+#include "colorimetry/spectral_picture/relight.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -11,6 +14,8 @@
 
 typedef struct request {
   const char *program, *in, *out, *layer;
+  const char *of_colour; /* an option that false colours do not go by */
+  abbe_spectral_options spectral;
   abbe_display_desc desc;
   int bits;
   bool list;
@@ -24,10 +29,46 @@ static abbe_result list_views(const request *r, abbe_error *error) {
   return result;
 }
 
-static abbe_result display(const request *r, const abbe_image *image, abbe_error *error) {
+static abbe_result show(const request *r, const abbe_image *image, const char *layer,
+                        abbe_error *error) {
   const abbe_screen_png_desc desc = {
-      .display = r->desc, .name = r->in, .layer = r->layer, .bits = r->bits};
+      .display = r->desc, .name = r->in, .layer = layer, .bits = r->bits};
   return abbe_screen_png_write(r->out, image, &desc, error);
+}
+
+static abbe_result show_spectrum(const request *r, const abbe_image *image, abbe_error *error) {
+  const abbe_relight_desc desc = {.layer = r->layer,
+                                  .view = r->spectral.view,
+                                  .space = ABBE_RGB_SPACE_XYZ,
+                                  .relative = true};
+  abbe_image xyz = {0};
+  if (r->desc.source_space != NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: --source names the space of R, G, B; here the colours are of the "
+                          "spectrum, in XYZ",
+                          r->in);
+  abbe_result result = abbe_relight_make(image, r->in, &desc, &xyz, error);
+  if (result == ABBE_OK)
+    fprintf(stderr, "note: the colour of the spectrum, %s; 1 is white %s\n",
+            abbe_observer_text(desc.view.observer), abbe_image_attribute_text(&xyz, "abbe:unit"));
+  if (result == ABBE_OK) result = show(r, &xyz, NULL, error);
+  abbe_image_free(&xyz);
+  return result;
+}
+
+static abbe_result show_numbers(const request *r, const abbe_image *image, abbe_error *error) {
+  if (r->of_colour != NULL)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: '%s' is no colour and is shown in false colours, without %s", r->in,
+                          r->layer, r->of_colour);
+  return abbe_false_colours_write(r->out, image, r->layer, r->in, error);
+}
+
+static abbe_result display(const request *r, const abbe_image *image, abbe_error *error) {
+  if (r->spectral.given) return show_spectrum(r, image, error);
+  if (abbe_false_colours_mean(image, r->layer)) return show_numbers(r, image, error);
+  if (abbe_relight_is_needed(image, r->layer)) return show_spectrum(r, image, error);
+  return show(r, image, r->layer, error);
 }
 
 enum {
@@ -49,7 +90,8 @@ static const struct argp_option options[] = {
     {"view", KEY_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
     {"exposure", KEY_EXPOSURE, "STOPS", 0, "brighten (or darken) before the view", 0},
     {"bits", KEY_BITS, "8|16", 0, "of the PNG; without it, 8", 0},
-    {"layer", KEY_LAYER, "NAME", 0, "show the layer NAME.R, NAME.G, NAME.B", 0},
+    {"layer", KEY_LAYER, "NAME", 0, "show the layer NAME.R, NAME.G, NAME.B; a channel, a band (550nm) or a standard error (stderr) "
+     "in false colours", 0},
     {"source", KEY_SOURCE, "SPACE", 0,
      "the picture's colour space; without it, what the file says, else scene_linear", 0},
     {"list", KEY_LIST, NULL, 0, "list the displays and their views", 0},
@@ -59,19 +101,26 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   static const char *const bits[] = {"8", "16"};
   request *r = state->input;
   switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &r->spectral;
+    return 0;
   case 'o':
     r->out = abbe_command_target(state->name, "-o", arg, ".png");
     return 0;
   case KEY_OCIO:
+    r->of_colour = "--ocio";
     r->desc.config = arg;
     return 0;
   case KEY_DISPLAY:
+    r->of_colour = "--display";
     r->desc.display = arg;
     return 0;
   case KEY_VIEW:
+    r->of_colour = "--view";
     r->desc.view = arg;
     return 0;
   case KEY_SOURCE:
+    r->of_colour = "--source";
     r->desc.source_space = arg;
     return 0;
   case KEY_LAYER:
@@ -81,10 +130,12 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     r->list = true;
     return 0;
   case KEY_EXPOSURE:
+    r->of_colour = "--exposure";
     r->desc.exposure = abbe_command_number(r->program, "--exposure", arg,
                                            -ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
     return 0;
   case KEY_BITS:
+    r->of_colour = "--bits";
     r->bits = abbe_command_choice(r->program, "--bits", arg, bits, 2) == 0 ? 8 : 16;
     return 0;
   case ARGP_KEY_ARG:
@@ -100,8 +151,13 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
+static const struct argp_child children[] = {
+    {&abbe_spectral_options_argp, 0, "A spectral picture by its bands, not by its R, G, B:", 1},
+    {0}};
+
 static const struct argp parser = {
     .options = options,
+    .children = children,
     .parser = parse,
     .args_doc = "IN.exr -o OUT.png\n--list",
     .doc = "Turns a linear OpenEXR picture into a PNG for a screen, through OpenColorIO.\v"
@@ -109,17 +165,22 @@ static const struct argp parser = {
            "  abbe display gem.exr -o gem.png\n"
            "  abbe display gem.exr -o gem.png --view Plain --exposure 1.5 --bits 16\n"
            "  abbe display gem.exr -o caustic.png --layer caustic\n"
+           "  abbe display bands.exr -o band.png --layer 550nm\n"
+           "  abbe display gem.exr -o error.png --layer stderr\n"
+           "  abbe display bands.exr -o evening.png --lit-by D65 --illuminant A\n"
            "  abbe display --list --ocio studio.ocio\n",
 };
 
 int abbe_command_display(int argc, char **argv) {
-  request r = {.program = argv[0], .bits = 8};
+  request r = {.program = argv[0], .spectral.program = argv[0], .bits = 8};
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_error error = {0};
   if (r.list) return abbe_command_end(r.program, list_views(&r, &error), &error);
   abbe_image image = {0};
-  abbe_result result = abbe_exr_read(r.in, &image, &error);
+  abbe_result result = abbe_spectral_options_load(&r.spectral, &error);
+  if (result == ABBE_OK) result = abbe_exr_read(r.in, &image, &error);
   if (result == ABBE_OK) result = display(&r, &image, &error);
   abbe_image_free(&image);
+  abbe_spectral_options_free(&r.spectral);
   return abbe_command_end(r.program, result, &error);
 }

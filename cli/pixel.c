@@ -1,5 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/spectral_options.h"
 
 #include "colorimetry/colour_description.h"
 #include "colorimetry/image/exr.h"
@@ -14,8 +15,8 @@
 #include <string.h>
 
 typedef struct request {
-  const char *program, *path, *layer, *plot, *illuminant, *lit_by;
-  abbe_observer observer;
+  const char *program, *path, *layer, *plot;
+  abbe_spectral_options spectral;
   abbe_image_window window;
   bool placed, json;
 } request;
@@ -32,7 +33,7 @@ static void describe(const request *r, const abbe_pixel_probe *p, colours *out) 
   static const double d65[2] = {0.3127, 0.3290};
   *out = (colours){.has = {p->has_colour, p->has_spectral_xyz}};
   abbe_colour_description_make(p->xyz, d65, ABBE_OBSERVER_CIE_1931, &out->of[0]);
-  abbe_colour_description_make(p->spectral_xyz, p->white_xy, r->observer, &out->of[1]);
+  abbe_colour_description_make(p->spectral_xyz, p->white_xy, r->spectral.view.observer, &out->of[1]);
 }
 
 static const char *unit_of(const abbe_pixel_probe *p) {
@@ -79,7 +80,7 @@ static void print_text(const request *r, const abbe_image *image, const abbe_pix
            p->space.assumed ? " (assumed: the file does not say)" : "");
   if (c->has[0]) print_colour(&c->of[0]);
   if (c->has[1])
-    printf("\ncolour of the spectrum, %s, %s\n", abbe_observer_text(r->observer), unit_of(p));
+    printf("\ncolour of the spectrum, %s, %s\n", abbe_observer_text(r->spectral.view.observer), unit_of(p));
   if (c->has[1]) print_colour(&c->of[1]);
   printf("\n%-24s %14s %14s\n", "channel", "value", "std. error");
   for (size_t i = 0; i < p->channels; i++) {
@@ -127,7 +128,7 @@ static abbe_result print_json(const request *r, const abbe_image *image, const a
   bool made = cJSON_AddStringToObject(root, "file", r->path) != NULL &&
               cJSON_AddItemToObject(root, "window", cJSON_CreateIntArray(window, 4)) &&
               cJSON_AddNumberToObject(root, "pixels", (double)p->pixels) != NULL &&
-              cJSON_AddStringToObject(root, "observer", abbe_observer_name(r->observer)) != NULL;
+              cJSON_AddStringToObject(root, "observer", abbe_observer_name(r->spectral.view.observer)) != NULL;
   for (int i = 0; i < 2 && made; i++)
     if (c->has[i]) made = add_colour(root, sources[i], &c->of[i]);
   if (made && c->has[1])
@@ -146,8 +147,8 @@ static abbe_result plot(const request *r, const abbe_pixel_probe *p, abbe_error 
   const abbe_spectral_channels *s = &p->spectrum;
   if (s->count == 0)
     return abbe_error_set(error, ABBE_NOT_FOUND,
-                          "%s: it has no bands to plot; abbe trace --bands N makes a picture that "
-                          "has",
+                          "%s: it has no bands to plot; abbe render --bands N and abbe trace --bands "
+                          "N make pictures that have",
                           r->path);
   double *value = calloc(3 * s->count, sizeof *value), *low = value, *high = value;
   if (value == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the plot");
@@ -180,13 +181,6 @@ static abbe_result plot(const request *r, const abbe_pixel_probe *p, abbe_error 
   return result;
 }
 
-static abbe_result make_light(const char *name, abbe_illuminant *light,
-                              const abbe_illuminant **used, abbe_error *error) {
-  if (name == NULL) return ABBE_OK;
-  *used = light;
-  return abbe_illuminant_make(name, light, error);
-}
-
 static abbe_result probe(const request *r, const abbe_image *image, const abbe_spectral_view *view,
                          abbe_error *error) {
   abbe_pixel_probe p = {0};
@@ -203,32 +197,22 @@ static abbe_result probe(const request *r, const abbe_image *image, const abbe_s
   return result;
 }
 
-static abbe_result run(const request *r, abbe_error *error) {
+static abbe_result run(request *r, abbe_error *error) {
   abbe_image image = {0};
-  abbe_illuminant from = {0}, to = {0};
-  abbe_spectral_view view = {.observer = r->observer};
-  abbe_result result = make_light(r->lit_by, &from, &view.from, error);
-  if (result == ABBE_OK) result = make_light(r->illuminant, &to, &view.to, error);
+  abbe_result result = abbe_spectral_options_load(&r->spectral, error);
   if (result == ABBE_OK) result = abbe_exr_read(r->path, &image, error);
-  if (result == ABBE_OK) result = probe(r, &image, &view, error);
+  if (result == ABBE_OK) result = probe(r, &image, &r->spectral.view, error);
   abbe_image_free(&image);
-  abbe_illuminant_free(&from);
-  abbe_illuminant_free(&to);
+  abbe_spectral_options_free(&r->spectral);
   return result;
 }
 
 /* The command line */
 
-enum { KEY_LAYER = 256, KEY_OBSERVER, KEY_ILLUMINANT, KEY_LIT_BY, KEY_PLOT, KEY_JSON };
+enum { KEY_LAYER = 256, KEY_PLOT, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"layer", KEY_LAYER, "NAME", 0, "the channels NAME.R …, NAME.S0.550nm …", 0},
-    {"observer", KEY_OBSERVER, "NAME", 0,
-     "of the spectrum's colour: 1931, 1964, 2015-2 or 2015-10; without it, 1931", 0},
-    {"lit-by", KEY_LIT_BY, "NAME|FILE", ABBE_ARGUMENT_READS,
-     "the illuminant that all lights of the scene have", 0},
-    {"illuminant", KEY_ILLUMINANT, "NAME|FILE", ABBE_ARGUMENT_READS,
-     "another to see the spectrum under (a reflectance: D65 without it)", 0},
     {"plot", KEY_PLOT, "FILE", ABBE_ARGUMENT_WRITES, "the spectrum as a .png or .svg", 0},
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
     {0}};
@@ -255,24 +239,13 @@ static void set_place(request *r, const char *text, struct argp_state *state) {
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  const char *names[ABBE_OBSERVER_COUNT];
   request *r = state->input;
   switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &r->spectral;
+    return 0;
   case KEY_LAYER:
     r->layer = arg;
-    return 0;
-  case KEY_OBSERVER:
-    for (int i = 0; i < ABBE_OBSERVER_COUNT; i++) names[i] = abbe_observer_name((abbe_observer)i);
-    r->observer = abbe_observer_find(arg);
-    if (r->observer == ABBE_OBSERVER_COUNT)
-      r->observer = (abbe_observer)abbe_command_choice(r->program, "--observer", arg, names,
-                                                       ABBE_OBSERVER_COUNT);
-    return 0;
-  case KEY_LIT_BY:
-    r->lit_by = arg;
-    return 0;
-  case KEY_ILLUMINANT:
-    r->illuminant = arg;
     return 0;
   case KEY_PLOT:
     r->plot = arg;
@@ -297,8 +270,12 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   }
 }
 
+static const struct argp_child children[] = {
+    {&abbe_spectral_options_argp, 0, "How the spectrum is looked at:", 1}, {0}};
+
 static const struct argp parser = {
     .options = options,
+    .children = children,
     .parser = parse,
     .args_doc = "FILE.exr X,Y[:X1,Y1]",
     .doc =
@@ -314,7 +291,7 @@ static const struct argp parser = {
 };
 
 int abbe_command_pixel(int argc, char **argv) {
-  request r = {.program = argv[0]};
+  request r = {.program = argv[0], .spectral.program = argv[0]};
   abbe_arguments_parse(&parser, 0, argc, argv, &r);
   abbe_error error = {0};
   return abbe_command_end(r.program, run(&r, &error), &error);

@@ -1,5 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/spectral_options.h"
 
 #include "colorimetry/weights.h"
 
@@ -12,6 +13,7 @@ typedef struct request {
   size_t count;
   double min_nm, max_nm;
   abbe_rgb_space space;
+  abbe_observer observer;
   bool thesis, chosen, json; /* chosen: something that the set `thesis` fixes was asked for */
 } request;
 
@@ -22,7 +24,7 @@ static const char *const component_names[ABBE_RGB_SPACE_COUNT][3] = {
 
 /* What is printed: nodes, and a triple for each. */
 typedef struct table {
-  const char *space, *illuminant;
+  const char *space, *illuminant, *observer; /* NULL for the thesis's */
   const char *const *component;
   size_t count;
   const double *lambda_nm;
@@ -32,7 +34,9 @@ typedef struct table {
 } table;
 
 static void print_text(const table *t) {
-  printf("%s weights, illuminant %s\n\n", t->space, t->illuminant);
+  printf("%s weights, illuminant %s", t->space, t->illuminant);
+  if (t->observer != NULL) printf(", %s", t->observer);
+  printf("\n\n");
   printf("%12s %12s %12s %12s\n", "nm", t->component[0], t->component[1], t->component[2]);
   for (size_t i = 0; i < t->count; i++)
     printf("%12.6g %12.8f %12.8f %12.8f\n", t->lambda_nm[i], t->weight[i][0], t->weight[i][1],
@@ -59,6 +63,8 @@ static abbe_result print_json(const table *t, abbe_error *error) {
   made = made && cJSON_AddItemToObject(root, "sum", cJSON_CreateDoubleArray(t->sum, 3)) &&
          cJSON_AddStringToObject(root, "space", t->space) != NULL &&
          cJSON_AddStringToObject(root, "illuminant", t->illuminant) != NULL;
+  if (made && t->observer != NULL)
+    made = cJSON_AddStringToObject(root, "observer", t->observer) != NULL;
   abbe_result result = abbe_command_print_json(made ? root : NULL, error);
   cJSON_Delete(root);
   return result;
@@ -90,11 +96,12 @@ static abbe_result print_weights(const request *r, abbe_error *error) {
   abbe_weights weights = {0};
   abbe_result result = abbe_wavelengths_make(r->count, r->min_nm, r->max_nm, &samples, error);
   if (result == ABBE_OK) result = abbe_illuminant_make(r->illuminant, &light, error);
-  if (result == ABBE_OK) result = abbe_weights_make(&samples, &light, r->space, &weights, error);
+  if (result == ABBE_OK) result = abbe_weights_make_by(r->observer, &samples, &light, r->space, &weights, error);
   if (result == ABBE_OK) {
     bool tabulated = light.kind == ABBE_ILLUMINANT_TABULATED;
     const table t = {.space = abbe_rgb_space_name(r->space),
                      .illuminant = tabulated ? r->illuminant : abbe_illuminant_name(&light),
+                     .observer = abbe_observer_text(r->observer),
                      .component = component_names[r->space],
                      .count = weights.count,
                      .lambda_nm = samples.lambda_nm,
@@ -109,13 +116,14 @@ static abbe_result print_weights(const request *r, abbe_error *error) {
   return result;
 }
 
-enum { KEY_COUNT = 256, KEY_RANGE, KEY_ILLUMINANT, KEY_SPACE, KEY_SET, KEY_JSON };
+enum { KEY_COUNT = 256, KEY_RANGE, KEY_ILLUMINANT, KEY_OBSERVER, KEY_SPACE, KEY_SET, KEY_JSON };
 
 static const struct argp_option options[] = {
     {"count", KEY_COUNT, "N", 0, "wavelength samples, 1 to 4096; without it, 7", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "in nm; without it, 380:780", 0},
     {"illuminant", KEY_ILLUMINANT, "NAME|FILE", ABBE_ARGUMENT_READS,
      "D65, D50, A, E, or a file of two columns, wavelength and power; without it, D65", 0},
+    {"observer", KEY_OBSERVER, "NAME", 0, "1931, 1964, 2015-2 or 2015-10; without it, 1931", 0},
     {"space", KEY_SPACE, "SPACE", 0, "xyz, rec709 or acescg; without it, xyz", 0},
     {"set", KEY_SET, "SET", 0, "cie, or thesis: the thesis's seven RGB triples as printed", 0},
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
@@ -143,6 +151,9 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case KEY_ILLUMINANT:
     r->illuminant = arg;
     return 0;
+  case KEY_OBSERVER:
+    r->observer = abbe_spectral_options_observer(r->program, arg);
+    return 0;
   case KEY_SPACE:
     r->space = choose_space(r, arg);
     return 0;
@@ -158,7 +169,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case ARGP_KEY_END:
     if (r->thesis && r->chosen)
       argp_error(state, "--set thesis fixes its samples; it goes without --count, --range, "
-                        "--illuminant and --space");
+                        "--illuminant, --observer and --space");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

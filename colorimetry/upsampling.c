@@ -44,6 +44,21 @@ void abbe_upsampling_basis(double lambda_nm, double basis[3]) {
   basis[1] = fmax(1 - basis[0] - basis[2], 0);
 }
 
+/* Trapezoids between knots: exact. */
+void abbe_upsampling_basis_mean(double from_nm, double to_nm, double mean[3]) {
+  double sum[3] = {0}, here[3], there[3];
+  abbe_upsampling_basis(from_nm, mean);
+  if (!(from_nm < to_nm)) return;
+  for (double at = from_nm; at < to_nm;) {
+    const double next = fmin(step_nm * floor(at / step_nm) + step_nm, to_nm);
+    abbe_upsampling_basis(at, here);
+    abbe_upsampling_basis(next, there);
+    for (int k = 0; k < 3; k++) sum[k] += 0.5 * (next - at) * (here[k] + there[k]);
+    at = next;
+  }
+  for (int k = 0; k < 3; k++) mean[k] = sum[k] / (to_nm - from_nm);
+}
+
 static bool make_coefficients(abbe_upsampling *u) {
   const double most = 100; /* a standard illuminant's are below 2 */
   double of_basis[9], inverse[9];

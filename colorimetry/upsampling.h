@@ -31,6 +31,9 @@ extern "C" {
  * they stay what they are at the end. For red, green and blue, in this order. */
 void abbe_upsampling_basis(double lambda_nm, double basis[3]);
 
+/* Their means over [from_nm, to_nm]; at from_nm where that is empty. */
+void abbe_upsampling_basis_mean(double from_nm, double to_nm, double mean[3]);
+
 /* How colours are lifted under one illuminant over one range of wavelengths. */
 typedef struct abbe_upsampling {
   const abbe_illuminant *illuminant; /* not owned: it outlives this */

@@ -54,9 +54,9 @@ static void sum_weights(abbe_weights *weights) {
   abbe_sum3_get(&sum, weights->sum);
 }
 
-abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
-                              const abbe_illuminant *illuminant, abbe_rgb_space space,
-                              abbe_weights *out, abbe_error *error) {
+abbe_result abbe_weights_make_by(abbe_observer observer, const abbe_wavelengths *wavelengths,
+                                 const abbe_illuminant *illuminant, abbe_rgb_space space,
+                                 abbe_weights *out, abbe_error *error) {
   ABBE_REQUIRE(wavelengths && wavelengths->count > 0 && illuminant && out, error);
   *out = (abbe_weights){0};
   abbe_weights weights = {.count = wavelengths->count};
@@ -65,8 +65,8 @@ abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
     return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for %zu weights",
                           weights.count);
   for (size_t i = 0; i < weights.count; i++)
-    abbe_observer_integral(illuminant, wavelengths->edge_nm[i], wavelengths->edge_nm[i + 1],
-                           weights.weight[i]);
+    abbe_observer_integral_by(observer, illuminant, wavelengths->edge_nm[i],
+                              wavelengths->edge_nm[i + 1], weights.weight[i]);
   sum_weights(&weights);
   double white_y = weights.sum[1];
   if (!(white_y > 0 && isfinite(white_y))) {
@@ -87,6 +87,13 @@ abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
   sum_weights(&weights);
   *out = weights;
   return ABBE_OK;
+}
+
+abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
+                              const abbe_illuminant *illuminant, abbe_rgb_space space,
+                              abbe_weights *out, abbe_error *error) {
+  ABBE_REQUIRE(wavelengths && illuminant && out, error);
+  return abbe_weights_make_by(ABBE_OBSERVER_CIE_1931, wavelengths, illuminant, space, out, error);
 }
 
 void abbe_weights_free(abbe_weights *weights) {

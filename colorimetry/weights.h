@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "colorimetry/illuminant.h"
+#include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 #include "spectral/wavelengths.h"
 
@@ -30,6 +31,10 @@ typedef struct abbe_weights {
 abbe_result abbe_weights_make(const abbe_wavelengths *wavelengths,
                               const abbe_illuminant *illuminant, abbe_rgb_space space,
                               abbe_weights *out, abbe_error *error);
+/* The same for any observer; RGB is then its XYZ through the space's matrix. */
+abbe_result abbe_weights_make_by(abbe_observer observer, const abbe_wavelengths *wavelengths,
+                                 const abbe_illuminant *illuminant, abbe_rgb_space space,
+                                 abbe_weights *out, abbe_error *error);
 void abbe_weights_free(abbe_weights *weights);
 
 /* An illuminant over a range of wavelengths, and what the bands of that range are divided by.

@@ -1,5 +1,5 @@
-foreach(name axis chart chromaticity colour_map colour_temperature difference display_ocio exr illuminant image material_chart text_plot observer png_file screen_png sheet
-        pixel_probe radiance_file rgb_encoding rgb_space spectral_channels spectral_colour upsampling weights)
+foreach(name axis chart chromaticity colour_map colour_temperature difference display_ocio exr false_colours illuminant image material_chart text_plot observer png_file screen_png sheet
+        pixel_probe radiance_file relight rgb_encoding rgb_space spectral_channels spectral_colour upsampling weights)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 target_link_libraries(test_rgb_encoding PRIVATE PkgConfig::LCMS)

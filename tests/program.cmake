@@ -47,6 +47,7 @@ foreach(name
     outline_command
     pixel_command
     printable_output
+    relight_command
     render_command
     trace_command
     tilt turntable

@@ -45,6 +45,7 @@ foreach(name
     inner_walk
     spectral_sampling
     reference
+    relit_trace
     sphere_quadrature
     trace_run
     tracer

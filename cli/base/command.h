@@ -31,6 +31,7 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(export, "write a scene for pbrt, Mitsuba, LuxCore, glTF, Blender or POV-Ray")                  \
   X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
+  X(relight, "show a spectral picture to another observer, or under another illuminant")              \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
   X(sweep, "measure settings: time against error, and which are worth it")                         \
   X(compare, "say how far a picture or a receiver map is from a reference")                        \

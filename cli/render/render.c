@@ -40,7 +40,8 @@ static const struct argp_option options[] = {
      "the picture for a display, through OpenColorIO", 0},
     {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8)", 0},
     {"aovs", OPTION_AOVS, NULL, 0, "direct and caustic light and distance in the EXR too", 0},
-    {"bands", OPTION_BANDS, "N", 0, "N bands of wavelengths in the saved map too, in W/nm", 0},
+    {"bands", OPTION_BANDS, "N", 0,
+     "N bands of wavelengths in the EXR and the saved map too: N frames more", 0},
     {"unfilled", OPTION_UNFILLED, NULL, 0, "the thesis's map before its fill", 0},
     {"stats", OPTION_STATS, "FILE", ABBE_ARGUMENT_WRITES,
      "times, photons and the energy ledger as JSON", 0},
@@ -123,12 +124,12 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
     if (q->of_png != NULL && q->png == NULL)
       argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
-    if (q->bands > 0 && q->map.save == NULL)
-      argp_error(state, "--bands are those of a map: give --save-map FILE.exr too");
+    if (q->bands > 0 && q->map.save == NULL && q->exr == NULL)
+      argp_error(state, "--bands are those of -o FILE.exr and --save-map FILE.exr: give one");
     if (q->turntable.frames > 0 && (q->map.save != NULL || q->frames > 0 || q->errors.asked ||
-                                    (q->exr == NULL && q->png == NULL)))
+                                    q->bands > 0 || (q->exr == NULL && q->png == NULL)))
       argp_error(state, "--turntable writes frames by -o FILE.exr and --png FILE.png, and goes "
-                        "without --save-map, --frames and --error-bars");
+                        "without --save-map, --frames, --bands and --error-bars");
     if (q->errors.mean && q->aovs)
       argp_error(state, "--mean has no --aovs: they are of one picture, not of the mean");
     return 0;
@@ -260,6 +261,8 @@ static abbe_result write_picture(request *q, const abbe_scene *scene, abbe_conte
   if (result == ABBE_OK)
     result = abbe_error_options_work(&q->errors, context, scene, renderer, q->quiet, &image, bars,
                                      error);
+  if (result == ABBE_OK && q->exr != NULL && q->bands > 0)
+    result = abbe_render_add_bands(q, scene, context, &image, error);
   if (result == ABBE_OK && q->exr != NULL) result = abbe_exr_write(q->exr, &image, error);
   if (result == ABBE_OK && q->map.save != NULL) result = abbe_render_save_map(q, renderer, error);
   if (result == ABBE_OK && q->png != NULL) result = abbe_render_write_png(q, &image, error);
@@ -322,6 +325,7 @@ static abbe_result render(request *q, const abbe_scene *scene, abbe_context *con
 static const char *renderers_own(const request *q) {
   const abbe_render_desc *d = &q->render.desc;
   return q->aovs                              ? "--aovs"
+         : q->bands > 0                       ? "--bands"
          : q->map.save != NULL                ? "--save-map"
          : q->map.like != NULL                ? "--map-like"
          : q->frames > 0                      ? "--frames"
@@ -421,6 +425,7 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/gem.yaml --png gem.png --budget-ms 100 --json\n"
       "  abbe render scenes/gem.yaml -o gem.exr --error-bars --error-png gem-error.png\n"
       "  abbe render scenes/stone.yaml --turntable 72 --png stone.png --size 256x256\n"
+      "  abbe render scenes/prism.yaml -o bands.exr --bands 20\n"
       "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
       children,
       NULL,

@@ -50,6 +50,9 @@ abbe_result abbe_render_write_traced_stats(const abbe_render_request *request, a
 /* Says in the picture what made it. */
 abbe_result abbe_render_annotate(const abbe_render_request *request, const abbe_renderer *renderer,
                                  const abbe_context *context, abbe_image *image, abbe_error *error);
+/* Adds the request's bands to the picture that the context's renderer has drawn. */
+abbe_result abbe_render_add_bands(const abbe_render_request *request, const abbe_scene *scene,
+                                  abbe_context *context, abbe_image *picture, abbe_error *error);
 abbe_result abbe_render_write_png(const abbe_render_request *request, const abbe_image *image,
                                   abbe_error *error);
 abbe_result abbe_render_save_map(const abbe_render_request *request, abbe_renderer *renderer,

@@ -1,10 +1,12 @@
 #include "cli/base/command.h"
+#include "cli/base/progress.h"
 #include "cli/render/render_request.h"
 
 #include "base/clock.h"
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
 #include "colorimetry/image/screen_png.h"
+#include "gl/band_picture.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>
@@ -114,6 +116,19 @@ abbe_result abbe_render_annotate(const request *q, const abbe_renderer *renderer
     result = abbe_image_set_attribute(
         image, "abbe:unit",
         abbe_profile_is_printed(d->profile) ? "display brightness" : "radiance, W/(m2 sr)", error);
+  return result;
+}
+
+abbe_result abbe_render_add_bands(const request *q, const abbe_scene *scene, abbe_context *context,
+                                  abbe_image *picture, abbe_error *error) {
+  abbe_progress progress;
+  abbe_image bands = {0};
+  abbe_progress_begin(&progress, "bands", q->quiet);
+  abbe_result result = abbe_band_picture_make(context, scene, &q->render.desc, q->bands,
+                                              abbe_progress_update, &progress, &bands, error);
+  abbe_progress_end(&progress);
+  if (result == ABBE_OK) result = abbe_image_append(picture, &bands, error);
+  abbe_image_free(&bands);
   return result;
 }
 

@@ -153,6 +153,54 @@ size_t abbe_image_find_channel(const abbe_image *image, const char *name) {
   return (size_t)-1;
 }
 
+static abbe_result check_append(const abbe_image *image, const abbe_image *other,
+                                abbe_error *error) {
+  if (image->width != other->width || image->height != other->height)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "channels of %zu x %zu pixels do not belong to a picture of %zu x %zu",
+                          other->width, other->height, image->width, image->height);
+  for (size_t c = 0; c < other->channels; c++)
+    if (abbe_image_find_channel(image, other->channel[c]) != (size_t)-1)
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "the picture has a channel '%s' already",
+                            other->channel[c]);
+  return ABBE_OK;
+}
+
+abbe_result abbe_image_append(abbe_image *image, const abbe_image *other, abbe_error *error) {
+  ABBE_REQUIRE(image && other, error);
+  const size_t first = image->channels, more = other->channels, all = first + more;
+  abbe_image both = {0};
+  abbe_result result = check_append(image, other, error);
+  if (result != ABBE_OK) return result;
+  const char **name = calloc(all + 1, sizeof *name);
+  if (name == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for channels");
+  for (size_t c = 0; c < all; c++)
+    name[c] = c < first ? image->channel[c] : other->channel[c - first];
+  result = abbe_image_make(image->width, image->height, all, name, &both, error);
+  free(name);
+  for (size_t i = 0; i < other->attribute_count && result == ABBE_OK; i++)
+    if (find_attribute(image, other->attribute[i].name) == NULL)
+      result = abbe_image_set_attribute(image, other->attribute[i].name, other->attribute[i].text,
+                                        error);
+  if (result != ABBE_OK) {
+    abbe_image_free(&both);
+    return result;
+  }
+  for (size_t p = 0; p < image->width * image->height; p++) {
+    memcpy(both.data + p * all, image->data + p * first, first * sizeof(float));
+    memcpy(both.data + p * all + first, other->data + p * more, more * sizeof(float));
+  }
+  const abbe_image old = *image;
+  image->channels = all;
+  image->channel = both.channel;
+  image->data = both.data;
+  both.channels = old.channels;
+  both.channel = old.channel;
+  both.data = old.data;
+  abbe_image_free(&both);
+  return ABBE_OK;
+}
+
 void abbe_image_band_name(double middle_nm, char *out, size_t size) {
   char number[64];
   abbe_number_format(number, sizeof number, "%.6f", middle_nm);

@@ -70,6 +70,11 @@ abbe_result abbe_image_set_attribute(abbe_image *image, const char *name, const 
 /* The text of an attribute, or NULL. */
 const char *abbe_image_attribute_text(const abbe_image *image, const char *name);
 
+/* Adds another picture's channels behind the image's own, and its attributes where the image has none
+ * of their names. ABBE_INVALID_ARGUMENT, the image untouched, where the sizes differ, where they have
+ * a channel in common, and for too many channels. */
+abbe_result abbe_image_append(abbe_image *image, const abbe_image *other, abbe_error *error);
+
 /* Index of the named channel, or (size_t)-1. */
 size_t abbe_image_find_channel(const abbe_image *image, const char *name);
 

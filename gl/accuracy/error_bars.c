@@ -364,33 +364,5 @@ void abbe_error_bars_free(abbe_error_bars *bars) {
 abbe_result abbe_error_bars_attach(const abbe_error_bars *bars, abbe_image *picture,
                                    abbe_error *error) {
   ABBE_REQUIRE(bars && bars->error.data && picture && picture->data, error);
-  const char *name[16];
-  size_t first = picture->channels, pixels = picture->width * picture->height;
-  if (first + 3 > sizeof name / sizeof *name || bars->error.width != picture->width ||
-      bars->error.height != picture->height)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "errors of %zu x %zu pixels do not belong to a picture of %zu x %zu with "
-                          "%zu channels",
-                          bars->error.width, bars->error.height, picture->width, picture->height,
-                          first);
-  for (size_t c = 0; c < first; c++) name[c] = picture->channel[c];
-  for (size_t c = 0; c < 3; c++) name[first + c] = bars->error.channel[c];
-  abbe_image both = {0};
-  abbe_result result =
-      abbe_image_make(picture->width, picture->height, first + 3, name, &both, error);
-  for (size_t i = 0; i < picture->attribute_count && result == ABBE_OK; i++)
-    result = abbe_image_set_attribute(&both, picture->attribute[i].name, picture->attribute[i].text,
-                                      error);
-  if (result != ABBE_OK) {
-    abbe_image_free(&both);
-    return result;
-  }
-  memcpy(both.xy, picture->xy, sizeof both.xy);
-  for (size_t p = 0; p < pixels; p++) {
-    memcpy(both.data + p * (first + 3), picture->data + p * first, first * sizeof(float));
-    memcpy(both.data + p * (first + 3) + first, bars->error.data + 3 * p, 3 * sizeof(float));
-  }
-  abbe_image_free(picture);
-  *picture = both;
-  return ABBE_OK;
+  return abbe_image_append(picture, &bars->error, error);
 }

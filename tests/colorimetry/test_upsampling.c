@@ -245,12 +245,35 @@ static void metamers_are_off_by_this_much(void **state) {
   }
 }
 
+/* Of three knots' trapezoids, and of whole ranges by many points. */
+static void means_are_integrals(void **state) {
+  (void)state;
+  static const double range[][2] = {{380, 780}, {492.5, 517.3}, {551, 553}, {300, 400}, {770, 900}};
+  for (size_t i = 0; i < sizeof range / sizeof *range; i++) {
+    enum { POINTS = 20000 };
+    double mean[3], sum[3] = {0};
+    for (int p = 0; p < POINTS; p++) {
+      double basis[3];
+      abbe_upsampling_basis(range[i][0] + (range[i][1] - range[i][0]) * (p + 0.5) / POINTS, basis);
+      for (int k = 0; k < 3; k++) sum[k] += basis[k] / POINTS;
+    }
+    abbe_upsampling_basis_mean(range[i][0], range[i][1], mean);
+    for (int k = 0; k < 3; k++) assert_near(mean[k], sum[k], 1e-7);
+    assert_near(mean[0] + mean[1] + mean[2], 1, 1e-12);
+  }
+  double mean[3], basis[3];
+  abbe_upsampling_basis_mean(500, 500, mean);
+  abbe_upsampling_basis(500, basis);
+  for (int k = 0; k < 3; k++) assert_true(mean[k] == basis[k]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(functions_are_a_partition_of_one),
       cmocka_unit_test(spectra_have_the_colour),
       cmocka_unit_test(white_is_the_illuminant),
       cmocka_unit_test(under_d65_it_is_rec709),
+      cmocka_unit_test(means_are_integrals),
       cmocka_unit_test(matrices_add_up),
       cmocka_unit_test(least_values_are_known),
       cmocka_unit_test(too_few_colours),

@@ -295,6 +295,35 @@ static void test_thesis(void **state) {
   }
 }
 
+/* Whites of the observer of 1964 [CIE15], and equal energy, a third each of any. */
+static void test_other_observers(void **state) {
+  (void)state;
+  static const struct {
+    abbe_observer observer;
+    abbe_illuminant_kind kind;
+    double xy[2], tolerance;
+  } of[] = {{ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_D65, {0.31382, 0.33100}, 6e-5},
+            {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_A, {0.45117, 0.40594}, 6e-5},
+            {ABBE_OBSERVER_CIE_1964, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4},
+            {ABBE_OBSERVER_CIE_2015_2, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4},
+            {ABBE_OBSERVER_CIE_2015_10, ABBE_ILLUMINANT_E, {1.0 / 3, 1.0 / 3}, 2e-4}};
+  abbe_wavelengths samples;
+  assert_int_equal(abbe_wavelengths_make(9, 380, 780, &samples, NULL), ABBE_OK);
+  for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+    const abbe_illuminant light = {.kind = of[i].kind};
+    abbe_weights weights;
+    assert_int_equal(abbe_weights_make_by(of[i].observer, &samples, &light, ABBE_RGB_SPACE_XYZ,
+                                          &weights, NULL),
+                     ABBE_OK);
+    const double all = weights.sum[0] + weights.sum[1] + weights.sum[2];
+    assert_true(fabs(weights.sum[1] - 1) < 1e-12);
+    for (int k = 0; k < 2; k++)
+      assert_true(fabs(weights.sum[k] / all - of[i].xy[k]) < of[i].tolerance);
+    abbe_weights_free(&weights);
+  }
+  abbe_wavelengths_free(&samples);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_whites),
@@ -310,6 +339,7 @@ int main(void) {
       cmocka_unit_test(test_rgb_keeps_negatives_and_is_the_matrix_times_xyz),
       cmocka_unit_test(test_a_table_with_knots_of_its_own),
       cmocka_unit_test(test_no_light_in_range),
+      cmocka_unit_test(test_other_observers),
       cmocka_unit_test(test_thesis)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,7 +99,7 @@ static void add_splat(const sink *s, const splat *p) {
   if (t->bands.count == 0) return;
   abbe_reflectance_rec709(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
   size_t band = t->bands.of_step[l->step];
-  float kept = abbe_reflectance_band(rgb, t->bands.middle_nm[band]);
+  float kept = abbe_reflectance_band(rgb, t->bands.basis[band]);
   abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_BANDS + band,
                        value * kept * t->sampling.power[colour] / (float)t->bands.width_nm);
 }

@@ -67,9 +67,3 @@ void abbe_reflectance_at(const abbe_reflectance *r, uint32_t surface, uint32_t f
     out[k] =
         r->to_space[3 * k] * c[0] + r->to_space[3 * k + 1] * c[1] + r->to_space[3 * k + 2] * c[2];
 }
-
-float abbe_reflectance_band(const float rec709[3], double lambda_nm) {
-  float green = (float)fmin(fmax((lambda_nm - 480) / 20, 0), 1);
-  float red = (float)fmin(fmax((lambda_nm - 570) / 20, 0), 1);
-  return rec709[2] * (1 - green) + rec709[1] * (green - red) + rec709[0] * red;
-}

@@ -23,7 +23,7 @@ static void add_light(const abbe_eye_context *c, const abbe_eye_path *p, size_t 
       if (b->of_step[p->step] != i) continue;
       power = w->sampling->power[light * steps + p->step] / (float)b->width_nm;
     }
-    float kept = rec709 ? abbe_reflectance_band(rec709, b->middle_nm[i]) : 1;
+    float kept = rec709 ? abbe_reflectance_band(rec709, b->basis[i]) : 1;
     c->out->band[i] += share * kept * power;
   }
 }
@@ -55,7 +55,7 @@ static void add_environment(const abbe_eye_context *c, const abbe_eye_path *p, c
                       (reflectance ? reflectance[k] : 1);
   const abbe_bands *b = w->bands;
   for (size_t i = 0; i < b->count; i++) {
-    float kept = rec709 ? abbe_reflectance_band(rec709, b->middle_nm[i]) : 1;
+    float kept = rec709 ? abbe_reflectance_band(rec709, b->basis[i]) : 1;
     c->out->band[i] +=
         share * kept * abbe_eye_dot(e->band[i], rgb) * b->power[e->light * b->count + i];
   }
@@ -104,7 +104,7 @@ static void add_caustic(const abbe_eye_context *c, const abbe_eye_path *p, const
     c->out->caustic[k] += add;
   }
   for (size_t i = 0; i < w->bands->count; i++)
-    c->out->band[i] += scale * g.band[i] * abbe_reflectance_band(rec709, w->bands->middle_nm[i]);
+    c->out->band[i] += scale * g.band[i] * abbe_reflectance_band(rec709, w->bands->basis[i]);
 }
 
 /* Irradiance of a light at the hit on the viewer's side, W/m2, seen past everything. n faces the

@@ -121,6 +121,37 @@ static void test_attributes(void **state) {
   abbe_image_free(&image);
 }
 
+static void test_append(void **state) {
+  (void)state;
+  static const char *const more[] = {"S0.500nm", "Z"};
+  abbe_image image, other, twice;
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(2, 1, 3, rgb, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_image_make(2, 1, 2, more, &other, NULL), ABBE_OK);
+  assert_int_equal(abbe_image_make(1, 2, 1, more, &twice, NULL), ABBE_OK);
+  for (int i = 0; i < 6; i++) image.data[i] = (float)i;
+  for (int i = 0; i < 4; i++) other.data[i] = (float)(10 + i);
+  image.xy[0] = 0.64;
+  assert_int_equal(abbe_image_set_attribute(&image, "a", "own", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&other, "a", "its", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_set_attribute(&other, "b", "its", NULL), ABBE_OK);
+  assert_int_equal(abbe_image_append(&image, &twice, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "1 x 2"));
+  assert_int_equal(abbe_image_append(&image, &other, NULL), ABBE_OK);
+  assert_int_equal(image.channels, 5);
+  assert_string_equal(image.channel[3], "S0.500nm");
+  static const float expected[] = {0, 1, 2, 10, 11, 3, 4, 5, 12, 13};
+  for (int i = 0; i < 10; i++) assert_true(image.data[i] == expected[i]);
+  assert_true(image.xy[0] == 0.64 && image.width == 2);
+  assert_string_equal(abbe_image_attribute_text(&image, "a"), "own");
+  assert_string_equal(abbe_image_attribute_text(&image, "b"), "its");
+  assert_int_equal(abbe_image_append(&image, &other, &error), ABBE_INVALID_ARGUMENT);
+  assert_non_null(strstr(error.text, "'S0.500nm' already"));
+  abbe_image_free(&twice);
+  abbe_image_free(&other);
+  abbe_image_free(&image);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_make_is_black_and_named),
                                      cmocka_unit_test(test_sizes_are_checked_first),
@@ -128,6 +159,7 @@ int main(void) {
                                      cmocka_unit_test(test_attributes_have_a_limit),
                                      cmocka_unit_test(test_places),
                                      cmocka_unit_test(test_names_are_needed),
+                                     cmocka_unit_test(test_append),
                                      cmocka_unit_test(test_attributes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,137 @@
+#include "cli/base/arguments.h"
+#include "cli/base/command.h"
+#include "cli/base/spectral_options.h"
+
+#include "colorimetry/image/exr.h"
+#include "colorimetry/image/screen_png.h"
+#include "colorimetry/spectral_picture/relight.h"
+
+#include <argp.h>
+#include <stdio.h>
+
+typedef struct request {
+  const char *program, *in, *exr, *png;
+  const char *of_png; /* an option that the PNG alone has */
+  abbe_spectral_options spectral;
+  abbe_relight_desc desc;
+  abbe_display_desc display;
+} request;
+
+static abbe_result relight(const request *r, const abbe_image *image, abbe_error *error) {
+  abbe_image out = {0};
+  abbe_relight_desc desc = r->desc;
+  desc.view = r->spectral.view;
+  abbe_result result = abbe_relight_make(image, r->in, &desc, &out, error);
+  if (result == ABBE_OK && r->spectral.illuminant != NULL)
+    result = abbe_image_set_attribute(&out, "abbe:illuminant", r->spectral.illuminant, error);
+  if (result == ABBE_OK && r->exr != NULL) result = abbe_exr_write(r->exr, &out, error);
+  const abbe_screen_png_desc png = {.display = r->display, .name = r->in};
+  if (result == ABBE_OK && r->png != NULL)
+    result = abbe_screen_png_write(r->png, &out, &png, error);
+  if (result == ABBE_OK)
+    fprintf(stderr, "%s; 1 is %s\n", abbe_image_attribute_text(&out, "abbe:observer"),
+            abbe_image_attribute_text(&out, "abbe:unit"));
+  abbe_image_free(&out);
+  return result;
+}
+
+enum { KEY_PNG = 256, KEY_SPACE, KEY_LAYER, KEY_BANDS, KEY_RELATIVE, KEY_VIEW, KEY_EXPOSURE };
+
+static const struct argp_option options[] = {
+    {"output", 'o', "OUT.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
+    {"png", KEY_PNG, "OUT.png", ABBE_ARGUMENT_WRITES,
+     "the picture for a display, through OpenColorIO", 0},
+    {"space", KEY_SPACE, "NAME", 0, "acescg, rec709 or xyz; without it, acescg", 0},
+    {"layer", KEY_LAYER, "NAME", 0, "the channels NAME.S0.550nm …", 0},
+    {"bands", KEY_BANDS, NULL, 0, "keep the bands too, under the new illuminant", 0},
+    {"relative", KEY_RELATIVE, NULL, 0,
+     "without --lit-by: an even 1 W/(m2 sr nm) is Y = 1, not lm (of a radiance: cd/m2)", 0},
+    {"view", KEY_VIEW, "NAME", 0, "of the PNG's display", 0},
+    {"exposure", KEY_EXPOSURE, "STOPS", 0, "of the PNG (0)", 0},
+    {0}};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  const char *spaces[ABBE_RGB_SPACE_COUNT];
+  request *r = state->input;
+  switch (key) {
+  case ARGP_KEY_INIT:
+    state->child_inputs[0] = &r->spectral;
+    return 0;
+  case 'o':
+    r->exr = abbe_command_target(state->name, "-o", text, ".exr");
+    return 0;
+  case KEY_PNG:
+    r->png = abbe_command_target(state->name, "--png", text, ".png");
+    return 0;
+  case KEY_SPACE:
+    for (int i = 0; i < ABBE_RGB_SPACE_COUNT; i++)
+      spaces[i] = abbe_rgb_space_name((abbe_rgb_space)i);
+    r->desc.space = (abbe_rgb_space)abbe_command_choice(r->program, "--space", text, spaces,
+                                                        ABBE_RGB_SPACE_COUNT);
+    return 0;
+  case KEY_LAYER:
+    r->desc.layer = text;
+    return 0;
+  case KEY_BANDS:
+    r->desc.bands = true;
+    return 0;
+  case KEY_RELATIVE:
+    r->desc.relative = true;
+    return 0;
+  case KEY_VIEW:
+    r->of_png = "--view";
+    r->display.view = text;
+    return 0;
+  case KEY_EXPOSURE:
+    r->of_png = "--exposure";
+    r->display.exposure = abbe_command_number(
+        r->program, "--exposure", text, -ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
+    return 0;
+  case ARGP_KEY_ARG:
+    if (r->in != NULL) argp_error(state, "'%s' is one argument too many", text);
+    r->in = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (r->in == NULL) argp_error(state, "which file?");
+    if (r->exr == NULL && r->png == NULL)
+      argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
+    if (r->of_png != NULL && r->png == NULL)
+      argp_error(state, "%s is for the PNG: give --png FILE.png too", r->of_png);
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const struct argp_child children[] = {
+    {&abbe_spectral_options_argp, 0, "How the spectrum is looked at:", 1}, {0}};
+
+static const struct argp parser = {
+    .options = options,
+    .children = children,
+    .parser = parse,
+    .args_doc = "IN.exr",
+    .doc =
+        "Shows a spectral picture to another observer, or under another illuminant, by its bands: "
+        "nothing is rendered anew.\v"
+        "Examples:\n"
+        "  abbe relight bands.exr --lit-by D65 --illuminant A -o evening.exr --png evening.png\n"
+        "  abbe relight bands.exr --lit-by D65 --observer 1964 --space xyz -o wide.exr\n"
+        "  abbe relight bands.exr --lit-by D65 --illuminant led.csv --bands -o led.exr\n"
+        "  abbe relight chart.exr --illuminant D50 --png chart.png\n",
+};
+
+int abbe_command_relight(int argc, char **argv) {
+  request r = {.program = argv[0], .spectral.program = argv[0]};
+  abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
+  abbe_error error = {0};
+  abbe_image image = {0};
+  const char *const targets[] = {r.exr, r.png};
+  abbe_result result = abbe_command_check_targets(targets, 2, &error);
+  if (result == ABBE_OK) result = abbe_spectral_options_load(&r.spectral, &error);
+  if (result == ABBE_OK) result = abbe_exr_read(r.in, &image, &error);
+  if (result == ABBE_OK) result = relight(&r, &image, &error);
+  abbe_image_free(&image);
+  abbe_spectral_options_free(&r.spectral);
+  return abbe_command_end(r.program, result, &error);
+}

@@ -1,0 +1,40 @@
+/* false_colours.h: one number a pixel of a picture, in false colours with its scale: a band of
+ * wavelengths, a distance, a standard error.
+ *
+ * What is a colour is screen_png.h's.
+ */
+#ifndef ABBE_COLORIMETRY_PLOT_FALSE_COLOURS_H
+#define ABBE_COLORIMETRY_PLOT_FALSE_COLOURS_H
+
+#include "colorimetry/image/image.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Whether what a layer's name means is shown in false colours: a channel of that name ("depth.Z",
+ * "S0.550,000000nm", "stderr.R"); a wavelength ("550nm") that a band of the picture holds; a layer
+ * of standard errors ("stderr", "stderr.NAME"), whose R, G, B are no colour. */
+bool abbe_false_colours_mean(const abbe_image *image, const char *layer);
+
+/* Writes that layer to path (.png or .svg). A scale from 0 to a round number that 999 of 1000 values
+ * are below; between the least and the greatest, where all lie in the upper half; about 0 in two
+ * colours, where some are negative; of standard errors by their logarithm, three decades. What is
+ * not finite is green. `name` is what errors call the picture. ABBE_NOT_FOUND where nothing has that
+ * name, with what there is. */
+abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
+                                     const char *name, abbe_error *error);
+
+/* The values of that layer, image->width x image->height, malloc'd; of R, G, B of errors: what Y's
+ * is at the most. *title, of title_size bytes, says what they are, *is_error whether they are
+ * errors. */
+abbe_result abbe_false_colours_values(const abbe_image *image, const char *layer, const char *name,
+                                      float **values, char *title, size_t title_size,
+                                      bool *is_error, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

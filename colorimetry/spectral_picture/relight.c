@@ -1,0 +1,170 @@
+#include "colorimetry/spectral_picture/relight.h"
+
+#include "colorimetry/observer_integral.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME = 40 };
+
+abbe_result abbe_relight_factors(const abbe_spectral_channels *c, const abbe_spectral_view *view,
+                                 double *factor, abbe_error *error) {
+  ABBE_REQUIRE(c && view && factor, error);
+  for (size_t i = 0; i < c->count; i++) factor[i] = 1;
+  if (c->kind != ABBE_SPECTRAL_EMISSIVE || view->from == NULL || view->to == NULL) return ABBE_OK;
+  const double low = c->edge_nm[0], high = c->edge_nm[c->count];
+  const double all_from = abbe_observer_integral_power(view->from, low, high),
+               all_to = abbe_observer_integral_power(view->to, low, high);
+  for (size_t i = 0; i < c->count; i++) {
+    const double from =
+        abbe_observer_integral_power(view->from, c->edge_nm[i], c->edge_nm[i + 1]) / all_from;
+    const double to =
+        abbe_observer_integral_power(view->to, c->edge_nm[i], c->edge_nm[i + 1]) / all_to;
+    factor[i] = from > 0 ? to / from : 0;
+  }
+  return ABBE_OK;
+}
+
+static bool has(const abbe_image *image, const char *layer, const char *channel) {
+  char name[300];
+  snprintf(name, sizeof name, "%s%s%s", layer != NULL ? layer : "", layer != NULL ? "." : "",
+           channel);
+  return abbe_image_find_channel(image, name) != (size_t)-1;
+}
+
+bool abbe_relight_is_needed(const abbe_image *image, const char *layer) {
+  abbe_spectral_channels c;
+  if (image == NULL || has(image, layer, "Y")) return false;
+  if (has(image, layer, "R") && has(image, layer, "G") && has(image, layer, "B")) return false;
+  if (abbe_spectral_channels_find(image, layer, "", &c, NULL) != ABBE_OK) return true;
+  const bool needed = c.count > 0;
+  abbe_spectral_channels_free(&c);
+  return needed;
+}
+
+/* Integral of ybar over the bands, nm: what light of 1 W/(m2 sr nm) has, over 683 lm/W. */
+static double even_y(const abbe_spectral_channels *c, abbe_observer observer) {
+  static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
+  double xyz[3];
+  abbe_observer_integral_by(observer, &even, c->edge_nm[0], c->edge_nm[c->count], xyz);
+  return xyz[1] / 100;
+}
+
+static const char *unit_of(const abbe_spectral_channels *c, const abbe_relight_desc *d) {
+  if (c->kind == ABBE_SPECTRAL_REFLECTIVE) return "of a perfect white under the illuminant";
+  if (d->view.from != NULL) return "radiance, W/(m2 sr)";
+  return d->relative ? "of an even 1 W/(m2 sr nm)" : "luminance, cd/m2";
+}
+
+static abbe_result make_image(const abbe_image *image, const abbe_spectral_channels *c,
+                              const abbe_relight_desc *d, abbe_image *out, abbe_error *error) {
+  static const char *const rgb[3] = {"R", "G", "B"}, *const xyz[3] = {"X", "Y", "Z"};
+  const size_t bands = d->bands ? c->count : 0;
+  const bool emissive = c->kind == ABBE_SPECTRAL_EMISSIVE;
+  char(*text)[NAME] = calloc(bands + 1, sizeof *text);
+  const char **name = calloc(bands + 3, sizeof *name);
+  abbe_result result = ABBE_OK;
+  if (text == NULL || name == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu bands", bands);
+  for (size_t k = 0; k < 3 && result == ABBE_OK; k++)
+    name[k] = d->space == ABBE_RGB_SPACE_XYZ ? xyz[k] : rgb[k];
+  for (size_t i = 0; i < bands && result == ABBE_OK; i++) {
+    char emitted[NAME];
+    abbe_image_band_name(c->lambda_nm[i], emitted, sizeof emitted);
+    snprintf(text[i], NAME, "%s%s", emissive ? "S0" : "T", emitted + 2);
+    name[3 + i] = text[i];
+  }
+  if (result == ABBE_OK)
+    result = abbe_image_make(image->width, image->height, 3 + bands, name, out, error);
+  free(text);
+  free(name);
+  return result;
+}
+
+static void fill(const abbe_image *image, const abbe_spectral_channels *c,
+                 const double (*weight)[3], const double *factor, const double matrix[9],
+                 abbe_image *out) {
+  for (size_t p = 0; p < image->width * image->height; p++) {
+    const float *from = image->data + p * image->channels;
+    float *to = out->data + p * out->channels;
+    double sum[3] = {0};
+    for (size_t i = 0; i < c->count; i++)
+      for (int k = 0; k < 3; k++) sum[k] += weight[i][k] * (double)from[c->channel[i]];
+    abbe_rgb_space_apply(matrix, sum, sum);
+    for (int k = 0; k < 3; k++) to[k] = (float)sum[k];
+    for (size_t i = 0; i + 3 < out->channels; i++)
+      to[3 + i] = (float)(factor[i] * (double)from[c->channel[i]]);
+  }
+}
+
+static abbe_result describe(const abbe_image *image, const abbe_spectral_channels *c,
+                            const abbe_relight_desc *d, abbe_image *out, abbe_error *error) {
+  static const char *const kept[] = {"abbe:scene", "emissiveUnits"};
+  const abbe_illuminant *light = d->view.to != NULL ? d->view.to : d->view.from;
+  abbe_rgb_space_chromaticities(d->space, out->xy);
+  out->display_window = image->display_window;
+  out->data_window = image->data_window;
+  abbe_result result =
+      abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(d->space), error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->view.observer),
+                                      error);
+  if (result == ABBE_OK && light != NULL)
+    result =
+        abbe_image_set_attribute(out, "abbe:illuminant", abbe_illuminant_name(light), error);
+  if (result == ABBE_OK) result = abbe_image_set_attribute(out, "abbe:unit", unit_of(c, d), error);
+  if (result == ABBE_OK && d->bands)
+    result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
+  for (size_t i = 0; i < sizeof kept / sizeof *kept && result == ABBE_OK; i++) {
+    const char *text = abbe_image_attribute_text(image, kept[i]);
+    if (text != NULL) result = abbe_image_set_attribute(out, kept[i], text, error);
+  }
+  return result;
+}
+
+static abbe_result relight(const abbe_image *image, const char *name,
+                           const abbe_spectral_channels *c, const abbe_relight_desc *d,
+                           double (*weight)[3], double *factor, abbe_image *out,
+                           abbe_error *error) {
+  double matrix[9];
+  abbe_result result = abbe_spectral_colour_weights(c, &d->view, name, weight, error);
+  if (result == ABBE_OK) result = abbe_relight_factors(c, &d->view, factor, error);
+  if (result == ABBE_OK) result = make_image(image, c, d, out, error);
+  if (result != ABBE_OK) return result;
+  abbe_rgb_space_from_xyz(d->space, matrix);
+  const bool unknown = c->kind == ABBE_SPECTRAL_EMISSIVE && d->view.from == NULL;
+  if (unknown && d->relative) {
+    const double unit = ABBE_SPECTRAL_COLOUR_KM * even_y(c, d->view.observer);
+    for (int k = 0; k < 9; k++) matrix[k] /= unit;
+  }
+  fill(image, c, (const double(*)[3])weight, factor, matrix, out);
+  result = describe(image, c, d, out, error);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
+}
+
+abbe_result abbe_relight_make(const abbe_image *image, const char *name,
+                              const abbe_relight_desc *desc, abbe_image *out, abbe_error *error) {
+  ABBE_REQUIRE(image && name && desc && out, error);
+  *out = (abbe_image){0};
+  abbe_spectral_channels c = {0};
+  abbe_result result = abbe_spectral_channels_find(image, desc->layer, name, &c, error);
+  if (result == ABBE_OK && c.count == 0)
+    result = abbe_error_set(error, ABBE_NOT_FOUND,
+                            "%s: it has no bands%s%s%s such as S0.550,000000nm; abbe render "
+                            "--bands N and abbe trace --bands N make pictures that have",
+                            name, desc->layer != NULL ? " in the layer '" : "",
+                            desc->layer != NULL ? desc->layer : "",
+                            desc->layer != NULL ? "'" : "");
+  if (result == ABBE_OK) {
+    double(*weight)[3] = calloc(c.count, sizeof *weight), *factor = calloc(c.count, sizeof *factor);
+    result = weight != NULL && factor != NULL
+                 ? relight(image, name, &c, desc, weight, factor, out, error)
+                 : abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for its bands", name);
+    free(weight);
+    free(factor);
+  }
+  abbe_spectral_channels_free(&c);
+  return result;
+}

@@ -1,0 +1,51 @@
+/* relight.h: a spectral picture as another observer sees it, or under another illuminant, made of
+ * its bands alone: nothing is rendered anew.
+ *
+ * What one light did in the scene and what another did is not told apart: all lights of the scene
+ * are taken to have one illuminant. It knows nothing of screens.
+ */
+#ifndef ABBE_COLORIMETRY_SPECTRAL_PICTURE_RELIGHT_H
+#define ABBE_COLORIMETRY_SPECTRAL_PICTURE_RELIGHT_H
+
+#include "colorimetry/rgb_space.h"
+#include "colorimetry/spectral_picture/spectral_colour.h"
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Zeroed: the bands outside of layers, as the observer of 1931 sees them, ACEScg. */
+typedef struct abbe_relight_desc {
+  const char *layer; /* the bands' own, as spectral_channels.h; NULL: none */
+  abbe_spectral_view view;
+  abbe_rgb_space space;
+  bool bands; /* keep them too: under view.to where there is one */
+  /* where the light is not known: light of 1 W/(m2 sr nm) at all wavelengths has Y = 1, instead of
+   * lm */
+  bool relative;
+} abbe_relight_desc;
+
+/* The picture's colours as channels R, G, B (X, Y, Z), with the space's chromaticities, windows and
+ * the attributes abbe:space, abbe:observer and abbe:unit. RGB of an observer other than that of
+ * 1931 is its XYZ through the space's matrix. `name` is what errors call the picture.
+ * ABBE_NOT_FOUND where it has no bands; errors of abbe_spectral_channels_find and
+ * abbe_spectral_colour_weights. */
+abbe_result abbe_relight_make(const abbe_image *image, const char *name,
+                              const abbe_relight_desc *desc, abbe_image *out, abbe_error *error);
+
+/* Whether its colours are in its bands alone: it has bands there, and neither R, G, B nor X, Y, Z nor
+ * Y. */
+bool abbe_relight_is_needed(const abbe_image *image, const char *layer);
+
+/* What each of an emissive picture's bands is multiplied by for another illuminant, of lights of
+ * the same watts over the bands' range: factor[channels->count], 0 where `from` is dark. 1
+ * throughout without view->to and for reflectances. */
+abbe_result abbe_relight_factors(const abbe_spectral_channels *channels,
+                                 const abbe_spectral_view *view, double *factor, abbe_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

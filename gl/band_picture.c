@@ -1,0 +1,250 @@
+#include "gl/band_picture.h"
+
+#include "colorimetry/upsampling.h"
+#include "colorimetry/weights.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_SIZE = 32 };
+
+/* ---- the scene of a band ---- */
+
+/* X + Y + Z of a watt in the band; 0 where it is dark or unseen. */
+static double brightness(const abbe_illuminant *light, const double band_nm[2]) {
+  double xyz[3];
+  abbe_weights_band_xyz(light, band_nm[0], band_nm[1], band_nm[0], band_nm[1], xyz);
+  return xyz[0] + xyz[1] + xyz[2];
+}
+
+/* Watts a nm in the band of a watt over the range. */
+static double density(const abbe_illuminant *light, const double range_nm[2],
+                      const double band_nm[2]) {
+  return abbe_weights_band_power(light, range_nm[0], range_nm[1], band_nm[0], band_nm[1]) /
+         (band_nm[1] - band_nm[0]);
+}
+
+/* Lights of several illuminants differ in how bright a watt of the band is; the sum counts each by
+ * its own. One that is dark there keeps its place, without power. */
+static void dim(abbe_light *light, const double range_nm[2], const double band_nm[2],
+                double first) {
+  static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
+  const double own = brightness(&light->illuminant, band_nm);
+  light->power *= own > 0 ? density(&light->illuminant, range_nm, band_nm) * first / own : 0;
+  if (!(own > 0)) light->illuminant = even;
+}
+
+/* X + Y + Z of the working space's white, which is what ambient light and background are. */
+static double sum_of_white(void) {
+  double to_xyz[9], sum = 0;
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_ACESCG, to_xyz);
+  for (int k = 0; k < 9; k++) sum += to_xyz[k];
+  return sum;
+}
+
+static double lift(const double rec709[3], const double basis[3]) {
+  double sum = 0;
+  for (int k = 0; k < 3; k++) sum += rec709[k] * basis[k];
+  return sum;
+}
+
+static abbe_result lift_texture(abbe_object *object, const double basis[3], abbe_error *error) {
+  const abbe_image *from = &object->texture;
+  const size_t texels = from->width * from->height;
+  float *data = malloc(texels * from->channels * sizeof *data);
+  if (data == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the texture of '%s'", object->name);
+  for (size_t i = 0; i < texels; i++) {
+    const float *texel = from->data + i * from->channels;
+    double rec709[3];
+    for (int k = 0; k < 3; k++) rec709[k] = (double)texel[k] * object->reflectance[k];
+    const double grey = lift(rec709, basis);
+    for (size_t k = 0; k < from->channels; k++) data[i * from->channels + k] = (float)grey;
+  }
+  object->texture.data = data;
+  for (int k = 0; k < 3; k++) object->reflectance[k] = 1;
+  return ABBE_OK;
+}
+
+abbe_result abbe_band_scene_make(const abbe_scene *scene, const double range_nm[2],
+                                 const double band_nm[2], abbe_scene *out, double *unit,
+                                 abbe_error *error) {
+  ABBE_REQUIRE(scene && range_nm && band_nm && out && unit, error);
+  static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
+  if (scene->light_count == 0 || !(band_nm[0] < band_nm[1]))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a scene in the band of %g to %g nm needs a light, and the band a width",
+                          band_nm[0], band_nm[1]);
+  const abbe_illuminant *light = abbe_scene_illuminant(scene);
+  double basis[3], first = brightness(light, band_nm);
+  if (!(first > 0)) first = brightness(&even, band_nm);
+  *unit = 1 / first;
+  *out = *scene;
+  out->light = calloc(scene->light_count + 1, sizeof *out->light);
+  out->object = calloc(scene->object_count + 1, sizeof *out->object);
+  if (out->light == NULL || out->object == NULL) {
+    out->object_count = 0;
+    abbe_band_scene_free(out);
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a scene in a band");
+  }
+  memcpy(out->light, scene->light, scene->light_count * sizeof *out->light);
+  memcpy(out->object, scene->object, scene->object_count * sizeof *out->object);
+  for (size_t i = 0; i < scene->light_count; i++) dim(&out->light[i], range_nm, band_nm, first);
+  const double even_light = density(light, range_nm, band_nm) * first / sum_of_white();
+  out->ambient *= even_light;
+  out->background *= even_light;
+  abbe_upsampling_basis_mean(band_nm[0], band_nm[1], basis);
+  abbe_result result = ABBE_OK;
+  for (out->object_count = 0; out->object_count < scene->object_count && result == ABBE_OK;
+       out->object_count++) {
+    abbe_object *object = &out->object[out->object_count];
+    if (object->texture.data != NULL) {
+      result = lift_texture(object, basis, error);
+      if (result != ABBE_OK) break;
+    } else {
+      const double grey = lift(object->reflectance, basis);
+      for (int k = 0; k < 3; k++) object->reflectance[k] = grey;
+    }
+  }
+  if (result != ABBE_OK) abbe_band_scene_free(out);
+  return result;
+}
+
+void abbe_band_scene_free(abbe_scene *scene) {
+  if (scene == NULL) return;
+  for (size_t i = 0; i < scene->object_count && scene->object != NULL; i++)
+    free(scene->object[i].texture.data);
+  free(scene->light);
+  free(scene->object);
+  *scene = (abbe_scene){0};
+}
+
+/* ---- the picture ---- */
+
+typedef struct work {
+  abbe_context *context;
+  const abbe_scene *scene;
+  abbe_render_desc desc; /* its range whole */
+  size_t bands, band;
+  abbe_render_progress progress;
+  void *user;
+  abbe_renderer *renderer;
+  abbe_scene shown; /* of that renderer */
+} work;
+
+static bool tell(void *user, double done) {
+  const work *w = user;
+  return w->progress == NULL ||
+         w->progress(w->user, ((double)w->band + done) / (double)w->bands);
+}
+
+static abbe_result check(const work *w, abbe_error *error) {
+  if (w->bands < 1 || w->bands > ABBE_RENDER_MAX_BANDS)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a picture of %zu bands; it may have 1 to %d", w->bands,
+                          ABBE_RENDER_MAX_BANDS);
+  if (abbe_profile_is_published(w->desc.profile))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the %s profile's passes sum colours; bands go with the default profile",
+                          abbe_profile_name(w->desc.profile));
+  if (w->scene->environment != NULL)
+    return abbe_error_set(error, ABBE_UNSUPPORTED,
+                          "surroundings are not rendered in bands; abbe trace --bands has them");
+  return ABBE_OK;
+}
+
+static void band_ends(const work *w, size_t band, double out[2]) {
+  const double width = (w->desc.max_nm - w->desc.min_nm) / (double)w->bands;
+  out[0] = w->desc.min_nm + width * (double)band;
+  out[1] = band + 1 < w->bands ? out[0] + width : w->desc.max_nm;
+}
+
+/* Neighbouring bands share the wavelength between them. */
+static size_t wavelengths_of(const work *w) {
+  const size_t all = w->desc.wavelengths;
+  if (all == 1) return 1;
+  return (all - 1 + w->bands - 1) / w->bands + 1;
+}
+
+static abbe_result make_image(const work *w, abbe_image *out, abbe_error *error) {
+  char name[ABBE_RENDER_MAX_BANDS][NAME_SIZE];
+  const char *names[ABBE_RENDER_MAX_BANDS];
+  for (size_t i = 0; i < w->bands; i++) {
+    double band[2];
+    band_ends(w, i, band);
+    abbe_image_band_name(0.5 * (band[0] + band[1]), name[i], sizeof name[i]);
+    names[i] = name[i];
+  }
+  abbe_result result =
+      abbe_image_make(w->desc.width, w->desc.height, w->bands, names, out, error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(out, "spectralLayoutVersion", "1.0", error);
+  if (result == ABBE_OK)
+    result = abbe_image_set_attribute(out, "emissiveUnits", "W.m^-2.sr^-1.nm^-1", error);
+  return result;
+}
+
+/* The renderer shows the band afterwards, and the scene that it had before is freed. */
+static abbe_result change(work *w, const abbe_render_desc *desc, const double band[2],
+                          double *unit, abbe_error *error) {
+  const double range[2] = {w->desc.min_nm, w->desc.max_nm};
+  abbe_scene next;
+  abbe_result result = abbe_band_scene_make(w->scene, range, band, &next, unit, error);
+  if (result != ABBE_OK) return result;
+  result = w->renderer == NULL
+               ? abbe_renderer_make(w->context, &next, desc, &w->renderer, error)
+               : abbe_renderer_change(w->renderer, &next, desc, error);
+  abbe_band_scene_free(&w->shown);
+  w->shown = next;
+  return result;
+}
+
+static abbe_result draw_band(work *w, abbe_image *out, abbe_error *error) {
+  double band[2], unit = 0;
+  abbe_image picture = {0};
+  abbe_render_desc desc = w->desc;
+  band_ends(w, w->band, band);
+  desc.min_nm = band[0];
+  desc.max_nm = band[1];
+  desc.wavelengths = wavelengths_of(w);
+  desc.space = ABBE_RGB_SPACE_XYZ;
+  desc.aovs = false;
+  desc.progress = NULL;
+  desc.compiling = NULL;
+  abbe_result result = change(w, &desc, band, &unit, error);
+  if (result == ABBE_OK) result = abbe_renderer_frame(w->renderer, tell, w, NULL, error);
+  if (result == ABBE_OK) result = abbe_renderer_read(w->renderer, false, &picture, error);
+  if (result != ABBE_OK) return result;
+  for (size_t p = 0; p < out->width * out->height; p++) {
+    const float *xyz = picture.data + p * picture.channels;
+    out->data[p * out->channels + w->band] =
+        (float)(unit * ((double)xyz[0] + (double)xyz[1] + (double)xyz[2]));
+  }
+  abbe_image_free(&picture);
+  return ABBE_OK;
+}
+
+abbe_result abbe_band_picture_make(abbe_context *context, const abbe_scene *scene,
+                                   const abbe_render_desc *desc, size_t bands,
+                                   abbe_render_progress progress, void *user, abbe_image *out,
+                                   abbe_error *error) {
+  ABBE_REQUIRE(context && scene && out, error);
+  *out = (abbe_image){0};
+  work w = {.context = context,
+            .scene = scene,
+            .bands = bands,
+            .progress = progress,
+            .user = user};
+  abbe_result result = abbe_render_desc_resolve(desc, scene->camera.width, scene->camera.height,
+                                                &w.desc, error);
+  if (result == ABBE_OK && w.desc.wavelengths == 0) w.desc.wavelengths = ABBE_PLAN_WAVELENGTHS;
+  if (result == ABBE_OK) result = check(&w, error);
+  if (result == ABBE_OK) result = make_image(&w, out, error);
+  for (w.band = 0; w.band < bands && result == ABBE_OK; w.band++)
+    result = draw_band(&w, out, error);
+  abbe_renderer_free(w.renderer);
+  abbe_band_scene_free(&w.shown);
+  if (result != ABBE_OK) abbe_image_free(out);
+  return result;
+}

@@ -1,0 +1,98 @@
+#include "tests/check.h"
+
+#include "colorimetry/image/png_file.h"
+#include "colorimetry/plot/false_colours.h"
+#include "colorimetry/rgb_space.h"
+
+#include <stdlib.h>
+
+static const char *const names[] = {"R",        "G",        "B",     "stderr.R", "stderr.G",
+                                    "stderr.B", "S0.500nm", "depth.Z", "S0.600nm"};
+enum { CHANNELS = 9 };
+
+static void make(abbe_image *image) {
+  assert_int_equal(abbe_image_make(8, 4, CHANNELS, names, image, NULL), ABBE_OK);
+  for (size_t i = 0; i < 32 * CHANNELS; i++)
+    image->data[i] = (float)(i % CHANNELS) + (float)(i / CHANNELS) / 32;
+}
+
+static void test_what_is_meant(void **state) {
+  (void)state;
+  static const struct {
+    const char *layer;
+    bool meant;
+  } of[] = {{"S0.500nm", true}, {"500nm", true},  {"549", true},   {"551nm", true},
+            {"700nm", false},   {"stderr", true}, {"depth", false}, {"depth.Z", true},
+            {"stderr.G", true}, {"R", true},      {"none", false},  {"500 nm", false}};
+  abbe_image image;
+  make(&image);
+  for (size_t i = 0; i < sizeof of / sizeof *of; i++)
+    assert_int_equal(abbe_false_colours_mean(&image, of[i].layer), of[i].meant);
+  assert_false(abbe_false_colours_mean(&image, NULL));
+  abbe_image_free(&image);
+}
+
+static void test_values(void **state) {
+  (void)state;
+  abbe_image image;
+  float *value;
+  char title[100];
+  bool is_error;
+  double to_xyz[9];
+  make(&image);
+  assert_int_equal(
+      abbe_false_colours_values(&image, "551nm", "it", &value, title, sizeof title, &is_error, NULL),
+      ABBE_OK);
+  assert_string_equal(title, "S0.600nm");
+  assert_false(is_error);
+  for (int p = 0; p < 32; p++) assert_true(value[p] == (float)(8 + p / 32.0));
+  free(value);
+  /* Errors of Y: no chromaticities, so Rec.709. */
+  assert_int_equal(abbe_false_colours_values(&image, "stderr", "it", &value, title, sizeof title,
+                                             &is_error, NULL),
+                   ABBE_OK);
+  assert_true(is_error);
+  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
+  for (int p = 0; p < 32; p++)
+    assert_near((double)value[p],
+                to_xyz[3] * (3 + p / 32.0) + to_xyz[4] * (4 + p / 32.0) +
+                    to_xyz[5] * (5 + p / 32.0),
+                1e-5);
+  free(value);
+  abbe_image_free(&image);
+}
+
+static void test_pictures_and_refusals(void **state) {
+  (void)state;
+  abbe_image image, png;
+  abbe_error error = {0};
+  make(&image);
+  image.data[6] = NAN;
+  image.data[CHANNELS + 6] = -3;
+  static const char *const layers[] = {"500nm", "stderr", "depth.Z", "600nm"};
+  for (size_t i = 0; i < 4; i++) {
+    assert_int_equal(abbe_false_colours_write("false_colours.png", &image, layers[i], "it", &error),
+                     ABBE_OK);
+    assert_int_equal(abbe_png_read("false_colours.png", &png, NULL), ABBE_OK);
+    assert_true(png.width > 512 && png.height > 256);
+    abbe_image_free(&png);
+  }
+  remove("false_colours.png");
+  assert_int_equal(
+      abbe_false_colours_write("false_colours.png", &image, "700nm", "it.exr", &error),
+      ABBE_NOT_FOUND);
+  assert_contains(error.text, "it.exr: it has no channel or band '700nm'");
+  assert_contains(error.text, "S0.500nm");
+  for (size_t i = 0; i < 32 * CHANNELS; i++) image.data[i] = NAN;
+  assert_int_equal(abbe_false_colours_write("false_colours.png", &image, "stderr", "it", &error),
+                   ABBE_OK);
+  remove("false_colours.png");
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_meant),
+                                     cmocka_unit_test(test_values),
+                                     cmocka_unit_test(test_pictures_and_refusals)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,157 @@
+#include "tests/check.h"
+
+#include "colorimetry/chromaticity.h"
+#include "colorimetry/spectral_picture/relight.h"
+#include "colorimetry/weights.h"
+
+enum { BANDS = 80 };
+
+/* Bands of 5 nm over 380 to 780 nm, of the kind that the prefix says, two pixels. */
+static void make(const char *prefix, abbe_image *image) {
+  char name[BANDS][40];
+  const char *names[BANDS];
+  for (int i = 0; i < BANDS; i++) {
+    snprintf(name[i], sizeof name[i], "%s%d,5nm", prefix, 382 + 5 * i);
+    names[i] = name[i];
+  }
+  assert_int_equal(abbe_image_make(2, 1, BANDS, names, image, NULL), ABBE_OK);
+}
+
+static double middle(int band) {
+  return 382.5 + 5 * band;
+}
+
+/* x and y of an equal-energy spectrum: a third each for every observer, whose functions have equal
+ * integrals by definition [CIE15] [CIE170-2], to the rounding of the tables; and over 380 to 780 nm.
+ */
+static void test_equal_energy_of_each_observer(void **state) {
+  (void)state;
+  abbe_image image, xyz;
+  make("S0.", &image);
+  for (size_t i = 0; i < 2 * BANDS; i++) image.data[i] = 0.5f;
+  for (int observer = 0; observer < ABBE_OBSERVER_COUNT; observer++) {
+    abbe_relight_desc desc = {.view.observer = (abbe_observer)observer,
+                              .space = ABBE_RGB_SPACE_XYZ,
+                              .relative = true};
+    double xy[2];
+    assert_int_equal(abbe_relight_make(&image, "it", &desc, &xyz, NULL), ABBE_OK);
+    const double at[3] = {(double)xyz.data[0], (double)xyz.data[1], (double)xyz.data[2]};
+    assert_near(at[1], 0.5, 1e-6);
+    assert_true(abbe_chromaticity_xy(at, xy));
+    assert_near(xy[0], 1.0 / 3, 2e-4);
+    assert_near(xy[1], 1.0 / 3, 2e-4);
+    assert_string_equal(abbe_image_attribute_text(&xyz, "abbe:observer"),
+                        abbe_observer_text((abbe_observer)observer));
+    abbe_image_free(&xyz);
+  }
+  abbe_image_free(&image);
+}
+
+/* A reflectance that falls from 0.9 to 0.1: under A as its direct integral in steps of 0.1 nm. */
+static double falling(double nm) {
+  return 0.9 - 0.8 * (nm - 380) / 400;
+}
+
+static void integrate(const abbe_illuminant *light, abbe_observer observer, double out[3]) {
+  double white = 0;
+  memset(out, 0, 3 * sizeof *out);
+  for (double nm = 380.05; nm < 780; nm += 0.1) {
+    double xyz[3];
+    abbe_observer_xyz_of(observer, nm, xyz);
+    const double power = abbe_illuminant_power(light, nm);
+    white += power * xyz[1];
+    for (int k = 0; k < 3; k++) out[k] += power * falling(nm) * xyz[k];
+  }
+  for (int k = 0; k < 3; k++) out[k] /= white;
+}
+
+static void test_a_reflectance_under_another_light(void **state) {
+  (void)state;
+  const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A}, d65 = {0};
+  const abbe_illuminant *const lights[2] = {&a, &d65};
+  abbe_image reflected, emitted, out;
+  make("T.", &reflected);
+  make("S0.", &emitted);
+  for (int b = 0; b < BANDS; b++) {
+    reflected.data[b] = (float)falling(middle(b));
+    emitted.data[b] =
+        (float)(falling(middle(b)) *
+                abbe_weights_band_power(&d65, 380, 780, middle(b) - 2.5, middle(b) + 2.5) / 5);
+  }
+  for (int observer = 0; observer < 2; observer++)
+    for (int light = 0; light < 2; light++) {
+      double expected[3];
+      integrate(lights[light], (abbe_observer)observer, expected);
+      abbe_relight_desc desc = {.view = {.observer = (abbe_observer)observer, .to = lights[light]},
+                                .space = ABBE_RGB_SPACE_XYZ};
+      assert_int_equal(abbe_relight_make(&reflected, "it", &desc, &out, NULL), ABBE_OK);
+      for (int k = 0; k < 3; k++) assert_near((double)out.data[k], expected[k], 2e-4);
+      abbe_image_free(&out);
+      /* The same of the light that comes back, made with D65. */
+      desc.view.from = &d65;
+      assert_int_equal(abbe_relight_make(&emitted, "it", &desc, &out, NULL), ABBE_OK);
+      for (int k = 0; k < 3; k++) assert_near((double)out.data[k], expected[k], 2e-4);
+      abbe_image_free(&out);
+    }
+  abbe_image_free(&reflected);
+  abbe_image_free(&emitted);
+}
+
+/* Bands that are kept are those that a lamp of the other illuminant makes; and looked at again, as
+ * made with that one, they have the same colour. */
+static void test_bands_are_kept(void **state) {
+  (void)state;
+  const abbe_illuminant a = {.kind = ABBE_ILLUMINANT_A}, d65 = {0};
+  abbe_image lamp, out, again;
+  make("S0.", &lamp);
+  for (int b = 0; b < BANDS; b++)
+    lamp.data[b] =
+        (float)(abbe_weights_band_power(&d65, 380, 780, middle(b) - 2.5, middle(b) + 2.5) / 5);
+  lamp.display_window = lamp.data_window = (abbe_image_window){3, 4, 4, 4};
+  const abbe_relight_desc desc = {
+      .view = {.from = &d65, .to = &a}, .space = ABBE_RGB_SPACE_XYZ, .bands = true};
+  assert_int_equal(abbe_relight_make(&lamp, "it", &desc, &out, NULL), ABBE_OK);
+  assert_int_equal(out.channels, 3 + BANDS);
+  assert_string_equal(out.channel[3], "S0.382,500000nm");
+  assert_string_equal(abbe_image_attribute_text(&out, "spectralLayoutVersion"), "1.0");
+  assert_true(out.display_window.x0 == 3 && out.display_window.y1 == 4);
+  for (int b = 0; b < BANDS; b++) {
+    const double expected =
+        abbe_weights_band_power(&a, 380, 780, middle(b) - 2.5, middle(b) + 2.5) / 5;
+    assert_near((double)out.data[3 + b], expected, 1e-6 * expected);
+  }
+  const abbe_relight_desc as_it_is = {.view.from = &a, .space = ABBE_RGB_SPACE_XYZ};
+  assert_int_equal(abbe_relight_make(&out, "it", &as_it_is, &again, NULL), ABBE_OK);
+  for (int k = 0; k < 3; k++)
+    assert_near((double)again.data[k], (double)out.data[k], 1e-6);
+  abbe_image_free(&again);
+  abbe_image_free(&out);
+  abbe_image_free(&lamp);
+}
+
+static void test_what_is_refused_and_what_is_needed(void **state) {
+  (void)state;
+  static const char *const rgb[] = {"R", "G", "B", "left.S0.500nm", "left.S0.600nm"};
+  const abbe_relight_desc none = {0}, left = {.layer = "left"};
+  abbe_image image, out;
+  abbe_error error = {0};
+  assert_int_equal(abbe_image_make(1, 1, 5, rgb, &image, NULL), ABBE_OK);
+  assert_int_equal(abbe_relight_make(&image, "it.exr", &none, &out, &error), ABBE_NOT_FOUND);
+  assert_contains(error.text, "it.exr: it has no bands");
+  assert_false(abbe_relight_is_needed(&image, NULL));
+  assert_true(abbe_relight_is_needed(&image, "left"));
+  assert_false(abbe_relight_is_needed(&image, "right"));
+  assert_int_equal(abbe_relight_make(&image, "it.exr", &left, &out, NULL), ABBE_OK);
+  assert_string_equal(abbe_image_attribute_text(&out, "abbe:unit"), "luminance, cd/m2");
+  abbe_image_free(&out);
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_equal_energy_of_each_observer),
+      cmocka_unit_test(test_a_reflectance_under_another_light),
+      cmocka_unit_test(test_bands_are_kept),
+      cmocka_unit_test(test_what_is_refused_and_what_is_needed)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

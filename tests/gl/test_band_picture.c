@@ -1,0 +1,210 @@
+/* Bands against the picture that they make up, against the tracer, and against what is known. */
+#include "tests/gl/frame.h"
+
+#include "colorimetry/spectral_picture/relight.h"
+#include "colorimetry/weights.h"
+#include "gl/band_picture.h"
+#include "validation/tracer/tracer.h"
+
+enum { SIDE = 48, BANDS = 10 };
+
+static const abbe_render_desc frame = {.width = SIDE, .height = SIDE, .photons = 128, .map_size = 256};
+
+static abbe_context *context;
+
+static int setup(void **state) {
+  (void)state;
+  return abbe_context_make(ABBE_CONTEXT_OSMESA, &context, NULL) == ABBE_OK ? 0 : -1;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  abbe_context_free(context);
+  return 0;
+}
+
+/* A grey and a coloured card under two lamps, no refractor. */
+static const char CARDS[] =
+    "camera: {eye: [0, -1, 2], target: [0, 0, 0], up: [0, 0, 1], fov: 40}\nambient: %s\n"
+    "lights:\n"
+    "- {name: one, kind: point, position: [1, -1, 2], intensity: 3%s}\n"
+    "- {name: two, kind: directional, direction: [-0.2, 0.3, -1], irradiance: 2%s}\n"
+    "objects:\n"
+    "- {name: grey, shape: rectangle, width: 9, height: 9, reflectance: 0.4}\n"
+    "- {name: wood, shape: rectangle, width: 0.8, height: 0.8, reflectance: [0.6, 0.32, 0.13],\n"
+    "   transform: [{translate: [0.5, 0, 0.05]}]}\n";
+
+static void load_cards(const char *ambient, const char *one, const char *two, abbe_scene *scene) {
+  char text[1500];
+  snprintf(text, sizeof text, CARDS, ambient, one, two);
+  load_text(text, scene);
+}
+
+static void make_bands(const abbe_scene *scene, const abbe_render_desc *desc, size_t bands,
+                       abbe_image *out) {
+  abbe_error error = {0};
+  assert_ok(abbe_band_picture_make(context, scene, desc, bands, NULL, NULL, out, &error), &error);
+}
+
+static void make_picture(const abbe_scene *scene, abbe_rgb_space space, abbe_image *out) {
+  abbe_render_desc desc = frame;
+  desc.space = space;
+  abbe_renderer *renderer = NULL;
+  abbe_error error = {0};
+  assert_ok(abbe_renderer_make(context, scene, &desc, &renderer, &error), &error);
+  assert_ok(abbe_renderer_frame(renderer, NULL, NULL, NULL, &error), &error);
+  assert_ok(abbe_renderer_read(renderer, false, out, &error), &error);
+  abbe_renderer_free(renderer);
+}
+
+/* The bands through the observer. */
+static void sum_bands(const abbe_image *bands, const abbe_illuminant *light, abbe_rgb_space space,
+                      abbe_image *out) {
+  abbe_error error = {0};
+  const abbe_relight_desc desc = {.view.from = light, .space = space};
+  assert_ok(abbe_relight_make(bands, "bands", &desc, out, &error), &error);
+}
+
+/* Root mean square of the difference over the second's mean. */
+static double apart(const abbe_image *a, const abbe_image *b) {
+  double squares = 0, sum = 0;
+  const size_t values = a->width * a->height * 3;
+  for (size_t i = 0; i < values; i++) {
+    const double x = (double)a->data[i / 3 * a->channels + i % 3],
+                 y = (double)b->data[i / 3 * b->channels + i % 3];
+    squares += (x - y) * (x - y);
+    sum += fabs(y);
+  }
+  return sqrt(squares / (double)values) / (sum / (double)values);
+}
+
+/* Without refractors a grey reflects E rho / pi times the light's own spectrum: each band is known,
+ * and the sum is the picture to single precision. */
+static void cards_in_bands(void **state) {
+  (void)state;
+  const abbe_illuminant d65 = {0};
+  const size_t p = (SIDE - 3) * SIDE + 2; /* shows the grey */
+  abbe_scene scene;
+  abbe_image bands, sum, picture;
+  load_cards("0", "", "", &scene);
+  make_bands(&scene, &frame, BANDS, &bands);
+  assert_string_equal(bands.channel[0], "S0.400,000000nm");
+  make_picture(&scene, ABBE_RGB_SPACE_XYZ, &picture);
+  sum_bands(&bands, &d65, ABBE_RGB_SPACE_XYZ, &sum);
+  for (int k = 0; k < 3; k++)
+    assert_near((double)sum.data[3 * p + k], (double)picture.data[3 * p + k],
+                2e-5 * (double)picture.data[3 * p + k]);
+  for (int i = 0; i < BANDS; i++) {
+    const double expected =
+        (double)picture.data[3 * p + 1] *
+        abbe_weights_band_power(&d65, 380, 780, 380 + 40 * i, 420 + 40 * i) / 40;
+    assert_near((double)bands.data[BANDS * p + i], expected, 2e-5 * expected);
+  }
+  print_message("cards: bands' sum and the picture are apart by %.5f\n", apart(&sum, &picture));
+  assert_true(apart(&sum, &picture) < 0.01);
+  abbe_image_free(&sum);
+  abbe_image_free(&picture);
+  abbe_image_free(&bands);
+  abbe_scene_free(&scene);
+}
+
+/* Two illuminants, ambient light, colours: the tracer's bands of the same scene. It gives each of its
+ * 4096 steps of wavelength, 0.1 nm or so, to one band alone: at most 2 x 0.1 nm of 40 nm. */
+static void cards_against_the_tracer(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image bands, traced;
+  abbe_tracer *tracer = NULL;
+  abbe_error error = {0};
+  load_cards("1", "", ", illuminant: A", &scene);
+  make_bands(&scene, &frame, BANDS, &bands);
+  const abbe_trace_desc desc = {
+      .width = SIDE, .height = SIDE, .bands = BANDS, .no_map = true, .threads = 2};
+  assert_ok(abbe_tracer_make(&scene, &desc, &tracer, &error), &error);
+  for (int i = 0; i < 16; i++) assert_ok(abbe_tracer_pass(tracer, NULL, &error), &error);
+  assert_ok(abbe_tracer_picture(tracer, &traced, &error), &error);
+  for (int i = 0; i < BANDS; i++) {
+    const size_t at = abbe_image_find_channel(&traced, bands.channel[i]);
+    double a = 0, b = 0;
+    assert_true(at != (size_t)-1);
+    for (size_t p = 0; p < SIDE * SIDE; p++) {
+      a += (double)bands.data[p * BANDS + i];
+      b += (double)traced.data[p * traced.channels + at];
+    }
+    print_message("%s: rendered over traced %.5f\n", bands.channel[i], a / b);
+    assert_near(a / b, 1, 5e-3);
+  }
+  abbe_tracer_free(tracer);
+  abbe_image_free(&traced);
+  abbe_image_free(&bands);
+  abbe_scene_free(&scene);
+}
+
+/* The law of refractors: the bands through the observer are the picture, as near as the picture's
+ * own seven wavelengths are to more. */
+static void sums_are_pictures(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    double limit;
+  } scenes[] = {{"prism", 0.05}, {"sphere", 0.05}, {"gem", 0.08}};
+  const abbe_illuminant d65 = {0};
+  for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+    abbe_scene scene;
+    abbe_image bands, sum, picture;
+    load_shipped(scenes[i].name, &scene);
+    make_bands(&scene, &frame, BANDS, &bands);
+    make_picture(&scene, ABBE_RGB_SPACE_XYZ, &picture);
+    sum_bands(&bands, &d65, ABBE_RGB_SPACE_XYZ, &sum);
+    double total[2] = {0};
+    for (size_t p = 0; p < SIDE * SIDE; p++) {
+      total[0] += (double)sum.data[3 * p + 1];
+      total[1] += (double)picture.data[3 * p + 1];
+    }
+    print_message("%s: bands' sum over the picture %.5f, apart by %.4f\n", scenes[i].name,
+                  total[0] / total[1], apart(&sum, &picture));
+    assert_near(total[0] / total[1], 1, 0.01);
+    assert_true(apart(&sum, &picture) < scenes[i].limit);
+    abbe_image_free(&sum);
+    abbe_image_free(&picture);
+    abbe_image_free(&bands);
+    abbe_scene_free(&scene);
+  }
+}
+
+static bool stop(void *user, double done) {
+  double *least = user;
+  *least = fmin(*least, done);
+  return done < 0.5;
+}
+
+static void refusals_and_cancelling(void **state) {
+  (void)state;
+  abbe_scene scene;
+  abbe_image bands;
+  abbe_error error = {0};
+  double least = 1;
+  load_cards("0", "", "", &scene);
+  assert_int_equal(
+      abbe_band_picture_make(context, &scene, &frame, 0, NULL, NULL, &bands, &error),
+      ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "1 to 256");
+  abbe_render_desc thesis = frame;
+  thesis.profile = ABBE_PROFILE_THESIS;
+  assert_int_equal(
+      abbe_band_picture_make(context, &scene, &thesis, 4, NULL, NULL, &bands, &error),
+      ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "thesis");
+  assert_int_equal(
+      abbe_band_picture_make(context, &scene, &frame, 4, stop, &least, &bands, &error),
+      ABBE_CANCELLED);
+  assert_true(least < 0.5 && bands.data == NULL);
+  abbe_scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(cards_in_bands), cmocka_unit_test(cards_against_the_tracer),
+      cmocka_unit_test(sums_are_pictures), cmocka_unit_test(refusals_and_cancelling)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
