@@ -63,21 +63,22 @@ static const struct argp_option options[] = {
      "look at a region too: where REF's caustic is, or a picture's first channel is above 0.5", 0},
     {"mask-share", KEY_MASK_SHARE, "X", 0, "of the caustic's light that its mask holds (0.95)", 0},
     {"tolerance", KEY_TOLERANCE, "[mask.]METRIC=X", 0,
-     "end with 3 where the metric is above X; of an energy ratio, its distance from 1; repeatable",
+     "end with 3 where the metric is above X; of an energy ratio or SSIM, its distance from 1; "
+     "repeatable",
      0},
     {"difference", KEY_DIFFERENCE, "FILE", ABBE_ARGUMENT_WRITES,
      "where TEST is brighter or darker, in colours: a .png or .svg", 0},
     {"range", KEY_RANGE, "X", 0, "of the difference picture, -X to X (99 % of what there is)", 0},
     {"scale", KEY_SCALE, "best", 0, "multiply TEST by its best single factor first", 0},
     {"white", KEY_WHITE, "Y|X,Y,Z", 0,
-     "of CIEDE2000: D65 at Y, or XYZ (D65 at what the brightest 1 % reach)", 0},
+     "of colour, SSIM and FLIP: D65 at Y, or XYZ (D65 at what the brightest 1 % reach)", 0},
     {"seed", KEY_SEED, "N", 0, "of the noise that REF's errors are drawn as, for colour (0)", 0},
     {"json", KEY_JSON, NULL, 0, "as JSON, numbers in full", 0},
     {0}};
 
 static void wrong_tolerance(const char *text, struct argp_state *state) {
   const char *names[ABBE_COMPARE_METRIC_COUNT];
-  char list[600] = "";
+  char list[800] = "";
   size_t used = 0;
   for (int m = 0; m < ABBE_COMPARE_METRIC_COUNT; m++) {
     names[m] = abbe_compare_metric_name((abbe_compare_metric)m);
@@ -196,7 +197,8 @@ static const struct argp parser = {
 };
 
 int abbe_command_compare(int argc, char **argv) {
-  request q = {.program = argv[0], .desc.mask_share = ABBE_MASK_CAUSTIC_SHARE};
+  request q = {.program = argv[0],
+               .desc = {.mask_share = ABBE_MASK_CAUSTIC_SHARE, .options.structure = true}};
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_result result = compare(&q, &error);

@@ -1,5 +1,6 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/screen_options.h"
 #include "cli/base/spectral_options.h"
 
 #include "colorimetry/image/display_ocio.h"
@@ -79,7 +80,9 @@ enum {
   KEY_BITS,
   KEY_LIST,
   KEY_SOURCE,
-  KEY_LAYER
+  KEY_LAYER,
+  KEY_GAMUT,
+  KEY_WHITE
 };
 
 static const struct argp_option options[] = {
@@ -89,7 +92,9 @@ static const struct argp_option options[] = {
     {"display", KEY_DISPLAY, "NAME", 0, "the screen; without it, the configuration's first", 0},
     {"view", KEY_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
     {"exposure", KEY_EXPOSURE, "STOPS", 0, "brighten (or darken) before the view", 0},
-    {"bits", KEY_BITS, "8|16", 0, "of the PNG; without it, 8", 0},
+    {"gamut", KEY_GAMUT, "HOW", 0, ABBE_SCREEN_GAMUT_HELP, 0},
+    {"white", KEY_WHITE, "X,Y|KELVIN", 0, ABBE_SCREEN_WHITE_HELP, 0},
+    {"bits", KEY_BITS, "8|16", 0, "of the PNG; without it, 8, for PQ and HLG 16", 0},
     {"layer", KEY_LAYER, "NAME", 0, "show the layer NAME.R, NAME.G, NAME.B; a channel, a band (550nm) or a standard error (stderr) "
      "in false colours", 0},
     {"source", KEY_SOURCE, "SPACE", 0,
@@ -134,6 +139,14 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
     r->desc.exposure = abbe_command_number(r->program, "--exposure", arg,
                                            -ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
     return 0;
+  case KEY_GAMUT:
+    r->of_colour = "--gamut";
+    abbe_screen_options_gamut(r->program, arg, &r->desc);
+    return 0;
+  case KEY_WHITE:
+    r->of_colour = "--white";
+    abbe_screen_options_white(r->program, arg, &r->desc);
+    return 0;
   case KEY_BITS:
     r->of_colour = "--bits";
     r->bits = abbe_command_choice(r->program, "--bits", arg, bits, 2) == 0 ? 8 : 16;
@@ -168,11 +181,13 @@ static const struct argp parser = {
            "  abbe display bands.exr -o band.png --layer 550nm\n"
            "  abbe display gem.exr -o error.png --layer stderr\n"
            "  abbe display bands.exr -o evening.png --lit-by D65 --illuminant A\n"
+           "  abbe display lamp.exr -o lamp.png --white 2856 --gamut white\n"
+           "  abbe display gem.exr -o gem.png --display 'Rec.2100 PQ'\n"
            "  abbe display --list --ocio studio.ocio\n",
 };
 
 int abbe_command_display(int argc, char **argv) {
-  request r = {.program = argv[0], .spectral.program = argv[0], .bits = 8};
+  request r = {.program = argv[0], .spectral.program = argv[0]};
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_error error = {0};
   if (r.list) return abbe_command_end(r.program, list_views(&r, &error), &error);

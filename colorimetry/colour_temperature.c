@@ -1,5 +1,6 @@
 #include "colorimetry/colour_temperature.h"
 
+#include "base/number.h"
 #include "colorimetry/chromaticity.h"
 #include "colorimetry/observer_tables.h"
 
@@ -97,5 +98,23 @@ bool abbe_colour_temperature_find(const double xy[2], double *kelvin, double *du
     return false;
   *kelvin = 1e6 / best;
   *duv = way[1] < 0 ? -away : away;
+  return true;
+}
+
+bool abbe_colour_temperature_read_white(const char *text, double xy[2]) {
+  const char *end = NULL;
+  double first, second;
+  if (!abbe_number_read(text, &end, &first)) return false;
+  if (*end == ',') {
+    if (!abbe_number_read(end + 1, &end, &second) || *end != '\0') return false;
+    if (!(first > 0 && second > 0.01 && first + second < 1)) return false;
+    xy[0] = first;
+    xy[1] = second;
+    return true;
+  }
+  if (*end != '\0' ||
+      !(first >= ABBE_COLOUR_TEMPERATURE_MIN && first <= ABBE_COLOUR_TEMPERATURE_MAX_DAYLIGHT))
+    return false;
+  if (!abbe_colour_temperature_daylight_xy(first, xy)) abbe_colour_temperature_planck_xy(first, xy);
   return true;
 }

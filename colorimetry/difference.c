@@ -1,5 +1,8 @@
 #include "colorimetry/difference.h"
 
+#include "colorimetry/gamut.h"
+#include "colorimetry/rgb_space.h"
+
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
@@ -75,6 +78,54 @@ double abbe_difference_ciede2000(const double lab1[3], const double lab2[3]) {
 
   double tl = dl / sl, tc = dc / sc, th = dh / sh;
   return sqrt(fmax(0, tl * tl + tc * tc + th * th + rt * tc * th));
+}
+
+double abbe_difference_cie76(const double lab1[3], const double lab2[3]) {
+  return hypot(hypot(lab1[0] - lab2[0], lab1[1] - lab2[1]), lab1[2] - lab2[2]);
+}
+
+double abbe_difference_cie94(const double standard[3], const double sample[3]) {
+  const double c = hypot(standard[1], standard[2]);
+  const double dl = standard[0] - sample[0], da = standard[1] - sample[1];
+  const double db = standard[2] - sample[2], dc = c - hypot(sample[1], sample[2]);
+  const double sc = 1 + 0.045 * c, sh = 1 + 0.015 * c;
+  const double hue2 = fmax(0, da * da + db * db - dc * dc);
+  return sqrt(dl * dl + dc * dc / (sc * sc) + hue2 / (sh * sh));
+}
+
+/* [BT2100, table 4] */
+static const double pq_m1 = 2610.0 / 16384, pq_m2 = 2523.0 / 32, pq_c1 = 3424.0 / 4096,
+                    pq_c2 = 2413.0 / 128, pq_c3 = 2392.0 / 128;
+
+double abbe_difference_pq(double cd_m2) {
+  const double y = pow(fmin(fmax(cd_m2 / 10000, 0), 1), pq_m1);
+  return pow((pq_c1 + pq_c2 * y) / (1 + pq_c3 * y), pq_m2);
+}
+
+double abbe_difference_pq_light(double signal) {
+  const double e = pow(fmin(fmax(signal, 0), 1), 1 / pq_m2);
+  return 10000 * pow(fmax(e - pq_c1, 0) / (pq_c2 - pq_c3 * e), 1 / pq_m1);
+}
+
+/* [BT2100, table 6]: from linear Rec.2020 to cones, from their PQ signals to I, Ct, Cp. */
+static const double cones[9] = {1688.0 / 4096, 2146.0 / 4096, 262.0 / 4096,
+                                683.0 / 4096,  2951.0 / 4096, 462.0 / 4096,
+                                99.0 / 4096,   309.0 / 4096,  3688.0 / 4096};
+static const double opponents[9] = {2048.0 / 4096,  2048.0 / 4096,   0,
+                                    6610.0 / 4096,  -13613.0 / 4096, 7003.0 / 4096,
+                                    17933.0 / 4096, -17390.0 / 4096, -543.0 / 4096};
+
+void abbe_difference_ictcp(const double xyz[3], double ictcp[3]) {
+  double from[9], v[3];
+  abbe_gamut_from_xyz(ABBE_GAMUT_REC2020, from);
+  abbe_rgb_space_apply(from, xyz, v);
+  abbe_rgb_space_apply(cones, v, v);
+  for (int c = 0; c < 3; c++) v[c] = abbe_difference_pq(v[c]);
+  abbe_rgb_space_apply(opponents, v, ictcp);
+}
+
+double abbe_difference_itp(const double a[3], const double b[3]) {
+  return 720 * hypot(hypot(a[0] - b[0], (a[1] - b[1]) / 2), a[2] - b[2]);
 }
 
 bool abbe_difference_uv(const double xyz[3], double uv[2]) {

@@ -71,7 +71,7 @@ static void primaries_to_xyz(const double xy[8], double matrix[9]) {
   for (int i = 0; i < 9; i++) matrix[i] = columns[i] * scale[i % 3];
 }
 
-static void adapt(const double from_xy[2], const double to_xy[2], double matrix[9]) {
+void abbe_rgb_space_adapt(const double from_xy[2], const double to_xy[2], double matrix[9]) {
   double from[3], to[3], inverse[9], scaled[9];
   xyz_of_xy(from_xy, from);
   xyz_of_xy(to_xy, to);
@@ -91,7 +91,7 @@ static void rgb_to_xyz(const double xy[8], double matrix[9]) {
     return;
   }
   double adaptation[9];
-  adapt(xy + PRIMARIES, white_d65, adaptation);
+  abbe_rgb_space_adapt(xy + PRIMARIES, white_d65, adaptation);
   abbe_matrix3_multiply(adaptation, own, matrix);
 }
 

@@ -18,9 +18,9 @@ extern "C" {
 #endif
 
 /* X(code, name on the command line, name in the OCIO config) */
-#define ABBE_RGB_SPACES(X)                         \
-  X(ACESCG, "acescg", "ACEScg")                    \
-  X(REC709, "rec709", "Linear Rec.709 (sRGB)")     \
+#define ABBE_RGB_SPACES(X)                                                                         \
+  X(ACESCG, "acescg", "ACEScg")                                                                    \
+  X(REC709, "rec709", "Linear Rec.709 (sRGB)")                                                     \
   X(XYZ, "xyz", "CIE XYZ-D65")
 
 typedef enum abbe_rgb_space {
@@ -47,6 +47,9 @@ abbe_rgb_space abbe_rgb_space_of_chromaticities(const double xy[8]);
  * a y of 0, something not finite. */
 abbe_result abbe_rgb_space_chromaticities_to_xyz(const double xy[8], double matrix[9],
                                                  abbe_error *error);
+/* Row-major 3x3 matrix from XYZ relative to one white to XYZ relative to another, by the Bradford
+ * transform [Lam1985]. Whites are x, y; their y is above 0. */
+void abbe_rgb_space_adapt(const double from_xy[2], const double to_xy[2], double matrix[9]);
 /* out = matrix * in; in and out may be the same. */
 void abbe_rgb_space_apply(const double matrix[9], const double in[3], double out[3]);
 

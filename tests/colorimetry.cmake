@@ -1,4 +1,4 @@
-foreach(name axis chart chromaticity colour_map colour_temperature difference display_ocio exr false_colours illuminant image material_chart text_plot observer png_file screen_png sheet
+foreach(name atlas axis chart chromaticity colour_map colour_temperature difference display_ocio exr false_colours gamut gamut_check gamut_map illuminant image material_chart text_plot observer oklab png_file screen_png sheet
         pixel_probe radiance_file relight rgb_encoding rgb_space spectral_channels spectral_colour upsampling weights)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()

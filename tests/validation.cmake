@@ -20,6 +20,7 @@ foreach(name
     guide_sums map_texels
     field
     file_comparison
+    flip ssim
     geometry
     solid
     interface

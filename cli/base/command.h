@@ -32,6 +32,8 @@ enum { ABBE_EXIT_DONE = 0, ABBE_EXIT_FAILED = 1, ABBE_EXIT_USAGE = 2, ABBE_EXIT_
   X(outline, "say where a caustic's light and hues fall, and how far two pictures agree")          \
   X(pixel, "say what a picture has at a pixel: spectrum, XYZ, wavelength, colour temperature")     \
   X(relight, "show a spectral picture to another observer, or under another illuminant")              \
+  X(gamut, "say what of a picture a display's gamut cannot hold, and what mapping it costs")       \
+  X(atlas, "show the spectral colours, what bands make of them, and what displays can show")       \
   X(info, "say what an EXR holds: size, channels, space, settings, statistics")                    \
   X(sweep, "measure settings: time against error, and which are worth it")                         \
   X(compare, "say how far a picture or a receiver map is from a reference")                        \

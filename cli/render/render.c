@@ -2,6 +2,7 @@
 #include "cli/base/command.h"
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
+#include "cli/base/screen_options.h"
 #include "cli/render/render_request.h"
 #include "cli/render/traced_picture.h"
 #include "cli/render/turntable.h"
@@ -29,6 +30,8 @@ enum {
   OPTION_DISPLAY,
   OPTION_VIEW,
   OPTION_EXPOSURE,
+  OPTION_GAMUT,
+  OPTION_WHITE,
   OPTION_JSON
 };
 
@@ -38,7 +41,7 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
     {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
      "the picture for a display, through OpenColorIO", 0},
-    {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8)", 0},
+    {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8; of PQ and HLG 16)", 0},
     {"aovs", OPTION_AOVS, NULL, 0, "direct and caustic light and distance in the EXR too", 0},
     {"bands", OPTION_BANDS, "N", 0,
      "N bands of wavelengths in the EXR and the saved map too: N frames more", 0},
@@ -54,6 +57,8 @@ static const struct argp_option options[] = {
     {"display", OPTION_DISPLAY, "NAME", 0, "of the configuration", 2},
     {"view", OPTION_VIEW, "NAME", 0, "of the display", 2},
     {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
+    {"gamut", OPTION_GAMUT, "HOW", 0, ABBE_SCREEN_GAMUT_HELP, 2},
+    {"white", OPTION_WHITE, "X,Y|KELVIN", 0, ABBE_SCREEN_WHITE_HELP, 2},
     {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -117,6 +122,14 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_EXPOSURE:
     q->of_png = "--exposure";
     q->display.exposure = abbe_command_number(p, "--exposure", text, -30, 30);
+    return 0;
+  case OPTION_GAMUT:
+    q->of_png = "--gamut";
+    abbe_screen_options_gamut(p, text, &q->display);
+    return 0;
+  case OPTION_WHITE:
+    q->of_png = "--white";
+    abbe_screen_options_white(p, text, &q->display);
     return 0;
   case ARGP_KEY_END:
     if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
@@ -435,7 +448,7 @@ int abbe_command_render(int argc, char **argv) {
                .preset.tool = -1,
                .errors.program = argv[0],
                .turntable.program = argv[0],
-               .bits = 8};
+               .bits = 0};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};

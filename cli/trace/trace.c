@@ -3,6 +3,7 @@
 #include "cli/base/map_options.h"
 #include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
+#include "cli/base/screen_options.h"
 #include "cli/trace/trace_results.h"
 
 #include "scenes/import/scene_file.h"
@@ -41,6 +42,8 @@ enum {
   OPTION_EVERY,
   OPTION_VIEW,
   OPTION_EXPOSURE,
+  OPTION_GAMUT,
+  OPTION_WHITE,
   OPTION_STATS,
   OPTION_JSON,
   OPTION_RATES
@@ -90,6 +93,8 @@ static const struct argp_option options[] = {
     {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
     {"view", OPTION_VIEW, "NAME", 0, "of the display, for the PNG", 2},
     {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
+    {"gamut", OPTION_GAMUT, "HOW", 0, ABBE_SCREEN_GAMUT_HELP, 2},
+    {"white", OPTION_WHITE, "X,Y|KELVIN", 0, ABBE_SCREEN_WHITE_HELP, 2},
     {"rates", OPTION_RATES, NULL, 0, "rays a second, beside Embree's own rate on the same rays", 2},
     {0}};
 
@@ -235,6 +240,14 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_EXPOSURE:
     q->of_png = "--exposure";
     q->display.exposure = abbe_command_number(q->program, "--exposure", text, -30, 30);
+    return 0;
+  case OPTION_GAMUT:
+    q->of_png = "--gamut";
+    abbe_screen_options_gamut(q->program, text, &q->display);
+    return 0;
+  case OPTION_WHITE:
+    q->of_png = "--white";
+    abbe_screen_options_white(q->program, text, &q->display);
     return 0;
   case OPTION_RATES:
     q->rates = true;

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "colorimetry/image/rgb_encoding.h"
+#include "colorimetry/rgb_space.h"
 
 #include <OpenColorIO/OpenColorIO.h>
 
@@ -25,6 +26,11 @@ extern const size_t abbe_embedded_config_ocio_size;
 struct abbe_display {
   OCIO::ConstCPUProcessorRcPtr processor;
   double xy[8], curve[5];
+  int transfer;
+  bool adjusts; /* by way of XYZ: to_xyz, white, map, processor */
+  OCIO::ConstCPUProcessorRcPtr to_xyz;
+  double white[9];
+  abbe_gamut_map map;
 };
 
 namespace {
@@ -72,10 +78,41 @@ void check_file(const char *path) {
   std::fclose(file);
 }
 
+/* The file's own word for its version; 0 where it has none. */
+void read_version(const char *path, int *major, int *minor) {
+  char line[256];
+  *major = *minor = 0;
+  std::FILE *file = std::fopen(path, "r");
+  while (file != nullptr && std::fgets(line, sizeof line, file) != nullptr)
+    if (std::sscanf(line, "ocio_profile_version: %d.%d", major, minor) > 0) break;
+  if (file != nullptr) std::fclose(file);
+}
+
+/* What a younger OpenColorIO could load is refused with what the one that is here knows. */
+void check_version(const char *path) {
+  const int here = OCIO::GetVersionHex(), major_here = here >> 24, minor_here = here >> 16 & 0xff;
+  const std::string library = std::string("the OpenColorIO here is ") + OCIO::GetVersion();
+  if (std::strncmp(path, "ocio://", 7) == 0) {
+    if (major_here > 2 || (major_here == 2 && minor_here >= 2)) return;
+    throw OCIO::Exception(
+        ("it names a configuration that is built into OpenColorIO 2.2 and later; " + library)
+            .c_str());
+  }
+  int major, minor;
+  read_version(path, &major, &minor);
+  if (major < major_here || (major == major_here && minor <= minor_here)) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "it is a configuration of version %d.%d; %.80s, which reads up to %d.%d", major,
+                minor, library.c_str(), major_here, minor_here);
+  throw OCIO::Exception(text);
+}
+
 OCIO::ConstConfigRcPtr load(const char *path) {
   OCIO::ConstConfigRcPtr config;
   if (config_path(path) != nullptr) {
     check_file(config_path(path));
+    check_version(config_path(path));
     config = OCIO::Config::CreateFromFile(config_path(path));
   } else {
     std::istringstream text(std::string(reinterpret_cast<const char *>(abbe_embedded_config_ocio),
@@ -185,10 +222,53 @@ void find_encoding(const OCIO::ConstConfigRcPtr &config, const std::string &disp
     OCIO::PackedImageDesc pixels(probes, ABBE_RGB_ENCODING_PROBES, 1, 3);
     encoding_to_xyz(config, space)->getDefaultCPUProcessor()->apply(pixels);
     if (abbe_rgb_encoding_of_probes(probes, out->xy, out->curve)) return;
+    if (abbe_rgb_encoding_of_hdr_probes(probes, out->xy, &out->transfer)) return;
   } catch (const OCIO::Exception &) { /* no such role, or a transform of one way only */
   }
   if (named(display, "sRGB")) abbe_rgb_encoding_srgb(out->xy, out->curve);
   if (named(display, "Display P3")) abbe_rgb_encoding_display_p3(out->xy, out->curve);
+}
+
+/* To XYZ relative to D65, or back, from the role that the ACES spaces are exchanged by. */
+OCIO::BuiltinTransformRcPtr aces_to_xyz(OCIO::TransformDirection direction) {
+  OCIO::BuiltinTransformRcPtr transform = OCIO::BuiltinTransform::Create();
+  transform->setStyle("UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD");
+  transform->setDirection(direction);
+  return transform;
+}
+
+/* White and gamut are matters of XYZ, between the picture's space and the view. */
+abbe_result adjust(const OCIO::ConstConfigRcPtr &config, const abbe_display_desc *desc,
+                   const char *source, const OCIO::GroupTransformRcPtr &show, abbe_display *out,
+                   abbe_error *error) {
+  static const double d65[2] = {0.3127, 0.3290};
+  const char *name = config_name(desc->config);
+  const bool balanced = desc->white[0] != 0 || desc->white[1] != 0;
+  const bool mapped = desc->gamut != ABBE_GAMUT_MAP_NONE;
+  if (!config->hasRole("aces_interchange"))
+    return abbe_error_set(
+        error, ABBE_COLOUR,
+        "%s: it has no role aces_interchange, without which neither a white nor a "
+        "gamut map can be applied",
+        name);
+  if (mapped && out->xy[7] == 0)
+    return abbe_error_set(error, ABBE_COLOUR,
+                          "%s: it does not tell the display's primaries, so no gamut map fits it",
+                          name);
+  OCIO::GroupTransformRcPtr before = OCIO::GroupTransform::Create();
+  OCIO::ColorSpaceTransformRcPtr to_aces = OCIO::ColorSpaceTransform::Create();
+  to_aces->setSrc(source);
+  to_aces->setDst("aces_interchange");
+  before->appendTransform(to_aces);
+  before->appendTransform(aces_to_xyz(OCIO::TRANSFORM_DIR_FORWARD));
+  OCIO::GroupTransformRcPtr after = OCIO::GroupTransform::Create();
+  after->appendTransform(aces_to_xyz(OCIO::TRANSFORM_DIR_INVERSE));
+  after->appendTransform(show);
+  out->to_xyz = config->getProcessor(before)->getDefaultCPUProcessor();
+  out->processor = config->getProcessor(after)->getDefaultCPUProcessor();
+  out->adjusts = true;
+  abbe_rgb_space_adapt(balanced ? desc->white : d65, d65, out->white);
+  return mapped ? abbe_gamut_map_make(desc->gamut, out->xy, &out->map, error) : ABBE_OK;
 }
 
 abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error) {
@@ -205,10 +285,17 @@ abbe_result make(const abbe_display_desc *desc, abbe_display **out, abbe_error *
   const char *source = desc->source_space != nullptr ? desc->source_space : OCIO::ROLE_SCENE_LINEAR;
   if (config->getColorSpace(source) == nullptr)
     return unknown(name, "colour space", source, known_spaces(config), error);
-  OCIO::ConstProcessorRcPtr processor = config->getProcessor(
-      display_transform(source, display.c_str(), view.c_str(), desc->exposure));
-  abbe_display made = {processor->getDefaultCPUProcessor(), {}, {}};
+  const bool adjusts = desc->white[0] != 0 || desc->white[1] != 0 || desc->gamut != 0;
+  OCIO::GroupTransformRcPtr show = display_transform(adjusts ? "aces_interchange" : source,
+                                                     display.c_str(), view.c_str(), desc->exposure);
+  abbe_display made = {};
   find_encoding(config, display, view.c_str(), &made);
+  if (adjusts) {
+    const abbe_result result = adjust(config, desc, source, show, &made, error);
+    if (result != ABBE_OK) return result;
+  } else {
+    made.processor = config->getProcessor(show)->getDefaultCPUProcessor();
+  }
   *out = new abbe_display(made);
   return ABBE_OK;
 }
@@ -223,11 +310,30 @@ abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "an exposure of %g stops is outside -%g to %g", desc->exposure,
                           ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
+  const double *white = desc->white;
+  if ((white[0] != 0 || white[1] != 0) &&
+      !(white[0] > 0 && white[1] > 0.01 && white[0] + white[1] < 1))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the white x, y = %g, %g is none; such as 0.3127, 0.3290 is", white[0],
+                          white[1]);
+  if (static_cast<unsigned>(desc->gamut) >= ABBE_GAMUT_MAP_COUNT)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no gamut map number %d",
+                          static_cast<int>(desc->gamut));
   return guarded(config_name(desc->config), error, [=] { return make(desc, out, error); });
 }
 
 void abbe_display_free(abbe_display *display) {
   delete display;
+}
+
+static void adjust_pixels(const abbe_display *display, abbe_image *image) {
+  for (size_t i = 0; i < image->width * image->height; i++) {
+    float *pixel = image->data + i * image->channels;
+    double xyz[3] = {pixel[0], pixel[1], pixel[2]};
+    abbe_rgb_space_apply(display->white, xyz, xyz);
+    abbe_gamut_map_apply(&display->map, xyz);
+    for (int c = 0; c < 3; c++) pixel[c] = static_cast<float>(xyz[c]);
+  }
 }
 
 abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, abbe_error *error) {
@@ -241,7 +347,12 @@ abbe_result abbe_display_apply(const abbe_display *display, abbe_image *image, a
     OCIO::PackedImageDesc pixels(image->data, static_cast<long>(image->width),
                                  static_cast<long>(image->height), 3, OCIO::BIT_DEPTH_F32,
                                  sizeof(float), pixel, pixel * static_cast<long>(image->width));
+    if (display->adjusts) {
+      display->to_xyz->apply(pixels);
+      adjust_pixels(display, image);
+    }
     display->processor->apply(pixels);
+    image->transfer = display->transfer;
     std::memcpy(image->xy, display->xy, sizeof image->xy);
     std::memcpy(image->curve, display->curve, sizeof image->curve);
     return ABBE_OK;

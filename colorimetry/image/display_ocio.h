@@ -8,6 +8,7 @@
 #define ABBE_COLORIMETRY_IMAGE_DISPLAY_OCIO_H
 
 #include "base/error.h"
+#include "colorimetry/gamut/gamut_map.h"
 #include "colorimetry/image/image.h"
 
 #include <stddef.h>
@@ -22,16 +23,20 @@ typedef struct abbe_display abbe_display;
 
 /* Zeroed: the configuration as found, its default display and view, exposure 0. */
 typedef struct abbe_display_desc {
-  const char *config;       /* path of a configuration; NULL: $OCIO, else the shipped one */
-  const char *source_space; /* colour space of the pictures; NULL: role scene_linear */
-  const char *display;      /* NULL: the default */
-  const char *view;         /* NULL: the display's default view */
-  double exposure;          /* stops */
+  const char *config;        /* path of a configuration; NULL: $OCIO, else the shipped one */
+  const char *source_space;  /* colour space of the pictures; NULL: role scene_linear */
+  const char *display;       /* NULL: the default */
+  const char *view;          /* NULL: the display's default view */
+  double exposure;           /* stops */
+  double white[2];           /* x, y of what shall look white, by Bradford; 0: D65 */
+  abbe_gamut_map_kind gamut; /* how colours that the display lacks are brought inside, before the
+                               view; 0: as the view does it */
 } abbe_display_desc;
 
-/* ABBE_COLOUR with OCIO's reason and, for an unknown display, view or space, the known ones. */
-abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out,
-                              abbe_error *error);
+/* ABBE_COLOUR with OCIO's reason and, for an unknown display, view or space, the known ones; for a
+ * configuration of a version that the library does not know, with both versions; for a gamut map
+ * where the display's primaries are not known. ABBE_INVALID_ARGUMENT for a white that is none. */
+abbe_result abbe_display_make(const abbe_display_desc *desc, abbe_display **out, abbe_error *error);
 void abbe_display_free(abbe_display *display);
 
 /* Replaces the first three channels of the image by display-encoded values, and the image's xy and

@@ -32,11 +32,12 @@ typedef struct abbe_image_window {
 
 typedef struct abbe_image {
   size_t width, height, channels;
-  char **channel;   /* [channels] names: "R", "G", "B", "A", "caustic.R", … */
-  float *data;      /* [height][width][channels] */
-  double xy[8];     /* chromaticities of R, G, B, white; all 0: not stated */
-  double curve[5];  /* of values encoded for a display (rgb_encoding.h); all 0: not encoded, or not
-                       stated */
+  char **channel;  /* [channels] names: "R", "G", "B", "A", "caustic.R", … */
+  float *data;     /* [height][width][channels] */
+  double xy[8];    /* chromaticities of R, G, B, white; all 0: not stated */
+  double curve[5]; /* of values encoded for a display (rgb_encoding.h); all 0: not encoded, or not
+                      stated */
+  int transfer;    /* of values encoded for an HDR display, by [H273]: 16 PQ, 18 HLG; 0: curve */
   abbe_image_window display_window; /* where the pixels lie; (0, 0) is the first of one made here */
   abbe_image_window
       data_window; /* what the file it comes from had values for; elsewhere they are 0 */
@@ -46,8 +47,8 @@ typedef struct abbe_image {
 
 /* A black image. names[channels] are copied. Sizes are checked before anything is allocated:
  * ABBE_INVALID_ARGUMENT for a zero or too large side or channel count, ABBE_NO_MEMORY. */
-abbe_result abbe_image_make(size_t width, size_t height, size_t channels,
-                            const char *const *names, abbe_image *out, abbe_error *error);
+abbe_result abbe_image_make(size_t width, size_t height, size_t channels, const char *const *names,
+                            abbe_image *out, abbe_error *error);
 void abbe_image_free(abbe_image *image);
 
 /* A small file may unfold into pixels that no memory holds. ABBE_UNSUPPORTED where width x height
@@ -78,7 +79,8 @@ abbe_result abbe_image_append(abbe_image *image, const abbe_image *other, abbe_e
 /* Index of the named channel, or (size_t)-1. */
 size_t abbe_image_find_channel(const abbe_image *image, const char *name);
 
-/* The channel of a band of wavelengths, by the one in its middle: "S0.550,000000nm" [Fichet2021]. */
+/* The channel of a band of wavelengths, by the one in its middle: "S0.550,000000nm" [Fichet2021].
+ */
 void abbe_image_band_name(double middle_nm, char *out, size_t size);
 
 #ifdef __cplusplus

@@ -76,8 +76,22 @@ static void fill_row(const abbe_image *image, size_t y, const job *j) {
     }
 }
 
+/* libpng before 1.6.45 has no call for it; a chunk that it does not know goes before the pixels. */
+static void write_cicp(const job *j, const abbe_image *image) {
+  png_byte codes[4] = {(png_byte)abbe_rgb_encoding_primaries_code(image->xy),
+                       (png_byte)image->transfer, 0, 1};
+  png_unknown_chunk chunk = {
+      .name = "cICP", .data = codes, .size = sizeof codes, .location = PNG_HAVE_IHDR};
+  png_set_keep_unknown_chunks(j->png, PNG_HANDLE_CHUNK_ALWAYS, chunk.name, 1);
+  png_set_unknown_chunks(j->png, j->info, &chunk, 1);
+}
+
 /* The chunks that say what the numbers mean. */
 static void write_encoding(const job *j, const abbe_image *image) {
+  if (image->transfer != 0) {
+    write_cicp(j, image);
+    return;
+  }
   if (abbe_rgb_encoding_is_srgb(image->xy, image->curve))
     png_set_sRGB_gAMA_and_cHRM(j->png, j->info, PNG_sRGB_INTENT_RELATIVE);
   else if (j->icc != NULL)
@@ -120,6 +134,12 @@ abbe_result abbe_png_write(const char *path, const abbe_image *image, int bits, 
                           "%s: a PNG of %d bits cannot be written; 8 or 16 can", path, bits);
   if (image->data == NULL || image->channels == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: the image to write is empty", path);
+  if (image->transfer != 0 &&
+      (bits != 16 || image->channels < 3 || abbe_rgb_encoding_primaries_code(image->xy) == 0))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: PQ and HLG are written with 16 bits, for the primaries of Rec.709, "
+                          "Rec.2020 or P3",
+                          path);
   job j = {.path = path, .bits = bits, .samples = image->channels >= 3 ? 3 : 1};
   abbe_file_writer writer = {0};
   abbe_result result = ABBE_OK;

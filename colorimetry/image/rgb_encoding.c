@@ -1,5 +1,8 @@
 #include "colorimetry/image/rgb_encoding.h"
 
+#include "colorimetry/chromaticity.h"
+#include "colorimetry/difference.h"
+#include "colorimetry/gamut.h"
 #include "colorimetry/rgb_space.h"
 
 #include <lcms2.h>
@@ -99,6 +102,52 @@ bool abbe_rgb_encoding_of_probes(const float xyz[ABBE_RGB_ENCODING_PROBES][3], d
   }
   memcpy(curve, fitted, sizeof fitted);
   return true;
+}
+
+/* Light of a grey of the number, relative to the greatest, by [BT2100]. */
+static double pq_share(double value) {
+  return abbe_difference_pq_light(value) / 10000;
+}
+
+/* With the system gamma of 1.2 of a display of 1000 cd/m2. */
+static double hlg_share(double value) {
+  const double a = 0.17883277, b = 0.28466892, c = 0.55991073;
+  return pow(value <= 0.5 ? value * value / 3 : (exp((value - c) / a) + b) / 12, 1.2);
+}
+
+static bool follows(const float xyz[ABBE_RGB_ENCODING_PROBES][3], double (*share)(double)) {
+  const double white = (double)xyz[WHITE][1];
+  for (int i = GREYS; i <= LAST; i++) {
+    const double expected = share((double)grey(i)), got = (double)xyz[i][1] / white;
+    if (!(fabs(got - expected) <= 0.01 * expected + 1e-6)) return false;
+  }
+  return white > 0;
+}
+
+bool abbe_rgb_encoding_of_hdr_probes(const float xyz[ABBE_RGB_ENCODING_PROBES][3], double xy[8],
+                                     int *transfer) {
+  memset(xy, 0, 8 * sizeof *xy);
+  *transfer = follows(xyz, pq_share) ? 16 : follows(xyz, hlg_share) ? 18 : 0;
+  for (int c = 0; c < 4 && *transfer != 0; c++) {
+    const double v[3] = {(double)xyz[1 + c][0], (double)xyz[1 + c][1], (double)xyz[1 + c][2]};
+    if (abbe_chromaticity_xy(v, xy + 2 * c)) continue;
+    memset(xy, 0, 8 * sizeof *xy);
+    *transfer = 0;
+  }
+  return *transfer != 0;
+}
+
+int abbe_rgb_encoding_primaries_code(const double xy[8]) {
+  static const struct {
+    abbe_gamut gamut;
+    int code;
+  } codes[] = {{ABBE_GAMUT_REC709, 1}, {ABBE_GAMUT_REC2020, 9}, {ABBE_GAMUT_P3, 12}};
+  for (int i = 0; i < 3; i++) {
+    double known[8];
+    abbe_gamut_chromaticities(codes[i].gamut, known);
+    if (same(xy, known, 8, 1e-3)) return codes[i].code;
+  }
+  return 0;
 }
 
 /* Profiles */

@@ -34,6 +34,13 @@ void abbe_rgb_encoding_probes(float rgb[ABBE_RGB_ENCODING_PROBES][3]);
 bool abbe_rgb_encoding_of_probes(const float xyz[ABBE_RGB_ENCODING_PROBES][3], double xy[8],
                                  double curve[5]);
 
+/* The same of an HDR display: PQ or HLG [BT2100], whatever light its greatest number is; *transfer
+ * is the code of [H273], 16 or 18. False, and zeros, for neither. */
+bool abbe_rgb_encoding_of_hdr_probes(const float xyz[ABBE_RGB_ENCODING_PROBES][3], double xy[8],
+                                     int *transfer);
+/* The code of [H273] for primaries, 1, 9 or 12; 0 where it has none for them. */
+int abbe_rgb_encoding_primaries_code(const double xy[8]);
+
 /* An ICC profile of a known encoding, malloc'd, the same bytes each time. ABBE_COLOUR where Little
  * CMS makes none. */
 abbe_result abbe_rgb_encoding_profile(const double xy[8], const double curve[5], void **icc,

@@ -17,7 +17,7 @@ typedef struct abbe_screen_png_desc {
   abbe_display_desc display; /* its source_space NULL: what the picture says */
   const char *layer;         /* channels LAYER.R, LAYER.G, LAYER.B; NULL: R, G, B */
   const char *name;          /* of the picture, for sentences; NULL: "the picture" */
-  int bits;                  /* 8 or 16; 0: 8 */
+  int bits;                  /* 8 or 16; 0: 8, for an HDR display 16 */
 } abbe_screen_png_desc;
 
 /* Shows R, G, B, else X, Y, Z, else Y. The space is what the picture's attribute abbe:space names,

@@ -219,6 +219,42 @@ static void test_display_says_its_colour(void **state) {
   assert_true(!holds("iCCP") && !holds("sRGB"));
 }
 
+static void test_gamut(void **state) {
+  (void)state;
+  make_picture(NULL, "rec709", rgbz);
+  char a[512];
+  snprintf(a, sizeof a, "gamut %s --space rec2020 --json", exr);
+  cJSON *json = run_json(a);
+  assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(json, "gamut")), "rec2020");
+  assert_true(number(json, "width", -1) == 4 && number(json, "lit", -1) > 0);
+  const double outside = number(json, "outside", -1);
+  cJSON_Delete(json);
+  snprintf(a, sizeof a, "gamut %s --json", exr);
+  json = run_json(a);
+  assert_true(number(json, "outside", -1) >= outside);
+  cJSON_Delete(json);
+  snprintf(a, sizeof a, "gamut %s --space srgb", exr);
+  must(2, "--space 'srgb'", a);
+  must(2, "which file", "gamut");
+  must(1, "/no/such.exr", "gamut /no/such.exr");
+  snprintf(a, sizeof a, "gamut %s --diagram a.jpg", exr);
+  must(1, "a.jpg", a);
+  snprintf(a, sizeof a, "display %s -o %s --gamut squeeze", exr, png);
+  must(2, "--gamut 'squeeze'", a);
+  snprintf(a, sizeof a, "display %s -o %s --white warm", exr, png);
+  must(2, "--white 'warm'", a);
+  snprintf(a, sizeof a, "display %s -o %s --display 'Rec.2100 PQ' --bits 8", exr, png);
+  must(1, "16 bits", a);
+  snprintf(a, sizeof a, "display %s -o %s --ocio ocio://default", exr, png);
+  if (run(a) != 0) must(1, "built into OpenColorIO 2.2 and later", a);
+  snprintf(a, sizeof a, "display %s -o %s --display 'Rec.2100 PQ'", exr, png);
+  assert_int_equal(run(a), 0);
+  assert_true(holds("cICP") && !holds("sRGB") && !holds("iCCP"));
+  double rgb[3];
+  show("--gamut white --white 2856 --view Plain", rgb);
+  assert_true(holds("sRGB"));
+}
+
 static void test_display_fails(void **state) {
   (void)state;
   make_picture(NULL, NULL, rgbz);
@@ -311,6 +347,7 @@ int main(void) {
                                      cmocka_unit_test(test_display),
                                      cmocka_unit_test(test_display_source),
                                      cmocka_unit_test(test_display_says_its_colour),
+                                     cmocka_unit_test(test_gamut),
                                      cmocka_unit_test(test_display_fails),
                                      cmocka_unit_test(test_info),
                                      cmocka_unit_test(test_a_full_disk)};

@@ -126,11 +126,31 @@ static void test_planck(void **state) {
   assert_true(isfinite(abbe_colour_temperature_planck(1, 300)));
 }
 
+static void test_a_white_in_words(void **state) {
+  (void)state;
+  static const char *const wrong[] = {"",     "warm",     "0.3127",     "999",        "25001",
+                                      "0.3,", "0.3,0.3,", "0.7,0.4",    "-0.3,0.3",   "2856 K",
+                                      "nan",  "0.3;0.3",  "0.3127,nan", "1e999,0.329"};
+  double xy[2], expected[2];
+  assert_true(abbe_colour_temperature_read_white("0.3127,0.3290", xy));
+  assert_true(xy[0] == 0.3127 && xy[1] == 0.3290);
+  assert_true(abbe_colour_temperature_read_white("6504", xy));
+  assert_true(fabs(xy[0] - 0.3127) < 1e-4 && fabs(xy[1] - 0.3290) < 2e-4); /* D65 [CIE15] */
+  abbe_colour_temperature_planck_xy(2856, expected);
+  assert_true(abbe_colour_temperature_read_white("2856", xy));
+  assert_true(xy[0] == expected[0] && xy[1] == expected[1]);
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+    if (abbe_colour_temperature_read_white(wrong[i], xy)) fail_msg("'%s' is taken", wrong[i]);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_planckian_locus), cmocka_unit_test(test_the_cies_lights),
-      cmocka_unit_test(test_ohnos),           cmocka_unit_test(test_across_the_locus),
-      cmocka_unit_test(test_without_one),     cmocka_unit_test(test_daylight),
-      cmocka_unit_test(test_planck)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_planckian_locus),
+                                     cmocka_unit_test(test_the_cies_lights),
+                                     cmocka_unit_test(test_ohnos),
+                                     cmocka_unit_test(test_across_the_locus),
+                                     cmocka_unit_test(test_without_one),
+                                     cmocka_unit_test(test_daylight),
+                                     cmocka_unit_test(test_a_white_in_words),
+                                     cmocka_unit_test(test_planck)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

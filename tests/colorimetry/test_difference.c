@@ -6,6 +6,8 @@
 #include <cmocka.h>
 
 #include "colorimetry/difference.h"
+#include "colorimetry/gamut.h"
+#include "colorimetry/rgb_space.h"
 
 #include <math.h>
 
@@ -56,6 +58,57 @@ static void test_published_pairs(void **state) {
   }
 }
 
+/* CIE76 and CIE94 of one standard against three samples: figures that Lindbloom's calculator and
+ * the tests of the library colour-science print alike. */
+static void test_older_formulas(void **state) {
+  (void)state;
+  static const double standard[3] = {100, 21.57210357, 272.22819350};
+  static const double samples[3][5] = {
+      {100, 426.67945353, 72.39590835, 451.713301974, 83.7792255009},
+      {100, 74.05216981, 276.45318193, 52.6498611564, 10.0539319546},
+      {100, 8.32281957, -73.58297716, 346.064891718, 57.5354537067}};
+  for (int i = 0; i < 3; i++) {
+    const double *lab = samples[i];
+    assert_true(fabs(abbe_difference_cie76(standard, lab) - lab[3]) < 1e-6);
+    assert_true(fabs(abbe_difference_cie94(standard, lab) - lab[4]) < 1e-6);
+  }
+  const double grey[3] = {50, 0, 0}, light[3] = {57, 0, 0};
+  assert_true(abbe_difference_cie94(grey, light) == 7 && abbe_difference_cie76(grey, light) == 7);
+}
+
+/* [BT2408, table 1]: reference white is 58 % PQ, grey of 26 cd/m2 38 %; ends by definition. The
+ * signal of 100 cd/m2 is 0.508 [BT2100]. */
+static void test_pq(void **state) {
+  (void)state;
+  assert_true(fabs(abbe_difference_pq(203) - 0.58) < 0.005);
+  assert_true(fabs(abbe_difference_pq(26) - 0.38) < 0.005);
+  assert_true(fabs(abbe_difference_pq(100) - 0.5081) < 5e-5);
+  assert_true(fabs(abbe_difference_pq(10000) - 1) < 1e-12);
+  assert_true(abbe_difference_pq(-1) < 1e-6 && abbe_difference_pq(2e4) == abbe_difference_pq(1e4));
+  for (double light = 0.001; light < 1e4; light *= 3)
+    assert_true(fabs(abbe_difference_pq_light(abbe_difference_pq(light)) / light - 1) < 1e-9);
+}
+
+/* Linear Rec.2020 in cd/m2 and its I, Ct, Cp, and a distance, as the tests of colour-science print
+ * them; a neutral has neither Ct nor Cp. */
+static void test_ictcp(void **state) {
+  (void)state;
+  static const double rgb[3] = {0.45620519, 0.03081071, 0.04091952};
+  static const double expected[3] = {0.07351364, 0.00475253, 0.09351596};
+  static const double a[3] = {0.4885468072, -0.04739350675, 0.07475401302},
+                      b[3] = {0.4899203231, -0.04567508203, 0.07361341775};
+  double to[9], xyz[3], ictcp[3];
+  abbe_gamut_to_xyz(ABBE_GAMUT_REC2020, to);
+  abbe_rgb_space_apply(to, rgb, xyz);
+  abbe_difference_ictcp(xyz, ictcp);
+  for (int c = 0; c < 3; c++) assert_true(fabs(ictcp[c] - expected[c]) < 1e-7);
+  assert_true(fabs(abbe_difference_itp(a, b) - 1.42657228) < 1e-7);
+  const double white[3] = {203 * 0.3127 / 0.3290, 203, 203 * 0.3583 / 0.3290};
+  abbe_difference_ictcp(white, ictcp);
+  assert_true(fabs(ictcp[0] - abbe_difference_pq(203)) < 1e-9);
+  assert_true(fabs(ictcp[1]) < 1e-9 && fabs(ictcp[2]) < 1e-9);
+}
+
 static void test_equal_colours(void **state) {
   (void)state;
   const double black[3] = {0, 0, 0}, red[3] = {50, 80, 60};
@@ -96,7 +149,11 @@ static void test_uv(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_published_pairs),
+                                     cmocka_unit_test(test_older_formulas),
+                                     cmocka_unit_test(test_pq),
+                                     cmocka_unit_test(test_ictcp),
                                      cmocka_unit_test(test_equal_colours),
-                                     cmocka_unit_test(test_lab), cmocka_unit_test(test_uv)};
+                                     cmocka_unit_test(test_lab),
+                                     cmocka_unit_test(test_uv)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -137,6 +137,18 @@ static void test_chromaticities_that_span_nothing(void **state) {
   }
 }
 
+/* From illuminant A to D65, as B. Lindbloom prints it for these whites. */
+static void test_published_adaptation(void **state) {
+  (void)state;
+  static const double printed[9] = {0.8446965, -0.1179225, 0.3948108,  -0.1366303, 1.1041226,
+                                    0.1291718, 0.0798489,  -0.1348999, 3.1924009};
+  const double a_sum = 1.09850 + 1 + 0.35585, d65_sum = 0.95047 + 1 + 1.08883;
+  const double a[2] = {1.09850 / a_sum, 1 / a_sum}, d65[2] = {0.95047 / d65_sum, 1 / d65_sum};
+  double m[9];
+  abbe_rgb_space_adapt(a, d65, m);
+  for (int i = 0; i < 9; i++) assert_true(fabs(m[i] - printed[i]) < 1e-6);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_rec709_is_the_published_matrix),
@@ -148,6 +160,7 @@ int main(void) {
       cmocka_unit_test(test_names),
       cmocka_unit_test(test_spaces_are_known_by_single_precision_chromaticities),
       cmocka_unit_test(test_other_chromaticities),
+      cmocka_unit_test(test_published_adaptation),
       cmocka_unit_test(test_chromaticities_that_span_nothing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,8 @@ abbe_compare_metric abbe_compare_metric_find(const char *name) {
 }
 
 double abbe_compare_deviation(abbe_compare_metric metric, double value) {
-  bool ratio = metric == ABBE_COMPARE_ENERGY_RATIO || metric == ABBE_COMPARE_BANDS_ENERGY_RATIO;
+  bool ratio = metric == ABBE_COMPARE_ENERGY_RATIO || metric == ABBE_COMPARE_BANDS_ENERGY_RATIO ||
+               metric == ABBE_COMPARE_SSIM;
   return ratio ? fabs(value - 1) : value;
 }
 
@@ -130,6 +131,9 @@ static abbe_result compare(abbe_compare_state *s, abbe_error *error) {
   if (out->masked && result == ABBE_OK) result = abbe_compare_light(s, mask, &out->mask, error);
   if (result == ABBE_OK && s->reference->colour.channels > 0)
     result = abbe_compare_colour(s, error);
+  if (result == ABBE_OK && s->options->structure && s->reference->colour.channels > 0 &&
+      s->reference->kind == ABBE_FIELD_PICTURE)
+    result = abbe_compare_structure(s, error);
   return result;
 }
 

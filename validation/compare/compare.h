@@ -5,7 +5,8 @@
  * difference below the reference's own noise is known as such. Light is compared in X, Y, Z, which
  * are not negative, and band by band; the Z-test in the channels that the files have. Pixels where
  * a side is not finite are counted and left out. It compares pixel by pixel: nothing is moved,
- * blurred or tone-mapped.
+ * blurred or tone-mapped, but by SSIM and FLIP, which look at a pixel's surroundings as an eye
+ * does.
  */
 #ifndef ABBE_VALIDATION_COMPARE_COMPARE_H
 #define ABBE_VALIDATION_COMPARE_COMPARE_H
@@ -19,7 +20,7 @@ extern "C" {
 #endif
 
 /* X(code, name, text). a is the test's value, b the reference's, the mean over pixels and
- * channels. Each but the energy ratios is 0 for equal fields; those are 1. */
+ * channels. Each is 0 for equal fields, but the energy ratios and SSIM, which are 1. */
 #define ABBE_COMPARE_METRICS(X)                                                                    \
   X(RELATIVE_RMSE, "relative_rmse", "relative RMSE") /* root of mean (a-b)^2, over mean b */       \
   X(SQUARED_RELATIVE, "squared_relative",                                                          \
@@ -29,6 +30,12 @@ extern "C" {
   X(CIEDE2000_P95, "ciede2000_p95", "CIEDE2000 95 %")     /* 95th percentile */                    \
   X(CIEDE2000_MAX, "ciede2000_max", "CIEDE2000 greatest") /* of one pixel */                       \
   X(UV_MEAN, "uv_mean", "u'v' distance")                  /* [CIE15], mean weighted by REF's Y */  \
+  X(CIE76_MEAN, "cie76_mean", "CIE76 mean")               /* [CIE15] */                            \
+  X(CIE94_MEAN, "cie94_mean", "CIE94 mean")               /* [CIE116], REF the standard */         \
+  X(ITP_MEAN, "itp_mean", "ICtCp distance mean")          /* [BT2124]; white is 203 cd/m2 */       \
+  X(SSIM, "ssim", "SSIM mean")                       /* [Wang2004], of Y as sRGB encodes it */     \
+  X(FLIP_MEAN, "flip_mean", "FLIP mean")             /* [Andersson2020], white is 1 */             \
+  X(HDR_FLIP_MEAN, "hdr_flip_mean", "HDR-FLIP mean") /* [Andersson2021] */                         \
   X(BANDS_RELATIVE_RMSE, "bands_relative_rmse", "bands: relative RMSE")                            \
   X(BANDS_SQUARED_RELATIVE, "bands_squared_relative",                                              \
     "bands: (a-b)^2/(b+0.01)^2") /* in units of REF's mean over all bands */                       \
@@ -96,6 +103,7 @@ typedef struct abbe_compare_options {
   const abbe_mask *mask;   /* NULL: the whole field alone */
   double white[3];         /* XYZ; all 0: D65 at the Y that the brightest 1 % of REF's lit pixels
                               reach */
+  bool structure;          /* of pictures SSIM and both FLIP too, which take as long as the rest */
   bool best_scale;         /* multiply TEST by the factor of least squares over the whole field */
   unsigned long long seed; /* of the noise that stands in for REF's in the colour metrics */
 } abbe_compare_options;
@@ -108,7 +116,8 @@ abbe_result abbe_compare(const abbe_field *reference, const abbe_field *test,
                          abbe_error *error);
 void abbe_comparison_free(abbe_comparison *comparison);
 
-/* How far from equal: |value - 1| of an energy ratio, else the value. What tolerances bound. */
+/* How far from equal: |value - 1| of an energy ratio and of SSIM, else the value. What tolerances
+ * bound. */
 double abbe_compare_deviation(abbe_compare_metric metric, double value);
 
 typedef enum abbe_compare_verdict {

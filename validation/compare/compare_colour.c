@@ -1,4 +1,4 @@
-/* The metrics of colour: CIEDE2000 and u'v', and what REF's noise alone makes of them. */
+/* The metrics of colour, pixel by pixel, and what REF's noise alone makes of them. */
 #include "validation/compare/compare_state.h"
 
 #include "base/order.h"
@@ -7,10 +7,6 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-/* What is compared: REF and TEST; or what is under REF's noise, with the noise of REF's errors on
- * REF's side and none on TEST's, or with that of each on its own. */
-typedef enum sides { TEST, NOISE_OF_REFERENCE, NOISE_OF_BOTH } sides;
 
 /* [Steele2014]: a well-mixed number of a counter. */
 static uint64_t mix(uint64_t x) {
@@ -100,14 +96,20 @@ static void add_noise(const abbe_compare_state *s, const abbe_field *field, doub
   }
 }
 
+/* The metrics that are means of a value a pixel. */
+enum { CIEDE2000, CIE76, CIE94, ITP, UV, KINDS };
+static const abbe_compare_metric mean_metric[UV] = {ABBE_COMPARE_CIEDE2000_MEAN,
+                                                    ABBE_COMPARE_CIE76_MEAN,
+                                                    ABBE_COMPARE_CIE94_MEAN, ABBE_COMPARE_ITP_MEAN};
+
 /* [pixels] each; NaN where there is none. */
 typedef struct arrays {
-  float *ciede2000, *uv;
+  float *of[KINDS];
 } arrays;
 
-static void take_sides(const abbe_compare_state *s, sides who, size_t pixel, double b[3],
-                       double a[3]) {
-  if (who == TEST) {
+void abbe_compare_take_sides(const abbe_compare_state *s, abbe_compare_sides who, size_t pixel,
+                             double b[3], double a[3]) {
+  if (who == ABBE_COMPARE_TEST) {
     abbe_field_xyz(s->reference, pixel, b, NULL);
     abbe_field_xyz(s->test, pixel, a, NULL);
     for (int c = 0; c < 3; c++) a[c] *= s->out->scale;
@@ -116,21 +118,41 @@ static void take_sides(const abbe_compare_state *s, sides who, size_t pixel, dou
   quiet q = quieten(s, pixel);
   for (int c = 0; c < 3; c++) b[c] = a[c] = q.xyz[c];
   add_noise(s, s->reference, 1, 0, pixel, &q, b);
-  if (who == NOISE_OF_BOTH) add_noise(s, s->test, s->out->scale, 1, pixel, &q, a);
+  if (who == ABBE_COMPARE_NOISE_OF_BOTH) add_noise(s, s->test, s->out->scale, 1, pixel, &q, a);
 }
 
-static void fill(const abbe_compare_state *s, sides who, arrays out) {
+bool abbe_compare_knows(const abbe_compare_state *s, abbe_compare_sides who) {
+  return who == ABBE_COMPARE_TEST ||
+         (s->reference->colour.error != NULL &&
+          (who == ABBE_COMPARE_NOISE_OF_REFERENCE || s->test->colour.error != NULL));
+}
+
+static double itp(const double b[3], const double a[3], double white_y) {
+  const double unit = ABBE_DIFFERENCE_HDR_WHITE / white_y;
+  double ictcp[2][3];
+  for (int side = 0; side < 2; side++) {
+    double light[3];
+    for (int c = 0; c < 3; c++) light[c] = unit * (side == 0 ? b : a)[c];
+    abbe_difference_ictcp(light, ictcp[side]);
+  }
+  return abbe_difference_itp(ictcp[0], ictcp[1]);
+}
+
+static void fill(const abbe_compare_state *s, abbe_compare_sides who, arrays out) {
   const double *white = s->out->white;
   for (size_t p = 0; p < s->pixels; p++) {
-    out.ciede2000[p] = out.uv[p] = NAN;
+    for (int k = 0; k < KINDS; k++) out.of[k][p] = NAN;
     if (s->bad[p] != 0) continue;
     double b[3], a[3], lab_b[3], lab_a[3], uv_b[2], uv_a[2];
-    take_sides(s, who, p, b, a);
+    abbe_compare_take_sides(s, who, p, b, a);
     abbe_difference_lab(b, white, lab_b);
     abbe_difference_lab(a, white, lab_a);
-    out.ciede2000[p] = (float)abbe_difference_ciede2000(lab_b, lab_a);
+    out.of[CIEDE2000][p] = (float)abbe_difference_ciede2000(lab_b, lab_a);
+    out.of[CIE76][p] = (float)abbe_difference_cie76(lab_b, lab_a);
+    out.of[CIE94][p] = (float)abbe_difference_cie94(lab_b, lab_a);
+    out.of[ITP][p] = (float)itp(b, a, white[1]);
     if (abbe_difference_uv(b, uv_b) && abbe_difference_uv(a, uv_a))
-      out.uv[p] = (float)hypot(uv_b[0] - uv_a[0], uv_b[1] - uv_a[1]);
+      out.of[UV][p] = (float)hypot(uv_b[0] - uv_a[0], uv_b[1] - uv_a[1]);
   }
 }
 
@@ -148,7 +170,7 @@ static mean weighted_mean(double sum, double weights, double weighted_squares) {
   return (mean){value, value + 2 * sqrt(spread * weighted_squares) / weights};
 }
 
-/* Mean, 95th percentile and greatest of the region's CIEDE2000; sorted is room for them. */
+/* The region's values in ascending order; sorted is room for them. */
 static size_t order(const abbe_compare_state *s, const abbe_mask *mask, const float *values,
                     float *sorted) {
   size_t count = 0;
@@ -189,11 +211,11 @@ static mean mean_uv(const abbe_compare_state *s, const abbe_mask *mask, const fl
  * the light do; of those that go together a little more is told than they do. */
 static const double slack = 0.05;
 
-static void set(abbe_compare_value *v, sides who, mean m) {
+static void set(abbe_compare_value *v, abbe_compare_sides who, mean m) {
   m.limit *= 1 + slack;
-  if (who == TEST) {
+  if (who == ABBE_COMPARE_TEST) {
     v->value = m.value;
-  } else if (who == NOISE_OF_REFERENCE) {
+  } else if (who == ABBE_COMPARE_NOISE_OF_REFERENCE) {
     v->noise = m.value;
     v->limit = m.limit;
   } else {
@@ -202,38 +224,42 @@ static void set(abbe_compare_value *v, sides who, mean m) {
   }
 }
 
-static void summarise(const abbe_compare_state *s, const abbe_mask *mask, sides who, arrays values,
-                      float *sorted, abbe_compare_region *region) {
+static void summarise(const abbe_compare_state *s, const abbe_mask *mask, abbe_compare_sides who,
+                      arrays values, float *sorted, abbe_compare_region *region) {
   abbe_compare_value *metric = region->metric;
-  size_t count = order(s, mask, values.ciede2000, sorted);
-  if (count == 0) return;
-  double p95 = (double)sorted[(95 * count + 99) / 100 - 1], top = (double)sorted[count - 1];
-  set(&metric[ABBE_COMPARE_CIEDE2000_MEAN], who, mean_of(sorted, count));
-  set(&metric[ABBE_COMPARE_CIEDE2000_P95], who, (mean){p95, p95});
-  set(&metric[ABBE_COMPARE_CIEDE2000_MAX], who, (mean){top, NAN}); /* one pixel of one draw */
+  for (int k = 0; k < UV; k++) {
+    size_t count = order(s, mask, values.of[k], sorted);
+    if (count == 0) return;
+    set(&metric[mean_metric[k]], who, mean_of(sorted, count));
+    if (k != CIEDE2000) continue;
+    double p95 = (double)sorted[(95 * count + 99) / 100 - 1], top = (double)sorted[count - 1];
+    set(&metric[ABBE_COMPARE_CIEDE2000_P95], who, (mean){p95, p95});
+    set(&metric[ABBE_COMPARE_CIEDE2000_MAX], who, (mean){top, NAN}); /* one pixel of one draw */
+  }
   double share;
-  mean uv = mean_uv(s, mask, values.uv, &share);
+  mean uv = mean_uv(s, mask, values.of[UV], &share);
   set(&metric[ABBE_COMPARE_UV_MEAN], who, uv);
-  if (who == TEST) region->uv_share = share;
+  if (who == ABBE_COMPARE_TEST) region->uv_share = share;
 }
 
 static void measure(const abbe_compare_state *s, arrays values, float *sorted) {
-  bool errors[] = {true, s->reference->colour.error != NULL,
-                   s->reference->colour.error != NULL && s->test->colour.error != NULL};
-  for (int who = TEST; who <= NOISE_OF_BOTH; who++) {
-    if (!errors[who]) continue;
-    fill(s, (sides)who, values);
-    summarise(s, NULL, (sides)who, values, sorted, &s->out->whole);
-    if (s->out->masked) summarise(s, s->options->mask, (sides)who, values, sorted, &s->out->mask);
+  for (int i = ABBE_COMPARE_TEST; i <= ABBE_COMPARE_NOISE_OF_BOTH; i++) {
+    const abbe_compare_sides who = (abbe_compare_sides)i;
+    if (!abbe_compare_knows(s, who)) continue;
+    fill(s, who, values);
+    summarise(s, NULL, who, values, sorted, &s->out->whole);
+    if (s->out->masked) summarise(s, s->options->mask, who, values, sorted, &s->out->mask);
   }
 }
 
 abbe_result abbe_compare_colour(const abbe_compare_state *s, abbe_error *error) {
-  float *room = calloc(s->pixels, 3 * sizeof *room);
+  float *room = calloc(s->pixels, (KINDS + 1) * sizeof *room);
   if (room == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "there is no memory for %zu colour differences",
                           s->pixels);
-  measure(s, (arrays){room, room + s->pixels}, room + 2 * s->pixels);
+  arrays values;
+  for (size_t k = 0; k < KINDS; k++) values.of[k] = room + k * s->pixels;
+  measure(s, values, room + KINDS * s->pixels);
   free(room);
   return ABBE_OK;
 }

@@ -105,6 +105,100 @@ static void test_exposure_is_in_stops(void **state) {
   near(raw, same, 0, "raw");
 }
 
+static void must_fail(const abbe_display_desc *desc, abbe_result expected, const char *says) {
+  abbe_display *display = NULL;
+  abbe_error error = {0};
+  abbe_result result = abbe_display_make(desc, &display, &error);
+  if (result != expected || display != NULL || strstr(error.text, says) == NULL)
+    fail_msg("%d: '%s' says nothing of '%s'", (int)result, error.text, says);
+}
+
+/* White of a scene is 203 cd/m2: a signal of 58 % PQ, of 75 % HLG [BT2408]. */
+static void test_hdr_white(void **state) {
+  (void)state;
+  static const struct {
+    const char *display;
+    double signal;
+  } displays[] = {{"Rec.2100 PQ", 0.58}, {"Rec.2100 HLG", 0.75}};
+  for (int d = 0; d < 2; d++) {
+    double white[3] = {1, 1, 1};
+    const abbe_display_desc desc = {.display = displays[d].display};
+    show(&desc, white);
+    for (int k = 0; k < 3; k++)
+      if (!(fabs(white[k] - displays[d].signal) < 0.005))
+        fail_msg("%s: white is %.4f", displays[d].display, white[k]);
+  }
+}
+
+/* Red light of a wavelength is shown red, not salmon: with up to the light of white in ACEScg's
+ * red, green and blue have less than a tenth of red's light. */
+static void test_spectral_red_stays_red(void **state) {
+  (void)state;
+  static const char *const displays[] = {"sRGB", "Display P3"};
+  double from[9];
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, from);
+  for (int d = 0; d < 2; d++)
+    for (double nm = 625; nm <= 690; nm += 15)
+      for (double red = 0.125; red <= 1; red *= 2) {
+        double v[3], most;
+        abbe_observer_xyz(nm, v);
+        abbe_rgb_space_apply(from, v, v);
+        most = fmax(v[0], fmax(v[1], v[2]));
+        for (int k = 0; k < 3; k++) v[k] *= red / most;
+        const abbe_display_desc desc = {.display = displays[d]};
+        show(&desc, v);
+        for (int k = 1; k < 3; k++)
+          if (!(srgb_decode(v[k]) < 0.1 * srgb_decode(v[0])))
+            fail_msg("%s, %g nm, %g: component %d is %.3f beside %.3f", displays[d], nm, red, k,
+                     v[k], v[0]);
+      }
+}
+
+/* A gamut map comes before the view: towards white keeps Oklab's hue on a plain screen; where the
+ * display's primaries are not told, it is refused. A white that is asked for is shown white. */
+static void test_gamut_and_white(void **state) {
+  (void)state;
+  double clipped[3] = {-0.1, 0.4, 0.2}, white[3] = {-0.1, 0.4, 0.2}, lamp[3];
+  abbe_display_desc desc = {.source_space = "Linear Rec.709 (sRGB)", .view = "Plain"};
+  desc.gamut = ABBE_GAMUT_MAP_CLIP;
+  show(&desc, clipped);
+  near(clipped, (double[]){0, srgb_encode(0.4), srgb_encode(0.2)}, 1e-4, "clip");
+  desc.gamut = ABBE_GAMUT_MAP_WHITE;
+  show(&desc, white);
+  assert_true(white[0] < 1e-3 && white[2] > clipped[2] + 0.01 && white[1] < clipped[1] - 0.01);
+  /* illuminant A of Y = 0.5, x = 0.44757, y = 0.40745 [CIE15] */
+  double to[9];
+  const double a[3] = {0.5 * 0.44757 / 0.40745, 0.5, 0.5 * (1 - 0.44757 - 0.40745) / 0.40745};
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, to);
+  abbe_rgb_space_apply(to, a, lamp);
+  desc.gamut = ABBE_GAMUT_MAP_NONE;
+  desc.white[0] = 0.44757;
+  desc.white[1] = 0.40745;
+  show(&desc, lamp);
+  near(lamp, (double[]){srgb_encode(0.5), srgb_encode(0.5), srgb_encode(0.5)}, 1e-4, "white");
+  must_fail(&(abbe_display_desc){.white = {0.9, 0.9}}, ABBE_INVALID_ARGUMENT, "0.9, 0.9");
+  must_fail(&(abbe_display_desc){.gamut = ABBE_GAMUT_MAP_CLIP, .view = "Raw"}, ABBE_COLOUR,
+            "the display's primaries");
+}
+
+/* A configuration that is too young is refused with the version that would be right. */
+static void test_versions(void **state) {
+  (void)state;
+  static const char path[] = "/tmp/abbe_test_version.ocio";
+  static const char young[] = "# of a studio\nocio_profile_version: 2.99\nroles: {}\n";
+  assert_int_equal(abbe_file_write(path, young, strlen(young), NULL), ABBE_OK);
+  must_fail(&(abbe_display_desc){.config = path}, ABBE_COLOUR,
+            "is a configuration of version 2.99; the OpenColorIO here is 2.");
+  unlink(path);
+  abbe_display *display = NULL;
+  abbe_error error = {0};
+  const abbe_display_desc built_in = {.config = "ocio://cg-config-v1.0.0_aces-v1.3_ocio-v2.1"};
+  if (abbe_display_make(&built_in, &display, &error) != ABBE_OK)
+    assert_non_null(strstr(error.text, "built into OpenColorIO 2.2 and later; the OpenColorIO "
+                                       "here is 2."));
+  abbe_display_free(display);
+}
+
 /* Greys stay grey and follow the curve that the view states; 0.18 is kept. */
 static void test_looking_greys(void **state) {
   (void)state;
@@ -190,14 +284,6 @@ static void test_other_channels_stay(void **state) {
   abbe_display_free(display);
 }
 
-static void must_fail(const abbe_display_desc *desc, abbe_result expected, const char *says) {
-  abbe_display *display = NULL;
-  abbe_error error = {0};
-  abbe_result result = abbe_display_make(desc, &display, &error);
-  if (result != expected || display != NULL || strstr(error.text, says) == NULL)
-    fail_msg("%d: '%s' says nothing of '%s'", (int)result, error.text, says);
-}
-
 static void test_unknown_names_list_the_known(void **state) {
   (void)state;
   must_fail(&(abbe_display_desc){.display = "sRBG"}, ABBE_COLOUR, "sRGB, Display P3");
@@ -241,9 +327,12 @@ static void test_broken_configurations(void **state) {
 /* The shipped file also loads by its path, with $OCIO pointing at it. */
 static void test_list(void **state) {
   (void)state;
-  static const char *const expected = "sRGB / Looking\nsRGB / Plain\nsRGB / Raw\n"
-                                      "Display P3 / Looking\nDisplay P3 / Plain\n"
-                                      "Display P3 / Raw\n";
+  static const char *const expected =
+      "sRGB / Looking\nsRGB / Plain\nsRGB / Raw\n"
+      "Display P3 / Looking\nDisplay P3 / Plain\nDisplay P3 / Raw\n"
+      "Rec.709 / Looking\nRec.709 / Plain\nRec.709 / Raw\n"
+      "Rec.2020 / Looking\nRec.2020 / Plain\nRec.2020 / Raw\n"
+      "Rec.2100 PQ / Plain\nRec.2100 PQ / Raw\nRec.2100 HLG / Plain\nRec.2100 HLG / Raw\n";
   char *list = NULL;
   assert_int_equal(abbe_display_list(NULL, &list, NULL), ABBE_OK);
   assert_string_equal(list, expected);
@@ -255,8 +344,8 @@ static void test_list(void **state) {
   assert_int_equal(unsetenv("OCIO"), 0);
 }
 
-/* What the display says of its numbers: 's' sRGB, 'p' Display P3, '4' a power of 2.4, '-' nothing.
- */
+/* What the display says of its numbers: 's' sRGB, 'p' Display P3, '4' a power of 2.4, 'q' PQ and
+ * 'h' HLG of Rec.2020's primaries, '-' nothing. */
 static char encoding_of(const abbe_display_desc *desc) {
   abbe_display *display = make(desc);
   abbe_image image = {0};
@@ -269,6 +358,10 @@ static char encoding_of(const abbe_display_desc *desc) {
   if (!abbe_rgb_encoding_is_known(image.xy, image.curve)) kind = image.xy[0] == 0 ? '-' : '?';
   if (abbe_rgb_encoding_is_srgb(image.xy, image.curve)) kind = 's';
   if (fabs(image.curve[0] - 2.4) < 1e-3 && image.curve[4] == 0) kind = '4';
+  if (image.transfer != 0) {
+    assert_int_equal(abbe_rgb_encoding_primaries_code(image.xy), 9);
+    kind = image.transfer == 16 ? 'q' : image.transfer == 18 ? 'h' : '?';
+  }
   if (kind == '?' && fabs(image.xy[0] - p3[0]) < 1e-4 && image.curve[0] == curve[0]) kind = 'p';
   abbe_image_free(&image);
   abbe_display_free(display);
@@ -280,10 +373,12 @@ static void test_what_the_numbers_mean(void **state) {
   static const struct {
     const char *display, *view;
     char kind;
-  } shipped[] = {{"sRGB", "Looking", 's'},     {"sRGB", "Plain", 's'},
-                 {"sRGB", "Raw", '-'},         {"Display P3", "Looking", 'p'},
-                 {"Display P3", "Plain", 'p'}, {"Display P3", "Raw", '-'}};
-  for (int i = 0; i < 6; i++) {
+  } shipped[] = {
+      {"sRGB", "Looking", 's'},       {"sRGB", "Plain", 's'},       {"sRGB", "Raw", '-'},
+      {"Display P3", "Looking", 'p'}, {"Display P3", "Plain", 'p'}, {"Display P3", "Raw", '-'},
+      {"Rec.709", "Plain", '4'},      {"Rec.2020", "Looking", '4'}, {"Rec.2100 PQ", "Plain", 'q'},
+      {"Rec.2100 HLG", "Plain", 'h'}, {"Rec.2100 PQ", "Raw", '-'}};
+  for (int i = 0; i < 11; i++) {
     const abbe_display_desc desc = {.display = shipped[i].display, .view = shipped[i].view};
     assert_int_equal(encoding_of(&desc), shipped[i].kind);
   }
@@ -344,6 +439,10 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_plain_is_the_encoding_alone),
                                      cmocka_unit_test(test_display_p3),
                                      cmocka_unit_test(test_exposure_is_in_stops),
+                                     cmocka_unit_test(test_hdr_white),
+                                     cmocka_unit_test(test_spectral_red_stays_red),
+                                     cmocka_unit_test(test_gamut_and_white),
+                                     cmocka_unit_test(test_versions),
                                      cmocka_unit_test(test_looking_greys),
                                      cmocka_unit_test(test_looking_at_the_spectrum),
                                      cmocka_unit_test(test_other_channels_stay),

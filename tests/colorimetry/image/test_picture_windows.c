@@ -56,6 +56,15 @@ static void test_compare(void **state) {
   write_pictures();
   ends_with(0, "$abbe compare left.exr left.exr --tolerance relative_rmse=0");
   ends_with(3, "$abbe compare left.exr right.exr --tolerance relative_rmse=0.5");
+  ends_with(0, "$abbe compare left.exr left.exr --tolerance flip_mean=0 --tolerance ssim=0 "
+               "--tolerance itp_mean=0 --tolerance cie94_mean=0");
+  ends_with(3, "$abbe compare left.exr right.exr --tolerance ssim=0.001");
+  ends_with(3, "$abbe compare left.exr right.exr --tolerance flip_mean=0.001");
+  /* what lies outside the display window is not compared */
+  write_picture("wide.exr", (const int[]){0, 0, 31, 23}, (const int[]){0, 0, 63, 47});
+  write_picture("cut.exr", (const int[]){0, 0, 15, 11}, (const int[]){0, 0, 63, 47});
+  ends_with(0, "$abbe compare wide.exr wide.exr --tolerance hdr_flip_mean=0");
+  ends_with(1, "$abbe compare wide.exr cut.exr");
   ends_with(0, "$abbe compare apart.exr apart.exr --tolerance relative_rmse=0");
   ends_with(1, "$abbe compare plain.exr apart.exr");
   assert_contains(run_errors, "plain.exr shows (0, 0) to (31, 23) and apart.exr (100, 50) to "

@@ -271,6 +271,40 @@ static void test_the_colour_is_said(void **state) {
   }
 }
 
+static const char *find(const char *data, size_t size, const char *bytes, size_t length) {
+  for (size_t i = 0; i + length <= size; i++)
+    if (memcmp(data + i, bytes, length) == 0) return data + i;
+  return NULL;
+}
+
+/* PQ and HLG by cICP [H273], before the pixels, in 16 bits alone; libpng reads the chunk back. */
+static void test_hdr_is_said(void **state) {
+  (void)state;
+  static const double rec2020[8] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290};
+  static const char *const said[] = {"cICP\x09\x10\x00\x01", "cICP\x09\x12\x00\x01"};
+  abbe_image image = gradient(4, 4, 3), back = {0};
+  abbe_error error = {0};
+  for (int k = 0; k < 2; k++) {
+    char *data = NULL;
+    size_t size = 0;
+    memcpy(image.xy, rec2020, sizeof image.xy);
+    image.transfer = k == 0 ? 16 : 18;
+    assert_int_equal(abbe_png_write(path, &image, 8, &error), ABBE_INVALID_ARGUMENT);
+    assert_non_null(strstr(error.text, "16 bits"));
+    assert_int_equal(abbe_png_write(path, &image, 16, &error), ABBE_OK);
+    chunks_are("");
+    assert_int_equal(abbe_file_read(path, 1 << 20, &data, &size, NULL), ABBE_OK);
+    const char *chunk = find(data, size, said[k], 8), *pixels = find(data, size, "IDAT", 4);
+    assert_true(chunk != NULL && chunk < pixels);
+    free(data);
+    assert_int_equal(abbe_png_read(path, &back, &error), ABBE_UNSUPPORTED);
+    assert_non_null(strstr(error.text, "cICP"));
+    image.xy[0] = 0.5;
+    assert_int_equal(abbe_png_write(path, &image, 16, &error), ABBE_INVALID_ARGUMENT);
+  }
+  abbe_image_free(&image);
+}
+
 /* A file of one colour that says what `say` adds to it. */
 static void write_stating(const double rgb[3], void (*say)(png_structp png, png_infop info)) {
   foreign f = begin_foreign(1, 16, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE);
@@ -409,6 +443,7 @@ int main(void) {
                                      cmocka_unit_test(test_a_huge_header),
                                      cmocka_unit_test(test_not_pictures),
                                      cmocka_unit_test(test_the_colour_is_said),
+                                     cmocka_unit_test(test_hdr_is_said),
                                      cmocka_unit_test(test_the_colour_is_heeded),
                                      cmocka_unit_test(test_what_unfolds_is_refused)};
   return cmocka_run_group_tests(tests, NULL, leave);

@@ -106,6 +106,63 @@ static void test_published_colour_differences(void **state) {
   abbe_field_free(&side[1]);
 }
 
+/* SSIM and FLIP are asked for, know only pictures, and look into a mask as anywhere. */
+static void test_structure(void **state) {
+  (void)state;
+  abbe_field b = field_of(24, 20, XYZ), a = field_of(24, 20, XYZ);
+  const float *plain = b.colour.value;
+  for (size_t i = 0; i < 480; i++)
+    for (size_t c = 0; c < 3; c++) {
+      b.colour.value[3 * i + c] = (float)(d65[c] * (0.3 + 0.1 * sin(0.9 * (double)i)));
+      a.colour.value[3 * i + c] = i % 24 < 12 ? plain[3 * i + c] : (float)(0.9 * d65[c]);
+    }
+  unsigned char in[480];
+  for (size_t i = 0; i < 480; i++) in[i] = i % 24 < 2; /* further off than any filter reaches */
+  const abbe_mask mask = {.count = 480, .inside = 40, .in = in};
+  abbe_compare_options options = {.white = {d65[0], 1, d65[2]}, .mask = &mask};
+  abbe_comparison c = compare(&b, &a, &options);
+  assert_true(isnan(value(&c.whole, ABBE_COMPARE_SSIM)));
+  abbe_comparison_free(&c);
+  options.structure = true;
+  c = compare(&b, &a, &options);
+  for (int m = ABBE_COMPARE_CIE76_MEAN; m <= ABBE_COMPARE_HDR_FLIP_MEAN; m++) {
+    assert_true(abbe_compare_deviation((abbe_compare_metric)m, c.whole.metric[m].value) > 0.01);
+    assert_true(isnan(c.whole.metric[m].noise));
+  }
+  assert_near(value(&c.mask, ABBE_COMPARE_FLIP_MEAN), 0, 1e-6);
+  assert_near(value(&c.mask, ABBE_COMPARE_CIE76_MEAN), 0, 0);
+  assert_true(isnan(value(&c.mask, ABBE_COMPARE_SSIM))); /* at the edge no window is whole */
+  abbe_comparison_free(&c);
+  a.kind = b.kind = ABBE_FIELD_RECEIVER_MAP;
+  c = compare(&b, &a, &options);
+  assert_true(isnan(value(&c.whole, ABBE_COMPARE_FLIP_MEAN)));
+  abbe_comparison_free(&c);
+  abbe_field_free(&a);
+  abbe_field_free(&b);
+}
+
+/* Noise of a picture's own errors has an SSIM and a FLIP, and a test that has just those lies
+ * within them. */
+static void test_noise_of_structure(void **state) {
+  (void)state;
+  abbe_field exact = field_of(48, 40, XYZ), noisy = field_of(48, 40, XYZ | ERRORS);
+  for (size_t i = 0; i < 48 * 40; i++)
+    for (size_t c = 0; c < 3; c++)
+      exact.colour.value[3 * i + c] = (float)(d65[c] * (0.4 + 0.2 * sin(0.1 * (double)(i % 48))));
+  make_noisy(&noisy, &exact, 0.1, 0, 7);
+  const abbe_compare_options options = {.white = {d65[0], 1, d65[2]}, .structure = true};
+  abbe_comparison c = compare(&noisy, &exact, &options);
+  for (int m = ABBE_COMPARE_SSIM; m <= ABBE_COMPARE_HDR_FLIP_MEAN; m++) {
+    const abbe_compare_value *v = &c.whole.metric[m];
+    const double told = abbe_compare_deviation((abbe_compare_metric)m, v->noise);
+    assert_true(told > 0.01);
+    assert_near(abbe_compare_deviation((abbe_compare_metric)m, v->value) / told, 1, 0.15);
+  }
+  abbe_comparison_free(&c);
+  abbe_field_free(&noisy);
+  abbe_field_free(&exact);
+}
+
 /* Of 1 to 100, 95 % are at most 95: the percentile is an element, not in between. */
 static void test_percentile(void **state) {
   (void)state;
@@ -292,6 +349,8 @@ int main(void) {
                                      cmocka_unit_test(test_by_hand),
                                      cmocka_unit_test(test_brighter_by_a_factor),
                                      cmocka_unit_test(test_published_colour_differences),
+                                     cmocka_unit_test(test_structure),
+                                     cmocka_unit_test(test_noise_of_structure),
                                      cmocka_unit_test(test_percentile),
                                      cmocka_unit_test(test_any_space_gives_the_same),
                                      cmocka_unit_test(test_a_mask_is_a_field_of_its_pixels),

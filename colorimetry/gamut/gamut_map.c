@@ -1,0 +1,125 @@
+#include "colorimetry/gamut/gamut_map.h"
+
+#include "colorimetry/chromaticity.h"
+#include "colorimetry/gamut/oklab.h"
+#include "colorimetry/matrix3.h"
+#include "colorimetry/rgb_space.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+/* [ACESGamut]: of the distances from grey of red, green and blue, and the curve's power. */
+static const double thresholds[3] = {0.815, 0.803, 0.880};
+static const double power = 1.2;
+
+const char *abbe_gamut_map_name(abbe_gamut_map_kind kind) {
+  static const char *const names[] = {
+#define NAME(code, name, text) name,
+      ABBE_GAMUT_MAPS(NAME)
+#undef NAME
+  };
+  return (unsigned)kind < ABBE_GAMUT_MAP_COUNT ? names[kind] : "unknown";
+}
+
+const char *abbe_gamut_map_text(abbe_gamut_map_kind kind) {
+  static const char *const texts[] = {
+#define TEXT(code, name, text) text,
+      ABBE_GAMUT_MAPS(TEXT)
+#undef TEXT
+  };
+  return (unsigned)kind < ABBE_GAMUT_MAP_COUNT ? texts[kind] : "unknown";
+}
+
+static double greatest(const double rgb[3]) {
+  return fmax(rgb[0], fmax(rgb[1], rgb[2]));
+}
+
+/* The furthest that spectral colours are from grey, a component at a time. */
+static void find_limits(abbe_gamut_map *map) {
+  double first, last;
+  abbe_chromaticity_locus_ends(ABBE_OBSERVER_CIE_1931, &first, &last);
+  for (double nm = first; nm <= last; nm++) {
+    double xy[2], v[3];
+    abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, nm, xy);
+    if (!abbe_chromaticity_xyz(xy, v)) continue;
+    abbe_rgb_space_apply(map->from_xyz, v, v);
+    const double most = greatest(v);
+    for (int c = 0; c < 3 && most > 0; c++)
+      map->limit[c] = fmax(map->limit[c], (most - v[c]) / most);
+  }
+}
+
+/* The curve goes through (threshold, threshold) with a slope of 1 and through (limit, 1). */
+static void find_scales(abbe_gamut_map *map) {
+  for (int c = 0; c < 3; c++) {
+    const double room = map->limit[c] - thresholds[c];
+    const double ratio = (1 - thresholds[c]) / room;
+    map->scale[c] = room / pow(pow(ratio, -power) - 1, 1 / power);
+  }
+}
+
+abbe_result abbe_gamut_map_make(abbe_gamut_map_kind kind, const double xy[8], abbe_gamut_map *out,
+                                abbe_error *error) {
+  ABBE_REQUIRE(xy && out, error);
+  *out = (abbe_gamut_map){.kind = kind, .limit = {1 + 1e-6, 1 + 1e-6, 1 + 1e-6}};
+  abbe_result result = abbe_rgb_space_chromaticities_to_xyz(xy, out->to_xyz, error);
+  if (result != ABBE_OK) return result;
+  abbe_matrix3_invert(out->to_xyz, out->from_xyz);
+  find_limits(out);
+  find_scales(out);
+  return ABBE_OK;
+}
+
+static void clip(double rgb[3]) {
+  for (int c = 0; c < 3; c++) rgb[c] = fmax(rgb[c], 0);
+}
+
+static void compress(const abbe_gamut_map *map, double rgb[3]) {
+  const double most = greatest(rgb);
+  for (int c = 0; c < 3 && most > 0; c++) {
+    const double distance = (most - rgb[c]) / most, over = distance - thresholds[c];
+    if (over <= 0) continue;
+    const double bent = over / pow(1 + pow(over / map->scale[c], power), 1 / power);
+    rgb[c] = most * (1 - thresholds[c] - bent);
+  }
+  clip(rgb); /* imaginary colours; all below 0 is black */
+}
+
+static void take_colour(const abbe_gamut_map *map, const double lab[3], double share,
+                        double rgb[3]) {
+  const double less[3] = {lab[0], share * lab[1], share * lab[2]};
+  double xyz[3];
+  abbe_oklab_to_xyz(less, xyz);
+  abbe_rgb_space_apply(map->from_xyz, xyz, rgb);
+}
+
+static bool inside(const double rgb[3], double slack) {
+  return rgb[0] >= -slack && rgb[1] >= -slack && rgb[2] >= -slack;
+}
+
+/* The most of the colour's chroma that the gamut has. */
+static void towards_white(const abbe_gamut_map *map, const double xyz[3], double rgb[3]) {
+  double lab[3], low = 0, high = 1;
+  if (inside(rgb, 0)) return;
+  abbe_oklab_of_xyz(xyz, lab);
+  for (int i = 0; i < 40; i++) {
+    const double middle = (low + high) / 2;
+    take_colour(map, lab, middle, rgb);
+    if (inside(rgb, 0))
+      low = middle;
+    else
+      high = middle;
+  }
+  take_colour(map, lab, low, rgb);
+  clip(rgb);
+}
+
+void abbe_gamut_map_apply(const abbe_gamut_map *map, double xyz[3]) {
+  double rgb[3];
+  if (map->kind == ABBE_GAMUT_MAP_NONE || !isfinite(xyz[0] + xyz[1] + xyz[2])) return;
+  abbe_rgb_space_apply(map->from_xyz, xyz, rgb);
+  if (map->kind == ABBE_GAMUT_MAP_CLIP) clip(rgb);
+  if (map->kind == ABBE_GAMUT_MAP_COMPRESS) compress(map, rgb);
+  if (map->kind == ABBE_GAMUT_MAP_WHITE) towards_white(map, xyz, rgb);
+  abbe_rgb_space_apply(map->to_xyz, rgb, xyz);
+}
