@@ -98,7 +98,7 @@ static abbe_result print_weights(const request *r, abbe_error *error) {
   if (result == ABBE_OK) result = abbe_illuminant_make(r->illuminant, &light, error);
   if (result == ABBE_OK) result = abbe_weights_make_by(r->observer, &samples, &light, r->space, &weights, error);
   if (result == ABBE_OK) {
-    bool tabulated = light.kind == ABBE_ILLUMINANT_TABULATED;
+    bool tabulated = light.kind == ABBE_ILLUMINANT_TABULATED && light.name[0] == '\0';
     const table t = {.space = abbe_rgb_space_name(r->space),
                      .illuminant = tabulated ? r->illuminant : abbe_illuminant_name(&light),
                      .observer = abbe_observer_text(r->observer),
@@ -122,7 +122,8 @@ static const struct argp_option options[] = {
     {"count", KEY_COUNT, "N", 0, "wavelength samples, 1 to 4096; without it, 7", 0},
     {"range", KEY_RANGE, "FROM:TO", 0, "in nm; without it, 380:780", 0},
     {"illuminant", KEY_ILLUMINANT, "NAME|FILE", ABBE_ARGUMENT_READS,
-     "D65, D50, A, E, or a file of two columns, wavelength and power; without it, D65", 0},
+     "a name of the list below, or a file of two columns, wavelength and power; without it, D65",
+     0},
     {"observer", KEY_OBSERVER, "NAME", 0, "1931, 1964, 2015-2 or 2015-10; without it, 1931", 0},
     {"space", KEY_SPACE, "SPACE", 0, "xyz, rec709 or acescg; without it, xyz", 0},
     {"set", KEY_SET, "SET", 0, "cie, or thesis: the thesis's seven RGB triples as printed", 0},
@@ -182,10 +183,12 @@ static const struct argp parser = {
     .doc = "Prints what each wavelength sample adds to a colour: the integral of observer x "
            "illuminant over the sample's own band, such that all samples together are the "
            "illuminant's white with Y = 1.\v"
+           "Illuminants: " ABBE_ILLUMINANT_NAMES ".\n\n"
            "Examples:\n"
            "  abbe weights\n"
            "  abbe weights --count 21 --space acescg\n"
            "  abbe weights --count 7 --range 400:700 --illuminant A --space rec709 --json\n"
+           "  abbe weights --count 21 --illuminant LED-B3\n"
            "  abbe weights --set thesis\n",
 };
 

@@ -2,10 +2,13 @@
 
 #include "base/nearest.h"
 #include "base/number.h"
+#include "colorimetry/colour_temperature.h"
+#include "colorimetry/illuminant_tables.h"
 #include "spectral/dispersion/csv_points.h"
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -85,7 +88,8 @@ double abbe_illuminant_power(const abbe_illuminant *illuminant, double lambda_nm
 }
 
 const char *abbe_illuminant_name(const abbe_illuminant *illuminant) {
-  if (illuminant->kind == ABBE_ILLUMINANT_TABULATED) return "tabulated";
+  if (illuminant->kind == ABBE_ILLUMINANT_TABULATED)
+    return illuminant->name[0] != '\0' ? illuminant->name : "tabulated";
   return (unsigned)illuminant->kind < ABBE_ILLUMINANT_KIND_COUNT ? names[illuminant->kind]
                                                                  : "unknown";
 }
@@ -117,21 +121,156 @@ static abbe_result load(const char *path, abbe_illuminant *out, abbe_error *erro
   return result;
 }
 
+/* ---- names ---- */
+
+static abbe_result take(const double *lambda_nm, const double *power, size_t count,
+                        abbe_interpolation interpolation, abbe_illuminant *out, abbe_error *error) {
+  const abbe_result result =
+      abbe_spectrum_make(lambda_nm, power, count, interpolation, &out->spectrum, error);
+  if (result == ABBE_OK) out->kind = ABBE_ILLUMINANT_TABULATED;
+  return result;
+}
+
+static abbe_result make_published(const abbe_illuminant_table *t, abbe_illuminant *out,
+                                  abbe_error *error) {
+  double nm[TABLE_COUNT];
+  for (size_t i = 0; i < t->count; i++)
+    nm[i] = t->first_nm + ABBE_ILLUMINANT_TABLE_STEP_NM * (double)i;
+  snprintf(out->name, sizeof out->name, "%s", t->name);
+  return take(nm, t->power, t->count, ABBE_INTERPOLATION_LINEAR, out, error);
+}
+
+/* Daylight of a correlated colour temperature: S0 + M1 S1 + M2 S2, the factors from x and y, to
+ * three places, as the CIE has them [CIE15]. */
+static abbe_result make_daylight(double kelvin, abbe_illuminant *out, abbe_error *error) {
+  enum { COUNT = ABBE_ILLUMINANT_DAYLIGHT_COUNT };
+  double nm[COUNT], power[COUNT], xy[2] = {0};
+  abbe_colour_temperature_daylight_xy(kelvin, xy);
+  const double m = 0.0241 + 0.2562 * xy[0] - 0.7341 * xy[1];
+  const double m1 = round(1e3 * (-1.3515 - 1.7703 * xy[0] + 5.9114 * xy[1]) / m) / 1e3;
+  const double m2 = round(1e3 * (0.0300 - 31.4424 * xy[0] + 30.0717 * xy[1]) / m) / 1e3;
+  for (int i = 0; i < COUNT; i++) {
+    nm[i] = table_min_nm + 10 * i;
+    power[i] = fmax(abbe_illuminant_daylight[0][i] + m1 * abbe_illuminant_daylight[1][i] +
+                        m2 * abbe_illuminant_daylight[2][i],
+                    0);
+  }
+  return take(nm, power, COUNT, ABBE_INTERPOLATION_LINEAR, out, error);
+}
+
+/* Every nanometre, cubic between: within 1e-6 of the formula from 1000 K on. */
+static abbe_result make_planckian(double kelvin, abbe_illuminant *out, abbe_error *error) {
+  enum { COUNT = 531 };
+  double nm[COUNT], power[COUNT];
+  for (int i = 0; i < COUNT; i++) {
+    nm[i] = table_min_nm + i;
+    power[i] = abbe_colour_temperature_planck(kelvin, nm[i]);
+  }
+  return take(nm, power, COUNT, ABBE_INTERPOLATION_MONOTONE, out, error);
+}
+
+/* "D" and hundreds of kelvin in two or three digits, which count by the c2 of 1931 as in D65, or
+ * kelvin in four or five: 0 where it is no such name. */
+static double daylight_kelvin(const char *name) {
+  const size_t digits = strlen(name) - 1;
+  double number;
+  const char *end;
+  if ((name[0] != 'D' && name[0] != 'd') || digits < 2 || digits > 5) return 0;
+  if (strspn(name + 1, "0123456789") != digits || !abbe_number_read(name + 1, &end, &number))
+    return 0;
+  return digits > 3 ? number : number * 100 * 1.4388 / 1.4380;
+}
+
+/* "3200K": 0 where it is no such name. */
+static double planckian_kelvin(const char *name) {
+  const size_t digits = strspn(name, "0123456789");
+  double number;
+  const char *end;
+  if (digits == 0 || digits > 7 || (name[digits] != 'K' && name[digits] != 'k') ||
+      name[digits + 1] != '\0' || !abbe_number_read(name, &end, &number))
+    return 0;
+  return number;
+}
+
+static abbe_result refuse_temperature(const char *name, const char *what, double low, double high,
+                                      abbe_error *error) {
+  char range[64];
+  abbe_number_format(range, sizeof range, "%g to %g K", low, high);
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "the illuminant '%.40s': %s are known from %s", name, what, range);
+}
+
+static abbe_result make_at_temperature(const char *name, double daylight, double planckian,
+                                       abbe_illuminant *out, abbe_error *error) {
+  double xy[2];
+  if (daylight > 0 && !abbe_colour_temperature_daylight_xy(daylight, xy))
+    return refuse_temperature(name, "daylights", 4000, 25000, error);
+  if (planckian > 0 &&
+      !(planckian >= ABBE_COLOUR_TEMPERATURE_MIN && planckian <= ABBE_COLOUR_TEMPERATURE_MAX))
+    return refuse_temperature(name, "black bodies", ABBE_COLOUR_TEMPERATURE_MIN,
+                              ABBE_COLOUR_TEMPERATURE_MAX, error);
+  snprintf(out->name, sizeof out->name, "%s", name);
+  for (char *c = out->name; *c != '\0'; c++)
+    if (*c == 'd' || *c == 'k') *c = (char)(*c - 'a' + 'A');
+  return daylight > 0 ? make_daylight(daylight, out, error) : make_planckian(planckian, out, error);
+}
+
+/* "FL2" is F2. */
+static const abbe_illuminant_table *find_table(const char *name) {
+  const bool fl = strncasecmp(name, "FL", 2) == 0;
+  for (size_t i = 0; i < ABBE_ILLUMINANT_TABLE_COUNT; i++) {
+    const abbe_illuminant_table *t = &abbe_illuminant_tables[i];
+    if (strcasecmp(name, t->name) == 0) return t;
+    if (fl && t->name[0] == 'F' && strcasecmp(name + 2, t->name + 1) == 0) return t;
+  }
+  return NULL;
+}
+
+static int find_kind(const char *name) {
+  for (int i = 0; i < ABBE_ILLUMINANT_TABULATED; i++)
+    if (strcasecmp(name, names[i]) == 0) return i;
+  return -1;
+}
+
+bool abbe_illuminant_is_name(const char *name) {
+  if (name == NULL) return false;
+  return find_kind(name) >= 0 || find_table(name) != NULL || daylight_kelvin(name) > 0 ||
+         planckian_kelvin(name) > 0;
+}
+
+const char *abbe_illuminant_listed(size_t index) {
+  if (index < ABBE_ILLUMINANT_TABULATED) return names[index];
+  index -= ABBE_ILLUMINANT_TABULATED;
+  return index < ABBE_ILLUMINANT_TABLE_COUNT ? abbe_illuminant_tables[index].name : NULL;
+}
+
+static const char *nearest(const char *name) {
+  enum { COUNT = ABBE_ILLUMINANT_TABULATED + ABBE_ILLUMINANT_TABLE_COUNT };
+  const char *all[COUNT];
+  for (size_t i = 0; i < COUNT; i++) all[i] = abbe_illuminant_listed(i);
+  return abbe_nearest_word(name, all, COUNT);
+}
+
 abbe_result abbe_illuminant_make(const char *name_or_path, abbe_illuminant *out,
                                  abbe_error *error) {
   ABBE_REQUIRE(name_or_path && out, error);
   *out = (abbe_illuminant){0};
-  for (int i = 0; i < ABBE_ILLUMINANT_TABULATED; i++)
-    if (strcasecmp(name_or_path, names[i]) == 0) {
-      out->kind = (abbe_illuminant_kind)i;
-      return ABBE_OK;
-    }
+  const int kind = find_kind(name_or_path);
+  if (kind >= 0) {
+    out->kind = (abbe_illuminant_kind)kind;
+    return ABBE_OK;
+  }
+  const abbe_illuminant_table *table = find_table(name_or_path);
+  if (table != NULL) return make_published(table, out, error);
+  const double daylight = daylight_kelvin(name_or_path), planckian = planckian_kelvin(name_or_path);
+  if (daylight > 0 || planckian > 0)
+    return make_at_temperature(name_or_path, daylight, planckian, out, error);
   abbe_result result = load(name_or_path, out, error);
   if (result != ABBE_IO || strpbrk(name_or_path, "/.") != NULL) return result;
-  const char *near = abbe_nearest_word(name_or_path, names, ABBE_ILLUMINANT_TABULATED);
+  const char *near = nearest(name_or_path);
   return abbe_error_set(error, ABBE_NOT_FOUND,
-                        "the illuminant '%s' is neither D65, D50, A or E nor the path of a "
-                        "readable file of two columns%s%s%s",
+                        "the illuminant '%s' is neither " ABBE_ILLUMINANT_NAMES
+                        " nor the path of a readable file of two columns%s%s%s",
                         name_or_path, near ? "; did you mean '" : "", near ? near : "",
                         near ? "'?" : "");
 }

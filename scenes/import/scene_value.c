@@ -33,33 +33,26 @@ abbe_result abbe_scene_value_point(abbe_yaml *yaml, abbe_yaml_node mapping, cons
                            : result;
 }
 
-static bool is_standard(const char *name) {
-  static const char *const standard[] = {"D65", "d65", "D50", "d50", "A", "a", "E", "e"};
-  for (size_t i = 0; i < sizeof standard / sizeof *standard; i++)
-    if (strcmp(name, standard[i]) == 0) return true;
-  return false;
-}
-
 abbe_result abbe_scene_value_illuminant(abbe_yaml *yaml, abbe_yaml_node mapping, const char *folder,
                                         abbe_illuminant *out, char **path, abbe_error *error) {
   ABBE_REQUIRE(yaml && folder && out && path, error);
   char *name = NULL, *joined = NULL;
   abbe_result result = abbe_yaml_get_string(yaml, mapping, "illuminant", &name, error);
   if (result == ABBE_OK && name) {
-    joined = abbe_scene_value_path(is_standard(name) ? "" : folder, name);
+    joined = abbe_scene_value_path(abbe_illuminant_is_name(name) ? "" : folder, name);
     result = joined ? abbe_illuminant_make(joined, out, error)
                     : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
     if (result == ABBE_IO) {
       char sentence[512];
       snprintf(sentence, sizeof sentence, "%.500s", error ? error->text : "");
       abbe_error_set(error, result,
-                     "the illuminant '%.60s' is neither D65, D50, A or E nor a file that can be "
-                     "read: %s",
+                     "the illuminant '%.60s' is neither " ABBE_ILLUMINANT_NAMES
+                     " nor a file that can be read: %s",
                      name, sentence);
     }
     if (result != ABBE_OK)
       abbe_scene_value_locate(yaml, abbe_yaml_get(yaml, mapping, "illuminant"), result, error);
-    if (result == ABBE_OK && out->kind == ABBE_ILLUMINANT_TABULATED) {
+    if (result == ABBE_OK && out->kind == ABBE_ILLUMINANT_TABULATED && out->name[0] == '\0') {
       *path = joined;
       joined = NULL;
     }

@@ -2,7 +2,10 @@
 #include "tests/colorimetry/colord.h"
 
 #include "base/file.h"
+#include "colorimetry/colour_temperature.h"
 #include "colorimetry/illuminant.h"
+#include "colorimetry/observer.h"
+#include "colorimetry/weights.h"
 
 #include <unistd.h>
 
@@ -130,19 +133,157 @@ static void test_unknown_names(void **state) {
   (void)state;
   abbe_illuminant light = {0};
   abbe_error error = {0};
-  assert_int_equal(abbe_illuminant_make("D56", &light, &error), ABBE_NOT_FOUND);
-  assert_non_null(strstr(error.text, "D56"));
+  assert_int_equal(abbe_illuminant_make("LED-B9", &light, &error), ABBE_NOT_FOUND);
+  assert_non_null(strstr(error.text, "did you mean 'LED-B"));
+  static const struct {
+    const char *name;
+    abbe_result result;
+  } bad[] = {{"D39", ABBE_INVALID_ARGUMENT},
+             {"D3999", ABBE_INVALID_ARGUMENT},
+             {"D25001", ABBE_INVALID_ARGUMENT},
+             {"999K", ABBE_INVALID_ARGUMENT},
+             {"1000001K", ABBE_INVALID_ARGUMENT},
+             {"0K", ABBE_NOT_FOUND},
+             {"D", ABBE_NOT_FOUND},
+             {"D5", ABBE_NOT_FOUND},
+             {"D123456", ABBE_NOT_FOUND},
+             {"K", ABBE_NOT_FOUND},
+             {"-3000K", ABBE_NOT_FOUND},
+             {"D-55", ABBE_NOT_FOUND},
+             {"F13", ABBE_NOT_FOUND},
+             {"F0", ABBE_NOT_FOUND},
+             {"", ABBE_NOT_FOUND}};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    const abbe_result result = abbe_illuminant_make(bad[i].name, &light, &error);
+    if (result != bad[i].result || light.spectrum != NULL)
+      fail_msg("'%s': %d, %s", bad[i].name, (int)result, error.text);
+    assert_int_equal(abbe_illuminant_is_name(bad[i].name), result == ABBE_INVALID_ARGUMENT);
+  }
+  assert_false(abbe_illuminant_is_name(NULL));
   assert_int_equal(abbe_illuminant_make("/no/such/lamp.csv", &light, &error), ABBE_IO);
   assert_non_null(strstr(error.text, "/no/such/lamp.csv"));
   assert_int_equal(abbe_illuminant_make("/tmp", &light, &error), ABBE_IO);
 }
 
+/* x, y as [CIE15] prints them: to four or five places, from sums over its 5 nm tables. */
+static const struct {
+  const char *name;
+  double x, y, half; /* half of the last place, and rounding */
+} published[] = {{"C", 0.31006, 0.31616, 6e-6},       {"F1", 0.3131, 0.3371, 5.1e-5},
+                 {"F2", 0.3721, 0.3751, 5.1e-5},      {"F3", 0.4091, 0.3941, 5.1e-5},
+                 {"F4", 0.4402, 0.4031, 5.1e-5},      {"F5", 0.3138, 0.3452, 5.1e-5},
+                 {"F6", 0.3779, 0.3882, 5.1e-5},      {"F7", 0.3129, 0.3292, 5.1e-5},
+                 {"F8", 0.3458, 0.3586, 5.1e-5},      {"F9", 0.3741, 0.3727, 5.1e-5},
+                 {"F10", 0.3458, 0.3588, 5.1e-5},     {"F11", 0.3805, 0.3769, 5.1e-5},
+                 {"F12", 0.4370, 0.4042, 5.1e-5},     {"LED-B1", 0.4560, 0.4078, 5.1e-5},
+                 {"LED-B2", 0.4357, 0.4012, 5.1e-5},  {"LED-B3", 0.3756, 0.3723, 5.1e-5},
+                 {"LED-B4", 0.3422, 0.3502, 5.1e-5},  {"LED-B5", 0.3118, 0.3236, 5.1e-5},
+                 {"LED-BH1", 0.4474, 0.4066, 5.1e-5}, {"LED-RGB1", 0.4557, 0.4211, 5.1e-5},
+                 {"LED-V1", 0.4548, 0.4044, 5.1e-5},  {"LED-V2", 0.3781, 0.3775, 5.1e-5}};
+
+static void colour_by_sums(const abbe_illuminant *light, double xy[2]) {
+  double sum[3] = {0};
+  for (double nm = 360; nm <= 830; nm += 5) {
+    double xyz[3];
+    abbe_observer_xyz(nm, xyz);
+    for (int k = 0; k < 3; k++) sum[k] += xyz[k] * abbe_illuminant_power(light, nm);
+  }
+  for (int k = 0; k < 2; k++) xy[k] = sum[k] / (sum[0] + sum[1] + sum[2]);
+}
+
+/* And the whole integral, in which lamps' lines are triangles, is near. */
+static void test_published_colours(void **state) {
+  (void)state;
+  for (size_t i = 0; i < sizeof published / sizeof *published; i++) {
+    abbe_illuminant light = make(published[i].name);
+    assert_string_equal(abbe_illuminant_name(&light), published[i].name);
+    double xy[2], xyz[3];
+    colour_by_sums(&light, xy);
+    if (fabs(xy[0] - published[i].x) > published[i].half ||
+        fabs(xy[1] - published[i].y) > published[i].half)
+      fail_msg("%s: %.6f, %.6f", published[i].name, xy[0], xy[1]);
+    abbe_weights_band_xyz(&light, 360, 830, 360, 830, xyz);
+    assert_near(xyz[0] / (xyz[0] + xyz[1] + xyz[2]), published[i].x, 4e-4);
+    assert_near(xyz[1] / (xyz[0] + xyz[1] + xyz[2]), published[i].y, 4e-4);
+    abbe_illuminant_free(&light);
+  }
+}
+
+/* Daylight by temperature: D65's and D50's own tables, to the places of the components, and the
+ * colours that [CIE15] prints of D55 and D75. */
+static void test_daylight_of_a_temperature(void **state) {
+  (void)state;
+  static const struct {
+    const char *series, *table;
+    double off;
+  } same[] = {{"D6504", "D65", 0.05}, {"D5003", "D50", 0.05}};
+  for (size_t i = 0; i < 2; i++) {
+    abbe_illuminant one = make(same[i].series), other = make(same[i].table);
+    for (double nm = 300; nm <= 830; nm += 10)
+      assert_near(abbe_illuminant_power(&one, nm), abbe_illuminant_power(&other, nm), same[i].off);
+    abbe_illuminant_free(&one);
+  }
+  abbe_illuminant d55 = make("d55"), d75 = make("D75"), whole = make("D7504");
+  double xy[2];
+  colour_by_sums(&d55, xy);
+  assert_near(xy[0], 0.33242, 2e-5);
+  assert_near(xy[1], 0.34743, 2e-5);
+  colour_by_sums(&d75, xy);
+  assert_near(xy[0], 0.29902, 2e-5);
+  assert_near(xy[1], 0.31485, 2e-5);
+  assert_string_equal(abbe_illuminant_name(&d55), "D55");
+  assert_near(abbe_illuminant_power(&d75, 400), abbe_illuminant_power(&whole, 400), 0.01);
+  abbe_illuminant_free(&d55);
+  abbe_illuminant_free(&d75);
+  abbe_illuminant_free(&whole);
+}
+
+/* A is a black body of 2848 K by the c2 of its time: 2855.5 K by today's. */
+static void test_black_bodies(void **state) {
+  (void)state;
+  abbe_illuminant body = make("2856k"), a = make("A"), cold = make("1000K"), hot = make("1000000K");
+  for (double nm = 380; nm <= 780; nm += 5)
+    assert_near(abbe_illuminant_power(&body, nm) / abbe_illuminant_power(&a, nm), 1, 1e-3);
+  for (double nm = 360.25; nm < 829; nm += 0.5) {
+    assert_near(abbe_illuminant_power(&cold, nm) / abbe_colour_temperature_planck(1000, nm), 1,
+                1e-4);
+    assert_near(abbe_illuminant_power(&hot, nm) / abbe_colour_temperature_planck(1e6, nm), 1, 1e-6);
+  }
+  assert_string_equal(abbe_illuminant_name(&body), "2856K");
+  abbe_illuminant_free(&body);
+  abbe_illuminant_free(&cold);
+  abbe_illuminant_free(&hot);
+}
+
+static void test_every_listed_name_is_a_light(void **state) {
+  (void)state;
+  size_t count = 0;
+  for (const char *name; (name = abbe_illuminant_listed(count)) != NULL; count++) {
+    abbe_illuminant light = make(name);
+    assert_true(abbe_illuminant_is_name(name));
+    assert_true(abbe_illuminant_power(&light, 550) > 0);
+    abbe_illuminant_free(&light);
+  }
+  assert_int_equal(count, 26);
+  abbe_illuminant f11 = make("fl11"), same = make("F11");
+  assert_near(abbe_illuminant_power(&f11, 545), abbe_illuminant_power(&same, 545), 0);
+  abbe_illuminant_free(&f11);
+  abbe_illuminant_free(&same);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_d65_is_the_cies),        cmocka_unit_test(test_d50_is_the_cies),
-      cmocka_unit_test(test_a_is_the_cies),          cmocka_unit_test(test_e_is_flat),
-      cmocka_unit_test(test_interpolation_and_ends), cmocka_unit_test(test_a_file_of_ones_own),
-      cmocka_unit_test(test_files_in_other_dresses), cmocka_unit_test(test_bad_files),
-      cmocka_unit_test(test_unknown_names)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_d65_is_the_cies),
+                                     cmocka_unit_test(test_d50_is_the_cies),
+                                     cmocka_unit_test(test_a_is_the_cies),
+                                     cmocka_unit_test(test_e_is_flat),
+                                     cmocka_unit_test(test_interpolation_and_ends),
+                                     cmocka_unit_test(test_a_file_of_ones_own),
+                                     cmocka_unit_test(test_files_in_other_dresses),
+                                     cmocka_unit_test(test_bad_files),
+                                     cmocka_unit_test(test_unknown_names),
+                                     cmocka_unit_test(test_published_colours),
+                                     cmocka_unit_test(test_daylight_of_a_temperature),
+                                     cmocka_unit_test(test_black_bodies),
+                                     cmocka_unit_test(test_every_listed_name_is_a_light)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
