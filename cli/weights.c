@@ -96,7 +96,8 @@ static abbe_result print_weights(const request *r, abbe_error *error) {
   abbe_weights weights = {0};
   abbe_result result = abbe_wavelengths_make(r->count, r->min_nm, r->max_nm, &samples, error);
   if (result == ABBE_OK) result = abbe_illuminant_make(r->illuminant, &light, error);
-  if (result == ABBE_OK) result = abbe_weights_make_by(r->observer, &samples, &light, r->space, &weights, error);
+  if (result == ABBE_OK)
+    result = abbe_weights_make_by(r->observer, &samples, &light, r->space, &weights, error);
   if (result == ABBE_OK) {
     bool tabulated = light.kind == ABBE_ILLUMINANT_TABULATED && light.name[0] == '\0';
     const table t = {.space = abbe_rgb_space_name(r->space),

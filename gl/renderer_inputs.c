@@ -98,15 +98,31 @@ static uint64_t mix_environment(uint64_t h, const abbe_environment *e, const abb
   return mix_array(h, e->map.rgb, 3 * e->map.width * e->map.height, sizeof *e->map.rgb);
 }
 
+static uint64_t mix_illuminants(uint64_t h, const abbe_scene *scene, const abbe_plan *plan) {
+  for (size_t i = 0; i < plan->light_view_count; i++) {
+    const abbe_illuminant *illuminant = &scene->light[plan->light_view[i].light].illuminant;
+    MIX(h, illuminant->kind);
+    h = mix_spectrum(h, illuminant->spectrum);
+  }
+  return h;
+}
+
 static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 4;
   MIX(h, plan->desc.space);
+  MIX(h, plan->desc.profile);
+  MIX(h, plan->desc.min_nm);
+  MIX(h, plan->desc.max_nm);
+  MIX(h, plan->light_view_count);
+  MIX(h, plan->textured);
+  h = mix_illuminants(h, scene, plan);
   h = mix_environment(h, scene->environment, plan);
   h = mix_array(h, scene->soft_light, scene->soft_light != NULL, sizeof *scene->soft_light);
   for (size_t i = 0; i < plan->receiver_count; i++) {
     const abbe_object *o = &scene->object[plan->receiver_object[i]];
     const size_t texels = o->texture.width * o->texture.height * o->texture.channels;
     MIX(h, o->reflectance);
+    h = mix_spectrum(h, o->spectrum);
     MIX(h, o->texture_repeat);
     MIX(h, o->texture.width);
     MIX(h, o->texture.height);
@@ -127,11 +143,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
     MIX(h, o->min); /* how long paths through it are */
     MIX(h, o->max);
   }
-  for (size_t i = 0; i < plan->light_view_count; i++) {
-    const abbe_illuminant *illuminant = &scene->light[plan->light_view[i].light].illuminant;
-    MIX(h, illuminant->kind);
-    h = mix_spectrum(h, illuminant->spectrum);
-  }
+  h = mix_illuminants(h, scene, plan);
   MIX(h, d->profile);
   MIX(h, d->wavelengths);
   MIX(h, d->min_nm);

@@ -15,6 +15,8 @@ static void object_free(abbe_object *object) {
   free(object->exact.plane);
   free(object->exact.parallelogram);
   free(object->texture_path);
+  abbe_spectrum_free(object->spectrum);
+  free(object->spectrum_path);
   abbe_image_free(&object->texture);
   free(object->mesh_path);
   free(object->mesh_others);
@@ -58,7 +60,7 @@ static size_t other_count(const abbe_object *object) {
 }
 
 size_t abbe_scene_file_count(const abbe_scene *scene) {
-  size_t count = 4 + scene->light_count + 2 * scene->object_count;
+  size_t count = 4 + scene->light_count + 3 * scene->object_count;
   for (size_t i = 0; i < scene->object_count; i++) count += other_count(&scene->object[i]);
   return count;
 }
@@ -77,10 +79,11 @@ const char *abbe_scene_file(const abbe_scene *scene, size_t index) {
   index -= 2;
   for (size_t i = 0; i < scene->object_count; i++) {
     const abbe_object *object = &scene->object[i];
-    const size_t files = 2 + other_count(object);
+    const size_t files = 3 + other_count(object);
     if (index == 0) return object->mesh_path;
     if (index == 1) return object->texture_path;
-    if (index < files) return other_file(object->mesh_others, index - 2);
+    if (index == 2) return object->spectrum_path;
+    if (index < files) return other_file(object->mesh_others, index - 3);
     index -= files;
   }
   return NULL;

@@ -17,6 +17,7 @@
 #include "scenes/mesh/mesh.h"
 #include "scenes/shapes/convex.h"
 #include "spectral/materials/material_table.h"
+#include "spectral/spectrum.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -94,7 +95,10 @@ typedef struct abbe_object {
   const abbe_material *material; /* refractor: owned by the scene's table; else NULL */
   double axis[3];                /* of a uniaxial crystal: unit, its optic axis in the world; of
                                     other materials of no meaning */
-  double reflectance[3];         /* receiver: linear Rec.709, 0 to 1 */
+  double reflectance[3];         /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;
+                                    of a spectrum: its colour under D65, kept within that */
+  abbe_spectrum *spectrum;       /* receiver: its measured reflectance, owned; NULL: Rec.709's */
+  char *spectrum_path;           /* the file that it is of, or NULL */
   char *texture_path;            /* receiver: NULL or the PNG that multiplies reflectance */
   abbe_image texture;            /* linear Rec.709, "R","G","B"; zeroed without a texture */
   double texture_repeat[2];
@@ -112,11 +116,11 @@ typedef struct abbe_scene {
   abbe_camera camera;
   size_t light_count; /* 0 only with an environment */
   abbe_light *light;
-  size_t environment_lights; /* so many at the end of light[] stand for the environment
-                                (environment_lights.h); 0 in a scene as it is loaded */
+  size_t environment_lights;       /* so many at the end of light[] stand for the environment
+                                      (environment_lights.h); 0 in a scene as it is loaded */
   abbe_irradiance_map *soft_light; /* what they leave of it, as irradiance without shadows, in its
                                       RGB; NULL in a scene as it is loaded */
-  abbe_environment *environment; /* owned; NULL: dark surroundings */
+  abbe_environment *environment;   /* owned; NULL: dark surroundings */
   size_t object_count;
   abbe_object *object;
   abbe_material_table table;

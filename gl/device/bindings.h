@@ -48,6 +48,9 @@
 /* Irradiance by normal of what an environment's lights leave of it. */
 #define BINDING_SOFT_LIGHT 28
 
+/* What receivers reflect of each light. */
+#define BINDING_REFLECTIONS 29
+
 /* A list that becomes the size of a dispatch. */
 #define BINDING_DISPATCH 26
 

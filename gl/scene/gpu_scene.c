@@ -19,10 +19,6 @@ typedef struct gpu_receiver {
   float corner[4], u[4], v[4], normal[4], du[4], dv[4];
 } gpu_receiver;
 
-typedef struct gpu_surface {
-  float reflectance[4], texture_info[4];
-} gpu_surface;
-
 /* Refractors and the planes of the convex ones. */
 static abbe_result upload_refractors(abbe_gpu_scene *scene, abbe_error *error) {
   const abbe_plan *plan = scene->plan;
@@ -104,87 +100,6 @@ static abbe_result upload_receivers(abbe_gpu_scene *scene, abbe_error *error) {
   return result;
 }
 
-/* Working space: the picture's, or ACEScg where the picture is XYZ, so that a colour times a
- * reflectance means something. */
-abbe_rgb_space abbe_gpu_scene_working_space(const abbe_gpu_scene *scene) {
-  return scene->plan->desc.space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG
-                                                       : scene->plan->desc.space;
-}
-
-void abbe_gpu_scene_to_working(const abbe_gpu_scene *scene, const double rgb[3], double out[3]) {
-  double to_xyz[9], from_xyz[9];
-  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
-  abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(scene), from_xyz);
-  abbe_rgb_space_apply(to_xyz, rgb, out);
-  abbe_rgb_space_apply(from_xyz, out, out);
-}
-
-/* All textures in one array as large as the largest; smaller ones are resampled to it. */
-static abbe_result upload_textures(abbe_gpu_scene *scene, gpu_surface *surface, abbe_error *error) {
-  size_t width = 1, height = 1, layers = 0;
-  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
-    const abbe_image *t = &scene->local->object[scene->plan->receiver_object[i]].texture;
-    if (t->data == NULL) continue;
-    layers++;
-    if (t->width > width) width = t->width;
-    if (t->height > height) height = t->height;
-  }
-  abbe_result result =
-      abbe_gpu_make_texture(scene->gpu, GL_RGBA16F, width, height, layers > 0 ? layers : 1, true,
-                            &scene->surface_texture, error);
-  if (result != ABBE_OK || layers == 0) return result;
-  scene->gpu->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
-  scene->gpu->gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_T, GL_REPEAT);
-  float *texel = malloc(width * height * 4 * sizeof *texel);
-  if (texel == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a texture");
-  double to_xyz[9], from_xyz[9];
-  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
-  abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(scene), from_xyz);
-  int layer = 0;
-  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
-    const abbe_image *t = &scene->local->object[scene->plan->receiver_object[i]].texture;
-    if (t->data == NULL) continue;
-    for (size_t y = 0; y < height; y++)
-      for (size_t x = 0; x < width; x++) {
-        const float *from =
-            t->data +
-            ((height - 1 - y) * t->height / height * t->width + x * t->width / width) * t->channels;
-        double rgb[3] = {from[0], from[1], from[2]};
-        abbe_rgb_space_apply(to_xyz, rgb, rgb);
-        abbe_rgb_space_apply(from_xyz, rgb, rgb);
-        abbe_float4_store(rgb, 1, texel + 4 * (y * width + x));
-      }
-    scene->gpu->gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, layer, (GLsizei)width,
-                                  (GLsizei)height, 1, GL_RGBA, GL_FLOAT, texel);
-    surface[i].texture_info[0] = (float)layer++;
-  }
-  free(texel);
-  return abbe_gl_check(scene->gpu->gl, "the upload of textures", error);
-}
-
-static abbe_result upload_surfaces(abbe_gpu_scene *scene, abbe_error *error) {
-  gpu_surface *surface = calloc(scene->plan->receiver_count + 1, sizeof *surface);
-  if (surface == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for surfaces");
-  for (size_t i = 0; i < scene->plan->receiver_count; i++) {
-    const abbe_object *object = &scene->local->object[scene->plan->receiver_object[i]];
-    double rgb[3];
-    abbe_gpu_scene_to_working(scene, object->reflectance, rgb);
-    abbe_float4_store(rgb, 1, surface[i].reflectance);
-    surface[i].texture_info[0] = -1.0f;
-    surface[i].texture_info[1] = (float)object->texture_repeat[0];
-    surface[i].texture_info[2] = (float)object->texture_repeat[1];
-  }
-  abbe_result result = upload_textures(scene, surface, error);
-  if (result == ABBE_OK)
-    result = abbe_gpu_make_buffer(scene->gpu, scene->plan->receiver_count * sizeof *surface,
-                                  surface, &scene->surfaces, error);
-  free(surface);
-  if (result != ABBE_OK) return result;
-  return abbe_gpu_environment_make(scene->gpu, scene->local, abbe_gpu_scene_working_space(scene),
-                                   scene->plan->desc.min_nm, scene->plan->desc.max_nm,
-                                   &scene->environment, error);
-}
-
 static void measure_scene(abbe_gpu_scene *scene) {
   double size = 0, radius = 0, min[3], max[3];
   abbe_scene_bounds(scene->local, true, true, scene->min, scene->max);
@@ -237,7 +152,7 @@ abbe_result abbe_gpu_scene_make(abbe_gpu_scene *scene, unsigned parts, abbe_erro
   if (result == ABBE_OK && (parts & ABBE_SCENE_SHADOWS) != 0)
     result = abbe_gpu_shadows_make(scene, error);
   if (result == ABBE_OK && (parts & ABBE_SCENE_SURFACES) != 0)
-    result = upload_surfaces(scene, error);
+    result = abbe_gpu_surfaces_upload(scene, error);
   if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
     result = abbe_spectral_tables_make(scene->local, scene->plan, &scene->tables, error);
   if (result == ABBE_OK && (parts & ABBE_SCENE_SPECTRA) != 0)
@@ -265,6 +180,7 @@ void abbe_gpu_scene_free(abbe_gpu_scene *scene, unsigned parts) {
   if (parts & ABBE_SCENE_SHADOWS) abbe_gpu_shadows_free(scene);
   if (parts & ABBE_SCENE_SURFACES) {
     abbe_gpu_drop_buffers(scene->gpu, 1, &scene->surfaces);
+    abbe_gpu_drop_buffers(scene->gpu, 1, &scene->reflections);
     abbe_gpu_drop_textures(scene->gpu, 1, &scene->surface_texture);
     abbe_gpu_environment_free(scene->gpu, &scene->environment);
   }
@@ -280,10 +196,11 @@ void abbe_gpu_scene_bind(const abbe_gpu_scene *scene) {
   const struct {
     GLuint binding, buffer;
   } tables[] = {
-      {BINDING_REFRACTORS, scene->refractors}, {BINDING_PLANES, scene->planes},
-      {BINDING_RECEIVERS, scene->receivers},   {BINDING_SURFACES, scene->surfaces},
-      {BINDING_SPECTRA, scene->spectra},       {BINDING_BANDS, scene->bands},
-      {BINDING_SHADOW_PLANES, scene->shadows}, {BINDING_SOFT_LIGHT, scene->environment.soft_light}};
+      {BINDING_REFRACTORS, scene->refractors},  {BINDING_PLANES, scene->planes},
+      {BINDING_RECEIVERS, scene->receivers},    {BINDING_SURFACES, scene->surfaces},
+      {BINDING_SPECTRA, scene->spectra},        {BINDING_BANDS, scene->bands},
+      {BINDING_SHADOW_PLANES, scene->shadows},  {BINDING_SOFT_LIGHT, scene->environment.soft_light},
+      {BINDING_REFLECTIONS, scene->reflections}};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
     if (tables[i].buffer == 0) continue;
     /* As blocks and as storage: the shaders choose by size. */

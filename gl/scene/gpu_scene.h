@@ -45,7 +45,7 @@ typedef struct abbe_gpu_scene {
   abbe_gpu_mesh *mesh; /* [mesh_count], of each object */
   size_t mesh_count;
   size_t mesh_bytes; /* of their vertices and faces */
-  GLuint refractors, planes, receivers, surfaces, spectra, bands, shadows;
+  GLuint refractors, planes, receivers, surfaces, reflections, spectra, bands, shadows;
   GLuint surface_texture;
   abbe_gpu_environment environment;
   size_t band_count, band_levels; /* of one refractor: samples, and samples joined by twos */
@@ -93,6 +93,11 @@ void abbe_gpu_meshes_free(abbe_gpu_scene *scene);
  * room: elements of a buffer that holds so many, so that tables of like size share programs. */
 size_t abbe_gpu_spectra_room(size_t count);
 abbe_result abbe_gpu_spectra_upload(abbe_gpu_scene *scene, abbe_error *error);
+
+/* gpu_surfaces.c: textures, what every receiver reflects of every light, and the environment.
+ * reflections: rows of the table of these, three a matrix; the plan's facts decide it. */
+size_t abbe_gpu_surfaces_reflections(const abbe_gpu_scene *scene);
+abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error);
 
 /* gpu_bvh.c: the triangles of what is traversed. */
 abbe_result abbe_gpu_bvh_make(abbe_gpu_scene *scene, abbe_error *error);

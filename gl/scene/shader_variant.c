@@ -13,6 +13,7 @@ void abbe_shader_variant_make(const abbe_gpu_scene *scene, abbe_shader_variant *
       .refractors = p->refractor_count,
       .receivers = p->parallelogram_count,
       .surfaces = p->receiver_count,
+      .reflections = abbe_gpu_surfaces_reflections(scene),
       .wavelengths = p->desc.wavelengths,
       .bands = scene->band_count,
       .band_levels = scene->band_levels,
@@ -65,6 +66,7 @@ static bool too_large(size_t count, size_t element) {
 static void print_tables(FILE *to, const abbe_shader_variant *v) {
   const size_t spectra = abbe_gpu_spectra_room(v->refractors * v->wavelengths);
   const size_t bands = abbe_gpu_spectra_room(v->refractors * ABBE_CAMERA_BAND_SETS * v->bands);
+  const size_t reflections = abbe_gpu_spectra_room(v->reflections);
   print_count(to, "LIGHTS", v->lights);
   print_count(to, "REFRACTORS", v->refractors);
   print_count(to, "RECEIVERS", v->receivers);
@@ -74,12 +76,14 @@ static void print_tables(FILE *to, const abbe_shader_variant *v) {
   print_room(to, "PLANE_ROOM", v->planes);
   print_room(to, "RECEIVER_ROOM", v->receivers);
   print_room(to, "SURFACE_ROOM", v->surfaces);
+  print_count(to, "REFLECTION_ROOM", reflections);
   print_count(to, "SPECTRUM_ROOM", spectra);
   print_count(to, "BAND_ROOM", bands);
   print_count(to, "BAND_SETS", ABBE_CAMERA_BAND_SETS);
   print_flag(to, "BANDS_IN_STORAGE", too_large(bands, 32));
   print_flag(to, "PLANES_IN_STORAGE", too_large(v->planes, 16));
-  print_flag(to, "SURFACES_IN_STORAGE", too_large(v->surfaces, 32));
+  print_flag(to, "SURFACES_IN_STORAGE", too_large(v->surfaces, 16));
+  print_flag(to, "REFLECTIONS_IN_STORAGE", too_large(reflections, 16));
   print_flag(to, "SPECTRA_IN_STORAGE", too_large(spectra, 16));
   print_count(to, "HIERARCHY_STACK", (v->bvh_stack + 7) / 8 * 8);
   if (v->shadow_planes == 0) return;

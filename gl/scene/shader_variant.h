@@ -14,7 +14,7 @@
 
 typedef struct abbe_shader_variant {
   /* the scene */
-  size_t lights, area_lights, refractors, receivers, surfaces, planes;
+  size_t lights, area_lights, refractors, receivers, surfaces, reflections, planes;
   size_t wavelengths, bands, band_levels;
   size_t exits, slots;
   size_t bvh_stack, receiver_root, shadow_planes;

@@ -28,7 +28,6 @@ struct Receiver {  // a parallelogram
 };
 
 struct Surface {
-  vec4 reflectance;  // working space
   vec4 texture_info; // layer or -1, repeat u, repeat v
 };
 

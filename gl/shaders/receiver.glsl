@@ -91,15 +91,40 @@ void light_irradiance(int light, vec3 p, vec3 n, int side, out vec3 direct, out 
 #endif
 }
 
-vec3 surface_reflectance(int surface, vec2 uv) {
-  Surface s = surfaces[surface];
-#ifdef TEXTURED
-  if (s.texture_info.x >= 0.0)
-    return s.reflectance.rgb *
-           textureLod(surface_texture, vec3(uv * s.texture_info.yz, s.texture_info.x), 0.0).rgb;
+// What a surface makes of the rgb irradiance of a light (LIGHTS: ambient light, + 1: the environment), as
+// columns; TEXTURED: of each of the texture's channels.
+#ifdef REFLECTIONS_IN_STORAGE
+layout(std430, binding = BINDING_REFLECTIONS) readonly buffer Reflections { vec4 reflections[]; };
+#else
+layout(std140, binding = BINDING_REFLECTIONS) uniform Reflections { vec4 reflections[REFLECTION_ROOM]; };
 #endif
-  return s.reflectance.rgb;
+
+mat3 reflection_at(int row) {
+  return mat3(reflections[row].xyz, reflections[row + 1].xyz, reflections[row + 2].xyz);
 }
+
+#ifdef TEXTURED
+const int REFLECTION_ROWS = 9;
+
+vec3 texture_share(int surface, vec2 uv) {
+  Surface s = surfaces[surface];
+  if (s.texture_info.x < 0.0) return vec3(1);
+  return textureLod(surface_texture, vec3(uv * s.texture_info.yz, s.texture_info.x), 0.0).rgb;
+}
+
+mat3 reflection_of(int surface, vec3 share, int light) {
+  int row = (surface * (LIGHTS + 2) + light) * REFLECTION_ROWS;
+  return share.r * reflection_at(row) + share.g * reflection_at(row + 3) + share.b * reflection_at(row + 6);
+}
+#else
+const int REFLECTION_ROWS = 3;
+
+vec3 texture_share(int surface, vec2 uv) { return vec3(1); }
+
+mat3 reflection_of(int surface, vec3 share, int light) {
+  return reflection_at((surface * (LIGHTS + 2) + light) * REFLECTION_ROWS);
+}
+#endif
 
 #ifdef ENVIRONMENT
 // rgb irradiance by normal, nodes as scenes/environment/irradiance_map.h has them.
@@ -124,20 +149,21 @@ struct Shading {
 Shading shade(vec3 p, vec3 n, int surface, vec2 uv, int side) {
   Shading s;
   s.direct = s.caustic = vec3(0);
-  vec3 brdf = surface_reflectance(surface, uv) / PI;
+  vec3 share = texture_share(surface, uv);
 #ifndef UNLIT
   vec3 direct, caustic;
 #define SHINE(i)                                             \
   {                                                          \
     light_irradiance(i, p, n, side, direct, caustic);        \
-    s.direct += brdf * direct;                               \
-    s.caustic += brdf * (LIGHT(i).white.w * caustic);        \
+    mat3 reflection = reflection_of(surface, share, i);      \
+    s.direct += reflection * direct / PI;                    \
+    s.caustic += reflection * caustic * (LIGHT(i).white.w / PI); \
   }
   OF_LIGHTS(SHINE)
 #endif
-  s.fill = brdf * ambient;
+  s.fill = reflection_of(surface, share, LIGHTS) * ambient / PI;
 #ifdef ENVIRONMENT
-  s.fill += brdf * soft_irradiance(n);
+  s.fill += reflection_of(surface, share, LIGHTS + 1) * soft_irradiance(n) / PI;
 #endif
   return s;
 }

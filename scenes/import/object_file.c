@@ -6,6 +6,7 @@
 #include "scenes/geometry/vector.h"
 #include "scenes/import/object_reading.h"
 #include "scenes/import/object_surface.h"
+#include "scenes/import/reflectance_file.h"
 #include "scenes/import/scene_value.h"
 #include "spectral/materials/absorption.h"
 #include "spectral/wavelengths.h"
@@ -112,6 +113,8 @@ static abbe_result read_reflectance(const abbe_object_reading *r, abbe_object *o
                                     abbe_error *error) {
   const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "reflectance");
   for (int k = 0; k < 3; k++) out->reflectance[k] = 1.0;
+  if (abbe_yaml_is_mapping(r->yaml, node))
+    return abbe_reflectance_file_read(r->yaml, node, r->folder, out, error);
   if (abbe_yaml_is_sequence(r->yaml, node))
     return abbe_yaml_get_numbers(r->yaml, r->node, "reflectance", 3, 0, 1, out->reflectance, error);
   const abbe_result result =
@@ -157,6 +160,10 @@ static abbe_result read_receiver(const abbe_object_reading *r, abbe_object *out,
   if (result == ABBE_OK)
     result =
         abbe_yaml_get_numbers(r->yaml, r->node, "repeat", 2, 1e-6, 1e6, out->texture_repeat, error);
+  if (result == ABBE_OK && texture.id && out->spectrum != NULL)
+    result = abbe_yaml_fail(r->yaml, texture, error,
+                            "a texture multiplies a reflectance in red, green and blue; leave it "
+                            "out, or the spectrum");
   if (result == ABBE_OK && texture.id) result = read_texture(r, texture, out, error);
   return result;
 }

@@ -10,15 +10,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
-enum { MAX_BYTES = 16 << 20, MAX_FIELDS = 16, MAX_FIELD = 64 };
+enum { MAX_BYTES = 16 << 20, MAX_FIELDS = 64, MAX_FIELD = 64 };
 
 typedef enum role { WAVELENGTH, INDEX, EXTINCTION, UNCERTAINTY, POWER, OTHER } role;
 
 typedef struct reader {
   const char *name;
   const abbe_csv_options *options;
-  bool light; /* two columns, and nothing is passed over */
+  bool light;         /* two columns, or one that is named, and nothing is passed over */
+  const char *column; /* of that name; NULL: there are two */
+  const char *noun;   /* what a light's second column holds */
   abbe_csv_points *out;
   abbe_report *report;
   abbe_error *error;
@@ -41,9 +44,10 @@ void abbe_csv_points_free(abbe_csv_points *points) {
 
 /* ---- fields ---- */
 
-static bool parts(char c, bool by_comma, bool by_semicolon) {
+static bool parts(char c, bool by_comma, bool by_semicolon, bool by_tab) {
   if (by_semicolon) return c == ';';
   if (by_comma) return c == ',';
+  if (by_tab) return c == '\t';
   return c == ' ' || c == '\t';
 }
 
@@ -63,14 +67,15 @@ static void split(reader *r, const char *line, size_t length) {
   bool semicolon = memchr(line, ';', length) != NULL;
   bool tab = memchr(line, '\t', length) != NULL;
   bool comma = !semicolon && !tab && memchr(line, ',', length) != NULL;
+  const bool names = r->column != NULL && tab; /* which may have blanks */
   r->decimal_comma = semicolon || tab;
   r->fields = 0;
   size_t i = 0;
   while (i <= length && r->fields < MAX_FIELDS) {
-    while (!comma && !semicolon && i < length && parts(line[i], false, false)) i++;
+    while (!comma && !semicolon && i < length && parts(line[i], false, false, names)) i++;
     if (!comma && !semicolon && i == length) break;
     size_t used = 0;
-    for (; i < length && !parts(line[i], comma, semicolon); i++)
+    for (; i < length && !parts(line[i], comma, semicolon, names); i++)
       if (used + 1 < MAX_FIELD) r->field[r->fields][used++] = line[i];
     r->field[r->fields][used] = '\0';
     trim(r->field[r->fields++]);
@@ -145,8 +150,25 @@ static role role_of_two(const reader *r, size_t column) {
   return column == (size_t)second ? WAVELENGTH : POWER;
 }
 
+static void find_column(reader *r) {
+  bool waits = true, found = false;
+  for (size_t i = 0; i < r->fields; i++) {
+    const bool here = !found && strcasecmp(r->field[i], r->column) == 0;
+    const bool wavelength = !here && waits && role_of(r->field[i], i) == WAVELENGTH;
+    r->roles[i] = here ? POWER : wavelength ? WAVELENGTH : OTHER;
+    found = found || here;
+    waits = waits && !wavelength;
+    if (wavelength && unit_of(r->field[i]) > 0) r->header_unit_nm = unit_of(r->field[i]);
+  }
+  if (found && !waits) r->role_count = r->fields;
+}
+
 static void take_header(reader *r) {
   join_units(r);
+  if (r->column != NULL) {
+    find_column(r);
+    return;
+  }
   if (r->light && r->fields != 2) return; /* a title */
   r->role_count = r->fields;
   for (size_t i = 0; i < r->fields; i++) {
@@ -186,7 +208,9 @@ static abbe_result take_power(reader *r, const double found[OTHER]) {
     if (what == WAVELENGTH && !(found[WAVELENGTH] > 0))
       return pass_over(r, ABBE_SCHEMA, "a wavelength is above 0", r->field[i]);
     if (what == POWER && !(found[POWER] >= 0))
-      return pass_over(r, ABBE_SCHEMA, "a power is 0 or more", r->field[i]);
+      return pass_over(r, ABBE_SCHEMA,
+                       r->noun[0] == 'p' ? "a power is 0 or more" : "a reflectance is 0 or more",
+                       r->field[i]);
     if (what == WAVELENGTH && before->count > 0 &&
         before->point[before->count - 1].lambda_nm == found[WAVELENGTH])
       return pass_over(r, ABBE_SCHEMA, "a wavelength stands here again", r->field[i]);
@@ -212,14 +236,22 @@ static abbe_result take_index(reader *r, const double found[OTHER]) {
 
 static abbe_result take_point(reader *r) {
   double found[OTHER] = {NAN, NAN, NAN, NAN, NAN};
+  if (r->column != NULL && r->role_count == 0)
+    return abbe_error_set(r->error, ABBE_SCHEMA,
+                          "%s:%zu: numbers begin, and no header before them names a wavelength and "
+                          "the column '%.60s'",
+                          r->name, r->line, r->column);
   for (size_t i = 0; i < r->fields; i++) {
     role what = role_at(r, i);
     if (what == OTHER || r->field[i][0] == '\0' || !isnan(found[what])) continue;
     if (!number(r, r->field[i], &found[what]))
       return pass_over(r, ABBE_PARSE, "this is not a number", r->field[i]);
   }
-  if (r->light && r->fields != 2)
-    return pass_over(r, ABBE_PARSE, "a line wants two numbers, a wavelength and a power",
+  if (r->light && r->column == NULL && r->fields != 2)
+    return pass_over(r, ABBE_PARSE,
+                     r->noun[0] == 'p' ? "a line wants two numbers, a wavelength and a power"
+                                       : "a line wants two numbers, a wavelength and a reflectance "
+                                         "(of more columns, name one)",
                      r->fields > 0 ? r->field[0] : "");
   return r->light ? take_power(r, found) : take_index(r, found);
 }
@@ -311,12 +343,14 @@ static abbe_result finish(reader *r) {
   double unit_nm = 0;
   if (count_of(r->out) == 0)
     return abbe_error_set(r->error, ABBE_SCHEMA, "%s: holds no points; a line wants %s", r->name,
-                          r->light ? "a wavelength and a power, such as 380, 49.98"
-                                   : "a wavelength and an index, such as 587.6, 1.5168");
+                          r->light && r->noun[0] == 'r'
+                              ? "a wavelength and a reflectance, such as 380, 0.18"
+                          : r->light ? "a wavelength and a power, such as 380, 49.98"
+                                     : "a wavelength and an index, such as 587.6, 1.5168");
   abbe_result result = find_unit(r, &unit_nm);
   if (result == ABBE_OK) result = order(r, &r->out->n, unit_nm, "n");
   if (result == ABBE_OK) result = order(r, &r->out->k, unit_nm, "k");
-  if (result == ABBE_OK) result = order(r, &r->out->power, unit_nm, "power");
+  if (result == ABBE_OK) result = order(r, &r->out->power, unit_nm, r->noun);
   if (result == ABBE_OK && count_of(r->out) == 0)
     result = abbe_error_set(r->error, ABBE_SCHEMA, "%s: no point lies from %g to %g nm", r->name,
                             ABBE_SPECTRUM_LOW_NM, ABBE_SPECTRUM_HIGH_NM);
@@ -333,7 +367,9 @@ abbe_result abbe_csv_points_parse(const char *text, size_t size, const char *nam
   abbe_result result = abbe_encoding_decode(text, size, &clean, &length, error);
   if (result != ABBE_OK) return result;
   reader r = {.name = name, .options = options, .out = out, .report = report, .error = error};
-  r.light = options != NULL && options->quantity == ABBE_CSV_POWER;
+  r.light = options != NULL && options->quantity != ABBE_CSV_INDEX;
+  r.column = r.light ? options->column : NULL;
+  r.noun = r.light && options->quantity == ABBE_CSV_REFLECTANCE ? "reflectance" : "power";
   for (size_t at = 0; at < length && result == ABBE_OK;) {
     const char *end = memchr(clean + at, '\n', length - at);
     size_t count = end == NULL ? length - at : (size_t)(end - (clean + at));

@@ -1,5 +1,5 @@
 /* csv_points.h: measured points from a text file of columns: wavelength, n, and k or uncertainty;
- * or wavelength and the power of a light.
+ * or wavelength and the power of a light, or a reflectance.
  *
  * Columns are parted by commas, semicolons, tabs or blanks; with semicolons a decimal comma is
  * understood. What follows a '#' and empty lines are passed over. A header may name the
@@ -25,22 +25,25 @@ typedef enum abbe_csv_third { ABBE_CSV_UNCERTAINTY, ABBE_CSV_K, ABBE_CSV_IGNORED
 
 /* What the columns beside the wavelength hold. */
 typedef enum abbe_csv_quantity {
-  ABBE_CSV_INDEX, /* n or k or both, and uncertainties */
-  ABBE_CSV_POWER  /* one column, 0 or more; a line that cannot be used is an error */
+  ABBE_CSV_INDEX,      /* n or k or both, and uncertainties */
+  ABBE_CSV_POWER,      /* one column, 0 or more; a line that cannot be used is an error */
+  ABBE_CSV_REFLECTANCE /* the same, of a surface */
 } abbe_csv_quantity;
 
 typedef struct abbe_csv_options {
   abbe_csv_quantity quantity;
-  double unit_nm;       /* of the first column: 1 for nm, 1000 for um; 0: the header's, or else nm
-                           where all are above 100 and um where all are below 50 */
+  const char *column; /* of a power or reflectance: the one that the header names so (any case),
+                         beside which there may be others; NULL: there are two columns */
+  double unit_nm;     /* of the first column: 1 for nm, 1000 for um; 0: the header's, or else nm
+                         where all are above 100 and um where all are below 50 */
   abbe_csv_third third;
-  bool repeats;         /* keep several points at one wavelength, as measured ones may be */
+  bool repeats; /* keep several points at one wavelength, as measured ones may be */
 } abbe_csv_options;
 
 typedef struct abbe_csv_points {
-  abbe_points n; /* in order; each error is its uncertainty, 0 where none is given */
-  abbe_points k; /* in order; may be empty */
-  abbe_points power; /* in order; of ABBE_CSV_POWER alone, which has no others */
+  abbe_points n;     /* in order; each error is its uncertainty, 0 where none is given */
+  abbe_points k;     /* in order; may be empty */
+  abbe_points power; /* in order; of a power or reflectance, which has no others */
   size_t first_line; /* of the first number */
 } abbe_csv_points;
 

@@ -122,7 +122,7 @@ static void test_weights_used_wrongly(void **state) {
   must(2, "--set thesis fixes", "weights --set thesis --count 3");
   must(2, "too many", "weights more");
   must(2, "--unknown", "weights --unknown");
-  must(1, "did you mean", "weights --illuminant D56");
+  must(1, "did you mean 'LED-B1'", "weights --illuminant LED-C1");
   must(1, "/no/such.csv", "weights --illuminant /no/such.csv");
   must(1, "900", "weights --range 900:1000");
   must(0, "abbe weights --set thesis", "weights --help");

@@ -113,7 +113,8 @@ static int nearest(const receivers *r, const double o[3], const double d[3], dou
 }
 
 static const char rooms[] =
-    "#define LIGHTS 1\n#define LIGHT_ROOM 1\n#define REFRACTORS 0\n#define REFRACTOR_ROOM 1\n"
+    "#define LIGHTS 1\n#define REFLECTION_ROOM 64\n#define LIGHT_ROOM 1\n#define REFRACTORS "
+    "0\n#define REFRACTOR_ROOM 1\n"
     "#define PLANE_ROOM 1\n#define RECEIVERS 3\n#define RECEIVER_ROOM 3\n#define SURFACE_ROOM 1\n"
     "#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define RECEIVER_HIERARCHY\n"
     "#define RECEIVER_ROOT 0\n";

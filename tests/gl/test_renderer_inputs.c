@@ -69,7 +69,8 @@ static void give_texture(edited *e) {
   X("the background", e->scene.background += 0.1, POWERS)                                          \
   X("a light's name", e->scene.light[0].name[0] = 'd', 0)                                          \
   X("a light's power", e->scene.light[1].power *= 2, POWERS)                                       \
-  X("a light's illuminant", e->scene.light[2].illuminant.kind = ABBE_ILLUMINANT_A, SPECTRA | WAY)  \
+  X("a light's illuminant", e->scene.light[2].illuminant.kind = ABBE_ILLUMINANT_A,                 \
+    SPECTRA | WAY | SURFACES)                                                                      \
   X("a lamp's place", e->scene.light[0].position[0] += 0.01, PLACE)                                \
   X("a spot's place", e->scene.light[1].position[0] += 0.01, PLACE)                                \
   X("a spot's direction", e->scene.light[1].direction[0] += 0.01, WAY)                             \
@@ -104,8 +105,8 @@ static void give_texture(edited *e) {
   X("aovs", e->desc.aovs = true, EYE)                                                              \
   X("the space", e->desc.space = ABBE_RGB_SPACE_REC709, SURFACES | POWERS)                         \
   X("wavelengths", e->desc.wavelengths = 9, SPECTRA | WAY)                                         \
-  X("the range from", e->desc.min_nm = 400, SPECTRA | WAY)                                         \
-  X("the range to", e->desc.max_nm = 700, SPECTRA | WAY)                                           \
+  X("the range from", e->desc.min_nm = 400, SPECTRA | WAY | SURFACES)                              \
+  X("the range to", e->desc.max_nm = 700, SPECTRA | WAY | SURFACES)                                \
   X("photons", e->desc.photons = 48, WAY)                                                          \
   X("their shift", e->desc.photon_shift[0] = 0.25, WAY)                                            \
   X("the map", e->desc.map_size = 96, WAY)                                                         \

@@ -17,6 +17,10 @@ static unsigned long long hash_object(unsigned long long h, const abbe_object *o
   h = hash(h, o->reflectance, sizeof o->reflectance);
   h = hash(h, o->texture.data,
            o->texture.width * o->texture.height * o->texture.channels * sizeof *o->texture.data);
+  for (int i = 0; i <= 40 && o->spectrum != NULL; i++) {
+    const double value = abbe_spectrum_at(o->spectrum, 380 + 10.0 * i);
+    h = hash(h, &value, sizeof value);
+  }
   for (int i = 0; i < INDEX_STEPS && o->material != NULL; i++) {
     double lambda_nm = 380 + 50.0 * i, n = 0;
     abbe_material_n(o->material, lambda_nm, &n, NULL);

@@ -75,6 +75,9 @@ static uint64_t hash_scene(const abbe_tracer *t) {
   }
   h = hash(h, t->sampling.xyz, t->sampling.lights * t->sampling.steps * sizeof *t->sampling.xyz);
   h = hash_media(h, &t->media);
+  h = hash(h, t->reflectance.step,
+           t->reflectance.sets * t->reflectance.steps * sizeof *t->reflectance.step);
+  h = hash(h, t->reflectance.set, s->object_count * sizeof *t->reflectance.set);
   h = hash(h, t->mirrors.reflectance, t->mirrors.count * sizeof *t->mirrors.reflectance);
   h = hash(h, t->mirrors.nk, t->mirrors.count * (t->mirrors.steps + 1) * sizeof *t->mirrors.nk);
   for (size_t i = 0; i < s->object_count; i++) {

@@ -86,22 +86,21 @@ static bool prepare_splat(const abbe_tracer *t, const abbe_photon_hit *l, struct
 static void add_splat(const sink *s, const splat *p) {
   abbe_tracer *t = s->t;
   const abbe_photon_hit *l = p->hit;
-  float rgb[3];
-  abbe_reflectance_at(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
+  abbe_reflected reflected;
+  abbe_reflectance_find(&t->reflectance, l->surface, l->face, l->u, l->v, &reflected);
   size_t colour = s->light * t->sampling.steps + l->step, at = p->pixel * t->picture_channels;
-  float value = p->value * 0.318309886f, seen[3];
-  for (size_t k = 0; k < 3; k++) rgb[k] *= value * t->colour[colour][k];
+  const float kept = abbe_reflectance_at_step(&t->reflectance, &reflected, l->step);
+  float value = p->value * 0.318309886f * kept, rgb[3], seen[3];
+  for (size_t k = 0; k < 3; k++) rgb[k] = value * t->colour[colour][k];
   abbe_tracer_finish(t, rgb, seen);
   for (size_t k = 0; k < 3; k++) {
     abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_RGB + k, seen[k]);
     abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_CAUSTIC + k, seen[k]);
   }
   if (t->bands.count == 0) return;
-  abbe_reflectance_rec709(&t->reflectance, l->surface, l->face, l->u, l->v, rgb);
   size_t band = t->bands.of_step[l->step];
-  float kept = abbe_reflectance_band(rgb, t->bands.basis[band]);
   abbe_accumulator_add(&t->picture, s->thread, at + ABBE_TRACER_BANDS + band,
-                       value * kept * t->sampling.power[colour] / (float)t->bands.width_nm);
+                       value * t->sampling.power[colour] / (float)t->bands.width_nm);
 }
 
 static uint64_t flush_splats(const sink *s, struct RTCRay16 *packet, const splat *splats,

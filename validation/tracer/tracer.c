@@ -99,10 +99,12 @@ static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   if (result == ABBE_OK) result = abbe_bands_make(&t->sampling, d->bands, &t->bands, error);
   if (result != ABBE_OK) return result;
   t->mixing = d->space == ABBE_RGB_SPACE_XYZ ? ABBE_RGB_SPACE_ACESCG : d->space;
-  abbe_reflectance_make(&t->geometry, t->mixing, &t->reflectance);
   abbe_trace_camera_make(&t->geometry, d->width, d->height, &t->camera);
   result = abbe_environment_light_make(&t->geometry, &t->sampling, &t->bands, t->mixing,
                                        &t->environment, error);
+  if (result == ABBE_OK)
+    result = abbe_reflectance_make(&t->geometry, &t->sampling, &t->bands, &t->environment,
+                                   t->mixing, &t->reflectance, error);
   if (result != ABBE_OK) return result;
   size_t lights = t->sampling.lights;
   t->colour = calloc(lights * t->sampling.steps, sizeof *t->colour);
@@ -279,6 +281,7 @@ void abbe_tracer_free(abbe_tracer *t) {
   abbe_accumulator_free(&t->map);
   abbe_photon_grid_free(&t->grid);
   abbe_bands_free(&t->bands);
+  abbe_reflectance_free(&t->reflectance);
   abbe_environment_light_free(&t->environment);
   abbe_media_free(&t->media);
   abbe_mirrors_free(&t->mirrors);

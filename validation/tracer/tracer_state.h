@@ -31,7 +31,7 @@ struct abbe_tracer {
   abbe_environment_light environment; /* its number as a light is the scene's light_count */
   abbe_trace_camera camera;
   abbe_map_layout layout;
-  abbe_rgb_space mixing; /* light times reflectance: the picture's space, ACEScg for XYZ */
+  abbe_rgb_space mixing; /* light is added up in the picture's space, in ACEScg for XYZ */
   float to_xyz[9];       /* from there, for XYZ pictures; row-major */
   float (*colour)[3], (*white)[3]; /* in that space */
   abbe_projection_map *projection; /* [sampling.lights] */

@@ -1,7 +1,6 @@
 #include "validation/transport/bands.h"
 
 #include "colorimetry/image/image.h"
-#include "colorimetry/upsampling.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,18 +18,12 @@ abbe_result abbe_bands_make(const abbe_spectral_sampling *s, size_t count, abbe_
   b.middle_nm = calloc(count, sizeof *b.middle_nm);
   b.of_step = calloc(s->steps, sizeof *b.of_step);
   b.power = calloc(s->lights * count + 1, sizeof *b.power);
-  b.basis = calloc(count, sizeof *b.basis);
   *out = b;
-  if (b.middle_nm == NULL || b.of_step == NULL || b.power == NULL || b.basis == NULL) {
+  if (b.middle_nm == NULL || b.of_step == NULL || b.power == NULL) {
     abbe_bands_free(out);
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu bands", count);
   }
-  for (size_t i = 0; i < count; i++) {
-    double basis[3];
-    b.middle_nm[i] = low + width * ((double)i + 0.5);
-    abbe_upsampling_basis_mean(low + width * (double)i, low + width * ((double)i + 1), basis);
-    for (int k = 0; k < 3; k++) b.basis[i][k] = (float)basis[k];
-  }
+  for (size_t i = 0; i < count; i++) b.middle_nm[i] = low + width * ((double)i + 0.5);
   for (size_t k = 0; k < s->steps; k++) {
     double at = (0.5 * (s->lambda_nm[k] + s->lambda_nm[k + 1]) - low) / width;
     size_t band = at < (double)count ? (size_t)at : count - 1;
@@ -50,7 +43,6 @@ void abbe_bands_free(abbe_bands *b) {
   free(b->middle_nm);
   free(b->of_step);
   free(b->power);
-  free(b->basis);
   *b = (abbe_bands){0};
 }
 

@@ -24,8 +24,6 @@ typedef struct abbe_bands {
   double *middle_nm; /* [count] */
   uint16_t *of_step; /* [steps] the band of a sampling step: of its middle */
   float *power;      /* [lights][count] power of the light in the band, per watt and nm */
-  float (*basis)[3]; /* [count] what of a reflectance's R, G and B is reflected in the band
-                        (upsampling.h); the three add up to 1 */
 } abbe_bands;
 
 /* count bands over the sampling's range. ABBE_INVALID_ARGUMENT beyond ABBE_BANDS_MAX. */

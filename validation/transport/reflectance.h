@@ -1,38 +1,67 @@
-/* reflectance.h: what receivers reflect: their colour, and their texture where they have one.
+/* reflectance.h: what receivers reflect, over wavelength: a measured spectrum, or linear Rec.709,
+ * by a texture where they have one, as colorimetry/reflectance/reflected_light.h lifts it.
  *
- * A scene states reflectances as linear Rec.709 colours, not as spectra. In pictures the colour of
- * the light is multiplied by the reflectance, component by component in the picture's own space.
- * For bands of wavelengths the colour is lifted to a spectrum (colorimetry/upsampling.h) that has it
- * under D65; so a grey stays grey.
+ * A path of one wavelength is reflected by the reflectance there; light of all wavelengths by the
+ * mean over them, with the colour of each: so both have the same mean, in every space.
  */
 #ifndef ABBE_VALIDATION_TRANSPORT_REFLECTANCE_H
 #define ABBE_VALIDATION_TRANSPORT_REFLECTANCE_H
 
 #include "colorimetry/rgb_space.h"
+#include "validation/transport/bands.h"
+#include "validation/transport/environment_light.h"
 #include "validation/transport/geometry.h"
+#include "validation/transport/spectral_sampling.h"
+
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/* Tables of every set of three channels: the first set is Rec.709's, each further one a measured
+ * spectrum's, whose first channel alone is not 0. */
 typedef struct abbe_reflectance {
   const abbe_geometry *geometry;
-  float to_space[9]; /* from linear Rec.709 to shares of the picture's white, row-major */
+  size_t sets, steps, lights, bands;
+  uint32_t *set;        /* [objects] */
+  float (*step)[3];     /* [sets][steps] by channel */
+  float (*white)[3][3]; /* [sets][lights] by channel: the light, in the picture's space */
+  float (*band)[3];     /* [sets][lights][bands] by channel: mean over the band */
+  float (
+      *lifted)[3][3][3]; /* [sets] by channel, by the environment's RGB: in the picture's space */
+  float whiten[9]; /* row-major: what makes white of the first light, a factor each of X, Y, Z */
 } abbe_reflectance;
 
-void abbe_reflectance_make(const abbe_geometry *geometry, abbe_rgb_space space,
-                           abbe_reflectance *out);
+/* A reflectance at a place: how much of each channel. */
+typedef struct abbe_reflected {
+  float share[3];
+  uint32_t set;
+} abbe_reflected;
 
-/* Of a receiver at a place on a face, linear Rec.709. */
-void abbe_reflectance_rec709(const abbe_reflectance *r, uint32_t surface, uint32_t face, float u,
-                             float v, float out[3]);
-/* The same in the picture's space. */
-void abbe_reflectance_at(const abbe_reflectance *r, uint32_t surface, uint32_t face, float u,
-                         float v, float out[3]);
-/* Of the Rec.709 colour in a band, by what that reflects of R, G and B (bands.h). */
-static inline float abbe_reflectance_band(const float rec709[3], const float basis[3]) {
-  return rec709[0] * basis[0] + rec709[1] * basis[1] + rec709[2] * basis[2];
-}
+/* `environment` may be zeroed; `space` is the picture's. ABBE_NO_MEMORY. */
+abbe_result abbe_reflectance_make(const abbe_geometry *geometry,
+                                  const abbe_spectral_sampling *sampling, const abbe_bands *bands,
+                                  const abbe_environment_light *environment, abbe_rgb_space space,
+                                  abbe_reflectance *out, abbe_error *error);
+void abbe_reflectance_free(abbe_reflectance *reflectance);
+
+/* Of a receiver at a place on a face. */
+void abbe_reflectance_find(const abbe_reflectance *r, uint32_t surface, uint32_t face, float u,
+                           float v, abbe_reflected *out);
+/* At a step of the sampling. */
+float abbe_reflectance_at_step(const abbe_reflectance *r, const abbe_reflected *of, uint32_t step);
+/* Mean over a band, of that light. */
+float abbe_reflectance_in_band(const abbe_reflectance *r, const abbe_reflected *of, size_t light,
+                               size_t band);
+/* Colour of the light of power 1 that is reflected. */
+void abbe_reflectance_of_white(const abbe_reflectance *r, const abbe_reflected *of, size_t light,
+                               float out[3]);
+/* The same of the environment's RGB. */
+void abbe_reflectance_of_lifted(const abbe_reflectance *r, const abbe_reflected *of,
+                                const float rgb[3], float out[3]);
+/* The first light's colour becomes white. */
+void abbe_reflectance_whiten(const abbe_reflectance *r, const float colour[3], float out[3]);
 
 #ifdef __cplusplus
 }

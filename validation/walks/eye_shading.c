@@ -7,55 +7,61 @@
 enum { STRAIGHT_SAMPLES = 4 };
 static const float inverse_pi = 0.318309886f;
 
-/* Radiance of a light's spectrum times share; reflectance NULL: none. */
+/* Radiance of a light's spectrum times share; reflected NULL: all of it. */
 static void add_light(const abbe_eye_context *c, const abbe_eye_path *p, size_t light, float share,
-                      const float reflectance[3], const float rec709[3]) {
+                      const abbe_reflected *reflected) {
   const abbe_eye_walk *w = c->w;
   size_t steps = w->sampling->steps;
   const float *colour = p->dispersed ? w->colour[light * steps + p->step] : w->white[light];
+  float of_white[3], kept = 1;
   share *= p->share;
-  for (int k = 0; k < 3; k++)
-    c->out->rgb[k] += share * p->tint[k] * colour[k] * (reflectance ? reflectance[k] : 1);
+  if (reflected && p->dispersed)
+    kept = abbe_reflectance_at_step(w->reflectance, reflected, p->step);
+  else if (reflected)
+    abbe_reflectance_of_white(w->reflectance, reflected, light, of_white), colour = of_white;
+  for (int k = 0; k < 3; k++) c->out->rgb[k] += share * kept * p->tint[k] * colour[k];
   const abbe_bands *b = w->bands;
   for (size_t i = 0; i < b->count; i++) {
     float power = b->power[light * b->count + i];
     if (p->dispersed) {
       if (b->of_step[p->step] != i) continue;
-      power = w->sampling->power[light * steps + p->step] / (float)b->width_nm;
+      power = kept * w->sampling->power[light * steps + p->step] / (float)b->width_nm;
+    } else if (reflected) {
+      power *= abbe_reflectance_in_band(w->reflectance, reflected, light, i);
     }
-    float kept = rec709 ? abbe_reflectance_band(rec709, b->basis[i]) : 1;
-    c->out->band[i] += share * kept * power;
+    c->out->band[i] += share * power;
   }
 }
 
-/* Ambient light and background: white in the picture's space, with the first light's spectrum. */
+/* Ambient light and background: the first light's spectrum, whose colour becomes white. */
 static void add_white(const abbe_eye_context *c, const abbe_eye_path *p, float share,
-                      const float reflectance[3], const float rec709[3]) {
-  const abbe_eye_walk *w = c->w;
-  float before[3];
+                      const abbe_reflected *reflected) {
+  float before[3], add[3];
   memcpy(before, c->out->rgb, sizeof before);
-  add_light(c, p, 0, share, reflectance, rec709);
-  for (int k = 0; k < 3; k++)
-    c->out->rgb[k] = before[k] + (c->out->rgb[k] - before[k]) / w->white[0][k];
+  add_light(c, p, 0, share, reflected);
+  for (int k = 0; k < 3; k++) add[k] = c->out->rgb[k] - before[k];
+  abbe_reflectance_whiten(c->w->reflectance, add, add);
+  for (int k = 0; k < 3; k++) c->out->rgb[k] = before[k] + add[k];
 }
 
 /* Radiance of the environment, RGB relative to its illuminant, times share. */
 static void add_environment(const abbe_eye_context *c, const abbe_eye_path *p, const float rgb[3],
-                            float share, const float reflectance[3], const float rec709[3]) {
+                            float share, const abbe_reflected *reflected) {
   const abbe_eye_walk *w = c->w;
   const abbe_environment_light *e = w->environment;
   if (p->dispersed) {
     const float *lift = e->lift[p->step];
-    add_light(c, p, e->light, share * abbe_eye_dot(lift, rgb), reflectance, rec709);
+    add_light(c, p, e->light, share * abbe_eye_dot(lift, rgb), reflected);
     return;
   }
+  float colour[3];
+  for (int k = 0; k < 3; k++) colour[k] = abbe_eye_dot(&e->to_colour[3 * k], rgb);
+  if (reflected) abbe_reflectance_of_lifted(w->reflectance, reflected, rgb, colour);
   share *= p->share;
-  for (int k = 0; k < 3; k++)
-    c->out->rgb[k] += share * p->tint[k] * abbe_eye_dot(&e->to_colour[3 * k], rgb) *
-                      (reflectance ? reflectance[k] : 1);
+  for (int k = 0; k < 3; k++) c->out->rgb[k] += share * p->tint[k] * colour[k];
   const abbe_bands *b = w->bands;
   for (size_t i = 0; i < b->count; i++) {
-    float kept = rec709 ? abbe_reflectance_band(rec709, b->basis[i]) : 1;
+    float kept = reflected ? abbe_reflectance_in_band(w->reflectance, reflected, e->light, i) : 1;
     c->out->band[i] +=
         share * kept * abbe_eye_dot(e->band[i], rgb) * b->power[e->light * b->count + i];
   }
@@ -64,6 +70,7 @@ static void add_environment(const abbe_eye_context *c, const abbe_eye_path *p, c
 typedef struct gathering {
   const abbe_eye_context *c;
   const abbe_eye_path *p;
+  const abbe_reflected *reflected;
   float sum[3];
   float band[ABBE_BANDS_MAX];
 } gathering;
@@ -83,6 +90,7 @@ static void take_photon(void *user, const abbe_grid_photon *photon) {
     double density = 1 / ((double)steps * (nm[g->p->step + 1] - nm[g->p->step]));
     flux *= (float)(1 / (span * density));
   }
+  flux *= abbe_reflectance_at_step(w->reflectance, g->reflected, (uint32_t)step);
   for (int k = 0; k < 3; k++) g->sum[k] += flux * w->colour[photon->colour][k];
   if (w->bands->count > 0)
     g->band[w->bands->of_step[step]] +=
@@ -90,21 +98,20 @@ static void take_photon(void *user, const abbe_grid_photon *photon) {
 }
 
 static void add_caustic(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_hit *hit,
-                        float side, const float reflectance[3], const float rec709[3]) {
+                        float side, const abbe_reflected *reflected) {
   const abbe_eye_walk *w = c->w;
   if (w->grid == NULL) return;
-  gathering g = {.c = c, .p = p};
+  gathering g = {.c = c, .p = p, .reflected = reflected};
   abbe_photon_grid_gather(w->grid, hit->p, w->radius,
                           (uint32_t)(hit->surface - w->geometry->surface), side, take_photon, &g);
   float unit = (float)w->geometry->unit, r = w->radius * unit;
   float scale = p->share * inverse_pi * inverse_pi / (r * r);
   for (int k = 0; k < 3; k++) {
-    float add = scale * p->tint[k] * reflectance[k] * g.sum[k];
+    float add = scale * p->tint[k] * g.sum[k];
     c->out->rgb[k] += add;
     c->out->caustic[k] += add;
   }
-  for (size_t i = 0; i < w->bands->count; i++)
-    c->out->band[i] += scale * g.band[i] * abbe_reflectance_band(rec709, w->bands->basis[i]);
+  for (size_t i = 0; i < w->bands->count; i++) c->out->band[i] += scale * g.band[i];
 }
 
 /* Irradiance of a light at the hit on the viewer's side, W/m2, seen past everything. n faces the
@@ -203,27 +210,28 @@ static void shade(const abbe_eye_context *c, const abbe_eye_path *p, const abbe_
                   bool straight) {
   const abbe_eye_walk *w = c->w;
   const abbe_scene *scene = w->geometry->scene;
-  float reflectance[3], rec709[3], n[3], random[4];
+  float albedo[3], n[3], random[4];
+  abbe_reflected reflected;
   uint32_t surface = (uint32_t)(hit->surface - w->geometry->surface);
-  abbe_reflectance_at(w->reflectance, surface, hit->face, hit->u, hit->v, reflectance);
-  if (w->bands->count > 0)
-    abbe_reflectance_rec709(w->reflectance, surface, hit->face, hit->u, hit->v, rec709);
-  for (int k = 0; k < 3; k++) c->out->albedo[k] += p->share * p->tint[k] * reflectance[k];
+  abbe_reflectance_find(w->reflectance, surface, hit->face, hit->u, hit->v, &reflected);
+  abbe_reflectance_of_white(w->reflectance, &reflected, 0, albedo);
+  abbe_reflectance_whiten(w->reflectance, albedo, albedo);
+  for (int k = 0; k < 3; k++) c->out->albedo[k] += p->share * p->tint[k] * albedo[k];
   float side = abbe_eye_dot(p->d, hit->ng) < 0 ? 1 : -1;
   const float *normal = abbe_eye_dot(hit->n, p->d) * side < 0 ? hit->n : hit->ng;
   for (int k = 0; k < 3; k++) n[k] = side * normal[k];
   for (size_t l = 0; l < scene->light_count; l++) {
     abbe_eye_random4(c, ~p->id, (uint32_t)(p->steps * ABBE_SCENE_MAX_LIGHTS + l), random);
     float e = irradiance(c, &scene->light[l], hit, n, random);
-    if (e > 0) add_light(c, p, l, e * inverse_pi, reflectance, rec709);
+    if (e > 0) add_light(c, p, l, e * inverse_pi, &reflected);
   }
   if (w->environment->environment != NULL) {
     float rgb[3];
     surrounding_light(c, p, hit, n, straight, rgb);
-    add_environment(c, p, rgb, 1, reflectance, rec709);
+    add_environment(c, p, rgb, 1, &reflected);
   }
-  if (scene->ambient > 0) add_white(c, p, (float)scene->ambient * inverse_pi, reflectance, rec709);
-  if (!straight) add_caustic(c, p, hit, side, reflectance, rec709);
+  if (scene->ambient > 0) add_white(c, p, (float)scene->ambient * inverse_pi, &reflected);
+  if (!straight) add_caustic(c, p, hit, side, &reflected);
 }
 
 /* What ends a path: a receiver, a lamp, or nothing at all. */
@@ -231,15 +239,15 @@ void abbe_eye_arrive(const abbe_eye_context *c, const abbe_eye_path *p, bool met
                      const abbe_hit *hit, bool straight) {
   const abbe_scene *scene = c->w->geometry->scene;
   if (!met) {
-    if (scene->background > 0) add_white(c, p, (float)scene->background, NULL, NULL);
+    if (scene->background > 0) add_white(c, p, (float)scene->background, NULL);
     if (c->w->environment->environment == NULL) return;
     float rgb[3];
     abbe_environment_light_seen(c->w->environment, p->d, rgb);
-    add_environment(c, p, rgb, 1, NULL, NULL);
+    add_environment(c, p, rgb, 1, NULL);
   } else if (hit->surface->kind == ABBE_GEOMETRY_RECEIVERS) {
     shade(c, p, hit, straight);
   } else if (abbe_eye_dot(p->d, hit->n) < 0) {
     size_t l = hit->surface->index;
-    add_light(c, p, l, (float)scene->light[l].power, NULL, NULL);
+    add_light(c, p, l, (float)scene->light[l].power, NULL);
   }
 }

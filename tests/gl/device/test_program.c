@@ -26,7 +26,8 @@ static void write_defines(unsigned bits, char *out, size_t size) {
       out, size,
       "#define LIGHTS 2\n#define REFRACTORS 2\n#define RECEIVERS 6\n"
       "#define WAVELENGTHS 7\n#define PIXEL_THREADS 8\n"
-      "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define PLANE_ROOM 9\n"
+      "#define LIGHT_ROOM 2\n#define REFRACTOR_ROOM 2\n#define REFLECTION_ROOM 64\n#define "
+      "PLANE_ROOM 9\n"
       "#define RECEIVER_ROOM 6\n#define SURFACE_ROOM 6\n#define SPECTRUM_ROOM 14\n"
       "#define BAND_ROOM 140\n#define BAND_SETS 5\n#define HIERARCHY_STACK 24\n#define STEPS 64\n"
       "#define BRIDGE\n#define DOUBTS_BRIDGES\n");

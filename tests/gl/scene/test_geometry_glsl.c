@@ -20,7 +20,8 @@ static const abbe_gl *gl;
 static float inputs[RAYS][8], outputs[RAYS][4];
 
 static const char rooms[] =
-    "#define LIGHTS 1\n#define LIGHT_ROOM 1\n#define REFRACTORS 2\n#define REFRACTOR_ROOM 2\n"
+    "#define LIGHTS 1\n#define REFLECTION_ROOM 64\n#define LIGHT_ROOM 1\n#define REFRACTORS "
+    "2\n#define REFRACTOR_ROOM 2\n"
     "#define PLANE_ROOM 6\n#define RECEIVERS 1\n#define RECEIVER_ROOM 1\n#define SURFACE_ROOM 1\n"
     "#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define SPHERES\n#define CONVEX\n"
     "#include \"refractor.glsl\"\n#include \"receiver.glsl\"\n";

@@ -270,7 +270,8 @@ static void the_shader_agrees(void **state) {
   }
   char text[1024];
   snprintf(text, sizeof text,
-           "#define LIGHTS %d\n#define LIGHT_ROOM %d\n#define REFRACTORS 1\n#define REFRACTOR_ROOM "
+           "#define LIGHTS %d\n#define REFLECTION_ROOM 64\n#define LIGHT_ROOM %d\n#define "
+           "REFRACTORS 1\n#define REFRACTOR_ROOM "
            "1\n#define PLANE_ROOM 1\n#define RECEIVERS 1\n#define RECEIVER_ROOM 1\n#define "
            "SURFACE_ROOM 1\n#define SPECTRUM_ROOM 1\n#define WAVELENGTHS 1\n#define CONVEX\n"
            "#define SHADOW_PLANES %zu\n"

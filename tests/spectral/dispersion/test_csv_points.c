@@ -163,6 +163,29 @@ static void a_lights_spectrum_loses_no_line(void **state) {
     refuses(rows[i].text, &light, rows[i].code, rows[i].part);
 }
 
+/* One column of several, by the name that the header gives it. */
+static void a_named_column_is_read(void **state) {
+  (void)state;
+  const char *const dresses[] = {
+      "wavelength_nm,dark skin,Blue Sky\n400,0.1,0.2\n500,0.3,0.4\n",
+      "\xef\xbb\xbfWellenlaenge [um];Blue Sky;dark skin\r\n0,4;0,2;0,1\r\n0,5;0,4;0,3\r\n",
+      "a chart\nblue sky\tx\tnm\n0.4\t9\t500\n0.2\t9\t400\n"};
+  const abbe_csv_options options = {.quantity = ABBE_CSV_REFLECTANCE, .column = "blue sky"};
+  for (size_t i = 0; i < sizeof dresses / sizeof *dresses; i++) {
+    abbe_csv_points p = parse(dresses[i], &options, NULL);
+    assert_int_equal(p.power.count, 2);
+    assert_near(p.power.point[0].lambda_nm, 400, 1e-9);
+    assert_near(p.power.point[0].value, 0.2, 0);
+    assert_near(p.power.point[1].value, 0.4, 0);
+    abbe_csv_points_free(&p);
+  }
+  refuses("nm,a,b\n400,1,2\n", &options, ABBE_SCHEMA, "the column 'blue sky'");
+  refuses("nm,blue sky\n400,-1\n", &options, ABBE_SCHEMA, "m.csv:2: a reflectance is 0 or more");
+  refuses("nm,blue sky\n400,\n", &options, ABBE_SCHEMA, "m.csv:2:");
+  const abbe_csv_options two = {.quantity = ABBE_CSV_REFLECTANCE};
+  refuses("nm,a,b\n400,1,2\n", &two, ABBE_PARSE, "name one");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(many_dresses_hold_the_same_points),
@@ -172,6 +195,7 @@ int main(void) {
       cmocka_unit_test(what_cannot_be_told_is_asked_for),
       cmocka_unit_test(a_lights_spectrum_is_read_by_the_same_rules),
       cmocka_unit_test(a_lights_spectrum_loses_no_line),
+      cmocka_unit_test(a_named_column_is_read),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,5 @@
 #include "tests/scenes/scene_text.h"
 
-#include "colorimetry/upsampling.h"
-#include "colorimetry/weights.h"
 #include "validation/transport/reflectance.h"
 
 #define CARD                                                                                       \
@@ -12,15 +10,22 @@
 
 static abbe_scene scene;
 static abbe_geometry geometry;
+static abbe_spectral_sampling sampling;
+static abbe_bands bands;
+static const abbe_environment_light dark;
 
 static int setup(void **state) {
   (void)state;
   load_text(CAMERA POINT_LIGHT CARD, &scene);
-  return abbe_geometry_make(&scene, &geometry, NULL) != ABBE_OK;
+  return abbe_geometry_make(&scene, &geometry, NULL) != ABBE_OK ||
+         abbe_spectral_sampling_make(&scene, 380, 780, 0.1, &sampling, NULL) != ABBE_OK ||
+         abbe_bands_make(&sampling, 40, &bands, NULL) != ABBE_OK;
 }
 
 static int teardown(void **state) {
   (void)state;
+  abbe_bands_free(&bands);
+  abbe_spectral_sampling_free(&sampling);
   abbe_geometry_free(&geometry);
   abbe_scene_free(&scene);
   return 0;
@@ -35,10 +40,19 @@ static void at_place(double x, double y, abbe_hit *hit) {
   assert_int_equal(hit->surface - geometry.surface, 0);
 }
 
+static abbe_reflectance make(abbe_rgb_space space) {
+  abbe_reflectance r;
+  assert_int_equal(abbe_reflectance_make(&geometry, &sampling, &bands, &dark, space, &r, NULL),
+                   ABBE_OK);
+  return r;
+}
+
 static void colour_at(const abbe_reflectance *r, double x, double y, float out[3]) {
   abbe_hit hit;
   at_place(x, y, &hit);
-  abbe_reflectance_rec709(r, 0, hit.face, hit.u, hit.v, out);
+  abbe_reflected of;
+  abbe_reflectance_find(r, 0, hit.face, hit.u, hit.v, &of);
+  memcpy(out, of.share, sizeof of.share);
 }
 
 /* A texture that is red on the left, green to the right, and blue upwards, in steps of a texel. */
@@ -59,17 +73,11 @@ static void put_texture(size_t width, size_t height, const double repeat[2]) {
 
 static void without_a_texture_it_is_the_objects(void **state) {
   (void)state;
-  abbe_reflectance r;
-  abbe_reflectance_make(&geometry, ABBE_RGB_SPACE_REC709, &r);
-  float c[3], same[3];
-  abbe_hit hit;
-  at_place(0.3, -0.7, &hit);
-  abbe_reflectance_rec709(&r, 0, hit.face, hit.u, hit.v, c);
-  abbe_reflectance_at(&r, 0, hit.face, hit.u, hit.v, same);
-  for (int k = 0; k < 3; k++) {
-    assert_near((double)c[k], scene.object[0].reflectance[k], 1e-7);
-    assert_near((double)same[k], scene.object[0].reflectance[k], 1e-6);
-  }
+  abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
+  float c[3];
+  colour_at(&r, 0.3, -0.7, c);
+  for (int k = 0; k < 3; k++) assert_near((double)c[k], scene.object[0].reflectance[k], 1e-7);
+  abbe_reflectance_free(&r);
 }
 
 /* x to the right is u, y up is v; the texture's row 0 is at the top. Between the middles of texels
@@ -77,8 +85,7 @@ static void without_a_texture_it_is_the_objects(void **state) {
 static void textures_stand_upright(void **state) {
   (void)state;
   put_texture(16, 8, (double[2]){1, 1});
-  abbe_reflectance r;
-  abbe_reflectance_make(&geometry, ABBE_RGB_SPACE_REC709, &r);
+  abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
   for (int i = 0; i < 100; i++) {
     double u = 0.05 + 0.1 * (i % 10), v = 0.07 + 0.095 * (double)(i / 10);
     float c[3];
@@ -87,13 +94,13 @@ static void textures_stand_upright(void **state) {
     assert_near((double)c[1], 0.5 * u, 1e-5);
     assert_near((double)c[2], 0.25 * v, 1e-5);
   }
+  abbe_reflectance_free(&r);
 }
 
 static void textures_repeat(void **state) {
   (void)state;
   put_texture(16, 8, (double[2]){4, 3});
-  abbe_reflectance r;
-  abbe_reflectance_make(&geometry, ABBE_RGB_SPACE_REC709, &r);
+  abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
   float first[3], c[3];
   colour_at(&r, -1 + 2 * 0.3 / 4, -1 + 2 * 0.4 / 3, first);
   assert_near((double)first[1], 0.5 * 0.3, 1e-5);
@@ -106,14 +113,14 @@ static void textures_repeat(void **state) {
   /* across the seam the last texel and the first are mixed */
   colour_at(&r, -1 + 2 * 1.0 / 4, 0.1, c);
   assert_near((double)c[1], 0.5 * 0.5, 1e-4);
+  abbe_reflectance_free(&r);
 }
 
 /* Repeats below 0 mirror; a texture of one texel is its colour everywhere. */
 static void awkward_textures(void **state) {
   (void)state;
   put_texture(16, 8, (double[2]){-1, -1});
-  abbe_reflectance r;
-  abbe_reflectance_make(&geometry, ABBE_RGB_SPACE_REC709, &r);
+  abbe_reflectance r = make(ABBE_RGB_SPACE_REC709);
   float c[3];
   colour_at(&r, 2 * 0.3 - 1, 2 * 0.4 - 1, c);
   assert_near((double)c[1], 0.5 * 0.7, 1e-5);
@@ -123,60 +130,67 @@ static void awkward_textures(void **state) {
   assert_near((double)c[0], 0.8 * 0.5, 1e-6);
   /* a sphere has no texture coordinates: its colour stands */
   scene.object[1].texture = scene.object[0].texture;
-  abbe_reflectance_rec709(&r, 1, 0, 0, 0, c);
+  abbe_reflected of;
+  abbe_reflectance_find(&r, 1, 0, 0, 0, &of);
   scene.object[1].texture = (abbe_image){0};
-  for (int k = 0; k < 3; k++) assert_near((double)c[k], 0.5, 0);
+  for (int k = 0; k < 3; k++) assert_near((double)of.share[k], 0.5, 0);
+  abbe_reflectance_free(&r);
   abbe_image_free(&scene.object[0].texture);
 }
 
-/* A grey is the same number in every space, XYZ among them; a colour is the matrix's. */
-static void greys_stay_grey(void **state) {
+/* The mean of one wavelength's paths is what light of all wavelengths shows, and under D65 that is
+ * the colour, in every space; a grey is grey at all wavelengths. */
+static void wavelengths_add_up_to_the_colour(void **state) {
   (void)state;
-  abbe_reflectance r;
-  float c[3];
+  const abbe_reflected card = {.share = {0.8f, 0.5f, 0.25f}}, grey = {.share = {0.5f, 0.5f, 0.5f}};
   for (int space = 0; space < ABBE_RGB_SPACE_COUNT; space++) {
-    abbe_reflectance_make(&geometry, (abbe_rgb_space)space, &r);
-    abbe_reflectance_at(&r, 1, 0, 0, 0, c);
-    for (int k = 0; k < 3; k++) assert_near((double)c[k], 0.5, 1e-6);
+    abbe_reflectance r = make((abbe_rgb_space)space);
+    double to_xyz[9], from_xyz[9], expected[3], sum[3] = {0};
+    float c[3], white[3];
+    abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
+    abbe_rgb_space_from_xyz((abbe_rgb_space)space, from_xyz);
+    abbe_rgb_space_apply(to_xyz, (double[3]){0.8, 0.5, 0.25}, expected);
+    abbe_rgb_space_apply(from_xyz, expected, expected);
+    for (uint32_t k = 0; k < sampling.steps; k++) {
+      const double share = (double)abbe_reflectance_at_step(&r, &card, k);
+      assert_true(share >= 0.25 - 1e-6 && share <= 0.8 + 1e-6);
+      assert_near((double)abbe_reflectance_at_step(&r, &grey, k), 0.5, 1e-6);
+      for (int j = 0; j < 3; j++) sum[j] += share * (double)sampling.xyz[k][j];
+    }
+    abbe_rgb_space_apply(from_xyz, sum, sum);
+    abbe_reflectance_of_white(&r, &card, 0, c);
+    abbe_reflectance_of_white(&r, &(abbe_reflected){.share = {1, 1, 1}}, 0, white);
+    abbe_reflectance_whiten(&r, white, white);
+    double one[3] = {1, 1, 1};
+    for (int k = 0; k < 3; k++) {
+      assert_near((double)c[k], sum[k] / (double)sampling.steps, 1e-6);
+      assert_near((double)c[k], expected[k], 1e-3);
+      assert_near((double)white[k], one[k], 1e-5);
+    }
+    abbe_reflectance_free(&r);
   }
-  abbe_reflectance_make(&geometry, ABBE_RGB_SPACE_ACESCG, &r);
-  double to_xyz[9], from_xyz[9], expected[3];
-  abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, to_xyz);
-  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, from_xyz);
-  abbe_rgb_space_apply(to_xyz, scene.object[0].reflectance, expected);
-  abbe_rgb_space_apply(from_xyz, expected, expected);
-  abbe_reflectance_at(&r, 0, 0, 0.2f, 0.3f, c);
-  for (int k = 0; k < 3; k++) assert_near((double)c[k], expected[k], 1e-5);
 }
 
-/* In bands over 380 to 780 nm, under D65, a reflectance has its colour: in XYZ, by Rec.709's own
- * matrix. Bands of 1 nm have nothing of the error of wide ones. */
-static void bands_of_a_colour(void **state) {
+/* Objects of a spectrum have it, at every step and as the mean over a band. */
+static void a_spectrum_is_itself(void **state) {
   (void)state;
-  enum { BANDS = 400 };
-  static const double limit[2] = {0, 2e-3};
-  const abbe_illuminant d65 = {0};
-  const float grey[3] = {0.3f, 0.3f, 0.3f}, wood[3] = {0.6f, 0.32f, 0.13f};
-  for (int wide = 0; wide < 2; wide++) {
-    const int count = wide ? 20 : BANDS;
-    const double width = 400.0 / count;
-    double sum[3] = {0}, expected[3] = {(double)wood[0], (double)wood[1], (double)wood[2]}, m[9];
-    for (int i = 0; i < count; i++) {
-      double mean[3], xyz[3];
-      const double from = 380 + width * i;
-      abbe_upsampling_basis_mean(from, from + width, mean);
-      const float basis[3] = {(float)mean[0], (float)mean[1], (float)mean[2]};
-      assert_near((double)abbe_reflectance_band(grey, basis), 0.3, 1e-6);
-      const double kept = (double)abbe_reflectance_band(wood, basis);
-      assert_true(kept > 0.13 - 1e-6 && kept < 0.6 + 1e-6);
-      abbe_weights_band_xyz(&d65, 380, 780, from, from + width, xyz);
-      for (int k = 0; k < 3; k++) sum[k] += kept * xyz[k];
-    }
-    abbe_rgb_space_to_xyz(ABBE_RGB_SPACE_REC709, m);
-    abbe_rgb_space_apply(m, expected, expected);
-    /* the nominal white is not the table's, by 5e-4 (rgb_space.h) */
-    for (int k = 0; k < 3; k++) assert_near(sum[k], expected[k], 5e-4 + limit[wide]);
+  static const double nm[] = {380, 780}, value[] = {0.1, 0.9};
+  abbe_object *o = &scene.object[0];
+  assert_int_equal(abbe_spectrum_make(nm, value, 2, ABBE_INTERPOLATION_LINEAR, &o->spectrum, NULL),
+                   ABBE_OK);
+  abbe_reflectance r = make(ABBE_RGB_SPACE_XYZ);
+  abbe_reflected of;
+  abbe_reflectance_find(&r, 0, 0, 0.2f, 0.3f, &of);
+  for (uint32_t k = 0; k < sampling.steps; k++) {
+    const double middle = 0.5 * (sampling.lambda_nm[k] + sampling.lambda_nm[k + 1]);
+    assert_near((double)abbe_reflectance_at_step(&r, &of, k), 0.1 + 0.002 * (middle - 380), 1e-6);
   }
+  for (size_t b = 0; b < bands.count; b++)
+    assert_near((double)abbe_reflectance_in_band(&r, &of, 0, b),
+                0.1 + 0.002 * (bands.middle_nm[b] - 380), 2e-3); /* a step is up to 1 nm */
+  abbe_reflectance_free(&r);
+  abbe_spectrum_free(o->spectrum);
+  o->spectrum = NULL;
 }
 
 int main(void) {
@@ -185,8 +199,8 @@ int main(void) {
       cmocka_unit_test(textures_stand_upright),
       cmocka_unit_test(textures_repeat),
       cmocka_unit_test(awkward_textures),
-      cmocka_unit_test(greys_stay_grey),
-      cmocka_unit_test(bands_of_a_colour),
+      cmocka_unit_test(wavelengths_add_up_to_the_colour),
+      cmocka_unit_test(a_spectrum_is_itself),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }
