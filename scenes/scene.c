@@ -20,6 +20,8 @@ static void object_free(abbe_object *object) {
   abbe_image_free(&object->texture);
   free(object->mesh_path);
   free(object->mesh_others);
+  abbe_material_free(object->own_material);
+  free(object->own_material);
   free(object->fixes);
 }
 

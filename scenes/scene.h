@@ -92,9 +92,10 @@ typedef struct abbe_object {
   abbe_mesh mesh; /* world space */
   abbe_exact exact;
   double min[3], max[3];         /* bounds */
-  const abbe_material *material; /* refractor: owned by the scene's table; else NULL */
+  const abbe_material *material; /* refractor: of the scene's table or its own; else NULL */
   double axis[3];                /* of a uniaxial crystal: unit, its optic axis in the world; of
                                     other materials of no meaning */
+  abbe_material *own_material;   /* refractor: that of its mesh's file, owned, or NULL */
   double reflectance[3];         /* receiver: linear Rec.709, 0 to 1, as reflected_light.h lifts it;
                                     of a spectrum: its colour under D65, kept within that */
   abbe_spectrum *spectrum;       /* receiver: its measured reflectance, owned; NULL: Rec.709's */

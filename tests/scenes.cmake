@@ -8,6 +8,7 @@ foreach(name transform disjoint_sets vector
         view estimator map_layout map_resample pov_file export_index)
   abbe_test(${name} cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
+abbe_test(gltf_material cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 abbe_test(export_views cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 abbe_test(scene_export cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 abbe_test(cut_solid cpu abbe_scenes abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 static const struct {
   const char *name, *ending;
@@ -44,6 +45,23 @@ void abbe_scene_export_report_free(abbe_scene_export_report *report) {
   memset(report, 0, sizeof *report);
 }
 
+/* A scene's own files are not written over by those that stand beside the exported one. */
+static abbe_result spare_scene(const abbe_scene *scene, const abbe_export_files *files,
+                               abbe_error *error) {
+  struct stat own, to;
+  for (size_t i = 0; i < files->count; i++)
+    for (size_t k = 0; k < abbe_scene_file_count(scene); k++) {
+      const char *path = abbe_scene_file(scene, k);
+      if (path != NULL && stat(path, &own) == 0 && stat(files->file[i].path, &to) == 0 &&
+          own.st_dev == to.st_dev && own.st_ino == to.st_ino)
+        return abbe_error_set(
+            error, ABBE_INVALID_ARGUMENT,
+            "%s would be written over the scene's file %s; export to another name",
+            files->file[i].path, path);
+    }
+  return ABBE_OK;
+}
+
 static abbe_result write_all(const char *path, const abbe_export_writing *asked,
                              abbe_error *error) {
   abbe_export_files files = {0};
@@ -55,6 +73,7 @@ static abbe_result write_all(const char *path, const abbe_export_writing *asked,
     w.file = writer.stream;
     w.files = &files;
     result = targets[w.target].write(&w, error);
+    if (result == ABBE_OK) result = spare_scene(w.scene, &files, error);
     if (result == ABBE_OK) result = abbe_export_files_write(&files, error);
     if (result == ABBE_OK) {
       result = abbe_file_writer_commit(&writer, error);

@@ -5,6 +5,7 @@
 
 #include <assimp/cimport.h>
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -34,7 +35,7 @@ typedef struct header {
 
 enum { BATCH = 256 };
 
-static const struct aiScene *import(const char *path, abbe_mesh_files *files) {
+static const struct aiScene *import(const char *path, bool materials, abbe_mesh_files *files) {
   struct aiPropertyStore *store = aiCreatePropertyStore();
   if (!store) return NULL;
   aiSetImportPropertyInteger(store, AI_CONFIG_PP_SBP_REMOVE,
@@ -43,7 +44,7 @@ static const struct aiScene *import(const char *path, abbe_mesh_files *files) {
                              aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS |
-                                 aiComponent_MATERIALS);
+                                 (materials ? 0 : (int)aiComponent_MATERIALS));
   /* assimp joins vertices nearer than 1e-5 units, too coarse for small stones; they are joined
    * by the caller, relative to the mesh's size */
   const struct aiScene *scene = aiImportFileExWithProperties(
@@ -55,9 +56,18 @@ static const struct aiScene *import(const char *path, abbe_mesh_files *files) {
   return scene;
 }
 
-static bool usable(const struct aiMesh *part) {
+static bool is_of(const struct aiScene *scene, const struct aiMesh *mesh, const char *material) {
+  struct aiString name;
+  return material == NULL || (mesh->mMaterialIndex < scene->mNumMaterials &&
+                              aiGetMaterialString(scene->mMaterials[mesh->mMaterialIndex],
+                                                  AI_MATKEY_NAME, &name) == aiReturn_SUCCESS &&
+                              strcmp(name.data, material) == 0);
+}
+
+static bool usable(const struct aiScene *scene, const struct aiMesh *part, const char *material) {
   return part && part->mVertices && part->mFaces &&
-         (part->mPrimitiveTypes & (unsigned)aiPrimitiveType_TRIANGLE);
+         (part->mPrimitiveTypes & (unsigned)aiPrimitiveType_TRIANGLE) &&
+         is_of(scene, part, material);
 }
 
 static bool send(int fd, const void *data, size_t size) {
@@ -116,18 +126,18 @@ static void complain(const abbe_mesh_files *files, header *h) {
   h->no_memory = files->error.code == ABBE_NO_MEMORY;
 }
 
-static bool send_scene(int fd, const char *path) {
+static bool send_scene(int fd, const char *path, const char *material) {
   header h;
   abbe_mesh_files files;
   memset(&h, 0, sizeof h); /* the gaps too: it is sent as it lies */
   abbe_mesh_files_begin(&files);
-  const struct aiScene *scene = import(path, &files);
+  const struct aiScene *scene = import(path, material != NULL, &files);
   if (!scene) complain(&files, &h);
   memcpy(h.others, files.others, sizeof h.others);
   h.with_normals = true;
   for (unsigned m = 0; scene && m < scene->mNumMeshes; m++) {
     const struct aiMesh *part = scene->mMeshes[m];
-    if (!usable(part)) continue;
+    if (!usable(scene, part, material)) continue;
     h.vertices += part->mNumVertices;
     h.with_uv = h.with_uv || part->mTextureCoords[0];
     h.with_normals = h.with_normals && part->mNormals;
@@ -138,7 +148,7 @@ static bool send_scene(int fd, const char *path) {
     size_t first_vertex = 0;
     for (unsigned m = 0; ok && m < scene->mNumMeshes; m++) {
       const struct aiMesh *part = scene->mMeshes[m];
-      if (!usable(part)) continue;
+      if (!usable(scene, part, material)) continue;
       if (what == 0) ok = send_vectors(fd, part->mVertices, part->mNumVertices, 3);
       if (what == 1 && h.with_normals) ok = send_vectors(fd, part->mNormals, part->mNumVertices, 3);
       if (what == 2 && h.with_uv)
@@ -151,7 +161,7 @@ static bool send_scene(int fd, const char *path) {
 }
 
 /* Never returns. What assimp says as it stops belongs to nobody, nor do the caller's handlers. */
-static void be_child(int fd, const char *path, pid_t caller) {
+static void be_child(int fd, const char *path, const char *material, pid_t caller) {
   static const int signals[] = {SIGABRT, SIGSEGV, SIGBUS,  SIGFPE,
                                 SIGILL,  SIGXCPU, SIGPIPE, SIGALRM};
   sigset_t all;
@@ -171,7 +181,7 @@ static void be_child(int fd, const char *path, pid_t caller) {
     dup2(nothing, STDERR_FILENO);
   }
   abbe_number_enter(); /* some of assimp's readers go by the locale */
-  _exit(send_scene(fd, path) ? 0 : 1);
+  _exit(send_scene(fd, path, material) ? 0 : 1);
 }
 
 /* ---- the caller ---- */
@@ -232,8 +242,8 @@ static abbe_result take_others(const char *names, char **out, abbe_error *error)
 }
 
 /* *whole: whether all came that the child had to send. */
-static abbe_result take(int fd, const char *path, abbe_mesh *out, char **others, bool *whole,
-                        abbe_error *error) {
+static abbe_result take(int fd, const char *path, const char *material, abbe_mesh *out,
+                        char **others, bool *whole, abbe_error *error) {
   header h;
   *whole = receive(fd, &h, sizeof h);
   if (!*whole) return ABBE_OK;
@@ -247,6 +257,9 @@ static abbe_result take(int fd, const char *path, abbe_mesh *out, char **others,
   if (h.complaint[0] != '\0')
     return abbe_error_set(error, h.no_memory ? ABBE_NO_MEMORY : ABBE_PARSE,
                           "%s: the mesh cannot be read: %s", path, h.complaint);
+  if ((h.vertices == 0 || h.faces == 0) && material != NULL)
+    return abbe_error_set(error, ABBE_GEOMETRY, "%s: no triangle is of a material called '%.80s'",
+                          path, material);
   if (h.vertices == 0 || h.faces == 0)
     return abbe_error_set(error, ABBE_GEOMETRY, "%s: the file has no triangles", path);
   abbe_result result = take_others(h.others, others, error);
@@ -273,7 +286,8 @@ static abbe_result stopped(const char *path, int status, abbe_error *error) {
                         path);
 }
 
-abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, char **others, abbe_error *error) {
+abbe_result abbe_mesh_import(const char *path, const char *material, abbe_mesh *out, char **others,
+                             abbe_error *error) {
   ABBE_REQUIRE(path && out, error);
   int end[2];
   memset(out, 0, sizeof *out);
@@ -284,14 +298,14 @@ abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, char **others, ab
   const pid_t self = getpid(), child = fork();
   if (child == 0) {
     close(end[0]);
-    be_child(end[1], path, self);
+    be_child(end[1], path, material, self);
   }
   const int why = errno;
   close(end[1]);
   bool whole = false;
   int status = 0;
   abbe_result result =
-      child > 0 ? take(end[0], path, out, others, &whole, error)
+      child > 0 ? take(end[0], path, material, out, others, &whole, error)
                 : abbe_error_set(error, ABBE_IO, "%s: there is no process to read the mesh in: %s",
                                  path, strerror(why));
   close(end[0]);

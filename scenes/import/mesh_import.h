@@ -19,8 +19,10 @@ extern "C" {
  * with its caller and has the limits of mesh_files.h. ABBE_PARSE with assimp's reason or where
  * the child was stopped, ABBE_GEOMETRY for coordinates that are not finite, faces that name
  * vertices that are not there, or a file without triangles, ABBE_IO where no process can be had,
- * ABBE_NO_MEMORY. *others is as in abbe_mesh_load. */
-abbe_result abbe_mesh_import(const char *path, abbe_mesh *out, char **others, abbe_error *error);
+ * ABBE_NO_MEMORY. material: only triangles of the material of that name in the file; NULL: all.
+ * *others is as in abbe_mesh_load. */
+abbe_result abbe_mesh_import(const char *path, const char *material, abbe_mesh *out, char **others,
+                             abbe_error *error);
 
 #ifdef __cplusplus
 }

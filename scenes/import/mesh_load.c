@@ -128,13 +128,19 @@ static abbe_result read_strips(const char *path, abbe_mesh *out, abbe_error *err
 
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,
                            char **others, abbe_error *error) {
+  return abbe_mesh_load_part(path, NULL, normals, out, others, error);
+}
+
+abbe_result abbe_mesh_load_part(const char *path, const char *material, abbe_mesh_normals normals,
+                                abbe_mesh *out, char **others, abbe_error *error) {
   ABBE_REQUIRE(path && out, error);
   bool strips = false;
   char *named = NULL;
   memset(out, 0, sizeof *out);
   abbe_result result = check_file(path, &strips, error);
   if (result == ABBE_OK)
-    result = strips ? read_strips(path, out, error) : abbe_mesh_import(path, out, &named, error);
+    result = strips ? read_strips(path, out, error)
+                    : abbe_mesh_import(path, material, out, &named, error);
   const bool facets = strcasecmp(strrchr(path, '.') ? strrchr(path, '.') : "", ".stl") == 0;
   const bool keep = normals == ABBE_NORMALS_AUTO && out->given_normals && !facets;
   if (result == ABBE_OK) result = join_vertices(out, keep, error);

@@ -228,7 +228,14 @@ static abbe_result read_axis(const abbe_object_reading *r, abbe_object *out, abb
 static abbe_result read_refractor(const abbe_object_reading *r, abbe_yaml_node node,
                                   const abbe_material_table *table, abbe_object *out,
                                   abbe_error *error) {
-  const abbe_result result = find_material(r, "material", table, &out->material, error);
+  const char *text = abbe_yaml_text(r->yaml, node);
+  const bool own = text != NULL && strcmp(text, ABBE_OBJECT_FROM_FILE) == 0;
+  if (own && out->own_material == NULL)
+    return abbe_yaml_fail(r->yaml, node, error,
+                          "'material: from-file' is for the 'mesh' of a .gltf or .glb file");
+  const abbe_result result =
+      own ? ABBE_OK : find_material(r, "material", table, &out->material, error);
+  if (own) out->material = out->own_material;
   if (result != ABBE_OK ||
       !abbe_material_is_opaque(out->material, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM))
     return result;

@@ -11,6 +11,9 @@
 extern "C" {
 #endif
 
+/* Stands for the name of a material: the one that the mesh's file has. */
+#define ABBE_OBJECT_FROM_FILE "from-file"
+
 #define ABBE_OBJECT_RADIANS (3.14159265358979323846 / 180.0)
 
 typedef enum abbe_object_form {

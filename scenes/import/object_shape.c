@@ -1,6 +1,7 @@
 /* The surface of an object: one of the shapes, or the mesh of a file. */
 #include "scenes/cuts/cut_file.h"
 #include "scenes/cuts/cut_polyhedron.h"
+#include "scenes/import/gltf_material.h"
 #include "scenes/import/object_reading.h"
 #include "scenes/import/scene_value.h"
 #include "scenes/shapes/brilliant.h"
@@ -184,12 +185,31 @@ static abbe_result read_cut(const abbe_object_reading *r, abbe_mesh *out, abbe_e
   return result;
 }
 
+/* Of 'material: from-file'; *part becomes the name of the material whose triangles are meant. */
+static abbe_result read_own_material(const abbe_object_reading *r, abbe_object *out, char **part,
+                                     abbe_error *error) {
+  const abbe_yaml_node node = abbe_yaml_get(r->yaml, r->node, "material");
+  const char *text = abbe_yaml_text(r->yaml, node);
+  char *name = NULL;
+  if (text == NULL || strcmp(text, ABBE_OBJECT_FROM_FILE) != 0) return ABBE_OK;
+  out->own_material = calloc(1, sizeof *out->own_material);
+  if (out->own_material == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a material");
+  const abbe_result result =
+      abbe_gltf_material_load(out->mesh_path, *part, out->own_material, &name, error);
+  if (result != ABBE_OK) return result;
+  free(*part);
+  *part = name;
+  return ABBE_OK;
+}
+
 static abbe_result read_mesh(abbe_object_reading *r, abbe_object *out, abbe_error *error) {
   const bool says = abbe_yaml_get(r->yaml, r->node, "smooth").id != 0;
-  char *name = NULL;
+  char *name = NULL, *part = NULL;
   size_t levels = 0;
   bool smooth = true;
   abbe_result result = abbe_yaml_get_string(r->yaml, r->node, "mesh", &name, error);
+  if (result == ABBE_OK) result = abbe_yaml_get_string(r->yaml, r->node, "part", &part, error);
   if (result == ABBE_OK) result = abbe_yaml_get_bool(r->yaml, r->node, "smooth", &smooth, error);
   if (result == ABBE_OK) result = read_count(r, "subdivide", 0, 8, &levels, error);
   if (result == ABBE_OK && levels > 0 && !smooth)
@@ -200,10 +220,13 @@ static abbe_result read_mesh(abbe_object_reading *r, abbe_object *out, abbe_erro
   if (result == ABBE_OK) out->mesh_path = abbe_scene_value_path(r->folder, name);
   if (result == ABBE_OK && !out->mesh_path)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a path");
+  if (result == ABBE_OK) result = read_own_material(r, out, &part, error);
   if (result == ABBE_OK)
-    result = abbe_mesh_load(out->mesh_path, r->normals, &out->mesh, &out->mesh_others, error);
+    result =
+        abbe_mesh_load_part(out->mesh_path, part, r->normals, &out->mesh, &out->mesh_others, error);
   if (result == ABBE_OK && levels > 0) result = abbe_mesh_subdivide(&out->mesh, levels, error);
   free(name);
+  free(part);
   return result;
 }
 

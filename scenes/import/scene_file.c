@@ -5,6 +5,7 @@
 #include "scenes/geometry/vector.h"
 #include "scenes/import/environment_file.h"
 #include "scenes/import/object_file.h"
+#include "scenes/import/object_reading.h"
 #include "scenes/import/scene_change.h"
 #include "scenes/import/scene_value.h"
 #include "spectral/formats/material_table_load.h"
@@ -319,7 +320,7 @@ static size_t names_in(abbe_yaml *yaml, abbe_yaml_node root,
     const abbe_yaml_node object = abbe_yaml_item(yaml, list, i);
     if (!abbe_yaml_is_mapping(yaml, object)) continue;
     const char *name = abbe_yaml_text(yaml, abbe_yaml_get(yaml, object, "material"));
-    if (name) names[found++] = name;
+    if (name && strcmp(name, ABBE_OBJECT_FROM_FILE) != 0) names[found++] = name;
   }
   return found;
 }

@@ -50,6 +50,9 @@ void abbe_mesh_free(abbe_mesh *mesh);
  * is behind the last; NULL where there are none. */
 abbe_result abbe_mesh_load(const char *path, abbe_mesh_normals normals, abbe_mesh *out,
                            char **others, abbe_error *error);
+/* The same of the triangles alone whose material has that name in the file; NULL: all. */
+abbe_result abbe_mesh_load_part(const char *path, const char *material, abbe_mesh_normals normals,
+                                abbe_mesh *out, char **others, abbe_error *error);
 
 typedef struct abbe_mesh_report {
   size_t open_edges;       /* edges with one face */

@@ -209,6 +209,17 @@ static void test_nothing_half_written_stays(void **state) {
       abbe_scene_export_write(path, &scene, ABBE_SCENE_EXPORT_MITSUBA, NULL, &report, &error),
       ABBE_UNSUPPORTED);
   abbe_scene_export_report_free(&report);
+  /* nor is a file of the scene's own written over */
+  snprintf(path, sizeof path, "%s/it.xml", folder);
+  snprintf(blocked, sizeof blocked, "%s/it-o2_brick.ply", folder);
+  assert_int_equal(abbe_file_write(blocked, "mine", 4, NULL), ABBE_OK);
+  scene.object[0].mesh_path = strdup(blocked);
+  assert_int_equal(
+      abbe_scene_export_write(path, &scene, ABBE_SCENE_EXPORT_MITSUBA, NULL, &report, &error),
+      ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "would be written over the scene's file");
+  abbe_scene_export_report_free(&report);
+  assert_int_equal(clear_folder(), 1);
   const abbe_scene_export_options options = {.lambda_nm = 200};
   snprintf(path, sizeof path, "%s/it.xml", folder);
   assert_int_equal(

@@ -31,7 +31,7 @@ static abbe_result import(const char *text, abbe_mesh *mesh) {
   assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
   assert_int_equal(fclose(f), 0);
   error.text[0] = '\0';
-  const abbe_result result = abbe_mesh_import(PATH, mesh, NULL, &error);
+  const abbe_result result = abbe_mesh_import(PATH, NULL, mesh, NULL, &error);
   unlink(PATH);
   return result;
 }
@@ -200,7 +200,7 @@ static void without_a_pipe_it_says_so(void **state) {
   close(next);
   assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
   assert_int_equal(setrlimit(RLIMIT_NOFILE, &(struct rlimit){(rlim_t)next, limit.rlim_max}), 0);
-  const abbe_result result = abbe_mesh_import("any.obj", &m, NULL, &error);
+  const abbe_result result = abbe_mesh_import("any.obj", NULL, &m, NULL, &error);
   assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
   assert_int_equal(result, ABBE_IO);
   assert_non_null(strstr(error.text, "any.obj: there is no pipe"));

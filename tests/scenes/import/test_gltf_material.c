@@ -1,0 +1,206 @@
+/* Materials of glTF files: what was exported is read again, the extension's own table of Abbe
+ * numbers, and files that say what they may not say. */
+#include "tests/scenes/export/export_text.h"
+
+#include "scenes/import/gltf_material.h"
+#include "spectral/materials/material_numbers.h"
+
+#define FILE_NAME "/tmp/abbe-test-material.gltf"
+
+static abbe_result load(const char *json, const char *part, abbe_material *out, char **name,
+                        abbe_error *error) {
+  assert_int_equal(abbe_file_write(FILE_NAME, json, strlen(json), NULL), ABBE_OK);
+  const abbe_result result = abbe_gltf_material_load(FILE_NAME, part, out, name, error);
+  unlink(FILE_NAME);
+  return result;
+}
+
+#define GLASS(name, ior, more)                                                                     \
+  "{\"name\":\"" name "\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0},"  \
+  "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"                     \
+  "\"KHR_materials_volume\":{\"thicknessFactor\":0.01" more "},"                                   \
+  "\"KHR_materials_ior\":{\"ior\":" ior "}"
+#define ONE(ior, more) "{\"materials\":[" GLASS("stone", ior, more) "}}]}"
+
+/* The extension's page: dispersion 2.04 for an Abbe number of 9.8 (rutile), 0.625 for 32, 0.36 for
+ * 55, 0.33 for 59: rounded. */
+static void test_abbe_numbers_of_the_extension(void **state) {
+  (void)state;
+  static const double rows[][2] = {{2.04, 9.8}, {0.625, 32}, {0.36, 55}, {0.33, 59}};
+  for (size_t i = 0; i < 4; i++) {
+    char json[1000], *name;
+    abbe_material m;
+    abbe_material_numbers numbers;
+    abbe_error error = {0};
+    snprintf(json, sizeof json,
+             "{\"materials\":[%s,\"KHR_materials_dispersion\":{\"dispersion\":%g}}}]}",
+             GLASS("stone", "1.76", ""), rows[i][0]);
+    if (load(json, NULL, &m, &name, &error) != ABBE_OK) fail_msg("%s", error.text);
+    abbe_material_numbers_make(&m, &numbers);
+    assert_near(numbers.n_d, 1.76, 1e-9);
+    assert_near(numbers.v_d, 20 / rows[i][0], 1e-9);
+    assert_near(numbers.v_d, rows[i][1], 0.03 * rows[i][1]);
+    assert_null(name);
+    assert_null(m.attenuation);
+    assert_null(m.warning);
+    abbe_material_free(&m);
+  }
+}
+
+static void test_defaults_and_what_is_left_out(void **state) {
+  (void)state;
+  abbe_material m;
+  char *name;
+  double n;
+  abbe_error error = {0};
+  assert_int_equal(
+      load("{\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.85,0.85,0.85,1]},"
+           "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":0.9},"
+           "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":0.02,"
+           "\"attenuationColor\":[0.5,0.25,0]}}},{\"name\":\"cloth\"}]}",
+           NULL, &m, &name, &error),
+      ABBE_OK);
+  assert_int_equal(abbe_material_n(&m, 444, &n, NULL), ABBE_OK);
+  assert_near(n, 1.5, 0);
+  assert_string_equal(m.name, "from-file");
+  assert_string_equal(name, "");
+  assert_contains(m.warning, "tint");
+  assert_contains(m.warning, "roughness");
+  assert_contains(m.warning, "not transmit");
+  assert_near(abbe_material_attenuation(&m, 611.4), log(2) / 0.02, 1e-6);
+  assert_near(abbe_material_attenuation(&m, 549.1), log(4) / 0.02, 1e-6);
+  assert_near(abbe_material_attenuation(&m, 464.2), log(1e6) / 0.02, 1e-3);
+  free(name);
+  abbe_material_free(&m);
+}
+
+static void test_bad_files_are_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *json, *part;
+    abbe_result result;
+    const char *says;
+  } rows[] = {
+      {"", NULL, ABBE_PARSE, "not well formed"},
+      {"[]", NULL, ABBE_PARSE, "not well formed"},
+      {"{}", NULL, ABBE_NOT_FOUND, "no material transmits"},
+      {"{\"materials\":7}", NULL, ABBE_NOT_FOUND, "no material transmits"},
+      {"{\"materials\":[7,null,\"x\"]}", NULL, ABBE_NOT_FOUND, "no material transmits"},
+      {"{\"materials\":[{\"name\":\"cloth\"}]}", "cloth", ABBE_UNSUPPORTED, "transmits no light"},
+      {ONE("1.5", ""), "other", ABBE_NOT_FOUND, "'stone'"},
+      {"{\"materials\":[" GLASS("a", "1.5", "") "}}," GLASS("b", "1.6", "") "}}]}", NULL,
+       ABBE_NOT_FOUND, "say which as 'part': 'a', 'b'"},
+      {"{\"materials\":[" GLASS("a", "1.5", "") "}}," GLASS("a", "1.6", "") "}}]}", "a",
+       ABBE_NOT_FOUND, "more than one"},
+      {ONE("\"glass\"", ""), NULL, ABBE_SCHEMA, "'ior' is no number"},
+      {ONE("-1", ""), NULL, ABBE_SCHEMA, "'ior' is -1"},
+      {ONE("1e999", ""), NULL, ABBE_SCHEMA, "'ior'"},
+      {ONE("0", ""), NULL, ABBE_UNSUPPORTED, "from 1 on"},
+      {ONE("1.5", ",\"thicknessFactor\":\"thick\""), NULL, ABBE_OK, ""}, /* the first counts */
+      {ONE("1.5", ",\"attenuationDistance\":0,\"attenuationColor\":[1,1,1]"), NULL, ABBE_SCHEMA,
+       "'attenuationDistance' is 0"},
+      {ONE("1.5", ",\"attenuationDistance\":1,\"attenuationColor\":[1,1]"), NULL, ABBE_SCHEMA,
+       "three numbers"},
+      {ONE("1.5", ",\"attenuationDistance\":1,\"attenuationColor\":[1,2,1]"), NULL, ABBE_SCHEMA,
+       "three numbers"},
+      {"{\"materials\":[{\"name\":\"film\",\"extensions\":{\"KHR_materials_transmission\":"
+       "{\"transmissionFactor\":1}}}]}",
+       NULL, ABBE_UNSUPPORTED, "thin wall"},
+      {"{\"materials\":[" GLASS("x", "1.5",
+                                "") ",\"KHR_materials_dispersion\":{\"dispersion\":-2}}}]}",
+       NULL, ABBE_SCHEMA, "'dispersion' is -2"},
+      /* so much that no index is left in the red */
+      {"{\"materials\":[" GLASS("x", "2.4",
+                                "") ",\"KHR_materials_dispersion\":{\"dispersion\":900}}}]}",
+       NULL, ABBE_INVALID_ARGUMENT, "x"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    abbe_material m;
+    char *name = NULL;
+    abbe_error error = {0};
+    const abbe_result result = load(rows[i].json, rows[i].part, &m, &name, &error);
+    if (result != rows[i].result || strstr(error.text, rows[i].says) == NULL)
+      fail_msg("row %zu: %d: %s", i, (int)result, error.text);
+    free(name);
+    abbe_material_free(&m);
+  }
+  abbe_material m;
+  char *name;
+  assert_int_equal(abbe_gltf_material_load("stone.obj", NULL, &m, &name, NULL), ABBE_UNSUPPORTED);
+  assert_int_equal(abbe_gltf_material_load("/no/such.glb", NULL, &m, &name, NULL), ABBE_IO);
+}
+
+/* Binary files that end early, or say that they are longer. */
+static void test_broken_binaries_are_refused(void **state) {
+  (void)state;
+  static const char whole[] = "glTF\2\0\0\0\44\0\0\0\20\0\0\0JSON{\"materials\":[]}";
+  static const char path[] = "/tmp/abbe-test-material.glb";
+  for (size_t size = 0; size < sizeof whole; size++) {
+    abbe_material m;
+    char *name;
+    assert_int_equal(abbe_file_write(path, whole, size, NULL), ABBE_OK);
+    const abbe_result result = abbe_gltf_material_load(path, NULL, &m, &name, NULL);
+    assert_true(result == (size < 36 ? ABBE_PARSE : ABBE_NOT_FOUND) || result == ABBE_IO ||
+                result == ABBE_PARSE);
+  }
+  unlink(path);
+}
+
+/* A ball of glass on a floor, as glTF: the ball alone comes back, of the same index and colour. */
+static void test_what_is_exported_is_read_again(void **state) {
+  (void)state;
+  abbe_scene scene, again;
+  char path[200], text[1000];
+  abbe_error error = {0};
+  double a, b;
+  load_text(CAMERA POINT_LIGHT FLOOR BALL("murk"), &scene);
+  done(written(&scene, ABBE_SCENE_EXPORT_GLTF));
+  snprintf(path, sizeof path, "%s/again.yaml", folder);
+  snprintf(text, sizeof text, "%s",
+           "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR
+           "- {name: ball, mesh: it.glb, material: from-file, transform: [{rotate: {axis: [1, 0, "
+           "0], angle: 90}}]}\n");
+  assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+  if (abbe_scene_load(path, NULL, &again, &error) != ABBE_OK) fail_msg("%s", error.text);
+  const abbe_object *ball = &again.object[1];
+  assert_string_equal(ball->material->name, "murk");
+  for (int k = 0; k < 3; k++) {
+    assert_near(ball->min[k], scene.object[1].min[k], 2e-3);
+    assert_near(ball->max[k], scene.object[1].max[k], 2e-3);
+  }
+  for (int nm = 380; nm <= 780; nm += 20) {
+    assert_int_equal(abbe_material_n(ball->material, nm, &a, NULL), ABBE_OK);
+    assert_int_equal(abbe_material_n(scene.object[1].material, nm, &b, NULL), ABBE_OK);
+    assert_near(a, b, 1e-9);
+  }
+  assert_near(abbe_material_attenuation(ball->material, 464.2),
+              abbe_material_attenuation(scene.object[1].material, 464.2), 1e-6);
+  abbe_scene_free(&again);
+  abbe_scene_free(&scene);
+  static const char *const wrong[] = {"shape: sphere, radius: 0.1, material: from-file",
+                                      "mesh: it.glb, part: nothing, reflectance: 1",
+                                      "mesh: it.glb, part: nothing, material: from-file"};
+  static const char *const says[] = {"'mesh' of a .gltf or .glb", "called 'nothing'",
+                                     "called 'nothing'"};
+  for (size_t i = 0; i < 3; i++) {
+    snprintf(text, sizeof text,
+             "camera: {eye: [0, -1, 0.5], target: [0, 0, 0.05]}\n" POINT_LIGHT FLOOR
+             "- {name: ball, %s}\n",
+             wrong[i]);
+    assert_int_equal(abbe_file_write(path, text, strlen(text), NULL), ABBE_OK);
+    assert_int_not_equal(abbe_scene_load(path, NULL, &again, &error), ABBE_OK);
+    assert_contains(error.text, says[i]);
+  }
+  clear_folder();
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_abbe_numbers_of_the_extension),
+      cmocka_unit_test(test_defaults_and_what_is_left_out),
+      cmocka_unit_test(test_bad_files_are_refused),
+      cmocka_unit_test(test_broken_binaries_are_refused),
+      cmocka_unit_test(test_what_is_exported_is_read_again),
+  };
+  return cmocka_run_group_tests(tests, make_folder, drop_folder);
+}
