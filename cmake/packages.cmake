@@ -19,6 +19,8 @@ pkg_check_modules(EGL IMPORTED_TARGET egl)
 # For abbe view, with EGL; without them all else builds.
 pkg_check_modules(GLFW IMPORTED_TARGET glfw3)
 pkg_check_modules(IMGUI IMPORTED_TARGET imgui)
+# For abbe view --serve alone.
+pkg_check_modules(MICROHTTPD IMPORTED_TARGET libmicrohttpd)
 find_package(Threads REQUIRED)
 set(ABBE_VIEWER OFF)
 if(GLFW_FOUND AND IMGUI_FOUND AND EGL_FOUND)

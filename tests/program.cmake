@@ -106,16 +106,26 @@ add_test(NAME reference_broken_wavelengths
           --broken prism --wavelengths 1)
 abbe_label(program NAMES reference_broken_exits reference_broken_wavelengths)
 
-foreach(name view_camera view_document view_refine view_state)
+foreach(name view_camera view_document view_feed view_refine view_state)
   abbe_test(${name} cpu abbe_view_state abbe_scenes abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 abbe_test(view_command program abbe_colorimetry abbe_spectral abbe_base)
 target_compile_definitions(test_view_command PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>"
   $<$<BOOL:${ABBE_VIEWER}>:ABBE_HAVE_VIEW>)
+if(ABBE_VIEWER)
+  add_library(faults_lost_context MODULE faults/lost_context.c)
+  target_link_libraries(faults_lost_context PRIVATE abbe_build PkgConfig::EGL ${CMAKE_DL_LIBS})
+  target_compile_definitions(test_view_command PRIVATE
+    ABBE_LOST_CONTEXT="$<TARGET_FILE:faults_lost_context>")
+  add_dependencies(test_view_command faults_lost_context)
+endif()
 add_dependencies(test_view_command abbe)
 if(ABBE_VIEWER)
   add_test(NAME view_window COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/window
     $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR})
   abbe_label(program NAMES view_window)
   set_tests_properties(view_window PROPERTIES SKIP_RETURN_CODE 77)
+  add_test(NAME view_serve COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/view/serve
+    $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} $<IF:$<BOOL:${MICROHTTPD_FOUND}>,yes,no>)
+  abbe_label(program NAMES view_serve)
 endif()

@@ -5,7 +5,9 @@
 
 #ifdef ABBE_HAVE_VIEW
 #include "base/file.h"
+#include "cli/view/view_keep.h"
 #include "cli/view/view_script.h"
+#include "cli/view/view_serve.h"
 #include "cli/view/view_window.h"
 #endif
 
@@ -21,13 +23,14 @@ enum {
   OPTION_KEEP,
   OPTION_LAST,
   OPTION_MATERIALS,
-  OPTION_OCIO
+  OPTION_OCIO,
+  OPTION_SERVE
 };
 
 typedef struct view_options {
   const char *program, *scene, *script, *keep, *materials, *ocio;
   size_t width, height;
-  int last;
+  int last, port; /* port below 0: nothing is served */
   abbe_scene_input_changes changes;
 } view_options;
 
@@ -45,6 +48,10 @@ static const struct argp_option options[] = {
      "another value in the scene to begin with, such as camera.fov=30; may be repeated", 1},
     {"script", OPTION_SCRIPT, "FILE", ABBE_ARGUMENT_READS,
      "lead the viewer by a script, without a display", 2},
+    {"serve", OPTION_SERVE, "PORT", 0,
+     "without a display: a page for a browser on this machine, its address with a token on "
+     "standard output; 0: any free port",
+     2},
     {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -59,6 +66,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_KEEP:
     o->keep = text;
+    return 0;
+  case OPTION_SERVE:
+    o->port = (int)abbe_command_count(o->program, "--serve", text, 0, 65535);
     return 0;
   case OPTION_LAST:
     o->last = 1 + abbe_command_choice(o->program, "--last", text, stages, 5);
@@ -75,6 +85,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     if (o->scene == NULL) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
+    if (o->script != NULL && o->port >= 0)
+      argp_error(state, "--script or --serve, not both lead one viewer");
     return 0;
   default:
     return abbe_scene_input_take(&o->changes, key, text, o->program);
@@ -101,6 +113,23 @@ static abbe_result begin(const view_options *o, const char *path, abbe_view_docu
   return result;
 }
 
+/* What is kept would be the scene or what it is made of. */
+static abbe_result check_keep(const char *keep, const abbe_scene *scene, abbe_error *error) {
+  static const char *const endings[] = {"exr", "png", "yaml"};
+  for (size_t i = 0; i < abbe_scene_file_count(scene); i++)
+    for (size_t k = 0; k < 3; k++) {
+      char target[PATH_MAX];
+      const char *file = abbe_scene_file(scene, i);
+      snprintf(target, sizeof target, "%.4000s.%s", keep, endings[k]);
+      if (file != NULL && abbe_view_keep_same_file(file, target))
+        return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                              "--keep %.300s would write over %.300s, which the scene is read "
+                              "from; choose another name",
+                              keep, file);
+    }
+  return ABBE_OK;
+}
+
 static abbe_result view(const view_options *o, abbe_error *error) {
   char shipped[2 * PATH_MAX], keep[PATH_MAX];
   abbe_view_document document;
@@ -119,10 +148,13 @@ static abbe_result view(const view_options *o, abbe_error *error) {
   if (result == ABBE_OK)
     result =
         abbe_scene_input_load_with(o->program, o->scene, o->materials, &o->changes, &scene, error);
+  if (result == ABBE_OK) result = check_keep(desc.keep, &scene, error);
   abbe_scene_free(&scene);
   if (result == ABBE_OK)
     result = o->script != NULL ? abbe_view_script_run(o->script, &desc, o->width, o->height, error)
-                               : abbe_view_window_run(&desc, o->width, o->height, error);
+             : o->port >= 0
+                 ? abbe_view_serve_run((unsigned)o->port, &desc, o->width, o->height, error)
+                 : abbe_view_window_run(&desc, o->width, o->height, error);
   abbe_view_document_free(&document);
   return result;
 }
@@ -146,15 +178,16 @@ int abbe_command_view(int argc, char **argv) {
       "w a s d q e fly meanwhile. Drag a ring to move a lamp or a stone: shift upright, control "
       "tilts.\n"
       "Click for a pixel's spectrum. b: rendered or traced, v: their difference, + -: exposure,\n"
-      "control z and y: back and forth, control s: keep.\n\n"
+      "control z and y: back and forth, control s: keep, t: turntable.\n\n"
       "Examples:\n"
       "  abbe view scenes/gem.yaml\n"
       "  abbe view scenes/gem.yaml --set objects.gem.material=diamond --size 1200x800\n"
-      "  abbe view scenes/gem.yaml --script tour.txt",
+      "  abbe view scenes/gem.yaml --script tour.txt\n"
+      "  abbe view scenes/gem.yaml --serve 8080",
       NULL,
       NULL,
       NULL};
-  view_options o = {.program = argv[0], .width = 900, .height = 560};
+  view_options o = {.program = argv[0], .width = 900, .height = 560, .port = -1};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &o);
   abbe_error error = {0};
   const abbe_result result = view(&o, &error);

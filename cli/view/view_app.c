@@ -1,8 +1,10 @@
 #include "cli/view/view_app.h"
 
 #include "base/clock.h"
+#include "cli/view/state/view_camera.h"
 #include "cli/view/view_keep.h"
 #include "cli/view/view_panel.h"
+#include "cli/view/view_turn.h"
 #include "colorimetry/rgb_space.h"
 
 #include <dirent.h>
@@ -12,7 +14,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define LOOK_S 0.5 /* how often files are looked at */
+#define LOOK_S 0.5      /* how often files are looked at */
+#define FEED_PIXELS 2.0 /* photons so near to a pixel feed it */
 
 /* ---- begin, end ---- */
 
@@ -76,6 +79,7 @@ void abbe_view_app_end(abbe_view_session *app) {
   for (size_t i = 0; i < app->scene_count; i++) free(app->scene[i]);
   free(app->views);
   forget_files(app);
+  free(app->feed);
   abbe_view_pictures_free(&app->pictures);
   abbe_view_result_free(&app->last);
   abbe_view_state_free(&app->state);
@@ -201,6 +205,49 @@ static void take(abbe_view_session *app, abbe_view_result *result, double now_s)
   app->stale = true;
 }
 
+/* Where the picked pixel's light has come in is asked for once for each picture at rest. */
+static bool wants_feed(const abbe_view_session *app, abbe_view_request *out) {
+  const abbe_view_state *s = &app->state;
+  const abbe_image *layers = &app->pictures.layers;
+  const size_t z = layers->data != NULL ? abbe_image_find_channel(layers, "Z") : (size_t)-1;
+  const bool was_asked = app->fed_serial == s->refine.serial && app->fed_pixel[0] == s->pixel[0] &&
+                         app->fed_pixel[1] == s->pixel[1];
+  if (!s->picked || was_asked || s->refine.stage < ABBE_VIEW_BALANCED || z == (size_t)-1 ||
+      layers->width != s->width || layers->height != s->height || s->pixel[0] >= s->width ||
+      s->pixel[1] >= s->height)
+    return false;
+  const double distance =
+      (double)layers->data[layers->channels * (s->pixel[1] * layers->width + s->pixel[0]) + z];
+  const double xy[2] = {(double)s->pixel[0] + 0.5, (double)s->pixel[1] + 0.5};
+  abbe_view_camera_point(&s->camera, s->width, s->height, xy, distance, out->point);
+  /* as wide as some pixels */
+  out->radius = FEED_PIXELS * distance * 2 * tan(0.5 * s->camera.fov_y_rad) / (double)s->height;
+  return distance > 0;
+}
+
+/* Of the stage whose light is drawn. */
+static abbe_view_stage lit_stage(const abbe_view_refine *r) {
+  return r->stage > ABBE_VIEW_ACCURATE ? ABBE_VIEW_ACCURATE : r->stage;
+}
+
+/* The map is asked for while it is looked at, once for each stage. */
+static bool wants_map(const abbe_view_session *app) {
+  const abbe_view_refine *r = &app->state.refine;
+  return app->state.shown == ABBE_VIEW_MAP_PICTURE && r->stage >= ABBE_VIEW_BALANCED &&
+         (app->mapped_serial != r->serial || app->mapped != lit_stage(r));
+}
+
+static void take_look(abbe_view_session *app, abbe_view_result *result) {
+  if (result->map.data != NULL) {
+    replace(&app->pictures.map, &result->map);
+    app->stale = true;
+  }
+  if (result->feed == NULL) return;
+  free(app->feed);
+  app->feed = result->feed;
+  result->feed = NULL;
+}
+
 static void give(abbe_view_session *app, double now_s) {
   abbe_view_state *s = &app->state;
   abbe_view_request request = {.width = s->width, .height = s->height, .reload = app->reload};
@@ -209,12 +256,26 @@ static void give(abbe_view_session *app, double now_s) {
     if (abbe_view_refine_cancels(&s->refine, &app->running)) abbe_view_worker_cancel(app->worker);
     return;
   }
-  if (!abbe_view_refine_next(&s->refine, now_s, &request.job)) return;
+  request.maps = wants_map(app);
+  request.asks = !request.maps && wants_feed(app, &request);
+  request.job.serial = s->refine.serial;
+  if (!request.maps && !request.asks && !abbe_view_turn_wants(app, &request) &&
+      !abbe_view_refine_next(&s->refine, now_s, &request.job))
+    return;
   if (abbe_view_document_copy(abbe_view_history_now(&s->history), &request.document, NULL) !=
       ABBE_OK)
     return;
   app->running = request.job;
-  app->reload = false;
+  if (request.asks) {
+    app->fed_serial = s->refine.serial;
+    memcpy(app->fed_pixel, s->pixel, sizeof app->fed_pixel);
+    free(app->feed);
+    app->feed = NULL;
+  } else if (request.maps) {
+    app->mapped_serial = s->refine.serial;
+    app->mapped = lit_stage(&s->refine);
+  } else
+    app->reload = false;
   abbe_view_worker_give(app->worker, &request);
 }
 
@@ -281,7 +342,42 @@ void abbe_view_app_key(abbe_view_session *app, int key, bool down, int modifiers
       snprintf(app->note, sizeof app->note, "%s", error.text);
     return;
   }
+  if (down && key == 't' && modifiers == 0) {
+    if (abbe_view_turn_begin(app, &error) != ABBE_OK)
+      snprintf(app->note, sizeof app->note, "%s", error.text);
+    return;
+  }
   abbe_view_state_key(&app->state, key, down, modifiers, now_s);
+}
+
+static bool show_line(const abbe_view_state *s, const double a[3], const double b[3],
+                      abbe_ui_colour colour, double wide) {
+  double p[2], q[2];
+  if (!abbe_view_camera_project(&s->camera, s->width, s->height, a, p) ||
+      !abbe_view_camera_project(&s->camera, s->width, s->height, b, q))
+    return false;
+  abbe_ui_line(p[0], p[1], q[0], q[1], colour, wide);
+  return true;
+}
+
+/* The facets through which the pixel's light has come in, the cells of these, and the straight ends
+ * of some ways: from the lamp, and from where they entered to the pixel. */
+static void draw_feed(const abbe_view_session *app) {
+  const abbe_view_state *s = &app->state;
+  const abbe_view_feed *feed = abbe_view_session_feed(app);
+  if (feed == NULL) return;
+  const size_t every = feed->ray_count / 12 + 1;
+  for (size_t i = 0; i < feed->ray_count; i += every) {
+    show_line(s, feed->ray[i].light, feed->ray[i].entry, 0xa0ffe9b0, 1);
+    show_line(s, feed->ray[i].entry, feed->point, 0xc0ffffff, 1);
+  }
+  for (size_t i = 0; i < feed->edge_count; i++)
+    show_line(s, feed->edge[i][0], feed->edge[i][1], 0x307fe3b0, 1.5);
+  for (size_t i = 0; i < feed->ray_count; i++) {
+    double p[2];
+    if (abbe_view_camera_project(&s->camera, s->width, s->height, feed->ray[i].entry, p))
+      abbe_ui_box(p[0] - 1, p[1] - 1, p[0] + 1, p[1] + 1, 0x20ffe08a);
+  }
 }
 
 static void draw_handles(const abbe_view_session *app) {
@@ -299,6 +395,7 @@ static void draw_handles(const abbe_view_session *app) {
                           : s->outline.object[handle.index].name);
   }
   if (!s->picked) return;
+  draw_feed(app);
   const double x = (double)s->pixel[0] + 0.5, y = (double)s->pixel[1] + 0.5;
   abbe_ui_circle(x, y, 5, 0x00ffffff, 1.5);
   abbe_ui_circle(x, y, 6.5, 0x40000000, 1);
@@ -315,7 +412,12 @@ void abbe_view_app_frame(abbe_view_session *app, const abbe_ui_input *input, dou
   feed(app, input, now_s);
   look_at_files(app, now_s);
   if (abbe_view_worker_take(app->worker, &app->taken)) {
-    take(app, &app->taken, now_s);
+    if (app->taken.turned)
+      abbe_view_turn_take(app, &app->taken, now_s);
+    else if (app->taken.looked)
+      take_look(app, &app->taken);
+    else
+      take(app, &app->taken, now_s);
     abbe_view_result_free(&app->taken);
   }
   give(app, now_s);
@@ -343,5 +445,8 @@ double abbe_view_app_wait(abbe_view_session *app, double now_s) {
 }
 
 bool abbe_view_app_rests(abbe_view_session *app, double now_s) {
-  return abbe_view_worker_idle(app->worker) && abbe_view_refine_wait(&app->state.refine, now_s) < 0;
+  abbe_view_request request;
+  return abbe_view_worker_idle(app->worker) && !wants_map(app) && !wants_feed(app, &request) &&
+         !abbe_view_turn_wants(app, &request) &&
+         abbe_view_refine_wait(&app->state.refine, now_s) < 0;
 }

@@ -11,6 +11,8 @@
 #define FRAME 0x3a404a
 #define DIM 0x858b95
 #define LINE 0xd6d9de
+#define REC709 0x9aa3b2
+#define ACESCG 0x6b7482
 
 /* About the colour of light of one wavelength, as bright as a screen can. */
 static abbe_ui_colour hue_of(double nm) {
@@ -52,15 +54,17 @@ void abbe_view_chart_spectrum(const abbe_view_probe *p) {
   abbe_ui_label(x + width - 52, base + 2, DIM, text);
 }
 
+/* A diagram: of x, y or of u', v'. */
 typedef struct frame {
   double x, y, scale;
+  bool uniform;
 } frame;
 
 static void dot_of(const frame *f, const double xy[2], double out[2]) {
-  double uv[2];
-  abbe_chromaticity_uv_of_xy(xy, uv);
-  out[0] = f->x + f->scale * uv[0];
-  out[1] = f->y - f->scale * uv[1];
+  double at[2] = {xy[0], xy[1]};
+  if (f->uniform) abbe_chromaticity_uv_of_xy(xy, at);
+  out[0] = f->x + f->scale * at[0];
+  out[1] = f->y - f->scale * at[1];
 }
 
 static void side(const frame *f, const double a[2], const double b[2], abbe_ui_colour colour) {
@@ -76,27 +80,35 @@ static void gamut(const frame *f, abbe_rgb_space space, abbe_ui_colour colour) {
   for (int k = 0; k < 3; k++) side(f, &xy[2 * k], &xy[2 * ((k + 1) % 3)], colour);
 }
 
-void abbe_view_chart_colours(const abbe_view_probe *p) {
+static void draw_diagram(const frame *f, const abbe_view_probe *p) {
   static const double white[2] = {0.31272, 0.32903};
-  const double width = abbe_ui_panel_width(), height = 190;
-  double x, y, at[2], a[2], b[2];
-  if (!abbe_ui_place("chromaticity", width, height, &x, &y)) return;
-  const frame f = {x + 8, y + height - 6, (height - 14) / 0.6};
+  double at[2], a[2], b[2];
   for (int nm = 400; nm < 700; nm += 5) {
     abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, nm, a);
     abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, nm + 5, b);
-    side(&f, a, b, hue_of(nm));
+    side(f, a, b, hue_of(nm));
   }
   abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, 400, a);
   abbe_chromaticity_locus(ABBE_OBSERVER_CIE_1931, 700, b);
-  side(&f, a, b, 0x8a5a8a);
-  gamut(&f, ABBE_RGB_SPACE_ACESCG, 0x59616e);
-  gamut(&f, ABBE_RGB_SPACE_REC709, 0x9aa3b2);
-  dot_of(&f, white, at);
+  side(f, a, b, 0x8a5a8a);
+  gamut(f, ABBE_RGB_SPACE_ACESCG, ACESCG);
+  gamut(f, ABBE_RGB_SPACE_REC709, REC709);
+  dot_of(f, white, at);
   abbe_ui_circle(at[0], at[1], 2, DIM, 1);
-  dot_of(&f, p->xy, at);
-  abbe_ui_circle(at[0], at[1], 4.5, 0xffffff, 2);
-  abbe_ui_label(x + width - 74, y + height - 56, DIM, "u', v'");
-  abbe_ui_label(x + width - 74, y + height - 38, 0x9aa3b2, "Rec.709");
-  abbe_ui_label(x + width - 74, y + height - 20, 0x6b7482, "ACEScg");
+  dot_of(f, p->xy, at);
+  abbe_ui_circle(at[0], at[1], 4, 0xffffff, 2);
+}
+
+void abbe_view_chart_colours(const abbe_view_probe *p) {
+  const double width = abbe_ui_panel_width(), half = 0.5 * width, high = half, foot = 20;
+  double x, y;
+  if (!abbe_ui_place("chromaticity", width, high + foot, &x, &y)) return;
+  const frame xy = {x + 4, y + high - 4, (high - 10) / 0.86, false};
+  const frame uv = {x + half + 6, y + high - 4, (high - 10) / 0.64, true};
+  draw_diagram(&xy, p);
+  draw_diagram(&uv, p);
+  abbe_ui_label(x + half - 32, y + 2, DIM, "x, y");
+  abbe_ui_label(x + width - 38, y + 2, DIM, "u', v'");
+  abbe_ui_label(x, y + high + 2, REC709, "Rec.709");
+  abbe_ui_label(x + half, y + high + 2, ACESCG, "ACEScg");
 }

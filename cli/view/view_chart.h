@@ -2,11 +2,11 @@
 #ifndef ABBE_CLI_VIEW_VIEW_CHART_H
 #define ABBE_CLI_VIEW_VIEW_CHART_H
 
-#include "cli/view/view_probe.h"
+#include "cli/view/picture/view_probe.h"
 
 /* Both take a place in the open panel. */
 void abbe_view_chart_spectrum(const abbe_view_probe *probe);
-/* CIE 1976 u', v', with the locus, Rec.709 and ACEScg. */
+/* CIE 1931 x, y and 1976 u', v', with the locus, Rec.709 and ACEScg. */
 void abbe_view_chart_colours(const abbe_view_probe *probe);
 
 #endif

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Text that grows; without memory it stays NULL. */
 typedef struct growing {
@@ -88,30 +89,61 @@ static abbe_result keep_scene(const abbe_view_session *session, const char *targ
   return result;
 }
 
-abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
-  const abbe_image *image = &session->pictures.rendered;
-  char exr[1024], png[1024], yaml[1024], words[128], view[128];
-  const char *line = session->views, *slash;
-  if (image->data == NULL || session->stage < ABBE_VIEW_BALANCED)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "a picture is kept once it has come to rest; wait a moment");
+/* Neither the scene nor what it is made of is written over. */
+abbe_result abbe_view_keep_check(const abbe_view_session *session, const char *target,
+                                 abbe_error *error) {
+  const char *scene = abbe_view_history_now(&session->state.history)->path;
+  bool is_read = abbe_view_keep_same_file(scene, target);
+  for (size_t i = 0; i < session->file_count && !is_read; i++)
+    is_read = abbe_view_keep_same_file(session->file[i], target);
+  if (!is_read) return ABBE_OK;
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                        "%.300s is what the scene is read from and would be lost; nothing was "
+                        "kept: start with another --keep NAME",
+                        target);
+}
+
+bool abbe_view_keep_same_file(const char *a, const char *b) {
+  struct stat of_a, of_b;
+  if (strcmp(a, b) == 0) return true;
+  return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
+         of_a.st_ino == of_b.st_ino;
+}
+
+abbe_result abbe_view_keep_png(const abbe_view_session *session, const abbe_image *image,
+                               const char *path, abbe_error *error) {
+  char display[128] = "", view[128] = "";
+  const char *line = session->views;
   for (size_t i = 0; i < session->view && line != NULL; i++)
     if ((line = strchr(line, '\n')) != NULL) line++;
-  slash = line != NULL ? strstr(line, " / ") : NULL;
-  snprintf(exr, sizeof exr, "%.1000s.exr", session->keep);
-  snprintf(png, sizeof png, "%.1000s.png", session->keep);
-  snprintf(yaml, sizeof yaml, "%.1000s.yaml", session->keep);
+  const char *slash = line != NULL ? strstr(line, " / ") : NULL;
   if (slash != NULL) {
-    snprintf(words, sizeof words, "%.*s", (int)(slash - line), line);
+    snprintf(display, sizeof display, "%.*s", (int)(slash - line), line);
     snprintf(view, sizeof view, "%.*s", (int)strcspn(slash + 3, "\n"), slash + 3);
   }
   const abbe_screen_png_desc desc = {.display = {.config = session->ocio,
-                                                 .display = slash != NULL ? words : NULL,
+                                                 .display = slash != NULL ? display : NULL,
                                                  .view = slash != NULL ? view : NULL,
                                                  .exposure = session->state.exposure}};
+  const abbe_result result = abbe_view_keep_check(session, path, error);
+  return result == ABBE_OK ? abbe_screen_png_write(path, image, &desc, error) : result;
+}
+
+abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error) {
+  const abbe_image *image = &session->pictures.rendered;
+  char exr[1024], png[1024], yaml[1024];
+  if (image->data == NULL || session->stage < ABBE_VIEW_BALANCED)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a picture is kept once it has come to rest; wait a moment");
+  snprintf(exr, sizeof exr, "%.1000s.exr", session->keep);
+  snprintf(png, sizeof png, "%.1000s.png", session->keep);
+  snprintf(yaml, sizeof yaml, "%.1000s.yaml", session->keep);
   const bool scene = !names_files(session, yaml);
-  abbe_result result = abbe_exr_write(exr, image, error);
-  if (result == ABBE_OK) result = abbe_screen_png_write(png, image, &desc, error);
+  abbe_result result = abbe_view_keep_check(session, exr, error);
+  if (result == ABBE_OK) result = abbe_view_keep_check(session, png, error);
+  if (result == ABBE_OK) result = abbe_view_keep_check(session, yaml, error);
+  if (result == ABBE_OK) result = abbe_exr_write(exr, image, error);
+  if (result == ABBE_OK) result = abbe_view_keep_png(session, image, png, error);
   if (result == ABBE_OK && scene) result = keep_scene(session, yaml, error);
   if (result != ABBE_OK) return result;
   if (scene)

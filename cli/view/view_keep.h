@@ -7,8 +7,17 @@
 
 /* Writes KEEP.exr, KEEP.png and KEEP.yaml, and says so in the session's note. The scene is written
  * beside the files that it names or not at all. ABBE_INVALID_ARGUMENT where no picture has come to
- * rest; errors of files. */
+ * rest, or where one of the three is a file that the scene is read from; errors of files. */
 abbe_result abbe_view_keep(abbe_view_session *session, abbe_error *error);
+/* The image as it is shown, through the display and view that are chosen. Errors of
+ * abbe_view_keep_check and of files. */
+abbe_result abbe_view_keep_png(const abbe_view_session *session, const abbe_image *image,
+                               const char *path, abbe_error *error);
+/* ABBE_INVALID_ARGUMENT where the target is a file that the scene is read from. */
+abbe_result abbe_view_keep_check(const abbe_view_session *session, const char *target,
+                                 abbe_error *error);
+/* Whether two names are of one file that is there, by links too, or are the same name. */
+bool abbe_view_keep_same_file(const char *a, const char *b);
 
 /* `abbe render …` that draws the last picture at rest, without names of outputs; malloc'd, NULL
  * where there is none or no memory. */

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "cli/view/view_chart.h"
 #include "cli/view/view_keep.h"
+#include "cli/view/view_turn.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -114,6 +115,12 @@ static void draw_view(abbe_view_session *app) {
     abbe_ui_text(DIM, "blue: darker than traced, red: brighter; full at 25 % of the mean");
   if (app->drawn == ABBE_VIEW_ERROR_PICTURE)
     abbe_ui_text(DIM, "one standard error, black 0.1 % of the mean, white 100 %");
+  if (app->drawn == ABBE_VIEW_LUMINANCE_PICTURE)
+    abbe_ui_text(DIM, "three decades up to 1 W/(m\u00b2 sr) after the exposure");
+  if (app->drawn == ABBE_VIEW_MAP_PICTURE)
+    abbe_ui_text(DIM, "flux of the first light's texels, lit ones at a mean Y of 0.2");
+  if (app->drawn == ABBE_VIEW_DISTANCE_PICTURE)
+    abbe_ui_text(DIM, "from the nearest to the farthest that is seen");
   if (app->drawn != s->shown) abbe_ui_text(DIM, "not there yet: the rendered picture stands");
   for (char *line = views; line != NULL && *line != '\0' && count < 32;) {
     char *end = strchr(line, '\n');
@@ -199,6 +206,28 @@ static void draw_ledger(const abbe_view_session *app) {
   pair("imbalance", "%.1e", abbe_ledger_imbalance(e));
 }
 
+/* Through which facets its light has come in. */
+static void draw_feed(const abbe_view_session *app) {
+  const abbe_view_feed *feed = abbe_view_session_feed(app);
+  const abbe_view_outline *o = &app->state.outline;
+  if (feed == NULL) return;
+  if (feed->ray_count == 0) {
+    abbe_ui_text(DIM, "no light comes here through a refractor");
+    return;
+  }
+  pair("fed by", "%zu photons, through", feed->photons);
+  for (size_t i = 0; i < feed->facet_count; i++) {
+    const abbe_view_facet *f = &feed->facet[i];
+    const char *name = "a facet";
+    for (size_t k = 0; k < o->object_count; k++)
+      if (o->object[k].scene_index == f->object) name = o->object[k].name;
+    char label[ABBE_VIEW_NAME + 16];
+    snprintf(label, sizeof label, "%.70s, %zu", name, i + 1);
+    pair(label, "%.0f %%, n %.2f %.2f %.2f", 100 * f->share, f->normal[0], f->normal[1],
+         f->normal[2]);
+  }
+}
+
 static void draw_pixel(const abbe_view_session *app) {
   const abbe_view_state *s = &app->state;
   const abbe_view_probe *p = &app->probe;
@@ -214,6 +243,7 @@ static void draw_pixel(const abbe_view_session *app) {
     pair("dominant", "%.1f nm, purity %.0f %%", p->dominant_nm, 100 * p->purity);
   if (p->dominant_nm < 0)
     pair("complementary", "%.1f nm, purity %.0f %%", -p->dominant_nm, 100 * p->purity);
+  draw_feed(app);
   abbe_ui_gap();
   if (p->bands > 0)
     abbe_view_chart_spectrum(p);
@@ -232,6 +262,9 @@ void abbe_view_panel_draw(abbe_view_session *app, double now_s) {
   if (abbe_ui_button("redo")) abbe_view_state_redo(s, now_s);
   abbe_ui_beside();
   if (abbe_ui_button("keep") && abbe_view_keep(app, &error) != ABBE_OK)
+    snprintf(app->note, sizeof app->note, "%s", error.text);
+  abbe_ui_beside();
+  if (abbe_ui_button("turntable") && abbe_view_turn_begin(app, &error) != ABBE_OK)
     snprintf(app->note, sizeof app->note, "%s", error.text);
   abbe_ui_gap();
   if (s->picked && abbe_ui_section("Pixel", true)) draw_pixel(app);

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "cli/view/view_hidden.h"
 #include "cli/view/view_keep.h"
 #include "colorimetry/image/png_file.h"
 
@@ -17,13 +18,7 @@ enum { MOST_WORDS = 16, MOST_REMEMBERED = 32, LONGEST = 4096 };
 #define SCRIPT_MOST_BYTES ((size_t)1 << 20)
 
 typedef struct script {
-  abbe_view_session session;
-  abbe_context *context;
-  const abbe_gl *gl;
-  GLuint framebuffer, colour;
-  size_t width, height;
-  abbe_ui_input input;
-  double last_s;
+  abbe_view_hidden hidden;
   uint64_t copied; /* the serial when a file was copied last */
   const char *path;
   size_t line;
@@ -49,57 +44,24 @@ static abbe_result fail(const script *s, abbe_result result, abbe_error *error, 
   return result;
 }
 
-/* ---- the window that nobody sees ---- */
-
-static void make_target(script *s, size_t width, size_t height) {
-  const abbe_gl *gl = s->gl;
-  if (s->colour != 0) gl->DeleteTextures(1, &s->colour);
-  if (s->framebuffer == 0) gl->GenFramebuffers(1, &s->framebuffer);
-  gl->GenTextures(1, &s->colour);
-  gl->BindTexture(GL_TEXTURE_2D, s->colour);
-  gl->TexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, (GLsizei)width, (GLsizei)height);
-  gl->BindFramebuffer(GL_FRAMEBUFFER, s->framebuffer);
-  gl->FramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, s->colour, 0);
-  s->width = width;
-  s->height = height;
-}
-
 static void pump(script *s) {
-  static const float dark[4] = {0.05F, 0.055F, 0.063F, 1};
-  const double now = abbe_clock_seconds();
-  s->input.width = (double)s->width;
-  s->input.height = (double)s->height;
-  s->input.seconds = now - s->last_s;
-  s->last_s = now;
-  s->gl->BindFramebuffer(GL_FRAMEBUFFER, s->framebuffer);
-  s->gl->Viewport(0, 0, (GLsizei)s->width, (GLsizei)s->height);
-  s->gl->ClearBufferfv(GL_COLOR, 0, dark);
-  abbe_view_app_frame(&s->session, &s->input, now);
-  s->input.wheel = 0;
-  s->input.text[0] = '\0';
+  abbe_view_hidden_frame(&s->hidden);
 }
 
 static abbe_result shoot(script *s, const char *path, abbe_error *error) {
   static const char *const names[] = {"R", "G", "B"};
-  const size_t count = s->width * s->height;
-  unsigned char *pixels = malloc(4 * count);
   abbe_image image;
   pump(s);
-  abbe_result result = abbe_image_make(s->width, s->height, 3, names, &image, error);
-  if (result != ABBE_OK || pixels == NULL) {
-    free(pixels);
-    return result != ABBE_OK ? result : abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  unsigned char *pixels = abbe_view_hidden_read(&s->hidden);
+  abbe_result result =
+      pixels != NULL ? abbe_image_make(s->hidden.width, s->hidden.height, 3, names, &image, error)
+                     : abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
+  if (result == ABBE_OK) {
+    for (size_t i = 0; i < 3 * image.width * image.height; i++)
+      image.data[i] = (float)pixels[i] / 255;
+    result = abbe_png_write(path, &image, 8, error);
+    abbe_image_free(&image);
   }
-  s->gl->BindTexture(GL_TEXTURE_2D, s->colour);
-  s->gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
-  s->gl->GetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
-  for (size_t y = 0; y < s->height; y++)
-    for (size_t x = 0; x < s->width; x++)
-      for (size_t k = 0; k < 3; k++)
-        image.data[3 * (y * s->width + x) + k] =
-            (float)pixels[4 * ((s->height - 1 - y) * s->width + x) + k] / 255;
-  result = abbe_png_write(path, &image, 8, error);
-  abbe_image_free(&image);
   free(pixels);
   return result;
 }
@@ -107,7 +69,7 @@ static abbe_result shoot(script *s, const char *path, abbe_error *error) {
 /* ---- where things are ---- */
 
 static bool find_handle(const script *s, const char *name, double xy[2]) {
-  const abbe_view_state *state = &s->session.state;
+  const abbe_view_state *state = &s->hidden.session.state;
   abbe_view_handle handle;
   for (size_t i = 0; abbe_view_state_handle(state, i, &handle); i++) {
     const bool light = handle.kind == ABBE_VIEW_LIGHT_HANDLE;
@@ -123,7 +85,7 @@ static bool find_handle(const script *s, const char *name, double xy[2]) {
 
 /* "FROM:TO", nm: where the rendered picture has most colour of a dominant wavelength in between. */
 static bool find_hue(const script *s, const char *text, double xy[2]) {
-  const abbe_image *image = &s->session.pictures.rendered;
+  const abbe_image *image = &s->hidden.session.pictures.rendered;
   const abbe_view_pictures pictures = {.rendered = *image};
   double from, to, best = 0;
   if (!abbe_number_read(text, &text, &from) || *text != ':' ||
@@ -154,7 +116,8 @@ static bool find(script *s, const char *text, double xy[2]) {
   if (strncmp(text, "hue:", 4) == 0) return find_hue(s, text + 4, xy);
   if (strncmp(text, "handle:", 7) == 0) return find_handle(s, text + 7, xy);
   for (int i = 0; i < 4; i++) { /* it may have to scroll into sight */
-    if (abbe_ui_find(text, &x, &y, &width, &height) && y >= 0 && y + height <= (double)s->height) {
+    if (abbe_ui_find(text, &x, &y, &width, &height) && y >= 0 &&
+        y + height <= (double)s->hidden.height) {
       xy[0] = x + fmin(20, 0.5 * width);
       xy[1] = y + 0.5 * height;
       return true;
@@ -176,25 +139,25 @@ static abbe_result aim(script *s, size_t word, double xy[2], abbe_error *error) 
 /* ---- pointer ---- */
 
 static void point(script *s, const double xy[2]) {
-  s->input.mouse[0] = xy[0];
-  s->input.mouse[1] = xy[1];
+  s->hidden.input.mouse[0] = xy[0];
+  s->hidden.input.mouse[1] = xy[1];
   pump(s);
 }
 
 static void set_button(script *s, int button, bool down) {
-  s->input.button[button] = down;
+  s->hidden.input.button[button] = down;
   pump(s);
 }
 
 /* Button and keys beside it, by the words from `from` on. */
 static int held_of(script *s, size_t from) {
   int button = ABBE_VIEW_LEFT;
-  s->input.shift = s->input.control = false;
+  s->hidden.input.shift = s->hidden.input.control = false;
   for (size_t i = from; i < s->words; i++) {
     if (strcmp(s->word[i], "right") == 0) button = 1;
     if (strcmp(s->word[i], "middle") == 0) button = 2;
-    if (strcmp(s->word[i], "shift") == 0) s->input.shift = true;
-    if (strcmp(s->word[i], "control") == 0) s->input.control = true;
+    if (strcmp(s->word[i], "shift") == 0) s->hidden.input.shift = true;
+    if (strcmp(s->word[i], "control") == 0) s->hidden.input.control = true;
   }
   return button == 1 ? 1 : button == 2 ? 2 : 0;
 }
@@ -210,21 +173,41 @@ static abbe_result do_click(script *s, abbe_error *error) {
   double xy[2];
   const abbe_result result = aim(s, 1, xy, error);
   if (result == ABBE_OK) press_at(s, xy, held_of(s, 2));
-  s->input.shift = s->input.control = false;
+  s->hidden.input.shift = s->hidden.input.control = false;
   pump(s);
   return result;
 }
 
 /* The processor is the worker's meanwhile. */
 static void sleep_a_little(void) {
-  const struct timespec time = {.tv_nsec = 20000000};
+  const struct timespec time = {.tv_nsec = 5000000};
   nanosleep(&time, NULL);
 }
 
-/* As a hand does it: some places on the way, each for a moment. */
+/* "for SECONDS" among the words: how long; 0: not said. */
+static double time_of(const script *s) {
+  double seconds = 0;
+  const char *end;
+  for (size_t i = 3; i + 1 < s->words; i++)
+    if (strcmp(s->word[i], "for") == 0) abbe_number_read(s->word[i + 1], &end, &seconds);
+  return seconds > 0 ? fmin(seconds, 60) : 0;
+}
+
+/* Without a pause: every frame has another place. */
+static void glide(script *s, const double from[2], const double to[2], double seconds) {
+  const double start = abbe_clock_seconds();
+  for (double t = 0; t < 1;) {
+    t = fmin(1, (abbe_clock_seconds() - start) / seconds);
+    point(s, (const double[2]){from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])});
+    sleep_a_little();
+  }
+}
+
+/* As a hand does it: some places on the way, each for a moment, or evenly for so long. */
 static abbe_result do_drag(script *s, abbe_error *error) {
   enum { PLACES = 12 };
   double from[2], to[2];
+  const double seconds = time_of(s);
   abbe_result result = aim(s, 1, from, error);
   if (result == ABBE_OK) result = aim(s, 2, to, error);
   if (result != ABBE_OK) return result;
@@ -232,13 +215,14 @@ static abbe_result do_drag(script *s, abbe_error *error) {
   point(s, from);
   pump(s);
   set_button(s, button, true);
-  for (int i = 1; i <= PLACES; i++) {
+  if (seconds > 0) glide(s, from, to, seconds);
+  for (int i = 1; seconds <= 0 && i <= PLACES; i++) {
     const double t = (double)i / PLACES, until = abbe_clock_seconds() + 0.05;
     point(s, (const double[2]){from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])});
     for (pump(s); abbe_clock_seconds() < until; pump(s)) sleep_a_little();
   }
   set_button(s, button, false);
-  s->input.shift = s->input.control = false;
+  s->hidden.input.shift = s->hidden.input.control = false;
   pump(s);
   return ABBE_OK;
 }
@@ -278,7 +262,7 @@ static abbe_result do_wheel(script *s, abbe_error *error) {
   if (s->words < 3 || !abbe_number_read(s->word[2], &end, &clicks))
     return fail(s, ABBE_PARSE, error, "how many clicks?");
   point(s, xy);
-  s->input.wheel = clicks;
+  s->hidden.input.wheel = clicks;
   pump(s);
   return ABBE_OK;
 }
@@ -290,8 +274,8 @@ static abbe_result do_key(script *s, abbe_error *error) {
   if (strlen(name) != 1)
     return fail(s, ABBE_PARSE, error, "which? Give a letter, or control+LETTER");
   const int modifiers = control ? ABBE_VIEW_CONTROL : 0;
-  abbe_view_app_key(&s->session, name[0], true, modifiers, abbe_clock_seconds());
-  abbe_view_app_key(&s->session, name[0], false, modifiers, abbe_clock_seconds());
+  abbe_view_app_key(&s->hidden.session, name[0], true, modifiers, abbe_clock_seconds());
+  abbe_view_app_key(&s->hidden.session, name[0], false, modifiers, abbe_clock_seconds());
   pump(s);
   return ABBE_OK;
 }
@@ -299,11 +283,13 @@ static abbe_result do_key(script *s, abbe_error *error) {
 /* ---- waiting and asserting ---- */
 
 static bool has_come(script *s, const char *what) {
-  const abbe_view_session *v = &s->session;
+  const abbe_view_session *v = &s->hidden.session;
   const double now = abbe_clock_seconds();
-  if (strcmp(what, "rest") == 0) return abbe_view_app_rests(&s->session, now);
+  if (strcmp(what, "rest") == 0) return abbe_view_app_rests(&s->hidden.session, now);
   if (strcmp(what, "refusal") == 0) return v->state.refusal[0] != '\0';
   if (strcmp(what, "changed") == 0) return v->state.refine.serial != s->copied;
+  if (strcmp(what, "turntable") == 0) return v->turned && v->turn_frame == 0;
+  if (strcmp(what, "feed") == 0) return abbe_view_session_feed(v) != NULL;
   if (strcmp(what, "spectrum") == 0) return v->probe.bands > 0;
   if (v->state.refine.stage == ABBE_VIEW_NONE) return false;
   for (int stage = 0; stage < ABBE_VIEW_STAGE_COUNT; stage++)
@@ -319,10 +305,10 @@ static abbe_result do_wait(script *s, abbe_error *error) {
   pump(s);
   while (!has_come(s, what)) {
     if (abbe_clock_seconds() - start > PATIENCE_S)
-      return fail(s, ABBE_TOLERANCE, error,
-                  "'%.60s' has not come in %.0f s; the stage is %s%s%.300s", what, PATIENCE_S,
-                  abbe_view_stage_name(s->session.stage),
-                  s->session.state.refusal[0] != '\0' ? ": " : "", s->session.state.refusal);
+      return fail(
+          s, ABBE_TOLERANCE, error, "'%.60s' has not come in %.0f s; the stage is %s%s%.300s", what,
+          PATIENCE_S, abbe_view_stage_name(s->hidden.session.stage),
+          s->hidden.session.state.refusal[0] != '\0' ? ": " : "", s->hidden.session.state.refusal);
     sleep_a_little();
     pump(s);
   }
@@ -339,8 +325,8 @@ static abbe_result value_of(script *s, const char *name, char out[LONGEST], abbe
       }
     return fail(s, ABBE_NOT_FOUND, error, "'%.60s' was not remembered", name);
   }
-  if (abbe_view_session_value(&s->session, name, out, LONGEST)) return ABBE_OK;
-  char *command = strcmp(name, "command") == 0 ? abbe_view_keep_command(&s->session) : NULL;
+  if (abbe_view_session_value(&s->hidden.session, name, out, LONGEST)) return ABBE_OK;
+  char *command = strcmp(name, "command") == 0 ? abbe_view_keep_command(&s->hidden.session) : NULL;
   if (command != NULL) {
     snprintf(out, LONGEST, "%s", command);
     free(command);
@@ -409,7 +395,7 @@ static abbe_result do_size(script *s, abbe_error *error) {
   if (s->words < 2 || sscanf(s->word[1], "%5ux%5u", &width, &height) != 2 || width < 1 ||
       height < 1 || width > 8192 || height > 8192)
     return fail(s, ABBE_PARSE, error, "WxH, 1 to 8192 each");
-  make_target(s, width, height);
+  abbe_view_hidden_resize(&s->hidden, width, height);
   pump(s);
   return ABBE_OK;
 }
@@ -419,7 +405,7 @@ static abbe_result do_copy(script *s, abbe_error *error) {
   size_t size = 0;
   if (s->words < 3) return fail(s, ABBE_PARSE, error, "which file, and to where?");
   abbe_result result = abbe_file_read(s->word[1], SCRIPT_MOST_BYTES, &data, &size, error);
-  s->copied = s->session.state.refine.serial;
+  s->copied = s->hidden.session.state.refine.serial;
   if (result == ABBE_OK) result = abbe_file_write(s->word[2], data, size, error);
   free(data);
   return result;
@@ -478,22 +464,12 @@ abbe_result abbe_view_script_run(const char *path, const abbe_view_app_desc *des
   size_t size = 0;
   if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
   s->path = path;
-  s->input.mouse[0] = s->input.mouse[1] = -1;
   abbe_result result = abbe_file_read_text(path, SCRIPT_MOST_BYTES, &text, &size, error);
-  if (result == ABBE_OK) result = abbe_context_make(ABBE_CONTEXT_EGL, &s->context, error);
+  if (result == ABBE_OK) result = abbe_view_hidden_begin(&s->hidden, desc, width, height, error);
   if (result == ABBE_OK) {
-    s->gl = abbe_context_gl(s->context);
-    s->last_s = abbe_clock_seconds();
-    make_target(s, width, height);
-    result = abbe_view_app_begin(&s->session, desc, s->context, error);
-    if (result == ABBE_OK) {
-      result = run_lines(s, text, error);
-      abbe_view_app_end(&s->session);
-    }
-    s->gl->DeleteFramebuffers(1, &s->framebuffer);
-    s->gl->DeleteTextures(1, &s->colour);
+    result = run_lines(s, text, error);
+    abbe_view_hidden_end(&s->hidden);
   }
-  abbe_context_free(s->context);
   free(text);
   free(s);
   return result;

@@ -51,6 +51,14 @@ unsigned long long abbe_view_session_hash(const abbe_view_session *session) {
   return hash;
 }
 
+const abbe_view_feed *abbe_view_session_feed(const abbe_view_session *session) {
+  const abbe_view_state *s = &session->state;
+  const bool is_of_it = s->picked && session->fed_serial == s->refine.serial &&
+                        session->fed_pixel[0] == s->pixel[0] &&
+                        session->fed_pixel[1] == s->pixel[1];
+  return is_of_it ? session->feed : NULL;
+}
+
 /* The largest of a spectrum, in standard errors. */
 static double significance(const abbe_view_probe *probe) {
   double most = 0;
@@ -59,11 +67,26 @@ static double significance(const abbe_view_probe *probe) {
   return most;
 }
 
+static const char *drawn_name(const abbe_view_session *session) {
+  static const char *const names[] = {
+#define ABBE_VIEW_NAME_OF(code, name) name,
+      ABBE_VIEW_SHOWN(ABBE_VIEW_NAME_OF)
+#undef ABBE_VIEW_NAME_OF
+  };
+  return names[session->drawn];
+}
+
+static const char *turning_name(const abbe_view_session *session) {
+  if (session->turn_frame > 0 && session->turn_serial == session->state.refine.serial) return "yes";
+  return session->turned ? "done" : "no";
+}
+
 bool abbe_view_session_value(const abbe_view_session *session, const char *name, char *out,
                              size_t size) {
   const abbe_view_state *s = &session->state;
   const abbe_view_document *now = abbe_view_history_now(&s->history);
   const abbe_view_probe *probe = &session->probe;
+  const abbe_view_feed *feed = abbe_view_session_feed(session);
   const struct {
     const char *name;
     double value;
@@ -84,15 +107,16 @@ bool abbe_view_session_value(const abbe_view_session *session, const char *name,
                  {"y", probe->xy[1]},
                  {"Y", probe->xyz[1]},
                  {"significance", significance(probe)},
+                 {"photons_here", feed != NULL ? (double)feed->photons : 0},
+                 {"facets", feed != NULL ? (double)feed->facet_count : 0},
                  {"exposure", s->exposure},
                  {"width", (double)s->width},
                  {"height", (double)s->height}};
   const struct {
     const char *name, *text;
-  } texts[] = {{"scene", now->path},
-               {"stage", abbe_view_stage_name(session->stage)},
-               {"refusal", s->refusal},
-               {"note", session->note}};
+  } texts[] = {{"scene", now->path},           {"stage", abbe_view_stage_name(session->stage)},
+               {"refusal", s->refusal},        {"turning", turning_name(session)},
+               {"drawn", drawn_name(session)}, {"note", session->note}};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (strcmp(name, numbers[i].name) == 0)
       return abbe_number_format(out, size, "%.10g", numbers[i].value) > 0;

@@ -5,7 +5,7 @@
 #ifndef ABBE_CLI_VIEW_VIEW_SESSION_H
 #define ABBE_CLI_VIEW_VIEW_SESSION_H
 
-#include "cli/view/view_probe.h"
+#include "cli/view/picture/view_probe.h"
 #include "cli/view/view_ui.h"
 #include "cli/view/view_worker.h"
 #include "gl/device/api.h"
@@ -39,11 +39,19 @@ typedef struct abbe_view_session {
   abbe_view_shown drawn; /* what it shows */
   double drawn_exposure;
   abbe_view_probe probe;
+  abbe_view_feed *feed; /* of the pixel; NULL: not known */
+  uint64_t fed_serial;  /* of what was asked for last, and its pixel */
+  size_t fed_pixel[2];
+  uint64_t mapped_serial;       /* of what the map was asked for last, */
+  abbe_view_stage mapped;       /* and at which stage */
   abbe_ui_input input;          /* of the frame before */
   double area[2];               /* of the picture in the window */
   double seen_s, frames_ms[32]; /* times between pictures while something moves */
   size_t frame_count;
   double event_s, latency_ms; /* of the oldest change that is not shown; of the last picture */
+  size_t turn_frame;          /* of the turntable, from 1; 0: it stands */
+  uint64_t turn_serial;       /* what it turns */
+  bool turned;                /* the last one is whole */
   char note[1200];            /* what was saved, or why not */
   char **file;                /* of the scene, and when they were changed last */
   long long *changed;
@@ -60,6 +68,8 @@ double abbe_view_session_rate(const abbe_view_session *session);
  * there is none. */
 bool abbe_view_session_value(const abbe_view_session *session, const char *name, char *out,
                              size_t size);
+/* What feeds the pixel that is picked, where that is known; else NULL. */
+const abbe_view_feed *abbe_view_session_feed(const abbe_view_session *session);
 /* FNV-1a of the bytes of the linear picture that stands. */
 unsigned long long abbe_view_session_hash(const abbe_view_session *session);
 

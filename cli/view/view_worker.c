@@ -2,6 +2,8 @@
 
 #include "base/clock.h"
 #include "base/number.h"
+#include "cli/view/picture/view_look.h"
+#include "cli/view/state/view_camera.h"
 #include "gl/accuracy/preset.h"
 #include "gl/renderer.h"
 #include "scenes/import/scene_file.h"
@@ -46,6 +48,8 @@ void abbe_view_result_free(abbe_view_result *result) {
   for (size_t i = 0; i < result->file_count; i++) free(result->file[i]);
   free(result->file);
   free(result->line);
+  free(result->feed);
+  abbe_image_free(&result->map);
   abbe_error_bars_free(&result->bars);
   *result = (abbe_view_result){0};
 }
@@ -135,6 +139,7 @@ static abbe_result take_scene(abbe_view_worker *w, const abbe_view_request *q,
   w->scene->camera = w->own;
   read_place(d, "camera.eye", w->scene->camera.eye);
   read_place(d, "camera.target", w->scene->camera.target);
+  if (q->turns && q->turn_rad != 0) abbe_view_camera_orbit(&w->scene->camera, q->turn_rad, 0);
   return abbe_scene_check(w->scene, error);
 }
 
@@ -255,8 +260,13 @@ static abbe_result draw(abbe_view_worker *w, const abbe_view_request *q, abbe_vi
 }
 
 /* The mean of the picture that stands and of others that it could have been. */
-static abbe_result draw_mean(abbe_view_worker *w, abbe_view_result *out, abbe_error *error) {
+static abbe_result draw_mean(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
+                             abbe_error *error) {
   const abbe_error_bars_desc desc = {.of_mean = true, .progress = goes_on, .user = w};
+  abbe_view_request before = *q;
+  before.job.stage = ABBE_VIEW_ACCURATE;
+  const abbe_result result = w->renderer != NULL ? ABBE_OK : draw(w, &before, out, error);
+  if (result != ABBE_OK) return result;
   out->desc = abbe_renderer_plan(w->renderer)->desc;
   return abbe_error_bars_make(w->context, w->scene, w->renderer, &desc, &out->bars, error);
 }
@@ -291,17 +301,58 @@ static abbe_result trace(abbe_view_worker *w, const abbe_view_request *q, abbe_v
   return is_read(out->passes) ? abbe_tracer_picture(w->tracer, &out->traced, error) : ABBE_OK;
 }
 
+/* What was drawn last is looked into, if it is of this scene still. */
+static abbe_result look(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
+                        abbe_error *error) {
+  if (w->renderer == NULL || w->drawn != w->scene ||
+      abbe_view_document_compare(&w->document, &q->document) == ABBE_VIEW_CHANGED)
+    return ABBE_OK;
+  if (q->maps) return abbe_view_look_map(w->renderer, &out->map, error);
+  out->feed = malloc(sizeof *out->feed);
+  if (out->feed == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for photons");
+  return abbe_view_look_feed(w->renderer, w->scene, q->point, q->radius, &w->stop, out->feed,
+                             error);
+}
+
+static abbe_result make(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out,
+                        abbe_error *error) {
+  *out = (abbe_view_result){.job = q->job,
+                            .width = q->width,
+                            .height = q->height,
+                            .turned = q->turns,
+                            .looked = q->asks || q->maps};
+  if (q->asks || q->maps) return look(w, q, out, error);
+  const abbe_result result = take_scene(w, q, out, error);
+  if (result != ABBE_OK) return result;
+  return q->job.stage == ABBE_VIEW_TRACED ? trace(w, q, out, error)
+         : q->job.stage == ABBE_VIEW_MEAN ? draw_mean(w, q, out, error)
+                                          : draw(w, q, out, error);
+}
+
+/* A context instead of one that is lost, as after a reset of the device; what was in it is made
+ * again. */
+static abbe_result renew(abbe_view_worker *w, abbe_error *error) {
+  abbe_renderer_free(w->renderer);
+  abbe_context_free(w->context);
+  if (w->drawn != w->scene) free_scene(w->drawn);
+  w->renderer = NULL;
+  w->context = NULL;
+  w->drawn = NULL;
+  return abbe_context_make(ABBE_CONTEXT_EGL, &w->context, error);
+}
+
 static void work(abbe_view_worker *w, const abbe_view_request *q, abbe_view_result *out) {
   const double start = abbe_clock_seconds();
   abbe_error error = {0};
-  *out = (abbe_view_result){.job = q->job, .width = q->width, .height = q->height};
-  abbe_result result = take_scene(w, q, out, &error);
-  if (result == ABBE_OK && q->job.stage == ABBE_VIEW_TRACED)
-    result = trace(w, q, out, &error);
-  else if (result == ABBE_OK && q->job.stage == ABBE_VIEW_MEAN)
-    result = draw_mean(w, out, &error);
-  else if (result == ABBE_OK)
-    result = draw(w, q, out, &error);
+  abbe_result result = w->context != NULL ? ABBE_OK : renew(w, &error);
+  *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
+  if (result == ABBE_OK) result = make(w, q, out, &error);
+  if (result == ABBE_GL && w->context != NULL) { /* once */
+    abbe_view_result_free(out);
+    result = renew(w, &error);
+    *out = (abbe_view_result){.job = q->job, .turned = q->turns, .looked = q->asks || q->maps};
+    if (result == ABBE_OK) result = make(w, q, out, &error);
+  }
   out->ms = 1e3 * (abbe_clock_seconds() - start);
   out->outcome = result == ABBE_OK          ? ABBE_VIEW_DONE
                  : result == ABBE_CANCELLED ? ABBE_VIEW_CANCELLED

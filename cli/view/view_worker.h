@@ -8,6 +8,7 @@
 #ifndef ABBE_CLI_VIEW_VIEW_WORKER_H
 #define ABBE_CLI_VIEW_VIEW_WORKER_H
 
+#include "cli/view/picture/view_feed.h"
 #include "cli/view/state/view_state.h"
 #include "colorimetry/image/image.h"
 #include "gl/accuracy/error_bars.h"
@@ -22,6 +23,11 @@ typedef struct abbe_view_request {
   abbe_view_document document; /* the request's own */
   bool reload;                 /* the files anew */
   size_t width, height;
+  bool asks; /* no picture, but what feeds this place: */
+  double point[3], radius;
+  bool maps;  /* no picture, but the spectral map */
+  bool turns; /* the picture, seen from elsewhere: */
+  double turn_rad;
 } abbe_view_request;
 
 typedef struct abbe_view_line {
@@ -52,6 +58,10 @@ typedef struct abbe_view_result {
   double promised;      /* mean CIEDE2000 in the caustic, by the presets; 0: nothing promised */
   abbe_error_bars bars; /* of the stage `mean`; its pictures too */
   size_t passes;        /* traced */
+  bool turned;          /* of the turntable */
+  bool looked;          /* for one of these alone: */
+  abbe_image map;       /* zeroed: there is none */
+  abbe_view_feed *feed; /* NULL: the last picture drawn is not of this scene any more */
 } abbe_view_result;
 void abbe_view_result_free(abbe_view_result *result);
 

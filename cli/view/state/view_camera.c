@@ -101,6 +101,16 @@ bool abbe_view_camera_project(const abbe_camera *camera, size_t width, size_t he
   return true;
 }
 
+void abbe_view_camera_point(const abbe_camera *camera, size_t width, size_t height,
+                            const double xy[2], double distance, double out[3]) {
+  const double uv[2] = {xy[0] / (double)width, 1 - xy[1] / (double)height};
+  abbe_view view;
+  double origin[3], direction[3];
+  view_of(camera, width, height, &view);
+  abbe_view_ray(&view, uv, origin, direction);
+  for (int k = 0; k < 3; k++) out[k] = origin[k] + distance * direction[k];
+}
+
 /* Where the ray of a pixel meets the plane. */
 static bool meet(const abbe_view *view, size_t width, size_t height, const double xy[2],
                  const double point[3], const double normal[3], double out[3]) {

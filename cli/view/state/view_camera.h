@@ -24,6 +24,10 @@ void abbe_view_camera_fly(abbe_camera *camera, const double step[3]);
 bool abbe_view_camera_project(const abbe_camera *camera, size_t width, size_t height,
                               const double point[3], double xy[2]);
 
+/* The point that a place in the picture shows, so far from the eye, m. */
+void abbe_view_camera_point(const abbe_camera *camera, size_t width, size_t height,
+                            const double xy[2], double distance, double out[3]);
+
 typedef enum abbe_view_drag {
   ABBE_VIEW_DRAG_LEVEL,  /* in the plane across `up` through the point */
   ABBE_VIEW_DRAG_UPRIGHT /* along `up` */

@@ -169,6 +169,7 @@ static void make_object(abbe_yaml *yaml, abbe_yaml_node list, size_t i, const ab
     half[k] = 0.5 * (object->max[k] - object->min[k]);
   }
   out->radius = abbe_vector_length(half);
+  out->scene_index = (size_t)(object - scene->object);
   read_values(yaml, node, out);
   outline->object_count++;
 }

@@ -33,6 +33,7 @@ typedef struct abbe_view_light {
 typedef struct abbe_view_object {
   char name[ABBE_VIEW_NAME], key[ABBE_VIEW_KEY]; /* "objects.gem" */
   char material[ABBE_VIEW_NAME];                 /* "": not a refractor */
+  size_t scene_index;                            /* of the scene's object */
   double middle[3], radius;                      /* of its bounds, m */
   /* How it was put there, as one line of YAML without brackets, but for a last `translate`; and
    * that. */

@@ -94,6 +94,7 @@ static double eye_share(size_t step) {
  * it was drawn, for what the eye sees sharp is what is looked at. */
 static void adapt(abbe_view_refine *refine, const abbe_view_job *job, bool lit, double ms) {
   const double most = ABBE_VIEW_MOVING_MS, roomy = 0.8 * ABBE_VIEW_MOVING_MS;
+  size_t step = job->eye_step;
   refine->moving_ms = ms;
   if (ms > most) {
     if (lit && refine->light_step + 1 < ABBE_VIEW_LIGHT_STEPS)
@@ -102,10 +103,13 @@ static void adapt(abbe_view_refine *refine, const abbe_view_job *job, bool lit, 
       refine->eye_step = job->eye_step + 1;
     return;
   }
-  if (job->eye_step > 0 && ms * eye_share(job->eye_step - 1) / eye_share(job->eye_step) < roomy)
-    refine->eye_step = job->eye_step - 1;
-  else if (lit && job->light_step > 0 && 2 * ms < roomy) /* a step is some twice the photons */
-    refine->light_step = job->light_step - 1;
+  while (step > 0 && ms * eye_share(step - 1) / eye_share(job->eye_step) < roomy) step--;
+  refine->eye_step = step;
+  if (step < job->eye_step || !lit) return;
+  size_t light = job->light_step;
+  double expected = 2 * ms; /* a step is some twice the photons */
+  for (; light > 0 && expected < roomy; expected *= 2) light--;
+  refine->light_step = light;
 }
 
 void abbe_view_refine_end(abbe_view_refine *refine, const abbe_view_job *job,
@@ -114,7 +118,13 @@ void abbe_view_refine_end(abbe_view_refine *refine, const abbe_view_job *job,
   const bool lit = refine->light != job->light || refine->drawn_light_step != job->light_step;
   if (outcome == ABBE_VIEW_REFUSED && job->serial == refine->serial) refine->refused = true;
   if (outcome != ABBE_VIEW_DONE) return;
-  if (job->stage == ABBE_VIEW_MOVING) adapt(refine, job, lit, ms);
+  /* one that took many times as long as the one before it compiled programs: that does not last */
+  const bool strange = refine->moving_ms > 0 && !refine->strange && ms > 4 * refine->moving_ms &&
+                       ms > 4 * ABBE_VIEW_MOVING_MS;
+  if (job->stage == ABBE_VIEW_MOVING) {
+    refine->strange = strange;
+    if (!strange) adapt(refine, job, lit, ms);
+  }
   /* light that was drawn for an older state of the scene is no light for this one, unless only the
    * camera has moved since */
   const bool current = job->serial == refine->serial;

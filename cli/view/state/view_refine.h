@@ -3,9 +3,10 @@
  *
  * A state machine: changes, times and finished jobs in, jobs out. It draws nothing, knows no scene
  * and no settings, only their order. Moving, a job takes the steps that kept the last ones below
- * ABBE_VIEW_MOVING_MS; after ABBE_VIEW_REST_S without a change the stages follow each other up to
- * the last. A change makes any stage but a moving one obsolete at once: a moving one is nearly
- * done, and what it shows is newer than what stands.
+ * ABBE_VIEW_MOVING_MS, and goes back to as many finer ones as its time has room for; after
+ * ABBE_VIEW_REST_S without a change the stages follow each other up to the last. A change makes any
+ * stage but a moving one obsolete at once: a moving one is nearly done, and what it shows is newer
+ * than what stands.
  */
 #ifndef ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
 #define ABBE_CLI_VIEW_STATE_VIEW_REFINE_H
@@ -68,7 +69,8 @@ typedef struct abbe_view_refine {
   abbe_view_stage light;       /* whose light is drawn for this scene; NONE: none */
   size_t light_step, eye_step; /* to be tried next */
   size_t drawn_light_step;     /* of the light that is drawn */
-  double moving_ms;            /* of the last moving picture */
+  double moving_ms;            /* of the last moving picture that counts */
+  bool strange;                /* the last one does not: nothing follows from one alone */
   bool camera_only;            /* all that has changed since the last picture */
   bool refused;
 } abbe_view_refine;

@@ -44,7 +44,10 @@ typedef struct abbe_view_handle {
   X(DIFFERENCE_PICTURE, "rendered less traced")                                                    \
   X(ERROR_PICTURE, "estimated error")                                                              \
   X(CAUSTIC_PICTURE, "caustic alone")                                                              \
-  X(DIRECT_PICTURE, "direct light alone")
+  X(DIRECT_PICTURE, "direct light alone")                                                          \
+  X(LUMINANCE_PICTURE, "luminance in false colours")                                               \
+  X(DISTANCE_PICTURE, "distance from the eye")                                                     \
+  X(MAP_PICTURE, "spectral map")
 typedef enum abbe_view_shown {
 #define ABBE_VIEW_ENUM(code, name) ABBE_VIEW_##code,
   ABBE_VIEW_SHOWN(ABBE_VIEW_ENUM)

@@ -34,6 +34,65 @@ static void what_is_wrong_is_said_and_the_picture_stays(void **state) {
   must("sed 's/^ambient:.*/ambient: 1.5/' good.yaml > bright.yaml");
   must("\"$abbe\" view scene.yaml --last balanced --size 500x200 --script " SCRIPTS "faults.txt");
   must("rm *.yaml");
+  must(VIEW "--last balanced --size 500x200 --script " SCRIPTS "refused.txt");
+  assert_int_equal(run_left(), 0);
+}
+
+static void what_is_shown_beside_the_picture(void **state) {
+  (void)state;
+  must(VIEW "--last accurate --size 640x300 --script " SCRIPTS "shown.txt");
+  /* four pictures, no two alike */
+  must("test $(cat caustic.png luminance.png distance.png map.png | wc -c) -gt 8000");
+  must("test $(md5sum caustic.png luminance.png distance.png map.png | cut -c1-32 | sort -u | wc "
+       "-l) = 4");
+  must("rm *.png");
+  assert_int_equal(run_left(), 0);
+}
+
+/* A whole turn comes back to where it began, and what stood stands again. */
+static void a_turntable(void **state) {
+  (void)state;
+  must("printf '%s\\n' 'wait accurate' 'remember hash first' 'key t' 'wait turntable' "
+       "'assert note contains a-turn.png' 'wait accurate' 'assert hash = $first' 'key control+s' "
+       "'key t' 'wheel 20,20 1' 'wait accurate' 'assert turning = no' > a.txt");
+  must("\"$abbe\" view \"$house\"/scenes/sphere.yaml --last accurate --size 404x64 --keep a "
+       "--script a.txt");
+  must("test $(ls a-turn-0*.png | wc -l) = 36 && cmp a-turn-0001.png a.png");
+  must("! cmp -s a-turn-0001.png a-turn-0019.png; grep -q acTL a-turn.png");
+  must("rm a*");
+  assert_int_equal(run_left(), 0);
+}
+
+/* What was drawn in a context that is lost is drawn again in another, to the bit. */
+static void a_lost_context_is_made_good(void **state) {
+  (void)state;
+  must("cp \"$house\"/scenes/sphere.yaml good.yaml");
+  must("ABBE_LOST=lost LD_PRELOAD=" ABBE_LOST_CONTEXT
+       " \"$abbe\" view good.yaml --last accurate --size 500x200 --script " SCRIPTS "lost.txt");
+  assert_contains(run_errors, "lost_context: a context is lost");
+  must("rm good.yaml lost");
+  assert_int_equal(run_left(), 0);
+}
+
+/* Neither the scene nor the table beside it is lost by keeping, whatever the name is. */
+static void what_is_read_is_not_written_over(void **state) {
+  (void)state;
+  must("mkdir scenes; cp \"$house\"/scenes/sphere.yaml scenes/gem.yaml");
+  must("cp scenes/gem.yaml other-view.yaml; ln scenes/gem.yaml link.yaml");
+  must("cp scenes/gem.yaml before.yaml");
+  assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep scenes/gem --script /dev/null"),
+                   2);
+  assert_contains(run_errors, "--keep scenes/gem would write over scenes/gem.yaml");
+  assert_int_equal(run_line("\"$abbe\" view scenes/gem.yaml --keep ./link --script /dev/null"), 2);
+  assert_contains(run_errors, "choose another name");
+  /* another scene than at the start, picked in the panel */
+  must("printf '%s\\n' 'wait balanced' 'choose scene other-view.yaml' 'wait balanced' "
+       "'slide exposure 0.6' 'key control+s' 'assert note contains lost' > a.txt");
+  must("cp before.yaml other.yaml; \"$abbe\" view other.yaml --last balanced --size 420x600 "
+       "--script a.txt");
+  must("cmp before.yaml other-view.yaml && cmp before.yaml scenes/gem.yaml");
+  must("test ! -e other-view.exr && test ! -e scenes/gem.exr");
+  must("rm -r scenes *.yaml a.txt");
   assert_int_equal(run_left(), 0);
 }
 
@@ -81,13 +140,21 @@ static void wrong_use(void **state) {
   assert_true(run_refuses("\"$abbe\" view", 2, "which scene?"));
   assert_true(run_refuses(VIEW "--size 0x1", 2, "--size"));
   assert_true(run_refuses(VIEW "--last soon", 2, "--last"));
+  assert_true(run_refuses(VIEW "--serve 65536", 2, "--serve"));
+  assert_true(run_refuses(VIEW "--serve 0 --script a.txt", 2, "not both"));
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
 #ifdef ABBE_HAVE_VIEW
-      cmocka_unit_test(the_story), cmocka_unit_test(what_is_wrong_is_said_and_the_picture_stays),
-      cmocka_unit_test(scripts_that_do_not_hold), cmocka_unit_test(without_a_display),
+      cmocka_unit_test(the_story),
+      cmocka_unit_test(what_is_wrong_is_said_and_the_picture_stays),
+      cmocka_unit_test(what_is_shown_beside_the_picture),
+      cmocka_unit_test(a_turntable),
+      cmocka_unit_test(a_lost_context_is_made_good),
+      cmocka_unit_test(what_is_read_is_not_written_over),
+      cmocka_unit_test(scripts_that_do_not_hold),
+      cmocka_unit_test(without_a_display),
 #else
       cmocka_unit_test(it_says_what_to_install),
 #endif

@@ -140,6 +140,43 @@ static void test_slow_pictures_get_cheaper_and_fast_ones_better(void **state) {
   assert_int_equal(r.eye_step, 0);
 }
 
+/* One picture that waits for a compiler says nothing of the next; two do. */
+static void test_one_strange_picture_changes_nothing(void **state) {
+  (void)state;
+  abbe_view_refine r = begun();
+  double now = 1;
+  for (int i = 0; i < 4; i++, now += 0.05) {
+    abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, now);
+    draw(&r, now, i == 2 ? 900 : 30);
+    assert_int_equal(r.light_step, 0);
+    assert_int_equal(r.eye_step, 0);
+    assert_near(r.moving_ms, 30, 0);
+  }
+  for (int i = 0; i < 2; i++, now += 1) {
+    abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, now);
+    draw(&r, now, 900);
+  }
+  assert_int_equal(r.light_step, 1);
+}
+
+/* From the coarsest to the finest in one picture each, where there is room for it. */
+static void test_the_way_back_is_short(void **state) {
+  (void)state;
+  abbe_view_refine r = begun();
+  r.eye_step = ABBE_VIEW_EYE_STEPS - 1;
+  r.light_step = ABBE_VIEW_LIGHT_STEPS - 1;
+  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1);
+  draw(&r, 1, 2);
+  assert_int_equal(r.eye_step, 0);
+  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1.05);
+  draw(&r, 1.05, 4); /* 8, 16 and 32 ms fit */
+  assert_int_equal(r.light_step, 0);
+  r.light_step = ABBE_VIEW_LIGHT_STEPS - 1;
+  abbe_view_refine_change(&r, ABBE_VIEW_CHANGED_SCENE, 1.1);
+  draw(&r, 1.1, 9); /* 18 and 36 do, 72 does not */
+  assert_int_equal(r.light_step, 1);
+}
+
 static void test_the_light_gives_way_first(void **state) {
   (void)state;
   abbe_view_refine r = begun();
@@ -209,6 +246,8 @@ int main(void) {
       cmocka_unit_test(test_the_camera_keeps_the_light),
       cmocka_unit_test(test_a_late_picture_brings_no_light),
       cmocka_unit_test(test_slow_pictures_get_cheaper_and_fast_ones_better),
+      cmocka_unit_test(test_one_strange_picture_changes_nothing),
+      cmocka_unit_test(test_the_way_back_is_short),
       cmocka_unit_test(test_the_light_gives_way_first),
       cmocka_unit_test(test_what_is_refused_waits_for_a_change),
       cmocka_unit_test(test_a_spectrum_is_traced_before_the_mean),

@@ -1,4 +1,4 @@
-#include "cli/view/view_show.h"
+#include "cli/view/picture/view_show.h"
 
 #include "colorimetry/image/colour_map.h"
 #include "colorimetry/rgb_space.h"
@@ -12,6 +12,7 @@ void abbe_view_pictures_free(abbe_view_pictures *pictures) {
   abbe_image_free(&pictures->layers);
   abbe_image_free(&pictures->error);
   abbe_image_free(&pictures->traced);
+  abbe_image_free(&pictures->map);
   *pictures = (abbe_view_pictures){0};
 }
 
@@ -28,7 +29,12 @@ abbe_view_shown abbe_view_shown_of(const abbe_view_pictures *p, abbe_view_shown 
     return same_size(&p->rendered, &p->error) ? wish : ABBE_VIEW_RENDERED_PICTURE;
   case ABBE_VIEW_CAUSTIC_PICTURE:
   case ABBE_VIEW_DIRECT_PICTURE:
+  case ABBE_VIEW_DISTANCE_PICTURE:
     return same_size(&p->rendered, &p->layers) ? wish : ABBE_VIEW_RENDERED_PICTURE;
+  case ABBE_VIEW_LUMINANCE_PICTURE:
+    return wish;
+  case ABBE_VIEW_MAP_PICTURE:
+    return p->map.data != NULL ? wish : ABBE_VIEW_RENDERED_PICTURE;
   default:
     return ABBE_VIEW_RENDERED_PICTURE;
   }
@@ -64,6 +70,65 @@ static unsigned char byte_of(double value) {
   return (unsigned char)(255 * fmin(1, fmax(0, value)) + 0.5);
 }
 
+static void put_colour(abbe_colour_map map, double t, unsigned char out[4]) {
+  double rgb[3];
+  abbe_colour_map_at(map, t, rgb);
+  for (int k = 0; k < 3; k++) out[k] = byte_of(rgb[k]);
+  out[3] = 255;
+}
+
+/* Of the rendered picture, a decade for each third, up to what the exposure has as white. */
+static void show_luminance(const abbe_view_pictures *p, double gain, unsigned char *out) {
+  size_t channel[3];
+  if (!abbe_view_channels(&p->rendered, "", channel)) return;
+  for (size_t i = 0; i < p->rendered.width * p->rendered.height; i++) {
+    const double y = gain * abbe_view_luminance(&p->rendered, channel, i);
+    put_colour(ABBE_COLOUR_MAP_AMOUNT, 1 + log10(fmax(1e-30, y)) / 3, out + 4 * i);
+  }
+}
+
+/* From the nearest to the farthest; black where nothing is seen. */
+static void show_distance(const abbe_view_pictures *p, unsigned char *out) {
+  const abbe_image *image = &p->layers;
+  const size_t z = abbe_image_find_channel(image, "Z"), count = image->width * image->height;
+  double near = INFINITY, far = 0;
+  for (size_t i = 0; z != (size_t)-1 && i < count; i++) {
+    const double d = (double)image->data[image->channels * i + z];
+    if (d > 0) near = fmin(near, d);
+    far = fmax(far, d);
+  }
+  for (size_t i = 0; z != (size_t)-1 && i < count; i++) {
+    const double d = (double)image->data[image->channels * i + z];
+    out[4 * i + 3] = 255;
+    if (d > 0)
+      put_colour(ABBE_COLOUR_MAP_AMOUNT, far > near ? (d - near) / (far - near) : 0.5, out + 4 * i);
+  }
+}
+
+/* The map as a square in the middle, so bright that its lit texels have a mean Y of 0.2 before the
+ * exposure. */
+static void fill_map(const abbe_image *map, double gain, abbe_image *out) {
+  const size_t side = out->width < out->height ? out->width : out->height;
+  const size_t left = (out->width - side) / 2, above = (out->height - side) / 2;
+  double matrix[9], sum = 0, lit = 0;
+  abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_ACESCG, matrix);
+  for (size_t i = 0; i < map->width * map->height; i++) {
+    const double y = (double)map->data[map->channels * i + 1];
+    sum += fmax(0, y);
+    lit += y > 0 ? 1 : 0;
+  }
+  const double scale = sum > 0 ? 0.2 * gain * lit / sum : 0;
+  for (size_t y = 0; y < side; y++)
+    for (size_t x = 0; x < side; x++) {
+      const size_t from = y * map->height / side * map->width + x * map->width / side;
+      float *to = &out->data[3 * ((y + above) * out->width + x + left)];
+      double xyz[3], rgb[3];
+      for (size_t k = 0; k < 3; k++) xyz[k] = scale * (double)map->data[map->channels * from + k];
+      abbe_rgb_space_apply(matrix, xyz, rgb);
+      for (int k = 0; k < 3; k++) to[k] = (float)rgb[k];
+    }
+}
+
 /* Errors and differences. */
 static void show_false(const abbe_view_pictures *p, abbe_view_shown shown, unsigned char *out) {
   const abbe_image *first = &p->rendered;
@@ -77,14 +142,12 @@ static void show_false(const abbe_view_pictures *p, abbe_view_shown shown, unsig
       fmax(1e-30, difference ? mean_luminance(second, b) : mean_luminance(first, a));
   for (size_t i = 0; i < first->width * first->height; i++) {
     const double y = abbe_view_luminance(second, b, i);
-    double rgb[3], t;
+    double t;
     if (difference)
       t = 0.5 + 0.5 * (abbe_view_luminance(first, a, i) - y) / (ABBE_VIEW_FULL_DIFFERENCE * mean);
     else
       t = log10(fmax(1e-30, fabs(y)) / (ABBE_VIEW_LEAST_ERROR * mean)) / 3;
-    abbe_colour_map_at(difference ? ABBE_COLOUR_MAP_DIFFERENCE : ABBE_COLOUR_MAP_AMOUNT, t, rgb);
-    for (int k = 0; k < 3; k++) out[4 * i + (size_t)k] = byte_of(rgb[k]);
-    out[4 * i + 3] = 255;
+    put_colour(difference ? ABBE_COLOUR_MAP_DIFFERENCE : ABBE_COLOUR_MAP_AMOUNT, t, out + 4 * i);
   }
 }
 
@@ -101,6 +164,13 @@ abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, d
     show_false(p, shown, *out);
     return ABBE_OK;
   }
+  if (shown == ABBE_VIEW_LUMINANCE_PICTURE || shown == ABBE_VIEW_DISTANCE_PICTURE) {
+    if (shown == ABBE_VIEW_LUMINANCE_PICTURE)
+      show_luminance(p, gain, *out);
+    else
+      show_distance(p, *out);
+    return ABBE_OK;
+  }
   const char *layer = shown == ABBE_VIEW_CAUSTIC_PICTURE  ? "caustic"
                       : shown == ABBE_VIEW_DIRECT_PICTURE ? "direct"
                                                           : "";
@@ -111,7 +181,9 @@ abbe_result abbe_view_show(const abbe_view_pictures *p, abbe_view_shown shown, d
   abbe_result result = abbe_view_channels(from, layer, channel)
                            ? abbe_image_make(from->width, from->height, 3, names, &screen, error)
                            : abbe_error_set(error, ABBE_NOT_FOUND, "the picture has no such layer");
-  for (size_t i = 0; result == ABBE_OK && i < count; i++)
+  const bool maps = shown == ABBE_VIEW_MAP_PICTURE;
+  if (result == ABBE_OK && maps) fill_map(&p->map, gain, &screen);
+  for (size_t i = 0; result == ABBE_OK && !maps && i < count; i++)
     for (size_t k = 0; k < 3; k++)
       screen.data[3 * i + k] = (float)(gain * (double)from->data[from->channels * i + channel[k]]);
   if (result == ABBE_OK) result = abbe_display_apply(display, &screen, error);

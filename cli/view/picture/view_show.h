@@ -1,7 +1,7 @@
 /* view_show.h: pictures as a screen shows them: through the display transform, or in false colours.
  */
-#ifndef ABBE_CLI_VIEW_VIEW_SHOW_H
-#define ABBE_CLI_VIEW_VIEW_SHOW_H
+#ifndef ABBE_CLI_VIEW_PICTURE_VIEW_SHOW_H
+#define ABBE_CLI_VIEW_PICTURE_VIEW_SHOW_H
 
 #include "cli/view/state/view_state.h"
 #include "colorimetry/image/display_ocio.h"
@@ -15,6 +15,7 @@
 /* Zeroed images are not there yet. */
 typedef struct abbe_view_pictures {
   abbe_image rendered, layers, error, traced; /* layers: direct.*, caustic.* of the same size */
+  abbe_image map;                             /* X, Y, Z of a light's texels */
 } abbe_view_pictures;
 void abbe_view_pictures_free(abbe_view_pictures *pictures);
 

@@ -1,10 +1,10 @@
 /* view_probe.h: what is known of a pixel's light: its spectrum with standard errors, and its
  * colour.
  */
-#ifndef ABBE_CLI_VIEW_VIEW_PROBE_H
-#define ABBE_CLI_VIEW_VIEW_PROBE_H
+#ifndef ABBE_CLI_VIEW_PICTURE_VIEW_PROBE_H
+#define ABBE_CLI_VIEW_PICTURE_VIEW_PROBE_H
 
-#include "cli/view/view_show.h"
+#include "cli/view/picture/view_show.h"
 
 #define ABBE_VIEW_PROBE_BANDS 64
 

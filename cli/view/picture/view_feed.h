@@ -1,0 +1,55 @@
+/* view_feed.h: where the light of a place has come in: the photons that land near it, the cells of
+ * refractors through which they went first, and the facets that these belong to.
+ *
+ * It takes photons' hits as the renderer has them (gl/renderer.h) and follows each one's ray from
+ * its light to the first refractor. What happened inside is not in a hit, so the facets are those
+ * of the entry alone.
+ */
+#ifndef ABBE_CLI_VIEW_PICTURE_VIEW_FEED_H
+#define ABBE_CLI_VIEW_PICTURE_VIEW_FEED_H
+
+#include "scenes/scene.h"
+#include "scenes/view/view.h"
+
+enum { ABBE_VIEW_FEED_RAYS = 192, ABBE_VIEW_FEED_FACETS = 6, ABBE_VIEW_FEED_EDGES = 240 };
+
+typedef struct abbe_view_ray_in {
+  double entry[3], light[3]; /* on the refractor; where the ray began */
+  double share;              /* of the flux of all photons that were found */
+  size_t facet;              /* of those below; their count: of a lesser one */
+} abbe_view_ray_in;
+
+typedef struct abbe_view_facet {
+  size_t object;            /* of the scene */
+  double normal[3], offset; /* n . x = offset, m */
+  double share;             /* of the rays followed */
+} abbe_view_facet;
+
+typedef struct abbe_view_feed {
+  double point[3], radius; /* whose light is asked for, m */
+  size_t photons;          /* that land there, at any wavelength */
+  size_t ray_count;        /* of these, the strongest that meet a refractor */
+  abbe_view_ray_in ray[ABBE_VIEW_FEED_RAYS];
+  size_t facet_count; /* the strongest */
+  abbe_view_facet facet[ABBE_VIEW_FEED_FACETS];
+  size_t edge_count; /* around them */
+  double edge[ABBE_VIEW_FEED_EDGES][2][3];
+  struct abbe_view_landed *landed; /* in the making */
+  double flux;
+} abbe_view_feed;
+
+/* A light's hits. */
+typedef struct abbe_view_hits {
+  const float *at;      /* [count][slots][samples] x 4: world place, flux */
+  const unsigned *cell; /* [count], x | y << 16 of the grid */
+  size_t count, slots, samples, grid;
+  abbe_view view; /* that the grid is of */
+} abbe_view_hits;
+
+void abbe_view_feed_begin(const double point[3], double radius, abbe_view_feed *out);
+/* Once for each light. ABBE_NO_MEMORY. */
+abbe_result abbe_view_feed_add(abbe_view_feed *feed, const abbe_view_hits *hits, abbe_error *error);
+/* Follows what was added; nothing is to be freed then. */
+void abbe_view_feed_end(abbe_view_feed *feed, const abbe_scene *scene);
+
+#endif

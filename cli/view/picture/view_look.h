@@ -1,0 +1,18 @@
+/* view_look.h: what is in a renderer beside its picture: the photons that feed a place, and the
+ * spectral map. */
+#ifndef ABBE_CLI_VIEW_PICTURE_VIEW_LOOK_H
+#define ABBE_CLI_VIEW_PICTURE_VIEW_LOOK_H
+
+#include "cli/view/picture/view_feed.h"
+#include "gl/renderer.h"
+
+/* The renderer has drawn that scene. What was found before *stop became true stands. Errors of
+ * abbe_renderer_read_hits, ABBE_NO_MEMORY. */
+abbe_result abbe_view_look_feed(abbe_renderer *renderer, const abbe_scene *scene,
+                                const double point[3], double radius, const volatile int *stop,
+                                abbe_view_feed *out, abbe_error *error);
+/* Of the first light from which photons start; zeroed where there is none. Errors of
+ * abbe_renderer_read_map. */
+abbe_result abbe_view_look_map(abbe_renderer *renderer, abbe_image *out, abbe_error *error);
+
+#endif

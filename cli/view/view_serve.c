@@ -1,0 +1,326 @@
+#include "cli/view/view_serve.h"
+
+#ifdef ABBE_HAVE_SERVE
+
+#include "base/clock.h"
+#include "cli/view/view_events.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <math.h>
+#include <microhttpd.h>
+#include <png.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <time.h>
+
+enum { MOST_EVENTS = 4096, MOST_BYTES = 65536, TOKEN_BYTES = 16, LONGEST_WAIT_S = 1 };
+
+extern const unsigned char abbe_embedded_view_page[];
+extern const size_t abbe_embedded_view_page_size;
+
+typedef struct server {
+  abbe_view_hidden hidden; /* the main thread's */
+  unsigned char *pixels;   /* of the last picture */
+  size_t width, height;
+  char token[2 * TOKEN_BYTES + 1];
+  pthread_mutex_t lock; /* of what follows: */
+  pthread_cond_t called, drawn;
+  bool woken;
+  abbe_view_event event[MOST_EVENTS];
+  size_t events;
+  unsigned char *png;
+  size_t png_size;
+  unsigned long frame; /* its number; 0: none yet */
+} server;
+
+/* What a request has brought so far. */
+typedef struct body {
+  char text[MOST_BYTES + 1];
+  size_t size;
+  bool too_long;
+} body;
+
+static server *served; /* whom wake means */
+static volatile sig_atomic_t stopped;
+
+static void stop(int number) {
+  (void)number;
+  stopped = 1;
+}
+
+static void wake(void) {
+  pthread_mutex_lock(&served->lock);
+  served->woken = true;
+  pthread_cond_signal(&served->called);
+  pthread_mutex_unlock(&served->lock);
+}
+
+static void wait_for(pthread_cond_t *signal, pthread_mutex_t *lock, double seconds) {
+  struct timespec until;
+  clock_gettime(CLOCK_REALTIME, &until);
+  const double nanoseconds = (double)until.tv_nsec + 1e9 * seconds;
+  until.tv_sec += (time_t)(nanoseconds / 1e9);
+  until.tv_nsec = (long)fmod(nanoseconds, 1e9);
+  pthread_cond_timedwait(signal, lock, &until);
+}
+
+/* ---- requests, on threads of the library's ---- */
+
+static enum MHD_Result reply(struct MHD_Connection *c, unsigned code, const char *type,
+                             const void *data, size_t size, unsigned long frame) {
+  static const char policy[] = "default-src 'none'; script-src 'unsafe-inline'; style-src "
+                               "'unsafe-inline'; connect-src 'self'; img-src blob:";
+  char number[32];
+  struct MHD_Response *r =
+      MHD_create_response_from_buffer(size, (void *)(uintptr_t)data, MHD_RESPMEM_MUST_COPY);
+  if (r == NULL) return MHD_NO;
+  MHD_add_response_header(r, MHD_HTTP_HEADER_CONTENT_TYPE, type);
+  MHD_add_response_header(r, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
+  MHD_add_response_header(r, "Content-Security-Policy", policy);
+  MHD_add_response_header(r, "Referrer-Policy", "no-referrer");
+  MHD_add_response_header(r, "X-Content-Type-Options", "nosniff");
+  snprintf(number, sizeof number, "%lu", frame);
+  if (frame > 0) MHD_add_response_header(r, "X-Abbe-Frame", number);
+  const enum MHD_Result result = MHD_queue_response(c, code, r);
+  MHD_destroy_response(r);
+  return result;
+}
+
+static enum MHD_Result say(struct MHD_Connection *c, unsigned code, const char *text) {
+  return reply(c, code, "text/plain; charset=utf-8", text, strlen(text), 0);
+}
+
+/* In a time that does not tell how much of it is right. */
+static bool has_token(const server *s, struct MHD_Connection *c) {
+  const char *given = MHD_lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "token");
+  unsigned differs = 0;
+  if (given == NULL || strlen(given) != strlen(s->token)) return false;
+  for (size_t i = 0; s->token[i] != '\0'; i++) differs |= (unsigned)(given[i] ^ s->token[i]);
+  return differs == 0;
+}
+
+static enum MHD_Result send_picture(server *s, struct MHD_Connection *c) {
+  const char *text = MHD_lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "after");
+  const unsigned long after = text != NULL ? strtoul(text, NULL, 10) : 0;
+  const double until = abbe_clock_seconds() + LONGEST_WAIT_S;
+  pthread_mutex_lock(&s->lock);
+  while ((s->frame == 0 || s->frame == after) && abbe_clock_seconds() < until && !stopped)
+    wait_for(&s->drawn, &s->lock, 0.2);
+  const enum MHD_Result result =
+      s->frame == 0 || s->frame == after
+          ? say(c, MHD_HTTP_NO_CONTENT, "")
+          : reply(c, MHD_HTTP_OK, "image/png", s->png, s->png_size, s->frame);
+  pthread_mutex_unlock(&s->lock);
+  return result;
+}
+
+/* All of the lines, or none. */
+static enum MHD_Result take_events(server *s, struct MHD_Connection *c, body *b) {
+  abbe_view_event *event = malloc(MOST_EVENTS * sizeof *event);
+  abbe_error error = {0};
+  size_t count = 0;
+  bool full = false;
+  abbe_result result = event != NULL ? ABBE_OK : ABBE_NO_MEMORY;
+  for (char *rest = b->text, *line; result == ABBE_OK && !full;) {
+    if ((line = strtok_r(rest, "\n", &rest)) == NULL) break;
+    full = count == MOST_EVENTS;
+    if (!full) result = abbe_view_event_read(line, &event[count++], &error);
+  }
+  pthread_mutex_lock(&s->lock);
+  full = full || s->events + count > MOST_EVENTS;
+  if (result == ABBE_OK && !full) {
+    memcpy(s->event + s->events, event, count * sizeof *event);
+    s->events += count;
+    pthread_cond_signal(&s->called);
+  }
+  pthread_mutex_unlock(&s->lock);
+  free(event);
+  if (result != ABBE_OK) return say(c, MHD_HTTP_BAD_REQUEST, error.text);
+  if (full) return say(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many events wait");
+  return say(c, MHD_HTTP_NO_CONTENT, "");
+}
+
+static enum MHD_Result answer(void *user, struct MHD_Connection *c, const char *url,
+                              const char *method, const char *version, const char *data,
+                              size_t *size, void **own) {
+  server *s = user;
+  body *b = *own;
+  (void)version;
+  if (b == NULL) {
+    *own = calloc(1, sizeof *b);
+    return *own != NULL ? MHD_YES : MHD_NO;
+  }
+  if (*size > 0) {
+    b->too_long = b->too_long || b->size + *size > MOST_BYTES;
+    if (!b->too_long) memcpy(b->text + b->size, data, *size);
+    if (!b->too_long) b->size += *size;
+    *size = 0;
+    return MHD_YES;
+  }
+  const bool gets = strcmp(method, "GET") == 0, posts = strcmp(method, "POST") == 0;
+  const bool page = strcmp(url, "/") == 0, events = strcmp(url, "/events") == 0;
+  if (!has_token(s, c))
+    return say(c, MHD_HTTP_FORBIDDEN,
+               "the token is missing or another; the viewer has printed "
+               "the whole address");
+  if (!page && !events && strcmp(url, "/picture") != 0)
+    return say(c, MHD_HTTP_NOT_FOUND, "there are /, /picture and /events");
+  if (events ? !posts : !gets)
+    return say(c, MHD_HTTP_METHOD_NOT_ALLOWED, "GET / and /picture, POST /events");
+  if (b->too_long) return say(c, MHD_HTTP_CONTENT_TOO_LARGE, "at most 64 KiB of events at once");
+  if (events) return take_events(s, c, b);
+  if (page)
+    return reply(c, MHD_HTTP_OK, "text/html; charset=utf-8", abbe_embedded_view_page,
+                 abbe_embedded_view_page_size, 0);
+  return send_picture(s, c);
+}
+
+static void end_request(void *user, struct MHD_Connection *c, void **own,
+                        enum MHD_RequestTerminationCode why) {
+  (void)user;
+  (void)c;
+  (void)why;
+  free(*own);
+  *own = NULL;
+}
+
+/* ---- the window ---- */
+
+/* Hands the window's picture out, where it is another than the last. */
+static void publish(server *s) {
+  abbe_view_hidden *h = &s->hidden;
+  unsigned char *pixels = abbe_view_hidden_read(h);
+  if (pixels == NULL) return;
+  if (s->pixels != NULL && s->width == h->width && s->height == h->height &&
+      memcmp(pixels, s->pixels, 3 * h->width * h->height) == 0) {
+    free(pixels);
+    return;
+  }
+  free(s->pixels);
+  s->pixels = pixels;
+  s->width = h->width;
+  s->height = h->height;
+  png_image image = {.version = PNG_IMAGE_VERSION,
+                     .width = (png_uint_32)h->width,
+                     .height = (png_uint_32)h->height,
+                     .format = PNG_FORMAT_RGB,
+                     .flags = PNG_IMAGE_FLAG_FAST};
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  unsigned char *png = malloc(size);
+  if (png == NULL || !png_image_write_to_memory(&image, png, &size, 0, pixels, 0, NULL)) {
+    free(png);
+    return;
+  }
+  pthread_mutex_lock(&s->lock);
+  free(s->png);
+  s->png = png;
+  s->png_size = size;
+  s->frame++;
+  pthread_cond_broadcast(&s->drawn);
+  pthread_mutex_unlock(&s->lock);
+}
+
+static void loop(server *s) {
+  static abbe_view_event event[MOST_EVENTS];
+  while (!stopped) {
+    const double least = 0.01; /* where something always moves */
+    pthread_mutex_lock(&s->lock);
+    const size_t count = s->events;
+    memcpy(event, s->event, count * sizeof *event);
+    s->events = 0;
+    s->woken = false;
+    pthread_mutex_unlock(&s->lock);
+    for (size_t i = 0; i < count; i++) abbe_view_event_apply(&event[i], &s->hidden);
+    abbe_view_hidden_frame(&s->hidden);
+    publish(s);
+    const double wait = abbe_view_app_wait(&s->hidden.session, abbe_clock_seconds());
+    pthread_mutex_lock(&s->lock);
+    if (s->events == 0 && !s->woken) wait_for(&s->called, &s->lock, fmax(least, wait));
+    pthread_mutex_unlock(&s->lock);
+  }
+}
+
+static abbe_result make_token(char *out, abbe_error *error) {
+  unsigned char random[TOKEN_BYTES];
+  if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random)
+    return abbe_error_set(error, ABBE_IO, "no random numbers for the token: %s", strerror(errno));
+  for (size_t i = 0; i < TOKEN_BYTES; i++) snprintf(out + 2 * i, 3, "%02x", random[i]);
+  return ABBE_OK;
+}
+
+static abbe_result start(server *s, unsigned port, struct MHD_Daemon **out, abbe_error *error) {
+  struct sockaddr_in place = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  *out = MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD,
+                          (uint16_t)port, NULL, NULL, answer, s, MHD_OPTION_SOCK_ADDR, &place,
+                          MHD_OPTION_CONNECTION_LIMIT, 16U, MHD_OPTION_CONNECTION_TIMEOUT, 30U,
+                          MHD_OPTION_NOTIFY_COMPLETED, end_request, NULL, MHD_OPTION_END);
+  if (*out == NULL)
+    return abbe_error_set(
+        error, ABBE_IO,
+        "port %u of 127.0.0.1 cannot be served, it may be in use; choose another, "
+        "or 0 for any",
+        port);
+  const union MHD_DaemonInfo *info = MHD_get_daemon_info(*out, MHD_DAEMON_INFO_BIND_PORT);
+  printf("http://127.0.0.1:%u/?token=%s\n", info != NULL ? (unsigned)info->port : port, s->token);
+  fflush(stdout);
+  return ABBE_OK;
+}
+
+static abbe_result serve(server *s, unsigned port, const abbe_view_app_desc *desc, size_t width,
+                         size_t height, abbe_error *error) {
+  const struct sigaction action = {.sa_handler = stop};
+  struct MHD_Daemon *daemon = NULL;
+  abbe_view_app_desc own = *desc;
+  own.wake = wake;
+  abbe_result result = make_token(s->token, error);
+  if (result == ABBE_OK) result = start(s, port, &daemon, error);
+  if (result != ABBE_OK) return result;
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGHUP, &action, NULL);
+  result = abbe_view_hidden_begin(&s->hidden, &own, width, height, error);
+  if (result == ABBE_OK) {
+    loop(s);
+    abbe_view_hidden_end(&s->hidden);
+  }
+  MHD_stop_daemon(daemon);
+  return result;
+}
+
+abbe_result abbe_view_serve_run(unsigned port, const abbe_view_app_desc *desc, size_t width,
+                                size_t height, abbe_error *error) {
+  server *s = calloc(1, sizeof *s);
+  if (s == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the viewer");
+  pthread_mutex_init(&s->lock, NULL);
+  pthread_cond_init(&s->called, NULL);
+  pthread_cond_init(&s->drawn, NULL);
+  served = s;
+  const abbe_result result = serve(s, port, desc, width, height, error);
+  pthread_cond_destroy(&s->drawn);
+  pthread_cond_destroy(&s->called);
+  pthread_mutex_destroy(&s->lock);
+  free(s->pixels);
+  free(s->png);
+  free(s);
+  return result;
+}
+
+#else
+
+abbe_result abbe_view_serve_run(unsigned port, const abbe_view_app_desc *desc, size_t width,
+                                size_t height, abbe_error *error) {
+  (void)port;
+  (void)desc;
+  (void)width;
+  (void)height;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "this build serves no pages; install libmicrohttpd-dev and build again");
+}
+
+#endif
