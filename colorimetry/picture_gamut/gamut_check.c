@@ -102,11 +102,13 @@ static abbe_result find_white(abbe_gamut_check *out, abbe_error *error) {
   return ABBE_OK;
 }
 
-/* Degrees between the hues of two Oklab colours, 0 to 180; 0 where one is grey. */
+/* Degrees between the hues of two Oklab colours, 0 to 180; 0 where one is grey, and where only
+ * rounding turns them. */
 static double hue_change(const double a[3], const double b[3]) {
   const double dot = a[1] * b[1] + a[2] * b[2], cross = a[1] * b[2] - a[2] * b[1];
   const double least = fmin(hypot(a[1], a[2]) / fabs(a[0]), hypot(b[1], b[2]) / fabs(b[0]));
-  return least > 1e-6 ? fabs(atan2(cross, dot)) * degrees : 0;
+  const double turn = fabs(atan2(cross, dot)) * degrees;
+  return least > 1e-6 && turn > 1e-9 ? turn : 0;
 }
 
 static void add_cost(const double before[3], const double after[3], const double white[3],
