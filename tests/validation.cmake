@@ -4,7 +4,7 @@ foreach(name
     bands
     camera
     catacaustic
-    checkpoint
+    checkpoint checkpoint_forged
     closed_form
     compare compare_noise
     denoise
@@ -40,6 +40,7 @@ foreach(name
     photon_grid
     projection_map
     random
+    ranked_run
     reflectance
     route
     scatter

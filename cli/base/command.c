@@ -163,6 +163,23 @@ void abbe_command_size(const char *program, const char *option, const char *text
   *height = h;
 }
 
+void abbe_command_read_part(const char *program, const char *text, abbe_command_part *out) {
+  unsigned part = 0, parts = 0;
+  char rest;
+  if (sscanf(text, "%7u/%7u%c", &part, &parts, &rest) != 2 || part >= parts ||
+      parts > ABBE_COMMAND_MOST_PARTS) {
+    fprintf(stderr,
+            "%s: --part '%s' is no part: 0/8 is the first of eight, 7/8 the last (at most %d)\n",
+            program, text, ABBE_COMMAND_MOST_PARTS);
+    exit(ABBE_EXIT_USAGE);
+  }
+  *out = (abbe_command_part){part, parts};
+}
+
+bool abbe_command_part_has(const abbe_command_part *p, size_t piece) {
+  return p->parts == 0 || piece % p->parts == p->part;
+}
+
 abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error) {
   for (size_t i = 0; i < count; i++) {
     if (paths[i] == NULL) continue;

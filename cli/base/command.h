@@ -76,6 +76,15 @@ const char *abbe_command_target(const char *program, const char *option, const c
 void abbe_command_size(const char *program, const char *option, const char *text, size_t most,
                        size_t *width, size_t *height);
 
+/* Of work that several processes share: "2/8" is the third of eight parts. */
+typedef struct abbe_command_part {
+  size_t part, parts; /* parts 0: all of the work is one process's */
+} abbe_command_part;
+#define ABBE_COMMAND_MOST_PARTS 1000000
+void abbe_command_read_part(const char *program, const char *text, abbe_command_part *out);
+/* Whether the part has the piece of that number: each part has every parts-th. */
+bool abbe_command_part_has(const abbe_command_part *part, size_t piece);
+
 /* Opens and discards each of the files (NULL: none), so that a target that cannot be written is
  * found out before the work, not after it. */
 abbe_result abbe_command_check_targets(const char *const *paths, size_t count, abbe_error *error);

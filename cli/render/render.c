@@ -143,6 +143,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
                                     q->bands > 0 || (q->exr == NULL && q->png == NULL)))
       argp_error(state, "--turntable writes frames by -o FILE.exr and --png FILE.png, and goes "
                         "without --save-map, --frames, --bands and --error-bars");
+    if (q->turntable.merge && q->png == NULL)
+      argp_error(state, "--merge makes a PNG that moves: give --png FILE.png");
     if (q->errors.mean && q->aovs)
       argp_error(state, "--mean has no --aovs: they are of one picture, not of the mean");
     return 0;
@@ -400,6 +402,7 @@ static abbe_result choose_picture(request *q, const abbe_scene *scene, abbe_erro
 
 static abbe_result choose_and_draw(request *q, const abbe_scene *scene, abbe_error *error) {
   abbe_context *context = NULL;
+  if (q->turntable.merge) return abbe_turntable_merge(q, error);
   q->preset.request.timed = q->stats != NULL || q->json;
   abbe_result result = choose_picture(q, scene, error);
   const bool chosen = q->picture.point != NULL;
@@ -439,6 +442,7 @@ int abbe_command_render(int argc, char **argv) {
       "  abbe render scenes/gem.yaml -o gem.exr --error-bars --error-png gem-error.png\n"
       "  abbe render scenes/stone.yaml --turntable 72 --png stone.png --size 256x256\n"
       "  abbe render scenes/prism.yaml -o bands.exr --bands 20\n"
+      "  abbe render scenes/stone.yaml --turntable 72 --png stone.png --part 3/8\n"
       "  abbe render scenes/gem.yaml --save-map test.exr --map-like reference.exr\n",
       children,
       NULL,

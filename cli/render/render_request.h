@@ -2,6 +2,7 @@
 #ifndef ABBE_CLI_RENDER_RENDER_REQUEST_H
 #define ABBE_CLI_RENDER_RENDER_REQUEST_H
 
+#include "cli/base/command.h"
 #include "cli/base/map_options.h"
 #include "cli/render/error_options.h"
 #include "cli/render/preset_options.h"
@@ -15,6 +16,8 @@ typedef struct abbe_turntable_options {
   const char *program;
   size_t frames;     /* 0: one picture */
   double per_second; /* 0: 25 */
+  abbe_command_part part;
+  bool merge; /* frames that are there */
 } abbe_turntable_options;
 
 typedef struct abbe_render_request {

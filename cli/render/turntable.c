@@ -12,12 +12,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OPTION_TURNTABLE = 0x800, OPTION_FPS };
+enum { OPTION_TURNTABLE = 0x800, OPTION_FPS, OPTION_PART, OPTION_MERGE };
 
 static const struct argp_option options[] = {
     {"turntable", OPTION_TURNTABLE, "N", 0,
      "N frames from all around, numbered: FILE-0001.exr, FILE-0001.png, and FILE.png that moves",
      5},
+    {"part", OPTION_PART, "K/N", 0,
+     "only every N-th frame from the K-th on, 0/8 to 7/8, and no PNG that moves", 5},
+    {"merge", OPTION_MERGE, NULL, 0,
+     "draw nothing: make FILE.png of the numbered frames that are there", 5},
     {"fps", OPTION_FPS, "F", 0, "frames a second of the PNG that moves (25)", 5},
     {0}};
 
@@ -30,7 +34,20 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_FPS:
     o->per_second = abbe_command_number(o->program, "--fps", text, 0.1, 1000);
     return 0;
+  case OPTION_PART:
+    abbe_command_read_part(o->program, text, &o->part);
+    return 0;
+  case OPTION_MERGE:
+    o->merge = true;
+    return 0;
   case ARGP_KEY_END:
+    if ((o->part.parts > 0 || o->merge) && o->frames == 0)
+      argp_error(state, "--%s goes with --turntable N", o->merge ? "merge" : "part");
+    if (o->part.parts > 0 && o->part.part >= o->frames)
+      argp_error(state, "--part %zu/%zu has none of %zu frames", o->part.part, o->part.parts,
+                 o->frames);
+    if (o->part.parts > 0 && o->merge)
+      argp_error(state, "--part draws frames, and --merge draws nothing");
     if (o->per_second > 0 && o->frames == 0) argp_error(state, "--fps goes with --turntable N");
     return 0;
   default:
@@ -109,12 +126,33 @@ static abbe_result draw_frame(const abbe_render_request *q, const abbe_scene *sc
   return result;
 }
 
+static abbe_result write_moving(const abbe_render_request *q, char *const *png,
+                                abbe_error *error) {
+  const abbe_turntable_options *o = &q->turntable;
+  const double per_second = o->per_second > 0 ? o->per_second : 25;
+  return abbe_animated_png_write(q->png, (const char *const *)png, o->frames, per_second, error);
+}
+
+abbe_result abbe_turntable_merge(const abbe_render_request *q, abbe_error *error) {
+  const size_t count = q->turntable.frames;
+  char **png = calloc(count, sizeof *png);
+  abbe_result result = png == NULL ? no_memory(error) : ABBE_OK;
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    png[i] = number(q->png, i + 1);
+    if (png[i] == NULL) result = no_memory(error);
+  }
+  if (result == ABBE_OK) result = write_moving(q, png, error);
+  for (size_t i = 0; png != NULL && i < count; i++) free(png[i]);
+  free(png);
+  return result;
+}
+
 abbe_result abbe_turntable_draw(const abbe_render_request *q, const abbe_scene *scene,
                                 const abbe_render_desc *desc, abbe_renderer *renderer,
                                 const abbe_context *context, abbe_statistics *statistics,
                                 abbe_error *error) {
   const size_t count = q->turntable.frames;
-  const double per_second = q->turntable.per_second > 0 ? q->turntable.per_second : 25;
+  const abbe_command_part *part = &q->turntable.part;
   abbe_progress progress;
   abbe_render_desc own = *desc;
   char **png = calloc(count, sizeof *png);
@@ -124,6 +162,7 @@ abbe_result abbe_turntable_draw(const abbe_render_request *q, const abbe_scene *
   abbe_progress_begin(&progress, "turntable", q->quiet);
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    if (!abbe_command_part_has(part, i)) continue;
     result = draw_frame(q, scene, &own, renderer, context, i, &png[i], statistics, error);
     if (!abbe_progress_update(&progress, (double)(i + 1) / (double)count) && result == ABBE_OK &&
         i + 1 < count)
@@ -131,8 +170,8 @@ abbe_result abbe_turntable_draw(const abbe_render_request *q, const abbe_scene *
           abbe_error_set(error, ABBE_CANCELLED, "stopped after %zu of %zu frames", i + 1, count);
   }
   abbe_progress_end(&progress);
-  if (result == ABBE_OK && q->png != NULL)
-    result = abbe_animated_png_write(q->png, (const char *const *)png, count, per_second, error);
+  if (result == ABBE_OK && q->png != NULL && part->parts == 0)
+    result = write_moving(q, png, error);
   /* the renderer is not to look at a scene that is gone */
   abbe_error ignored = {0};
   const abbe_result back = abbe_renderer_change(renderer, scene, &own, &ignored);

@@ -61,6 +61,19 @@ static abbe_result get_settings(const abbe_sweep_options *q, const abbe_scene *s
   return result;
 }
 
+/* The settings of the part, from the front on. */
+static abbe_result keep_part(const abbe_command_part *part, abbe_sweep_setting *setting,
+                             size_t *count, abbe_error *error) {
+  size_t kept = 0;
+  for (size_t i = 0; i < *count; i++)
+    if (abbe_command_part_has(part, i)) setting[kept++] = setting[i];
+  if (kept == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "--part %zu/%zu has none of %zu settings",
+                          part->part, part->parts, *count);
+  *count = kept;
+  return ABBE_OK;
+}
+
 /* Files that are written beside the table may be none that is read or written for something else.
  */
 static abbe_result claim_references(const abbe_sweep_options *q, abbe_error *error) {
@@ -116,6 +129,7 @@ static abbe_result sweep_scene(const abbe_sweep_options *q, abbe_sweep_table *ou
   size_t count = 0;
   abbe_result result = abbe_scene_input_load(q->program, q->scene, q->materials, &scene, error);
   if (result == ABBE_OK) result = get_settings(q, &scene, &setting, &count, error);
+  if (result == ABBE_OK) result = keep_part(&q->part, setting, &count, error);
   if (result == ABBE_OK && q->list_only)
     print_settings(setting, count);
   else if (result == ABBE_OK)
@@ -188,6 +202,24 @@ static abbe_result load_tables(const abbe_sweep_options *q, abbe_sweep_table *ta
   return result;
 }
 
+/* All rows into one table. */
+static abbe_result join_tables(const abbe_sweep_options *q, abbe_sweep_table *tables, size_t *count,
+                               abbe_error *error) {
+  abbe_sweep_table all = {0};
+  abbe_result result = abbe_sweep_table_join(tables, q->argument, *count, &all, error);
+  if (result == ABBE_OK)
+    result = abbe_sweep_table_mark(&all, q->work.time, q->work.error, NULL, error);
+  if (result == ABBE_OK) result = abbe_sweep_table_save(&all, q->work.table, error);
+  if (result != ABBE_OK) {
+    abbe_sweep_table_free(&all);
+    return result;
+  }
+  for (size_t i = 0; i < *count; i++) abbe_sweep_table_free(&tables[i]);
+  tables[0] = all;
+  *count = 1;
+  return ABBE_OK;
+}
+
 /* ---- what is shown of both ---- */
 
 static abbe_result write_page(const abbe_sweep_options *q, const abbe_sweep_table *tables,
@@ -255,6 +287,8 @@ static abbe_result run(const abbe_sweep_options *q, abbe_error *error) {
   abbe_sweep_table *tables = calloc(count, sizeof *tables);
   if (tables == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the tables");
   result = q->scene == NULL ? load_tables(q, tables, error) : sweep_scene(q, &tables[0], error);
+  if (result == ABBE_OK && q->scene == NULL && q->work.table != NULL)
+    result = join_tables(q, tables, &count, error);
   if (result == ABBE_OK && !q->list_only && !q->work.trace_only)
     result = show(q, tables, count, error);
   for (size_t i = 0; i < count; i++) abbe_sweep_table_free(&tables[i]);

@@ -46,6 +46,7 @@ enum {
   OPTION_MATERIALS,
   OPTION_GL,
   OPTION_LIST,
+  OPTION_PART,
   OPTION_JSON
 };
 
@@ -53,7 +54,7 @@ typedef abbe_sweep_options request;
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE.csv", ABBE_ARGUMENT_WRITES,
-     "the table; rows that it holds are not measured again", 0},
+     "the table; rows that it holds are not measured again. Given tables: all of their rows", 0},
     {"plot", OPTION_PLOT, "FILE", ABBE_ARGUMENT_WRITES,
      "error against time, log-log: a .png or .svg; of several tables a row of charts each", 0},
     {"report", OPTION_REPORT, "FILE.md", ABBE_ARGUMENT_WRITES,
@@ -102,6 +103,8 @@ static const struct argp_option options[] = {
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS, "a table instead of the scene's",
      1},
     {"list", OPTION_LIST, NULL, 0, "only say which settings the grid has", 1},
+    {"part", OPTION_PART, "K/N", 0,
+     "only every N-th setting from the K-th on, 0/8 to 7/8, into a table of its own", 1},
     {"reference", OPTION_REFERENCE, "FILE.exr", ABBE_ARGUMENT_READS,
      "a traced picture (traced and kept beside it)", 2},
     {"reference-map", OPTION_REFERENCE_MAP, "FILE.exr", ABBE_ARGUMENT_READS,
@@ -265,7 +268,7 @@ static void finish(request *q, struct argp_state *state) {
   abbe_sweep_request *w = &q->work;
   if (q->argument_count == 0) argp_error(state, "which scene? Give a file such as scenes/gem.yaml");
   if (abbe_sweep_options_is_table(q->argument[0])) {
-    if (w->table != NULL || q->listed || q->grid != NULL || q->scaling || q->estimators)
+    if (q->part.parts > 0 || q->listed || q->grid != NULL || q->scaling || q->estimators)
       argp_error(state, "'%s' is a table: it is shown, and nothing is measured", q->argument[0]);
     return;
   }
@@ -367,6 +370,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_MATERIALS:
     q->materials = text;
     return 0;
+  case OPTION_PART:
+    abbe_command_read_part(q->program, text, &q->part);
+    return 0;
   case OPTION_LIST:
     q->list_only = true;
     return 0;
@@ -386,7 +392,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 const struct argp abbe_sweep_options_argp = {
     options,
     parse,
-    "SCENE.yaml -o FILE.csv\nFILE.csv...",
+    "SCENE.yaml -o FILE.csv\nFILE.csv... [-o ALL.csv]",
     "Draws a scene with many settings and says what each costs, in time, and how far it is from "
     "a traced reference: which settings are worth their time, and what published methods "
     "give for it.\v"
@@ -397,6 +403,9 @@ const struct argp abbe_sweep_options_argp = {
     "  abbe sweep scenes/prism.yaml -o slit.csv --wavelengths 3,7,21 --photons 64,256\n"
     "  abbe sweep scenes/gem.yaml -o gem.csv --reference gem.exr --reference-map map.exr\n"
     "  abbe sweep gem.csv sphere.csv --report trade.md\n"
+    "  abbe sweep scenes/gem.yaml -o part-3.csv --reference gem.exr --reference-map map.exr --part "
+    "3/8\n"
+    "  abbe sweep part-*.csv -o gem.csv\n"
     "  abbe sweep scenes/gem.yaml -o gem.csv --decompose --report gem.md\n"
     "  abbe sweep scenes/gem.yaml -o scaling.csv --scaling --plot scaling.png\n"
     "  abbe sweep scenes/sphere.yaml --estimators\n"

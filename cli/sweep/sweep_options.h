@@ -2,6 +2,8 @@
 #ifndef ABBE_CLI_SWEEP_SWEEP_OPTIONS_H
 #define ABBE_CLI_SWEEP_SWEEP_OPTIONS_H
 
+#include "cli/base/command.h"
+
 #include "validation/sweep/sweep_grid.h"
 #include "validation/sweep/sweep_run.h"
 
@@ -23,6 +25,7 @@ typedef struct abbe_sweep_options {
   const char *grid;              /* a name, "presets", or NULL */
   bool listed, traced;  /* a list, or something of the reference that is traced, was given */
   abbe_sweep_grid list; /* of the lists */
+  abbe_command_part part; /* of the settings */
   abbe_context_backend backend;
   bool scaling;    /* instead of a sweep: how a frame's time scales */
   bool estimators; /* instead: how far off estimators of where light lands are */

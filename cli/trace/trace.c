@@ -1,9 +1,10 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
 #include "cli/base/map_options.h"
-#include "cli/base/progress.h"
 #include "cli/base/scene_input.h"
 #include "cli/base/screen_options.h"
+#include "cli/trace/trace.h"
+#include "cli/trace/trace_passes.h"
 #include "cli/trace/trace_results.h"
 
 #include "scenes/import/scene_file.h"
@@ -187,6 +188,8 @@ static void check_parts(const request *q, struct argp_state *state) {
     argp_error(state, "--merge: which parts? Name their checkpoints behind the scene");
   if (part && q->checkpoint == NULL)
     argp_error(state, "--passes needs a file for its part: --checkpoint FILE");
+  if (q->ranks != NULL && (part || q->merge || q->rates))
+    argp_error(state, "--passes, --merge and --rates are for one process: abbe trace");
   if (!part && !q->merge) return;
   if (q->passes > 0 || q->seconds > 0 || q->until > 0)
     argp_error(state, "%s has its own number of passes: no --spp, --time or --until-error", name);
@@ -279,6 +282,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static abbe_result check_targets(const request *q, abbe_error *error) {
   const char *const targets[] = {q->checkpoint, q->stats, q->exr, q->png, q->map.save};
   const bool part = q->part_end > 0;
+  if (q->ranks != NULL && q->ranks->rank > 0) return ABBE_OK;
   abbe_result targeted = abbe_command_check_targets(targets, part ? 2 : 5, error);
   if (targeted != ABBE_OK) return targeted;
   if (q->png == NULL || part) return ABBE_OK;
@@ -290,35 +294,24 @@ static abbe_result check_targets(const request *q, abbe_error *error) {
   return result;
 }
 
-/* The checkpoint stands beside the first output. */
+/* The checkpoint stands beside the first output; each rank has its own. */
 static abbe_result name_checkpoint(request *q, abbe_error *error) {
   const char *beside = q->exr ? q->exr : q->map.save ? q->map.save : q->png;
   if (q->checkpoint == NULL && (beside == NULL || q->merge)) return ABBE_OK;
-  size_t size = strlen(q->checkpoint ? q->checkpoint : beside) + sizeof ".checkpoint";
+  const size_t size = strlen(q->checkpoint ? q->checkpoint : beside) + 64;
   q->checkpoint_path = malloc(size);
   if (q->checkpoint_path == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory");
-  snprintf(q->checkpoint_path, size, "%s%s", q->checkpoint ? q->checkpoint : beside,
-           q->checkpoint ? "" : ".checkpoint");
-  if (q->checkpoint == NULL)
+  const int length =
+      snprintf(q->checkpoint_path, size, "%s%s", q->checkpoint ? q->checkpoint : beside,
+               q->checkpoint ? "" : ".checkpoint");
+  if (q->ranks != NULL)
+    snprintf(q->checkpoint_path + length, size - (size_t)length, ".%zu", q->ranks->rank);
+  if (q->checkpoint == NULL || q->ranks != NULL)
     abbe_arguments_add(q->program, ABBE_ARGUMENT_WRITES, "the checkpoint", q->checkpoint_path);
   return ABBE_OK;
 }
 
 /* ---- the work ---- */
-
-/* ABBE_CANCELLED where the user stopped it: what is done is to be saved all the same. */
-static abbe_result run_passes(const request *q, const abbe_trace_run_desc *run, abbe_tracer *tracer,
-                              abbe_error *error) {
-  abbe_progress progress;
-  abbe_trace_run_desc own = *run;
-  own.progress = abbe_progress_update;
-  own.user = &progress;
-  own.stop = abbe_progress_stopped();
-  abbe_progress_begin(&progress, "trace", q->quiet);
-  abbe_result result = abbe_trace_run(tracer, &own, error);
-  abbe_progress_end(&progress);
-  return result;
-}
 
 static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error *error) {
   if (!q->rates) return ABBE_OK;
@@ -335,15 +328,16 @@ static abbe_result print_rates(const request *q, abbe_tracer *tracer, abbe_error
 static abbe_result resume(const request *q, abbe_tracer *tracer, abbe_error *error) {
   const bool part = q->part_end > 0;
   if (!q->resume || q->checkpoint_path == NULL || access(q->checkpoint_path, F_OK) != 0)
-    return part ? abbe_tracer_begin_at(tracer, q->part_first, error) : ABBE_OK;
+    return part ? abbe_tracer_begin_at(tracer, q->part_first, 1, error) : ABBE_OK;
   abbe_result result = abbe_checkpoint_load(tracer, q->checkpoint_path, error);
   if (result != ABBE_OK) return result;
   const size_t passes = abbe_tracer_passes(tracer), first = abbe_tracer_first_pass(tracer);
-  if (first != q->part_first)
+  if (first != q->part_first || abbe_tracer_step(tracer) != 1)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
-                          "%s holds passes from %zu on, not from %zu: give each part a file of its "
-                          "own, or start anew without --resume",
-                          q->checkpoint_path, first, q->part_first);
+                          "%s holds %spasses from %zu on, not all from %zu: give each part a file "
+                          "of its own, or start anew without --resume",
+                          q->checkpoint_path, abbe_tracer_step(tracer) == 1 ? "" : "a rank's ",
+                          first, q->part_first);
   if (passes <= q->passes) return ABBE_OK;
   return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                         "%s holds %zu passes already, more than the %zu that are asked for: ask "
@@ -362,7 +356,7 @@ static abbe_result trace(request *q, abbe_tracer *tracer, abbe_error *error) {
   abbe_result result = q->merge ? abbe_checkpoint_merge(tracer, q->parts, q->part_count, error)
                                 : resume(q, tracer, error);
   if (result != ABBE_OK) return result;
-  if (!q->merge) result = run_passes(q, &run, tracer, error);
+  if (!q->merge) result = abbe_trace_passes(q, &run, tracer, error);
   bool stopped = result == ABBE_CANCELLED;
   if (result != ABBE_OK && !stopped) return result;
   size_t passes = abbe_tracer_passes(tracer);
@@ -401,6 +395,11 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   if (q->desc.physics.matched)
     result = abbe_matched_physics(scene, q->desc.min_nm, q->desc.max_nm, &q->desc.physics, error);
   if (result == ABBE_OK) result = abbe_tracer_make(scene, &q->desc, &tracer, error);
+  if (q->ranks != NULL) {
+    result = abbe_trace_together(q, result, tracer, error);
+    abbe_tracer_free(tracer);
+    return result;
+  }
   if (result == ABBE_OK) result = print_rates(q, tracer, error);
   const bool wants = q->exr || q->png || q->map.save || q->stats || q->json;
   if (result == ABBE_OK && (wants || q->part_end > 0 || q->merge)) result = trace(q, tracer, error);
@@ -408,7 +407,7 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
   return result;
 }
 
-int abbe_command_trace(int argc, char **argv) {
+static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
   static const struct argp_child children[] = {{&abbe_map_options_argp, 0, "Receiver map:", 3},
                                                {0}};
   static const struct argp argp = {
@@ -428,7 +427,7 @@ int abbe_command_trace(int argc, char **argv) {
       children,
       NULL,
       NULL};
-  request q = {.program = argv[0], .every = 30};
+  request q = {.program = argv[0], .every = 30, .ranks = ranks != NULL ? &ranks->ranks : NULL};
   q.parts = calloc((size_t)argc + 1, sizeof *q.parts);
   abbe_error error = {0};
   if (q.parts == NULL) {
@@ -436,6 +435,8 @@ int abbe_command_trace(int argc, char **argv) {
     return abbe_command_end(argv[0], ABBE_NO_MEMORY, &error);
   }
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
+  if (ranks != NULL) ranks->ready();
+  q.quiet = q.quiet || (ranks != NULL && ranks->ranks.rank > 0);
   if (q.part_end > 0) q.passes = q.part_end - q.part_first;
   if (q.passes == 0) q.passes = q.seconds > 0 || q.until > 0 ? MOST_PASSES : DEFAULT_PASSES;
   abbe_scene scene = {0};
@@ -444,9 +445,21 @@ int abbe_command_trace(int argc, char **argv) {
   if (result == ABBE_OK)
     result = abbe_scene_input_load_with(argv[0], q.scene, q.materials, &q.changes, &scene, &error);
   if (result == ABBE_OK && !q.quiet) abbe_scene_input_note(&scene);
+  if (q.ranks != NULL) result = abbe_ranks_agree(q.ranks, result, &error);
   if (result == ABBE_OK) result = run(&q, &scene, &error);
   free(q.checkpoint_path);
   free(q.parts);
   abbe_scene_free(&scene);
+  if (ranks != NULL) ranks->alone = result != ABBE_OK && result != ABBE_CANCELLED;
+  /* why all of them end is said once */
+  if (ranks != NULL && ranks->ranks.rank > 0 && result == ABBE_CANCELLED) return ABBE_EXIT_FAILED;
   return abbe_command_end(argv[0], result, &error);
+}
+
+int abbe_command_trace(int argc, char **argv) {
+  return run_command(argc, argv, NULL);
+}
+
+int abbe_trace_by_ranks(int argc, char **argv, abbe_trace_ranks *ranks) {
+  return run_command(argc, argv, ranks);
 }

@@ -6,6 +6,7 @@
 #include "cli/base/scene_input.h"
 
 #include "colorimetry/image/display_ocio.h"
+#include "validation/tracer/ranked_run.h"
 #include "validation/tracer/tracer.h"
 
 typedef struct abbe_trace_request {
@@ -21,6 +22,7 @@ typedef struct abbe_trace_request {
   const char **parts; /* files to merge */
   size_t part_count;
   double seconds, until, every;
+  const abbe_ranks *ranks; /* that trace it together; NULL: one process */
   bool resume, json, quiet, rates, half, filter;
   double filter_seconds; /* spent */
   abbe_display_desc display;

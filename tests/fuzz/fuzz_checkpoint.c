@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 6\n", "\n\n", "scene ",
+const char *const fuzz_words[] = {"\x02\x10", "\x03\x08", "abbe checkpoint 7\n", "\n\n", "scene ",
                                   "physics ", NULL};
 
 enum { MOST = 1 << 16 };
@@ -90,6 +90,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   abbe_image image;
   FUZZ_PROMISE(abbe_tracer_picture(tracer, &image, &error) == ABBE_OK);
   abbe_image_free(&image);
+  abbe_tracer_pass(tracer, NULL, &error); /* there may be no pass behind the file's */
   FUZZ_PROMISE(abbe_checkpoint_load(tracer, memory_file(whole, whole_size), &error) == ABBE_OK);
   return 0;
 }

@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "validation/tracer/light_pass.h"
+#include "validation/tracer/pass_sums.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 
 /* File: a line of magic, lines of text that say what the run is, an empty line, then counts,
  * ledger and sums as the machine keeps them, and a hash of all before it. */
-static const char magic[] = "abbe checkpoint 6\n";
+static const char magic[] = "abbe checkpoint 7\n";
 enum { HEAD = 4096 }; /* bytes that hold all the lines */
 
 /* ---- hash: FNV-1a, 64 bits ---- */
@@ -126,24 +126,15 @@ static void describe(const abbe_tracer *t, char *out, size_t size) {
       d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light, d->min_nm, d->max_nm, d->bands,
       abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed,
       (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t),
-      abbe_geometry_instructions());
+      abbe_geometry_instructions(&t->geometry));
 }
 
 /* ---- the numbers ---- */
 
-typedef struct counts {
-  uint64_t first, end; /* passes; the end is not among them */
-  uint64_t photons, light_rays, eye_rays, cuts;
-  abbe_whole_sum ledger[ABBE_TRACER_LEDGER];
-} counts;
-
-static size_t guides_size(const abbe_tracer *t) {
-  return sizeof(abbe_whole_sum) * t->guides.pixels * ABBE_GUIDE_VALUES;
-}
-
 static size_t numbers_size(const abbe_tracer *t) {
-  return sizeof(counts) + 2 * sizeof(abbe_whole_sum) * (t->picture.values + t->map.values) +
-         guides_size(t);
+  const size_t sums = ABBE_TRACER_LEDGER + t->guides.pixels * ABBE_GUIDE_VALUES +
+                      2 * (t->picture.values + t->map.values);
+  return sizeof(abbe_pass_counts) + sums * sizeof(abbe_whole_sum);
 }
 
 typedef struct hashed_stream {
@@ -161,26 +152,18 @@ abbe_result abbe_checkpoint_save(const abbe_tracer *t, const char *path, abbe_er
   abbe_file_writer writer = {0};
   abbe_result result = abbe_file_writer_open(&writer, path, error);
   if (result != ABBE_OK) return result;
-  char text[1024];
+  char text[ABBE_CHECKPOINT_TEXT];
   describe(t, text, sizeof text);
-  abbe_trace_statistics s;
-  abbe_tracer_statistics(t, &s);
-  counts c = {.first = t->first,
-              .end = t->pass,
-              .photons = s.photons,
-              .light_rays = s.light_rays,
-              .eye_rays = s.eye_rays,
-              .cuts = s.cuts};
-  memcpy(c.ledger, t->ledger, sizeof c.ledger);
+  abbe_pass_counts counts;
+  abbe_pass_counts_get(t, &counts);
+  abbe_sum_span span[ABBE_PASS_SUMS_PARTS];
+  abbe_pass_sums_spans((abbe_tracer *)t, span); /* which are read alone */
   hashed_stream out = {.stream = writer.stream, .hash = hash_start};
   put(&out, magic, strlen(magic));
   put(&out, text, strlen(text));
-  put(&out, &c, sizeof c);
-  put(&out, t->picture.sum, t->picture.values * sizeof(abbe_whole_sum));
-  put(&out, t->picture.square, t->picture.values * sizeof(abbe_whole_sum));
-  put(&out, t->guides.sum, guides_size(t));
-  put(&out, t->map.sum, t->map.values * sizeof(abbe_whole_sum));
-  put(&out, t->map.square, t->map.values * sizeof(abbe_whole_sum));
+  put(&out, &counts, sizeof counts);
+  for (int i = 0; i < ABBE_PASS_SUMS_PARTS; i++)
+    put(&out, span[i].sum, span[i].count * sizeof *span[i].sum);
   uint64_t sum = out.hash;
   put(&out, &sum, sizeof sum);
   return abbe_file_writer_commit(&writer, error);
@@ -216,7 +199,7 @@ static abbe_result say_difference(const char *path, const char *theirs, const ch
 
 static abbe_result check_text(const abbe_tracer *t, const char *path, char *data, size_t size,
                               size_t *numbers, abbe_error *error) {
-  char ours[1024];
+  char ours[ABBE_CHECKPOINT_TEXT];
   size_t head = strlen(magic);
   if (size < head || memcmp(data, magic, head) != 0) {
     bool other = size > 16 && memcmp(data, magic, 16) == 0;
@@ -235,13 +218,14 @@ static abbe_result check_text(const abbe_tracer *t, const char *path, char *data
 
 /* What the file says of itself, before all of it is read: the file of another request may be much
  * larger than this one's. *c: its counts, or no passes where it is cut off. */
-static abbe_result read_head(const abbe_tracer *t, const char *path, counts *c, abbe_error *error) {
+static abbe_result read_head(const abbe_tracer *t, const char *path, abbe_pass_counts *c,
+                             abbe_error *error) {
   char head[HEAD + 1];
   FILE *file;
-  *c = (counts){0};
+  *c = (abbe_pass_counts){0};
   abbe_result result = abbe_file_open(path, &file, NULL, error);
   if (result != ABBE_OK) return result;
-  size_t numbers, size = fread(head, 1, HEAD, file);
+  size_t numbers = 0, size = fread(head, 1, HEAD, file);
   bool failed = ferror(file) != 0;
   fclose(file);
   head[size] = '\0';
@@ -249,6 +233,20 @@ static abbe_result read_head(const abbe_tracer *t, const char *path, counts *c, 
   result = check_text(t, path, head, size, &numbers, error);
   if (result == ABBE_OK && size >= numbers + sizeof *c) memcpy(c, head + numbers, sizeof *c);
   return result;
+}
+
+/* Whether the sums are such as the passes can have, which a file that is forged need not hold. */
+static bool sums_hold(const char *numbers, size_t size) {
+  abbe_pass_counts c;
+  memcpy(&c, numbers, sizeof c);
+  if (!abbe_pass_counts_hold(&c)) return false;
+  const size_t passes = abbe_pass_counts_passes(&c);
+  for (size_t at = sizeof c; at < size; at += sizeof(abbe_whole_sum)) {
+    abbe_whole_sum sum;
+    memcpy(&sum, numbers + at, sizeof sum);
+    if (!abbe_pass_sums_hold(sum, passes)) return false;
+  }
+  return true;
 }
 
 /* All of a file whose head has been looked at, with its hash checked; malloc'd. */
@@ -262,13 +260,8 @@ static abbe_result read_whole(const abbe_tracer *t, const char *path, char **dat
     uint64_t sum = 0;
     bool whole = size == *numbers + numbers_size(t) + sizeof sum;
     if (whole) memcpy(&sum, *data + size - sizeof sum, sizeof sum);
-    if (whole && sum == hash(hash_start, *data, size - sizeof sum)) {
-      counts c;
-      memcpy(&c, *data + *numbers, sizeof c);
-      whole = c.first <= c.end && c.end <= ABBE_WHOLE_SUM_MOST_PASSES;
-    } else
-      whole = false;
-    if (!whole)
+    if (!whole || sum != hash(hash_start, *data, size - sizeof sum) ||
+        !sums_hold(*data + *numbers, numbers_size(t)))
       result = abbe_error_set(error, ABBE_PARSE, "%s is cut off or damaged: start anew", path);
   }
   if (result == ABBE_OK) return ABBE_OK;
@@ -277,89 +270,54 @@ static abbe_result read_whole(const abbe_tracer *t, const char *path, char **dat
   return result;
 }
 
-static void clear(abbe_tracer *t) {
-  const size_t size = sizeof(abbe_whole_sum);
-  abbe_trace_statistics *s = &t->statistics;
-  s->photons = s->light_rays = s->eye_rays = s->cuts = 0;
-  t->other_rays = abbe_tracer_walk_rays(t);
-  t->first = t->pass = t->picture.passes = t->map.passes = 0;
-  memset(t->ledger, 0, sizeof t->ledger);
-  if (t->picture.values > 0) memset(t->picture.sum, 0, t->picture.values * size);
-  if (t->picture.values > 0) memset(t->picture.square, 0, t->picture.values * size);
-  if (t->guides.pixels > 0) memset(t->guides.sum, 0, guides_size(t));
-  if (t->map.values > 0) memset(t->map.sum, 0, t->map.values * size);
-  if (t->map.values > 0) memset(t->map.square, 0, t->map.values * size);
-}
-
-static void add(const char **from, abbe_whole_sum *to, size_t count) {
-  for (size_t i = 0; i < count; i++, *from += sizeof *to) {
-    abbe_whole_sum more;
-    memcpy(&more, *from, sizeof more);
-    to[i] += more;
-  }
-}
-
-/* The passes of the file behind those that are there. */
-static void add_part(abbe_tracer *t, const char *numbers) {
-  counts c;
-  const char *at = numbers + sizeof c;
+/* The sums of the file to those that are there; the tracer's passes become those of `all`, and its
+ * rays more by the file's. */
+static void add_part(abbe_tracer *t, const char *numbers, const abbe_pass_counts *all) {
+  abbe_pass_counts c, present;
   memcpy(&c, numbers, sizeof c);
-  if (t->pass == t->first) t->first = (size_t)c.first;
-  t->pass = (size_t)c.end;
-  t->picture.passes = t->map.passes = t->pass - t->first;
-  t->statistics.photons += c.photons;
-  t->statistics.light_rays += c.light_rays;
-  t->statistics.eye_rays += c.eye_rays;
-  t->statistics.cuts += c.cuts;
-  for (size_t i = 0; i < ABBE_TRACER_LEDGER; i++) t->ledger[i] += c.ledger[i];
-  add(&at, t->picture.sum, t->picture.values);
-  add(&at, t->picture.square, t->picture.values);
-  add(&at, t->guides.sum, t->guides.pixels * ABBE_GUIDE_VALUES);
-  add(&at, t->map.sum, t->map.values);
-  add(&at, t->map.square, t->map.values);
+  abbe_pass_counts_get(t, &present);
+  abbe_pass_counts_set(t, &(abbe_pass_counts){.first = all->first,
+                                              .end = all->end,
+                                              .step = all->step,
+                                              .photons = present.photons + c.photons,
+                                              .light_rays = present.light_rays + c.light_rays,
+                                              .eye_rays = present.eye_rays + c.eye_rays,
+                                              .cuts = present.cuts + c.cuts});
+  abbe_sum_span span[ABBE_PASS_SUMS_PARTS];
+  abbe_pass_sums_spans(t, span);
+  const char *at = numbers + sizeof c;
+  for (int k = 0; k < ABBE_PASS_SUMS_PARTS; k++)
+    for (size_t i = 0; i < span[k].count; i++, at += sizeof(abbe_whole_sum)) {
+      abbe_whole_sum more;
+      memcpy(&more, at, sizeof more);
+      span[k].sum[i] += more;
+    }
 }
 
 abbe_result abbe_checkpoint_load(abbe_tracer *t, const char *path, abbe_error *error) {
   ABBE_REQUIRE(t && path, error);
   char *data = NULL;
   size_t numbers = 0;
-  counts c;
+  abbe_pass_counts c;
   abbe_result result = read_head(t, path, &c, error);
   if (result == ABBE_OK) result = read_whole(t, path, &data, &numbers, error);
   if (result != ABBE_OK) return result;
-  clear(t);
-  add_part(t, data + numbers);
+  abbe_pass_sums_clear(t);
+  memcpy(&c, data + numbers, sizeof c);
+  add_part(t, data + numbers, &c);
   free(data);
   return ABBE_OK;
 }
 
 /* ---- parts ---- */
 
-typedef struct part {
-  const char *path;
-  size_t first, end;
-} part;
-
-static int by_first(const void *a, const void *b) {
-  const part *x = a, *y = b;
-  if (x->first != y->first) return x->first < y->first ? -1 : 1;
-  return (x->end > y->end) - (x->end < y->end);
-}
-
-static abbe_result find_parts(const abbe_tracer *t, const char *const *path, size_t count,
-                              part *out, abbe_error *error) {
-  for (size_t i = 0; i < count; i++) {
-    counts c;
-    const abbe_result result = read_head(t, path[i], &c, error);
-    if (result != ABBE_OK) return result;
-    out[i] = (part){path[i], (size_t)c.first, (size_t)c.end};
-    if (c.first >= c.end)
-      return abbe_error_set(error, ABBE_PARSE, "%s is cut off or holds no pass: trace it anew",
-                            path[i]);
-  }
-  qsort(out, count, sizeof *out, by_first);
-  return ABBE_OK;
-}
+/* Who has which pass: the number of a part, from 1 on; 0: nobody. */
+typedef struct parts {
+  const char *const *path;
+  abbe_pass_counts *counts; /* of each */
+  uint32_t *owner;          /* [ABBE_WHOLE_SUM_MOST_PASSES] */
+  size_t end;               /* behind the last pass that somebody has */
+} parts;
 
 /* Passes from and to, both included, in words. */
 static const char *passes_text(size_t from, size_t to, char *text, size_t size) {
@@ -374,23 +332,71 @@ static const char *be(size_t from, size_t to) {
   return from == to ? "is" : "are";
 }
 
-static abbe_result check_parts(const part *p, size_t count, abbe_error *error) {
+/* Marks the passes of a part as its own. */
+static abbe_result own(parts *p, size_t part, abbe_error *error) {
+  const abbe_pass_counts *c = &p->counts[part];
   char text[64];
-  if (p[0].first > 0)
+  for (size_t i = (size_t)c->first; i < c->end; i += (size_t)c->step) {
+    const uint32_t other = p->owner[i];
+    p->owner[i] = (uint32_t)part + 1;
+    if (i >= p->end) p->end = i + 1;
+    if (other == 0) continue;
+    size_t last = i;
+    while (last + c->step < c->end && p->owner[last + c->step] == other) last += (size_t)c->step;
+    const bool all = c->step == 1 || last == i;
+    return abbe_error_set(
+        error, ABBE_INVALID_ARGUMENT, "%s and %s both hold %s%s", p->path[other - 1], p->path[part],
+        passes_text(i, all ? last : i, text, sizeof text), all ? "" : " and others");
+  }
+  return ABBE_OK;
+}
+
+static abbe_result find_gap(const parts *p, abbe_error *error) {
+  size_t from = 0, to;
+  char text[64];
+  while (from < p->end && p->owner[from] > 0) from++;
+  if (from == p->end) return ABBE_OK;
+  for (to = from; p->owner[to + 1] == 0;) to++;
+  const char *next = p->path[p->owner[to + 1] - 1];
+  passes_text(from, to, text, sizeof text);
+  if (from == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s %s missing: the first part that is there begins with pass %zu, in %s",
-                          passes_text(0, p[0].first - 1, text, sizeof text), be(0, p[0].first - 1),
-                          p[0].first, p[0].path);
-  for (size_t i = 1; i < count; i++) {
-    const part *a = &p[i - 1], *b = &p[i];
-    if (b->first < a->end)
-      return abbe_error_set(
-          error, ABBE_INVALID_ARGUMENT, "%s and %s both hold %s", a->path, b->path,
-          passes_text(b->first, (a->end < b->end ? a->end : b->end) - 1, text, sizeof text));
-    if (b->first > a->end)
-      return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s %s missing, between %s and %s",
-                            passes_text(a->end, b->first - 1, text, sizeof text),
-                            be(a->end, b->first - 1), a->path, b->path);
+                          text, be(from, to), to + 1, next);
+  return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s %s missing, between %s and %s", text,
+                        be(from, to), p->path[p->owner[from - 1] - 1], next);
+}
+
+static abbe_result find_parts(const abbe_tracer *t, parts *p, size_t count, abbe_error *error) {
+  for (size_t i = 0; i < count; i++) {
+    abbe_pass_counts *c = &p->counts[i];
+    abbe_result result = read_head(t, p->path[i], c, error);
+    if (result != ABBE_OK) return result;
+    if (!abbe_pass_counts_hold(c) || c->first == c->end)
+      return abbe_error_set(error, ABBE_PARSE, "%s is cut off or holds no pass: trace it anew",
+                            p->path[i]);
+    result = own(p, i, error);
+    if (result != ABBE_OK) return result;
+  }
+  return find_gap(p, error);
+}
+
+/* A part whose trace goes on elsewhere may have been written anew since its head was read. */
+static abbe_result add_parts(abbe_tracer *t, const parts *p, size_t count, abbe_error *error) {
+  for (size_t i = 0; i < count; i++) {
+    const abbe_pass_counts all = {.end = p->end, .step = 1};
+    char *data = NULL;
+    size_t numbers = 0;
+    abbe_result result = read_whole(t, p->path[i], &data, &numbers, error);
+    if (result != ABBE_OK) return result;
+    if (memcmp(data + numbers, &p->counts[i], sizeof *p->counts) == 0)
+      add_part(t, data + numbers, &all);
+    else
+      result =
+          abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                         "%s was written while it was read: wait for its trace to end", p->path[i]);
+    free(data);
+    if (result != ABBE_OK) return result;
   }
   return ABBE_OK;
 }
@@ -400,19 +406,33 @@ abbe_result abbe_checkpoint_merge(abbe_tracer *t, const char *const *path, size_
   ABBE_REQUIRE(t && path, error);
   if (count == 0)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there are no parts to merge");
-  part *p = calloc(count, sizeof *p);
-  if (p == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu parts", count);
-  abbe_result result = find_parts(t, path, count, p, error);
-  if (result == ABBE_OK) result = check_parts(p, count, error);
-  if (result == ABBE_OK) clear(t);
-  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
-    char *data = NULL;
-    size_t numbers = 0;
-    result = read_whole(t, p[i].path, &data, &numbers, error);
-    if (result == ABBE_OK) add_part(t, data + numbers);
-    free(data);
-    if (result != ABBE_OK) clear(t);
+  parts p = {.path = path,
+             .counts = calloc(count, sizeof *p.counts),
+             .owner = calloc(ABBE_WHOLE_SUM_MOST_PASSES, sizeof *p.owner)};
+  abbe_result result =
+      p.counts != NULL && p.owner != NULL
+          ? find_parts(t, &p, count, error)
+          : abbe_error_set(error, ABBE_NO_MEMORY, "no memory for %zu parts", count);
+  if (result == ABBE_OK) {
+    abbe_pass_sums_clear(t);
+    result = add_parts(t, &p, count, error);
+    if (result != ABBE_OK) abbe_pass_sums_clear(t);
   }
-  free(p);
+  free(p.counts);
+  free(p.owner);
   return result;
+}
+
+/* ---- other machines ---- */
+
+void abbe_checkpoint_describe(const abbe_tracer *t, char out[ABBE_CHECKPOINT_TEXT]) {
+  describe(t, out, ABBE_CHECKPOINT_TEXT);
+}
+
+abbe_result abbe_checkpoint_compare(const abbe_tracer *t, const char *who, const char *theirs,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(t && who && theirs, error);
+  char ours[ABBE_CHECKPOINT_TEXT];
+  describe(t, ours, sizeof ours);
+  return say_difference(who, theirs, ours, error);
 }

@@ -27,9 +27,18 @@ abbe_result abbe_checkpoint_load(abbe_tracer *tracer, const char *path, abbe_err
  * 0 and leave none out, and none may be in two files. *tracer is made from the same scene and
  * request; what it holds is replaced. It is as it was where a head is refused, and empty after
  * other errors. ABBE_INVALID_ARGUMENT names the passes that are missing or twice there, and in
- * which files; errors of abbe_checkpoint_load. */
+ * which files, or a file that changed meanwhile; errors of abbe_checkpoint_load. */
 abbe_result abbe_checkpoint_merge(abbe_tracer *tracer, const char *const *path, size_t count,
                                   abbe_error *error);
+
+/* What a trace is, in lines of text: its request, a hash of its scene, the processor's
+ * instructions. Traces of which they are alike add to one another. */
+enum { ABBE_CHECKPOINT_TEXT = 1024 };
+void abbe_checkpoint_describe(const abbe_tracer *tracer, char out[ABBE_CHECKPOINT_TEXT]);
+/* ABBE_INVALID_ARGUMENT names the first line in which the text of `who`, a file or a machine, is
+ * unlike the tracer's. */
+abbe_result abbe_checkpoint_compare(const abbe_tracer *tracer, const char *who, const char *theirs,
+                                    abbe_error *error);
 
 #ifdef __cplusplus
 }

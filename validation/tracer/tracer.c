@@ -248,6 +248,7 @@ abbe_result abbe_tracer_make(const abbe_scene *scene, const abbe_trace_desc *des
   abbe_tracer *t = calloc(1, sizeof *t);
   if (t == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a tracer");
   t->scene = scene;
+  t->step = 1;
   if (desc != NULL) t->desc = *desc;
   abbe_result result = resolve(scene, &t->desc, error);
   if (result == ABBE_OK) result = make_tables(t, error);
@@ -407,25 +408,32 @@ abbe_result abbe_tracer_pass(abbe_tracer *t, const volatile int *stop, abbe_erro
   if (!t->desc.no_picture) abbe_accumulator_end_pass(&t->picture);
   if (!t->desc.no_map) abbe_accumulator_end_pass(&t->map);
   end_ledger(t);
-  t->pass++;
+  t->pass += t->step;
   return ABBE_OK;
 }
 
-abbe_result abbe_tracer_begin_at(abbe_tracer *t, size_t pass, abbe_error *error) {
+abbe_result abbe_tracer_begin_at(abbe_tracer *t, size_t pass, size_t step, abbe_error *error) {
   ABBE_REQUIRE(t, error);
-  if (t->pass > t->first || pass >= ABBE_WHOLE_SUM_MOST_PASSES)
-    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "a trace cannot begin at pass %zu %s", pass,
-                          t->pass > t->first ? "once it has begun" : "or beyond");
+  const size_t most = ABBE_WHOLE_SUM_MOST_PASSES;
+  if (t->pass > t->first || pass >= most || step == 0 || step > most)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "a trace cannot begin at pass %zu, in steps of %zu%s", pass, step,
+                          t->pass > t->first ? ", once it has begun" : "");
   t->first = t->pass = pass;
+  t->step = step;
   return ABBE_OK;
 }
 
-size_t abbe_tracer_passes(const abbe_tracer *tracer) {
-  return tracer->pass - tracer->first;
+size_t abbe_tracer_passes(const abbe_tracer *t) {
+  return (t->pass - t->first) / t->step;
 }
 
 size_t abbe_tracer_first_pass(const abbe_tracer *tracer) {
   return tracer->first;
+}
+
+size_t abbe_tracer_step(const abbe_tracer *tracer) {
+  return tracer->step;
 }
 
 void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {
@@ -433,7 +441,7 @@ void abbe_tracer_statistics(const abbe_tracer *t, abbe_trace_statistics *out) {
   const size_t passes = out->passes = abbe_tracer_passes(t);
   out->radius =
       t->eye_gathers && passes > 0
-          ? (double)((float)((double)t->radius * shrunk_by(t->pass - 1))) * t->geometry.unit
+          ? (double)((float)((double)t->radius * shrunk_by(t->pass - t->step))) * t->geometry.unit
           : 0;
   out->light_rays += abbe_tracer_walk_rays(t) - t->other_rays;
   if (!t->desc.no_picture) out->cuts += abbe_accumulator_cuts(&t->picture);

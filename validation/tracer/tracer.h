@@ -71,14 +71,15 @@ void abbe_tracer_free(abbe_tracer *tracer);
  * (may be NULL) ends it early with ABBE_CANCELLED, the pass forgotten. */
 abbe_result abbe_tracer_pass(abbe_tracer *tracer, const volatile int *stop, abbe_error *error);
 
-/* The first pass is to be of that number: what is done of the others elsewhere can be put together
- * with it (abbe_checkpoint_merge). Of a tracer without a pass; ABBE_INVALID_ARGUMENT else, and
- * from 2^20 on. */
-abbe_result abbe_tracer_begin_at(abbe_tracer *tracer, size_t pass, abbe_error *error);
+/* The first pass is to be of that number, and each is `step` behind the one before: what is done of
+ * the others elsewhere can be put together with it (abbe_checkpoint_merge, abbe_ranked_run). Of a
+ * tracer without a pass; ABBE_INVALID_ARGUMENT else, for a step of 0, and from 2^20 on. */
+abbe_result abbe_tracer_begin_at(abbe_tracer *tracer, size_t pass, size_t step, abbe_error *error);
 
-/* How many are in the sums, and the number of the first of them. */
+/* How many are in the sums, the number of the first of them, and from one to the next. */
 size_t abbe_tracer_passes(const abbe_tracer *tracer);
 size_t abbe_tracer_first_pass(const abbe_tracer *tracer);
+size_t abbe_tracer_step(const abbe_tracer *tracer);
 /* Relative standard error of picture and map together: root mean square of the standard errors
  * over the mean, of Y or luminance, the larger of the two; infinite before two passes. Of the map:
  * over the brightest texels that hold 95 % of its light. */

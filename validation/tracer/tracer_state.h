@@ -47,10 +47,10 @@ struct abbe_tracer {
   abbe_photon_grid grid;
   abbe_grid_photon *landed; /* of the pass that is under way, where the eye needs them */
   size_t landed_room;
-  bool eye_gathers;   /* some pixel may show a receiver through or in a refractor */
-  float radius;       /* of the first gather, frame */
-  size_t first, pass; /* the first in the sums, and the next one */
-  double reach;       /* W that photons stand for, at the scale of the ledger's units */
+  bool eye_gathers;         /* some pixel may show a receiver through or in a refractor */
+  float radius;             /* of the first gather, frame */
+  size_t first, pass, step; /* the first in the sums, the next one, and from one to the next */
+  double reach;             /* W that photons stand for, at the scale of the ledger's units */
   abbe_whole_sum ledger[ABBE_TRACER_LEDGER]; /* over passes */
   uint64_t other_rays; /* of the walks: trials, and from before a checkpoint was taken up */
   abbe_trace_statistics statistics; /* its ledger: of the pass that is under way */

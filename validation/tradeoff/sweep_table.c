@@ -243,6 +243,32 @@ abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
   return ABBE_OK;
 }
 
+/* An error that says which table it is of. */
+static abbe_result add_rows(const abbe_sweep_table *from, const char *name, abbe_sweep_table *to,
+                            abbe_error *error) {
+  for (size_t i = 0; i < from->count; i++) {
+    abbe_error own = {0};
+    const abbe_result result = abbe_sweep_table_add(to, &from->row[i], &own);
+    if (result != ABBE_OK) return abbe_error_set(error, result, "%s: %s", name, own.text);
+  }
+  return ABBE_OK;
+}
+
+abbe_result abbe_sweep_table_join(const abbe_sweep_table *tables, const char *const *names,
+                                  size_t count, abbe_sweep_table *out, abbe_error *error) {
+  ABBE_REQUIRE(tables && names && out, error);
+  *out = (abbe_sweep_table){0};
+  if (count == 0) return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "no tables to join");
+  memcpy(out->fact, tables[0].fact, sizeof out->fact);
+  abbe_result result = ABBE_OK;
+  for (size_t i = 0; i < count && result == ABBE_OK; i++) {
+    result = abbe_sweep_table_agree(&tables[i], names[i], &tables[0], error);
+    if (result == ABBE_OK) result = add_rows(&tables[i], names[i], out, error);
+  }
+  if (result != ABBE_OK) abbe_sweep_table_free(out);
+  return result;
+}
+
 /* What the model leaves out */
 
 static const char *const model_form = "caustic_de %lg (%lg), map_rmse %lg (%lg), map_energy %lg";

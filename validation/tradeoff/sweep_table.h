@@ -195,6 +195,12 @@ bool abbe_sweep_model_read(const abbe_sweep_table *table, abbe_sweep_model *out)
 abbe_result abbe_sweep_table_agree(const abbe_sweep_table *a, const char *name,
                                    const abbe_sweep_table *b, abbe_error *error);
 
+/* The rows of tables of one sweep (abbe_sweep_table_agree), under the first's facts. names: of the
+ * tables, for errors. ABBE_INVALID_ARGUMENT where they differ or two have a setting;
+ * ABBE_NO_MEMORY. */
+abbe_result abbe_sweep_table_join(const abbe_sweep_table *tables, const char *const *names,
+                                  size_t count, abbe_sweep_table *out, abbe_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -269,14 +269,17 @@ static bool add_objects(abbe_geometry *g) {
   return added;
 }
 
-const char *abbe_geometry_instructions(void) {
+/* Rays by sixteen take AVX-512, and by eight AVX, whose bits are those of SSE, or AVX2. */
+const char *abbe_geometry_instructions(const abbe_geometry *g) {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl"))
+  if (rtcGetDeviceProperty(g->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
     return "avx512";
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? "avx2" : "sse";
+  return rtcGetDeviceProperty(g->device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0 &&
+                 __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+             ? "avx2"
+             : "sse";
 #else
+  (void)g;
   return "other";
 #endif
 }
@@ -291,7 +294,7 @@ abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe
   choose_frame(&g);
   if (result == ABBE_OK) result = check_thickness(&g, error);
   if (result == ABBE_OK) {
-    g.device = rtcNewDevice("threads=1,set_affinity=0");
+    g.device = rtcNewDevice("threads=1,set_affinity=0,ignore_config_files=1");
     if (g.device != NULL) g.embree = rtcNewScene(g.device);
     bool made = g.embree != NULL;
     if (made) {

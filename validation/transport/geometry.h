@@ -74,8 +74,9 @@ typedef struct abbe_geometry {
 abbe_result abbe_geometry_make(const abbe_scene *scene, abbe_geometry *out, abbe_error *error);
 void abbe_geometry_free(abbe_geometry *geometry);
 /* Which instructions of this processor Embree takes, whose last bits differ: "avx512", "avx2",
- * "sse", or "other". */
-const char *abbe_geometry_instructions(void);
+ * "sse", or "other". It is asked of Embree, which may be built without those that a processor has.
+ */
+const char *abbe_geometry_instructions(const abbe_geometry *g);
 
 void abbe_geometry_to_frame(const abbe_geometry *g, const double world[3], float frame[3]);
 void abbe_geometry_to_world(const abbe_geometry *g, const float frame[3], double world[3]);

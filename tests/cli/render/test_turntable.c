@@ -19,6 +19,28 @@ static void frames_and_what_moves(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* Two processes that draw every other frame make what one makes. */
+static void parts_are_put_together(void **state) {
+  (void)state;
+  if (run_line(GEM "--turntable 5 --fps 10 --png t.png") != 0) fail_msg("%s", run_errors);
+  if (run_line(GEM "--turntable 5 --png u.png --part 0/2 & " GEM
+                   "--turntable 5 --png u.png --part 1/2; wait; ls u*") != 0)
+    fail_msg("%s", run_errors);
+  assert_string_equal(run_output,
+                      "u-0001.png\nu-0002.png\nu-0003.png\nu-0004.png\nu-0005.png\n");
+  if (run_line(GEM "--turntable 5 --fps 10 --png u.png --merge && cmp t.png u.png") != 0)
+    fail_msg("%s", run_errors);
+  assert_int_equal(run_line("rm u-0003.png"), 0);
+  assert_int_equal(run_line(GEM "--turntable 5 --png u.png --merge"), 1);
+  assert_contains(run_errors, "u-0003.png");
+  assert_int_equal(run_line("rm t* u*"), 0);
+  assert_true(run_refuses(GEM "--turntable 5 --merge -o u.exr", 2, "--png FILE.png"));
+  assert_true(run_refuses(GEM "--turntable 5 --png u.png --part 2/2", 2, "is no part"));
+  assert_true(run_refuses(GEM "--turntable 5 --png u.png --part 6/9", 2, "none of 5 frames"));
+  assert_true(run_refuses(GEM "--turntable 5 --png u.png --part 1/2 --merge", 2, "draws nothing"));
+  assert_true(run_refuses(GEM "--png u.png --part 0/2", 2, "goes with --turntable"));
+}
+
 static void what_is_refused(void **state) {
   (void)state;
   assert_true(run_refuses(GEM "--turntable 1 --png t.png", 2, "--turntable"));
@@ -32,6 +54,7 @@ static void what_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(frames_and_what_moves),
+      cmocka_unit_test(parts_are_put_together),
       cmocka_unit_test(what_is_refused),
   };
   return cmocka_run_group_tests(tests, run_setup, run_teardown);

@@ -122,6 +122,32 @@ static void test_given_references(void **state) {
   assert_int_equal(run_left(), 0);
 }
 
+/* Each process has every other setting; all tables together are the whole. */
+static void test_parts_are_joined(void **state) {
+  (void)state;
+  abbe_sweep_table table = {0};
+#define PART(k)                                                                                    \
+  "\"$abbe\" sweep \"$house\"/scenes/gem.yaml -q --frames 1 --reference r.exr "                    \
+  "--reference-map m.exr --profiles default --photons 16,32,48 --map 64 -o p" k ".csv --part " k   \
+  "/2; "
+  run_well("\"$abbe\" render \"$house\"/scenes/gem.yaml -q --size 24x24 --photons 32 --map 64 "
+           "--aovs -o r.exr --save-map m.exr");
+  run_well(PART("0") PART("1") "\"$abbe\" sweep p0.csv p1.csv -o s.csv");
+#undef PART
+  assert_contains(run_output, "3 settings");
+  load("p0.csv", &table);
+  assert_int_equal(table.count, 2);
+  abbe_sweep_table_free(&table);
+  load("s.csv", &table);
+  assert_int_equal(table.count, 3);
+  abbe_sweep_table_free(&table);
+  assert_int_equal(run_line("\"$abbe\" sweep p0.csv p0.csv -o s.csv"), 1);
+  assert_contains(run_errors, "twice");
+  run_well("rm r.exr m.exr p0.csv p1.csv s.csv");
+  assert_true(run_refuses("\"$abbe\" sweep a.yaml -o s.csv --part 2/2", 2, "is no part"));
+  assert_int_equal(run_left(), 0);
+}
+
 /* Stopped in the middle: the rows so far are kept, and the same command goes on. */
 static void test_ctrl_c_keeps_what_is_done(void **state) {
   (void)state;
@@ -212,6 +238,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_the_thesis_beside_it, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_the_error_is_decomposed, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_given_references, run_setup, run_teardown),
+      cmocka_unit_test_setup_teardown(test_parts_are_joined, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_ctrl_c_keeps_what_is_done, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_what_is_refused, run_setup, run_teardown),
       cmocka_unit_test_setup_teardown(test_a_report_overwrites_nothing, run_setup, run_teardown),

@@ -305,9 +305,9 @@ static void what_is_no_checkpoint_is_told(void **state) {
   } files[] = {{"", "not a checkpoint"},
                {"description: a scene\n", "not a checkpoint"},
                {"abbe checkpoint 1\nscene 1\n\n", "another version"},
-               {"abbe checkpoint 6\n", "broken"},
-               {"abbe checkpoint 6\nscene 0123", "broken"},
-               {"abbe checkpoint 6\n\n\n", "start anew"}};
+               {"abbe checkpoint 7\n", "broken"},
+               {"abbe checkpoint 7\nscene 0123", "broken"},
+               {"abbe checkpoint 7\n\n\n", "start anew"}};
   abbe_error error;
   abbe_tracer *tracer = make_tracer(&scene, &small);
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
@@ -332,7 +332,7 @@ static void save_part(const abbe_trace_desc *desc, size_t first, size_t end, cha
                       int number) {
   snprintf(file, ROOM, "%s/part-%d.ck", folder, number);
   abbe_tracer *tracer = make_tracer(&scene, desc);
-  assert_int_equal(abbe_tracer_begin_at(tracer, first, NULL), ABBE_OK);
+  assert_int_equal(abbe_tracer_begin_at(tracer, first, 1, NULL), ABBE_OK);
   run_passes(tracer, end - first);
   assert_int_equal(abbe_checkpoint_save(tracer, file, NULL), ABBE_OK);
   abbe_tracer_free(tracer);
@@ -417,12 +417,13 @@ static void gaps_and_overlaps_are_named(void **state) {
 static void a_trace_begins_once(void **state) {
   (void)state;
   abbe_tracer *tracer = make_tracer(&scene, &small);
-  assert_int_equal(abbe_tracer_begin_at(tracer, 1u << 20, NULL), ABBE_INVALID_ARGUMENT);
-  assert_int_equal(abbe_tracer_begin_at(tracer, 5, NULL), ABBE_OK);
+  assert_int_equal(abbe_tracer_begin_at(tracer, 1u << 20, 1, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_tracer_begin_at(tracer, 5, 0, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_tracer_begin_at(tracer, 5, 1, NULL), ABBE_OK);
   run_passes(tracer, 1);
   assert_int_equal(abbe_tracer_passes(tracer), 1);
   assert_int_equal(abbe_tracer_first_pass(tracer), 5);
-  assert_int_equal(abbe_tracer_begin_at(tracer, 6, NULL), ABBE_INVALID_ARGUMENT);
+  assert_int_equal(abbe_tracer_begin_at(tracer, 6, 1, NULL), ABBE_INVALID_ARGUMENT);
   abbe_tracer_free(tracer);
 }
 

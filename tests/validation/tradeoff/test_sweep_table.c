@@ -242,6 +242,41 @@ static void test_tables_of_different_things_do_not_agree(void **state) {
   assert_contains(error.text, "the machine 'one processor', and now it is 'another'");
 }
 
+static void test_parts_are_joined(void **state) {
+  (void)state;
+  abbe_sweep_table part[2] = {0}, all;
+  const char *const names[] = {"a.csv", "b.csv"};
+  abbe_error error = {0};
+  abbe_sweep_row row = {.setting = {.profile = "default", .fill = "auto", .model = "auto"}};
+  for (size_t i = 0; i < 5; i++) {
+    row.setting.wavelengths = i;
+    row.number[ABBE_SWEEP_FRAME_MS] = (double)i;
+    assert_int_equal(abbe_sweep_table_add(&part[i % 2], &row, NULL), ABBE_OK);
+  }
+  abbe_sweep_table_set(&part[0], ABBE_SWEEP_FACT_DATE, "yesterday");
+  assert_int_equal(abbe_sweep_table_join(part, names, 2, &all, &error), ABBE_OK);
+  assert_int_equal(all.count, 5);
+  assert_string_equal(all.fact[ABBE_SWEEP_FACT_DATE], "yesterday");
+  for (size_t i = 0; i < 5; i++) {
+    row.setting.wavelengths = i;
+    const abbe_sweep_row *found = abbe_sweep_table_find(&all, &row.setting);
+    assert_true(found != NULL && found->number[ABBE_SWEEP_FRAME_MS] == (double)i);
+  }
+  abbe_sweep_table_free(&all);
+  assert_int_equal(abbe_sweep_table_join(part, names, 0, &all, &error), ABBE_INVALID_ARGUMENT);
+  /* a setting in both, then another machine */
+  assert_int_equal(abbe_sweep_table_add(&part[1], &row, NULL), ABBE_OK);
+  assert_int_equal(abbe_sweep_table_join(part, names, 2, &all, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "b.csv");
+  assert_contains(error.text, "twice");
+  abbe_sweep_table_set(&part[1], ABBE_SWEEP_FACT_MACHINE, "another");
+  assert_int_equal(abbe_sweep_table_join(part, names, 2, &all, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "the machine 'another'");
+  assert_true(all.count == 0 && all.row == NULL);
+  abbe_sweep_table_free(&part[0]);
+  abbe_sweep_table_free(&part[1]);
+}
+
 static void test_names(void **state) {
   (void)state;
   for (int i = 0; i < ABBE_SWEEP_NUMBER_COUNT; i++) {
@@ -266,6 +301,7 @@ int main(void) {
       cmocka_unit_test(test_a_busy_machine_is_noticed),
       cmocka_unit_test(test_broken_tables_are_named),
       cmocka_unit_test(test_tables_of_different_things_do_not_agree),
+      cmocka_unit_test(test_parts_are_joined),
       cmocka_unit_test(test_names),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,121 @@
+/* Checkpoints whose hash is right and whose content is not: of other processors, or forged. */
+#include "tests/validation/trace_scene.h"
+
+#include "validation/tracer/checkpoint.h"
+
+#include <unistd.h>
+
+static char folder[64], path[80];
+static abbe_scene scene;
+static const abbe_trace_desc small = {
+    .width = 6, .height = 5, .map_width = 6, .photons = 500, .threads = 1};
+
+static int setup(void **state) {
+  (void)state;
+  snprintf(folder, sizeof folder, "/tmp/abbe-test-forged-XXXXXX");
+  if (mkdtemp(folder) == NULL) return 1;
+  snprintf(path, sizeof path, "%s/run.checkpoint", folder);
+  load_text(CAMERA POINT_LIGHT FLOOR BEADS("crown"), &scene);
+  return 0;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  unlink(path);
+  abbe_scene_free(&scene);
+  return rmdir(folder);
+}
+
+/* The file of a run of that many passes; malloc'd. */
+static char *saved(size_t passes, size_t *size) {
+  char *data = NULL;
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  run_passes(tracer, passes);
+  assert_int_equal(abbe_checkpoint_save(tracer, path, NULL), ABBE_OK);
+  assert_int_equal(abbe_file_read(path, 1 << 24, &data, size, NULL), ABBE_OK);
+  abbe_tracer_free(tracer);
+  return data;
+}
+
+/* Written anew with the hash that goes with it, as whoever forges a file can do. */
+static void write_forged(char *data, size_t size) {
+  uint64_t h = 14695981039346656037u;
+  for (size_t i = 0; i < size - sizeof h; i++) h = (h ^ (unsigned char)data[i]) * 1099511628211u;
+  memcpy(data + size - sizeof h, &h, sizeof h);
+  assert_int_equal(abbe_file_write(path, data, size, NULL), ABBE_OK);
+}
+
+/* Sums that no passes have would overflow with the next ones, and such numbers of passes too. */
+static void forged_numbers_are_told(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  size_t size = 0;
+  char *data = saved(2, &size);
+  write_forged(data, size);
+  assert_int_equal(abbe_checkpoint_load(tracer, path, &error), ABBE_OK);
+  abbe_tracer_free(tracer);
+  tracer = make_tracer(&scene, &small);
+  /* the last sum's highest byte: just within what two passes can have, and beyond it */
+  char *const high = data + size - 8 - 1;
+  static const struct {
+    signed char value;
+    abbe_result result;
+  } bytes[] = {{0x7f, ABBE_PARSE}, {-128, ABBE_PARSE}, {1, ABBE_PARSE}, {0, ABBE_OK}};
+  for (size_t i = 0; i < sizeof bytes / sizeof *bytes; i++) {
+    const char was = *high;
+    *high = (char)bytes[i].value;
+    write_forged(data, size);
+    *high = was;
+    assert_int_equal(abbe_checkpoint_load(tracer, path, &error), bytes[i].result);
+    if (bytes[i].result != ABBE_OK) assert_contains(error.text, "damaged");
+  }
+  run_passes(tracer, 1);
+  assert_int_equal(abbe_tracer_passes(tracer), 3);
+  abbe_tracer_free(tracer);
+  tracer = make_tracer(&scene, &small);
+  /* first, end and step of the passes */
+  static const uint64_t passes[][3] = {
+      {2, 0, 1},          {0, 2, 0},          {0, 3, 2},          {0, 1 << 21, 1},
+      {UINT64_MAX, 0, 1}, {0, UINT64_MAX, 1}, {0, 2, UINT64_MAX}, {1 << 20, 1 << 20 | 1, 1}};
+  char *const numbers = strstr(data, "\n\n") + 2;
+  for (size_t i = 0; i < sizeof passes / sizeof *passes; i++) {
+    memcpy(numbers, passes[i], sizeof passes[i]);
+    write_forged(data, size);
+    assert_int_equal(abbe_checkpoint_load(tracer, path, &error), ABBE_PARSE);
+    assert_int_equal(abbe_tracer_passes(tracer), 0);
+  }
+  free(data);
+  abbe_tracer_free(tracer);
+}
+
+/* A file of a processor on which Embree takes other instructions. */
+static void other_instructions_are_told(void **state) {
+  (void)state;
+  abbe_error error = {0};
+  abbe_tracer *tracer = make_tracer(&scene, &small);
+  char ours[64];
+  size_t size = 0;
+  char *data = saved(1, &size);
+  char *const line = strstr(data, "instructions ");
+  assert_non_null(line);
+  snprintf(ours, sizeof ours, "%.*s", (int)strcspn(line, "\n"), line);
+  line[strlen("instructions ")] = 'z';
+  write_forged(data, size);
+  assert_int_equal(abbe_checkpoint_load(tracer, path, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "instructions z");
+  assert_contains(error.text, ours);
+  const char *const paths[] = {path};
+  assert_int_equal(abbe_checkpoint_merge(tracer, paths, 1, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "put parts together");
+  free(data);
+  abbe_tracer_free(tracer);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(forged_numbers_are_told),
+      cmocka_unit_test(other_instructions_are_told),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
