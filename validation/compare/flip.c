@@ -78,29 +78,28 @@ static void make_kernels(job *j, double ppd) {
   j->point = detector(near, deviation, 2);
 }
 
+/* to += weight * in, moved by `by` along the row; the row's ends go on. */
+static void add_moved(const float *in, long width, long by, float weight, float *to) {
+  const long first = by < 0 ? (-by < width ? -by : width) : 0;
+  const long last = by > 0 ? (by < width ? width - by : 0) : width;
+  for (long x = 0; x < first; x++) to[x] += weight * in[0];
+  for (long x = first; x < last; x++) to[x] += weight * in[x + by];
+  for (long x = last > first ? last : first; x < width; x++) to[x] += weight * in[width - 1];
+}
+
 /* out = in under one kernel along rows and another along columns; the picture's edge goes on. */
 static void filter(const job *j, const float *in, const kernel *along, const kernel *across,
                    float *out) {
   const long w = (long)j->width, h = (long)j->height;
-#pragma omp parallel for
+  memset(j->half, 0, j->pixels * sizeof *j->half);
+  memset(out, 0, j->pixels * sizeof *out);
   for (long y = 0; y < h; y++)
-    for (long x = 0; x < w; x++) {
-      double sum = 0;
-      for (long i = -along->reach; i <= along->reach; i++) {
-        const long at = x + i < 0 ? 0 : x + i >= w ? w - 1 : x + i;
-        sum += along->weight[i + along->reach] * (double)in[y * w + at];
-      }
-      j->half[y * w + x] = (float)sum;
-    }
-#pragma omp parallel for
+    for (long i = -along->reach; i <= along->reach; i++)
+      add_moved(in + y * w, w, i, (float)along->weight[i + along->reach], j->half + y * w);
   for (long y = 0; y < h; y++)
-    for (long x = 0; x < w; x++) {
-      double sum = 0;
-      for (long i = -across->reach; i <= across->reach; i++) {
-        const long at = y + i < 0 ? 0 : y + i >= h ? h - 1 : y + i;
-        sum += across->weight[i + across->reach] * (double)j->half[at * w + x];
-      }
-      out[y * w + x] = (float)sum;
+    for (long i = -across->reach; i <= across->reach; i++) {
+      const long at = y + i < 0 ? 0 : y + i >= h ? h - 1 : y + i;
+      add_moved(j->half + at * w, w, 0, (float)across->weight[i + across->reach], out + y * w);
     }
 }
 
