@@ -89,7 +89,8 @@ static void tables_beyond_a_block_are_storage(void **state) {
   (void)state;
   abbe_shader_variant v = {.planes = ABBE_GPU_BLOCK_BYTES / 16, .refractors = 1};
   v.bands = ABBE_GPU_BLOCK_BYTES / 32 / ABBE_CAMERA_BAND_SETS;
-  v.surfaces = ABBE_GPU_BLOCK_BYTES / 32;
+  v.surfaces = ABBE_GPU_BLOCK_BYTES / 16;
+  v.reflections = ABBE_GPU_BLOCK_BYTES / 16;
   v.wavelengths = ABBE_GPU_BLOCK_BYTES / 16;
   char *text = text_of(&v, NULL);
   assert_null(strstr(text, "IN_STORAGE"));
@@ -97,11 +98,13 @@ static void tables_beyond_a_block_are_storage(void **state) {
   v.planes++;
   v.bands++;
   v.surfaces++;
+  v.reflections++;
   v.wavelengths++;
   text = text_of(&v, NULL);
   assert_true(has(text, "#define PLANES_IN_STORAGE"));
   assert_true(has(text, "#define BANDS_IN_STORAGE"));
   assert_true(has(text, "#define SURFACES_IN_STORAGE"));
+  assert_true(has(text, "#define REFLECTIONS_IN_STORAGE"));
   assert_true(has(text, "#define SPECTRA_IN_STORAGE"));
   free(text);
 }
