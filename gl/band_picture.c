@@ -1,13 +1,18 @@
 #include "gl/band_picture.h"
 
 #include "colorimetry/upsampling.h"
+#include "colorimetry/observer.h"
 #include "colorimetry/weights.h"
+#include "spectral/spectrum.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { NAME_SIZE = 32 };
+
+#define STEP_NM 0.5 /* of a band's light, linear between */
 
 /* ---- the scene of a band ---- */
 
@@ -25,14 +30,44 @@ static double density(const abbe_illuminant *light, const double range_nm[2],
          (band_nm[1] - band_nm[0]);
 }
 
-/* Lights of several illuminants differ in how bright a watt of the band is; the sum counts each by
- * its own. One that is dark there keeps its place, without power. */
-static void dim(abbe_light *light, const double range_nm[2], const double band_nm[2],
-                double first) {
+/* The light within the band, over what the eye makes of it: what is then seen of each wavelength, as
+ * X + Y + Z, is its power. */
+static abbe_result flatten(const abbe_illuminant *light, const double band_nm[2],
+                           abbe_illuminant *out, abbe_error *error) {
+  const double width = band_nm[1] - band_nm[0];
+  const size_t steps = width > 1 ? (size_t)ceil(width / STEP_NM) : 2;
+  double *nm = calloc(2 * (steps + 1), sizeof *nm), *power = nm + steps + 1;
+  if (nm == NULL) return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a light in a band");
+  for (size_t i = 0; i <= steps; i++) {
+    double xyz[3];
+    nm[i] = i < steps ? band_nm[0] + width * (double)i / (double)steps : band_nm[1];
+    abbe_observer_xyz(nm[i], xyz);
+    const double seen = xyz[0] + xyz[1] + xyz[2];
+    power[i] = seen > 0 ? abbe_illuminant_power(light, nm[i]) / seen : 0;
+  }
+  *out = (abbe_illuminant){.kind = ABBE_ILLUMINANT_TABULATED};
+  const abbe_result result = abbe_spectrum_make(nm, power, steps + 1, ABBE_INTERPOLATION_LINEAR,
+                                                &out->spectrum, error);
+  free(nm);
+  return result;
+}
+
+/* A watt of the band is as bright as `first`, whatever the illuminant: one that is dark there keeps
+ * its place, without power. */
+static abbe_result dim(abbe_light *light, const double range_nm[2], const double band_nm[2],
+                       double first, abbe_error *error) {
   static const abbe_illuminant even = {.kind = ABBE_ILLUMINANT_E};
+  const abbe_illuminant whole = light->illuminant;
+  light->illuminant = even;
+  light->power *= density(&whole, range_nm, band_nm);
+  const bool dark = !(brightness(&whole, band_nm) > 0);
+  if (dark) light->power = 0;
+  const abbe_result result =
+      flatten(dark ? &even : &whole, band_nm, &light->illuminant, error);
+  if (result != ABBE_OK) return result;
   const double own = brightness(&light->illuminant, band_nm);
-  light->power *= own > 0 ? density(&light->illuminant, range_nm, band_nm) * first / own : 0;
-  if (!(own > 0)) light->illuminant = even;
+  if (own > 0) light->power *= first / own;
+  return ABBE_OK;
 }
 
 /* X + Y + Z of the working space's white, which is what ambient light and background are. */
@@ -49,21 +84,24 @@ static double lift(const double rec709[3], const double basis[3]) {
   return sum;
 }
 
-static abbe_result lift_texture(abbe_object *object, const double basis[3], abbe_error *error) {
+/* Its texture is its own afterwards, or zeroed where this fails. */
+static abbe_result lift_object(abbe_object *object, const double basis[3], abbe_error *error) {
   const abbe_image *from = &object->texture;
-  const size_t texels = from->width * from->height;
-  float *data = malloc(texels * from->channels * sizeof *data);
+  const float *texel = from->data;
+  const size_t texels = from->width * from->height, channels = from->channels;
+  const double own[3] = {object->reflectance[0], object->reflectance[1], object->reflectance[2]};
+  const bool textured = texel != NULL;
+  for (int k = 0; k < 3; k++) object->reflectance[k] = textured ? 1 : lift(own, basis);
+  if (!textured) return ABBE_OK;
+  float *data = malloc(texels * channels * sizeof *data);
+  object->texture.data = data;
   if (data == NULL)
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the texture of '%s'", object->name);
-  for (size_t i = 0; i < texels; i++) {
-    const float *texel = from->data + i * from->channels;
+  for (size_t i = 0; i < texels * channels; i += channels) {
     double rec709[3];
-    for (int k = 0; k < 3; k++) rec709[k] = (double)texel[k] * object->reflectance[k];
-    const double grey = lift(rec709, basis);
-    for (size_t k = 0; k < from->channels; k++) data[i * from->channels + k] = (float)grey;
+    for (int k = 0; k < 3; k++) rec709[k] = (double)texel[i + (size_t)k] * own[k];
+    for (size_t k = 0; k < channels; k++) data[i + k] = (float)lift(rec709, basis);
   }
-  object->texture.data = data;
-  for (int k = 0; k < 3; k++) object->reflectance[k] = 1;
   return ABBE_OK;
 }
 
@@ -81,31 +119,25 @@ abbe_result abbe_band_scene_make(const abbe_scene *scene, const double range_nm[
   if (!(first > 0)) first = brightness(&even, band_nm);
   *unit = 1 / first;
   *out = *scene;
+  out->light_count = out->object_count = 0;
   out->light = calloc(scene->light_count + 1, sizeof *out->light);
   out->object = calloc(scene->object_count + 1, sizeof *out->object);
-  if (out->light == NULL || out->object == NULL) {
-    out->object_count = 0;
-    abbe_band_scene_free(out);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a scene in a band");
-  }
-  memcpy(out->light, scene->light, scene->light_count * sizeof *out->light);
-  memcpy(out->object, scene->object, scene->object_count * sizeof *out->object);
-  for (size_t i = 0; i < scene->light_count; i++) dim(&out->light[i], range_nm, band_nm, first);
+  abbe_result result = ABBE_OK;
+  if (out->light == NULL || out->object == NULL)
+    result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a scene in a band");
   const double even_light = density(light, range_nm, band_nm) * first / sum_of_white();
   out->ambient *= even_light;
   out->background *= even_light;
+  for (size_t i = 0; i < scene->light_count && result == ABBE_OK; i++) {
+    out->light[i] = scene->light[i];
+    result = dim(&out->light[i], range_nm, band_nm, first, error);
+    out->light_count++;
+  }
   abbe_upsampling_basis_mean(band_nm[0], band_nm[1], basis);
-  abbe_result result = ABBE_OK;
-  for (out->object_count = 0; out->object_count < scene->object_count && result == ABBE_OK;
-       out->object_count++) {
-    abbe_object *object = &out->object[out->object_count];
-    if (object->texture.data != NULL) {
-      result = lift_texture(object, basis, error);
-      if (result != ABBE_OK) break;
-    } else {
-      const double grey = lift(object->reflectance, basis);
-      for (int k = 0; k < 3; k++) object->reflectance[k] = grey;
-    }
+  for (size_t i = 0; i < scene->object_count && result == ABBE_OK; i++) {
+    out->object[i] = scene->object[i];
+    result = lift_object(&out->object[i], basis, error);
+    out->object_count++;
   }
   if (result != ABBE_OK) abbe_band_scene_free(out);
   return result;
@@ -115,6 +147,8 @@ void abbe_band_scene_free(abbe_scene *scene) {
   if (scene == NULL) return;
   for (size_t i = 0; i < scene->object_count && scene->object != NULL; i++)
     free(scene->object[i].texture.data);
+  for (size_t i = 0; i < scene->light_count && scene->light != NULL; i++)
+    abbe_spectrum_free(scene->light[i].illuminant.spectrum);
   free(scene->light);
   free(scene->object);
   *scene = (abbe_scene){0};

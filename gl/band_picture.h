@@ -3,7 +3,8 @@
  * Each band is a picture of its own: the light of its wavelengths alone, receivers with what they
  * reflect there, by the same passes as any other. So it costs as many frames as there are bands,
  * and the photons of each are followed and fitted anew; that is what makes each band as sharp as
- * its own width. Reflectances, which scenes state as colours, are lifted to spectra (upsampling.h).
+ * its own width. Within a band light counts by its power, not by what the eye makes of it.
+ * Reflectances, which scenes state as colours, are lifted to spectra (upsampling.h).
  * It is not told where surroundings have colours (ABBE_UNSUPPORTED).
  */
 #ifndef ABBE_GL_BAND_PICTURE_H
