@@ -9,14 +9,14 @@
 #include <string.h>
 
 abbe_result abbe_ranks_agree(const abbe_ranks *r, abbe_result own, abbe_error *error) {
-  ABBE_REQUIRE(r, error);
+  ABBE_REQUIRE(r && r->most, error);
   const uint64_t failed = own == ABBE_OK ? 0 : r->count - r->rank, worst = r->most(failed);
   if (failed == worst) return own;
   return abbe_error_set(error, ABBE_CANCELLED, "rank %zu cannot go on", r->count - (size_t)worst);
 }
 
 abbe_result abbe_ranks_compare(const abbe_ranks *r, const abbe_tracer *tracer, abbe_error *error) {
-  ABBE_REQUIRE(r && tracer, error);
+  ABBE_REQUIRE(r && r->spread && tracer, error);
   char theirs[ABBE_CHECKPOINT_TEXT];
   abbe_checkpoint_describe(tracer, theirs);
   r->spread(theirs, sizeof theirs);
@@ -231,7 +231,7 @@ static abbe_result run_rounds(work *w, size_t most, abbe_error *error) {
 
 abbe_result abbe_ranked_run(const abbe_ranks *ranks, abbe_tracer *tracer,
                             const abbe_trace_run_desc *desc, abbe_error *error) {
-  ABBE_REQUIRE(ranks && tracer && desc, error);
+  ABBE_REQUIRE(ranks && ranks->sum && ranks->most && tracer && desc, error);
   const double now = abbe_clock_seconds();
   const size_t most = desc->passes > 0 ? desc->passes : ABBE_WHOLE_SUM_MOST_PASSES;
   work w = {ranks, tracer, desc, now, now, (double)most};

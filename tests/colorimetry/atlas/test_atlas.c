@@ -1,5 +1,6 @@
 /* The spectral colours against printed chromaticities, and laws of bands and gamuts. */
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include "colorimetry/atlas/atlas.h"
 

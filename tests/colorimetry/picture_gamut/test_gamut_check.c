@@ -1,5 +1,6 @@
 /* A picture of four pixels whose places in each gamut are known, and pictures of nothing. */
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include "base/file.h"
 #include "colorimetry/image/png_file.h"

@@ -1,4 +1,5 @@
 #include "tests/check.h"
+#include "tests/fontconfig.h"
 
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/plot/false_colours.h"
