@@ -9,7 +9,7 @@
 enum { KNOT_COUNT = 81 };
 static const double first_nm = 380, step_nm = 5;
 
-/* Red and blue; green is what they leave of 1 (script/make-upsampling). */
+/* Red and blue; green is what they leave of 1 (script/making/upsampling). */
 static const double knots[KNOT_COUNT][2] = {
     {0.026638, 0.973362}, {0.026636, 0.973364}, {0.026630, 0.973370}, {0.026615, 0.973385},
     {0.026579, 0.973421}, {0.026501, 0.973499}, {0.026349, 0.973651}, {0.026062, 0.973938},

@@ -9,7 +9,7 @@
  *
  * with three fixed functions B_j that are linear between multiples of 5 nm, never negative, and add
  * up to 1 everywhere: equal c give exactly the illuminant. They are the smoothest that have, under
- * D65, the colours of Rec.709's red, green and blue [MallettYuksel2019]; script/make-upsampling
+ * D65, the colours of Rec.709's red, green and blue [MallettYuksel2019]; script/making/upsampling
  * computes them. M is such that the spectrum's XYZ over the range of wavelengths is the RGB's, to
  * rounding. Under D65 over 380 to 780 nm it is the identity to 1e-6, and no spectrum of a colour
  * with R, G, B >= 0 is below -1e-6 of the illuminant; elsewhere `least` says how negative they are.

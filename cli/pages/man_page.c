@@ -22,6 +22,8 @@ static void put(FILE *out, const char *text, size_t length) {
       fprintf(out, "\\(%s", c == '~' ? "ti" : c == '^' ? "ha" : "ga");
     else
       putc(c, out);
+    /* A list may break behind its commas. */
+    if (c == ',' && i + 1 < length && text[i + 1] != ' ') fputs("\\:", out);
   }
 }
 
