@@ -51,7 +51,7 @@ static void put_name(FILE *out, const char *program) {
 static void begin(FILE *out, const char *program, const char *summary, const char *version) {
   fputs(".TH ", out);
   put_upper(out, program);
-  fprintf(out, " 1 \"\" \"abbe %s\" \"Abbe\"\n.SH NAME\n", version);
+  fprintf(out, " 1 \"\" \"abbe %s\" \"Abbe\"\n.ad l\n.SH NAME\n", version);
   put_name(out, program);
   fputs(" \\- ", out);
   put_all(out, summary);
