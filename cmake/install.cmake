@@ -22,7 +22,7 @@ set_target_properties(abbe_archive PROPERTIES OUTPUT_NAME abbe EXPORT_NAME abbe 
 target_link_libraries(abbe_archive PUBLIC ${libraries} stdc++)
 target_include_directories(abbe_archive INTERFACE $<INSTALL_INTERFACE:include/abbe>)
 
-# The same objects, of which only what library/lib_*.h declares is to be seen. Its name and the
+# The same objects, of which only what cli/library/lib_*.h declares is to be seen. Its name and the
 # version of its symbols change with what callers must be built anew for.
 set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 if(NOT ABBE_SANITIZE) # whose run-time library must come first in a program
@@ -98,6 +98,9 @@ endforeach()
 # The headers, but not those that say that they are a room's own.
 foreach(room ${rooms})
   string(REPLACE "abbe_" "" name ${room})
+  if(name STREQUAL "library")
+    set(name cli/library)
+  endif()
   file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS ${name}/*.h)
   foreach(header ${headers})
     file(READ ${header} text)
@@ -131,8 +134,8 @@ install(FILES ${pages}/_abbe DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-com
 if(TARGET abbe_shared)
   set(python lib/python3/dist-packages/abbe)
   file(RELATIVE_PATH library_beside /${python} /${CMAKE_INSTALL_LIBDIR}/libabbe.so.${abi})
-  configure_file(library/python/abbe/_place.py.in ${CMAKE_CURRENT_BINARY_DIR}/_place.py @ONLY)
-  file(GLOB modules CONFIGURE_DEPENDS library/python/abbe/*.py)
+  configure_file(cli/library/python/abbe/_place.py.in ${CMAKE_CURRENT_BINARY_DIR}/_place.py @ONLY)
+  file(GLOB modules CONFIGURE_DEPENDS cli/library/python/abbe/*.py)
   install(FILES ${modules} ${CMAKE_CURRENT_BINARY_DIR}/_place.py DESTINATION ${python})
 endif()
 

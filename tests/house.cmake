@@ -24,7 +24,7 @@ file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/base/*.h ${PROJECT_SOURCE_DIR}/spectral/*.h
   ${PROJECT_SOURCE_DIR}/colorimetry/*.h ${PROJECT_SOURCE_DIR}/scenes/*.h
   ${PROJECT_SOURCE_DIR}/gl/*.h ${PROJECT_SOURCE_DIR}/validation/*.h
-  ${PROJECT_SOURCE_DIR}/library/*.h)
+  ${PROJECT_SOURCE_DIR}/cli/library/*.h)
 set(sources "")
 set(declarations "")
 set(sum "0")

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 
 static const char *const rooms[] = {"base", "spectral",   "colorimetry", "scenes",
-                                    "gl",   "validation", "library",     "cli", "tests"};
+                                    "gl",   "validation", "cli/library", "cli", "tests"};
 
 static void *grown(void *list, size_t count, size_t size) {
   /* doubled at each power of two */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-#define ALL "base spectral colorimetry scenes gl validation library cli tests"
+#define ALL "base spectral colorimetry scenes gl validation cli/library cli tests"
 static const struct {
   const char *room, *may;
 } directions[] = {
@@ -17,7 +17,7 @@ static const struct {
     {"scenes", "base spectral colorimetry scenes"},
     {"gl", "base spectral colorimetry scenes gl"},
     {"validation", "base spectral colorimetry scenes validation"},
-    {"library", "base spectral colorimetry scenes gl validation library"},
+    {"cli/library", "base spectral colorimetry scenes gl validation cli/library"},
     {"cli", "base spectral colorimetry scenes gl validation cli"},
     {"tests", ALL},
 };
@@ -108,9 +108,9 @@ static void test_the_rule_refuses_wrong_directions(void **state) {
   assert_false(may_use("gl/plan/plan.c", "cli/base/command.h"));
   assert_false(may_use("gl/plan/plan.c", "plan.h"));
   assert_false(may_use("main.c", "gl/plan/plan.h"));
-  assert_true(may_use("library/lib_scene.c", "gl/renderer.h"));
-  assert_false(may_use("library/lib_scene.c", "cli/base/command.h"));
-  assert_false(may_use("cli/render/render.c", "library/lib_scene.h"));
+  assert_true(may_use("cli/library/lib_scene.c", "gl/renderer.h"));
+  assert_false(may_use("cli/library/lib_scene.c", "cli/base/command.h"));
+  assert_false(may_use("cli/render/render.c", "cli/library/lib_scene.h"));
 }
 
 static void test_include_lines_are_understood(void **state) {

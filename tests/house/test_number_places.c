@@ -12,7 +12,7 @@
 
 static const char *const rooms[] = {"base",   "spectral", "colorimetry",
                                     "scenes", "gl",       "validation",
-                                    "library"};
+                                    "cli/library"};
 static const char *const the_place = "base/number.c";
 
 /* Read numbers, or print what is not told from here. */

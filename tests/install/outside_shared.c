@@ -1,8 +1,8 @@
-/* A program outside the house, in C: it knows library/lib_*.h and libabbe.so only. It renders,
+/* A program outside the house, in C: it knows cli/library/lib_*.h and libabbe.so only. It renders,
  * changes the camera, traces and compares. */
-#include "library/lib_comparison.h"
-#include "library/lib_scene.h"
-#include "library/lib_version.h"
+#include "cli/library/lib_comparison.h"
+#include "cli/library/lib_scene.h"
+#include "cli/library/lib_version.h"
 
 #include <stdio.h>
 #include <string.h>

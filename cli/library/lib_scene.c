@@ -1,7 +1,7 @@
-#include "library/lib_scene.h"
+#include "cli/library/lib_scene.h"
 
-#include "library/lib_scene_state.h"
-#include "library/lib_shipped.h"
+#include "cli/library/lib_scene_state.h"
+#include "cli/library/lib_shipped.h"
 #include "scenes/import/scene_file.h"
 
 #include <limits.h>

@@ -1,4 +1,4 @@
-#include "library/lib_materials.h"
+#include "cli/library/lib_materials.h"
 
 #include "spectral/formats/material_table_load.h"
 

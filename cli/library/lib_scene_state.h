@@ -1,9 +1,9 @@
-/* lib_scene_state.h: what is behind a scene's handle. Internal to library/. */
+/* lib_scene_state.h: what is behind a scene's handle. Internal to cli/library/. */
 #ifndef ABBE_LIBRARY_LIB_SCENE_STATE_H
 #define ABBE_LIBRARY_LIB_SCENE_STATE_H
 
 #include "gl/renderer.h"
-#include "library/lib_scene.h"
+#include "cli/library/lib_scene.h"
 #include "scenes/scene.h"
 
 struct abbe_lib_scene {

@@ -1,7 +1,7 @@
 /* The pictures of lib_scene.h that OpenGL draws. */
-#include "library/lib_handles.h"
-#include "library/lib_scene_state.h"
-#include "library/lib_settings.h"
+#include "cli/library/lib_handles.h"
+#include "cli/library/lib_scene_state.h"
+#include "cli/library/lib_settings.h"
 
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-#include "library/lib_weights.h"
+#include "cli/library/lib_weights.h"
 
 #include "colorimetry/weights.h"
 

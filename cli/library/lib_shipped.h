@@ -1,6 +1,6 @@
 /* lib_shipped.h: files that came with the library, found wherever it was installed.
  *
- * Internal to library/.
+ * Internal to cli/library/.
  */
 #ifndef ABBE_LIBRARY_LIB_SHIPPED_H
 #define ABBE_LIBRARY_LIB_SHIPPED_H

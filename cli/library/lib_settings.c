@@ -1,4 +1,4 @@
-#include "library/lib_settings.h"
+#include "cli/library/lib_settings.h"
 
 #include "base/nearest.h"
 #include "base/number.h"

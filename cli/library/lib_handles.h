@@ -1,11 +1,11 @@
 /* lib_handles.h: what is behind a picture's handle, for those that make and compare pictures.
- * Internal to library/.
+ * Internal to cli/library/.
  */
 #ifndef ABBE_LIBRARY_LIB_HANDLES_H
 #define ABBE_LIBRARY_LIB_HANDLES_H
 
 #include "colorimetry/image/image.h"
-#include "library/lib_picture.h"
+#include "cli/library/lib_picture.h"
 
 struct abbe_lib_picture {
   abbe_image image;
