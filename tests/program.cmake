@@ -105,7 +105,8 @@ add_test(NAME known_answers_mirror COMMAND abbe validate --quiet --only mirror)
 add_test(NAME known_answers_lamp COMMAND abbe validate --quiet --only lamp)
 abbe_label(program long NAMES known_answers_whole)
 abbe_label(program NAMES known_answers_white known_answers_mirror known_answers_lamp)
-foreach(scene sphere ring gem bunny glass prism rainbow metal-ring metals octahedra diamond-studio)
+foreach(scene sphere ring gem bunny glass prism rainbow metal-ring metals octahedra
+    diamond-studio metal-ball spoon glass-studio)
   add_test(NAME reference_${scene}
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/cli/references $<TARGET_FILE:abbe> ${PROJECT_SOURCE_DIR} ${scene})
   abbe_label(program NAMES reference_${scene})

@@ -153,28 +153,29 @@ typedef struct cover_list {
   double fine; /* pieces below this radius are not split, nor small ones before a large lamp */
 } cover_list;
 
-static void cover_triangle(const cover_list *list, const double a[3], const double b[3],
-                           const double c[3], int splits) {
-  double centre[3], radius = 0;
-  const double *corner[3] = {a, b, c};
-  for (int k = 0; k < 3; k++) centre[k] = (a[k] + b[k] + c[k]) / 3;
+/* Halves the longest edge, so that a thin triangle becomes a row of pieces as wide as it is. */
+static void cover_triangle(const cover_list *list, const double *const corner[3], int splits) {
+  double centre[3], radius = 0, longest = -1;
+  int from = 0;
+  for (int k = 0; k < 3; k++) centre[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
   for (int i = 0; i < 3; i++) {
-    double from[3];
-    abbe_vector_subtract(corner[i], centre, from);
-    radius = fmax(radius, abbe_vector_length(from));
+    double out[3], edge[3];
+    abbe_vector_subtract(corner[i], centre, out);
+    abbe_vector_subtract(corner[(i + 1) % 3], corner[i], edge);
+    radius = fmax(radius, abbe_vector_length(out));
+    double length = abbe_vector_length(edge);
+    if (length > longest) longest = length, from = i;
   }
   patch p = cover(list->map, centre, radius * 1.000001);
   if (splits == 0 || (p.radius >= 0 && p.own <= fmax(list->fine, 0.1 * p.radius))) {
     list->take(list->user, p);
     return;
   }
-  double m[3][3];
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) m[i][k] = 0.5 * (corner[i][k] + corner[(i + 1) % 3][k]);
-  cover_triangle(list, a, m[0], m[2], splits - 1);
-  cover_triangle(list, m[0], b, m[1], splits - 1);
-  cover_triangle(list, m[2], m[1], c, splits - 1);
-  cover_triangle(list, m[0], m[1], m[2], splits - 1);
+  const double *a = corner[from], *b = corner[(from + 1) % 3], *c = corner[(from + 2) % 3];
+  double middle[3];
+  for (int k = 0; k < 3; k++) middle[k] = 0.5 * (a[k] + b[k]);
+  cover_triangle(list, (const double *const[3]){a, middle, c}, splits - 1);
+  cover_triangle(list, (const double *const[3]){middle, b, c}, splits - 1);
 }
 
 static void cover_surface(const abbe_geometry *g, const abbe_surface *s, const cover_list *list) {
@@ -189,7 +190,8 @@ static void cover_surface(const abbe_geometry *g, const abbe_surface *s, const c
     for (int c = 0; c < 3; c++)
       for (int k = 0; k < 3; k++) corner[c][k] = (double)s->position[s->face[i][c]][k];
     /* large faces are worth splitting, the many small ones of a mesh are not */
-    cover_triangle(list, corner[0], corner[1], corner[2], faces > 4096 ? 2 : 6);
+    cover_triangle(list, (const double *const[3]){corner[0], corner[1], corner[2]},
+                   faces > 4096 ? 4 : 12);
   }
 }
 
