@@ -122,6 +122,8 @@ abbe_result abbe_gem_report_print_json(const abbe_gem_report_facts *f, abbe_erro
   cJSON_AddStringToObject(root, "file", f->input->in.path);
   cJSON_AddStringToObject(root, "title", abbe_gem_input_title(&f->input->in));
   cJSON_AddStringToObject(root, "material", f->input->in.material->name);
+  cJSON_AddStringToObject(root, "index",
+                          abbe_material_is_uniaxial(f->input->in.material) ? "ordinary" : "full");
   cJSON_AddNumberToObject(root, "width_mm", 1000 * f->input->width_m);
   cJSON_AddNumberToObject(root, "head_deg", f->head_deg);
   cJSON_AddNumberToObject(root, "rays", rays(&j->view));

@@ -19,7 +19,7 @@
 /* Points, of 1/72 inch. */
 static const double page_width = 595, page_height = 842, margin = 40;
 static const double wheel = 104, reach = 92; /* radii of the wheel and of the stone within it */
-static const double views_at = 236, profiles_at = 452, table_at = 560;
+static const double views_at = 236, profiles_at = 452, table_at = 560, title_end = 105;
 static const double line = 11.5;
 
 typedef struct sheet {
@@ -28,6 +28,7 @@ typedef struct sheet {
   const abbe_cut_polyhedron *p;
   abbe_cut_measures m;
   const char *note;
+  double down; /* how far a long heading moves everything below it */
 } sheet;
 
 /* Where the stone's x, y, z is seen. */
@@ -198,11 +199,13 @@ static void put_heading(const sheet *s, const char *text, double x, double y) {
 
 static void draw_views(const sheet *s) {
   const double x[] = {page_width / 2 - 132, page_width / 2 + 132};
-  view crown = {.x = {1, 0, 0}, .y = {0, 1, 0}, .towards = {0, 0, 1}, .at = {x[0], views_at}};
-  view pavilion = {.x = {-1, 0, 0}, .y = {0, 1, 0}, .towards = {0, 0, -1}, .at = {x[1], views_at}};
+  view crown = {
+      .x = {1, 0, 0}, .y = {0, 1, 0}, .towards = {0, 0, 1}, .at = {x[0], s->down + views_at}};
+  view pavilion = {
+      .x = {-1, 0, 0}, .y = {0, 1, 0}, .towards = {0, 0, -1}, .at = {x[1], s->down + views_at}};
   crown.scale = pavilion.scale = reach / half_size(s);
-  put_heading(s, "Crown", x[0], views_at - wheel - 20);
-  put_heading(s, "Pavilion, from below", x[1], views_at - wheel - 20);
+  put_heading(s, "Crown", x[0], s->down + views_at - wheel - 20);
+  put_heading(s, "Pavilion, from below", x[1], s->down + views_at - wheel - 20);
   draw_wheel(s, crown.at, ABBE_CUT_CROWN);
   draw_wheel(s, pavilion.at, ABBE_CUT_PAVILION);
   draw_faces(s, &crown, true);
@@ -230,14 +233,16 @@ static void draw_height(const sheet *s, const view *v, double low, double high, 
 static void draw_profiles(const sheet *s) {
   const double x[] = {page_width / 2 - 132, page_width / 2 + 132};
   const double middle = (s->p->min[2] + s->p->max[2]) / 2;
-  view front = {.x = {1, 0, 0}, .y = {0, 0, 1}, .towards = {0, -1, 0}, .at = {x[0], profiles_at}};
-  view side = {.x = {0, 1, 0}, .y = {0, 0, 1}, .towards = {1, 0, 0}, .at = {x[1], profiles_at}};
+  view front = {
+      .x = {1, 0, 0}, .y = {0, 0, 1}, .towards = {0, -1, 0}, .at = {x[0], s->down + profiles_at}};
+  view side = {
+      .x = {0, 1, 0}, .y = {0, 0, 1}, .towards = {1, 0, 0}, .at = {x[1], s->down + profiles_at}};
   front.scale = fmin(reach / half_size(s), 120 / s->m.height);
   front.at[1] += front.scale * middle;
   side.scale = front.scale;
   side.at[1] = front.at[1];
-  put_heading(s, "Front", x[0], profiles_at - 66);
-  put_heading(s, "Right side", x[1], profiles_at - 66);
+  put_heading(s, "Front", x[0], s->down + profiles_at - 66);
+  put_heading(s, "Right side", x[1], s->down + profiles_at - 66);
   draw_faces(s, &front, false);
   draw_faces(s, &side, false);
   const double beside = x[0] + front.scale * s->p->max[0] + 12;
@@ -250,37 +255,6 @@ static void draw_profiles(const sheet *s) {
 
 static const char *or_else(const char *text, const char *instead) {
   return text != NULL && *text != '\0' ? text : instead;
-}
-
-static void draw_title(const sheet *s) {
-  const abbe_cut_measures *m = &s->m;
-  const abbe_cut *cut = s->cut;
-  char text[400], folds[60] = "", index[60] = "";
-  double y = margin + 16;
-  abbe_chart_set_grey(s->cr, 0);
-  abbe_chart_set_font(s->cr, 17, true);
-  abbe_chart_put_text(s->cr, or_else(cut->heading[0], "A design without a name"), margin, y, 0, 1);
-  y += 3;
-  abbe_chart_set_font(s->cr, 8.5, false);
-  abbe_chart_set_grey(s->cr, 0.3);
-  for (int i = 1; i < ABBE_CUT_LINES; i++)
-    if (cut->heading[i] != NULL)
-      abbe_chart_put_text(s->cr, cut->heading[i], margin, y += line, 0, 1);
-  if (cut->folds > 0)
-    snprintf(folds, sizeof folds, ", %d-fold%s", cut->folds,
-             cut->mirror ? ", mirrored" : ", not mirrored");
-  if (cut->refractive_index > 0)
-    abbe_number_format(index, sizeof index, ", for an index of %.3f", cut->refractive_index);
-  snprintf(text, sizeof text, "%zu + %zu girdle facets, gear %d%s%s",
-           m->faces[ABBE_CUT_CROWN] + m->faces[ABBE_CUT_PAVILION], m->faces[ABBE_CUT_GIRDLE],
-           cut->gear, folds, index);
-  abbe_chart_put_text(s->cr, text, margin, y += line, 0, 1);
-  abbe_number_format(
-      text, sizeof text, "L/W %.3f   T/W %.3f   C/W %.3f   P/W %.3f   H/W %.3f   Vol/W³ %.3f",
-      m->length / m->width, m->table / m->width, m->side[ABBE_CUT_CROWN] / m->width,
-      m->side[ABBE_CUT_PAVILION] / m->width, m->height / m->width, m->volume / pow(m->width, 3));
-  abbe_chart_put_text(s->cr, text, margin, y += line, 0, 1);
-  if (s->note != NULL) abbe_chart_put_text(s->cr, s->note, margin, y += line, 0, 1);
 }
 
 /* Words of a text, as many to a line as fit; returns the y after them. Nothing is drawn without
@@ -303,6 +277,38 @@ static double put_words(const sheet *s, const char *text, double x, double y, do
   }
   if (draw) abbe_chart_put_text(s->cr, row, x, y, 0, 1);
   return y + line;
+}
+
+/* Returns the y after its last line. */
+static double put_title(const sheet *s, bool draw) {
+  const abbe_cut_measures *m = &s->m;
+  const abbe_cut *cut = s->cut;
+  char text[400], folds[60] = "", index[60] = "";
+  double y = margin + 16;
+  abbe_chart_set_grey(s->cr, 0);
+  abbe_chart_set_font(s->cr, 17, true);
+  const double width = page_width - 2 * margin;
+  y = put_words(s, or_else(cut->heading[0], "A design without a name"), margin, y, width, draw);
+  y += 3;
+  abbe_chart_set_font(s->cr, 8.5, false);
+  abbe_chart_set_grey(s->cr, 0.3);
+  for (int i = 1; i < ABBE_CUT_LINES; i++)
+    if (cut->heading[i] != NULL) y = put_words(s, cut->heading[i], margin, y, width, draw);
+  if (cut->folds > 0)
+    snprintf(folds, sizeof folds, ", %d-fold%s", cut->folds,
+             cut->mirror ? ", mirrored" : ", not mirrored");
+  if (cut->refractive_index > 0)
+    abbe_number_format(index, sizeof index, ", for an index of %.3f", cut->refractive_index);
+  snprintf(text, sizeof text, "%zu + %zu girdle facets, gear %d%s%s",
+           m->faces[ABBE_CUT_CROWN] + m->faces[ABBE_CUT_PAVILION], m->faces[ABBE_CUT_GIRDLE],
+           cut->gear, folds, index);
+  y = put_words(s, text, margin, y, width, draw);
+  abbe_number_format(
+      text, sizeof text, "L/W %.3f   T/W %.3f   C/W %.3f   P/W %.3f   H/W %.3f   Vol/W³ %.3f",
+      m->length / m->width, m->table / m->width, m->side[ABBE_CUT_CROWN] / m->width,
+      m->side[ABBE_CUT_PAVILION] / m->width, m->height / m->width, m->volume / pow(m->width, 3));
+  y = put_words(s, text, margin, y, width, draw);
+  return s->note != NULL ? put_words(s, s->note, margin, y, width, draw) : y;
 }
 
 static int by_turn(const void *a, const void *b) {
@@ -374,7 +380,7 @@ static double put_tier(const sheet *s, size_t t, double y, bool draw) {
 static double put_table(const sheet *s, bool draw) {
   static const abbe_cut_side order[] = {ABBE_CUT_GIRDLE, ABBE_CUT_PAVILION, ABBE_CUT_CROWN};
   static const char *const titles[] = {"Girdle", "Pavilion", "Crown"};
-  double y = table_at;
+  double y = s->down + table_at;
   for (int k = 0; k < 3; k++) {
     bool any = false;
     for (size_t t = 0; t < s->cut->tier_count; t++) {
@@ -405,10 +411,12 @@ static double put_table(const sheet *s, bool draw) {
 
 /* ---- the sheet ---- */
 
-static double measure(const sheet *s) {
+/* The height of the page; sets down. */
+static double measure(sheet *s) {
   cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
   sheet own = *s;
   own.cr = cairo_create(surface);
+  own.down = s->down = fmax(put_title(&own, false) - title_end, 0);
   const double end = put_table(&own, false);
   cairo_destroy(own.cr);
   cairo_surface_destroy(surface);
@@ -418,7 +426,7 @@ static double measure(const sheet *s) {
 static void draw(const sheet *s) {
   cairo_set_source_rgb(s->cr, 1, 1, 1);
   cairo_paint(s->cr);
-  draw_title(s);
+  put_title(s, true);
   draw_views(s);
   draw_profiles(s);
   put_table(s, true);

@@ -43,14 +43,15 @@ static void an_svg_has_all_faces(void **state) {
 
 static void a_png_is_as_long_as_its_table(void **state) {
   (void)state;
-  size_t height[2];
-  char tall[20000] = "g 96 0\na -45 1 96 24 48 72\na 0 1 96\n";
+  size_t height[3];
+  char headed[20100], tall[20000] = "g 96 0\na -45 1 96 24 48 72\na 0 1 96\n";
   for (int i = 0; i < 60; i++) strcat(tall, "a -90 1 96 24 48 72 G and a line that says why\n");
-  for (int i = 0; i < 2; i++) {
+  snprintf(headed, sizeof headed, "H a title\nH one\nH two\nH three\n%s", tall);
+  for (int i = 0; i < 3; i++) {
     abbe_error error = {0};
     char *data;
     size_t size;
-    write_sheet("cut_diagram_test.png", i == 0 ? design_c : tall, NULL);
+    write_sheet("cut_diagram_test.png", i == 0 ? design_c : i == 1 ? tall : headed, NULL);
     assert_int_equal(abbe_file_read("cut_diagram_test.png", 1 << 24, &data, &size, &error),
                      ABBE_OK);
     const unsigned char *head = (const unsigned char *)data;
@@ -62,6 +63,8 @@ static void a_png_is_as_long_as_its_table(void **state) {
   assert_int_equal(unlink("cut_diagram_test.png"), 0);
   assert_int_equal(height[0], 842 * ABBE_CUT_DIAGRAM_PIXELS);
   assert_true(height[1] > height[0] + 60 * 8 * ABBE_CUT_DIAGRAM_PIXELS / 2);
+  /* two of the five lines below the title find no room above the views */
+  assert_true(height[2] >= height[1] + 2 * 11 * ABBE_CUT_DIAGRAM_PIXELS);
 }
 
 static void a_pdf_and_what_is_refused(void **state) {
