@@ -3,9 +3,8 @@
 #include "cli/base/screen_options.h"
 #include "cli/base/spectral_options.h"
 
-#include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/avif_file.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/screen_png.h"
 #include "colorimetry/plot/false_colours.h"
 #include "colorimetry/spectral_picture/relight.h"
 
@@ -15,35 +14,25 @@
 
 typedef struct request {
   const char *program, *in, *out, *layer;
-  const char *of_colour; /* an option that false colours do not go by */
+  const char *source; /* --source's space */
   abbe_spectral_options spectral;
-  abbe_display_desc desc;
-  int bits;
+  abbe_screen_options screen;
   bool list;
 } request;
 
 static abbe_result list_views(const request *r, abbe_error *error) {
   char *text = NULL;
-  abbe_result result = abbe_display_list(r->desc.config, &text, error);
+  abbe_result result = abbe_display_list(r->screen.display.config, &text, error);
   if (result == ABBE_OK) fputs(text, stdout);
   free(text);
   return result;
 }
 
-static abbe_result show(const request *r, const abbe_image *image, const char *layer,
-                        abbe_error *error) {
-  const abbe_screen_png_desc desc = {
-      .display = r->desc, .name = r->in, .layer = layer, .bits = r->bits};
-  return abbe_screen_png_write(r->out, image, &desc, error);
-}
-
 static abbe_result show_spectrum(const request *r, const abbe_image *image, abbe_error *error) {
-  const abbe_relight_desc desc = {.layer = r->layer,
-                                  .view = r->spectral.view,
-                                  .space = ABBE_RGB_SPACE_XYZ,
-                                  .relative = true};
+  const abbe_relight_desc desc = {
+      .layer = r->layer, .view = r->spectral.view, .space = ABBE_RGB_SPACE_XYZ, .relative = true};
   abbe_image xyz = {0};
-  if (r->desc.source_space != NULL)
+  if (r->source != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: --source names the space of R, G, B; here the colours are of the "
                           "spectrum, in XYZ",
@@ -52,104 +41,71 @@ static abbe_result show_spectrum(const request *r, const abbe_image *image, abbe
   if (result == ABBE_OK)
     fprintf(stderr, "note: the colour of the spectrum, %s; 1 is white %s\n",
             abbe_observer_text(desc.view.observer), abbe_image_attribute_text(&xyz, "abbe:unit"));
-  if (result == ABBE_OK) result = show(r, &xyz, NULL, error);
+  if (result == ABBE_OK)
+    result = abbe_screen_options_write(&r->screen, r->out, &xyz, NULL, r->in, error);
   abbe_image_free(&xyz);
   return result;
 }
 
 static abbe_result show_numbers(const request *r, const abbe_image *image, abbe_error *error) {
-  if (r->of_colour != NULL)
+  const char *given = r->source != NULL ? "--source" : r->screen.given;
+  if (given != NULL)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "%s: '%s' is no colour and is shown in false colours, without %s", r->in,
-                          r->layer, r->of_colour);
+                          r->layer, given);
   return abbe_false_colours_write(r->out, image, r->layer, r->in, error);
+}
+
+static void note_observer(const request *r, const abbe_image *image) {
+  const char *text = abbe_image_attribute_text(image, "abbe:observer");
+  if (text == NULL || abbe_observer_find(text) == ABBE_OBSERVER_CIE_1931) return;
+  fprintf(stderr,
+          "note: %s is for the observer %s; screens are made for that of 1931, so its white is not "
+          "theirs\n",
+          r->in, text);
 }
 
 static abbe_result display(const request *r, const abbe_image *image, abbe_error *error) {
   if (r->spectral.given) return show_spectrum(r, image, error);
   if (abbe_false_colours_mean(image, r->layer)) return show_numbers(r, image, error);
   if (abbe_relight_is_needed(image, r->layer)) return show_spectrum(r, image, error);
-  return show(r, image, r->layer, error);
+  note_observer(r, image);
+  return abbe_screen_options_write(&r->screen, r->out, image, r->layer, r->in, error);
 }
 
-enum {
-  KEY_OCIO = 256,
-  KEY_DISPLAY,
-  KEY_VIEW,
-  KEY_EXPOSURE,
-  KEY_BITS,
-  KEY_LIST,
-  KEY_SOURCE,
-  KEY_LAYER,
-  KEY_GAMUT,
-  KEY_WHITE
-};
+enum { KEY_LIST = 256, KEY_SOURCE, KEY_LAYER };
 
 static const struct argp_option options[] = {
-    {"output", 'o', "OUT.png", ABBE_ARGUMENT_WRITES, "the PNG to write", 0},
-    {"ocio", KEY_OCIO, "FILE", ABBE_ARGUMENT_READS,
-     "the configuration; without it, $OCIO, else the shipped one", 0},
-    {"display", KEY_DISPLAY, "NAME", 0, "the screen; without it, the configuration's first", 0},
-    {"view", KEY_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
-    {"exposure", KEY_EXPOSURE, "STOPS", 0, "brighten (or darken) before the view", 0},
-    {"gamut", KEY_GAMUT, "HOW", 0, ABBE_SCREEN_GAMUT_HELP, 0},
-    {"white", KEY_WHITE, "X,Y|KELVIN", 0, ABBE_SCREEN_WHITE_HELP, 0},
-    {"bits", KEY_BITS, "8|16", 0, "of the PNG; without it, 8, for PQ and HLG 16", 0},
-    {"layer", KEY_LAYER, "NAME", 0, "show the layer NAME.R, NAME.G, NAME.B; a channel, a band (550nm) or a standard error (stderr) "
-     "in false colours", 0},
+    {"output", 'o', "OUT.png|OUT.avif", ABBE_ARGUMENT_WRITES, "the picture to write", 0},
+    {"layer", KEY_LAYER, "NAME", 0,
+     "show the layer NAME.R, NAME.G, NAME.B; a channel, a band (550nm) or a standard error "
+     "(stderr) "
+     "in false colours",
+     0},
     {"source", KEY_SOURCE, "SPACE", 0,
      "the picture's colour space; without it, what the file says, else scene_linear", 0},
     {"list", KEY_LIST, NULL, 0, "list the displays and their views", 0},
     {0}};
 
 static error_t parse(int key, char *arg, struct argp_state *state) {
-  static const char *const bits[] = {"8", "16"};
   request *r = state->input;
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &r->spectral;
+    state->child_inputs[1] = &r->screen;
     return 0;
   case 'o':
-    r->out = abbe_command_target(state->name, "-o", arg, ".png");
-    return 0;
-  case KEY_OCIO:
-    r->of_colour = "--ocio";
-    r->desc.config = arg;
-    return 0;
-  case KEY_DISPLAY:
-    r->of_colour = "--display";
-    r->desc.display = arg;
-    return 0;
-  case KEY_VIEW:
-    r->of_colour = "--view";
-    r->desc.view = arg;
+    r->out = abbe_avif_is_meant(arg) ? arg : abbe_command_target(state->name, "-o", arg, ".png");
     return 0;
   case KEY_SOURCE:
-    r->of_colour = "--source";
-    r->desc.source_space = arg;
+    r->source = arg;
+    r->screen.display.source_space = arg;
     return 0;
   case KEY_LAYER:
     r->layer = arg;
     return 0;
   case KEY_LIST:
     r->list = true;
-    return 0;
-  case KEY_EXPOSURE:
-    r->of_colour = "--exposure";
-    r->desc.exposure = abbe_command_number(r->program, "--exposure", arg,
-                                           -ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
-    return 0;
-  case KEY_GAMUT:
-    r->of_colour = "--gamut";
-    abbe_screen_options_gamut(r->program, arg, &r->desc);
-    return 0;
-  case KEY_WHITE:
-    r->of_colour = "--white";
-    abbe_screen_options_white(r->program, arg, &r->desc);
-    return 0;
-  case KEY_BITS:
-    r->of_colour = "--bits";
-    r->bits = abbe_command_choice(r->program, "--bits", arg, bits, 2) == 0 ? 8 : 16;
     return 0;
   case ARGP_KEY_ARG:
     if (r->in != NULL) argp_error(state, "'%s' is one argument too many", arg);
@@ -158,6 +114,7 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
   case ARGP_KEY_END:
     if (!r->list && r->in == NULL) argp_error(state, "which file?");
     if (!r->list && r->out == NULL) argp_error(state, "-o names the PNG to write");
+    if (!r->list) abbe_screen_options_end(&r->screen, r->out, state);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -166,14 +123,16 @@ static error_t parse(int key, char *arg, struct argp_state *state) {
 
 static const struct argp_child children[] = {
     {&abbe_spectral_options_argp, 0, "A spectral picture by its bands, not by its R, G, B:", 1},
+    {&abbe_screen_options_argp, 0, "How it is shown:", 2},
     {0}};
 
 static const struct argp parser = {
     .options = options,
     .children = children,
     .parser = parse,
-    .args_doc = "IN.exr -o OUT.png\n--list",
-    .doc = "Turns a linear OpenEXR picture into a PNG for a screen, through OpenColorIO.\v"
+    .args_doc = "IN.exr -o OUT.png|OUT.avif\n--list",
+    .doc = "Turns a linear OpenEXR picture into a PNG or an AVIF for a screen, through "
+           "OpenColorIO.\v"
            "Examples:\n"
            "  abbe display gem.exr -o gem.png\n"
            "  abbe display gem.exr -o gem.png --view Plain --exposure 1.5 --bits 16\n"
@@ -183,11 +142,12 @@ static const struct argp parser = {
            "  abbe display bands.exr -o evening.png --lit-by D65 --illuminant A\n"
            "  abbe display lamp.exr -o lamp.png --white 2856 --gamut white\n"
            "  abbe display gem.exr -o gem.png --display 'Rec.2100 PQ'\n"
+           "  abbe display gem.exr -o gem.avif --display 'Rec.2100 PQ' --bits 12\n"
            "  abbe display --list --ocio studio.ocio\n",
 };
 
 int abbe_command_display(int argc, char **argv) {
-  request r = {.program = argv[0], .spectral.program = argv[0]};
+  request r = {.program = argv[0], .spectral.program = argv[0], .screen.program = argv[0]};
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_error error = {0};
   if (r.list) return abbe_command_end(r.program, list_views(&r, &error), &error);

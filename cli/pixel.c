@@ -6,6 +6,7 @@
 #include "colorimetry/image/exr.h"
 #include "colorimetry/plot/chart.h"
 #include "colorimetry/spectral_picture/pixel_probe.h"
+#include "colorimetry/weights.h"
 
 #include <argp.h>
 #include <cjson/cJSON.h>
@@ -30,9 +31,15 @@ typedef struct colours {
 static const char *const sources[2] = {"picture", "spectrum"};
 
 static void describe(const request *r, const abbe_pixel_probe *p, colours *out) {
-  static const double d65[2] = {0.3127, 0.3290};
+  static const abbe_illuminant table = {.kind = ABBE_ILLUMINANT_D65};
+  double d65[2] = {0.3127, 0.3290}, white[3];
   *out = (colours){.has = {p->has_colour, p->has_spectral_xyz}};
-  abbe_colour_description_make(p->xyz, d65, ABBE_OBSERVER_CIE_1931, &out->of[0]);
+  if (p->space.observer != ABBE_OBSERVER_CIE_1931) {
+    abbe_weights_white(p->space.observer, &table, ABBE_OBSERVER_MIN_NM, ABBE_OBSERVER_MAX_NM,
+                       white);
+    abbe_chromaticity_xy(white, d65);
+  }
+  abbe_colour_description_make(p->xyz, d65, p->space.observer, &out->of[0]);
   abbe_colour_description_make(p->spectral_xyz, p->white_xy, r->spectral.view.observer, &out->of[1]);
 }
 
@@ -76,8 +83,11 @@ static void print_text(const request *r, const abbe_image *image, const abbe_pix
     printf("mean of %zu pixels, (%d, %d) to (%d, %d)\n", p->pixels, (int)w.x0, (int)w.y0, (int)w.x1,
            (int)w.y1);
   if (c->has[0])
-    printf("\ncolour of the channels, %s%s\n", p->space.text,
-           p->space.assumed ? " (assumed: the file does not say)" : "");
+    printf("\ncolour of the channels, %s%s%s%s\n", p->space.text,
+           p->space.assumed ? " (assumed: the file does not say)" : "",
+           p->space.observer != ABBE_OBSERVER_CIE_1931 ? ", " : "",
+           p->space.observer != ABBE_OBSERVER_CIE_1931 ? abbe_observer_text(p->space.observer)
+                                                       : "");
   if (c->has[0]) print_colour(&c->of[0]);
   if (c->has[1])
     printf("\ncolour of the spectrum, %s, %s\n", abbe_observer_text(r->spectral.view.observer), unit_of(p));

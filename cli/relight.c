@@ -1,9 +1,9 @@
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/screen_options.h"
 #include "cli/base/spectral_options.h"
 
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/screen_png.h"
 #include "colorimetry/spectral_picture/relight.h"
 
 #include <argp.h>
@@ -11,10 +11,9 @@
 
 typedef struct request {
   const char *program, *in, *exr, *png;
-  const char *of_png; /* an option that the PNG alone has */
   abbe_spectral_options spectral;
   abbe_relight_desc desc;
-  abbe_display_desc display;
+  abbe_screen_options screen;
 } request;
 
 static abbe_result relight(const request *r, const abbe_image *image, abbe_error *error) {
@@ -25,9 +24,8 @@ static abbe_result relight(const request *r, const abbe_image *image, abbe_error
   if (result == ABBE_OK && r->spectral.illuminant != NULL)
     result = abbe_image_set_attribute(&out, "abbe:illuminant", r->spectral.illuminant, error);
   if (result == ABBE_OK && r->exr != NULL) result = abbe_exr_write(r->exr, &out, error);
-  const abbe_screen_png_desc png = {.display = r->display, .name = r->in};
   if (result == ABBE_OK && r->png != NULL)
-    result = abbe_screen_png_write(r->png, &out, &png, error);
+    result = abbe_screen_options_write(&r->screen, r->png, &out, NULL, r->in, error);
   if (result == ABBE_OK)
     fprintf(stderr, "%s; 1 is %s\n", abbe_image_attribute_text(&out, "abbe:observer"),
             abbe_image_attribute_text(&out, "abbe:unit"));
@@ -35,7 +33,7 @@ static abbe_result relight(const request *r, const abbe_image *image, abbe_error
   return result;
 }
 
-enum { KEY_PNG = 256, KEY_SPACE, KEY_LAYER, KEY_BANDS, KEY_RELATIVE, KEY_VIEW, KEY_EXPOSURE };
+enum { KEY_PNG = 256, KEY_SPACE, KEY_LAYER, KEY_BANDS, KEY_RELATIVE };
 
 static const struct argp_option options[] = {
     {"output", 'o', "OUT.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
@@ -46,8 +44,6 @@ static const struct argp_option options[] = {
     {"bands", KEY_BANDS, NULL, 0, "keep the bands too, under the new illuminant", 0},
     {"relative", KEY_RELATIVE, NULL, 0,
      "without --lit-by: an even 1 W/(m2 sr nm) is Y = 1, not lm (of a radiance: cd/m2)", 0},
-    {"view", KEY_VIEW, "NAME", 0, "of the PNG's display", 0},
-    {"exposure", KEY_EXPOSURE, "STOPS", 0, "of the PNG (0)", 0},
     {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -56,6 +52,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &r->spectral;
+    state->child_inputs[1] = &r->screen;
     return 0;
   case 'o':
     r->exr = abbe_command_target(state->name, "-o", text, ".exr");
@@ -78,15 +75,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case KEY_RELATIVE:
     r->desc.relative = true;
     return 0;
-  case KEY_VIEW:
-    r->of_png = "--view";
-    r->display.view = text;
-    return 0;
-  case KEY_EXPOSURE:
-    r->of_png = "--exposure";
-    r->display.exposure = abbe_command_number(
-        r->program, "--exposure", text, -ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
-    return 0;
   case ARGP_KEY_ARG:
     if (r->in != NULL) argp_error(state, "'%s' is one argument too many", text);
     r->in = text;
@@ -95,8 +83,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     if (r->in == NULL) argp_error(state, "which file?");
     if (r->exr == NULL && r->png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
-    if (r->of_png != NULL && r->png == NULL)
-      argp_error(state, "%s is for the PNG: give --png FILE.png too", r->of_png);
+    abbe_screen_options_end(&r->screen, r->png, state);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -104,7 +91,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static const struct argp_child children[] = {
-    {&abbe_spectral_options_argp, 0, "How the spectrum is looked at:", 1}, {0}};
+    {&abbe_spectral_options_argp, 0, "How the spectrum is looked at:", 1},
+    {&abbe_screen_options_argp, 0, "How the PNG shows it:", 2},
+    {0}};
 
 static const struct argp parser = {
     .options = options,
@@ -118,16 +107,18 @@ static const struct argp parser = {
         "  abbe relight bands.exr --lit-by D65 --illuminant A -o evening.exr --png evening.png\n"
         "  abbe relight bands.exr --lit-by D65 --observer 1964 --space xyz -o wide.exr\n"
         "  abbe relight bands.exr --lit-by D65 --illuminant led.csv --bands -o led.exr\n"
-        "  abbe relight chart.exr --illuminant D50 --png chart.png\n",
+        "  abbe relight chart.exr --illuminant D50 --png chart.png --gamut white\n",
 };
 
 int abbe_command_relight(int argc, char **argv) {
-  request r = {.program = argv[0], .spectral.program = argv[0]};
+  request r = {.program = argv[0], .spectral.program = argv[0], .screen.program = argv[0]};
   abbe_arguments_parse(&parser, ABBE_ARGUMENT_READS, argc, argv, &r);
   abbe_error error = {0};
   abbe_image image = {0};
   const char *const targets[] = {r.exr, r.png};
   abbe_result result = abbe_command_check_targets(targets, 2, &error);
+  if (result == ABBE_OK && r.png != NULL)
+    result = abbe_screen_options_check(&r.screen, r.desc.space, &error);
   if (result == ABBE_OK) result = abbe_spectral_options_load(&r.spectral, &error);
   if (result == ABBE_OK) result = abbe_exr_read(r.in, &image, &error);
   if (result == ABBE_OK) result = relight(&r, &image, &error);

@@ -2,6 +2,8 @@
 # the ways to find them.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+# What needs MPI is a component, and so a package, of its own.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME main)
 
 # One archive from the objects of every room, with what the rooms rest on.
 get_property(rooms GLOBAL PROPERTY ABBE_ROOMS)
@@ -76,7 +78,7 @@ if(TARGET abbe_shared)
   install(TARGETS abbe_shared LIBRARY)
 endif()
 if(ABBE_MPI)
-  install(TARGETS abbe-mpi RUNTIME)
+  install(TARGETS abbe-mpi RUNTIME COMPONENT mpi)
 endif()
 install(EXPORT abbeTargets NAMESPACE abbe:: DESTINATION ${package})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/abbeConfig.cmake.in
@@ -125,7 +127,11 @@ file(MAKE_DIRECTORY ${pages})
 add_custom_command(OUTPUT ${pages}/abbe.1 ${pages}/abbe.bash ${pages}/_abbe
   COMMAND abbe --write-pages ${pages} DEPENDS abbe VERBATIM)
 add_custom_target(abbe_pages ALL DEPENDS ${pages}/abbe.1)
-install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1)
+install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN *.1
+  PATTERN abbe-mpi.1 EXCLUDE)
+if(ABBE_MPI)
+  install(FILES ${pages}/abbe-mpi.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT mpi)
+endif()
 install(FILES ${pages}/abbe.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME abbe)
 install(FILES ${pages}/_abbe DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)

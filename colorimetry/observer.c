@@ -67,6 +67,6 @@ abbe_observer abbe_observer_find(const char *name) {
   if (strcmp(name, "2006-2") == 0) return ABBE_OBSERVER_CIE_2015_2;
   if (strcmp(name, "2006-10") == 0) return ABBE_OBSERVER_CIE_2015_10;
   for (int i = 0; i < ABBE_OBSERVER_COUNT; i++)
-    if (strcmp(name, names[i]) == 0) return (abbe_observer)i;
+    if (strcmp(name, names[i]) == 0 || strcmp(name, texts[i]) == 0) return (abbe_observer)i;
   return ABBE_OBSERVER_COUNT;
 }

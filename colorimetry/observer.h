@@ -40,7 +40,8 @@ void abbe_observer_xyz_of(abbe_observer observer, double lambda_nm, double xyz[3
 /* "1931", and "CIE 1931, 2 degrees"; "unknown" for what is none. */
 const char *abbe_observer_name(abbe_observer observer);
 const char *abbe_observer_text(abbe_observer observer);
-/* The observer of that name ("2006-2" and "2006-10" are those of 2015), or ABBE_OBSERVER_COUNT. */
+/* The observer of that name ("2006-2" and "2006-10" are those of 2015) or text, or
+ * ABBE_OBSERVER_COUNT. */
 abbe_observer abbe_observer_find(const char *name);
 
 #ifdef __cplusplus

@@ -79,11 +79,12 @@ void abbe_observer_integral(const abbe_illuminant *illuminant, double from_nm, d
   abbe_observer_integral_by(ABBE_OBSERVER_CIE_1931, illuminant, from_nm, to_nm, xyz);
 }
 
-void abbe_observer_integral_of(const abbe_illuminant *illuminant, double from_nm, double to_nm,
+void abbe_observer_integral_of(abbe_observer observer, const abbe_illuminant *illuminant,
+                               double from_nm, double to_nm,
                                void (*functions)(double lambda_nm, double value[3]),
                                double matrix[9]) {
   abbe_sum3 sum[3] = {{{0}, {0}}};
-  integrate(ABBE_OBSERVER_CIE_1931, illuminant, from_nm, to_nm, 3, functions, sum);
+  integrate(observer, illuminant, from_nm, to_nm, 3, functions, sum);
   for (int j = 0; j < 3; j++) {
     double xyz[3];
     abbe_sum3_get(&sum[j], xyz);

@@ -40,7 +40,8 @@ void abbe_observer_integral_by(abbe_observer observer, const abbe_illuminant *il
 
 /* The same of observer x illuminant x each of three functions that are at most cubic between
  * multiples of 5 nm: matrix[3 * i + j] is component i of XYZ of function j. */
-void abbe_observer_integral_of(const abbe_illuminant *illuminant, double from_nm, double to_nm,
+void abbe_observer_integral_of(abbe_observer observer, const abbe_illuminant *illuminant,
+                               double from_nm, double to_nm,
                                void (*functions)(double lambda_nm, double value[3]),
                                double matrix[9]);
 

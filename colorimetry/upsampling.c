@@ -2,6 +2,7 @@
 
 #include "colorimetry/matrix3.h"
 #include "colorimetry/observer_integral.h"
+#include "colorimetry/weights.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -62,7 +63,8 @@ void abbe_upsampling_basis_mean(double from_nm, double to_nm, double mean[3]) {
 static bool make_coefficients(abbe_upsampling *u) {
   const double most = 100; /* a standard illuminant's are below 2 */
   double of_basis[9], inverse[9];
-  abbe_observer_integral_of(u->illuminant, u->min_nm, u->max_nm, abbe_upsampling_basis, of_basis);
+  abbe_observer_integral_of(u->observer, u->illuminant, u->min_nm, u->max_nm,
+                            abbe_upsampling_basis, of_basis);
   for (int i = 0; i < 9; i++) of_basis[i] /= u->white_y;
   abbe_matrix3_invert(of_basis, inverse);
   abbe_matrix3_multiply(inverse, u->to_xyz, u->to_coefficients);
@@ -111,6 +113,32 @@ abbe_result abbe_upsampling_make(const abbe_illuminant *illuminant, double min_n
   return ABBE_OK;
 }
 
+abbe_result abbe_upsampling_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                                    double min_nm, double max_nm, abbe_upsampling *out,
+                                    abbe_error *error) {
+  ABBE_REQUIRE(illuminant && out, error);
+  abbe_upsampling u;
+  abbe_result result = abbe_upsampling_make(illuminant, min_nm, max_nm, &u, error);
+  *out = (abbe_upsampling){0};
+  if (result != ABBE_OK) return result;
+  if (observer != ABBE_OBSERVER_CIE_1931) {
+    abbe_weights_range range;
+    abbe_weights_range_make_by(observer, illuminant, min_nm, max_nm, &range);
+    if (!(range.white_y > 0))
+      return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                            "the range %g to %g nm holds no light that the observer %s sees under "
+                            "the illuminant %s",
+                            min_nm, max_nm, abbe_observer_text(observer),
+                            abbe_illuminant_name(illuminant));
+    u.observer = observer;
+    u.white_y = range.white_y;
+    abbe_weights_range_xyz(&range, min_nm, max_nm, u.white);
+    abbe_upsampling_band(&u, ABBE_RGB_SPACE_XYZ, min_nm, max_nm, u.to_xyz);
+  }
+  *out = u;
+  return ABBE_OK;
+}
+
 double abbe_upsampling_at(const abbe_upsampling *upsampling, const double rgb[3],
                           double lambda_nm) {
   double basis[3], c[3];
@@ -122,8 +150,8 @@ double abbe_upsampling_at(const abbe_upsampling *upsampling, const double rgb[3]
 void abbe_upsampling_band(const abbe_upsampling *u, abbe_rgb_space space, double from_nm,
                           double to_nm, double matrix[9]) {
   double of_basis[9], to_space[9], coloured[9];
-  abbe_observer_integral_of(u->illuminant, fmax(from_nm, u->min_nm), fmin(to_nm, u->max_nm),
-                            abbe_upsampling_basis, of_basis);
+  abbe_observer_integral_of(u->observer, u->illuminant, fmax(from_nm, u->min_nm),
+                            fmin(to_nm, u->max_nm), abbe_upsampling_basis, of_basis);
   for (int i = 0; i < 9; i++) of_basis[i] /= u->white_y;
   abbe_rgb_space_from_xyz(space, to_space);
   abbe_matrix3_multiply(to_space, of_basis, coloured);

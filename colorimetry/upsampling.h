@@ -20,6 +20,7 @@
 
 #include "base/error.h"
 #include "colorimetry/illuminant.h"
+#include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 #include "spectral/wavelengths.h"
 
@@ -36,6 +37,7 @@ void abbe_upsampling_basis_mean(double from_nm, double to_nm, double mean[3]);
 
 /* How colours are lifted under one illuminant over one range of wavelengths. */
 typedef struct abbe_upsampling {
+  abbe_observer observer;            /* whom white, white_y and to_xyz are for */
   const abbe_illuminant *illuminant; /* not owned: it outlives this */
   double min_nm, max_nm;             /* the range whose light is seen */
   double white_y;   /* integral of ybar x power over the range, nm x the illuminant's unit, > 0 */
@@ -50,6 +52,11 @@ typedef struct abbe_upsampling {
  * light in it makes too few colours: that of one or two lines, or of a narrow band. */
 abbe_result abbe_upsampling_make(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                                  abbe_upsampling *out, abbe_error *error);
+/* The same spectra as another observer sees them: RGB stays what it is, which is defined by the
+ * observer of 1931; white, white_y and to_xyz are the other's. */
+abbe_result abbe_upsampling_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                                    double min_nm, double max_nm, abbe_upsampling *out,
+                                    abbe_error *error);
 
 /* The spectrum of rgb at lambda_nm, over the illuminant's own: 1 for (1, 1, 1). Linear in rgb. */
 double abbe_upsampling_at(const abbe_upsampling *upsampling, const double rgb[3], double lambda_nm);

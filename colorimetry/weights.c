@@ -19,17 +19,22 @@ const double abbe_weights_thesis_table2[ABBE_WEIGHTS_THESIS_COUNT][3] = {
     {77, 0, 204},     {51, 51, 255},   {0, 229.5, 255}, {76.5, 255, 102},
     {204, 229.5, 77}, {229.5, 128, 0}, {255, 0, 0}};
 
+void abbe_weights_range_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                                double min_nm, double max_nm, abbe_weights_range *out) {
+  double white[3];
+  abbe_observer_integral_by(observer, illuminant, min_nm, max_nm, white);
+  *out = (abbe_weights_range){observer, illuminant, min_nm, max_nm, white[1]};
+}
+
 void abbe_weights_range_make(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                              abbe_weights_range *out) {
-  double white[3];
-  abbe_observer_integral(illuminant, min_nm, max_nm, white);
-  *out = (abbe_weights_range){illuminant, min_nm, max_nm, white[1]};
+  abbe_weights_range_make_by(ABBE_OBSERVER_CIE_1931, illuminant, min_nm, max_nm, out);
 }
 
 void abbe_weights_range_xyz(const abbe_weights_range *range, double from_nm, double to_nm,
                             double xyz[3]) {
-  abbe_observer_integral(range->illuminant, fmax(from_nm, range->min_nm),
-                         fmin(to_nm, range->max_nm), xyz);
+  abbe_observer_integral_by(range->observer, range->illuminant, fmax(from_nm, range->min_nm),
+                            fmin(to_nm, range->max_nm), xyz);
   for (int k = 0; k < 3; k++) xyz[k] = range->white_y > 0 ? xyz[k] / range->white_y : 0;
 }
 
@@ -38,6 +43,13 @@ void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, dou
   abbe_weights_range range;
   abbe_weights_range_make(illuminant, min_nm, max_nm, &range);
   abbe_weights_range_xyz(&range, from_nm, to_nm, xyz);
+}
+
+void abbe_weights_white(abbe_observer observer, const abbe_illuminant *illuminant, double min_nm,
+                        double max_nm, double xyz[3]) {
+  abbe_weights_range range;
+  abbe_weights_range_make_by(observer, illuminant, min_nm, max_nm, &range);
+  abbe_weights_range_xyz(&range, min_nm, max_nm, xyz);
 }
 
 double abbe_weights_band_power(const abbe_illuminant *illuminant, double min_nm, double max_nm,

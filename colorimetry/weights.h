@@ -40,6 +40,7 @@ void abbe_weights_free(abbe_weights *weights);
 /* An illuminant over a range of wavelengths, and what the bands of that range are divided by.
  * Whoever asks for many bands makes it once. */
 typedef struct abbe_weights_range {
+  abbe_observer observer;
   const abbe_illuminant *illuminant; /* not owned: it outlives the range */
   double min_nm, max_nm;
   double white_y; /* integral of ybar x power over the range, nm x the illuminant's unit, >= 0 */
@@ -49,6 +50,9 @@ typedef struct abbe_weights_range {
  * is empty (max_nm <= min_nm) or holds no light that the eye sees is no error: its white_y is 0. */
 void abbe_weights_range_make(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                              abbe_weights_range *out);
+/* The same for any observer. */
+void abbe_weights_range_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                                double min_nm, double max_nm, abbe_weights_range *out);
 /* CIE XYZ of the light in the band [from_nm, to_nm], over the Y of the whole range: what a weight
  * of abbe_weights_make is in XYZ, without unit, none negative. Bands that tile the range add up to
  * its white, whose Y is 1. What of a band lies outside the range is left out. No errors: an empty
@@ -60,6 +64,11 @@ void abbe_weights_range_xyz(const abbe_weights_range *range, double from_nm, dou
  * range, too. */
 void abbe_weights_band_xyz(const abbe_illuminant *illuminant, double min_nm, double max_nm,
                            double from_nm, double to_nm, double xyz[3]);
+
+/* XYZ of all of an illuminant over [min_nm, max_nm] for that observer: Y is 1, or 0 where the range
+ * holds no light that the eye sees. */
+void abbe_weights_white(abbe_observer observer, const abbe_illuminant *illuminant, double min_nm,
+                        double max_nm, double xyz[3]);
 
 /* Share, 0 to 1, of the illuminant's power over [min_nm, max_nm] that lies in [from_nm, to_nm],
  * seen or not. What of the band lies outside the range is left out; 0 where the range holds no

@@ -243,6 +243,7 @@ static abbe_result draw_band(work *w, abbe_image *out, abbe_error *error) {
   desc.max_nm = band[1];
   desc.wavelengths = wavelengths_of(w);
   desc.space = ABBE_RGB_SPACE_XYZ;
+  desc.observer = ABBE_OBSERVER_CIE_1931; /* what it makes of a band is divided out */
   desc.aovs = false;
   desc.progress = NULL;
   desc.compiling = NULL;

@@ -86,6 +86,13 @@ static abbe_rgb_space space_of(const abbe_renderer *r) {
   return abbe_profile_is_printed(r->plan.desc.profile) ? ABBE_RGB_SPACE_REC709 : r->plan.desc.space;
 }
 
+/* Whose colours they are; printed methods have their own. */
+static abbe_result set_observer(const abbe_renderer *r, abbe_image *out, abbe_error *error) {
+  const abbe_render_desc *d = &r->plan.desc;
+  if (abbe_profile_is_printed(d->profile)) return ABBE_OK;
+  return abbe_image_set_attribute(out, "abbe:observer", abbe_observer_text(d->observer), error);
+}
+
 static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, abbe_error *error) {
   abbe_result result = check_drawn(r, error);
   if (result != ABBE_OK) return result;
@@ -95,6 +102,7 @@ static abbe_result read_picture(abbe_renderer *r, bool aovs, abbe_image *out, ab
   const abbe_rgb_space space = space_of(r);
   abbe_rgb_space_chromaticities(space, out->xy);
   result = abbe_image_set_attribute(out, "abbe:space", abbe_rgb_space_name(space), error);
+  if (result == ABBE_OK) result = set_observer(r, out, error);
   if (result == ABBE_OK) result = abbe_gl_check(r->gpu.gl, "the reading of the picture", error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
@@ -123,6 +131,7 @@ static abbe_result describe_map(const abbe_renderer *r, size_t light, abbe_resul
   abbe_renderer_map_layout(r, light, &layout);
   if (result == ABBE_OK)
     result = abbe_map_layout_write(&layout, r->scene.local->light[light].name, out, error);
+  if (result == ABBE_OK) result = set_observer(r, out, error);
   if (result != ABBE_OK) abbe_image_free(out);
   return result;
 }

@@ -89,6 +89,7 @@ static uint64_t mix_environment(uint64_t h, const abbe_environment *e, const abb
   const bool there = e != NULL;
   MIX(h, there);
   if (!there) return h;
+  MIX(h, plan->desc.observer);
   MIX(h, plan->desc.min_nm);
   MIX(h, plan->desc.max_nm);
   MIX(h, e->to_map);
@@ -110,6 +111,7 @@ static uint64_t mix_illuminants(uint64_t h, const abbe_scene *scene, const abbe_
 static uint64_t of_surfaces(const abbe_scene *scene, const abbe_plan *plan) {
   uint64_t h = 4;
   MIX(h, plan->desc.space);
+  MIX(h, plan->desc.observer);
   MIX(h, plan->desc.profile);
   MIX(h, plan->desc.min_nm);
   MIX(h, plan->desc.max_nm);
@@ -145,6 +147,7 @@ static uint64_t of_spectra(const abbe_scene *scene, const abbe_plan *plan) {
   }
   h = mix_illuminants(h, scene, plan);
   MIX(h, d->profile);
+  MIX(h, d->observer);
   MIX(h, d->wavelengths);
   MIX(h, d->min_nm);
   MIX(h, d->max_nm);
@@ -273,6 +276,7 @@ void abbe_renderer_inputs_of(const abbe_scene *scene, const abbe_plan *plan,
   MIX(part[ABBE_PART_POWERS], scene->ambient); /* the unit of power goes by the greatest of all */
   MIX(part[ABBE_PART_POWERS], scene->background);
   MIX(part[ABBE_PART_POWERS], plan->desc.space);
+  MIX(part[ABBE_PART_POWERS], plan->desc.observer); /* whose white a light has */
 }
 
 unsigned abbe_renderer_inputs_differ(const abbe_renderer_inputs *a, const abbe_renderer_inputs *b) {

@@ -1,9 +1,14 @@
 foreach(name atlas axis chart chromaticity colour_map colour_temperature difference display_ocio exr false_colours gamut gamut_check gamut_map illuminant image material_chart text_plot observer oklab png_file screen_png sheet
-        pixel_probe radiance_file relight rgb_encoding rgb_space spectral_channels spectral_colour upsampling weights colour_checker reflected_light)
+        pixel_probe radiance_file relight rgb_encoding rgb_space spectral_channels spectral_colour upsampling weights band_reflection colour_checker reflected_light)
   abbe_test(${name} cpu abbe_colorimetry abbe_spectral abbe_base)
 endforeach()
 target_link_libraries(test_rgb_encoding PRIVATE PkgConfig::LCMS)
 abbe_test(animated_png cpu abbe_colorimetry abbe_spectral abbe_base PNG::PNG) # which brings zlib
+abbe_test(avif_file cpu abbe_colorimetry abbe_spectral abbe_base)
+if(AVIF_FOUND)
+  target_link_libraries(test_avif_file PRIVATE PkgConfig::AVIF)
+  target_compile_definitions(test_avif_file PRIVATE ABBE_HAS_AVIF)
+endif()
 abbe_test(stones cpu abbe_colorimetry abbe_spectral abbe_base)
 abbe_test(colour_commands cpu abbe_colorimetry abbe_spectral abbe_base PkgConfig::CJSON)
 target_compile_definitions(test_colour_commands PRIVATE ABBE_PROGRAM="$<TARGET_FILE:abbe>")

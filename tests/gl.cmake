@@ -49,6 +49,7 @@ abbe_test(adaptive_pass gl ${gl_rooms})
 abbe_test(surroundings gl ${gl_rooms})
 abbe_test(error_bars gl abbe_validation ${gl_rooms})
 abbe_test(reflected_colour gl abbe_validation ${gl_rooms})
+abbe_test(observers gl abbe_validation ${gl_rooms})
 abbe_test(error_picture cpu ${gl_rooms})
 
 # For script/bench-changes.

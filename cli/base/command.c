@@ -134,7 +134,7 @@ int abbe_command_end(const char *program, abbe_result result, abbe_error *error)
 const char *abbe_command_target(const char *program, const char *option, const char *text,
                                 const char *ending) {
   static const char *const known[] = {".exr",  ".png", ".jpg",  ".jpeg", ".svg", ".tif",
-                                      ".tiff", ".bmp", ".gif",  ".hdr",  ".pfm", ".webp",
+                                      ".tiff", ".bmp", ".gif",  ".avif", ".hdr",  ".pfm", ".webp",
                                       ".json", ".csv", ".yaml", ".pov"};
   const char *dot = strrchr(text, '.');
   if (dot == NULL || strcasecmp(dot, ending) == 0) return text;

@@ -1,25 +1,124 @@
 #include "cli/base/screen_options.h"
 
+#include "cli/base/arguments.h"
 #include "cli/base/command.h"
 
 #include "colorimetry/colour_temperature.h"
+#include "colorimetry/image/avif_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-void abbe_screen_options_gamut(const char *program, const char *text, abbe_display_desc *desc) {
+enum {
+  OPTION_OCIO = 0xa00,
+  OPTION_DISPLAY,
+  OPTION_VIEW,
+  OPTION_EXPOSURE,
+  OPTION_GAMUT,
+  OPTION_WHITE,
+  OPTION_BITS
+};
+
+static const struct argp_option options[] = {
+    {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
+     "the configuration; without it, $OCIO, else the shipped one", 0},
+    {"display", OPTION_DISPLAY, "NAME", 0, "the screen; without it, the configuration's first", 0},
+    {"view", OPTION_VIEW, "NAME", 0, "how to show it; without it, the display's first", 0},
+    {"exposure", OPTION_EXPOSURE, "STOPS", 0, "brighten (or darken) before the view (0)", 0},
+    {"gamut", OPTION_GAMUT, "HOW", 0,
+     "bring colours that the screen lacks inside, before the view: clip, white (towards it at "
+     "constant Oklab hue) or compress (as ACES 1.3); without it, as the view does",
+     0},
+    {"white", OPTION_WHITE, "X,Y|KELVIN", 0,
+     "what shall look white, by Bradford: a chromaticity or a temperature (daylight's from 4000 K "
+     "on)",
+     0},
+    {"bits", OPTION_BITS, "N", 0,
+     "of a PNG 8 or 16 (8, for PQ and HLG 16), of an AVIF 10 or 12 (10)", 0},
+    {0}};
+
+static void take_gamut(abbe_screen_options *o, const char *text) {
   const char *names[ABBE_GAMUT_MAP_COUNT];
   for (int i = 0; i < ABBE_GAMUT_MAP_COUNT; i++)
     names[i] = abbe_gamut_map_name((abbe_gamut_map_kind)i);
-  desc->gamut = (abbe_gamut_map_kind)abbe_command_choice(program, "--gamut", text, names,
-                                                         ABBE_GAMUT_MAP_COUNT);
+  o->display.gamut = (abbe_gamut_map_kind)abbe_command_choice(o->program, "--gamut", text, names,
+                                                              ABBE_GAMUT_MAP_COUNT);
 }
 
-void abbe_screen_options_white(const char *program, const char *text, abbe_display_desc *desc) {
-  if (abbe_colour_temperature_read_white(text, desc->white)) return;
+static void take_white(abbe_screen_options *o, const char *text) {
+  if (abbe_colour_temperature_read_white(text, o->display.white)) return;
   fprintf(stderr,
           "%s: --white '%s' is no chromaticity such as 0.4476,0.4074, nor a temperature of %g to "
           "%g K such as 2856\n",
-          program, text, ABBE_COLOUR_TEMPERATURE_MIN, ABBE_COLOUR_TEMPERATURE_MAX_DAYLIGHT);
+          o->program, text, ABBE_COLOUR_TEMPERATURE_MIN, ABBE_COLOUR_TEMPERATURE_MAX_DAYLIGHT);
   exit(ABBE_EXIT_USAGE);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  static const char *const bits[] = {"8", "10", "12", "16"};
+  static const int count[] = {8, 10, 12, 16};
+  abbe_screen_options *o = state->input;
+  switch (key) {
+  case OPTION_OCIO:
+    o->given = "--ocio";
+    o->display.config = text;
+    return 0;
+  case OPTION_DISPLAY:
+    o->given = "--display";
+    o->display.display = text;
+    return 0;
+  case OPTION_VIEW:
+    o->given = "--view";
+    o->display.view = text;
+    return 0;
+  case OPTION_EXPOSURE:
+    o->given = "--exposure";
+    o->display.exposure = abbe_command_number(
+        o->program, "--exposure", text, -ABBE_DISPLAY_MAX_EXPOSURE, ABBE_DISPLAY_MAX_EXPOSURE);
+    return 0;
+  case OPTION_GAMUT:
+    o->given = "--gamut";
+    take_gamut(o, text);
+    return 0;
+  case OPTION_WHITE:
+    o->given = "--white";
+    take_white(o, text);
+    return 0;
+  case OPTION_BITS:
+    o->given = "--bits";
+    o->bits = count[abbe_command_choice(o->program, "--bits", text, bits, 4)];
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+const struct argp abbe_screen_options_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+
+void abbe_screen_options_end(const abbe_screen_options *o, const char *png,
+                             struct argp_state *state) {
+  if (o->given != NULL && png == NULL)
+    argp_error(state, "%s is for the PNG: give --png FILE.png too", o->given);
+  const bool avif = abbe_avif_is_meant(png);
+  if (o->bits != 0 && avif != (o->bits == 10 || o->bits == 12))
+    argp_error(state, "--bits '%d': %s", o->bits,
+               avif ? "an AVIF has 10 or 12" : "a PNG has 8 or 16, and an AVIF 10 or 12");
+}
+
+abbe_result abbe_screen_options_check(const abbe_screen_options *o, abbe_rgb_space space,
+                                      abbe_error *error) {
+  abbe_display *display = NULL;
+  abbe_display_desc desc = o->display;
+  desc.source_space = abbe_rgb_space_ocio_name(space);
+  const abbe_result result = abbe_display_make(&desc, &display, error);
+  abbe_display_free(display);
+  return result;
+}
+
+abbe_result abbe_screen_options_write(const abbe_screen_options *o, const char *path,
+                                      const abbe_image *image, const char *layer, const char *name,
+                                      abbe_error *error) {
+  const abbe_screen_png_desc desc = {
+      .display = o->display, .layer = layer, .name = name, .bits = o->bits};
+  return abbe_screen_png_write(path, image, &desc, error);
 }

@@ -1,18 +1,39 @@
-/* screen_options.h: options of how pictures are shown, for every command that writes a PNG. */
+/* screen_options.h: how a picture is shown, for every command that writes a PNG: --ocio, --display,
+ * --view, --exposure, --gamut, --white and --bits.
+ */
 #ifndef ABBE_CLI_BASE_SCREEN_OPTIONS_H
 #define ABBE_CLI_BASE_SCREEN_OPTIONS_H
 
 #include "colorimetry/image/display_ocio.h"
+#include "colorimetry/image/screen_png.h"
+#include "colorimetry/rgb_space.h"
 
-#define ABBE_SCREEN_GAMUT_HELP                                                                     \
-  "bring colours that the screen lacks inside, before the view: clip, white (towards it at "       \
-  "constant Oklab hue) or compress (as ACES 1.3); without it, as the view does"
-#define ABBE_SCREEN_WHITE_HELP                                                                     \
-  "what shall look white, by Bradford: a chromaticity or a temperature (daylight's from 4000 K "   \
-  "on)"
+#include <argp.h>
 
-/* The value of --gamut, of --white. A wrong one ends the program with ABBE_EXIT_USAGE. */
-void abbe_screen_options_gamut(const char *program, const char *text, abbe_display_desc *desc);
-void abbe_screen_options_white(const char *program, const char *text, abbe_display_desc *desc);
+/* Zeroed but for program. */
+typedef struct abbe_screen_options {
+  const char *program;
+  const char *given; /* one of them, as it was given: a picture must be shown */
+  abbe_display_desc display;
+  int bits;
+} abbe_screen_options;
+
+/* An argp child; its input is an abbe_screen_options. */
+extern const struct argp abbe_screen_options_argp;
+
+/* At the end of the arguments: what is given needs a picture, and its bits are such as that has.
+ * Ends the program with ABBE_EXIT_USAGE. */
+void abbe_screen_options_end(const abbe_screen_options *options, const char *png,
+                             struct argp_state *state);
+
+/* A view that the configuration does not have is found out before the work: that of a picture in
+ * that space. Errors of abbe_display_make. */
+abbe_result abbe_screen_options_check(const abbe_screen_options *options, abbe_rgb_space space,
+                                      abbe_error *error);
+
+/* Shows it. `layer` and `name` as of abbe_screen_png_desc. */
+abbe_result abbe_screen_options_write(const abbe_screen_options *options, const char *path,
+                                      const abbe_image *image, const char *layer, const char *name,
+                                      abbe_error *error);
 
 #endif

@@ -7,7 +7,7 @@
 
 typedef struct request {
   abbe_render_desc desc;
-  int profile, fill, model, space, gl;
+  int profile, fill, model, space, observer, gl;
 } request;
 
 #define NAME_OF_2(code, name) name,
@@ -16,6 +16,7 @@ static const char *const profiles[] = {ABBE_PROFILES(NAME_OF_2)};
 static const char *const fills[] = {ABBE_FILLS(NAME_OF_2)};
 static const char *const models[] = {ABBE_MODELS(NAME_OF_2)};
 static const char *const spaces[] = {ABBE_RGB_SPACES(NAME_OF_3)};
+static const char *const observers[] = {ABBE_OBSERVERS(NAME_OF_3)};
 static const char *const backends[] = {ABBE_CONTEXT_BACKENDS(NAME_OF_2)};
 
 static abbe_result read_request(const char *const *settings, size_t count, request *q,
@@ -41,6 +42,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_CHOICE("fill", &q->fill, fills),
       ABBE_LIB_CHOICE("model", &q->model, models),
       ABBE_LIB_CHOICE("space", &q->space, spaces),
+      ABBE_LIB_CHOICE("observer", &q->observer, observers),
       ABBE_LIB_CHOICE("gl", &q->gl, backends),
       ABBE_LIB_FLAG("aovs", &d->aovs)};
   abbe_result result = abbe_library_settings_read("render", known, sizeof known / sizeof *known,
@@ -49,6 +51,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
   d->fill = (abbe_fill)q->fill;
   d->model = (abbe_model)q->model;
   d->space = (abbe_rgb_space)q->space;
+  d->observer = (abbe_observer)q->observer;
   return result;
 }
 

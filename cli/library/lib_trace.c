@@ -15,13 +15,14 @@ typedef struct request {
   abbe_trace_run_desc run;
   const char *light;
   size_t seed, map_size;
-  int physics, space;
+  int physics, space, observer;
   bool filter;
   abbe_map_layout layout;
 } request;
 
 #define NAME_OF_3(code, name, ocio) name,
 static const char *const spaces[] = {ABBE_RGB_SPACES(NAME_OF_3)};
+static const char *const observers[] = {ABBE_OBSERVERS(NAME_OF_3)};
 static const char *const physics[] = {"full", "matched"};
 
 static abbe_result read_request(const char *const *settings, size_t count, request *q,
@@ -40,6 +41,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
       ABBE_LIB_NUMBER("min_nm", &d->min_nm, 1, 1e6),
       ABBE_LIB_NUMBER("max_nm", &d->max_nm, 1, 1e6),
       ABBE_LIB_CHOICE("space", &q->space, spaces),
+      ABBE_LIB_CHOICE("observer", &q->observer, observers),
       ABBE_LIB_CHOICE("physics", &q->physics, physics),
       ABBE_LIB_FLAG("filter", &q->filter),
       ABBE_LIB_COUNT("map_size", &q->map_size, 1, ABBE_TRACER_MAX_SIDE),
@@ -50,6 +52,7 @@ static abbe_result read_request(const char *const *settings, size_t count, reque
     q->run.passes = DEFAULT_PASSES;
   d->seed = (uint32_t)q->seed;
   d->space = (abbe_rgb_space)q->space;
+  d->observer = (abbe_observer)q->observer;
   d->guides = q->filter;
   d->map_width = d->map_height = q->map_size;
   if (result == ABBE_OK && q->filter && q->run.passes == 1)

@@ -223,3 +223,23 @@ void abbe_man_page_end(FILE *out) {
         out);
   end(out, "abbe-render");
 }
+
+void abbe_man_page_ranks(FILE *out, const char *version) {
+  begin(out, "abbe-mpi", "one trace by the ranks of an MPI job", version);
+  fputs(".SH SYNOPSIS\n.B mpirun\n[\\fIOPTION\\fR…]\n.B abbe\\-mpi trace\n[\\fIOPTION\\fR…] "
+        "\\fISCENE.yaml\\fR\n",
+        out);
+  fputs(".SH DESCRIPTION\nEach rank traces passes of its own; the sums are put together exactly, so "
+        "that the file is that of one process, to the last bit, whatever the number of ranks. Rank "
+        "0 alone writes and says how far the work is.\n",
+        out);
+  fputs(".SH OPTIONS\nThose of\n.BR abbe\\-trace (1),\nbut\n.BR \\-\\-passes ,\n.B \\-\\-merge\n"
+        "and\n.BR \\-\\-rates ,\nwhich are for one process. Each rank keeps a checkpoint, named "
+        "by its number; with\n.B \\-\\-resume\na job that was ended goes on from them.\n",
+        out);
+  fputs(".SH EXAMPLES\n", out);
+  static const char example[] =
+      "  mpirun -n 4 abbe-mpi trace scenes/gem.yaml -o gem.exr --spp 256 --resume\n";
+  put_text(out, example, strlen(example));
+  end(out, "abbe-trace");
+}

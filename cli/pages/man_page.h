@@ -14,4 +14,7 @@ void abbe_man_page_begin(FILE *out, const char *version);
 void abbe_man_page_command(FILE *out, const char *name, const char *summary);
 void abbe_man_page_end(FILE *out);
 
+/* abbe-mpi's, whose options are another page's. */
+void abbe_man_page_ranks(FILE *out, const char *version);
+
 #endif

@@ -60,6 +60,14 @@ static void write_own_page(work *w) {
   w->result = abbe_file_writer_commit(&file, w->error);
 }
 
+static void write_ranks_page(work *w) {
+  abbe_file_writer file = {0};
+  if (w->result == ABBE_OK) w->result = open_page(w, "abbe-mpi.1", &file);
+  if (w->result != ABBE_OK) return;
+  abbe_man_page_ranks(file.stream, w->version);
+  w->result = abbe_file_writer_commit(&file, w->error);
+}
+
 /* ---- completion ---- */
 
 static void bash_verbs(void *user, const abbe_option_table *table) {
@@ -105,6 +113,7 @@ abbe_result abbe_pages_write(const char *folder, const char *version,
             .error = error};
   write_own_page(&w);
   visit_all(&w, write_page, &w);
+  write_ranks_page(&w);
   write_completion(&w, false);
   write_completion(&w, true);
   return w.result;

@@ -19,19 +19,12 @@
 
 enum {
   OPTION_PNG = 0x200,
-  OPTION_BITS,
   OPTION_AOVS,
   OPTION_UNFILLED,
   OPTION_BANDS,
   OPTION_STATS,
   OPTION_GL,
   OPTION_FRAMES,
-  OPTION_OCIO,
-  OPTION_DISPLAY,
-  OPTION_VIEW,
-  OPTION_EXPOSURE,
-  OPTION_GAMUT,
-  OPTION_WHITE,
   OPTION_JSON
 };
 
@@ -41,7 +34,6 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE.exr", ABBE_ARGUMENT_WRITES, "the scene-linear picture", 0},
     {"png", OPTION_PNG, "FILE.png", ABBE_ARGUMENT_WRITES,
      "the picture for a display, through OpenColorIO", 0},
-    {"bits", OPTION_BITS, "8|16", 0, "of the PNG (8; of PQ and HLG 16)", 0},
     {"aovs", OPTION_AOVS, NULL, 0, "direct and caustic light and distance in the EXR too", 0},
     {"bands", OPTION_BANDS, "N", 0,
      "N bands of wavelengths in the EXR and the saved map too: N frames more", 0},
@@ -52,17 +44,10 @@ static const struct argp_option options[] = {
     {"frames", OPTION_FRAMES, "N", 0, "warm up, then report the median of N frames (1)", 0},
     {"gl", OPTION_GL, "NAME", 0, "osmesa (CPU) or egl (osmesa)", 0},
     {"quiet", 'q', NULL, 0, "no progress, no summary", 0},
-    {"ocio", OPTION_OCIO, "FILE", ABBE_ARGUMENT_READS,
-     "OpenColorIO configuration ($OCIO, else the shipped one)", 2},
-    {"display", OPTION_DISPLAY, "NAME", 0, "of the configuration", 2},
-    {"view", OPTION_VIEW, "NAME", 0, "of the display", 2},
-    {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
-    {"gamut", OPTION_GAMUT, "HOW", 0, ABBE_SCREEN_GAMUT_HELP, 2},
-    {"white", OPTION_WHITE, "X,Y|KELVIN", 0, ABBE_SCREEN_WHITE_HELP, 2},
     {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
-  static const char *const backends[] = {"osmesa", "egl"}, *const bits[] = {"8", "16"};
+  static const char *const backends[] = {"osmesa", "egl"};
   request *q = state->input;
   const char *p = q->render.program;
   switch (key) {
@@ -72,16 +57,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     state->child_inputs[2] = &q->preset;
     state->child_inputs[3] = &q->errors;
     state->child_inputs[4] = &q->turntable;
+    state->child_inputs[5] = &q->screen;
     return 0;
   case 'o':
     q->exr = abbe_command_target(state->name, "-o", text, ".exr");
     return 0;
   case OPTION_PNG:
     q->png = abbe_command_target(state->name, "--png", text, ".png");
-    return 0;
-  case OPTION_BITS:
-    q->of_png = "--bits";
-    q->bits = abbe_command_choice(p, "--bits", text, bits, 2) == 0 ? 8 : 16;
     return 0;
   case OPTION_AOVS:
     q->aovs = true;
@@ -107,36 +89,11 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'q':
     q->quiet = true;
     return 0;
-  case OPTION_OCIO:
-    q->of_png = "--ocio";
-    q->display.config = text;
-    return 0;
-  case OPTION_DISPLAY:
-    q->of_png = "--display";
-    q->display.display = text;
-    return 0;
-  case OPTION_VIEW:
-    q->of_png = "--view";
-    q->display.view = text;
-    return 0;
-  case OPTION_EXPOSURE:
-    q->of_png = "--exposure";
-    q->display.exposure = abbe_command_number(p, "--exposure", text, -30, 30);
-    return 0;
-  case OPTION_GAMUT:
-    q->of_png = "--gamut";
-    abbe_screen_options_gamut(p, text, &q->display);
-    return 0;
-  case OPTION_WHITE:
-    q->of_png = "--white";
-    abbe_screen_options_white(p, text, &q->display);
-    return 0;
   case ARGP_KEY_END:
     if (q->exr == NULL && q->png == NULL && q->stats == NULL && q->map.save == NULL && !q->json &&
         q->errors.png == NULL)
       argp_error(state, "where to? Give -o FILE.exr, --png FILE.png or both");
-    if (q->of_png != NULL && q->png == NULL)
-      argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
+    abbe_screen_options_end(&q->screen, q->png, state);
     if (q->bands > 0 && q->map.save == NULL && q->exr == NULL)
       argp_error(state, "--bands are those of -o FILE.exr and --save-map FILE.exr: give one");
     if (q->turntable.frames > 0 && (q->map.save != NULL || q->frames > 0 || q->errors.asked ||
@@ -156,14 +113,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 /* A view that the configuration does not have is found out before the work, as a target is. */
 static abbe_result check_display(const request *q, abbe_error *error) {
   if (q->png == NULL) return ABBE_OK;
-  abbe_display *display = NULL;
-  abbe_display_desc desc = q->display;
-  bool thesis = abbe_profile_is_printed(q->render.desc.profile);
-  desc.source_space =
-      abbe_rgb_space_ocio_name(thesis ? ABBE_RGB_SPACE_REC709 : q->render.desc.space);
-  abbe_result result = abbe_display_make(&desc, &display, error);
-  abbe_display_free(display);
-  return result;
+  const bool printed = abbe_profile_is_printed(q->render.desc.profile);
+  return abbe_screen_options_check(
+      &q->screen, printed ? ABBE_RGB_SPACE_REC709 : q->render.desc.space, error);
 }
 
 /* One frame, or the median of several after a warm-up, and the baseline under them. */
@@ -224,6 +176,7 @@ static abbe_traced_picture_desc describe_traced(const request *q) {
                                     .min_nm = d->min_nm,
                                     .max_nm = d->max_nm,
                                     .space = d->space,
+                                    .observer = d->observer,
                                     .quiet = q->quiet};
 }
 
@@ -425,6 +378,7 @@ int abbe_command_render(int argc, char **argv) {
       {&abbe_preset_options_argp, 0, "By error or by time:", 2},
       {&abbe_error_options_argp, 0, "How far off it is:", 4},
       {&abbe_turntable_argp, 0, "From all around:", 5},
+      {&abbe_screen_options_argp, 0, "How the PNG shows it:", 6},
       {0}};
   static const struct argp argp = {
       options,
@@ -452,7 +406,7 @@ int abbe_command_render(int argc, char **argv) {
                .preset.tool = -1,
                .errors.program = argv[0],
                .turntable.program = argv[0],
-               .bits = 0};
+               .screen.program = argv[0]};
   abbe_arguments_parse(&argp, ABBE_ARGUMENT_READS, argc, argv, &q);
   abbe_error error = {0};
   abbe_scene scene = {0};

@@ -2,6 +2,7 @@
 
 #include "cli/base/arguments.h"
 #include "cli/base/command.h"
+#include "cli/base/spectral_options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,6 +29,7 @@ enum {
   OPTION_SHARE,
   OPTION_EXITS,
   OPTION_SPACE,
+  OPTION_OBSERVER,
   OPTION_EVERYTHING,
   OPTION_MATERIALS
 };
@@ -80,6 +82,7 @@ static const struct argp_option options[] = {
     {"exits", OPTION_EXITS, "N", 0,
      "exits followed at the most, 1 to 32 (8; to 24 in a gem; 4 by layers)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
+    {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
     {"everything", OPTION_EVERYTHING, NULL, 0,
      "switch on what no fact asks for, to measure what the plan saves", 1},
     {"materials", OPTION_MATERIALS, "TABLE", ABBE_ARGUMENT_READS,
@@ -169,6 +172,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_SPACE:
     d->space =
         (abbe_rgb_space)abbe_command_choice(p, "--space", text, spaces, ABBE_RGB_SPACE_COUNT);
+    return 0;
+  case OPTION_OBSERVER:
+    d->observer = abbe_spectral_options_observer(p, text);
     return 0;
   case OPTION_EVERYTHING:
     d->everything = true;

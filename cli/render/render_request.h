@@ -4,11 +4,11 @@
 
 #include "cli/base/command.h"
 #include "cli/base/map_options.h"
+#include "cli/base/screen_options.h"
 #include "cli/render/error_options.h"
 #include "cli/render/preset_options.h"
 #include "cli/render/render_options.h"
 
-#include "colorimetry/image/display_ocio.h"
 #include "gl/device/context.h"
 
 /* --turntable; zeroed but for program. */
@@ -32,12 +32,10 @@ typedef struct abbe_render_request {
   abbe_error_options errors;
   abbe_turntable_options turntable;
   const char *exr, *png, *stats;
-  const char *of_png; /* an option that the PNG alone has */
   bool aovs, unfilled, quiet, json;
-  int bits;
   size_t frames, bands;
   abbe_context_backend backend;
-  abbe_display_desc display;
+  abbe_screen_options screen;
 } abbe_render_request;
 
 /* Since the program was started. */

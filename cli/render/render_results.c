@@ -5,7 +5,6 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/screen_png.h"
 #include "gl/band_picture.h"
 
 #include <cjson/cJSON.h>
@@ -133,8 +132,7 @@ abbe_result abbe_render_add_bands(const request *q, const abbe_scene *scene, abb
 }
 
 abbe_result abbe_render_write_png(const request *q, const abbe_image *image, abbe_error *error) {
-  const abbe_screen_png_desc desc = {.display = q->display, .bits = q->bits};
-  return abbe_screen_png_write(q->png, image, &desc, error);
+  return abbe_screen_options_write(&q->screen, q->png, image, NULL, NULL, error);
 }
 
 abbe_result abbe_render_save_map(const request *q, abbe_renderer *renderer, abbe_error *error) {

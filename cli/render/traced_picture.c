@@ -15,6 +15,7 @@ static abbe_trace_desc describe(const abbe_traced_picture_desc *d, size_t photon
                            .min_nm = d->min_nm,
                            .max_nm = d->max_nm,
                            .space = d->space,
+                           .observer = d->observer,
                            .photons = photons * photons};
 }
 

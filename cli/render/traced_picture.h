@@ -2,6 +2,7 @@
 #ifndef ABBE_CLI_RENDER_TRACED_PICTURE_H
 #define ABBE_CLI_RENDER_TRACED_PICTURE_H
 
+#include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 #include "validation/sweep/picture_choice.h"
 
@@ -9,6 +10,7 @@ typedef struct abbe_traced_picture_desc {
   size_t width, height; /* pixels; 0: the scene's */
   double min_nm, max_nm;
   abbe_rgb_space space;
+  abbe_observer observer;
   bool quiet;
 } abbe_traced_picture_desc;
 

@@ -3,6 +3,7 @@
 #include "cli/base/map_options.h"
 #include "cli/base/scene_input.h"
 #include "cli/base/screen_options.h"
+#include "cli/base/spectral_options.h"
 #include "cli/trace/trace.h"
 #include "cli/trace/trace_passes.h"
 #include "cli/trace/trace_results.h"
@@ -31,6 +32,7 @@ enum {
   OPTION_BANDS,
   OPTION_RANGE,
   OPTION_SPACE,
+  OPTION_OBSERVER,
   OPTION_HALF,
   OPTION_FILTER,
   OPTION_SEED,
@@ -41,10 +43,6 @@ enum {
   OPTION_PASSES,
   OPTION_MERGE,
   OPTION_EVERY,
-  OPTION_VIEW,
-  OPTION_EXPOSURE,
-  OPTION_GAMUT,
-  OPTION_WHITE,
   OPTION_STATS,
   OPTION_JSON,
   OPTION_RATES
@@ -76,6 +74,7 @@ static const struct argp_option options[] = {
     {"bands", OPTION_BANDS, "N", 0, "spectral layers too, N bands over the range", 1},
     {"range", OPTION_RANGE, "FROM:TO", 0, "wavelengths in nm (380:780)", 1},
     {"space", OPTION_SPACE, "NAME", 0, "of the picture: acescg, rec709, xyz (acescg)", 1},
+    {"observer", OPTION_OBSERVER, "NAME", 0, ABBE_OBSERVER_HELP, 1},
     {"filter", OPTION_FILTER, NULL, 0,
      "take noise off the picture, by non-local means; what was traced is kept as raw.*", 1},
     {"half", OPTION_HALF, NULL, 0, "files in half precision: 11 bits, and half the size", 1},
@@ -92,10 +91,6 @@ static const struct argp_option options[] = {
     {"merge", OPTION_MERGE, NULL, 0,
      "trace nothing: put parts together, the checkpoints named behind the scene", 2},
     {"checkpoint-every", OPTION_EVERY, "SECONDS", 0, "how often it is written (30)", 2},
-    {"view", OPTION_VIEW, "NAME", 0, "of the display, for the PNG", 2},
-    {"exposure", OPTION_EXPOSURE, "STOPS", 0, "for the PNG (0)", 2},
-    {"gamut", OPTION_GAMUT, "HOW", 0, ABBE_SCREEN_GAMUT_HELP, 2},
-    {"white", OPTION_WHITE, "X,Y|KELVIN", 0, ABBE_SCREEN_WHITE_HELP, 2},
     {"rates", OPTION_RATES, NULL, 0, "rays a second, beside Embree's own rate on the same rays", 2},
     {0}};
 
@@ -166,6 +161,9 @@ static error_t parse_work(int key, char *text, request *q) {
     d->space =
         (abbe_rgb_space)abbe_command_choice(p, "--space", text, spaces, ABBE_RGB_SPACE_COUNT);
     return 0;
+  case OPTION_OBSERVER:
+    d->observer = abbe_spectral_options_observer(p, text);
+    return 0;
   case OPTION_SEED:
     d->seed = (uint32_t)abbe_command_count(p, "--seed", text, 0, UINT32_MAX);
     return 0;
@@ -202,6 +200,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case ARGP_KEY_INIT:
     state->child_inputs[0] = &q->map;
+    state->child_inputs[1] = &q->screen;
     return 0;
   case 'o':
     q->exr = abbe_command_target(state->name, "-o", text, ".exr");
@@ -236,22 +235,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_EVERY:
     q->every = abbe_command_number(q->program, "--checkpoint-every", text, 0, 1e9);
     return 0;
-  case OPTION_VIEW:
-    q->of_png = "--view";
-    q->display.view = text;
-    return 0;
-  case OPTION_EXPOSURE:
-    q->of_png = "--exposure";
-    q->display.exposure = abbe_command_number(q->program, "--exposure", text, -30, 30);
-    return 0;
-  case OPTION_GAMUT:
-    q->of_png = "--gamut";
-    abbe_screen_options_gamut(q->program, text, &q->display);
-    return 0;
-  case OPTION_WHITE:
-    q->of_png = "--white";
-    abbe_screen_options_white(q->program, text, &q->display);
-    return 0;
   case OPTION_RATES:
     q->rates = true;
     return 0;
@@ -269,8 +252,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
       argp_error(state, "where to? Give -o FILE.exr, --save-map FILE.exr or both");
     if (q->filter && q->part_end == 0 && ((q->exr == NULL && q->png == NULL) || q->passes == 1))
       argp_error(state, "--filter needs a picture (-o, --png) of two passes or more (--spp 2)");
-    if (q->of_png != NULL && q->png == NULL)
-      argp_error(state, "%s is for the PNG: give --png FILE.png too", q->of_png);
+    abbe_screen_options_end(&q->screen, q->png, state);
     return 0;
   default:
     return parse_work(key, text, q);
@@ -286,12 +268,7 @@ static abbe_result check_targets(const request *q, abbe_error *error) {
   abbe_result targeted = abbe_command_check_targets(targets, part ? 2 : 5, error);
   if (targeted != ABBE_OK) return targeted;
   if (q->png == NULL || part) return ABBE_OK;
-  abbe_display *display = NULL;
-  abbe_display_desc desc = q->display;
-  desc.source_space = abbe_rgb_space_ocio_name(q->desc.space);
-  abbe_result result = abbe_display_make(&desc, &display, error);
-  abbe_display_free(display);
-  return result;
+  return abbe_screen_options_check(&q->screen, q->desc.space, error);
 }
 
 /* The checkpoint stands beside the first output; each rank has its own. */
@@ -408,8 +385,10 @@ static abbe_result run(request *q, const abbe_scene *scene, abbe_error *error) {
 }
 
 static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
-  static const struct argp_child children[] = {{&abbe_map_options_argp, 0, "Receiver map:", 3},
-                                               {0}};
+  static const struct argp_child children[] = {
+      {&abbe_map_options_argp, 0, "Receiver map:", 3},
+      {&abbe_screen_options_argp, 0, "How the PNG shows it:", 4},
+      {0}};
   static const struct argp argp = {
       options,
       parse,
@@ -427,7 +406,10 @@ static int run_command(int argc, char **argv, abbe_trace_ranks *ranks) {
       children,
       NULL,
       NULL};
-  request q = {.program = argv[0], .every = 30, .ranks = ranks != NULL ? &ranks->ranks : NULL};
+  request q = {.program = argv[0],
+               .screen.program = argv[0],
+               .every = 30,
+               .ranks = ranks != NULL ? &ranks->ranks : NULL};
   q.parts = calloc((size_t)argc + 1, sizeof *q.parts);
   abbe_error error = {0};
   if (q.parts == NULL) {

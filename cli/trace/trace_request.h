@@ -4,8 +4,8 @@
 
 #include "cli/base/map_options.h"
 #include "cli/base/scene_input.h"
+#include "cli/base/screen_options.h"
 
-#include "colorimetry/image/display_ocio.h"
 #include "validation/tracer/ranked_run.h"
 #include "validation/tracer/tracer.h"
 
@@ -13,7 +13,6 @@ typedef struct abbe_trace_request {
   const char *program, *scene, *materials;
   abbe_scene_input_changes changes;
   const char *exr, *png, *stats, *checkpoint;
-  const char *of_png; /* an option that the PNG alone has */
   abbe_map_options map;
   abbe_trace_desc desc;
   size_t passes;
@@ -25,7 +24,7 @@ typedef struct abbe_trace_request {
   const abbe_ranks *ranks; /* that trace it together; NULL: one process */
   bool resume, json, quiet, rates, half, filter;
   double filter_seconds; /* spent */
-  abbe_display_desc display;
+  abbe_screen_options screen;
   char *checkpoint_path;
 } abbe_trace_request;
 

@@ -5,7 +5,6 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "colorimetry/image/exr.h"
-#include "colorimetry/image/screen_png.h"
 #include "validation/denoise/denoise.h"
 
 #include <cjson/cJSON.h>
@@ -53,13 +52,6 @@ static abbe_result write_stats(const abbe_trace_request *q, const abbe_tracer *t
   return result;
 }
 
-static abbe_result write_png(const abbe_trace_request *q, const abbe_image *image,
-                             abbe_error *error) {
-  abbe_screen_png_desc desc = {.display = q->display};
-  desc.display.source_space = abbe_rgb_space_ocio_name(q->desc.space);
-  return abbe_screen_png_write(q->png, image, &desc, error);
-}
-
 static abbe_result write_exr(const abbe_trace_request *q, const char *path, const abbe_image *image,
                              abbe_error *error) {
   return q->half ? abbe_exr_write_half(path, image, error) : abbe_exr_write(path, image, error);
@@ -88,7 +80,7 @@ abbe_result abbe_trace_write(abbe_trace_request *q, const abbe_tracer *tracer, a
     result = abbe_tracer_picture(tracer, &image, error);
     if (result == ABBE_OK) result = filter(q, abbe_tracer_passes(tracer), &image, error);
     if (result == ABBE_OK && q->exr != NULL) result = write_exr(q, q->exr, &image, error);
-    if (result == ABBE_OK && q->png != NULL) result = write_png(q, &image, error);
+    if (result == ABBE_OK && q->png != NULL) result = abbe_screen_options_write(&q->screen, q->png, &image, NULL, NULL, error);
     abbe_image_free(&image);
   }
   if (result == ABBE_OK && !part && q->map.save != NULL) {

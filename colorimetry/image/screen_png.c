@@ -1,5 +1,6 @@
 #include "colorimetry/image/screen_png.h"
 
+#include "colorimetry/image/avif_file.h"
 #include "colorimetry/image/png_file.h"
 #include "colorimetry/rgb_space.h"
 
@@ -122,8 +123,11 @@ abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
   if (result == ABBE_OK) result = find_source(d, image, triple, &desc.source_space, error);
   if (result == ABBE_OK) result = abbe_display_make(&desc, &transform, error);
   if (result == ABBE_OK) result = abbe_display_apply(transform, &picked, error);
-  const int bits = d->bits != 0 ? d->bits : picked.transfer != 0 ? 16 : 8;
-  if (result == ABBE_OK) result = abbe_png_write(path, &picked, bits, error);
+  if (result == ABBE_OK && abbe_avif_is_meant(path))
+    result = abbe_avif_write(path, &picked, d->bits != 0 ? d->bits : 10, error);
+  else if (result == ABBE_OK)
+    result = abbe_png_write(
+        path, &picked, d->bits != 0 ? d->bits : picked.transfer != 0 ? 16 : 8, error);
   abbe_display_free(transform);
   abbe_image_free(&picked);
   return result;

@@ -1,4 +1,4 @@
-/* screen_png.h: a scene-linear picture as a PNG for a screen, through OpenColorIO.
+/* screen_png.h: a scene-linear picture as a PNG or an AVIF for a screen, through OpenColorIO.
  *
  * It finds which of the picture's channels are colour and in which space they are; what the
  * transform does is display_ocio.h's.
@@ -17,13 +17,14 @@ typedef struct abbe_screen_png_desc {
   abbe_display_desc display; /* its source_space NULL: what the picture says */
   const char *layer;         /* channels LAYER.R, LAYER.G, LAYER.B; NULL: R, G, B */
   const char *name;          /* of the picture, for sentences; NULL: "the picture" */
-  int bits;                  /* 8 or 16; 0: 8, for an HDR display 16 */
+  int bits;                  /* of a PNG 8 or 16, 0: 8, for an HDR display 16; of an AVIF 10 or 12,
+                                0: 10 */
 } abbe_screen_png_desc;
 
-/* Shows R, G, B, else X, Y, Z, else Y. The space is what the picture's attribute abbe:space names,
+/* As an AVIF where path ends with .avif (avif_file.h). Shows R, G, B, else X, Y, Z, else Y. The space is what the picture's attribute abbe:space names,
  * else what its channels' names mean, else its chromaticities, else the configuration's role
  * scene_linear. ABBE_NOT_FOUND without such channels, ABBE_COLOUR for a space that is not known;
- * errors of abbe_display_make, abbe_display_apply and abbe_png_write. */
+ * errors of abbe_display_make, abbe_display_apply, abbe_png_write and abbe_avif_write. */
 abbe_result abbe_screen_png_write(const char *path, const abbe_image *image,
                                   const abbe_screen_png_desc *desc, abbe_error *error);
 

@@ -151,36 +151,45 @@ static void scale(const float *sorted, size_t count, bool is_error, abbe_chart_f
   }
 }
 
-abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
-                                     const char *name, abbe_error *error) {
-  ABBE_REQUIRE(path && image && layer && name, error);
-  float *value;
-  char title[400], head[800];
-  bool is_error;
-  const size_t width = image->width, height = image->height, pixels = width * height;
-  abbe_result result = abbe_false_colours_values(image, layer, name, &value, title, sizeof title,
-                                                 &is_error, error);
-  if (result != ABBE_OK) return result;
+abbe_result abbe_false_colours_draw(const char *path, const abbe_false_colours_desc *d,
+                                    float *value, abbe_error *error) {
+  ABBE_REQUIRE(path && d && d->title && d->label && value, error);
+  const size_t width = d->width, height = d->height, pixels = width * height;
   float *sorted = malloc(pixels * sizeof *sorted);
-  if (sorted == NULL) {
-    free(value);
-    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for %zu numbers", name, pixels);
-  }
+  if (sorted == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: no memory for %zu numbers", path, pixels);
   size_t count = 0;
   for (size_t p = 0; p < pixels; p++)
     if (isfinite(value[p])) sorted[count++] = value[p];
   qsort(sorted, count, sizeof *sorted, abbe_order_ascending_floats);
-  abbe_chart_field field = {.width = width, .height = height, .value = value, .label = title};
-  scale(sorted, count, is_error, &field);
+  abbe_chart_field field = {.width = width, .height = height, .value = value, .label = d->label};
+  scale(sorted, count, d->is_error, &field);
+  free(sorted);
   /* A logarithm has no 0: the scale's beginning stands for it. */
   for (size_t p = 0; p < pixels && field.log; p++)
     if (value[p] < (float)field.min) value[p] = (float)field.min;
-  snprintf(head, sizeof head, "%.300s", name);
-  const abbe_chart chart = {.title = head, .field = &field};
+  const abbe_chart chart = {.title = d->title, .field = &field};
   const size_t side = width > height ? width : height, times = side < SIDE ? SIDE / side : 1;
-  result = abbe_chart_write(path, &chart, 1, width * times + BESIDE, height * times + ABOVE + BELOW,
-                            error);
-  free(sorted);
+  return abbe_chart_write(path, &chart, 1, width * times + BESIDE, height * times + ABOVE + BELOW,
+                          error);
+}
+
+abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
+                                     const char *name, abbe_error *error) {
+  ABBE_REQUIRE(path && image && layer && name, error);
+  float *value;
+  char label[400], title[400];
+  bool is_error;
+  abbe_result result = abbe_false_colours_values(image, layer, name, &value, label, sizeof label,
+                                                 &is_error, error);
+  if (result != ABBE_OK) return result;
+  snprintf(title, sizeof title, "%.300s", name);
+  const abbe_false_colours_desc desc = {.width = image->width,
+                                        .height = image->height,
+                                        .is_error = is_error,
+                                        .title = title,
+                                        .label = label};
+  result = abbe_false_colours_draw(path, &desc, value, error);
   free(value);
   return result;
 }

@@ -27,6 +27,17 @@ bool abbe_false_colours_mean(const abbe_image *image, const char *layer);
 abbe_result abbe_false_colours_write(const char *path, const abbe_image *image, const char *layer,
                                      const char *name, abbe_error *error);
 
+/* What is drawn: value[width * height], of errors by their logarithm. */
+typedef struct abbe_false_colours_desc {
+  size_t width, height;
+  bool is_error;
+  const char *title, *label; /* above the picture, and beside the scale */
+} abbe_false_colours_desc;
+
+/* Writes such values with such a scale; what of errors is below it becomes its beginning. */
+abbe_result abbe_false_colours_draw(const char *path, const abbe_false_colours_desc *desc,
+                                    float *value, abbe_error *error);
+
 /* The values of that layer, image->width x image->height, malloc'd; of R, G, B of errors: what Y's
  * is at the most. *title, of title_size bytes, says what they are, *is_error whether they are
  * errors. */

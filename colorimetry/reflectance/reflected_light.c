@@ -42,9 +42,9 @@ static void find_lift(abbe_reflected_light *light) {
   memcpy(light->from_xyz, inverse, sizeof inverse);
 }
 
-abbe_result abbe_reflected_light_make(const abbe_illuminant *illuminant, double min_nm,
-                                      double max_nm, abbe_reflected_light **out,
-                                      abbe_error *error) {
+abbe_result abbe_reflected_light_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                                         double min_nm, double max_nm, abbe_reflected_light **out,
+                                         abbe_error *error) {
   ABBE_REQUIRE(illuminant && out, error);
   enum { LEAST = 16, MOST = 470 }; /* the eye sees 470 nm */
   *out = NULL;
@@ -64,7 +64,7 @@ abbe_result abbe_reflected_light_make(const abbe_illuminant *illuminant, double 
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for a light's colours");
   }
   abbe_weights_range range;
-  abbe_weights_range_make(illuminant, min_nm, max_nm, &range);
+  abbe_weights_range_make_by(observer, illuminant, min_nm, max_nm, &range);
   for (size_t i = 0; i < light->count; i++) {
     const double step = (to - from) / (double)light->count, at = from + step * (double)i;
     light->middle_nm[i] = at + step / 2;
@@ -76,6 +76,14 @@ abbe_result abbe_reflected_light_make(const abbe_illuminant *illuminant, double 
   return ABBE_OK;
 }
 
+abbe_result abbe_reflected_light_make(const abbe_illuminant *illuminant, double min_nm,
+                                      double max_nm, abbe_reflected_light **out,
+                                      abbe_error *error) {
+  ABBE_REQUIRE(illuminant && out, error);
+  return abbe_reflected_light_make_by(ABBE_OBSERVER_CIE_1931, illuminant, min_nm, max_nm, out,
+                                      error);
+}
+
 void abbe_reflected_light_free(abbe_reflected_light *light) {
   if (light == NULL) return;
   free(light->middle_nm);
@@ -85,6 +93,16 @@ void abbe_reflected_light_free(abbe_reflected_light *light) {
 
 void abbe_reflected_light_white(const abbe_reflected_light *light, double xyz[3]) {
   memcpy(xyz, light->white, sizeof light->white);
+}
+
+size_t abbe_reflected_light_steps(const abbe_reflected_light *light) {
+  return light->count;
+}
+
+void abbe_reflected_light_step(const abbe_reflected_light *light, size_t step, double *lambda_nm,
+                               double xyz[3]) {
+  *lambda_nm = light->middle_nm[step];
+  memcpy(xyz, light->xyz[step], sizeof light->xyz[step]);
 }
 
 void abbe_reflected_light_xyz(const abbe_reflected_light *light, const abbe_spectrum *measured,

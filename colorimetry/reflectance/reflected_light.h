@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "colorimetry/illuminant.h"
+#include "colorimetry/observer.h"
 #include "spectral/spectrum.h"
 
 #ifdef __cplusplus
@@ -32,10 +33,19 @@ typedef struct abbe_reflected_light abbe_reflected_light;
  * before. */
 abbe_result abbe_reflected_light_make(const abbe_illuminant *illuminant, double min_nm,
                                       double max_nm, abbe_reflected_light **out, abbe_error *error);
+/* The same for any observer, whose XYZ all of it is. A Rec.709 colour stays the same reflectance. */
+abbe_result abbe_reflected_light_make_by(abbe_observer observer, const abbe_illuminant *illuminant,
+                                         double min_nm, double max_nm, abbe_reflected_light **out,
+                                         abbe_error *error);
 void abbe_reflected_light_free(abbe_reflected_light *light);
 
 /* XYZ of the illuminant itself, Y = 1 (0 where the eye sees none of it). */
 void abbe_reflected_light_white(const abbe_reflected_light *light, double xyz[3]);
+
+/* Its steps, and of each the middle and the XYZ of its light, whose sum is the white. */
+size_t abbe_reflected_light_steps(const abbe_reflected_light *light);
+void abbe_reflected_light_step(const abbe_reflected_light *light, size_t step, double *lambda_nm,
+                               double xyz[3]);
 
 /* XYZ that each channel reflects of the illuminant, whose own Y over the range is 1. */
 void abbe_reflected_light_xyz(const abbe_reflected_light *light, const abbe_spectrum *measured,

@@ -280,7 +280,10 @@ abbe_result abbe_preset_calibrate(abbe_context *context, const abbe_scene *scene
   abbe_renderer *renderer = NULL;
   abbe_frame_times times = {0};
   const abbe_frame_times_desc repeats = {.frames = 3};
-  abbe_render_desc quick = {.width = desc->width, .height = desc->height, .space = desc->space};
+  abbe_render_desc quick = {.width = desc->width,
+                            .height = desc->height,
+                            .space = desc->space,
+                            .observer = desc->observer};
   abbe_preset_apply(point, &quick);
   abbe_result result = abbe_renderer_make(context, scene, &quick, &renderer, error);
   if (result == ABBE_OK) result = abbe_frame_times_measure(renderer, &repeats, &times, error);

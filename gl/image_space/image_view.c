@@ -93,8 +93,8 @@ void abbe_image_view_set_lamp(const abbe_gpu_scene *scene, GLuint program,
   const abbe_gl *gl = scene->gpu->gl;
   const abbe_light *light = &scene->local->light[0];
   double white[3], rgb[3], matrix[9];
-  abbe_weights_band_xyz(&light->illuminant, ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM,
-                        ABBE_WAVELENGTH_MIN_NM, ABBE_WAVELENGTH_MAX_NM, white);
+  abbe_weights_white(scene->plan->desc.observer, &light->illuminant, ABBE_WAVELENGTH_MIN_NM,
+                     ABBE_WAVELENGTH_MAX_NM, white);
   abbe_rgb_space_from_xyz(ABBE_RGB_SPACE_REC709, matrix);
   abbe_rgb_space_apply(matrix, white, rgb);
   bool cone = light->kind == ABBE_LIGHT_SPOT;

@@ -239,9 +239,8 @@ void abbe_photon_lights_upload(abbe_photon_lights *views) {
     abbe_photon_light *state = &views->light[i];
     gpu_light g = {0};
     double white[3], rgb[3], matrix[9];
-    abbe_weights_band_xyz(&light->illuminant, views->scene->plan->desc.min_nm,
-                          views->scene->plan->desc.max_nm, views->scene->plan->desc.min_nm,
-                          views->scene->plan->desc.max_nm, white);
+    abbe_weights_white(views->scene->plan->desc.observer, &light->illuminant,
+                       views->scene->plan->desc.min_nm, views->scene->plan->desc.max_nm, white);
     abbe_rgb_space_from_xyz(abbe_gpu_scene_working_space(views->scene), matrix);
     abbe_rgb_space_apply(matrix, white, rgb);
     state->white_peak = fmax(white[0], fmax(white[1], white[2])) / white[1];

@@ -90,8 +90,9 @@ abbe_result abbe_plan_surround(const abbe_scene *scene, const abbe_render_desc *
   result =
       abbe_area_lights_add(scene, d.light_points, ABBE_SCENE_MAX_LIGHTS - others, &pointed, error);
   if (result != ABBE_OK) return result;
-  result =
-      abbe_environment_lights_add(&pointed, d.environment_lights, d.min_nm, d.max_nm, out, error);
+  const abbe_environment_lights_desc lights = {
+      .count = d.environment_lights, .min_nm = d.min_nm, .max_nm = d.max_nm, .observer = d.observer};
+  result = abbe_environment_lights_add(&pointed, &lights, out, error);
   free(pointed.light);
   return result;
 }

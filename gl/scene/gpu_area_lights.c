@@ -47,8 +47,8 @@ void abbe_gpu_area_lights_set(const abbe_gpu_scene *scene, GLuint program) {
     const double area = abbe_light_area(l);
     double xyz[3];
     float rgb[3];
-    abbe_weights_band_xyz(&l->illuminant, scene->plan->desc.min_nm, scene->plan->desc.max_nm,
-                          scene->plan->desc.min_nm, scene->plan->desc.max_nm, xyz);
+    abbe_weights_white(scene->plan->desc.observer, &l->illuminant, scene->plan->desc.min_nm,
+                       scene->plan->desc.max_nm, xyz);
     const double scale = l->power * (double)l->points / area;
     for (int k = 0; k < 3; k++)
       rgb[k] = (float)(scale * ((double)scene->rgb_from_xyz[k] * xyz[0] +

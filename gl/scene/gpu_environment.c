@@ -8,9 +8,11 @@
 
 /* From the environment's RGB, which is relative to its illuminant. */
 static abbe_result find_colours(const abbe_illuminant *illuminant, abbe_rgb_space space,
-                                double min_nm, double max_nm, double matrix[9], abbe_error *error) {
+                                const abbe_render_desc *desc, double matrix[9],
+                                abbe_error *error) {
   abbe_upsampling up;
-  abbe_result result = abbe_upsampling_make(illuminant, min_nm, max_nm, &up, error);
+  abbe_result result = abbe_upsampling_make_by(desc->observer, illuminant, desc->min_nm,
+                                               desc->max_nm, &up, error);
   if (result != ABBE_OK) return result;
   double from_xyz[9];
   abbe_rgb_space_from_xyz(space, from_xyz);
@@ -64,13 +66,13 @@ static abbe_result make_soft_light(abbe_gpu *gpu, const abbe_irradiance_map *map
 }
 
 abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,
-                                      double min_nm, double max_nm, abbe_gpu_environment *out,
+                                      const abbe_render_desc *desc, abbe_gpu_environment *out,
                                       abbe_error *error) {
   *out = (abbe_gpu_environment){0};
   const abbe_environment *e = scene->environment;
   if (e == NULL) return ABBE_OK;
   double matrix[9];
-  abbe_result result = find_colours(&e->illuminant, space, min_nm, max_nm, matrix, error);
+  abbe_result result = find_colours(&e->illuminant, space, desc, matrix, error);
   if (result == ABBE_OK) result = make_texture(gpu, &e->map, matrix, &out->texture, error);
   if (result == ABBE_OK && scene->soft_light != NULL)
     result = make_soft_light(gpu, scene->soft_light, matrix, &out->soft_light, error);

@@ -6,6 +6,7 @@
 
 #include "colorimetry/rgb_space.h"
 #include "gl/device/gpu.h"
+#include "gl/plan/facts/render_desc.h"
 #include "scenes/scene.h"
 
 typedef struct abbe_gpu_environment {
@@ -13,11 +14,11 @@ typedef struct abbe_gpu_environment {
   GLuint soft_light; /* W/m2, by the nodes of an abbe_irradiance_map */
 } abbe_gpu_environment;
 
-/* Of a scene with lights for its environment (environment_lights.h), over [min_nm, max_nm], in
- * `space`; zeros where the scene has none. ABBE_GL, ABBE_NO_MEMORY, errors of
- * abbe_upsampling_make. */
+/* Of a scene with lights for its environment (environment_lights.h), over the request's range, for
+ * its observer, in `space`; zeros where the scene has none. ABBE_GL, ABBE_NO_MEMORY, errors of
+ * abbe_upsampling_make_by. */
 abbe_result abbe_gpu_environment_make(abbe_gpu *gpu, const abbe_scene *scene, abbe_rgb_space space,
-                                      double min_nm, double max_nm, abbe_gpu_environment *out,
+                                      const abbe_render_desc *desc, abbe_gpu_environment *out,
                                       abbe_error *error);
 void abbe_gpu_environment_free(abbe_gpu *gpu, abbe_gpu_environment *environment);
 

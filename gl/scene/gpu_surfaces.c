@@ -155,7 +155,8 @@ static abbe_result fill_reflections(const abbe_gpu_scene *scene, float (*out)[4]
                                         : made;
     if (made == NULL || wanted->kind != made->kind || wanted->spectrum != made->spectrum) {
       abbe_reflected_light_free(light);
-      result = abbe_reflected_light_make(wanted, desc->min_nm, desc->max_nm, &light, error);
+      result = abbe_reflected_light_make_by(desc->observer, wanted, desc->min_nm, desc->max_nm,
+                                            &light, error);
       made = wanted;
     }
     if (result == ABBE_OK)
@@ -193,6 +194,5 @@ abbe_result abbe_gpu_surfaces_upload(abbe_gpu_scene *scene, abbe_error *error) {
   if (result == ABBE_OK) result = upload_reflections(scene, error);
   if (result != ABBE_OK) return result;
   return abbe_gpu_environment_make(scene->gpu, scene->local, abbe_gpu_scene_working_space(scene),
-                                   scene->plan->desc.min_nm, scene->plan->desc.max_nm,
-                                   &scene->environment, error);
+                                   &scene->plan->desc, &scene->environment, error);
 }

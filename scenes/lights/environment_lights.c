@@ -161,6 +161,13 @@ static abbe_result set_spectrum(const abbe_environment *e, const abbe_upsampling
   return abbe_spectrum_make(nm, power, count, ABBE_INTERPOLATION_LINEAR, &out->spectrum, error);
 }
 
+/* For its observer, of a colour that to the observer of 1931 is as bright as white: lights of one
+ * power are equally bright to any. */
+static double brightness(const abbe_upsampling *up, const double rgb[3]) {
+  if (up->observer == ABBE_OBSERVER_CIE_1931) return 1;
+  return up->to_xyz[3] * rgb[0] + up->to_xyz[4] * rgb[1] + up->to_xyz[5] * rgb[2];
+}
+
 static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *up, const lamp *p,
                              size_t number, abbe_light *out, abbe_error *error) {
   double towards[3], rgb[3], y = 0;
@@ -173,8 +180,8 @@ static abbe_result set_light(const abbe_environment *e, const abbe_upsampling *u
   for (int k = 0; k < 3; k++) rgb[k] = p->value[4 + k];
   for (int k = 0; k < 3; k++) y += luminance[k] * rgb[k];
   out->kind = ABBE_LIGHT_DIRECTIONAL;
-  out->power = sum;
   for (int k = 0; k < 3; k++) rgb[k] /= y;
+  out->power = sum * brightness(up, rgb);
   char name[40];
   snprintf(name, sizeof name, "environment %zu", number);
   out->name = strdup(name);
@@ -205,11 +212,12 @@ static void find_soft(const search *s, abbe_irradiance_map *out) {
 }
 
 /* The lights and what they leave, into the copy. */
-static abbe_result add_all(search *s, size_t most, double min_nm, double max_nm, abbe_scene *out,
-                           abbe_error *error) {
+static abbe_result add_all(search *s, size_t most, const abbe_environment_lights_desc *d,
+                           abbe_scene *out, abbe_error *error) {
   const abbe_environment *e = s->environment;
   abbe_upsampling up;
-  abbe_result result = abbe_upsampling_make(&e->illuminant, min_nm, max_nm, &up, error);
+  abbe_result result =
+      abbe_upsampling_make_by(d->observer, &e->illuminant, d->min_nm, d->max_nm, &up, error);
   if (result != ABBE_OK) return result;
   for (size_t x = 0; x < e->map.width; x++) {
     double level[3];
@@ -230,9 +238,11 @@ static abbe_result add_all(search *s, size_t most, double min_nm, double max_nm,
   return result;
 }
 
-abbe_result abbe_environment_lights_add(const abbe_scene *scene, size_t count, double min_nm,
-                                        double max_nm, abbe_scene *out, abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
+abbe_result abbe_environment_lights_add(const abbe_scene *scene,
+                                        const abbe_environment_lights_desc *desc, abbe_scene *out,
+                                        abbe_error *error) {
+  ABBE_REQUIRE(scene && desc && out, error);
+  size_t count = desc->count;
   const size_t own = scene->light_count, room = ABBE_SCENE_MAX_LIGHTS - own;
   *out = *scene;
   if (count > room) count = room;
@@ -253,7 +263,7 @@ abbe_result abbe_environment_lights_add(const abbe_scene *scene, size_t count, d
   if (s.bin == NULL || s.place == NULL || s.found == NULL || s.way == NULL ||
       out->soft_light == NULL)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for the environment's lights");
-  if (result == ABBE_OK) result = add_all(&s, count, min_nm, max_nm, out, error);
+  if (result == ABBE_OK) result = add_all(&s, count, desc, out, error);
   free(s.bin);
   free(s.place);
   free(s.found);

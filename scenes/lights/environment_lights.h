@@ -13,19 +13,27 @@
 #ifndef ABBE_SCENES_LIGHTS_ENVIRONMENT_LIGHTS_H
 #define ABBE_SCENES_LIGHTS_ENVIRONMENT_LIGHTS_H
 
+#include "colorimetry/observer.h"
 #include "scenes/scene.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+typedef struct abbe_environment_lights_desc {
+  size_t count;          /* at the most */
+  double min_nm, max_nm; /* of their spectra */
+  abbe_observer observer; /* to whom a light of one watt is as bright as any other */
+} abbe_environment_lights_desc;
+
 /* A copy of the scene that owns nothing of it but its array of lights and its soft light: after the
  * scene's own come at most `count` of its environment, none where nothing stands out, named
  * "environment 1" and so on, brightest first, as many as ABBE_SCENE_MAX_LIGHTS has room for;
- * out->environment_lights says how many. Spectra are over [min_nm, max_nm]. A scene without an
- * environment is copied as it is. ABBE_NO_MEMORY, and errors of abbe_upsampling_make. */
-abbe_result abbe_environment_lights_add(const abbe_scene *scene, size_t count, double min_nm,
-                                        double max_nm, abbe_scene *out, abbe_error *error);
+ * out->environment_lights says how many. A scene without an environment is copied as it is. ABBE_NO_MEMORY,
+ * and errors of abbe_upsampling_make_by. */
+abbe_result abbe_environment_lights_add(const abbe_scene *scene,
+                                        const abbe_environment_lights_desc *desc, abbe_scene *out,
+                                        abbe_error *error);
 /* Frees such a copy; the scene stays. */
 void abbe_environment_lights_drop(abbe_scene *copy);
 

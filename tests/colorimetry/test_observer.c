@@ -54,6 +54,8 @@ static void test_names(void **state) {
     assert_int_equal(abbe_observer_find(abbe_observer_name((abbe_observer)i)), i);
   assert_int_equal(abbe_observer_find("2006-10"), ABBE_OBSERVER_CIE_2015_10);
   assert_int_equal(abbe_observer_find("1932"), ABBE_OBSERVER_COUNT);
+  for (int i = 0; i < ABBE_OBSERVER_COUNT; i++)
+    assert_int_equal(abbe_observer_find(abbe_observer_text((abbe_observer)i)), i);
   assert_string_equal(abbe_observer_text(ABBE_OBSERVER_CIE_1964), "CIE 1964, 10 degrees");
   double xyz[3] = {1, 1, 1};
   abbe_observer_xyz_of(ABBE_OBSERVER_COUNT, 500, xyz);

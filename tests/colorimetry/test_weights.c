@@ -324,6 +324,28 @@ static void test_other_observers(void **state) {
   abbe_wavelengths_free(&samples);
 }
 
+/* Any tiling of a range adds up to its white, whose Y is 1, for every observer; and a range without
+ * one named is that of 1931. */
+static void test_a_range_of_other_observers(void **state) {
+  (void)state;
+  const abbe_illuminant light = {.kind = ABBE_ILLUMINANT_A};
+  for (int o = 0; o < ABBE_OBSERVER_COUNT; o++) {
+    abbe_weights_range range;
+    double sum[3] = {0}, white[3], xyz[3], at = 400;
+    abbe_weights_range_make_by((abbe_observer)o, &light, 400, 700, &range);
+    for (int i = 0; i < 37; i++, at += 300.0 / 37) {
+      abbe_weights_range_xyz(&range, at, at + 300.0 / 37, xyz);
+      for (int k = 0; k < 3; k++) sum[k] += xyz[k];
+    }
+    abbe_weights_white((abbe_observer)o, &light, 400, 700, white);
+    assert_true(fabs(white[1] - 1) < 1e-12);
+    for (int k = 0; k < 3; k++) assert_true(fabs(sum[k] - white[k]) < 1e-11);
+    abbe_weights_band_xyz(&light, 400, 700, 400, 700, xyz);
+    if (o == ABBE_OBSERVER_CIE_1931) assert_memory_equal(white, xyz, sizeof xyz);
+    else assert_true(fabs(white[2] - xyz[2]) > 1e-3);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_whites),
@@ -340,6 +362,7 @@ int main(void) {
       cmocka_unit_test(test_a_table_with_knots_of_its_own),
       cmocka_unit_test(test_no_light_in_range),
       cmocka_unit_test(test_other_observers),
+      cmocka_unit_test(test_a_range_of_other_observers),
       cmocka_unit_test(test_thesis)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,10 +3,12 @@
 
 #include "base/number.h"
 #include "base/order.h"
+#include "colorimetry/weights.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* What 0.01 is added to, in (a-b)^2/(b+0.01)^2. */
 static const double softening = 0.01;
@@ -284,6 +286,16 @@ static abbe_result find_scale(const abbe_compare_state *s, double *scale, abbe_e
   return ABBE_OK;
 }
 
+/* Nominal for the observer of 1931, else what the observer sees of its table. */
+static void find_d65(abbe_observer observer, double xyz[3]) {
+  static const abbe_illuminant table = {.kind = ABBE_ILLUMINANT_D65};
+  static const double nominal[3] = {0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
+  if (observer == ABBE_OBSERVER_CIE_1931)
+    memcpy(xyz, nominal, sizeof nominal);
+  else
+    abbe_weights_white(observer, &table, ABBE_OBSERVER_MIN_NM, ABBE_OBSERVER_MAX_NM, xyz);
+}
+
 /* D65 at the Y that the brightest 1 % of the lit pixels reach. */
 static abbe_result find_white(const abbe_compare_state *s, double white[3], abbe_error *error) {
   float *lit = malloc(s->pixels * sizeof *lit);
@@ -299,7 +311,8 @@ static abbe_result find_white(const abbe_compare_state *s, double white[3], abbe
   qsort(lit, count, sizeof *lit, abbe_order_descending_floats);
   double y = count > 0 ? (double)lit[count / 100] : 0;
   free(lit);
-  const double d65[3] = {0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290};
+  double d65[3];
+  find_d65(s->reference->observer, d65);
   for (int c = 0; c < 3; c++) white[c] = y * d65[c];
   return ABBE_OK;
 }

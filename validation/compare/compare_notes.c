@@ -40,6 +40,20 @@ static void note_files(abbe_compare_notes *out, const abbe_file_comparison *r) {
   }
 }
 
+static void note_observers(abbe_compare_notes *out, const abbe_file_comparison *r) {
+  const abbe_observer a = r->field[0].observer, b = r->field[1].observer;
+  if (r->field[0].colour.channels == 0) return;
+  if (a != b)
+    note(out,
+         "the files are for two observers, %s and %s: they differ even where they show the same "
+         "light",
+         abbe_observer_text(a), abbe_observer_text(b));
+  else if (a != ABBE_OBSERVER_CIE_1931)
+    note(out,
+         "both are for the observer %s; u', v', ICtCp and FLIP are defined for the one of 1931",
+         abbe_observer_text(a));
+}
+
 static void note_units(abbe_compare_notes *out, const abbe_file_comparison *r) {
   const abbe_comparison *c = &r->comparison;
   bool colour = r->field[0].colour.channels > 0;
@@ -122,6 +136,7 @@ static void note_z(abbe_compare_notes *out, const abbe_file_comparison *r, bool 
 void abbe_compare_notes_make(const abbe_file_comparison *comparison, abbe_compare_notes *out) {
   *out = (abbe_compare_notes){.count = 0};
   note_files(out, comparison);
+  note_observers(out, comparison);
   note_units(out, comparison);
   note_errors(out, comparison);
   for (int mask = 0; mask <= (comparison->comparison.masked ? 1 : 0); mask++) {

@@ -95,6 +95,7 @@ static abbe_result take_colour(const abbe_image *image, const char *name, abbe_f
   memcpy(f->to_xyz, space.to_xyz, sizeof f->to_xyz);
   snprintf(f->space, sizeof f->space, "%s", space.text);
   f->space_assumed = space.assumed;
+  f->observer = space.observer;
   return ABBE_OK;
 }
 

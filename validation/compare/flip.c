@@ -3,24 +3,27 @@
 #include "base/order.h"
 #include "colorimetry/difference.h"
 #include "colorimetry/rgb_space.h"
+#include "validation/transport/side_by_side.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* [Andersson2020]: the filters' constants, exponents and the share of the colour term. */
+/* [Andersson2020]: the filters' constants, the exponent of colour (that of features is 1/2) and the
+ * share of the colour term. */
 static const double csf_a[3][2] = {{1, 0}, {1, 0}, {34.1, 13.5}};
 static const double csf_b[3][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}};
 static const double widest_b = 0.04, edge_width = 0.082;
-static const double colour_power = 0.7, feature_power = 0.5, knee = 0.4, knee_value = 0.95;
+static const double colour_power = 0.7, knee = 0.4, knee_value = 0.95;
 static const double pi = 3.14159265358979323846;
 
-enum { MAX_REACH = 160, MAX_STOPS = 32 };
+enum { MAX_REACH = 160, MAX_STOPS = 32, BLOCK = 128 /* of a row */, LANES = 8 };
 static const double max_pixels_per_degree = 1000;
 
 typedef struct kernel {
   int reach;
   double weight[2 * MAX_REACH + 1], sum; /* sum: before the weights were made to add up to 1 */
+  float tap[2 * MAX_REACH + 1];          /* of those that a float tells from 0 */
 } kernel;
 
 enum { SIDE_PLANES = 5, SHARED_PLANES = 6, PLANES = 2 * SIDE_PLANES + SHARED_PLANES };
@@ -40,10 +43,23 @@ typedef struct job {
   float *ycc[3], *half, *whole, *other;
 } job;
 
+/* Tails that are lost in a float's rounding are left out. */
+static void set_taps(kernel *k) {
+  const double least = 1e-10;
+  double most = 0;
+  int reach = 0;
+  for (int i = 0; i <= 2 * k->reach; i++) most = fmax(most, fabs(k->weight[i]));
+  for (int i = 1; i <= k->reach; i++)
+    if (fabs(k->weight[k->reach + i]) > least * most) reach = i;
+  for (int i = -reach; i <= reach; i++) k->tap[i + reach] = (float)k->weight[i + k->reach];
+  k->reach = reach;
+}
+
 static kernel gaussian(int reach, double exponent) {
   kernel k = {.reach = reach};
   for (int i = -reach; i <= reach; i++) k.sum += k.weight[i + reach] = exp(-exponent * i * i);
   for (int i = 0; i <= 2 * reach; i++) k.weight[i] /= k.sum;
+  set_taps(&k);
   return k;
 }
 
@@ -57,6 +73,7 @@ static kernel detector(int reach, double deviation, int order) {
     sum[w > 0] += fabs(w);
   }
   for (int i = 0; i <= 2 * reach; i++) k.weight[i] /= sum[k.weight[i] > 0];
+  set_taps(&k);
   return k;
 }
 
@@ -78,29 +95,66 @@ static void make_kernels(job *j, double ppd) {
   j->point = detector(near, deviation, 2);
 }
 
-/* to += weight * in, moved by `by` along the row; the row's ends go on. */
-static void add_moved(const float *in, long width, long by, float weight, float *to) {
-  const long first = by < 0 ? (-by < width ? -by : width) : 0;
-  const long last = by > 0 ? (by < width ? width - by : 0) : width;
-  for (long x = 0; x < first; x++) to[x] += weight * in[0];
-  for (long x = first; x < last; x++) to[x] += weight * in[x + by];
-  for (long x = last > first ? last : first; x < width; x++) to[x] += weight * in[width - 1];
+static long held(long at, long count) {
+  return at < 0 ? 0 : at >= count ? count - 1 : at;
 }
 
-/* out = in under one kernel along rows and another along columns; the picture's edge goes on. */
-static void filter(const job *j, const float *in, const kernel *along, const kernel *across,
-                   float *out) {
-  const long w = (long)j->width, h = (long)j->height;
-  memset(j->half, 0, j->pixels * sizeof *j->half);
-  memset(out, 0, j->pixels * sizeof *out);
-  for (long y = 0; y < h; y++)
-    for (long i = -along->reach; i <= along->reach; i++)
-      add_moved(in + y * w, w, i, (float)along->weight[i + along->reach], j->half + y * w);
-  for (long y = 0; y < h; y++)
-    for (long i = -across->reach; i <= across->reach; i++) {
-      const long at = y + i < 0 ? 0 : y + i >= h ? h - 1 : y + i;
-      add_moved(j->half + at * w, w, 0, (float)across->weight[i + across->reach], out + y * w);
+/* Of a kernel that is the same, or the opposite, on both sides of its middle: so many rows lie
+ * around in[0], and a block of each is summed where the processor keeps it. */
+SIDE_BY_SIDE static void sum_taps(const float *const *in, const kernel *k, int count, float *out) {
+  const int reach = k->reach;
+  const float *tap = k->tap, sign = tap[0] == tap[2 * reach] ? 1 : -1;
+  for (int x = 0; x < count; x += LANES) {
+    float sum[LANES];
+    for (int l = 0; l < LANES; l++) sum[l] = tap[reach] * in[reach][x + l];
+    for (int i = 0; i < reach; i++) {
+      const float *a = in[i] + x, *b = in[2 * reach - i] + x, t = tap[i];
+      for (int l = 0; l < LANES; l++) sum[l] += t * (a[l] + sign * b[l]);
     }
+    for (int l = 0; l < LANES; l++) out[x + l] = sum[l];
+  }
+}
+
+/* Along rows, whose ends go on. */
+static void filter_rows(const job *j, const float *in, const kernel *k, float *out) {
+  const long w = (long)j->width, h = (long)j->height;
+#pragma omp parallel for
+  for (long y = 0; y < h; y++)
+    for (long x = 0; x < w; x += BLOCK) {
+      const float *row[2 * MAX_REACH + 1];
+      float around[BLOCK + 2 * MAX_REACH], sum[BLOCK];
+      const int count = (int)(w - x < BLOCK ? w - x : BLOCK);
+      const size_t unused = 2 * (size_t)(MAX_REACH - k->reach) * sizeof *around;
+      const bool inside = x >= k->reach && x + BLOCK + k->reach <= w;
+      if (inside) memcpy(around, in + y * w + x - k->reach, sizeof around - unused);
+      for (int i = 0; i < BLOCK + 2 * k->reach && !inside; i++)
+        around[i] = in[y * w + held(x - k->reach + i, w)];
+      for (int i = 0; i <= 2 * k->reach; i++) row[i] = around + i;
+      sum_taps(row, k, BLOCK, sum);
+      memcpy(out + y * w + x, sum, (size_t)count * sizeof *sum);
+    }
+}
+
+/* Along columns, likewise. */
+static void filter_columns(const job *j, const float *in, const kernel *k, float *out) {
+  const long w = (long)j->width, h = (long)j->height;
+#pragma omp parallel for
+  for (long y = 0; y < h; y++) {
+    const float *row[2 * MAX_REACH + 1];
+    for (int i = 0; i <= 2 * k->reach; i++) row[i] = in + held(y - k->reach + i, h) * w;
+    const int whole = (int)(w / LANES * LANES);
+    sum_taps(row, k, whole, out + y * w);
+    for (long x = whole; x < w; x++) {
+      float sum = 0;
+      for (int i = 0; i <= 2 * k->reach; i++) sum += k->tap[i] * row[i][x];
+      out[y * w + x] = sum;
+    }
+  }
+}
+
+static void blur(const job *j, const float *in, const kernel *k, float *out) {
+  filter_rows(j, in, k, j->half);
+  filter_columns(j, j->half, k, out);
 }
 
 static void ycc_of_xyz(const job *j, const double xyz[3], double ycc[3]) {
@@ -132,19 +186,35 @@ static void hunt_of_rgb(const job *j, const double rgb[3], double lab[3]) {
 
 /* [Abasi2020], HyAB: lightness by the block, colour as the crow flies; to a power. */
 static double colour_distance(const double a[3], const double b[3]) {
-  return pow(fabs(a[0] - b[0]) + hypot(a[1] - b[1], a[2] - b[2]), colour_power);
+  const double x = a[1] - b[1], y = a[2] - b[2];
+  return pow(fabs(a[0] - b[0]) + sqrt(x * x + y * y), colour_power);
 }
 
-static void detect(const job *j, const kernel *detector, float *out) {
-  filter(j, j->ycc[0], detector, &j->smooth, out);
-  filter(j, j->ycc[0], &j->smooth, detector, j->other);
-  for (size_t p = 0; p < j->pixels; p++) out[p] = (float)hypot((double)out[p], (double)j->other[p]);
+/* out = the length of (out, other). */
+static void join(const job *j, float *out) {
+#pragma omp parallel for
+  for (size_t p = 0; p < j->pixels; p++) {
+    const double x = (double)out[p], y = (double)j->other[p];
+    out[p] = (float)sqrt(x * x + y * y);
+  }
 }
 
-/* A picture, multiplied by gain and tone-mapped where that is asked for, in the terms that are
- * compared. */
-static void take(const job *j, const float (*rgb)[3], double gain, double (*tone)(double),
-                 const side *out) {
+/* Each detector along rows and the smoothing along columns, and the other way round. */
+static void detect(const job *j, const side *out) {
+  filter_rows(j, j->ycc[0], &j->edge, j->half);
+  filter_columns(j, j->half, &j->smooth, out->edge);
+  filter_rows(j, j->ycc[0], &j->point, j->half);
+  filter_columns(j, j->half, &j->smooth, out->point);
+  filter_rows(j, j->ycc[0], &j->smooth, j->half);
+  filter_columns(j, j->half, &j->edge, j->other);
+  join(j, out->edge);
+  filter_columns(j, j->half, &j->point, j->other);
+  join(j, out->point);
+}
+
+/* A picture, multiplied by gain and tone-mapped where that is asked for. */
+static void take_ycc(const job *j, const float (*rgb)[3], double gain, double (*tone)(double)) {
+#pragma omp parallel for
   for (size_t p = 0; p < j->pixels; p++) {
     double v[3], xyz[3], ycc[3];
     for (int c = 0; c < 3; c++) {
@@ -155,14 +225,21 @@ static void take(const job *j, const float (*rgb)[3], double gain, double (*tone
     ycc_of_xyz(j, xyz, ycc);
     for (int c = 0; c < 3; c++) j->ycc[c][p] = (float)ycc[c];
   }
+}
+
+/* In the terms that are compared. */
+static void take(const job *j, const float (*rgb)[3], double gain, double (*tone)(double),
+                 const side *out) {
+  take_ycc(j, rgb, gain, tone);
   for (int c = 0; c < 3; c++) {
-    filter(j, j->ycc[c], &j->csf[c][0], &j->csf[c][0], out->colour[c]);
+    blur(j, j->ycc[c], &j->csf[c][0], out->colour[c]);
     if (j->share[c][1] == 0) continue;
-    filter(j, j->ycc[c], &j->csf[c][1], &j->csf[c][1], j->whole);
+    blur(j, j->ycc[c], &j->csf[c][1], j->whole);
     for (size_t p = 0; p < j->pixels; p++)
       out->colour[c][p] = (float)(j->share[c][0] * (double)out->colour[c][p] +
                                   j->share[c][1] * (double)j->whole[p]);
   }
+#pragma omp parallel for
   for (size_t p = 0; p < j->pixels; p++) {
     double ycc[3], v[3], lab[3];
     for (int c = 0; c < 3; c++) ycc[c] = (double)out->colour[c][p];
@@ -172,8 +249,7 @@ static void take(const job *j, const float (*rgb)[3], double gain, double (*tone
     for (int c = 0; c < 3; c++) out->colour[c][p] = (float)lab[c];
     j->ycc[0][p] = (j->ycc[0][p] + 16) / 116;
   }
-  detect(j, &j->edge, out->edge);
-  detect(j, &j->point, out->point);
+  detect(j, out);
 }
 
 static double flip_at(const job *j, size_t p) {
@@ -186,7 +262,7 @@ static double flip_at(const job *j, size_t p) {
                             : knee_value + (power - bend) / (j->greatest - bend) * (1 - knee_value);
   const double edge = fabs((double)j->of[0].edge[p] - (double)j->of[1].edge[p]);
   const double point = fabs((double)j->of[0].point[p] - (double)j->of[1].point[p]);
-  const double feature = pow(fmax(edge, point) / sqrt(2), feature_power);
+  const double feature = sqrt(fmax(edge, point) / sqrt(2));
   return pow(shown(colour), 1 - shown(feature));
 }
 
@@ -240,6 +316,7 @@ abbe_result abbe_flip_map(const float (*reference)[3], const float (*test)[3], s
   if (result == ABBE_OK) {
     take(j, reference, 1, NULL, &j->of[0]);
     take(j, test, 1, NULL, &j->of[1]);
+#pragma omp parallel for
     for (size_t p = 0; p < j->pixels; p++) out[p] = (float)flip_at(j, p);
     free(j->room);
   }
@@ -302,6 +379,7 @@ abbe_result abbe_flip_hdr_map(const float (*reference)[3], const float (*test)[3
       const double stops = e.first + (e.last - e.first) * (double)i / (double)(e.count - 1);
       take(j, reference, exp2(stops), tone_curve, &j->of[0]);
       take(j, test, exp2(stops), tone_curve, &j->of[1]);
+#pragma omp parallel for
       for (size_t p = 0; p < j->pixels; p++) out[p] = fmaxf(out[p], (float)flip_at(j, p));
     }
     free(j->room);

@@ -111,12 +111,13 @@ static uint64_t hash_layout(const abbe_tracer *t) {
  * of the scene depend on it too. */
 static void describe(const abbe_tracer *t, char *out, size_t size) {
   const abbe_trace_desc *d = &t->desc;
+  const bool usual = d->observer == ABBE_OBSERVER_CIE_1931;
   abbe_number_format(
       out, size,
       "physics %s, %zu exits, share %.17g, of the eye %zu, %.17g\npicture %zu x %zu\nguides "
       "%s\nmap %zu "
       "x %zu of light %zu\n"
-      "range %.17g:%.17g\nbands %zu\nspace %s\nphotons %zu\nseed %u\nscene %016llx\n"
+      "range %.17g:%.17g\nbands %zu\nspace %s%s%s\nphotons %zu\nseed %u\nscene %016llx\n"
       "layout %016llx\ninstructions %s\n\n",
       d->physics.matched ? "matched" : "full", d->physics.matched ? d->physics.orders : 0,
       d->physics.matched ? d->physics.energy_share : 0,
@@ -124,7 +125,8 @@ static void describe(const abbe_tracer *t, char *out, size_t size) {
       d->no_picture ? 0 : d->width, d->no_picture ? 0 : d->height,
       d->guides ? "for a filter" : "none", d->no_map ? 0 : d->map_width,
       d->no_map ? 0 : d->map_height, d->no_map ? 0 : d->map_light, d->min_nm, d->max_nm, d->bands,
-      abbe_rgb_space_name(d->space), d->photons, (unsigned)d->seed,
+      abbe_rgb_space_name(d->space), usual ? "" : ", observer ",
+      usual ? "" : abbe_observer_name(d->observer), d->photons, (unsigned)d->seed,
       (unsigned long long)hash_scene(t), (unsigned long long)hash_layout(t),
       abbe_geometry_instructions(&t->geometry));
 }

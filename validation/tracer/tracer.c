@@ -61,6 +61,9 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "there is no light %zu for the map: the scene has %zu", d->map_light,
                           scene->light_count);
+  if ((int)d->observer < 0 || d->observer >= ABBE_OBSERVER_COUNT)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "there is no observer of number %d",
+                          (int)d->observer);
   if (d->no_picture && d->no_map)
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "neither a picture nor a map is asked for: leave one of the two in");
@@ -84,11 +87,13 @@ static abbe_result resolve(const abbe_scene *scene, abbe_trace_desc *d, abbe_err
 
 static abbe_result make_tables(abbe_tracer *t, abbe_error *error) {
   const abbe_trace_desc *d = &t->desc;
-  double uniform = d->bands > 0 ? 0.5 : 0.15;
+  const abbe_spectral_sampling_desc spectrum = {.observer = d->observer,
+                                                .min_nm = d->min_nm,
+                                                .max_nm = d->max_nm,
+                                                .uniform = d->bands > 0 ? 0.5 : 0.15};
   abbe_result result = abbe_geometry_make(t->scene, &t->geometry, error);
   if (result == ABBE_OK)
-    result =
-        abbe_spectral_sampling_make(t->scene, d->min_nm, d->max_nm, uniform, &t->sampling, error);
+    result = abbe_spectral_sampling_make(t->scene, &spectrum, &t->sampling, error);
   if (result == ABBE_OK)
     result =
         abbe_media_make(&t->geometry, t->sampling.lambda_nm, t->sampling.steps, &t->media, error);

@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "colorimetry/image/image.h"
+#include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 #include "scenes/scene.h"
 #include "scenes/view/map_layout.h"
@@ -44,6 +45,7 @@ typedef struct abbe_trace_desc {
   double min_nm, max_nm;         /* 0: 380, 780 */
   size_t bands;                  /* of the spectral output; 0: none */
   abbe_rgb_space space;          /* of the picture */
+  abbe_observer observer;        /* whose XYZ its colours and the map's are */
   size_t photons;                /* a pass; 0: 2^20, or four a pixel where that is more */
   uint32_t seed;
   size_t threads; /* 0: all cores */

@@ -75,7 +75,8 @@ static abbe_result attributes(const abbe_tracer *t, const char *kind, abbe_image
   const char *pair[][2] = {
       {"abbe:kind", kind},     {"abbe:physics", t->desc.physics.matched ? "matched" : "full"},
       {"abbe:passes", passes}, {"abbe:photons", photons},
-      {"abbe:seed", seed},     {"abbe:scene", t->scene->path ? t->scene->path : "-"}};
+      {"abbe:seed", seed},     {"abbe:scene", t->scene->path ? t->scene->path : "-"},
+      {"abbe:observer", abbe_observer_text(t->desc.observer)}};
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < sizeof pair / sizeof *pair && result == ABBE_OK; i++)
     result = abbe_image_set_attribute(out, pair[i][0], pair[i][1], error);

@@ -36,7 +36,7 @@ typedef struct abbe_environment_light {
 } abbe_environment_light;
 
 /* For the scene's environment, if it has one; `space` is the picture's. ABBE_NO_MEMORY, and errors
- * of abbe_upsampling_make. */
+ * of abbe_upsampling_make_by. */
 abbe_result abbe_environment_light_make(const abbe_geometry *geometry,
                                         const abbe_spectral_sampling *sampling,
                                         const abbe_bands *bands, abbe_rgb_space space,

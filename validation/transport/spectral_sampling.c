@@ -25,15 +25,16 @@ static const abbe_illuminant *illuminant_of(const abbe_scene *scene, size_t ligh
 
 /* What the eye sees of the lights, a share of 1 in all, over the fine bins; beyond them density has
  * room for one light's. */
-static abbe_result visible_density(const abbe_scene *scene, double min_nm, double max_nm,
+static abbe_result visible_density(const abbe_scene *scene, const abbe_spectral_sampling_desc *d,
                                    double *density, abbe_error *error) {
+  const double min_nm = d->min_nm, max_nm = d->max_nm;
   double *one = density + FINE;
   for (size_t l = 0; l < lights_of(scene); l++) {
     const abbe_illuminant *illuminant = illuminant_of(scene, l);
     double sum = 0;
     for (size_t i = 0; i < FINE; i++) {
       double lambda = 0.5 * (fine_nm(min_nm, max_nm, i) + fine_nm(min_nm, max_nm, i + 1)), xyz[3];
-      abbe_observer_xyz(lambda, xyz);
+      abbe_observer_xyz_of(d->observer, lambda, xyz);
       one[i] = abbe_illuminant_power(illuminant, lambda) * (xyz[0] + xyz[1] + xyz[2]);
       sum += one[i];
     }
@@ -69,7 +70,8 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
   for (size_t l = 0; l < s->lights; l++) {
     const abbe_illuminant *illuminant = illuminant_of(scene, l);
     abbe_weights weights;
-    abbe_result result = abbe_weights_make(&bands, illuminant, ABBE_RGB_SPACE_XYZ, &weights, error);
+    abbe_result result = abbe_weights_make_by(s->observer, &bands, illuminant, ABBE_RGB_SPACE_XYZ,
+                                              &weights, error);
     if (result != ABBE_OK) return result;
     double power = 0;
     memcpy(s->white[l], weights.sum, sizeof s->white[l]);
@@ -88,16 +90,19 @@ static abbe_result fill_colours(const abbe_scene *scene, abbe_spectral_sampling 
   return ABBE_OK;
 }
 
-abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, double max_nm,
-                                        double uniform, abbe_spectral_sampling *out,
-                                        abbe_error *error) {
-  ABBE_REQUIRE(scene && out, error);
+abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
+                                        const abbe_spectral_sampling_desc *desc,
+                                        abbe_spectral_sampling *out, abbe_error *error) {
+  ABBE_REQUIRE(scene && desc && out, error);
+  const double min_nm = desc->min_nm, max_nm = desc->max_nm, uniform = desc->uniform;
   *out = (abbe_spectral_sampling){0};
   if (!(min_nm > 0 && min_nm < max_nm && isfinite(max_nm)) || !(uniform >= 0.01 && uniform <= 1))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "a range of wavelengths rises from above 0, as 380:780 does: not %g:%g",
                           min_nm, max_nm);
-  abbe_spectral_sampling s = {.steps = ABBE_SPECTRAL_SAMPLING_STEPS, .lights = lights_of(scene)};
+  abbe_spectral_sampling s = {.observer = desc->observer,
+                              .steps = ABBE_SPECTRAL_SAMPLING_STEPS,
+                              .lights = lights_of(scene)};
   double *density = calloc(2 * FINE, sizeof *density);
   s.lambda_nm = calloc(s.steps + 1, sizeof *s.lambda_nm);
   s.white = calloc(s.lights + 1, sizeof *s.white);
@@ -106,7 +111,7 @@ abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, 
   abbe_result result = ABBE_OK;
   if (!density || !s.lambda_nm || !s.white || !s.xyz || !s.power)
     result = abbe_error_set(error, ABBE_NO_MEMORY, "no memory for tables of the spectrum");
-  if (result == ABBE_OK) result = visible_density(scene, min_nm, max_nm, density, error);
+  if (result == ABBE_OK) result = visible_density(scene, desc, density, error);
   if (result == ABBE_OK) {
     for (size_t i = 0; i < FINE; i++) density[i] = (1 - uniform) * density[i] + uniform / FINE;
     invert(density, min_nm, max_nm, &s);

@@ -9,6 +9,7 @@
 #define ABBE_VALIDATION_TRANSPORT_SPECTRAL_SAMPLING_H
 
 #include "base/error.h"
+#include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 #include "scenes/scene.h"
 
@@ -22,6 +23,7 @@ extern "C" {
 #define ABBE_SPECTRAL_SAMPLING_STEPS 4096u
 
 typedef struct abbe_spectral_sampling {
+  abbe_observer observer; /* whose XYZ it is */
   size_t steps;       /* ABBE_SPECTRAL_SAMPLING_STEPS */
   double *lambda_nm;  /* [steps + 1], ascending: the ends of the steps; the first and last are the
                          range */
@@ -31,11 +33,16 @@ typedef struct abbe_spectral_sampling {
   float *power;    /* [lights][steps] power that a path carries, per watt of the light; mean 1 */
 } abbe_spectral_sampling;
 
-/* For the scene's lights over [min_nm, max_nm]; uniform is the uniform part of the density, 0.01 to
- * 1. ABBE_INVALID_ARGUMENT where a light is dark there, or invisible. */
-abbe_result abbe_spectral_sampling_make(const abbe_scene *scene, double min_nm, double max_nm,
-                                        double uniform, abbe_spectral_sampling *out,
-                                        abbe_error *error);
+typedef struct abbe_spectral_sampling_desc {
+  abbe_observer observer;
+  double min_nm, max_nm;
+  double uniform; /* part of the density, 0.01 to 1 */
+} abbe_spectral_sampling_desc;
+
+/* For the scene's lights. ABBE_INVALID_ARGUMENT where a light is dark there, or invisible. */
+abbe_result abbe_spectral_sampling_make(const abbe_scene *scene,
+                                        const abbe_spectral_sampling_desc *desc,
+                                        abbe_spectral_sampling *out, abbe_error *error);
 void abbe_spectral_sampling_free(abbe_spectral_sampling *s);
 
 /* The colours in an RGB space: rgb[lights][steps][3]. */

@@ -226,6 +226,13 @@ static abbe_result check_choices(const abbe_render_desc *d, abbe_error *error) {
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the model '%s' does not go with the profile '%s'",
                           abbe_model_name(d->model), abbe_profile_name(d->profile));
+  if ((int)d->observer < 0 || d->observer >= ABBE_OBSERVER_COUNT ||
+      (abbe_profile_is_printed(d->profile) && d->observer != ABBE_OBSERVER_CIE_1931))
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "the observer '%s' does not go with the profile '%s', whose colours are "
+                          "printed; %s has those of the CIE",
+                          abbe_observer_text(d->observer), name,
+                          abbe_profile_is_printed(d->profile) ? "its twin -cie" : "another");
   if (!knows_fill(d))
     return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
                           "the fill '%s' does not go with the profile '%s'",

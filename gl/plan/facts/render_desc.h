@@ -6,6 +6,7 @@
 #define ABBE_GL_PLAN_FACTS_RENDER_DESC_H
 
 #include "base/error.h"
+#include "colorimetry/observer.h"
 #include "colorimetry/rgb_space.h"
 #include "scenes/view/estimator.h"
 #include "scenes/view/map_layout.h"
@@ -142,6 +143,9 @@ typedef struct abbe_render_desc {
    * solid keeps light inside (4 where a mesh is known by its layers) */
   size_t exits;
   abbe_rgb_space space; /* of the picture */
+  /* whose XYZ the picture's colours are; that of 1931 for methods that are printed with their own
+   * colours */
+  abbe_observer observer;
   /* Layout of one light's map, and which light's; it lives as long as the plan. NULL: each map is
    * fitted to where its light lands. */
   const abbe_map_layout *map_layout;

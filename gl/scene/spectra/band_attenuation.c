@@ -65,8 +65,8 @@ abbe_node_bands *abbe_band_attenuation_fill(const abbe_scene *scene, const abbe_
                                             const abbe_wavelengths *w, abbe_node_bands *out) {
   for (size_t light = 0; light < plan->light_view_count; light++) {
     abbe_weights_range range;
-    abbe_weights_range_make(&scene->light[light].illuminant, w->edge_nm[0], w->edge_nm[w->count],
-                            &range);
+    abbe_weights_range_make_by(plan->desc.observer, &scene->light[light].illuminant,
+                               w->edge_nm[0], w->edge_nm[w->count], &range);
     for (size_t k = 0; k < plan->refractor_count; k++) {
       const abbe_object *object = &scene->object[plan->refractor_object[k]];
       double square = 0;

@@ -120,8 +120,8 @@ abbe_result abbe_camera_bands_fill(const abbe_scene *scene, const abbe_plan *pla
   size_t levels;
   const size_t count = abbe_camera_bands_count(w->count, &levels);
   abbe_weights_range light;
-  abbe_weights_range_make(abbe_scene_illuminant(scene), w->edge_nm[0], w->edge_nm[w->count],
-                          &light);
+  abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene), w->edge_nm[0],
+                             w->edge_nm[w->count], &light);
   abbe_result result = ABBE_OK;
   for (size_t i = 0; i < plan->refractor_count; i++) {
     const abbe_object *object = &scene->object[plan->refractor_object[i]];

@@ -92,8 +92,8 @@ float (*abbe_interval_sums_fill(const abbe_interval_sums *of, const abbe_wavelen
   const size_t an_interval = abbe_interval_sums_texels(plan) * (of->steps + 1);
   for (size_t light = 0; light < plan->light_view_count; light++) {
     abbe_weights_range range;
-    abbe_weights_range_make(&of->scene->light[light].illuminant, w->edge_nm[0],
-                            w->edge_nm[w->count], &range);
+    abbe_weights_range_make_by(plan->desc.observer, &of->scene->light[light].illuminant,
+                               w->edge_nm[0], w->edge_nm[w->count], &range);
     for (size_t k = 0; k < plan->refractor_count; k++)
       for (size_t i = 0; i <= w->count; i++, out += an_interval)
         fill_interval(of, w, &range, abbe_mirror_nodes_laid_by(of->scene, plan, k), i, out);

@@ -43,8 +43,8 @@ static abbe_result evaluate_materials(const abbe_scene *scene, const abbe_plan *
     const abbe_object *object = &scene->object[plan->refractor_object[i]];
     if (plan->mirror[i]) {
       abbe_weights_range light;
-      abbe_weights_range_make(abbe_scene_illuminant(scene), t->all.edge_nm[0], t->all.edge_nm[n],
-                              &light);
+      abbe_weights_range_make_by(plan->desc.observer, abbe_scene_illuminant(scene),
+                                 t->all.edge_nm[0], t->all.edge_nm[n], &light);
       abbe_result result =
           abbe_mirror_nodes_fill(object, &t->all, &light, t->mirror + i * n, error);
       if (result != ABBE_OK) return result;
@@ -100,8 +100,8 @@ static abbe_result weigh_lights(const abbe_scene *scene, const abbe_plan *plan,
     return abbe_error_set(error, ABBE_NO_MEMORY, "no memory for weights");
   for (size_t i = 0; i < lights; i++) {
     abbe_weights_range range; /* both sets have the same ends */
-    abbe_weights_range_make(&scene->light[i].illuminant, t->all.edge_nm[0], t->all.edge_nm[n],
-                            &range);
+    abbe_weights_range_make_by(plan->desc.observer, &scene->light[i].illuminant,
+                               t->all.edge_nm[0], t->all.edge_nm[n], &range);
     weigh_halves(&range, &t->all, n, 0, t->sample_weight + i * n);
     weigh_halves(&range, &t->coarse, n, 2, t->sample_weight + i * n);
     weigh_intervals(&range, &t->coarse, t->interval_weight + i * (t->coarse.count - 1));
@@ -146,8 +146,8 @@ abbe_result abbe_spectral_tables_make(const abbe_scene *scene, const abbe_plan *
   while (t->steps > 2 && t->steps * t->coarse.count > MOST_SUMS) t->steps /= 2;
   if (result == ABBE_OK) result = evaluate_materials(scene, plan, t, error);
   if (result == ABBE_OK)
-    result = abbe_weights_make(&t->all, abbe_scene_illuminant(scene), ABBE_RGB_SPACE_XYZ, &t->camera,
-                               error);
+    result = abbe_weights_make_by(desc->observer, &t->all, abbe_scene_illuminant(scene),
+                                  ABBE_RGB_SPACE_XYZ, &t->camera, error);
   if (result != ABBE_OK || !plan->caustics || abbe_profile_is_published(desc->profile)) return result;
   result = weigh_lights(scene, plan, t, error);
   if (result == ABBE_OK)

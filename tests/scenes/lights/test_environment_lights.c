@@ -13,7 +13,8 @@ static void add(const char *environment, size_t count, abbe_scene *scene, abbe_s
   abbe_error error = {0};
   snprintf(text, sizeof text, PLAIN "environment: %s\n", environment);
   load_text(text, scene);
-  if (abbe_environment_lights_add(scene, count, 380, 780, out, &error) != ABBE_OK)
+  const abbe_environment_lights_desc desc = {.count = count, .min_nm = 380, .max_nm = 780};
+  if (abbe_environment_lights_add(scene, &desc, out, &error) != ABBE_OK)
     fail_msg("%s", error.text);
 }
 
@@ -150,15 +151,17 @@ static void own_lights_stay_and_leave_room(void **state) {
     snprintf(text + strlen(text), sizeof text - strlen(text),
              "{elevation: 20, azimuth: %d, radius: 2, radiance: 9},", 18 * i);
   strcat(text, "]}\n");
+  abbe_environment_lights_desc desc = {.count = 99, .min_nm = 380, .max_nm = 780};
   load_text(text, &scene);
-  assert_int_equal(abbe_environment_lights_add(&scene, 99, 380, 780, &lit, NULL), ABBE_OK);
+  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &lit, NULL), ABBE_OK);
   assert_int_equal(lit.light_count, ABBE_SCENE_MAX_LIGHTS);
   assert_int_equal(lit.environment_lights, ABBE_SCENE_MAX_LIGHTS - 1);
   assert_string_equal(lit.light[0].name, "lamp");
   assert_string_equal(lit.light[1].name, "environment 1");
   drop(&scene, &lit);
   load_text(CAMERA POINT_LIGHT FLOOR, &scene);
-  assert_int_equal(abbe_environment_lights_add(&scene, 4, 380, 780, &lit, NULL), ABBE_OK);
+  desc.count = 4;
+  assert_int_equal(abbe_environment_lights_add(&scene, &desc, &lit, NULL), ABBE_OK);
   assert_int_equal(lit.light_count, 1);
   assert_int_equal(lit.environment_lights, 0);
   drop(&scene, &lit);

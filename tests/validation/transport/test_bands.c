@@ -11,7 +11,8 @@ static abbe_scene scene;
 
 static abbe_spectral_sampling sampling_over(double min_nm, double max_nm) {
   abbe_spectral_sampling s;
-  assert_int_equal(abbe_spectral_sampling_make(&scene, min_nm, max_nm, 0.5, &s, NULL), ABBE_OK);
+  const abbe_spectral_sampling_desc desc = {.min_nm = min_nm, .max_nm = max_nm, .uniform = 0.5};
+  assert_int_equal(abbe_spectral_sampling_make(&scene, &desc, &s, NULL), ABBE_OK);
   return s;
 }
 

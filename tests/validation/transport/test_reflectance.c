@@ -16,9 +16,10 @@ static const abbe_environment_light dark;
 
 static int setup(void **state) {
   (void)state;
+  const abbe_spectral_sampling_desc desc = {.min_nm = 380, .max_nm = 780, .uniform = 0.1};
   load_text(CAMERA POINT_LIGHT CARD, &scene);
   return abbe_geometry_make(&scene, &geometry, NULL) != ABBE_OK ||
-         abbe_spectral_sampling_make(&scene, 380, 780, 0.1, &sampling, NULL) != ABBE_OK ||
+         abbe_spectral_sampling_make(&scene, &desc, &sampling, NULL) != ABBE_OK ||
          abbe_bands_make(&sampling, 40, &bands, NULL) != ABBE_OK;
 }
 

@@ -15,7 +15,9 @@ static void make(abbe_scene *scene, double min_nm, double max_nm, double uniform
                  abbe_spectral_sampling *s) {
   load_text(CAMERA LIGHTS_OF_THREE_KINDS FLOOR, scene);
   abbe_error error = {0};
-  abbe_result result = abbe_spectral_sampling_make(scene, min_nm, max_nm, uniform, s, &error);
+  const abbe_spectral_sampling_desc desc = {
+      .min_nm = min_nm, .max_nm = max_nm, .uniform = uniform};
+  abbe_result result = abbe_spectral_sampling_make(scene, &desc, s, &error);
   if (result != ABBE_OK) print_error("%s\n", error.text);
   assert_int_equal(result, ABBE_OK);
 }
@@ -168,7 +170,8 @@ static void what_cannot_be_sampled_is_refused(void **state) {
   abbe_spectral_sampling s;
   abbe_error error = {0};
   /* no eye sees it */
-  assert_int_equal(abbe_spectral_sampling_make(&scene, 900, 1000, 0.15, &s, &error),
+  const abbe_spectral_sampling_desc unseen = {.min_nm = 900, .max_nm = 1000, .uniform = 0.15};
+  assert_int_equal(abbe_spectral_sampling_make(&scene, &unseen, &s, &error),
                    ABBE_INVALID_ARGUMENT);
   assert_contains(error.text, "'day'");
   assert_contains(error.text, "between 900 and 1000 nm");
@@ -176,9 +179,11 @@ static void what_cannot_be_sampled_is_refused(void **state) {
   const double bad[][3] = {{780, 380, 0.1}, {500, 500, 0.1}, {-1, 500, 0.1},       {0, 500, 0.1},
                            {NAN, 500, 0.1}, {500, NAN, 0.1}, {500, INFINITY, 0.1}, {380, 780, 0},
                            {380, 780, 2},   {380, 780, NAN}};
-  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-    assert_int_equal(abbe_spectral_sampling_make(&scene, bad[i][0], bad[i][1], bad[i][2], &s, NULL),
-                     ABBE_INVALID_ARGUMENT);
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    const abbe_spectral_sampling_desc desc = {
+        .min_nm = bad[i][0], .max_nm = bad[i][1], .uniform = bad[i][2]};
+    assert_int_equal(abbe_spectral_sampling_make(&scene, &desc, &s, NULL), ABBE_INVALID_ARGUMENT);
+  }
   abbe_spectral_sampling_free(&s);
   abbe_scene_free(&scene);
 }

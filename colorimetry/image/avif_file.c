@@ -1,0 +1,146 @@
+#include "colorimetry/image/avif_file.h"
+
+#include <string.h>
+#include <strings.h>
+
+bool abbe_avif_is_meant(const char *path) {
+  const char *dot = path != NULL ? strrchr(path, '.') : NULL;
+  return dot != NULL && strcasecmp(dot, ".avif") == 0;
+}
+
+#ifdef ABBE_HAS_AVIF
+
+#include "base/file.h"
+#include "colorimetry/image/rgb_encoding.h"
+
+#include <avif/avif.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+/* Of 63: no step of an even picture is seen. */
+enum { BEST = 0, WORST = 8, SPEED = 6 };
+
+bool abbe_avif_is_there(void) {
+  return true;
+}
+
+static abbe_result fail(const char *path, avifResult why, abbe_error *error) {
+  return abbe_error_set(error, why == AVIF_RESULT_OUT_OF_MEMORY ? ABBE_NO_MEMORY : ABBE_IO,
+                        "%s: it cannot be encoded: %s", path, avifResultToString(why));
+}
+
+/* [H273]: primaries, transfer, matrix. */
+static abbe_result set_colour(const abbe_image *image, avifImage *out, abbe_error *error) {
+  enum { SRGB = 13, UNSPECIFIED = 2 };
+  double p3_xy[8], p3_curve[5];
+  abbe_rgb_encoding_display_p3(p3_xy, p3_curve);
+  const int code = abbe_rgb_encoding_primaries_code(image->xy);
+  const bool curved = memcmp(image->curve, p3_curve, sizeof p3_curve) == 0 ||
+                      abbe_rgb_encoding_is_srgb(image->xy, image->curve);
+  const bool said = code != 0 && (image->transfer != 0 || curved);
+  out->yuvRange = AVIF_RANGE_FULL;
+  out->colorPrimaries = (avifColorPrimaries)(said ? code : UNSPECIFIED);
+  out->transferCharacteristics =
+      (avifTransferCharacteristics)(!said                  ? UNSPECIFIED
+                                    : image->transfer != 0 ? image->transfer
+                                                           : SRGB);
+  out->matrixCoefficients = code == AVIF_COLOR_PRIMARIES_BT2020
+                                ? AVIF_MATRIX_COEFFICIENTS_BT2020_NCL
+                                : AVIF_MATRIX_COEFFICIENTS_BT709;
+  if (said || !abbe_rgb_encoding_is_known(image->xy, image->curve)) return ABBE_OK;
+  void *icc = NULL;
+  size_t size = 0;
+  abbe_result result = abbe_rgb_encoding_profile(image->xy, image->curve, &icc, &size, error);
+  if (result == ABBE_OK) avifImageSetProfileICC(out, icc, size);
+  free(icc);
+  return result;
+}
+
+static uint16_t *quantize(const abbe_image *image, int bits) {
+  const float top = (float)((1 << bits) - 1);
+  uint16_t *pixel = malloc(image->width * image->height * 3 * sizeof *pixel);
+  for (size_t p = 0; pixel != NULL && p < image->width * image->height; p++)
+    for (size_t k = 0; k < 3; k++) {
+      const float v = image->data[p * image->channels + k]; /* not-a-number is not above 0 */
+      pixel[3 * p + k] = (uint16_t)lroundf(top * (v > 0 ? fminf(v, 1) : 0));
+    }
+  return pixel;
+}
+
+static abbe_result fill(const char *path, const abbe_image *image, int bits, avifImage *out,
+                        abbe_error *error) {
+  avifRGBImage rgb;
+  avifRGBImageSetDefaults(&rgb, out);
+  rgb.format = AVIF_RGB_FORMAT_RGB;
+  rgb.depth = (uint32_t)bits;
+  uint16_t *pixel = quantize(image, bits);
+  if (pixel == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its pixels", path);
+  rgb.pixels = (uint8_t *)pixel;
+  rgb.rowBytes = (uint32_t)(3 * image->width * sizeof *pixel);
+  const avifResult filled = avifImageRGBToYUV(out, &rgb);
+  free(pixel);
+  return filled == AVIF_RESULT_OK ? ABBE_OK : fail(path, filled, error);
+}
+
+static abbe_result encode(const char *path, const avifImage *image, abbe_error *error) {
+  avifEncoder *encoder = avifEncoderCreate();
+  avifRWData bytes = AVIF_DATA_EMPTY;
+  if (encoder == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory to encode it", path);
+  encoder->minQuantizer = BEST;
+  encoder->maxQuantizer = WORST;
+  encoder->speed = SPEED;
+  const avifResult encoded = avifEncoderWrite(encoder, image, &bytes);
+  abbe_result result = encoded == AVIF_RESULT_OK ? ABBE_OK : fail(path, encoded, error);
+  if (result == ABBE_OK) result = abbe_file_write(path, bytes.data, bytes.size, error);
+  avifRWDataFree(&bytes);
+  avifEncoderDestroy(encoder);
+  return result;
+}
+
+static abbe_result check(const char *path, const abbe_image *image, int bits, abbe_error *error) {
+  if (bits != 10 && bits != 12)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: an AVIF of %d bits cannot be written; 10 or 12 can", path, bits);
+  if (image->data == NULL || image->channels < 3 || image->width * image->height == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT, "%s: there are no R, G, B to write", path);
+  if (image->transfer != 0 && abbe_rgb_encoding_primaries_code(image->xy) == 0)
+    return abbe_error_set(error, ABBE_INVALID_ARGUMENT,
+                          "%s: PQ and HLG are written for the primaries of Rec.709, Rec.2020 or P3",
+                          path);
+  return ABBE_OK;
+}
+
+abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
+                            abbe_error *error) {
+  ABBE_REQUIRE(path && image, error);
+  abbe_result result = check(path, image, bits, error);
+  if (result != ABBE_OK) return result;
+  avifImage *out = avifImageCreate((uint32_t)image->width, (uint32_t)image->height, (uint32_t)bits,
+                                   AVIF_PIXEL_FORMAT_YUV444);
+  if (out == NULL)
+    return abbe_error_set(error, ABBE_NO_MEMORY, "%s: there is no memory for its pixels", path);
+  result = set_colour(image, out, error);
+  if (result == ABBE_OK) result = fill(path, image, bits, out, error);
+  if (result == ABBE_OK) result = encode(path, out, error);
+  avifImageDestroy(out);
+  return result;
+}
+
+#else
+
+bool abbe_avif_is_there(void) {
+  return false;
+}
+
+abbe_result abbe_avif_write(const char *path, const abbe_image *image, int bits,
+                            abbe_error *error) {
+  ABBE_REQUIRE(path && image, error);
+  (void)bits;
+  return abbe_error_set(error, ABBE_UNSUPPORTED,
+                        "%s: this abbe was built without libavif; a .png can be written", path);
+}
+
+#endif

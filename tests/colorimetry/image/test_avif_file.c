@@ -1,0 +1,185 @@
+/* AVIF files, decoded again by libavif: their pixels, and what they say of their colour. */
+#include "tests/check.h"
+
+#include "colorimetry/image/avif_file.h"
+#include "colorimetry/image/rgb_encoding.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static char path[64];
+
+static int setup(void **state) {
+  (void)state;
+  snprintf(path, sizeof path, "/tmp/abbe-test-avif-%ld.avif", (long)getpid());
+  return 0;
+}
+
+static int teardown(void **state) {
+  (void)state;
+  unlink(path);
+  return 0;
+}
+
+enum { W = 97, H = 61 };
+
+/* Smooth hues with an edge. */
+static void paint(abbe_image *image) {
+  static const char *const names[] = {"R", "G", "B"};
+  assert_int_equal(abbe_image_make(W, H, 3, names, image, NULL), ABBE_OK);
+  for (size_t y = 0; y < H; y++)
+    for (size_t x = 0; x < W; x++) {
+      float *to = image->data + 3 * (y * W + x);
+      to[0] = (float)(0.5 + 0.5 * sin(0.07 * (double)x));
+      to[1] = (float)((double)y / (H - 1));
+      to[2] = x > W / 2 ? 0.8f : 0.1f;
+    }
+}
+
+static void names_tell_what_is_meant(void **state) {
+  (void)state;
+  assert_true(abbe_avif_is_meant("a.avif") && abbe_avif_is_meant("b.c/D.AVIF"));
+  assert_false(abbe_avif_is_meant("a.avif.png") || abbe_avif_is_meant("avif") ||
+               abbe_avif_is_meant(NULL));
+}
+
+#ifdef ABBE_HAS_AVIF
+#include <avif/avif.h>
+
+/* rgb[W * H * 3], of all the file's bits. */
+static avifImage *decode(uint16_t *pixel) {
+  avifDecoder *decoder = avifDecoderCreate();
+  avifImage *image = avifImageCreateEmpty();
+  avifRGBImage rgb;
+  assert_int_equal(avifDecoderReadFile(decoder, image, path), AVIF_RESULT_OK);
+  assert_int_equal(image->width, W);
+  assert_int_equal(image->height, H);
+  assert_int_equal(image->yuvFormat, AVIF_PIXEL_FORMAT_YUV444);
+  assert_int_equal(image->yuvRange, AVIF_RANGE_FULL);
+  avifRGBImageSetDefaults(&rgb, image);
+  rgb.format = AVIF_RGB_FORMAT_RGB;
+  rgb.pixels = (uint8_t *)pixel;
+  rgb.rowBytes = 3 * W * sizeof *pixel;
+  assert_int_equal(avifImageYUVToRGB(image, &rgb), AVIF_RESULT_OK);
+  avifDecoderDestroy(decoder);
+  return image;
+}
+
+/* Of the whole range, at the most and in the mean. */
+static void check_pixels(const abbe_image *image, const uint16_t *pixel, int bits) {
+  const double top = (1 << bits) - 1;
+  double most = 0, sum = 0;
+  for (size_t i = 0; i < W * H * 3; i++) {
+    const double off = fabs((double)pixel[i] / top - (double)image->data[i]);
+    most = fmax(most, off);
+    sum += off;
+  }
+  print_message("%d bits: off by %.4f at the most, %.5f in the mean\n", bits, most,
+                sum / (W * H * 3));
+  assert_true(most < 0.012);
+  assert_true(sum / (W * H * 3) < 0.0015);
+}
+
+typedef struct encoding {
+  double xy[8], curve[5];
+  int transfer, bits, code[3];
+} encoding;
+
+static void files_hold_pixels_and_their_colour(void **state) {
+  (void)state;
+  static const encoding of[] = {
+      {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}, {0}, 16, 10, {9, 16, 9}},
+      {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}, {0}, 16, 12, {9, 16, 9}},
+      {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}, {0}, 18, 10, {9, 18, 9}},
+      {{0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}, {0}, 0, 10, {1, 13, 1}},
+      {{0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.3290}, {0}, 0, 12, {12, 13, 1}}};
+  uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
+  for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+    abbe_image image;
+    abbe_error error = {0};
+    double xy[8];
+    paint(&image);
+    memcpy(image.xy, of[i].xy, sizeof image.xy);
+    image.transfer = of[i].transfer;
+    if (of[i].transfer == 0) abbe_rgb_encoding_srgb(xy, image.curve);
+    if (abbe_avif_write(path, &image, of[i].bits, &error) != ABBE_OK) fail_msg("%s", error.text);
+    avifImage *read = decode(pixel);
+    assert_int_equal(read->depth, of[i].bits);
+    assert_int_equal(read->colorPrimaries, of[i].code[0]);
+    assert_int_equal(read->transferCharacteristics, of[i].code[1]);
+    assert_int_equal(read->matrixCoefficients, of[i].code[2]);
+    assert_int_equal(read->icc.size, 0);
+    check_pixels(&image, pixel, of[i].bits);
+    avifImageDestroy(read);
+    abbe_image_free(&image);
+  }
+  free(pixel);
+}
+
+/* A power of 2.4 has no code that decoders agree on: a profile says it. */
+static void other_encodings_have_a_profile(void **state) {
+  (void)state;
+  static const double power[5] = {2.4, 1, 0, 0, 0};
+  uint16_t *pixel = malloc(W * H * 3 * sizeof *pixel);
+  abbe_image image;
+  double curve[5];
+  void *icc = NULL;
+  size_t size = 0;
+  paint(&image);
+  abbe_rgb_encoding_srgb(image.xy, curve);
+  memcpy(image.curve, power, sizeof power);
+  assert_int_equal(abbe_avif_write(path, &image, 10, NULL), ABBE_OK);
+  assert_int_equal(abbe_rgb_encoding_profile(image.xy, image.curve, &icc, &size, NULL), ABBE_OK);
+  avifImage *read = decode(pixel);
+  assert_int_equal(read->icc.size, size);
+  assert_memory_equal(read->icc.data, icc, size);
+  check_pixels(&image, pixel, 10);
+  avifImageDestroy(read);
+  abbe_image_free(&image);
+  free(icc);
+  free(pixel);
+}
+
+static void what_cannot_be_written_is_said(void **state) {
+  (void)state;
+  abbe_image image;
+  abbe_error error = {0};
+  assert_true(abbe_avif_is_there());
+  paint(&image);
+  assert_int_equal(abbe_avif_write(path, &image, 8, &error), ABBE_INVALID_ARGUMENT);
+  assert_contains(error.text, "10 or 12");
+  image.transfer = 16; /* of primaries that no code names */
+  image.xy[0] = 0.6;
+  assert_int_equal(abbe_avif_write(path, &image, 10, &error), ABBE_INVALID_ARGUMENT);
+  image.transfer = 0;
+  image.data[0] = NAN; /* is dark */
+  assert_int_equal(abbe_avif_write(path, &image, 10, &error), ABBE_OK);
+  assert_int_equal(abbe_avif_write("/nowhere/at/all.avif", &image, 10, &error), ABBE_IO);
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(names_tell_what_is_meant),
+                                     cmocka_unit_test(files_hold_pixels_and_their_colour),
+                                     cmocka_unit_test(other_encodings_have_a_profile),
+                                     cmocka_unit_test(what_cannot_be_written_is_said)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
+#else
+static void without_the_library_it_is_said(void **state) {
+  (void)state;
+  abbe_image image;
+  abbe_error error = {0};
+  paint(&image);
+  assert_false(abbe_avif_is_there());
+  assert_int_equal(abbe_avif_write(path, &image, 10, &error), ABBE_UNSUPPORTED);
+  assert_contains(error.text, "libavif");
+  abbe_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(names_tell_what_is_meant),
+                                     cmocka_unit_test(without_the_library_it_is_said)};
+  return cmocka_run_group_tests(tests, setup, teardown);
+}
+#endif
